@@ -1,0 +1,68 @@
+// What a file format is to the program: one descriptor a folder, listed in registry.cpp. Detection, `--to`,
+// `selvage formats` and the conformance tests all come from it. CONTRIBUTING.md: how to add one.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/output.h"
+#include "core/source.h"
+#include "core/units.h"
+#include "fabric/model.h"
+#include "fem/mesh.h"
+#include "yarn/body.h"
+
+namespace selvage::formats {
+
+// What was written, for the report.
+struct WriteFacts {
+  std::map<std::string, std::uint64_t> entities;  // by the format's own names: {"128": 12}
+  std::vector<Message> messages;                  // warnings
+};
+
+struct SurfaceOptions {
+  std::string title;      // of the fabric, may be empty
+  std::string file_name;  // the output's own name (without folders), for headers
+  Unit units = Unit::mm;  // of all lengths
+  std::uint64_t expected_bodies = 0;  // how many will be added; a guess only costs speed
+  double max_coordinate = 0;          // upper bound of |coordinate| over all bodies, if known; 0: unknown
+  double tolerance = 0;               // of the modelled tubes, file units; 0: unknown
+  bool iges_solid = false;            // IGES: 186 solids instead of three 128s a yarn
+  std::string step_schema = "AP242";  // AP242 | AP214
+};
+
+// Takes the yarns of one file, one after the other, in the order in which they shall stand there.
+class BodyWriter {
+ public:
+  virtual ~BodyWriter() = default;
+  virtual Status add(const yarn::Body& body) = 0;
+  // Completes the file's bytes; committing the OutputFile is the caller's.
+  virtual Result<WriteFacts> finish() = 0;
+};
+
+struct Descriptor {
+  std::string_view name;                     // the word of --to: "iges"
+  std::string_view title;                    // one line for `selvage formats`
+  std::vector<std::string_view> extensions;  // with the dot; the first is the one that is written
+  // Is this the format of a file that begins with these bytes (at most 4 KiB)? Null: only the extension tells.
+  bool (*sniff)(std::string_view head) = nullptr;
+
+  // Readers report every error and warning to `diagnostics`; nothing comes back exactly when there was an error.
+  std::optional<fabric::Fabric> (*read_fabric)(const Source& source, Diagnostics& diagnostics) = nullptr;
+
+  Result<WriteFacts> (*write_fabric)(const fabric::Fabric& fabric, OutputFile& output) = nullptr;
+  // `output` outlives the writer.
+  Result<std::unique_ptr<BodyWriter>> (*open_bodies)(OutputFile& output, const SurfaceOptions& options) = nullptr;
+  Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output) = nullptr;
+};
+
+// Every format of the program, in the order in which `selvage formats` lists them.
+const std::vector<const Descriptor*>& all_formats();
+
+}  // namespace selvage::formats

@@ -1,0 +1,10 @@
+// Gmsh mesh 4.1
+#pragma once
+
+#include "formats/format.h"
+
+namespace selvage::formats::msh {
+
+const Descriptor& descriptor();
+
+}  // namespace selvage::formats::msh

@@ -1,0 +1,18 @@
+// The explicit list of formats: to add a format is to add a folder and a line here.
+#include "formats/format.h"
+#include "formats/iges/iges.h"
+#include "formats/inp/inp.h"
+#include "formats/msh/msh.h"
+#include "formats/step/step.h"
+#include "formats/txt/txt.h"
+#include "formats/vtu/vtu.h"
+
+namespace selvage::formats {
+
+const std::vector<const Descriptor*>& all_formats() {
+  static const std::vector<const Descriptor*> list = {&txt::descriptor(),  &iges::descriptor(), &step::descriptor(),
+                                                      &inp::descriptor(),  &msh::descriptor(),  &vtu::descriptor()};
+  return list;
+}
+
+}  // namespace selvage::formats

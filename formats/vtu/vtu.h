@@ -1,0 +1,10 @@
+// VTK unstructured grid
+#pragma once
+
+#include "formats/format.h"
+
+namespace selvage::formats::vtu {
+
+const Descriptor& descriptor();
+
+}  // namespace selvage::formats::vtu

@@ -1,0 +1,120 @@
+#include "core/diagnostics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+
+namespace selvage {
+
+std::string_view name_of(Severity severity) {
+  switch (severity) {
+    case Severity::note: return "note";
+    case Severity::warning: return "warning";
+    case Severity::error: return "error";
+  }
+  return "error";
+}
+
+std::string_view name_of(Kind kind) {
+  switch (kind) {
+    case Kind::malformed: return "malformed";
+    case Kind::unsupported: return "unsupported";
+    case Kind::io: return "io";
+    case Kind::geometry: return "geometry";
+    case Kind::limit: return "limit";
+    case Kind::usage: return "usage";
+    case Kind::internal: return "internal";
+    case Kind::interrupted: return "interrupted";
+  }
+  return "internal";
+}
+
+std::string to_string(const Message& message) {
+  std::string out;
+  if (!message.file.empty()) {
+    out += message.file;
+    if (message.place.line > 0) out += fmt::format(":{}", message.place.line);
+    if (message.place.line > 0 && message.place.column > 0) out += fmt::format(":{}", message.place.column);
+    out += ": ";
+  }
+  out += fmt::format("{}: {}", name_of(message.severity), message.text);
+  if (!message.yarn.empty() && message.text.find(message.yarn) == std::string::npos)
+    out += fmt::format(" (yarn '{}')", message.yarn);
+  if (message.at)
+    out += fmt::format(" at ({:.6g}, {:.6g}, {:.6g})", message.at->x(), message.at->y(), message.at->z());
+  if (!message.excerpt.empty()) {
+    out += "\n  " + message.excerpt;
+    if (message.caret > 0) {
+      out += "\n  ";
+      for (int i = 0; i + 1 < message.caret && i < static_cast<int>(message.excerpt.size()); ++i)
+        out += message.excerpt[static_cast<std::size_t>(i)] == '\t' ? '\t' : ' ';
+      out += '^';
+    }
+  }
+  return out;
+}
+
+Message error(Kind kind, std::string text) {
+  Message message;
+  message.kind = kind;
+  message.text = std::move(text);
+  return message;
+}
+
+Message warning(Kind kind, std::string text) {
+  Message message = error(kind, std::move(text));
+  message.severity = Severity::warning;
+  return message;
+}
+
+namespace {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  // Optimal string alignment: a swap of two neighbours counts as one step.
+  std::vector<std::size_t> before(b.size() + 1), row(b.size() + 1), next(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    next[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const bool same = lower(a[i - 1]) == lower(b[j - 1]);
+      next[j] = std::min({row[j] + 1, next[j - 1] + 1, row[j - 1] + (same ? 0U : 1U)});
+      if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]))
+        next[j] = std::min(next[j], before[j - 2] + 1);
+    }
+    before.swap(row);
+    row.swap(next);
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& known) {
+  if (word.size() > 64) return {};
+  std::string_view best;
+  std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (std::string_view candidate : known) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+void Diagnostics::add(Message message) {
+  if (message.severity == Severity::error && ++errors_ > max_errors_) return;
+  messages_.push_back(std::move(message));
+}
+
+const Message* Diagnostics::first_error() const {
+  const auto found = std::find_if(messages_.begin(), messages_.end(),
+                                  [](const Message& m) { return m.severity == Severity::error; });
+  return found == messages_.end() ? nullptr : &*found;
+}
+
+}  // namespace selvage

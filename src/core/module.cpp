@@ -1,0 +1,50 @@
+#include "core/module.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <array>
+
+namespace selvage {
+
+namespace fs = std::filesystem;
+
+fs::path program_folder() {
+  std::error_code failure;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
+  return failure ? fs::path(".") : program.parent_path();
+}
+
+namespace {
+
+Result<fs::path> find_beside_program(const std::string& file) {
+  const fs::path here = program_folder();
+  for (const fs::path& folder : std::array{here, here / "../lib/selvage"}) {
+    std::error_code failure;
+    if (fs::exists(folder / file, failure)) return folder / file;
+  }
+  return error(Kind::internal, fmt::format("the installation is incomplete: '{}' is neither in '{}' nor in "
+                                           "'../lib/selvage' beside it",
+                                           file, here.string()));
+}
+
+}  // namespace
+
+Result<const void*> open_module(const std::string& name) {
+  const std::string symbol = "selvage_" + name;
+  Result<fs::path> path = find_beside_program(symbol + ".so");
+  if (!path) return path.error();
+  // Opening the same file again gives the same handle, and a module stays open until the process ends.
+  void* handle = ::dlopen(path->c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (handle == nullptr)
+    return error(Kind::internal, fmt::format("cannot open the module '{}': {}", path->string(), ::dlerror()));
+  using Table = const void* (*)();
+  auto table = reinterpret_cast<Table>(::dlsym(handle, symbol.c_str()));
+  if (table == nullptr)
+    return error(Kind::internal, fmt::format("the module '{}' has no entry '{}'", path->string(), symbol));
+  return table();
+}
+
+Result<fs::path> find_worker(const std::string& name) { return find_beside_program(name); }
+
+}  // namespace selvage

@@ -1,0 +1,24 @@
+// Heavy libraries (OpenCASCADE, CGAL) are shared objects beside the program, opened only by a job that
+// needs them, so that text -> IGES starts in milliseconds.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/diagnostics.h"
+
+namespace selvage {
+
+// The folder in which the running program, its modules and its worker programs stand. (For tests: the build's
+// bin folder, found the same way.)
+std::filesystem::path program_folder();
+
+// Opens `selvage_NAME.so` beside the program (or in ../lib/selvage) once, and returns what its function
+// `extern "C" const void* selvage_NAME()` gives: a pointer to the module's table of functions, declared in the
+// header that the module implements. Errors (internal): missing file, missing symbol.
+Result<const void*> open_module(const std::string& name);
+
+// A worker program (`selvage-tetgen`) beside the program or in ../lib/selvage. Error (internal): missing.
+Result<std::filesystem::path> find_worker(const std::string& name);
+
+}  // namespace selvage

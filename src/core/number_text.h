@@ -1,0 +1,27 @@
+// Numbers as text: the shortest decimal form that reads back to the same bits, and its exact inverse.
+#pragma once
+
+#include <charconv>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace selvage {
+
+// Room that is always enough for one number written by write_number.
+inline constexpr std::size_t max_number_length = 32;
+
+// Writes the shortest form of a finite `value` at `out` (at least max_number_length bytes) and returns the end.
+inline char* write_number(char* out, double value) {
+  return std::to_chars(out, out + max_number_length, value).ptr;
+}
+inline char* write_number(char* out, long long value) {
+  return std::to_chars(out, out + max_number_length, value).ptr;
+}
+
+inline std::string number_text(double value) {
+  char buffer[max_number_length];
+  return {buffer, write_number(buffer, value)};
+}
+
+}  // namespace selvage

@@ -1,0 +1,52 @@
+#include "fabric/model.h"
+
+#include <algorithm>
+
+namespace selvage::fabric {
+
+double LinearDensity::tex() const {
+  switch (measure) {
+    case Measure::tex: return value;
+    case Measure::denier: return value / 9.0;
+    // English cotton count: 840-yard hanks a pound; 1000 g/km over (840 * 0.9144 m / 453.59237 g).
+    case Measure::ne: return 453.59237e3 / (840.0 * 0.9144) / value;
+  }
+  return value;
+}
+
+namespace {
+
+template <class T>
+const T* find_named(const std::vector<T>& list, std::string_view name) {
+  const auto found = std::find_if(list.begin(), list.end(), [&](const T& item) { return item.name == name; });
+  return found == list.end() ? nullptr : &*found;
+}
+
+template <class T>
+void override_with(std::optional<T>& base, const std::optional<T>& own) {
+  if (own) base = own;
+}
+
+}  // namespace
+
+const Thread* Fabric::find_thread(std::string_view name) const { return find_named(threads, name); }
+const Material* Fabric::find_material(std::string_view name) const { return find_named(materials, name); }
+
+Thread resolved_thread(const Fabric& fabric, const Yarn& yarn) {
+  const Thread* named = fabric.find_thread(yarn.thread);
+  Thread thread = named != nullptr ? *named : Thread{};
+  const Thread& own = yarn.own;
+  override_with(thread.linear_density, own.linear_density);
+  override_with(thread.density, own.density);
+  override_with(thread.packing, own.packing);
+  override_with(thread.diameter, own.diameter);
+  override_with(thread.section, own.section);
+  override_with(thread.twist, own.twist);
+  override_with(thread.plies, own.plies);
+  override_with(thread.filaments, own.filaments);
+  override_with(thread.color, own.color);
+  override_with(thread.material, own.material);
+  return thread;
+}
+
+}  // namespace selvage::fabric

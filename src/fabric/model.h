@@ -1,0 +1,253 @@
+// A fabric as its text says it: every statement of Fabric TXT (formats/txt/README.md), typed, checked for grammar but
+// not yet built. Numbers are as written, in the file's unit.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/units.h"
+#include "core/vec.h"
+#include "yarn/body.h"
+#include "yarn/section.h"
+
+namespace selvage::fabric {
+
+using yarn::Color;
+using yarn::Role;
+
+struct LinearDensity {
+  enum class Measure { tex, denier, ne };
+  double value = 0;
+  Measure measure = Measure::tex;
+  [[nodiscard]] double tex() const;  // g/km; denier / 9, 590.5412... / Ne
+  bool operator==(const LinearDensity&) const = default;
+};
+
+enum class Hand { z, s };
+
+struct Twist {
+  double turns = 0;  // per metre
+  Hand hand = Hand::z;
+  bool rotates = false;  // the section turns with it
+  bool operator==(const Twist&) const = default;
+};
+
+struct Plies {
+  int count = 0;
+  double turns = 0;  // of the ply, per metre
+  Hand hand = Hand::s;
+  bool operator==(const Plies&) const = default;
+};
+
+// What a yarn is made of. In a yarn block the same statements override the named thread's, one by one.
+struct Thread {
+  std::string name;
+  TextPlace place;
+  std::optional<LinearDensity> linear_density;
+  std::optional<double> density;   // of the fibre, g/cm3
+  std::optional<double> packing;   // 0 < packing <= 1
+  std::optional<double> diameter;  // file units
+  std::optional<yarn::Section> section;
+  std::optional<Twist> twist;
+  std::optional<Plies> plies;
+  std::optional<int> filaments;
+  std::optional<Color> color;
+  std::optional<std::string> material;
+};
+
+struct IsotropicElastic {
+  double modulus = 0;  // MPa
+  double poisson = 0;
+  bool operator==(const IsotropicElastic&) const = default;
+};
+// 1 is along the yarn.
+struct TransverseElastic {
+  double e1 = 0, e2 = 0;  // MPa
+  double nu12 = 0;
+  double g12 = 0;  // MPa
+  double nu23 = 0;
+  bool operator==(const TransverseElastic&) const = default;
+};
+struct Expansion {
+  double along = 0, across = 0;  // 1/K
+  bool operator==(const Expansion&) const = default;
+};
+
+struct Material {
+  std::string name;
+  TextPlace place;
+  std::optional<double> density;  // g/cm3
+  std::variant<std::monostate, IsotropicElastic, TransverseElastic> elastic;
+  std::optional<Expansion> expansion;
+};
+
+// The size of the section at one path point.
+struct SizeAt {
+  double width = 0, height = 0;
+  std::optional<double> angle;  // degrees, rotation about the path
+  bool operator==(const SizeAt&) const = default;
+};
+
+struct Path {
+  enum class Form { chord, uniform, centripetal, polyline, control, loop };
+  Form form = Form::chord;
+  TextPlace place;
+  std::vector<Vec3> points;
+  // Empty when no row carries a size; else one entry a point (a row without a size has nullopt).
+  std::vector<std::optional<SizeAt>> sizes;
+  std::vector<int> lines;  // source line of each row; empty when the rows stand on consecutive lines after `place`
+};
+
+// Control points of the surface itself: `sections` rows of `per_section` points, section after section.
+struct Grid {
+  TextPlace place;
+  int sections = 0;
+  int per_section = 0;
+  std::optional<int> degree_along, degree_round;
+  std::vector<double> knots_along, knots_round;  // empty: the default
+  bool open_round = false;    // the rows are the clamped form, seam point at both ends
+  bool closed_along = false;  // word `closed` of the grid: a ring
+  std::vector<Vec3> points;
+  std::vector<double> weights;  // empty: all 1
+};
+
+struct Yarn {
+  std::string name;
+  TextPlace place;
+  std::string thread;  // empty: the statements are all inline
+  TextPlace thread_place;
+  Thread own;          // inline statements; its name is empty
+  std::optional<Role> role;
+  std::optional<Vec3> tangent_start, tangent_end, up;
+  TextPlace up_place;
+  bool closed = false;
+  std::variant<std::monostate, Path, Grid> shape;
+};
+
+// Threads used in turn: `W1,W2`.
+struct WeaveSystem {
+  std::vector<std::string> threads;
+  TextPlace place;
+  int count = 0;
+  double pitch = 0;
+};
+
+struct Draft {
+  enum class Form { rows, plain, twill, satin, basket, file };
+  Form form = Form::plain;
+  std::vector<std::string> rows;  // of '0' and '1', top row = weft 1
+  int a = 0, b = 0;               // twill a/b, satin a/b, basket a/b
+  std::string file;
+};
+
+struct Weave {
+  enum class Profile { peirce, sine, lenticular, racetrack };
+  TextPlace place;
+  WeaveSystem warp, weft;
+  Draft draft;
+  std::optional<Profile> profile;
+  std::optional<int> layers;
+};
+
+struct Knit {
+  enum class Form { jersey, purl, rib };
+  enum class Method { uniform, chord, centripetal };
+  TextPlace place;
+  Form form = Form::jersey;
+  int rib_a = 0, rib_b = 0;
+  std::string thread;
+  TextPlace thread_place;
+  int courses = 0, wales = 0;
+  std::optional<Method> method;
+};
+
+struct WarpknitBar {
+  std::string thread;
+  TextPlace place;
+  std::string lapping;  // as written, blanks kept as they separate the overlaps
+  bool fall_plate = false;
+};
+
+struct Warpknit {
+  enum class Stitch { closed, open };
+  TextPlace place;
+  std::string classic;  // tricot, satin, queens-cord, ...; empty: the bars say it
+  std::string thread;   // of a classic
+  TextPlace thread_place;
+  std::vector<WarpknitBar> bars;
+  int wales = 0, courses = 0;
+  double wale_pitch = 0, course_pitch = 0;
+  std::optional<Stitch> stitch;
+};
+
+struct Braid {
+  TextPlace place;
+  std::string thread;
+  TextPlace thread_place;
+  int carriers = 0;
+  int over = 1, under = 1;  // pattern 2/2
+  double radius = 0, angle = 0 /* degrees */, length = 0;
+  std::string axial_thread;
+  TextPlace axial_place;
+  int axial_count = 0;
+};
+
+struct PieceCurve {
+  enum class Shape { found, c, s };
+  std::string name;
+  TextPlace place;
+  bool is_line = false;
+  Shape shape = Shape::found;
+  std::vector<Vec2> points;  // a line has two
+};
+
+struct Piece {
+  std::string name;
+  TextPlace place;
+  std::vector<PieceCurve> curves;
+};
+
+struct Edit {
+  enum class Form { point, weight, length };
+  TextPlace place;
+  std::string yarn;
+  Form form = Form::point;
+  int joint = 0;  // 1-based
+  Vec3 target = Vec3::Zero();     // point, weight: goes there
+  double length = 0;              // length
+  Vec3 direction = Vec3::Zero();  // length: along
+};
+
+struct Cell {
+  TextPlace place;
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  std::string matrix;  // a material; empty: none
+  bool periodic_x = false, periodic_y = false, periodic_z = false;
+};
+
+using Item = std::variant<Yarn, Weave, Knit, Warpknit, Braid, Piece>;
+
+struct Fabric {
+  std::string file;  // as messages name it
+  std::optional<std::string> title;
+  Unit units = Unit::mm;
+  bool units_given = false;
+  std::optional<double> tolerance;
+  std::vector<Thread> threads;
+  std::vector<Material> materials;
+  std::vector<Item> items;  // in file order
+  std::vector<Edit> edits;
+  std::optional<Cell> cell;
+
+  [[nodiscard]] const Thread* find_thread(std::string_view name) const;
+  [[nodiscard]] const Material* find_material(std::string_view name) const;
+};
+
+// The thread's statements with the yarn's own over them.
+Thread resolved_thread(const Fabric& fabric, const Yarn& yarn);
+
+}  // namespace selvage::fabric
