@@ -1,1 +1,99 @@
+#include "yarn/body.h"
 
+#include <algorithm>
+#include <cmath>
+
+namespace selvage::yarn {
+
+std::string_view name_of(Role role) {
+  switch (role) {
+    case Role::warp: return "warp";
+    case Role::weft: return "weft";
+    case Role::wale: return "wale";
+    case Role::course: return "course";
+    case Role::braider: return "braider";
+    case Role::axial: return "axial";
+    case Role::binder: return "binder";
+    case Role::other: return "other";
+  }
+  return "other";
+}
+
+std::string_view name_of(EndStyle style) {
+  switch (style) {
+    case EndStyle::patch: return "patch";
+    case EndStyle::fan: return "fan";
+    case EndStyle::planar: return "planar";
+    case EndStyle::none: return "none";
+  }
+  return "none";
+}
+
+nurbs::Curve end_curve(const Body& body, bool last) { return nurbs::boundary_row(body.surface, last); }
+
+std::array<nurbs::Curve, 4> end_quarters(const Body& body, bool last) {
+  const nurbs::Curve whole = end_curve(body, last);
+  const std::array<double, 4>& q = body.quarters;
+  return {nurbs::sub_curve(whole, q[0], q[1]), nurbs::sub_curve(whole, q[1], q[2]),
+          nurbs::sub_curve(whole, q[2], q[3]), nurbs::sub_curve(whole, q[3], whole.last_parameter())};
+}
+
+namespace {
+
+// The largest distance between corresponding points of two curves, each over its own domain.
+double largest_distance(const nurbs::Curve& a, const nurbs::Curve& b) {
+  const std::size_t steps = 4 * std::max(a.points.size(), b.points.size());
+  double largest = 0.0;
+  for (std::size_t k = 0; k <= steps; ++k) {
+    const double s = static_cast<double>(k) / static_cast<double>(steps);
+    const auto at = [&](const nurbs::Curve& c) {
+      return nurbs::evaluate(c, c.first_parameter() + s * (c.last_parameter() - c.first_parameter()));
+    };
+    largest = std::max(largest, (at(a) - at(b)).norm());
+  }
+  return largest;
+}
+
+// The four sides of a patch, each in the direction in which the body's end curve runs.
+std::array<nurbs::Curve, 4> patch_sides(const nurbs::Surface& patch) {
+  const auto column = [&](int i) {
+    nurbs::Curve curve;
+    curve.degree = patch.degree_v;
+    curve.knots = patch.knots_v;
+    for (int j = 0; j < patch.count_v; ++j) {
+      curve.points.push_back(patch.point(i, j));
+      if (patch.is_rational()) curve.weights.push_back(patch.weight(i, j));
+    }
+    return curve;
+  };
+  return {nurbs::boundary_row(patch, false), column(patch.count_u - 1),
+          nurbs::reversed(nurbs::boundary_row(patch, true)), nurbs::reversed(column(0))};
+}
+
+}  // namespace
+
+double end_gap(const Body& body, bool last) {
+  const EndFace& end = last ? body.end : body.start;
+  if (end.style == EndStyle::fan) return largest_distance(nurbs::boundary_row(end.surface, false), end_curve(body, last));
+  if (end.style == EndStyle::patch) {
+    const std::array<nurbs::Curve, 4> sides = patch_sides(end.surface), quarters = end_quarters(body, last);
+    double gap = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) gap = std::max(gap, largest_distance(sides[k], quarters[k]));
+    return gap;
+  }
+  if (end.style == EndStyle::planar) {
+    double gap = 0.0;
+    const nurbs::Curve curve = end_curve(body, last);
+    for (const Vec3& p : curve.points) gap = std::max(gap, std::abs((p - end.origin).dot(end.normal)));
+    return gap;
+  }
+  return 0.0;
+}
+
+Box3 bounds(const Body& body) {
+  Box3 box;
+  for (const Vec3& p : body.surface.points) box.extend(p);
+  return box;
+}
+
+}  // namespace selvage::yarn

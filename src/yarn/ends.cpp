@@ -1,1 +1,244 @@
+#include "yarn/ends.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "nurbs/basis.h"
+
+namespace selvage::yarn {
+
+namespace {
+
+using Vec4 = Eigen::Vector4d;
+
+Vec4 homogeneous(const nurbs::Curve& curve, std::size_t i) {
+  const double w = curve.is_rational() ? curve.weights[i] : 1.0;
+  const Vec3& p = curve.points[i];
+  return {w * p.x(), w * p.y(), w * p.z(), w};
+}
+
+// The same curve over [0, 1].
+nurbs::Curve over_unit(nurbs::Curve curve) {
+  const double first = curve.first_parameter(), length = curve.last_parameter() - first;
+  for (double& knot : curve.knots) knot = (knot - first) / length;
+  return curve;
+}
+
+// Brings two curves over [0, 1] of equal degree to the union of their knots. Knots nearer than 1e-9 are taken for one.
+void unite_knots(nurbs::Curve& a, nurbs::Curve& b) {
+  const auto add_missing = [](const nurbs::Curve& from, nurbs::Curve& to) {
+    std::size_t j = 0;
+    for (double knot : std::vector<double>(from.knots)) {
+      while (j < to.knots.size() && to.knots[j] < knot - 1e-9) ++j;
+      if (j < to.knots.size() && std::abs(to.knots[j] - knot) <= 1e-9) {
+        ++j;
+      } else {
+        to = nurbs::insert_knot(to, knot);
+        ++j;
+      }
+    }
+  };
+  add_missing(a, b);
+  add_missing(b, a);
+  b.knots = a.knots;
+}
+
+}  // namespace
+
+nurbs::Surface coons_patch(const std::array<nurbs::Curve, 4>& quarters) {
+  nurbs::Curve bottom = over_unit(quarters[0]), right = over_unit(quarters[1]);
+  nurbs::Curve top = over_unit(nurbs::reversed(quarters[2])), left = over_unit(nurbs::reversed(quarters[3]));
+  unite_knots(bottom, top);
+  unite_knots(left, right);
+  nurbs::Surface patch;
+  patch.degree_u = bottom.degree;
+  patch.degree_v = left.degree;
+  patch.knots_u = bottom.knots;
+  patch.knots_v = left.knots;
+  patch.count_u = static_cast<int>(bottom.points.size());
+  patch.count_v = static_cast<int>(left.points.size());
+  const std::vector<double> s = nurbs::greville(patch.knots_u, patch.degree_u, patch.count_u);
+  const std::vector<double> t = nurbs::greville(patch.knots_v, patch.degree_v, patch.count_v);
+  const bool rational = bottom.is_rational();
+  const std::size_t nu = s.size(), nv = t.size();
+  const Vec4 c00 = homogeneous(bottom, 0), c10 = homogeneous(bottom, nu - 1);
+  const Vec4 c01 = homogeneous(top, 0), c11 = homogeneous(top, nu - 1);
+  for (std::size_t j = 0; j < nv; ++j)
+    for (std::size_t i = 0; i < nu; ++i) {
+      const double a = s[i], b = t[j];
+      Vec4 p;
+      // The four sides are taken as they are; only the inside is computed.
+      if (j == 0 || j == nv - 1) {
+        p = homogeneous(j == 0 ? bottom : top, i);
+      } else if (i == 0 || i == nu - 1) {
+        p = homogeneous(i == 0 ? left : right, j);
+      } else {
+        p = (1 - b) * homogeneous(bottom, i) + b * homogeneous(top, i) + (1 - a) * homogeneous(left, j) +
+            a * homogeneous(right, j) -
+            ((1 - a) * (1 - b) * c00 + a * (1 - b) * c10 + (1 - a) * b * c01 + a * b * c11);
+      }
+      patch.points.emplace_back(rational ? Vec3(p.head<3>() / p.w()) : Vec3(p.head<3>()));
+      if (rational) patch.weights.push_back(p.w());
+    }
+  if (rational) {  // not even the division by the weight may move a side's points
+    for (int i = 0; i < patch.count_u; ++i) {
+      patch.point(i, 0) = bottom.points[static_cast<std::size_t>(i)];
+      patch.point(i, patch.count_v - 1) = top.points[static_cast<std::size_t>(i)];
+    }
+    for (int j = 1; j + 1 < patch.count_v; ++j) {
+      patch.point(0, j) = left.points[static_cast<std::size_t>(j)];
+      patch.point(patch.count_u - 1, j) = right.points[static_cast<std::size_t>(j)];
+    }
+  }
+  return patch;
+}
+
+nurbs::Surface fan(const nurbs::Curve& boundary, const Vec3& centre) {
+  nurbs::Surface face;
+  face.degree_u = boundary.degree;
+  face.degree_v = 3;
+  face.knots_u = boundary.knots;
+  face.knots_v = {0, 0, 0, 0, 1, 1, 1, 1};
+  face.count_u = static_cast<int>(boundary.points.size());
+  face.count_v = 4;
+  face.points = boundary.points;
+  for (int row = 1; row < 4; ++row)
+    for (const Vec3& p : boundary.points)
+      face.points.push_back(row == 3 ? centre : Vec3(p + (centre - p) * (row / 3.0)));
+  for (int row = 0; row < 4 && boundary.is_rational(); ++row)
+    face.weights.insert(face.weights.end(), boundary.weights.begin(), boundary.weights.end());
+  return face;
+}
+
+bool is_folded(const nurbs::Surface& patch, const Vec3& normal) {
+  const std::vector<double> us = nurbs::breakpoints(patch.knots_u, patch.degree_u);
+  const std::vector<double> vs = nurbs::breakpoints(patch.knots_v, patch.degree_v);
+  constexpr int samples = 4;
+  const auto inside = [](const std::vector<double>& breaks) {
+    std::vector<double> sites;
+    for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+      for (int i = 0; i < samples; ++i)
+        sites.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * (i + 0.5) / samples);
+    return sites;
+  };
+  for (double v : inside(vs))
+    for (double u : inside(us)) {
+      const nurbs::SurfaceJet jet = nurbs::evaluate_jet(patch, u, v);
+      if (jet.du.cross(jet.dv).dot(normal) <= 0.0) return true;
+    }
+  return false;
+}
+
+Vec3 area_vector(const nurbs::Curve& closed) {
+  const std::vector<double> breaks = nurbs::breakpoints(closed.knots, closed.degree);
+  // A polynomial's C x C' has degree 2 p - 2 at most; a rational one is only approximated, more closely with more nodes.
+  const nurbs::GaussRule& rule = nurbs::gauss_rule(closed.is_rational() ? 8 : closed.degree);
+  const Vec3 origin = closed.points.front();
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+    const double half = 0.5 * (breaks[k + 1] - breaks[k]), middle = 0.5 * (breaks[k + 1] + breaks[k]);
+    for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
+      const nurbs::CurveJet jet = nurbs::evaluate_jet(closed, middle + half * rule.nodes[g]);
+      sum += 0.5 * half * rule.weights[g] * (jet.position - origin).cross(jet.d1);
+    }
+  }
+  return sum;
+}
+
+double flatness(const nurbs::Curve& curve, const Vec3& origin, const Vec3& normal) {
+  double largest = 0.0;
+  for (const Vec3& p : curve.points) largest = std::max(largest, std::abs((p - origin).dot(normal)));
+  return largest;
+}
+
+namespace {
+
+Message seal_message(const Body& body, bool last, Severity severity, std::string text) {
+  Message message = error(Kind::geometry, std::move(text));
+  message.severity = severity;
+  message.yarn = body.name;
+  message.place = body.place;
+  message.at = last ? body.end.origin : body.start.origin;
+  return message;
+}
+
+// The centre of the end: of the section's outline.
+Vec3 end_centre(const Body& body, const nurbs::Curve& outline, bool last) {
+  if (!body.axis.points.empty()) return last ? body.axis.points.back() : body.axis.points.front();
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i + 1 < outline.points.size(); ++i) sum += outline.points[i];
+  return sum / static_cast<double>(outline.points.size() - 1);
+}
+
+Status seal_end(Body& body, bool last, EndStyle style) {
+  const nurbs::Curve outline = end_curve(body, last);
+  EndFace face;
+  face.style = style;
+  face.origin = end_centre(body, outline, last);
+  // Round the section the outline turns about the path (against it when the body's normals point inward); out of the yarn
+  // is against the path at the start.
+  const Vec3 turning = area_vector(outline);
+  const double sign = (last != body.inward) ? 1.0 : -1.0;
+  if (turning.norm() == 0.0)
+    return seal_message(body, last, Severity::error,
+                        fmt::format("the {} section of yarn '{}' has no area", last ? "last" : "first", body.name));
+  face.normal = sign * turning.normalized();
+  double size = 0.0;
+  for (const Vec3& p : outline.points) size = std::max(size, (p - face.origin).norm());
+  // Rounding of the coordinates aside; the trimmed plane is only as good as the outline is flat.
+  const double scale = std::max(size, face.origin.cwiseAbs().maxCoeff());
+  const double unflat = flatness(outline, face.origin, face.normal);
+  const bool is_flat = unflat <= 1e-9 * scale;
+  if (style == EndStyle::patch) {
+    face.surface = coons_patch(end_quarters(body, last));
+    // The patch runs round as the outline does, so its normal is the outline's turning direction.
+    if (is_folded(face.surface, turning.normalized())) {
+      if (!is_flat) {
+        (last ? body.end : body.start) = face;
+        return seal_message(body, last, Severity::error,
+                            fmt::format("the patch that shall seal the {} of yarn '{}' folds over itself, and the end is not "
+                                        "flat (by {:.3g}), so that no plane can seal it either; use --ends fan",
+                                        last ? "end" : "start", body.name, unflat));
+      }
+      face.style = EndStyle::planar;
+      face.surface = {};
+      (last ? body.end : body.start) = face;
+      body.messages.push_back(seal_message(
+          body, last, Severity::warning,
+          fmt::format("the patch that shall seal the {} of yarn '{}' would fold over itself (the section is too long or "
+                      "concave): it is sealed by a trimmed plane instead",
+                      last ? "end" : "start", body.name)));
+      return {};
+    }
+  } else if (style == EndStyle::fan) {
+    face.surface = fan(outline, face.origin);
+  } else if (style == EndStyle::planar && !is_flat) {
+    (last ? body.end : body.start) = face;
+    return seal_message(body, last, Severity::error,
+                        fmt::format("the {} of yarn '{}' is not flat (by {:.3g}): a plane cannot seal it; use --ends patch",
+                                    last ? "end" : "start", body.name, unflat));
+  }
+  // A patch keeps the outline's turning; a fan's u follows the outline and v runs inward: its normal is the opposite one.
+  if (face.style == EndStyle::patch) face.inward = face.normal.dot(turning) < 0.0;
+  if (face.style == EndStyle::fan) {
+    const nurbs::SurfaceJet jet = nurbs::evaluate_jet(face.surface, face.surface.first_u(), 0.0);
+    face.inward = jet.du.cross(jet.dv).dot(face.normal) < 0.0;
+  }
+  (last ? body.end : body.start) = std::move(face);
+  return {};
+}
+
+}  // namespace
+
+Status seal(Body& body, EndStyle style) {
+  body.start = body.end = EndFace{};
+  if (body.closed_along || style == EndStyle::none) return {};
+  for (bool last : {false, true}) {
+    Status status = seal_end(body, last, style);
+    if (!status) return status;
+  }
+  return {};
+}
+
+}  // namespace selvage::yarn

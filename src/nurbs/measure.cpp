@@ -1,0 +1,113 @@
+#include "nurbs/measure.h"
+
+#include <cmath>
+
+#include "nurbs/basis.h"
+
+namespace selvage::nurbs {
+
+namespace {
+
+double gauss_length(const Curve& curve, double t0, double t1) {
+  const GaussRule& rule = gauss_rule(8);
+  const double half = 0.5 * (t1 - t0), middle = 0.5 * (t1 + t0);
+  double sum = 0.0;
+  for (std::size_t g = 0; g < rule.nodes.size(); ++g)
+    sum += rule.weights[g] * evaluate_jet(curve, middle + half * rule.nodes[g]).d1.norm();
+  return half * sum;
+}
+
+double adaptive_length(const Curve& curve, double t0, double t1, double whole, int depth) {
+  const double middle = 0.5 * (t0 + t1);
+  const double left = gauss_length(curve, t0, middle), right = gauss_length(curve, middle, t1);
+  if (depth == 0 || std::abs(left + right - whole) <= 1e-13 * (left + right)) return left + right;
+  return adaptive_length(curve, t0, middle, left, depth - 1) + adaptive_length(curve, middle, t1, right, depth - 1);
+}
+
+// The basis functions' values and first derivatives at the Gauss nodes of every span.
+struct Node {
+  int first;  // index of the first control point that counts here
+  double weight;
+  BasisRow value, slope;
+};
+
+std::vector<Node> gauss_nodes(const std::vector<double>& knots, int degree, int count, int order) {
+  const std::vector<double> breaks = breakpoints(knots, degree);
+  const GaussRule& rule = gauss_rule(order);
+  std::vector<Node> nodes;
+  std::array<BasisRow, 3> rows{};
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+    const double half = 0.5 * (breaks[k + 1] - breaks[k]), middle = 0.5 * (breaks[k + 1] + breaks[k]);
+    for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
+      const double t = middle + half * rule.nodes[g];
+      const int span = find_span(knots, degree, count, t);
+      basis_derivatives(knots, degree, span, t, rows);
+      nodes.push_back({span - degree, half * rule.weights[g], rows[0], rows[1]});
+    }
+  }
+  return nodes;
+}
+
+}  // namespace
+
+double arc_length(const Curve& curve, double t0, double t1) {
+  double sum = 0.0, from = t0;
+  for (double knot : breakpoints(curve.knots, curve.degree)) {
+    if (knot <= from) continue;
+    const double to = std::min(knot, t1);
+    sum += adaptive_length(curve, from, to, gauss_length(curve, from, to), 20);
+    from = to;
+    if (from >= t1) break;
+  }
+  return sum;
+}
+
+double arc_length(const Curve& curve) {
+  return arc_length(curve, curve.first_parameter(), curve.last_parameter());
+}
+
+double volume_flux(const Surface& surface, const Vec3& origin) {
+  // S . (S_u x S_v) has degree 3 p - 1 in each direction.
+  const auto order = [&](int degree) { return surface.is_rational() ? 8 : std::min(8, (3 * degree + 1) / 2); };
+  const std::vector<Node> nodes_u =
+      gauss_nodes(surface.knots_u, surface.degree_u, surface.count_u, order(surface.degree_u));
+  const std::vector<Node> nodes_v =
+      gauss_nodes(surface.knots_v, surface.degree_v, surface.count_v, order(surface.degree_v));
+  using Vec4 = Eigen::Vector4d;
+  std::vector<Vec4> line(static_cast<std::size_t>(surface.count_u)), slope_line(line.size());
+  double sum = 0.0;
+  for (const Node& v : nodes_v) {
+    // At one v the control net collapses to a row of points and a row of derivatives along v.
+    for (int i = 0; i < surface.count_u; ++i) {
+      Vec4 position = Vec4::Zero(), slope = Vec4::Zero();
+      for (int j = 0; j <= surface.degree_v; ++j) {
+        const double w = surface.weight(i, v.first + j);
+        const Vec3 p = w * (surface.point(i, v.first + j) - origin);
+        const Vec4 h(p.x(), p.y(), p.z(), w);
+        position += v.value[static_cast<std::size_t>(j)] * h;
+        slope += v.slope[static_cast<std::size_t>(j)] * h;
+      }
+      line[static_cast<std::size_t>(i)] = position;
+      slope_line[static_cast<std::size_t>(i)] = slope;
+    }
+    for (const Node& u : nodes_u) {
+      Vec4 p = Vec4::Zero(), du = Vec4::Zero(), dv = Vec4::Zero();
+      for (int i = 0; i <= surface.degree_u; ++i) {
+        const auto k = static_cast<std::size_t>(u.first + i);
+        p += u.value[static_cast<std::size_t>(i)] * line[k];
+        du += u.slope[static_cast<std::size_t>(i)] * line[k];
+        dv += u.value[static_cast<std::size_t>(i)] * slope_line[k];
+      }
+      Vec3 position = p.head<3>(), along_u = du.head<3>(), along_v = dv.head<3>();
+      if (surface.is_rational()) {
+        position /= p.w();
+        along_u = (along_u - du.w() * position) / p.w();
+        along_v = (along_v - dv.w() * position) / p.w();
+      }
+      sum += u.weight * v.weight * position.dot(along_u.cross(along_v));
+    }
+  }
+  return sum / 3.0;
+}
+
+}  // namespace selvage::nurbs

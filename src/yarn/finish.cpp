@@ -1,0 +1,116 @@
+#include "yarn/finish.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "nurbs/measure.h"
+#include "yarn/ends.h"
+
+namespace selvage::yarn {
+
+namespace {
+
+// The volume flux of one end. Planar, fan and open ends are what their outline says (a fan of a flat end is flat); a patch
+// is integrated.
+double end_flux(const Body& body, bool last, const Vec3& origin) {
+  const EndFace& end = last ? body.end : body.start;
+  if (end.style == EndStyle::patch || end.style == EndStyle::fan) {
+    const double flux = nurbs::volume_flux(end.surface, origin);
+    return end.inward ? -flux : flux;
+  }
+  const nurbs::Curve outline = end_curve(body, last);
+  const Vec3 area = area_vector(outline);
+  const double sign = (last != body.inward) ? 1.0 : -1.0;
+  const Vec3 foot = end.style == EndStyle::none ? outline.points.front() : end.origin;
+  return sign * area.dot(foot - origin) / 3.0;
+}
+
+// How far the section at v reaches from the axis in the unit direction `toward`.
+double reach(const Body& body, const Vec3& centre, const Vec3& toward, double v) {
+  const nurbs::Surface& s = body.surface;
+  const std::vector<double> breaks = nurbs::breakpoints(s.knots_u, s.degree_u);
+  double largest = 0.0;
+  for (const Vec3& p : nurbs::evaluate_grid(s, breaks, {v})) largest = std::max(largest, (p - centre).dot(toward));
+  return largest;
+}
+
+void find_bends(Body& body) {
+  body.min_bend_radius = std::numeric_limits<double>::infinity();
+  // No section reaches farther than the control net does from the axis: most places need no closer look.
+  double widest = 0.0;
+  for (int j = 0; j < body.surface.count_v; ++j) {
+    Vec3 low = body.surface.point(0, j), high = low;
+    for (int i = 1; i < body.surface.count_u; ++i) {
+      low = low.cwiseMin(body.surface.point(i, j));
+      high = high.cwiseMax(body.surface.point(i, j));
+    }
+    widest = std::max(widest, (high - low).norm());
+  }
+  const std::vector<double> breaks = nurbs::breakpoints(body.axis.knots, body.axis.degree);
+  constexpr int samples = 8;
+  struct Found {
+    TightBend bend;
+    double ratio;
+  };
+  std::vector<Found> found;
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+    std::optional<Found> worst;  // of this span
+    for (int i = 0; i <= samples; ++i) {
+      const double t = breaks[k] + (breaks[k + 1] - breaks[k]) * i / samples;
+      const nurbs::CurveJet jet = nurbs::evaluate_jet(body.axis, t);
+      const double speed = jet.d1.squaredNorm();
+      if (speed == 0.0) continue;
+      const Vec3 curvature = (jet.d2 - jet.d1 * (jet.d2.dot(jet.d1) / speed)) / speed;
+      const double kappa = curvature.norm();
+      if (kappa > 0.0) body.min_bend_radius = std::min(body.min_bend_radius, 1.0 / kappa);
+      if (kappa * widest <= 1.0) continue;
+      const double needed = reach(body, jet.position, curvature / kappa, t);
+      if (needed * kappa >= 1.0 && (!worst || needed * kappa > worst->ratio))
+        worst = Found{{t, jet.position, 1.0 / kappa, needed}, needed * kappa};
+    }
+    if (worst) found.push_back(*worst);
+  }
+  std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.ratio > b.ratio; });
+  for (const Found& f : found) body.tight_bends.push_back(f.bend);
+  if (found.empty()) return;
+  const TightBend& bend = found.front().bend;
+  Message message = warning(
+      Kind::geometry, fmt::format("yarn '{}' bends more tightly than its section allows: radius {:.4g} where the section "
+                                  "reaches {:.4g} to the inside ({} such place{}); its surface folds over itself there",
+                                  body.name, bend.radius, bend.needed, found.size(), found.size() == 1 ? "" : "s"));
+  message.yarn = body.name;
+  message.place = body.place;
+  message.at = bend.at;
+  body.messages.push_back(std::move(message));
+}
+
+}  // namespace
+
+Status finish(Body& body, EndStyle ends) {
+  const Vec3 origin = body.axis.points.front();
+  // Sign first, with open ends: S_u x S_v outward makes the flux positive.
+  body.inward = false;
+  double flux = nurbs::volume_flux(body.surface, origin);
+  if (!body.closed_along) flux += end_flux(body, false, origin) + end_flux(body, true, origin);
+  if (!std::isfinite(flux) || flux == 0.0) {
+    Message message = error(Kind::geometry, fmt::format("yarn '{}' encloses no volume", body.name));
+    message.yarn = body.name;
+    message.place = body.place;
+    return message;
+  }
+  body.inward = flux < 0.0;
+  Status sealed = seal(body, ends);
+  if (!sealed) return sealed;
+  const double side = nurbs::volume_flux(body.surface, origin);
+  body.volume = body.inward ? -side : side;
+  if (!body.closed_along) body.volume += end_flux(body, false, origin) + end_flux(body, true, origin);
+  body.end_area = area_vector(end_curve(body, false)).norm();
+  body.length = nurbs::arc_length(body.axis);
+  find_bends(body);
+  return {};
+}
+
+}  // namespace selvage::yarn

@@ -1,0 +1,244 @@
+#include "yarn/grid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "nurbs/basis.h"
+#include "nurbs/interpolate.h"
+
+namespace selvage::yarn {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// A closed polygon as a clamped closed B-spline with uniform knots of `step`: degree 2 begins in the middle of the edge
+// from the last point to the first, degree 3 beside the first point, and so on.
+nurbs::Curve closed_uniform(const std::vector<Vec3>& points, const std::vector<double>& weights, int degree,
+                            double step) {
+  const int n = static_cast<int>(points.size());
+  nurbs::Curve periodic;
+  periodic.degree = degree;
+  for (int i = -degree; i <= n + degree; ++i) periodic.knots.push_back(i * step);
+  for (int i = 0; i < n + degree; ++i) {
+    const int k = ((i - degree / 2) % n + n) % n;
+    periodic.points.push_back(points[at(k)]);
+    if (!weights.empty()) periodic.weights.push_back(weights[at(k)]);
+  }
+  nurbs::Curve curve = nurbs::clamped(periodic);
+  curve.points.back() = curve.points.front();
+  if (curve.is_rational()) curve.weights.back() = curve.weights.front();
+  return curve;
+}
+
+std::vector<double> clamped_integer_knots(int count, int degree) {
+  std::vector<double> knots;
+  for (int i = 0; i < count + degree + 1; ++i) knots.push_back(std::clamp(i - degree, 0, count - degree));
+  return knots;
+}
+
+Message problem(std::string text) { return error(Kind::malformed, std::move(text)); }
+
+// What every given knot vector has to obey.
+Status check_knots(const std::vector<double>& knots, int count, int degree, std::string_view which) {
+  if (static_cast<int>(knots.size()) != count + degree + 1)
+    return problem(fmt::format("{} knots {}: {} control points of degree {} need {}", knots.size(), which, count,
+                               degree, count + degree + 1));
+  for (std::size_t i = 1; i < knots.size(); ++i)
+    if (!(knots[i] >= knots[i - 1]))
+      return problem(fmt::format("knots {} decrease: {} after {}", which, knots[i], knots[i - 1]));
+  for (int end = 0; end < 2; ++end) {
+    const std::size_t base = end == 0 ? 0 : at(count);
+    if (knots[base] != knots[base + at(degree)])
+      return problem(fmt::format("the {} {} knots {} have to be equal (a clamped B-spline)", end == 0 ? "first" : "last",
+                                 degree + 1, which));
+  }
+  for (int i = 1; i < count; ++i)
+    if (knots[at(i)] == knots[at(i + degree)] && knots[at(i)] > knots.front() && knots[at(i)] < knots.back())
+      return problem(fmt::format("the knot {} {} is repeated more than {} times", knots[at(i)], which, degree));
+  if (!(knots[at(count)] > knots[at(degree)])) return problem(fmt::format("all knots {} are equal", which));
+  return {};
+}
+
+struct Lines {
+  std::vector<nurbs::Curve> curves;  // one a column of the control net
+};
+
+// The columns of the net as clamped curves along the yarn.
+Result<Lines> along_columns(const std::vector<std::vector<Vec3>>& columns,
+                            const std::vector<std::vector<double>>& weights, const GridNet& net, int degree) {
+  Lines lines;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const std::vector<double> w = weights.empty() ? std::vector<double>{} : weights[c];
+    if (net.closed_along && net.knots_along.empty()) {
+      lines.curves.push_back(closed_uniform(columns[c], w, degree, 1.0));
+      continue;
+    }
+    nurbs::Curve curve;
+    curve.degree = degree;
+    curve.points = columns[c];
+    curve.weights = w;
+    curve.knots = net.knots_along.empty() ? clamped_integer_knots(net.sections, degree) : net.knots_along;
+    if (net.closed_along && curve.points.front() != curve.points.back())
+      return problem("a closed grid with its own knots has to end with its first section");
+    lines.curves.push_back(std::move(curve));
+  }
+  return lines;
+}
+
+Status check_counts(const GridNet& net, int degree_round, int degree_along) {
+  const int distinct = net.open_round ? net.per_section - 1 : net.per_section;
+  if (net.sections < 2) return problem("a grid needs at least two sections");
+  if (net.closed_along && net.sections < 3) return problem("a closed grid needs at least three sections");
+  if (distinct < 3) return problem("a section needs at least three different control points");
+  if (degree_round < 1 || degree_round > nurbs::max_degree || degree_round > distinct)
+    return problem(fmt::format("degree {} round does not go with {} control points", degree_round, net.per_section));
+  const int most = net.closed_along ? net.sections : net.sections - 1;
+  if (degree_along < 1 || degree_along > nurbs::max_degree || degree_along > most)
+    return problem(fmt::format("degree {} along does not go with {} sections", degree_along, net.sections));
+  if (!net.knots_round.empty() && !net.open_round)
+    return problem("`knots round` go with `open round`: they belong to the clamped form of the section");
+  return {};
+}
+
+}  // namespace
+
+std::optional<std::array<double, 4>> find_quarters(const nurbs::Curve& outline) {
+  const std::vector<double> breaks = nurbs::breakpoints(outline.knots, outline.degree);
+  const std::size_t spans = breaks.size() - 1;
+  if (spans < 4) return std::nullopt;
+  // Turning and length up to each knot, by chords of the finely sampled outline.
+  constexpr int samples = 8;
+  std::vector<double> turning(breaks.size(), 0.0), length(breaks.size(), 0.0);
+  Vec3 previous = Vec3::Zero(), last_step = Vec3::Zero();
+  double angle = 0.0, run = 0.0;
+  for (std::size_t k = 0; k < spans; ++k) {
+    for (int i = k == 0 ? 0 : 1; i <= samples; ++i) {
+      const Vec3 p = nurbs::evaluate(outline, breaks[k] + (breaks[k + 1] - breaks[k]) * i / samples);
+      if (k == 0 && i == 0) {
+        previous = p;
+        continue;
+      }
+      const Vec3 step = p - previous;
+      if (step.norm() > 0.0 && last_step.norm() > 0.0)
+        angle += std::atan2(step.cross(last_step).norm(), step.dot(last_step));
+      run += step.norm();
+      if (step.norm() > 0.0) last_step = step;
+      previous = p;
+    }
+    turning[k + 1] = angle;
+    length[k + 1] = run;
+  }
+  std::array<double, 4> quarters{breaks[0], 0, 0, 0};
+  std::size_t from = 1;
+  for (std::size_t q = 1; q < 4; ++q) {
+    std::size_t best = from;
+    double best_cost = std::numeric_limits<double>::infinity();
+    for (std::size_t k = from; k <= spans - (4 - q); ++k) {
+      // Along a straight edge the turning stands still: its middle is the quarter.
+      const double target = static_cast<double>(q) / 4.0;
+      const double cost = std::abs(turning[k] / angle - target) + 0.05 * std::abs(length[k] / run - target);
+      if (cost < best_cost - 1e-12) {
+        best_cost = cost;
+        best = k;
+      }
+    }
+    quarters[q] = breaks[best];
+    from = best + 1;
+  }
+  return quarters;
+}
+
+Status fill_from_grid(Body& body, const GridNet& net) {
+  const int degree_round = net.degree_round.value_or(net.open_round ? std::min(2, net.per_section - 1) : 2);
+  const int degree_along = net.degree_along.value_or(std::min(3, net.closed_along ? net.sections : net.sections - 1));
+  Status counts = check_counts(net, degree_round, degree_along);
+  if (!counts) return counts;
+
+  // Round: each row in clamped form, and its centre.
+  std::vector<std::vector<Vec3>> rows;
+  std::vector<std::vector<double>> row_weights;
+  std::vector<Vec3> centres;
+  std::vector<double> knots_round;
+  const auto n = at(net.per_section);
+  for (std::size_t s = 0; s < at(net.sections); ++s) {
+    const std::vector<Vec3> points(net.points.begin() + static_cast<std::ptrdiff_t>(s * n),
+                                   net.points.begin() + static_cast<std::ptrdiff_t>((s + 1) * n));
+    std::vector<double> weights;
+    if (!net.weights.empty())
+      weights.assign(net.weights.begin() + static_cast<std::ptrdiff_t>(s * n),
+                     net.weights.begin() + static_cast<std::ptrdiff_t>((s + 1) * n));
+    const std::size_t distinct = net.open_round ? n - 1 : n;
+    Vec3 centre = Vec3::Zero();
+    for (std::size_t i = 0; i < distinct; ++i) centre += points[i];
+    centres.push_back(centre / static_cast<double>(distinct));
+    if (net.open_round) {
+      if (points.front() != points.back() || (!weights.empty() && weights.front() != weights.back()))
+        return problem(fmt::format("section {} is not closed: with `open round` its last control point has to be its first",
+                                   s + 1));
+      rows.push_back(points);
+      row_weights.push_back(weights);
+      if (knots_round.empty()) {
+        knots_round = net.knots_round;
+        if (knots_round.empty()) {
+          knots_round = clamped_integer_knots(net.per_section, degree_round);
+          const double spans = knots_round.back();
+          for (double& knot : knots_round) knot /= spans;
+        }
+      }
+    } else {
+      nurbs::Curve curve = closed_uniform(points, weights, degree_round, 1.0 / net.per_section);
+      // i / n has no rounding left in it that the standard form 1/n, 2/n, .., 1 has not.
+      for (double& knot : curve.knots) knot = std::round(knot * net.per_section) / net.per_section;
+      knots_round = curve.knots;
+      rows.push_back(std::move(curve.points));
+      row_weights.push_back(std::move(curve.weights));
+    }
+  }
+  const std::size_t columns_count = rows.front().size();
+  if (Status s = check_knots(knots_round, static_cast<int>(columns_count), degree_round, "round"); !s) return s;
+
+  // Along: every column, and the centres as one more.
+  std::vector<std::vector<Vec3>> columns(columns_count);
+  std::vector<std::vector<double>> column_weights(net.weights.empty() ? 0 : columns_count);
+  for (std::size_t s = 0; s < rows.size(); ++s)
+    for (std::size_t c = 0; c < columns_count; ++c) {
+      columns[c].push_back(rows[s][c]);
+      if (!net.weights.empty()) column_weights[c].push_back(row_weights[s][c]);
+    }
+  if (!net.knots_along.empty())
+    if (Status s = check_knots(net.knots_along, net.sections, degree_along, "along"); !s) return s;
+  Result<Lines> lines = along_columns(columns, column_weights, net, degree_along);
+  if (!lines) return lines.error();
+  Result<Lines> centre_line = along_columns({centres}, {}, net, degree_along);
+  if (!centre_line) return centre_line.error();
+
+  nurbs::Surface& surface = body.surface;
+  surface = {};
+  surface.degree_u = degree_round;
+  surface.degree_v = degree_along;
+  surface.knots_u = std::move(knots_round);
+  surface.knots_v = lines->curves.front().knots;
+  surface.count_u = static_cast<int>(columns_count);
+  surface.count_v = static_cast<int>(lines->curves.front().points.size());
+  surface.points.resize(at(surface.count_u) * at(surface.count_v));
+  if (!net.weights.empty()) surface.weights.resize(surface.points.size());
+  for (int i = 0; i < surface.count_u; ++i)
+    for (int j = 0; j < surface.count_v; ++j) {
+      surface.point(i, j) = lines->curves[at(i)].points[at(j)];
+      if (!net.weights.empty()) surface.weights[surface.index(i, j)] = lines->curves[at(i)].weights[at(j)];
+    }
+  body.axis = centre_line->curves.front();
+  body.closed_along = net.closed_along;
+  const std::optional<std::array<double, 4>> quarters = find_quarters(nurbs::boundary_row(surface, false));
+  // With fewer than four spans there is no place for a patch's corners at knots; sub_curve makes the knots it needs.
+  const double first = surface.first_u(), length = surface.last_u() - first;
+  body.quarters = quarters.value_or(
+      std::array<double, 4>{first, first + 0.25 * length, first + 0.5 * length, first + 0.75 * length});
+  return {};
+}
+
+}  // namespace selvage::yarn
