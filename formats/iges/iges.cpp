@@ -1,9 +1,27 @@
 #include "formats/iges/iges.h"
 
+#include "formats/iges/writer.h"
+
 namespace selvage::formats::iges {
 
+namespace {
+
+bool sniff(std::string_view head) {
+  if (head.size() < 80 || head[72] != 'S') return false;
+  for (const char c : head.substr(73, 7))
+    if (c != ' ' && (c < '0' || c > '9')) return false;
+  return head.substr(0, 72).find_first_of("\r\n") == std::string_view::npos;
+}
+
+}  // namespace
+
 const Descriptor& descriptor() {
-  static const Descriptor self = {.name = "iges", .title = "IGES 5.3, B-spline surfaces or solids", .extensions = {".igs"}};
+  static const Descriptor self = {
+      .name = "iges",
+      .title = "IGES 5.3, B-spline surfaces or solids",
+      .extensions = {".igs", ".iges"},
+      .sniff = sniff,
+      .open_bodies = [](OutputFile& output, const SurfaceOptions& options) { return open_writer(output, options); }};
   return self;
 }
 

@@ -1,0 +1,197 @@
+#include "formats/iges/entities.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+namespace selvage::formats::iges {
+
+namespace {
+
+bool is_clamped(const std::vector<double>& knots, int degree) {
+  const auto order = static_cast<std::ptrdiff_t>(degree) + 1;
+  const auto all_equal = [](auto first, auto last) {
+    return std::all_of(first, last, [first](double knot) { return knot == *first; });
+  };
+  return all_equal(knots.begin(), knots.begin() + order) && all_equal(knots.end() - order, knots.end());
+}
+
+// Weights that are all the same do not make a surface rational.
+bool is_polynomial(const std::vector<double>& weights) {
+  return std::all_of(weights.begin(), weights.end(), [&weights](double weight) { return weight == weights.front(); });
+}
+
+void write_weights(Records& records, const std::vector<double>& weights, std::size_t count) {
+  if (weights.empty())
+    records.ones(count);
+  else
+    records.reals(weights);
+}
+
+}  // namespace
+
+bool is_closed_u(const nurbs::Surface& surface) {
+  if (!is_clamped(surface.knots_u, surface.degree_u)) return false;
+  const int last = surface.count_u - 1;
+  for (int j = 0; j < surface.count_v; ++j)
+    if (surface.point(0, j) != surface.point(last, j) || surface.weight(0, j) != surface.weight(last, j)) return false;
+  return true;
+}
+
+bool is_closed_v(const nurbs::Surface& surface) {
+  if (!is_clamped(surface.knots_v, surface.degree_v)) return false;
+  const int last = surface.count_v - 1;
+  for (int i = 0; i < surface.count_u; ++i)
+    if (surface.point(i, 0) != surface.point(i, last) || surface.weight(i, 0) != surface.weight(i, last)) return false;
+  return true;
+}
+
+bool is_closed(const nurbs::Curve& curve) {
+  return is_clamped(curve.knots, curve.degree) && curve.points.front() == curve.points.back() &&
+         (curve.weights.empty() || curve.weights.front() == curve.weights.back());
+}
+
+int write_surface(Records& records, const Entity& entity, const nurbs::Surface& surface, int property) {
+  const int pointer = records.begin(entity);
+  records.integer(surface.count_u - 1);
+  records.integer(surface.count_v - 1);
+  records.integer(surface.degree_u);
+  records.integer(surface.degree_v);
+  records.integer(is_closed_u(surface) ? 1 : 0);
+  records.integer(is_closed_v(surface) ? 1 : 0);
+  records.integer(is_polynomial(surface.weights) ? 1 : 0);
+  records.integer(0);  // periodic in neither direction: the knots are clamped
+  records.integer(0);
+  records.reals(surface.knots_u);
+  records.reals(surface.knots_v);
+  write_weights(records, surface.weights, surface.points.size());
+  records.points(surface.points);
+  records.real(surface.first_u());
+  records.real(surface.last_u());
+  records.real(surface.first_v());
+  records.real(surface.last_v());
+  records.end(property);
+  return pointer;
+}
+
+int write_curve(Records& records, const Entity& entity, const nurbs::Curve& curve, const Vec3* normal) {
+  const int pointer = records.begin(entity);
+  records.integer(static_cast<std::int64_t>(curve.points.size()) - 1);
+  records.integer(curve.degree);
+  records.integer(normal != nullptr ? 1 : 0);
+  records.integer(is_closed(curve) ? 1 : 0);
+  records.integer(is_polynomial(curve.weights) ? 1 : 0);
+  records.integer(0);
+  records.reals(curve.knots);
+  write_weights(records, curve.weights, curve.points.size());
+  records.points(curve.points);
+  records.real(curve.first_parameter());
+  records.real(curve.last_parameter());
+  const Vec3 direction = normal != nullptr ? *normal : Vec3::Zero();
+  records.reals(direction.data(), 3);
+  records.end();
+  return pointer;
+}
+
+nurbs::Curve EndPlane::in_parameters(const nurbs::Curve& curve) const {
+  nurbs::Curve flat = curve;
+  for (Vec3& point : flat.points) {
+    const Vec3 offset = point - origin;
+    point = Vec3(offset.dot(axis_u), offset.dot(axis_v), 0);
+  }
+  return flat;
+}
+
+EndPlane end_plane(const yarn::Body& body, const nurbs::Curve& end_curve, bool last) {
+  const yarn::EndFace& face = last ? body.end : body.start;
+  EndPlane plane;
+  plane.origin = face.origin;
+  // Where u runs counter-clockwise seen along the path, the yarn's own direction is the normal for it.
+  plane.inward = last == body.inward;
+  plane.normal = plane.inward ? Vec3(-face.normal) : face.normal;
+  Vec3 across = end_curve.points.front() - plane.origin;
+  across -= across.dot(plane.normal) * plane.normal;
+  plane.axis_u = across.norm() > 0 ? Vec3(across.normalized()) : plane.normal.unitOrthogonal();
+  plane.axis_v = plane.normal.cross(plane.axis_u).normalized();
+
+  Vec2 low = Vec2::Zero(), high = Vec2::Zero();
+  for (const Vec3& point : plane.in_parameters(end_curve).points) {
+    low = low.cwiseMin(point.head<2>());
+    high = high.cwiseMax(point.head<2>());
+  }
+  for (const Vec3& point : end_curve.points)
+    plane.deviation = std::max(plane.deviation, std::abs((point - plane.origin).dot(plane.normal)));
+  const Vec2 margin = Vec2::Constant(0.1 * (high - low).maxCoeff());
+  low -= margin;
+  high += margin;
+
+  nurbs::Surface& surface = plane.surface;
+  surface.degree_u = surface.degree_v = 1;
+  surface.count_u = surface.count_v = 2;
+  surface.knots_u = {low.x(), low.x(), high.x(), high.x()};
+  surface.knots_v = {low.y(), low.y(), high.y(), high.y()};
+  for (const double v : {low.y(), high.y()})
+    for (const double u : {low.x(), high.x()})
+      surface.points.emplace_back(plane.origin + u * plane.axis_u + v * plane.axis_v);
+  return plane;
+}
+
+int write_planar_end(Records& records, const Common& common, const yarn::Body& body, bool last) {
+  const nurbs::Curve outline = yarn::end_curve(body, last);
+  const EndPlane plane = end_plane(body, outline, last);
+  const Vec3 up = Vec3::UnitZ();
+  const int surface = write_surface(records, common.entity(128, 0, dependent), plane.surface);
+  const int flat = write_curve(records, common.entity(126, 0, dependent_in_2d), plane.in_parameters(outline), &up);
+  const int curve = write_curve(records, common.entity(126, 0, dependent), outline, &plane.normal);
+
+  const int boundary = records.begin(common.entity(142, 0, dependent));
+  records.integer(0);  // how the curve was made: not said
+  records.integer(surface);
+  records.integer(flat);
+  records.integer(curve);
+  records.integer(2);  // the curve in space is the true one
+  records.end();
+
+  const int pointer = records.begin(common.entity(144));
+  records.integer(surface);
+  records.integer(1);  // the outer boundary is not the surface's own
+  records.integer(0);  // no holes
+  records.integer(boundary);
+  records.end(common.name);
+  return pointer;
+}
+
+int write_group(Records& records, const Common& common, std::span<const int> members) {
+  const int pointer = records.begin(common.entity(402, 7));
+  records.integer(static_cast<std::int64_t>(members.size()));
+  for (const int member : members) records.integer(member);
+  records.end(common.name);
+  return pointer;
+}
+
+int write_name(Records& records, const Common& common, std::string_view ascii_name) {
+  const int pointer = records.begin({.type = 406, .form = 15, .label = common.label});
+  records.integer(1);  // number of values
+  records.text(ascii_name);
+  records.end();
+  return pointer;
+}
+
+int write_level_name(Records& records, int level, std::string_view name) {
+  const int pointer = records.begin({.type = 406, .form = 3, .level = level, .label = name});
+  records.integer(2);  // number of values
+  records.integer(0);  // function code: none
+  records.text(name);
+  records.end();
+  return pointer;
+}
+
+int write_color(Records& records, const yarn::Color& color) {
+  const int pointer = records.begin({.type = 314, .status = definition, .label = {}});
+  for (const int part : {color.red, color.green, color.blue}) records.real(part * 100.0 / 255.0);  // percent
+  records.end();
+  return pointer;
+}
+
+}  // namespace selvage::formats::iges

@@ -1,0 +1,201 @@
+#include "formats/iges/solid.h"
+
+#include <array>
+
+namespace selvage::formats::iges {
+
+namespace {
+
+using yarn::EndStyle;
+
+// The topology of one yarn. Vertices, edges and faces have the indices 0, 1, ... in the order in which they were added.
+struct Edge {
+  nurbs::Curve curve;
+  std::size_t from = 0, to = 0;
+  const Vec3* normal = nullptr;  // of the curve's plane
+};
+struct Use {
+  bool is_vertex = false;  // a pole: the loop passes through a point where the surface has an edge of length zero
+  std::size_t index = 0;
+  bool forward = true;
+};
+struct Face {
+  const nurbs::Surface* surface = nullptr;
+  bool outward = true;  // S_u x S_v points out of the yarn
+  std::vector<Use> loop;  // counter-clockwise in the surface's parameters
+};
+struct Topology {
+  std::vector<Vec3> vertices;
+  std::vector<Edge> edges;
+  std::vector<Face> faces;
+};
+
+// The edges round one end: the whole end curve, or its quarters for a patch.
+struct Rim {
+  std::size_t first_edge = 0, count = 1, first_vertex = 0;
+};
+
+std::size_t edges_of_rim(EndStyle style) { return style == EndStyle::patch ? 4 : 1; }
+
+nurbs::Curve first_column(const nurbs::Surface& surface) {
+  nurbs::Curve column;
+  column.degree = surface.degree_v;
+  column.knots = surface.knots_v;
+  for (int j = 0; j < surface.count_v; ++j) {
+    column.points.push_back(surface.point(0, j));
+    if (surface.is_rational()) column.weights.push_back(surface.weight(0, j));
+  }
+  return column;
+}
+
+Rim add_rim(Topology& topology, const yarn::Body& body, bool last, const EndPlane* plane) {
+  const EndStyle style = (last ? body.end : body.start).style;
+  Rim rim{topology.edges.size(), edges_of_rim(style), topology.vertices.size()};
+  const Vec3* normal = plane != nullptr ? &plane->normal : nullptr;
+  const auto add = [&](nurbs::Curve curve, std::size_t k) {
+    topology.vertices.push_back(curve.points.front());
+    topology.edges.push_back({std::move(curve), rim.first_vertex + k, rim.first_vertex + (k + 1) % rim.count, normal});
+  };
+  if (style == EndStyle::patch) {
+    std::array<nurbs::Curve, 4> quarters = yarn::end_quarters(body, last);
+    for (std::size_t k = 0; k < 4; ++k) add(std::move(quarters[k]), k);
+  } else {
+    add(yarn::end_curve(body, last), 0);
+  }
+  return rim;
+}
+
+void add_uses(std::vector<Use>& loop, const Rim& rim, bool forward) {
+  for (std::size_t k = 0; k < rim.count; ++k)
+    loop.push_back({false, rim.first_edge + (forward ? k : rim.count - 1 - k), forward});
+}
+
+void add_end(Topology& topology, const yarn::Body& body, bool last, const Rim& rim, const EndPlane* plane) {
+  const yarn::EndFace& end = last ? body.end : body.start;
+  Face face;
+  face.surface = plane != nullptr ? &plane->surface : &end.surface;
+  face.outward = !(plane != nullptr ? plane->inward : end.inward);
+  add_uses(face.loop, rim, true);
+  if (end.style == EndStyle::fan) {  // along the seam to the pole in the centre and back
+    const std::size_t centre = topology.vertices.size(), seam = topology.edges.size();
+    topology.vertices.push_back(end.surface.point(0, end.surface.count_v - 1));
+    topology.edges.push_back({first_column(end.surface), rim.first_vertex, centre, nullptr});
+    face.loop.insert(face.loop.end(), {{false, seam, true}, {true, centre, true}, {false, seam, false}});
+  }
+  topology.faces.push_back(std::move(face));
+}
+
+// A torus: two closed edges through one vertex, each used twice.
+Topology ring(const yarn::Body& body) {
+  Topology topology;
+  topology.vertices = {body.surface.points.front()};
+  topology.edges = {{nurbs::boundary_row(body.surface, false), 0, 0, nullptr}, {first_column(body.surface), 0, 0, nullptr}};
+  topology.faces = {{&body.surface, !body.inward, {{false, 0, true}, {false, 1, true}, {false, 0, false}, {false, 1, false}}}};
+  return topology;
+}
+
+Topology tube(const yarn::Body& body, const EndPlane* start, const EndPlane* end) {
+  Topology topology;
+  const Rim first = add_rim(topology, body, false, start), last = add_rim(topology, body, true, end);
+  const std::size_t seam = topology.edges.size();
+  topology.edges.push_back({first_column(body.surface), first.first_vertex, last.first_vertex, nullptr});
+  Face face{&body.surface, !body.inward, {}};
+  add_uses(face.loop, first, true);
+  face.loop.push_back({false, seam, true});
+  add_uses(face.loop, last, false);
+  face.loop.push_back({false, seam, false});
+  topology.faces.push_back(std::move(face));
+  add_end(topology, body, false, first, start);
+  add_end(topology, body, true, last, end);
+  return topology;
+}
+
+int write_vertex_list(Records& records, const Common& common, const std::vector<Vec3>& vertices) {
+  const int pointer = records.begin(common.entity(502, 1, dependent));
+  records.integer(static_cast<std::int64_t>(vertices.size()));
+  records.points(vertices);
+  records.end();
+  return pointer;
+}
+
+int write_edge_list(Records& records, const Common& common, const std::vector<Edge>& edges,
+                    const std::vector<int>& curves, int vertex_list) {
+  const int pointer = records.begin(common.entity(504, 1, dependent));
+  records.integer(static_cast<std::int64_t>(edges.size()));
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    records.integer(curves[i]);
+    for (const std::size_t vertex : {edges[i].from, edges[i].to}) {
+      records.integer(vertex_list);
+      records.integer(static_cast<std::int64_t>(vertex) + 1);
+    }
+  }
+  records.end();
+  return pointer;
+}
+
+int write_face(Records& records, const Common& common, const Face& face, int surface, int vertex_list, int edge_list) {
+  const int loop = records.begin(common.entity(508, 1, dependent));
+  records.integer(static_cast<std::int64_t>(face.loop.size()));
+  for (const Use& use : face.loop) {
+    records.integer(use.is_vertex ? 1 : 0);
+    records.integer(use.is_vertex ? vertex_list : edge_list);
+    records.integer(static_cast<std::int64_t>(use.index) + 1);
+    records.integer(use.forward ? 1 : 0);
+    records.integer(0);  // no curves in the surface's parameters
+  }
+  records.end();
+  const int pointer = records.begin(common.entity(510, 1, dependent));
+  records.integer(surface);
+  records.integer(1);  // loops
+  records.integer(1);  // the first is the outer one
+  records.integer(loop);
+  records.end();
+  return pointer;
+}
+
+}  // namespace
+
+int entities_of_solid(const yarn::Body& body) {
+  // Face: surface, 508, 510; and 502, 504, 514, 186.
+  if (body.closed_along) return 2 + 3 + 4;
+  int edges = 1;
+  for (const yarn::EndFace* end : {&body.start, &body.end})
+    edges += static_cast<int>(edges_of_rim(end->style)) + (end->style == EndStyle::fan ? 1 : 0);
+  return edges + 3 * 3 + 4;
+}
+
+int write_solid(Records& records, const Common& common, const yarn::Body& body) {
+  std::array<EndPlane, 2> planes;
+  const auto plane_of = [&](bool last) -> const EndPlane* {
+    if ((last ? body.end : body.start).style != EndStyle::planar) return nullptr;
+    planes[last] = end_plane(body, yarn::end_curve(body, last), last);
+    return &planes[last];
+  };
+  const Topology topology = body.closed_along ? ring(body) : tube(body, plane_of(false), plane_of(true));
+
+  std::vector<int> surfaces, curves, faces;
+  for (const Face& face : topology.faces)
+    surfaces.push_back(write_surface(records, common.entity(128, 0, dependent), *face.surface));
+  for (const Edge& edge : topology.edges)
+    curves.push_back(write_curve(records, common.entity(126, 0, dependent), edge.curve, edge.normal));
+  const int vertex_list = write_vertex_list(records, common, topology.vertices);
+  const int edge_list = write_edge_list(records, common, topology.edges, curves, vertex_list);
+  for (std::size_t i = 0; i < topology.faces.size(); ++i)
+    faces.push_back(write_face(records, common, topology.faces[i], surfaces[i], vertex_list, edge_list));
+
+  const int shell = records.begin(common.entity(514, 1, dependent));
+  records.integer(static_cast<std::int64_t>(faces.size()));
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    records.integer(faces[i]);
+    records.integer(topology.faces[i].outward ? 1 : 0);
+  }
+  records.end();
+  const int solid = records.begin(common.entity(186));
+  records.integer(shell);
+  records.integer(1);  // the shell's orientation is that of its faces
+  records.integer(0);  // no voids
+  records.end(common.name);
+  return solid;
+}
+
+}  // namespace selvage::formats::iges

@@ -1,0 +1,241 @@
+#include "formats/iges/writer.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/clock.h"
+#include "formats/iges/entities.h"
+#include "formats/iges/header.h"
+#include "formats/iges/solid.h"
+
+namespace selvage::formats::iges {
+
+namespace {
+
+using yarn::EndStyle;
+
+std::span<const double> numbers_of(const std::vector<Vec3>& points) {
+  return {points.empty() ? nullptr : points.data()->data(), 3 * points.size()};
+}
+
+// The largest magnitude; nothing where a value is not finite.
+std::optional<double> largest_of(std::span<const double> values) {
+  double largest = 0, zero = 0;
+  for (const double value : values) {
+    largest = std::max(largest, std::abs(value));
+    zero += 0 * value;
+  }
+  if (zero != 0 || std::isnan(zero)) return std::nullopt;
+  return largest;
+}
+
+// The mean thickness of the yarn's first section: the length of its control polygon over pi.
+double size_of(const nurbs::Surface& surface) {
+  double length = 0;
+  for (int i = 1; i < surface.count_u; ++i) length += (surface.point(i, 0) - surface.point(i - 1, 0)).norm();
+  return length / std::numbers::pi;
+}
+
+class Writer final : public BodyWriter {
+ public:
+  Writer(OutputFile& output, const SurfaceOptions& options, Header header, Records::Limits limits)
+      : output_(&output),
+        options_(options),
+        header_(std::move(header)),
+        records_(output, header_text(header_).bytes.size(), limits) {}
+
+  Status add(const yarn::Body& body) override;
+  Result<WriteFacts> finish() override;
+
+ private:
+  struct Shared {
+    std::vector<std::pair<yarn::Color, int>> colors;  // and their 314
+    std::array<bool, yarn::all_roles.size()> levels{};
+  };
+
+  Status check(const yarn::Body& body);
+  Status check_room(const yarn::Body& body);
+  void write(const yarn::Body& body);
+  void write_surfaces(const Common& common, const yarn::Body& body);
+  int color(const yarn::Color& color);
+  int level(yarn::Role role);
+  [[nodiscard]] int entities_of_end(const yarn::EndFace& end) const;
+
+  OutputFile* output_;
+  SurfaceOptions options_;
+  Header header_;
+  Records records_;
+  Shared shared_;
+  std::string name_;  // of the present yarn, in ASCII
+  std::uint64_t bodies_ = 0;
+  double largest_ = 0;
+  double smallest_size_ = std::numeric_limits<double>::infinity();
+  std::vector<Message> messages_;
+  bool renamed_ = false;
+};
+
+Message yarn_error(Kind kind, const yarn::Body& body, std::string text) {
+  Message message = error(kind, std::move(text));
+  message.yarn = body.name;
+  message.place = body.place;
+  return message;
+}
+
+// Every number that will be written, and whether the body can be what is asked for.
+Status Writer::check(const yarn::Body& body) {
+  double largest = 0;
+  for (const nurbs::Surface* surface : {&body.surface, &body.start.surface, &body.end.surface}) {
+    const std::optional<double> coordinates = largest_of(numbers_of(surface->points));
+    if (!coordinates || !largest_of(surface->weights) || !largest_of(surface->knots_u) || !largest_of(surface->knots_v))
+      return yarn_error(Kind::geometry, body,
+                        fmt::format("yarn {} has a coordinate, weight or knot that is not a finite number", body.name));
+    largest = std::max(largest, *coordinates);
+  }
+  for (const yarn::EndFace* end : {&body.start, &body.end}) {
+    if (body.closed_along) break;
+    if (options_.iges_solid && end->style == EndStyle::none)
+      return yarn_error(Kind::geometry, body,
+                        fmt::format("yarn {} has open ends and cannot be written as a solid: seal it with --ends "
+                                    "patch, fan or planar, or leave out --iges-solid",
+                                    body.name));
+    if (end->style != EndStyle::planar) continue;
+    const EndPlane plane = end_plane(body, yarn::end_curve(body, end == &body.end), end == &body.end);
+    const std::optional<double> corners = largest_of(numbers_of(plane.surface.points));
+    if (!corners)
+      return yarn_error(Kind::geometry, body, fmt::format("yarn {} has an end plane that is not finite", body.name));
+    largest = std::max(largest, *corners);
+  }
+  largest_ = std::max(largest_, largest);
+  smallest_size_ = std::min(smallest_size_, size_of(body.surface));
+  return {};
+}
+
+// Far from the limit a rough bound is enough; near it the yarn is written without being kept, and its lines counted.
+Status Writer::check_room(const yarn::Body& body) {
+  std::int64_t values = 1000;
+  for (const nurbs::Surface* surface : {&body.surface, &body.start.surface, &body.end.surface})
+    values += static_cast<std::int64_t>(4 * surface->points.size() + 4 * (surface->knots_u.size() + surface->knots_v.size()) +
+                                        16 * static_cast<std::size_t>(surface->count_u + surface->count_v));
+  const Records::Lines now = records_.lines();
+  const std::int64_t most = records_.limits().lines;
+  if (now.parameters + values <= most && now.directory + 200 <= most) return {};
+
+  const Shared before = shared_;
+  records_.measure(true);
+  write(body);
+  const Records::Lines needed = records_.measure(false);
+  shared_ = before;
+  if (needed.parameters <= most && needed.directory <= most) return {};
+  const bool parameters = needed.parameters > most;
+  return yarn_error(
+      Kind::limit, body,
+      fmt::format("with yarn {} the IGES file would need {} {} lines, but lines are numbered to {} at most ({} yarns "
+                  "fit): split the fabric over several files",
+                  body.name, parameters ? needed.parameters : needed.directory, parameters ? "parameter" : "directory",
+                  most, bodies_));
+}
+
+int Writer::color(const yarn::Color& color) {
+  for (const auto& [known, pointer] : shared_.colors)
+    if (known == color) return pointer;
+  const int pointer = write_color(records_, color);
+  shared_.colors.emplace_back(color, pointer);
+  return pointer;
+}
+
+int Writer::level(yarn::Role role) {
+  const auto index = static_cast<std::size_t>(role);
+  const int level = static_cast<int>(index) + 1;
+  if (!shared_.levels[index]) {
+    write_level_name(records_, level, yarn::name_of(role));
+    shared_.levels[index] = true;
+  }
+  return level;
+}
+
+int Writer::entities_of_end(const yarn::EndFace& end) const {
+  switch (end.style) {
+    case EndStyle::none: return 0;
+    case EndStyle::planar: return entities_of_planar_end;
+    case EndStyle::patch:
+    case EndStyle::fan: return 1;
+  }
+  return 0;
+}
+
+void Writer::write_surfaces(const Common& common, const yarn::Body& body) {
+  std::array<int, 3> faces{};
+  std::size_t count = 0;
+  faces[count++] = write_surface(records_, common.entity(128), body.surface, common.name);
+  for (const yarn::EndFace* end : {&body.start, &body.end}) {
+    if (body.closed_along || end->style == EndStyle::none) continue;
+    faces[count++] = end->style == EndStyle::planar
+                         ? write_planar_end(records_, common, body, end == &body.end)
+                         : write_surface(records_, common.entity(128), end->surface, common.name);
+  }
+  write_group(records_, common, {faces.data(), count});
+}
+
+void Writer::write(const yarn::Body& body) {
+  Common common{.color = color(body.color), .level = level(body.role), .label = name_};
+  int entities = 2;  // the first face and the group
+  if (options_.iges_solid)
+    entities = entities_of_solid(body);
+  else if (!body.closed_along)
+    entities += entities_of_end(body.start) + entities_of_end(body.end);
+  common.name = records_.next() + 2 * entities;
+  if (options_.iges_solid)
+    write_solid(records_, common, body);
+  else
+    write_surfaces(common, body);
+  write_name(records_, common, name_);
+}
+
+Status Writer::add(const yarn::Body& body) {
+  if (Status status = check(body); !status.ok()) return status;
+  name_ = ascii(body.name);
+  if (Status status = check_room(body); !status.ok()) return status;
+  if (name_ != body.name && !std::exchange(renamed_, true))
+    messages_.push_back(warning(Kind::unsupported, fmt::format("IGES strings are ASCII: yarn {} is named {} in the file",
+                                                               body.name, name_)));
+  write(body);
+  ++bodies_;
+  // What is still to come is as what came.
+  const auto entities = static_cast<std::uint64_t>(records_.lines().directory / 2);
+  if (options_.expected_bodies > bodies_) {
+    const std::uint64_t shared = shared_.colors.size() +
+                                 static_cast<std::uint64_t>(std::count(shared_.levels.begin(), shared_.levels.end(), true));
+    records_.expect(shared + (entities - shared) * options_.expected_bodies / bodies_);
+  }
+  return records_.status();
+}
+
+Result<WriteFacts> Writer::finish() {
+  const Result<std::uint64_t> end = records_.finish();
+  if (!end) return end.error();
+  header_.largest = largest_;
+  header_.resolution = resolution_for(bodies_ > 0 ? smallest_size_ : 0, largest_);
+  const HeaderText text = header_text(header_);
+  const Records::Lines lines = records_.lines();
+  if (Status status = output_->write_at(0, text.bytes); !status.ok()) return status.error();
+  // At the end and by write(), so that whatever is appended later follows it.
+  if (Status status = output_->write(terminate_text(text, lines.directory, lines.parameters)); !status.ok())
+    return status.error();
+  WriteFacts facts;
+  for (const auto& [type, count] : records_.counts()) facts.entities[std::to_string(type)] = count;
+  facts.messages = std::move(messages_);
+  return facts;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<BodyWriter>> open_writer(OutputFile& output, const SurfaceOptions& options,
+                                                Records::Limits limits) {
+  Header header{.title = options.title, .file_name = options.file_name, .units = options.units, .time = iges_timestamp()};
+  return std::unique_ptr<BodyWriter>(std::make_unique<Writer>(output, options, std::move(header), limits));
+}
+
+}  // namespace selvage::formats::iges
