@@ -1,1 +1,58 @@
-int main() { return 0; }
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "cli/cli.h"
+#include "pipeline/batch.h"
+#include "pipeline/versions.h"
+
+namespace selvage::cli {
+
+namespace {
+
+// Why the command line was refused, with a word for what a later version will have.
+Message refusal(const CLI::App& program, const CLI::ParseError& failure, int count, char** words) {
+  const CLI::App* command = program.get_subcommands().empty() ? &program : program.get_subcommands().front();
+  if (command == &program && count > 1)
+    if (const std::string text = later_command(words[1]); !text.empty()) return error(Kind::usage, text);
+  std::string text = failure.what();
+  for (int i = 1; i < count; ++i) {
+    const std::string word = words[i];
+    if (const std::string later = later_option(word); !later.empty()) return error(Kind::usage, later);
+    if (failure.get_name() != "ExtrasError" || !word.starts_with("--") || text.find(word) == std::string::npos) continue;
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    const std::string_view near = nearest_word(word, std::vector<std::string_view>(names.begin(), names.end()));
+    text = fmt::format("unknown option '{}'", word);
+    if (!near.empty()) text += fmt::format("; did you mean '{}'?", near);
+    break;
+  }
+  return error(Kind::usage, fmt::format("{} (help: selvage {}--help)", text,
+                                        command == &program ? "" : command->get_name() + " "));
+}
+
+int run(int count, char** words) {
+  CLI::App program("Yarn-level fabrics: text in; IGES, STEP, checked solids and solver-ready meshes out.", "selvage");
+  program.set_version_flag("--version", fmt::format("selvage {}", pipeline::version()));
+  program.require_subcommand(1);
+  Parsed parsed;
+  add_convert(program, parsed);
+  add_check(program, parsed);
+  add_mesh(program, parsed);
+  add_info(program, parsed);
+  add_formats(program, parsed);
+  try {
+    program.parse(count, words);
+  } catch (const CLI::ParseError& failure) {
+    if (failure.get_exit_code() == 0) return program.exit(failure);  // help, version
+    return pipeline::refuse(refusal(program, failure, count, words));
+  }
+  return parsed.action();
+}
+
+}  // namespace
+
+}  // namespace selvage::cli
+
+int main(int count, char** words) { return selvage::cli::run(count, words); }

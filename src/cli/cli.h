@@ -1,0 +1,36 @@
+// The command line: one file a subcommand, each of which adds itself to the parser.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "pipeline/options.h"
+
+namespace selvage::cli {
+
+// Where the parsed values go: `action` is what the chosen subcommand does; its value is the exit code.
+struct Parsed {
+  pipeline::Options options;
+  std::string shard, units, ends = "patch";
+  std::function<int()> action;
+};
+
+void add_convert(CLI::App& program, Parsed& parsed);
+void add_check(CLI::App& program, Parsed& parsed);
+void add_mesh(CLI::App& program, Parsed& parsed);
+void add_info(CLI::App& program, Parsed& parsed);
+void add_formats(CLI::App& program, Parsed& parsed);
+
+// Options that several subcommands have (common.cpp).
+void add_common(CLI::App& command, Parsed& parsed);
+void add_output(CLI::App& command, Parsed& parsed);
+void add_ends(CLI::App& command, Parsed& parsed);
+void add_units(CLI::App& command, Parsed& parsed, const std::string& help);
+// Runs the pipeline with the parsed options when the subcommand was named.
+void run_pipeline(CLI::App& command, Parsed& parsed, pipeline::Command what);
+
+// Words of the contract that come with later versions: "" when `word` is none, else what to tell.
+std::string later_option(const std::string& word);
+std::string later_command(const std::string& word);
+
+}  // namespace selvage::cli

@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "cli/cli.h"
+#include "pipeline/batch.h"
+
+namespace selvage::cli {
+
+namespace {
+
+constexpr std::array<std::string_view, 7> later_options = {"--instances", "--cut",   "--matrix",       "--periodic",
+                                                           "--gap",       "--relax", "--as-published"};
+constexpr std::array<std::string_view, 6> later_commands = {"roundtrip", "diff", "edit", "relax", "view", "report"};
+
+Status parse_shard(const std::string& text, pipeline::Options& options) {
+  if (text.empty()) return {};
+  const char* end = text.data() + text.size();
+  const auto part = std::from_chars(text.data(), end, options.part);
+  if (part.ec == std::errc() && part.ptr != end && *part.ptr == '/') {
+    const auto parts = std::from_chars(part.ptr + 1, end, options.parts);
+    if (parts.ec == std::errc() && parts.ptr == end && options.part < options.parts) return {};
+  }
+  return error(Kind::usage, fmt::format("--shard {}: it is I/N with 0 <= I < N, for example 0/4", text));
+}
+
+Status complete(Parsed& parsed) {
+  pipeline::Options& options = parsed.options;
+  if (Status status = parse_shard(parsed.shard, options); !status.ok()) return status;
+  if (!parsed.units.empty()) options.units = unit_named(parsed.units);
+  for (yarn::EndStyle style :
+       {yarn::EndStyle::patch, yarn::EndStyle::fan, yarn::EndStyle::planar, yarn::EndStyle::none})
+    if (parsed.ends == yarn::name_of(style)) options.ends = style;
+  if (options.resume && (options.report.empty() || options.report == "-"))
+    return error(Kind::usage, "--resume goes by the report of the run before: name it with --report FILE");
+  return {};
+}
+
+}  // namespace
+
+std::string later_option(const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  if (std::find(later_options.begin(), later_options.end(), name) == later_options.end()) return {};
+  return fmt::format("'{}' is not in this version of selvage", name);
+}
+
+std::string later_command(const std::string& word) {
+  if (std::find(later_commands.begin(), later_commands.end(), word) == later_commands.end()) return {};
+  return fmt::format("'selvage {}' is not in this version of selvage", word);
+}
+
+void add_common(CLI::App& command, Parsed& parsed) {
+  pipeline::Options& o = parsed.options;
+  command.add_option("INPUT", o.inputs, "files, folders, patterns, @LIST of paths, - for standard input")->required();
+  command.add_option("-j", o.workers, "inputs worked on at once (default: one a core)")->check(CLI::Range(1, 4096));
+  command.add_option("--report", o.report, "write a JSON report to this file");
+  command.add_flag("--quiet", o.quiet, "errors only");
+  command.add_flag("-v,--verbose", o.verbose, "say more");
+  command.add_flag("--no-progress", o.no_progress, "no progress bar or lines");
+  command.add_option("--timeout", o.timeout, "seconds an input may take")->check(CLI::PositiveNumber);
+  command.add_option("--memory", o.memory, "MB of memory an input may take")->check(CLI::PositiveNumber);
+  command.add_flag("--strict", o.strict, "a warning fails its input");
+  command.add_option("--tolerance", o.tolerance, "of tubes, in the input's unit, instead of the input's own")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--shard", parsed.shard, "I/N: only the I-th of N equal parts of the inputs, from 0");
+}
+
+void add_output(CLI::App& command, Parsed& parsed) {
+  command.add_option("-o,--output", parsed.options.output, "a file, a folder, or - for standard output");
+  command.add_option("--to", parsed.options.formats, "formats to write, separated by commas (see selvage formats)");
+  command.add_flag("--resume", parsed.options.resume, "skip inputs that --report says are done, if their outputs are whole");
+}
+
+void add_ends(CLI::App& command, Parsed& parsed) {
+  command.add_option("--ends", parsed.ends, "how a yarn is sealed: patch, fan, planar, none (default: patch)")
+      ->check(CLI::IsMember({"patch", "fan", "planar", "none"}));
+}
+
+void add_units(CLI::App& command, Parsed& parsed, const std::string& help) {
+  command.add_option("--units", parsed.units, help)->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
+}
+
+void run_pipeline(CLI::App& command, Parsed& parsed, pipeline::Command what) {
+  command.callback([&parsed, what] {
+    parsed.action = [&parsed, what] {
+      parsed.options.command = what;
+      if (Status status = complete(parsed); !status.ok()) return pipeline::refuse(status.error());
+      return pipeline::run(parsed.options);
+    };
+  });
+}
+
+}  // namespace selvage::cli

@@ -1,0 +1,38 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "cli/cli.h"
+#include "formats/format.h"
+#include "pipeline/table.h"
+
+namespace selvage::cli {
+
+namespace {
+
+int print_formats() {
+  pipeline::Table table({"name", "extensions", "read", "write", "what"});
+  for (const formats::Descriptor* format : formats::all_formats()) {
+    std::string extensions, write;
+    const auto append = [](std::string& list, std::string_view word) {
+      list += (list.empty() ? "" : " ") + std::string(word);
+    };
+    for (std::string_view extension : format->extensions) append(extensions, extension);
+    if (format->write_fabric != nullptr) append(write, "fabric");
+    if (format->open_bodies != nullptr) append(write, "surfaces");
+    if (format->write_mesh != nullptr) append(write, "mesh");
+    table.add({std::string(format->name), extensions, format->read_fabric != nullptr ? "fabric" : "-",
+               write.empty() ? "-" : write, std::string(format->title)});
+  }
+  std::fputs(table.text().c_str(), stdout);
+  return std::fflush(stdout) == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void add_formats(CLI::App& program, Parsed& parsed) {
+  CLI::App& command = *program.add_subcommand("formats", "the formats that can be read and written");
+  command.callback([&parsed] { parsed.action = print_formats; });
+}
+
+}  // namespace selvage::cli

@@ -1,0 +1,307 @@
+#include "pipeline/batch.h"
+
+#include <fmt/format.h>
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+
+#include "core/clock.h"
+#include "core/process.h"
+#include "core/progress.h"
+#include "pipeline/inputs.h"
+#include "pipeline/job.h"
+#include "pipeline/outputs.h"
+#include "pipeline/report.h"
+
+namespace selvage::pipeline {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+namespace exit_code {
+constexpr int well = 0, failed = 1, usage = 2, defect = 3, interrupted = 130;
+}
+
+// A run that is killed shall leave a report to resume from, but writing it shall not cost more than this share of the time.
+constexpr double report_interval = 10;  // seconds
+constexpr double report_share = 0.05;
+
+std::size_t available_cores() {
+  cpu_set_t set;
+  if (::sched_getaffinity(0, sizeof set, &set) != 0) return 1;
+  return static_cast<std::size_t>(std::max(1, CPU_COUNT(&set)));
+}
+
+class Batch {
+ public:
+  Batch(const Options& options, std::vector<Input> inputs, std::vector<std::vector<PlannedOutput>> outputs,
+        std::map<std::string, std::string> earlier)
+      : options_(options),
+        inputs_(std::move(inputs)),
+        outputs_(std::move(outputs)),
+        earlier_(std::move(earlier)),
+        work_(inputs_.size()),
+        progress_(!options.quiet && !options.no_progress, inputs_.size()) {}
+
+  int run(const std::vector<Message>& missing);
+
+ private:
+  // What came from one input so far.
+  struct Work {
+    std::string messages, results, report;
+    bool ended = false;
+  };
+
+  int run_one(std::size_t job, const Channel& channel) const;
+  void receive(std::size_t job, char kind, std::string_view bytes);
+  void finish(std::size_t job, const JobEnd& end);
+  void fail(std::size_t job, Message message);
+  void flush_results();
+  void show(std::string& text);
+  double tick();
+  void remove_leftovers(std::size_t job) const;
+
+  [[nodiscard]] bool wants_report() const { return !options_.report.empty() || options_.json; }
+  [[nodiscard]] std::string report_text(bool ok) const;
+  Status write_report(bool ok) const;
+  [[nodiscard]] std::string entry_of_earlier(const std::string& path) const;
+  [[nodiscard]] int exit_code() const;
+  void summarize() const;
+
+  const Options& options_;
+  std::vector<Input> inputs_;
+  std::vector<std::vector<PlannedOutput>> outputs_;
+  std::map<std::string, std::string> earlier_;  // entries of the report that --resume goes by
+  std::vector<Work> work_;
+  std::vector<std::string> missing_reports_;
+  ProgressDisplay progress_;
+  std::string doing_;
+  Counts counts_;
+  std::size_t defects_ = 0, files_ = 0;
+  std::size_t next_result_ = 0;
+  bool output_failed_ = false;
+  std::string started_ = iso_timestamp();
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point next_report_ = start_ + std::chrono::seconds(static_cast<int>(report_interval));
+};
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+int Batch::run_one(std::size_t index, const Channel& channel) const {
+  Job job(options_, inputs_[index], outputs_[index], channel);
+  const std::size_t workers = options_.workers > 0 ? options_.workers : available_cores();
+  job.threads = std::max<std::size_t>(1, workers / std::min(workers, inputs_.size()));
+  return static_cast<int>(run_job(job, entry_of_earlier(inputs_[index].path), channel));
+}
+
+std::string Batch::entry_of_earlier(const std::string& path) const {
+  const auto found = earlier_.find(path);
+  return found == earlier_.end() ? std::string() : found->second;
+}
+
+void Batch::receive(std::size_t job, char kind, std::string_view bytes) {
+  Work& work = work_[job];
+  if (kind == packet::message) {
+    work.messages += bytes;
+    work.messages += '\n';
+  } else if (kind == packet::result) {
+    work.results += bytes;
+  } else if (kind == packet::report) {
+    work.report = bytes;
+  } else if (kind == packet::progress) {
+    doing_ = bytes;
+    progress_.set(counts_.done + counts_.failed + counts_.skipped, counts_.failed, doing_);
+  }
+}
+
+void Batch::show(std::string& text) {
+  if (text.empty()) return;
+  progress_.clear();
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  text.clear();
+}
+
+void Batch::flush_results() {
+  for (; next_result_ < work_.size() && work_[next_result_].ended; ++next_result_) {
+    std::string& results = work_[next_result_].results;
+    if (results.empty()) continue;
+    progress_.clear();
+    if (std::fwrite(results.data(), 1, results.size(), stdout) != results.size() || std::fflush(stdout) != 0)
+      output_failed_ = true;
+    results = {};
+  }
+}
+
+void Batch::fail(std::size_t job, Message message) {
+  message.file = inputs_[job].path == "-" ? "<stdin>" : inputs_[job].path;
+  work_[job].messages += to_string(message) + "\n";
+  if (!wants_report()) return;
+  InputReport report;
+  report.path = inputs_[job].path;
+  report.messages.push_back(std::move(message));
+  work_[job].report = to_json(report);
+}
+
+void Batch::finish(std::size_t job, const JobEnd& end) {
+  Work& work = work_[job];
+  work.ended = true;
+  const std::string reason = describe(end, options_.timeout, options_.memory);
+  if (!reason.empty()) {
+    const Kind kind = end.how == JobEnd::How::timed_out ? Kind::limit : Kind::internal;
+    fail(job, error(kind, "this input " + reason));
+    remove_leftovers(job);
+  }
+  const auto verdict = reason.empty() ? static_cast<Verdict>(end.status) : Verdict::failed;
+  if (verdict == Verdict::skipped) {
+    ++counts_.skipped;
+  } else if (verdict == Verdict::done || verdict == Verdict::defect) {
+    ++counts_.done;
+    files_ += outputs_[job].size();
+    if (verdict == Verdict::defect) ++defects_;
+  } else {
+    ++counts_.failed;
+  }
+  show(work.messages);
+  flush_results();
+  progress_.set(counts_.done + counts_.failed + counts_.skipped, counts_.failed, doing_);
+}
+
+// Hidden files of a run that was killed where there are no unnamed files (core/output.h).
+void Batch::remove_leftovers(std::size_t job) const {
+  for (const PlannedOutput& output : outputs_[job])
+    if (!output.to_standard_output) ::unlink(OutputFile::hidden_name(output.path).c_str());
+}
+
+double Batch::tick() {
+  const double seconds = progress_.tick();
+  if (options_.report.empty() || options_.report == "-") return seconds;
+  if (Clock::now() >= next_report_) {
+    const Clock::time_point begin = Clock::now();
+    // A report that cannot be written is told at the end; until then the work goes on.
+    (void)write_report(false).ok();
+    const double pause = std::max(report_interval, seconds_since(begin) / report_share);
+    next_report_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pause));
+  }
+  return std::min(seconds, std::chrono::duration<double>(next_report_ - Clock::now()).count());
+}
+
+std::string Batch::report_text(bool ok) const {
+  std::vector<std::string> entries;
+  for (std::size_t i = 0; i < work_.size(); ++i) {
+    // An input that was not reached keeps what an earlier run knew of it.
+    entries.push_back(work_[i].report.empty() ? entry_of_earlier(inputs_[i].path) : work_[i].report);
+  }
+  entries.insert(entries.end(), missing_reports_.begin(), missing_reports_.end());
+  return whole_report(started_, seconds_since(start_), ok, counts_, entries);
+}
+
+Status Batch::write_report(bool ok) const {
+  if (options_.report.empty()) return {};
+  Result<OutputFile> file = options_.report == "-" ? OutputFile::standard_output() : OutputFile::create(options_.report);
+  if (!file) return file.error();
+  if (Status status = file->write(report_text(ok)); !status.ok()) return status;
+  return file->commit();
+}
+
+int Batch::exit_code() const {
+  if (counts_.failed > 0) return exit_code::failed;
+  return defects_ > 0 ? exit_code::defect : exit_code::well;
+}
+
+void Batch::summarize() const {
+  const bool writes = options_.command == Command::convert || options_.command == Command::mesh;
+  if (options_.quiet || !writes || options_.output == "-") return;
+  std::string text = fmt::format("selvage: {} of {} inputs done", counts_.done, counts_.inputs);
+  if (counts_.skipped > 0) text += fmt::format(", {} were up to date", counts_.skipped);
+  if (counts_.failed > 0) text += fmt::format(", {} failed", counts_.failed);
+  text += fmt::format("; {} file{} written", files_, files_ == 1 ? "" : "s");
+  if (!options_.output.empty()) text += fmt::format(" to '{}'", options_.output);
+  text += '\n';
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+int Batch::run(const std::vector<Message>& missing) {
+  counts_.inputs = inputs_.size() + missing.size();
+  for (const Message& message : missing) {
+    std::string text = to_string(message) + "\n";
+    show(text);
+    ++counts_.failed;
+    InputReport report;
+    report.path = message.file;
+    report.messages.push_back(message);
+    if (wants_report()) missing_reports_.push_back(to_json(report));
+  }
+  for (std::size_t job = 0; job < inputs_.size(); ++job) remove_leftovers(job);
+
+  JobPool pool;
+  pool.count = inputs_.size();
+  pool.at_once = options_.workers > 0 ? options_.workers : available_cores();
+  pool.seconds = options_.timeout;
+  pool.mebibytes = options_.memory;
+  pool.run = [this](std::size_t job, const Channel& channel) { return run_one(job, channel); };
+  pool.received = [this](std::size_t job, char kind, std::string_view bytes) { receive(job, kind, bytes); };
+  pool.finished = [this](std::size_t job, const JobEnd& end) { finish(job, end); };
+  pool.interrupted = [this](std::size_t job) { remove_leftovers(job); };
+  pool.tick = [this] { return tick(); };
+  const bool complete = run_jobs(pool);
+  progress_.clear();
+
+  int code = complete ? exit_code() : exit_code::interrupted;
+  if (!complete) std::fputs("selvage: interrupted; the inputs that were not done have no new outputs\n", stderr);
+  if (options_.json) std::fputs(report_text(code == exit_code::well).c_str(), stdout);
+  if (std::fflush(stdout) != 0 || output_failed_) {
+    std::fprintf(stderr, "selvage: error: cannot write to standard output: %s\n", std::strerror(errno));
+    if (code == exit_code::well) code = exit_code::failed;
+  }
+  if (Status status = write_report(code == exit_code::well); !status.ok()) {
+    std::fprintf(stderr, "%s\n", to_string(status.error()).c_str());
+    if (code == exit_code::well) code = exit_code::failed;
+  }
+  if (complete) summarize();
+  return code;
+}
+
+Result<std::map<std::string, std::string>> earlier_entries(const Options& options) {
+  if (!options.resume) return std::map<std::string, std::string>{};
+  std::error_code failure;
+  if (!std::filesystem::exists(options.report, failure)) return std::map<std::string, std::string>{};
+  return read_entries(options.report);
+}
+
+// A report that cannot be written is better known before the work than after it.
+Status check_report_place(const Options& options) {
+  if (options.report.empty() || options.report == "-") return {};
+  Result<OutputFile> trial = OutputFile::create(options.report);
+  return trial ? Status{} : Status{trial.error()};
+}
+
+}  // namespace
+
+int refuse(const Message& message) {
+  Message shown = message;
+  if (shown.file.empty()) shown.file = "selvage";
+  std::fprintf(stderr, "%s\n", to_string(shown).c_str());
+  return exit_code::usage;
+}
+
+int run(const Options& options) {
+  Result<InputList> list = expand_inputs(options.inputs);
+  if (!list) return refuse(list.error());
+  Result<std::vector<std::vector<PlannedOutput>>> plan = plan_outputs(options, *list);
+  if (!plan) return refuse(plan.error());
+  Result<std::map<std::string, std::string>> earlier = earlier_entries(options);
+  if (!earlier) return refuse(earlier.error());
+  if (Status status = check_report_place(options); !status.ok()) return refuse(status.error());
+  keep_part(list->inputs, options.part, options.parts);
+  keep_part(*plan, options.part, options.parts);
+  if (options.part > 0) list->missing.clear();
+  return Batch(options, std::move(list->inputs), std::move(*plan), std::move(*earlier)).run(list->missing);
+}
+
+}  // namespace selvage::pipeline

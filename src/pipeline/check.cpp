@@ -1,0 +1,139 @@
+// `selvage check`: is every yarn a closed, valid solid within its tolerance, and do no two share space?
+#include "solid/check.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pipeline/facts.h"
+#include "pipeline/overlaps.h"
+#include "pipeline/scaling.h"
+#include "pipeline/table.h"
+#include "solid/brep.h"
+
+namespace selvage::pipeline {
+
+namespace {
+
+// The solid's volume may differ from the B-spline's by what OpenCASCADE's quadrature leaves (measured: up to 4e-4).
+constexpr double volume_agreement = 1e-3;
+
+struct Findings {
+  std::vector<yarn::Body> bodies;
+  solid::SolidCheck solids;
+  std::vector<solid::BrepCheck> breps;
+  double tolerance = 0;  // file units
+};
+
+std::string_view yes_no(bool yes) { return yes ? "yes" : "no"; }
+
+Message defect(const yarn::Body& body, std::string text) {
+  Message message = error(Kind::geometry, std::move(text));
+  message.yarn = body.name;
+  message.place = body.place;
+  return message;
+}
+
+// What is wrong with yarn i, beside overlaps; empty: nothing.
+std::vector<Message> defects_of(const Findings& found, std::size_t i, Unit units) {
+  const yarn::Body& body = found.bodies[i];
+  std::vector<Message> defects = found.solids.yarns[i].defects;
+  const solid::BrepCheck& brep = found.breps[i];
+  defects.insert(defects.end(), brep.defects.begin(), brep.defects.end());
+  if (defects.empty() && std::abs(brep.volume - body.volume) > volume_agreement * std::abs(body.volume))
+    defects.push_back(defect(body, fmt::format("yarn '{}': the solid's volume is {:.6g}, the B-spline's {:.6g} {}^3",
+                                               body.name, brep.volume, body.volume, name_of(units))));
+  if (body.tube_error > found.tolerance)
+    defects.push_back(defect(body, fmt::format("yarn '{}': the surface may be {:.3g} {} away from the exact tube, {:.3g} are "
+                                               "allowed; raise the file's tolerance or use --tolerance",
+                                               body.name, body.tube_error, name_of(units), found.tolerance)));
+  for (const yarn::TightBend& bend : body.tight_bends) {
+    defects.push_back(defect(body, fmt::format("yarn '{}' bends with a radius of {:.4g} {} where its section needs {:.4g}: "
+                                               "its surface folds over itself",
+                                               body.name, bend.radius, name_of(units), bend.needed)));
+    defects.back().at = bend.at;
+  }
+  return defects;
+}
+
+std::string brep_word(const solid::BrepCheck& brep) {
+  if (brep.valid && brep.free_edges == 0) return "valid";
+  return brep.valid ? fmt::format("{} free edges", brep.free_edges) : "invalid";
+}
+
+void print_tables(const Job& job, const Findings& found, std::size_t defects) {
+  const Unit file = job.file_units(), shown = job.options.units.value_or(file);
+  const auto length = [&](double value) { return cell(converted(value, file, shown)); };
+  Table yarns({"yarn", "points", "length", "volume", "least bend radius", "tube error", "closed", "crosses itself", "B-rep",
+               "defects"});
+  for (std::size_t i = 0; i < found.bodies.size(); ++i) {
+    const yarn::Body& body = found.bodies[i];
+    const solid::YarnCheck& solid = found.solids.yarns[i];
+    const double cubic = converted(converted(converted(body.volume, file, shown), file, shown), file, shown);
+    yarns.add({body.name, fmt::format("{}x{}", body.surface.count_u, body.surface.count_v), length(body.length), cell(cubic),
+               length(body.min_bend_radius), length(body.tube_error), std::string(yes_no(solid.closed && solid.bounds_volume)),
+               std::string(yes_no(solid.self_intersecting)), brep_word(found.breps[i]),
+               std::to_string(defects_of(found, i, file).size())});
+  }
+  std::string text = fmt::format("{}: {} yarns, in {}\n{}", job.input.path, found.bodies.size(), name_of(shown), yarns.text());
+  if (!found.solids.overlaps.empty()) {
+    Table overlaps({"overlap of", "and", "depth", "x", "y", "z"});
+    for (const solid::Overlap& overlap : found.solids.overlaps)
+      overlaps.add({found.bodies[overlap.a].name, found.bodies[overlap.b].name, length(overlap.depth),
+                    length(overlap.at.x()), length(overlap.at.y()), length(overlap.at.z())});
+    text += overlaps.text();
+  }
+  if (found.solids.min_gap) text += fmt::format("  smallest gap between yarns: {}\n", length(*found.solids.min_gap));
+  text += defects == 0 ? "  sound: every yarn is a closed valid solid, no two overlap\n"
+                       : fmt::format("  {} defect{}\n", defects, defects == 1 ? "" : "s");
+  job.print(text);
+}
+
+std::optional<Findings> examine(Job& job, const fabric::Fabric& fabric) {
+  const std::optional<fabric::YarnBuilder> builder = job.builder(fabric);
+  if (!builder) return std::nullopt;
+  std::optional<std::vector<yarn::Body>> bodies = job.build_all(*builder);
+  if (!bodies) return std::nullopt;
+  Findings found;
+  found.bodies = std::move(*bodies);
+  found.tolerance = fabric::tolerance_of(fabric, job.build_options());
+  solid::CheckOptions options;
+  options.threads = static_cast<int>(job.threads);
+  options.progress = [&job](std::size_t done, std::size_t total) { job.progress("checking yarn", done, total); };
+  Result<solid::SolidCheck> solids = solid::check_solids(found.bodies, options);
+  if (!solids) {
+    job.say(solids.error());
+    return std::nullopt;
+  }
+  Result<std::vector<solid::BrepCheck>> breps = solid::check_breps(found.bodies);
+  if (!breps) {
+    job.say(breps.error());
+    return std::nullopt;
+  }
+  found.solids = std::move(*solids);
+  found.breps = std::move(*breps);
+  return found;
+}
+
+}  // namespace
+
+bool check(Job& job) {
+  const std::optional<fabric::Fabric> fabric = job.read();
+  if (!fabric) return false;
+  const std::optional<Findings> found = examine(job, *fabric);
+  if (!found) return false;
+  report_check(job, found->solids, found->bodies);
+  std::size_t defects = found->solids.overlaps.size();
+  for (std::size_t i = 0; i < found->bodies.size(); ++i) {
+    for (Message& message : defects_of(*found, i, fabric->units)) {
+      ++defects;
+      job.say_defect(std::move(message));
+    }
+  }
+  for (const solid::Overlap& overlap : found->solids.overlaps)
+    job.say_defect(overlap_message(overlap, found->bodies, fabric->units));
+  print_tables(job, *found, defects);
+  return defects > 0;
+}
+
+}  // namespace selvage::pipeline

@@ -1,0 +1,67 @@
+#include "pipeline/detect.h"
+
+#include <fmt/format.h>
+#include <strings.h>
+
+
+namespace selvage::pipeline {
+
+using formats::all_formats;
+using formats::Descriptor;
+
+namespace {
+
+constexpr std::size_t head_size = 4096;
+
+const Descriptor* sniff(std::string_view head) {
+  for (const Descriptor* format : all_formats())
+    if (format->sniff != nullptr && format->sniff(head)) return format;
+  return nullptr;
+}
+
+bool same_word(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && ::strncasecmp(a.data(), b.data(), a.size()) == 0;
+}
+
+}  // namespace
+
+const Descriptor* format_with_extension(std::string_view extension) {
+  for (const Descriptor* format : all_formats())
+    for (std::string_view own : format->extensions)
+      if (same_word(own, extension)) return format;
+  return nullptr;
+}
+
+const Descriptor* format_named(std::string_view name) {
+  for (const Descriptor* format : all_formats())
+    if (same_word(format->name, name)) return format;
+  return nullptr;
+}
+
+Result<const Descriptor*> detect_readable(const Source& source) {
+  const Descriptor* format = sniff(source.bytes().substr(0, head_size));
+  if (format == nullptr) format = format_with_extension(std::filesystem::path(source.name()).extension().string());
+  if (format != nullptr && format->read_fabric != nullptr) return format;
+  std::string readable;
+  for (const Descriptor* other : all_formats())
+    if (other->read_fabric != nullptr) readable += fmt::format("{}{}", readable.empty() ? "" : ", ", other->name);
+  Message message =
+      format != nullptr
+          ? error(Kind::unsupported, fmt::format("this is {} ({}), which this version cannot read; it reads: {}",
+                                                 format->name, format->title, readable))
+          : error(Kind::unsupported,
+                  fmt::format("of no known format: neither its first bytes nor its extension tell; readable are: {}",
+                              readable));
+  message.file = source.name();
+  return message;
+}
+
+bool is_readable_format(const std::filesystem::path& path) {
+  if (const Descriptor* format = format_with_extension(path.extension().string())) return format->read_fabric != nullptr;
+  const Result<Source> source = Source::open(path);
+  if (!source) return false;
+  const Descriptor* format = sniff(source->bytes().substr(0, head_size));
+  return format != nullptr && format->read_fabric != nullptr;
+}
+
+}  // namespace selvage::pipeline

@@ -1,0 +1,82 @@
+// `selvage info`: what is in a file.
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+
+#include "pipeline/facts.h"
+#include "pipeline/scaling.h"
+#include "pipeline/table.h"
+#include "pipeline/job.h"
+
+namespace selvage::pipeline {
+
+namespace {
+
+std::string_view kind_of(const fabric::Item& item) {
+  constexpr std::array<std::string_view, 6> kinds = {"yarn", "weave", "knit", "warpknit", "braid", "piece"};
+  static_assert(kinds.size() == std::variant_size_v<fabric::Item>);
+  return kinds[item.index()];
+}
+
+std::string heading(const Job& job, const fabric::Fabric& fabric) {
+  std::string text = job.input.path + "\n";
+  if (fabric.title) text += fmt::format("  title      {}\n", *fabric.title);
+  text += fmt::format("  units      {}{}\n", name_of(fabric.units), fabric.units_given ? "" : " (the default)");
+  text += fmt::format("  tolerance  {:.6g}\n", fabric::tolerance_of(fabric, job.build_options()));
+  const auto names = [&](std::string_view what, const auto& list) {
+    if (list.empty()) return;
+    text += fmt::format("  {:<9} ", what);
+    for (const auto& item : list) text += " " + item.name;
+    text += "\n";
+  };
+  names("threads", fabric.threads);
+  names("materials", fabric.materials);
+  std::map<std::string_view, std::size_t> kinds;
+  for (const fabric::Item& item : fabric.items) ++kinds[kind_of(item)];
+  text += "  holds     ";
+  for (const auto& [kind, count] : kinds) text += fmt::format(" {} {}{}", count, kind, count == 1 ? "" : "s");
+  return text + "\n";
+}
+
+std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) {
+  const Unit shown = job.options.units.value_or(file);
+  const auto length = [&](double value) { return converted(value, file, shown); };
+  Table table({"yarn", "role", "points", "length", "volume", "least bend radius", "tube error", "ends"});
+  double total_length = 0, total_volume = 0;
+  Box3 box;
+  for (std::size_t i = 0; i < builder.count(); ++i) {
+    job.progress("building yarn", i + 1, builder.count());
+    const std::optional<yarn::Body> body = job.build(builder, i);
+    if (!body) continue;
+    const double volume = length(length(length(body->volume)));
+    table.add({body->name, std::string(yarn::name_of(body->role)),
+               fmt::format("{}x{}", body->surface.count_u, body->surface.count_v), cell(length(body->length)), cell(volume),
+               cell(length(body->min_bend_radius)), cell(length(body->tube_error)),
+               body->closed_along ? "ring" : std::string(yarn::name_of(body->start.style))});
+    total_length += length(body->length);
+    total_volume += volume;
+    box.extend(yarn::bounds(*body));
+  }
+  std::string text = fmt::format("  {} yarns, lengths in {}\n{}", builder.count(), name_of(shown), table.text());
+  text += fmt::format("  together: length {}, volume {}\n", cell(total_length), cell(total_volume));
+  if (!box.isEmpty()) {
+    const Vec3 low = box.min().unaryExpr(length), high = box.max().unaryExpr(length);
+    text += fmt::format("  within ({:.6g}, {:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})\n", low.x(), low.y(), low.z(),
+                        high.x(), high.y(), high.z());
+  }
+  return text;
+}
+
+}  // namespace
+
+void info(Job& job) {
+  const std::optional<fabric::Fabric> fabric = job.read();
+  if (!fabric) return;
+  const std::string head = heading(job, *fabric);
+  const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
+  const std::string yarns = builder ? yarn_table(job, *builder, fabric->units) : std::string();
+  if (!job.options.json) job.print(head + yarns);
+}
+
+}  // namespace selvage::pipeline

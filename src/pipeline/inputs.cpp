@@ -1,0 +1,129 @@
+#include "pipeline/inputs.h"
+
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "core/source.h"
+#include "pipeline/detect.h"
+
+namespace selvage::pipeline {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Message about(const std::string& path, Kind kind, std::string text) {
+  Message message = error(kind, std::move(text));
+  message.file = path;
+  return message;
+}
+
+class Expansion {
+ public:
+  Status add(const std::string& argument) {
+    if (argument == "-") return add_standard_input();
+    std::error_code failure;
+    const fs::file_status status = fs::status(argument, failure);
+    if (fs::is_directory(status)) return add_folder(argument);
+    if (!fs::exists(status) && argument.size() > 1 && argument.front() == '@') return add_list(argument.substr(1));
+    if (!fs::exists(status) && argument.find_first_of("*?[") != std::string::npos) return add_pattern(argument);
+    add_file(argument);
+    return {};
+  }
+
+  InputList list;
+
+ private:
+  void add_file(const std::string& path) { list.inputs.push_back({path, fs::path(path).stem()}); }
+
+  Status add_standard_input() {
+    if (std::any_of(list.inputs.begin(), list.inputs.end(), [](const Input& input) { return input.path == "-"; }))
+      return error(Kind::usage, "standard input ('-') can be read only once");
+    list.inputs.push_back({"-", "stdin"});
+    return {};
+  }
+
+  // Hidden files and folders are passed by; a folder that cannot be entered is an error of its own.
+  Status add_folder(const fs::path& folder) {
+    from_folder_ = true;
+    std::vector<fs::path> files;
+    collect(folder, files);
+    std::sort(files.begin(), files.end());
+    for (const fs::path& file : files)
+      list.inputs.push_back({file.string(), file.lexically_relative(folder).replace_extension()});
+    if (files.empty() && list.missing.empty())
+      list.missing.push_back(about(folder.string(), Kind::io, "no readable file in this folder"));
+    return {};
+  }
+
+  void collect(const fs::path& folder, std::vector<fs::path>& files) {
+    std::error_code failure;
+    fs::directory_iterator entries(folder, failure);
+    for (; !failure && entries != fs::directory_iterator(); entries.increment(failure)) {
+      const fs::path& path = entries->path();
+      if (path.filename().native().starts_with('.')) continue;
+      std::error_code unknown;
+      if (entries->is_directory(unknown) && !entries->is_symlink(unknown))
+        collect(path, files);
+      else if (entries->is_regular_file(unknown) && is_readable_format(path))
+        files.push_back(path);
+    }
+    if (failure)
+      list.missing.push_back(about(folder.string(), Kind::io, fmt::format("cannot read the folder: {}", failure.message())));
+  }
+
+  Status add_pattern(const std::string& pattern) {
+    glob_t found{};
+    const int outcome = ::glob(pattern.c_str(), 0, nullptr, &found);
+    std::vector<std::string> paths;
+    if (outcome == 0) paths.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    ::globfree(&found);
+    if (paths.empty()) list.missing.push_back(about(pattern, Kind::io, "no file matches this pattern"));
+    for (const std::string& path : paths)
+      if (Status status = add(path); !status.ok()) return status;
+    return {};
+  }
+
+  Status add_list(const std::string& name) {
+    Result<Source> source = Source::open(name);
+    if (!source) {
+      source.error().kind = Kind::usage;
+      return source.error();
+    }
+    from_folder_ = true;
+    std::string_view rest = source->bytes();
+    while (!rest.empty()) {
+      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      std::string line(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+      if (line.ends_with('\r')) line.pop_back();
+      if (line.empty()) continue;
+      if (line.front() == '@') return about(name, Kind::usage, "a list cannot name another list");
+      if (Status status = add(line); !status.ok()) return status;
+    }
+    return {};
+  }
+
+ public:
+  [[nodiscard]] bool is_one_file() const { return !from_folder_ && list.inputs.size() == 1 && list.missing.empty(); }
+
+ private:
+  bool from_folder_ = false;
+};
+
+}  // namespace
+
+Result<InputList> expand_inputs(const std::vector<std::string>& arguments) {
+  Expansion expansion;
+  for (const std::string& argument : arguments)
+    if (Status status = expansion.add(argument); !status.ok()) return status.error();
+  expansion.list.one_file = expansion.is_one_file();
+  if (expansion.list.inputs.empty() && expansion.list.missing.empty())
+    return error(Kind::usage, "no input: the list is empty");
+  return std::move(expansion.list);
+}
+
+}  // namespace selvage::pipeline

@@ -1,0 +1,209 @@
+#include "pipeline/job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <new>
+
+#include "core/sha256.h"
+#include "core/source.h"
+#include "pipeline/detect.h"
+#include "pipeline/facts.h"
+
+namespace selvage::pipeline {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto progress_interval = std::chrono::milliseconds(50);
+
+// Everything on the command line that changes the bytes of an output.
+std::string settings_of(const Options& options) {
+  std::string text = fmt::format("{} ends={} tolerance={}", name_of(options.command), name_of(options.ends), options.tolerance);
+  if (options.units) text += fmt::format(" units={}", name_of(*options.units));
+  if (options.iges_solid) text += " iges-solid";
+  if (options.command == Command::mesh)
+    text += fmt::format(" size={} order={} min-dihedral={}{}", options.size, options.order, options.min_dihedral,
+                        options.allow_overlap ? " allow-overlap" : "");
+  else
+    text += fmt::format(" step-schema={}", options.step_schema);
+  return text;
+}
+
+std::string plural(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::string_view name_of(Command command) {
+  switch (command) {
+    case Command::convert: return "convert";
+    case Command::check: return "check";
+    case Command::mesh: return "mesh";
+    case Command::info: return "info";
+  }
+  return "convert";
+}
+
+Job::Job(const Options& options_in, const Input& input_in, const std::vector<PlannedOutput>& outputs_in,
+         const Channel& channel)
+    : options(options_in), input(input_in), outputs(outputs_in), channel_(channel) {
+  report.path = input.path;
+}
+
+void Job::say(Message message) {
+  if (message.severity == Severity::error) ++errors_;
+  if (message.severity == Severity::warning) ++warnings_;
+  show(std::move(message));
+}
+
+void Job::say_defect(Message message) { show(std::move(message)); }
+
+void Job::show(Message message) {
+  if (message.file.empty()) message.file = input.path == "-" ? "<stdin>" : input.path;
+  const bool shown = message.severity == Severity::error || (message.severity == Severity::warning && !options.quiet) ||
+                     options.verbose;
+  if (shown) channel_.send(packet::message, to_string(message));
+  if (wants_report()) report.messages.push_back(std::move(message));
+}
+
+void Job::say_all(const std::vector<Message>& messages) {
+  for (const Message& message : messages) say(message);
+}
+
+void Job::forward(const Diagnostics& diagnostics) {
+  int shown = 0;
+  for (const Message& message : diagnostics.messages()) {
+    if (message.severity == Severity::error) ++shown;
+    say(message);
+  }
+  if (diagnostics.error_count() > shown)
+    say(error(Kind::malformed, plural(static_cast<std::size_t>(diagnostics.error_count() - shown), "further error")));
+}
+
+void Job::progress(std::string_view verb, std::size_t done, std::size_t total) {
+  const Clock::time_point now = Clock::now();
+  if (now - last_progress_ < progress_interval) return;
+  last_progress_ = now;
+  channel_.send(packet::progress, fmt::format("{}: {} {} of {}", input.path, verb, done, total));
+}
+
+fabric::BuildOptions Job::build_options() const {
+  fabric::BuildOptions build;
+  build.ends = options.ends;
+  build.tolerance = options.tolerance;
+  return build;
+}
+
+std::optional<fabric::Fabric> Job::read() {
+  Result<Source> source = Source::open(input.path);
+  if (!source) {
+    say(source.error());
+    return std::nullopt;
+  }
+  if (wants_report()) report.sha256 = sha256(source->bytes());
+  Result<const formats::Descriptor*> format = detect_readable(*source);
+  if (!format) {
+    say(format.error());
+    return std::nullopt;
+  }
+  Diagnostics diagnostics;
+  std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
+  forward(diagnostics);
+  if (!fabric && !diagnostics.has_errors())
+    say(error(Kind::internal, fmt::format("the reader of {} gave neither a fabric nor a reason", (*format)->name)));
+  if (fabric) report.units = fabric->units;
+  return fabric;
+}
+
+std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {
+  Diagnostics diagnostics;
+  std::optional<fabric::YarnBuilder> made = fabric::YarnBuilder::create(fabric, build_options(), diagnostics);
+  forward(diagnostics);
+  if (!made) return std::nullopt;
+  report.yarn_count = made->count();
+  if (made->count() == 0) {
+    say(error(Kind::geometry, "there is no yarn in this input"));
+    return std::nullopt;
+  }
+  return made;
+}
+
+std::optional<yarn::Body> Job::build(const fabric::YarnBuilder& builder, std::size_t index) {
+  Result<yarn::Body> body = builder.build(index);
+  if (!body) {
+    say(body.error());
+    return std::nullopt;
+  }
+  say_all(body->messages);
+  if (wants_report()) report.yarns.push_back(facts_of(*body, file_units()));
+  return std::move(*body);
+}
+
+std::optional<std::vector<yarn::Body>> Job::build_all(const fabric::YarnBuilder& builder) {
+  std::vector<yarn::Body> bodies;
+  for (std::size_t i = 0; i < builder.count(); ++i) {
+    progress("building yarn", i + 1, builder.count());
+    if (std::optional<yarn::Body> body = build(builder, i)) bodies.push_back(std::move(*body));
+  }
+  if (bodies.size() != builder.count()) return std::nullopt;
+  return bodies;
+}
+
+namespace {
+
+bool may_be_skipped(Job& job, const std::string& earlier) {
+  if (earlier.empty() || job.input.path == "-") return false;
+  const Result<std::string> now = sha256_of_file(job.input.path);
+  if (!now.ok()) return false;
+  std::vector<std::string> paths;
+  for (const PlannedOutput& output : job.outputs) paths.push_back(output.path.string());
+  return is_still_valid(earlier, *now, job.report.settings, paths);
+}
+
+Verdict work(Job& job, const std::string& earlier) {
+  if (may_be_skipped(job, earlier)) return Verdict::skipped;
+  bool defective = false;
+  switch (job.options.command) {
+    case Command::convert: convert(job); break;
+    case Command::mesh: mesh(job); break;
+    case Command::info: info(job); break;
+    case Command::check: defective = check(job); break;
+  }
+  if (job.has_failed()) return Verdict::failed;
+  return defective ? Verdict::defect : Verdict::done;
+}
+
+// Libraries may throw; nothing passes this line.
+Verdict guarded_work(Job& job, const std::string& earlier) {
+  try {
+    return work(job, earlier);
+  } catch (const std::bad_alloc&) {
+    job.say(error(Kind::limit, job.options.memory > 0
+                                   ? fmt::format("needs more memory than the {:g} MB of --memory", job.options.memory)
+                                   : std::string("needs more memory than there is")));
+  } catch (const std::exception& failure) {
+    job.say(error(Kind::internal, fmt::format("unexpected failure: {}", failure.what())));
+  }
+  return Verdict::failed;
+}
+
+}  // namespace
+
+Verdict run_job(Job& job, const std::string& earlier, const Channel& channel) {
+  const Clock::time_point start = Clock::now();
+  if (job.wants_report()) job.report.settings = settings_of(job.options);
+  const Verdict verdict = guarded_work(job, earlier);
+  if (!job.wants_report()) return verdict;
+  job.report.ok = verdict == Verdict::done || verdict == Verdict::skipped;
+  job.report.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  if (verdict == Verdict::skipped)
+    channel.send(packet::report, marked_skipped(earlier));
+  else
+    channel.send(packet::report, to_json(job.report));
+  return verdict;
+}
+
+}  // namespace selvage::pipeline

@@ -1,0 +1,88 @@
+// One input's work, in its own process: what it may use, and how it answers the parent.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/process.h"
+#include "core/units.h"
+#include "fabric/build.h"
+#include "fabric/model.h"
+#include "pipeline/inputs.h"
+#include "pipeline/options.h"
+#include "pipeline/outputs.h"
+#include "pipeline/report.h"
+
+namespace selvage::pipeline {
+
+// Exit status of a job's process.
+enum class Verdict { done = 0, failed = 1, defect = 3, skipped = 4 };
+
+// Kinds of packets that a job sends to the parent.
+namespace packet {
+inline constexpr char message = 'm';   // a line or block for standard error
+inline constexpr char result = 'r';    // a piece of standard output
+inline constexpr char progress = 'p';  // what is being done right now
+inline constexpr char report = 'j';    // the InputReport as JSON
+}  // namespace packet
+
+class Job {
+ public:
+  Job(const Options& options, const Input& input, const std::vector<PlannedOutput>& outputs, const Channel& channel);
+
+  const Options& options;
+  const Input& input;
+  const std::vector<PlannedOutput>& outputs;
+  std::size_t threads = 1;  // that this job may use
+  InputReport report;
+
+  // Passes a message on; one without a file gets the input's name.
+  void say(Message message);
+  // A defect that `check` found: shown like an error, but the input has not failed.
+  void say_defect(Message message);
+  void say_all(const std::vector<Message>& messages);
+  void print(std::string_view text) const { channel_.send(packet::result, text); }
+  // "verb done of total", at most 20 times a second.
+  void progress(std::string_view verb, std::size_t done, std::size_t total);
+
+  // An error, or with --strict a warning, was said.
+  [[nodiscard]] bool has_failed() const { return errors_ > 0 || (options.strict && warnings_ > 0); }
+  [[nodiscard]] bool wants_report() const { return !options.report.empty() || options.json; }
+
+  // Reads the input; nothing when that failed (it was said why). The fabric of an input that cannot be built is fine.
+  std::optional<fabric::Fabric> read();
+  // The builder of its yarns; nothing when that failed.
+  std::optional<fabric::YarnBuilder> builder(const fabric::Fabric& fabric);
+  // One yarn, in the file's unit, with its warnings said and its facts in the report; nothing when it failed.
+  std::optional<yarn::Body> build(const fabric::YarnBuilder& builder, std::size_t index);
+  // All of them; nothing when one failed (the others were tried, so that every error is told).
+  std::optional<std::vector<yarn::Body>> build_all(const fabric::YarnBuilder& builder);
+
+  [[nodiscard]] fabric::BuildOptions build_options() const;
+  [[nodiscard]] Unit file_units() const { return report.units.value_or(Unit::mm); }
+
+ private:
+  void show(Message message);
+  void forward(const Diagnostics& diagnostics);
+
+  const Channel& channel_;
+  int errors_ = 0, warnings_ = 0;
+  std::chrono::steady_clock::time_point last_progress_;
+};
+
+// Does the input's work and sends its report; never throws. `earlier`: the entry of this input in the report that
+// `--resume` goes by, empty if there is none.
+Verdict run_job(Job& job, const std::string& earlier, const Channel& channel);
+
+// The subcommands, one file each. They say what went wrong; the caller looks at Job::has_failed().
+void convert(Job& job);
+void mesh(Job& job);
+void info(Job& job);
+// True when a defect was found.
+bool check(Job& job);
+
+}  // namespace selvage::pipeline

@@ -1,0 +1,93 @@
+// `selvage mesh`: tetrahedra in every yarn, and decks of them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fem/mesher.h"
+#include "pipeline/overlaps.h"
+#include "pipeline/writing.h"
+#include "solid/check.h"
+
+namespace selvage::pipeline {
+
+namespace {
+
+// The mesher's own limits end a little before the input's, so that its message can name the yarn.
+constexpr double worker_share = 0.9;
+
+// Overlapping yarns cannot be meshed as what they are; false when that stops the input.
+bool check_overlaps(Job& job, const std::vector<yarn::Body>& bodies) {
+  solid::CheckOptions options;
+  options.threads = static_cast<int>(job.threads);
+  options.progress = [&job](std::size_t done, std::size_t total) { job.progress("checking yarn", done, total); };
+  Result<solid::SolidCheck> check = solid::check_solids(bodies, options);
+  if (!check) {
+    job.say(check.error());
+    return false;
+  }
+  report_check(job, *check, bodies);
+  for (const solid::YarnCheck& yarn : check->yarns) job.say_all(yarn.defects);
+  for (const solid::Overlap& overlap : check->overlaps) {
+    Message message = overlap_message(overlap, bodies, job.file_units());
+    if (job.options.allow_overlap) {
+      message.severity = Severity::warning;
+    } else {
+      message.text += "; move or thin one of them, or mesh them as they are with --allow-overlap";
+    }
+    job.say(std::move(message));
+  }
+  return !job.has_failed();
+}
+
+fem::MeshOptions mesh_options(Job& job) {
+  const Options& given = job.options;
+  fem::MeshOptions options;
+  options.size = given.size;
+  options.order = given.order;
+  options.min_dihedral = given.min_dihedral;
+  if (given.timeout > 0) options.timeout = worker_share * given.timeout;
+  if (given.memory > 0) options.memory = given.memory;
+  options.threads = static_cast<int>(job.threads);
+  options.progress = [&job](std::size_t done, std::size_t total) { job.progress("meshing yarn", done, total); };
+  return options;
+}
+
+MeshReport facts_of(const fem::Mesh& mesh) {
+  MeshReport facts;
+  facts.nodes = mesh.nodes.size();
+  facts.tets = mesh.elements.size();
+  facts.min_dihedral = mesh.quality.min_dihedral;
+  facts.max_aspect = mesh.quality.max_aspect;
+  double exact = 0;
+  for (const fem::Region& region : mesh.regions) {
+    facts.volume += region.volume;
+    exact += region.exact_volume;
+  }
+  facts.volume_error = exact > 0 ? std::abs(facts.volume - exact) / exact : 0;
+  return facts;
+}
+
+}  // namespace
+
+void mesh(Job& job) {
+  const std::optional<fabric::Fabric> fabric = job.read();
+  if (!fabric) return;
+  std::optional<OpenOutputs> outputs = open_outputs(job);
+  if (!outputs) return;
+  const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
+  if (!builder) return;
+  const std::optional<std::vector<yarn::Body>> bodies = job.build_all(*builder);
+  if (!bodies || !check_overlaps(job, *bodies)) return;
+
+  Diagnostics diagnostics;
+  Result<fem::Mesh> mesh = fem::mesh_yarns(*fabric, *bodies, fabric->units, mesh_options(job), diagnostics);
+  job.say_all(diagnostics.messages());
+  if (!mesh) return job.say(mesh.error());
+  job.report.mesh = facts_of(*mesh);
+  for (OpenOutput& output : *outputs)
+    if (!take_facts(job, output, output.plan->format->write_mesh(*mesh, output.file))) return;
+  commit_all(job, *outputs);
+}
+
+}  // namespace selvage::pipeline

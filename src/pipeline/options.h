@@ -1,0 +1,47 @@
+// What the command line asks for, after it was understood. The contract is in README.md.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/units.h"
+#include "formats/format.h"
+#include "yarn/body.h"
+
+namespace selvage::pipeline {
+
+enum class Command { convert, check, mesh, info };
+std::string_view name_of(Command command);
+
+struct Options {
+  Command command = Command::convert;
+  std::vector<std::string> inputs;  // as given: files, folders, patterns, "-", "@list"
+  std::string output;               // -o; empty: beside the inputs; "-": standard output
+  std::string formats;              // --to, as given
+
+  std::size_t workers = 0;  // 0: one a core
+  double timeout = 0;       // seconds an input; 0: none
+  double memory = 0;        // MiB an input; 0: none
+  std::size_t part = 0, parts = 1;
+  bool quiet = false, verbose = false, no_progress = false;
+  bool strict = false;
+  std::string report;
+  bool resume = false;
+
+  std::optional<Unit> units;  // of surfaces and tables; none: the input's
+  double tolerance = 0;       // input's unit; 0: the input's
+  yarn::EndStyle ends = yarn::EndStyle::patch;
+  bool iges_solid = false;
+  std::string step_schema = "AP242";
+
+  double size = 0;  // wanted edge length, input's unit; 0: the mesher's choice
+  int order = 1;
+  double min_dihedral = 0;  // degrees; 0: the mesher's choice
+  bool allow_overlap = false;
+
+  bool json = false;  // info
+};
+
+}  // namespace selvage::pipeline

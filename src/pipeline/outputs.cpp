@@ -1,0 +1,160 @@
+#include "pipeline/outputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "pipeline/detect.h"
+
+namespace selvage::pipeline {
+
+namespace fs = std::filesystem;
+using formats::Descriptor;
+using Formats = std::vector<const Descriptor*>;
+
+namespace {
+
+bool can_be_written(const Descriptor& format, Command command) {
+  if (command == Command::mesh) return format.write_mesh != nullptr;
+  return format.write_fabric != nullptr || format.open_bodies != nullptr;
+}
+
+std::string writable_names(Command command) {
+  std::string names;
+  for (const Descriptor* format : formats::all_formats())
+    if (can_be_written(*format, command)) names += fmt::format("{}{}", names.empty() ? "" : ", ", format->name);
+  return names;
+}
+
+Result<const Descriptor*> fitting(const Descriptor& format, Command command) {
+  if (can_be_written(format, command)) return &format;
+  std::string text = fmt::format("'selvage {}' cannot write {}; it writes: {}", name_of(command), format.name,
+                                 writable_names(command));
+  if (command == Command::convert && format.write_mesh != nullptr) text += " (for a mesh: selvage mesh)";
+  return error(Kind::usage, std::move(text));
+}
+
+Result<const Descriptor*> named_format(std::string_view name, Command command) {
+  if (const Descriptor* format = format_named(name)) return fitting(*format, command);
+  std::vector<std::string_view> known;
+  for (const Descriptor* format : formats::all_formats()) known.push_back(format->name);
+  const std::string_view near = nearest_word(name, known);
+  return error(Kind::usage,
+               fmt::format("unknown format '{}'{}; known are: {}", name,
+                           near.empty() ? "" : fmt::format(", did you mean '{}'?", near), writable_names(command)));
+}
+
+// The format that the name of -o tells; null when it tells none.
+const Descriptor* told_by_output(const Options& options) {
+  if (options.output.empty() || options.output == "-" || options.output.ends_with('/')) return nullptr;
+  return format_with_extension(fs::path(options.output).extension().string());
+}
+
+Result<Formats> wanted_formats(const Options& options) {
+  Formats wanted;
+  std::string_view rest = options.formats;
+  while (!rest.empty()) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    Result<const Descriptor*> format = named_format(rest.substr(0, comma), options.command);
+    if (!format) return format.error();
+    if (std::find(wanted.begin(), wanted.end(), *format) == wanted.end()) wanted.push_back(*format);
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  if (!wanted.empty()) return wanted;
+  const Descriptor* told = told_by_output(options);
+  const Formats usual = options.command == Command::mesh ? Formats{format_named("inp")}
+                                                         : Formats{format_named("iges"), format_named("step")};
+  for (const Descriptor* choice : told != nullptr ? Formats{told} : usual) {
+    Result<const Descriptor*> format = fitting(*choice, options.command);
+    if (!format) return format.error();
+    wanted.push_back(*format);
+  }
+  return wanted;
+}
+
+Status check_single_output(const Options& options, const InputList& list, const Formats& wanted) {
+  if (options.output == "-") {
+    if (!list.one_file || wanted.size() != 1)
+      return error(Kind::usage, "'-o -' takes one input and one format; name the format with --to");
+    return {};
+  }
+  const Descriptor* told = told_by_output(options);
+  if (told == nullptr) return {};
+  if (wanted.size() > 1 || wanted.front() != told)
+    return error(Kind::usage, fmt::format("'-o {}' names a file of {}, but --to asks for {}", options.output, told->name,
+                                          options.formats));
+  if (!list.one_file)
+    return error(Kind::usage,
+                 fmt::format("'-o {}' names one file, but there may be several inputs; name a folder", options.output));
+  return {};
+}
+
+// True when -o is the one file to be written, false when it is a folder.
+bool output_is_file(const Options& options, const InputList& list, const Formats& wanted) {
+  if (options.output.empty() || !list.one_file || wanted.size() != 1) return false;
+  if (told_by_output(options) != nullptr) return true;
+  std::error_code failure;
+  return !options.output.ends_with('/') && !fs::is_directory(options.output, failure);
+}
+
+fs::path output_path(const Options& options, const Input& input, const Descriptor& format) {
+  fs::path path = options.output.empty() ? fs::path(input.path).replace_extension() : fs::path(options.output) / input.stem;
+  path += format.extensions.front();
+  return path;
+}
+
+// The same file under every name that leads to it.
+std::string identity(const fs::path& path) {
+  std::error_code failure;
+  fs::path real = fs::weakly_canonical(path, failure);
+  return failure ? fs::absolute(path, failure).lexically_normal().string() : real.string();
+}
+
+Status check_names(const InputList& list, const std::vector<std::vector<PlannedOutput>>& plan) {
+  std::unordered_map<std::string, std::size_t> input_of;
+  for (std::size_t i = 0; i < plan.size(); ++i)
+    if (list.inputs[i].path != "-") input_of.emplace(identity(list.inputs[i].path), i);
+  std::unordered_map<std::string, std::size_t> writer_of;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    for (const PlannedOutput& output : plan[i]) {
+      if (output.to_standard_output) continue;
+      const std::string name = identity(output.path);
+      if (const auto found = input_of.find(name); found != input_of.end())
+        return error(Kind::usage, fmt::format("the output '{}' would replace the input '{}'; name another place with -o",
+                                              output.path.string(), list.inputs[found->second].path));
+      if (const auto [found, is_new] = writer_of.emplace(name, i); !is_new)
+        return error(Kind::usage,
+                     fmt::format("'{}' and '{}' would both write '{}'; nothing was done (the files of a folder keep their "
+                                 "subfolders: name the folder above them as the input)",
+                                 list.inputs[found->second].path, list.inputs[i].path, output.path.string()));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list) {
+  std::vector<std::vector<PlannedOutput>> plan(list.inputs.size());
+  if (options.command != Command::convert && options.command != Command::mesh) return plan;
+  Result<Formats> wanted = wanted_formats(options);
+  if (!wanted) return wanted.error();
+  if (Status status = check_single_output(options, list, *wanted); !status.ok()) return status.error();
+  const bool as_file = output_is_file(options, list, *wanted);
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const Input& input = list.inputs[i];
+    if (input.path == "-" && options.output.empty())
+      return error(Kind::usage, "standard input has no folder for its outputs; name one with -o");
+    for (const Descriptor* format : *wanted) {
+      if (options.output == "-")
+        plan[i].push_back({format, "<stdout>", true});
+      else
+        plan[i].push_back({format, as_file ? fs::path(options.output) : output_path(options, input, *format), false});
+    }
+  }
+  if (Status status = check_names(list, plan); !status.ok()) return status.error();
+  return plan;
+}
+
+}  // namespace selvage::pipeline

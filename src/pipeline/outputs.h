@@ -1,0 +1,25 @@
+// Which files a run writes: formats, names, and that no two of them are the same.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "formats/format.h"
+#include "pipeline/inputs.h"
+#include "pipeline/options.h"
+
+namespace selvage::pipeline {
+
+struct PlannedOutput {
+  const formats::Descriptor* format = nullptr;
+  std::filesystem::path path;
+  bool to_standard_output = false;
+};
+
+// The outputs of each input, in the order of `list.inputs`; empty lists for commands that write no files. Errors
+// (usage): an unknown or unfitting format, several outputs where one file was named, two outputs of one name, an output
+// that is an input.
+Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list);
+
+}  // namespace selvage::pipeline

@@ -1,0 +1,38 @@
+#include "pipeline/overlaps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pipeline/facts.h"
+
+namespace selvage::pipeline {
+
+Message overlap_message(const solid::Overlap& overlap, std::span<const yarn::Body> bodies, Unit units) {
+  Message message =
+      error(Kind::geometry, fmt::format("yarns '{}' and '{}' overlap, {:.4g} {} deep", bodies[overlap.a].name,
+                                        bodies[overlap.b].name, overlap.depth, name_of(units)));
+  message.at = overlap.at;
+  return message;
+}
+
+void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn::Body> bodies) {
+  if (!job.wants_report()) return;
+  const double mm = millimetres_per(job.file_units());
+  InputReport& report = job.report;
+  for (std::size_t i = 0; i < check.yarns.size() && i < report.yarns.size(); ++i) {
+    report.yarns[i].closed = check.yarns[i].closed && check.yarns[i].bounds_volume;
+    report.yarns[i].self_overlap = check.yarns[i].self_intersecting || !bodies[i].tight_bends.empty();
+  }
+  report.overlaps.emplace();
+  for (const solid::Overlap& overlap : check.overlaps)
+    report.overlaps->push_back(
+        {bodies[overlap.a].name, bodies[overlap.b].name, overlap.depth * mm, overlap.at * mm});
+  std::optional<double> thinnest;
+  for (const yarn::Body& body : bodies)
+    thinnest = std::min(thinnest.value_or(thinnest_section(body) * mm), thinnest_section(body) * mm);
+  if (check.min_gap) report.min_gap = *check.min_gap * mm;
+  report.creo_absolute_accuracy = creo_accuracy(thinnest, report.min_gap);
+}
+
+}  // namespace selvage::pipeline

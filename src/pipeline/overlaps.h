@@ -1,0 +1,18 @@
+// Overlapping yarns in the report and in messages: the same for `check` and `mesh`.
+#pragma once
+
+#include <span>
+
+#include "pipeline/job.h"
+#include "solid/check.h"
+#include "yarn/body.h"
+
+namespace selvage::pipeline {
+
+// "yarns 'warp1' and 'weft2' overlap 0.013 mm deep", with the place; lengths in the input's unit.
+Message overlap_message(const solid::Overlap& overlap, std::span<const yarn::Body> bodies, Unit units);
+
+// Closedness, self-crossing, overlaps, the smallest gap and Creo's accuracy, as the check found them.
+void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn::Body> bodies);
+
+}  // namespace selvage::pipeline

@@ -1,0 +1,156 @@
+#include "pipeline/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/sha256.h"
+#include "core/source.h"
+#include "pipeline/versions.h"
+
+namespace selvage::pipeline {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json point(const Vec3& p) { return Json::array({p.x(), p.y(), p.z()}); }
+
+Json yarn_json(const YarnReport& yarn) {
+  Json out = {{"name", yarn.name}};
+  if (yarn.closed) out["closed"] = *yarn.closed;
+  out["length"] = yarn.length;
+  out["volume"] = yarn.volume;
+  if (yarn.min_bend_radius && std::isfinite(*yarn.min_bend_radius)) out["min_bend_radius"] = *yarn.min_bend_radius;
+  out["tube_error"] = yarn.tube_error;
+  out["control_points"] = {yarn.count_u, yarn.count_v};
+  if (yarn.self_overlap) out["self_overlap"] = *yarn.self_overlap;
+  return out;
+}
+
+Json output_json(const OutputReport& output) {
+  Json out = {{"path", output.path}, {"format", output.format}, {"bytes", output.bytes}, {"sha256", output.sha256}};
+  if (!output.entities.empty()) out["entities"] = output.entities;
+  return out;
+}
+
+Json mesh_json(const MeshReport& mesh) {
+  return {{"nodes", mesh.nodes},           {"tets", mesh.tets},     {"min_dihedral", mesh.min_dihedral},
+          {"max_aspect", mesh.max_aspect}, {"volume", mesh.volume}, {"volume_error", mesh.volume_error}};
+}
+
+Json message_json(const Message& message, double to_mm) {
+  std::string where = message.file;
+  if (message.place.line > 0) where += fmt::format(":{}", message.place.line);
+  if (message.place.line > 0 && message.place.column > 0) where += fmt::format(":{}", message.place.column);
+  Json out = {{"severity", name_of(message.severity)}};
+  if (!where.empty()) out["where"] = where;
+  out["text"] = message.text;
+  if (!message.yarn.empty()) out["yarn"] = message.yarn;
+  if (message.at) out["at"] = point(*message.at * to_mm);
+  return out;
+}
+
+template <class T, class Make>
+Json list_json(const std::vector<T>& list, Make make) {
+  Json out = Json::array();
+  for (const T& item : list) out.push_back(make(item));
+  return out;
+}
+
+// Names and messages may hold bytes that are not UTF-8: they are replaced, never a reason to fail.
+std::string text_of(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string text_at(const Json& object, const char* key) {
+  if (!object.is_object()) return {};
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+}  // namespace
+
+std::string to_json(const InputReport& report) {
+  const double to_mm = millimetres_per(report.units.value_or(Unit::mm));
+  Json out = {{"path", report.path}, {"ok", report.ok}, {"seconds", report.seconds}};
+  if (!report.sha256.empty()) out["sha256"] = report.sha256;
+  if (!report.settings.empty()) out["settings"] = report.settings;
+  if (report.units) out["units"] = name_of(*report.units);
+  if (report.yarn_count) out["yarn_count"] = *report.yarn_count;
+  if (report.yarn_count) out["yarns"] = list_json(report.yarns, yarn_json);
+  if (report.overlaps) {
+    out["overlaps"] = list_json(*report.overlaps, [](const OverlapReport& overlap) {
+      return Json{{"a", overlap.a}, {"b", overlap.b}, {"depth", overlap.depth}, {"at", point(overlap.at)}};
+    });
+  }
+  if (report.min_gap) out["min_gap"] = *report.min_gap;
+  if (report.creo_absolute_accuracy) out["creo_absolute_accuracy"] = *report.creo_absolute_accuracy;
+  if (!report.outputs.empty()) out["outputs"] = list_json(report.outputs, output_json);
+  if (report.mesh) out["mesh"] = mesh_json(*report.mesh);
+  out["messages"] = list_json(report.messages, [to_mm](const Message& m) { return message_json(m, to_mm); });
+  return text_of(out);
+}
+
+std::string whole_report(const std::string& started, double seconds, bool ok, const Counts& counts,
+                         const std::vector<std::string>& inputs) {
+  Json libraries = Json::object();
+  for (const auto& [name, version] : library_versions()) libraries[std::string(name)] = version;
+  Json list = Json::array();
+  for (const std::string& text : inputs)
+    if (!text.empty()) list.push_back(Json::parse(text, nullptr, false));
+  const Json out = {{"selvage", version()},
+                    {"libraries", libraries},
+                    {"started", started},
+                    {"seconds", seconds},
+                    {"ok", ok},
+                    {"counts",
+                     {{"inputs", counts.inputs},
+                      {"done", counts.done},
+                      {"failed", counts.failed},
+                      {"skipped", counts.skipped}}},
+                    {"inputs", list}};
+  return text_of(out, 2) + "\n";
+}
+
+Result<std::map<std::string, std::string>> read_entries(const std::string& report_path) {
+  Result<Source> source = Source::open(report_path);
+  if (!source) return source.error();
+  const Json report = Json::parse(source->bytes(), nullptr, false);
+  const auto inputs = report.is_object() ? report.find("inputs") : report.end();
+  if (!report.is_object() || inputs == report.end() || !inputs->is_array()) {
+    Message message = error(Kind::malformed, "this is not a report of selvage, so nothing can be resumed from it");
+    message.file = report_path;
+    return message;
+  }
+  std::map<std::string, std::string> entries;
+  for (const Json& entry : *inputs)
+    if (const std::string path = text_at(entry, "path"); !path.empty()) entries[path] = text_of(entry);
+  return entries;
+}
+
+bool is_still_valid(const std::string& entry, const std::string& input_sha256, const std::string& settings,
+                    const std::vector<std::string>& output_paths) {
+  const Json earlier = Json::parse(entry, nullptr, false);
+  if (!earlier.is_object() || !earlier.contains("ok") || earlier["ok"] != true) return false;
+  if (text_at(earlier, "sha256") != input_sha256 || text_at(earlier, "settings") != settings) return false;
+  const auto outputs = earlier.find("outputs");
+  if (outputs == earlier.end() || !outputs->is_array() || outputs->size() != output_paths.size()) return false;
+  return std::all_of(output_paths.begin(), output_paths.end(), [&](const std::string& path) {
+    const auto found = std::find_if(outputs->begin(), outputs->end(),
+                                    [&](const Json& output) { return text_at(output, "path") == path; });
+    if (found == outputs->end()) return false;
+    const Result<std::string> now = sha256_of_file(path);
+    return now.ok() && *now == text_at(*found, "sha256");
+  });
+}
+
+std::string marked_skipped(const std::string& entry) {
+  Json out = Json::parse(entry, nullptr, false);
+  if (out.is_object()) out["skipped"] = true;
+  return text_of(out);
+}
+
+}  // namespace selvage::pipeline

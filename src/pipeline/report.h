@@ -1,0 +1,86 @@
+// What the JSON report says (README.md: the report). One InputReport is filled while an input is worked on, turned into
+// JSON text in its process, and put together with the others by the parent. Lengths in mm; what is unknown is left out.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/units.h"
+#include "core/vec.h"
+
+namespace selvage::pipeline {
+
+struct YarnReport {
+  std::string name;
+  std::optional<bool> closed;        // body and end faces leave no gap
+  std::optional<bool> self_overlap;  // the yarn's own surface crosses itself
+  double length = 0, volume = 0;
+  std::optional<double> min_bend_radius;
+  double tube_error = 0;
+  int count_u = 0, count_v = 0;  // control points round and along
+};
+
+struct OverlapReport {
+  std::string a, b;
+  double depth = 0;
+  Vec3 at = Vec3::Zero();
+};
+
+struct OutputReport {
+  std::string path, format, sha256;
+  std::uint64_t bytes = 0;
+  std::map<std::string, std::uint64_t> entities;
+};
+
+struct MeshReport {
+  std::size_t nodes = 0, tets = 0;
+  double min_dihedral = 0, max_aspect = 0;
+  double volume = 0;
+  double volume_error = 0;  // relative to the B-spline yarns, >= 0
+};
+
+struct InputReport {
+  std::string path;
+  std::string settings;  // what the outputs depend on beside the input: `--resume` compares it
+  bool ok = false;
+  double seconds = 0;
+  std::string sha256;
+  std::optional<Unit> units;
+  std::optional<std::size_t> yarn_count;
+  std::vector<YarnReport> yarns;
+  std::optional<std::vector<OverlapReport>> overlaps;  // none: not looked for
+  std::optional<double> min_gap;
+  std::optional<double> creo_absolute_accuracy;
+  std::vector<OutputReport> outputs;
+  std::optional<MeshReport> mesh;
+  std::vector<Message> messages;
+};
+
+// One JSON object as text.
+std::string to_json(const InputReport& report);
+
+struct Counts {
+  std::size_t inputs = 0, done = 0, failed = 0, skipped = 0;
+};
+
+// The whole report; `inputs` are the texts of to_json(), empty ones (not done yet) are left out.
+std::string whole_report(const std::string& started, double seconds, bool ok, const Counts& counts,
+                         const std::vector<std::string>& inputs);
+
+// An earlier report: the entry of each path as JSON text. Errors: io, malformed.
+Result<std::map<std::string, std::string>> read_entries(const std::string& report_path);
+
+// True when `entry` (JSON text of an earlier run) says that this input, with these settings, gave whole outputs at
+// `output_paths` that are still there, byte for byte.
+bool is_still_valid(const std::string& entry, const std::string& input_sha256, const std::string& settings,
+                    const std::vector<std::string>& output_paths);
+
+// The entry of an earlier run with `"skipped": true`.
+std::string marked_skipped(const std::string& entry);
+
+}  // namespace selvage::pipeline

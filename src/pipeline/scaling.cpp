@@ -1,0 +1,56 @@
+#include "pipeline/scaling.h"
+
+#include <numeric>
+
+namespace selvage::pipeline {
+
+namespace {
+
+// Whole tenths of a micrometre in one unit.
+long long exact_size(Unit unit) {
+  switch (unit) {
+    case Unit::m: return 10'000'000;
+    case Unit::cm: return 100'000;
+    case Unit::mm: return 10'000;
+    case Unit::um: return 10;
+    case Unit::inch: return 254'000;
+  }
+  return 10'000;
+}
+
+struct Ratio {
+  double up = 1, down = 1;
+  double operator()(double value) const { return value * up / down; }
+};
+
+Ratio ratio(Unit from, Unit to) {
+  const long long a = exact_size(from), b = exact_size(to), common = std::gcd(a, b);
+  return {static_cast<double>(a / common), static_cast<double>(b / common)};
+}
+
+}  // namespace
+
+double converted(double value, Unit from, Unit to) { return ratio(from, to)(value); }
+
+void convert_lengths(yarn::Body& body, Unit from, Unit to) {
+  if (from == to) return;
+  const Ratio scale = ratio(from, to);
+  const auto point = [&](Vec3& p) {
+    for (double& x : p) x = scale(x);
+  };
+  for (nurbs::Surface* surface : {&body.surface, &body.start.surface, &body.end.surface})
+    for (Vec3& p : surface->points) point(p);
+  for (Vec3& p : body.axis.points) point(p);
+  point(body.start.origin);
+  point(body.end.origin);
+  for (double* length : {&body.length, &body.tube_error, &body.min_bend_radius}) *length = scale(*length);
+  body.end_area = scale(scale(body.end_area));
+  body.volume = scale(scale(scale(body.volume)));
+  for (yarn::TightBend& bend : body.tight_bends) {
+    point(bend.at);
+    bend.radius = scale(bend.radius);
+    bend.needed = scale(bend.needed);
+  }
+}
+
+}  // namespace selvage::pipeline

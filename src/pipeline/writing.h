@@ -1,0 +1,33 @@
+// The outputs of one input: opened together, committed together.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "core/output.h"
+#include "formats/format.h"
+#include "pipeline/job.h"
+
+namespace selvage::pipeline {
+
+struct OpenOutput {
+  const PlannedOutput* plan = nullptr;
+  OutputFile file;
+  formats::WriteFacts facts;
+  std::unique_ptr<formats::BodyWriter> writer;  // of surface formats; refers to `file`
+};
+
+// A deque, for its elements stay where they are.
+using OpenOutputs = std::deque<OpenOutput>;
+
+// Nothing when one cannot be opened (it was said why).
+std::optional<OpenOutputs> open_outputs(Job& job);
+
+// Takes the facts of one finished format; false when it failed (it was said why).
+bool take_facts(Job& job, OpenOutput& output, Result<formats::WriteFacts> facts);
+
+// Gives every output its name, and puts it into the report; does nothing when the job has failed.
+void commit_all(Job& job, OpenOutputs& outputs);
+
+}  // namespace selvage::pipeline
