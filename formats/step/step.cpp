@@ -1,9 +1,31 @@
 #include "formats/step/step.h"
 
+#include "solid/brep.h"
+
 namespace selvage::formats::step {
 
+namespace {
+
+bool looks_like_step(std::string_view head) {
+  const std::size_t start = head.find_first_not_of(" \t\r\n");
+  return start != std::string_view::npos && head.substr(start).starts_with("ISO-10303-21");
+}
+
+// OpenCASCADE is opened here, not before: a job that writes no STEP never loads it.
+Result<std::unique_ptr<BodyWriter>> open_bodies(OutputFile& output, const SurfaceOptions& options) {
+  Result<const solid::OcctModule*> module = solid::occt_module();
+  if (!module) return module.error();
+  return (*module)->open_step(output, options);
+}
+
+}  // namespace
+
 const Descriptor& descriptor() {
-  static const Descriptor self = {.name = "step", .title = "STEP AP242 or AP214, manifold solids", .extensions = {".stp"}};
+  static const Descriptor self = {.name = "step",
+                                  .title = "STEP AP242 or AP214, manifold solids with names and colours",
+                                  .extensions = {".stp", ".step"},
+                                  .sniff = looks_like_step,
+                                  .open_bodies = open_bodies};
   return self;
 }
 

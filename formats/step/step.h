@@ -1,4 +1,5 @@
-// STEP AP242 or AP214, manifold solids
+// STEP AP242 or AP214: each yarn a manifold solid with its name and colour. README.md says what stands in the
+// file.
 #pragma once
 
 #include "formats/format.h"

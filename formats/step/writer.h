@@ -1,0 +1,13 @@
+// The STEP writer. Internal to the module selvage_occt: the program opens it through formats/step/step.h.
+#pragma once
+
+#include <memory>
+
+#include "formats/format.h"
+
+namespace selvage::formats::step {
+
+// Errors: usage (a schema other than AP242 and AP214).
+Result<std::unique_ptr<BodyWriter>> open_writer(OutputFile& output, const SurfaceOptions& options);
+
+}  // namespace selvage::formats::step

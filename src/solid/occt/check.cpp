@@ -1,0 +1,222 @@
+#include "solid/occt/check.h"
+
+#include <fmt/format.h>
+
+#include <BRepAdaptor_Curve.hxx>
+#include <BRepAdaptor_Surface.hxx>
+#include <BRepCheck.hxx>
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepCheck_ListIteratorOfListOfStatus.hxx>
+#include <BRepCheck_ListOfStatus.hxx>
+#include <BRepCheck_Result.hxx>
+#include <BRepGProp.hxx>
+#include <BRep_Tool.hxx>
+#include <GProp_GProps.hxx>
+#include <TopExp.hxx>
+#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <cctype>
+#include <set>
+#include <sstream>
+
+#include "solid/occt/guard.h"
+#include "solid/occt/shape.h"
+
+namespace selvage::solid::occt {
+
+namespace {
+
+// Relative; OpenCASCADE's default quadrature, without a tolerance, is off by up to 4e-4 on such bodies.
+constexpr double volume_precision = 1e-9;
+
+std::string_view words_for(BRepCheck_Status status) {
+  switch (status) {
+    case BRepCheck_InvalidPointOnCurve:
+    case BRepCheck_InvalidPointOnCurveOnSurface:
+    case BRepCheck_InvalidPointOnSurface:
+      return "a vertex lies off its curve or surface";
+    case BRepCheck_InvalidCurveOnSurface:
+    case BRepCheck_InvalidCurveOnClosedSurface:
+    case BRepCheck_InvalidSameParameterFlag:
+      return "an edge lies off its face";
+    case BRepCheck_SelfIntersectingWire:
+    case BRepCheck_IntersectingWires:
+      return "the outline of a face crosses itself";
+    case BRepCheck_InvalidDegeneratedFlag:
+      return "an edge has no length";
+    case BRepCheck_BadOrientation:
+    case BRepCheck_BadOrientationOfSubshape:
+    case BRepCheck_UnorientableShape:
+      return "a face is turned inside out against its neighbour";
+    case BRepCheck_NotClosed:
+    case BRepCheck_FreeEdge:
+      return "the shell is not closed";
+    default:
+      return "the shape is not valid";
+  }
+}
+
+std::string_view remedy_for(BRepCheck_Status status) {
+  switch (status) {
+    case BRepCheck_SelfIntersectingWire:
+    case BRepCheck_IntersectingWires:
+      return "look for a section that crosses itself at this end";
+    case BRepCheck_BadOrientation:
+    case BRepCheck_BadOrientationOfSubshape:
+    case BRepCheck_UnorientableShape:
+      return "let the sections of the grid run round all in one direction";
+    default:
+      return "build the ends anew from the body, or check the control points there";
+  }
+}
+
+// OpenCASCADE's own name for it.
+std::string name_of(BRepCheck_Status status) {
+  std::ostringstream name;
+  BRepCheck::Print(status, name);
+  std::string text = name.str();
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
+  return text;
+}
+
+gp_Pnt place_of(const TopoDS_Shape& shape) {
+  if (shape.ShapeType() == TopAbs_VERTEX) return BRep_Tool::Pnt(TopoDS::Vertex(shape));
+  if (shape.ShapeType() == TopAbs_EDGE) {
+    const TopoDS_Edge& edge = TopoDS::Edge(shape);
+    if (!BRep_Tool::Degenerated(edge)) {
+      const BRepAdaptor_Curve curve(edge);
+      return curve.Value(0.5 * (curve.FirstParameter() + curve.LastParameter()));
+    }
+  }
+  TopTools_IndexedMapOfShape vertices;
+  TopExp::MapShapes(shape, TopAbs_VERTEX, vertices);
+  return vertices.IsEmpty() ? gp_Pnt() : BRep_Tool::Pnt(TopoDS::Vertex(vertices(1)));
+}
+
+Message defect(const yarn::Body& body, std::string text, const std::optional<Vec3>& at) {
+  Message message = error(Kind::geometry, std::move(text));
+  message.yarn = body.name;
+  message.place = body.place;
+  message.at = at;
+  return message;
+}
+
+class Judge {
+ public:
+  Judge(const yarn::Body& body, BrepCheck& verdict)
+      : body_(body), verdict_(verdict), scale_(unit_scale(body)), yarn_(build_shape(body, scale_)) {}
+
+  void judge() {
+    verdict_.defects = yarn_.defects;
+    const bool agreed = analyze();
+    count_free_edges();
+    verdict_.tolerance = largest_tolerance() / scale_;
+    if (yarn_.closed) measure();
+    verdict_.valid = agreed && yarn_.closed && verdict_.free_edges == 0 && verdict_.volume > 0;
+  }
+
+ private:
+  [[nodiscard]] Vec3 unscaled(const gp_Pnt& p) const { return Vec3(p.X(), p.Y(), p.Z()) / scale_; }
+
+  // Each kind of defect is reported once, with the first place where it stands.
+  void report(const BRepCheck_ListOfStatus& statuses, const TopoDS_Shape& shape) {
+    for (BRepCheck_ListIteratorOfListOfStatus it(statuses); it.More(); it.Next()) {
+      if (it.Value() == BRepCheck_NoError || !reported_.insert(it.Value()).second) continue;
+      verdict_.defects.push_back(
+          defect(body_,
+                 fmt::format("yarn '{}': {} ({}); {}", body_.name, words_for(it.Value()), name_of(it.Value()),
+                             remedy_for(it.Value())),
+                 unscaled(place_of(shape))));
+    }
+  }
+
+  bool analyze() {
+    const BRepCheck_Analyzer analyzer(yarn_.shape);
+    if (analyzer.IsValid()) return true;
+    TopTools_IndexedMapOfShape parts;
+    TopExp::MapShapes(yarn_.shape, parts);
+    for (int i = 1; i <= parts.Extent(); ++i) {
+      const Handle(BRepCheck_Result)& result = analyzer.Result(parts(i));
+      if (result.IsNull()) continue;
+      report(result->Status(), parts(i));
+      for (result->InitContextIterator(); result->MoreShapeInContext(); result->NextShapeInContext())
+        report(result->StatusOnShape(), parts(i));
+    }
+    return false;
+  }
+
+  void count_free_edges() {
+    TopTools_IndexedDataMapOfShapeListOfShape faces_of;
+    TopExp::MapShapesAndAncestors(yarn_.shape, TopAbs_EDGE, TopAbs_FACE, faces_of);
+    std::optional<Vec3> first;
+    for (int i = 1; i <= faces_of.Extent(); ++i) {
+      // A seam stands twice in the list of its face; a degenerated edge has no other side.
+      const TopoDS_Edge& edge = TopoDS::Edge(faces_of.FindKey(i));
+      if (faces_of(i).Extent() >= 2 || BRep_Tool::Degenerated(edge)) continue;
+      ++verdict_.free_edges;
+      if (!first) first = unscaled(place_of(edge));
+    }
+    if (verdict_.free_edges == 0) return;
+    const bool by_choice = !body_.closed_along && (body_.start.style == yarn::EndStyle::none ||
+                                                   body_.end.style == yarn::EndStyle::none);
+    verdict_.defects.push_back(defect(
+        body_,
+        fmt::format("yarn '{}' is open: {} edges have only one face{}", body_.name, verdict_.free_edges,
+                    by_choice ? "; ends `none` leave no solid, use --ends patch" : ""),
+        first));
+  }
+
+  double largest_tolerance() const {
+    double largest = 0.0;
+    TopTools_IndexedMapOfShape parts;
+    TopExp::MapShapes(yarn_.shape, TopAbs_VERTEX, parts);
+    for (int i = 1; i <= parts.Extent(); ++i)
+      largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Vertex(parts(i))));
+    parts.Clear();
+    TopExp::MapShapes(yarn_.shape, TopAbs_EDGE, parts);
+    for (int i = 1; i <= parts.Extent(); ++i)
+      largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Edge(parts(i))));
+    return largest;
+  }
+
+  void measure() {
+    GProp_GProps properties;
+    BRepGProp::VolumeProperties(yarn_.shape, properties, volume_precision);
+    verdict_.volume = properties.Mass() / (scale_ * scale_ * scale_);
+    if (verdict_.volume > 0) return;
+    verdict_.defects.push_back(
+        defect(body_,
+               fmt::format("yarn '{}' is inside out: its volume is {:.6g}; let the sections run "
+                           "round the path the other way",
+                           body_.name, verdict_.volume),
+               body_.start.origin));
+  }
+
+  const yarn::Body& body_;
+  BrepCheck& verdict_;
+  double scale_;
+  YarnShape yarn_;
+  std::set<BRepCheck_Status> reported_;
+};
+
+}  // namespace
+
+Result<std::vector<BrepCheck>> check(std::span<const yarn::Body> bodies) {
+  std::vector<BrepCheck> verdicts(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    Status status = guarded(fmt::format("yarn '{}' as a solid", bodies[i].name), [&]() -> Status {
+      Judge(bodies[i], verdicts[i]).judge();
+      return {};
+    });
+    if (status.ok()) continue;
+    verdicts[i] = BrepCheck{};  // what OpenCASCADE cannot even build is a defect of that yarn, not of the run
+    Message message = status.error();
+    message.yarn = bodies[i].name;
+    message.place = bodies[i].place;
+    verdicts[i].defects.push_back(std::move(message));
+  }
+  return verdicts;
+}
+
+}  // namespace selvage::solid::occt
