@@ -1,5 +1,5 @@
-// Tetrahedra with what a solver needs to know of them. Lengths in mm, moduli in MPa, densities in tonne/mm3 (Abaqus's
-// consistent set mm, N, s, tonne), angles in degrees.
+// Tetrahedra with what a solver needs to know of them. Lengths in mm, moduli in MPa, densities in tonne/mm3
+// (Abaqus's consistent set mm, N, s, tonne), angles in degrees.
 #pragma once
 
 #include <array>
@@ -12,8 +12,9 @@
 
 namespace selvage::fem {
 
-// Quality of a set of elements. Dihedral angles in degrees; aspect: longest edge over the smallest height times
-// sqrt(2/3) (1 for the regular tetrahedron); scaled Jacobian: 1 for the regular tetrahedron, <= 0 inverted.
+// Quality of a set of elements. Dihedral angles in degrees; aspect: longest edge over the smallest height
+// times sqrt(2/3) (1 for the regular tetrahedron); scaled Jacobian: 1 for the regular tetrahedron, <= 0
+// inverted.
 struct Quality {
   double min_dihedral = 180, max_dihedral = 0;
   double max_aspect = 0;
@@ -27,8 +28,8 @@ struct BadElement {
   Vec3 at = Vec3::Zero();
 };
 
-// One yarn's part of the mesh: elements [first_element, last_element) of Mesh::elements, nodes alike (yarns of a
-// dry fabric share no nodes).
+// One yarn's part of the mesh: elements [first_element, last_element) of Mesh::elements, nodes alike (yarns
+// of a dry fabric share no nodes).
 struct Region {
   std::string name;      // the yarn's
   std::string material;  // key of Mesh::materials, may be empty

@@ -1,1 +1,247 @@
+#include "fem/mesher.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+#include <thread>
+
+#include "core/module.h"
+#include "fem/materials.h"
+#include "fem/midside.h"
+#include "fem/orientation.h"
+#include "fem/quality.h"
+#include "fem/surface_mesh.h"
+#include "fem/worker.h"
+
+namespace selvage::fem {
+namespace {
+
+constexpr double most_tetrahedra = 1e8;
+// The largest tetrahedron is this share of the cube over the wanted edge; a regular one is 0.118 of it.
+constexpr double largest_share = 0.13;
+// What TetGen makes on average of that bound, for the estimate (measured: 0.075 to 0.09 of the cube).
+constexpr double mean_share = 0.075;
+
+// One yarn meshed: a Mesh of one region, in mm.
+struct YarnMesh {
+  Mesh mesh;
+  std::vector<Message> notes;
+};
+
+double size_for(const yarn::Body& body, const MeshOptions& options) {
+  return options.size > 0 ? options.size : smallest_section_extent(body) / 4;
+}
+
+Message about(Message message, const yarn::Body& body, const fabric::Fabric& fabric) {
+  message.yarn = body.name;
+  message.file = fabric.file;
+  message.place = body.place;
+  return message;
+}
+
+// The mesh of one region out of the tetrahedra, in the body's units.
+Mesh assemble(const TetMesh& tets, const SurfaceMesh& surface, const yarn::Body& body) {
+  Mesh mesh;
+  mesh.nodes = tets.points;
+  mesh.elements.reserve(tets.cells.size());
+  for (const auto& cell : tets.cells) mesh.elements.push_back({cell[0], cell[1], cell[2], cell[3]});
+  Region region;
+  region.name = body.name;
+  region.last_element = mesh.elements.size();
+  auto faces = [](std::span<const Triangle> triangles) {
+    std::vector<std::array<std::size_t, 3>> result;
+    for (const Triangle& t : triangles) result.push_back({t[0], t[1], t[2]});
+    return result;
+  };
+  region.side_faces = faces(surface.side());
+  region.start_faces = faces(surface.start());
+  region.end_faces = faces(surface.end());
+  mesh.regions.push_back(std::move(region));
+  return mesh;
+}
+
+// The nodes of a set of boundary triangles, midside ones included, increasing.
+std::vector<std::size_t> nodes_on(const Mesh& mesh, const std::vector<std::array<std::size_t, 3>>& faces) {
+  constexpr std::array<std::array<std::size_t, 2>, 6> ends = {
+      {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+  std::vector<std::size_t> result;
+  std::vector<std::array<std::size_t, 2>> edges;
+  for (const auto& face : faces)
+    for (std::size_t k = 0; k < 3; ++k) {
+      result.push_back(face[k]);
+      edges.push_back({std::min(face[k], face[(k + 1) % 3]), std::max(face[k], face[(k + 1) % 3])});
+    }
+  std::sort(edges.begin(), edges.end());
+  if (mesh.order == 2 && !faces.empty())
+    for (const auto& element : mesh.elements)
+      for (std::size_t k = 0; k < 6; ++k) {
+        const std::size_t a = element[ends[k][0]], b = element[ends[k][1]];
+        if (std::binary_search(edges.begin(), edges.end(), std::array{std::min(a, b), std::max(a, b)}))
+          result.push_back(element[4 + k]);
+      }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+Result<YarnMesh> mesh_yarn(const yarn::Body& body, double scale, const MeshOptions& options,
+                           const std::filesystem::path& program) {
+  Result<SurfaceMesh> surface = mesh_surface(body, size_for(body, options));
+  if (!surface) return surface.error();
+  const double size = std::min(size_for(body, options), surface->coarsest);
+  TetgenJob job{.points = surface->points, .triangles = surface->triangles};
+  job.max_volume = largest_share * size * size * size;
+  job.min_dihedral = options.min_dihedral;
+  job.smallest_feature = size;
+  Result<TetMesh> tets = run_tetgen(program, job, {.timeout = options.timeout, .memory = options.memory});
+  if (!tets) return tets.error();
+
+  YarnMesh result;
+  result.mesh = assemble(*tets, *surface, body);
+  Mesh& mesh = result.mesh;
+  add_orientations(mesh, *surface, body);
+  if (options.order == 2) {
+    const std::size_t held = add_midside_nodes(mesh, *surface, body);
+    if (held > 0) {
+      Message note =
+          warning(Kind::geometry, fmt::format("{} midside nodes were held back from the yarn's surface so "
+                                              "that no element folds",
+                                              held));
+      note.severity = Severity::note;
+      result.notes.push_back(std::move(note));
+    }
+  }
+  Region& region = mesh.regions.front();
+  region.start_nodes = nodes_on(mesh, region.start_faces);
+  region.end_nodes = nodes_on(mesh, region.end_faces);
+  region.last_node = mesh.nodes.size();
+  region.exact_volume = body.volume * scale * scale * scale;
+  for (Vec3& node : mesh.nodes) node *= scale;
+  return result;
+}
+
+// Appends one yarn's mesh to the whole; every index moves up.
+void append(Mesh& mesh, Mesh&& part) {
+  const std::size_t nodes = mesh.nodes.size(), elements = mesh.elements.size();
+  mesh.nodes.insert(mesh.nodes.end(), part.nodes.begin(), part.nodes.end());
+  for (auto element : part.elements) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(mesh.nodes_per_element()); ++k) element[k] += nodes;
+    mesh.elements.push_back(element);
+  }
+  mesh.along.insert(mesh.along.end(), part.along.begin(), part.along.end());
+  mesh.across.insert(mesh.across.end(), part.across.begin(), part.across.end());
+  Region region = std::move(part.regions.front());
+  region.first_element += elements;
+  region.last_element += elements;
+  region.first_node += nodes;
+  region.last_node += nodes;
+  for (auto* list : {&region.start_nodes, &region.end_nodes})
+    for (std::size_t& node : *list) node += nodes;
+  for (auto* list : {&region.side_faces, &region.start_faces, &region.end_faces})
+    for (auto& face : *list)
+      for (std::size_t& node : face) node += nodes;
+  mesh.regions.push_back(std::move(region));
+}
+
+Status check_options(std::span<const yarn::Body> bodies, const MeshOptions& options) {
+  if (bodies.empty()) return error(Kind::geometry, "there is no yarn to mesh");
+  if (options.order != 1 && options.order != 2) return error(Kind::usage, "the order of a mesh is 1 or 2");
+  if (!(options.size >= 0) || !std::isfinite(options.size))
+    return error(Kind::usage, "the mesh size must be a positive number");
+  if (!(options.min_dihedral >= 0 && options.min_dihedral < 60))
+    return error(Kind::usage, "the smallest dihedral angle wanted must be at least 0 and below 60 degrees");
+  double estimate = 0;
+  for (const yarn::Body& body : bodies) {
+    const double size = size_for(body, options);
+    if (size > 0) estimate += body.volume / (mean_share * size * size * size);
+  }
+  if (estimate > most_tetrahedra)
+    return error(Kind::limit,
+                 fmt::format("about {:.1e} tetrahedra would be needed, more than {:.0e}; choose a larger "
+                             "--size, or mesh fewer yarns",
+                             estimate, most_tetrahedra));
+  return {};
+}
+
+// Meshes every yarn, several at once. After a failure the yarns behind it are left out, those before it are
+// not: the failure that is reported does not depend on the number of threads.
+std::vector<std::optional<Result<YarnMesh>>> mesh_all(std::span<const yarn::Body> bodies, double scale,
+                                                      const MeshOptions& options,
+                                                      const std::filesystem::path& program) {
+  std::vector<std::optional<Result<YarnMesh>>> parts(bodies.size());
+  std::atomic<std::size_t> next{0}, first_failed{bodies.size()};
+  std::mutex one_at_a_time;
+  std::size_t done = 0;
+  auto work = [&] {
+    for (std::size_t i = next++; i < bodies.size() && i < first_failed; i = next++) {
+      parts[i] = mesh_yarn(bodies[i], scale, options, program);
+      const std::scoped_lock lock(one_at_a_time);
+      if (!parts[i]->ok()) first_failed = std::min<std::size_t>(first_failed, i);
+      if (options.progress) options.progress(++done, bodies.size());
+    }
+  };
+  const auto count =
+      std::min<std::size_t>(static_cast<std::size_t>(std::max(options.threads, 1)), bodies.size());
+  std::vector<std::thread> others;
+  for (std::size_t k = 1; k < count; ++k) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+  return parts;
+}
+
+// What is wrong with the finished mesh, or worth saying.
+Status judge(const Mesh& mesh, std::span<const yarn::Body> bodies, const fabric::Fabric& fabric,
+             const MeshOptions& options, double scale, Diagnostics& diagnostics) {
+  for (const BadElement& bad : mesh.worst) {
+    if (mesh.quality.min_scaled_jacobian > 0) break;
+    Message message =
+        error(Kind::geometry, "the mesh has an element with a negative Jacobian; try another --size");
+    message.file = fabric.file;
+    message.at = bad.at / scale;
+    return message;
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Region& region = mesh.regions[i];
+    if (region.quality.min_dihedral < options.min_dihedral)
+      diagnostics.add(about(
+          warning(Kind::geometry,
+                  fmt::format("the smallest dihedral angle is {:.1f} degrees, {:.1f} were wanted; a finer "
+                              "--size may help",
+                              region.quality.min_dihedral, options.min_dihedral)),
+          bodies[i], fabric));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies, Unit units,
+                        const MeshOptions& options, Diagnostics& diagnostics) {
+  if (Status right = check_options(bodies, options); !right) return right.error();
+  const Result<std::filesystem::path> program = find_worker("selvage-tetgen");
+  if (!program) return program.error();
+  const double scale = millimetres_per(units);
+  auto parts = mesh_all(bodies, scale, options, *program);
+
+  Mesh mesh;
+  mesh.order = options.order;
+  mesh.title = fabric.title.value_or("");
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!parts[i]->ok()) return about(parts[i]->error(), bodies[i], fabric);
+    for (Message& note : (*parts[i])->notes) diagnostics.add(about(std::move(note), bodies[i], fabric));
+    append(mesh, std::move((*parts[i])->mesh));
+    parts[i].reset();
+  }
+  MaterialChoice choice = choose_materials(fabric, bodies, diagnostics);
+  mesh.materials = std::move(choice.materials);
+  for (std::size_t i = 0; i < bodies.size(); ++i) mesh.regions[i].material = choice.of_body[i];
+  measure(mesh);
+  if (Status sound = judge(mesh, bodies, fabric, options, scale, diagnostics); !sound) return sound.error();
+  return mesh;
+}
+
+}  // namespace selvage::fem

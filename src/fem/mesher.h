@@ -1,5 +1,5 @@
-// Tetrahedra inside each yarn of a dry fabric. TetGen runs in a worker program (selvage-tetgen) with a time and a memory
-// limit: whatever happens to it becomes a Message that names the yarn.
+// Tetrahedra inside each yarn of a dry fabric. TetGen runs in a worker program (selvage-tetgen) with a time
+// and a memory limit: whatever happens to it becomes a Message that names the yarn.
 #pragma once
 
 #include <functional>
@@ -14,8 +14,8 @@
 namespace selvage::fem {
 
 struct MeshOptions {
-  double size = 0;          // wanted edge length, in the bodies' unit; 0: a quarter of the smallest section extent
-  int order = 1;            // 1 | 2
+  double size = 0;  // wanted edge length, in the bodies' unit; 0: a quarter of the smallest section extent
+  int order = 1;    // 1 | 2
   double min_dihedral = 0;  // degrees, passed to TetGen as its target; 0: TetGen's default
   double timeout = 300;     // seconds a yarn
   double memory = 4096;     // MiB a yarn
@@ -23,11 +23,11 @@ struct MeshOptions {
   std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
-// The mesh of all bodies, one Region a body in their order; coordinates scaled from `units` to mm. With order 2 the
-// midside nodes of boundary edges lie on the B-spline surface.
-// Warnings (a quality target missed, ...) go to `diagnostics`. Errors: geometry (a surface that intersects itself), limit
-// (time, memory, an estimate of more than 10^8 tetrahedra), internal (TetGen crashed), each with the yarn, the place where
-// it is known and a remedy.
+// The mesh of all bodies, one Region a body in their order; coordinates scaled from `units` to mm. With order
+// 2 the midside nodes of boundary edges lie on the B-spline surface. Warnings (a quality target missed, ...)
+// go to `diagnostics`. Errors: geometry (a surface that intersects itself), limit (time, memory, an estimate
+// of more than 10^8 tetrahedra), internal (TetGen crashed), each with the yarn, the place where it is known
+// and a remedy.
 Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies, Unit units,
                         const MeshOptions& options, Diagnostics& diagnostics);
 

@@ -1,0 +1,20 @@
+// What must hold of a surface before TetGen sees it, and of its mesh before anyone else does.
+#pragma once
+
+#include <span>
+
+#include "core/diagnostics.h"
+#include "fem/worker.h"
+
+namespace selvage::fem {
+
+// Finite coordinates, indices in range, every edge in exactly two triangles that run through it in opposite
+// directions, a positive volume. Errors (geometry), with the place.
+Status check_surface(std::span<const Vec3> points, std::span<const Triangle> triangles);
+
+// Turns inverted cells round, then: the first points are the surface's to the bit, the cells' boundary is
+// exactly the surface's triangles, they hang together by their faces, and their volume is the enclosed one to
+// 1e-9. Errors (internal).
+Status check_mesh(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles);
+
+}  // namespace selvage::fem

@@ -1,0 +1,32 @@
+// How good tetrahedra are; see fem::Quality for what the figures mean.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/vec.h"
+#include "fem/mesh.h"
+
+namespace selvage::fem {
+
+struct ElementShape {
+  double min_dihedral = 0, max_dihedral = 0;  // degrees
+  double aspect = 0;
+  double scaled_jacobian = 0;
+};
+
+// Of the tetrahedron with straight edges.
+ElementShape shape_of(const std::array<Vec3, 4>& corners);
+
+// Of a ten-node tetrahedron (order of nodes: mesh.h): the smallest Jacobian determinant at the nodes, the
+// middles of the faces and the middle, as a share of the straight tetrahedron's. 1: straight; <= 0: folded.
+double least_jacobian_share(const std::array<Vec3, 10>& nodes);
+
+// Volume of a ten-node tetrahedron (exact: its Jacobian is a cubic, integrated by the five-point rule of
+// degree 3).
+double quadratic_volume(const std::array<Vec3, 10>& nodes);
+
+// Fills Quality and volume of every region, the mesh's own, and its worst elements.
+void measure(Mesh& mesh);
+
+}  // namespace selvage::fem

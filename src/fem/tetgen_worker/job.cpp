@@ -1,0 +1,67 @@
+#include "fem/tetgen_worker/job.h"
+
+#include <tetgen.h>
+
+#include <algorithm>
+#include <string>
+
+namespace selvage::fem {
+namespace {
+
+// TetGen's form of the surface. Its arrays belong to tetgenio, which frees them with delete[].
+void fill(const Job& job, tetgenio& in) {
+  in.numberofpoints = static_cast<int>(job.points.size() / 3);
+  in.pointlist = new REAL[job.points.size()];
+  std::copy(job.points.begin(), job.points.end(), in.pointlist);
+  in.numberoffacets = static_cast<int>(job.triangles.size() / 3);
+  in.facetlist = new tetgenio::facet[static_cast<std::size_t>(in.numberoffacets)];
+  for (int i = 0; i < in.numberoffacets; ++i) {
+    tetgenio::facet& facet = in.facetlist[i];
+    tetgenio::init(&facet);
+    facet.numberofpolygons = 1;
+    facet.polygonlist = new tetgenio::polygon[1];
+    facet.polygonlist->numberofvertices = 3;
+    facet.polygonlist->vertexlist = new int[3];
+    std::copy_n(job.triangles.begin() + 3 * i, 3, facet.polygonlist->vertexlist);
+  }
+}
+
+tetgenbehavior behavior(const Job& job, std::string switches) {
+  tetgenbehavior result;
+  if (!result.parse_commandline(switches.data())) leave(Outcome::refused, 10);
+  result.epsilon = job.settings.epsilon;
+  return result;
+}
+
+}  // namespace
+
+// M: coplanar triangles stay triangles (their edges are wanted in the mesh). Q: quiet.
+std::vector<std::int32_t> find_crossings(const Job& job) {
+  tetgenbehavior settings = behavior(job, "pdMQ");
+  tetgenio in, out;
+  fill(job, in);
+  ::tetrahedralize(&settings, &in, &out);
+  if (out.trifacelist == nullptr) return {};
+  return {out.trifacelist, out.trifacelist + 3 * static_cast<std::ptrdiff_t>(out.numberoftrifaces)};
+}
+
+// Y: the surface stays as it is. The numbers are set past the switches, whose parser does not take every form
+// of one.
+Tetrahedra tetrahedralize(const Job& job) {
+  const RequestHead& wanted = job.settings;
+  tetgenbehavior settings = behavior(job, wanted.max_volume > 0 ? "pYMQq1.4a1" : "pYMQq1.4");
+  settings.minratio = wanted.radius_edge;
+  settings.optmaxdihedral = 155;  // flat elements above it are improved; its own 165 leaves many
+  if (wanted.min_dihedral > 0) settings.mindihedral = wanted.min_dihedral;
+  if (wanted.max_volume > 0) settings.maxvolume = wanted.max_volume;
+  tetgenio in, out;
+  fill(job, in);
+  ::tetrahedralize(&settings, &in, &out);
+  Tetrahedra mesh;
+  mesh.points.assign(out.pointlist, out.pointlist + 3 * static_cast<std::ptrdiff_t>(out.numberofpoints));
+  mesh.cells.assign(out.tetrahedronlist,
+                    out.tetrahedronlist + 4 * static_cast<std::ptrdiff_t>(out.numberoftetrahedra));
+  return mesh;
+}
+
+}  // namespace selvage::fem

@@ -1,0 +1,47 @@
+// What goes between the program and selvage-tetgen: one request on standard input, one answer on standard
+// output, plain arrays in the machine's own byte order (both ends are the same build on the same machine).
+//
+//   Request: a RequestHead, points (3 doubles each), triangles (3 int32 each, indices from 0, a closed
+//   surface). Answer:  an AnswerHead, then
+//     mesh      points (3 doubles each; the request's own first, unchanged), tetrahedra (4 int32 each)
+//     crossing  the crossing triangles (3 int32 each, into the request's points)
+//     any other nothing
+#pragma once
+
+#include <cstdint>
+
+namespace selvage::fem {
+
+inline constexpr std::uint64_t request_magic = 0x31514552'54455453;
+inline constexpr std::uint64_t answer_magic = 0x31534e41'54455453;
+
+struct RequestHead {
+  std::uint64_t magic = request_magic;
+  std::uint64_t points = 0;
+  std::uint64_t triangles = 0;
+  double max_volume = 0;    // of a tetrahedron; 0: no bound
+  double radius_edge = 0;   // largest ratio of circumradius to shortest edge
+  double min_dihedral = 0;  // degrees; 0: none
+  double epsilon = 1e-8;    // TetGen's relative tolerance (of the box's diagonal)
+  double memory = 0;        // bytes of address space; 0: no limit
+  double cpu_seconds = 0;   // 0: no limit
+  std::int64_t parent = 0;  // process id of the program; 0: not watched
+};
+
+enum class Outcome : std::int32_t {
+  mesh = 0,
+  crossing = 1,     // facets cross or touch
+  bad_request = 2,  // wrong magic, counts, an index out of range, a number that is not finite
+  memory = 3,
+  refused = 4,  // TetGen gave up; `code` is its own number
+};
+
+struct AnswerHead {
+  std::uint64_t magic = answer_magic;
+  Outcome outcome = Outcome::bad_request;
+  std::int32_t code = 0;
+  std::uint64_t points = 0;
+  std::uint64_t cells = 0;  // tetrahedra, or crossing triangles
+};
+
+}  // namespace selvage::fem

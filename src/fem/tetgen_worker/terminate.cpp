@@ -1,0 +1,13 @@
+// TetGen calls this when it gives up. Its own version frees its memory and throws, whereupon its destructor
+// frees the same memory again and the process dies without a word. The name belongs to TetGen's shared
+// library, where it can be replaced: this definition is found first. (tetgen.h holds the other one inline, so
+// it must not be included here.)
+#include "fem/tetgen_worker/job.h"
+
+class tetgenmesh;
+
+void terminatetetgen(tetgenmesh* /*mesh*/, int code) {
+  using selvage::fem::Outcome;
+  // 1: out of memory, 3: crossing facets, 4: a feature that is too small, 5: facets too close, 10: bad input.
+  selvage::fem::leave(code == 1 ? Outcome::memory : Outcome::refused, code);
+}

@@ -1,0 +1,48 @@
+// The program's side of selvage-tetgen: hands it one closed surface, watches it, and judges what comes back.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/vec.h"
+
+namespace selvage::fem {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+struct TetgenJob {
+  std::span<const Vec3> points;
+  std::span<const Triangle> triangles;  // closed, counter-clockwise seen from outside
+  double max_volume = 0;                // of one tetrahedron; 0: no bound
+  double radius_edge = 1.4;             // largest ratio of circumradius to shortest edge wanted
+  double min_dihedral = 0;              // degrees; 0: TetGen's default
+  double smallest_feature = 0;  // lengths far below this one mean nothing; 0: TetGen's default tolerance
+};
+
+struct TetgenLimits {
+  double timeout = 300;  // seconds of wall-clock time
+  double memory = 4096;  // MiB of address space
+};
+
+struct TetMesh {
+  std::vector<Vec3> points;  // the job's own first, to the bit
+  // Corners with positive volume, ((p1-p0) x (p2-p0)) . (p3-p0) > 0.
+  std::vector<std::array<std::uint32_t, 4>> cells;
+};
+
+// Runs `program` (selvage-tetgen) once. The result's boundary is exactly the job's triangles, it is one
+// piece, and its volume is the surface's to 1e-9: anything else is an error. Errors, each with a remedy and
+// where known the place (in the job's coordinates), none naming a yarn: geometry (a coordinate that is not
+// finite, an open surface, facets that cross or nearly touch), limit (time, memory), internal (a crash, a bad
+// answer, no program).
+Result<TetMesh> run_tetgen(const std::filesystem::path& program, const TetgenJob& job,
+                           const TetgenLimits& limits);
+
+// Enclosed volume of outward triangles (divergence theorem about the first point).
+double enclosed_volume(std::span<const Vec3> points, std::span<const Triangle> triangles);
+
+}  // namespace selvage::fem
