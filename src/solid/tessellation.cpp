@@ -1,1 +1,427 @@
+#include "solid/tessellation.h"
 
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solid/planar_end.h"
+
+namespace selvage::solid {
+
+namespace {
+
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+constexpr double max_triangles = 1e8;
+
+Message refusal(const yarn::Body& body, Kind kind, std::string text) {
+  Message message = error(kind, std::move(text));
+  message.yarn = body.name;
+  message.place = body.place;
+  return message;
+}
+
+bool is_finite(const nurbs::Surface& surface) {
+  return std::all_of(surface.points.begin(), surface.points.end(), [](const Vec3& p) { return p.allFinite(); });
+}
+
+// Into how many equal parts each knot span is cut.
+struct Cuts {
+  std::vector<double> breaks;
+  std::vector<double> parts;  // one a span, whole numbers >= 1
+};
+
+std::vector<double> sites_of(const Cuts& cuts) {
+  std::vector<double> sites;
+  for (std::size_t k = 0; k + 1 < cuts.breaks.size(); ++k)
+    for (double i = 0; i < cuts.parts[k]; ++i)
+      sites.push_back(cuts.breaks[k] + (cuts.breaks[k + 1] - cuts.breaks[k]) * (i / cuts.parts[k]));
+  sites.push_back(cuts.breaks.back());
+  return sites;
+}
+
+// The largest second derivative on a span from five points on it, a quarter of the span apart: exact for degree <= 3,
+// whose second derivative is linear.
+double largest_second_derivative(const std::array<Vec3, 5>& p, double step) {
+  const std::array<Vec3, 3> d = {p[0] - 2.0 * p[1] + p[2], p[1] - 2.0 * p[2] + p[3], p[2] - 2.0 * p[3] + p[4]};
+  const double ends = std::max((2.0 * d[0] - d[1]).squaredNorm(), (2.0 * d[2] - d[1]).squaredNorm());
+  const double inside = std::max({d[0].squaredNorm(), d[1].squaredNorm(), d[2].squaredNorm()});
+  return std::sqrt(std::max(ends, inside)) / (step * step);
+}
+
+// Points of the surface at four places a span.
+class Samples {
+ public:
+  explicit Samples(const nurbs::Surface& surface)
+      : breaks_u_(nurbs::breakpoints(surface.knots_u, surface.degree_u)),
+        breaks_v_(nurbs::breakpoints(surface.knots_v, surface.degree_v)) {
+    const std::vector<double> us = sites_of({breaks_u_, std::vector<double>(breaks_u_.size() - 1, 4.0)});
+    const std::vector<double> vs = sites_of({breaks_v_, std::vector<double>(breaks_v_.size() - 1, 4.0)});
+    count_u_ = us.size();
+    count_v_ = vs.size();
+    points_ = nurbs::evaluate_grid(surface, us, vs);
+  }
+
+  // du, dv so that the bound of tessellate() is met: 0.4 of `chord` for each direction, 0.2 for the twist.
+  void cut(double chord, Cuts& u, Cuts& v) const {
+    u = {breaks_u_, std::vector<double>(breaks_u_.size() - 1, 1.0)};
+    v = {breaks_v_, std::vector<double>(breaks_v_.size() - 1, 1.0)};
+    const auto parts = [&](double step, double derivative) {
+      return std::max(1.0, std::ceil(step * std::sqrt(derivative / (3.2 * chord)) - 1e-9));
+    };
+    for (std::size_t k = 0; k + 1 < breaks_u_.size(); ++k)
+      u.parts[k] = parts(breaks_u_[k + 1] - breaks_u_[k], bend_u(k));
+    for (std::size_t l = 0; l + 1 < breaks_v_.size(); ++l)
+      v.parts[l] = parts(breaks_v_[l + 1] - breaks_v_[l], bend_v(l));
+    std::vector<double> more_u(u.parts.size(), 1.0), more_v(v.parts.size(), 1.0);
+    for (std::size_t l = 0; l < v.parts.size(); ++l)
+      for (std::size_t k = 0; k < u.parts.size(); ++k) {
+        const double excess = std::sqrt(twist(k, l) / (0.8 * chord * u.parts[k] * v.parts[l]));
+        more_u[k] = std::max(more_u[k], excess);
+        more_v[l] = std::max(more_v[l], excess);
+      }
+    for (std::size_t k = 0; k < u.parts.size(); ++k) u.parts[k] = std::ceil(u.parts[k] * more_u[k] - 1e-9);
+    for (std::size_t l = 0; l < v.parts.size(); ++l) v.parts[l] = std::ceil(v.parts[l] * more_v[l] - 1e-9);
+  }
+
+  // The longest way along v across the span l.
+  [[nodiscard]] double reach_v(std::size_t l) const {
+    double longest = 0.0;
+    for (std::size_t i = 0; i < count_u_; ++i) {
+      double way = 0.0;
+      for (std::size_t j = 4 * l; j < 4 * l + 4; ++j) way += (at(i, j + 1) - at(i, j)).norm();
+      longest = std::max(longest, way);
+    }
+    return longest;
+  }
+
+  // The diagonal of the largest section's box, and the smallest extent of any section (but for those that shrink to a
+  // point) across its thinner direction.
+  [[nodiscard]] double largest_section() const {
+    double largest = 0.0;
+    for (std::size_t j = 0; j < count_v_; ++j) {
+      Box3 box;
+      for (std::size_t i = 0; i < count_u_; ++i) box.extend(at(i, j));
+      largest = std::max(largest, box.diagonal().norm());
+    }
+    return largest;
+  }
+  [[nodiscard]] double smallest_extent() const {
+    const double floor = 1e-3 * largest_section();
+    double smallest = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < count_v_; ++j) {
+      const double extent = thickness(j);
+      if (extent > floor) smallest = std::min(smallest, extent);
+    }
+    return std::isfinite(smallest) ? smallest : largest_section();
+  }
+
+ private:
+  [[nodiscard]] const Vec3& at(std::size_t i, std::size_t j) const { return points_[j * count_u_ + i]; }
+
+  [[nodiscard]] double bend_u(std::size_t k) const {
+    double largest = 0.0;
+    for (std::size_t j = 0; j < count_v_; ++j)
+      largest = std::max(largest, largest_second_derivative({at(4 * k, j), at(4 * k + 1, j), at(4 * k + 2, j),
+                                                             at(4 * k + 3, j), at(4 * k + 4, j)},
+                                                            (breaks_u_[k + 1] - breaks_u_[k]) / 4.0));
+    return largest;
+  }
+  [[nodiscard]] double bend_v(std::size_t l) const {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < count_u_; ++i)
+      largest = std::max(largest, largest_second_derivative({at(i, 4 * l), at(i, 4 * l + 1), at(i, 4 * l + 2),
+                                                             at(i, 4 * l + 3), at(i, 4 * l + 4)},
+                                                            (breaks_v_[l + 1] - breaks_v_[l]) / 4.0));
+    return largest;
+  }
+  // |S_uv| times both spans.
+  [[nodiscard]] double twist(std::size_t k, std::size_t l) const {
+    double largest = 0.0;
+    for (std::size_t j = 4 * l; j < 4 * l + 4; ++j)
+      for (std::size_t i = 4 * k; i < 4 * k + 4; ++i)
+        largest = std::max(largest, (at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j)).squaredNorm());
+    return 16.0 * std::sqrt(largest);
+  }
+  [[nodiscard]] double thickness(std::size_t j) const {
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t i = 1; i < count_u_; ++i) mean += at(i, j) / static_cast<double>(count_u_ - 1);
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 1; i < count_u_; ++i) spread += (at(i, j) - mean) * (at(i, j) - mean).transpose();
+    // Eigenvalues increase: the section's normal, its thin direction, its long one.
+    const Vec3 thin = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(1);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t i = 1; i < count_u_; ++i) {
+      const double height = (at(i, j) - mean).dot(thin);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    return high - low;
+  }
+
+  std::vector<double> breaks_u_, breaks_v_;
+  std::size_t count_u_ = 0, count_v_ = 0;
+  std::vector<Vec3> points_;
+};
+
+// Two opposite quarters of the section as one list of places in [0, 1], which is what a patch over them needs: the places
+// of the first, and those of the second seen backwards.
+std::vector<double> unite(const std::vector<double>& forward, const std::vector<double>& other) {
+  std::vector<double> all = forward;
+  for (double t : other) all.push_back(1.0 - t);
+  std::sort(all.begin(), all.end());
+  std::vector<double> places = {0.0};
+  for (double t : all)
+    if (t > places.back() + 1e-9 && t < 1.0 - 1e-9) places.push_back(t);
+  if (places.size() == 1) places.push_back(0.5);  // a patch's corner needs a cell of its own
+  places.push_back(1.0);
+  return places;
+}
+
+// The places round the section at which the body has its vertices; the last one is the seam again.
+struct Round {
+  std::vector<double> us;
+  std::array<std::vector<double>, 2> patch;  // places of the patches' u and v; empty without patches
+
+  static Round make(const std::vector<double>& us, const yarn::Body& body) {
+    Round round;
+    const bool has_patch = body.start.style == yarn::EndStyle::patch || body.end.style == yarn::EndStyle::patch;
+    if (!has_patch) {
+      round.us = us;
+      return round;
+    }
+    const auto& q = body.quarters;
+    const std::array<double, 5> ends = {q[0], q[1], q[2], q[3], body.surface.last_u()};
+    std::array<std::vector<double>, 4> inside;
+    for (std::size_t k = 0; k < 4; ++k)
+      for (double u : us)
+        if (u > ends[k] && u < ends[k + 1]) inside[k].push_back((u - ends[k]) / (ends[k + 1] - ends[k]));
+    round.patch = {unite(inside[0], inside[2]), unite(inside[1], inside[3])};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::vector<double>& places = round.patch[k % 2];
+      const std::size_t n = places.size() - 1;
+      for (std::size_t i = 0; i < n; ++i) {
+        const double t = k < 2 ? places[i] : 1.0 - places[n - i];
+        round.us.push_back(ends[k] + t * (ends[k + 1] - ends[k]));
+      }
+    }
+    round.us.push_back(ends[4]);
+    return round;
+  }
+};
+
+// Collects vertices and triangles.
+class Skinner {
+ public:
+  explicit Skinner(double gap) : gap_(gap) {}
+
+  using Ids = std::vector<std::uint32_t>;
+
+  bool same(const Vec3& a, const Vec3& b) const { return (a - b).norm() <= gap_; }
+  const Vec3& vertex(std::uint32_t id) const { return out_.vertices[id]; }
+
+  std::uint32_t add(const Vec3& p) {
+    out_.vertices.push_back(p);
+    return static_cast<std::uint32_t>(out_.vertices.size() - 1);
+  }
+
+  // Vertices for the grid points that have none yet; a point takes its neighbour's where the two are one (a pole).
+  // `round`: the last column is the first.
+  void fill(const std::vector<Vec3>& points, std::size_t count_u, bool round, Ids& ids) {
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const std::size_t i = k % count_u;
+      if (ids[k] != none) continue;
+      if (i > 0 && same(vertex(ids[k - 1]), points[k])) {
+        ids[k] = ids[k - 1];
+      } else if (k >= count_u && ids[k - count_u] != none && same(vertex(ids[k - count_u]), points[k])) {
+        ids[k] = ids[k - count_u];
+      } else if (round && i + 1 == count_u) {
+        ids[k] = ids[k - i];
+      } else {
+        ids[k] = add(points[k]);
+      }
+    }
+  }
+
+  // Two triangles a cell, their normals along S_u x S_v unless flipped; none where vertices coincide.
+  void add_grid(const Ids& ids, std::size_t count_u, bool flip, Skin skin) {
+    for (std::size_t k = 0; k + count_u < ids.size(); ++k) {
+      if (k % count_u + 1 == count_u) continue;
+      const std::uint32_t a = ids[k], b = ids[k + 1], c = ids[k + count_u + 1], d = ids[k + count_u];
+      // The better shaped pair: at a patch's corner the other diagonal would leave a triangle without area.
+      const double by_ac = std::min(shape(a, b, c), shape(a, c, d)), by_bd = std::min(shape(a, b, d), shape(b, c, d));
+      if (by_bd > by_ac * (1.0 + 1e-6)) {
+        add_triangle(a, b, d, flip, skin);
+        add_triangle(b, c, d, flip, skin);
+      } else {
+        add_triangle(a, b, c, flip, skin);
+        add_triangle(a, c, d, flip, skin);
+      }
+    }
+  }
+
+  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, bool flip, Skin skin) {
+    if (a == b || b == c || c == a) return;
+    if (flip) std::swap(b, c);
+    out_.triangles.push_back({a, b, c});
+    out_.skin.push_back(skin);
+  }
+
+  Tessellation& result() { return out_; }
+
+ private:
+  // Area over the longest side squared; coinciding corners do not count against a cell at a pole.
+  double shape(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    if (a == b || b == c || c == a) return std::numeric_limits<double>::infinity();
+    const Vec3 ab = vertex(b) - vertex(a), ac = vertex(c) - vertex(a), bc = vertex(c) - vertex(b);
+    return ab.cross(ac).norm() / std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()});
+  }
+
+  double gap_;
+  Tessellation out_;
+};
+
+using Ids = Skinner::Ids;
+
+void add_patch(Skinner& skinner, const yarn::EndFace& face, const Round& round, const Ids& outline, Skin skin) {
+  const std::vector<double>&us = round.patch[0], &vs = round.patch[1];
+  const std::vector<Vec3> points = nurbs::evaluate_grid(face.surface, us, vs);
+  const std::size_t nu = us.size(), nv = vs.size();
+  Ids ids(points.size(), none);
+  // The body's vertex k of the outline is this point of the patch's border.
+  const auto border = [&](std::size_t k) -> std::size_t {
+    if (k < nu - 1) return k;
+    if (k < nu + nv - 2) return (k - (nu - 1)) * nu + nu - 1;
+    if (k < 2 * nu + nv - 3) return (nv - 1) * nu + (nu - 1) - (k - (nu + nv - 2));
+    return (nv - 1 - (k - (2 * nu + nv - 3))) * nu;
+  };
+  for (std::size_t k = 0; k + 1 < outline.size(); ++k)
+    if (skinner.same(skinner.vertex(outline[k]), points[border(k)])) ids[border(k)] = outline[k];
+  skinner.fill(points, nu, false, ids);
+  skinner.add_grid(ids, nu, face.inward, skin);
+}
+
+void add_fan(Skinner& skinner, const yarn::EndFace& face, const Round& round, double chord, const Ids& outline,
+             Skin skin) {
+  Cuts unused, along;
+  Samples(face.surface).cut(chord, unused, along);
+  const std::vector<Vec3> points = nurbs::evaluate_grid(face.surface, round.us, sites_of(along));
+  Ids ids(points.size(), none);
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    if (skinner.same(skinner.vertex(outline[k]), points[k])) ids[k] = outline[k];
+  skinner.fill(points, outline.size(), true, ids);
+  skinner.add_grid(ids, outline.size(), face.inward, skin);
+}
+
+// False: the outline crosses itself.
+bool add_plane(Skinner& skinner, const yarn::EndFace& face, const Ids& outline, Skin skin) {
+  Ids ring;
+  for (std::uint32_t id : outline)
+    if (ring.empty() || (id != ring.back() && id != ring.front())) ring.push_back(id);
+  const Vec3 x = face.normal.unitOrthogonal(), y = face.normal.cross(x);
+  std::vector<Vec2> flat;
+  double turning = 0.0;
+  for (std::uint32_t id : ring) {
+    const Vec3 p = skinner.vertex(id) - face.origin;
+    flat.emplace_back(p.dot(x), p.dot(y));
+  }
+  for (std::size_t k = 0; k < flat.size(); ++k) {
+    const Vec2 &a = flat[k], &b = flat[(k + 1) % flat.size()];
+    turning += a.x() * b.y() - a.y() * b.x();
+  }
+  if (turning < 0.0) {
+    std::reverse(flat.begin(), flat.end());
+    std::reverse(ring.begin(), ring.end());
+  }
+  const auto triangles = triangulate(flat);
+  for (const auto& t : triangles) skinner.add_triangle(ring[t[0]], ring[t[1]], ring[t[2]], false, skin);
+  return !triangles.empty();
+}
+
+}  // namespace
+
+double sewing_gap(const yarn::Body& body) {
+  double largest = 0.0;
+  for (const Vec3& p : body.surface.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  return 16.0 * (std::nextafter(largest, std::numeric_limits<double>::infinity()) - largest);
+}
+
+double smallest_extent(const yarn::Body& body) { return Samples(body.surface).smallest_extent(); }
+
+Result<Tessellation> tessellate(const yarn::Body& body, double chord) {
+  if (body.surface.is_empty())
+    return refusal(body, Kind::geometry, fmt::format("yarn '{}' has no surface", body.name));
+  if (!is_finite(body.surface) || !is_finite(body.start.surface) || !is_finite(body.end.surface))
+    return refusal(body, Kind::geometry, fmt::format("the surface of yarn '{}' has a coordinate that is not finite", body.name));
+  if (!(chord > 0.0)) return refusal(body, Kind::internal, "a tessellation needs a chord error above 0");
+
+  const Samples samples(body.surface);
+  Cuts cuts_u, cuts_v;
+  samples.cut(chord, cuts_u, cuts_v);
+  // Rows no farther apart than the section is wide: slivers along a straight yarn would help nobody.
+  const double widest = samples.largest_section();
+  for (std::size_t l = 0; l < cuts_v.parts.size(); ++l)
+    if (widest > 0.0) cuts_v.parts[l] = std::max(cuts_v.parts[l], std::ceil(samples.reach_v(l) / widest));
+  double cells_u = 0.0, cells_v = 0.0;
+  for (double n : cuts_u.parts) cells_u += n;
+  for (double n : cuts_v.parts) cells_v += n;
+  while (cells_u < 8.0) {  // a closed section is no less
+    for (double& n : cuts_u.parts) n *= 2.0;
+    cells_u *= 2.0;
+  }
+  if (body.closed_along && cells_v < 4.0)
+    for (double& n : cuts_v.parts) n = std::max(n, 4.0);
+  if (2.0 * cells_u * cells_v > max_triangles)
+    return refusal(body, Kind::limit,
+                   fmt::format("a chord error of {} needs {:.3g} triangles on yarn '{}' (at most {:.0e}); allow a larger one",
+                               chord, 2.0 * cells_u * cells_v, body.name, max_triangles));
+
+  const Round round = Round::make(sites_of(cuts_u), body);
+  const std::vector<double> vs = sites_of(cuts_v);
+  const std::size_t nu = round.us.size();
+  Skinner skinner(sewing_gap(body));
+  std::vector<Vec3> points = nurbs::evaluate_grid(body.surface, round.us, vs);
+  if (body.closed_along) points.resize(points.size() - nu);  // the last row is the first
+  Ids ids(points.size(), none);
+  skinner.fill(points, nu, true, ids);
+  if (body.closed_along) ids.insert(ids.end(), ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(nu));
+  skinner.add_grid(ids, nu, body.inward, Skin::side);
+  for (bool last : {false, true}) {
+    if (body.closed_along) break;
+    const yarn::EndFace& face = last ? body.end : body.start;
+    const Skin skin = last ? Skin::end : Skin::start;
+    const Ids outline = last ? Ids(ids.end() - static_cast<std::ptrdiff_t>(nu), ids.end())
+                             : Ids(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(nu));
+    if (face.style == yarn::EndStyle::patch) add_patch(skinner, face, round, outline, skin);
+    if (face.style == yarn::EndStyle::fan) add_fan(skinner, face, round, chord, outline, skin);
+    if (face.style == yarn::EndStyle::planar && !add_plane(skinner, face, outline, skin))
+      return refusal(body, Kind::geometry,
+                     fmt::format("the outline at the {} of yarn '{}' crosses itself: no plane face can seal it",
+                                 last ? "end" : "start", body.name));
+  }
+  Tessellation& out = skinner.result();
+  out.sites.assign(out.vertices.size(), Vec2::Constant(std::numeric_limits<double>::quiet_NaN()));
+  for (std::size_t k = points.size(); k-- > 0;)  // backwards, so that the seam's first place wins
+    out.sites[ids[k]] = Vec2(round.us[k % nu], vs[k / nu]);
+  return std::move(out);
+}
+
+double volume(const Tessellation& skin) {
+  if (skin.vertices.empty()) return 0.0;
+  const Vec3 origin = skin.vertices.front();
+  double six = 0.0;
+  for (const auto& t : skin.triangles)
+    six += (skin.vertices[t[0]] - origin).dot((skin.vertices[t[1]] - origin).cross(skin.vertices[t[2]] - origin));
+  return six / 6.0;
+}
+
+double area(const Tessellation& skin) {
+  double twice = 0.0;
+  for (const auto& t : skin.triangles)
+    twice += (skin.vertices[t[1]] - skin.vertices[t[0]]).cross(skin.vertices[t[2]] - skin.vertices[t[0]]).norm();
+  return twice / 2.0;
+}
+
+}  // namespace selvage::solid

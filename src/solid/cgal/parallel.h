@@ -1,0 +1,37 @@
+// The same work on many items by a few threads.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace selvage::solid {
+
+// Calls work(i) for i = 0 .. count - 1, in any order, on `threads` threads. The first exception is thrown again here.
+template <class Work>
+void for_each_index(std::size_t count, int threads, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr failure;
+  std::mutex guard;
+  const auto run = [&] {
+    try {
+      for (std::size_t i = next++; i < count; i = next++) work(i);
+    } catch (...) {
+      next = count;
+      const std::lock_guard lock(guard);
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  const std::size_t helpers = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
+  std::vector<std::thread> pool;
+  for (std::size_t k = 1; k < helpers; ++k) pool.emplace_back(run);
+  run();
+  for (std::thread& t : pool) t.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace selvage::solid

@@ -1,0 +1,72 @@
+#include "solid/cgal/verdict.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/orientation.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/version.h>
+
+#include <utility>
+#include <vector>
+
+namespace selvage::solid {
+
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Mesh = CGAL::Surface_mesh<Point>;
+using Face = Mesh::Face_index;
+
+Point to_point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+Box3 box_of(const Mesh& mesh, Face face) {
+  Box3 box;
+  for (const auto vertex : mesh.vertices_around_face(mesh.halfedge(face))) {
+    const Point& p = mesh.point(vertex);
+    box.extend(Vec3(p.x(), p.y(), p.z()));
+  }
+  return box;
+}
+
+}  // namespace
+
+Verdict judge(const Tessellation& skin) {
+  Verdict verdict;
+  std::vector<Point> points;
+  points.reserve(skin.vertices.size());
+  for (const Vec3& p : skin.vertices) points.push_back(to_point(p));
+  std::vector<std::array<std::size_t, 3>> triangles;
+  triangles.reserve(skin.triangles.size());
+  for (const auto& t : skin.triangles) triangles.push_back({t[0], t[1], t[2]});
+  if (triangles.empty() || !pmp::is_polygon_soup_a_polygon_mesh(triangles)) return verdict;
+  verdict.consistent = true;
+  Mesh mesh;
+  pmp::polygon_soup_to_polygon_mesh(points, triangles, mesh);
+  verdict.closed = CGAL::is_closed(mesh);
+  std::vector<std::pair<Face, Face>> pairs;
+  if (pmp::does_self_intersect(mesh)) {
+    verdict.self_intersecting = true;
+    pmp::self_intersections<CGAL::Sequential_tag>(mesh, std::back_inserter(pairs),
+                                                  CGAL::parameters::maximum_number(1));
+    if (!pairs.empty())
+      verdict.crossing = box_of(mesh, pairs[0].first).intersection(box_of(mesh, pairs[0].second)).center();
+  }
+  if (!verdict.closed) return verdict;
+  verdict.outward = pmp::is_outward_oriented(mesh);
+  verdict.bounds_volume = !verdict.self_intersecting && pmp::does_bound_a_volume(mesh);
+  return verdict;
+}
+
+bool do_meet(const Triangle& a, const Triangle& b) {
+  const Kernel::Triangle_3 first(to_point(a[0]), to_point(a[1]), to_point(a[2]));
+  const Kernel::Triangle_3 second(to_point(b[0]), to_point(b[1]), to_point(b[2]));
+  return CGAL::do_intersect(first, second);
+}
+
+const char* cgal_version() { return CGAL_VERSION_STR; }
+
+}  // namespace selvage::solid

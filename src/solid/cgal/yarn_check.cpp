@@ -1,0 +1,151 @@
+#include "solid/cgal/yarn_check.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <exception>
+#include <map>
+
+#include "solid/cgal/verdict.h"
+
+namespace selvage::solid {
+
+namespace {
+
+class Defects {
+ public:
+  Defects(const yarn::Body& body, YarnCheck& check) : body_(body), check_(check) {}
+
+  void add(Kind kind, std::string text, std::optional<Vec3> at) {
+    Message message = error(kind, std::move(text));
+    message.yarn = body_.name;
+    message.place = body_.place;
+    message.at = at;
+    check_.defects.push_back(std::move(message));
+  }
+
+ private:
+  const yarn::Body& body_;
+  YarnCheck& check_;
+};
+
+const char* side_of(bool last) { return last ? "end" : "start"; }
+
+// What an end's edge may be away from the body: rounding; for a trimmed plane also the flatness that the builder asks of
+// an outline (1e-9 of the coordinates).
+double allowed_gap(const yarn::Body& body, bool last) {
+  const double gap = sewing_gap(body);
+  const bool planar = (last ? body.end : body.start).style == yarn::EndStyle::planar;
+  return planar ? std::max(gap, gap / (16.0 * std::numeric_limits<double>::epsilon()) * 2e-9) : gap;
+}
+
+// The middle of an edge that only one triangle has.
+std::optional<Vec3> find_border(const Tessellation& skin) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
+  for (const auto& t : skin.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++uses[std::minmax(t[k], t[(k + 1) % 3])];
+  for (const auto& [edge, count] : uses)
+    if (count == 1) return 0.5 * (skin.vertices[edge.first] + skin.vertices[edge.second]);
+  return std::nullopt;
+}
+
+// True when a gap or a missing face was named.
+bool name_gaps(const yarn::Body& body, YarnCheck& check, Defects& defects) {
+  bool named = false;
+  if (body.closed_along) return named;
+  for (bool last : {false, true}) {
+    const yarn::EndFace& face = last ? body.end : body.start;
+    if (face.style == yarn::EndStyle::none) {
+      defects.add(Kind::geometry,
+                  fmt::format("open: yarn '{}' has no face at its {}; seal it with --ends patch", body.name, side_of(last)),
+                  nurbs::evaluate(body.surface, body.surface.first_u(),
+                                  last ? body.surface.last_v() : body.surface.first_v()));
+      named = true;
+      continue;
+    }
+    const double gap = yarn::end_gap(body, last);
+    check.end_gap = std::max(check.end_gap, gap);
+    if (gap <= allowed_gap(body, last)) continue;
+    defects.add(Kind::geometry,
+                fmt::format("open: the edge of the {} face of yarn '{}' is {:.3g} away from the body (rounding allows {:.1g}); "
+                            "build the face from the body's own end curve, or seal the yarn anew with --ends patch",
+                            side_of(last), body.name, gap, allowed_gap(body, last)),
+                face.origin);
+    named = true;
+  }
+  return named;
+}
+
+void compare_volumes(const yarn::Body& body, const Tessellation& skin, double chord, const YarnCheck& check,
+                     Defects& defects) {
+  // Between the triangles and the surface lies at most a layer as thick as the chord error.
+  const double allowed = area(skin) * chord + 1e-12 * std::abs(check.volume);
+  if (std::abs(check.volume - body.volume) <= allowed) return;
+  defects.add(Kind::geometry,
+              fmt::format("the skin of yarn '{}' encloses {:.6g}, the surfaces say {:.6g} (a difference of {:.2g} at most "
+                          "comes from the triangles): body and end faces do not belong together, or the yarn overlaps itself",
+                          body.name, check.volume, body.volume, allowed),
+              std::nullopt);
+}
+
+void judge_skin(const yarn::Body& body, double chord, Checked& out) {
+  YarnCheck& check = out.check;
+  Defects defects(body, check);
+  const bool gaps_named = name_gaps(body, check, defects);
+  const Verdict verdict = judge(out.skin);
+  check.volume = volume(out.skin);
+  check.closed = verdict.closed && !gaps_named;
+  check.self_intersecting = verdict.self_intersecting;
+  check.bounds_volume = verdict.bounds_volume && check.closed;
+  check.outward = verdict.outward;
+  check.self_intersection_at = verdict.crossing;
+  if (!verdict.consistent)
+    defects.add(Kind::geometry,
+                fmt::format("the faces of yarn '{}' do not all face outward, or more than two meet in an edge; the grid's "
+                            "sections must run the same way round, and each end face outward",
+                            body.name),
+                std::nullopt);
+  if (verdict.consistent && !verdict.closed && !gaps_named)
+    defects.add(Kind::geometry, fmt::format("open: the skin of yarn '{}' has a border", body.name), find_border(out.skin));
+  if (verdict.self_intersecting) {
+    std::string text = fmt::format("the surface of yarn '{}' crosses itself", body.name);
+    text += body.tight_bends.empty()
+                ? "; move its path or its sections apart there"
+                : fmt::format(": its path bends on a radius of {:.3g} where the section reaches {:.3g} inward; make the bend "
+                              "wider or the yarn thinner",
+                              body.tight_bends.front().radius, body.tight_bends.front().needed);
+    defects.add(Kind::geometry, std::move(text), verdict.crossing);
+  }
+  if (verdict.closed && !verdict.outward)
+    defects.add(Kind::geometry,
+                fmt::format("the faces of yarn '{}' face inward: reverse the order of the points in its sections", body.name),
+                std::nullopt);
+  if (verdict.closed && !verdict.self_intersecting && !verdict.bounds_volume)
+    defects.add(Kind::geometry, fmt::format("the skin of yarn '{}' does not bound a volume", body.name), std::nullopt);
+  if (verdict.closed && verdict.outward) compare_volumes(body, out.skin, chord, check, defects);
+}
+
+}  // namespace
+
+double chord_of(const yarn::Body& body, const CheckOptions& options) {
+  return options.chord > 0.0 ? options.chord : smallest_extent(body) / 200.0;
+}
+
+Checked check_yarn(const yarn::Body& body, double chord) {
+  Checked out;
+  Result<Tessellation> skin = tessellate(body, chord);
+  if (!skin) {
+    out.check.defects.push_back(skin.error());
+    return out;
+  }
+  out.skin = std::move(*skin);
+  try {
+    judge_skin(body, chord, out);
+  } catch (const std::exception& failure) {
+    Defects(body, out.check)
+        .add(Kind::internal, fmt::format("CGAL cannot judge yarn '{}': {}", body.name, failure.what()), std::nullopt);
+  }
+  return out;
+}
+
+}  // namespace selvage::solid
