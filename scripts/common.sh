@@ -1,0 +1,25 @@
+# shellcheck shell=bash
+# Shared by the scripts here: `. "$(dirname "$0")/common.sh"`. Puts the caller into the repository's root.
+set -eu
+
+root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
+cd "$root"
+build=${SELVAGE_BUILD:-$root/build}
+cores=$(nproc 2>/dev/null || echo 2)
+
+# A compiler takes up to 2 GB here (CGAL): no more of them than the memory holds.
+gigabytes=$(awk '/^MemAvailable:/ {print int($2 / 1048576)}' /proc/meminfo 2>/dev/null || echo 4)
+jobs=$((gigabytes / 2))
+[ "$jobs" -ge 1 ] || jobs=1
+[ "$jobs" -le "$cores" ] || jobs=$cores
+
+# configure [CMAKE OPTIONS]: quiet unless it fails.
+configure() {
+  log=$(mktemp)
+  if ! cmake -S "$root" -B "$build" -G Ninja "$@" > "$log" 2>&1; then
+    cat "$log" >&2
+    rm -f "$log"
+    exit 1
+  fi
+  rm -f "$log"
+}
