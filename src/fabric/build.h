@@ -33,6 +33,8 @@ class YarnBuilder {
   [[nodiscard]] Result<yarn::Body> build(std::size_t index) const;
 
  private:
+  Status sweep_path(yarn::Body& body, const Yarn& yarn, const Thread& thread) const;
+
   const Fabric* fabric_ = nullptr;
   BuildOptions options_;
   double tolerance_ = 0;

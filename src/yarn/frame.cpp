@@ -1,1 +1,133 @@
+#include "yarn/frame.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "nurbs/measure.h"
+
+namespace selvage::yarn {
+
+namespace {
+
+constexpr double six_degrees = 6.0 / 180.0 * std::numbers::pi;
+// Largest turning of the tangent between two nodes, radians: double reflection's error grows with its fourth power.
+constexpr double largest_turn = 0.02;
+
+// The frame's `up` carried from one node to another point (two reflections).
+Vec3 reflected(const Vec3& up, const Vec3& from, const Vec3& from_tangent, const Vec3& to, const Vec3& to_tangent) {
+  const Vec3 v1 = to - from;
+  const double c1 = v1.squaredNorm();
+  if (c1 == 0.0) return up;
+  const Vec3 up_l = up - (2.0 / c1) * v1.dot(up) * v1;
+  const Vec3 tangent_l = from_tangent - (2.0 / c1) * v1.dot(from_tangent) * v1;
+  const Vec3 v2 = to_tangent - tangent_l;
+  const double c2 = v2.squaredNorm();
+  const Vec3 carried = c2 == 0.0 ? up_l : Vec3(up_l - (2.0 / c2) * v2.dot(up_l) * v2);
+  // Rounding must not build up over a million nodes.
+  return (carried - carried.dot(to_tangent) * to_tangent).normalized();
+}
+
+double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+Result<Vec3> first_up(const Vec3& tangent, const std::optional<Vec3>& wanted) {
+  Vec3 up = Vec3::UnitZ();
+  const auto is_along = [&](const Vec3& v) {
+    const double angle = angle_between(tangent, v);
+    return std::min(angle, std::numbers::pi - angle) < six_degrees;
+  };
+  if (wanted) {
+    up = *wanted;
+    if (is_along(up)) return error(Kind::geometry, "`up` is within 6 degrees of the path's direction at its start");
+  } else if (is_along(up)) {
+    up = Vec3::UnitY();
+  }
+  return Vec3((up - up.dot(tangent) * tangent).normalized());
+}
+
+}  // namespace
+
+Result<FrameField> FrameField::make(const nurbs::Curve& path, const std::optional<Vec3>& up, bool closed) {
+  FrameField field;
+  field.path_ = path;
+  const auto node_at = [&](double t) {
+    const nurbs::CurveJet jet = nurbs::evaluate_jet(path, t);
+    Node node;
+    node.t = t;
+    node.position = jet.position;
+    node.tangent = jet.d1.normalized();
+    return node;
+  };
+  const auto stops = [](const Node& node) { return !node.tangent.allFinite() || node.tangent.squaredNorm() < 0.5; };
+  Node first = node_at(path.first_parameter());
+  const auto stopped = [](const Node& node) {
+    Message message = error(Kind::geometry, "the path stops or turns back on itself");
+    message.at = node.position;
+    return message;
+  };
+  if (stops(first)) return stopped(first);
+  Result<Vec3> start = first_up(first.tangent, up);
+  if (!start) return start.error();
+  first.up = *start;
+  field.nodes_.push_back(first);
+  const std::vector<double> breaks = nurbs::breakpoints(path.knots, path.degree);
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+    // Turning of the span, from a coarse look, decides its number of steps; a hidden turn is caught by halving.
+    double turning = 0.0;
+    Vec3 previous = field.nodes_.back().tangent;
+    constexpr int looks = 8;
+    for (int i = 1; i <= looks; ++i) {
+      const Node node = node_at(breaks[k] + (breaks[k + 1] - breaks[k]) * i / looks);
+      if (stops(node)) return stopped(node);
+      turning += angle_between(previous, node.tangent);
+      previous = node.tangent;
+    }
+    const int steps = std::clamp(static_cast<int>(std::ceil(turning / largest_turn)), 1, 100000);
+    for (int i = 1; i <= steps; ++i) {
+      const double t = i == steps ? breaks[k + 1] : breaks[k] + (breaks[k + 1] - breaks[k]) * i / steps;
+      Node node = node_at(t);
+      const Node& before = field.nodes_.back();
+      if (stops(node) || node.tangent.dot(before.tangent) < -0.5) return stopped(node);
+      node.up = reflected(before.up, before.position, before.tangent, node.position, node.tangent);
+      node.length = before.length + nurbs::arc_length(path, before.t, t);
+      field.nodes_.push_back(node);
+    }
+  }
+  if (closed) {
+    // How far the carried frame has turned about the tangent when it comes back.
+    const Node& last = field.nodes_.back();
+    const Vec3& start_up = field.nodes_.front().up;
+    const double closing = std::atan2(last.up.cross(start_up).dot(last.tangent), last.up.dot(start_up));
+    field.spread_rate_ = closing / last.length;
+  }
+  return field;
+}
+
+const FrameField::Node& FrameField::node_before(double t) const {
+  const auto after = std::upper_bound(nodes_.begin(), nodes_.end(), t, [](double v, const Node& n) { return v < n.t; });
+  return after == nodes_.begin() ? *after : *std::prev(after);
+}
+
+double FrameField::length_at(double t) const {
+  const Node& node = node_before(t);
+  return t <= node.t ? node.length : node.length + nurbs::arc_length(path_, node.t, t);
+}
+
+Frame FrameField::at(double t) const {
+  const Node& node = node_before(t);
+  const nurbs::CurveJet jet = nurbs::evaluate_jet(path_, t);
+  Frame frame;
+  frame.position = jet.position;
+  frame.speed = jet.d1.norm();
+  frame.tangent = jet.d1 / frame.speed;
+  frame.tangent_dt = (jet.d2 - frame.tangent * jet.d2.dot(frame.tangent)) / frame.speed;
+  frame.up = t <= node.t ? node.up : reflected(node.up, node.position, node.tangent, frame.position, frame.tangent);
+  if (spread_rate_ != 0.0) {
+    const double angle = spread_rate_ * length_at(t);
+    frame.up = Eigen::AngleAxisd(angle, frame.tangent) * frame.up;
+  }
+  frame.across = frame.up.cross(frame.tangent);
+  return frame;
+}
+
+}  // namespace selvage::yarn

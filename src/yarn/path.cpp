@@ -1,1 +1,228 @@
+#include "yarn/path.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace selvage::yarn {
+
+namespace {
+
+Message at_row(std::size_t row, std::string text) {
+  Message message = error(Kind::geometry, std::move(text));
+  message.place.line = static_cast<int>(row) + 1;
+  return message;
+}
+
+nurbs::Curve clamped_uniform(const std::vector<Vec3>& points) {
+  nurbs::Curve curve;
+  curve.points = points;
+  const int count = static_cast<int>(points.size());
+  curve.degree = std::min(3, count - 1);
+  const int spans = count - curve.degree;
+  for (int i = 0; i < count + curve.degree + 1; ++i)
+    curve.knots.push_back(static_cast<double>(std::clamp(i - curve.degree, 0, spans)) / spans);
+  return curve;
+}
+
+// The periodic uniform cubic, cut open where the first control point has its influence's middle.
+nurbs::Curve periodic_uniform(const std::vector<Vec3>& points) {
+  const int n = static_cast<int>(points.size());
+  nurbs::Curve periodic;
+  for (int i = -3; i <= n + 3; ++i) periodic.knots.push_back(static_cast<double>(i) / n);
+  for (int i = 0; i < n + 3; ++i) periodic.points.push_back(points[static_cast<std::size_t>((i - 1 + n) % n)]);
+  nurbs::Curve curve = nurbs::clamped(periodic);
+  curve.points.back() = curve.points.front();
+  return curve;
+}
+
+CentreLine through_points(const PathRows& rows, nurbs::Parameterization how) {
+  CentreLine line;
+  line.parameters = nurbs::parameters(rows.points, how, rows.closed);
+  if (rows.closed) {
+    line.curve = nurbs::interpolate_closed(rows.points, line.parameters);
+    line.parameters.pop_back();
+  } else {
+    const Vec3 first = nurbs::end_derivative(rows.points, line.parameters, false, rows.tangent_start);
+    const Vec3 last = nurbs::end_derivative(rows.points, line.parameters, true, rows.tangent_end);
+    line.curve = nurbs::interpolate(rows.points, line.parameters, first, last);
+  }
+  return line;
+}
+
+CentreLine from_control(const PathRows& rows) {
+  CentreLine line;
+  const std::size_t n = rows.points.size();
+  line.curve = rows.closed ? periodic_uniform(rows.points) : clamped_uniform(rows.points);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (rows.closed) {
+      line.parameters.push_back(static_cast<double>(i) / static_cast<double>(n));
+    } else {  // the control point's Greville abscissa
+      double sum = 0.0;
+      for (int k = 1; k <= line.curve.degree; ++k) sum += line.curve.knots[i + static_cast<std::size_t>(k)];
+      line.parameters.push_back(sum / line.curve.degree);
+    }
+  }
+  return line;
+}
+
+CentreLine from_loop(const PathRows& rows) {
+  const std::vector<Vec3>& p = rows.points;
+  const std::size_t n = p.size();
+  std::vector<Vec3> control;
+  std::vector<std::size_t> first_control(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    first_control[i] = control.size();
+    const bool is_end = !rows.closed && (i == 0 || i + 1 == n);
+    if (is_end) {
+      control.push_back(p[i]);
+      continue;
+    }
+    const Vec3& before = p[(i + n - 1) % n];
+    const Vec3& after = p[(i + 1) % n];
+    const Vec3 d = (after - before).normalized();
+    control.emplace_back(p[i] - d * ((p[i] - before).norm() / 4.0));
+    control.emplace_back(p[i] + d * ((after - p[i]).norm() / 4.0));
+  }
+  PathRows as_control = rows;
+  as_control.points = control;
+  CentreLine line = from_control(as_control);
+  std::vector<double> parameters;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t next = i + 1 < n ? first_control[i + 1] : control.size();
+    double sum = 0.0;
+    for (std::size_t k = first_control[i]; k < next; ++k) sum += line.parameters[k];
+    parameters.push_back(sum / static_cast<double>(next - first_control[i]));
+    line.largest_miss = std::max(line.largest_miss, (nurbs::evaluate(line.curve, parameters.back()) - p[i]).norm());
+  }
+  line.parameters = parameters;
+  return line;
+}
+
+// A rational quadratic built piece by piece, each piece at the speed at which the one before ended.
+class ArcsAndSegments {
+ public:
+  explicit ArcsAndSegments(const Vec3& start) {
+    curve_.degree = 2;
+    curve_.knots = {0, 0, 0};
+    curve_.points = {start};
+    curve_.weights = {1};
+  }
+  void segment(const Vec3& to) {
+    const Vec3 from = curve_.points.back();
+    piece(0.5 * (from + to), 1.0, to, (to - from).norm());
+  }
+  // The arc that touches the lines from the present point to `corner` and from there to `to`; half_angle: half its turning.
+  void arc(const Vec3& corner, const Vec3& to, double half_angle) {
+    const double weight = std::cos(half_angle);
+    // Speed at its ends is 2 weight |corner - end| / duration: 1, as on the segments.
+    piece(corner, weight, to, 2.0 * weight * (corner - curve_.points.back()).norm());
+  }
+  [[nodiscard]] double now() const { return curve_.knots.back(); }
+  nurbs::Curve finish() {
+    curve_.knots.push_back(curve_.knots.back());
+    const double total = curve_.knots.back();
+    for (double& knot : curve_.knots) knot /= total;
+    return std::move(curve_);
+  }
+
+ private:
+  void piece(const Vec3& middle, double weight, const Vec3& to, double duration) {
+    const double end = curve_.knots.back() + duration;
+    curve_.points.push_back(middle);
+    curve_.points.push_back(to);
+    curve_.weights.push_back(weight);
+    curve_.weights.push_back(1.0);
+    curve_.knots.push_back(end);
+    curve_.knots.push_back(end);
+  }
+  nurbs::Curve curve_;
+};
+
+Result<CentreLine> from_polyline(const PathRows& rows) {
+  const std::vector<Vec3>& p = rows.points;
+  const std::size_t n = p.size();
+  struct Corner {
+    double half_angle = 0, cut = 0;  // cut: from the corner to where its arc touches
+  };
+  std::vector<Corner> corners(n);
+  const auto next = [&](std::size_t i) { return (i + 1) % n; };
+  const auto before = [&](std::size_t i) { return (i + n - 1) % n; };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!rows.closed && (i == 0 || i + 1 == n)) continue;
+    const Vec3 in = p[i] - p[before(i)], out = p[next(i)] - p[i];
+    const double turning = std::atan2(in.cross(out).norm(), in.dot(out));
+    if (turning < 1e-9) continue;
+    if (turning > 150.0 / 180.0 * std::numbers::pi)
+      return at_row(i, fmt::format("the polyline turns back by {:.0f} degrees at point {}: no arc rounds more than 150",
+                                   turning * 180.0 / std::numbers::pi, i + 1));
+    corners[i].half_angle = 0.5 * turning;
+    corners[i].cut = 1.05 * rows.half_sizes[i] * std::tan(0.5 * turning);
+  }
+  for (std::size_t i = 0; i + (rows.closed ? 0 : 1) < n; ++i) {
+    const double room = (p[next(i)] - p[i]).norm(), wanted = corners[i].cut + corners[next(i)].cut;
+    if (wanted > room * (1.0 + 1e-12))
+      return at_row(i, fmt::format("the segment from point {} to point {} is {:.4g} long, but the arcs that round its corners "
+                                   "(1.05 times half the section) need {:.4g}",
+                                   i + 1, next(i) + 1, room, wanted));
+  }
+  const auto toward = [&](std::size_t from, std::size_t to, double distance) -> Vec3 {
+    return p[from] + (p[to] - p[from]).normalized() * distance;
+  };
+  CentreLine line;
+  line.parameters.assign(n, 0.0);
+  // A closed one begins in the middle of its last segment's straight part, where nothing bends.
+  const std::size_t last = n - 1;
+  const Vec3 start = rows.closed ? Vec3(0.5 * (toward(last, 0, corners[last].cut) + toward(0, last, corners[0].cut))) : p[0];
+  ArcsAndSegments path(start);
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool is_end = !rows.closed && (i == 0 || i == last);
+    if (is_end || corners[i].cut == 0.0) {
+      if (i > 0 || rows.closed) path.segment(p[i]);
+      line.parameters[i] = path.now();
+      continue;
+    }
+    const Vec3 touch = toward(i, before(i), corners[i].cut);
+    if ((touch - p[before(i)]).norm() > corners[before(i)].cut * (1.0 + 1e-12)) path.segment(touch);
+    const double entered = path.now();
+    path.arc(p[i], toward(i, next(i), corners[i].cut), corners[i].half_angle);
+    line.parameters[i] = 0.5 * (entered + path.now());
+  }
+  if (rows.closed) path.segment(start);
+  const double total = path.now();
+  line.curve = path.finish();
+  for (double& t : line.parameters) t /= total;
+  if (rows.closed) line.curve.points.back() = line.curve.points.front();
+  return line;
+}
+
+}  // namespace
+
+Result<CentreLine> make_centre_line(const PathRows& rows) {
+  const std::size_t n = rows.points.size();
+  if (n < 2) return at_row(0, "a path needs at least two points");
+  if (rows.closed && n < 3) return at_row(0, "a closed path needs at least three points");
+  for (std::size_t i = 0; i + (rows.closed ? 0 : 1) < n; ++i)
+    if (rows.points[i] == rows.points[(i + 1) % n])
+      return at_row((i + 1) % n, fmt::format("points {} and {} of the path are equal", i + 1, (i + 1) % n + 1));
+  CentreLine line;
+  switch (rows.form) {
+    case PathForm::uniform: line = through_points(rows, nurbs::Parameterization::uniform); break;
+    case PathForm::chord: line = through_points(rows, nurbs::Parameterization::chord); break;
+    case PathForm::centripetal: line = through_points(rows, nurbs::Parameterization::centripetal); break;
+    case PathForm::control: line = from_control(rows); break;
+    case PathForm::loop: line = from_loop(rows); break;
+    case PathForm::polyline: {
+      Result<CentreLine> made = from_polyline(rows);
+      if (!made) return made;
+      line = std::move(*made);
+      break;
+    }
+  }
+  line.closed = rows.closed;
+  return line;
+}
+
+}  // namespace selvage::yarn

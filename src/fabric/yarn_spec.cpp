@@ -1,0 +1,187 @@
+#include "fabric/yarn_spec.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace selvage::fabric {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Message at_thread(const Fabric& fabric, const Yarn& yarn, std::string text, Severity severity = Severity::error) {
+  Message message = error(Kind::geometry, std::move(text));
+  message.severity = severity;
+  message.file = fabric.file;
+  message.place = yarn.place;
+  message.yarn = yarn.name;
+  return message;
+}
+
+bool every_row_has_a_size(const Path& path) {
+  return !path.sizes.empty() &&
+         std::all_of(path.sizes.begin(), path.sizes.end(), [](const auto& s) { return s.has_value(); });
+}
+
+// How far the section reaches from the path toward a direction given in section axes.
+double support(const yarn::Section& section, const yarn::SectionSize& size, const Vec2& toward) {
+  double largest = 0.0;
+  for (const Vec2& p : yarn::make_outline(section, size, 8, false).points) largest = std::max(largest, p.dot(toward));
+  return largest;
+}
+
+}  // namespace
+
+double yarn_diameter(double tex, double density, double packing) {
+  return 2.0 * std::sqrt(tex / (1000.0 * pi * density * packing));
+}
+
+Result<yarn::Section> section_of(const Thread& thread, Unit units, bool rows_give_sizes) {
+  yarn::Section section = thread.section.value_or(yarn::Circle{});
+  double* diameter = nullptr;
+  if (auto* circle = std::get_if<yarn::Circle>(&section)) diameter = &circle->diameter;
+  if (auto* loop7 = std::get_if<yarn::Loop7>(&section)) diameter = &loop7->diameter;
+  if (diameter == nullptr || *diameter > 0.0) return section;
+  if (thread.diameter) {
+    *diameter = *thread.diameter;
+  } else if (thread.linear_density && thread.density && thread.packing) {
+    *diameter = yarn_diameter(thread.linear_density->tex(), *thread.density, *thread.packing) / millimetres_per(units);
+  } else if (!rows_give_sizes) {
+    std::string missing;
+    for (const auto& [word, is_there] : {std::pair{"`tex`", thread.linear_density.has_value()},
+                                         std::pair{"`density`", thread.density.has_value()},
+                                         std::pair{"`packing`", thread.packing.has_value()}})
+      if (!is_there) missing += (missing.empty() ? "" : ", ") + std::string(word);
+    return error(Kind::geometry, fmt::format("nothing gives the size of the section: add `diameter`, a `section` with a size, or {}",
+                                             missing));
+  }
+  return section;
+}
+
+std::vector<yarn::SectionSize> row_sizes(const Path& path, const yarn::Section& section) {
+  const yarn::SectionSize own = yarn::nominal_size(section);
+  std::vector<yarn::SectionSize> sizes(path.points.size(), own);
+  for (std::size_t i = 0; i < path.sizes.size(); ++i)
+    if (path.sizes[i]) sizes[i] = {path.sizes[i]->width, path.sizes[i]->height};
+  return sizes;
+}
+
+Result<yarn::PathRows> path_rows_of(const Fabric& fabric, const Yarn& yarn, const Thread& thread) {
+  const Path& path = std::get<Path>(yarn.shape);
+  yarn::PathRows rows;
+  switch (path.form) {
+    case Path::Form::uniform: rows.form = yarn::PathForm::uniform; break;
+    case Path::Form::chord: rows.form = yarn::PathForm::chord; break;
+    case Path::Form::centripetal: rows.form = yarn::PathForm::centripetal; break;
+    case Path::Form::polyline: rows.form = yarn::PathForm::polyline; break;
+    case Path::Form::control: rows.form = yarn::PathForm::control; break;
+    case Path::Form::loop: rows.form = yarn::PathForm::loop; break;
+  }
+  rows.points = path.points;
+  rows.closed = yarn.closed;
+  rows.tangent_start = yarn.tangent_start;
+  rows.tangent_end = yarn.tangent_end;
+  if (path.form != Path::Form::polyline) return rows;
+  Result<yarn::Section> section = section_of(thread, fabric.units, every_row_has_a_size(path));
+  if (!section) return at_thread(fabric, yarn, section.error().text);
+  const std::vector<yarn::SectionSize> sizes = row_sizes(path, *section);
+  for (const yarn::SectionSize& size : sizes)
+    if (Status s = yarn::check_section(*section, size); !s) return at_thread(fabric, yarn, s.error().text);
+  // The section's axes are carried from segment to segment by the turn at each corner, as the rotation-minimizing frame does.
+  const std::vector<Vec3>& p = path.points;
+  const std::size_t n = p.size();
+  rows.half_sizes.assign(n, 0.0);
+  const auto direction = [&](std::size_t i) -> Vec3 { return (p[(i + 1) % n] - p[i]).normalized(); };
+  Vec3 tangent = direction(0);
+  Vec3 up = yarn.up.value_or(std::abs(tangent.z()) > std::cos(6.0 / 180.0 * pi) ? Vec3(Vec3::UnitY()) : Vec3(Vec3::UnitZ()));
+  up = (up - up.dot(tangent) * tangent).normalized();
+  for (std::size_t k = 1; k < n + (yarn.closed ? 1 : 0); ++k) {
+    const std::size_t i = k % n;
+    if (!yarn.closed && i + 1 == n) break;
+    const Vec3 next = direction(i), inward = next - tangent;
+    if (inward.norm() > 1e-12) {
+      Vec3 toward = inward - inward.dot(tangent) * tangent;
+      toward.normalize();
+      double angle = 0.0;
+      if (i < path.sizes.size() && path.sizes[i] && path.sizes[i]->angle) angle = *path.sizes[i]->angle / 180.0 * pi;
+      const Vec3 across = up.cross(tangent);
+      const Vec3 x = std::cos(angle) * across + std::sin(angle) * up, y = -std::sin(angle) * across + std::cos(angle) * up;
+      rows.half_sizes[i] = support(*section, sizes[i], Vec2(toward.dot(x), toward.dot(y)));
+    }
+    up = Eigen::Quaterniond::FromTwoVectors(tangent, next) * up;
+    tangent = next;
+  }
+  return rows;
+}
+
+Result<yarn::TubeSpec> tube_spec_of(const Fabric& fabric, const Yarn& yarn, const Thread& thread,
+                                    const std::vector<double>& row_parameters) {
+  const Path& path = std::get<Path>(yarn.shape);
+  yarn::TubeSpec spec;
+  Result<yarn::Section> section = section_of(thread, fabric.units, every_row_has_a_size(path));
+  if (!section) return at_thread(fabric, yarn, section.error().text);
+  spec.section = *section;
+  const std::vector<yarn::SectionSize> sizes = row_sizes(path, spec.section);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    double angle = 0.0;
+    if (i < path.sizes.size() && path.sizes[i] && path.sizes[i]->angle) angle = *path.sizes[i]->angle / 180.0 * pi;
+    spec.sizes.push_back({row_parameters[i], sizes[i], angle});
+    if (path.sizes.empty()) break;  // one size for the whole yarn
+  }
+  spec.up = yarn.up;
+  if (thread.twist && thread.twist->rotates) {
+    const double turns_per_unit = thread.twist->turns * millimetres_per(fabric.units) / 1000.0;
+    spec.twist = 2.0 * pi * turns_per_unit * (thread.twist->hand == Hand::z ? 1.0 : -1.0);
+  }
+  return spec;
+}
+
+std::optional<Message> fibre_share_warning(const Fabric& fabric, const Yarn& yarn, const Thread& thread) {
+  const auto* path = std::get_if<Path>(&yarn.shape);
+  if (path == nullptr || !thread.linear_density || !thread.density) return std::nullopt;
+  const Result<yarn::Section> section = section_of(thread, fabric.units, every_row_has_a_size(*path));
+  if (!section) return std::nullopt;  // reported where the yarn is built
+  const double mm = millimetres_per(fabric.units);
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (const yarn::SectionSize& size : row_sizes(*path, *section)) {
+    if (!yarn::check_section(*section, size).ok()) return std::nullopt;
+    const double share = thread.linear_density->tex() / (1000.0 * *thread.density * yarn::area(*section, size) * mm * mm);
+    low = std::min(low, share);
+    high = std::max(high, share);
+  }
+  const std::string of_thread = yarn.thread.empty() ? fmt::format("yarn '{}'", yarn.name) : fmt::format("thread '{}'", yarn.thread);
+  if (high > 1.0 + 1e-9)
+    return at_thread(fabric, yarn,
+                     fmt::format("{}: the fibres would fill {:.3g} times the section ({:.4g} tex of {:.4g} g/cm3): is the diameter "
+                                 "in truth a radius?",
+                                 of_thread, high, thread.linear_density->tex(), *thread.density),
+                     Severity::warning);
+  if (thread.packing && (std::abs(high - *thread.packing) > 0.05 * *thread.packing ||
+                         std::abs(low - *thread.packing) > 0.05 * *thread.packing))
+    return at_thread(fabric, yarn,
+                     fmt::format("{}: its size makes {:.3g}{} of the section fibre, but `packing` says {:.3g} (packing sizes "
+                                 "only a circle without a diameter)",
+                                 of_thread, low, high > low * 1.001 ? fmt::format(" to {:.3g}", high) : "", *thread.packing),
+                     Severity::warning);
+  return std::nullopt;
+}
+
+std::optional<double> smallest_size(const Fabric& fabric, const Yarn& yarn) {
+  const auto* path = std::get_if<Path>(&yarn.shape);
+  if (path == nullptr) return std::nullopt;
+  const Result<yarn::Section> section =
+      section_of(resolved_thread(fabric, yarn), fabric.units, every_row_has_a_size(*path));
+  if (!section) return std::nullopt;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const yarn::SectionSize& size : row_sizes(*path, *section)) {
+    if (!(size.width > 0.0 && size.height > 0.0)) return std::nullopt;
+    smallest = std::min({smallest, size.width, size.height});
+    if (path->sizes.empty()) break;
+  }
+  return smallest;
+}
+
+}  // namespace selvage::fabric
