@@ -31,8 +31,14 @@ struct Node {
   BasisRow value, slope;
 };
 
-std::vector<Node> gauss_nodes(const std::vector<double>& knots, int degree, int count, int order) {
-  const std::vector<double> breaks = breakpoints(knots, degree);
+std::vector<Node> gauss_nodes(const std::vector<double>& knots, int degree, int count, int order, bool rational) {
+  std::vector<double> breaks = breakpoints(knots, degree);
+  if (rational) {  // no polynomial rule is exact: four parts to a span bring the error down to rounding
+    std::vector<double> finer = {breaks.front()};
+    for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+      for (int i = 1; i <= 4; ++i) finer.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / 4.0);
+    breaks = std::move(finer);
+  }
   const GaussRule& rule = gauss_rule(order);
   std::vector<Node> nodes;
   std::array<BasisRow, 3> rows{};
@@ -70,9 +76,9 @@ double volume_flux(const Surface& surface, const Vec3& origin) {
   // S . (S_u x S_v) has degree 3 p - 1 in each direction.
   const auto order = [&](int degree) { return surface.is_rational() ? 8 : std::min(8, (3 * degree + 1) / 2); };
   const std::vector<Node> nodes_u =
-      gauss_nodes(surface.knots_u, surface.degree_u, surface.count_u, order(surface.degree_u));
+      gauss_nodes(surface.knots_u, surface.degree_u, surface.count_u, order(surface.degree_u), surface.is_rational());
   const std::vector<Node> nodes_v =
-      gauss_nodes(surface.knots_v, surface.degree_v, surface.count_v, order(surface.degree_v));
+      gauss_nodes(surface.knots_v, surface.degree_v, surface.count_v, order(surface.degree_v), surface.is_rational());
   using Vec4 = Eigen::Vector4d;
   std::vector<Vec4> line(static_cast<std::size_t>(surface.count_u)), slope_line(line.size());
   double sum = 0.0;

@@ -132,17 +132,19 @@ bool is_folded(const nurbs::Surface& patch, const Vec3& normal) {
 
 Vec3 area_vector(const nurbs::Curve& closed) {
   const std::vector<double> breaks = nurbs::breakpoints(closed.knots, closed.degree);
-  // A polynomial's C x C' has degree 2 p - 2 at most; a rational one is only approximated, more closely with more nodes.
+  // A polynomial's C x C' has degree 2 p - 2 at most; a rational one is approximated, down to rounding in four parts.
   const nurbs::GaussRule& rule = nurbs::gauss_rule(closed.is_rational() ? 8 : closed.degree);
+  const int parts = closed.is_rational() ? 4 : 1;
   const Vec3 origin = closed.points.front();
   Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-    const double half = 0.5 * (breaks[k + 1] - breaks[k]), middle = 0.5 * (breaks[k + 1] + breaks[k]);
-    for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
-      const nurbs::CurveJet jet = nurbs::evaluate_jet(closed, middle + half * rule.nodes[g]);
-      sum += 0.5 * half * rule.weights[g] * (jet.position - origin).cross(jet.d1);
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+    for (int part = 0; part < parts; ++part) {
+      const double half = 0.5 * (breaks[k + 1] - breaks[k]) / parts, middle = breaks[k] + half * (2 * part + 1);
+      for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
+        const nurbs::CurveJet jet = nurbs::evaluate_jet(closed, middle + half * rule.nodes[g]);
+        sum += 0.5 * half * rule.weights[g] * (jet.position - origin).cross(jet.d1);
+      }
     }
-  }
   return sum;
 }
 

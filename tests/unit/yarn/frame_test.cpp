@@ -1,0 +1,88 @@
+// Rotation-minimizing frames where they are known.
+#include "yarn/frame.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "nurbs/interpolate.h"
+
+namespace selvage::yarn {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+nurbs::Curve helix(double radius, double pitch, double turns, int per_turn) {
+  std::vector<Vec3> points;
+  const int n = static_cast<int>(turns * per_turn);
+  for (int i = 0; i <= n; ++i) {
+    const double a = 2 * pi * i / per_turn;
+    points.emplace_back(radius * std::cos(a), radius * std::sin(a), pitch * i / per_turn);
+  }
+  const std::vector<double> t = nurbs::parameters(points, nurbs::Parameterization::uniform);
+  const double da = 2 * pi * turns;
+  const Vec3 d0 = da * Vec3(0, radius, pitch / (2 * pi));
+  const double end = 2 * pi * turns;
+  const Vec3 d1 = da * Vec3(-radius * std::sin(end), radius * std::cos(end), pitch / (2 * pi));
+  return nurbs::interpolate(points, t, d0, d1);
+}
+
+TEST(FrameTest, OnAHelixTheFrameTurnsAgainstTheNormalByTheTorsion) {
+  const double radius = 1.0, pitch = 2.0, turns = 2.25;
+  const nurbs::Curve curve = helix(radius, pitch, turns, 64);
+  const Result<FrameField> field = FrameField::make(curve, Vec3(-1, 0, 0), false);  // the principal normal at the start
+  ASSERT_TRUE(field.ok());
+  const double c = pitch / (2 * pi), torsion = c / (radius * radius + c * c);
+  for (double t : {0.1, 0.37, 0.71, 1.0}) {
+    const Frame frame = field->at(t);
+    const double a = 2 * pi * turns * t;
+    const Vec3 normal(-std::cos(a), -std::sin(a), 0);
+    const Vec3 binormal = frame.tangent.cross(normal);
+    // Against the normal the rotation-minimizing frame falls back by torsion times arc length.
+    const double turned = std::atan2(frame.up.dot(binormal), frame.up.dot(normal));
+    const double expected = -torsion * field->length_at(t);
+    EXPECT_NEAR(std::remainder(turned - expected, 2 * pi), 0.0, 2e-4) << t;  // the cubic is not quite the helix
+    EXPECT_NEAR(frame.across.cross(frame.up).dot(frame.tangent), 1.0, 1e-12);
+  }
+  EXPECT_NEAR(field->length(), turns * std::hypot(2 * pi * radius, pitch), 1e-5);
+}
+
+TEST(FrameTest, APlanePathKeepsItsNormal) {
+  std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0.3}, {2, 0, -0.2}, {3, 0, 0}};
+  const std::vector<double> t = nurbs::parameters(points, nurbs::Parameterization::chord);
+  const nurbs::Curve curve = nurbs::interpolate(points, t, nurbs::end_derivative(points, t, false), nurbs::end_derivative(points, t, true));
+  const Result<FrameField> field = FrameField::make(curve, std::nullopt, false);
+  ASSERT_TRUE(field.ok());
+  for (double s = 0; s <= 1; s += 0.05) EXPECT_LT((field->at(s).across - Vec3(0, 1, 0)).norm(), 1e-13);
+}
+
+TEST(FrameTest, ClosedPathsCloseTheirFrames) {
+  // Not flat, so that the carried frame does not come back by itself.
+  std::vector<Vec3> points;
+  for (int i = 0; i < 24; ++i) {
+    const double a = 2 * pi * i / 24;
+    points.emplace_back(3 * std::cos(a), 3 * std::sin(a), std::sin(2 * a) + 0.4 * std::cos(3 * a));
+  }
+  const nurbs::Curve curve = nurbs::interpolate_closed(points, nurbs::parameters(points, nurbs::Parameterization::chord, true));
+  const Result<FrameField> field = FrameField::make(curve, std::nullopt, true);
+  ASSERT_TRUE(field.ok());
+  EXPECT_GT(std::abs(field->spread_rate()), 1e-3);
+  EXPECT_LT((field->at(0.0).up - field->at(1.0).up).norm(), 1e-9);
+  EXPECT_LT((field->at(0.0).across - field->at(1.0).across).norm(), 1e-9);
+}
+
+TEST(FrameTest, UpRules) {
+  const auto straight = [](const Vec3& to) {
+    const std::vector<Vec3> points = {Vec3::Zero(), to};
+    return nurbs::interpolate(points, {0, 1}, to, to);
+  };
+  EXPECT_LT((FrameField::make(straight({1, 0, 0}), std::nullopt, false)->at(0).up - Vec3(0, 0, 1)).norm(), 1e-15);
+  EXPECT_LT((FrameField::make(straight({0, 0, 2}), std::nullopt, false)->at(0).up - Vec3(0, 1, 0)).norm(), 1e-15);
+  EXPECT_LT((FrameField::make(straight({0, 0, -2}), std::nullopt, false)->at(0.3).up - Vec3(0, 1, 0)).norm(), 1e-15);
+  EXPECT_FALSE(FrameField::make(straight({0, 0, 1}), Vec3(0.05, 0, 1), false).ok());
+  EXPECT_TRUE(FrameField::make(straight({0, 0, 1}), Vec3(0.2, 0, 1), false).ok());
+}
+
+}  // namespace
+}  // namespace selvage::yarn
