@@ -5,25 +5,37 @@
 #include <APIHeaderSection_MakeHeader.hxx>
 #include <Interface_HArray1OfHAsciiString.hxx>
 #include <Interface_Static.hxx>
-#include <Quantity_Color.hxx>
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Writer.hxx>
+#include <STEPConstruct.hxx>
+#include <STEPConstruct_Styles.hxx>
+#include <STEPControl_Writer.hxx>
 #include <StepData_Protocol.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepData_StepWriter.hxx>
+#include <StepRepr_RepresentationContext.hxx>
+#include <StepRepr_RepresentationItem.hxx>
+#include <StepVisual_ColourRgb.hxx>
+#include <StepVisual_MechanicalDesignGeometricPresentationRepresentation.hxx>
+#include <StepVisual_PresentationStyleAssignment.hxx>
+#include <StepVisual_StyledItem.hxx>
 #include <TCollection_ExtendedString.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopLoc_Location.hxx>
-#include <XCAFDoc_ColorTool.hxx>
+#include <Transfer_FinderProcess.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <XSControl_TransferWriter.hxx>
+#include <XSControl_WorkSession.hxx>
+#include <array>
+#include <map>
 #include <mutex>
 #include <ostream>
-#include <streambuf>
 
 #include "core/clock.h"
+#include "formats/step/stream.h"
 #include "solid/occt/guard.h"
 #include "solid/occt/shape.h"
 
@@ -64,48 +76,26 @@ void configure(const SurfaceOptions& options) {
   Interface_Static::SetIVal("write.surfacecurve.mode", 0);
 }
 
-// Bytes to the OutputFile in blocks; remembers the first refusal.
-class OutputBuffer : public std::streambuf {
- public:
-  explicit OutputBuffer(OutputFile& output) : output_(output), block_(1U << 20, '\0') {
-    setp(block_.data(), block_.data() + block_.size());
-  }
-
-  Status flush() {
-    sync();
-    return status_;
-  }
-
- protected:
-  int overflow(int c) override {
-    if (sync() != 0) return traits_type::eof();
-    if (!traits_type::eq_int_type(c, traits_type::eof())) sputc(traits_type::to_char_type(c));
-    return traits_type::not_eof(c);
-  }
-
-  int sync() override {
-    if (status_.ok() && pptr() > pbase())
-      status_ = output_.write({pbase(), static_cast<std::size_t>(pptr() - pbase())});
-    setp(block_.data(), block_.data() + block_.size());
-    return status_.ok() ? 0 : -1;
-  }
-
- private:
-  OutputFile& output_;
-  std::string block_;
-  Status status_;
-};
-
 Handle(TCollection_HAsciiString) text(const std::string& words) {
   return new TCollection_HAsciiString(words.c_str());
 }
+
+// Below this two places are one for the reading system, mm. The solids' faces share their edges, so their
+// joints are as exact as doubles are; this is what OpenCASCADE takes for equal, and small against the finest
+// fibre.
+constexpr double uncertainty = 1e-7;
+
+struct Yarn {
+  TopoDS_Shape shape;
+  std::string name;
+  yarn::Color color;
+};
 
 class StepBodyWriter : public BodyWriter {
  public:
   StepBodyWriter(OutputFile& output, SurfaceOptions options)
       : output_(output), options_(std::move(options)), document_(new TDocStd_Document("BinXCAF")) {
     shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
-    colors_ = XCAFDoc_DocumentTool::ColorTool(document_->Main());
     assembly_ = shapes_->NewShape();
   }
 
@@ -121,7 +111,6 @@ class StepBodyWriter : public BodyWriter {
   Status add_shape(const yarn::Body& body) {
     solid::occt::YarnShape yarn = solid::occt::build_shape(body, 1.0);
     if (!yarn.defects.empty()) return yarn.defects.front();
-    ++count_;
     if (!yarn.closed) {
       ++facts_.entities["SHELL_BASED_SURFACE_MODEL"];
       Message open =
@@ -139,16 +128,12 @@ class StepBodyWriter : public BodyWriter {
     const TCollection_ExtendedString name(body.name.c_str(), true);
     TDataStd_Name::Set(part, name);
     TDataStd_Name::Set(component, name);
-    const auto share = [](int value) { return value / 255.0; };
-    colors_->SetColor(part,
-                      Quantity_Color(share(body.color.red), share(body.color.green), share(body.color.blue),
-                                     Quantity_TOC_sRGB),
-                      XCAFDoc_ColorGen);
+    yarns_.push_back({yarn.shape, body.name, body.color});
     return {};
   }
 
   Result<WriteFacts> write() {
-    if (count_ == 0) return error(Kind::geometry, "there is no yarn to write");
+    if (yarns_.empty()) return error(Kind::geometry, "there is no yarn to write");
     static std::mutex one_at_a_time;  // OpenCASCADE's settings are the process's
     const std::lock_guard lock(one_at_a_time);
     configure(options_);
@@ -156,7 +141,9 @@ class StepBodyWriter : public BodyWriter {
     const std::string title = options_.title.empty() ? "fabric" : options_.title;
     TDataStd_Name::Set(assembly_, TCollection_ExtendedString(title.c_str(), true));
     STEPCAFControl_Writer writer;
-    writer.SetColorMode(true);
+    writer.ChangeWriter().SetTolerance(uncertainty / millimetres_per(options_.units));
+    writer.SetColorMode(
+        false);  // add_styles: its own go in the order of memory addresses, so no two files are alike
     writer.SetNameMode(true);
     writer.SetLayerMode(false);
     writer.SetPropsMode(false);
@@ -166,19 +153,52 @@ class StepBodyWriter : public BodyWriter {
     // One transfer for all yarns: one each would take time that grows with their square.
     if (!writer.Transfer(document_, STEPControl_AsIs))
       return error(Kind::internal, "OpenCASCADE does not translate the yarns to STEP");
+    Status styled = add_styles(writer.ChangeWriter());
+    if (!styled.ok()) return styled.error();
     return send(writer.ChangeWriter().Model());
+  }
+
+  // Name and colour of each solid: a STYLED_ITEM in the context of its part, in file order; yarns of one
+  // colour share it.
+  Status add_styles(STEPControl_Writer& writer) {
+    const Handle(Transfer_FinderProcess) found = writer.WS()->TransferWriter()->FinderProcess();
+    STEPConstruct_Styles styles(writer.WS());
+    std::map<std::array<int, 3>, Handle(StepVisual_PresentationStyleAssignment)> assignments;
+    for (const Yarn& yarn : yarns_) {
+      const Handle(StepRepr_RepresentationItem) item = STEPConstruct::FindEntity(found, yarn.shape);
+      const Handle(StepRepr_RepresentationContext) context = styles.FindContext(yarn.shape);
+      if (item.IsNull() || context.IsNull())
+        return error(Kind::internal, fmt::format("OpenCASCADE left out yarn '{}'", yarn.name));
+      item->SetName(text(yarn.name));
+      auto& assignment = assignments[{yarn.color.red, yarn.color.green, yarn.color.blue}];
+      if (assignment.IsNull()) {
+        // Not OpenCASCADE's own colour, which is single precision; and no style of curves: it would draw
+        // lines 0.1 wide.
+        const Handle(StepVisual_ColourRgb) color = new StepVisual_ColourRgb;
+        color->Init(text(""), yarn.color.red / 255.0, yarn.color.green / 255.0, yarn.color.blue / 255.0);
+        assignment = styles.MakeColorPSA(item, color, {}, {}, 0.0);
+      }
+      styles.ClearStyles();
+      styles.AddStyle(item, assignment, {});
+      Handle(StepVisual_MechanicalDesignGeometricPresentationRepresentation) presentation;
+      if (!styles.CreateMDGPR(context, presentation))
+        return error(Kind::internal, fmt::format("OpenCASCADE refuses the colour of yarn '{}'", yarn.name));
+      writer.Model()->AddWithRefs(presentation);
+    }
+    return {};
   }
 
   Result<WriteFacts> send(const Handle(StepData_StepModel) & model) {
     set_header(model);
     StepData_StepWriter lines(model);
-    lines.FloatWriter().SetFormat("%.16E");  // 17 digits: every double reads back to the same bits
-    lines.FloatWriter().SetZeroSuppress(true);
+    // All 17 digits; StepStream shortens them. OpenCASCADE's own suppression of zeros breaks after 16
+    // characters.
+    lines.FloatWriter().SetFormat("%.16E");
     lines.SendModel(Handle(StepData_Protocol)::DownCast(model->Protocol()));
-    OutputBuffer buffer(output_);
+    StepStream buffer(output_);
     std::ostream stream(&buffer);
     const bool complete = lines.Print(stream);
-    Status status = buffer.flush();
+    Status status = buffer.close();
     if (!status.ok()) return status.error();
     if (!complete) return error(Kind::internal, "OpenCASCADE does not write the STEP file");
     return std::move(facts_);
@@ -200,9 +220,8 @@ class StepBodyWriter : public BodyWriter {
   SurfaceOptions options_;
   Handle(TDocStd_Document) document_;
   Handle(XCAFDoc_ShapeTool) shapes_;
-  Handle(XCAFDoc_ColorTool) colors_;
   TDF_Label assembly_;
-  std::size_t count_ = 0;
+  std::vector<Yarn> yarns_;  // in file order
   WriteFacts facts_;
 };
 

@@ -1,0 +1,178 @@
+#include "formats/step/stream.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "core/number_text.h"
+
+namespace selvage::formats::step {
+
+namespace {
+
+constexpr std::size_t block_size = 1U << 20;
+constexpr std::size_t line_length = 78;
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool is_word(char c) {
+  return is_digit(c) || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' || c == '#';
+}
+bool is_number(char c) {
+  return is_digit(c) || c == '.' || c == '+' || c == '-' || c == 'E' || c == 'e';
+}
+
+template <class Belongs>
+std::size_t length_while(std::string_view text, Belongs belongs) {
+  std::size_t n = 0;
+  while (n < text.size() && belongs(text[n])) ++n;
+  return n;
+}
+
+// The first character of a text in UTF-8, taken off it; a byte that is none stands for itself (Latin-1).
+char32_t take_character(std::string_view& text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char lead = byte(0);
+  const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
+  char32_t code = lead;
+  std::size_t taken = 1;
+  if (length > 1 && text.size() >= length) {
+    code = lead & (0xFFU >> (length + 1));
+    while (taken < length && (byte(taken) & 0xC0U) == 0x80) code = code << 6U | (byte(taken++) & 0x3FU);
+    if (taken < length) code = lead, taken = 1;
+  }
+  text.remove_prefix(taken);
+  return code;
+}
+
+}  // namespace
+
+StepStream::StepStream(OutputFile& output) : output_(output), raw_(block_size, '\0') {
+  out_.reserve(block_size);
+  setp(raw_.data(), raw_.data() + raw_.size());
+}
+
+Status StepStream::close() {
+  drain(true);
+  return status_;
+}
+
+int StepStream::sync() {
+  drain(false);
+  return status_.ok() ? 0 : -1;
+}
+
+int StepStream::overflow(int c) {
+  drain(false);
+  if (pptr() == epptr()) {  // one line that fills the whole block
+    const auto used = static_cast<std::size_t>(pptr() - pbase());
+    raw_.resize(2 * raw_.size());
+    setp(raw_.data(), raw_.data() + raw_.size());
+    pbump(static_cast<int>(used));
+  }
+  if (!status_.ok()) return traits_type::eof();
+  if (!traits_type::eq_int_type(c, traits_type::eof())) sputc(traits_type::to_char_type(c));
+  return traits_type::not_eof(c);
+}
+
+void StepStream::drain(bool all) {
+  const std::string_view text(pbase(), static_cast<std::size_t>(pptr() - pbase()));
+  const std::size_t lines = all ? text.size() : text.rfind('\n') + 1;  // npos + 1 is 0: no complete line
+  out_.clear();
+  convert(text.substr(0, lines));
+  if (status_.ok() && !out_.empty()) status_ = output_.write(out_);
+  const std::size_t rest = text.size() - lines;
+  std::char_traits<char>::move(raw_.data(), text.data() + lines, rest);
+  setp(raw_.data(), raw_.data() + raw_.size());
+  pbump(static_cast<int>(rest));
+}
+
+void StepStream::convert(std::string_view text) {
+  while (!text.empty()) {
+    const char c = text.front();
+    std::size_t length = 1;
+    if (in_string_) {
+      length = std::min(text.find('\''), text.size());
+      convert_string(text.substr(0, length));
+      if (length < text.size()) {
+        put_encoded();
+        put("'");
+        in_string_ = false;
+        ++length;
+      }
+    } else if (c == '\n') {
+      if (last_ == ';') put("\n");
+      length += length_while(text.substr(1), [](char next) { return next == ' '; });
+    } else if (c == '\'') {
+      // A string is not broken: the line is filled up before it.
+      if (column_ + text.substr(1).find('\'') > line_length && last_ != '\'') put("\n");
+      put("'");
+      in_string_ = true;
+    } else if (is_digit(c) || c == '-') {
+      length = length_while(text, is_number);
+      const std::string_view number = text.substr(0, length);
+      double value = 0.0;
+      const auto [end, failure] = std::from_chars(number.data(), number.data() + number.size(), value);
+      const bool is_real = number.find('.') != std::string_view::npos && failure == std::errc();
+      if (is_real && end == number.data() + number.size())
+        put_real(value);
+      else
+        put(number);
+    } else {
+      if (is_word(c)) length = length_while(text, is_word);
+      put(text.substr(0, length));
+    }
+    text.remove_prefix(length);
+  }
+}
+
+// Inside a string a line's end is OpenCASCADE's folding, not content.
+void StepStream::convert_string(std::string_view piece) {
+  for (const char c : piece) {
+    if (c == '\n') continue;
+    if (static_cast<unsigned char>(c) >= 0x80) {
+      encoded_ += c;
+      continue;
+    }
+    put_encoded();
+    put({&c, 1});
+  }
+}
+
+void StepStream::put_encoded() {
+  std::string_view rest = encoded_;
+  while (!rest.empty()) {
+    const char32_t code = take_character(rest);
+    put(code < 0x10000 ? fmt::format("\\X2\\{:04X}\\X0\\", static_cast<unsigned>(code))
+                       : fmt::format("\\X4\\{:08X}\\X0\\", static_cast<unsigned>(code)));
+  }
+  encoded_.clear();
+}
+
+void StepStream::put_real(double value) {
+  char real[max_number_length + 1];
+  char* end = write_number(real, value);
+  char* exponent = std::find(real, end, 'e');
+  if (std::find(real, exponent, '.') == exponent) {
+    std::copy_backward(exponent, end, end + 1);
+    *exponent++ = '.';
+    ++end;
+  }
+  if (exponent != end) *exponent = 'E';
+  put({real, static_cast<std::size_t>(end - real)});
+}
+
+// Lines are broken after a comma or an opening bracket, never inside a string.
+void StepStream::put(std::string_view token) {
+  if (!in_string_ && column_ + token.size() > line_length && (last_ == ',' || last_ == '(')) {
+    out_ += '\n';
+    column_ = 0;
+  }
+  out_ += token;
+  last_ = token.back();
+  column_ = last_ == '\n' ? 0 : column_ + token.size();
+}
+
+}  // namespace selvage::formats::step
