@@ -1,0 +1,202 @@
+// From the model to bodies: sizes, units, warnings, refusals.
+#include "fabric/build.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "fabric/yarn_spec.h"
+
+namespace selvage::fabric {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Thread cotton() {
+  Thread thread;
+  thread.name = "cotton30";
+  thread.linear_density = LinearDensity{30, LinearDensity::Measure::tex};
+  thread.density = 1.52;
+  thread.packing = 0.75;
+  return thread;
+}
+
+Yarn straight(std::string name, double length) {
+  Yarn yarn;
+  yarn.name = std::move(name);
+  yarn.thread = "cotton30";
+  yarn.place = {7, 1};
+  Path path;
+  path.place = {8, 3};
+  path.points = {{0, 0, 0}, {length, 0, 0}};
+  yarn.shape = path;
+  return yarn;
+}
+
+Fabric fabric_of(const Thread& thread, const Yarn& yarn, Unit units = Unit::mm) {
+  Fabric fabric;
+  fabric.file = "test.txt";
+  fabric.units = units;
+  fabric.threads = {thread};
+  fabric.items = {yarn};
+  return fabric;
+}
+
+Result<yarn::Body> build(const Fabric& fabric, Diagnostics& diagnostics, BuildOptions options = {}) {
+  const std::optional<YarnBuilder> builder = YarnBuilder::create(fabric, options, diagnostics);
+  if (!builder) return *diagnostics.first_error();
+  return builder->build(0);
+}
+
+TEST(BuildTest, DiameterOfThirtyTexCottonIsThePublishedOneInEveryUnit) {
+  EXPECT_NEAR(yarn_diameter(30, 1.52, 0.75), 0.03568 * std::sqrt(30 / (1.52 * 0.75)), 2e-5);
+  EXPECT_NEAR(yarn_diameter(30, 1.52, 0.75), 0.1830, 5e-5);
+  for (Unit unit : all_units) {
+    const double mm = millimetres_per(unit);
+    const Fabric fabric = fabric_of(cotton(), straight("y", 10 / mm), unit);
+    Diagnostics diagnostics;
+    const Result<yarn::Body> body = build(fabric, diagnostics);
+    ASSERT_TRUE(body.ok()) << to_string(body.error());
+    // tex over density and packing is the section's area in 1/1000 mm2.
+    EXPECT_NEAR(body->volume * mm * mm * mm, 10 * 30 / (1000 * 1.52 * 0.75), 1e-12);
+    EXPECT_TRUE(diagnostics.messages().empty());
+  }
+}
+
+TEST(BuildTest, DenierAndCottonCount) {
+  EXPECT_NEAR((LinearDensity{270, LinearDensity::Measure::denier}.tex()), 30, 1e-12);
+  EXPECT_NEAR((LinearDensity{19.7, LinearDensity::Measure::ne}.tex()), 590.541 / 19.7, 1e-4);
+}
+
+TEST(BuildTest, DefaultToleranceIsAThousandthOfTheSmallestSize) {
+  Thread tow = cotton();
+  tow.section = yarn::Ellipse{0.8, 0.2};
+  Fabric fabric = fabric_of(tow, straight("y", 3));
+  EXPECT_DOUBLE_EQ(tolerance_of(fabric, {}), 0.2e-3);
+  fabric.tolerance = 0.01;
+  EXPECT_EQ(tolerance_of(fabric, {}), 0.01);
+  BuildOptions options;
+  options.tolerance = 0.005;
+  EXPECT_EQ(tolerance_of(fabric, options), 0.005);
+}
+
+TEST(BuildTest, MoreFibreThanSectionIsAWarningOnce) {
+  Thread thin = cotton();
+  thin.diameter = 0.0912;  // the published radius, taken for a diameter
+  Fabric fabric = fabric_of(thin, straight("a", 3));
+  fabric.items.emplace_back(straight("b", 3));
+  Diagnostics diagnostics;
+  ASSERT_TRUE(YarnBuilder::create(fabric, {}, diagnostics).has_value());
+  ASSERT_EQ(diagnostics.messages().size(), 1U);
+  const Message& message = diagnostics.messages().front();
+  EXPECT_EQ(message.severity, Severity::warning);
+  EXPECT_NE(message.text.find("3.02"), std::string::npos) << message.text;  // 30 / (1000 1.52 pi/4 0.0912^2)
+  EXPECT_NE(message.text.find("cotton30"), std::string::npos);
+}
+
+TEST(BuildTest, PackingThatTheSizeContradictsIsAWarning) {
+  Thread thread = cotton();
+  thread.diameter = 0.2;
+  Diagnostics diagnostics;
+  ASSERT_TRUE(YarnBuilder::create(fabric_of(thread, straight("a", 3)), {}, diagnostics).has_value());
+  ASSERT_EQ(diagnostics.messages().size(), 1U);
+  EXPECT_NE(diagnostics.messages().front().text.find("0.628"), std::string::npos) << diagnostics.messages().front().text;
+}
+
+TEST(BuildTest, AThreadWithoutSizeSaysWhatIsMissing) {
+  Thread thread;
+  thread.name = "cotton30";
+  thread.linear_density = LinearDensity{30, LinearDensity::Measure::tex};
+  Diagnostics diagnostics;
+  const Result<yarn::Body> body = build(fabric_of(thread, straight("y", 3)), diagnostics);
+  ASSERT_FALSE(body.ok());
+  EXPECT_EQ(body.error().file, "test.txt");
+  EXPECT_EQ(body.error().place.line, 7);
+  EXPECT_NE(body.error().text.find("`density`"), std::string::npos);
+  EXPECT_NE(body.error().text.find("`packing`"), std::string::npos);
+  EXPECT_EQ(body.error().text.find("`tex`"), std::string::npos);
+}
+
+TEST(BuildTest, ConstructionsAndEditsAreRefusedAtTheirLines) {
+  Fabric fabric = fabric_of(cotton(), straight("y", 3));
+  Weave weave;
+  weave.place = {20, 1};
+  Braid braid;
+  braid.place = {30, 1};
+  fabric.items.emplace_back(weave);
+  fabric.items.emplace_back(braid);
+  Edit edit;
+  edit.place = {40, 1};
+  fabric.edits.push_back(edit);
+  Diagnostics diagnostics;
+  EXPECT_FALSE(YarnBuilder::create(fabric, {}, diagnostics).has_value());
+  std::vector<int> lines;
+  for (const Message& m : diagnostics.messages()) {
+    EXPECT_EQ(m.kind, Kind::unsupported);
+    EXPECT_NE(m.text.find("not supported yet"), std::string::npos);
+    lines.push_back(m.place.line);
+  }
+  EXPECT_EQ(lines, (std::vector<int>{20, 30, 40}));
+}
+
+TEST(BuildTest, TwistTurnsPerMetreInEveryUnit) {
+  for (Unit unit : all_units) {
+    const double mm = millimetres_per(unit);
+    Thread tow = cotton();
+    tow.packing.reset();
+    tow.linear_density.reset();
+    tow.section = yarn::Ellipse{0.8 / mm, 0.2 / mm};
+    tow.twist = Twist{40, Hand::s, true};
+    Diagnostics diagnostics;
+    const Result<yarn::Body> body = build(fabric_of(tow, straight("y", 12.5 / mm), unit), diagnostics);
+    ASSERT_TRUE(body.ok()) << to_string(body.error());
+    // 40 turns a metre over 12.5 mm: half a turn, so a quarter in the middle; S is left-handed: across (+y) goes to -z.
+    const Vec3 middle = nurbs::evaluate(body->surface, 0.0, 0.5) * mm;
+    EXPECT_LT((middle - Vec3(6.25, 0, -0.4)).norm(), 4e-4) << name_of(unit);
+  }
+}
+
+TEST(BuildTest, TenMillionPointsAreALimitErrorNotAnExhaustedMemory) {
+  Yarn yarn = straight("long", 3);
+  Path& path = std::get<Path>(yarn.shape);
+  path.points.clear();
+  for (int i = 0; i < 10'000'000; ++i) path.points.emplace_back(i, 0, 0);
+  Diagnostics diagnostics;
+  const Result<yarn::Body> body = build(fabric_of(cotton(), yarn), diagnostics);
+  ASSERT_FALSE(body.ok());
+  EXPECT_EQ(body.error().kind, Kind::limit);
+  EXPECT_NE(body.error().text.find("10000000 points"), std::string::npos);
+}
+
+TEST(BuildTest, EqualPointsAreReportedAtTheirLine) {
+  Yarn yarn = straight("y", 3);
+  std::get<Path>(yarn.shape).points.emplace_back(3, 0, 0);
+  Diagnostics diagnostics;
+  const Result<yarn::Body> body = build(fabric_of(cotton(), yarn), diagnostics);
+  ASSERT_FALSE(body.ok());
+  EXPECT_EQ(body.error().place.line, 11);
+}
+
+TEST(BuildTest, PolylineCornersUseTheSectionInThePlaneOfTheBend) {
+  // A flat section bends over its thickness at the first corner and over its width at the second.
+  Thread tow = cotton();
+  tow.section = yarn::Ellipse{0.8, 0.2};
+  Yarn yarn = straight("y", 3);
+  Path& path = std::get<Path>(yarn.shape);
+  path.form = Path::Form::polyline;
+  path.points = {{0, 0, 0}, {2, 0, 0}, {2, 0, 2}, {2, 2, 2}};
+  const Fabric fabric = fabric_of(tow, yarn);
+  const Result<yarn::PathRows> rows = path_rows_of(fabric, yarn, tow);
+  ASSERT_TRUE(rows.ok());
+  EXPECT_NEAR(rows->half_sizes[1], 0.1, 2e-3);
+  EXPECT_NEAR(rows->half_sizes[2], 0.4, 8e-3);
+  Diagnostics diagnostics;
+  const Result<yarn::Body> body = build(fabric, diagnostics);
+  ASSERT_TRUE(body.ok());
+  EXPECT_TRUE(body->tight_bends.empty());
+  EXPECT_NEAR(body->volume, pi / 4 * 0.16 * body->length, 2e-3 * body->volume);
+}
+
+}  // namespace
+}  // namespace selvage::fabric
