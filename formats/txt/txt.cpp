@@ -1,9 +1,17 @@
 #include "formats/txt/txt.h"
 
+#include "formats/txt/reader.h"
+#include "formats/txt/writer.h"
+
 namespace selvage::formats::txt {
 
 const Descriptor& descriptor() {
-  static const Descriptor self = {.name = "txt", .title = "Fabric TXT, the input language", .extensions = {".txt"}};
+  static const Descriptor self = {.name = "txt",
+                                  .title = "Fabric TXT, the input language",
+                                  .extensions = {".txt"},
+                                  .sniff = is_fabric_txt,
+                                  .read_fabric = read_fabric,
+                                  .write_fabric = write_fabric};
   return self;
 }
 

@@ -1,0 +1,349 @@
+// The fabrics by construction: `weave`, `knit`, `warpknit`, `braid`.
+#include <fmt/format.h>
+
+#include <numeric>
+
+#include "formats/txt/blocks.h"
+
+namespace selvage::formats::txt {
+
+namespace {
+
+using fabric::Braid;
+using fabric::Draft;
+using fabric::Knit;
+using fabric::Warpknit;
+using fabric::Weave;
+using fabric::WeaveSystem;
+
+// --- weave
+// ----------------------------------------------------------------------------------------------------------
+
+void read_system(Parser& p, WeaveSystem& system) {
+  system.place = p.statement().place();
+  do {
+    const auto thread = p.reference(p.threads);
+    if (!thread) return;
+    system.threads.emplace_back(*thread);
+  } while (p.comma());
+  const auto count = p.count("the number of yarns");
+  const auto pitch = count && p.expect("pitch") ? p.positive("the pitch") : std::nullopt;
+  if (!pitch || !p.finish()) return;
+  system.count = *count;
+  system.pitch = *pitch;
+}
+
+void read_warp(Parser& p, Weave& weave, std::string_view) {
+  read_system(p, weave.warp);
+}
+void read_weft(Parser& p, Weave& weave, std::string_view) {
+  read_system(p, weave.weft);
+}
+
+struct DraftRows {
+  Draft& draft;
+  bool good = true;
+};
+
+void read_draft_row(Parser& p, DraftRows& rows) {
+  const Spot spot = p.statement();
+  const std::string_view text = p.take_rest();
+  std::string row;
+  for (const char& c : text) {
+    if (c == ' ' || c == '\t') continue;
+    if (c != '0' && c != '1') {
+      const auto before = static_cast<int>(&c - text.data());
+      rows.good = false;
+      return p.error({&c, spot.line, spot.column + before}, "a draft has the signs 0 and 1 (1: warp on top)");
+    }
+    row += c;
+  }
+  if (!rows.draft.rows.empty() && row.size() != rows.draft.rows.front().size()) {
+    rows.good = false;
+    p.error(spot, fmt::format("this row of the draft has {} signs, the first one has {}", row.size(),
+                              rows.draft.rows.front().size()));
+    return;
+  }
+  rows.draft.rows.push_back(std::move(row));
+}
+
+void read_draft_rows(Parser& p, Draft& draft) {
+  static const Table<DraftRows> table({}, read_draft_row);
+  draft.form = Draft::Form::rows;
+  DraftRows rows{draft};
+  if (p.read_block("draft", "", p.statement(), table, rows) && rows.good && draft.rows.empty())
+    p.error(p.last(), "the draft has no rows");
+}
+
+void read_draft(Parser& p, Weave& weave, std::string_view) {
+  Draft& draft = weave.draft;
+  if (!p.more()) return read_draft_rows(p, draft);
+  const auto form = p.choice("draft", draft_words);
+  if (!form) return p.skip_statement();
+  draft.form = *form;
+  if (*form == Draft::Form::file) {
+    if (p.more() && *p.here().at != '"') {
+      draft.file = p.take_word();
+    } else if (const auto file = p.name("the draft's file")) {
+      draft.file = *file;
+    } else {
+      return;
+    }
+  } else if (*form != Draft::Form::plain) {
+    const auto numbers = p.pair(fmt::format("the {}", word_of(draft_words, *form)), '/');
+    if (!numbers) return;
+    draft.a = (*numbers)[0];
+    draft.b = (*numbers)[1];
+    if (*form == Draft::Form::satin &&
+        (draft.b < 2 || draft.b > draft.a - 2 || std::gcd(draft.a, draft.b) != 1))
+      p.error(
+          p.last(),
+          fmt::format("a satin {}/{} does not exist: the step lies between 1 and {} and has no divisor in "
+                      "common with {}",
+                      draft.a, draft.b, draft.a - 1, draft.a));
+  }
+  p.finish();
+}
+
+void read_profile(Parser& p, Weave& weave, std::string_view) {
+  const auto profile = p.choice("profile", profile_words);
+  if (profile && p.finish()) weave.profile = *profile;
+}
+
+void read_layers(Parser& p, Weave& weave, std::string_view) {
+  const auto layers = p.count("the number of layers");
+  if (layers && p.finish()) weave.layers = *layers;
+}
+
+// --- knit
+// -----------------------------------------------------------------------------------------------------------
+
+template <class T>
+void read_construction_thread(Parser& p, T& construction, std::string_view) {
+  const auto thread = p.reference(p.threads);
+  if (!thread) return;
+  construction.thread = *thread;
+  construction.thread_place = p.last().place();
+  p.finish();
+}
+
+void read_knit_courses(Parser& p, Knit& knit, std::string_view) {
+  const auto count = p.count("the number of courses");
+  if (count && p.finish()) knit.courses = *count;
+}
+
+void read_knit_wales(Parser& p, Knit& knit, std::string_view) {
+  const auto count = p.count("the number of wales");
+  if (count && p.finish()) knit.wales = *count;
+}
+
+void read_method(Parser& p, Knit& knit, std::string_view) {
+  const auto method = p.choice("method", knit_method_words);
+  if (method && p.finish()) knit.method = *method;
+}
+
+// --- warpknit
+// -------------------------------------------------------------------------------------------------------
+
+// Overlaps "A-B", whole numbers, separated by '/' or blanks, at the end perhaps "//". Returns where the
+// notation breaks; null: it does not.
+const char* find_lapping_fault(std::string_view text) {
+  const char* p = text.data();
+  const char* const end = p + text.size();
+  const auto is_digit = [&] { return p != end && *p >= '0' && *p <= '9'; };
+  const auto skip = [&](auto is_part) {
+    while (p != end && is_part(*p)) ++p;
+  };
+  const auto blank = [](char c) { return c == ' ' || c == '\t'; };
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  while (true) {
+    if (!is_digit()) return p;
+    skip(digit);
+    if (p == end || *p != '-') return p;
+    ++p;
+    if (!is_digit()) return p;
+    skip(digit);
+    const char* const overlap_end = p;
+    skip(blank);
+    int slashes = 0;
+    for (; p != end && *p == '/'; ++p) ++slashes;
+    skip(blank);
+    if (p == end) return nullptr;
+    if (slashes > 1) return p;
+    if (slashes == 0 && p == overlap_end) return p;
+  }
+}
+
+void read_bar(Parser& p, Warpknit& warpknit, std::string_view) {
+  fabric::WarpknitBar bar;
+  bar.place = p.statement().place();
+  const auto thread = p.reference(p.threads);
+  if (!thread) return;
+  bar.thread = *thread;
+  std::string_view lapping = p.take_rest();
+  const Spot spot = p.last();
+  constexpr std::string_view fall_plate = "fall-plate";
+  if (lapping.size() > fall_plate.size() &&
+      same_word(lapping.substr(lapping.size() - fall_plate.size()), fall_plate)) {
+    lapping.remove_suffix(fall_plate.size());
+    bar.fall_plate = true;
+  }
+  while (!lapping.empty() && (lapping.back() == ' ' || lapping.back() == '\t')) lapping.remove_suffix(1);
+  if (lapping.empty()) return p.error(p.here(), "the bar's lapping is missing, such as 1-0/1-2");
+  if (const char* fault = find_lapping_fault(lapping)) {
+    const auto before = static_cast<int>(fault - lapping.data());
+    return p.error(
+        {fault, spot.line, spot.column + before},
+        "this is no lapping: overlaps such as 1-0, separated by '/' or blanks, closed by '//' or not");
+  }
+  bar.lapping = lapping;
+  warpknit.bars.push_back(std::move(bar));
+}
+
+void read_extent(Parser& p, std::string_view what, int& count, double& pitch) {
+  const auto number = p.count(what);
+  const auto distance = number && p.expect("pitch") ? p.positive("the pitch") : std::nullopt;
+  if (!distance || !p.finish()) return;
+  count = *number;
+  pitch = *distance;
+}
+
+void read_warpknit_wales(Parser& p, Warpknit& warpknit, std::string_view) {
+  read_extent(p, "the number of wales", warpknit.wales, warpknit.wale_pitch);
+}
+
+void read_warpknit_courses(Parser& p, Warpknit& warpknit, std::string_view) {
+  read_extent(p, "the number of courses", warpknit.courses, warpknit.course_pitch);
+}
+
+void read_stitch(Parser& p, Warpknit& warpknit, std::string_view) {
+  const auto stitch = p.choice("stitch", stitch_words);
+  if (stitch && p.finish()) warpknit.stitch = *stitch;
+}
+
+// --- braid
+// ----------------------------------------------------------------------------------------------------------
+
+void read_carriers(Parser& p, Braid& braid, std::string_view) {
+  const auto count = p.count("the number of carriers", 2);
+  if (count && *count % 2 != 0)
+    p.error(p.last(), "half of the carriers run each way round: their number has to be even");
+  if (count && p.finish()) braid.carriers = *count;
+}
+
+void read_pattern(Parser& p, Braid& braid, std::string_view) {
+  const auto numbers = p.pair("the pattern", '/');
+  if (!numbers || !p.finish()) return;
+  braid.over = (*numbers)[0];
+  braid.under = (*numbers)[1];
+}
+
+void read_radius(Parser& p, Braid& braid, std::string_view) {
+  const auto value = p.positive("the radius");
+  if (value && p.finish()) braid.radius = *value;
+}
+
+void read_angle(Parser& p, Braid& braid, std::string_view) {
+  const auto value = p.number("the angle");
+  if (value && !(*value > 0.0 && *value < 90.0))
+    p.error(p.last(), "the angle between yarn and axis lies between 0 and 90 degrees, both excluded");
+  if (value && p.finish()) braid.angle = *value;
+}
+
+void read_length(Parser& p, Braid& braid, std::string_view) {
+  const auto value = p.positive("the length");
+  if (value && p.finish()) braid.length = *value;
+}
+
+void read_axial(Parser& p, Braid& braid, std::string_view) {
+  braid.axial_place = p.statement().place();
+  const auto thread = p.reference(p.threads);
+  const auto count = thread ? p.count("the number of axial yarns") : std::nullopt;
+  if (!count || !p.finish()) return;
+  braid.axial_thread = *thread;
+  braid.axial_count = *count;
+}
+
+}  // namespace
+
+void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
+  static const Table<Weave> table({{"warp", read_warp, Times::once},
+                                   {"weft", read_weft, Times::once},
+                                   {"draft", read_draft, Times::once},
+                                   {"profile", read_profile},
+                                   {"layers", read_layers}});
+  Weave weave;
+  const Spot opened = p.statement();
+  weave.place = opened.place();
+  p.finish();
+  p.read_block(word, "", opened, table, weave);
+  fabric.items.emplace_back(std::move(weave));
+}
+
+void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
+  static const Table<Knit> table({{"thread", read_construction_thread<Knit>, Times::once},
+                                  {"courses", read_knit_courses, Times::once},
+                                  {"wales", read_knit_wales, Times::once},
+                                  {"method", read_method}});
+  Knit knit;
+  const Spot opened = p.statement();
+  knit.place = opened.place();
+  const auto form = p.choice("knit", knit_words);
+  knit.form = form.value_or(Knit::Form::jersey);
+  const auto rib = knit.form == Knit::Form::rib ? p.pair("the rib", 'x') : std::nullopt;
+  if (rib) {
+    knit.rib_a = (*rib)[0];
+    knit.rib_b = (*rib)[1];
+  }
+  if (form && (rib || *form != Knit::Form::rib)) p.finish();
+  p.read_block(word, "", opened, table, knit);
+  fabric.items.emplace_back(std::move(knit));
+}
+
+void read_warpknit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
+  static const Table<Warpknit> table({{"thread", read_construction_thread<Warpknit>},
+                                      {"bar", read_bar, Times::any},
+                                      {"wales", read_warpknit_wales, Times::once},
+                                      {"courses", read_warpknit_courses, Times::once},
+                                      {"stitch", read_stitch}});
+  Warpknit warpknit;
+  const Spot opened = p.statement();
+  warpknit.place = opened.place();
+  const bool is_classic = p.more();
+  if (is_classic) {
+    const auto classic = p.choice("warp knit", classic_words);
+    if (classic && p.finish()) warpknit.classic = *classic;
+  }
+  const int errors = p.report.errors();
+  const bool closed = p.read_block(word, "", opened, table, warpknit);
+  if (closed && p.report.errors() == errors) {
+    if (is_classic && !warpknit.bars.empty())
+      p.error(opened, fmt::format("a warp knit '{}' has its own bars: leave out either the word or the bars",
+                                  warpknit.classic));
+    if (is_classic && warpknit.thread.empty()) p.error(p.last(), "'warpknit' ends without its 'thread'");
+    if (!is_classic && warpknit.bars.empty()) p.error(p.last(), "'warpknit' ends without a 'bar'");
+    if (!is_classic && !warpknit.thread.empty())
+      p.error(opened,
+              "the threads of this warp knit are those of its bars: 'thread' belongs to tricot, satin and "
+              "queens-cord");
+  }
+  fabric.items.emplace_back(std::move(warpknit));
+}
+
+void read_braid(Parser& p, fabric::Fabric& fabric, std::string_view word) {
+  static const Table<Braid> table({{"thread", read_construction_thread<Braid>, Times::once},
+                                   {"carriers", read_carriers, Times::once},
+                                   {"pattern", read_pattern, Times::once},
+                                   {"radius", read_radius, Times::once},
+                                   {"angle", read_angle, Times::once},
+                                   {"length", read_length, Times::once},
+                                   {"axial", read_axial}});
+  Braid braid;
+  const Spot opened = p.statement();
+  braid.place = opened.place();
+  p.finish();
+  p.read_block(word, "", opened, table, braid);
+  fabric.items.emplace_back(std::move(braid));
+}
+
+}  // namespace selvage::formats::txt

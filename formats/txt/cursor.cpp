@@ -1,0 +1,336 @@
+#include "formats/txt/cursor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "formats/txt/words.h"
+
+namespace selvage::formats::txt {
+
+namespace {
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t';
+}
+
+bool is_not_finite_word(std::string_view word) {
+  if (!word.empty() && (word.front() == '+' || word.front() == '-')) word.remove_prefix(1);
+  return same_word(word, "nan") || same_word(word, "inf") || same_word(word, "infinity");
+}
+
+// Does the whole word read as a number?
+bool is_number(std::string_view word) {
+  if (word.size() > 1 && word.front() == '+') word.remove_prefix(1);
+  double value = 0.0;
+  const auto [stop, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return failure != std::errc::invalid_argument && stop == word.data() + word.size();
+}
+
+}  // namespace
+
+Cursor::Cursor(const Source& source, Report& report) : report_(report) {
+  std::string_view bytes = source.bytes();
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  at_ = line_begin_ = statement_ = token_ = bytes.data();
+  end_ = at_ + bytes.size();
+}
+
+// --- statements
+// -----------------------------------------------------------------------------------------------------
+
+bool Cursor::ends_line(const char* p) const {
+  return p == end_ || *p == '\n' || *p == '#' || (*p == '\r' && (p + 1 == end_ || p[1] == '\n'));
+}
+
+bool Cursor::ends_token(const char* p) const {
+  return p == end_ || is_blank(*p) || ends_line(p);
+}
+
+Spot Cursor::spot_at(const char* p) const {
+  const std::ptrdiff_t column = p - line_begin_ + 1;
+  constexpr std::ptrdiff_t most = std::numeric_limits<int>::max();
+  return {p, line_, static_cast<int>(std::min(column, most))};
+}
+
+bool Cursor::next_statement() {
+  if (is_stopped()) return false;
+  if (reread_) {
+    reread_ = false;
+    return statement_ != end_;
+  }
+  for (;; fresh_ = false) {
+    if (!fresh_) {
+      if (at_ != end_ && *at_ != '\n') {
+        skip_comment();
+        const void* newline = at_ == end_ ? nullptr : std::memchr(at_, '\n', bytes_left());
+        at_ = newline != nullptr ? static_cast<const char*>(newline) : end_;
+      }
+      if (at_ == end_) {
+        statement_ = token_ = end_;
+        return false;
+      }
+      line_begin_ = ++at_;
+      ++line_;
+    }
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+    if (at_ == end_ || *at_ == '\n' || ends_line(at_)) continue;
+    if (is_stopped()) return false;
+    fresh_ = false;
+    statement_ = token_ = at_;
+    return true;
+  }
+}
+
+// A comment may hold anything but what shows that the file is no text at all.
+void Cursor::skip_comment() {
+  if (*at_ != '#') return;
+  const void* newline = std::memchr(at_, '\n', bytes_left());
+  const char* const stop = newline != nullptr ? static_cast<const char*>(newline) : end_;
+  const void* zero = std::memchr(at_, '\0', static_cast<std::size_t>(stop - at_));
+  if (zero != nullptr) refuse_foreign({static_cast<const char*>(zero), 1});
+  at_ = stop;
+}
+
+void Cursor::reread() {
+  reread_ = true;
+  at_ = token_ = statement_;
+}
+
+std::size_t Cursor::rows_ahead() const {
+  std::size_t rows = 0;
+  const char* p = at_;
+  while (p != end_) {
+    const void* newline = std::memchr(p, '\n', static_cast<std::size_t>(end_ - p));
+    if (newline == nullptr) break;
+    p = static_cast<const char*>(newline) + 1;
+    while (p != end_ && is_blank(*p)) ++p;
+    if (p == end_ || is_letter(*p)) break;
+    ++rows;
+  }
+  return rows;
+}
+
+// --- tokens
+// ---------------------------------------------------------------------------------------------------------
+
+bool Cursor::more() {
+  while (at_ != end_ && is_blank(*at_)) ++at_;
+  return !ends_line(at_);
+}
+
+Spot Cursor::here() {
+  const char* const behind = at_;
+  return more() ? spot_at(at_) : spot_at(behind);
+}
+
+std::string_view Cursor::word_at(const char* p) const {
+  const char* stop = p;
+  while (!ends_token(stop)) ++stop;
+  return {p, static_cast<std::size_t>(stop - p)};
+}
+
+std::string_view Cursor::peek_word() {
+  return more() ? word_at(at_) : std::string_view{};
+}
+
+std::string_view Cursor::take_word() {
+  const std::string_view word = peek_word();
+  if (word.empty()) return word;
+  token_ = at_;
+  at_ += word.size();
+  return word;
+}
+
+std::string_view Cursor::take_rest() {
+  if (!more()) return {};
+  token_ = at_;
+  while (!ends_line(at_)) ++at_;
+  const char* last = at_;
+  while (last != token_ && is_blank(last[-1])) --last;
+  return {token_, static_cast<std::size_t>(last - token_)};
+}
+
+bool Cursor::refuse_foreign(std::string_view token) {
+  const std::size_t good = text_prefix(token);
+  if (good == token.size()) return false;
+  const char* const bad = token.data() + good;
+  if (*bad == '\r')
+    report_.error(spot_at(bad), "a carriage return within a line: lines end with LF or CR LF");
+  else if (static_cast<unsigned char>(*bad) >= 0x80)
+    report_.error(spot_at(bad), "these bytes are not UTF-8 text; save the file as UTF-8");
+  else
+    report_.error(spot_at(bad), fmt::format("a control character (byte {}): this is not a text file",
+                                            static_cast<int>(static_cast<unsigned char>(*bad))));
+  stop();
+  return true;
+}
+
+std::optional<std::string_view> Cursor::quoted_name(std::string_view what, bool may_be_empty) {
+  const char* close = at_ + 1;
+  while (close != end_ && *close != '"' && *close != '\n') ++close;
+  if (close == end_ || *close != '"') {
+    report_.error(spot_at(at_), fmt::format("{}: the quote is not closed on this line", what));
+    at_ = close;
+    return std::nullopt;
+  }
+  const std::string_view text(at_ + 1, static_cast<std::size_t>(close - at_ - 1));
+  at_ = close + 1;
+  if (refuse_foreign(text)) return std::nullopt;
+  if (text.empty() && !may_be_empty) {
+    report_.error(last(), fmt::format("{}: an empty name", what));
+    return std::nullopt;
+  }
+  if (!ends_token(at_) && *at_ != ',') {
+    report_.error(spot_at(at_), fmt::format("{}: a blank is missing after the quote", what));
+    return std::nullopt;
+  }
+  return text;
+}
+
+std::optional<std::string_view> Cursor::name(std::string_view what, bool may_be_empty) {
+  if (!more()) {
+    report_.error(here(), fmt::format("{} is missing", what));
+    return std::nullopt;
+  }
+  token_ = at_;
+  if (*at_ == '"') return quoted_name(what, may_be_empty);
+  const std::string_view word = word_at(at_);
+  const char* p = at_;
+  while (p != word.data() + word.size() && (p == at_ ? starts_name(*p) : continues_name(*p))) ++p;
+  const std::string_view text(at_, static_cast<std::size_t>(p - at_));
+  if (!text.empty() && (ends_token(p) || *p == ',')) {
+    at_ = p;
+    return text;
+  }
+  at_ += word.size();
+  if (refuse_foreign(word)) return std::nullopt;
+  report_.error(last(),
+                fmt::format("{}: {} is not a name (letters, digits, '_', '.', '-', a letter first; anything "
+                            "else stands in double quotes)",
+                            what, in_quotes(word)));
+  return std::nullopt;
+}
+
+bool Cursor::comma() {
+  if (!more() || *at_ != ',') return false;
+  ++at_;
+  return true;
+}
+
+// --- numbers
+// --------------------------------------------------------------------------------------------------------
+
+// At the first character of a token. Moves only when the whole token is a finite number.
+bool Cursor::parse_number(double& value) {
+  const char* p = at_;
+  if (*p == '+' && (++p == end_ || *p == '-')) return false;
+  const auto [stop, failure] = std::from_chars(p, end_, value);
+  if (!ends_token(stop)) return false;
+  if (failure == std::errc::result_out_of_range) return parse_tiny_number(value);
+  if (failure != std::errc{} || !std::isfinite(value)) return false;
+  at_ = stop;
+  return true;
+}
+
+// from_chars calls what rounds to zero out of range, too; only what is too large is an error of ours.
+bool Cursor::parse_tiny_number(double& value) {
+  const std::string_view word = word_at(at_);
+  const std::string_view digits = word.front() == '+' ? word.substr(1) : word;
+  long double wide = 0.0L;
+  const auto [stop, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), wide);
+  if (failure != std::errc{}) {  // beyond even long double: the exponent's sign tells which way
+    const std::size_t exponent = digits.find_first_of("eE");
+    if (exponent == digits.npos || digits.substr(exponent + 1, 1) != "-") return false;
+    wide = digits.front() == '-' ? -0.0L : 0.0L;
+  }
+  if (std::abs(wide) >= 1.0L) return false;
+  at_ += word.size();
+  value = static_cast<double>(wide);
+  return true;
+}
+
+// The token at hand is no number: says why, and leaves it behind.
+void Cursor::explain_number(std::string_view what) {
+  token_ = at_;
+  const std::string_view word = word_at(at_);
+  at_ += word.size();
+  if (refuse_foreign(word)) return;
+  std::string pointed(word);
+  const auto commas = std::count(word.begin(), word.end(), ',');
+  std::replace(pointed.begin(), pointed.end(), ',', '.');
+  std::string reason;
+  if (commas == 1 && is_number(pointed))
+    reason = fmt::format("a decimal comma in {}: the decimal mark is the point, write {}", in_quotes(word),
+                         pointed);
+  else if (commas > 0)
+    reason = fmt::format("commas in {}: values are separated by blanks, the decimal mark is the point",
+                         in_quotes(word));
+  else if (is_not_finite_word(word))
+    reason = fmt::format("{} is not a finite number", in_quotes(word));
+  else if (is_number(word))
+    reason = fmt::format("{} is too large for a number in double precision", in_quotes(word));
+  else
+    reason = fmt::format("{} is not a number", in_quotes(word));
+  report_.error(last(), fmt::format("{}: {}", what, reason));
+}
+
+std::optional<double> Cursor::number(std::string_view what) {
+  if (!more()) {
+    report_.error(here(), fmt::format("{} is missing", what));
+    return std::nullopt;
+  }
+  token_ = at_;
+  double value = 0.0;
+  if (parse_number(value)) return value;
+  explain_number(what);
+  return std::nullopt;
+}
+
+std::optional<int> Cursor::integer(std::string_view what, int least, int most) {
+  const std::string_view word = peek_word();
+  const std::optional<double> value = number(what);
+  if (!value) return std::nullopt;
+  if (*value != std::floor(*value) || word.find_first_of(".eE") != word.npos) {
+    report_.error(last(), fmt::format("{}: {} is not a whole number", what, in_quotes(word)));
+    return std::nullopt;
+  }
+  if (*value < least || *value > most) {
+    std::string range = fmt::format("from {} to {}", least, most);
+    if (most == std::numeric_limits<int>::max() && *value < least) range = fmt::format("{} or more", least);
+    report_.error(last(), fmt::format("{}: {} has to be {}", what, in_quotes(word), range));
+    return std::nullopt;
+  }
+  return static_cast<int>(*value);
+}
+
+int Cursor::row(double* values, int most, std::string_view what) {
+  for (int count = 0;; ++count) {
+    if (!more()) return count;
+    token_ = at_;
+    if (count == most) {
+      report_.error(last(), fmt::format("{}: more than {} values", what, most));
+      return -1;
+    }
+    if (!parse_number(values[count])) {
+      explain_number(what);
+      return -1;
+    }
+  }
+}
+
+bool Cursor::finish() {
+  if (!more()) return true;
+  token_ = at_;
+  const std::string_view word = word_at(at_);
+  if (!refuse_foreign(word))
+    report_.error(last(), fmt::format("nothing more is expected on this line, found {}", in_quotes(word)));
+  return false;
+}
+
+}  // namespace selvage::formats::txt

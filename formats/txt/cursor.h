@@ -1,0 +1,89 @@
+// The lexical rules: lines, words, names and numbers, one pass over the bytes of a Source. Nothing is copied
+// and nothing is allocated but for messages.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "core/source.h"
+#include "formats/txt/report.h"
+
+namespace selvage::formats::txt {
+
+class Cursor {
+ public:
+  // `bytes` of the source, without a byte-order mark.
+  Cursor(const Source& source, Report& report);
+
+  // --- statements
+  // ------------------------------------------------------------------------------------------------- Goes to
+  // the first token of the next line that has one. False at the end of the text, and as soon as the report is
+  // full or stop() was called.
+  bool next_statement();
+  // The next call of next_statement() comes back to this statement.
+  void reread();
+  // Nothing more is read.
+  void stop() { stopped_ = true; }
+  [[nodiscard]] bool is_stopped() const { return stopped_ || report_.is_full(); }
+  // Where the statement begins; after the last one: the end of the text.
+  [[nodiscard]] Spot statement() const { return spot_at(statement_); }
+  // The statement's first character, which is there.
+  [[nodiscard]] char first_character() const { return *statement_; }
+  [[nodiscard]] std::string_view statement_word() const { return word_at(statement_); }
+  // An upper bound of how many statements follow this one before the next that begins with a letter.
+  [[nodiscard]] std::size_t rows_ahead() const;
+  [[nodiscard]] std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - at_); }
+
+  // --- tokens of the statement
+  // ------------------------------------------------------------------------------------ Is there another
+  // token on this line?
+  bool more();
+  // The next token's spot; at the end of the line just behind the last token.
+  Spot here();
+  // The spot of the token taken last.
+  [[nodiscard]] Spot last() const { return spot_at(token_); }
+
+  // The next word, up to a blank; empty at the end of the line. Taking leaves it behind, peeking does not.
+  std::string_view peek_word();
+  std::string_view take_word();
+  // The text up to a comment or the end of the line, without blanks round it.
+  std::string_view take_rest();
+
+  // The following report what is wrong, calling the value `what`, and give nothing then.
+  // A name, or text in quotes; `may_be_empty`: "" is allowed.
+  std::optional<std::string_view> name(std::string_view what, bool may_be_empty = false);
+  // The comma of a list of names, with blanks round it, if it comes next.
+  bool comma();
+  std::optional<double> number(std::string_view what);
+  std::optional<int> integer(std::string_view what, int least, int most);
+  // The numbers up to the end of the line, at most `most` of them; returns how many. An error gives -1.
+  int row(double* values, int most, std::string_view what);
+  // Reports what is left on the line. True when there is nothing.
+  bool finish();
+
+ private:
+  [[nodiscard]] bool ends_token(const char* p) const;
+  [[nodiscard]] bool ends_line(const char* p) const;
+  [[nodiscard]] Spot spot_at(const char* p) const;
+  [[nodiscard]] std::string_view word_at(const char* p) const;
+  bool parse_number(double& value);
+  bool parse_tiny_number(double& value);
+  void explain_number(std::string_view what);
+  std::optional<std::string_view> quoted_name(std::string_view what, bool may_be_empty);
+  void skip_comment();
+  // Reports bytes that are no text and stops; false when all of `token` is text.
+  bool refuse_foreign(std::string_view token);
+
+  Report& report_;
+  const char* at_;
+  const char* end_;
+  const char* line_begin_;
+  const char* statement_;
+  const char* token_;
+  int line_ = 1;
+  bool fresh_ = true;  // the first line has not been looked at
+  bool reread_ = false;
+  bool stopped_ = false;
+};
+
+}  // namespace selvage::formats::txt

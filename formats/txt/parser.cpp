@@ -1,0 +1,252 @@
+#include "formats/txt/parser.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace selvage::formats::txt {
+
+namespace {
+
+int find_word(const std::vector<std::string_view>& words, std::string_view word) {
+  const auto found =
+      std::find_if(words.begin(), words.end(), [&](auto known) { return same_word(known, word); });
+  return found == words.end() ? -1 : static_cast<int>(found - words.begin());
+}
+
+}  // namespace
+
+std::string Block::title() const {
+  return name.empty() ? fmt::format("'{}'", kind) : fmt::format("{} {}", kind, in_quotes(name));
+}
+
+// --- blocks
+// ---------------------------------------------------------------------------------------------------------
+
+bool Parser::at_row() const {
+  if (!starts_name(first_character())) return true;
+  const std::string_view word = statement_word();
+  return same_word(word, "nan") || same_word(word, "inf") || same_word(word, "infinity");
+}
+
+int Parser::next_in_block(Block& block) {
+  while (next_statement()) {
+    if (block.table->has_rows && at_row()) {
+      unwinding_ = false;
+      return row_step;
+    }
+    const std::string_view word = peek_word();
+    int step = find_word(block.table->words, word);
+    if (step < 0) step = same_word(word, "end") ? static_cast<int>(end_step) : unknown_word(block, word);
+    if (step >= 0) step = note_given(block, step, word);
+    if (step == missing_end_step) return missing_end(block);
+    if (step == skip_step) continue;
+    unwinding_ = false;
+    take_word();
+    if (step >= 0) return step;
+    if (close(block) == end_step) return end_step;
+  }
+  return block.outer != nullptr ? missing_end(block) : static_cast<int>(end_step);
+}
+
+// Behind the word `end`.
+int Parser::close(const Block& block) {
+  const Spot spot = last();
+  finish();
+  if (block.outer == nullptr) {
+    error(spot, "an 'end' without a block that it closes");
+    return skip_step;
+  }
+  const TableWords& table = *block.table;
+  for (std::size_t i = 0; i < table.words.size(); ++i) {
+    if (table.times[i] != Times::once || table.slots[i] != i || block.given[i] != 0) continue;
+    std::string words = fmt::format("'{}'", table.words[i]);
+    for (std::size_t j = i + 1; j < table.words.size(); ++j)
+      if (table.slots[j] == i) words += fmt::format(" or '{}'", table.words[j]);
+    error(spot, fmt::format("{} ends without its {}", block.title(), words));
+  }
+  return end_step;
+}
+
+// A statement that may stand once only; `index` is its word.
+int Parser::note_given(Block& block, int index, std::string_view word) {
+  const auto i = static_cast<std::size_t>(index);
+  const std::size_t slot = block.table->slots[i];
+  if (block.table->times[i] == Times::any) return index;
+  int& line = block.given[slot];
+  if (line == 0) {
+    line = statement().line;
+    return index;
+  }
+  for (const Block* outer = block.outer; outer != nullptr; outer = outer->outer)
+    if (find_word(outer->table->words, word) >= 0) return missing_end_step;
+  const std::string there = block.outer == nullptr ? "this file" : block.title();
+  error(statement(), fmt::format("{} is given twice in {}; first on line {}", in_quotes(word), there, line));
+  skip_statement();
+  return skip_step;
+}
+
+int Parser::unknown_word(const Block& block, std::string_view word) {
+  for (const Block* outer = block.outer; outer != nullptr; outer = outer->outer)
+    if (find_word(outer->table->words, word) >= 0) return missing_end_step;
+  if (text_prefix(word) != word.size()) {
+    finish();  // says that this is no text, and stops
+    return skip_step;
+  }
+  std::vector<std::string_view> known = block.table->words;
+  if (block.outer != nullptr) known.emplace_back("end");
+  const std::string_view near = near_word(word, known);
+  std::string what = fmt::format("unknown word {}", in_quotes(word));
+  if (block.outer != nullptr) what += fmt::format(" in {}", block.title());
+  if (block.table->has_rows) what += " where a row of numbers or 'end' is expected";
+  what += near.empty() ? fmt::format("; known: {}", fmt::join(known, ", ")) : did_you_mean(word, known);
+  error(statement(), what);
+  if (same_word(near, "end")) return end_step;
+  if (!near.empty()) return find_word(known, near);
+  skip_statement();
+  return skip_step;
+}
+
+void Parser::skip_statement() {
+  const int column = statement().column;
+  bool skipped = false;
+  while (next_statement()) {
+    if (statement().column > column) {
+      skipped = true;
+      continue;
+    }
+    if (!skipped || statement().column != column || !same_word(peek_word(), "end")) reread();
+    return;
+  }
+}
+
+int Parser::missing_end(const Block& block) {
+  if (!unwinding_ && !is_stopped()) {
+    const std::string_view next = peek_word();
+    const std::string where =
+        next.empty() ? "at the end of the file" : fmt::format("before {}", in_quotes(next));
+    error(statement(), fmt::format("'end' is missing: {}, opened on line {}, is still open {}", block.title(),
+                                   block.opened.line, where));
+  }
+  unwinding_ = true;
+  reread();
+  return missing_end_step;
+}
+
+// --- values
+// ---------------------------------------------------------------------------------------------------------
+
+std::optional<double> Parser::positive(std::string_view what) {
+  const std::optional<double> value = number(what);
+  if (!value || *value > 0.0) return value;
+  error(last(), fmt::format("{} has to be larger than 0", what));
+  return std::nullopt;
+}
+
+std::optional<double> Parser::not_negative(std::string_view what) {
+  const std::optional<double> value = number(what);
+  if (!value || *value >= 0.0) return value;
+  error(last(), fmt::format("{} has to be 0 or larger", what));
+  return std::nullopt;
+}
+
+std::optional<int> Parser::count(std::string_view what, int least) {
+  return integer(what, least, std::numeric_limits<int>::max());
+}
+
+std::optional<Vec3> Parser::point(std::string_view what) {
+  Vec3 point;
+  for (double& x : point) {
+    const std::optional<double> value = number(what);
+    if (!value) return std::nullopt;
+    x = *value;
+  }
+  return point;
+}
+
+std::optional<Vec3> Parser::direction(std::string_view what) {
+  const Spot spot = here();
+  const std::optional<Vec3> vector = point(what);
+  if (!vector || *vector != Vec3::Zero()) return vector;
+  error(spot, fmt::format("{}: 0 0 0 is no direction", what));
+  return std::nullopt;
+}
+
+std::string_view Parser::missing_choice(std::string_view what, std::string_view word,
+                                        const std::vector<std::string_view>& known) {
+  if (word.empty()) {
+    error(here(), fmt::format("{} is missing: {}", what, fmt::join(known, ", ")));
+    return {};
+  }
+  const std::string meant = did_you_mean(word, known);
+  error(last(), fmt::format("unknown {} {}{}", what, in_quotes(word),
+                            meant.empty() ? fmt::format("; known: {}", fmt::join(known, ", ")) : meant));
+  return near_word(word, known);
+}
+
+bool Parser::expect(std::string_view word) {
+  const Spot spot = here();
+  const std::string_view found = take_word();
+  if (same_word(found, word)) return true;
+  error(spot, found.empty() ? fmt::format("the word '{}' is missing", word)
+                            : fmt::format("the word '{}' is expected, found {}", word, in_quotes(found)));
+  return false;
+}
+
+std::optional<std::array<int, 2>> Parser::pair(std::string_view what, char sign) {
+  const Spot spot = here();
+  const std::string_view word = take_word();
+  std::array<int, 2> values{};
+  const char* p = word.data();
+  const char* const end = p + word.size();
+  bool good = true;
+  for (std::size_t i = 0; i < 2 && good; ++i) {
+    const auto [stop, failure] = std::from_chars(p, end, values[i]);
+    good = failure == std::errc{} && values[i] >= 1 &&
+           (i == 1 ? stop == end : stop != end && lower(*stop) == sign);
+    p = stop + (i == 0 && good ? 1 : 0);
+  }
+  if (good) return values;
+  error(spot, word.empty()
+                  ? fmt::format("{} is missing", what)
+                  : fmt::format("{}: two whole numbers joined by '{}' are expected, as in 2{}1, found {}",
+                                what, sign, sign, in_quotes(word)));
+  return std::nullopt;
+}
+
+// --- names
+// ----------------------------------------------------------------------------------------------------------
+
+std::optional<std::string_view> Parser::new_name(Names& names) {
+  const std::optional<std::string_view> found = name(fmt::format("the {}'s name", names.kind));
+  if (!found) return found;
+  const auto [entry, is_new] = names.lines.emplace(*found, last().line);
+  if (!is_new)
+    error(last(), fmt::format("the {} name {} is used twice; first on line {}", names.kind, in_quotes(*found),
+                              entry->second));
+  return found;
+}
+
+std::optional<std::string_view> Parser::reference(const Names& names) {
+  const std::optional<std::string_view> found = name(fmt::format("the {}'s name", names.kind));
+  if (found && !names.lines.contains(*found)) references_.push_back({&names, *found, last()});
+  return found;
+}
+
+void Parser::check_references() {
+  if (is_stopped()) return;  // what was not read may define them
+  for (const Reference& reference : references_) {
+    const Names& names = *reference.names;
+    if (names.lines.contains(reference.name)) continue;
+    std::vector<std::string_view> known;
+    for (const auto& [name, line] : names.lines) known.push_back(name);
+    std::sort(known.begin(), known.end());
+    error(reference.spot, fmt::format("unknown {} {}{}", names.kind, in_quotes(reference.name),
+                                      known.empty() ? fmt::format("; this file defines no {}", names.kind)
+                                                    : did_you_mean(reference.name, known)));
+  }
+}
+
+}  // namespace selvage::formats::txt

@@ -1,0 +1,217 @@
+#include "formats/txt/reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "formats/txt/blocks.h"
+
+namespace selvage::formats::txt {
+
+namespace {
+
+using fabric::Cell;
+using fabric::Edit;
+using fabric::Fabric;
+
+constexpr int newest_version = 1;
+
+// --- header
+// ---------------------------------------------------------------------------------------------------------
+
+void read_repeated_version(Parser& p, Fabric&, std::string_view) {
+  p.error(p.statement(), "'fabric' is the first statement of a file, and its only one of this name");
+}
+
+void read_title(Parser& p, Fabric& fabric, std::string_view) {
+  const auto title = p.name("the title", true);
+  if (title && p.finish()) fabric.title = std::string(*title);
+}
+
+void read_units(Parser& p, Fabric& fabric, std::string_view) {
+  const auto units = p.choice("unit", unit_words);
+  if (!units || !p.finish()) return;
+  fabric.units = *units;
+  fabric.units_given = true;
+}
+
+void read_tolerance(Parser& p, Fabric& fabric, std::string_view) {
+  const auto tolerance = p.positive("the tolerance");
+  if (tolerance && p.finish()) fabric.tolerance = *tolerance;
+}
+
+// --- cell
+// -----------------------------------------------------------------------------------------------------------
+
+void read_matrix(Parser& p, Cell& cell, std::string_view) {
+  const auto name = p.reference(p.materials);
+  if (name && p.finish()) cell.matrix = *name;
+}
+
+void read_periodic(Parser& p, Cell& cell, std::string_view) {
+  constexpr std::array<Word<int>, 3> axes{{{"x", 0}, {"y", 1}, {"z", 2}}};
+  do {
+    const auto axis = p.choice("axis", axes);
+    if (!axis) return;
+    bool& is_periodic = *axis == 0 ? cell.periodic_x : *axis == 1 ? cell.periodic_y : cell.periodic_z;
+    if (is_periodic) p.error(p.last(), "this axis is named twice");
+    is_periodic = true;
+  } while (p.more());
+}
+
+// --- file
+// -----------------------------------------------------------------------------------------------------------
+
+const Table<Fabric>& file_table() {
+  static const Table<Fabric> table({{"title", read_title},
+                                    {"units", read_units},
+                                    {"tolerance", read_tolerance},
+                                    {"thread", read_thread, Times::any},
+                                    {"material", read_material, Times::any},
+                                    {"yarn", read_yarn, Times::any},
+                                    {"weave", read_weave, Times::any},
+                                    {"knit", read_knit, Times::any},
+                                    {"warpknit", read_warpknit, Times::any},
+                                    {"braid", read_braid, Times::any},
+                                    {"piece", read_piece, Times::any},
+                                    {"edit", read_edit, Times::any},
+                                    {"cell", read_cell},
+                                    {"fabric", read_repeated_version, Times::any}});
+  return table;
+}
+
+// Nothing that could be read as text at all: one error says so. False: there is none.
+bool refuse_binary(const Source& source, Report& report) {
+  const std::string_view bytes = source.bytes();
+  const Spot begin{bytes.data(), 1, 1};
+  if (bytes.empty()) {
+    report.error(begin, "the file is empty; a fabric begins with the line 'fabric 1'");
+    return true;
+  }
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    report.error(begin, "the file is UTF-16 text; save it as UTF-8");
+    return true;
+  }
+  // Bytes above 127 may be an old encoding's letters in a comment; control characters are in no text.
+  const std::string_view head = bytes.substr(0, 4096);
+  const auto is_control = [](char c) {
+    return (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7F;
+  };
+  if (std::none_of(head.begin(), head.end(), is_control)) return false;
+  Spot spot = begin;
+  const std::string_view text = head.substr(head.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+  for (const char* p = text.data(); p != text.data() + text.size();) {
+    const std::size_t length = text_prefix({p, static_cast<std::size_t>(text.data() + text.size() - p)});
+    p += length;
+    spot.at = p;
+    spot.column += static_cast<int>(length);
+    if (*p == '\n') spot = {p + 1, spot.line + 1, 1};
+    if (*p != '\n' && *p != '\r') break;
+    if (*p++ == '\r') ++spot.column;
+  }
+  report.error(spot, "this is not a text file");
+  return true;
+}
+
+// The first statement. False: the rest is not worth reading.
+bool read_version(Parser& p) {
+  const Spot spot = p.statement();
+  const std::string_view word = p.peek_word();
+  if (same_word(word, "fabric")) {
+    p.take_word();
+  } else {
+    const std::string meant = did_you_mean(word, {"fabric"});
+    p.error(spot,
+            fmt::format("the first statement of a file is 'fabric 1', found {}{}", in_quotes(word), meant));
+    const std::vector<std::string_view>& known = file_table().words;
+    if (std::any_of(known.begin(), known.end(), [&](auto k) { return same_word(k, word); })) {
+      p.reread();
+      return true;
+    }
+    if (meant.empty()) return false;
+    p.take_word();
+  }
+  const auto version = p.count("the version of the language");
+  if (!version || !p.finish() || *version <= newest_version) return true;
+  p.report.error(p.last(),
+                 fmt::format("version {} of the language is newer than this program, which knows version {}",
+                             *version, newest_version),
+                 Kind::unsupported);
+  return false;
+}
+
+}  // namespace
+
+void read_edit(Parser& p, fabric::Fabric& fabric, std::string_view) {
+  Edit edit;
+  edit.place = p.statement().place();
+  const auto yarn = p.reference(p.yarns);
+  const auto form = yarn ? p.choice("edit", edit_words) : std::nullopt;
+  if (!form) return;
+  edit.yarn = *yarn;
+  edit.form = *form;
+  if (*form == Edit::Form::length) {
+    const auto length = p.positive("the length");
+    if (!length || !p.expect("point")) return;
+    edit.length = *length;
+  }
+  const auto joint = p.count("the number of the joint");
+  const bool is_length = *form == Edit::Form::length;
+  if (!joint || !p.expect(is_length ? "along" : "to")) return;
+  edit.joint = *joint;
+  const auto vector = is_length ? p.direction("the direction") : p.point("the target");
+  if (!vector || !p.finish()) return;
+  (is_length ? edit.direction : edit.target) = *vector;
+  fabric.edits.push_back(std::move(edit));
+}
+
+void read_cell(Parser& p, fabric::Fabric& fabric, std::string_view word) {
+  static const Table<Cell> table({{"matrix", read_matrix}, {"periodic", read_periodic}});
+  Cell cell;
+  const Spot opened = p.statement();
+  cell.place = opened.place();
+  const auto one = p.point("a corner of the cell");
+  const auto other = one ? p.point("the opposite corner of the cell") : std::nullopt;
+  if (other) {
+    cell.low = one->cwiseMin(*other);
+    cell.high = one->cwiseMax(*other);
+    if ((cell.low.array() == cell.high.array()).any()) p.error(opened, "the cell has no volume");
+    p.finish();
+  }
+  p.read_block(word, "", opened, table, cell);
+  fabric.cell = std::move(cell);
+}
+
+std::optional<Fabric> read_fabric(const Source& source, Diagnostics& diagnostics) {
+  Report report(source);
+  if (!refuse_binary(source, report)) {
+    Parser p(source, report);
+    p.fabric.file = source.name();
+    if (!p.next_statement()) {
+      if (report.errors() == 0)
+        p.error({source.bytes().data(), 1, 1},
+                "the file has no statement; a fabric begins with the line 'fabric 1'");
+    } else if (read_version(p)) {
+      p.read_block("", "", p.statement(), file_table(), p.fabric);
+      p.check_references();
+    }
+    if (report.errors() == 0) {
+      report.hand_over(diagnostics);
+      return std::move(p.fabric);
+    }
+  }
+  report.hand_over(diagnostics);
+  return std::nullopt;
+}
+
+bool is_fabric_txt(std::string_view head) {
+  const Source source = Source::from_memory(std::string(head));
+  Report report(source);
+  Cursor cursor(source, report);
+  if (!cursor.next_statement() || !same_word(cursor.take_word(), "fabric")) return false;
+  const std::string_view version = cursor.take_word();
+  return !version.empty() &&
+         std::all_of(version.begin(), version.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+}  // namespace selvage::formats::txt

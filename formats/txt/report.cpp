@@ -1,0 +1,147 @@
+#include "formats/txt/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace selvage::formats::txt {
+
+namespace {
+
+constexpr std::size_t excerpt_before = 60, excerpt_after = 50;  // bytes shown on either side of the caret
+
+bool is_continuation(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
+}
+
+// The length of the UTF-8 character at the front of `bytes` (RFC 3629), 0 where there is none.
+std::size_t character_length(std::string_view bytes) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  if (first < 0xC2 || first > 0xF4 || bytes.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if (!is_continuation(bytes[i])) return 0;
+  const unsigned char second = byte(1);
+  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
+  const bool beyond = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
+  return overlong || beyond ? 0 : length;
+}
+
+bool is_control(char c) {
+  return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7F;
+}
+
+std::string made_readable(std::string_view bytes) {
+  std::string text;
+  text.reserve(bytes.size());
+  while (!bytes.empty()) {
+    const std::size_t length = is_control(bytes.front()) ? 0 : character_length(bytes);
+    if (length == 0)
+      text += '?';
+    else
+      text += bytes.substr(0, length);
+    bytes.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return text;
+}
+
+// The line round `spot`, cut to what fits a terminal, and the caret in it.
+void add_excerpt(Message& message, const Spot& spot, std::string_view bytes) {
+  const char* const end = bytes.data() + bytes.size();
+  const char* from = spot.at - (spot.column - 1);
+  const auto room = static_cast<std::size_t>(end - spot.at);
+  const void* newline = room > 0 ? std::memchr(spot.at, '\n', std::min(room, 2 * excerpt_after)) : nullptr;
+  const bool goes_on = newline == nullptr && room > 2 * excerpt_after;
+  const char* to = newline != nullptr ? static_cast<const char*>(newline)
+                   : goes_on          ? spot.at + excerpt_after
+                                      : end;
+  if (!goes_on && to > from && to[-1] == '\r') --to;
+  std::string before, after;
+  if (static_cast<std::size_t>(spot.at - from) > 2 * excerpt_before) {
+    from = spot.at - excerpt_before;
+    while (from < spot.at && is_continuation(*from)) ++from;
+    before = "...";
+  }
+  if (goes_on) {
+    while (to > spot.at && is_continuation(*to)) --to;
+    after = "...";
+  }
+  to = std::max(to, from);
+  const auto caret_at = static_cast<std::size_t>(std::min(spot.at, to) - from);
+  const std::string_view line(from, static_cast<std::size_t>(to - from));
+  const std::string left = before + made_readable(line.substr(0, caret_at));
+  message.excerpt = left + made_readable(line.substr(caret_at)) + after;
+  if (!message.excerpt.empty()) message.caret = static_cast<int>(left.size()) + 1;
+}
+
+}  // namespace
+
+std::size_t text_prefix(std::string_view bytes) {
+  std::size_t done = 0;
+  while (done < bytes.size() && !is_control(bytes[done])) {
+    const std::size_t length = character_length(bytes.substr(done));
+    if (length == 0) break;
+    done += length;
+  }
+  return done;
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t most = 48;
+  std::string_view shown = text;
+  if (text.size() > most) {
+    std::size_t cut = most - 3;
+    while (cut > 0 && is_continuation(text[cut])) --cut;
+    shown = text.substr(0, cut);
+  }
+  return fmt::format("'{}{}'", made_readable(shown), shown.size() < text.size() ? "..." : "");
+}
+
+std::string_view near_word(std::string_view word, const std::vector<std::string_view>& known) {
+  return word.size() < 2 ? std::string_view{} : nearest_word(word, known);
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known) {
+  const std::string_view near = near_word(word, known);
+  return near.empty() ? std::string{} : fmt::format("; did you mean {}?", in_quotes(near));
+}
+
+void Report::add(Severity severity, Kind kind, const Spot& spot, std::string text) {
+  Message message;
+  message.severity = severity;
+  message.kind = kind;
+  message.text = std::move(text);
+  message.file = source_.name();
+  message.place = spot.place();
+  message.yarn = made_readable(yarn_);
+  add_excerpt(message, spot, source_.bytes());
+  messages_.push_back(std::move(message));
+}
+
+void Report::error(const Spot& spot, std::string text, Kind kind) {
+  if (is_full()) return;
+  ++errors_;
+  add(Severity::error, kind, spot, std::move(text));
+}
+
+void Report::warning(const Spot& spot, std::string text) {
+  if (++warnings_ <= most_warnings) add(Severity::warning, Kind::malformed, spot, std::move(text));
+}
+
+void Report::hand_over(Diagnostics& diagnostics) {
+  std::stable_sort(messages_.begin(), messages_.end(), [](const Message& a, const Message& b) {
+    return a.place.line != b.place.line ? a.place.line < b.place.line : a.place.column < b.place.column;
+  });
+  for (Message& message : messages_) diagnostics.add(std::move(message));
+  messages_.clear();
+  if (warnings_ <= most_warnings) return;
+  Message rest =
+      selvage::warning(Kind::malformed, fmt::format("{} more warnings", warnings_ - most_warnings));
+  rest.file = source_.name();
+  diagnostics.add(std::move(rest));
+}
+
+}  // namespace selvage::formats::txt

@@ -1,0 +1,59 @@
+// What is wrong with a text, gathered while it is read and handed over in the order of its lines.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/source.h"
+
+namespace selvage::formats::txt {
+
+// A place in the text; line and column count from 1, columns in bytes.
+struct Spot {
+  const char* at = nullptr;  // in Source::bytes(), the end of them included
+  int line = 1;
+  int column = 1;
+
+  [[nodiscard]] TextPlace place() const { return {line, column}; }
+};
+
+// The number of bytes at the beginning of `bytes` that are whole UTF-8 characters and no control characters
+// but tab.
+std::size_t text_prefix(std::string_view bytes);
+
+// Foreign text made fit for a message: in single quotes, at most 48 bytes, bytes that are not text as '?'.
+std::string in_quotes(std::string_view text);
+
+// The known word that was meant; empty when none is near. For words of one letter no guess is made.
+std::string_view near_word(std::string_view word, const std::vector<std::string_view>& known);
+// "; did you mean 'WORD'?", or nothing.
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known);
+
+class Report {
+ public:
+  static constexpr int most_errors = 20, most_warnings = 100;
+
+  explicit Report(const Source& source) : source_(source) {}
+
+  void error(const Spot& spot, std::string text, Kind kind = Kind::malformed);
+  void warning(const Spot& spot, std::string text);
+
+  [[nodiscard]] int errors() const { return errors_; }
+  [[nodiscard]] bool is_full() const { return errors_ >= most_errors; }
+  // The yarn that messages name from here on; empty: none.
+  void set_yarn(std::string_view name) { yarn_ = name; }
+
+  void hand_over(Diagnostics& diagnostics);
+
+ private:
+  void add(Severity severity, Kind kind, const Spot& spot, std::string text);
+
+  const Source& source_;
+  std::string_view yarn_;
+  std::vector<Message> messages_;
+  int errors_ = 0, warnings_ = 0;
+};
+
+}  // namespace selvage::formats::txt

@@ -1,0 +1,258 @@
+// The blocks `thread` and `material`.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "formats/txt/blocks.h"
+
+namespace selvage::formats::txt {
+
+namespace {
+
+using fabric::Material;
+using fabric::Thread;
+
+// --- thread
+// ---------------------------------------------------------------------------------------------------------
+
+void read_linear_density(Parser& p, Thread& thread, std::string_view word) {
+  const auto value = p.positive(fmt::format("the linear density ({})", word));
+  if (!value || !p.finish()) return;
+  for (const auto& measure : density_words)
+    if (measure.text == word) thread.linear_density = {*value, measure.value};
+}
+
+void read_density(Parser& p, Thread& thread, std::string_view) {
+  const auto value = p.positive("the fibre density");
+  if (value && p.finish()) thread.density = *value;
+}
+
+void read_packing(Parser& p, Thread& thread, std::string_view) {
+  const auto value = p.positive("the packing");
+  if (value && *value > 1.0)
+    p.error(p.last(), "the packing is a share of the section: it cannot be larger than 1");
+  if (value && p.finish()) thread.packing = *value;
+}
+
+void read_diameter(Parser& p, Thread& thread, std::string_view) {
+  const auto value = p.positive("the diameter");
+  if (value && p.finish()) thread.diameter = *value;
+}
+
+// Rows `x y` of a polygon's corners.
+struct Corners {
+  std::vector<Vec2> points;
+  bool good = true;
+};
+
+void read_corner(Parser& p, Corners& corners) {
+  const Spot spot = p.statement();
+  std::array<double, 2> xy{};
+  const int count = p.row(xy.data(), 2, "a corner");
+  const Vec2 corner(xy[0], xy[1]);
+  bool good = count == 2;
+  if (count == 0 || count == 1) p.error(p.here(), "a corner has two coordinates: x y");
+  if (good && !corners.points.empty() && corner == corners.points.back()) {
+    p.error(spot, "this corner equals the one before it");
+    good = false;
+  }
+  corners.good = corners.good && good;
+  if (count == 2) corners.points.push_back(corner);
+}
+
+double area_of(const std::vector<Vec2>& corners) {
+  double twice = 0.0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec2& a = corners[i];
+    const Vec2& b = corners[(i + 1) % corners.size()];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return 0.5 * twice;
+}
+
+std::optional<yarn::Section> read_polygon(Parser& p) {
+  static const Table<Corners> table({}, read_corner);
+  const Spot spot = p.last();
+  p.finish();
+  Corners corners;
+  if (!p.read_block("polygon", "", spot, table, corners) || !corners.good) return std::nullopt;
+  const std::vector<Vec2>& points = corners.points;
+  if (points.size() < 3)
+    p.error(p.last(), fmt::format("a polygon has at least 3 corners; this one has {}", points.size()));
+  else if (points.front() == points.back())
+    p.error(p.last(),
+            "the polygon's last corner repeats its first: leave it out, the polygon is closed anyway");
+  else if (area_of(points) == 0.0)
+    p.error(spot, "the polygon's area is 0");
+  else
+    return yarn::Polygon{points};
+  return std::nullopt;
+}
+
+std::optional<yarn::Section> read_flat_section(Parser& p, int kind) {
+  const auto width = p.positive("the section's width");
+  const auto height = width ? p.positive("the section's height") : std::nullopt;
+  if (!height) return std::nullopt;
+  if (kind == 1) return yarn::Ellipse{*width, *height};
+  if (kind == 2) return yarn::Lenticular{*width, *height};
+  if (kind == 3) return yarn::Racetrack{*width, *height};
+  const auto exponent = p.positive("the section's exponent");
+  if (!exponent) return std::nullopt;
+  return yarn::Power{*width, *height, *exponent};
+}
+
+void read_section(Parser& p, Thread& thread, std::string_view) {
+  const auto kind = p.choice("section", section_words);
+  if (!kind) return p.skip_statement();
+  if (*kind == 6) {
+    thread.section = read_polygon(p);
+    return;
+  }
+  std::optional<yarn::Section> section;
+  if (*kind >= 1 && *kind <= 4) {
+    section = read_flat_section(p, *kind);
+  } else {
+    const auto diameter = p.more() ? p.positive("the section's diameter") : std::optional<double>(0.0);
+    if (diameter && *kind == 0) section = yarn::Circle{*diameter};
+    if (diameter && *kind == 5) section = yarn::Loop7{*diameter};
+  }
+  if (section && p.finish()) thread.section = section;
+}
+
+void read_twist(Parser& p, Thread& thread, std::string_view) {
+  const auto turns = p.not_negative("the twist (its direction is the letter Z or S)");
+  const auto hand = turns ? p.choice("twist direction", hand_words) : std::nullopt;
+  if (!hand) return;
+  const bool rotates = p.more();
+  if (rotates && !p.expect("rotate")) return;
+  if (p.finish()) thread.twist = {*turns, *hand, rotates};
+}
+
+void read_plies(Parser& p, Thread& thread, std::string_view) {
+  const auto count = p.count("the number of plies");
+  const auto turns =
+      count ? p.not_negative("the ply twist (its direction is the letter Z or S)") : std::nullopt;
+  const auto hand = turns ? p.choice("twist direction", hand_words) : std::nullopt;
+  if (hand && p.finish()) thread.plies = {*count, *turns, *hand};
+}
+
+void read_filaments(Parser& p, Thread& thread, std::string_view) {
+  const auto count = p.count("the number of filaments");
+  if (count && p.finish()) thread.filaments = *count;
+}
+
+void read_color(Parser& p, Thread& thread, std::string_view) {
+  fabric::Color color;
+  for (int* part : {&color.red, &color.green, &color.blue}) {
+    const auto value = p.integer("a colour's red, green or blue", 0, 255);
+    if (!value) return;
+    *part = *value;
+  }
+  if (p.finish()) thread.color = color;
+}
+
+void read_material_name(Parser& p, Thread& thread, std::string_view) {
+  const auto name = p.reference(p.materials);
+  if (name && p.finish()) thread.material = std::string(*name);
+}
+
+// --- material
+// -------------------------------------------------------------------------------------------------------
+
+void read_material_density(Parser& p, Material& material, std::string_view) {
+  const auto value = p.positive("the density");
+  if (value && p.finish()) material.density = *value;
+}
+
+void read_isotropic(Parser& p, Material& material) {
+  const auto modulus = p.positive("Young's modulus");
+  const auto poisson = modulus ? p.number("Poisson's ratio") : std::nullopt;
+  if (!poisson) return;
+  if (*poisson <= -1.0 || *poisson >= 0.5)
+    p.error(p.last(), "Poisson's ratio of an isotropic material lies between -1 and 0.5, both excluded");
+  if (p.finish()) material.elastic = fabric::IsotropicElastic{*modulus, *poisson};
+}
+
+// Positive strain energy for every strain asks for nu12^2 < E1 / E2, |nu23| < 1 and
+// 1 - nu23 - 2 nu12^2 E2 / E1 > 0 (Lempriere 1968, for transverse isotropy about axis 1).
+void read_transverse(Parser& p, Material& material) {
+  std::array<double, 5> value{};
+  std::array<Spot, 5> spot;
+  constexpr std::array<std::string_view, 5> what = {"the modulus E1", "the modulus E2",
+                                                    "Poisson's ratio nu12", "the shear modulus G12",
+                                                    "Poisson's ratio nu23"};
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const bool is_ratio = i == 2 || i == 4;
+    const auto number = is_ratio ? p.number(what[i]) : p.positive(what[i]);
+    if (!number) return;
+    value[i] = *number;
+    spot[i] = p.last();
+  }
+  const fabric::TransverseElastic elastic{value[0], value[1], value[2], value[3], value[4]};
+  const double minor = elastic.nu12 * elastic.nu12 * elastic.e2 / elastic.e1;
+  if (!(minor < 1.0))
+    p.error(spot[2], "nu12 is too large for a stable material: nu12^2 has to be smaller than E1 / E2");
+  else if (!(std::abs(elastic.nu23) < 1.0 && 1.0 - elastic.nu23 - 2.0 * minor > 0.0))
+    p.error(spot[4],
+            "nu23 is not that of a stable material: between -1 and 1 - 2 nu12^2 E2 / E1, both excluded");
+  if (p.finish()) material.elastic = elastic;
+}
+
+void read_elastic(Parser& p, Material& material, std::string_view) {
+  constexpr std::array<Word<bool>, 2> laws{{{"isotropic", false}, {"transverse", true}}};
+  const auto is_transverse = p.choice("elastic law", laws);
+  if (!is_transverse) return;
+  *is_transverse ? read_transverse(p, material) : read_isotropic(p, material);
+}
+
+void read_expansion(Parser& p, Material& material, std::string_view) {
+  const auto along = p.number("the expansion along");
+  const auto across = along ? p.number("the expansion across") : std::nullopt;
+  if (across && p.finish()) material.expansion = {*along, *across};
+}
+
+}  // namespace
+
+const std::vector<Statement<Thread>>& thread_statements() {
+  static const std::vector<Statement<Thread>> list = {
+      {"tex", read_linear_density},
+      {"denier", read_linear_density, Times::at_most_once, "tex"},
+      {"Ne", read_linear_density, Times::at_most_once, "tex"},
+      {"density", read_density},
+      {"packing", read_packing},
+      {"diameter", read_diameter},
+      {"section", read_section},
+      {"twist", read_twist},
+      {"plies", read_plies},
+      {"filaments", read_filaments},
+      {"color", read_color},
+      {"material", read_material_name}};
+  return list;
+}
+
+void read_thread(Parser& p, fabric::Fabric& fabric, std::string_view word) {
+  static const Table<Thread> table(thread_statements());
+  Thread thread;
+  const Spot opened = p.statement();
+  thread.place = opened.place();
+  const auto name = p.new_name(p.threads);
+  if (name) p.finish();
+  thread.name = name.value_or("");
+  p.read_block(word, thread.name, opened, table, thread);
+  fabric.threads.push_back(std::move(thread));
+}
+
+void read_material(Parser& p, fabric::Fabric& fabric, std::string_view word) {
+  static const Table<Material> table(
+      {{"density", read_material_density}, {"elastic", read_elastic}, {"expansion", read_expansion}});
+  Material material;
+  const Spot opened = p.statement();
+  material.place = opened.place();
+  const auto name = p.new_name(p.materials);
+  if (name) p.finish();
+  material.name = name.value_or("");
+  p.read_block(word, material.name, opened, table, material);
+  fabric.materials.push_back(std::move(material));
+}
+
+}  // namespace selvage::formats::txt

@@ -1,0 +1,119 @@
+// The fixed words of the language and what they mean; the reader and the writer share these tables.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "fabric/model.h"
+
+namespace selvage::formats::txt {
+
+template <class T>
+struct Word {
+  std::string_view text;
+  T value;
+};
+
+using fabric::Draft;
+using fabric::Hand;
+using fabric::Knit;
+using fabric::LinearDensity;
+using fabric::Path;
+using fabric::PieceCurve;
+using fabric::Role;
+using fabric::Warpknit;
+using fabric::Weave;
+
+// All are compared ignoring case and written as they stand here.
+inline constexpr std::array<Word<Hand>, 2> hand_words{{{"Z", Hand::z}, {"S", Hand::s}}};
+inline constexpr std::array<Word<LinearDensity::Measure>, 3> density_words{
+    {{"tex", LinearDensity::Measure::tex},
+     {"denier", LinearDensity::Measure::denier},
+     {"Ne", LinearDensity::Measure::ne}}};
+inline constexpr std::array<Word<Unit>, 5> unit_words{
+    {{"m", Unit::m}, {"cm", Unit::cm}, {"mm", Unit::mm}, {"um", Unit::um}, {"inch", Unit::inch}}};
+inline constexpr std::array<Word<Role>, 8> role_words{{{"warp", Role::warp},
+                                                       {"weft", Role::weft},
+                                                       {"wale", Role::wale},
+                                                       {"course", Role::course},
+                                                       {"braider", Role::braider},
+                                                       {"axial", Role::axial},
+                                                       {"binder", Role::binder},
+                                                       {"other", Role::other}}};
+inline constexpr std::array<Word<Path::Form>, 6> path_words{{{"chord", Path::Form::chord},
+                                                             {"uniform", Path::Form::uniform},
+                                                             {"centripetal", Path::Form::centripetal},
+                                                             {"polyline", Path::Form::polyline},
+                                                             {"control", Path::Form::control},
+                                                             {"loop", Path::Form::loop}}};
+inline constexpr std::array<Word<Draft::Form>, 5> draft_words{{{"plain", Draft::Form::plain},
+                                                               {"twill", Draft::Form::twill},
+                                                               {"satin", Draft::Form::satin},
+                                                               {"basket", Draft::Form::basket},
+                                                               {"file", Draft::Form::file}}};
+inline constexpr std::array<Word<Weave::Profile>, 4> profile_words{
+    {{"peirce", Weave::Profile::peirce},
+     {"sine", Weave::Profile::sine},
+     {"lenticular", Weave::Profile::lenticular},
+     {"racetrack", Weave::Profile::racetrack}}};
+inline constexpr std::array<Word<Knit::Form>, 3> knit_words{
+    {{"jersey", Knit::Form::jersey}, {"purl", Knit::Form::purl}, {"rib", Knit::Form::rib}}};
+inline constexpr std::array<Word<Knit::Method>, 3> knit_method_words{
+    {{"uniform", Knit::Method::uniform},
+     {"chord", Knit::Method::chord},
+     {"centripetal", Knit::Method::centripetal}}};
+inline constexpr std::array<Word<Warpknit::Stitch>, 2> stitch_words{
+    {{"closed", Warpknit::Stitch::closed}, {"open", Warpknit::Stitch::open}}};
+inline constexpr std::array<Word<std::string_view>, 3> classic_words{
+    {{"tricot", "tricot"}, {"satin", "satin"}, {"queens-cord", "queens-cord"}}};
+inline constexpr std::array<Word<PieceCurve::Shape>, 2> curve_words{
+    {{"C", PieceCurve::Shape::c}, {"S", PieceCurve::Shape::s}}};
+
+// The sections, by their index in yarn::Section.
+inline constexpr std::array<Word<int>, 7> section_words{{{"circle", 0},
+                                                         {"ellipse", 1},
+                                                         {"lenticular", 2},
+                                                         {"racetrack", 3},
+                                                         {"power", 4},
+                                                         {"loop7", 5},
+                                                         {"polygon", 6}}};
+
+inline constexpr std::array<Word<fabric::Edit::Form>, 3> edit_words{{{"point", fabric::Edit::Form::point},
+                                                                     {"weight", fabric::Edit::Form::weight},
+                                                                     {"length", fabric::Edit::Form::length}}};
+
+template <class T, std::size_t N>
+constexpr std::string_view word_of(const std::array<Word<T>, N>& words, const T& value) {
+  for (const Word<T>& word : words)
+    if (word.value == value) return word.text;
+  return {};
+}
+
+// A name that needs no quotes: [A-Za-z_][A-Za-z0-9_.-]*. ASCII only, whatever the locale.
+constexpr bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+constexpr bool starts_name(char c) {
+  return is_letter(c) || c == '_';
+}
+constexpr bool continues_name(char c) {
+  return starts_name(c) || (c >= '0' && c <= '9') || c == '.' || c == '-';
+}
+constexpr bool is_plain_name(std::string_view text) {
+  if (text.empty() || !starts_name(text.front())) return false;
+  for (char c : text)
+    if (!continues_name(c)) return false;
+  return true;
+}
+
+constexpr char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+constexpr bool same_word(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (lower(a[i]) != lower(b[i])) return false;
+  return true;
+}
+
+}  // namespace selvage::formats::txt

@@ -1,0 +1,370 @@
+#include "formats/txt/writer.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "core/number_text.h"
+#include "formats/txt/report.h"
+#include "formats/txt/words.h"
+
+namespace selvage::formats::txt {
+
+namespace {
+
+using fabric::Thread;
+
+// Text on its way to the file: one buffer, handed over when it is full. The first failure stays; what follows
+// it is dropped.
+class Lines {
+ public:
+  explicit Lines(OutputFile& output) : output_(output), buffer_(std::make_unique<char[]>(room)) {}
+
+  // Begins a line of a statement.
+  Lines& line(int depth, std::string_view word) {
+    if (begun_) raw("\n");
+    begun_ = true;
+    for (int i = 0; i < depth; ++i) raw("  ");
+    return raw(word);
+  }
+  // Before a block of the file.
+  void blank_line() {
+    if (begun_) raw("\n");
+    begun_ = false;
+    raw("\n");
+  }
+  // A row's first number has no blank before it but the indentation.
+  Lines& row(int depth, double first) { return line(depth, "").number(first); }
+
+  Lines& word(std::string_view word) { return raw(" ").raw(word); }
+  Lines& value(double value) { return raw(" ").number(value); }
+  Lines& value(int value) {
+    need(max_number_length + 1);
+    buffer_[used_++] = ' ';
+    used_ = static_cast<std::size_t>(write_number(buffer_.get() + used_, static_cast<long long>(value)) -
+                                     buffer_.get());
+    return *this;
+  }
+  Lines& values(const Vec3& vector) { return value(vector.x()).value(vector.y()).value(vector.z()); }
+  Lines& name(std::string_view name) { return raw(" ").bare_name(name); }
+  Lines& bare_name(std::string_view name) {
+    if (is_plain_name(name)) return raw(name);
+    if (name.empty()) fail("a name is empty");
+    return quoted_text(name);
+  }
+  Lines& quoted_text(std::string_view text) {
+    if (text.find('"') != text.npos || text_prefix(text) != text.size())
+      fail(fmt::format("{} cannot be written: no double quotes, no control characters, UTF-8 only",
+                       in_quotes(text)));
+    return raw("\"").raw(text).raw("\"");
+  }
+  Lines& number(double value) {
+    if (!std::isfinite(value)) fail("a number of the fabric is not finite");
+    need(max_number_length);
+    used_ = static_cast<std::size_t>(write_number(buffer_.get() + used_, value) - buffer_.get());
+    return *this;
+  }
+  Lines& raw(std::string_view text) {
+    if (text.size() > room) {
+      flush();
+      if (status_.ok()) status_ = output_.write(text);
+      return *this;
+    }
+    need(text.size());
+    std::memcpy(buffer_.get() + used_, text.data(), text.size());
+    used_ += text.size();
+    return *this;
+  }
+  void fail(std::string text) {
+    if (status_.ok()) status_ = selvage::error(Kind::malformed, std::move(text));
+  }
+  Status finish() {
+    if (begun_) raw("\n");
+    flush();
+    return status_;
+  }
+
+ private:
+  static constexpr std::size_t room = std::size_t{1} << 20;
+
+  void need(std::size_t size) {
+    if (used_ + size > room) flush();
+  }
+  void flush() {
+    if (status_.ok()) status_ = output_.write({buffer_.get(), used_});
+    used_ = 0;
+  }
+
+  OutputFile& output_;
+  std::unique_ptr<char[]> buffer_;
+  std::size_t used_ = 0;
+  bool begun_ = false;
+  Status status_;
+};
+
+// --- threads and materials
+// ------------------------------------------------------------------------------------------
+
+void write_section(Lines& out, int depth, const yarn::Section& section) {
+  out.line(depth, "section").word(section_words[section.index()].text);
+  if (const auto* circle = std::get_if<yarn::Circle>(&section)) {
+    if (circle->diameter != 0.0) out.value(circle->diameter);
+  } else if (const auto* loop = std::get_if<yarn::Loop7>(&section)) {
+    if (loop->diameter != 0.0) out.value(loop->diameter);
+  } else if (const auto* ellipse = std::get_if<yarn::Ellipse>(&section)) {
+    out.value(ellipse->width).value(ellipse->height);
+  } else if (const auto* lens = std::get_if<yarn::Lenticular>(&section)) {
+    out.value(lens->width).value(lens->height);
+  } else if (const auto* track = std::get_if<yarn::Racetrack>(&section)) {
+    out.value(track->width).value(track->height);
+  } else if (const auto* power = std::get_if<yarn::Power>(&section)) {
+    out.value(power->width).value(power->height).value(power->exponent);
+  } else if (const auto* polygon = std::get_if<yarn::Polygon>(&section)) {
+    for (const Vec2& corner : polygon->corners) out.row(depth + 1, corner.x()).value(corner.y());
+    out.line(depth, "end");
+  }
+}
+
+void write_thread_statements(Lines& out, int depth, const Thread& thread) {
+  if (thread.linear_density)
+    out.line(depth, word_of(density_words, thread.linear_density->measure))
+        .value(thread.linear_density->value);
+  if (thread.density) out.line(depth, "density").value(*thread.density);
+  if (thread.packing) out.line(depth, "packing").value(*thread.packing);
+  if (thread.diameter) out.line(depth, "diameter").value(*thread.diameter);
+  if (thread.section) write_section(out, depth, *thread.section);
+  if (thread.twist) {
+    out.line(depth, "twist").value(thread.twist->turns).word(word_of(hand_words, thread.twist->hand));
+    if (thread.twist->rotates) out.word("rotate");
+  }
+  if (thread.plies)
+    out.line(depth, "plies")
+        .value(thread.plies->count)
+        .value(thread.plies->turns)
+        .word(word_of(hand_words, thread.plies->hand));
+  if (thread.filaments) out.line(depth, "filaments").value(*thread.filaments);
+  if (thread.color)
+    out.line(depth, "color").value(thread.color->red).value(thread.color->green).value(thread.color->blue);
+  if (thread.material) out.line(depth, "material").name(*thread.material);
+}
+
+void write_thread(Lines& out, const Thread& thread) {
+  out.blank_line();
+  out.line(0, "thread").name(thread.name);
+  write_thread_statements(out, 1, thread);
+  out.line(0, "end");
+}
+
+void write_material(Lines& out, const fabric::Material& material) {
+  out.blank_line();
+  out.line(0, "material").name(material.name);
+  if (material.density) out.line(1, "density").value(*material.density);
+  if (const auto* isotropic = std::get_if<fabric::IsotropicElastic>(&material.elastic))
+    out.line(1, "elastic isotropic").value(isotropic->modulus).value(isotropic->poisson);
+  if (const auto* e = std::get_if<fabric::TransverseElastic>(&material.elastic))
+    out.line(1, "elastic transverse").value(e->e1).value(e->e2).value(e->nu12).value(e->g12).value(e->nu23);
+  if (material.expansion)
+    out.line(1, "expansion").value(material.expansion->along).value(material.expansion->across);
+  out.line(0, "end");
+}
+
+// --- yarns
+// ----------------------------------------------------------------------------------------------------------
+
+void write_path(Lines& out, const fabric::Path& path) {
+  out.line(1, "path").word(word_of(path_words, path.form));
+  for (std::size_t i = 0; i < path.points.size(); ++i) {
+    const Vec3& point = path.points[i];
+    out.row(2, point.x()).value(point.y()).value(point.z());
+    if (path.sizes.empty() || !path.sizes[i]) continue;
+    out.value(path.sizes[i]->width).value(path.sizes[i]->height);
+    if (path.sizes[i]->angle) out.value(*path.sizes[i]->angle);
+  }
+  out.line(1, "end");
+}
+
+void write_knots(Lines& out, std::string_view direction, const std::vector<double>& knots) {
+  if (knots.empty()) return;
+  out.line(2, "knots").word(direction);
+  for (double knot : knots) out.value(knot);
+}
+
+void write_grid(Lines& out, const fabric::Grid& grid) {
+  out.line(1, "grid").value(grid.sections).value(grid.per_section);
+  if (grid.degree_along) out.line(2, "degree").value(*grid.degree_along).word("along");
+  if (grid.degree_round) out.line(2, "degree").value(*grid.degree_round).word("round");
+  write_knots(out, "along", grid.knots_along);
+  write_knots(out, "round", grid.knots_round);
+  if (grid.open_round) out.line(2, "open round");
+  if (grid.closed_along) out.line(2, "closed");
+  const auto per_section = static_cast<std::size_t>(grid.per_section);
+  for (std::size_t i = 0; i < grid.points.size(); ++i) {
+    if (i > 0 && per_section > 0 && i % per_section == 0) out.blank_line();
+    const Vec3& point = grid.points[i];
+    out.row(2, point.x()).value(point.y()).value(point.z());
+    if (!grid.weights.empty()) out.value(grid.weights[i]);
+  }
+  out.line(1, "end");
+}
+
+void write_item(Lines& out, const fabric::Yarn& yarn) {
+  out.line(0, "yarn").name(yarn.name);
+  if (!yarn.thread.empty()) out.name(yarn.thread);
+  if (yarn.role) out.line(1, "role").word(word_of(role_words, *yarn.role));
+  write_thread_statements(out, 1, yarn.own);
+  if (yarn.closed) out.line(1, "closed");
+  if (yarn.tangent_start) out.line(1, "tangent start").values(*yarn.tangent_start);
+  if (yarn.tangent_end) out.line(1, "tangent end").values(*yarn.tangent_end);
+  if (yarn.up) out.line(1, "up").values(*yarn.up);
+  if (const auto* path = std::get_if<fabric::Path>(&yarn.shape))
+    write_path(out, *path);
+  else if (const auto* grid = std::get_if<fabric::Grid>(&yarn.shape))
+    write_grid(out, *grid);
+  else
+    out.fail(fmt::format("the yarn {} has no path and no grid", in_quotes(yarn.name)));
+  out.line(0, "end");
+}
+
+// --- constructions
+// --------------------------------------------------------------------------------------------------
+
+void write_system(Lines& out, std::string_view word, const fabric::WeaveSystem& system) {
+  out.line(1, word).raw(" ");
+  for (std::size_t i = 0; i < system.threads.size(); ++i)
+    out.raw(i > 0 ? "," : "").bare_name(system.threads[i]);
+  out.value(system.count).word("pitch").value(system.pitch);
+}
+
+void write_pair(Lines& out, int a, std::string_view sign, int b) {
+  out.raw(fmt::format(" {}{}{}", a, sign, b));
+}
+
+void write_draft(Lines& out, const fabric::Draft& draft) {
+  out.line(1, "draft");
+  if (draft.form == Draft::Form::rows) {
+    for (const std::string& row : draft.rows) out.line(2, row);
+    out.line(1, "end");
+    return;
+  }
+  out.word(word_of(draft_words, draft.form));
+  if (draft.form == Draft::Form::file)
+    out.name(draft.file);
+  else if (draft.form != Draft::Form::plain)
+    write_pair(out, draft.a, "/", draft.b);
+}
+
+void write_item(Lines& out, const fabric::Weave& weave) {
+  out.line(0, "weave");
+  write_system(out, "warp", weave.warp);
+  write_system(out, "weft", weave.weft);
+  write_draft(out, weave.draft);
+  if (weave.profile) out.line(1, "profile").word(word_of(profile_words, *weave.profile));
+  if (weave.layers) out.line(1, "layers").value(*weave.layers);
+  out.line(0, "end");
+}
+
+void write_item(Lines& out, const fabric::Knit& knit) {
+  out.line(0, "knit").word(word_of(knit_words, knit.form));
+  if (knit.form == Knit::Form::rib) write_pair(out, knit.rib_a, "x", knit.rib_b);
+  out.line(1, "thread").name(knit.thread);
+  out.line(1, "courses").value(knit.courses);
+  out.line(1, "wales").value(knit.wales);
+  if (knit.method) out.line(1, "method").word(word_of(knit_method_words, *knit.method));
+  out.line(0, "end");
+}
+
+void write_item(Lines& out, const fabric::Warpknit& warpknit) {
+  out.line(0, "warpknit");
+  if (!warpknit.classic.empty()) out.word(warpknit.classic);
+  if (!warpknit.thread.empty()) out.line(1, "thread").name(warpknit.thread);
+  for (const fabric::WarpknitBar& bar : warpknit.bars) {
+    out.line(1, "bar").name(bar.thread).word(bar.lapping);
+    if (bar.fall_plate) out.word("fall-plate");
+  }
+  out.line(1, "wales").value(warpknit.wales).word("pitch").value(warpknit.wale_pitch);
+  out.line(1, "courses").value(warpknit.courses).word("pitch").value(warpknit.course_pitch);
+  if (warpknit.stitch) out.line(1, "stitch").word(word_of(stitch_words, *warpknit.stitch));
+  out.line(0, "end");
+}
+
+void write_item(Lines& out, const fabric::Braid& braid) {
+  out.line(0, "braid");
+  out.line(1, "thread").name(braid.thread);
+  out.line(1, "carriers").value(braid.carriers);
+  out.line(1, "pattern");
+  write_pair(out, braid.over, "/", braid.under);
+  out.line(1, "radius").value(braid.radius);
+  out.line(1, "angle").value(braid.angle);
+  out.line(1, "length").value(braid.length);
+  if (!braid.axial_thread.empty()) out.line(1, "axial").name(braid.axial_thread).value(braid.axial_count);
+  out.line(0, "end");
+}
+
+void write_item(Lines& out, const fabric::Piece& piece) {
+  out.line(0, "piece").name(piece.name);
+  for (const fabric::PieceCurve& curve : piece.curves) {
+    out.line(1, curve.is_line ? "line" : "curve").name(curve.name);
+    if (curve.is_line) {
+      for (const Vec2& point : curve.points) out.value(point.x()).value(point.y());
+      continue;
+    }
+    if (curve.shape != PieceCurve::Shape::found) out.word(word_of(curve_words, curve.shape));
+    for (const Vec2& point : curve.points) out.row(2, point.x()).value(point.y());
+    out.line(1, "end");
+  }
+  out.line(0, "end");
+}
+
+// --- file
+// -----------------------------------------------------------------------------------------------------------
+
+void write_edit(Lines& out, const fabric::Edit& edit) {
+  const bool is_length = edit.form == fabric::Edit::Form::length;
+  out.line(0, "edit").name(edit.yarn).word(word_of(edit_words, edit.form));
+  if (is_length) out.value(edit.length).word("point");
+  out.value(edit.joint).word(is_length ? "along" : "to").values(is_length ? edit.direction : edit.target);
+}
+
+void write_cell(Lines& out, const fabric::Cell& cell) {
+  out.blank_line();
+  out.line(0, "cell").values(cell.low).raw(" ").values(cell.high);
+  if (!cell.matrix.empty()) out.line(1, "matrix").name(cell.matrix);
+  if (cell.periodic_x || cell.periodic_y || cell.periodic_z) {
+    out.line(1, "periodic");
+    if (cell.periodic_x) out.word("x");
+    if (cell.periodic_y) out.word("y");
+    if (cell.periodic_z) out.word("z");
+  }
+  out.line(0, "end");
+}
+
+}  // namespace
+
+Result<WriteFacts> write_fabric(const fabric::Fabric& fabric, OutputFile& output) {
+  Lines out(output);
+  out.line(0, "fabric").value(1);
+  if (fabric.title) out.line(0, "title").raw(" ").quoted_text(*fabric.title);
+  if (fabric.units_given || fabric.units != Unit::mm)
+    out.line(0, "units").word(word_of(unit_words, fabric.units));
+  if (fabric.tolerance) out.line(0, "tolerance").value(*fabric.tolerance);
+  for (const fabric::Material& material : fabric.materials) write_material(out, material);
+  for (const Thread& thread : fabric.threads) write_thread(out, thread);
+  WriteFacts facts;
+  constexpr std::array<std::string_view, 6> kinds = {"yarn", "weave", "knit", "warpknit", "braid", "piece"};
+  for (const fabric::Item& item : fabric.items) {
+    out.blank_line();
+    std::visit([&](const auto& one) { write_item(out, one); }, item);
+    ++facts.entities[std::string(kinds[item.index()])];
+  }
+  if (!fabric.edits.empty()) out.blank_line();
+  for (const fabric::Edit& edit : fabric.edits) write_edit(out, edit);
+  if (fabric.cell) write_cell(out, *fabric.cell);
+  if (Status status = out.finish(); !status) return status.error();
+  if (!fabric.threads.empty()) facts.entities["thread"] = fabric.threads.size();
+  if (!fabric.materials.empty()) facts.entities["material"] = fabric.materials.size();
+  return facts;
+}
+
+}  // namespace selvage::formats::txt
