@@ -29,10 +29,10 @@ void right_justified(char* field, std::size_t width, std::int64_t value) {
 Records::Records(OutputFile& output, std::uint64_t offset, Limits limits)
     : output_(&output),
       limits_(limits),
-      buffer_(limits.buffer_lines * line_length + spare),
-      line_(buffer_.data()),
+      buffer_(std::make_unique_for_overwrite<char[]>(limits.buffer_lines * line_length + spare)),
+      line_(buffer_.get()),
       cursor_(line_),
-      directory_(limits.directory_lines / 2 * entry_length),
+      directory_(std::make_unique_for_overwrite<char[]>(limits.directory_lines / 2 * entry_length)),
       offset_(offset) {
   std::memcpy(tail_, "        P       \n", sizeof tail_);
   number_line();
@@ -58,7 +58,7 @@ void Records::close_line(char* at) {
   if (measuring_) return;
   if (lines_ < most_lines) count_up(tail_ + 15);
   line_ += line_length;
-  if (line_ == buffer_.data() + limits_.buffer_lines * line_length) flush_parameters();
+  if (line_ == buffer_.get() + limits_.buffer_lines * line_length) flush_parameters();
 }
 
 // A token that does not fit on the present line begins the next one; returns its end there.
@@ -149,8 +149,8 @@ void Records::end(int property) {
 
 // The two directory lines of the entity that has just ended.
 void Records::file_entity(std::int64_t first_line, std::int64_t line_count) {
-  if (directory_used_ == directory_.size()) flush_directory();
-  char* const first = directory_.data() + directory_used_;
+  if (directory_used_ == limits_.directory_lines / 2 * entry_length) flush_directory();
+  char* const first = directory_.get() + directory_used_;
   char* const second = first + line_length;
   directory_used_ += entry_length;
   const auto field = [](char* line, int number, std::int64_t value) {
@@ -215,14 +215,14 @@ void Records::place_parameters() {
 
 void Records::flush_parameters() {
   place_parameters();
-  append(parameter_extents_, {buffer_.data(), static_cast<std::size_t>(line_ - buffer_.data())});
-  line_ = buffer_.data();
+  append(parameter_extents_, {buffer_.get(), static_cast<std::size_t>(line_ - buffer_.get())});
+  line_ = buffer_.get();
 }
 
 // Directory entries go into the room kept for them, and what does not fit goes between the parameters until finish().
 void Records::flush_directory() {
   place_parameters();
-  std::string_view bytes(directory_.data(), directory_used_);
+  std::string_view bytes(directory_.get(), directory_used_);
   std::uint64_t used = 0;
   for (const Extent& extent : directory_extents_) used += extent.size;
   if (used < room_) {
@@ -239,7 +239,7 @@ void Records::flush_directory() {
 // Moves bytes within the file; the places may overlap.
 void Records::move(Extent from, std::uint64_t to) {
   if (from.offset == to) return;
-  const std::uint64_t block = buffer_.size();
+  const std::uint64_t block = limits_.buffer_lines * line_length;
   for (std::uint64_t done = 0; done < from.size && status_.ok();) {
     const std::uint64_t size = std::min(block, from.size - done);
     // Up: the last block first; down: the first.

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -120,12 +121,12 @@ class Records {
   bool measuring_ = false;
   Lines before_measuring_;
 
-  std::vector<char> buffer_;  // whole lines, then room for one number
+  std::unique_ptr<char[]> buffer_;  // whole lines, then room for one number; not touched before it is needed
   char* line_ = nullptr;      // the present line in it
   char* cursor_ = nullptr;    // where the next value goes
   char tail_[17];             // columns 65-80 and the newline of the present line
   std::int64_t lines_ = 0;    // finished parameter lines
-  std::vector<char> directory_;
+  std::unique_ptr<char[]> directory_;
   std::size_t directory_used_ = 0;
   std::int64_t entities_ = 0;
   std::map<int, std::uint64_t> counts_;

@@ -176,6 +176,9 @@ void Writer::write_surfaces(const Common& common, const yarn::Body& body) {
                          ? write_planar_end(records_, common, body, end == &body.end)
                          : write_surface(records_, common.entity(128), end->surface, common.name);
   }
+  // Whoever sews the group takes the direction of the shell from its first member. Gmsh makes one solid of all shells of a
+  // file and then splits it, which fails where two of them point outward: so a face that points inward leads.
+  if (count > 1 && !body.inward) std::swap(faces[0], faces[1]);
   write_group(records_, common, {faces.data(), count});
 }
 
