@@ -1,9 +1,160 @@
 #include "formats/msh/msh.h"
 
+#include <algorithm>
+
+#include "core/text_buffer.h"
+#include "fem/faces.h"
+
 namespace selvage::formats::msh {
+namespace {
+
+using Faces = std::vector<std::array<std::size_t, 3>>;
+
+// A yarn's boundary in the file: entity and physical group `tag`.
+struct Skin {
+  int tag = 0;
+  std::string name;
+  std::size_t region = 0;
+  const Faces* faces = nullptr;
+};
+
+// Surfaces are numbered 1.. over all yarns; volumes are the yarns, 1.. .
+std::vector<Skin> skins_of(const fem::Mesh& mesh) {
+  std::vector<Skin> skins;
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+    const fem::Region& region = mesh.regions[i];
+    auto add = [&](const char* part, const Faces& faces) {
+      if (!faces.empty())
+        skins.push_back({static_cast<int>(skins.size()) + 1, region.name + part, i, &faces});
+    };
+    add("_side", region.side_faces);
+    add("_start", region.start_faces);
+    add("_end", region.end_faces);
+  }
+  return skins;
+}
+
+std::string quoted(std::string name) {
+  std::replace(name.begin(), name.end(), '"', '\'');
+  return '"' + name + '"';
+}
+
+void write_names(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Skin>& skins) {
+  text << "$PhysicalNames\n" << skins.size() + mesh.regions.size() << '\n';
+  for (const Skin& skin : skins) text << "2 " << skin.tag << ' ' << quoted(skin.name) << '\n';
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
+    text << "3 " << i + 1 << ' ' << quoted(mesh.regions[i].name) << '\n';
+  text << "$EndPhysicalNames\n";
+}
+
+void write_box(TextBuffer& text, const Box3& box) {
+  for (const Vec3& corner : {Vec3(box.min()), Vec3(box.max())})
+    for (int k = 0; k < 3; ++k) text << corner[k] << ' ';
+}
+
+void write_entities(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Skin>& skins) {
+  text << "$Entities\n0 0 " << skins.size() << ' ' << mesh.regions.size() << '\n';
+  for (const Skin& skin : skins) {
+    Box3 box;
+    for (const auto& face : *skin.faces)
+      for (const std::size_t node : face) box.extend(mesh.nodes[node]);
+    text << skin.tag << ' ';
+    write_box(text, box);
+    text << "1 " << skin.tag << " 0\n";
+  }
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+    const fem::Region& region = mesh.regions[i];
+    Box3 box;
+    for (std::size_t n = region.first_node; n < region.last_node; ++n) box.extend(mesh.nodes[n]);
+    text << i + 1 << ' ';
+    write_box(text, box);
+    text << "1 " << i + 1;
+    std::vector<int> around;
+    for (const Skin& skin : skins)
+      if (skin.region == i) around.push_back(skin.tag);
+    text << ' ' << around.size();
+    for (const int tag : around) text << ' ' << tag;
+    text << '\n';
+  }
+  text << "$EndEntities\n";
+}
+
+// All nodes of a yarn are said to be in its volume: the triangles of its skin use them from there.
+void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
+  text << "$Nodes\n" << mesh.regions.size() << ' ' << mesh.nodes.size() << " 1 " << mesh.nodes.size() << '\n';
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+    const fem::Region& region = mesh.regions[i];
+    text << "3 " << i + 1 << " 0 " << region.last_node - region.first_node << '\n';
+    for (std::size_t n = region.first_node; n < region.last_node; ++n) text << n + 1 << '\n';
+    for (std::size_t n = region.first_node; n < region.last_node; ++n) {
+      const Vec3& p = mesh.nodes[n];
+      text << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
+    }
+  }
+  text << "$EndNodes\n";
+}
+
+void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Skin>& skins) {
+  // Gmsh's element types: 2 and 9 are triangles of 3 and 6 nodes, 4 and 11 tetrahedra of 4 and 10. Its
+  // ten-node tetrahedron has the midpoints of the edges 01 12 20 03 23 13: ours with the last two swapped.
+  constexpr std::array<std::size_t, 10> order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
+  const auto corners = static_cast<std::size_t>(mesh.nodes_per_element());
+  std::size_t count = mesh.elements.size();
+  for (const Skin& skin : skins) count += skin.faces->size();
+  text << "$Elements\n" << skins.size() + mesh.regions.size() << ' ' << count << " 1 " << count << '\n';
+  std::size_t number = 0;
+  for (const Skin& skin : skins) {
+    text << "2 " << skin.tag << (mesh.order == 1 ? " 2 " : " 9 ") << skin.faces->size() << '\n';
+    for (const fem::SixNodes& face : fem::six_node_faces(mesh, mesh.regions[skin.region], *skin.faces)) {
+      text << ++number;
+      for (std::size_t k = 0; k < (mesh.order == 1 ? 3U : 6U); ++k) text << ' ' << face[k] + 1;
+      text << '\n';
+    }
+  }
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+    const fem::Region& region = mesh.regions[i];
+    text << "3 " << i + 1 << (mesh.order == 1 ? " 4 " : " 11 ") << region.last_element - region.first_element
+         << '\n';
+    for (std::size_t e = region.first_element; e < region.last_element; ++e) {
+      text << ++number;
+      for (std::size_t k = 0; k < corners; ++k) text << ' ' << mesh.elements[e][order[k]] + 1;
+      text << '\n';
+    }
+  }
+  text << "$EndElements\n";
+}
+
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
+  const std::vector<Skin> skins = skins_of(mesh);
+  TextBuffer text(output);
+  text << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+  write_names(text, mesh, skins);
+  write_entities(text, mesh, skins);
+  write_nodes(text, mesh);
+  write_elements(text, mesh, skins);
+  if (Status done = text.finish(); !done) return done.error();
+  WriteFacts facts;
+  std::size_t triangles = 0;
+  for (const Skin& skin : skins) triangles += skin.faces->size();
+  facts.entities = {{"nodes", mesh.nodes.size()},
+                    {"triangles", triangles},
+                    {"tetrahedra", mesh.elements.size()},
+                    {"physical groups", skins.size() + mesh.regions.size()}};
+  return facts;
+}
+
+bool has_the_first_line(std::string_view head) {
+  return head.starts_with("$MeshFormat");
+}
+
+}  // namespace
 
 const Descriptor& descriptor() {
-  static const Descriptor self = {.name = "msh", .title = "Gmsh mesh 4.1", .extensions = {".msh"}};
+  static const Descriptor self = {.name = "msh",
+                                  .title = "Gmsh mesh 4.1",
+                                  .extensions = {".msh"},
+                                  .sniff = has_the_first_line,
+                                  .write_mesh = write};
   return self;
 }
 

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/module.h"
+#include "fem/faces.h"
 #include "fem/materials.h"
 #include "fem/midside.h"
 #include "fem/orientation.h"
@@ -66,23 +67,9 @@ Mesh assemble(const TetMesh& tets, const SurfaceMesh& surface, const yarn::Body&
 
 // The nodes of a set of boundary triangles, midside ones included, increasing.
 std::vector<std::size_t> nodes_on(const Mesh& mesh, const std::vector<std::array<std::size_t, 3>>& faces) {
-  constexpr std::array<std::array<std::size_t, 2>, 6> ends = {
-      {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
   std::vector<std::size_t> result;
-  std::vector<std::array<std::size_t, 2>> edges;
-  for (const auto& face : faces)
-    for (std::size_t k = 0; k < 3; ++k) {
-      result.push_back(face[k]);
-      edges.push_back({std::min(face[k], face[(k + 1) % 3]), std::max(face[k], face[(k + 1) % 3])});
-    }
-  std::sort(edges.begin(), edges.end());
-  if (mesh.order == 2 && !faces.empty())
-    for (const auto& element : mesh.elements)
-      for (std::size_t k = 0; k < 6; ++k) {
-        const std::size_t a = element[ends[k][0]], b = element[ends[k][1]];
-        if (std::binary_search(edges.begin(), edges.end(), std::array{std::min(a, b), std::max(a, b)}))
-          result.push_back(element[4 + k]);
-      }
+  for (const SixNodes& face : six_node_faces(mesh, mesh.regions.front(), faces))
+    result.insert(result.end(), face.begin(), face.begin() + (mesh.order == 1 ? 3 : 6));
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem/faces.h"
 #include "fem/quality.h"
 
 namespace selvage::fem {
 namespace {
-
-constexpr std::array<std::array<std::size_t, 2>, 6> edge_ends = {
-    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 std::uint64_t edge_key(std::uint64_t a, std::uint64_t b) {
   return std::min(a, b) << 32U | std::max(a, b);
@@ -31,8 +29,7 @@ double middle_of(double a, double b, double first, double last, bool closed) {
   return (a + b) / 2;
 }
 
-// The point of the surface in the middle of an edge of the side: nearest to the chord's middle along the line
-// of equal parameter shares.
+// The point of the surface in the middle (by parameters) of an edge of the side.
 Vec3 side_middle(const SurfaceMesh& skin, const yarn::Body& body, std::uint32_t a, std::uint32_t b) {
   const nurbs::Surface& surface = body.surface;
   const Vec2 &pa = skin.parameters[a], &pb = skin.parameters[b];

@@ -4,11 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "fem/faces.h"
+
 namespace selvage::fem {
 namespace {
-
-constexpr std::array<std::array<std::size_t, 2>, 6> edge_ends = {
-    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 // The determinant of dx / d(L1, L2, L3) at barycentric coordinates.
 double jacobian(const std::array<Vec3, 10>& nodes, const std::array<double, 4>& at) {
@@ -37,6 +36,18 @@ std::vector<std::array<double, 4>> places_to_look() {
     result.push_back(middle);
   }
   return result;
+}
+
+// With order 1 only the corners are filled.
+std::array<Vec3, 10> nodes_of(const Mesh& mesh, std::size_t element) {
+  std::array<Vec3, 10> nodes;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(mesh.nodes_per_element()); ++k)
+    nodes[k] = mesh.nodes[mesh.elements[element][k]];
+  return nodes;
+}
+
+double six_volumes(const std::array<Vec3, 10>& nodes) {
+  return (nodes[1] - nodes[0]).cross(nodes[2] - nodes[0]).dot(nodes[3] - nodes[0]);
 }
 
 void add(Quality& quality, const ElementShape& shape) {
@@ -83,7 +94,7 @@ ElementShape shape_of(const std::array<Vec3, 4>& p) {
 
 double least_jacobian_share(const std::array<Vec3, 10>& nodes) {
   static const std::vector<std::array<double, 4>> places = places_to_look();
-  const double straight = (nodes[1] - nodes[0]).cross(nodes[2] - nodes[0]).dot(nodes[3] - nodes[0]);
+  const double straight = six_volumes(nodes);
   double least = std::numeric_limits<double>::infinity();
   for (const auto& place : places) least = std::min(least, jacobian(nodes, place));
   return least / straight;
@@ -99,6 +110,13 @@ double quadratic_volume(const std::array<Vec3, 10>& nodes) {
   return sum / 6;
 }
 
+ElementShape shape_of(const Mesh& mesh, std::size_t element) {
+  const std::array<Vec3, 10> nodes = nodes_of(mesh, element);
+  ElementShape shape = shape_of({nodes[0], nodes[1], nodes[2], nodes[3]});
+  if (mesh.order == 2) shape.scaled_jacobian *= least_jacobian_share(nodes);
+  return shape;
+}
+
 void measure(Mesh& mesh) {
   std::vector<BadElement> worst;
   auto worse = [](const BadElement& a, const BadElement& b) { return a.min_dihedral < b.min_dihedral; };
@@ -109,21 +127,12 @@ void measure(Mesh& mesh) {
     region.volume = 0;
     double sum = 0;
     for (std::size_t e = region.first_element; e < region.last_element; ++e) {
-      std::array<Vec3, 4> corners;
-      for (std::size_t k = 0; k < 4; ++k) corners[k] = mesh.nodes[mesh.elements[e][k]];
-      ElementShape shape = shape_of(corners);
-      double volume =
-          (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(corners[3] - corners[0]) / 6;
-      if (mesh.order == 2) {
-        std::array<Vec3, 10> nodes;
-        for (std::size_t k = 0; k < 10; ++k) nodes[k] = mesh.nodes[mesh.elements[e][k]];
-        shape.scaled_jacobian *= least_jacobian_share(nodes);
-        volume = quadratic_volume(nodes);
-      }
-      region.volume += volume;
+      const ElementShape shape = shape_of(mesh, e);
+      const std::array<Vec3, 10> nodes = nodes_of(mesh, e);
+      region.volume += mesh.order == 1 ? six_volumes(nodes) / 6 : quadratic_volume(nodes);
       sum += shape.scaled_jacobian;
       add(region.quality, shape);
-      const Vec3 middle = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+      const Vec3 middle = (nodes[0] + nodes[1] + nodes[2] + nodes[3]) / 4;
       worst.push_back({e, shape.min_dihedral, middle});
       std::push_heap(worst.begin(), worst.end(), worse);  // the best of the worst on top
       if (worst.size() > 10) {

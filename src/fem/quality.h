@@ -26,6 +26,9 @@ double least_jacobian_share(const std::array<Vec3, 10>& nodes);
 // degree 3).
 double quadratic_volume(const std::array<Vec3, 10>& nodes);
 
+// Of one element of a mesh: as above, the scaled Jacobian of a ten-node element times its least share.
+ElementShape shape_of(const Mesh& mesh, std::size_t element);
+
 // Fills Quality and volume of every region, the mesh's own, and its worst elements.
 void measure(Mesh& mesh);
 

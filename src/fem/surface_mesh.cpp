@@ -168,7 +168,8 @@ Gauge Builder::gauge_round(double v) const {
   for (std::size_t k = 1; k < n; ++k) {
     if (std::binary_search(crests_.begin(), crests_.end(), fine_u_[k])) continue;
     const double angle = angle_between(points[k] - points[k - 1], points[k + 1] - points[k]);
-    gauge.spacing[k] = curvature_spacing(angle, (gauge.lengths[k - 1] + gauge.lengths[k]) / 2, turn_, coarsest);
+    gauge.spacing[k] =
+        curvature_spacing(angle, (gauge.lengths[k - 1] + gauge.lengths[k]) / 2, turn_, coarsest);
   }
   gauge.finish(true);
   return gauge;
