@@ -10,22 +10,32 @@ namespace selvage::cli {
 
 namespace {
 
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
+  const std::string_view near = nearest_word(word, std::vector<std::string_view>(known.begin(), known.end()));
+  return near.empty() ? std::string() : fmt::format("; did you mean '{}'?", near);
+}
+
+Message no_command(const CLI::App& program, const std::string& word) {
+  if (const std::string later = later_command(word); !later.empty()) return error(Kind::usage, later);
+  std::vector<std::string> names;
+  for (const CLI::App* command : program.get_subcommands(nullptr)) names.push_back(command->get_name());
+  return error(Kind::usage, fmt::format("unknown subcommand '{}'{} (help: selvage --help)", word, did_you_mean(word, names)));
+}
+
 // Why the command line was refused, with a word for what a later version will have.
 Message refusal(const CLI::App& program, const CLI::ParseError& failure, int count, char** words) {
   const CLI::App* command = program.get_subcommands().empty() ? &program : program.get_subcommands().front();
-  if (command == &program && count > 1)
-    if (const std::string text = later_command(words[1]); !text.empty()) return error(Kind::usage, text);
+  if (command == &program && count > 1) return no_command(program, words[1]);
   std::string text = failure.what();
   for (int i = 1; i < count; ++i) {
     const std::string word = words[i];
     if (const std::string later = later_option(word); !later.empty()) return error(Kind::usage, later);
-    if (failure.get_name() != "ExtrasError" || !word.starts_with("--") || text.find(word) == std::string::npos) continue;
+    if (failure.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) continue;
+    if (!word.starts_with("--") || text.find(word) == std::string::npos) continue;
     std::vector<std::string> names;
     for (const CLI::Option* option : command->get_options())
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    const std::string_view near = nearest_word(word, std::vector<std::string_view>(names.begin(), names.end()));
-    text = fmt::format("unknown option '{}'", word);
-    if (!near.empty()) text += fmt::format("; did you mean '{}'?", near);
+    text = fmt::format("unknown option '{}'{}", word, did_you_mean(word, names));
     break;
   }
   return error(Kind::usage, fmt::format("{} (help: selvage {}--help)", text,

@@ -11,10 +11,16 @@ std::string Table::text() const {
   std::vector<std::size_t> widths(rows_.front().size(), 0);
   for (const auto& row : rows_)
     for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+  std::vector<bool> is_number(widths.size());
+  for (std::size_t k = 0; k < widths.size(); ++k)
+    is_number[k] = std::all_of(rows_.begin() + 1, rows_.end(), [k](const auto& row) {
+      return !row[k].empty() && row[k].find_first_not_of("0123456789.+-ex") == std::string::npos;
+    });
   std::string out;
   for (const auto& row : rows_) {
-    std::string line = fmt::format("  {:<{}}", row[0], widths[0]);
-    for (std::size_t k = 1; k < row.size(); ++k) line += fmt::format("  {:>{}}", row[k], widths[k]);
+    std::string line;
+    for (std::size_t k = 0; k < row.size(); ++k)
+      line += is_number[k] ? fmt::format("  {:>{}}", row[k], widths[k]) : fmt::format("  {:<{}}", row[k], widths[k]);
     line.erase(line.find_last_not_of(' ') + 1);
     out += line + "\n";
   }

@@ -10,7 +10,7 @@ class Table {
  public:
   explicit Table(std::vector<std::string> heads) : rows_{std::move(heads)} {}
   void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
-  // One line a row, indented by two; the first column left, the others right.
+  // One line a row, indented by two; columns of numbers stand to the right, others to the left.
   [[nodiscard]] std::string text() const;
 
  private:
