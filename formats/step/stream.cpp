@@ -12,7 +12,8 @@ namespace selvage::formats::step {
 namespace {
 
 constexpr std::size_t block_size = 1U << 20;
-constexpr std::size_t line_length = 78;
+// Leaves room for the brackets that may follow the last token.
+constexpr std::size_t line_length = 72;
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
@@ -122,6 +123,7 @@ void StepStream::convert(std::string_view text) {
         put(number);
     } else {
       if (is_word(c)) length = length_while(text, is_word);
+      if (c == '.') length = std::min(text.find('.', 1) + 1, text.size());  // .T.
       put(text.substr(0, length));
     }
     text.remove_prefix(length);
@@ -164,9 +166,9 @@ void StepStream::put_real(double value) {
   put({real, static_cast<std::size_t>(end - real)});
 }
 
-// Lines are broken after a comma or an opening bracket, never inside a string.
+// Lines are broken after a comma, a space or an opening bracket, never inside a string.
 void StepStream::put(std::string_view token) {
-  if (!in_string_ && column_ + token.size() > line_length && (last_ == ',' || last_ == '(')) {
+  if (!in_string_ && column_ + token.size() > line_length && (last_ == ',' || last_ == '(' || last_ == ' ')) {
     out_ += '\n';
     column_ = 0;
   }

@@ -15,7 +15,7 @@ namespace selvage::formats::step {
 //     OpenCASCADE prints them by one printf format, where the 17 digits that every double needs make 0.1 read
 //     1.0000000000000001E-01, and fewer lose bits;
 //   strings whole on one line, and their UTF-8 in the standard's own form (\X2\00FC\X0\), which older readers
-//   need; the other lines filled anew to at most 78 columns.
+//   need; the other lines filled anew to at most 80 columns.
 class StepStream : public std::streambuf {
  public:
   explicit StepStream(OutputFile& output);

@@ -13,6 +13,7 @@
 #include <StepData_Protocol.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepData_StepWriter.hxx>
+#include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepRepr_RepresentationContext.hxx>
 #include <StepRepr_RepresentationItem.hxx>
 #include <StepVisual_ColourRgb.hxx>
@@ -109,6 +110,11 @@ class StepBodyWriter : public BodyWriter {
 
  private:
   Status add_shape(const yarn::Body& body) {
+    // OpenCASCADE would write "nan", which no reader reads.
+    for (const Vec3& p : body.surface.points)
+      if (!p.allFinite())
+        return error(Kind::geometry,
+                     fmt::format("yarn '{}' has a control point that is no number", body.name));
     solid::occt::YarnShape yarn = solid::occt::build_shape(body, 1.0);
     if (!yarn.defects.empty()) return yarn.defects.front();
     if (!yarn.closed) {
@@ -155,7 +161,17 @@ class StepBodyWriter : public BodyWriter {
       return error(Kind::internal, "OpenCASCADE does not translate the yarns to STEP");
     Status styled = add_styles(writer.ChangeWriter());
     if (!styled.ok()) return styled.error();
+    number_places(writer.ChangeWriter().Model());
     return send(writer.ChangeWriter().Model());
+  }
+
+  // OpenCASCADE numbers the places of parts through all files of the process.
+  static void number_places(const Handle(StepData_StepModel) & model) {
+    int number = 0;
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+      const auto place = Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(model->Value(i));
+      if (!place.IsNull()) place->SetId(text(std::to_string(++number)));
+    }
   }
 
   // Name and colour of each solid: a STYLED_ITEM in the context of its part, in file order; yarns of one

@@ -1,0 +1,118 @@
+#include "reading.h"
+
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepGProp.hxx>
+#include <BRep_Tool.hxx>
+#include <GProp_GProps.hxx>
+#include <Geom_BSplineSurface.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Controller.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <ShapeAnalysis_ShapeTolerance.hxx>
+#include <TColStd_SequenceOfAsciiString.hxx>
+#include <TCollection_AsciiString.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
+#include <TopoDS.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <cmath>
+
+namespace selvage::tests {
+
+namespace {
+
+std::string name_of(const TDF_Label& label) {
+  Handle(TDataStd_Name) name;
+  if (!label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
+  return TCollection_AsciiString(name->Get()).ToCString();
+}
+
+void add_faces(const TopoDS_Shape& shape, ReadPart& part) {
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    ++part.faces;
+    const Handle(Geom_BSplineSurface) surface =
+        Handle(Geom_BSplineSurface)::DownCast(BRep_Tool::Surface(TopoDS::Face(it.Current())));
+    if (surface.IsNull()) continue;
+    for (int j = 1; j <= surface->NbVPoles(); ++j)
+      for (int i = 1; i <= surface->NbUPoles(); ++i) {
+        const gp_Pnt& pole = surface->Pole(i, j);
+        part.box.extend(Vec3(pole.X(), pole.Y(), pole.Z()));
+      }
+  }
+}
+
+ReadPart examine(const TopoDS_Shape& shape) {
+  ReadPart part;
+  part.is_solid = shape.ShapeType() == TopAbs_SOLID;
+  part.valid = BRepCheck_Analyzer(shape).IsValid();
+  TopTools_IndexedDataMapOfShapeListOfShape faces_of;
+  TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces_of);
+  for (int i = 1; i <= faces_of.Extent(); ++i)
+    if (faces_of(i).Extent() < 2 && !BRep_Tool::Degenerated(TopoDS::Edge(faces_of.FindKey(i))))
+      ++part.free_edges;
+  ShapeAnalysis_ShapeTolerance tolerance;
+  part.tolerance =
+      std::max(tolerance.Tolerance(shape, 1, TopAbs_EDGE), tolerance.Tolerance(shape, 1, TopAbs_VERTEX));
+  if (part.is_solid) {
+    GProp_GProps properties;
+    BRepGProp::VolumeProperties(shape, properties, 1e-9);
+    part.volume = properties.Mass();
+  }
+  add_faces(shape, part);
+  return part;
+}
+
+}  // namespace
+
+ReadFile read_step(const std::string& path) {
+  ReadFile file;
+  Message::DefaultMessenger()->ChangePrinters().Clear();
+  STEPCAFControl_Controller::Init();
+  Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+  STEPCAFControl_Reader reader;
+  reader.SetColorMode(true);
+  reader.SetNameMode(true);
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) return file;
+  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+  reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
+  for (int i = 1; i <= lengths.Length(); ++i) file.units.emplace_back(lengths(i).ToCString());
+  Handle(TDocStd_Document) document = new TDocStd_Document("BinXCAF");
+  if (!reader.Transfer(document)) return file;
+  const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  const Handle(XCAFDoc_ColorTool) colors = XCAFDoc_DocumentTool::ColorTool(document->Main());
+  TDF_LabelSequence roots;
+  shapes->GetFreeShapes(roots);
+  if (roots.Length() != 1) return file;
+  file.title = name_of(roots(1));
+  TDF_LabelSequence components;
+  XCAFDoc_ShapeTool::GetComponents(roots(1), components);
+  for (int i = 1; i <= components.Length(); ++i) {
+    TDF_Label label;
+    if (!XCAFDoc_ShapeTool::GetReferredShape(components(i), label)) return file;
+    const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
+    ReadPart part = examine(shape);
+    part.name = name_of(label);
+    Quantity_Color color;
+    if (colors->GetColor(shape, XCAFDoc_ColorSurf, color) ||
+        colors->GetColor(shape, XCAFDoc_ColorGen, color)) {
+      double red = 0, green = 0, blue = 0;
+      color.Values(red, green, blue, Quantity_TOC_sRGB);
+      const auto byte = [](double share) { return static_cast<int>(std::lround(255 * share)); };
+      part.color = {byte(red), byte(green), byte(blue)};
+    }
+    file.parts.push_back(std::move(part));
+  }
+  file.ok = true;
+  return file;
+}
+
+}  // namespace selvage::tests
