@@ -31,18 +31,22 @@ struct YarnCheck {
   std::vector<Message> defects;    // errors, each with yarn, place and remedy; empty: a valid solid
 };
 
+// One connected piece of space that two yarns share; a pair of yarns has one of these for each such piece.
 struct Overlap {
   std::size_t a = 0, b = 0;  // indices of the yarns, a < b
   // The least distance by which one yarn has to be moved for this overlap to vanish, along the direction in which it is
   // least; on the B-spline surfaces (refined from the tessellation), right to 1 %.
   double depth = 0;
-  Vec3 at = Vec3::Zero();  // in the middle of the shared space
+  Vec3 at = Vec3::Zero();         // in the middle of the shared space
+  Vec3 direction = Vec3::Zero();  // unit: moving yarn b by depth * direction (or yarn a against it) ends this overlap
 };
 
 struct SolidCheck {
   std::vector<YarnCheck> yarns;
   std::vector<Overlap> overlaps;  // deepest first
-  std::optional<double> min_gap;  // least distance between two yarns that do not overlap; none with one yarn
+  // Least distance between two yarns that do not overlap, on the B-spline surfaces, right to 1 %; 0: they touch (to
+  // rounding). None when there are no two such yarns.
+  std::optional<double> min_gap;
 };
 
 Result<SolidCheck> check_solids(std::span<const yarn::Body> bodies, const CheckOptions& options);

@@ -1,0 +1,202 @@
+#include "solid/cgal/separation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace selvage::solid {
+
+namespace {
+
+constexpr int lines = 40;  // a side of the raster
+// Off the middle of the raster's cells by an odd amount, so that no line meets an edge of a regular grid on purpose.
+constexpr double offset = 0.5 + 0.01234567;
+
+struct Frame {
+  Vec3 x, y, n;
+
+  explicit Frame(const Vec3& direction) : x(direction.unitOrthogonal()), y(direction.cross(x)), n(direction) {}
+  [[nodiscard]] Vec3 seen(const Vec3& p) const { return {p.dot(x), p.dot(y), p.dot(n)}; }
+};
+
+// Where a line passes through a triangle, going along the direction.
+struct Passage {
+  double height = 0;
+  bool leaves = false;  // out of the yarn
+  std::uint32_t triangle = 0;
+};
+
+class Raster {
+ public:
+  Raster(const Frame& frame, const Box3& box)
+      : frame_(frame), low_(box.min().head<2>()), step_((box.max() - box.min()).head<2>() / lines) {}
+
+  // For each line the triangles that it passes through.
+  [[nodiscard]] std::vector<std::vector<Passage>> pass(const Tessellation& skin) const {
+    std::vector<std::vector<Passage>> all(static_cast<std::size_t>(lines * lines));
+    std::vector<Vec3> seen;
+    seen.reserve(skin.vertices.size());
+    for (const Vec3& p : skin.vertices) seen.push_back(frame_.seen(p));
+    for (std::uint32_t k = 0; k < skin.triangles.size(); ++k) pass(seen, skin.triangles[k], k, all);
+    return all;
+  }
+
+  [[nodiscard]] Vec3 at(std::size_t line, double height) const {
+    const Vec2 p = place(static_cast<int>(line) % lines, static_cast<int>(line) / lines);
+    return p.x() * frame_.x + p.y() * frame_.y + height * frame_.n;
+  }
+
+ private:
+  [[nodiscard]] Vec2 place(int i, int j) const { return low_ + step_.cwiseProduct(Vec2(i + offset, j + offset)); }
+
+  // Twice the area of (a, b, p), with the same absolute value whichever of a and b comes first: a line beside a common
+  // edge is on one side of it for both triangles.
+  static double side(const std::vector<Vec3>& seen, std::uint32_t a, std::uint32_t b, const Vec2& p) {
+    const bool swap = b < a;
+    const Vec3 &s = seen[swap ? b : a], &e = seen[swap ? a : b];
+    double area = (e.x() - s.x()) * (p.y() - s.y()) - (e.y() - s.y()) * (p.x() - s.x());
+    if (area == 0.0) area = std::numeric_limits<double>::min();
+    return swap ? -area : area;
+  }
+
+  void pass(const std::vector<Vec3>& seen, const std::array<std::uint32_t, 3>& t, std::uint32_t k,
+            std::vector<std::vector<Passage>>& all) const {
+    Vec2 low = seen[t[0]].head<2>(), high = low;
+    for (std::size_t c = 1; c < 3; ++c) {
+      low = low.cwiseMin(seen[t[c]].head<2>());
+      high = high.cwiseMax(seen[t[c]].head<2>());
+    }
+    const auto first = [&](int axis) {
+      return static_cast<int>(std::clamp(std::ceil((low[axis] - low_[axis]) / step_[axis] - offset), 0.0, lines + 0.0));
+    };
+    const auto last = [&](int axis) {
+      return static_cast<int>(std::clamp(std::floor((high[axis] - low_[axis]) / step_[axis] - offset), -1.0, lines - 1.0));
+    };
+    const int i0 = first(0), i1 = last(0), j0 = first(1), j1 = last(1);
+    for (int j = j0; j <= j1; ++j)
+      for (int i = i0; i <= i1; ++i) {
+        const Vec2 p = place(i, j);
+        const double w0 = side(seen, t[1], t[2], p), w1 = side(seen, t[2], t[0], p), w2 = side(seen, t[0], t[1], p);
+        const bool leaves = w0 > 0.0;  // seen against the direction the corners run counter-clockwise
+        if ((w1 > 0.0) != leaves || (w2 > 0.0) != leaves) continue;
+        const double height = (w0 * seen[t[0]].z() + w1 * seen[t[1]].z() + w2 * seen[t[2]].z()) / (w0 + w1 + w2);
+        all[static_cast<std::size_t>(j * lines + i)].push_back({height, leaves, k});
+      }
+  }
+
+  Frame frame_;
+  Vec2 low_, step_;
+};
+
+struct Piece {
+  Passage in, out;
+};
+
+// The pieces of a line inside a closed skin.
+void find_pieces(std::vector<Passage>& passages, std::vector<Piece>& pieces) {
+  pieces.clear();
+  std::sort(passages.begin(), passages.end(), [](const Passage& x, const Passage& y) {
+    // Coming in before going out where the heights are equal: a piece of no length is no gap.
+    return x.height != y.height ? x.height < y.height : !x.leaves && y.leaves;
+  });
+  int depth = 0;
+  Passage in;
+  for (const Passage& passage : passages) {
+    if (!passage.leaves && depth++ == 0) in = passage;
+    if (passage.leaves && --depth == 0) pieces.push_back({in, passage});
+    depth = std::max(depth, 0);
+  }
+}
+
+// As sheets: the highest way out of A and the lowest way into B.
+void find_faces(const std::vector<Passage>& a, const std::vector<Passage>& b, std::vector<Piece>& pieces_a,
+                std::vector<Piece>& pieces_b) {
+  pieces_a.clear();
+  pieces_b.clear();
+  constexpr double far = std::numeric_limits<double>::infinity();
+  for (const Passage& p : a)
+    if (p.leaves && (pieces_a.empty() || p.height > pieces_a[0].out.height)) pieces_a = {{{-far, false, 0}, p}};
+  for (const Passage& p : b)
+    if (!p.leaves && (pieces_b.empty() || p.height < pieces_b[0].in.height)) pieces_b = {{p, {far, true, 0}}};
+}
+
+}  // namespace
+
+Parting SharedSpace::parting(const Vec3& direction) const {
+  const Frame frame(direction);
+  Box3 box;
+  for (const Vec3& p : walls_) box.extend(frame.seen(p));
+  Parting best;
+  if (walls_.empty() || !((box.max() - box.min()).head<2>().minCoeff() > 0.0)) return best;
+  const Raster raster(frame, box);
+  std::vector<std::vector<Passage>> a = raster.pass(a_), b = raster.pass(b_);
+  std::vector<Piece> pieces_a, pieces_b;
+  for (std::size_t line = 0; line < a.size(); ++line) {
+    if (a[line].empty() || b[line].empty()) continue;
+    if (whole_) {
+      find_pieces(a[line], pieces_a);
+      find_pieces(b[line], pieces_b);
+    } else {
+      find_faces(a[line], b[line], pieces_a, pieces_b);
+    }
+    for (const Piece& x : pieces_a)
+      for (const Piece& y : pieces_b) {
+        const double top = std::min(x.out.height, y.out.height), bottom = std::max(x.in.height, y.in.height);
+        if (top <= bottom || (whole_ && (top < box.min().z() || bottom > box.max().z()))) continue;
+        const double distance = x.out.height - y.in.height;
+        if (distance > best.distance)
+          best = {distance, x.out.triangle, y.in.triangle, raster.at(line, x.out.height), raster.at(line, y.in.height)};
+      }
+  }
+  return best;
+}
+
+Vec3 SharedSpace::easiest_direction(const std::vector<Vec3>& starts) const {
+  // A direction in which nothing is seen says nothing.
+  const auto cost = [this](const Vec3& n) {
+    const double distance = parting(n).distance;
+    return distance > 0.0 ? distance : std::numeric_limits<double>::infinity();
+  };
+  struct Start {
+    Vec3 n;
+    double cost;
+  };
+  std::vector<Start> list;
+  for (const Vec3& n : starts) list.push_back({n, cost(n)});
+  std::stable_sort(list.begin(), list.end(), [](const Start& x, const Start& y) { return x.cost < y.cost; });
+  list.resize(std::min<std::size_t>(list.size(), 3));
+  Start best = list.front();
+  for (Start here : list) {
+    for (double step = 0.3; step > 0.004; step *= 0.5) {
+      for (bool moved = true; moved;) {
+        moved = false;
+        const Vec3 x = here.n.unitOrthogonal(), y = here.n.cross(x);
+        for (int k = 0; k < 8; ++k) {
+          const double angle = k * std::numbers::pi / 4.0;
+          const Vec3 n = (here.n + step * (std::cos(angle) * x + std::sin(angle) * y)).normalized();
+          const double value = cost(n);
+          // Less than this is the raster's grain.
+          if (value < here.cost * (1.0 - 1e-5)) {
+            here = {n, value};
+            moved = true;
+            break;
+          }
+        }
+      }
+    }
+    if (here.cost < best.cost) best = here;
+  }
+  return best.n;
+}
+
+std::vector<Vec3> directions_all_round() {
+  std::vector<Vec3> all;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z)
+        if (x != 0 || y != 0 || z != 0) all.push_back(Vec3(x, y, z).normalized());
+  return all;
+}
+
+}  // namespace selvage::solid
