@@ -52,6 +52,7 @@ struct Running {
   std::size_t job = 0;
   pid_t pid = -1;
   int pipe = -1;
+  bool at_end = false;  // of the pipe
   bool timed_out = false;
   Clock::time_point deadline = Clock::time_point::max();
   std::string inbox;  // bytes of a packet that is not complete yet
@@ -139,7 +140,8 @@ class Runner {
     std::vector<pollfd> watched = {{signals_, POLLIN, 0}};
     double seconds = pool_.tick ? pool_.tick() : 3600;
     for (const Running& child : running_) {
-      watched.push_back({child.pipe, POLLIN, 0});
+      // A pipe at its end would wake us again and again until the kernel has taken the child down.
+      watched.push_back({child.at_end ? -1 : child.pipe, POLLIN, 0});
       if (child.deadline != Clock::time_point::max())
         seconds = std::min(seconds, std::chrono::duration<double>(child.deadline - Clock::now()).count());
     }
@@ -160,6 +162,7 @@ class Runner {
     for (;;) {
       const ssize_t got = ::read(child.pipe, buffer.data(), buffer.size());
       if (got < 0 && errno == EINTR) continue;
+      child.at_end = got == 0;
       if (got <= 0) break;
       child.inbox.append(buffer.data(), static_cast<std::size_t>(got));
     }

@@ -86,7 +86,7 @@ class Batch {
   std::size_t defects_ = 0, files_ = 0;
   std::size_t next_result_ = 0;
   bool output_failed_ = false;
-  std::string started_ = iso_timestamp();
+  std::string started_ = wants_report() ? iso_timestamp() : std::string();
   Clock::time_point start_ = Clock::now();
   Clock::time_point next_report_ = start_ + std::chrono::seconds(static_cast<int>(report_interval));
 };

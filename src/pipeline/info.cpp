@@ -6,8 +6,8 @@
 
 #include "pipeline/facts.h"
 #include "pipeline/scaling.h"
-#include "pipeline/table.h"
 #include "pipeline/job.h"
+#include "pipeline/table.h"
 
 namespace selvage::pipeline {
 
@@ -58,7 +58,7 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
     total_volume += volume;
     box.extend(yarn::bounds(*body));
   }
-  std::string text = fmt::format("  {} yarns, lengths in {}\n{}", builder.count(), name_of(shown), table.text());
+  std::string text = fmt::format("  lengths in {}\n{}", name_of(shown), table.text());
   text += fmt::format("  together: length {}, volume {}\n", cell(total_length), cell(total_volume));
   if (!box.isEmpty()) {
     const Vec3 low = box.min().unaryExpr(length), high = box.max().unaryExpr(length);

@@ -111,15 +111,20 @@ std::string identity(const fs::path& path) {
   return failure ? fs::absolute(path, failure).lexically_normal().string() : real.string();
 }
 
-Status check_names(const InputList& list, const std::vector<std::vector<PlannedOutput>>& plan) {
+Status check_names(const Options& options, const InputList& list, const std::vector<std::vector<PlannedOutput>>& plan) {
+  const std::string report = options.report.empty() || options.report == "-" ? std::string() : identity(options.report);
   std::unordered_map<std::string, std::size_t> input_of;
   for (std::size_t i = 0; i < plan.size(); ++i)
     if (list.inputs[i].path != "-") input_of.emplace(identity(list.inputs[i].path), i);
+  if (input_of.contains(report))
+    return error(Kind::usage, fmt::format("the report '{}' would replace an input", options.report));
   std::unordered_map<std::string, std::size_t> writer_of;
   for (std::size_t i = 0; i < plan.size(); ++i) {
     for (const PlannedOutput& output : plan[i]) {
       if (output.to_standard_output) continue;
       const std::string name = identity(output.path);
+      if (name == report)
+        return error(Kind::usage, fmt::format("the report and an output would both be '{}'", options.report));
       if (const auto found = input_of.find(name); found != input_of.end())
         return error(Kind::usage, fmt::format("the output '{}' would replace the input '{}'; name another place with -o",
                                               output.path.string(), list.inputs[found->second].path));
@@ -137,10 +142,15 @@ Status check_names(const InputList& list, const std::vector<std::vector<PlannedO
 
 Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list) {
   std::vector<std::vector<PlannedOutput>> plan(list.inputs.size());
-  if (options.command != Command::convert && options.command != Command::mesh) return plan;
+  if (options.command != Command::convert && options.command != Command::mesh) {
+    if (Status status = check_names(options, list, plan); !status.ok()) return status.error();
+    return plan;
+  }
   Result<Formats> wanted = wanted_formats(options);
   if (!wanted) return wanted.error();
   if (Status status = check_single_output(options, list, *wanted); !status.ok()) return status.error();
+  if (options.units && std::any_of(wanted->begin(), wanted->end(), [](auto* format) { return format->open_bodies == nullptr; }))
+    return error(Kind::usage, "--units converts surfaces; text keeps the unit of its input");
   const bool as_file = output_is_file(options, list, *wanted);
   for (std::size_t i = 0; i < plan.size(); ++i) {
     const Input& input = list.inputs[i];
@@ -153,7 +163,7 @@ Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& opti
         plan[i].push_back({format, as_file ? fs::path(options.output) : output_path(options, input, *format), false});
     }
   }
-  if (Status status = check_names(list, plan); !status.ok()) return status.error();
+  if (Status status = check_names(options, list, plan); !status.ok()) return status.error();
   return plan;
 }
 
