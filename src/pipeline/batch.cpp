@@ -85,7 +85,7 @@ class Batch {
   Counts counts_;
   std::size_t defects_ = 0, files_ = 0;
   std::size_t next_result_ = 0;
-  bool output_failed_ = false;
+  int output_failure_ = 0;  // errno of a failed write to standard output
   std::string started_ = wants_report() ? iso_timestamp() : std::string();
   Clock::time_point start_ = Clock::now();
   Clock::time_point next_report_ = start_ + std::chrono::seconds(static_cast<int>(report_interval));
@@ -133,7 +133,7 @@ void Batch::flush_results() {
     if (results.empty()) continue;
     progress_.clear();
     if (std::fwrite(results.data(), 1, results.size(), stdout) != results.size() || std::fflush(stdout) != 0)
-      output_failed_ = true;
+      output_failure_ = errno;
     results = {};
   }
 }
@@ -255,8 +255,9 @@ int Batch::run(const std::vector<Message>& missing) {
   int code = complete ? exit_code() : exit_code::interrupted;
   if (!complete) std::fputs("selvage: interrupted; the inputs that were not done have no new outputs\n", stderr);
   if (options_.json) std::fputs(report_text(code == exit_code::well).c_str(), stdout);
-  if (std::fflush(stdout) != 0 || output_failed_) {
-    std::fprintf(stderr, "selvage: error: cannot write to standard output: %s\n", std::strerror(errno));
+  if (std::fflush(stdout) != 0) output_failure_ = errno;
+  if (output_failure_ != 0) {
+    std::fprintf(stderr, "selvage: error: cannot write to standard output: %s\n", std::strerror(output_failure_));
     if (code == exit_code::well) code = exit_code::failed;
   }
   if (Status status = write_report(code == exit_code::well); !status.ok()) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/facts.h"
 
@@ -12,7 +13,8 @@ Message overlap_message(const solid::Overlap& overlap, std::span<const yarn::Bod
   Message message =
       error(Kind::geometry, fmt::format("yarns '{}' and '{}' overlap, {:.4g} {} deep", bodies[overlap.a].name,
                                         bodies[overlap.b].name, overlap.depth, name_of(units)));
-  message.at = overlap.at;
+  // Rounding is no coordinate: 1e-15 would read like a place.
+  message.at = overlap.at.unaryExpr([&](double x) { return std::abs(x) < 1e-6 * overlap.depth ? 0.0 : x; });
   return message;
 }
 

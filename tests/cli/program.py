@@ -1,0 +1,69 @@
+"""The program under test, and a folder to work in."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.path.abspath(os.environ.get("SELVAGE", "build/bin/selvage"))
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SAMPLES = ROOT / "samples"
+GRID = str(SAMPLES / "plain4_grid.txt")
+PATH = str(SAMPLES / "plain4_path.txt")
+RING = str(SAMPLES / "ring.txt")
+BAD = SAMPLES / "bad"
+
+
+def environment(**more):
+    # One moment for all files, so that two runs can be compared byte for byte.
+    return {**os.environ, "SOURCE_DATE_EPOCH": "1700000000", "LC_ALL": "C", **more}
+
+
+def run(*arguments, **options):
+    """Runs the program; the result has returncode, stdout and stderr as text."""
+    options = {"env": environment(), "stdin": subprocess.DEVNULL, **options}
+    if "input" in options:
+        del options["stdin"]
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, errors="replace", **options)
+
+
+def start(*arguments, **options):
+    options = {"env": environment(), "stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE,
+               "text": True, **options}
+    return subprocess.Popen([PROGRAM, *map(str, arguments)], **options)
+
+
+def children_of(pid):
+    """The processes that `pid` has started and that are still there."""
+    try:
+        return [int(word) for word in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+    except FileNotFoundError:
+        return []
+
+
+def files_below(folder):
+    """Every file below the folder, hidden ones too, with its bytes, by its path inside it."""
+    folder = pathlib.Path(folder)
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+class Case(unittest.TestCase):
+    maxDiff = None
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="selvage-test-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.out = self.folder / "out"
+
+    def succeeds(self, *arguments, **options):
+        done = run(*arguments, **options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def fails(self, code, *arguments, **options):
+        """Runs, expects this exit code, and gives the messages."""
+        done = run(*arguments, **options)
+        self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}\n{done.stderr}")
+        return done.stderr

@@ -1,0 +1,139 @@
+"""What can be named as an input, and what is said of inputs that are bad."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import unittest
+
+from program import BAD, Case, GRID, PATH, PROGRAM, RING, environment, files_below
+
+
+class Kinds(Case):
+    def converted(self, *arguments, **options):
+        self.succeeds("convert", *arguments, "--to", "iges", "-o", f"{self.out}/", **options)
+        return sorted(files_below(self.out))
+
+    def test_standard_input(self):
+        text = pathlib.Path(GRID).read_text()
+        self.assertEqual(self.converted("-", input=text), ["stdin.igs"])
+        direct = self.succeeds("convert", GRID, "--to", "iges", "-o", "-").stdout
+        piped = self.succeeds("convert", "-", "--to", "iges", "-o", "-", input=text).stdout
+        # All but the names in the global section are the same.
+        self.assertEqual([line for line in direct.splitlines() if line[72] in "DP"],
+                         [line for line in piped.splitlines() if line[72] in "DP"])
+        self.assertIn("name one with -o", self.fails(2, "convert", "-", input=text))
+        self.assertIn("only once", self.fails(2, "convert", "-", "-", "-o", self.out, input=text))
+
+    def test_list(self):
+        listing = self.folder / "list.txt"
+        listing.write_text(f"{GRID}\r\n\n{RING}\n")
+        self.assertEqual(self.converted(f"@{listing}"), ["plain4_grid.igs", "ring.igs"])
+
+    def test_list_that_is_missing(self):
+        self.assertIn("No such file", self.fails(2, "convert", f"@{self.folder}/none.txt", "-o", self.out))
+
+    def test_pattern_that_the_shell_left_alone(self):
+        for name in ("a1.txt", "a2.txt", "b.txt"):
+            shutil.copy(GRID, self.folder / name)
+        self.assertEqual(self.converted(f"{self.folder}/a?.txt"), ["a1.igs", "a2.igs"])
+
+    def test_a_name_with_a_star_in_it(self):
+        shutil.copy(GRID, self.folder / "a*.txt")
+        self.assertEqual(self.converted(f"{self.folder}/a*.txt"), ["a*.igs"])
+
+    def test_content_tells_before_the_extension(self):
+        shutil.copy(GRID, self.folder / "fabric.dat")
+        self.assertEqual(self.converted(self.folder / "fabric.dat"), ["fabric.igs"])
+
+    def test_shards_are_a_partition(self):
+        for i in range(7):
+            shutil.copy(RING, self.folder / f"r{i}.txt")
+        parts = []
+        for i in range(3):
+            out = self.folder / f"part{i}"
+            self.succeeds("convert", self.folder / "", "--to", "iges", "-o", f"{out}/", "--shard", f"{i}/3")
+            parts.append({name for name in files_below(out) if name.startswith("r")})
+        self.assertEqual(sorted(map(len, parts)), [2, 2, 3])
+        self.assertEqual(set.union(*parts), {f"r{i}.igs" for i in range(7)})
+
+
+class Bad(Case):
+    """The others are done, the bad one is named with its place, and nothing of it is written."""
+
+    def failed(self, path, pattern):
+        message = self.fails(1, "convert", path, GRID, "--to", "iges", "-o", f"{self.out}/")
+        self.assertRegex(message, pattern)
+        self.assertEqual(sorted(files_below(self.out)), ["plain4_grid.igs"])
+
+    def test_places_in_bad_samples(self):
+        places = {"decimal_comma": r":5:12: error: .*comma", "misspelt": r":3:3: error: .*diameter", "nan": r":3:12: error: ",
+                  "unknown_thread": r":2:8: error: .*nothread", "version": r":1:8: error: ", "no_end": r":\d+:\d+: error: .*end",
+                  "short_grid": r":\d+:\d+: error: ", "zero_length": r":\d+:\d+: error: ", "binary": r":1:1: error: ",
+                  "empty": r":1:1: error: "}
+        self.assertEqual(sorted(places), sorted(path.stem for path in BAD.glob("*.txt")))
+        for name, pattern in places.items():
+            with self.subTest(name):
+                self.failed(BAD / f"{name}.txt", f"(?m)^{BAD}/{name}.txt{pattern}")
+
+    def test_missing(self):
+        self.failed("nowhere.txt", "^nowhere.txt: error: cannot open: No such file or directory")
+        self.failed("no*where.txt", "no file matches")
+
+    def test_unknown_format(self):
+        unknown = self.folder / "x.bin"
+        unknown.write_bytes(bytes(range(256)))
+        self.failed(unknown, "x.bin: error: of no known format")
+
+    def test_an_empty_folder(self):
+        (self.folder / "empty").mkdir()
+        self.failed(self.folder / "empty", "empty: error: no readable file")
+
+    def test_a_folder_that_cannot_be_entered(self):
+        if os.geteuid() != 0:
+            closed = self.folder / "in" / "closed"
+            closed.mkdir(parents=True)
+            closed.chmod(0)
+            self.addCleanup(closed.chmod, 0o700)
+            self.failed(closed, "cannot read the folder: Permission denied")
+            return
+        program = self.folder / "selvage"  # root may read everything: be someone else
+        shutil.copy(PROGRAM, program)
+        inside = self.folder / "in"
+        (inside / "closed").mkdir(parents=True)
+        shutil.copy(GRID, inside / "grid.txt")
+        (inside / "grid.txt").chmod(0o644)
+        (inside / "closed").chmod(0)
+        out = self.folder / "out"
+        out.mkdir()
+        for path in (self.folder, inside):
+            path.chmod(0o755)
+        out.chmod(0o777)
+        done = subprocess.run([program, "convert", inside, "--to", "iges", "-o", out], env=environment(), text=True,
+                              capture_output=True, user=65534, group=65534, extra_groups=[])
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stderr, "in/closed: error: cannot read the folder: Permission denied")
+        self.assertEqual(list(files_below(out)), ["grid.igs"])
+
+
+class Text(Case):
+    def test_windows_lines_and_mark(self):
+        plain = pathlib.Path(GRID).read_bytes()
+        windows = self.folder / "plain4_grid.txt"
+        windows.write_bytes(b"\xef\xbb\xbf" + plain.replace(b"\n", b"\r\n"))
+        self.succeeds("convert", windows, "-o", self.folder / "w.igs")
+        self.succeeds("convert", GRID, "-o", self.folder / "u.igs")
+        drop_names = lambda name: [line for line in (self.folder / name).read_text().splitlines() if line[72] in "DP"]
+        self.assertEqual(drop_names("w.igs"), drop_names("u.igs"))
+
+    def test_text_written_and_read_gives_the_same_surfaces(self):
+        for sample in (GRID, PATH, RING):
+            with self.subTest(sample):
+                self.succeeds("convert", sample, "-o", self.folder / "again.txt")
+                first = self.succeeds("convert", sample, "--to", "iges", "-o", "-").stdout.splitlines()
+                second = self.succeeds("convert", self.folder / "again.txt", "--to", "iges", "-o", "-").stdout.splitlines()
+                self.assertEqual([line for line in first if line[72] == "P"], [line for line in second if line[72] == "P"])
+
+
+if __name__ == "__main__":
+    unittest.main()

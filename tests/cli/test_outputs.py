@@ -1,0 +1,171 @@
+"""Where outputs go, that they are whole or absent, and that no two inputs share one."""
+
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import unittest
+
+from program import BAD, Case, GRID, PATH, PROGRAM, RING, environment, files_below, run
+
+
+class Places(Case):
+    def names(self):
+        return sorted(files_below(self.folder))
+
+    def test_one_input_one_format_is_a_file(self):
+        self.succeeds("convert", GRID, "-o", self.folder / "a" / "x.igs")
+        self.succeeds("convert", GRID, "--to", "iges", "-o", self.folder / "plain")
+        self.assertEqual(self.names(), ["a/x.igs", "plain"])
+        self.assertEqual((self.folder / "plain").read_bytes()[72:80], b"S      1")
+
+    def test_without_format_iges_and_step_in_a_folder(self):
+        self.succeeds("convert", GRID, "-o", self.out)
+        self.assertEqual(self.names(), ["out/plain4_grid.igs", "out/plain4_grid.stp"])
+
+    def test_a_folder_that_exists(self):
+        self.out.mkdir()
+        self.succeeds("convert", GRID, "--to", "iges", "-o", self.out)
+        self.assertEqual(self.names(), ["out/plain4_grid.igs"])
+
+    def test_beside_the_input(self):
+        shutil.copy(GRID, self.folder / "a.txt")
+        self.succeeds("convert", self.folder / "a.txt", "--to", "iges")
+        self.assertEqual(self.names(), ["a.igs", "a.txt"])
+
+    def test_folders_are_mirrored(self):
+        for name in ("in/a/plain.txt", "in/b/plain.txt", "in/top.txt", "in/.hidden/no.txt"):
+            (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(GRID, self.folder / name)
+        (self.folder / "in" / "notes.md").write_text("not a fabric")
+        self.succeeds("convert", self.folder / "in", "--to", "iges", "-o", self.out)
+        self.assertEqual(sorted(files_below(self.out)), ["a/plain.igs", "b/plain.igs", "top.igs"])
+
+    def test_standard_output(self):
+        self.succeeds("convert", GRID, "-o", self.folder / "-.igs")
+        done = self.succeeds("convert", GRID, "--to", "iges", "-o", "-")
+        self.assertEqual(done.stdout.splitlines()[-1], (self.folder / "-.igs").read_text().splitlines()[-1])
+        self.assertEqual(done.stderr, "")
+        self.assertIn("one input and one format", self.fails(2, "convert", GRID, "-o", "-"))
+        self.assertIn("one input and one format", self.fails(2, "convert", GRID, RING, "--to", "iges", "-o", "-"))
+
+    def test_the_same_bytes_with_any_number_of_workers(self):
+        inputs = [GRID, PATH, RING]
+        self.succeeds("convert", *inputs, "--to", "iges", "-o", self.folder / "one", "-j", 1)
+        self.succeeds("convert", *inputs, "--to", "iges", "-o", self.folder / "four", "-j", 4)
+        self.assertEqual(files_below(self.folder / "one"), files_below(self.folder / "four"))
+
+
+class Collisions(Case):
+    def refused(self, pattern, *arguments):
+        before = files_below(self.folder)
+        self.assertRegex(self.fails(2, *arguments), pattern)
+        self.assertEqual(files_below(self.folder), before)
+
+    def test_two_inputs_one_output(self):
+        for name in ("a/plain.txt", "b/plain.txt"):
+            (self.folder / name).parent.mkdir()
+            shutil.copy(GRID, self.folder / name)
+        self.refused("would both write", "convert", self.folder / "a/plain.txt", self.folder / "b/plain.txt", "-o", self.out)
+        # The same folder under two names is one place.
+        os.symlink(self.folder / "a", self.folder / "c")
+        self.refused("would both write", "convert", self.folder / "a/plain.txt", self.folder / "c/plain.txt")
+
+    def test_an_output_that_is_an_input(self):
+        shutil.copy(GRID, self.folder / "a.txt")
+        self.refused("would replace the input", "convert", self.folder / "a.txt", "--to", "txt")
+        self.refused("would replace the input", "convert", self.folder / "a.txt", "-o", self.folder / "a.txt")
+
+    def test_a_report_in_the_way(self):
+        shutil.copy(GRID, self.folder / "a.txt")
+        self.refused("report", "convert", self.folder / "a.txt", "--report", self.folder / "a.txt", "-o", self.out)
+        self.refused("report", "convert", self.folder / "a.txt", "--report", self.out / "a.igs", "-o", self.out)
+
+    def test_several_inputs_one_file(self):
+        self.refused("names one file", "convert", GRID, RING, "-o", self.folder / "x.igs")
+
+
+class Trouble(Case):
+    """One output cannot be written; the other inputs are done, and nothing half-written stays."""
+
+    def test_output_is_a_directory(self):
+        (self.out / "ring.igs").mkdir(parents=True)
+        message = self.fails(1, "convert", RING, GRID, "--to", "iges", "-o", self.out)
+        self.assertIn(f"{self.out}/ring.igs: error: cannot write: Is a directory", message)
+        self.assertEqual(list(files_below(self.out)), ["plain4_grid.igs"])
+        self.assertIn("Is a directory", self.fails(1, "convert", GRID, "-o", self.out / "ring.igs"))
+
+    def test_a_file_where_a_folder_is_needed(self):
+        self.out.write_text("in the way")
+        self.assertIn(str(self.out), self.fails(1, "convert", GRID, "-o", self.out))
+        self.assertEqual(self.out.read_text(), "in the way")
+
+    def test_limit_of_file_size(self):
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+
+        done = subprocess.run([PROGRAM, "convert", GRID, "--to", "iges", "-o", self.folder / "x.igs"], preexec_fn=limit,
+                              env=environment(), capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("x.igs: error: cannot write: File too large", done.stderr)
+        self.assertEqual(files_below(self.folder), {})
+
+    def test_full_disk(self):
+        self.out.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k", "none", self.out], capture_output=True)
+        if mounted.returncode != 0:
+            self.skipTest("a small file system can be mounted by root only; test_limit_of_file_size stands in")
+        try:
+            old = self.out / "plain4_grid.igs"
+            old.write_text("old")
+            message = self.fails(1, "convert", GRID, "--to", "iges", "-o", self.out)
+            self.assertIn("No space left on device", message)
+            self.assertEqual(files_below(self.out), {"plain4_grid.igs": b"old"})
+        finally:
+            subprocess.run(["umount", self.out], check=True)
+
+    def test_folder_without_permission(self):
+        options, program = {}, PROGRAM
+        if os.geteuid() == 0:  # root may write everywhere: be someone else, with a program that he can reach
+            program = self.folder / "selvage"
+            shutil.copy(PROGRAM, program)
+            os.chmod(self.folder, 0o755)
+            options = {"user": 65534, "group": 65534, "extra_groups": []}
+        source = self.folder / "grid.txt"
+        shutil.copy(GRID, source)
+        source.chmod(0o644)
+        closed = self.folder / "closed"
+        closed.mkdir(mode=0o500)
+        done = subprocess.run([program, "convert", source, "-o", closed / "x.igs"], env=environment(), capture_output=True,
+                              text=True, **options)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("x.igs: error: cannot write: Permission denied", done.stderr)
+        closed.chmod(0o000)
+        done = subprocess.run([program, "convert", closed, source, "--to", "iges", "-o", "-"], env=environment(),
+                              capture_output=True, text=True, **options)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(files_below(self.folder).keys() - {"selvage"}, {"grid.txt"})
+
+    def test_a_failed_input_leaves_the_old_output(self):
+        target = self.folder / "x.igs"
+        target.write_text("old")
+        self.fails(1, "convert", BAD / "short_grid.txt", "-o", target)
+        self.assertEqual(files_below(self.folder), {"x.igs": b"old"})
+
+    def test_full_standard_output(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([PROGRAM, "info", GRID], stdout=full, stderr=subprocess.PIPE, env=environment(), text=True)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("No space left on device", done.stderr)
+
+    def test_hidden_leftovers_are_removed(self):
+        self.out.mkdir()
+        (self.out / ".plain4_grid.igs.selvage-partial").write_text("from a run that was killed")
+        self.succeeds("convert", GRID, "--to", "iges", "-o", self.out)
+        self.assertEqual(list(files_below(self.out)), ["plain4_grid.igs"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,147 @@
+"""The JSON report, and --resume which goes by it."""
+
+import hashlib
+import json
+import pathlib
+import shutil
+import unittest
+
+from program import BAD, Case, GRID, PATH, RING, files_below, run
+
+
+class Report(Case):
+    def setUp(self):
+        super().setUp()
+        self.path = self.folder / "report.json"
+
+    def report(self):
+        return json.loads(self.path.read_text())
+
+    def test_fields(self):
+        self.fails(1, "convert", GRID, BAD / "misspelt.txt", "nowhere.txt", "--to", "iges", "-o", f"{self.out}/", "--report",
+                   self.path)
+        report = self.report()
+        self.assertEqual(list(report), ["selvage", "libraries", "started", "seconds", "ok", "counts", "inputs"])
+        self.assertRegex(report["selvage"], r"^\d+\.\d+\.\d+$")
+        self.assertEqual(sorted(report["libraries"]), ["cgal", "occt", "tetgen"])
+        self.assertFalse(report["ok"])
+        self.assertEqual(report["counts"], {"inputs": 3, "done": 1, "failed": 2, "skipped": 0})
+        good, bad, missing = report["inputs"]
+        self.assertEqual((good["path"], good["ok"], good["units"], good["yarn_count"]), (GRID, True, "mm", 4))
+        self.assertEqual(good["sha256"], hashlib.sha256(pathlib.Path(GRID).read_bytes()).hexdigest())
+        self.assertEqual([yarn["name"] for yarn in good["yarns"]], ["warp1", "warp2", "weft1", "weft2"])
+        for yarn in good["yarns"]:
+            self.assertEqual(yarn["control_points"], [18, 16])
+            self.assertIs(yarn["closed"], True)
+            self.assertGreater(yarn["length"], 2.0)
+            self.assertGreater(yarn["volume"], 0.1)
+            self.assertNotIn("self_overlap", yarn, "not looked for by convert: left out")
+        for absent in ("overlaps", "min_gap", "mesh"):
+            self.assertNotIn(absent, good)
+        self.assertGreater(good["creo_absolute_accuracy"], 0)
+        written, = good["outputs"]
+        data = (self.out / "plain4_grid.igs").read_bytes()
+        self.assertEqual((written["path"], written["format"]), (f"{self.out}/plain4_grid.igs", "iges"))
+        self.assertEqual((written["bytes"], written["sha256"]), (len(data), hashlib.sha256(data).hexdigest()))
+        self.assertEqual(written["entities"]["128"], 12)
+        self.assertEqual((bad["ok"], missing["ok"]), (False, False))
+        self.assertNotIn("outputs", bad)
+        message, = bad["messages"]
+        self.assertEqual((message["severity"], message["where"]), ("error", f"{BAD}/misspelt.txt:3:3"))
+        self.assertIn("did you mean", message["text"])
+        self.assertEqual(missing["messages"][0]["where"], "nowhere.txt")
+
+    def test_lengths_are_in_millimetres(self):
+        text = pathlib.Path(RING).read_text()
+        self.assertIn("units mm\n", text)
+        metres = self.folder / "ring.txt"
+        metres.write_text(text.replace("units mm\n", "units cm\n"))
+        reports = []
+        for path in (RING, metres):
+            self.succeeds("convert", path, "-o", self.folder / "x.igs", "--report", self.path)
+            reports.append(self.report()["inputs"][0])
+        mm, cm = (report["yarns"][0] for report in reports)
+        self.assertEqual((reports[0]["units"], reports[1]["units"]), ("mm", "cm"))
+        for key, factor in (("length", 10), ("volume", 1000), ("min_bend_radius", 10)):
+            self.assertAlmostEqual(cm[key] / mm[key], factor, places=9)
+
+    def test_check(self):
+        self.succeeds("check", PATH, "--report", self.path)
+        entry = self.report()["inputs"][0]
+        self.assertEqual(entry["overlaps"], [])
+        self.assertGreater(entry["min_gap"], 0)
+        self.assertTrue(all(yarn["closed"] and not yarn["self_overlap"] for yarn in entry["yarns"]))
+        # Neither a gap nor a section may vanish in it.
+        self.assertLess(entry["creo_absolute_accuracy"], entry["min_gap"])
+
+    def test_mesh(self):
+        self.succeeds("mesh", PATH, "-o", self.folder / "x.inp", "--report", self.path)
+        entry = self.report()["inputs"][0]
+        self.assertEqual(sorted(entry["mesh"]), ["max_aspect", "min_dihedral", "nodes", "tets", "volume", "volume_error"])
+        self.assertGreater(entry["mesh"]["tets"], 100)
+        exact = sum(yarn["volume"] for yarn in entry["yarns"])
+        self.assertAlmostEqual(entry["mesh"]["volume_error"], abs(entry["mesh"]["volume"] - exact) / exact, places=6)
+        self.assertLess(entry["mesh"]["volume_error"], 0.1)
+
+    def test_info_as_json(self):
+        report = json.loads(self.succeeds("info", RING, "--json").stdout)
+        self.assertEqual(report["inputs"][0]["yarn_count"], 1)
+        self.assertTrue(report["ok"])
+
+    def test_a_crashed_input_is_in_the_report(self):
+        self.fails(1, "convert", GRID, "-o", self.folder / "x.igs", "--report", self.path, "--memory", "1")
+        entry, = self.report()["inputs"]
+        self.assertFalse(entry["ok"])
+        self.assertEqual(entry["messages"][0]["severity"], "error")
+
+
+class Resume(Case):
+    def setUp(self):
+        super().setUp()
+        self.path = self.folder / "report.json"
+        self.inside = self.folder / "in"
+        self.inside.mkdir()
+        for name, sample in (("a", GRID), ("b", PATH), ("c", RING)):
+            shutil.copy(sample, self.inside / f"{name}.txt")
+        self.convert()
+
+    def convert(self, *more):
+        self.succeeds("convert", self.inside, "--to", "iges", "-o", self.out, "--report", self.path, "--resume", *more)
+        return json.loads(self.path.read_text())["counts"]
+
+    def test_nothing_to_do(self):
+        before = {path: path.stat().st_ino for path in self.out.iterdir()}
+        self.assertEqual(self.convert(), {"inputs": 3, "done": 0, "failed": 0, "skipped": 3})
+        self.assertEqual({path: path.stat().st_ino for path in self.out.iterdir()}, before)
+        entry = json.loads(self.path.read_text())["inputs"][0]
+        self.assertTrue(entry["skipped"] and entry["ok"])
+        self.assertEqual(entry["yarn_count"], 4)
+        self.assertEqual(self.convert()["skipped"], 3)
+
+    def test_what_changed_is_done_again(self):
+        (self.out / "a.igs").unlink()
+        (self.out / "b.igs").write_text("damaged")
+        self.assertEqual(self.convert(), {"inputs": 3, "done": 2, "failed": 0, "skipped": 1})
+        with open(self.inside / "c.txt", "a") as text:
+            text.write("# another comment\n")
+        self.assertEqual(self.convert()["done"], 1)
+
+    def test_other_settings_are_other_outputs(self):
+        self.assertEqual(self.convert("--ends", "fan")["done"], 3)
+        self.assertEqual(self.convert("--ends", "fan")["skipped"], 3)
+
+    def test_a_clock_says_nothing(self):
+        for path in self.inside.iterdir():
+            path.touch()
+        self.assertEqual(self.convert()["skipped"], 3)
+
+    def test_a_report_of_something_else(self):
+        self.path.write_text("[1, 2]")
+        self.assertIn("not a report", self.fails(2, "convert", self.inside, "-o", self.out, "--report", self.path, "--resume"))
+        self.path.write_text('{"inputs": [{"path": 3}, 4, {"path": "%s", "ok": true, "outputs": 7, "sha256": 1}]}'
+                             % (self.inside / "a.txt"))
+        self.assertEqual(self.convert()["done"], 3)
+
+
+if __name__ == "__main__":
+    unittest.main()
