@@ -19,7 +19,7 @@ int find_span(const std::vector<double>& knots, int degree, int count, double t)
 }
 
 void basis(const std::vector<double>& knots, int degree, int span, double t, BasisRow& values) {
-  BasisRow left{}, right{};
+  BasisRow left, right;  // only the first degree + 1 are used
   values[0] = 1.0;
   const auto knot = [&](int i) { return knots[static_cast<std::size_t>(i)]; };
   for (int j = 1; j <= degree; ++j) {
@@ -56,13 +56,12 @@ void raise_derivative(const std::vector<double>& knots, int degree, int span, co
 
 void basis_derivatives(const std::vector<double>& knots, int degree, int span, double t,
                        std::array<BasisRow, 3>& rows) {
-  rows[1].fill(0.0);
-  rows[2].fill(0.0);
-  BasisRow lower{};
+  for (std::size_t k = 1; k < 3; ++k) std::fill_n(rows[k].begin(), degree + 1, 0.0);
+  BasisRow lower;
   if (degree >= 2) {
-    BasisRow lowest{};
+    BasisRow lowest;
     basis(knots, degree - 2, span, t, lowest);
-    BasisRow slope{};
+    BasisRow slope;
     raise_derivative(knots, degree - 1, span, lowest, slope);
     raise_derivative(knots, degree, span, slope, rows[2]);
   }

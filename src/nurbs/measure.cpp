@@ -1,5 +1,6 @@
 #include "nurbs/measure.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "nurbs/basis.h"
@@ -41,7 +42,7 @@ std::vector<Node> gauss_nodes(const std::vector<double>& knots, int degree, int 
   }
   const GaussRule& rule = gauss_rule(order);
   std::vector<Node> nodes;
-  std::array<BasisRow, 3> rows{};
+  std::array<BasisRow, 3> rows;
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
     const double half = 0.5 * (breaks[k + 1] - breaks[k]), middle = 0.5 * (breaks[k + 1] + breaks[k]);
     for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
@@ -57,13 +58,14 @@ std::vector<Node> gauss_nodes(const std::vector<double>& knots, int degree, int 
 }  // namespace
 
 double arc_length(const Curve& curve, double t0, double t1) {
+  // Knot by knot from the one after t0: a short piece of a long curve costs no more than its own spans.
+  auto knot = std::upper_bound(curve.knots.begin(), curve.knots.end(), t0);
   double sum = 0.0, from = t0;
-  for (double knot : breakpoints(curve.knots, curve.degree)) {
-    if (knot <= from) continue;
-    const double to = std::min(knot, t1);
+  while (from < t1) {
+    while (knot != curve.knots.end() && *knot <= from) ++knot;
+    const double to = knot == curve.knots.end() ? t1 : std::min(*knot, t1);
     sum += adaptive_length(curve, from, to, gauss_length(curve, from, to), 20);
     from = to;
-    if (from >= t1) break;
   }
   return sum;
 }

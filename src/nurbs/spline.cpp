@@ -30,7 +30,7 @@ CurveJet evaluate_jet(const Curve& curve, double t) {
   const int count = static_cast<int>(curve.points.size());
   t = clamp_to(curve.knots, curve.degree, count, t);
   const int span = find_span(curve.knots, curve.degree, count, t);
-  std::array<BasisRow, 3> rows{};
+  std::array<BasisRow, 3> rows;
   basis_derivatives(curve.knots, curve.degree, span, t, rows);
   std::array<Vec3, 3> sums = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   std::array<double, 3> weights = {0.0, 0.0, 0.0};
@@ -51,7 +51,7 @@ Vec3 evaluate(const Curve& curve, double t) {
   const int count = static_cast<int>(curve.points.size());
   t = clamp_to(curve.knots, curve.degree, count, t);
   const int span = find_span(curve.knots, curve.degree, count, t);
-  BasisRow values{};
+  BasisRow values;
   basis(curve.knots, curve.degree, span, t, values);
   Vec3 sum = Vec3::Zero();
   double total = 0.0;
@@ -69,7 +69,7 @@ SurfaceJet evaluate_jet(const Surface& surface, double u, double v) {
   v = clamp_to(surface.knots_v, surface.degree_v, surface.count_v, v);
   const int span_u = find_span(surface.knots_u, surface.degree_u, surface.count_u, u);
   const int span_v = find_span(surface.knots_v, surface.degree_v, surface.count_v, v);
-  std::array<BasisRow, 3> rows_u{}, rows_v{};
+  std::array<BasisRow, 3> rows_u, rows_v;
   basis_derivatives(surface.knots_u, surface.degree_u, span_u, u, rows_u);
   basis_derivatives(surface.knots_v, surface.degree_v, span_v, v, rows_v);
   Vec3 position = Vec3::Zero(), du = Vec3::Zero(), dv = Vec3::Zero();

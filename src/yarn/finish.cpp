@@ -93,7 +93,8 @@ Status finish(Body& body, EndStyle ends) {
   const Vec3 origin = body.axis.points.front();
   // Sign first, with open ends: S_u x S_v outward makes the flux positive.
   body.inward = false;
-  double flux = nurbs::volume_flux(body.surface, origin);
+  const double side = nurbs::volume_flux(body.surface, origin);
+  double flux = side;
   if (!body.closed_along) flux += end_flux(body, false, origin) + end_flux(body, true, origin);
   if (!std::isfinite(flux) || flux == 0.0) {
     Message message = error(Kind::geometry, fmt::format("yarn '{}' encloses no volume", body.name));
@@ -104,7 +105,6 @@ Status finish(Body& body, EndStyle ends) {
   body.inward = flux < 0.0;
   Status sealed = seal(body, ends);
   if (!sealed) return sealed;
-  const double side = nurbs::volume_flux(body.surface, origin);
   body.volume = body.inward ? -side : side;
   if (!body.closed_along) body.volume += end_flux(body, false, origin) + end_flux(body, true, origin);
   body.end_area = area_vector(end_curve(body, false)).norm();

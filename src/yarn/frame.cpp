@@ -47,7 +47,8 @@ Result<Vec3> first_up(const Vec3& tangent, const std::optional<Vec3>& wanted) {
 
 }  // namespace
 
-Result<FrameField> FrameField::make(const nurbs::Curve& path, const std::optional<Vec3>& up, bool closed) {
+Result<FrameField> FrameField::make(const nurbs::Curve& path, const std::optional<Vec3>& up, bool closed,
+                                    bool needs_lengths) {
   FrameField field;
   field.path_ = path;
   const auto node_at = [&](double t) {
@@ -89,7 +90,7 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const std::optiona
       const Node& before = field.nodes_.back();
       if (stops(node) || node.tangent.dot(before.tangent) < -0.5) return stopped(node);
       node.up = reflected(before.up, before.position, before.tangent, node.position, node.tangent);
-      node.length = before.length + nurbs::arc_length(path, before.t, t);
+      if (closed || needs_lengths) node.length = before.length + nurbs::arc_length(path, before.t, t);
       field.nodes_.push_back(node);
     }
   }

@@ -22,9 +22,11 @@ struct Frame {
 class FrameField {
  public:
   // `up`: the wanted thickness direction at the start; unset: +z, or +y where the path starts within 6 degrees of z.
-  // closed: the closing angle is spread evenly over the length.
+  // closed: the closing angle is spread evenly over the length. needs_lengths: length_at() will be called (closed paths
+  // always have it); it costs most of the work.
   // Errors (geometry): an `up` within 6 degrees of the path's start, a path that stops or turns back at a point.
-  static Result<FrameField> make(const nurbs::Curve& path, const std::optional<Vec3>& up, bool closed);
+  static Result<FrameField> make(const nurbs::Curve& path, const std::optional<Vec3>& up, bool closed,
+                                 bool needs_lengths = true);
 
   // The frame at any parameter; the same bits for the same parameter.
   [[nodiscard]] Frame at(double t) const;

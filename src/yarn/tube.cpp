@@ -313,8 +313,9 @@ std::vector<double> first_breaks(const CentreLine& path, const FrameField& frame
   std::vector<double> breaks = {distinct.front()};
   for (std::size_t k = 0; k + 1 < distinct.size(); ++k) {
     const double from = distinct[k], to = distinct[k + 1];
-    const double turn = std::abs(sizes.at(to).value[2] - sizes.at(from).value[2]) +
-                        std::abs(twist + frames.spread_rate()) * (frames.length_at(to) - frames.length_at(from));
+    double turn = std::abs(sizes.at(to).value[2] - sizes.at(from).value[2]);
+    if (const double rate = twist + frames.spread_rate(); rate != 0.0)
+      turn += std::abs(rate) * (frames.length_at(to) - frames.length_at(from));
     const double steps = std::max(1.0, std::ceil(turn / (pi / 2)));
     if (static_cast<double>(breaks.size()) + steps > static_cast<double>(most)) return {};
     for (int i = 1; i <= static_cast<int>(steps); ++i)
@@ -350,7 +351,7 @@ Status sweep(Body& body, const CentreLine& path, const TubeSpec& spec) {
     rows.resize(1);
   }
   const SizeProfile sizes(at, rows, path.closed);
-  Result<FrameField> frames = FrameField::make(path.curve, spec.up, path.closed);
+  Result<FrameField> frames = FrameField::make(path.curve, spec.up, path.closed, spec.twist != 0.0);
   if (!frames) return of_yarn(frames.error(), body);
   const double twist = path.closed && spec.twist != 0.0 ? whole_turns(spec.twist, *frames, body) : spec.twist;
   Result<int> pieces = choose_pieces(spec, sizes);
