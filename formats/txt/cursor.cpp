@@ -26,7 +26,7 @@ bool is_not_finite_word(std::string_view word) {
 
 // Does the whole word read as a number?
 bool is_number(std::string_view word) {
-  if (word.size() > 1 && word.front() == '+') word.remove_prefix(1);
+  if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
   double value = 0.0;
   const auto [stop, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
   return failure != std::errc::invalid_argument && stop == word.data() + word.size();
@@ -125,8 +125,10 @@ bool Cursor::more() {
 }
 
 Spot Cursor::here() {
-  const char* const behind = at_;
-  return more() ? spot_at(at_) : spot_at(behind);
+  if (more()) return spot_at(at_);
+  const char* behind = at_;
+  while (behind != line_begin_ && is_blank(behind[-1])) --behind;
+  return spot_at(behind);
 }
 
 std::string_view Cursor::word_at(const char* p) const {

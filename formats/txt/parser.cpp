@@ -84,8 +84,7 @@ int Parser::note_given(Block& block, int index, std::string_view word) {
     if (find_word(outer->table->words, word) >= 0) return missing_end_step;
   const std::string there = block.outer == nullptr ? "this file" : block.title();
   error(statement(), fmt::format("{} is given twice in {}; first on line {}", in_quotes(word), there, line));
-  skip_statement();
-  return skip_step;
+  return index;
 }
 
 int Parser::unknown_word(const Block& block, std::string_view word) {
@@ -237,9 +236,14 @@ std::optional<std::string_view> Parser::reference(const Names& names) {
 
 void Parser::check_references() {
   if (is_stopped()) return;  // what was not read may define them
+  // The yarns of a construction get their names when it is built.
+  const bool are_yarns_known =
+      std::all_of(fabric.items.begin(), fabric.items.end(), [](const fabric::Item& item) {
+        return std::holds_alternative<fabric::Yarn>(item) || std::holds_alternative<fabric::Piece>(item);
+      });
   for (const Reference& reference : references_) {
     const Names& names = *reference.names;
-    if (names.lines.contains(reference.name)) continue;
+    if (names.lines.contains(reference.name) || (&names == &yarns && !are_yarns_known)) continue;
     std::vector<std::string_view> known;
     for (const auto& [name, line] : names.lines) known.push_back(name);
     std::sort(known.begin(), known.end());

@@ -167,20 +167,20 @@ constexpr std::array<Word<GridWord>, 4> grid_words{
 
 // From the word that was taken to the end of the line.
 void read_grid_words(Parser& p, GridRows& rows, std::string_view word) {
-  if (rows.seen > 0) p.error(p.statement(), fmt::format("the word '{}' has to stand before the rows", word));
   const int errors = p.report.errors();
+  if (rows.seen > 0) p.error(p.statement(), fmt::format("the word '{}' has to stand before the rows", word));
   while (!word.empty() && p.report.errors() == errors) {
-    const Word<GridWord>* known = nullptr;
-    for (const auto& candidate : grid_words)
-      if (same_word(candidate.text, word)) known = &candidate;
-    if (known != nullptr) {
+    const auto known = std::find_if(grid_words.begin(), grid_words.end(),
+                                    [&](const auto& candidate) { return same_word(candidate.text, word); });
+    if (known != grid_words.end()) {
       known->value(p, rows);
-      if (p.report.errors() == errors) word = p.take_word();
+      word = p.take_word();
     } else {
       p.error(p.last(), fmt::format("unknown word {} of the grid; known: degree, knots, open, closed",
                                     in_quotes(word)));
     }
   }
+  if (p.report.errors() > errors) rows.reading.good = false;
 }
 
 void check_knots(Parser& p, const GridRows& rows, bool along) {
@@ -252,7 +252,7 @@ void check_grid_row(Parser& p, GridRows& rows) {
 void read_grid_row(Parser& p, GridRows& rows) {
   Grid& grid = rows.grid;
   if (++rows.seen == 1 && rows.expected > 0) {
-    check_grid_words(p, rows);
+    if (rows.reading.good) check_grid_words(p, rows);
     // A count is a promise, the size of the file is a fact: a row has 6 bytes at least.
     grid.points.reserve(std::min(rows.expected, p.bytes_left() / 6 + 1));
   }

@@ -42,11 +42,12 @@ void read_diameter(Parser& p, Thread& thread, std::string_view) {
 // Rows `x y` of a polygon's corners.
 struct Corners {
   std::vector<Vec2> points;
+  Spot last{};
   bool good = true;
 };
 
 void read_corner(Parser& p, Corners& corners) {
-  const Spot spot = p.statement();
+  const Spot spot = corners.last = p.statement();
   std::array<double, 2> xy{};
   const int count = p.row(xy.data(), 2, "a corner");
   const Vec2 corner(xy[0], xy[1]);
@@ -80,7 +81,7 @@ std::optional<yarn::Section> read_polygon(Parser& p) {
   if (points.size() < 3)
     p.error(p.last(), fmt::format("a polygon has at least 3 corners; this one has {}", points.size()));
   else if (points.front() == points.back())
-    p.error(p.last(),
+    p.error(corners.last,
             "the polygon's last corner repeats its first: leave it out, the polygon is closed anyway");
   else if (area_of(points) == 0.0)
     p.error(spot, "the polygon's area is 0");

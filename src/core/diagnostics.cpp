@@ -48,8 +48,11 @@ std::string to_string(const Message& message) {
     out += "\n  " + message.excerpt;
     if (message.caret > 0) {
       out += "\n  ";
-      for (int i = 0; i + 1 < message.caret && i < static_cast<int>(message.excerpt.size()); ++i)
-        out += message.excerpt[static_cast<std::size_t>(i)] == '\t' ? '\t' : ' ';
+      for (int i = 0; i + 1 < message.caret && i < static_cast<int>(message.excerpt.size()); ++i) {
+        const char c = message.excerpt[static_cast<std::size_t>(i)];
+        const bool continues = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // a UTF-8 character: one column
+        if (!continues) out += c == '\t' ? '\t' : ' ';
+      }
       out += '^';
     }
   }

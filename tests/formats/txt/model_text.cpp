@@ -1,0 +1,265 @@
+#include "formats/txt/model_text.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+namespace selvage::test {
+
+namespace {
+
+using namespace fabric;
+
+class Flat {
+ public:
+  std::vector<std::string> lines;
+
+  void add(const std::string& path, double value) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    lines.push_back(fmt::format("{} = {} ({:016x})", path, value, bits));
+  }
+  void add(const std::string& path, int value) { lines.push_back(fmt::format("{} = {}", path, value)); }
+  void add(const std::string& path, bool value) { lines.push_back(fmt::format("{} = {}", path, value)); }
+  void add(const std::string& path, const std::string& value) {
+    lines.push_back(fmt::format("{} = [{}]", path, value));
+  }
+  template <class E>
+  requires std::is_enum_v<E>
+  void add(const std::string& path, E value) { add(path, static_cast<int>(value)); }
+  void add(const std::string& path, const Vec2& v) {
+    add(path + ".x", v.x());
+    add(path + ".y", v.y());
+  }
+  void add(const std::string& path, const Vec3& v) {
+    add(path + ".x", v.x());
+    add(path + ".y", v.y());
+    add(path + ".z", v.z());
+  }
+  template <class T>
+  void add(const std::string& path, const std::optional<T>& value) {
+    if (value)
+      add(path, *value);
+    else
+      lines.push_back(path + " is not given");
+  }
+  template <class T>
+  void add(const std::string& path, const std::vector<T>& list) {
+    lines.push_back(fmt::format("{}: {} elements", path, list.size()));
+    for (std::size_t i = 0; i < list.size(); ++i) add(fmt::format("{}[{}]", path, i), list[i]);
+  }
+  template <class... T>
+  void add(const std::string& path, const std::variant<T...>& value) {
+    lines.push_back(fmt::format("{}: alternative {}", path, value.index()));
+    std::visit([&](const auto& one) { add(path, one); }, value);
+  }
+  void add(const std::string&, const std::monostate&) {}
+
+  void add(const std::string& path, const LinearDensity& v) {
+    add(path + ".value", v.value);
+    add(path + ".measure", v.measure);
+  }
+  void add(const std::string& path, const Twist& v) {
+    add(path + ".turns", v.turns);
+    add(path + ".hand", v.hand);
+    add(path + ".rotates", v.rotates);
+  }
+  void add(const std::string& path, const Plies& v) {
+    add(path + ".count", v.count);
+    add(path + ".turns", v.turns);
+    add(path + ".hand", v.hand);
+  }
+  void add(const std::string& path, const Color& v) {
+    add(path + ".red", v.red);
+    add(path + ".green", v.green);
+    add(path + ".blue", v.blue);
+  }
+  void add(const std::string& path, const yarn::Circle& v) { add(path + ".diameter", v.diameter); }
+  void add(const std::string& path, const yarn::Loop7& v) { add(path + ".diameter", v.diameter); }
+  void add(const std::string& path, const yarn::Ellipse& v) { add_size(path, v.width, v.height); }
+  void add(const std::string& path, const yarn::Lenticular& v) { add_size(path, v.width, v.height); }
+  void add(const std::string& path, const yarn::Racetrack& v) { add_size(path, v.width, v.height); }
+  void add(const std::string& path, const yarn::Power& v) {
+    add_size(path, v.width, v.height);
+    add(path + ".exponent", v.exponent);
+  }
+  void add(const std::string& path, const yarn::Polygon& v) { add(path + ".corners", v.corners); }
+  void add_size(const std::string& path, double width, double height) {
+    add(path + ".width", width);
+    add(path + ".height", height);
+  }
+  void add(const std::string& path, const Thread& v) {
+    add(path + ".name", v.name);
+    add(path + ".linear_density", v.linear_density);
+    add(path + ".density", v.density);
+    add(path + ".packing", v.packing);
+    add(path + ".diameter", v.diameter);
+    add(path + ".section", v.section);
+    add(path + ".twist", v.twist);
+    add(path + ".plies", v.plies);
+    add(path + ".filaments", v.filaments);
+    add(path + ".color", v.color);
+    add(path + ".material", v.material);
+  }
+  void add(const std::string& path, const IsotropicElastic& v) {
+    add(path + ".modulus", v.modulus);
+    add(path + ".poisson", v.poisson);
+  }
+  void add(const std::string& path, const TransverseElastic& v) {
+    add(path + ".e1", v.e1);
+    add(path + ".e2", v.e2);
+    add(path + ".nu12", v.nu12);
+    add(path + ".g12", v.g12);
+    add(path + ".nu23", v.nu23);
+  }
+  void add(const std::string& path, const Expansion& v) {
+    add(path + ".along", v.along);
+    add(path + ".across", v.across);
+  }
+  void add(const std::string& path, const Material& v) {
+    add(path + ".name", v.name);
+    add(path + ".density", v.density);
+    add(path + ".elastic", v.elastic);
+    add(path + ".expansion", v.expansion);
+  }
+  void add(const std::string& path, const SizeAt& v) {
+    add_size(path, v.width, v.height);
+    add(path + ".angle", v.angle);
+  }
+  void add(const std::string& path, const Path& v) {
+    add(path + ".form", v.form);
+    add(path + ".points", v.points);
+    add(path + ".sizes", v.sizes);
+  }
+  void add(const std::string& path, const Grid& v) {
+    add(path + ".sections", v.sections);
+    add(path + ".per_section", v.per_section);
+    add(path + ".degree_along", v.degree_along);
+    add(path + ".degree_round", v.degree_round);
+    add(path + ".knots_along", v.knots_along);
+    add(path + ".knots_round", v.knots_round);
+    add(path + ".open_round", v.open_round);
+    add(path + ".closed_along", v.closed_along);
+    add(path + ".points", v.points);
+    add(path + ".weights", v.weights);
+  }
+  void add(const std::string& path, const Yarn& v) {
+    add(path + ".name", v.name);
+    add(path + ".thread", v.thread);
+    add(path + ".own", v.own);
+    add(path + ".role", v.role);
+    add(path + ".tangent_start", v.tangent_start);
+    add(path + ".tangent_end", v.tangent_end);
+    add(path + ".up", v.up);
+    add(path + ".closed", v.closed);
+    add(path + ".shape", v.shape);
+  }
+  void add(const std::string& path, const WeaveSystem& v) {
+    add(path + ".threads", v.threads);
+    add(path + ".count", v.count);
+    add(path + ".pitch", v.pitch);
+  }
+  void add(const std::string& path, const Draft& v) {
+    add(path + ".form", v.form);
+    add(path + ".rows", v.rows);
+    add(path + ".a", v.a);
+    add(path + ".b", v.b);
+    add(path + ".file", v.file);
+  }
+  void add(const std::string& path, const Weave& v) {
+    add(path + ".warp", v.warp);
+    add(path + ".weft", v.weft);
+    add(path + ".draft", v.draft);
+    add(path + ".profile", v.profile);
+    add(path + ".layers", v.layers);
+  }
+  void add(const std::string& path, const Knit& v) {
+    add(path + ".form", v.form);
+    add(path + ".rib_a", v.rib_a);
+    add(path + ".rib_b", v.rib_b);
+    add(path + ".thread", v.thread);
+    add(path + ".courses", v.courses);
+    add(path + ".wales", v.wales);
+    add(path + ".method", v.method);
+  }
+  void add(const std::string& path, const WarpknitBar& v) {
+    add(path + ".thread", v.thread);
+    add(path + ".lapping", v.lapping);
+    add(path + ".fall_plate", v.fall_plate);
+  }
+  void add(const std::string& path, const Warpknit& v) {
+    add(path + ".classic", v.classic);
+    add(path + ".thread", v.thread);
+    add(path + ".bars", v.bars);
+    add(path + ".wales", v.wales);
+    add(path + ".courses", v.courses);
+    add(path + ".wale_pitch", v.wale_pitch);
+    add(path + ".course_pitch", v.course_pitch);
+    add(path + ".stitch", v.stitch);
+  }
+  void add(const std::string& path, const Braid& v) {
+    add(path + ".thread", v.thread);
+    add(path + ".carriers", v.carriers);
+    add(path + ".over", v.over);
+    add(path + ".under", v.under);
+    add(path + ".radius", v.radius);
+    add(path + ".angle", v.angle);
+    add(path + ".length", v.length);
+    add(path + ".axial_thread", v.axial_thread);
+    add(path + ".axial_count", v.axial_count);
+  }
+  void add(const std::string& path, const PieceCurve& v) {
+    add(path + ".name", v.name);
+    add(path + ".is_line", v.is_line);
+    add(path + ".shape", v.shape);
+    add(path + ".points", v.points);
+  }
+  void add(const std::string& path, const Piece& v) {
+    add(path + ".name", v.name);
+    add(path + ".curves", v.curves);
+  }
+  void add(const std::string& path, const Edit& v) {
+    add(path + ".yarn", v.yarn);
+    add(path + ".form", v.form);
+    add(path + ".joint", v.joint);
+    add(path + ".target", v.target);
+    add(path + ".length", v.length);
+    add(path + ".direction", v.direction);
+  }
+  void add(const std::string& path, const Cell& v) {
+    add(path + ".low", v.low);
+    add(path + ".high", v.high);
+    add(path + ".matrix", v.matrix);
+    add(path + ".periodic_x", v.periodic_x);
+    add(path + ".periodic_y", v.periodic_y);
+    add(path + ".periodic_z", v.periodic_z);
+  }
+};
+
+}  // namespace
+
+std::vector<std::string> flattened(const Fabric& fabric) {
+  Flat flat;
+  flat.add("title", fabric.title);
+  flat.add("units", fabric.units);
+  flat.add("units_given", fabric.units_given);
+  flat.add("tolerance", fabric.tolerance);
+  flat.add("threads", fabric.threads);
+  flat.add("materials", fabric.materials);
+  flat.add("items", fabric.items);
+  flat.add("edits", fabric.edits);
+  flat.add("cell", fabric.cell);
+  return std::move(flat.lines);
+}
+
+std::string first_difference(const Fabric& a, const Fabric& b) {
+  const std::vector<std::string> one = flattened(a), other = flattened(b);
+  for (std::size_t i = 0; i < std::max(one.size(), other.size()); ++i) {
+    const std::string left = i < one.size() ? one[i] : "(nothing)";
+    const std::string right = i < other.size() ? other[i] : "(nothing)";
+    if (left != right) return left + "   against   " + right;
+  }
+  return {};
+}
+
+}  // namespace selvage::test

@@ -1,0 +1,374 @@
+#include "formats/txt/random_model.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+namespace selvage::test {
+
+namespace {
+
+using namespace fabric;
+
+class Maker {
+ public:
+  explicit Maker(std::uint64_t seed) : engine_(seed) {}
+
+  Fabric make() {
+    Fabric fabric;
+    if (coin()) fabric.title = text();
+    if (coin()) {
+      fabric.units_given = true;
+      fabric.units = static_cast<Unit>(up_to(4));
+    }
+    maybe(fabric.tolerance, [&] { return positive(); });
+    for (int i = up_to(3); i > 0; --i) fabric.materials.push_back(material());
+    for (int i = 1 + up_to(3); i > 0; --i) fabric.threads.push_back(thread());
+    for (int i = up_to(8); i > 0; --i) fabric.items.push_back(item());
+    if (!yarns_.empty())
+      for (int i = up_to(3); i > 0; --i) fabric.edits.push_back(edit());
+    if (coin()) fabric.cell = cell();
+    return fabric;
+  }
+
+ private:
+  // --- values
+  // -------------------------------------------------------------------------------------------------------
+  int up_to(int most) { return std::uniform_int_distribution<int>(0, most)(engine_); }
+  bool coin() { return up_to(1) == 1; }
+  template <class T, class Make>
+  void maybe(std::optional<T>& value, Make make) {
+    if (coin()) value = make();
+  }
+  // Any finite double by its bits: tiny, huge, denormal, negative zero; or one that people write.
+  double number() {
+    switch (up_to(5)) {
+      case 0:
+        return up_to(20) - 10;
+      case 1:
+        return (up_to(2000) - 1000) / 100.0;
+      case 2:
+        return -0.0;
+      case 3:
+        return std::numeric_limits<double>::denorm_min() * (1 + up_to(5));
+      default:
+        break;
+    }
+    for (;;) {
+      const std::uint64_t bits = engine_();
+      double value = 0.0;
+      std::memcpy(&value, &bits, sizeof value);
+      if (std::isfinite(value)) return value;
+    }
+  }
+  double positive() {
+    const double value = std::abs(number());
+    return value > 0.0 ? value : 0.25;
+  }
+  double between(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine_);
+  }
+  Vec3 point() { return {number(), number(), number()}; }
+  Vec3 direction() { return {number(), 1.5, number()}; }
+  int count() { return 1 + up_to(coin() ? 5 : std::numeric_limits<int>::max() - 1); }
+
+  std::string text() {
+    static const std::vector<std::string> parts = {"warp", "Größe",  " ",   "#no comment", "a,b",
+                                                   "end",  "\t tab", "2/2", "絹",          "x.y-z",
+                                                   "",     "nan",    "'q'", "-1.5",        "\\"};
+    std::string text;
+    for (int i = up_to(3); i >= 0; --i) text += parts[static_cast<std::size_t>(up_to(14))];
+    return text;
+  }
+  std::string new_name() {
+    const std::string number = std::to_string(++names_);
+    return coin() ? "n" + number : text() + number;
+  }
+  const std::string& one_of(const std::vector<std::string>& list) {
+    return list[static_cast<std::size_t>(up_to(static_cast<int>(list.size()) - 1))];
+  }
+
+  // --- threads and materials
+  // ----------------------------------------------------------------------------------------
+  Material material() {
+    Material material;
+    material.name = new_name();
+    materials_.push_back(material.name);
+    maybe(material.density, [&] { return positive(); });
+    const int law = up_to(2);
+    if (law == 1) material.elastic = IsotropicElastic{positive(), between(-0.99, 0.499)};
+    if (law == 2) {
+      const double e2 = between(1.0, 10.0);
+      material.elastic =
+          TransverseElastic{e2 * between(1.0, 20.0), e2, between(-0.3, 0.3), positive(), between(-0.5, 0.5)};
+    }
+    if (coin()) material.expansion = Expansion{number(), number()};
+    return material;
+  }
+  yarn::Section section() {
+    switch (up_to(6)) {
+      case 0:
+        return yarn::Circle{coin() ? positive() : 0.0};
+      case 1:
+        return yarn::Ellipse{positive(), positive()};
+      case 2:
+        return yarn::Lenticular{positive(), positive()};
+      case 3:
+        return yarn::Racetrack{positive(), positive()};
+      case 4:
+        return yarn::Power{positive(), positive(), positive()};
+      case 5:
+        return yarn::Loop7{coin() ? positive() : 0.0};
+      default:
+        break;
+    }
+    yarn::Polygon polygon;
+    const int corners = 3 + up_to(6);
+    for (int i = 0; i < corners; ++i) {
+      const double angle = 6.283185307179586 * i / corners;
+      polygon.corners.emplace_back(between(0.5, 1.0) * std::cos(angle), std::sin(angle));
+    }
+    return polygon;
+  }
+  void fill(Thread& thread) {
+    if (coin()) thread.linear_density = {positive(), static_cast<LinearDensity::Measure>(up_to(2))};
+    maybe(thread.density, [&] { return positive(); });
+    maybe(thread.packing, [&] { return 1.0 - between(0.0, 0.99); });
+    maybe(thread.diameter, [&] { return positive(); });
+    maybe(thread.section, [&] { return section(); });
+    maybe(thread.twist, [&] { return Twist{std::abs(number()), coin() ? Hand::z : Hand::s, coin()}; });
+    maybe(thread.plies, [&] { return Plies{count(), std::abs(number()), coin() ? Hand::z : Hand::s}; });
+    maybe(thread.filaments, [&] { return count(); });
+    maybe(thread.color, [&] { return Color{up_to(255), up_to(255), up_to(255)}; });
+    if (!materials_.empty()) maybe(thread.material, [&] { return one_of(materials_); });
+  }
+  Thread thread() {
+    Thread thread;
+    thread.name = new_name();
+    threads_.push_back(thread.name);
+    fill(thread);
+    return thread;
+  }
+
+  // --- yarns
+  // --------------------------------------------------------------------------------------------------------
+  Path path() {
+    Path path;
+    path.form = static_cast<Path::Form>(up_to(5));
+    const int rows = 3 + up_to(20);
+    const bool sized = coin();
+    for (int i = 0; i < rows; ++i) {
+      path.points.push_back(point());
+      path.points.back().x() = i;  // no two equal
+      if (!sized) continue;
+      auto& size = path.sizes.emplace_back();
+      if (i > 0 && coin()) continue;
+      size = SizeAt{positive(), positive(), std::nullopt};
+      maybe(size->angle, [&] { return number(); });
+    }
+    return path;
+  }
+  std::vector<double> knots(int count, int degree) {
+    std::vector<double> knots;
+    double value = -between(0.0, 5.0);
+    for (int i = 0; i < count + degree + 1; ++i) {
+      if (i > degree && i <= count) value += between(0.1, 2.0);
+      knots.push_back(value);
+    }
+    return knots;
+  }
+  Grid grid() {
+    Grid grid;
+    grid.sections = 2 + up_to(6);
+    grid.open_round = coin();
+    grid.per_section = (grid.open_round ? 4 : 3) + up_to(12);
+    grid.closed_along = coin() && grid.sections > 2;
+    maybe(grid.degree_along, [&] { return 1 + up_to(grid.sections - 2); });
+    maybe(grid.degree_round, [&] { return 1 + up_to(1); });
+    if (coin())
+      grid.knots_along = knots(grid.sections, grid.degree_along.value_or(std::min(3, grid.sections - 1)));
+    if (coin() && grid.open_round) grid.knots_round = knots(grid.per_section, grid.degree_round.value_or(2));
+    const bool weighted = coin();
+    for (int s = 0; s < grid.sections; ++s)
+      for (int i = 0; i < grid.per_section; ++i) {
+        const bool seam = grid.open_round && i + 1 == grid.per_section;
+        const std::size_t first = grid.points.size() - static_cast<std::size_t>(i);
+        if (seam) {
+          grid.points.push_back(Vec3(grid.points[first]));
+          if (weighted) grid.weights.push_back(double(grid.weights[first]));
+          continue;
+        }
+        grid.points.emplace_back(i, number(), s);
+        if (weighted) grid.weights.push_back(coin() ? 1.0 : positive());
+      }
+    return grid;
+  }
+  Yarn yarn() {
+    Yarn yarn;
+    yarn.name = new_name();
+    yarns_.push_back(yarn.name);
+    if (coin()) yarn.thread = one_of(threads_);
+    fill(yarn.own);
+    maybe(yarn.role, [&] { return static_cast<Role>(up_to(7)); });
+    maybe(yarn.tangent_start, [&] { return direction(); });
+    maybe(yarn.tangent_end, [&] { return direction(); });
+    maybe(yarn.up, [&] { return direction(); });
+    yarn.closed = coin();
+    if (coin())
+      yarn.shape = path();
+    else
+      yarn.shape = grid();
+    return yarn;
+  }
+
+  // --- constructions
+  // ------------------------------------------------------------------------------------------------
+  WeaveSystem system() {
+    WeaveSystem system;
+    for (int i = up_to(2); i >= 0; --i) system.threads.push_back(one_of(threads_));
+    system.count = count();
+    system.pitch = positive();
+    return system;
+  }
+  Draft draft() {
+    Draft draft;
+    draft.form = static_cast<Draft::Form>(up_to(5));
+    if (draft.form == Draft::Form::rows) {
+      const int width = 1 + up_to(7);
+      for (int i = up_to(6); i >= 0; --i) {
+        std::string& row = draft.rows.emplace_back();
+        for (int k = 0; k < width; ++k) row += coin() ? '1' : '0';
+      }
+    } else if (draft.form == Draft::Form::satin) {
+      const int ends = 5 + up_to(1) * 3;
+      draft.a = ends;
+      draft.b = ends == 5 ? 2 + up_to(1) : 3 + 2 * up_to(1);
+    } else if (draft.form == Draft::Form::file) {
+      draft.file = coin() ? "drafts/a b.wif" : "twill.wif";
+    } else if (draft.form != Draft::Form::plain) {
+      draft.a = count();
+      draft.b = count();
+    }
+    return draft;
+  }
+  Item item() {
+    switch (up_to(8)) {
+      case 0: {
+        Weave weave;
+        weave.warp = system();
+        weave.weft = system();
+        weave.draft = draft();
+        maybe(weave.profile, [&] { return static_cast<Weave::Profile>(up_to(3)); });
+        maybe(weave.layers, [&] { return count(); });
+        return weave;
+      }
+      case 1: {
+        Knit knit;
+        knit.form = static_cast<Knit::Form>(up_to(2));
+        if (knit.form == Knit::Form::rib) {
+          knit.rib_a = count();
+          knit.rib_b = count();
+        }
+        knit.thread = one_of(threads_);
+        knit.courses = count();
+        knit.wales = count();
+        maybe(knit.method, [&] { return static_cast<Knit::Method>(up_to(2)); });
+        return knit;
+      }
+      case 2:
+        return warpknit();
+      case 3: {
+        Braid braid;
+        braid.thread = one_of(threads_);
+        braid.carriers = 2 * (1 + up_to(100));
+        braid.over = count();
+        braid.under = count();
+        braid.radius = positive();
+        braid.angle = between(1.0, 89.0);
+        braid.length = positive();
+        if (coin()) {
+          braid.axial_thread = one_of(threads_);
+          braid.axial_count = count();
+        }
+        return braid;
+      }
+      case 4:
+        return piece();
+      default:
+        return yarn();
+    }
+  }
+  Warpknit warpknit() {
+    static const std::vector<std::string> lappings = {"1-0/1-2", "2-3/1-0//", "1-0/1-2/2-3/2-1", "1-0 1-2",
+                                                      "10-0 / 0-0"};
+    Warpknit warpknit;
+    if (coin()) {
+      warpknit.classic =
+          std::vector<std::string>{"tricot", "satin", "queens-cord"}[static_cast<std::size_t>(up_to(2))];
+      warpknit.thread = one_of(threads_);
+    } else {
+      for (int i = up_to(3); i >= 0; --i) {
+        WarpknitBar& bar = warpknit.bars.emplace_back();
+        bar.thread = one_of(threads_);
+        bar.lapping = one_of(lappings);
+        bar.fall_plate = coin();
+      }
+    }
+    warpknit.wales = count();
+    warpknit.courses = count();
+    warpknit.wale_pitch = positive();
+    warpknit.course_pitch = positive();
+    maybe(warpknit.stitch, [&] { return static_cast<Warpknit::Stitch>(up_to(1)); });
+    return warpknit;
+  }
+  Piece piece() {
+    Piece piece;
+    piece.name = new_name();
+    for (int i = up_to(3); i >= 0; --i) {
+      PieceCurve& curve = piece.curves.emplace_back();
+      curve.name = new_name();
+      curve.is_line = coin();
+      if (!curve.is_line) curve.shape = static_cast<PieceCurve::Shape>(up_to(2));
+      const int points = curve.is_line ? 2 : 3 + up_to(5);
+      for (int k = 0; k < points; ++k) curve.points.emplace_back(number(), k);
+    }
+    return piece;
+  }
+
+  Edit edit() {
+    Edit edit;
+    edit.yarn = one_of(yarns_);
+    edit.form = static_cast<Edit::Form>(up_to(2));
+    edit.joint = count();
+    if (edit.form == Edit::Form::length) {
+      edit.length = positive();
+      edit.direction = direction();
+    } else {
+      edit.target = point();
+    }
+    return edit;
+  }
+  Cell cell() {
+    Cell cell;
+    cell.low = {between(-5.0, 0.0), between(-5.0, 0.0), between(-5.0, 0.0)};
+    cell.high = {positive(), positive(), positive()};
+    if (!materials_.empty() && coin()) cell.matrix = one_of(materials_);
+    cell.periodic_x = coin();
+    cell.periodic_y = coin();
+    cell.periodic_z = coin();
+    return cell;
+  }
+
+  std::mt19937_64 engine_;
+  int names_ = 0;
+  std::vector<std::string> threads_, materials_, yarns_;
+};
+
+}  // namespace
+
+Fabric random_fabric(std::uint64_t seed) {
+  return Maker(seed).make();
+}
+
+}  // namespace selvage::test

@@ -1,0 +1,183 @@
+#include "core/output.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "unit/core/scratch_folder.h"
+
+namespace selvage {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+// Runs `part` in a process of its own, which it kills.
+template <class Part>
+void in_killed_process(Part part) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    part();
+    ::_exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+}
+
+}  // namespace
+
+TEST(OutputFile, IsThereAfterCommitOnly) {
+  const test::ScratchFolder folder;
+  Result<OutputFile> file = OutputFile::create(folder / "a.igs");
+  ASSERT_TRUE(file.ok());
+  ASSERT_TRUE(file->write("one ").ok());
+  ASSERT_TRUE(file->write("two").ok());
+  EXPECT_EQ(file->size(), 7U);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.igs"));
+  ASSERT_TRUE(file->commit().ok());
+  EXPECT_EQ(test::bytes_of(folder / "a.igs"), "one two");
+  EXPECT_EQ(folder.names(), Names{"a.igs"});
+}
+
+TEST(OutputFile, ReplacesAnExistingFile) {
+  const test::ScratchFolder folder;
+  test::put_bytes(folder / "a.igs", "old, and longer");
+  Result<OutputFile> file = OutputFile::create(folder / "a.igs");
+  ASSERT_TRUE(file.ok());
+  ASSERT_TRUE(file->write("new").ok());
+  EXPECT_EQ(test::bytes_of(folder / "a.igs"), "old, and longer");
+  ASSERT_TRUE(file->commit().ok());
+  EXPECT_EQ(test::bytes_of(folder / "a.igs"), "new");
+  EXPECT_EQ(folder.names(), Names{"a.igs"});
+}
+
+TEST(OutputFile, WithoutCommitNothingIsLeft) {
+  const test::ScratchFolder folder;
+  test::put_bytes(folder / "old.igs", "old");
+  for (const char* name : {"old.igs", "new.igs"}) {
+    Result<OutputFile> file = OutputFile::create(folder / name);
+    ASSERT_TRUE(file.ok());
+    ASSERT_TRUE(file->write("partial").ok());
+  }
+  EXPECT_EQ(folder.names(), Names{"old.igs"});
+  EXPECT_EQ(test::bytes_of(folder / "old.igs"), "old");
+}
+
+TEST(OutputFile, AKilledProcessLeavesNothing) {
+  const test::ScratchFolder folder;
+  test::put_bytes(folder / "a.igs", "old");
+  in_killed_process([&] {
+    Result<OutputFile> file = OutputFile::create(folder / "a.igs");
+    if (file && !file->write(std::string(1 << 20, 'x'))) ::_exit(1);
+    ::kill(::getpid(), SIGKILL);  // with the file open
+  });
+  EXPECT_EQ(test::bytes_of(folder / "a.igs"), "old");
+  const Names names = folder.names();
+  EXPECT_EQ(names, Names{"a.igs"});
+}
+
+TEST(OutputFile, MakesMissingFolders) {
+  const test::ScratchFolder folder;
+  Result<OutputFile> file = OutputFile::create(folder / "a/b/c.igs");
+  ASSERT_TRUE(file.ok());
+  ASSERT_TRUE(file->write("x").ok());
+  ASSERT_TRUE(file->commit().ok());
+  EXPECT_EQ(test::bytes_of(folder / "a/b/c.igs"), "x");
+}
+
+TEST(OutputFile, RefusesADirectory) {
+  const test::ScratchFolder folder;
+  std::filesystem::create_directory(folder / "out.igs");
+  const Result<OutputFile> file = OutputFile::create(folder / "out.igs");
+  ASSERT_FALSE(file.ok());
+  EXPECT_EQ(file.error().kind, Kind::io);
+  EXPECT_EQ(file.error().file, (folder / "out.igs").string());
+  EXPECT_NE(file.error().text.find("directory"), std::string::npos);
+}
+
+TEST(OutputFile, RefusesAFileInPlaceOfAFolder) {
+  const test::ScratchFolder folder;
+  test::put_bytes(folder / "a", "x");
+  const Result<OutputFile> file = OutputFile::create(folder / "a/b.igs");
+  ASSERT_FALSE(file.ok());
+  EXPECT_EQ(file.error().kind, Kind::io);
+}
+
+// A limit on the size of files stands for the full disk: the same call fails at the same place.
+TEST(OutputFile, AFullDiskIsAnErrorAndLeavesTheOldFile) {
+  const test::ScratchFolder folder;
+  test::put_bytes(folder / "a.igs", "old");
+  rlimit old{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old), 0);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1 << 16, old.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  {
+    Result<OutputFile> file = OutputFile::create(folder / "a.igs");
+    const Status first = file->write(std::string(1 << 15, 'x'));
+    const Status second = file->write(std::string(1 << 20, 'y'));
+    ::setrlimit(RLIMIT_FSIZE, &old);
+    std::signal(SIGXFSZ, old_handler);
+    EXPECT_TRUE(first.ok());
+    ASSERT_FALSE(second.ok());
+    EXPECT_EQ(second.error().kind, Kind::io);
+    EXPECT_EQ(second.error().file, (folder / "a.igs").string());
+  }
+  EXPECT_EQ(folder.names(), Names{"a.igs"});
+  EXPECT_EQ(test::bytes_of(folder / "a.igs"), "old");
+}
+
+TEST(OutputFile, WritesAnywhereAndReadsBack) {
+  Result<OutputFile> file = OutputFile::in_memory();
+  ASSERT_TRUE(file.ok());
+  ASSERT_TRUE(file->write("0123456789").ok());
+  ASSERT_TRUE(file->write_at(2, "ab").ok());
+  ASSERT_TRUE(file->write("!").ok());
+  EXPECT_EQ(*file->contents(), "01ab456789!");
+  ASSERT_TRUE(file->write_at(13, "x").ok());
+  EXPECT_EQ(*file->contents(), std::string("01ab456789!\0\0x", 14));
+  EXPECT_EQ(*file->read_at(2, 2), "ab");
+  EXPECT_FALSE(file->read_at(10, 100).ok());
+  ASSERT_TRUE(file->resize(3).ok());
+  ASSERT_TRUE(file->write("?").ok());
+  EXPECT_EQ(*file->contents(), "01a?");
+}
+
+TEST(OutputFile, MovesKeepTheBytes) {
+  const test::ScratchFolder folder;
+  Result<OutputFile> first = OutputFile::create(folder / "a.igs");
+  ASSERT_TRUE(first.ok());
+  ASSERT_TRUE(first->write("abc").ok());
+  OutputFile second = std::move(*first);
+  ASSERT_TRUE(second.write("def").ok());
+  ASSERT_TRUE(second.commit().ok());
+  EXPECT_EQ(test::bytes_of(folder / "a.igs"), "abcdef");
+}
+
+TEST(OutputFile, StandardOutputGetsTheBytesAtCommit) {
+  const test::ScratchFolder folder;
+  const int file = ::open((folder / "out").c_str(), O_CREAT | O_RDWR, 0600);
+  std::fflush(stdout);
+  const int saved = ::dup(STDOUT_FILENO);
+  ASSERT_EQ(::dup2(file, STDOUT_FILENO), STDOUT_FILENO);
+  const std::string bytes(3'000'000, 'z');
+  Result<OutputFile> output = OutputFile::standard_output();
+  const bool is_written = output.ok() && output->write(bytes).ok();
+  struct stat before {};
+  ::fstat(file, &before);
+  const bool is_committed = is_written && output->commit().ok();
+  ::dup2(saved, STDOUT_FILENO);
+  ::close(saved);
+  ::close(file);
+  EXPECT_EQ(before.st_size, 0);
+  EXPECT_TRUE(is_committed);
+  EXPECT_EQ(test::bytes_of(folder / "out"), bytes);
+}
+
+}  // namespace selvage

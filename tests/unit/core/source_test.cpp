@@ -1,0 +1,95 @@
+#include "core/source.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <thread>
+
+#include "unit/core/scratch_folder.h"
+
+namespace selvage {
+
+TEST(Source, MapsAFile) {
+  const test::ScratchFolder folder;
+  const std::string bytes("two\nlines\0and a zero", 20);
+  test::put_bytes(folder / "a.txt", bytes);
+  Result<Source> source = Source::open(folder / "a.txt");
+  ASSERT_TRUE(source.ok());
+  EXPECT_EQ(source->bytes(), bytes);
+  EXPECT_EQ(source->name(), (folder / "a.txt").string());
+}
+
+TEST(Source, ViewsStayValidAcrossMoves) {
+  const test::ScratchFolder folder;
+  test::put_bytes(folder / "a.txt", "mapped");
+  Result<Source> mapped = Source::open(folder / "a.txt");
+  ASSERT_TRUE(mapped.ok());
+  const std::string_view view = mapped->bytes();
+  const Source moved = std::move(*mapped);
+  EXPECT_EQ(moved.bytes().data(), view.data());
+  EXPECT_EQ(view, "mapped");
+  Source small = Source::from_memory("abc", "name");
+  const std::string_view small_view = small.bytes();
+  const Source small_moved = std::move(small);
+  EXPECT_EQ(small_moved.bytes().data(), small_view.data());
+  EXPECT_EQ(small_view, "abc");
+  EXPECT_EQ(small_moved.name(), "name");
+}
+
+TEST(Source, EmptyFile) {
+  const test::ScratchFolder folder;
+  test::put_bytes(folder / "empty.txt", "");
+  Result<Source> source = Source::open(folder / "empty.txt");
+  ASSERT_TRUE(source.ok());
+  EXPECT_TRUE(source->bytes().empty());
+}
+
+TEST(Source, ReadsAPipeToItsEnd) {
+  const test::ScratchFolder folder;
+  const std::string path = folder / "pipe";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  std::string bytes;
+  for (int i = 0; i < 100000; ++i) bytes += std::to_string(i) + "\n";
+  std::thread writer([&] { test::put_bytes(path, bytes); });
+  Result<Source> source = Source::open(path);
+  writer.join();
+  ASSERT_TRUE(source.ok());
+  EXPECT_EQ(source->bytes(), bytes);
+}
+
+TEST(Source, ReadsStandardInput) {
+  const test::ScratchFolder folder;
+  test::put_bytes(folder / "in", "from standard input");
+  const int saved = ::dup(STDIN_FILENO);
+  const int file = ::open((folder / "in").c_str(), O_RDONLY);
+  ASSERT_EQ(::dup2(file, STDIN_FILENO), STDIN_FILENO);
+  Result<Source> source = Source::open("-");
+  if (saved >= 0) ::dup2(saved, STDIN_FILENO);
+  ::close(saved);
+  ::close(file);
+  ASSERT_TRUE(source.ok());
+  EXPECT_EQ(source->bytes(), "from standard input");
+  EXPECT_EQ(source->name(), "<stdin>");
+}
+
+TEST(Source, RefusalsSayWhyAndWhere) {
+  const test::ScratchFolder folder;
+  const Result<Source> missing = Source::open(folder / "nothing.txt");
+  ASSERT_FALSE(missing.ok());
+  EXPECT_EQ(missing.error().kind, Kind::io);
+  EXPECT_EQ(missing.error().file, (folder / "nothing.txt").string());
+  EXPECT_NE(missing.error().text.find("No such file"), std::string::npos);
+  const Result<Source> directory = Source::open(folder / "");
+  ASSERT_FALSE(directory.ok());
+  EXPECT_NE(directory.error().text.find("directory"), std::string::npos);
+  if (::geteuid() == 0) return;  // root may read everything
+  test::put_bytes(folder / "secret.txt", "x");
+  ::chmod((folder / "secret.txt").c_str(), 0);
+  const Result<Source> secret = Source::open(folder / "secret.txt");
+  ASSERT_FALSE(secret.ok());
+  EXPECT_NE(secret.error().text.find("denied"), std::string::npos);
+}
+
+}  // namespace selvage
