@@ -91,6 +91,12 @@ class Batch {
   Clock::time_point next_report_ = start_ + std::chrono::seconds(static_cast<int>(report_interval));
 };
 
+bool is_verdict(int status) {
+  for (Verdict verdict : {Verdict::done, Verdict::failed, Verdict::defect, Verdict::skipped})
+    if (status == static_cast<int>(verdict)) return true;
+  return false;
+}
+
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 int Batch::run_one(std::size_t index, const Channel& channel) const {
@@ -151,7 +157,12 @@ void Batch::fail(std::size_t job, Message message) {
 void Batch::finish(std::size_t job, const JobEnd& end) {
   Work& work = work_[job];
   work.ended = true;
-  const std::string reason = describe(end, options_.timeout, options_.memory);
+  std::string reason = describe(end, options_.timeout, options_.memory);
+  if (reason.empty() && !is_verdict(end.status)) {
+    // A library that ends the process by itself, as the C library does when thread storage cannot be had.
+    reason = fmt::format("ended unexpectedly, with status {}", end.status);
+    if (options_.memory > 0) reason += fmt::format(" (its memory was limited to {:g} MB by --memory)", options_.memory);
+  }
   if (!reason.empty()) {
     const Kind kind = end.how == JobEnd::How::timed_out ? Kind::limit : Kind::internal;
     fail(job, error(kind, "this input " + reason));

@@ -75,7 +75,7 @@ void print_tables(const Job& job, const Findings& found, std::size_t defects) {
                std::string(yes_no(solid.self_intersecting)), brep_word(found.breps[i]),
                std::to_string(defects_of(found, i, file).size())});
   }
-  std::string text = fmt::format("{}: {} yarns, in {}\n{}", job.input.path, found.bodies.size(), name_of(shown), yarns.text());
+  std::string text = fmt::format("{}: lengths in {}\n{}", job.input.path, name_of(shown), yarns.text());
   if (!found.solids.overlaps.empty()) {
     Table overlaps({"overlap of", "and", "depth", "x", "y", "z"});
     for (const solid::Overlap& overlap : found.solids.overlaps)

@@ -23,7 +23,9 @@ std::string heading(const Job& job, const fabric::Fabric& fabric) {
   std::string text = job.input.path + "\n";
   if (fabric.title) text += fmt::format("  title      {}\n", *fabric.title);
   text += fmt::format("  units      {}{}\n", name_of(fabric.units), fabric.units_given ? "" : " (the default)");
-  text += fmt::format("  tolerance  {:.6g}\n", fabric::tolerance_of(fabric, job.build_options()));
+  // Grids are taken as they are and need none.
+  const double tolerance = fabric::tolerance_of(fabric, job.build_options());
+  if (tolerance > 0) text += fmt::format("  tolerance  {:.6g}\n", tolerance);
   const auto names = [&](std::string_view what, const auto& list) {
     if (list.empty()) return;
     text += fmt::format("  {:<9} ", what);
