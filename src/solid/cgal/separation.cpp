@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <span>
 
 namespace selvage::solid {
 
 namespace {
 
-constexpr int lines = 40;  // a side of the raster
+constexpr int coarse = 24, fine = 40;  // lines along a side of the raster: while searching, and for the answer
 // Off the middle of the raster's cells by an odd amount, so that no line meets an edge of a regular grid on purpose.
 constexpr double offset = 0.5 + 0.01234567;
 
@@ -22,6 +24,7 @@ struct Frame {
 
 // Where a line passes through a triangle, going along the direction.
 struct Passage {
+  int line = 0;
   double height = 0;
   bool leaves = false;  // out of the yarn
   std::uint32_t triangle = 0;
@@ -29,21 +32,26 @@ struct Passage {
 
 class Raster {
  public:
-  Raster(const Frame& frame, const Box3& box)
-      : frame_(frame), low_(box.min().head<2>()), step_((box.max() - box.min()).head<2>() / lines) {}
+  Raster(const Frame& frame, const Box3& box, int lines)
+      : frame_(frame), lines_(lines), low_(box.min().head<2>()), step_((box.max() - box.min()).head<2>() / lines) {}
 
-  // For each line the triangles that it passes through.
-  [[nodiscard]] std::vector<std::vector<Passage>> pass(const Tessellation& skin) const {
-    std::vector<std::vector<Passage>> all(static_cast<std::size_t>(lines * lines));
+  // Every passage of a line through a triangle, line by line, each going up.
+  [[nodiscard]] std::vector<Passage> pass(const Tessellation& skin) const {
     std::vector<Vec3> seen;
     seen.reserve(skin.vertices.size());
     for (const Vec3& p : skin.vertices) seen.push_back(frame_.seen(p));
+    std::vector<Passage> all;
     for (std::uint32_t k = 0; k < skin.triangles.size(); ++k) pass(seen, skin.triangles[k], k, all);
+    std::sort(all.begin(), all.end(), [](const Passage& x, const Passage& y) {
+      // Coming in before going out where the heights are equal: a piece of no length is no gap.
+      if (x.line != y.line) return x.line < y.line;
+      return x.height != y.height ? x.height < y.height : !x.leaves && y.leaves;
+    });
     return all;
   }
 
-  [[nodiscard]] Vec3 at(std::size_t line, double height) const {
-    const Vec2 p = place(static_cast<int>(line) % lines, static_cast<int>(line) / lines);
+  [[nodiscard]] Vec3 at(int line, double height) const {
+    const Vec2 p = place(line % lines_, line / lines_);
     return p.x() * frame_.x + p.y() * frame_.y + height * frame_.n;
   }
 
@@ -61,17 +69,17 @@ class Raster {
   }
 
   void pass(const std::vector<Vec3>& seen, const std::array<std::uint32_t, 3>& t, std::uint32_t k,
-            std::vector<std::vector<Passage>>& all) const {
+            std::vector<Passage>& all) const {
     Vec2 low = seen[t[0]].head<2>(), high = low;
     for (std::size_t c = 1; c < 3; ++c) {
       low = low.cwiseMin(seen[t[c]].head<2>());
       high = high.cwiseMax(seen[t[c]].head<2>());
     }
     const auto first = [&](int axis) {
-      return static_cast<int>(std::clamp(std::ceil((low[axis] - low_[axis]) / step_[axis] - offset), 0.0, lines + 0.0));
+      return static_cast<int>(std::clamp(std::ceil((low[axis] - low_[axis]) / step_[axis] - offset), 0.0, lines_ + 0.0));
     };
     const auto last = [&](int axis) {
-      return static_cast<int>(std::clamp(std::floor((high[axis] - low_[axis]) / step_[axis] - offset), -1.0, lines - 1.0));
+      return static_cast<int>(std::clamp(std::floor((high[axis] - low_[axis]) / step_[axis] - offset), -1.0, lines_ - 1.0));
     };
     const int i0 = first(0), i1 = last(0), j0 = first(1), j1 = last(1);
     for (int j = j0; j <= j1; ++j)
@@ -81,11 +89,12 @@ class Raster {
         const bool leaves = w0 > 0.0;  // seen against the direction the corners run counter-clockwise
         if ((w1 > 0.0) != leaves || (w2 > 0.0) != leaves) continue;
         const double height = (w0 * seen[t[0]].z() + w1 * seen[t[1]].z() + w2 * seen[t[2]].z()) / (w0 + w1 + w2);
-        all[static_cast<std::size_t>(j * lines + i)].push_back({height, leaves, k});
+        all.push_back({j * lines_ + i, height, leaves, k});
       }
   }
 
   Frame frame_;
+  int lines_;
   Vec2 low_, step_;
 };
 
@@ -93,13 +102,10 @@ struct Piece {
   Passage in, out;
 };
 
+using Passages = std::span<const Passage>;
+
 // The pieces of a line inside a closed skin.
-void find_pieces(std::vector<Passage>& passages, std::vector<Piece>& pieces) {
-  pieces.clear();
-  std::sort(passages.begin(), passages.end(), [](const Passage& x, const Passage& y) {
-    // Coming in before going out where the heights are equal: a piece of no length is no gap.
-    return x.height != y.height ? x.height < y.height : !x.leaves && y.leaves;
-  });
+void find_pieces(Passages passages, std::vector<Piece>& pieces) {
   int depth = 0;
   Passage in;
   for (const Passage& passage : passages) {
@@ -110,35 +116,46 @@ void find_pieces(std::vector<Passage>& passages, std::vector<Piece>& pieces) {
 }
 
 // As sheets: the highest way out of A and the lowest way into B.
-void find_faces(const std::vector<Passage>& a, const std::vector<Passage>& b, std::vector<Piece>& pieces_a,
-                std::vector<Piece>& pieces_b) {
-  pieces_a.clear();
-  pieces_b.clear();
+void find_faces(Passages a, Passages b, std::vector<Piece>& pieces_a, std::vector<Piece>& pieces_b) {
   constexpr double far = std::numeric_limits<double>::infinity();
-  for (const Passage& p : a)
-    if (p.leaves && (pieces_a.empty() || p.height > pieces_a[0].out.height)) pieces_a = {{{-far, false, 0}, p}};
-  for (const Passage& p : b)
-    if (!p.leaves && (pieces_b.empty() || p.height < pieces_b[0].in.height)) pieces_b = {{p, {far, true, 0}}};
+  const auto out = std::find_if(a.rbegin(), a.rend(), [](const Passage& p) { return p.leaves; });
+  const auto in = std::find_if(b.begin(), b.end(), [](const Passage& p) { return !p.leaves; });
+  if (out != a.rend()) pieces_a.push_back({{out->line, -far, false, 0}, *out});
+  if (in != b.end()) pieces_b.push_back({*in, {in->line, far, true, 0}});
+}
+
+// The next line's passages, from `begin` on.
+Passages next_line(const std::vector<Passage>& all, std::size_t begin) {
+  std::size_t end = begin;
+  while (end < all.size() && all[end].line == all[begin].line) ++end;
+  return Passages(all).subspan(begin, end - begin);
 }
 
 }  // namespace
 
-Parting SharedSpace::parting(const Vec3& direction) const {
+Parting SharedSpace::parting(const Vec3& direction) const { return parting(direction, fine); }
+
+Parting SharedSpace::parting(const Vec3& direction, int lines) const {
   const Frame frame(direction);
   Box3 box;
   for (const Vec3& p : walls_) box.extend(frame.seen(p));
   Parting best;
   if (walls_.empty() || !((box.max() - box.min()).head<2>().minCoeff() > 0.0)) return best;
-  const Raster raster(frame, box);
-  std::vector<std::vector<Passage>> a = raster.pass(a_), b = raster.pass(b_);
+  const Raster raster(frame, box, lines);
+  const std::vector<Passage> all_a = raster.pass(a_), all_b = raster.pass(b_);
   std::vector<Piece> pieces_a, pieces_b;
-  for (std::size_t line = 0; line < a.size(); ++line) {
-    if (a[line].empty() || b[line].empty()) continue;
+  for (std::size_t i = 0, j = 0; i < all_a.size() && j < all_b.size();) {
+    const Passages a = next_line(all_a, i), b = next_line(all_b, j);
+    if (a.front().line <= b.front().line) i += a.size();
+    if (b.front().line <= a.front().line) j += b.size();
+    if (a.front().line != b.front().line) continue;
+    pieces_a.clear();
+    pieces_b.clear();
     if (whole_) {
-      find_pieces(a[line], pieces_a);
-      find_pieces(b[line], pieces_b);
+      find_pieces(a, pieces_a);
+      find_pieces(b, pieces_b);
     } else {
-      find_faces(a[line], b[line], pieces_a, pieces_b);
+      find_faces(a, b, pieces_a, pieces_b);
     }
     for (const Piece& x : pieces_a)
       for (const Piece& y : pieces_b) {
@@ -146,7 +163,8 @@ Parting SharedSpace::parting(const Vec3& direction) const {
         if (top <= bottom || (whole_ && (top < box.min().z() || bottom > box.max().z()))) continue;
         const double distance = x.out.height - y.in.height;
         if (distance > best.distance)
-          best = {distance, x.out.triangle, y.in.triangle, raster.at(line, x.out.height), raster.at(line, y.in.height)};
+          best = {distance, x.out.triangle, y.in.triangle, raster.at(x.out.line, x.out.height),
+                  raster.at(y.in.line, y.in.height)};
       }
   }
   return best;
@@ -155,7 +173,7 @@ Parting SharedSpace::parting(const Vec3& direction) const {
 Vec3 SharedSpace::easiest_direction(const std::vector<Vec3>& starts) const {
   // A direction in which nothing is seen says nothing.
   const auto cost = [this](const Vec3& n) {
-    const double distance = parting(n).distance;
+    const double distance = parting(n, coarse).distance;
     return distance > 0.0 ? distance : std::numeric_limits<double>::infinity();
   };
   struct Start {
@@ -173,7 +191,8 @@ Vec3 SharedSpace::easiest_direction(const std::vector<Vec3>& starts) const {
         moved = false;
         const Vec3 x = here.n.unitOrthogonal(), y = here.n.cross(x);
         for (int k = 0; k < 8; ++k) {
-          const double angle = k * std::numbers::pi / 4.0;
+          // Turned from step size to step size: a fixed pattern gets stuck where two places part last together.
+          const double angle = k * std::numbers::pi / 4.0 + 10.0 * step;
           const Vec3 n = (here.n + step * (std::cos(angle) * x + std::sin(angle) * y)).normalized();
           const double value = cost(n);
           // Less than this is the raster's grain.

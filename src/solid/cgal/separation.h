@@ -31,6 +31,8 @@ class SharedSpace {
   [[nodiscard]] Vec3 easiest_direction(const std::vector<Vec3>& starts) const;
 
  private:
+  [[nodiscard]] Parting parting(const Vec3& direction, int lines) const;
+
   const Tessellation& a_;
   const Tessellation& b_;
   std::vector<Vec3> walls_;

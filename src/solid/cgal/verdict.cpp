@@ -1,9 +1,7 @@
 #include "solid/cgal/verdict.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
-#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/version.h>
@@ -20,6 +18,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Mesh = CGAL::Surface_mesh<Point>;
 using Face = Mesh::Face_index;
+using Vertex = Mesh::Vertex_index;
 
 Point to_point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -32,20 +31,24 @@ Box3 box_of(const Mesh& mesh, Face face) {
   return box;
 }
 
+// False: some edge would have two triangles that run the same way along it, or three.
+bool fill(Mesh& mesh, const Tessellation& skin) {
+  const auto vertices = static_cast<Mesh::size_type>(skin.vertices.size());
+  const auto faces = static_cast<Mesh::size_type>(skin.triangles.size());
+  mesh.reserve(vertices, vertices + faces, faces);
+  for (const Vec3& p : skin.vertices) mesh.add_vertex(to_point(p));
+  for (const auto& t : skin.triangles)
+    if (mesh.add_face(Vertex(t[0]), Vertex(t[1]), Vertex(t[2])) == Mesh::null_face()) return false;
+  return true;
+}
+
 }  // namespace
 
 Verdict judge(const Tessellation& skin) {
   Verdict verdict;
-  std::vector<Point> points;
-  points.reserve(skin.vertices.size());
-  for (const Vec3& p : skin.vertices) points.push_back(to_point(p));
-  std::vector<std::array<std::size_t, 3>> triangles;
-  triangles.reserve(skin.triangles.size());
-  for (const auto& t : skin.triangles) triangles.push_back({t[0], t[1], t[2]});
-  if (triangles.empty() || !pmp::is_polygon_soup_a_polygon_mesh(triangles)) return verdict;
-  verdict.consistent = true;
   Mesh mesh;
-  pmp::polygon_soup_to_polygon_mesh(points, triangles, mesh);
+  if (skin.triangles.empty() || !fill(mesh, skin)) return verdict;
+  verdict.consistent = true;
   verdict.closed = CGAL::is_closed(mesh);
   std::vector<std::pair<Face, Face>> pairs;
   if (pmp::does_self_intersect(mesh)) {
