@@ -37,8 +37,9 @@ void choose_anchors(const fem::Mesh& mesh, Load& load) {
 Load grip_ring(const fem::Mesh& mesh, const fem::Region& region) {
   Box3 box;
   for (std::size_t n = region.first_node; n < region.last_node; ++n) box.extend(mesh.nodes[n]);
-  Eigen::Index axis = 0;
-  const double extent = box.sizes().maxCoeff(&axis);
+  const double extent = box.sizes().maxCoeff();
+  int axis = 0;  // the first of equal ones
+  while (box.sizes()[axis] < 0.99 * extent) ++axis;
   Load load;
   for (double depth = 0.02 * extent; load.start.size() < 12 || load.end.size() < 12; depth *= 1.5) {
     load.start.clear();
@@ -62,7 +63,14 @@ Load grip_ends(const fem::Mesh& mesh, const fem::Region& region) {
   const Vec3 start = area_vector(mesh, region.start_faces), end = area_vector(mesh, region.end_faces);
   load.normal_start = start.normalized();
   load.normal_end = end.normalized();
-  load.pull = strain * region.volume / ((start.norm() + end.norm()) / 2);
+  // The length of the mesh with straight edges: its volume over its section.
+  double six_volumes = 0;
+  for (std::size_t e = region.first_element; e < region.last_element; ++e) {
+    const auto& corner = mesh.elements[e];
+    const Vec3& p = mesh.nodes[corner[0]];
+    six_volumes += (mesh.nodes[corner[1]] - p).cross(mesh.nodes[corner[2]] - p).dot(mesh.nodes[corner[3]] - p);
+  }
+  load.pull = strain * six_volumes / 6 / ((start.norm() + end.norm()) / 2);
   return load;
 }
 

@@ -27,6 +27,9 @@ constexpr double largest_share = 0.13;
 // What TetGen makes on average of that bound, for the estimate (measured: 0.075 to 0.09 of the cube).
 constexpr double mean_share = 0.075;
 
+// TetGen is asked for no more than this smallest dihedral angle, degrees: beyond it, it refines without end.
+constexpr double largest_target = 18;
+
 // One yarn meshed: a Mesh of one region, in mm.
 struct YarnMesh {
   Mesh mesh;
@@ -82,7 +85,7 @@ Result<YarnMesh> mesh_yarn(const yarn::Body& body, double scale, const MeshOptio
   const double size = std::min(size_for(body, options), surface->coarsest);
   TetgenJob job{.points = surface->points, .triangles = surface->triangles};
   job.max_volume = largest_share * size * size * size;
-  job.min_dihedral = options.min_dihedral;
+  job.min_dihedral = std::min(options.min_dihedral, largest_target);
   job.smallest_feature = size;
   Result<TetMesh> tets = run_tetgen(program, job, {.timeout = options.timeout, .memory = options.memory});
   if (!tets) return tets.error();

@@ -16,11 +16,11 @@ namespace selvage::fem {
 struct MeshOptions {
   double size = 0;  // wanted edge length, in the bodies' unit; 0: a quarter of the smallest section extent
   int order = 1;    // 1 | 2
-  double min_dihedral = 0;  // degrees, passed to TetGen as its target; 0: TetGen's default
+  double min_dihedral = 0;  // degrees wanted; TetGen's target up to 18; 0: TetGen's default
   double timeout = 300;     // seconds a yarn
   double memory = 4096;     // MiB a yarn
   int threads = 1;          // workers at once
-  std::function<void(std::size_t done, std::size_t total)> progress;
+  std::function<void(std::size_t done, std::size_t total)> progress{};
 };
 
 // The mesh of all bodies, one Region a body in their order; coordinates scaled from `units` to mm. With order
