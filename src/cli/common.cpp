@@ -11,9 +11,10 @@ namespace selvage::cli {
 
 namespace {
 
-constexpr std::array<std::string_view, 7> later_options = {"--instances", "--cut",   "--matrix",       "--periodic",
-                                                           "--gap",       "--relax", "--as-published"};
-constexpr std::array<std::string_view, 6> later_commands = {"roundtrip", "diff", "edit", "relax", "view", "report"};
+constexpr std::array<std::string_view, 7> later_options = {
+    "--instances", "--cut", "--matrix", "--periodic", "--gap", "--relax", "--as-published"};
+constexpr std::array<std::string_view, 6> later_commands = {"roundtrip", "diff", "edit",
+                                                            "relax",     "view", "report"};
 
 Status parse_shard(const std::string& text, pipeline::Options& options) {
   if (text.empty()) return {};
@@ -53,8 +54,10 @@ std::string later_command(const std::string& word) {
 
 void add_common(CLI::App& command, Parsed& parsed) {
   pipeline::Options& o = parsed.options;
-  command.add_option("INPUT", o.inputs, "files, folders, patterns, @LIST of paths, - for standard input")->required();
-  command.add_option("-j", o.workers, "inputs worked on at once (default: one a core)")->check(CLI::Range(1, 4096));
+  command.add_option("INPUT", o.inputs, "files, folders, patterns, @LIST of paths, - for standard input")
+      ->required();
+  command.add_option("-j", o.workers, "inputs worked on at once (default: one a core)")
+      ->check(CLI::Range(1, 4096));
   command.add_option("--report", o.report, "write a JSON report to this file");
   command.add_flag("--quiet", o.quiet, "errors only");
   command.add_flag("-v,--verbose", o.verbose, "say more");
@@ -69,12 +72,15 @@ void add_common(CLI::App& command, Parsed& parsed) {
 
 void add_output(CLI::App& command, Parsed& parsed) {
   command.add_option("-o,--output", parsed.options.output, "a file, a folder, or - for standard output");
-  command.add_option("--to", parsed.options.formats, "formats to write, separated by commas (see selvage formats)");
-  command.add_flag("--resume", parsed.options.resume, "skip inputs that --report says are done, if their outputs are whole");
+  command.add_option("--to", parsed.options.formats,
+                     "formats to write, separated by commas (see selvage formats)");
+  command.add_flag("--resume", parsed.options.resume,
+                   "skip inputs that --report says are done, if their outputs are whole");
 }
 
 void add_ends(CLI::App& command, Parsed& parsed) {
-  command.add_option("--ends", parsed.ends, "how a yarn is sealed: patch, fan, planar, none (default: patch)")
+  command
+      .add_option("--ends", parsed.ends, "how a yarn is sealed: patch, fan, planar, none (default: patch)")
       ->check(CLI::IsMember({"patch", "fan", "planar", "none"}));
 }
 

@@ -19,7 +19,8 @@ Message no_command(const CLI::App& program, const std::string& word) {
   if (const std::string later = later_command(word); !later.empty()) return error(Kind::usage, later);
   std::vector<std::string> names;
   for (const CLI::App* command : program.get_subcommands(nullptr)) names.push_back(command->get_name());
-  return error(Kind::usage, fmt::format("unknown subcommand '{}'{} (help: selvage --help)", word, did_you_mean(word, names)));
+  return error(Kind::usage, fmt::format("unknown subcommand '{}'{} (help: selvage --help)", word,
+                                        did_you_mean(word, names)));
 }
 
 // Why the command line was refused, with a word for what a later version will have.
@@ -43,7 +44,8 @@ Message refusal(const CLI::App& program, const CLI::ParseError& failure, int cou
 }
 
 int run(int count, char** words) {
-  CLI::App program("Yarn-level fabrics: text in; IGES, STEP, checked solids and solver-ready meshes out.", "selvage");
+  CLI::App program("Yarn-level fabrics: text in; IGES, STEP, checked solids and solver-ready meshes out.",
+                   "selvage");
   program.set_version_flag("--version", fmt::format("selvage {}", pipeline::version()));
   program.require_subcommand(1);
   Parsed parsed;
@@ -65,4 +67,6 @@ int run(int count, char** words) {
 
 }  // namespace selvage::cli
 
-int main(int count, char** words) { return selvage::cli::run(count, words); }
+int main(int count, char** words) {
+  return selvage::cli::run(count, words);
+}

@@ -172,7 +172,8 @@ class Runner {
       std::memcpy(&head.size, child.inbox.data() + begin, sizeof head.size);
       head.kind = child.inbox[begin + sizeof head.size];
       if (child.inbox.size() - begin - head_bytes < head.size) break;
-      pool_.received(child.job, head.kind, std::string_view(child.inbox).substr(begin + head_bytes, head.size));
+      pool_.received(child.job, head.kind,
+                     std::string_view(child.inbox).substr(begin + head_bytes, head.size));
       begin += head_bytes + head.size;
     }
     child.inbox.erase(0, begin);
@@ -240,20 +241,25 @@ void Channel::send(char kind, std::string_view bytes) const {
 
 std::string describe(const JobEnd& end, double seconds, double mebibytes) {
   switch (end.how) {
-    case JobEnd::How::exited: return {};
+    case JobEnd::How::exited:
+      return {};
     case JobEnd::How::timed_out:
       return fmt::format("was stopped: not done within its {:g} s (--timeout)", seconds);
     case JobEnd::How::not_started:
       return fmt::format("could not be started: {}", std::strerror(end.status));
-    case JobEnd::How::signalled: break;
+    case JobEnd::How::signalled:
+      break;
   }
   if (end.status == SIGKILL)
-    return "was killed from outside, most likely because the machine ran out of memory; try --memory and a smaller -j";
+    return "was killed from outside, most likely because the machine ran out of memory; try --memory and a "
+           "smaller -j";
   std::string text = fmt::format("crashed: {}", ::strsignal(end.status));
   if (mebibytes > 0) text += fmt::format(" (its memory was limited to {:g} MB by --memory)", mebibytes);
   return text;
 }
 
-bool run_jobs(const JobPool& pool) { return Runner(pool).run(); }
+bool run_jobs(const JobPool& pool) {
+  return Runner(pool).run();
+}
 
 }  // namespace selvage

@@ -1,7 +1,7 @@
 // Jobs in processes of their own: one that crashes, hangs or eats memory costs only itself.
 //
-// The parent stays small (it forks, so everything that it holds is shared, and nothing heavy is loaded in it); each job
-// runs in a forked child that talks back through a pipe. No threads may run in the parent.
+// The parent stays small (it forks, so everything that it holds is shared, and nothing heavy is loaded in
+// it); each job runs in a forked child that talks back through a pipe. No threads may run in the parent.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +35,8 @@ struct JobEnd {
   int status = 0;
 };
 
-// Why a job ended badly, in words that a user can act on; nothing for How::exited. `seconds` and `mebibytes` are the
-// limits that were in force.
+// Why a job ended badly, in words that a user can act on; nothing for How::exited. `seconds` and `mebibytes`
+// are the limits that were in force.
 std::string describe(const JobEnd& end, double seconds, double mebibytes);
 
 struct JobPool {
@@ -56,8 +56,8 @@ struct JobPool {
   std::function<void(std::size_t job)> interrupted;
 };
 
-// Runs all jobs; false when a signal interrupted them (the children are dead then). Children die with the parent,
-// however it ends.
+// Runs all jobs; false when a signal interrupted them (the children are dead then). Children die with the
+// parent, however it ends.
 bool run_jobs(const JobPool& pool);
 
 }  // namespace selvage

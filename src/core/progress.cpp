@@ -20,13 +20,17 @@ std::size_t terminal_columns() {
 }
 
 std::chrono::steady_clock::duration as_duration(double seconds) {
-  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(seconds));
 }
 
 }  // namespace
 
 ProgressDisplay::ProgressDisplay(bool wanted, std::size_t total)
-    : wanted_(wanted), on_terminal_(wanted && ::isatty(STDERR_FILENO) != 0), total_(total), start_(Clock::now()) {
+    : wanted_(wanted),
+      on_terminal_(wanted && ::isatty(STDERR_FILENO) != 0),
+      total_(total),
+      start_(Clock::now()) {
   // A job of a blink shows nothing.
   next_ = start_ + as_duration(on_terminal_ ? 0.3 : line_interval);
 }
@@ -43,7 +47,8 @@ std::string ProgressDisplay::line() const {
   if (failed_ > 0) text += fmt::format(", {} failed", failed_);
   text += fmt::format(", {:.0f} s", seconds);
   if (done_ > 0 && done_ < total_)
-    text += fmt::format(", about {:.0f} s left", seconds / static_cast<double>(done_) * static_cast<double>(total_ - done_));
+    text += fmt::format(", about {:.0f} s left",
+                        seconds / static_cast<double>(done_) * static_cast<double>(total_ - done_));
   if (!detail_.empty()) text += "; " + detail_;
   return text;
 }

@@ -1,5 +1,5 @@
-// How far a batch has come, on standard error: a bar that is redrawn on a terminal, a plain line every ten seconds
-// elsewhere (so that a log stays readable), nothing when it is not wanted.
+// How far a batch has come, on standard error: a bar that is redrawn on a terminal, a plain line every ten
+// seconds elsewhere (so that a log stays readable), nothing when it is not wanted.
 #pragma once
 
 #include <chrono>

@@ -47,7 +47,8 @@ Result<std::string> sha256_of(const OutputFile& output) {
   const std::uint64_t total = output.size();
   constexpr std::uint64_t block = 1U << 20;
   for (std::uint64_t offset = 0; offset < total; offset += block) {
-    Result<std::string> bytes = output.read_at(offset, static_cast<std::size_t>(std::min(block, total - offset)));
+    Result<std::string> bytes =
+        output.read_at(offset, static_cast<std::size_t>(std::min(block, total - offset)));
     if (!bytes) return bytes.error();
     digest.add(*bytes);
   }

@@ -28,7 +28,8 @@ namespace exit_code {
 constexpr int well = 0, failed = 1, usage = 2, defect = 3, interrupted = 130;
 }
 
-// A run that is killed shall leave a report to resume from, but writing it shall not cost more than this share of the time.
+// A run that is killed shall leave a report to resume from, but writing it shall not cost more than this
+// share of the time.
 constexpr double report_interval = 10;  // seconds
 constexpr double report_share = 0.05;
 
@@ -97,7 +98,9 @@ bool is_verdict(int status) {
   return false;
 }
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 int Batch::run_one(std::size_t index, const Channel& channel) const {
   Job job(options_, inputs_[index], outputs_[index], channel);
@@ -161,7 +164,8 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
   if (reason.empty() && !is_verdict(end.status)) {
     // A library that ends the process by itself, as the C library does when thread storage cannot be had.
     reason = fmt::format("ended unexpectedly, with status {}", end.status);
-    if (options_.memory > 0) reason += fmt::format(" (its memory was limited to {:g} MB by --memory)", options_.memory);
+    if (options_.memory > 0)
+      reason += fmt::format(" (its memory was limited to {:g} MB by --memory)", options_.memory);
   }
   if (!reason.empty()) {
     const Kind kind = end.how == JobEnd::How::timed_out ? Kind::limit : Kind::internal;
@@ -197,7 +201,8 @@ double Batch::tick() {
     // A report that cannot be written is told at the end; until then the work goes on.
     (void)write_report(false).ok();
     const double pause = std::max(report_interval, seconds_since(begin) / report_share);
-    next_report_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pause));
+    next_report_ =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pause));
   }
   return std::min(seconds, std::chrono::duration<double>(next_report_ - Clock::now()).count());
 }
@@ -214,7 +219,8 @@ std::string Batch::report_text(bool ok) const {
 
 Status Batch::write_report(bool ok) const {
   if (options_.report.empty()) return {};
-  Result<OutputFile> file = options_.report == "-" ? OutputFile::standard_output() : OutputFile::create(options_.report);
+  Result<OutputFile> file =
+      options_.report == "-" ? OutputFile::standard_output() : OutputFile::create(options_.report);
   if (!file) return file.error();
   if (Status status = file->write(report_text(ok)); !status.ok()) return status;
   return file->commit();
@@ -264,11 +270,13 @@ int Batch::run(const std::vector<Message>& missing) {
   progress_.clear();
 
   int code = complete ? exit_code() : exit_code::interrupted;
-  if (!complete) std::fputs("selvage: interrupted; the inputs that were not done have no new outputs\n", stderr);
+  if (!complete)
+    std::fputs("selvage: interrupted; the inputs that were not done have no new outputs\n", stderr);
   if (options_.json) std::fputs(report_text(code == exit_code::well).c_str(), stdout);
   if (std::fflush(stdout) != 0) output_failure_ = errno;
   if (output_failure_ != 0) {
-    std::fprintf(stderr, "selvage: error: cannot write to standard output: %s\n", std::strerror(output_failure_));
+    std::fprintf(stderr, "selvage: error: cannot write to standard output: %s\n",
+                 std::strerror(output_failure_));
     if (code == exit_code::well) code = exit_code::failed;
   }
   if (Status status = write_report(code == exit_code::well); !status.ok()) {

@@ -5,8 +5,8 @@
 
 namespace selvage::pipeline {
 
-// Does what the options ask for; returns the program's exit code (README.md). Messages go to standard error, results
-// to standard output.
+// Does what the options ask for; returns the program's exit code (README.md). Messages go to standard error,
+// results to standard output.
 int run(const Options& options);
 
 // Says what is wrong with the command line; returns 2.

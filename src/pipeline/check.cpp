@@ -15,7 +15,8 @@ namespace selvage::pipeline {
 
 namespace {
 
-// The solid's volume may differ from the B-spline's by what OpenCASCADE's quadrature leaves (measured: up to 4e-4).
+// The solid's volume may differ from the B-spline's by what OpenCASCADE's quadrature leaves (measured: up to
+// 4e-4).
 constexpr double volume_agreement = 1e-3;
 
 struct Findings {
@@ -25,7 +26,9 @@ struct Findings {
   double tolerance = 0;  // file units
 };
 
-std::string_view yes_no(bool yes) { return yes ? "yes" : "no"; }
+std::string_view yes_no(bool yes) {
+  return yes ? "yes" : "no";
+}
 
 Message defect(const yarn::Body& body, std::string text) {
   Message message = error(Kind::geometry, std::move(text));
@@ -41,16 +44,19 @@ std::vector<Message> defects_of(const Findings& found, std::size_t i, Unit units
   const solid::BrepCheck& brep = found.breps[i];
   defects.insert(defects.end(), brep.defects.begin(), brep.defects.end());
   if (defects.empty() && std::abs(brep.volume - body.volume) > volume_agreement * std::abs(body.volume))
-    defects.push_back(defect(body, fmt::format("yarn '{}': the solid's volume is {:.6g}, the B-spline's {:.6g} {}^3",
-                                               body.name, brep.volume, body.volume, name_of(units))));
+    defects.push_back(
+        defect(body, fmt::format("yarn '{}': the solid's volume is {:.6g}, the B-spline's {:.6g} {}^3",
+                                 body.name, brep.volume, body.volume, name_of(units))));
   if (body.tube_error > found.tolerance)
-    defects.push_back(defect(body, fmt::format("yarn '{}': the surface may be {:.3g} {} away from the exact tube, {:.3g} are "
-                                               "allowed; raise the file's tolerance or use --tolerance",
-                                               body.name, body.tube_error, name_of(units), found.tolerance)));
+    defects.push_back(defect(
+        body, fmt::format("yarn '{}': the surface may be {:.3g} {} away from the exact tube, {:.3g} are "
+                          "allowed; raise the file's tolerance or use --tolerance",
+                          body.name, body.tube_error, name_of(units), found.tolerance)));
   for (const yarn::TightBend& bend : body.tight_bends) {
-    defects.push_back(defect(body, fmt::format("yarn '{}' bends with a radius of {:.4g} {} where its section needs {:.4g}: "
-                                               "its surface folds over itself",
-                                               body.name, bend.radius, name_of(units), bend.needed)));
+    defects.push_back(
+        defect(body, fmt::format("yarn '{}' bends with a radius of {:.4g} {} where its section needs {:.4g}: "
+                                 "its surface folds over itself",
+                                 body.name, bend.radius, name_of(units), bend.needed)));
     defects.back().at = bend.at;
   }
   return defects;
@@ -64,14 +70,15 @@ std::string brep_word(const solid::BrepCheck& brep) {
 void print_tables(const Job& job, const Findings& found, std::size_t defects) {
   const Unit file = job.file_units(), shown = job.options.units.value_or(file);
   const auto length = [&](double value) { return cell(converted(value, file, shown)); };
-  Table yarns({"yarn", "points", "length", "volume", "least bend radius", "tube error", "closed", "crosses itself", "B-rep",
-               "defects"});
+  Table yarns({"yarn", "points", "length", "volume", "least bend radius", "tube error", "closed",
+               "crosses itself", "B-rep", "defects"});
   for (std::size_t i = 0; i < found.bodies.size(); ++i) {
     const yarn::Body& body = found.bodies[i];
     const solid::YarnCheck& solid = found.solids.yarns[i];
     const double cubic = converted(converted(converted(body.volume, file, shown), file, shown), file, shown);
-    yarns.add({body.name, fmt::format("{}x{}", body.surface.count_u, body.surface.count_v), length(body.length), cell(cubic),
-               length(body.min_bend_radius), length(body.tube_error), std::string(yes_no(solid.closed && solid.bounds_volume)),
+    yarns.add({body.name, fmt::format("{}x{}", body.surface.count_u, body.surface.count_v),
+               length(body.length), cell(cubic), length(body.min_bend_radius), length(body.tube_error),
+               std::string(yes_no(solid.closed && solid.bounds_volume)),
                std::string(yes_no(solid.self_intersecting)), brep_word(found.breps[i]),
                std::to_string(defects_of(found, i, file).size())});
   }
@@ -83,7 +90,8 @@ void print_tables(const Job& job, const Findings& found, std::size_t defects) {
                     length(overlap.at.x()), length(overlap.at.y()), length(overlap.at.z())});
     text += overlaps.text();
   }
-  if (found.solids.min_gap) text += fmt::format("  smallest gap between yarns: {}\n", length(*found.solids.min_gap));
+  if (found.solids.min_gap)
+    text += fmt::format("  smallest gap between yarns: {}\n", length(*found.solids.min_gap));
   text += defects == 0 ? "  sound: every yarn is a closed valid solid, no two overlap\n"
                        : fmt::format("  {} defect{}\n", defects, defects == 1 ? "" : "s");
   job.print(text);
@@ -99,7 +107,9 @@ std::optional<Findings> examine(Job& job, const fabric::Fabric& fabric) {
   found.tolerance = fabric::tolerance_of(fabric, job.build_options());
   solid::CheckOptions options;
   options.threads = static_cast<int>(job.threads);
-  options.progress = [&job](std::size_t done, std::size_t total) { job.progress("checking yarn", done, total); };
+  options.progress = [&job](std::size_t done, std::size_t total) {
+    job.progress("checking yarn", done, total);
+  };
   Result<solid::SolidCheck> solids = solid::check_solids(found.bodies, options);
   if (!solids) {
     job.say(solids.error());

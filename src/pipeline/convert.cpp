@@ -9,14 +9,16 @@ namespace selvage::pipeline {
 
 namespace {
 
-formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fabric, const PlannedOutput& output,
-                                        std::uint64_t count) {
+formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fabric,
+                                        const PlannedOutput& output, std::uint64_t count) {
   formats::SurfaceOptions surface;
   surface.title = fabric.title.value_or("");
-  surface.file_name = output.to_standard_output ? job.input.stem.filename().string() : output.path.filename().string();
+  surface.file_name =
+      output.to_standard_output ? job.input.stem.filename().string() : output.path.filename().string();
   surface.units = job.options.units.value_or(fabric.units);
   surface.expected_bodies = count;
-  surface.tolerance = converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, surface.units);
+  surface.tolerance =
+      converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, surface.units);
   surface.iges_solid = job.options.iges_solid;
   surface.step_schema = job.options.step_schema;
   return surface;
@@ -56,14 +58,16 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
     job.progress("writing yarn", i + 1, builder->count());
     std::optional<yarn::Body> body = job.build(*builder, i);
     if (!body) continue;  // the others are tried, so that every error is told
-    if (job.wants_report()) thinnest = std::min(thinnest.value_or(thinnest_section(*body)), thinnest_section(*body));
+    if (job.wants_report())
+      thinnest = std::min(thinnest.value_or(thinnest_section(*body)), thinnest_section(*body));
     convert_lengths(*body, fabric.units, units);
     if (!job.has_failed() && !add_to_all(job, *body, outputs)) return;
   }
   if (job.has_failed()) return;
   for (OpenOutput& output : outputs)
     if (output.writer && !take_facts(job, output, output.writer->finish())) return;
-  if (thinnest) job.report.creo_absolute_accuracy = creo_accuracy(*thinnest * millimetres_per(fabric.units), {});
+  if (thinnest)
+    job.report.creo_absolute_accuracy = creo_accuracy(*thinnest * millimetres_per(fabric.units), {});
 }
 
 }  // namespace

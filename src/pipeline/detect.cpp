@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <strings.h>
 
-
 namespace selvage::pipeline {
 
 using formats::all_formats;
@@ -40,24 +39,29 @@ const Descriptor* format_named(std::string_view name) {
 
 Result<const Descriptor*> detect_readable(const Source& source) {
   const Descriptor* format = sniff(source.bytes().substr(0, head_size));
-  if (format == nullptr) format = format_with_extension(std::filesystem::path(source.name()).extension().string());
+  if (format == nullptr)
+    format = format_with_extension(std::filesystem::path(source.name()).extension().string());
   if (format != nullptr && format->read_fabric != nullptr) return format;
   std::string readable;
   for (const Descriptor* other : all_formats())
-    if (other->read_fabric != nullptr) readable += fmt::format("{}{}", readable.empty() ? "" : ", ", other->name);
+    if (other->read_fabric != nullptr)
+      readable += fmt::format("{}{}", readable.empty() ? "" : ", ", other->name);
   Message message =
       format != nullptr
-          ? error(Kind::unsupported, fmt::format("this is {} ({}), which this version cannot read; it reads: {}",
-                                                 format->name, format->title, readable))
+          ? error(Kind::unsupported,
+                  fmt::format("this is {} ({}), which this version cannot read; it reads: {}", format->name,
+                              format->title, readable))
           : error(Kind::unsupported,
-                  fmt::format("of no known format: neither its first bytes nor its extension tell; readable are: {}",
-                              readable));
+                  fmt::format(
+                      "of no known format: neither its first bytes nor its extension tell; readable are: {}",
+                      readable));
   message.file = source.name();
   return message;
 }
 
 bool is_readable_format(const std::filesystem::path& path) {
-  if (const Descriptor* format = format_with_extension(path.extension().string())) return format->read_fabric != nullptr;
+  if (const Descriptor* format = format_with_extension(path.extension().string()))
+    return format->read_fabric != nullptr;
   const Result<Source> source = Source::open(path);
   if (!source) return false;
   const Descriptor* format = sniff(source->bytes().substr(0, head_size));

@@ -48,7 +48,8 @@ double thinnest_section(const yarn::Body& body) {
     Vec3 centre = Vec3::Zero();
     for (int i = 0; i < surface.count_u; ++i) centre += surface.point(i, j);
     centre /= surface.count_u;
-    for (int i = 0; i < surface.count_u; ++i) least = std::min(least, 2 * (surface.point(i, j) - centre).norm());
+    for (int i = 0; i < surface.count_u; ++i)
+      least = std::min(least, 2 * (surface.point(i, j) - centre).norm());
   }
   return least;
 }

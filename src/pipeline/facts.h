@@ -10,17 +10,18 @@
 
 namespace selvage::pipeline {
 
-// Lengths of the body in `units`, those of the result in mm. `closed` is told from the joints of the end faces: whether
-// they keep within the rounding of the coordinates.
+// Lengths of the body in `units`, those of the result in mm. `closed` is told from the joints of the end
+// faces: whether they keep within the rounding of the coordinates.
 YarnReport facts_of(const yarn::Body& body, Unit units);
 
-// The smallest distance across any section, file units: twice the least distance from a section's centre to its control
-// points.
+// The smallest distance across any section, file units: twice the least distance from a section's centre to
+// its control points.
 double thinnest_section(const yarn::Body& body);
 
-// The absolute accuracy to set in Creo, mm: a hundredth of the thinnest section, and at most a quarter of the smallest
-// gap between two yarns (both mm), rounded down to 1, 2 or 5 times a power of ten. Below both, so that neither a section nor
-// a gap vanishes; far above the rounding of the coordinates. None when there is no yarn.
+// The absolute accuracy to set in Creo, mm: a hundredth of the thinnest section, and at most a quarter of the
+// smallest gap between two yarns (both mm), rounded down to 1, 2 or 5 times a power of ten. Below both, so
+// that neither a section nor a gap vanishes; far above the rounding of the coordinates. None when there is no
+// yarn.
 std::optional<double> creo_accuracy(std::optional<double> thinnest, std::optional<double> min_gap);
 
 }  // namespace selvage::pipeline

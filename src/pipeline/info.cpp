@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "pipeline/facts.h"
-#include "pipeline/scaling.h"
 #include "pipeline/job.h"
+#include "pipeline/scaling.h"
 #include "pipeline/table.h"
 
 namespace selvage::pipeline {
@@ -22,7 +22,8 @@ std::string_view kind_of(const fabric::Item& item) {
 std::string heading(const Job& job, const fabric::Fabric& fabric) {
   std::string text = job.input.path + "\n";
   if (fabric.title) text += fmt::format("  title      {}\n", *fabric.title);
-  text += fmt::format("  units      {}{}\n", name_of(fabric.units), fabric.units_given ? "" : " (the default)");
+  text +=
+      fmt::format("  units      {}{}\n", name_of(fabric.units), fabric.units_given ? "" : " (the default)");
   // Grids are taken as they are and need none.
   const double tolerance = fabric::tolerance_of(fabric, job.build_options());
   if (tolerance > 0) text += fmt::format("  tolerance  {:.6g}\n", tolerance);
@@ -53,8 +54,8 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
     if (!body) continue;
     const double volume = length(length(length(body->volume)));
     table.add({body->name, std::string(yarn::name_of(body->role)),
-               fmt::format("{}x{}", body->surface.count_u, body->surface.count_v), cell(length(body->length)), cell(volume),
-               cell(length(body->min_bend_radius)), cell(length(body->tube_error)),
+               fmt::format("{}x{}", body->surface.count_u, body->surface.count_v), cell(length(body->length)),
+               cell(volume), cell(length(body->min_bend_radius)), cell(length(body->tube_error)),
                body->closed_along ? "ring" : std::string(yarn::name_of(body->start.style))});
     total_length += length(body->length);
     total_volume += volume;
@@ -64,8 +65,8 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
   text += fmt::format("  together: length {}, volume {}\n", cell(total_length), cell(total_volume));
   if (!box.isEmpty()) {
     const Vec3 low = box.min().unaryExpr(length), high = box.max().unaryExpr(length);
-    text += fmt::format("  within ({:.6g}, {:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})\n", low.x(), low.y(), low.z(),
-                        high.x(), high.y(), high.z());
+    text += fmt::format("  within ({:.6g}, {:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})\n", low.x(), low.y(),
+                        low.z(), high.x(), high.y(), high.z());
   }
   return text;
 }

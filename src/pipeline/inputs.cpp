@@ -28,8 +28,10 @@ class Expansion {
     std::error_code failure;
     const fs::file_status status = fs::status(argument, failure);
     if (fs::is_directory(status)) return add_folder(argument);
-    if (!fs::exists(status) && argument.size() > 1 && argument.front() == '@') return add_list(argument.substr(1));
-    if (!fs::exists(status) && argument.find_first_of("*?[") != std::string::npos) return add_pattern(argument);
+    if (!fs::exists(status) && argument.size() > 1 && argument.front() == '@')
+      return add_list(argument.substr(1));
+    if (!fs::exists(status) && argument.find_first_of("*?[") != std::string::npos)
+      return add_pattern(argument);
     add_file(argument);
     return {};
   }
@@ -40,7 +42,8 @@ class Expansion {
   void add_file(const std::string& path) { list.inputs.push_back({path, fs::path(path).stem()}); }
 
   Status add_standard_input() {
-    if (std::any_of(list.inputs.begin(), list.inputs.end(), [](const Input& input) { return input.path == "-"; }))
+    if (std::any_of(list.inputs.begin(), list.inputs.end(),
+                    [](const Input& input) { return input.path == "-"; }))
       return error(Kind::usage, "standard input ('-') can be read only once");
     list.inputs.push_back({"-", "stdin"});
     return {};
@@ -72,7 +75,8 @@ class Expansion {
         files.push_back(path);
     }
     if (failure)
-      list.missing.push_back(about(folder.string(), Kind::io, fmt::format("cannot read the folder: {}", failure.message())));
+      list.missing.push_back(
+          about(folder.string(), Kind::io, fmt::format("cannot read the folder: {}", failure.message())));
   }
 
   Status add_pattern(const std::string& pattern) {
@@ -108,7 +112,9 @@ class Expansion {
   }
 
  public:
-  [[nodiscard]] bool is_one_file() const { return !from_folder_ && list.inputs.size() == 1 && list.missing.empty(); }
+  [[nodiscard]] bool is_one_file() const {
+    return !from_folder_ && list.inputs.size() == 1 && list.missing.empty();
+  }
 
  private:
   bool from_folder_ = false;

@@ -1,4 +1,5 @@
-// The inputs of a run: every path, folder, pattern, list and "-" of the command line as files, in a fixed order.
+// The inputs of a run: every path, folder, pattern, list and "-" of the command line as files, in a fixed
+// order.
 #pragma once
 
 #include <filesystem>
@@ -16,9 +17,10 @@ struct Input {
 };
 
 struct InputList {
-  std::vector<Input> inputs;     // in the order of the command line; the files of a folder sorted by their bytes
-  std::vector<Message> missing;  // folders that cannot be read or hold nothing readable, patterns without a match
-  bool one_file = false;         // the command line names exactly one file (no folder, no list)
+  std::vector<Input> inputs;  // in the order of the command line; the files of a folder sorted by their bytes
+  std::vector<Message>
+      missing;            // folders that cannot be read or hold nothing readable, patterns without a match
+  bool one_file = false;  // the command line names exactly one file (no folder, no list)
 };
 
 // Errors (usage): a list that cannot be read, "-" twice, nothing named.

@@ -20,12 +20,13 @@ constexpr auto progress_interval = std::chrono::milliseconds(50);
 
 // Everything on the command line that changes the bytes of an output.
 std::string settings_of(const Options& options) {
-  std::string text = fmt::format("{} ends={} tolerance={}", name_of(options.command), name_of(options.ends), options.tolerance);
+  std::string text = fmt::format("{} ends={} tolerance={}", name_of(options.command), name_of(options.ends),
+                                 options.tolerance);
   if (options.units) text += fmt::format(" units={}", name_of(*options.units));
   if (options.iges_solid) text += " iges-solid";
   if (options.command == Command::mesh)
-    text += fmt::format(" size={} order={} min-dihedral={}{}", options.size, options.order, options.min_dihedral,
-                        options.allow_overlap ? " allow-overlap" : "");
+    text += fmt::format(" size={} order={} min-dihedral={}{}", options.size, options.order,
+                        options.min_dihedral, options.allow_overlap ? " allow-overlap" : "");
   else
     text += fmt::format(" step-schema={}", options.step_schema);
   return text;
@@ -39,10 +40,14 @@ std::string plural(std::size_t count, std::string_view noun) {
 
 std::string_view name_of(Command command) {
   switch (command) {
-    case Command::convert: return "convert";
-    case Command::check: return "check";
-    case Command::mesh: return "mesh";
-    case Command::info: return "info";
+    case Command::convert:
+      return "convert";
+    case Command::check:
+      return "check";
+    case Command::mesh:
+      return "mesh";
+    case Command::info:
+      return "info";
   }
   return "convert";
 }
@@ -59,12 +64,14 @@ void Job::say(Message message) {
   show(std::move(message));
 }
 
-void Job::say_defect(Message message) { show(std::move(message)); }
+void Job::say_defect(Message message) {
+  show(std::move(message));
+}
 
 void Job::show(Message message) {
   if (message.file.empty()) message.file = input.path == "-" ? "<stdin>" : input.path;
-  const bool shown = message.severity == Severity::error || (message.severity == Severity::warning && !options.quiet) ||
-                     options.verbose;
+  const bool shown = message.severity == Severity::error ||
+                     (message.severity == Severity::warning && !options.quiet) || options.verbose;
   if (shown) channel_.send(packet::message, to_string(message));
   if (wants_report()) report.messages.push_back(std::move(message));
 }
@@ -80,7 +87,8 @@ void Job::forward(const Diagnostics& diagnostics) {
     say(message);
   }
   if (diagnostics.error_count() > shown)
-    say(error(Kind::malformed, plural(static_cast<std::size_t>(diagnostics.error_count() - shown), "further error")));
+    say(error(Kind::malformed,
+              plural(static_cast<std::size_t>(diagnostics.error_count() - shown), "further error")));
 }
 
 void Job::progress(std::string_view verb, std::size_t done, std::size_t total) {
@@ -113,7 +121,8 @@ std::optional<fabric::Fabric> Job::read() {
   std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
   forward(diagnostics);
   if (!fabric && !diagnostics.has_errors())
-    say(error(Kind::internal, fmt::format("the reader of {} gave neither a fabric nor a reason", (*format)->name)));
+    say(error(Kind::internal,
+              fmt::format("the reader of {} gave neither a fabric nor a reason", (*format)->name)));
   if (fabric) report.units = fabric->units;
   return fabric;
 }
@@ -167,10 +176,18 @@ Verdict work(Job& job, const std::string& earlier) {
   if (may_be_skipped(job, earlier)) return Verdict::skipped;
   bool defective = false;
   switch (job.options.command) {
-    case Command::convert: convert(job); break;
-    case Command::mesh: mesh(job); break;
-    case Command::info: info(job); break;
-    case Command::check: defective = check(job); break;
+    case Command::convert:
+      convert(job);
+      break;
+    case Command::mesh:
+      mesh(job);
+      break;
+    case Command::info:
+      info(job);
+      break;
+    case Command::check:
+      defective = check(job);
+      break;
   }
   if (job.has_failed()) return Verdict::failed;
   return defective ? Verdict::defect : Verdict::done;
@@ -181,9 +198,10 @@ Verdict guarded_work(Job& job, const std::string& earlier) {
   try {
     return work(job, earlier);
   } catch (const std::bad_alloc&) {
-    job.say(error(Kind::limit, job.options.memory > 0
-                                   ? fmt::format("needs more memory than the {:g} MB of --memory", job.options.memory)
-                                   : std::string("needs more memory than there is")));
+    job.say(error(Kind::limit,
+                  job.options.memory > 0
+                      ? fmt::format("needs more memory than the {:g} MB of --memory", job.options.memory)
+                      : std::string("needs more memory than there is")));
   } catch (const std::exception& failure) {
     job.say(error(Kind::internal, fmt::format("unexpected failure: {}", failure.what())));
   }

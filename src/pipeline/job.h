@@ -32,7 +32,8 @@ inline constexpr char report = 'j';    // the InputReport as JSON
 
 class Job {
  public:
-  Job(const Options& options, const Input& input, const std::vector<PlannedOutput>& outputs, const Channel& channel);
+  Job(const Options& options, const Input& input, const std::vector<PlannedOutput>& outputs,
+      const Channel& channel);
 
   const Options& options;
   const Input& input;
@@ -53,7 +54,8 @@ class Job {
   [[nodiscard]] bool has_failed() const { return errors_ > 0 || (options.strict && warnings_ > 0); }
   [[nodiscard]] bool wants_report() const { return !options.report.empty() || options.json; }
 
-  // Reads the input; nothing when that failed (it was said why). The fabric of an input that cannot be built is fine.
+  // Reads the input; nothing when that failed (it was said why). The fabric of an input that cannot be built
+  // is fine.
   std::optional<fabric::Fabric> read();
   // The builder of its yarns; nothing when that failed.
   std::optional<fabric::YarnBuilder> builder(const fabric::Fabric& fabric);
@@ -74,7 +76,8 @@ class Job {
   std::chrono::steady_clock::time_point last_progress_;
 };
 
-// Does the input's work and sends its report; never throws. `earlier`: the entry of this input in the report that
+// Does the input's work and sends its report; never throws. `earlier`: the entry of this input in the report
+// that
 // `--resume` goes by, empty if there is none.
 Verdict run_job(Job& job, const std::string& earlier, const Channel& channel);
 

@@ -20,7 +20,9 @@ constexpr double worker_share = 0.9;
 bool check_overlaps(Job& job, const std::vector<yarn::Body>& bodies) {
   solid::CheckOptions options;
   options.threads = static_cast<int>(job.threads);
-  options.progress = [&job](std::size_t done, std::size_t total) { job.progress("checking yarn", done, total); };
+  options.progress = [&job](std::size_t done, std::size_t total) {
+    job.progress("checking yarn", done, total);
+  };
   Result<solid::SolidCheck> check = solid::check_solids(bodies, options);
   if (!check) {
     job.say(check.error());
@@ -49,7 +51,9 @@ fem::MeshOptions mesh_options(Job& job) {
   if (given.timeout > 0) options.timeout = worker_share * given.timeout;
   if (given.memory > 0) options.memory = given.memory;
   options.threads = static_cast<int>(job.threads);
-  options.progress = [&job](std::size_t done, std::size_t total) { job.progress("meshing yarn", done, total); };
+  options.progress = [&job](std::size_t done, std::size_t total) {
+    job.progress("meshing yarn", done, total);
+  };
   return options;
 }
 

@@ -23,7 +23,8 @@ bool can_be_written(const Descriptor& format, Command command) {
 std::string writable_names(Command command) {
   std::string names;
   for (const Descriptor* format : formats::all_formats())
-    if (can_be_written(*format, command)) names += fmt::format("{}{}", names.empty() ? "" : ", ", format->name);
+    if (can_be_written(*format, command))
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", format->name);
   return names;
 }
 
@@ -40,9 +41,9 @@ Result<const Descriptor*> named_format(std::string_view name, Command command) {
   std::vector<std::string_view> known;
   for (const Descriptor* format : formats::all_formats()) known.push_back(format->name);
   const std::string_view near = nearest_word(name, known);
-  return error(Kind::usage,
-               fmt::format("unknown format '{}'{}; known are: {}", name,
-                           near.empty() ? "" : fmt::format(", did you mean '{}'?", near), writable_names(command)));
+  return error(Kind::usage, fmt::format("unknown format '{}'{}; known are: {}", name,
+                                        near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
+                                        writable_names(command)));
 }
 
 // The format that the name of -o tells; null when it tells none.
@@ -63,8 +64,9 @@ Result<Formats> wanted_formats(const Options& options) {
   }
   if (!wanted.empty()) return wanted;
   const Descriptor* told = told_by_output(options);
-  const Formats usual = options.command == Command::mesh ? Formats{format_named("inp")}
-                                                         : Formats{format_named("iges"), format_named("step")};
+  const Formats usual = options.command == Command::mesh
+                            ? Formats{format_named("inp")}
+                            : Formats{format_named("iges"), format_named("step")};
   for (const Descriptor* choice : told != nullptr ? Formats{told} : usual) {
     Result<const Descriptor*> format = fitting(*choice, options.command);
     if (!format) return format.error();
@@ -82,11 +84,12 @@ Status check_single_output(const Options& options, const InputList& list, const 
   const Descriptor* told = told_by_output(options);
   if (told == nullptr) return {};
   if (wanted.size() > 1 || wanted.front() != told)
-    return error(Kind::usage, fmt::format("'-o {}' names a file of {}, but --to asks for {}", options.output, told->name,
-                                          options.formats));
+    return error(Kind::usage, fmt::format("'-o {}' names a file of {}, but --to asks for {}", options.output,
+                                          told->name, options.formats));
   if (!list.one_file)
     return error(Kind::usage,
-                 fmt::format("'-o {}' names one file, but there may be several inputs; name a folder", options.output));
+                 fmt::format("'-o {}' names one file, but there may be several inputs; name a folder",
+                             options.output));
   return {};
 }
 
@@ -99,7 +102,8 @@ bool output_is_file(const Options& options, const InputList& list, const Formats
 }
 
 fs::path output_path(const Options& options, const Input& input, const Descriptor& format) {
-  fs::path path = options.output.empty() ? fs::path(input.path).replace_extension() : fs::path(options.output) / input.stem;
+  fs::path path = options.output.empty() ? fs::path(input.path).replace_extension()
+                                         : fs::path(options.output) / input.stem;
   path += format.extensions.front();
   return path;
 }
@@ -111,8 +115,10 @@ std::string identity(const fs::path& path) {
   return failure ? fs::absolute(path, failure).lexically_normal().string() : real.string();
 }
 
-Status check_names(const Options& options, const InputList& list, const std::vector<std::vector<PlannedOutput>>& plan) {
-  const std::string report = options.report.empty() || options.report == "-" ? std::string() : identity(options.report);
+Status check_names(const Options& options, const InputList& list,
+                   const std::vector<std::vector<PlannedOutput>>& plan) {
+  const std::string report =
+      options.report.empty() || options.report == "-" ? std::string() : identity(options.report);
   std::unordered_map<std::string, std::size_t> input_of;
   for (std::size_t i = 0; i < plan.size(); ++i)
     if (list.inputs[i].path != "-") input_of.emplace(identity(list.inputs[i].path), i);
@@ -126,13 +132,16 @@ Status check_names(const Options& options, const InputList& list, const std::vec
       if (name == report)
         return error(Kind::usage, fmt::format("the report and an output would both be '{}'", options.report));
       if (const auto found = input_of.find(name); found != input_of.end())
-        return error(Kind::usage, fmt::format("the output '{}' would replace the input '{}'; name another place with -o",
-                                              output.path.string(), list.inputs[found->second].path));
-      if (const auto [found, is_new] = writer_of.emplace(name, i); !is_new)
         return error(Kind::usage,
-                     fmt::format("'{}' and '{}' would both write '{}'; nothing was done (the files of a folder keep their "
-                                 "subfolders: name the folder above them as the input)",
-                                 list.inputs[found->second].path, list.inputs[i].path, output.path.string()));
+                     fmt::format("the output '{}' would replace the input '{}'; name another place with -o",
+                                 output.path.string(), list.inputs[found->second].path));
+      if (const auto [found, is_new] = writer_of.emplace(name, i); !is_new)
+        return error(
+            Kind::usage,
+            fmt::format(
+                "'{}' and '{}' would both write '{}'; nothing was done (the files of a folder keep their "
+                "subfolders: name the folder above them as the input)",
+                list.inputs[found->second].path, list.inputs[i].path, output.path.string()));
     }
   }
   return {};
@@ -149,7 +158,8 @@ Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& opti
   Result<Formats> wanted = wanted_formats(options);
   if (!wanted) return wanted.error();
   if (Status status = check_single_output(options, list, *wanted); !status.ok()) return status.error();
-  if (options.units && std::any_of(wanted->begin(), wanted->end(), [](auto* format) { return format->open_bodies == nullptr; }))
+  if (options.units && std::any_of(wanted->begin(), wanted->end(),
+                                   [](auto* format) { return format->open_bodies == nullptr; }))
     return error(Kind::usage, "--units converts surfaces; text keeps the unit of its input");
   const bool as_file = output_is_file(options, list, *wanted);
   for (std::size_t i = 0; i < plan.size(); ++i) {
@@ -160,7 +170,8 @@ Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& opti
       if (options.output == "-")
         plan[i].push_back({format, "<stdout>", true});
       else
-        plan[i].push_back({format, as_file ? fs::path(options.output) : output_path(options, input, *format), false});
+        plan[i].push_back(
+            {format, as_file ? fs::path(options.output) : output_path(options, input, *format), false});
     }
   }
   if (Status status = check_names(options, list, plan); !status.ok()) return status.error();

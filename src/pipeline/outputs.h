@@ -17,9 +17,9 @@ struct PlannedOutput {
   bool to_standard_output = false;
 };
 
-// The outputs of each input, in the order of `list.inputs`; empty lists for commands that write no files. Errors
-// (usage): an unknown or unfitting format, several outputs where one file was named, two outputs of one name, an output
-// that is an input.
+// The outputs of each input, in the order of `list.inputs`; empty lists for commands that write no files.
+// Errors (usage): an unknown or unfitting format, several outputs where one file was named, two outputs of
+// one name, an output that is an input.
 Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list);
 
 }  // namespace selvage::pipeline

@@ -16,14 +16,17 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json point(const Vec3& p) { return Json::array({p.x(), p.y(), p.z()}); }
+Json point(const Vec3& p) {
+  return Json::array({p.x(), p.y(), p.z()});
+}
 
 Json yarn_json(const YarnReport& yarn) {
   Json out = {{"name", yarn.name}};
   if (yarn.closed) out["closed"] = *yarn.closed;
   out["length"] = yarn.length;
   out["volume"] = yarn.volume;
-  if (yarn.min_bend_radius && std::isfinite(*yarn.min_bend_radius)) out["min_bend_radius"] = *yarn.min_bend_radius;
+  if (yarn.min_bend_radius && std::isfinite(*yarn.min_bend_radius))
+    out["min_bend_radius"] = *yarn.min_bend_radius;
   out["tube_error"] = yarn.tube_error;
   out["control_points"] = {yarn.count_u, yarn.count_v};
   if (yarn.self_overlap) out["self_overlap"] = *yarn.self_overlap;
@@ -31,7 +34,8 @@ Json yarn_json(const YarnReport& yarn) {
 }
 
 Json output_json(const OutputReport& output) {
-  Json out = {{"path", output.path}, {"format", output.format}, {"bytes", output.bytes}, {"sha256", output.sha256}};
+  Json out = {
+      {"path", output.path}, {"format", output.format}, {"bytes", output.bytes}, {"sha256", output.sha256}};
   if (!output.entities.empty()) out["entities"] = output.entities;
   return out;
 }
@@ -121,7 +125,8 @@ Result<std::map<std::string, std::string>> read_entries(const std::string& repor
   const Json report = Json::parse(source->bytes(), nullptr, false);
   const auto inputs = report.is_object() ? report.find("inputs") : report.end();
   if (!report.is_object() || inputs == report.end() || !inputs->is_array()) {
-    Message message = error(Kind::malformed, "this is not a report of selvage, so nothing can be resumed from it");
+    Message message =
+        error(Kind::malformed, "this is not a report of selvage, so nothing can be resumed from it");
     message.file = report_path;
     return message;
   }
@@ -137,7 +142,8 @@ bool is_still_valid(const std::string& entry, const std::string& input_sha256, c
   if (!earlier.is_object() || !earlier.contains("ok") || earlier["ok"] != true) return false;
   if (text_at(earlier, "sha256") != input_sha256 || text_at(earlier, "settings") != settings) return false;
   const auto outputs = earlier.find("outputs");
-  if (outputs == earlier.end() || !outputs->is_array() || outputs->size() != output_paths.size()) return false;
+  if (outputs == earlier.end() || !outputs->is_array() || outputs->size() != output_paths.size())
+    return false;
   return std::all_of(output_paths.begin(), output_paths.end(), [&](const std::string& path) {
     const auto found = std::find_if(outputs->begin(), outputs->end(),
                                     [&](const Json& output) { return text_at(output, "path") == path; });

@@ -1,5 +1,6 @@
-// What the JSON report says (README.md: the report). One InputReport is filled while an input is worked on, turned into
-// JSON text in its process, and put together with the others by the parent. Lengths in mm; what is unknown is left out.
+// What the JSON report says (README.md: the report). One InputReport is filled while an input is worked on,
+// turned into JSON text in its process, and put together with the others by the parent. Lengths in mm; what
+// is unknown is left out.
 #pragma once
 
 #include <array>
@@ -75,8 +76,8 @@ std::string whole_report(const std::string& started, double seconds, bool ok, co
 // An earlier report: the entry of each path as JSON text. Errors: io, malformed.
 Result<std::map<std::string, std::string>> read_entries(const std::string& report_path);
 
-// True when `entry` (JSON text of an earlier run) says that this input, with these settings, gave whole outputs at
-// `output_paths` that are still there, byte for byte.
+// True when `entry` (JSON text of an earlier run) says that this input, with these settings, gave whole
+// outputs at `output_paths` that are still there, byte for byte.
 bool is_still_valid(const std::string& entry, const std::string& input_sha256, const std::string& settings,
                     const std::vector<std::string>& output_paths);
 

@@ -9,11 +9,16 @@ namespace {
 // Whole tenths of a micrometre in one unit.
 long long exact_size(Unit unit) {
   switch (unit) {
-    case Unit::m: return 10'000'000;
-    case Unit::cm: return 100'000;
-    case Unit::mm: return 10'000;
-    case Unit::um: return 10;
-    case Unit::inch: return 254'000;
+    case Unit::m:
+      return 10'000'000;
+    case Unit::cm:
+      return 100'000;
+    case Unit::mm:
+      return 10'000;
+    case Unit::um:
+      return 10;
+    case Unit::inch:
+      return 254'000;
   }
   return 10'000;
 }
@@ -30,7 +35,9 @@ Ratio ratio(Unit from, Unit to) {
 
 }  // namespace
 
-double converted(double value, Unit from, Unit to) { return ratio(from, to)(value); }
+double converted(double value, Unit from, Unit to) {
+  return ratio(from, to)(value);
+}
 
 void convert_lengths(yarn::Body& body, Unit from, Unit to) {
   if (from == to) return;

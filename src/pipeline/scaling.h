@@ -6,12 +6,12 @@
 
 namespace selvage::pipeline {
 
-// `value`, a length in `from`, in `to`: at most two roundings, none when the units are the same (one when one of them
-// is a decimal multiple of the other).
+// `value`, a length in `from`, in `to`: at most two roundings, none when the units are the same (one when one
+// of them is a decimal multiple of the other).
 double converted(double value, Unit from, Unit to);
 
-// The same yarn in another unit: every length, area and volume of it, messages excepted. Equal numbers stay equal, so
-// that seams and joints stay closed.
+// The same yarn in another unit: every length, area and volume of it, messages excepted. Equal numbers stay
+// equal, so that seams and joints stay closed.
 void convert_lengths(yarn::Body& body, Unit from, Unit to);
 
 }  // namespace selvage::pipeline

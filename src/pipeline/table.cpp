@@ -20,13 +20,16 @@ std::string Table::text() const {
   for (const auto& row : rows_) {
     std::string line;
     for (std::size_t k = 0; k < row.size(); ++k)
-      line += is_number[k] ? fmt::format("  {:>{}}", row[k], widths[k]) : fmt::format("  {:<{}}", row[k], widths[k]);
+      line += is_number[k] ? fmt::format("  {:>{}}", row[k], widths[k])
+                           : fmt::format("  {:<{}}", row[k], widths[k]);
     line.erase(line.find_last_not_of(' ') + 1);
     out += line + "\n";
   }
   return out;
 }
 
-std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; }
+std::string cell(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-";
+}
 
 }  // namespace selvage::pipeline

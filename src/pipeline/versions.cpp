@@ -2,7 +2,9 @@
 
 namespace selvage::pipeline {
 
-std::string_view version() { return SELVAGE_VERSION; }
+std::string_view version() {
+  return SELVAGE_VERSION;
+}
 
 std::vector<std::pair<std::string_view, std::string_view>> library_versions() {
   std::vector<std::pair<std::string_view, std::string_view>> known = {

@@ -1,4 +1,5 @@
-// The program's version and those of the libraries that it was built with (their modules need not be opened for it).
+// The program's version and those of the libraries that it was built with (their modules need not be opened
+// for it).
 #pragma once
 
 #include <string_view>

@@ -9,7 +9,8 @@ namespace selvage::pipeline {
 std::optional<OpenOutputs> open_outputs(Job& job) {
   OpenOutputs outputs;
   for (const PlannedOutput& plan : job.outputs) {
-    Result<OutputFile> file = plan.to_standard_output ? OutputFile::standard_output() : OutputFile::create(plan.path);
+    Result<OutputFile> file =
+        plan.to_standard_output ? OutputFile::standard_output() : OutputFile::create(plan.path);
     if (!file) {
       job.say(file.error());
       return std::nullopt;
@@ -33,7 +34,10 @@ void commit_all(Job& job, OpenOutputs& outputs) {
   if (job.has_failed()) return;
   std::vector<OutputReport> written;
   for (OpenOutput& output : outputs) {
-    OutputReport facts{output.plan->path.string(), std::string(output.plan->format->name), {}, output.file.size(),
+    OutputReport facts{output.plan->path.string(),
+                       std::string(output.plan->format->name),
+                       {},
+                       output.file.size(),
                        output.facts.entities};
     if (job.wants_report()) {
       Result<std::string> digest = sha256_of(output.file);
