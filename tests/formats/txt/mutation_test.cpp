@@ -1,6 +1,9 @@
 // Damaged files: never a crash, and either a model that survives the writer or errors that say where.
 #include <gtest/gtest.h>
 
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -183,6 +186,35 @@ TEST(Damaged, AtRandom) {
     if (text.size() > 5000 && i % 7 != 0) continue;
     ASSERT_NO_FATAL_FAILURE(expect_sound(mutator.mutate(text))) << "mutation " << i;
   }
+}
+
+// The file ends with its page of memory, and behind it lies one that must not be touched.
+TEST(Damaged, NothingIsReadBehindTheEnd) {
+  constexpr std::size_t page = 4096;
+  const auto path =
+      std::filesystem::temp_directory_path() / ("selvage-guard-" + std::to_string(::getpid()) + ".txt");
+  int guarded = 0;
+  for (const std::string& sample : sample_texts()) {
+    if (sample.size() > 1000) continue;
+    for (std::size_t size = 1; size < sample.size(); size += 3) {
+      const std::string text = sample.substr(0, size);
+      std::ofstream(path, std::ios::binary) << "#" << std::string(page - 2 - size, '.') << "\n" << text;
+      // The system maps the file into the hole before the forbidden page, as long as no better one opens.
+      auto* const hole =
+          static_cast<char*>(::mmap(nullptr, 2 * page, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+      ASSERT_NE(hole, MAP_FAILED);
+      ::munmap(hole, page);
+      Result<Source> source = Source::open(path);
+      ASSERT_TRUE(source.ok());
+      ASSERT_EQ(source->bytes().size(), page);
+      if (source->bytes().data() == hole) ++guarded;
+      const Reading reading = read(*source);
+      EXPECT_EQ(reading.fabric.has_value(), !reading.diagnostics.has_errors());
+      ::munmap(hole + page, page);
+    }
+  }
+  std::filesystem::remove(path);
+  if (guarded == 0) GTEST_SKIP() << "this system maps files elsewhere";
 }
 
 // Every statement of the language without its last word, and with one too many.
