@@ -37,6 +37,7 @@
 
 #include "core/clock.h"
 #include "formats/step/stream.h"
+#include "solid/occt/check.h"
 #include "solid/occt/guard.h"
 #include "solid/occt/shape.h"
 
@@ -115,6 +116,12 @@ class StepBodyWriter : public BodyWriter {
       if (!p.allFinite())
         return error(Kind::geometry,
                      fmt::format("yarn '{}' has a control point that is no number", body.name));
+    const bool open_by_choice = !body.closed_along && (body.start.style == yarn::EndStyle::none ||
+                                                       body.end.style == yarn::EndStyle::none);
+    if (!open_by_choice) {
+      const solid::BrepCheck verdict = solid::occt::check_topology(body);
+      if (!verdict.defects.empty()) return verdict.defects.front();
+    }
     solid::occt::YarnShape yarn = solid::occt::build_shape(body, 1.0);
     if (!yarn.defects.empty()) return yarn.defects.front();
     if (!yarn.closed) {

@@ -1,4 +1,5 @@
-// From the text to solids: the samples, and every section with every end, as OpenCASCADE judges and reads them.
+// From the text to solids: the samples, and every section with every end, as OpenCASCADE judges and reads
+// them.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -26,7 +27,8 @@ std::vector<yarn::Body> build(const Source& source, EndStyle ends) {
   std::optional<fabric::YarnBuilder> builder;
   if (fabric) builder = fabric::YarnBuilder::create(*fabric, options, diagnostics);
   EXPECT_TRUE(builder.has_value());
-  for (const Message& message : diagnostics.messages()) EXPECT_NE(message.severity, Severity::error) << to_string(message);
+  for (const Message& message : diagnostics.messages())
+    EXPECT_NE(message.severity, Severity::error) << to_string(message);
   for (std::size_t i = 0; builder && i < builder->count(); ++i) {
     Result<yarn::Body> body = builder->build(i);
     EXPECT_TRUE(body.ok()) << to_string(body.error());

@@ -273,6 +273,14 @@ TEST_F(Step, MovedEndIsRefused) {
   EXPECT_FALSE(fs::exists(path()));
 }
 
+TEST_F(Step, FaceTurnedInsideOutIsRefused) {
+  yarn::Body body = tests::wave("turned", EndStyle::patch);
+  body.end.inward = !body.end.inward;
+  Result<WriteFacts> facts = write({body});
+  ASSERT_FALSE(facts.ok());
+  EXPECT_EQ(facts.error().yarn, "turned");
+}
+
 TEST_F(Step, NumberThatIsNoneIsRefused) {
   yarn::Body body = tests::tube("broken", EndStyle::patch);
   body.surface.points[40].y() = std::numeric_limits<double>::quiet_NaN();
