@@ -19,22 +19,50 @@ struct CurvedEdge {
   Vec3 middle;
 };
 
-// The middle of two parameters on a line that closes after `last`.
-double middle_of(double a, double b, double first, double last, bool closed) {
-  if (closed && std::abs(a - b) > (last - first) / 2) {
-    (a < b ? a : b) += last - first;
-    const double middle = (a + b) / 2;
-    return middle > last ? middle - (last - first) : middle;
-  }
-  return (a + b) / 2;
+// `b` on the same side of a closed line's joint as `a`: past its end, or before its start.
+double beside(double a, double b, double range) {
+  return std::abs(b - a) > range / 2 ? b + (b < a ? range : -range) : b;
 }
 
-// The point of the surface in the middle (by parameters) of an edge of the side.
+// The point of the surface above the chord's middle, on the straight line of parameters between an edge's
+// ends: where it is as far along the chord as the middle (regula falsi, Illinois form).
 Vec3 side_middle(const SurfaceMesh& skin, const yarn::Body& body, std::uint32_t a, std::uint32_t b) {
   const nurbs::Surface& surface = body.surface;
-  const Vec2 &pa = skin.parameters[a], &pb = skin.parameters[b];
-  return nurbs::evaluate(surface, middle_of(pa.x(), pb.x(), surface.first_u(), surface.last_u(), true),
-                         middle_of(pa.y(), pb.y(), surface.first_v(), surface.last_v(), body.closed_along));
+  const double range_u = surface.last_u() - surface.first_u(), range_v = surface.last_v() - surface.first_v();
+  const Vec2 from = skin.parameters[a];
+  Vec2 to = skin.parameters[b];
+  to.x() = beside(from.x(), to.x(), range_u);
+  if (body.closed_along) to.y() = beside(from.y(), to.y(), range_v);
+  const Vec3 chord = skin.points[b] - skin.points[a], middle = (skin.points[a] + skin.points[b]) / 2;
+  const double length = chord.squaredNorm();
+  auto point = [&](double share) {
+    Vec2 at = from + share * (to - from);
+    if (at.x() < surface.first_u()) at.x() += range_u;
+    if (at.x() > surface.last_u()) at.x() -= range_u;
+    if (at.y() < surface.first_v()) at.y() += range_v;
+    if (at.y() > surface.last_v()) at.y() -= range_v;
+    return nurbs::evaluate(surface, at.x(), at.y());
+  };
+  double low = 0, high = 1, low_miss = -0.5, high_miss = 0.5;
+  Vec3 found = middle;
+  for (int step = 0, side = 0; step < 40; ++step) {
+    const double share = (low * high_miss - high * low_miss) / (high_miss - low_miss);
+    found = point(share);
+    const double miss = (found - middle).dot(chord) / length;
+    if (std::abs(miss) < 1e-6) break;
+    if (miss > 0) {
+      high = share;
+      high_miss = miss;
+      if (side == 1) low_miss /= 2;
+      side = 1;
+    } else {
+      low = share;
+      low_miss = miss;
+      if (side == -1) high_miss /= 2;
+      side = -1;
+    }
+  }
+  return found;
 }
 
 std::vector<CurvedEdge> curved_edges(const SurfaceMesh& skin, const yarn::Body& body) {
