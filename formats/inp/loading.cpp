@@ -68,7 +68,8 @@ Load grip_ends(const fem::Mesh& mesh, const fem::Region& region) {
   for (std::size_t e = region.first_element; e < region.last_element; ++e) {
     const auto& corner = mesh.elements[e];
     const Vec3& p = mesh.nodes[corner[0]];
-    six_volumes += (mesh.nodes[corner[1]] - p).cross(mesh.nodes[corner[2]] - p).dot(mesh.nodes[corner[3]] - p);
+    six_volumes +=
+        (mesh.nodes[corner[1]] - p).cross(mesh.nodes[corner[2]] - p).dot(mesh.nodes[corner[3]] - p);
   }
   load.pull = strain * six_volumes / 6 / ((start.norm() + end.norm()) / 2);
   return load;
