@@ -6,9 +6,12 @@ namespace selvage::solid {
 
 namespace {
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
-// Twice the area over the square of the longest side: 0.87 for the best shape, 0 or less for one that is no ear.
+// Twice the area over the square of the longest side: 0.87 for the best shape, 0 or less for one that is no
+// ear.
 double shape(const Vec2& a, const Vec2& b, const Vec2& c) {
   const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
   return longest > 0.0 ? cross(b - a, c - a) / longest : 0.0;
@@ -53,7 +56,8 @@ class EarClipper {
   }
 
  private:
-  // Three points in a row up to rounding make no ear: on a straight side the middle one waits for a better partner.
+  // Three points in a row up to rounding make no ear: on a straight side the middle one waits for a better
+  // partner.
   static constexpr double flat = 1e-12;
 
   [[nodiscard]] std::size_t best_ear() const {

@@ -24,7 +24,8 @@ Message refusal(const yarn::Body& body, Kind kind, std::string text) {
 }
 
 bool is_finite(const nurbs::Surface& surface) {
-  return std::all_of(surface.points.begin(), surface.points.end(), [](const Vec3& p) { return p.allFinite(); });
+  return std::all_of(surface.points.begin(), surface.points.end(),
+                     [](const Vec3& p) { return p.allFinite(); });
 }
 
 // Into how many equal parts each knot span is cut.
@@ -42,10 +43,11 @@ std::vector<double> sites_of(const Cuts& cuts) {
   return sites;
 }
 
-// The largest second derivative on a span from five points on it, a quarter of the span apart: exact for degree <= 3,
-// whose second derivative is linear.
+// The largest second derivative on a span from five points on it, a quarter of the span apart: exact for
+// degree <= 3, whose second derivative is linear.
 double largest_second_derivative(const std::array<Vec3, 5>& p, double step) {
-  const std::array<Vec3, 3> d = {p[0] - 2.0 * p[1] + p[2], p[1] - 2.0 * p[2] + p[3], p[2] - 2.0 * p[3] + p[4]};
+  const std::array<Vec3, 3> d = {p[0] - 2.0 * p[1] + p[2], p[1] - 2.0 * p[2] + p[3],
+                                 p[2] - 2.0 * p[3] + p[4]};
   const double ends = std::max((2.0 * d[0] - d[1]).squaredNorm(), (2.0 * d[2] - d[1]).squaredNorm());
   const double inside = std::max({d[0].squaredNorm(), d[1].squaredNorm(), d[2].squaredNorm()});
   return std::sqrt(std::max(ends, inside)) / (step * step);
@@ -97,8 +99,8 @@ class Samples {
     return longest;
   }
 
-  // The diagonal of the largest section's box, and the smallest extent of any section (but for those that shrink to a
-  // point) across its thinner direction.
+  // The diagonal of the largest section's box, and the smallest extent of any section (but for those that
+  // shrink to a point) across its thinner direction.
   [[nodiscard]] double largest_section() const {
     double largest = 0.0;
     for (std::size_t j = 0; j < count_v_; ++j) {
@@ -142,7 +144,8 @@ class Samples {
     double largest = 0.0;
     for (std::size_t j = 4 * l; j < 4 * l + 4; ++j)
       for (std::size_t i = 4 * k; i < 4 * k + 4; ++i)
-        largest = std::max(largest, (at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j)).squaredNorm());
+        largest =
+            std::max(largest, (at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j)).squaredNorm());
     return 16.0 * std::sqrt(largest);
   }
   [[nodiscard]] double thickness(std::size_t j) const {
@@ -166,18 +169,52 @@ class Samples {
   std::vector<Vec3> points_;
 };
 
-// Two opposite quarters of the section as one list of places in [0, 1], which is what a patch over them needs: the places
-// of the first, and those of the second seen backwards.
-std::vector<double> unite(const std::vector<double>& forward, const std::vector<double>& other) {
-  std::vector<double> all = forward;
-  for (double t : other) all.push_back(1.0 - t);
+// A quarter of the section over [0, 1]: knots, and how many vertices a unit of length asks for between them.
+struct Quarter {
+  std::vector<double> ends;
+  std::vector<double> density;
+
+  Quarter(const Cuts& cuts, double first, double last, bool backwards) {
+    const double length = last - first;
+    for (std::size_t k = 0; k + 1 < cuts.breaks.size(); ++k) {
+      const double low = std::max(cuts.breaks[k], first), high = std::min(cuts.breaks[k + 1], last);
+      if (high <= low) continue;
+      ends.push_back((low - first) / length);
+      density.push_back(cuts.parts[k] / (cuts.breaks[k + 1] - cuts.breaks[k]) * length);
+    }
+    ends.push_back(1.0);
+    if (!backwards) return;
+    std::reverse(ends.begin(), ends.end());
+    std::reverse(density.begin(), density.end());
+    for (double& t : ends) t = 1.0 - t;
+  }
+
+  [[nodiscard]] double density_at(double t) const {
+    const auto above = std::upper_bound(ends.begin(), ends.end(), t) - ends.begin();
+    return density[static_cast<std::size_t>(
+        std::clamp<std::ptrdiff_t>(above - 1, 0, std::ssize(density) - 1))];
+  }
+};
+
+// One list of places for two opposite quarters (the second seen backwards), which is what a patch over them
+// needs.
+std::vector<double> unite(const Quarter& one, const Quarter& two) {
+  std::vector<double> all = one.ends;
+  all.insert(all.end(), two.ends.begin(), two.ends.end());
   std::sort(all.begin(), all.end());
-  std::vector<double> places = {0.0};
+  Cuts cuts{{0.0}, {}};
   for (double t : all)
-    if (t > places.back() + 1e-9 && t < 1.0 - 1e-9) places.push_back(t);
-  if (places.size() == 1) places.push_back(0.5);  // a patch's corner needs a cell of its own
-  places.push_back(1.0);
-  return places;
+    if (t > cuts.breaks.back() + 1e-9 && t < 1.0 - 1e-9) cuts.breaks.push_back(t);
+  cuts.breaks.push_back(1.0);
+  for (std::size_t k = 0; k + 1 < cuts.breaks.size(); ++k) {
+    const double middle = 0.5 * (cuts.breaks[k] + cuts.breaks[k + 1]),
+                 length = cuts.breaks[k + 1] - cuts.breaks[k];
+    const double density = std::max(one.density_at(middle), two.density_at(middle));
+    cuts.parts.push_back(std::max(1.0, std::ceil(length * density - 1e-6)));
+  }
+  if (cuts.parts.size() == 1)
+    cuts.parts[0] = std::max(cuts.parts[0], 2.0);  // a patch's corner needs a cell of its own
+  return sites_of(cuts);
 }
 
 // The places round the section at which the body has its vertices; the last one is the seam again.
@@ -185,20 +222,18 @@ struct Round {
   std::vector<double> us;
   std::array<std::vector<double>, 2> patch;  // places of the patches' u and v; empty without patches
 
-  static Round make(const std::vector<double>& us, const yarn::Body& body) {
+  static Round make(const Cuts& cuts, const yarn::Body& body) {
     Round round;
-    const bool has_patch = body.start.style == yarn::EndStyle::patch || body.end.style == yarn::EndStyle::patch;
+    const bool has_patch =
+        body.start.style == yarn::EndStyle::patch || body.end.style == yarn::EndStyle::patch;
     if (!has_patch) {
-      round.us = us;
+      round.us = sites_of(cuts);
       return round;
     }
     const auto& q = body.quarters;
     const std::array<double, 5> ends = {q[0], q[1], q[2], q[3], body.surface.last_u()};
-    std::array<std::vector<double>, 4> inside;
-    for (std::size_t k = 0; k < 4; ++k)
-      for (double u : us)
-        if (u > ends[k] && u < ends[k + 1]) inside[k].push_back((u - ends[k]) / (ends[k + 1] - ends[k]));
-    round.patch = {unite(inside[0], inside[2]), unite(inside[1], inside[3])};
+    for (std::size_t k = 0; k < 2; ++k)
+      round.patch[k] = unite({cuts, ends[k], ends[k + 1], false}, {cuts, ends[k + 2], ends[k + 3], true});
     for (std::size_t k = 0; k < 4; ++k) {
       const std::vector<double>& places = round.patch[k % 2];
       const std::size_t n = places.size() - 1;
@@ -227,8 +262,8 @@ class Skinner {
     return static_cast<std::uint32_t>(out_.vertices.size() - 1);
   }
 
-  // Vertices for the grid points that have none yet; a point takes its neighbour's where the two are one (a pole).
-  // `round`: the last column is the first.
+  // Vertices for the grid points that have none yet; a point takes its neighbour's where the two are one (a
+  // pole). `round`: the last column is the first.
   void fill(const std::vector<Vec3>& points, std::size_t count_u, bool round, Ids& ids) {
     for (std::size_t k = 0; k < points.size(); ++k) {
       const std::size_t i = k % count_u;
@@ -251,7 +286,8 @@ class Skinner {
       if (k % count_u + 1 == count_u) continue;
       const std::uint32_t a = ids[k], b = ids[k + 1], c = ids[k + count_u + 1], d = ids[k + count_u];
       // The better shaped pair: at a patch's corner the other diagonal would leave a triangle without area.
-      const double by_ac = std::min(shape(a, b, c), shape(a, c, d)), by_bd = std::min(shape(a, b, d), shape(b, c, d));
+      const double by_ac = std::min(shape(a, b, c), shape(a, c, d)),
+                   by_bd = std::min(shape(a, b, d), shape(b, c, d));
       if (by_bd > by_ac * (1.0 + 1e-6)) {
         add_triangle(a, b, d, flip, skin);
         add_triangle(b, c, d, flip, skin);
@@ -285,7 +321,8 @@ class Skinner {
 
 using Ids = Skinner::Ids;
 
-void add_patch(Skinner& skinner, const yarn::EndFace& face, const Round& round, const Ids& outline, Skin skin) {
+void add_patch(Skinner& skinner, const yarn::EndFace& face, const Round& round, const Ids& outline,
+               Skin skin) {
   const std::vector<double>&us = round.patch[0], &vs = round.patch[1];
   const std::vector<Vec3> points = nurbs::evaluate_grid(face.surface, us, vs);
   const std::size_t nu = us.size(), nv = vs.size();
@@ -303,8 +340,8 @@ void add_patch(Skinner& skinner, const yarn::EndFace& face, const Round& round, 
   skinner.add_grid(ids, nu, face.inward, skin);
 }
 
-void add_fan(Skinner& skinner, const yarn::EndFace& face, const Round& round, double chord, const Ids& outline,
-             Skin skin) {
+void add_fan(Skinner& skinner, const yarn::EndFace& face, const Round& round, double chord,
+             const Ids& outline, Skin skin) {
   Cuts unused, along;
   Samples(face.surface).cut(chord, unused, along);
   const std::vector<Vec3> points = nurbs::evaluate_grid(face.surface, round.us, sites_of(along));
@@ -348,13 +385,16 @@ double sewing_gap(const yarn::Body& body) {
   return 16.0 * (std::nextafter(largest, std::numeric_limits<double>::infinity()) - largest);
 }
 
-double smallest_extent(const yarn::Body& body) { return Samples(body.surface).smallest_extent(); }
+double smallest_extent(const yarn::Body& body) {
+  return Samples(body.surface).smallest_extent();
+}
 
 Result<Tessellation> tessellate(const yarn::Body& body, double chord) {
   if (body.surface.is_empty())
     return refusal(body, Kind::geometry, fmt::format("yarn '{}' has no surface", body.name));
   if (!is_finite(body.surface) || !is_finite(body.start.surface) || !is_finite(body.end.surface))
-    return refusal(body, Kind::geometry, fmt::format("the surface of yarn '{}' has a coordinate that is not finite", body.name));
+    return refusal(body, Kind::geometry,
+                   fmt::format("the surface of yarn '{}' has a coordinate that is not finite", body.name));
   if (!(chord > 0.0)) return refusal(body, Kind::internal, "a tessellation needs a chord error above 0");
 
   const Samples samples(body.surface);
@@ -374,11 +414,13 @@ Result<Tessellation> tessellate(const yarn::Body& body, double chord) {
   if (body.closed_along && cells_v < 4.0)
     for (double& n : cuts_v.parts) n = std::max(n, 4.0);
   if (2.0 * cells_u * cells_v > max_triangles)
-    return refusal(body, Kind::limit,
-                   fmt::format("a chord error of {} needs {:.3g} triangles on yarn '{}' (at most {:.0e}); allow a larger one",
-                               chord, 2.0 * cells_u * cells_v, body.name, max_triangles));
+    return refusal(
+        body, Kind::limit,
+        fmt::format(
+            "a chord error of {} needs {:.3g} triangles on yarn '{}' (at most {:.0e}); allow a larger one",
+            chord, 2.0 * cells_u * cells_v, body.name, max_triangles));
 
-  const Round round = Round::make(sites_of(cuts_u), body);
+  const Round round = Round::make(cuts_u, body);
   const std::vector<double> vs = sites_of(cuts_v);
   const std::size_t nu = round.us.size();
   Skinner skinner(sewing_gap(body));
@@ -397,9 +439,10 @@ Result<Tessellation> tessellate(const yarn::Body& body, double chord) {
     if (face.style == yarn::EndStyle::patch) add_patch(skinner, face, round, outline, skin);
     if (face.style == yarn::EndStyle::fan) add_fan(skinner, face, round, chord, outline, skin);
     if (face.style == yarn::EndStyle::planar && !add_plane(skinner, face, outline, skin))
-      return refusal(body, Kind::geometry,
-                     fmt::format("the outline at the {} of yarn '{}' crosses itself: no plane face can seal it",
-                                 last ? "end" : "start", body.name));
+      return refusal(
+          body, Kind::geometry,
+          fmt::format("the outline at the {} of yarn '{}' crosses itself: no plane face can seal it",
+                      last ? "end" : "start", body.name));
   }
   Tessellation& out = skinner.result();
   out.sites.assign(out.vertices.size(), Vec2::Constant(std::numeric_limits<double>::quiet_NaN()));
@@ -413,14 +456,16 @@ double volume(const Tessellation& skin) {
   const Vec3 origin = skin.vertices.front();
   double six = 0.0;
   for (const auto& t : skin.triangles)
-    six += (skin.vertices[t[0]] - origin).dot((skin.vertices[t[1]] - origin).cross(skin.vertices[t[2]] - origin));
+    six += (skin.vertices[t[0]] - origin)
+               .dot((skin.vertices[t[1]] - origin).cross(skin.vertices[t[2]] - origin));
   return six / 6.0;
 }
 
 double area(const Tessellation& skin) {
   double twice = 0.0;
   for (const auto& t : skin.triangles)
-    twice += (skin.vertices[t[1]] - skin.vertices[t[0]]).cross(skin.vertices[t[2]] - skin.vertices[t[0]]).norm();
+    twice +=
+        (skin.vertices[t[1]] - skin.vertices[t[0]]).cross(skin.vertices[t[2]] - skin.vertices[t[0]]).norm();
   return twice / 2.0;
 }
 

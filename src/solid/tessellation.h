@@ -12,13 +12,15 @@ namespace selvage::solid {
 
 enum class Skin : std::uint8_t { side, start, end };
 
-// Triangles run counter-clockwise seen from outside. An end face shares its boundary vertices with the body exactly
-// where the two surfaces do (within `sewing_gap`); where they do not it keeps its own, so that a gap stays a gap.
+// Triangles run counter-clockwise seen from outside. An end face shares its boundary vertices with the body
+// exactly where the two surfaces do (within `sewing_gap`); where they do not it keeps its own, so that a gap
+// stays a gap.
 struct Tessellation {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<Skin> skin;     // one a triangle
-  std::vector<Vec2> sites;    // one a vertex: (u, v) on the body's surface; NaN for a vertex that only an end face has
+  std::vector<Skin> skin;  // one a triangle
+  std::vector<Vec2>
+      sites;  // one a vertex: (u, v) on the body's surface; NaN for a vertex that only an end face has
 };
 
 // The largest distance at which two points of a joint count as one: rounding of the coordinates, nothing more
@@ -28,11 +30,11 @@ double sewing_gap(const yarn::Body& body);
 // The thickness of the yarn at its thinnest section across its thinner direction, file units.
 double smallest_extent(const yarn::Body& body);
 
-// Points so dense that no triangle is farther than `chord` (file units, > 0) from the surface: 1/8 (du^2 |S_uu| +
-// 2 du dv |S_uv| + dv^2 |S_vv|) by Filip, Magedson and Markot (1986), with the second derivatives from differences of
-// surface points at four places a knot span. Every knot line is an edge line. Errors: geometry (an empty or a non-finite
-// surface, an end whose outline crosses itself), limit (more than 100 million triangles). A yarn without ends (style none) that is
-// not closed is tessellated open.
+// Points so dense that no triangle is farther than `chord` (file units, > 0) from the surface: 1/8 (du^2
+// |S_uu| + 2 du dv |S_uv| + dv^2 |S_vv|) by Filip, Magedson and Markot (1986), with the second derivatives
+// from differences of surface points at four places a knot span. Every knot line is an edge line. Errors:
+// geometry (an empty or a non-finite surface, an end whose outline crosses itself), limit (more than 100
+// million triangles). A yarn without ends (style none) that is not closed is tessellated open.
 Result<Tessellation> tessellate(const yarn::Body& body, double chord);
 
 // Enclosed volume of outward triangles (divergence theorem).

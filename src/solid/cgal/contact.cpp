@@ -25,9 +25,10 @@ class Groups {
   std::vector<std::uint32_t> parent_;
 };
 
-// The triangles of `skin` that lie wholly inside `other`. `crossing`: those that meet it. The rest falls into pieces, each
-// wholly inside or wholly outside.
-std::vector<bool> find_inside(const Tessellation& skin, const std::vector<bool>& crossing, const TriangleTree& other) {
+// The triangles of `skin` that lie wholly inside `other`. `crossing`: those that meet it. The rest falls into
+// pieces, each wholly inside or wholly outside.
+std::vector<bool> find_inside(const Tessellation& skin, const std::vector<bool>& crossing,
+                              const TriangleTree& other) {
   Groups pieces(skin.vertices.size());
   for (std::size_t k = 0; k < skin.triangles.size(); ++k) {
     if (crossing[k]) continue;
@@ -79,9 +80,11 @@ std::vector<Contact> find_contacts(const TriangleTree& a, const TriangleTree& b,
   join(sa, inside_a, 0);
   join(sb, inside_b, shift);
 
-  std::map<std::uint32_t, Contact> contacts;  // by group, so that their order does not depend on anything else
-  const auto collect = [&](const Tessellation& skin, const std::vector<bool>& near, const std::vector<bool>& inside,
-                           std::uint32_t offset, std::vector<std::uint32_t> Contact::*list) {
+  std::map<std::uint32_t, Contact>
+      contacts;  // by group, so that their order does not depend on anything else
+  const auto collect = [&](const Tessellation& skin, const std::vector<bool>& near,
+                           const std::vector<bool>& inside, std::uint32_t offset,
+                           std::vector<std::uint32_t> Contact::*list) {
     for (std::uint32_t k = 0; k < skin.triangles.size(); ++k) {
       if (!near[k] && !inside[k]) continue;
       Contact& contact = contacts[groups.find(skin.triangles[k][0] + offset)];

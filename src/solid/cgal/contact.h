@@ -15,9 +15,9 @@ struct Contact {
   bool shared = false;         // the skins meet here, or one lies inside the other
 };
 
-// One contact for each connected piece of shared space (its walls are the parts of A inside B and of B inside A), and one
-// for each connected group of near pairs where nothing is shared. `pairs`: all that are nearer than some reach. Both skins
-// closed and outward; O(triangles).
+// One contact for each connected piece of shared space (its walls are the parts of A inside B and of B inside
+// A), and one for each connected group of near pairs where nothing is shared. `pairs`: all that are nearer
+// than some reach. Both skins closed and outward; O(triangles).
 std::vector<Contact> find_contacts(const TriangleTree& a, const TriangleTree& b,
                                    const std::vector<TriangleTree::Pair>& pairs);
 

@@ -23,12 +23,13 @@ class Search {
     for (std::optional<TriangleTree>& tree : trees) trees_.push_back(std::move(*tree));
     for (std::size_t i = 0; i < yarns.size(); ++i)
       if (!trees_[i].is_empty()) order_.push_back(i);
-    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t x, std::size_t y) { return low(x) < low(y); });
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::size_t x, std::size_t y) { return low(x) < low(y); });
   }
 
   Neighbourhood run(const std::function<void()>& progress) {
-    // First the pairs whose boxes meet (enlarged by what triangles can hide); they bound the least gap, and only boxes
-    // nearer than that are looked at afterwards.
+    // First the pairs whose boxes meet (enlarged by what triangles can hide); they bound the least gap, and
+    // only boxes nearer than that are looked at afterwards.
     sweep(-infinity, 0.0, progress);
     bound_gap();
     sweep(0.0, gap_, {});
@@ -48,7 +49,8 @@ class Search {
     return trees_[i].box().exteriorDistance(trees_[j].box());
   }
 
-  // Looks at all pairs whose boxes, enlarged by the chord errors, are more than `low_gap` and at most `high_gap` apart.
+  // Looks at all pairs whose boxes, enlarged by the chord errors, are more than `low_gap` and at most
+  // `high_gap` apart.
   void sweep(double low_gap, double high_gap, const std::function<void()>& progress) {
     double coarsest = 0.0;
     for (std::size_t i : order_) coarsest = std::max(coarsest, yarns_[i].chord);
@@ -122,7 +124,8 @@ class Search {
 
 }  // namespace
 
-Neighbourhood find_overlaps(std::span<const Skinned> yarns, int threads, const std::function<void()>& progress) {
+Neighbourhood find_overlaps(std::span<const Skinned> yarns, int threads,
+                            const std::function<void()>& progress) {
   return Search(yarns, threads).run(progress);
 }
 

@@ -22,8 +22,9 @@ struct Neighbourhood {
   std::optional<double> min_gap;
 };
 
-// Candidates by a sweep over the yarns' boxes. `progress` is called once a finished yarn. The same result with any number
-// of threads. Throws what CGAL throws.
-Neighbourhood find_overlaps(std::span<const Skinned> yarns, int threads, const std::function<void()>& progress);
+// Candidates by a sweep over the yarns' boxes. `progress` is called once a finished yarn. The same result
+// with any number of threads. Throws what CGAL throws.
+Neighbourhood find_overlaps(std::span<const Skinned> yarns, int threads,
+                            const std::function<void()>& progress);
 
 }  // namespace selvage::solid

@@ -11,7 +11,8 @@
 
 namespace selvage::solid {
 
-// Calls work(i) for i = 0 .. count - 1, in any order, on `threads` threads. The first exception is thrown again here.
+// Calls work(i) for i = 0 .. count - 1, in any order, on `threads` threads. The first exception is thrown
+// again here.
 template <class Work>
 void for_each_index(std::size_t count, int threads, const Work& work) {
   std::atomic<std::size_t> next = 0;

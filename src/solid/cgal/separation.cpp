@@ -11,15 +11,33 @@ namespace selvage::solid {
 
 namespace {
 
-constexpr int coarse = 24, fine = 40;  // lines along a side of the raster: while searching, and for the answer
-// Off the middle of the raster's cells by an odd amount, so that no line meets an edge of a regular grid on purpose.
+constexpr int coarse = 24, fine = 40;  // lines along a side of the raster: while searching, for the answer
+// Off the middle of the raster's cells by an odd amount, so that no line meets an edge of a regular grid on
+// purpose.
 constexpr double offset = 0.5 + 0.01234567;
 
 struct Frame {
   Vec3 x, y, n;
 
-  explicit Frame(const Vec3& direction) : x(direction.unitOrthogonal()), y(direction.cross(x)), n(direction) {}
+  // Its x axis along the points' longest way as seen along the direction: a raster's cells shall fit a long,
+  // thin space.
+  Frame(const Vec3& direction, const std::vector<Vec3>& points)
+      : x(direction.unitOrthogonal()), y(direction.cross(x)), n(direction) {
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
+    double xx = 0.0, xy = 0.0, yy = 0.0;
+    for (const Vec3& p : points) {
+      const Vec3 way = seen(p - middle);
+      xx += way.x() * way.x();
+      xy += way.x() * way.y();
+      yy += way.y() * way.y();
+    }
+    const double turn = 0.5 * std::atan2(2.0 * xy, xx - yy);
+    x = std::cos(turn) * x + std::sin(turn) * y;
+    y = n.cross(x);
+  }
   [[nodiscard]] Vec3 seen(const Vec3& p) const { return {p.dot(x), p.dot(y), p.dot(n)}; }
+  [[nodiscard]] Vec3 placed(const Vec2& p, double height) const { return p.x() * x + p.y() * y + height * n; }
 };
 
 // Where a line passes through a triangle, going along the direction.
@@ -30,16 +48,17 @@ struct Passage {
   std::uint32_t triangle = 0;
 };
 
+using Rectangle = Eigen::AlignedBox2d;
+
+// Lines along the frame's direction.
 class Raster {
  public:
-  Raster(const Frame& frame, const Box3& box, int lines)
-      : frame_(frame), lines_(lines), low_(box.min().head<2>()), step_((box.max() - box.min()).head<2>() / lines) {}
+  Raster(const Rectangle& rectangle, int lines)
+      : lines_(lines), low_(rectangle.min()), step_((rectangle.max() - rectangle.min()) / lines) {}
 
-  // Every passage of a line through a triangle, line by line, each going up.
-  [[nodiscard]] std::vector<Passage> pass(const Tessellation& skin) const {
-    std::vector<Vec3> seen;
-    seen.reserve(skin.vertices.size());
-    for (const Vec3& p : skin.vertices) seen.push_back(frame_.seen(p));
+  // Every passage of a line through a triangle of the skin, line by line, each going up. `seen`: its vertices
+  // in the frame.
+  [[nodiscard]] std::vector<Passage> pass(const Tessellation& skin, const std::vector<Vec3>& seen) const {
     std::vector<Passage> all;
     for (std::uint32_t k = 0; k < skin.triangles.size(); ++k) pass(seen, skin.triangles[k], k, all);
     std::sort(all.begin(), all.end(), [](const Passage& x, const Passage& y) {
@@ -50,16 +69,20 @@ class Raster {
     return all;
   }
 
-  [[nodiscard]] Vec3 at(int line, double height) const {
-    const Vec2 p = place(line % lines_, line / lines_);
-    return p.x() * frame_.x + p.y() * frame_.y + height * frame_.n;
+  [[nodiscard]] Vec2 place(int line) const { return place(line % lines_, line / lines_); }
+
+  // The cells round a line and half of the next ones.
+  [[nodiscard]] Rectangle about(int line) const {
+    return {Vec2(place(line) - 1.5 * step_), Vec2(place(line) + 1.5 * step_)};
   }
 
  private:
-  [[nodiscard]] Vec2 place(int i, int j) const { return low_ + step_.cwiseProduct(Vec2(i + offset, j + offset)); }
+  [[nodiscard]] Vec2 place(int i, int j) const {
+    return low_ + step_.cwiseProduct(Vec2(i + offset, j + offset));
+  }
 
-  // Twice the area of (a, b, p), with the same absolute value whichever of a and b comes first: a line beside a common
-  // edge is on one side of it for both triangles.
+  // Twice the area of (a, b, p), with the same absolute value whichever of a and b comes first: a line beside
+  // a common edge is on one side of it for both triangles.
   static double side(const std::vector<Vec3>& seen, std::uint32_t a, std::uint32_t b, const Vec2& p) {
     const bool swap = b < a;
     const Vec3 &s = seen[swap ? b : a], &e = seen[swap ? a : b];
@@ -76,24 +99,27 @@ class Raster {
       high = high.cwiseMax(seen[t[c]].head<2>());
     }
     const auto first = [&](int axis) {
-      return static_cast<int>(std::clamp(std::ceil((low[axis] - low_[axis]) / step_[axis] - offset), 0.0, lines_ + 0.0));
+      return static_cast<int>(
+          std::clamp(std::ceil((low[axis] - low_[axis]) / step_[axis] - offset), 0.0, lines_ + 0.0));
     };
     const auto last = [&](int axis) {
-      return static_cast<int>(std::clamp(std::floor((high[axis] - low_[axis]) / step_[axis] - offset), -1.0, lines_ - 1.0));
+      return static_cast<int>(
+          std::clamp(std::floor((high[axis] - low_[axis]) / step_[axis] - offset), -1.0, lines_ - 1.0));
     };
     const int i0 = first(0), i1 = last(0), j0 = first(1), j1 = last(1);
     for (int j = j0; j <= j1; ++j)
       for (int i = i0; i <= i1; ++i) {
         const Vec2 p = place(i, j);
-        const double w0 = side(seen, t[1], t[2], p), w1 = side(seen, t[2], t[0], p), w2 = side(seen, t[0], t[1], p);
+        const double w0 = side(seen, t[1], t[2], p), w1 = side(seen, t[2], t[0], p),
+                     w2 = side(seen, t[0], t[1], p);
         const bool leaves = w0 > 0.0;  // seen against the direction the corners run counter-clockwise
         if ((w1 > 0.0) != leaves || (w2 > 0.0) != leaves) continue;
-        const double height = (w0 * seen[t[0]].z() + w1 * seen[t[1]].z() + w2 * seen[t[2]].z()) / (w0 + w1 + w2);
+        const double height =
+            (w0 * seen[t[0]].z() + w1 * seen[t[1]].z() + w2 * seen[t[2]].z()) / (w0 + w1 + w2);
         all.push_back({j * lines_ + i, height, leaves, k});
       }
   }
 
-  Frame frame_;
   int lines_;
   Vec2 low_, step_;
 };
@@ -133,47 +159,91 @@ Passages next_line(const std::vector<Passage>& all, std::size_t begin) {
 
 }  // namespace
 
-Parting SharedSpace::parting(const Vec3& direction) const { return parting(direction, fine); }
-
-Parting SharedSpace::parting(const Vec3& direction, int lines) const {
-  const Frame frame(direction);
-  Box3 box;
-  for (const Vec3& p : walls_) box.extend(frame.seen(p));
-  Parting best;
-  if (walls_.empty() || !((box.max() - box.min()).head<2>().minCoeff() > 0.0)) return best;
-  const Raster raster(frame, box, lines);
-  const std::vector<Passage> all_a = raster.pass(a_), all_b = raster.pass(b_);
-  std::vector<Piece> pieces_a, pieces_b;
-  for (std::size_t i = 0, j = 0; i < all_a.size() && j < all_b.size();) {
-    const Passages a = next_line(all_a, i), b = next_line(all_b, j);
-    if (a.front().line <= b.front().line) i += a.size();
-    if (b.front().line <= a.front().line) j += b.size();
-    if (a.front().line != b.front().line) continue;
-    pieces_a.clear();
-    pieces_b.clear();
-    if (whole_) {
-      find_pieces(a, pieces_a);
-      find_pieces(b, pieces_b);
-    } else {
-      find_faces(a, b, pieces_a, pieces_b);
-    }
-    for (const Piece& x : pieces_a)
-      for (const Piece& y : pieces_b) {
-        const double top = std::min(x.out.height, y.out.height), bottom = std::max(x.in.height, y.in.height);
-        if (top <= bottom || (whole_ && (top < box.min().z() || bottom > box.max().z()))) continue;
-        const double distance = x.out.height - y.in.height;
-        if (distance > best.distance)
-          best = {distance, x.out.triangle, y.in.triangle, raster.at(x.out.line, x.out.height),
-                  raster.at(y.in.line, y.in.height)};
-      }
+// Both skins in a frame.
+class SharedSpace::View {
+ public:
+  View(const SharedSpace& space, const Vec3& direction) : space_(space), frame_(direction, space.walls_) {
+    const auto see = [this](const std::vector<Vec3>& points) {
+      std::vector<Vec3> seen;
+      seen.reserve(points.size());
+      for (const Vec3& p : points) seen.push_back(frame_.seen(p));
+      return seen;
+    };
+    seen_a_ = see(space.a_.vertices);
+    seen_b_ = see(space.b_.vertices);
+    for (const Vec3& p : space.walls_) box_.extend(frame_.seen(p));
   }
-  return best;
+
+  // On a raster, and on a finer one about the line on which they part last: an edge lies between the first
+  // one's lines.
+  [[nodiscard]] Parting parting(int lines) const {
+    const Rectangle whole(Vec2(box_.min().head<2>()), Vec2(box_.max().head<2>()));
+    if (!(whole.sizes().minCoeff() > 0.0)) return {};
+    const Raster raster(whole, lines);
+    const Last last = find_last(raster);
+    if (!(last.distance > 0.0)) return {};
+    const Raster closer(raster.about(last.in.line), lines);
+    const Last closer_last = find_last(closer);
+    return closer_last.distance > last.distance ? parting(closer, closer_last) : parting(raster, last);
+  }
+
+ private:
+  struct Last {
+    double distance = 0;
+    Passage out, in;  // of A, into B
+  };
+
+  [[nodiscard]] Parting parting(const Raster& raster, const Last& last) const {
+    const Vec2 place = raster.place(last.in.line);
+    return {last.distance, last.out.triangle, last.in.triangle, frame_.placed(place, last.out.height),
+            frame_.placed(place, last.in.height)};
+  }
+
+  [[nodiscard]] Last find_last(const Raster& raster) const {
+    const std::vector<Passage> all_a = raster.pass(space_.a_, seen_a_),
+                               all_b = raster.pass(space_.b_, seen_b_);
+    Last last;
+    std::vector<Piece> pieces_a, pieces_b;
+    for (std::size_t i = 0, j = 0; i < all_a.size() && j < all_b.size();) {
+      const Passages a = next_line(all_a, i), b = next_line(all_b, j);
+      if (a.front().line <= b.front().line) i += a.size();
+      if (b.front().line <= a.front().line) j += b.size();
+      if (a.front().line != b.front().line) continue;
+      pieces_a.clear();
+      pieces_b.clear();
+      if (space_.whole_) {
+        find_pieces(a, pieces_a);
+        find_pieces(b, pieces_b);
+      } else {
+        find_faces(a, b, pieces_a, pieces_b);
+      }
+      for (const Piece& x : pieces_a)
+        for (const Piece& y : pieces_b)
+          if (is_shared(x, y) && x.out.height - y.in.height > last.distance)
+            last = {x.out.height - y.in.height, x.out, y.in};
+    }
+    return last;
+  }
+
+  [[nodiscard]] bool is_shared(const Piece& a, const Piece& b) const {
+    const double top = std::min(a.out.height, b.out.height), bottom = std::max(a.in.height, b.in.height);
+    return top > bottom && (!space_.whole_ || (top >= box_.min().z() && bottom <= box_.max().z()));
+  }
+
+  const SharedSpace& space_;
+  Frame frame_;
+  std::vector<Vec3> seen_a_, seen_b_;
+  Box3 box_;  // of the walls
+};
+
+Parting SharedSpace::parting(const Vec3& direction) const {
+  return View(*this, direction).parting(fine);
 }
 
 Vec3 SharedSpace::easiest_direction(const std::vector<Vec3>& starts) const {
   // A direction in which nothing is seen says nothing.
   const auto cost = [this](const Vec3& n) {
-    const double distance = parting(n, coarse).distance;
+    const double distance = View(*this, n).parting(coarse).distance;
     return distance > 0.0 ? distance : std::numeric_limits<double>::infinity();
   };
   struct Start {
@@ -191,7 +261,8 @@ Vec3 SharedSpace::easiest_direction(const std::vector<Vec3>& starts) const {
         moved = false;
         const Vec3 x = here.n.unitOrthogonal(), y = here.n.cross(x);
         for (int k = 0; k < 8; ++k) {
-          // Turned from step size to step size: a fixed pattern gets stuck where two places part last together.
+          // Turned from step size to step size: a fixed pattern gets stuck where two places part last
+          // together.
           const double angle = k * std::numbers::pi / 4.0 + 10.0 * step;
           const Vec3 n = (here.n + step * (std::cos(angle) * x + std::sin(angle) * y)).normalized();
           const double value = cost(n);

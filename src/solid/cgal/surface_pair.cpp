@@ -65,7 +65,8 @@ std::optional<Critical> find_critical(const yarn::Body& a, const Vec2& site_a, c
   const double scale = 0.25 * p0.jet.du.norm() * (a.surface.last_u() - a.surface.first_u());
   if (!(scale > 0.0)) return std::nullopt;
   // Unknowns in lengths too, so that a step means the same in each.
-  const Vec4 unit = scale * Vec4(1.0 / p0.jet.du.norm(), 1.0 / p0.jet.dv.norm(), 1.0 / q0.jet.du.norm(), 1.0 / q0.jet.dv.norm());
+  const Vec4 unit = scale * Vec4(1.0 / p0.jet.du.norm(), 1.0 / p0.jet.dv.norm(), 1.0 / q0.jet.du.norm(),
+                                 1.0 / q0.jet.dv.norm());
   if (!unit.allFinite()) return std::nullopt;
   const Equations equations{a, b, scale};
   Vec4 r = equations.residual(x);
@@ -100,29 +101,53 @@ std::optional<Critical> find_critical(const yarn::Body& a, const Vec2& site_a, c
   }
   if (!(r.norm() <= 1e-7)) return std::nullopt;
   const SurfacePoint p = point_at(a, x.head<2>()), q = point_at(b, x.tail<2>());
-  if (!(p.normal.dot(q.normal) < -0.5)) return std::nullopt;  // the same way round: one surface touches the other inside
+  if (!(p.normal.dot(q.normal) < -0.5))
+    return std::nullopt;  // the same way round: one surface touches the other inside
   return Critical{p.jet.position, q.jet.position, p.normal, (p.jet.position - q.jet.position).dot(p.normal)};
 }
 
+namespace {
+
+// cells + 1 places from low to high and the knots between them (where an edge can be), which repeat by
+// `period`.
+std::vector<double> places(double low, double high, int cells, const std::vector<double>& breaks,
+                           double period) {
+  std::vector<double> sites;
+  for (int i = 0; i <= cells; ++i) sites.push_back(low + (high - low) * i / cells);
+  const double grain = 1e-9 * (high - low);
+  for (double turn = -2.0; turn <= 2.0; ++turn)
+    for (double t : breaks) {
+      t += turn * period;
+      if (t <= low || t >= high || (turn != 0.0 && period == 0.0)) continue;
+      const auto near = std::lower_bound(sites.begin(), sites.end(), t - grain);
+      if (std::abs(*near - t) <= grain) {
+        *near = t;
+      } else {
+        sites.insert(near, t);
+      }
+    }
+  return sites;
+}
+
+}  // namespace
+
 Tessellation sample(const yarn::Body& body, const Window& window, int cells) {
-  const auto places = [cells](double low, double high) {
-    std::vector<double> sites;
-    for (int i = 0; i <= cells; ++i) sites.push_back(low + (high - low) * i / cells);
-    return sites;
-  };
-  const double first = body.surface.first_v(), last = body.surface.last_v();
+  const nurbs::Surface& s = body.surface;
+  const double first = s.first_v(), last = s.last_v();
   const bool ring = body.closed_along;
-  std::vector<double> us = places(window.low.x(), window.high.x());
+  std::vector<double> us = places(window.low.x(), window.high.x(), cells,
+                                  nurbs::breakpoints(s.knots_u, s.degree_u), s.last_u() - s.first_u());
   std::vector<double> vs = places(ring ? window.low.y() : std::clamp(window.low.y(), first, last),
-                                  ring ? window.high.y() : std::clamp(window.high.y(), first, last));
+                                  ring ? window.high.y() : std::clamp(window.high.y(), first, last), cells,
+                                  nurbs::breakpoints(s.knots_v, s.degree_v), ring ? last - first : 0.0);
   for (double& u : us) u = inside(body, {u, vs[0]}).x();
   for (double& v : vs) v = inside(body, {us[0], v}).y();
   Tessellation out;
   out.vertices = nurbs::evaluate_grid(body.surface, us, vs);
   for (double v : vs)
     for (double u : us) out.sites.emplace_back(u, v);
-  const auto n = static_cast<std::uint32_t>(us.size());
-  for (std::uint32_t j = 0; j + 1 < n; ++j)
+  const auto n = static_cast<std::uint32_t>(us.size()), rows = static_cast<std::uint32_t>(vs.size());
+  for (std::uint32_t j = 0; j + 1 < rows; ++j)
     for (std::uint32_t i = 0; i + 1 < n; ++i) {
       const std::uint32_t k = j * n + i;
       if (body.inward) {

@@ -10,9 +10,11 @@ namespace selvage::solid {
 
 namespace {
 
-constexpr std::uint32_t leaf_size = 4;
+constexpr std::uint32_t leaf_size = 6;
 
-double square(double x) { return x * x; }
+double square(double x) {
+  return x * x;
+}
 
 Box3 box_of(const Triangle& t) {
   Box3 box(t[0]);
@@ -43,13 +45,15 @@ void nearest_of_segments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const V
   keep_nearer(best, p1 + s * d1, p2 + t * d2);
 }
 
-// The foot of a point on a triangle's plane, where it lies inside the triangle (edges are done by the segments).
+// The foot of a point on a triangle's plane, where it lies inside the triangle (edges are done by the
+// segments).
 bool foot_inside(const Vec3& p, const Triangle& t, Vec3& foot) {
   const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], normal = ab.cross(ac);
   const double size = normal.squaredNorm();
   if (size == 0.0) return false;
   foot = p - normal * (normal.dot(p - t[0]) / size);
-  return normal.dot((t[1] - t[0]).cross(foot - t[0])) >= 0.0 && normal.dot((t[2] - t[1]).cross(foot - t[1])) >= 0.0 &&
+  return normal.dot((t[1] - t[0]).cross(foot - t[0])) >= 0.0 &&
+         normal.dot((t[2] - t[1]).cross(foot - t[1])) >= 0.0 &&
          normal.dot((t[0] - t[2]).cross(foot - t[2])) >= 0.0;
 }
 
@@ -70,9 +74,11 @@ Closest closest(const Triangle& a, const Triangle& b) {
 double winding_number(const Tessellation& skin, const Vec3& point) {
   double angle = 0.0;
   for (const auto& t : skin.triangles) {
-    const Vec3 a = skin.vertices[t[0]] - point, b = skin.vertices[t[1]] - point, c = skin.vertices[t[2]] - point;
+    const Vec3 a = skin.vertices[t[0]] - point, b = skin.vertices[t[1]] - point,
+               c = skin.vertices[t[2]] - point;
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    angle += 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+    angle +=
+        2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
   return angle / (4.0 * std::numbers::pi);
 }
@@ -83,9 +89,9 @@ TriangleTree::TriangleTree(const Tessellation& skin) : skin_(&skin), order_(skin
   std::vector<Vec3> centres;
   centres.reserve(order_.size());
   for (std::uint32_t k = 0; k < order_.size(); ++k) centres.push_back(box_of(triangle(k)).center());
-  nodes_.reserve(order_.size());
   nodes_.push_back({Box3(), 0, static_cast<std::uint32_t>(order_.size())});
   split(0, centres);
+  nodes_.shrink_to_fit();  // thousands of these are kept at a time
 }
 
 Triangle TriangleTree::triangle(std::uint32_t k) const {
@@ -116,9 +122,11 @@ void TriangleTree::split(std::uint32_t node, std::vector<Vec3>& centres) {
   split(left + 1, centres);
 }
 
-// Visits the pairs of leaves whose boxes are no farther apart than `reach`, which `visit` may lower, the nearer child first.
+// Visits the pairs of leaves whose boxes are no farther apart than `reach`, which `visit` may lower, the
+// nearer child first.
 template <class Visit>
-void TriangleTree::descend(const TriangleTree& a, const TriangleTree& b, const double& reach, const Visit& visit) {
+void TriangleTree::descend(const TriangleTree& a, const TriangleTree& b, const double& reach,
+                           const Visit& visit) {
   if (a.is_empty() || b.is_empty()) return;
   struct Step {
     std::uint32_t a, b;
@@ -137,8 +145,9 @@ void TriangleTree::descend(const TriangleTree& a, const TriangleTree& b, const d
       visit(na, nb);
       continue;
     }
-    const bool open_a = nb.count > 0 || (na.count == 0 && na.box.volume() + na.box.diagonal().squaredNorm() >=
-                                                              nb.box.volume() + nb.box.diagonal().squaredNorm());
+    const bool open_a =
+        nb.count > 0 || (na.count == 0 && na.box.volume() + na.box.diagonal().squaredNorm() >=
+                                              nb.box.volume() + nb.box.diagonal().squaredNorm());
     Step one = open_a ? between(na.first, step.b) : between(step.a, nb.first);
     Step two = open_a ? between(na.first + 1, step.b) : between(step.a, nb.first + 1);
     if (one.distance2 < two.distance2) std::swap(one, two);
@@ -147,7 +156,8 @@ void TriangleTree::descend(const TriangleTree& a, const TriangleTree& b, const d
   }
 }
 
-std::vector<TriangleTree::Pair> TriangleTree::near_pairs(const TriangleTree& a, const TriangleTree& b, double reach) {
+std::vector<TriangleTree::Pair> TriangleTree::near_pairs(const TriangleTree& a, const TriangleTree& b,
+                                                         double reach) {
   std::vector<Pair> pairs;
   descend(a, b, reach, [&](const Node& na, const Node& nb) {
     for (std::uint32_t i = na.first; i < na.first + na.count; ++i) {

@@ -30,7 +30,8 @@ class TriangleTree {
   // All pairs of triangles no farther apart than `reach`, in the order of the first tree.
   static std::vector<Pair> near_pairs(const TriangleTree& a, const TriangleTree& b, double reach);
 
-  // The nearest pair that is nearer than `limit`; its distance is infinite when there is none. For skins that do not meet.
+  // The nearest pair that is nearer than `limit`; its distance is infinite when there is none. For skins that
+  // do not meet.
   static Pair nearest_pair(const TriangleTree& a, const TriangleTree& b,
                            double limit = std::numeric_limits<double>::infinity());
 
@@ -56,7 +57,8 @@ struct Closest {
 };
 Closest closest(const Triangle& a, const Triangle& b);
 
-// How often the skin goes round the point: 1 inside a closed outward skin, 0 outside (van Oosterom and Strackee 1983).
+// How often the skin goes round the point: 1 inside a closed outward skin, 0 outside (van Oosterom and
+// Strackee 1983).
 double winding_number(const Tessellation& skin, const Vec3& point);
 
 }  // namespace selvage::solid

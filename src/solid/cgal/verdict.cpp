@@ -20,7 +20,9 @@ using Mesh = CGAL::Surface_mesh<Point>;
 using Face = Mesh::Face_index;
 using Vertex = Mesh::Vertex_index;
 
-Point to_point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+Point to_point(const Vec3& p) {
+  return {p.x(), p.y(), p.z()};
+}
 
 Box3 box_of(const Mesh& mesh, Face face) {
   Box3 box;
@@ -70,6 +72,8 @@ bool do_meet(const Triangle& a, const Triangle& b) {
   return CGAL::do_intersect(first, second);
 }
 
-const char* cgal_version() { return CGAL_VERSION_STR; }
+const char* cgal_version() {
+  return CGAL_VERSION_STR;
+}
 
 }  // namespace selvage::solid

@@ -1,4 +1,5 @@
-// What CGAL says of one skin. The only place that includes CGAL (one translation unit costs half a minute and 2 GB).
+// What CGAL says of one skin. The only place that includes CGAL (one translation unit costs half a minute and
+// 2 GB).
 #pragma once
 
 #include <array>

@@ -29,10 +29,12 @@ class Defects {
   YarnCheck& check_;
 };
 
-const char* side_of(bool last) { return last ? "end" : "start"; }
+const char* side_of(bool last) {
+  return last ? "end" : "start";
+}
 
-// What an end's edge may be away from the body: rounding; for a trimmed plane also the flatness that the builder asks of
-// an outline (1e-9 of the coordinates).
+// What an end's edge may be away from the body: rounding; for a trimmed plane also the flatness that the
+// builder asks of an outline (1e-9 of the coordinates).
 double allowed_gap(const yarn::Body& body, bool last) {
   const double gap = sewing_gap(body);
   const bool planar = (last ? body.end : body.start).style == yarn::EndStyle::planar;
@@ -57,7 +59,8 @@ bool name_gaps(const yarn::Body& body, YarnCheck& check, Defects& defects) {
     const yarn::EndFace& face = last ? body.end : body.start;
     if (face.style == yarn::EndStyle::none) {
       defects.add(Kind::geometry,
-                  fmt::format("open: yarn '{}' has no face at its {}; seal it with --ends patch", body.name, side_of(last)),
+                  fmt::format("open: yarn '{}' has no face at its {}; seal it with --ends patch", body.name,
+                              side_of(last)),
                   nurbs::evaluate(body.surface, body.surface.first_u(),
                                   last ? body.surface.last_v() : body.surface.first_v()));
       named = true;
@@ -66,11 +69,13 @@ bool name_gaps(const yarn::Body& body, YarnCheck& check, Defects& defects) {
     const double gap = yarn::end_gap(body, last);
     check.end_gap = std::max(check.end_gap, gap);
     if (gap <= allowed_gap(body, last)) continue;
-    defects.add(Kind::geometry,
-                fmt::format("open: the edge of the {} face of yarn '{}' is {:.3g} away from the body (rounding allows {:.1g}); "
-                            "build the face from the body's own end curve, or seal the yarn anew with --ends patch",
-                            side_of(last), body.name, gap, allowed_gap(body, last)),
-                face.origin);
+    defects.add(
+        Kind::geometry,
+        fmt::format("open: the edge of the {} face of yarn '{}' is {:.3g} away from the body (rounding "
+                    "allows {:.1g}); "
+                    "build the face from the body's own end curve, or seal the yarn anew with --ends patch",
+                    side_of(last), body.name, gap, allowed_gap(body, last)),
+        face.origin);
     named = true;
   }
   return named;
@@ -81,11 +86,13 @@ void compare_volumes(const yarn::Body& body, const Tessellation& skin, double ch
   // Between the triangles and the surface lies at most a layer as thick as the chord error.
   const double allowed = area(skin) * chord + 1e-12 * std::abs(check.volume);
   if (std::abs(check.volume - body.volume) <= allowed) return;
-  defects.add(Kind::geometry,
-              fmt::format("the skin of yarn '{}' encloses {:.6g}, the surfaces say {:.6g} (a difference of {:.2g} at most "
-                          "comes from the triangles): body and end faces do not belong together, or the yarn overlaps itself",
-                          body.name, check.volume, body.volume, allowed),
-              std::nullopt);
+  defects.add(
+      Kind::geometry,
+      fmt::format(
+          "the skin of yarn '{}' encloses {:.6g}, the surfaces say {:.6g} (a difference of {:.2g} at most "
+          "comes from the triangles): body and end faces do not belong together, or the yarn overlaps itself",
+          body.name, check.volume, body.volume, allowed),
+      std::nullopt);
 }
 
 void judge_skin(const yarn::Body& body, double chord, Checked& out) {
@@ -100,28 +107,35 @@ void judge_skin(const yarn::Body& body, double chord, Checked& out) {
   check.outward = verdict.outward;
   check.self_intersection_at = verdict.crossing;
   if (!verdict.consistent)
-    defects.add(Kind::geometry,
-                fmt::format("the faces of yarn '{}' do not all face outward, or more than two meet in an edge; the grid's "
-                            "sections must run the same way round, and each end face outward",
-                            body.name),
-                std::nullopt);
+    defects.add(
+        Kind::geometry,
+        fmt::format(
+            "the faces of yarn '{}' do not all face outward, or more than two meet in an edge; the grid's "
+            "sections must run the same way round, and each end face outward",
+            body.name),
+        std::nullopt);
   if (verdict.consistent && !verdict.closed && !gaps_named)
-    defects.add(Kind::geometry, fmt::format("open: the skin of yarn '{}' has a border", body.name), find_border(out.skin));
+    defects.add(Kind::geometry, fmt::format("open: the skin of yarn '{}' has a border", body.name),
+                find_border(out.skin));
   if (verdict.self_intersecting) {
     std::string text = fmt::format("the surface of yarn '{}' crosses itself", body.name);
-    text += body.tight_bends.empty()
-                ? "; move its path or its sections apart there"
-                : fmt::format(": its path bends on a radius of {:.3g} where the section reaches {:.3g} inward; make the bend "
-                              "wider or the yarn thinner",
-                              body.tight_bends.front().radius, body.tight_bends.front().needed);
+    text += body.tight_bends.empty() ? "; move its path or its sections apart there"
+                                     : fmt::format(
+                                           ": its path bends on a radius of {:.3g} where the section reaches "
+                                           "{:.3g} inward; make the bend "
+                                           "wider or the yarn thinner",
+                                           body.tight_bends.front().radius, body.tight_bends.front().needed);
     defects.add(Kind::geometry, std::move(text), verdict.crossing);
   }
   if (verdict.closed && !verdict.outward)
-    defects.add(Kind::geometry,
-                fmt::format("the faces of yarn '{}' face inward: reverse the order of the points in its sections", body.name),
-                std::nullopt);
+    defects.add(
+        Kind::geometry,
+        fmt::format("the faces of yarn '{}' face inward: reverse the order of the points in its sections",
+                    body.name),
+        std::nullopt);
   if (verdict.closed && !verdict.self_intersecting && !verdict.bounds_volume)
-    defects.add(Kind::geometry, fmt::format("the skin of yarn '{}' does not bound a volume", body.name), std::nullopt);
+    defects.add(Kind::geometry, fmt::format("the skin of yarn '{}' does not bound a volume", body.name),
+                std::nullopt);
   if (verdict.closed && verdict.outward) compare_volumes(body, out.skin, chord, check, defects);
 }
 
@@ -143,7 +157,8 @@ Checked check_yarn(const yarn::Body& body, double chord) {
     judge_skin(body, chord, out);
   } catch (const std::exception& failure) {
     Defects(body, out.check)
-        .add(Kind::internal, fmt::format("CGAL cannot judge yarn '{}': {}", body.name, failure.what()), std::nullopt);
+        .add(Kind::internal, fmt::format("CGAL cannot judge yarn '{}': {}", body.name, failure.what()),
+             std::nullopt);
   }
   return out;
 }

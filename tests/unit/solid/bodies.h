@@ -22,9 +22,9 @@ inline Vec2 unit_circle(int i, int m) {
 }
 
 struct TubeForm {
-  double a = 1, b = 1;   // half axes of the elliptic section
-  int round = 64;        // control points round
-  int sections = 8;      // control sections
+  double a = 1, b = 1;  // half axes of the elliptic section
+  int round = 64;       // control points round
+  int sections = 8;     // control sections
   bool closed = false;
   yarn::EndStyle ends = yarn::EndStyle::patch;
 };
@@ -38,8 +38,8 @@ inline yarn::Body tube(const std::string& name, const TubeForm& form, const Plac
   for (int j = 0; j < form.sections; ++j)
     for (int i = 0; i < form.round; ++i) {
       const Vec2 p = unit_circle(i, form.round);
-      net.points.push_back(place(j / static_cast<double>(form.closed ? form.sections : form.sections - 1), form.a * p.x(),
-                                 form.b * p.y()));
+      net.points.push_back(place(j / static_cast<double>(form.closed ? form.sections : form.sections - 1),
+                                 form.a * p.x(), form.b * p.y()));
     }
   yarn::Body body;
   body.name = name;
@@ -50,18 +50,21 @@ inline yarn::Body tube(const std::string& name, const TubeForm& form, const Plac
   return body;
 }
 
-// A straight tube through `middle`, `length` long in the direction `along`; the section's x axis is `across` (made
-// perpendicular), its y axis along x across.
-inline yarn::Body straight(const std::string& name, const TubeForm& form, const Vec3& middle, const Vec3& along,
-                           const Vec3& across, double length) {
+// A straight tube through `middle`, `length` long in the direction `along`; the section's x axis is `across`
+// (made perpendicular), its y axis along x across.
+inline yarn::Body straight(const std::string& name, const TubeForm& form, const Vec3& middle,
+                           const Vec3& along, const Vec3& across, double length) {
   const Vec3 t = along.normalized(), x = (across - across.dot(t) * t).normalized(), y = t.cross(x);
-  return tube(name, form,
-              [=](double s, double u, double v) -> Vec3 { return middle + (s - 0.5) * length * t + u * x + v * y; });
+  return tube(name, form, [=](double s, double u, double v) -> Vec3 {
+    return middle + (s - 0.5) * length * t + u * x + v * y;
+  });
 }
 
-// Round the z axis. 48 sections, so that the control circle's radius needs its correction only in the 7th digit: the curve
-// of a uniform cubic over a circle of m points has the radius R (2 + cos(2 pi / m)) / 3 at its knots.
-inline yarn::Body ring(const std::string& name, double radius, double section_radius, const Vec3& middle = Vec3::Zero()) {
+// Round the z axis. 48 sections, so that the control circle's radius needs its correction only in the 7th
+// digit: the curve of a uniform cubic over a circle of m points has the radius R (2 + cos(2 pi / m)) / 3 at
+// its knots.
+inline yarn::Body ring(const std::string& name, double radius, double section_radius,
+                       const Vec3& middle = Vec3::Zero()) {
   constexpr int m = 64;
   TubeForm form{section_radius, section_radius, 64, m, true, yarn::EndStyle::patch};
   const double grow = 3.0 / (2.0 + std::cos(2.0 * std::numbers::pi / m));

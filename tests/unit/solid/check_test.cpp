@@ -49,7 +49,8 @@ yarn::Body arc(double radius, double section) {
 TEST(Check, EveryEndStyleIsAClosedSolid) {
   for (EndStyle style : {EndStyle::patch, EndStyle::fan, EndStyle::planar}) {
     SCOPED_TRACE(std::string(yarn::name_of(style)));
-    const yarn::Body body = straight("tube", {0.4, 0.1, 32, 4, false, style}, {10, 2, 3}, {1, 0.3, -0.2}, {0, 0, 1}, 5.0);
+    const yarn::Body body =
+        straight("tube", {0.4, 0.1, 32, 4, false, style}, {10, 2, 3}, {1, 0.3, -0.2}, {0, 0, 1}, 5.0);
     const YarnCheck check = check_one(body, 1e-4);
     expect_valid(check);
     EXPECT_NEAR(check.volume, pi * 0.4 * 0.1 * 5.0, 1e-3 * check.volume);
@@ -65,8 +66,8 @@ TEST(Check, RingAndArcAreValid) {
 }
 
 TEST(Check, OpenEndsAreADefect) {
-  const YarnCheck check =
-      check_one(straight("open", {1, 1, 16, 4, false, EndStyle::none}, Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 4.0));
+  const YarnCheck check = check_one(
+      straight("open", {1, 1, 16, 4, false, EndStyle::none}, Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 4.0));
   EXPECT_FALSE(check.closed);
   EXPECT_FALSE(check.bounds_volume);
   EXPECT_TRUE(has_defect(check, "no face at its start"));
@@ -77,8 +78,10 @@ TEST(Check, AnEndFaceMovedByAMillionthIsFoundOpen) {
   for (EndStyle style : {EndStyle::patch, EndStyle::fan, EndStyle::planar})
     for (const Vec3& move : {Vec3(1e-6, 0, 0), Vec3(0, 1e-6, 0)}) {
       SCOPED_TRACE(std::string(yarn::name_of(style)));
-      yarn::Body body = straight("tow", {0.4, 0.1, 16, 16, false, style}, {1, 0.5, 0}, {1, 0, 0}, {0, 1, 0}, 2.0);
-      if (style == EndStyle::planar && move.x() == 0.0) continue;  // a plane moved in itself is the same plane
+      yarn::Body body =
+          straight("tow", {0.4, 0.1, 16, 16, false, style}, {1, 0.5, 0}, {1, 0, 0}, {0, 1, 0}, 2.0);
+      if (style == EndStyle::planar && move.x() == 0.0)
+        continue;  // a plane moved in itself is the same plane
       for (Vec3& p : body.end.surface.points) p += move;
       body.end.origin += move;
       const YarnCheck check = check_one(body);
@@ -102,12 +105,13 @@ TEST(Check, ATubeBentTighterThanItsSectionCrossesItself) {
 }
 
 TEST(Check, AFigureEightCrossesItselfAtItsMiddle) {
-  const yarn::Body body = test::tube("eight", {0.2, 0.2, 12, 40, true}, [](double s, double u, double v) -> Vec3 {
-    const double phi = 2.0 * pi * s;
-    const Vec3 centre(3.0 * std::sin(phi), 1.5 * std::sin(2.0 * phi), 0.0);
-    const Vec3 along = Vec3(3.0 * std::cos(phi), 3.0 * std::cos(2.0 * phi), 0.0).normalized();
-    return centre + u * along.cross(Vec3::UnitZ()) + v * Vec3::UnitZ();
-  });
+  const yarn::Body body =
+      test::tube("eight", {0.2, 0.2, 12, 40, true}, [](double s, double u, double v) -> Vec3 {
+        const double phi = 2.0 * pi * s;
+        const Vec3 centre(3.0 * std::sin(phi), 1.5 * std::sin(2.0 * phi), 0.0);
+        const Vec3 along = Vec3(3.0 * std::cos(phi), 3.0 * std::cos(2.0 * phi), 0.0).normalized();
+        return centre + u * along.cross(Vec3::UnitZ()) + v * Vec3::UnitZ();
+      });
   const YarnCheck check = check_one(body);
   EXPECT_TRUE(check.closed);
   EXPECT_TRUE(check.self_intersecting);
@@ -135,8 +139,9 @@ TEST(Check, AnInvertedBodyIsReported) {
 }
 
 TEST(Check, AGridThatRunsTheOtherWayRoundIsStillOutward) {
-  const yarn::Body body =
-      test::tube("left", {1, 1, 16, 4}, [](double s, double u, double v) -> Vec3 { return {u, -v, 4.0 * s}; });
+  const yarn::Body body = test::tube("left", {1, 1, 16, 4}, [](double s, double u, double v) -> Vec3 {
+    return {u, -v, 4.0 * s};
+  });
   EXPECT_TRUE(body.inward);
   expect_valid(check_one(body));
 }
@@ -160,7 +165,8 @@ TEST(Check, WhatCannotBeTessellatedIsADefectOfThatYarnOnly) {
 TEST(Check, ReportsEveryStepOnce) {
   std::vector<yarn::Body> bodies;
   for (int i = 0; i < 5; ++i)
-    bodies.push_back(straight("t" + std::to_string(i), {1, 1, 16, 4}, {0, 3.0 * i, 0}, {1, 0, 0}, {0, 1, 0}, 4.0));
+    bodies.push_back(
+        straight("t" + std::to_string(i), {1, 1, 16, 4}, {0, 3.0 * i, 0}, {1, 0, 0}, {0, 1, 0}, 4.0));
   CheckOptions options;
   options.threads = 2;
   std::vector<std::size_t> seen;

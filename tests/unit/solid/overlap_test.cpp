@@ -32,7 +32,9 @@ yarn::Body moved(yarn::Body body, const Vec3& by) {
   return body;
 }
 
-TubeForm round(double radius) { return {radius, radius, 64, 4}; }
+TubeForm round(double radius) {
+  return {radius, radius, 64, 4};
+}
 
 // One overlap of this depth, which moving b by a little more ends and by a little less does not.
 void expect_overlap(const yarn::Body& a, const yarn::Body& b, double depth, const char* what) {
@@ -60,8 +62,8 @@ TEST(Overlaps, CrossingRoundYarns) {
   for (double degrees : {90.0, 45.0, 20.0})
     for (double distance : {0.799, 0.79, 0.75, 0.6, 0.3}) {
       const double angle = degrees * pi / 180.0;
-      const yarn::Body b =
-          straight("b", round(0.3), {0.1, 0.2, distance}, {std::cos(angle), std::sin(angle), 0}, {0, 0, 1}, 6.0);
+      const yarn::Body b = straight("b", round(0.3), {0.1, 0.2, distance},
+                                    {std::cos(angle), std::sin(angle), 0}, {0, 0, 1}, 6.0);
       expect_overlap(a, b, 0.8 - distance,
                      (std::to_string(degrees) + " degrees at distance " + std::to_string(distance)).c_str());
     }
@@ -89,12 +91,15 @@ TEST(Overlaps, CrossingFlatYarns) {
   const TubeForm flat{0.4, 0.1, 64, 4};
   const yarn::Body a = straight("a", flat, Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 4.0);
   for (double distance : {0.198, 0.19, 0.15}) {
-    expect_overlap(a, straight("b", flat, {0, 0, distance}, {0, 1, 0}, {1, 0, 0}, 4.0), 0.2 - distance, "flat");
-    expect_overlap(a, straight("b", flat, {0, 0, distance + 0.3}, {0, 1, 0}, {0, 0, 1}, 4.0), 0.2 - distance, "on edge");
+    expect_overlap(a, straight("b", flat, {0, 0, distance}, {0, 1, 0}, {1, 0, 0}, 4.0), 0.2 - distance,
+                   "flat");
+    expect_overlap(a, straight("b", flat, {0, 0, distance + 0.3}, {0, 1, 0}, {0, 0, 1}, 4.0), 0.2 - distance,
+                   "on edge");
   }
   // Turned by 30 degrees about its own axis: the support of an ellipse in the direction of the common normal.
   const double c = std::cos(pi / 6.0), s = std::sin(pi / 6.0), support = std::hypot(0.4 * s, 0.1 * c);
-  expect_overlap(a, straight("b", flat, {0, 0, 0.1 + support - 0.02}, {0, 1, 0}, {c, 0, s}, 4.0), 0.02, "turned");
+  expect_overlap(a, straight("b", flat, {0, 0, 0.1 + support - 0.02}, {0, 1, 0}, {c, 0, s}, 4.0), 0.02,
+                 "turned");
 }
 
 TEST(Overlaps, YarnsThatAreTheSame) {
@@ -111,12 +116,88 @@ TEST(Overlaps, AYarnInsideAnother) {
   expect_overlap(thick, thin, 0.4, "inside");
 }
 
+// A prism along x, its outline (degree 1 round) in y and z, 6 long.
+yarn::Body prism(const std::string& name, const std::vector<Vec2>& outline, const Vec3& middle) {
+  yarn::GridNet net;
+  net.sections = 4;
+  net.degree_round = 1;
+  net.per_section = static_cast<int>(outline.size());
+  for (int j = 0; j < 4; ++j)
+    for (const Vec2& p : outline) net.points.push_back(middle + Vec3(2.0 * j - 3.0, p.x(), p.y()));
+  yarn::Body body;
+  body.name = name;
+  EXPECT_TRUE(yarn::fill_from_grid(body, net).ok());
+  EXPECT_TRUE(yarn::finish(body, yarn::EndStyle::planar).ok());
+  return body;
+}
+
+TEST(Overlaps, SharpEdges) {
+  const std::vector<Vec2> square = {{1, -1}, {1, 1}, {-1, 1}, {-1, -1}},
+                          diamond = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+  const yarn::Body floor = prism("floor", square, Vec3::Zero());
+  expect_overlap(floor, prism("square", square, {0.3, 0, 1.9}), 0.1, "face on face");
+  expect_overlap(floor, prism("diamond", diamond, {0.3, 0.2, 1.9}), 0.1, "edge on face");
+  const yarn::Body round_one = straight("round", round(0.5), {0, 0, 1.46}, {0, 1, 0}, {1, 0, 0}, 6.0);
+  expect_overlap(floor, round_one, 0.04, "cylinder across a face");
+  expect_overlap(prism("edge", diamond, Vec3::Zero()), round_one, 0.04, "cylinder across an edge");
+}
+
+TEST(Overlaps, EndFaces) {
+  const yarn::Body lying = straight("lying", round(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
+  const yarn::Body standing = straight("standing", round(0.1), {0, 0, 2.3}, {0, 0, 1}, {1, 0, 0}, 4.0);
+  expect_overlap(lying, standing, 0.2, "an end in a flank");
+  expect_overlap(lying, moved(lying, {5.95, 0, 0}), 0.05, "end in end");
+}
+
+TEST(Overlaps, LinkedRings) {
+  // Two rings that hook into each other without touching, then pulled until they share 0.05.
+  const yarn::Body a = test::ring("a", 2.0, 0.3);
+  yarn::Body b = a;
+  for (nurbs::Surface* s : {&b.surface})
+    for (Vec3& p : s->points) p = Vec3(p.x(), -p.z(), p.y());
+  b.name = "b";
+  // Inner sides at +-1.7: the hooks' inner sides meet when the middles are 3.4 apart.
+  const SolidCheck apart = check({a, moved(b, {3.3, 0, 0})}, 0.003);
+  EXPECT_TRUE(apart.overlaps.empty());
+  EXPECT_NEAR(apart.min_gap.value_or(-1.0), 0.1, 1e-3);
+  const SolidCheck hooked = check({a, moved(b, {3.45, 0, 0})}, 0.003);
+  ASSERT_EQ(hooked.overlaps.size(), 1U);
+  EXPECT_NEAR(hooked.overlaps[0].depth, 0.05, 5e-4);
+  EXPECT_NEAR(hooked.overlaps[0].at.x(), 1.725, 0.01);
+}
+
+TEST(Overlaps, WavesAcrossEachOtherNeedTheDirectionInWhichAllPlacesPart) {
+  // One warp and one weft of a plain weave whose waves are too flat: the two part last in several places at a
+  // time. No direction near the one that is given does with less.
+  const auto wave = [](double sign, bool turned) {
+    return test::tube("wave", {0.4, 0.1, 16, 16}, [=](double s, double u, double v) -> Vec3 {
+      const double x = 2.0 * s, z = sign * 0.09 * std::sin(pi * x),
+                   slope = sign * 0.09 * pi * std::cos(pi * x);
+      const Vec3 p = Vec3(x, 0.5 + u, z) + v * Vec3(-slope, 0, 1).normalized();
+      return turned ? Vec3(p.y(), p.x(), p.z()) : p;
+    });
+  };
+  const yarn::Body a = wave(1.0, false), b = wave(-1.0, true);
+  const SolidCheck result = check({a, b});
+  ASSERT_EQ(result.overlaps.size(), 1U);
+  const Overlap& overlap = result.overlaps[0];
+  EXPECT_TRUE(check({a, moved(b, 1.01 * overlap.depth * overlap.direction)}).overlaps.empty());
+  const Vec3 x = overlap.direction.unitOrthogonal(), y = overlap.direction.cross(x);
+  for (double tilt : {0.0, 0.03, 0.2})
+    for (int k = 0; k < (tilt == 0.0 ? 1 : 6); ++k) {
+      const double angle = k * pi / 3.0;
+      const Vec3 n = (overlap.direction + tilt * (std::cos(angle) * x + std::sin(angle) * y)).normalized();
+      EXPECT_FALSE(check({a, moved(b, 0.985 * overlap.depth * n)}).overlaps.empty()) << tilt << " " << k;
+    }
+}
+
 TEST(Overlaps, SeveralPlacesAreSeveralOverlaps) {
   // A wave of amplitude 0.5 over a straight yarn: three crests of the control net, each dips in.
   const yarn::Body wave = test::tube("wave", {0.2, 0.2, 32, 61}, [](double t, double u, double v) -> Vec3 {
     const double phi = 6.0 * pi * t, slope = 0.5 * 6.0 * pi / 12.0 * std::sin(phi);
     const Vec3 normal = Vec3(slope, 0, 1).normalized();  // of z = -0.5 cos(phi), nearly
-    return Vec3(12.0 * t, 0, -0.5 * std::cos(phi)) + u * Vec3(-slope, 0, 1).normalized() + v * Vec3(0, 1, 0) + 0.0 * normal;
+    return Vec3(12.0 * t, 0, -0.5 * std::cos(phi)) + u * Vec3(-slope, 0, 1).normalized() + v * Vec3(0, 1, 0) +
+           0.0 * normal;
   });
   const yarn::Body floor = straight("floor", {0.5, 0.5, 64, 4}, {6, 0, -1.15}, {1, 0, 0}, {0, 1, 0}, 14.0);
   const SolidCheck result = check({floor, wave});
@@ -133,7 +214,8 @@ TEST(Overlaps, SeveralPlacesAreSeveralOverlaps) {
 
 TEST(Overlaps, TouchingIsNoOverlap) {
   const yarn::Body a = straight("a", round(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 6.0);
-  // The curve of a control circle touches its own tangents at the middles of the polygon's sides: exactly 0.5.
+  // The curve of a control circle touches its own tangents at the middles of the polygon's sides: exactly
+  // 0.5.
   for (const Vec3& along : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0)}) {
     const yarn::Body b = straight("b", round(0.5), {0, 0, 1.0}, along, {0, 0, 1}, 6.0);
     const SolidCheck result = check({a, b});
@@ -185,12 +267,14 @@ TEST(Gaps, ARingAroundAYarn) {
 TEST(Overlaps, TheSameWithAnyNumberOfThreads) {
   std::vector<yarn::Body> bodies;
   for (int i = 0; i < 6; ++i) {
-    bodies.push_back(straight("x", {0.4, 0.1, 16, 8}, {0, i - 2.5, 0.095 + 0.0025 * i}, {1, 0, 0}, {0, 1, 0}, 8.0));
+    bodies.push_back(
+        straight("x", {0.4, 0.1, 16, 8}, {0, i - 2.5, 0.095 + 0.0025 * i}, {1, 0, 0}, {0, 1, 0}, 8.0));
     bodies.push_back(straight("y", {0.4, 0.1, 16, 8}, {i - 2.5, 0, -0.095}, {0, 1, 0}, {1, 0, 0}, 8.0));
   }
   const SolidCheck one = check(bodies), four = check(bodies, 0.0, 4);
   ASSERT_EQ(one.overlaps.size(), four.overlaps.size());
-  EXPECT_EQ(one.overlaps.size(), 36U - 12U);  // 0.19, 0.1925, 0.195, 0.1975, and apart: 0.2 (touching), 0.2025
+  EXPECT_EQ(one.overlaps.size(),
+            36U - 12U);  // 0.19, 0.1925, 0.195, 0.1975, and apart: 0.2 (touching), 0.2025
   for (std::size_t k = 0; k < one.overlaps.size(); ++k) {
     EXPECT_EQ(one.overlaps[k].a, four.overlaps[k].a);
     EXPECT_EQ(one.overlaps[k].depth, four.overlaps[k].depth);

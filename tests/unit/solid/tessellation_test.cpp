@@ -104,7 +104,8 @@ TEST(Tessellation, RingHasTheVolumeOfPappus) {
 
 TEST(Tessellation, WithoutFacesItIsOpenAtBothEnds) {
   TubeForm form{1, 1, 16, 4, false, EndStyle::none};
-  Result<Tessellation> skin = tessellate(straight("open", form, Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 4.0), 0.05);
+  Result<Tessellation> skin =
+      tessellate(straight("open", form, Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 4.0), 0.05);
   ASSERT_TRUE(skin.ok());
   int per_row = 0;
   for (const Vec3& p : skin->vertices) per_row += std::abs(p.x() + 2.0) < 1e-12 ? 1 : 0;
