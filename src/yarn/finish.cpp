@@ -65,13 +65,17 @@ void find_bends(Body& body) {
       if (speed == 0.0) continue;
       const Vec3 curvature = (jet.d2 - jet.d1 * (jet.d2.dot(jet.d1) / speed)) / speed;
       const double kappa = curvature.norm();
-      if (kappa > 0.0) body.min_bend_radius = std::min(body.min_bend_radius, 1.0 / kappa);
+      // What rounding makes of a straight line is no bend.
+      if (kappa * body.length > 1e-9) body.min_bend_radius = std::min(body.min_bend_radius, 1.0 / kappa);
       if (kappa * widest <= 1.0) continue;
       const double needed = reach(body, jet.position, curvature / kappa, t);
       if (needed * kappa >= 1.0 && (!worst || needed * kappa > worst->ratio))
         worst = Found{{t, jet.position, 1.0 / kappa, needed}, needed * kappa};
     }
-    if (worst) found.push_back(*worst);
+    if (!worst) continue;
+    // Neighbouring spans that meet in their worst point have one bend.
+    if (!found.empty() && found.back().bend.parameter == worst->bend.parameter) found.pop_back();
+    found.push_back(*worst);
   }
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.ratio > b.ratio; });
   for (const Found& f : found) body.tight_bends.push_back(f.bend);
