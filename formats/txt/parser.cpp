@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 
 namespace selvage::formats::txt {
@@ -167,7 +168,7 @@ std::optional<Vec3> Parser::point(std::string_view what) {
 
 std::optional<Vec3> Parser::direction(std::string_view what) {
   const Spot spot = here();
-  const std::optional<Vec3> vector = point(what);
+  std::optional<Vec3> vector = point(what);
   if (!vector || *vector != Vec3::Zero()) return vector;
   error(spot, fmt::format("{}: 0 0 0 is no direction", what));
   return std::nullopt;

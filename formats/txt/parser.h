@@ -172,8 +172,8 @@ std::optional<T> Parser::choice(std::string_view what, const std::array<Word<T>,
   const std::string_view found = take_word();
   for (const Word<T>& word : words)
     if (same_word(word.text, found)) return word.value;
-  std::vector<std::string_view> known;
-  for (const Word<T>& word : words) known.push_back(word.text);
+  std::vector<std::string_view> known(N);
+  for (std::size_t i = 0; i < N; ++i) known[i] = words[i].text;
   const std::string_view meant = missing_choice(what, found, known);
   for (const Word<T>& word : words)
     if (word.text == meant) return word.value;

@@ -109,7 +109,7 @@ bool refuse_binary(const Source& source, Report& report) {
     if (*p != '\n' && *p != '\r') break;
     if (*p++ == '\r') ++spot.column;
   }
-  report.error(spot, "this is not a text file");
+  report.error(spot, "this is not a text file; a fabric is a text that begins with the line 'fabric 1'");
   return true;
 }
 
