@@ -19,7 +19,8 @@ bool is_clamped(const std::vector<double>& knots, int degree) {
 
 // Weights that are all the same do not make a surface rational.
 bool is_polynomial(const std::vector<double>& weights) {
-  return std::all_of(weights.begin(), weights.end(), [&weights](double weight) { return weight == weights.front(); });
+  return std::all_of(weights.begin(), weights.end(),
+                     [&weights](double weight) { return weight == weights.front(); });
 }
 
 void write_weights(Records& records, const std::vector<double>& weights, std::size_t count) {
@@ -35,7 +36,8 @@ bool is_closed_u(const nurbs::Surface& surface) {
   if (!is_clamped(surface.knots_u, surface.degree_u)) return false;
   const int last = surface.count_u - 1;
   for (int j = 0; j < surface.count_v; ++j)
-    if (surface.point(0, j) != surface.point(last, j) || surface.weight(0, j) != surface.weight(last, j)) return false;
+    if (surface.point(0, j) != surface.point(last, j) || surface.weight(0, j) != surface.weight(last, j))
+      return false;
   return true;
 }
 
@@ -43,7 +45,8 @@ bool is_closed_v(const nurbs::Surface& surface) {
   if (!is_clamped(surface.knots_v, surface.degree_v)) return false;
   const int last = surface.count_v - 1;
   for (int i = 0; i < surface.count_u; ++i)
-    if (surface.point(i, 0) != surface.point(i, last) || surface.weight(i, 0) != surface.weight(i, last)) return false;
+    if (surface.point(i, 0) != surface.point(i, last) || surface.weight(i, 0) != surface.weight(i, last))
+      return false;
   return true;
 }
 
@@ -120,8 +123,6 @@ EndPlane end_plane(const yarn::Body& body, const nurbs::Curve& end_curve, bool l
     low = low.cwiseMin(point.head<2>());
     high = high.cwiseMax(point.head<2>());
   }
-  for (const Vec3& point : end_curve.points)
-    plane.deviation = std::max(plane.deviation, std::abs((point - plane.origin).dot(plane.normal)));
   const Vec2 margin = Vec2::Constant(0.1 * (high - low).maxCoeff());
   low -= margin;
   high += margin;
@@ -142,7 +143,8 @@ int write_planar_end(Records& records, const Common& common, const yarn::Body& b
   const EndPlane plane = end_plane(body, outline, last);
   const Vec3 up = Vec3::UnitZ();
   const int surface = write_surface(records, common.entity(128, 0, dependent), plane.surface);
-  const int flat = write_curve(records, common.entity(126, 0, dependent_in_2d), plane.in_parameters(outline), &up);
+  const int flat =
+      write_curve(records, common.entity(126, 0, dependent_in_2d), plane.in_parameters(outline), &up);
   const int curve = write_curve(records, common.entity(126, 0, dependent), outline, &plane.normal);
 
   const int boundary = records.begin(common.entity(142, 0, dependent));

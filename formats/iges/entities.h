@@ -1,5 +1,5 @@
-// One function an entity of IGES 5.3: each writes its directory entry and its parameters and returns its directory
-// pointer. Pointers that are arguments are directory pointers.
+// One function an entity of IGES 5.3: each writes its directory entry and its parameters and returns its
+// directory pointer. Pointers that are arguments are directory pointers.
 #pragma once
 
 #include <span>
@@ -33,13 +33,12 @@ int write_surface(Records& records, const Entity& entity, const nurbs::Surface& 
 // 126, form 0. `normal`: unit normal of the plane in which the curve lies; null: it lies in none.
 int write_curve(Records& records, const Entity& entity, const nurbs::Curve& curve, const Vec3* normal);
 
-// The plane of an end as a bilinear surface a little larger than the end curve, whose parameters are lengths along two
-// axes of the plane. The end curve runs counter-clockwise in them.
+// The plane of an end as a bilinear surface a little larger than the end curve, whose parameters are lengths
+// along two axes of the plane. The end curve runs counter-clockwise in them.
 struct EndPlane {
   nurbs::Surface surface;
   Vec3 origin, axis_u, axis_v, normal;
-  bool inward = false;  // `normal` points into the yarn
-  double deviation = 0;  // the largest distance of a control point of the curve from the plane
+  bool inward = false;                                                        // `normal` points into the yarn
   [[nodiscard]] nurbs::Curve in_parameters(const nurbs::Curve& curve) const;  // z = 0
 };
 EndPlane end_plane(const yarn::Body& body, const nurbs::Curve& end_curve, bool last);
@@ -48,9 +47,9 @@ EndPlane end_plane(const yarn::Body& body, const nurbs::Curve& end_curve, bool l
 int write_planar_end(Records& records, const Common& common, const yarn::Body& body, bool last);
 inline constexpr int entities_of_planar_end = 5;
 
-int write_group(Records& records, const Common& common, std::span<const int> members);       // 402, form 7
-int write_name(Records& records, const Common& common, std::string_view ascii_name);         // 406, form 15
-int write_level_name(Records& records, int level, std::string_view name);                    // 406, form 3
-int write_color(Records& records, const yarn::Color& color);                                 // 314
+int write_group(Records& records, const Common& common, std::span<const int> members);  // 402, form 7
+int write_name(Records& records, const Common& common, std::string_view ascii_name);    // 406, form 15
+int write_level_name(Records& records, int level, std::string_view name);               // 406, form 3
+int write_color(Records& records, const yarn::Color& color);                            // 314
 
 }  // namespace selvage::formats::iges

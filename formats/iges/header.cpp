@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cfloat>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 
@@ -36,11 +37,16 @@ struct UnitCode {
 
 UnitCode code_of(Unit unit) {
   switch (unit) {
-    case Unit::m: return {6, "M"};
-    case Unit::cm: return {10, "CM"};
-    case Unit::mm: return {2, "MM"};
-    case Unit::um: return {9, "UM"};
-    case Unit::inch: return {1, "INCH"};
+    case Unit::m:
+      return {6, "M"};
+    case Unit::cm:
+      return {10, "CM"};
+    case Unit::mm:
+      return {2, "MM"};
+    case Unit::um:
+      return {9, "UM"};
+    case Unit::inch:
+      return {1, "INCH"};
   }
   std::abort();
 }
@@ -72,7 +78,14 @@ class GlobalLines {
   int count_ = 0;
 };
 
-double power_of_ten_below(double value) { return std::pow(10.0, std::floor(std::log10(value))); }
+// The power of ten at or below `value`, `steps` steps up. Exactly the double nearest to it, which std::pow
+// need not give.
+double power_of_ten_below(double value, int steps = 0) {
+  const std::string text = fmt::format("1e{}", static_cast<int>(std::floor(std::log10(value))) + steps);
+  double power = 0;
+  std::from_chars(text.data(), text.data() + text.size(), power);
+  return power;
+}
 
 }  // namespace
 
@@ -99,40 +112,41 @@ HeaderText header_text(const Header& header) {
   const std::string product = title.empty() ? file_name : title;
   const UnitCode unit = code_of(header.units);
   GlobalLines lines(text.bytes);
-  lines.put("1H,");                            // 1 parameter delimiter
-  lines.put("1H;");                            // 2 record delimiter
-  lines.put(hollerith(product));               // 3 product identification of the sender
-  lines.put(hollerith(file_name));             // 4 file name
-  lines.put(hollerith("Selvage"));             // 5 native system
-  lines.put(hollerith("Selvage " SELVAGE_VERSION));  // 6 preprocessor
-  lines.put("32");                             // 7 bits of an integer
-  lines.put(std::to_string(FLT_MAX_10_EXP));   // 8 single precision: largest power of ten
-  lines.put(std::to_string(FLT_DIG));          // 9 and significant digits
-  lines.put(std::to_string(DBL_MAX_10_EXP));   // 10 double precision
-  lines.put(std::to_string(DBL_DIG));          // 11
-  lines.put(hollerith(product));               // 12 product identification for the receiver
-  lines.put("1.");                             // 13 model space scale
-  lines.put(std::to_string(unit.flag));        // 14 unit
-  lines.put(hollerith(unit.name));             // 15 its name
-  lines.put("1");                              // 16 number of line weights
+  lines.put("1H,");                                       // 1 parameter delimiter
+  lines.put("1H;");                                       // 2 record delimiter
+  lines.put(hollerith(product));                          // 3 product identification of the sender
+  lines.put(hollerith(file_name));                        // 4 file name
+  lines.put(hollerith("Selvage"));                        // 5 native system
+  lines.put(hollerith("Selvage " SELVAGE_VERSION));       // 6 preprocessor
+  lines.put("32");                                        // 7 bits of an integer
+  lines.put(std::to_string(FLT_MAX_10_EXP));              // 8 single precision: largest power of ten
+  lines.put(std::to_string(FLT_DIG));                     // 9 and significant digits
+  lines.put(std::to_string(DBL_MAX_10_EXP));              // 10 double precision
+  lines.put(std::to_string(DBL_DIG));                     // 11
+  lines.put(hollerith(product));                          // 12 product identification for the receiver
+  lines.put("1.");                                        // 13 model space scale
+  lines.put(std::to_string(unit.flag));                   // 14 unit
+  lines.put(hollerith(unit.name));                        // 15 its name
+  lines.put("1");                                         // 16 number of line weights
   lines.put(real(0.25 / millimetres_per(header.units)));  // 17 width of the widest: 0.25 mm
-  lines.put(hollerith(header.time));           // 18 written on
-  lines.close();                               // 19 and 20 are put in at the end: always a line of their own
+  lines.put(hollerith(header.time));                      // 18 written on
+  lines.close();  // 19 and 20 are put in at the end: always a line of their own
   lines.put(real(header.resolution));
   lines.put(real(header.largest));
   lines.close();
-  lines.put("");                               // 21 author: not given
-  lines.put("");                               // 22 organization: not given
-  lines.put("11");                             // 23 version 5.3
-  lines.put("0");                              // 24 drafting standard: none
-  lines.put(hollerith(header.time));           // 25 model changed on
-  lines.put("", ';');                          // 26 application protocol: none
+  lines.put("");                      // 21 author: not given
+  lines.put("");                      // 22 organization: not given
+  lines.put("11");                    // 23 version 5.3
+  lines.put("0");                     // 24 drafting standard: none
+  lines.put(hollerith(header.time));  // 25 model changed on
+  lines.put("", ';');                 // 26 application protocol: none
   lines.close();
   text.global_lines = lines.count();
   return text;
 }
 
-std::string terminate_text(const HeaderText& header, std::int64_t directory_lines, std::int64_t parameter_lines) {
+std::string terminate_text(const HeaderText& header, std::int64_t directory_lines,
+                           std::int64_t parameter_lines) {
   std::string bytes;
   add_line(bytes,
            fmt::format("S{:>7}G{:>7}D{:>7}P{:>7}", header.start_lines, header.global_lines, directory_lines,
@@ -147,7 +161,7 @@ double resolution_for(double smallest_size, double largest) {
   double resolution = power_of_ten_below(usual * smallest_size);
   if (useful < most * smallest_size) resolution = std::max(resolution, useful);
   const double rounding = 16 * DBL_EPSILON * largest;
-  if (rounding > resolution) resolution = 10 * power_of_ten_below(rounding);
+  if (rounding > resolution) resolution = power_of_ten_below(rounding, 1);
   return resolution;
 }
 

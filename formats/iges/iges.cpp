@@ -16,12 +16,13 @@ bool sniff(std::string_view head) {
 }  // namespace
 
 const Descriptor& descriptor() {
-  static const Descriptor self = {
-      .name = "iges",
-      .title = "IGES 5.3, B-spline surfaces or solids",
-      .extensions = {".igs", ".iges"},
-      .sniff = sniff,
-      .open_bodies = [](OutputFile& output, const SurfaceOptions& options) { return open_writer(output, options); }};
+  static const Descriptor self = {.name = "iges",
+                                  .title = "IGES 5.3, B-spline surfaces or solids",
+                                  .extensions = {".igs", ".iges"},
+                                  .sniff = sniff,
+                                  .open_bodies = [](OutputFile& output, const SurfaceOptions& options) {
+                                    return open_writer(output, options);
+                                  }};
   return self;
 }
 

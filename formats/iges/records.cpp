@@ -8,7 +8,8 @@ namespace selvage::formats::iges {
 namespace {
 
 constexpr std::size_t entry_length = 2 * line_length;
-constexpr std::size_t spare = max_number_length + 2;  // a value may run over the end of the last line before it is moved
+constexpr std::size_t spare =
+    max_number_length + 2;  // a value may run over the end of the last line before it is moved
 
 // Adds one to a right-justified number with leading blanks; `last` is its last digit.
 void count_up(char* last) {
@@ -39,7 +40,9 @@ Records::Records(OutputFile& output, std::uint64_t offset, Limits limits)
 }
 
 // The number that the present line will have: written whole here, counted up from line to line afterwards.
-void Records::number_line() { right_justified(tail_ + 9, 7, std::min(lines_ + 1, most_lines)); }
+void Records::number_line() {
+  right_justified(tail_ + 9, 7, std::min(lines_ + 1, most_lines));
+}
 
 int Records::begin(const Entity& entity) {
   const int pointer = next();
@@ -171,7 +174,8 @@ void Records::file_entity(std::int64_t first_line, std::int64_t line_count) {
   field(second, 3, -entity_.color);
   field(second, 4, line_count);
   field(second, 5, entity_.form);
-  const std::string_view label = entity_.label.substr(0, 8);
+  std::string_view label = entity_.label.substr(0, 8);
+  while (!label.empty() && label.back() == ' ') label.remove_suffix(1);
   std::memcpy(second + 64 - label.size(), label.data(), label.size());
   field(second, 9, 0);
   second[72] = 'D';
@@ -205,7 +209,8 @@ void Records::append(std::vector<Extent>& extents, std::string_view bytes) {
   file_end_ += bytes.size();
 }
 
-// Decides where the parameters begin. Not before the first buffer is full, so that a smaller file is always exact.
+// Decides where the parameters begin. Not before the first buffer is full, so that a smaller file is always
+// exact.
 void Records::place_parameters() {
   if (placed_) return;
   placed_ = true;
@@ -219,14 +224,16 @@ void Records::flush_parameters() {
   line_ = buffer_.get();
 }
 
-// Directory entries go into the room kept for them, and what does not fit goes between the parameters until finish().
+// Directory entries go into the room kept for them, and what does not fit goes between the parameters until
+// finish().
 void Records::flush_directory() {
   place_parameters();
   std::string_view bytes(directory_.get(), directory_used_);
   std::uint64_t used = 0;
   for (const Extent& extent : directory_extents_) used += extent.size;
   if (used < room_) {
-    const std::string_view part = bytes.substr(0, static_cast<std::size_t>(std::min<std::uint64_t>(room_ - used, bytes.size())));
+    const std::string_view part =
+        bytes.substr(0, static_cast<std::size_t>(std::min<std::uint64_t>(room_ - used, bytes.size())));
     write(offset_ + used, part);
     if (directory_extents_.empty()) directory_extents_.push_back({offset_, 0});
     directory_extents_.front().size += part.size();

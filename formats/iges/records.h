@@ -1,7 +1,8 @@
-// The directory and parameter sections of an IGES file while they grow: 80-column lines with running numbers, filled in
-// place in one reused buffer. The standard wants the whole directory before the first parameter line although a
-// directory entry is known only after its parameters: so room for the directory is set aside in the file, and only
-// where that room turns out wrong are the parameters moved, once, in finish(). Memory does not grow with the file.
+// The directory and parameter sections of an IGES file while they grow: 80-column lines with running numbers,
+// filled in place in one reused buffer. The standard wants the whole directory before the first parameter
+// line although a directory entry is known only after its parameters: so room for the directory is set aside
+// in the file, and only where that room turns out wrong are the parameters moved, once, in finish(). Memory
+// does not grow with the file.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +18,12 @@
 
 namespace selvage::formats::iges {
 
-inline constexpr std::size_t line_length = 81;     // 80 columns and the newline
-inline constexpr std::size_t data_columns = 64;    // of a parameter line
+inline constexpr std::size_t line_length = 81;         // 80 columns and the newline
+inline constexpr std::size_t data_columns = 64;        // of a parameter line
 inline constexpr std::int64_t most_lines = 9'999'999;  // in one section: the number has seven columns
 
-// Writes a finite `value` as IGES has it: the shortest digits that read back to the same bits, always with a decimal
-// point, exponent letter E: "0.1", "-3.", "1.E+22". At most max_number_length bytes; returns the end.
+// Writes a finite `value` as IGES has it: the shortest digits that read back to the same bits, always with a
+// decimal point, exponent letter E: "0.1", "-3.", "1.E+22". At most max_number_length bytes; returns the end.
 inline char* write_real(char* out, double value) {
   char* end = write_number(out, value);
   char* exponent = end;
@@ -41,8 +42,9 @@ inline char* write_real(char* out, double value) {
 
 // The status field: blank, subordinate, use, hierarchy; two digits each.
 inline constexpr std::string_view independent = "00000000";
-inline constexpr std::string_view dependent = "00010000";        // physically: exists only inside its parent
-inline constexpr std::string_view dependent_in_2d = "00010500";  // the same, a curve in a surface's parameters
+inline constexpr std::string_view dependent = "00010000";  // physically: exists only inside its parent
+inline constexpr std::string_view dependent_in_2d =
+    "00010500";  // the same, a curve in a surface's parameters
 inline constexpr std::string_view definition = "00000200";
 
 // What the directory says of an entity.
@@ -66,7 +68,8 @@ class Records {
   // The directory begins at byte `offset` of `output`, which outlives this.
   Records(OutputFile& output, std::uint64_t offset, Limits limits);
 
-  // One entity: begin(), its values in order, end(). begin() returns its directory pointer, which is what next() said.
+  // One entity: begin(), its values in order, end(). begin() returns its directory pointer, which is what
+  // next() said.
   [[nodiscard]] int next() const { return static_cast<int>(2 * entities_ + 1); }
   int begin(const Entity& entity);
   void integer(std::int64_t value);
@@ -79,18 +82,20 @@ class Records {
   // `property`: directory pointer of a property of this entity; 0: none.
   void end(int property = 0);
 
-  // Between measure(true) and measure(false) everything is counted and nothing is kept. Only between entities.
-  // measure(false) returns the lines that both sections would have after it.
+  // Between measure(true) and measure(false) everything is counted and nothing is kept. Only between
+  // entities. measure(false) returns the lines that both sections would have after it.
   struct Lines {
     std::int64_t directory = 0, parameters = 0;
   };
   Lines measure(bool on);
   [[nodiscard]] Lines lines() const { return {2 * entities_, lines_}; }
-  [[nodiscard]] const std::map<int, std::uint64_t>& counts() const { return counts_; }  // of entities, by type
+  [[nodiscard]] const std::map<int, std::uint64_t>& counts() const {
+    return counts_;
+  }  // of entities, by type
   [[nodiscard]] const Limits& limits() const { return limits_; }
 
-  // How many entities the file will have, as far as one can tell; asked once, when the first full buffer has to go to
-  // its place. A wrong answer costs only time.
+  // How many entities the file will have, as far as one can tell; asked once, when the first full buffer has
+  // to go to its place. A wrong answer costs only time.
   void expect(std::uint64_t entities) { expected_entities_ = entities; }
 
   // The first failure of the output, kept until asked for.
@@ -122,10 +127,10 @@ class Records {
   Lines before_measuring_;
 
   std::unique_ptr<char[]> buffer_;  // whole lines, then room for one number; not touched before it is needed
-  char* line_ = nullptr;      // the present line in it
-  char* cursor_ = nullptr;    // where the next value goes
-  char tail_[17];             // columns 65-80 and the newline of the present line
-  std::int64_t lines_ = 0;    // finished parameter lines
+  char* line_ = nullptr;            // the present line in it
+  char* cursor_ = nullptr;          // where the next value goes
+  char tail_[17];                   // columns 65-80 and the newline of the present line
+  std::int64_t lines_ = 0;          // finished parameter lines
   std::unique_ptr<char[]> directory_;
   std::size_t directory_used_ = 0;
   std::int64_t entities_ = 0;

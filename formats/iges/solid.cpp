@@ -8,20 +8,22 @@ namespace {
 
 using yarn::EndStyle;
 
-// The topology of one yarn. Vertices, edges and faces have the indices 0, 1, ... in the order in which they were added.
+// The topology of one yarn. Vertices, edges and faces have the indices 0, 1, ... in the order in which they
+// were added.
 struct Edge {
   nurbs::Curve curve;
   std::size_t from = 0, to = 0;
   const Vec3* normal = nullptr;  // of the curve's plane
 };
 struct Use {
-  bool is_vertex = false;  // a pole: the loop passes through a point where the surface has an edge of length zero
+  bool is_vertex =
+      false;  // a pole: the loop passes through a point where the surface has an edge of length zero
   std::size_t index = 0;
   bool forward = true;
 };
 struct Face {
   const nurbs::Surface* surface = nullptr;
-  bool outward = true;  // S_u x S_v points out of the yarn
+  bool outward = true;    // S_u x S_v points out of the yarn
   std::vector<Use> loop;  // counter-clockwise in the surface's parameters
 };
 struct Topology {
@@ -35,7 +37,9 @@ struct Rim {
   std::size_t first_edge = 0, count = 1, first_vertex = 0;
 };
 
-std::size_t edges_of_rim(EndStyle style) { return style == EndStyle::patch ? 4 : 1; }
+std::size_t edges_of_rim(EndStyle style) {
+  return style == EndStyle::patch ? 4 : 1;
+}
 
 nurbs::Curve first_column(const nurbs::Surface& surface) {
   nurbs::Curve column;
@@ -54,7 +58,8 @@ Rim add_rim(Topology& topology, const yarn::Body& body, bool last, const EndPlan
   const Vec3* normal = plane != nullptr ? &plane->normal : nullptr;
   const auto add = [&](nurbs::Curve curve, std::size_t k) {
     topology.vertices.push_back(curve.points.front());
-    topology.edges.push_back({std::move(curve), rim.first_vertex + k, rim.first_vertex + (k + 1) % rim.count, normal});
+    topology.edges.push_back(
+        {std::move(curve), rim.first_vertex + k, rim.first_vertex + (k + 1) % rim.count, normal});
   };
   if (style == EndStyle::patch) {
     std::array<nurbs::Curve, 4> quarters = yarn::end_quarters(body, last);
@@ -89,8 +94,11 @@ void add_end(Topology& topology, const yarn::Body& body, bool last, const Rim& r
 Topology ring(const yarn::Body& body) {
   Topology topology;
   topology.vertices = {body.surface.points.front()};
-  topology.edges = {{nurbs::boundary_row(body.surface, false), 0, 0, nullptr}, {first_column(body.surface), 0, 0, nullptr}};
-  topology.faces = {{&body.surface, !body.inward, {{false, 0, true}, {false, 1, true}, {false, 0, false}, {false, 1, false}}}};
+  topology.edges = {{nurbs::boundary_row(body.surface, false), 0, 0, nullptr},
+                    {first_column(body.surface), 0, 0, nullptr}};
+  topology.faces = {{&body.surface,
+                     !body.inward,
+                     {{false, 0, true}, {false, 1, true}, {false, 0, false}, {false, 1, false}}}};
   return topology;
 }
 
@@ -133,7 +141,8 @@ int write_edge_list(Records& records, const Common& common, const std::vector<Ed
   return pointer;
 }
 
-int write_face(Records& records, const Common& common, const Face& face, int surface, int vertex_list, int edge_list) {
+int write_face(Records& records, const Common& common, const Face& face, int surface, int vertex_list,
+               int edge_list) {
   const int loop = records.begin(common.entity(508, 1, dependent));
   records.integer(static_cast<std::int64_t>(face.loop.size()));
   for (const Use& use : face.loop) {

@@ -1,10 +1,14 @@
 #include "formats/iges/writer.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "core/clock.h"
 #include "formats/iges/entities.h"
@@ -89,23 +93,27 @@ Status Writer::check(const yarn::Body& body) {
   double largest = 0;
   for (const nurbs::Surface* surface : {&body.surface, &body.start.surface, &body.end.surface}) {
     const std::optional<double> coordinates = largest_of(numbers_of(surface->points));
-    if (!coordinates || !largest_of(surface->weights) || !largest_of(surface->knots_u) || !largest_of(surface->knots_v))
-      return yarn_error(Kind::geometry, body,
-                        fmt::format("yarn {} has a coordinate, weight or knot that is not a finite number", body.name));
+    if (!coordinates || !largest_of(surface->weights) || !largest_of(surface->knots_u) ||
+        !largest_of(surface->knots_v))
+      return yarn_error(
+          Kind::geometry, body,
+          fmt::format("yarn {} has a coordinate, weight or knot that is not a finite number", body.name));
     largest = std::max(largest, *coordinates);
   }
   for (const yarn::EndFace* end : {&body.start, &body.end}) {
     if (body.closed_along) break;
     if (options_.iges_solid && end->style == EndStyle::none)
-      return yarn_error(Kind::geometry, body,
-                        fmt::format("yarn {} has open ends and cannot be written as a solid: seal it with --ends "
-                                    "patch, fan or planar, or leave out --iges-solid",
-                                    body.name));
+      return yarn_error(
+          Kind::geometry, body,
+          fmt::format("yarn {} has open ends and cannot be written as a solid: seal it with --ends "
+                      "patch, fan or planar, or leave out --iges-solid",
+                      body.name));
     if (end->style != EndStyle::planar) continue;
     const EndPlane plane = end_plane(body, yarn::end_curve(body, end == &body.end), end == &body.end);
     const std::optional<double> corners = largest_of(numbers_of(plane.surface.points));
     if (!corners)
-      return yarn_error(Kind::geometry, body, fmt::format("yarn {} has an end plane that is not finite", body.name));
+      return yarn_error(Kind::geometry, body,
+                        fmt::format("yarn {} has an end plane that is not finite", body.name));
     largest = std::max(largest, *corners);
   }
   largest_ = std::max(largest_, largest);
@@ -113,11 +121,13 @@ Status Writer::check(const yarn::Body& body) {
   return {};
 }
 
-// Far from the limit a rough bound is enough; near it the yarn is written without being kept, and its lines counted.
+// Far from the limit a rough bound is enough; near it the yarn is written without being kept, and its lines
+// counted.
 Status Writer::check_room(const yarn::Body& body) {
   std::int64_t values = 1000;
   for (const nurbs::Surface* surface : {&body.surface, &body.start.surface, &body.end.surface})
-    values += static_cast<std::int64_t>(4 * surface->points.size() + 4 * (surface->knots_u.size() + surface->knots_v.size()) +
+    values += static_cast<std::int64_t>(4 * surface->points.size() +
+                                        4 * (surface->knots_u.size() + surface->knots_v.size()) +
                                         16 * static_cast<std::size_t>(surface->count_u + surface->count_v));
   const Records::Lines now = records_.lines();
   const std::int64_t most = records_.limits().lines;
@@ -132,10 +142,11 @@ Status Writer::check_room(const yarn::Body& body) {
   const bool parameters = needed.parameters > most;
   return yarn_error(
       Kind::limit, body,
-      fmt::format("with yarn {} the IGES file would need {} {} lines, but lines are numbered to {} at most ({} yarns "
-                  "fit): split the fabric over several files",
-                  body.name, parameters ? needed.parameters : needed.directory, parameters ? "parameter" : "directory",
-                  most, bodies_));
+      fmt::format(
+          "with yarn {} the IGES file would need {} {} lines, but lines are numbered to {} at most ({} yarns "
+          "fit): split the fabric over several files",
+          body.name, parameters ? needed.parameters : needed.directory,
+          parameters ? "parameter" : "directory", most, bodies_));
 }
 
 int Writer::color(const yarn::Color& color) {
@@ -158,10 +169,13 @@ int Writer::level(yarn::Role role) {
 
 int Writer::entities_of_end(const yarn::EndFace& end) const {
   switch (end.style) {
-    case EndStyle::none: return 0;
-    case EndStyle::planar: return entities_of_planar_end;
+    case EndStyle::none:
+      return 0;
+    case EndStyle::planar:
+      return entities_of_planar_end;
     case EndStyle::patch:
-    case EndStyle::fan: return 1;
+    case EndStyle::fan:
+      return 1;
   }
   return 0;
 }
@@ -176,8 +190,9 @@ void Writer::write_surfaces(const Common& common, const yarn::Body& body) {
                          ? write_planar_end(records_, common, body, end == &body.end)
                          : write_surface(records_, common.entity(128), end->surface, common.name);
   }
-  // Whoever sews the group takes the direction of the shell from its first member. Gmsh makes one solid of all shells of a
-  // file and then splits it, which fails where two of them point outward: so a face that points inward leads.
+  // Whoever sews the group takes the direction of the shell from its first member. Gmsh makes one solid of
+  // all shells of a file and then splits it, which fails where two of them point outward: so a face that
+  // points inward leads.
   if (count > 1 && !body.inward) std::swap(faces[0], faces[1]);
   write_group(records_, common, {faces.data(), count});
 }
@@ -202,15 +217,17 @@ Status Writer::add(const yarn::Body& body) {
   name_ = ascii(body.name);
   if (Status status = check_room(body); !status.ok()) return status;
   if (name_ != body.name && !std::exchange(renamed_, true))
-    messages_.push_back(warning(Kind::unsupported, fmt::format("IGES strings are ASCII: yarn {} is named {} in the file",
-                                                               body.name, name_)));
+    messages_.push_back(
+        warning(Kind::unsupported,
+                fmt::format("IGES strings are ASCII: yarn {} is named {} in the file", body.name, name_)));
   write(body);
   ++bodies_;
   // What is still to come is as what came.
   const auto entities = static_cast<std::uint64_t>(records_.lines().directory / 2);
   if (options_.expected_bodies > bodies_) {
-    const std::uint64_t shared = shared_.colors.size() +
-                                 static_cast<std::uint64_t>(std::count(shared_.levels.begin(), shared_.levels.end(), true));
+    const std::uint64_t shared =
+        shared_.colors.size() +
+        static_cast<std::uint64_t>(std::count(shared_.levels.begin(), shared_.levels.end(), true));
     records_.expect(shared + (entities - shared) * options_.expected_bodies / bodies_);
   }
   return records_.status();
@@ -237,7 +254,10 @@ Result<WriteFacts> Writer::finish() {
 
 Result<std::unique_ptr<BodyWriter>> open_writer(OutputFile& output, const SurfaceOptions& options,
                                                 Records::Limits limits) {
-  Header header{.title = options.title, .file_name = options.file_name, .units = options.units, .time = iges_timestamp()};
+  Header header{.title = options.title,
+                .file_name = options.file_name,
+                .units = options.units,
+                .time = iges_timestamp()};
   return std::unique_ptr<BodyWriter>(std::make_unique<Writer>(output, options, std::move(header), limits));
 }
 

@@ -1,6 +1,7 @@
-// How fast IGES is written: our writer, OpenCASCADE's writer, and a bare loop that sends the same doubles through
-// std::to_chars into the same buffered write. All in one run, to the same folder; medians of several repeats; one JSON
-// object to standard output. Yarns are made on the fly, one at a time, so that the memory seen is the writers' own.
+// How fast IGES is written: our writer, OpenCASCADE's writer, and a bare loop that sends the same doubles
+// through std::to_chars into the same buffered write. All in one run, to the same folder; medians of several
+// repeats; one JSON object to standard output. Yarns are made on the fly, one at a time, so that the memory
+// seen is the writers' own.
 //
 //   iges_write [--repeats N] [--yarns N,N,...] [--folder DIR] [--no-occt]
 #include <fmt/format.h>
@@ -40,8 +41,8 @@ namespace {
 
 using namespace selvage;
 
-// A yarn of 18 x 16 control points that waves through a cloth: coordinates with all their digits, knots as methods.md
-// has them, two patch ends. Yarn k differs from its neighbours in place and phase.
+// A yarn of 18 x 16 control points that waves through a cloth: coordinates with all their digits, knots as
+// methods.md has them, two patch ends. Yarn k differs from its neighbours in place and phase.
 class Cloth {
  public:
   Cloth() {
@@ -67,7 +68,8 @@ class Cloth {
         const double turn = i == 0 || i == 17 ? -0.5 : i - 1.0;
         const double reach = i == 0 || i == 17 ? std::cos(std::numbers::pi / 16) : 1.0;
         const double angle = 2 * std::numbers::pi * turn / 16;
-        const double across = place + 0.2011 * reach * std::cos(angle), up = z + 0.1003 * reach * std::sin(angle);
+        const double across = place + 0.2011 * reach * std::cos(angle),
+                     up = z + 0.1003 * reach * std::sin(angle);
         Vec3& point = body_.surface.points[static_cast<std::size_t>(j * 18 + i)];
         point = weft ? Vec3(-across, along, up) : Vec3(along, across, up);
       }
@@ -109,7 +111,8 @@ struct Job {
   std::string path;
 };
 
-// Only the writing is timed, not the making of the yarns; the file is not made durable (fsync) by any of the three.
+// Only the writing is timed, not the making of the yarns; the file is not made durable (fsync) by any of the
+// three.
 class Stopwatch {
  public:
   void start() { from_ = std::chrono::steady_clock::now(); }
@@ -243,7 +246,8 @@ Outcome occt(const Job& job) {
   for (int k = 0; k < job.yarns; ++k) {
     const yarn::Body& body = cloth.yarn(k);
     outcome.doubles += doubles_of(body);
-    for (const nurbs::Surface* s : {&body.surface, &body.start.surface, &body.end.surface}) faces.push_back(occt_face(*s));
+    for (const nurbs::Surface* s : {&body.surface, &body.start.surface, &body.end.surface})
+      faces.push_back(occt_face(*s));
   }
   Stopwatch watch;
   watch.start();
@@ -301,16 +305,18 @@ Measured median(std::vector<Measured> all) {
   return all[all.size() / 2];
 }
 
-std::string row(std::string_view writer, int yarns, const Measured& m, const Measured& own, const Measured& loop,
-                bool with_bare, const Measured* other) {
+std::string row(std::string_view writer, int yarns, const Measured& m, const Measured& own,
+                const Measured& loop, bool with_bare, const Measured* other) {
   const double s = m.outcome.seconds;
   std::string text = fmt::format(
       R"(  {{"writer": "{}", "yarns": {}, "seconds": {:.6g}, "bytes": {}, "mb_per_s": {:.1f}, "yarns_per_s": {:.0f}, )"
       R"("doubles_per_s": {:.0f}, "peak_rss_growth_mib": {:.1f})",
       writer, yarns, s, m.outcome.bytes, static_cast<double>(m.outcome.bytes) / s / 1e6, yarns / s,
       static_cast<double>(m.outcome.doubles) / s, m.peak_mib);
-  if (with_bare) text += fmt::format(R"(, "time_to_bare_loop": {:.3f})", own.outcome.seconds / loop.outcome.seconds);
-  if (other != nullptr) text += fmt::format(R"(, "times_occt": {:.1f})", other->outcome.seconds / own.outcome.seconds);
+  if (with_bare)
+    text += fmt::format(R"(, "time_to_bare_loop": {:.3f})", own.outcome.seconds / loop.outcome.seconds);
+  if (other != nullptr)
+    text += fmt::format(R"(, "times_occt": {:.1f})", other->outcome.seconds / own.outcome.seconds);
   return text + "}";
 }
 
@@ -361,7 +367,9 @@ int main(int count, char** words) {
   }
   std::string all;
   for (const std::string& text : rows) all += (all.empty() ? "" : ",\n") + text;
-  fmt::print("{{\"benchmark\": \"iges_write\", \"control_points\": [18, 16], \"repeats\": {}, \"rows\": [\n{}\n]}}\n", repeats,
-             all);
+  fmt::print(
+      "{{\"benchmark\": \"iges_write\", \"control_points\": [18, 16], \"repeats\": {}, \"rows\": "
+      "[\n{}\n]}}\n",
+      repeats, all);
   return 0;
 }

@@ -41,7 +41,8 @@ yarn::Body wave(const std::string& name, const Wave& shape, yarn::EndStyle ends)
     const Vec3 across = Vec3::UnitY(), up = Vec3(-slope, 0, 1).normalized();
     for (int i = 0; i < shape.round; ++i) {
       const double turn = 2 * pi * i / shape.round * (shape.reversed ? -1 : 1);
-      net.points.push_back(centre + 0.5 * shape.width * std::cos(turn) * across + 0.5 * shape.height * std::sin(turn) * up);
+      net.points.push_back(centre + 0.5 * shape.width * std::cos(turn) * across +
+                           0.5 * shape.height * std::sin(turn) * up);
       if (shape.weight_step > 0) net.weights.push_back(1 + shape.weight_step * (i % 2));
     }
   }
