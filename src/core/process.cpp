@@ -253,6 +253,7 @@ std::string describe(const JobEnd& end, double seconds, double mebibytes) {
   if (end.status == SIGKILL)
     return "was killed from outside, most likely because the machine ran out of memory; try --memory and a "
            "smaller -j";
+  if (end.status == SIGPIPE) return "was ended: nobody reads standard output any more";
   std::string text = fmt::format("crashed: {}", ::strsignal(end.status));
   if (mebibytes > 0) text += fmt::format(" (its memory was limited to {:g} MB by --memory)", mebibytes);
   return text;

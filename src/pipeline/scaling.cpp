@@ -30,7 +30,8 @@ struct Ratio {
 
 Ratio ratio(Unit from, Unit to) {
   const long long a = exact_size(from), b = exact_size(to), common = std::gcd(a, b);
-  return {static_cast<double>(a / common), static_cast<double>(b / common)};
+  const long long up = a / common, down = b / common;
+  return {static_cast<double>(up), static_cast<double>(down)};
 }
 
 }  // namespace

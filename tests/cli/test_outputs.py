@@ -1,6 +1,8 @@
 """Where outputs go, that they are whole or absent, and that no two inputs share one."""
 
 import os
+import pathlib
+import re
 import resource
 import shutil
 import signal
@@ -55,6 +57,39 @@ class Places(Case):
         self.succeeds("convert", *inputs, "--to", "iges", "-o", self.folder / "one", "-j", 1)
         self.succeeds("convert", *inputs, "--to", "iges", "-o", self.folder / "four", "-j", 4)
         self.assertEqual(files_below(self.folder / "one"), files_below(self.folder / "four"))
+
+
+class Units(Case):
+    """--units writes the same shape in another unit."""
+
+    def iges(self, *options):
+        """(units flag of the global section, numbers of the first 128)"""
+        untitled = self.folder / "ring.txt"  # titles and their commas aside, a record is split at its commas
+        untitled.write_text(re.sub("(?m)^title.*\n", "", pathlib.Path(RING).read_text()))
+        lines = self.succeeds("convert", untitled, "--to", "iges", "-o", "-", *options).stdout.splitlines()
+        # The first field is the comma itself, so the 14th stands one place later.
+        flag = "".join(line[:72].strip() for line in lines if line[72] == "G").split(",")[14]
+        surface = "".join(line[:64].strip() for line in lines if line[72] == "P").split(";")
+        return flag, next([float(word) for word in part.split(",")] for part in surface if part.startswith("128,"))
+
+    def test_surfaces(self):
+        flag, mm = self.iges()
+        self.assertEqual((flag, self.iges("--units", "mm")), ("2", (flag, mm)))
+        k1, k2, m1, m2 = (int(x) for x in mm[1:5])
+        knots = k1 + m1 + 2 + k2 + m2 + 2
+        count = (k1 + 1) * (k2 + 1)
+        head = 10 + knots + count  # type, sizes, flags, knots, weights: the same in any unit
+        for unit, wanted, scale in (("cm", "10", 0.1), ("inch", "1", 1 / 25.4), ("m", "6", 0.001), ("um", "9", 1000.0)):
+            flag, other = self.iges("--units", unit)
+            self.assertEqual(flag, wanted)
+            self.assertEqual(other[:head], mm[:head])
+            for a, b in zip(other[head:head + 3 * count], mm[head:head + 3 * count]):
+                self.assertAlmostEqual(a, b * scale, delta=4e-16 * abs(b * scale))
+
+    def test_tables(self):
+        length = lambda text: float(next(line for line in text.splitlines() if "together" in line).split()[2].rstrip(","))
+        mm = length(self.succeeds("info", RING).stdout)
+        self.assertAlmostEqual(length(self.succeeds("info", RING, "--units", "cm").stdout), mm / 10, places=5)
 
 
 class Collisions(Case):
