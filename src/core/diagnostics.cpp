@@ -40,7 +40,7 @@ std::string to_string(const Message& message) {
     out += ": ";
   }
   out += fmt::format("{}: {}", name_of(message.severity), message.text);
-  if (!message.yarn.empty() && message.text.find(message.yarn) == std::string::npos)
+  if (!message.yarn.empty() && message.text.find("'" + message.yarn + "'") == std::string::npos)
     out += fmt::format(" (yarn '{}')", message.yarn);
   if (message.at)
     out += fmt::format(" at ({:.6g}, {:.6g}, {:.6g})", message.at->x(), message.at->y(), message.at->z());
