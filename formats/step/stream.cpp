@@ -21,8 +21,9 @@ bool is_digit(char c) {
 bool is_word(char c) {
   return is_digit(c) || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' || c == '#';
 }
+// Integers, and reals as %a writes them.
 bool is_number(char c) {
-  return is_digit(c) || c == '.' || c == '+' || c == '-' || c == 'E' || c == 'e';
+  return is_digit(c) || (c >= 'a' && c <= 'f') || c == '.' || c == '+' || c == '-' || c == 'x' || c == 'p';
 }
 
 template <class Belongs>
@@ -60,8 +61,8 @@ Status StepStream::close() {
   return status_;
 }
 
+// OpenCASCADE ends each line with a flush; the block is written when it is full.
 int StepStream::sync() {
-  drain(false);
   return status_.ok() ? 0 : -1;
 }
 
@@ -113,17 +114,10 @@ void StepStream::convert(std::string_view text) {
       in_string_ = true;
     } else if (is_digit(c) || c == '-') {
       length = length_while(text, is_number);
-      const std::string_view number = text.substr(0, length);
-      double value = 0.0;
-      const auto [end, failure] = std::from_chars(number.data(), number.data() + number.size(), value);
-      const bool is_real = number.find('.') != std::string_view::npos && failure == std::errc();
-      if (is_real && end == number.data() + number.size())
-        put_real(value);
-      else
-        put(number);
+      put_number(text.substr(0, length));
     } else {
       if (is_word(c)) length = length_while(text, is_word);
-      if (c == '.') length = std::min(text.find('.', 1) + 1, text.size());  // .T.
+      if (c == '.') length = std::max<std::size_t>(text.find('.', 1) + 1, 1);  // .T.
       put(text.substr(0, length));
     }
     text.remove_prefix(length);
@@ -151,6 +145,15 @@ void StepStream::put_encoded() {
                        : fmt::format("\\X4\\{:08X}\\X0\\", static_cast<unsigned>(code)));
   }
   encoded_.clear();
+}
+
+// A real stands here as printf's %a writes it, -0x1.8p+1; all else is an integer.
+void StepStream::put_number(std::string_view number) {
+  const std::size_t sign = number.front() == '-' ? 1 : 0;
+  if (!number.substr(sign).starts_with("0x")) return put(number);
+  double value = 0.0;
+  std::from_chars(number.data() + sign + 2, number.data() + number.size(), value, std::chars_format::hex);
+  put_real(sign == 1 ? -value : value);
 }
 
 void StepStream::put_real(double value) {

@@ -10,10 +10,10 @@
 namespace selvage::formats::step {
 
 // Takes the text of a Part 21 file (ISO 10303-21) and writes it in blocks of a MiB with the same content, but
-//   reals in the shortest form that reads back to the same bits, with the decimal point that Part 21 asks
-//   for:
-//     OpenCASCADE prints them by one printf format, where the 17 digits that every double needs make 0.1 read
-//     1.0000000000000001E-01, and fewer lose bits;
+//   reals in the shortest decimal form that reads back to the same bits, with the decimal point that Part 21
+//   asks for.
+//     OpenCASCADE prints them by one printf format for all, which must be %a here: with 17 digits 0.1 would
+//     read 1.0000000000000001E-01, and with fewer bits are lost;
 //   strings whole on one line, and their UTF-8 in the standard's own form (\X2\00FC\X0\), which older readers
 //   need; the other lines filled anew to at most 80 columns.
 class StepStream : public std::streambuf {
@@ -33,6 +33,7 @@ class StepStream : public std::streambuf {
   void convert(std::string_view text);
   void convert_string(std::string_view piece);
   void put(std::string_view token);
+  void put_number(std::string_view number);
   void put_real(double value);
   void put_encoded();
 

@@ -214,9 +214,9 @@ class StepBodyWriter : public BodyWriter {
   Result<WriteFacts> send(const Handle(StepData_StepModel) & model) {
     set_header(model);
     StepData_StepWriter lines(model);
-    // All 17 digits; StepStream shortens them. OpenCASCADE's own suppression of zeros breaks after 16
-    // characters.
-    lines.FloatWriter().SetFormat("%.16E");
+    // Exact, and four times faster than 17 decimal digits; StepStream makes decimals of them. (OpenCASCADE's
+    // own way of short decimals, suppressed zeros, breaks after 16 characters.)
+    lines.FloatWriter().SetFormat("%a");
     lines.SendModel(Handle(StepData_Protocol)::DownCast(model->Protocol()));
     StepStream buffer(output_);
     std::ostream stream(&buffer);
