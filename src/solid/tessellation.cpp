@@ -37,7 +37,7 @@ struct Cuts {
 std::vector<double> sites_of(const Cuts& cuts) {
   std::vector<double> sites;
   for (std::size_t k = 0; k + 1 < cuts.breaks.size(); ++k)
-    for (double i = 0; i < cuts.parts[k]; ++i)
+    for (int i = 0; i < static_cast<int>(cuts.parts[k]); ++i)
       sites.push_back(cuts.breaks[k] + (cuts.breaks[k + 1] - cuts.breaks[k]) * (i / cuts.parts[k]));
   sites.push_back(cuts.breaks.back());
   return sites;

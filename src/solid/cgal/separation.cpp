@@ -256,7 +256,8 @@ Vec3 SharedSpace::easiest_direction(const std::vector<Vec3>& starts) const {
   list.resize(std::min<std::size_t>(list.size(), 3));
   Start best = list.front();
   for (Start here : list) {
-    for (double step = 0.3; step > 0.004; step *= 0.5) {
+    double step = 0.3;
+    for (int halving = 0; halving < 7; ++halving, step *= 0.5) {
       for (bool moved = true; moved;) {
         moved = false;
         const Vec3 x = here.n.unitOrthogonal(), y = here.n.cross(x);

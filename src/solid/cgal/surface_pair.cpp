@@ -115,10 +115,10 @@ std::vector<double> places(double low, double high, int cells, const std::vector
   std::vector<double> sites;
   for (int i = 0; i <= cells; ++i) sites.push_back(low + (high - low) * i / cells);
   const double grain = 1e-9 * (high - low);
-  for (double turn = -2.0; turn <= 2.0; ++turn)
+  for (int turn = -2; turn <= 2; ++turn)
     for (double t : breaks) {
       t += turn * period;
-      if (t <= low || t >= high || (turn != 0.0 && period == 0.0)) continue;
+      if (t <= low || t >= high || (turn != 0 && period == 0.0)) continue;
       const auto near = std::lower_bound(sites.begin(), sites.end(), t - grain);
       if (std::abs(*near - t) <= grain) {
         *near = t;

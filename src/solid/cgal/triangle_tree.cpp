@@ -163,6 +163,7 @@ std::vector<TriangleTree::Pair> TriangleTree::near_pairs(const TriangleTree& a, 
     for (std::uint32_t i = na.first; i < na.first + na.count; ++i) {
       const Triangle ta = a.triangle(a.order_[i]);
       const Box3 box = box_of(ta);
+      if (box.squaredExteriorDistance(nb.box) > square(reach)) continue;
       for (std::uint32_t j = nb.first; j < nb.first + nb.count; ++j) {
         const Triangle tb = b.triangle(b.order_[j]);
         const Box3 other = box_of(tb);
@@ -185,13 +186,19 @@ TriangleTree::Pair TriangleTree::nearest_pair(const TriangleTree& a, const Trian
   Pair best{0, 0, std::numeric_limits<double>::infinity()};
   double reach = limit;
   descend(a, b, reach, [&](const Node& na, const Node& nb) {
-    for (std::uint32_t i = na.first; i < na.first + na.count; ++i)
+    for (std::uint32_t i = na.first; i < na.first + na.count; ++i) {
+      const Triangle ta = a.triangle(a.order_[i]);
+      const Box3 box = box_of(ta);
+      if (box.squaredExteriorDistance(nb.box) > square(reach)) continue;
       for (std::uint32_t j = nb.first; j < nb.first + nb.count; ++j) {
-        const double distance = closest(a.triangle(a.order_[i]), b.triangle(b.order_[j])).distance;
+        const Triangle tb = b.triangle(b.order_[j]);
+        if (box.squaredExteriorDistance(box_of(tb)) > square(reach)) continue;
+        const double distance = closest(ta, tb).distance;
         if (distance > reach || distance >= best.distance) continue;
         best = {a.order_[i], b.order_[j], distance};
         reach = distance;
       }
+    }
   });
   return best;
 }
