@@ -34,7 +34,7 @@ Face make_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t 
 // Of a positive cell: each face seen from outside, counter-clockwise.
 constexpr std::array<std::array<int, 3>, 4> outward_faces = {{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
 
-Message wrong(std::string text) {
+Message wrong(const std::string& text) {
   return error(Kind::internal, text + "; try another --size");
 }
 

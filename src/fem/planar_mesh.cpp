@@ -248,7 +248,8 @@ void Triangulation::smooth() {
 double distance_to_rim(std::span<const Vec2> rim, const Vec2& point) {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < rim.size(); ++i) {
-    const Vec2 a = rim[i], along = rim[(i + 1) % rim.size()] - a;
+    const Vec2& a = rim[i];
+    const Vec2 along = rim[(i + 1) % rim.size()] - a;
     const double t = std::clamp((point - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
     nearest = std::min(nearest, (point - a - t * along).norm());
   }

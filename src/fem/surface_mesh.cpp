@@ -215,8 +215,8 @@ std::vector<double> Builder::row_places(const Gauge& along) const {
   const double least = body_.closed_along && creases_.size() == 2 ? least_round : 1;
   for (std::size_t s = 0; s + 1 < creases_.size(); ++s) {
     const double from = along.steps_at(creases_[s]), to = along.steps_at(creases_[s + 1]);
-    const double count = std::max(std::round(to - from), least);
-    for (double k = 0; k < count; ++k)
+    const auto count = static_cast<int>(std::max(std::round(to - from), least));
+    for (int k = 0; k < count; ++k)
       result.push_back(k == 0 ? creases_[s] : along.parameter_at(from + (to - from) * k / count));
   }
   if (!body_.closed_along) result.push_back(creases_.back());
@@ -225,7 +225,7 @@ std::vector<double> Builder::row_places(const Gauge& along) const {
 
 void Builder::make_rows(const std::vector<double>& places) {
   const std::size_t segments = crests_.size() - 1;
-  std::vector<double> counts(segments, 0.0);
+  std::vector<int> counts(segments, 0);
   for (const double v : places) {
     const Gauge gauge = gauge_round(v);
     Row row;
@@ -236,9 +236,9 @@ void Builder::make_rows(const std::vector<double>& places) {
       // The count of the row before is kept until it is clearly wrong, so that equal sections look the same.
       const double wanted = scale * (to - from);
       if (counts[s] == 0 || std::abs(wanted - counts[s]) > 0.6 + 0.05 * counts[s])
-        counts[s] = std::max(std::ceil(wanted - 0.25), 1.0);
+        counts[s] = static_cast<int>(std::max(std::ceil(wanted - 0.25), 1.0));
       row.segment_first.push_back(row.u.size());
-      for (double k = 0; k < counts[s]; ++k)
+      for (int k = 0; k < counts[s]; ++k)
         row.u.push_back(k == 0 ? crests_[s] : gauge.parameter_at(from + (to - from) * k / counts[s]));
     }
     row.segment_first.push_back(row.u.size());
@@ -362,8 +362,8 @@ double smallest_section_extent(const yarn::Body& body) {
     vs.push_back(surface.first_v() + (surface.last_v() - surface.first_v()) * j / (sections - 1));
   const std::vector<Vec3> points = nurbs::evaluate_grid(surface, us, vs);
   std::vector<double> extents;
-  for (int j = 0; j < sections; ++j) {
-    const std::span<const Vec3> row = std::span(points).subspan(static_cast<std::size_t>(j * round), round);
+  for (std::size_t j = 0; j < sections; ++j) {
+    const std::span<const Vec3> row = std::span(points).subspan(j * round, round);
     // The section's own normal, from the area that it encloses.
     Vec3 normal = Vec3::Zero();
     for (std::size_t i = 0; i + 2 < row.size(); ++i)

@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "fem/mesh_check.h"
 #include "fem/tetgen_worker/protocol.h"
@@ -283,7 +284,7 @@ Result<TetMesh> read_answer(const TetgenJob& job, const Ended& ended, const Tetg
 
 double enclosed_volume(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   if (points.empty()) return 0;
-  const Vec3 origin = points.front();
+  const Vec3& origin = points.front();
   double sum = 0;
   for (const Triangle& t : triangles)
     sum += (points[t[0]] - origin).dot((points[t[1]] - origin).cross(points[t[2]] - origin));

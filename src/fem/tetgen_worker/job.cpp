@@ -22,7 +22,7 @@ void fill(const Job& job, tetgenio& in) {
     facet.polygonlist = new tetgenio::polygon[1];
     facet.polygonlist->numberofvertices = 3;
     facet.polygonlist->vertexlist = new int[3];
-    std::copy_n(job.triangles.begin() + 3 * i, 3, facet.polygonlist->vertexlist);
+    std::copy_n(job.triangles.begin() + 3 * static_cast<std::ptrdiff_t>(i), 3, facet.polygonlist->vertexlist);
   }
 }
 
