@@ -71,35 +71,13 @@ def whole_process(bin_folder, folder, quick):
                   for name, t in zip(names, times)])
 
 
-def many_yarns(path, count):
-    """A fabric of `count` yarns: the first grid of the sample, moved along y."""
-    lines = GRID.read_text().splitlines()
-    begin = next(i for i, line in enumerate(lines) if line.startswith("yarn "))
-    head = lines[:begin]
-    block = lines[begin:]
-    first = next(i for i, line in enumerate(block) if line.split()[:1] == ["grid"])
-    size = [int(word) for word in block[first].split()[1:3]]
-    rows = [[float(x) for x in line.split("#")[0].split()] for line in block[first + 1:] if line.strip()[:1] in set("-.0123456789")]
-    rows = rows[:size[0] * size[1]]
-    thread = block[0].split()[2]
-    with open(path, "w") as out:
-        out.write("\n".join(head) + "\n")
-        for k in range(count):
-            out.write(f"yarn y{k} {thread}\n  grid {size[0]} {size[1]}\n")
-            out.writelines(f"    {x!r} {y + 2.0 * k!r} {z!r}\n" for x, y, z in rows)
-            out.write("  end\nend\n")
-
-
-def step_is_linear(bin_folder, folder, quick):
-    rows = []
-    for count in (64, 512) if quick else (64, 512, 2048):
-        path = f"{folder}/many.txt"
-        many_yarns(path, count)
-        took = min(seconds([f"{bin_folder}/selvage", "convert", path, "-o", f"{folder}/many.stp", "--quiet", "--no-progress"])
-                   for _ in range(3))
-        size = os.path.getsize(f"{folder}/many.stp")
-        rows.append([str(count), f"{took:.2f}", f"{1e3 * took / count:.2f}", f"{size / 1e6:.1f}"])
-    return table(["yarns", "s", "ms a yarn", "MB"], rows)
+def step_write(bin_folder, folder, quick):
+    command = [f"{bin_folder}/step_write", "--folder", folder] + (["--repeats", "1"] if quick else [])
+    command += ["--yarns", "64,512" if quick else "64,512,2048"]
+    rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
+    return table(["yarns", "s", "ms a yarn", "MB", "peak memory, MiB"],
+                 [[str(row["yarns"]), f"{row['seconds']:.2f}", f"{1e3 * row['seconds'] / row['yarns']:.2f}",
+                   f"{row['bytes'] / 1e6:.1f}", f"{row['peak_rss_mib']:.0f}"] for row in rows])
 
 
 def machine():
@@ -122,7 +100,7 @@ def main():
             "The bare loop sends the same values through `to_chars` and the same buffered write; OpenCASCADE writes about ten "
             "digits, selvage all of them.\n\n" + iges_write(given.bin, folder, given.quick) +
             "\n## Whole processes\n\n" + whole_process(given.bin, folder, given.quick) +
-            "\n## STEP, text to file: the time a yarn stays the same\n\n" + step_is_linear(given.bin, folder, given.quick))
+            "\n## Writing STEP: the time a yarn stays the same\n\n" + step_write(given.bin, folder, given.quick))
     pathlib.Path(given.out).write_text(text)
     print(text)
 
