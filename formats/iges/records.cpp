@@ -8,8 +8,10 @@ namespace selvage::formats::iges {
 namespace {
 
 constexpr std::size_t entry_length = 2 * line_length;
-constexpr std::size_t spare =
-    max_number_length + 2;  // a value may run over the end of the last line before it is moved
+// Blanks, and values that move to the next line, are copied in blocks of a fixed length: a few instructions.
+// What is too much is written over by what follows; at the end of the buffer it needs room.
+constexpr std::ptrdiff_t block = max_number_length;
+constexpr std::size_t spare = 2 * block;
 
 // Adds one to a right-justified number with leading blanks; `last` is its last digit.
 void count_up(char* last) {
@@ -55,7 +57,9 @@ int Records::begin(const Entity& entity) {
 
 // Finishes the present line, whose data end at `at`.
 void Records::close_line(char* at) {
-  std::memset(at, ' ', static_cast<std::size_t>(line_ + data_columns - at));
+  const std::ptrdiff_t rest = line_ + data_columns - at;
+  std::memset(at, ' ', block);
+  if (rest > block) std::memset(at + block, ' ', static_cast<std::size_t>(rest - block));
   std::memcpy(line_ + data_columns, tail_, sizeof tail_);
   ++lines_;
   if (measuring_) return;
@@ -66,11 +70,11 @@ void Records::close_line(char* at) {
 
 // A token that does not fit on the present line begins the next one; returns its end there.
 char* Records::next_line(char* token, const char* token_end) {
-  char copy[max_number_length + 2];
-  const auto length = static_cast<std::size_t>(token_end - token);
-  std::memcpy(copy, token, length);
+  char copy[block];
+  std::memcpy(copy, token, block);
+  const std::ptrdiff_t length = token_end - token;
   close_line(token);
-  std::memcpy(line_, copy, length);
+  std::memcpy(line_, copy, block);
   return line_ + length;
 }
 
@@ -156,12 +160,12 @@ void Records::file_entity(std::int64_t first_line, std::int64_t line_count) {
   char* const first = directory_.get() + directory_used_;
   char* const second = first + line_length;
   directory_used_ += entry_length;
-  const auto field = [](char* line, int number, std::int64_t value) {
+  const auto field = [](char* line, std::size_t number, std::int64_t value) {
     right_justified(line + 8 * (number - 1), 8, value);
   };
   field(first, 1, entity_.type);
   field(first, 2, first_line);
-  for (int number : {3, 4, 6, 7, 8}) field(first, number, 0);
+  for (const std::size_t number : {3, 4, 6, 7, 8}) field(first, number, 0);
   field(first, 5, entity_.level);
   std::memcpy(first + 64, entity_.status.data(), 8);
   first[72] = 'D';
@@ -246,9 +250,9 @@ void Records::flush_directory() {
 // Moves bytes within the file; the places may overlap.
 void Records::move(Extent from, std::uint64_t to) {
   if (from.offset == to) return;
-  const std::uint64_t block = limits_.buffer_lines * line_length;
+  const std::uint64_t most = limits_.buffer_lines * line_length;
   for (std::uint64_t done = 0; done < from.size && status_.ok();) {
-    const std::uint64_t size = std::min(block, from.size - done);
+    const std::uint64_t size = std::min(most, from.size - done);
     // Up: the last block first; down: the first.
     const std::uint64_t at = to > from.offset ? from.size - done - size : done;
     const Result<std::string> bytes = output_->read_at(from.offset + at, static_cast<std::size_t>(size));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -25,15 +26,14 @@ std::span<const double> numbers_of(const std::vector<Vec3>& points) {
   return {points.empty() ? nullptr : points.data()->data(), 3 * points.size()};
 }
 
-// The largest magnitude; nothing where a value is not finite.
+// The largest magnitude; nothing where a value is not finite. Magnitudes order like their bits, and what is
+// not finite is above all others.
 std::optional<double> largest_of(std::span<const double> values) {
-  double largest = 0, zero = 0;
-  for (const double value : values) {
-    largest = std::max(largest, std::abs(value));
-    zero += 0 * value;
-  }
-  if (zero != 0 || std::isnan(zero)) return std::nullopt;
-  return largest;
+  constexpr std::uint64_t sign = std::uint64_t{1} << 63U;
+  std::uint64_t largest = 0;
+  for (const double value : values) largest = std::max(largest, std::bit_cast<std::uint64_t>(value) & ~sign);
+  const double magnitude = std::bit_cast<double>(largest);
+  return std::isfinite(magnitude) ? std::optional(magnitude) : std::nullopt;
 }
 
 // The mean thickness of the yarn's first section: the length of its control polygon over pi.

@@ -284,6 +284,8 @@ Measured measure(const std::function<Outcome(const Job&)>& run, const Job& job) 
   const pid_t child = ::fork();
   if (child == 0) {
     const long before = peak_kib();
+    run({std::min(job.yarns, 8),
+         job.path});  // code and tables are in memory afterwards: starting up is not writing
     Measured measured{run(job), 0};
     measured.peak_mib = static_cast<double>(peak_kib() - before) / 1024;
     const bool sent = ::write(ends[1], &measured, sizeof measured) == sizeof measured;
@@ -305,19 +307,23 @@ Measured median(std::vector<Measured> all) {
   return all[all.size() / 2];
 }
 
-std::string row(std::string_view writer, int yarns, const Measured& m, const Measured& own,
-                const Measured& loop, bool with_bare, const Measured* other) {
+// The median of the ratios of time of neighbouring runs: what else the machine does changes slowly against
+// them.
+double median_ratio(const std::vector<Measured>& above, const std::vector<Measured>& below) {
+  std::vector<double> ratios;
+  for (std::size_t r = 0; r < std::min(above.size(), below.size()); ++r)
+    ratios.push_back(above[r].outcome.seconds / below[r].outcome.seconds);
+  std::sort(ratios.begin(), ratios.end());
+  return ratios[ratios.size() / 2];
+}
+
+std::string row(std::string_view writer, int yarns, const Measured& m, const std::string& ratios = {}) {
   const double s = m.outcome.seconds;
-  std::string text = fmt::format(
+  return fmt::format(
       R"(  {{"writer": "{}", "yarns": {}, "seconds": {:.6g}, "bytes": {}, "mb_per_s": {:.1f}, "yarns_per_s": {:.0f}, )"
-      R"("doubles_per_s": {:.0f}, "peak_rss_growth_mib": {:.1f})",
+      R"("doubles_per_s": {:.0f}, "peak_rss_growth_mib": {:.1f}{}}})",
       writer, yarns, s, m.outcome.bytes, static_cast<double>(m.outcome.bytes) / s / 1e6, yarns / s,
-      static_cast<double>(m.outcome.doubles) / s, m.peak_mib);
-  if (with_bare)
-    text += fmt::format(R"(, "time_to_bare_loop": {:.3f})", own.outcome.seconds / loop.outcome.seconds);
-  if (other != nullptr)
-    text += fmt::format(R"(, "times_occt": {:.1f})", other->outcome.seconds / own.outcome.seconds);
-  return text + "}";
+      static_cast<double>(m.outcome.doubles) / s, m.peak_mib, ratios);
 }
 
 }  // namespace
@@ -357,13 +363,13 @@ int main(int count, char** words) {
     for (int r = 0; r < repeats; ++r) {
       a.push_back(measure(ours, job));
       b.push_back(measure(bare, job));
-      if (with_occt && (r < 3 || yarns <= 64)) c.push_back(measure(occt, job));
+      if (with_occt && (r < 5 || yarns <= 64)) c.push_back(measure(occt, job));
     }
-    const Measured own = median(a), loop = median(b);
-    const Measured other = with_occt ? median(c) : Measured{};
-    rows.push_back(row("selvage", yarns, own, own, loop, true, with_occt ? &other : nullptr));
-    rows.push_back(row("bare loop", yarns, loop, own, loop, false, nullptr));
-    if (with_occt) rows.push_back(row("OpenCASCADE", yarns, other, own, loop, false, nullptr));
+    std::string ratios = fmt::format(R"(, "time_to_bare_loop": {:.3f})", median_ratio(a, b));
+    if (with_occt) ratios += fmt::format(R"(, "times_occt": {:.1f})", median_ratio(c, a));
+    rows.push_back(row("selvage", yarns, median(a), ratios));
+    rows.push_back(row("bare loop", yarns, median(b)));
+    if (with_occt) rows.push_back(row("OpenCASCADE", yarns, median(c)));
   }
   std::string all;
   for (const std::string& text : rows) all += (all.empty() ? "" : ",\n") + text;
