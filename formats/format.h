@@ -27,9 +27,9 @@ struct WriteFacts {
 };
 
 struct SurfaceOptions {
-  std::string title;      // of the fabric, may be empty
-  std::string file_name;  // the output's own name (without folders), for headers
-  Unit units = Unit::mm;  // of all lengths
+  std::string title;                  // of the fabric, may be empty
+  std::string file_name;              // the output's own name (without folders), for headers
+  Unit units = Unit::mm;              // of all lengths
   std::uint64_t expected_bodies = 0;  // how many will be added; a guess only costs speed
   double max_coordinate = 0;          // upper bound of |coordinate| over all bodies, if known; 0: unknown
   double tolerance = 0;               // of the modelled tubes, file units; 0: unknown
@@ -50,15 +50,18 @@ struct Descriptor {
   std::string_view name;                     // the word of --to: "iges"
   std::string_view title;                    // one line for `selvage formats`
   std::vector<std::string_view> extensions;  // with the dot; the first is the one that is written
-  // Is this the format of a file that begins with these bytes (at most 4 KiB)? Null: only the extension tells.
+  // Is this the format of a file that begins with these bytes (at most 4 KiB)? Null: only the extension
+  // tells.
   bool (*sniff)(std::string_view head) = nullptr;
 
-  // Readers report every error and warning to `diagnostics`; nothing comes back exactly when there was an error.
+  // Readers report every error and warning to `diagnostics`; nothing comes back exactly when there was an
+  // error.
   std::optional<fabric::Fabric> (*read_fabric)(const Source& source, Diagnostics& diagnostics) = nullptr;
 
   Result<WriteFacts> (*write_fabric)(const fabric::Fabric& fabric, OutputFile& output) = nullptr;
   // `output` outlives the writer.
-  Result<std::unique_ptr<BodyWriter>> (*open_bodies)(OutputFile& output, const SurfaceOptions& options) = nullptr;
+  Result<std::unique_ptr<BodyWriter>> (*open_bodies)(OutputFile& output,
+                                                     const SurfaceOptions& options) = nullptr;
   Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output) = nullptr;
 };
 

@@ -10,8 +10,9 @@
 namespace selvage::formats {
 
 const std::vector<const Descriptor*>& all_formats() {
-  static const std::vector<const Descriptor*> list = {&txt::descriptor(),  &iges::descriptor(), &step::descriptor(),
-                                                      &inp::descriptor(),  &msh::descriptor(),  &vtu::descriptor()};
+  static const std::vector<const Descriptor*> list = {&txt::descriptor(),  &iges::descriptor(),
+                                                      &step::descriptor(), &inp::descriptor(),
+                                                      &msh::descriptor(),  &vtu::descriptor()};
   return list;
 }
 

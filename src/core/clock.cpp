@@ -25,7 +25,11 @@ std::string stamp(const char* form) {
 
 }  // namespace
 
-std::string iges_timestamp() { return stamp("%Y%m%d.%H%M%S"); }
-std::string iso_timestamp() { return stamp("%Y-%m-%dT%H:%M:%S"); }
+std::string iges_timestamp() {
+  return stamp("%Y%m%d.%H%M%S");
+}
+std::string iso_timestamp() {
+  return stamp("%Y-%m-%dT%H:%M:%S");
+}
 
 }  // namespace selvage

@@ -1,5 +1,5 @@
-// The time that is written into files: now, or SOURCE_DATE_EPOCH (seconds since 1970, UTC) so that outputs can be
-// reproduced to the byte.
+// The time that is written into files: now, or SOURCE_DATE_EPOCH (seconds since 1970, UTC) so that outputs
+// can be reproduced to the byte.
 #pragma once
 
 #include <string>

@@ -10,23 +10,34 @@ namespace selvage {
 
 std::string_view name_of(Severity severity) {
   switch (severity) {
-    case Severity::note: return "note";
-    case Severity::warning: return "warning";
-    case Severity::error: return "error";
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
   }
   return "error";
 }
 
 std::string_view name_of(Kind kind) {
   switch (kind) {
-    case Kind::malformed: return "malformed";
-    case Kind::unsupported: return "unsupported";
-    case Kind::io: return "io";
-    case Kind::geometry: return "geometry";
-    case Kind::limit: return "limit";
-    case Kind::usage: return "usage";
-    case Kind::internal: return "internal";
-    case Kind::interrupted: return "interrupted";
+    case Kind::malformed:
+      return "malformed";
+    case Kind::unsupported:
+      return "unsupported";
+    case Kind::io:
+      return "io";
+    case Kind::geometry:
+      return "geometry";
+    case Kind::limit:
+      return "limit";
+    case Kind::usage:
+      return "usage";
+    case Kind::internal:
+      return "internal";
+    case Kind::interrupted:
+      return "interrupted";
   }
   return "internal";
 }
@@ -50,7 +61,8 @@ std::string to_string(const Message& message) {
       out += "\n  ";
       for (int i = 0; i + 1 < message.caret && i < static_cast<int>(message.excerpt.size()); ++i) {
         const char c = message.excerpt[static_cast<std::size_t>(i)];
-        const bool continues = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // a UTF-8 character: one column
+        const bool continues =
+            (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // a UTF-8 character: one column
         if (!continues) out += c == '\t' ? '\t' : ' ';
       }
       out += '^';

@@ -37,13 +37,13 @@ struct TextPlace {
 struct Message {
   Severity severity = Severity::error;
   Kind kind = Kind::malformed;
-  std::string text;                // what is wrong and, where it is known, the remedy; no trailing newline
-  std::string file;                // as the user named it; empty: none
-  TextPlace place{};               // in `file`
-  std::string excerpt{};           // the offending line (shortened when long), without its newline
-  int caret = 0;                   // 1-based column in `excerpt` under which the caret stands; 0: none
-  std::string yarn{};              // the yarn concerned; empty: none
-  std::optional<Vec3> at{};        // the place in the model concerned, in file units
+  std::string text;          // what is wrong and, where it is known, the remedy; no trailing newline
+  std::string file;          // as the user named it; empty: none
+  TextPlace place{};         // in `file`
+  std::string excerpt{};     // the offending line (shortened when long), without its newline
+  int caret = 0;             // 1-based column in `excerpt` under which the caret stands; 0: none
+  std::string yarn{};        // the yarn concerned; empty: none
+  std::optional<Vec3> at{};  // the place in the model concerned, in file units
 };
 
 // "FILE:LINE:COLUMN: error: TEXT" and, with an excerpt, the line and a caret under it; parts that are
@@ -86,8 +86,9 @@ class Diagnostics {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}          // NOLINT: implicit by design
-  Result(Message message) : state_(std::in_place_index<1>, std::move(message)) {}  // NOLINT: implicit by design
+  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}  // NOLINT: implicit by design
+  Result(Message message)
+      : state_(std::in_place_index<1>, std::move(message)) {}  // NOLINT: implicit by design
 
   [[nodiscard]] bool ok() const { return state_.index() == 0; }
   explicit operator bool() const { return ok(); }

@@ -45,6 +45,8 @@ Result<const void*> open_module(const std::string& name) {
   return table();
 }
 
-Result<fs::path> find_worker(const std::string& name) { return find_beside_program(name); }
+Result<fs::path> find_worker(const std::string& name) {
+  return find_beside_program(name);
+}
 
 }  // namespace selvage

@@ -11,7 +11,8 @@ namespace selvage {
 // Room that is always enough for one number written by write_number.
 inline constexpr std::size_t max_number_length = 32;
 
-// Writes the shortest form of a finite `value` at `out` (at least max_number_length bytes) and returns the end.
+// Writes the shortest form of a finite `value` at `out` (at least max_number_length bytes) and returns the
+// end.
 inline char* write_number(char* out, double value) {
   return std::to_chars(out, out + max_number_length, value).ptr;
 }

@@ -64,7 +64,9 @@ Result<OutputFile> OutputFile::in_memory() {
   return file;
 }
 
-OutputFile::OutputFile(OutputFile&& other) noexcept { *this = std::move(other); }
+OutputFile::OutputFile(OutputFile&& other) noexcept {
+  *this = std::move(other);
+}
 
 OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
   if (this != &other) {
@@ -78,7 +80,9 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
   return *this;
 }
 
-OutputFile::~OutputFile() { discard(); }
+OutputFile::~OutputFile() {
+  discard();
+}
 
 void OutputFile::discard() {
   if (descriptor_ >= 0) ::close(descriptor_);
@@ -110,7 +114,8 @@ Result<std::string> OutputFile::read_at(std::uint64_t offset, std::size_t size) 
   std::string bytes(size, '\0');
   std::size_t done = 0;
   while (done < size) {
-    const ssize_t got = ::pread(descriptor_, bytes.data() + done, size - done, static_cast<off_t>(offset + done));
+    const ssize_t got =
+        ::pread(descriptor_, bytes.data() + done, size - done, static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
     if (got == 0) errno = EIO;
     if (got <= 0) return io_error("cannot read back");
@@ -130,7 +135,9 @@ std::uint64_t OutputFile::size() const {
   return ::fstat(descriptor_, &facts) == 0 ? static_cast<std::uint64_t>(facts.st_size) : 0;
 }
 
-Result<std::string> OutputFile::contents() const { return read_at(0, static_cast<std::size_t>(size())); }
+Result<std::string> OutputFile::contents() const {
+  return read_at(0, static_cast<std::size_t>(size()));
+}
 
 Status OutputFile::copy_to_standard_output() {
   const std::uint64_t total = size();

@@ -1,8 +1,8 @@
 // Output files that are whole or not there.
 //
-// Bytes go to an unnamed file in the target's folder (or, where the file system has none, to a hidden one that
-// is removed when the run fails); commit() makes them durable and gives them the target's name in one step. A
-// process that is killed at any moment leaves the old file, or the new one, and nothing else.
+// Bytes go to an unnamed file in the target's folder (or, where the file system has none, to a hidden one
+// that is removed when the run fails); commit() makes them durable and gives them the target's name in one
+// step. A process that is killed at any moment leaves the old file, or the new one, and nothing else.
 #pragma once
 
 #include <cstdint>

@@ -79,7 +79,9 @@ Source Source::from_memory(std::string bytes, std::string name) {
   return source;
 }
 
-Source::Source(Source&& other) noexcept { *this = std::move(other); }
+Source::Source(Source&& other) noexcept {
+  *this = std::move(other);
+}
 
 Source& Source::operator=(Source&& other) noexcept {
   if (this != &other) {
@@ -92,7 +94,9 @@ Source& Source::operator=(Source&& other) noexcept {
   return *this;
 }
 
-Source::~Source() { release(); }
+Source::~Source() {
+  release();
+}
 
 void Source::release() {
   if (mapping_ != nullptr) ::munmap(mapping_, bytes_.size());

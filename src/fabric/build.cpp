@@ -53,7 +53,8 @@ double tolerance_of(const Fabric& fabric, const BuildOptions& options) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const Item& item : fabric.items)
     if (const auto* yarn = std::get_if<Yarn>(&item))
-      if (const std::optional<double> size = smallest_size(fabric, *yarn)) smallest = std::min(smallest, *size);
+      if (const std::optional<double> size = smallest_size(fabric, *yarn))
+        smallest = std::min(smallest, *size);
   return std::isfinite(smallest) ? smallest / 1000.0 : 0.0;
 }
 
@@ -70,12 +71,16 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
       std::optional<Message> warning = fibre_share_warning(fabric, *yarn, resolved_thread(fabric, *yarn));
       if (warning && warned.insert(warning->text).second) diagnostics.add(std::move(*warning));
     }
-    if (const auto* weave = std::get_if<Weave>(&item)) diagnostics.add(unsupported(fabric, weave->place, "`weave`"));
-    if (const auto* knit = std::get_if<Knit>(&item)) diagnostics.add(unsupported(fabric, knit->place, "`knit`"));
+    if (const auto* weave = std::get_if<Weave>(&item))
+      diagnostics.add(unsupported(fabric, weave->place, "`weave`"));
+    if (const auto* knit = std::get_if<Knit>(&item))
+      diagnostics.add(unsupported(fabric, knit->place, "`knit`"));
     if (const auto* warpknit = std::get_if<Warpknit>(&item))
       diagnostics.add(unsupported(fabric, warpknit->place, "`warpknit`"));
-    if (const auto* braid = std::get_if<Braid>(&item)) diagnostics.add(unsupported(fabric, braid->place, "`braid`"));
-    if (const auto* piece = std::get_if<Piece>(&item)) diagnostics.add(unsupported(fabric, piece->place, "`piece`"));
+    if (const auto* braid = std::get_if<Braid>(&item))
+      diagnostics.add(unsupported(fabric, braid->place, "`braid`"));
+    if (const auto* piece = std::get_if<Piece>(&item))
+      diagnostics.add(unsupported(fabric, piece->place, "`piece`"));
   }
   for (const Edit& edit : fabric.edits) diagnostics.add(unsupported(fabric, edit.place, "`edit`"));
   builder.tolerance_ = tolerance_of(fabric, options);
@@ -90,14 +95,18 @@ Status YarnBuilder::sweep_path(yarn::Body& body, const Yarn& yarn, const Thread&
   // Every row becomes a section at least: what cannot be held is refused before it is computed.
   constexpr std::size_t fewest_round = 8;
   if (path.points.size() > options_.max_control_points / fewest_round)
-    return error(Kind::limit, fmt::format("yarn '{}' has {} points: its surface would need more than {} control points; split the yarn",
-                                          yarn.name, path.points.size(), options_.max_control_points));
+    return error(
+        Kind::limit,
+        fmt::format(
+            "yarn '{}' has {} points: its surface would need more than {} control points; split the yarn",
+            yarn.name, path.points.size(), options_.max_control_points));
   Result<yarn::CentreLine> line = yarn::make_centre_line(*rows);
   if (!line) {
     Message message = line.error();
     const int row = message.place.line;  // from 1
     if (row > 0)
-      message.place.line = path.lines.empty() ? path.place.line + row : path.lines[static_cast<std::size_t>(row - 1)];
+      message.place.line =
+          path.lines.empty() ? path.place.line + row : path.lines[static_cast<std::size_t>(row - 1)];
     return message;
   }
   Result<yarn::TubeSpec> spec = tube_spec_of(*fabric_, yarn, thread, line->parameters);
@@ -127,7 +136,8 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
     Status swept = sweep_path(body, yarn, thread);
     if (!swept) return at_yarn(swept.error(), *fabric_, yarn);
   } else {
-    return at_yarn(error(Kind::geometry, fmt::format("yarn '{}' has neither a path nor a grid", yarn.name)), *fabric_, yarn);
+    return at_yarn(error(Kind::geometry, fmt::format("yarn '{}' has neither a path nor a grid", yarn.name)),
+                   *fabric_, yarn);
   }
   Status finished = yarn::finish(body, options_.ends);
   if (!finished) return at_yarn(finished.error(), *fabric_, yarn);

@@ -6,10 +6,13 @@ namespace selvage::fabric {
 
 double LinearDensity::tex() const {
   switch (measure) {
-    case Measure::tex: return value;
-    case Measure::denier: return value / 9.0;
+    case Measure::tex:
+      return value;
+    case Measure::denier:
+      return value / 9.0;
     // English cotton count: 840-yard hanks a pound; 1000 g/km over (840 * 0.9144 m / 453.59237 g).
-    case Measure::ne: return 453.59237e3 / (840.0 * 0.9144) / value;
+    case Measure::ne:
+      return 453.59237e3 / (840.0 * 0.9144) / value;
   }
   return value;
 }
@@ -29,8 +32,12 @@ void override_with(std::optional<T>& base, const std::optional<T>& own) {
 
 }  // namespace
 
-const Thread* Fabric::find_thread(std::string_view name) const { return find_named(threads, name); }
-const Material* Fabric::find_material(std::string_view name) const { return find_named(materials, name); }
+const Thread* Fabric::find_thread(std::string_view name) const {
+  return find_named(threads, name);
+}
+const Material* Fabric::find_material(std::string_view name) const {
+  return find_named(materials, name);
+}
 
 Thread resolved_thread(const Fabric& fabric, const Yarn& yarn) {
   const Thread* named = fabric.find_thread(yarn.thread);

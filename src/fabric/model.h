@@ -1,5 +1,5 @@
-// A fabric as its text says it: every statement of Fabric TXT (formats/txt/README.md), typed, checked for grammar but
-// not yet built. Numbers are as written, in the file's unit.
+// A fabric as its text says it: every statement of Fabric TXT (formats/txt/README.md), typed, checked for
+// grammar but not yet built. Numbers are as written, in the file's unit.
 #pragma once
 
 #include <optional>
@@ -99,7 +99,8 @@ struct Path {
   std::vector<Vec3> points;
   // Empty when no row carries a size; else one entry a point (a row without a size has nullopt).
   std::vector<std::optional<SizeAt>> sizes;
-  std::vector<int> lines;  // source line of each row; empty when the rows stand on consecutive lines after `place`
+  std::vector<int>
+      lines;  // source line of each row; empty when the rows stand on consecutive lines after `place`
 };
 
 // Control points of the surface itself: `sections` rows of `per_section` points, section after section.
@@ -109,8 +110,8 @@ struct Grid {
   int per_section = 0;
   std::optional<int> degree_along, degree_round;
   std::vector<double> knots_along, knots_round;  // empty: the default
-  bool open_round = false;    // the rows are the clamped form, seam point at both ends
-  bool closed_along = false;  // word `closed` of the grid: a ring
+  bool open_round = false;                       // the rows are the clamped form, seam point at both ends
+  bool closed_along = false;                     // word `closed` of the grid: a ring
   std::vector<Vec3> points;
   std::vector<double> weights;  // empty: all 1
 };
@@ -120,7 +121,7 @@ struct Yarn {
   TextPlace place;
   std::string thread;  // empty: the statements are all inline
   TextPlace thread_place;
-  Thread own;          // inline statements; its name is empty
+  Thread own;  // inline statements; its name is empty
   std::optional<Role> role;
   std::optional<Vec3> tangent_start, tangent_end, up;
   TextPlace up_place;
@@ -216,7 +217,7 @@ struct Edit {
   TextPlace place;
   std::string yarn;
   Form form = Form::point;
-  int joint = 0;  // 1-based
+  int joint = 0;                  // 1-based
   Vec3 target = Vec3::Zero();     // point, weight: goes there
   double length = 0;              // length
   Vec3 direction = Vec3::Zero();  // length: along

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-Message at_thread(const Fabric& fabric, const Yarn& yarn, std::string text, Severity severity = Severity::error) {
+Message at_thread(const Fabric& fabric, const Yarn& yarn, std::string text,
+                  Severity severity = Severity::error) {
   Message message = error(Kind::geometry, std::move(text));
   message.severity = severity;
   message.file = fabric.file;
@@ -29,7 +30,8 @@ bool every_row_has_a_size(const Path& path) {
 // How far the section reaches from the path toward a direction given in section axes.
 double support(const yarn::Section& section, const yarn::SectionSize& size, const Vec2& toward) {
   double largest = 0.0;
-  for (const Vec2& p : yarn::make_outline(section, size, 8, false).points) largest = std::max(largest, p.dot(toward));
+  for (const Vec2& p : yarn::make_outline(section, size, 8, false).points)
+    largest = std::max(largest, p.dot(toward));
   return largest;
 }
 
@@ -48,15 +50,18 @@ Result<yarn::Section> section_of(const Thread& thread, Unit units, bool rows_giv
   if (thread.diameter) {
     *diameter = *thread.diameter;
   } else if (thread.linear_density && thread.density && thread.packing) {
-    *diameter = yarn_diameter(thread.linear_density->tex(), *thread.density, *thread.packing) / millimetres_per(units);
+    *diameter = yarn_diameter(thread.linear_density->tex(), *thread.density, *thread.packing) /
+                millimetres_per(units);
   } else if (!rows_give_sizes) {
     std::string missing;
     for (const auto& [word, is_there] : {std::pair{"`tex`", thread.linear_density.has_value()},
                                          std::pair{"`density`", thread.density.has_value()},
                                          std::pair{"`packing`", thread.packing.has_value()}})
       if (!is_there) missing += (missing.empty() ? "" : ", ") + std::string(word);
-    return error(Kind::geometry, fmt::format("nothing gives the size of the section: add `diameter`, a `section` with a size, or {}",
-                                             missing));
+    return error(
+        Kind::geometry,
+        fmt::format("nothing gives the size of the section: add `diameter`, a `section` with a size, or {}",
+                    missing));
   }
   return section;
 }
@@ -73,12 +78,24 @@ Result<yarn::PathRows> path_rows_of(const Fabric& fabric, const Yarn& yarn, cons
   const Path& path = std::get<Path>(yarn.shape);
   yarn::PathRows rows;
   switch (path.form) {
-    case Path::Form::uniform: rows.form = yarn::PathForm::uniform; break;
-    case Path::Form::chord: rows.form = yarn::PathForm::chord; break;
-    case Path::Form::centripetal: rows.form = yarn::PathForm::centripetal; break;
-    case Path::Form::polyline: rows.form = yarn::PathForm::polyline; break;
-    case Path::Form::control: rows.form = yarn::PathForm::control; break;
-    case Path::Form::loop: rows.form = yarn::PathForm::loop; break;
+    case Path::Form::uniform:
+      rows.form = yarn::PathForm::uniform;
+      break;
+    case Path::Form::chord:
+      rows.form = yarn::PathForm::chord;
+      break;
+    case Path::Form::centripetal:
+      rows.form = yarn::PathForm::centripetal;
+      break;
+    case Path::Form::polyline:
+      rows.form = yarn::PathForm::polyline;
+      break;
+    case Path::Form::control:
+      rows.form = yarn::PathForm::control;
+      break;
+    case Path::Form::loop:
+      rows.form = yarn::PathForm::loop;
+      break;
   }
   rows.points = path.points;
   rows.closed = yarn.closed;
@@ -90,13 +107,15 @@ Result<yarn::PathRows> path_rows_of(const Fabric& fabric, const Yarn& yarn, cons
   const std::vector<yarn::SectionSize> sizes = row_sizes(path, *section);
   for (const yarn::SectionSize& size : sizes)
     if (Status s = yarn::check_section(*section, size); !s) return at_thread(fabric, yarn, s.error().text);
-  // The section's axes are carried from segment to segment by the turn at each corner, as the rotation-minimizing frame does.
+  // The section's axes are carried from segment to segment by the turn at each corner, as the
+  // rotation-minimizing frame does.
   const std::vector<Vec3>& p = path.points;
   const std::size_t n = p.size();
   rows.half_sizes.assign(n, 0.0);
   const auto direction = [&](std::size_t i) -> Vec3 { return (p[(i + 1) % n] - p[i]).normalized(); };
   Vec3 tangent = direction(0);
-  Vec3 up = yarn.up.value_or(std::abs(tangent.z()) > std::cos(6.0 / 180.0 * pi) ? Vec3(Vec3::UnitY()) : Vec3(Vec3::UnitZ()));
+  Vec3 up = yarn.up.value_or(std::abs(tangent.z()) > std::cos(6.0 / 180.0 * pi) ? Vec3(Vec3::UnitY())
+                                                                                : Vec3(Vec3::UnitZ()));
   up = (up - up.dot(tangent) * tangent).normalized();
   for (std::size_t k = 1; k < n + (yarn.closed ? 1 : 0); ++k) {
     const std::size_t i = k % n;
@@ -106,9 +125,11 @@ Result<yarn::PathRows> path_rows_of(const Fabric& fabric, const Yarn& yarn, cons
       Vec3 toward = inward - inward.dot(tangent) * tangent;
       toward.normalize();
       double angle = 0.0;
-      if (i < path.sizes.size() && path.sizes[i] && path.sizes[i]->angle) angle = *path.sizes[i]->angle / 180.0 * pi;
+      if (i < path.sizes.size() && path.sizes[i] && path.sizes[i]->angle)
+        angle = *path.sizes[i]->angle / 180.0 * pi;
       const Vec3 across = up.cross(tangent);
-      const Vec3 x = std::cos(angle) * across + std::sin(angle) * up, y = -std::sin(angle) * across + std::cos(angle) * up;
+      const Vec3 x = std::cos(angle) * across + std::sin(angle) * up,
+                 y = -std::sin(angle) * across + std::cos(angle) * up;
       rows.half_sizes[i] = support(*section, sizes[i], Vec2(toward.dot(x), toward.dot(y)));
     }
     up = Eigen::Quaterniond::FromTwoVectors(tangent, next) * up;
@@ -127,7 +148,8 @@ Result<yarn::TubeSpec> tube_spec_of(const Fabric& fabric, const Yarn& yarn, cons
   const std::vector<yarn::SectionSize> sizes = row_sizes(path, spec.section);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     double angle = 0.0;
-    if (i < path.sizes.size() && path.sizes[i] && path.sizes[i]->angle) angle = *path.sizes[i]->angle / 180.0 * pi;
+    if (i < path.sizes.size() && path.sizes[i] && path.sizes[i]->angle)
+      angle = *path.sizes[i]->angle / 180.0 * pi;
     spec.sizes.push_back({row_parameters[i], sizes[i], angle});
     if (path.sizes.empty()) break;  // one size for the whole yarn
   }
@@ -148,24 +170,29 @@ std::optional<Message> fibre_share_warning(const Fabric& fabric, const Yarn& yar
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
   for (const yarn::SectionSize& size : row_sizes(*path, *section)) {
     if (!yarn::check_section(*section, size).ok()) return std::nullopt;
-    const double share = thread.linear_density->tex() / (1000.0 * *thread.density * yarn::area(*section, size) * mm * mm);
+    const double share =
+        thread.linear_density->tex() / (1000.0 * *thread.density * yarn::area(*section, size) * mm * mm);
     low = std::min(low, share);
     high = std::max(high, share);
   }
-  const std::string of_thread = yarn.thread.empty() ? fmt::format("yarn '{}'", yarn.name) : fmt::format("thread '{}'", yarn.thread);
+  const std::string of_thread =
+      yarn.thread.empty() ? fmt::format("yarn '{}'", yarn.name) : fmt::format("thread '{}'", yarn.thread);
   if (high > 1.0 + 1e-9)
     return at_thread(fabric, yarn,
-                     fmt::format("{}: the fibres would fill {:.3g} times the section ({:.4g} tex of {:.4g} g/cm3): is the diameter "
+                     fmt::format("{}: the fibres would fill {:.3g} times the section ({:.4g} tex of {:.4g} "
+                                 "g/cm3): is the diameter "
                                  "in truth a radius?",
                                  of_thread, high, thread.linear_density->tex(), *thread.density),
                      Severity::warning);
   if (thread.packing && (std::abs(high - *thread.packing) > 0.05 * *thread.packing ||
                          std::abs(low - *thread.packing) > 0.05 * *thread.packing))
-    return at_thread(fabric, yarn,
-                     fmt::format("{}: its size makes {:.3g}{} of the section fibre, but `packing` says {:.3g} (packing sizes "
-                                 "only a circle without a diameter)",
-                                 of_thread, low, high > low * 1.001 ? fmt::format(" to {:.3g}", high) : "", *thread.packing),
-                     Severity::warning);
+    return at_thread(
+        fabric, yarn,
+        fmt::format(
+            "{}: its size makes {:.3g}{} of the section fibre, but `packing` says {:.3g} (packing sizes "
+            "only a circle without a diameter)",
+            of_thread, low, high > low * 1.001 ? fmt::format(" to {:.3g}", high) : "", *thread.packing),
+        Severity::warning);
   return std::nullopt;
 }
 

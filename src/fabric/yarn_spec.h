@@ -1,4 +1,5 @@
-// What a yarn's statements mean for its geometry: section, sizes along the path, twist, fibre volume fraction.
+// What a yarn's statements mean for its geometry: section, sizes along the path, twist, fibre volume
+// fraction.
 #pragma once
 
 #include <optional>
@@ -12,9 +13,10 @@ namespace selvage::fabric {
 // Diameter of a round yarn, mm: 2 sqrt(tex / (1000 pi density packing)); tex in g/km, density in g/cm3.
 double yarn_diameter(double tex, double density, double packing);
 
-// The thread's section with its size filled in (file units): as given, or a circle of the thread's diameter, or of the one
-// computed from linear density, density and packing. A size of zero stays where every path row gives its own.
-// Error (geometry): something is missing for a size; the message says what, and where the thread stands.
+// The thread's section with its size filled in (file units): as given, or a circle of the thread's diameter,
+// or of the one computed from linear density, density and packing. A size of zero stays where every path row
+// gives its own. Error (geometry): something is missing for a size; the message says what, and where the
+// thread stands.
 Result<yarn::Section> section_of(const Thread& thread, Unit units, bool rows_give_sizes);
 
 // Section, sizes and angles, up and twist of a path yarn; parameters are those of the centre line's rows.
@@ -28,8 +30,9 @@ Result<yarn::PathRows> path_rows_of(const Fabric& fabric, const Yarn& yarn, cons
 // Section size at each row, file units (the thread's own where the row has none).
 std::vector<yarn::SectionSize> row_sizes(const Path& path, const yarn::Section& section);
 
-// The largest share of a section that is fibre, tex / (1000 density area), over the sizes of a yarn; none without linear
-// density and fibre density. Warnings where it is above 1 or differs from a given packing by more than 5 %.
+// The largest share of a section that is fibre, tex / (1000 density area), over the sizes of a yarn; none
+// without linear density and fibre density. Warnings where it is above 1 or differs from a given packing by
+// more than 5 %.
 std::optional<Message> fibre_share_warning(const Fabric& fabric, const Yarn& yarn, const Thread& thread);
 
 // The smallest section size (width or thickness) of a path yarn, file units; none where it has no size.

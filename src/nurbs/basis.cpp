@@ -41,7 +41,8 @@ namespace {
 
 // Derivative of the degree-p basis from the values of the degree-(p-1) basis on the same span:
 // N'_{i,p} = p (N_{i,p-1} / (u_{i+p} - u_i) - N_{i+1,p-1} / (u_{i+p+1} - u_{i+1})).
-void raise_derivative(const std::vector<double>& knots, int degree, int span, const BasisRow& lower, BasisRow& out) {
+void raise_derivative(const std::vector<double>& knots, int degree, int span, const BasisRow& lower,
+                      BasisRow& out) {
   const auto knot = [&](int i) { return knots[static_cast<std::size_t>(i)]; };
   for (int j = 0; j <= degree; ++j) {
     const int i = span - degree + j;  // the control point

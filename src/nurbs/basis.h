@@ -11,8 +11,8 @@ inline constexpr int max_degree = 20;
 
 using BasisRow = std::array<double, max_degree + 1>;
 
-// The index k with knots[k] <= t < knots[k + 1], degree <= k < count; the last such span at and beyond the end of the
-// domain, the first before it. `count` is the number of control points. Piegl and Tiller A2.1.
+// The index k with knots[k] <= t < knots[k + 1], degree <= k < count; the last such span at and beyond the
+// end of the domain, the first before it. `count` is the number of control points. Piegl and Tiller A2.1.
 int find_span(const std::vector<double>& knots, int degree, int count, double t);
 
 // The degree + 1 basis functions that do not vanish on span k, for control points k - degree .. k. A2.2.

@@ -9,12 +9,14 @@ namespace selvage::nurbs {
 
 namespace {
 
-std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Eigen::Index i) {
+  return static_cast<std::size_t>(i);
+}
 
 // Solves the tridiagonal system low, diagonal, high for every column of `right`, in place (Thomas). B-spline
 // collocation matrices are totally positive, so no pivoting is needed (de Boor 1978).
-void solve_tridiagonal(const std::vector<double>& low, std::vector<double> diagonal, const std::vector<double>& high,
-                       Eigen::MatrixXd& right) {
+void solve_tridiagonal(const std::vector<double>& low, std::vector<double> diagonal,
+                       const std::vector<double>& high, Eigen::MatrixXd& right) {
   const Eigen::Index n = right.rows();
   for (Eigen::Index i = 1; i < n; ++i) {
     const double factor = low[at(i)] / diagonal[at(i - 1)];
@@ -97,7 +99,8 @@ Eigen::MatrixXd interpolate_clamped(const std::vector<double>& t, const Eigen::M
   std::vector<double> low(at(unknowns)), diagonal(at(unknowns)), high(at(unknowns));
   Eigen::MatrixXd right = data.middleRows(1, unknowns);
   for (Eigen::Index i = 0; i < unknowns; ++i) {
-    // At the data point i + 1, a knot, three basis functions do not vanish: those of control rows i + 1, i + 2, i + 3.
+    // At the data point i + 1, a knot, three basis functions do not vanish: those of control rows i + 1, i +
+    // 2, i + 3.
     BasisRow values{};
     basis(knots, 3, static_cast<int>(i) + 4, t[at(i + 1)], values);
     low[at(i)] = values[0];
@@ -121,7 +124,8 @@ Eigen::MatrixXd interpolate_periodic(const std::vector<double>& t, const Eigen::
     knots.push_back(t[at(wrapped)] + period * static_cast<double>((i - wrapped) / n));
   }
   knots[at(n + 3)] = t.back();
-  // The unknown row i stands in the middle of the three functions that live at data point i (rows i - 1, i, i + 1).
+  // The unknown row i stands in the middle of the three functions that live at data point i (rows i - 1, i, i
+  // + 1).
   std::vector<double> low(at(n)), diagonal(at(n)), high(at(n));
   for (Eigen::Index i = 0; i < n; ++i) {
     BasisRow values{};
@@ -146,8 +150,8 @@ Eigen::MatrixXd interpolate_periodic(const std::vector<double>& t, const Eigen::
   Eigen::MatrixXd rows = right.leftCols(data.cols());
   const Eigen::RowVectorXd share = (rows.row(0) + corner_low / gamma * rows.row(n - 1)) / denominator;
   rows -= z * share;
-  // Cut open at the first parameter: value and derivative there are blends of three rows; all rows but the outermost
-  // two on each side of the seam stay what they are.
+  // Cut open at the first parameter: value and derivative there are blends of three rows; all rows but the
+  // outermost two on each side of the seam stay what they are.
   Eigen::MatrixXd control(n + 3, data.cols());
   const auto row = [&](Eigen::Index i) { return rows.row(((i % n) + n) % n); };
   const auto knot = [&](Eigen::Index i) { return knots[at(i + 3)]; };  // knot(0) is the seam

@@ -1,6 +1,7 @@
-// Cubic B-splines through data points (inverse interpolation): methods.md, 1, after the paper on plain weft knitting
-// ../shared/references 001 (uniform, chord and centripetal parameters, knots at the data points). All solves are
-// tridiagonal, O(n).
+// Cubic B-splines through data points (inverse interpolation): methods.md, 1, after the paper on plain weft
+// knitting
+// ../shared/references 001 (uniform, chord and centripetal parameters, knots at the data points). All solves
+// are tridiagonal, O(n).
 #pragma once
 
 #include <Eigen/Core>
@@ -14,32 +15,34 @@ namespace selvage::nurbs {
 
 enum class Parameterization { uniform, chord, centripetal };
 
-// Parameters 0 .. 1 of the data points, one each. `closed`: the first point follows the last, and one value more (1) is
-// given for it. Precondition: neighbouring points differ; at least two points (three when closed).
+// Parameters 0 .. 1 of the data points, one each. `closed`: the first point follows the last, and one value
+// more (1) is given for it. Precondition: neighbouring points differ; at least two points (three when
+// closed).
 std::vector<double> parameters(const std::vector<Vec3>& points, Parameterization how, bool closed = false);
 
-// Derivative vectors at the data's ends: of the parabola through the nearest three points (of the chord when there
-// are two only). With a direction given (any length but zero) that vector's length in that direction.
+// Derivative vectors at the data's ends: of the parabola through the nearest three points (of the chord when
+// there are two only). With a direction given (any length but zero) that vector's length in that direction.
 Vec3 end_derivative(const std::vector<Vec3>& points, const std::vector<double>& parameters, bool last,
                     const std::optional<Vec3>& direction = std::nullopt);
 
 // The clamped cubic through data at strictly increasing parameters, with given derivatives at both ends.
-// `data`: one row a data point (n >= 2), any number of columns; returns n + 2 rows of control values over the knots
-// clamped_knots(parameters).
+// `data`: one row a data point (n >= 2), any number of columns; returns n + 2 rows of control values over the
+// knots clamped_knots(parameters).
 Eigen::MatrixXd interpolate_clamped(const std::vector<double>& parameters, const Eigen::MatrixXd& data,
                                     const Eigen::RowVectorXd& first_derivative,
                                     const Eigen::RowVectorXd& last_derivative);
 
-// The periodic cubic through n >= 3 data rows; parameters has n + 1 values, the last one for the return to row 0.
-// Returned in clamped form: n + 3 rows over clamped_knots(parameters), the last row equal to the first to the bit.
+// The periodic cubic through n >= 3 data rows; parameters has n + 1 values, the last one for the return to
+// row 0. Returned in clamped form: n + 3 rows over clamped_knots(parameters), the last row equal to the first
+// to the bit.
 Eigen::MatrixXd interpolate_periodic(const std::vector<double>& parameters, const Eigen::MatrixXd& data);
 
 // Each parameter once, the first and last four times.
 std::vector<double> clamped_knots(const std::vector<double>& parameters);
 
 // The curve forms of the above.
-Curve interpolate(const std::vector<Vec3>& points, const std::vector<double>& parameters, const Vec3& first_derivative,
-                  const Vec3& last_derivative);
+Curve interpolate(const std::vector<Vec3>& points, const std::vector<double>& parameters,
+                  const Vec3& first_derivative, const Vec3& last_derivative);
 Curve interpolate_closed(const std::vector<Vec3>& points, const std::vector<double>& parameters);
 
 // The clamped form of a curve whose end knots are not repeated (a periodic one cut open).

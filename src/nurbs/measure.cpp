@@ -22,7 +22,8 @@ double adaptive_length(const Curve& curve, double t0, double t1, double whole, i
   const double middle = 0.5 * (t0 + t1);
   const double left = gauss_length(curve, t0, middle), right = gauss_length(curve, middle, t1);
   if (depth == 0 || std::abs(left + right - whole) <= 1e-13 * (left + right)) return left + right;
-  return adaptive_length(curve, t0, middle, left, depth - 1) + adaptive_length(curve, middle, t1, right, depth - 1);
+  return adaptive_length(curve, t0, middle, left, depth - 1) +
+         adaptive_length(curve, middle, t1, right, depth - 1);
 }
 
 // The basis functions' values and first derivatives at the Gauss nodes of every span.
@@ -32,7 +33,8 @@ struct Node {
   BasisRow value, slope;
 };
 
-std::vector<Node> gauss_nodes(const std::vector<double>& knots, int degree, int count, int order, bool rational) {
+std::vector<Node> gauss_nodes(const std::vector<double>& knots, int degree, int count, int order,
+                              bool rational) {
   std::vector<double> breaks = breakpoints(knots, degree);
   if (rational) {  // no polynomial rule is exact: four parts to a span bring the error down to rounding
     std::vector<double> finer = {breaks.front()};
@@ -76,11 +78,13 @@ double arc_length(const Curve& curve) {
 
 double volume_flux(const Surface& surface, const Vec3& origin) {
   // S . (S_u x S_v) has degree 3 p - 1 in each direction.
-  const auto order = [&](int degree) { return surface.is_rational() ? 8 : std::min(8, (3 * degree + 1) / 2); };
-  const std::vector<Node> nodes_u =
-      gauss_nodes(surface.knots_u, surface.degree_u, surface.count_u, order(surface.degree_u), surface.is_rational());
-  const std::vector<Node> nodes_v =
-      gauss_nodes(surface.knots_v, surface.degree_v, surface.count_v, order(surface.degree_v), surface.is_rational());
+  const auto order = [&](int degree) {
+    return surface.is_rational() ? 8 : std::min(8, (3 * degree + 1) / 2);
+  };
+  const std::vector<Node> nodes_u = gauss_nodes(surface.knots_u, surface.degree_u, surface.count_u,
+                                                order(surface.degree_u), surface.is_rational());
+  const std::vector<Node> nodes_v = gauss_nodes(surface.knots_v, surface.degree_v, surface.count_v,
+                                                order(surface.degree_v), surface.is_rational());
   using Vec4 = Eigen::Vector4d;
   std::vector<Vec4> line(static_cast<std::size_t>(surface.count_u)), slope_line(line.size());
   double sum = 0.0;

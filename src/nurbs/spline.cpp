@@ -9,7 +9,9 @@ namespace selvage::nurbs {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 double clamp_to(const std::vector<double>& knots, int degree, int count, double t) {
   return std::clamp(t, knots[at(degree)], knots[at(count)]);
@@ -194,9 +196,10 @@ Curve insert_knot(const Curve& curve, double t, int times) {
       weights.push_back(weight(i - 1));
     } else {
       const double here = alpha * weight(i), before = (1.0 - alpha) * weight(i - 1);
-      out.points.push_back(curve.is_rational()
-                               ? Vec3((here * curve.points[at(i)] + before * curve.points[at(i - 1)]) / (here + before))
-                               : Vec3(alpha * curve.points[at(i)] + (1.0 - alpha) * curve.points[at(i - 1)]));
+      out.points.push_back(
+          curve.is_rational()
+              ? Vec3((here * curve.points[at(i)] + before * curve.points[at(i - 1)]) / (here + before))
+              : Vec3(alpha * curve.points[at(i)] + (1.0 - alpha) * curve.points[at(i - 1)]));
       weights.push_back(here + before);
     }
   }
@@ -236,7 +239,8 @@ Curve reversed(const Curve& curve) {
   std::reverse(out.points.begin(), out.points.end());
   std::reverse(out.weights.begin(), out.weights.end());
   const double sum = curve.knots.front() + curve.knots.back();
-  std::transform(curve.knots.rbegin(), curve.knots.rend(), out.knots.begin(), [&](double k) { return sum - k; });
+  std::transform(curve.knots.rbegin(), curve.knots.rend(), out.knots.begin(),
+                 [&](double k) { return sum - k; });
   return out;
 }
 

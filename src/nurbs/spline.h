@@ -9,8 +9,8 @@
 namespace selvage::nurbs {
 
 // A B-spline curve. knots.size() == points.size() + degree + 1, not decreasing; the curve lives on
-// [knots[degree], knots[points.size()]]. Clamped unless said otherwise. Weights: empty for a polynomial curve,
-// else one positive weight a point (points are NOT multiplied by them).
+// [knots[degree], knots[points.size()]]. Clamped unless said otherwise. Weights: empty for a polynomial
+// curve, else one positive weight a point (points are NOT multiplied by them).
 struct Curve {
   int degree = 3;
   std::vector<double> knots;
@@ -23,8 +23,8 @@ struct Curve {
 };
 
 // A tensor-product B-spline surface of count_u x count_v control points; u runs fastest: the point (i, j) is
-// points[j * count_u + i]. Each direction obeys the rules of Curve. For a yarn, u runs round the section and v
-// along the path.
+// points[j * count_u + i]. Each direction obeys the rules of Curve. For a yarn, u runs round the section and
+// v along the path.
 struct Surface {
   int degree_u = 2;
   int degree_v = 3;
@@ -57,15 +57,17 @@ struct SurfaceJet {
   Vec3 position, du, dv;
 };
 
-// Evaluation inside the domain (parameters outside are brought to its nearest end). Piegl and Tiller, The NURBS
-// Book, A2.1-A2.3 and A4.2, A4.4.
+// Evaluation inside the domain (parameters outside are brought to its nearest end). Piegl and Tiller, The
+// NURBS Book, A2.1-A2.3 and A4.2, A4.4.
 Vec3 evaluate(const Curve& curve, double t);
 CurveJet evaluate_jet(const Curve& curve, double t);
 Vec3 evaluate(const Surface& surface, double u, double v);
 SurfaceJet evaluate_jet(const Surface& surface, double u, double v);
 
-// The surface at every (u, v) of a grid, u fastest: us.size() x vs.size() points. Much faster than one by one.
-std::vector<Vec3> evaluate_grid(const Surface& surface, const std::vector<double>& us, const std::vector<double>& vs);
+// The surface at every (u, v) of a grid, u fastest: us.size() x vs.size() points. Much faster than one by
+// one.
+std::vector<Vec3> evaluate_grid(const Surface& surface, const std::vector<double>& us,
+                                const std::vector<double>& vs);
 
 // The control row j = 0 or j = count_v - 1 of a surface clamped in v: exactly its boundary curve.
 Curve boundary_row(const Surface& surface, bool last);
@@ -73,12 +75,12 @@ Curve boundary_row(const Surface& surface, bool last);
 // The different knot values inside the domain, ends included, increasing.
 std::vector<double> breakpoints(const std::vector<double>& knots, int degree);
 
-// The same curve with the value t inserted `times` times more (Boehm). Precondition: first <= t <= last parameter, and
-// the multiplicity afterwards does not pass the degree.
+// The same curve with the value t inserted `times` times more (Boehm). Precondition: first <= t <= last
+// parameter, and the multiplicity afterwards does not pass the degree.
 Curve insert_knot(const Curve& curve, double t, int times = 1);
 
-// The part of a clamped curve between two parameters, with the end knots clamped there; t0 < t1. Knot values keep
-// their numbers (no reparameterization).
+// The part of a clamped curve between two parameters, with the end knots clamped there; t0 < t1. Knot values
+// keep their numbers (no reparameterization).
 Curve sub_curve(const Curve& curve, double t0, double t1);
 
 // The same curve run backwards; the knots become (first + last) - knot.

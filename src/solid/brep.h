@@ -1,5 +1,5 @@
-// Yarns as OpenCASCADE solids. Implemented in the module selvage_occt together with formats/step; this header shows no
-// type of OpenCASCADE.
+// Yarns as OpenCASCADE solids. Implemented in the module selvage_occt together with formats/step; this header
+// shows no type of OpenCASCADE.
 #pragma once
 
 #include <memory>
@@ -14,10 +14,10 @@
 namespace selvage::solid {
 
 struct BrepCheck {
-  bool valid = false;     // BRepCheck_Analyzer on the solid
-  int free_edges = 0;     // edges with one face
-  double volume = 0;      // BRepGProp, file units^3
-  double tolerance = 0;   // the largest tolerance of its vertices and edges
+  bool valid = false;    // BRepCheck_Analyzer on the solid
+  int free_edges = 0;    // edges with one face
+  double volume = 0;     // BRepGProp, file units^3
+  double tolerance = 0;  // the largest tolerance of its vertices and edges
   std::vector<Message> defects;
 };
 
@@ -28,7 +28,8 @@ Result<std::vector<BrepCheck>> check_breps(std::span<const yarn::Body> bodies);
 struct OcctModule {
   const char* version;
   Result<std::vector<BrepCheck>> (*check)(std::span<const yarn::Body> bodies);
-  Result<std::unique_ptr<formats::BodyWriter>> (*open_step)(OutputFile& output, const formats::SurfaceOptions& options);
+  Result<std::unique_ptr<formats::BodyWriter>> (*open_step)(OutputFile& output,
+                                                            const formats::SurfaceOptions& options);
 };
 Result<const OcctModule*> occt_module();
 

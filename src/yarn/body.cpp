@@ -7,29 +7,43 @@ namespace selvage::yarn {
 
 std::string_view name_of(Role role) {
   switch (role) {
-    case Role::warp: return "warp";
-    case Role::weft: return "weft";
-    case Role::wale: return "wale";
-    case Role::course: return "course";
-    case Role::braider: return "braider";
-    case Role::axial: return "axial";
-    case Role::binder: return "binder";
-    case Role::other: return "other";
+    case Role::warp:
+      return "warp";
+    case Role::weft:
+      return "weft";
+    case Role::wale:
+      return "wale";
+    case Role::course:
+      return "course";
+    case Role::braider:
+      return "braider";
+    case Role::axial:
+      return "axial";
+    case Role::binder:
+      return "binder";
+    case Role::other:
+      return "other";
   }
   return "other";
 }
 
 std::string_view name_of(EndStyle style) {
   switch (style) {
-    case EndStyle::patch: return "patch";
-    case EndStyle::fan: return "fan";
-    case EndStyle::planar: return "planar";
-    case EndStyle::none: return "none";
+    case EndStyle::patch:
+      return "patch";
+    case EndStyle::fan:
+      return "fan";
+    case EndStyle::planar:
+      return "planar";
+    case EndStyle::none:
+      return "none";
   }
   return "none";
 }
 
-nurbs::Curve end_curve(const Body& body, bool last) { return nurbs::boundary_row(body.surface, last); }
+nurbs::Curve end_curve(const Body& body, bool last) {
+  return nurbs::boundary_row(body.surface, last);
+}
 
 std::array<nurbs::Curve, 4> end_quarters(const Body& body, bool last) {
   const nurbs::Curve whole = end_curve(body, last);
@@ -74,7 +88,8 @@ std::array<nurbs::Curve, 4> patch_sides(const nurbs::Surface& patch) {
 
 double end_gap(const Body& body, bool last) {
   const EndFace& end = last ? body.end : body.start;
-  if (end.style == EndStyle::fan) return largest_distance(nurbs::boundary_row(end.surface, false), end_curve(body, last));
+  if (end.style == EndStyle::fan)
+    return largest_distance(nurbs::boundary_row(end.surface, false), end_curve(body, last));
   if (end.style == EndStyle::patch) {
     const std::array<nurbs::Curve, 4> sides = patch_sides(end.surface), quarters = end_quarters(body, last);
     double gap = 0.0;

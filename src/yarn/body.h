@@ -1,5 +1,5 @@
-// A yarn as geometry: one B-spline surface round its body, and what seals its two ends. This is what every surface
-// format writes, what is checked, and what is meshed. All lengths in file units.
+// A yarn as geometry: one B-spline surface round its body, and what seals its two ends. This is what every
+// surface format writes, what is checked, and what is meshed. All lengths in file units.
 #pragma once
 
 #include <array>
@@ -29,9 +29,10 @@ std::string_view name_of(EndStyle style);
 
 // One end of a yarn. `surface` is filled for patch and fan, `origin` and `normal` always (but for none).
 //   patch: a four-sided surface over [0,1]^2 whose boundary curves are the quarters of the body's end curve:
-//          v=0 the first quarter (u forward), u=1 the second, v=1 the third (u backward), u=0 the fourth (v backward).
-//          The quarters meet at Body::quarters.
-//   fan:   count_u = the body's, 4 rows, degree 2 x 3: row 0 is the body's own end row (the same numbers), row 3 is the
+//          v=0 the first quarter (u forward), u=1 the second, v=1 the third (u backward), u=0 the fourth (v
+//          backward). The quarters meet at Body::quarters.
+//   fan:   count_u = the body's, 4 rows, degree 2 x 3: row 0 is the body's own end row (the same numbers),
+//   row 3 is the
 //          centre, a degenerate point.
 //   planar: the plane through `origin` with `normal`, trimmed by the body's end curve.
 struct EndFace {
@@ -58,7 +59,8 @@ struct Body {
   Color color;
   TextPlace place;  // in the file that it came from
 
-  // u: round the section, closed and clamped: column 0 equals the last column, to the bit. v: along the path, clamped.
+  // u: round the section, closed and clamped: column 0 equals the last column, to the bit. v: along the path,
+  // clamped.
   nurbs::Surface surface;
   bool closed_along = false;  // a ring: the first row equals the last, to the bit; no end faces
   bool inward = false;        // S_u x S_v points into the yarn (grids that run the other way round)
@@ -66,14 +68,15 @@ struct Body {
   std::array<double, 4> quarters{0, 0.25, 0.5, 0.75};
   EndFace start, end;
 
-  // The centre line over the same parameter v as the surface (the exact path, or for a grid the centres of its sections).
+  // The centre line over the same parameter v as the surface (the exact path, or for a grid the centres of
+  // its sections).
   nurbs::Curve axis;
 
-  double length = 0;           // of the centre line
-  double volume = 0;           // enclosed, of the B-spline itself; with ends `none` as if the ends were planar
-  double end_area = 0;         // of the first section (for grids: of the first section's B-spline)
-  double tube_error = 0;       // bound on the distance to the exact swept section; 0 for a grid
-  double min_bend_radius = 0;  // of the path; infinity for a straight one
+  double length = 0;      // of the centre line
+  double volume = 0;      // enclosed, of the B-spline itself; with ends `none` as if the ends were planar
+  double end_area = 0;    // of the first section (for grids: of the first section's B-spline)
+  double tube_error = 0;  // bound on the distance to the exact swept section; 0 for a grid
+  double min_bend_radius = 0;          // of the path; infinity for a straight one
   std::vector<TightBend> tight_bends;  // worst first
   std::vector<Message> messages;       // warnings made while building: a fold that made an end planar, ...
 };
@@ -84,8 +87,8 @@ nurbs::Curve end_curve(const Body& body, bool last);
 // The same, as its four quarters between Body::quarters, each over its own part of u.
 std::array<nurbs::Curve, 4> end_quarters(const Body& body, bool last);
 
-// The largest distance between an end face's boundary and the body's end curve (0 for fan and planar ends that were
-// built here): what a receiving system has to sew.
+// The largest distance between an end face's boundary and the body's end curve (0 for fan and planar ends
+// that were built here): what a receiving system has to sew.
 double end_gap(const Body& body, bool last);
 
 // The body's box (of its control points).

@@ -25,7 +25,8 @@ nurbs::Curve over_unit(nurbs::Curve curve) {
   return curve;
 }
 
-// Brings two curves over [0, 1] of equal degree to the union of their knots. Knots nearer than 1e-9 are taken for one.
+// Brings two curves over [0, 1] of equal degree to the union of their knots. Knots nearer than 1e-9 are taken
+// for one.
 void unite_knots(nurbs::Curve& a, nurbs::Curve& b) {
   const auto add_missing = [](const nurbs::Curve& from, nurbs::Curve& to) {
     std::size_t j = 0;
@@ -132,14 +133,16 @@ bool is_folded(const nurbs::Surface& patch, const Vec3& normal) {
 
 Vec3 area_vector(const nurbs::Curve& closed) {
   const std::vector<double> breaks = nurbs::breakpoints(closed.knots, closed.degree);
-  // A polynomial's C x C' has degree 2 p - 2 at most; a rational one is approximated, down to rounding in four parts.
+  // A polynomial's C x C' has degree 2 p - 2 at most; a rational one is approximated, down to rounding in
+  // four parts.
   const nurbs::GaussRule& rule = nurbs::gauss_rule(closed.is_rational() ? 8 : closed.degree);
   const int parts = closed.is_rational() ? 4 : 1;
   const Vec3 origin = closed.points.front();
   Vec3 sum = Vec3::Zero();
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
     for (int part = 0; part < parts; ++part) {
-      const double half = 0.5 * (breaks[k + 1] - breaks[k]) / parts, middle = breaks[k] + half * (2 * part + 1);
+      const double half = 0.5 * (breaks[k + 1] - breaks[k]) / parts,
+                   middle = breaks[k] + half * (2 * part + 1);
       for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
         const nurbs::CurveJet jet = nurbs::evaluate_jet(closed, middle + half * rule.nodes[g]);
         sum += 0.5 * half * rule.weights[g] * (jet.position - origin).cross(jet.d1);
@@ -178,13 +181,14 @@ Status seal_end(Body& body, bool last, EndStyle style) {
   EndFace face;
   face.style = style;
   face.origin = end_centre(body, outline, last);
-  // Round the section the outline turns about the path (against it when the body's normals point inward); out of the yarn
-  // is against the path at the start.
+  // Round the section the outline turns about the path (against it when the body's normals point inward); out
+  // of the yarn is against the path at the start.
   const Vec3 turning = area_vector(outline);
   const double sign = (last != body.inward) ? 1.0 : -1.0;
   if (turning.norm() == 0.0)
-    return seal_message(body, last, Severity::error,
-                        fmt::format("the {} section of yarn '{}' has no area", last ? "last" : "first", body.name));
+    return seal_message(
+        body, last, Severity::error,
+        fmt::format("the {} section of yarn '{}' has no area", last ? "last" : "first", body.name));
   face.normal = sign * turning.normalized();
   double size = 0.0;
   for (const Vec3& p : outline.points) size = std::max(size, (p - face.origin).norm());
@@ -198,30 +202,33 @@ Status seal_end(Body& body, bool last, EndStyle style) {
     if (is_folded(face.surface, turning.normalized())) {
       if (!is_flat) {
         (last ? body.end : body.start) = face;
-        return seal_message(body, last, Severity::error,
-                            fmt::format("the patch that shall seal the {} of yarn '{}' folds over itself, and the end is not "
-                                        "flat (by {:.3g}), so that no plane can seal it either; use --ends fan",
-                                        last ? "end" : "start", body.name, unflat));
+        return seal_message(
+            body, last, Severity::error,
+            fmt::format("the patch that shall seal the {} of yarn '{}' folds over itself, and the end is not "
+                        "flat (by {:.3g}), so that no plane can seal it either; use --ends fan",
+                        last ? "end" : "start", body.name, unflat));
       }
       face.style = EndStyle::planar;
       face.surface = {};
       (last ? body.end : body.start) = face;
-      body.messages.push_back(seal_message(
-          body, last, Severity::warning,
-          fmt::format("the patch that shall seal the {} of yarn '{}' would fold over itself (the section is too long or "
-                      "concave): it is sealed by a trimmed plane instead",
-                      last ? "end" : "start", body.name)));
+      body.messages.push_back(seal_message(body, last, Severity::warning,
+                                           fmt::format("the patch that shall seal the {} of yarn '{}' would "
+                                                       "fold over itself (the section is too long or "
+                                                       "concave): it is sealed by a trimmed plane instead",
+                                                       last ? "end" : "start", body.name)));
       return {};
     }
   } else if (style == EndStyle::fan) {
     face.surface = fan(outline, face.origin);
   } else if (style == EndStyle::planar && !is_flat) {
     (last ? body.end : body.start) = face;
-    return seal_message(body, last, Severity::error,
-                        fmt::format("the {} of yarn '{}' is not flat (by {:.3g}): a plane cannot seal it; use --ends patch",
-                                    last ? "end" : "start", body.name, unflat));
+    return seal_message(
+        body, last, Severity::error,
+        fmt::format("the {} of yarn '{}' is not flat (by {:.3g}): a plane cannot seal it; use --ends patch",
+                    last ? "end" : "start", body.name, unflat));
   }
-  // A patch keeps the outline's turning; a fan's u follows the outline and v runs inward: its normal is the opposite one.
+  // A patch keeps the outline's turning; a fan's u follows the outline and v runs inward: its normal is the
+  // opposite one.
   if (face.style == EndStyle::patch) face.inward = face.normal.dot(turning) < 0.0;
   if (face.style == EndStyle::fan) {
     const nurbs::SurfaceJet jet = nurbs::evaluate_jet(face.surface, face.surface.first_u(), 0.0);

@@ -1,4 +1,5 @@
-// What seals a yarn: methods.md, 3, after the paper on IGES output of fabric geometry (../shared/references 002).
+// What seals a yarn: methods.md, 3, after the paper on IGES output of fabric geometry (../shared/references
+// 002).
 #pragma once
 
 #include <array>
@@ -7,26 +8,30 @@
 
 namespace selvage::yarn {
 
-// A four-sided surface over [0,1]^2 whose boundary curves are the quarters of a closed curve (a bilinearly blended Coons
-// patch in B-spline form: the control points are blended at their Greville abscissae). Its boundary control points are the
-// quarters' own, to the bit. `quarters` run round one after the other; weights are blended with the points.
+// A four-sided surface over [0,1]^2 whose boundary curves are the quarters of a closed curve (a bilinearly
+// blended Coons patch in B-spline form: the control points are blended at their Greville abscissae). Its
+// boundary control points are the quarters' own, to the bit. `quarters` run round one after the other;
+// weights are blended with the points.
 nurbs::Surface coons_patch(const std::array<nurbs::Curve, 4>& quarters);
 
 // The published end face: the closed curve, two rows on the segments to the centre, and the centre itself.
 nurbs::Surface fan(const nurbs::Curve& boundary, const Vec3& centre);
 
-// True where the patch's normal turns over inside (its corners' zero Jacobian aside) against `normal`: the control net of
-// a long or concave section can fold.
+// True where the patch's normal turns over inside (its corners' zero Jacobian aside) against `normal`: the
+// control net of a long or concave section can fold.
 bool is_folded(const nurbs::Surface& patch, const Vec3& normal);
 
-// The area vector of a closed curve (its length: the enclosed area, for a flat curve; direction: right-hand rule).
+// The area vector of a closed curve (its length: the enclosed area, for a flat curve; direction: right-hand
+// rule).
 Vec3 area_vector(const nurbs::Curve& closed);
 
-// The largest distance of the curve's control points from the plane through `origin` across the unit vector `normal`.
+// The largest distance of the curve's control points from the plane through `origin` across the unit vector
+// `normal`.
 double flatness(const nurbs::Curve& curve, const Vec3& origin, const Vec3& normal);
 
-// Fills body.start and body.end from the finished surface. A patch that folds becomes planar where the end is flat (with a
-// warning in body.messages). Rings and `none` get no faces. Error (geometry): an end that none of the styles asked for can seal.
+// Fills body.start and body.end from the finished surface. A patch that folds becomes planar where the end is
+// flat (with a warning in body.messages). Rings and `none` get no faces. Error (geometry): an end that none
+// of the styles asked for can seal.
 Status seal(Body& body, EndStyle style);
 
 }  // namespace selvage::yarn

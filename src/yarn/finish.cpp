@@ -13,8 +13,8 @@ namespace selvage::yarn {
 
 namespace {
 
-// The volume flux of one end. Planar, fan and open ends are what their outline says (a fan of a flat end is flat); a patch
-// is integrated.
+// The volume flux of one end. Planar, fan and open ends are what their outline says (a fan of a flat end is
+// flat); a patch is integrated.
 double end_flux(const Body& body, bool last, const Vec3& origin) {
   const EndFace& end = last ? body.end : body.start;
   if (end.style == EndStyle::patch || end.style == EndStyle::fan) {
@@ -33,7 +33,8 @@ double reach(const Body& body, const Vec3& centre, const Vec3& toward, double v)
   const nurbs::Surface& s = body.surface;
   const std::vector<double> breaks = nurbs::breakpoints(s.knots_u, s.degree_u);
   double largest = 0.0;
-  for (const Vec3& p : nurbs::evaluate_grid(s, breaks, {v})) largest = std::max(largest, (p - centre).dot(toward));
+  for (const Vec3& p : nurbs::evaluate_grid(s, breaks, {v}))
+    largest = std::max(largest, (p - centre).dot(toward));
   return largest;
 }
 
@@ -77,14 +78,16 @@ void find_bends(Body& body) {
     if (!found.empty() && found.back().bend.parameter == worst->bend.parameter) found.pop_back();
     found.push_back(*worst);
   }
-  std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.ratio > b.ratio; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Found& a, const Found& b) { return a.ratio > b.ratio; });
   for (const Found& f : found) body.tight_bends.push_back(f.bend);
   if (found.empty()) return;
   const TightBend& bend = found.front().bend;
   Message message = warning(
-      Kind::geometry, fmt::format("yarn '{}' bends more tightly than its section allows: radius {:.4g} where the section "
-                                  "reaches {:.4g} to the inside ({} such place{}); its surface folds over itself there",
-                                  body.name, bend.radius, bend.needed, found.size(), found.size() == 1 ? "" : "s"));
+      Kind::geometry,
+      fmt::format("yarn '{}' bends more tightly than its section allows: radius {:.4g} where the section "
+                  "reaches {:.4g} to the inside ({} such place{}); its surface folds over itself there",
+                  body.name, bend.radius, bend.needed, found.size(), found.size() == 1 ? "" : "s"));
   message.yarn = body.name;
   message.place = body.place;
   message.at = bend.at;

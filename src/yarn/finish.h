@@ -5,8 +5,9 @@
 
 namespace selvage::yarn {
 
-// From a body with name, place, surface, axis, closed_along and quarters: finds which way its normals point, seals it, and
-// measures length, volume, end area and bends. Errors (geometry): an end that cannot be sealed, a body without volume.
+// From a body with name, place, surface, axis, closed_along and quarters: finds which way its normals point,
+// seals it, and measures length, volume, end area and bends. Errors (geometry): an end that cannot be sealed,
+// a body without volume.
 Status finish(Body& body, EndStyle ends);
 
 }  // namespace selvage::yarn

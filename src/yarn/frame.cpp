@@ -11,11 +11,13 @@ namespace selvage::yarn {
 namespace {
 
 constexpr double six_degrees = 6.0 / 180.0 * std::numbers::pi;
-// Largest turning of the tangent between two nodes, radians: double reflection's error grows with its fourth power.
+// Largest turning of the tangent between two nodes, radians: double reflection's error grows with its fourth
+// power.
 constexpr double largest_turn = 0.02;
 
 // The frame's `up` carried from one node to another point (two reflections).
-Vec3 reflected(const Vec3& up, const Vec3& from, const Vec3& from_tangent, const Vec3& to, const Vec3& to_tangent) {
+Vec3 reflected(const Vec3& up, const Vec3& from, const Vec3& from_tangent, const Vec3& to,
+               const Vec3& to_tangent) {
   const Vec3 v1 = to - from;
   const double c1 = v1.squaredNorm();
   if (c1 == 0.0) return up;
@@ -28,7 +30,9 @@ Vec3 reflected(const Vec3& up, const Vec3& from, const Vec3& from_tangent, const
   return (carried - carried.dot(to_tangent) * to_tangent).normalized();
 }
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
 Result<Vec3> first_up(const Vec3& tangent, const std::optional<Vec3>& wanted) {
   Vec3 up = Vec3::UnitZ();
@@ -38,7 +42,8 @@ Result<Vec3> first_up(const Vec3& tangent, const std::optional<Vec3>& wanted) {
   };
   if (wanted) {
     up = *wanted;
-    if (is_along(up)) return error(Kind::geometry, "`up` is within 6 degrees of the path's direction at its start");
+    if (is_along(up))
+      return error(Kind::geometry, "`up` is within 6 degrees of the path's direction at its start");
   } else if (is_along(up)) {
     up = Vec3::UnitY();
   }
@@ -59,7 +64,9 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const std::optiona
     node.tangent = jet.d1.normalized();
     return node;
   };
-  const auto stops = [](const Node& node) { return !node.tangent.allFinite() || node.tangent.squaredNorm() < 0.5; };
+  const auto stops = [](const Node& node) {
+    return !node.tangent.allFinite() || node.tangent.squaredNorm() < 0.5;
+  };
   Node first = node_at(path.first_parameter());
   const auto stopped = [](const Node& node) {
     Message message = error(Kind::geometry, "the path stops or turns back on itself");
@@ -73,7 +80,8 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const std::optiona
   field.nodes_.push_back(first);
   const std::vector<double> breaks = nurbs::breakpoints(path.knots, path.degree);
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-    // Turning of the span, from a coarse look, decides its number of steps; a hidden turn is caught by halving.
+    // Turning of the span, from a coarse look, decides its number of steps; a hidden turn is caught by
+    // halving.
     double turning = 0.0;
     Vec3 previous = field.nodes_.back().tangent;
     constexpr int looks = 8;
@@ -105,7 +113,8 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const std::optiona
 }
 
 const FrameField::Node& FrameField::node_before(double t) const {
-  const auto after = std::upper_bound(nodes_.begin(), nodes_.end(), t, [](double v, const Node& n) { return v < n.t; });
+  const auto after =
+      std::upper_bound(nodes_.begin(), nodes_.end(), t, [](double v, const Node& n) { return v < n.t; });
   return after == nodes_.begin() ? *after : *std::prev(after);
 }
 
@@ -122,7 +131,8 @@ Frame FrameField::at(double t) const {
   frame.speed = jet.d1.norm();
   frame.tangent = jet.d1 / frame.speed;
   frame.tangent_dt = (jet.d2 - frame.tangent * jet.d2.dot(frame.tangent)) / frame.speed;
-  frame.up = t <= node.t ? node.up : reflected(node.up, node.position, node.tangent, frame.position, frame.tangent);
+  frame.up =
+      t <= node.t ? node.up : reflected(node.up, node.position, node.tangent, frame.position, frame.tangent);
   if (spread_rate_ != 0.0) {
     const double angle = spread_rate_ * length_at(t);
     frame.up = Eigen::AngleAxisd(angle, frame.tangent) * frame.up;

@@ -13,10 +13,12 @@ namespace selvage::yarn {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
-// A closed polygon as a clamped closed B-spline with uniform knots of `step`: degree 2 begins in the middle of the edge
-// from the last point to the first, degree 3 beside the first point, and so on.
+// A closed polygon as a clamped closed B-spline with uniform knots of `step`: degree 2 begins in the middle
+// of the edge from the last point to the first, degree 3 beside the first point, and so on.
 nurbs::Curve closed_uniform(const std::vector<Vec3>& points, const std::vector<double>& weights, int degree,
                             double step) {
   const int n = static_cast<int>(points.size());
@@ -40,25 +42,28 @@ std::vector<double> clamped_integer_knots(int count, int degree) {
   return knots;
 }
 
-Message problem(std::string text) { return error(Kind::malformed, std::move(text)); }
+Message problem(std::string text) {
+  return error(Kind::malformed, std::move(text));
+}
 
 // What every given knot vector has to obey.
 Status check_knots(const std::vector<double>& knots, int count, int degree, std::string_view which) {
   if (static_cast<int>(knots.size()) != count + degree + 1)
-    return problem(fmt::format("{} knots {}: {} control points of degree {} need {}", knots.size(), which, count,
-                               degree, count + degree + 1));
+    return problem(fmt::format("{} knots {}: {} control points of degree {} need {}", knots.size(), which,
+                               count, degree, count + degree + 1));
   for (std::size_t i = 1; i < knots.size(); ++i)
     if (!(knots[i] >= knots[i - 1]))
       return problem(fmt::format("knots {} decrease: {} after {}", which, knots[i], knots[i - 1]));
   for (int end = 0; end < 2; ++end) {
     const std::size_t base = end == 0 ? 0 : at(count);
     if (knots[base] != knots[base + at(degree)])
-      return problem(fmt::format("the {} {} knots {} have to be equal (a clamped B-spline)", end == 0 ? "first" : "last",
-                                 degree + 1, which));
+      return problem(fmt::format("the {} {} knots {} have to be equal (a clamped B-spline)",
+                                 end == 0 ? "first" : "last", degree + 1, which));
   }
   for (int i = 1; i < count; ++i)
     if (knots[at(i)] == knots[at(i + degree)] && knots[at(i)] > knots.front() && knots[at(i)] < knots.back())
-      return problem(fmt::format("the knot {} {} is repeated more than {} times", knots[at(i)], which, degree));
+      return problem(
+          fmt::format("the knot {} {} is repeated more than {} times", knots[at(i)], which, degree));
   if (!(knots[at(count)] > knots[at(degree)])) return problem(fmt::format("all knots {} are equal", which));
   return {};
 }
@@ -95,7 +100,8 @@ Status check_counts(const GridNet& net, int degree_round, int degree_along) {
   if (net.closed_along && net.sections < 3) return problem("a closed grid needs at least three sections");
   if (distinct < 3) return problem("a section needs at least three different control points");
   if (degree_round < 1 || degree_round > nurbs::max_degree || degree_round > distinct)
-    return problem(fmt::format("degree {} round does not go with {} control points", degree_round, net.per_section));
+    return problem(
+        fmt::format("degree {} round does not go with {} control points", degree_round, net.per_section));
   const int most = net.closed_along ? net.sections : net.sections - 1;
   if (degree_along < 1 || degree_along > nurbs::max_degree || degree_along > most)
     return problem(fmt::format("degree {} along does not go with {} sections", degree_along, net.sections));
@@ -154,7 +160,8 @@ std::optional<std::array<double, 4>> find_quarters(const nurbs::Curve& outline) 
 
 Status fill_from_grid(Body& body, const GridNet& net) {
   const int degree_round = net.degree_round.value_or(net.open_round ? std::min(2, net.per_section - 1) : 2);
-  const int degree_along = net.degree_along.value_or(std::min(3, net.closed_along ? net.sections : net.sections - 1));
+  const int degree_along =
+      net.degree_along.value_or(std::min(3, net.closed_along ? net.sections : net.sections - 1));
   Status counts = check_counts(net, degree_round, degree_along);
   if (!counts) return counts;
 
@@ -177,8 +184,8 @@ Status fill_from_grid(Body& body, const GridNet& net) {
     centres.push_back(centre / static_cast<double>(distinct));
     if (net.open_round) {
       if (points.front() != points.back() || (!weights.empty() && weights.front() != weights.back()))
-        return problem(fmt::format("section {} is not closed: with `open round` its last control point has to be its first",
-                                   s + 1));
+        return problem(fmt::format(
+            "section {} is not closed: with `open round` its last control point has to be its first", s + 1));
       rows.push_back(points);
       row_weights.push_back(weights);
       if (knots_round.empty()) {
@@ -199,7 +206,8 @@ Status fill_from_grid(Body& body, const GridNet& net) {
     }
   }
   const std::size_t columns_count = rows.front().size();
-  if (Status s = check_knots(knots_round, static_cast<int>(columns_count), degree_round, "round"); !s) return s;
+  if (Status s = check_knots(knots_round, static_cast<int>(columns_count), degree_round, "round"); !s)
+    return s;
 
   // Along: every column, and the centres as one more.
   std::vector<std::vector<Vec3>> columns(columns_count);
@@ -234,7 +242,8 @@ Status fill_from_grid(Body& body, const GridNet& net) {
   body.axis = centre_line->curves.front();
   body.closed_along = net.closed_along;
   const std::optional<std::array<double, 4>> quarters = find_quarters(nurbs::boundary_row(surface, false));
-  // With fewer than four spans there is no place for a patch's corners at knots; sub_curve makes the knots it needs.
+  // With fewer than four spans there is no place for a patch's corners at knots; sub_curve makes the knots it
+  // needs.
   const double first = surface.first_u(), length = surface.last_u() - first;
   body.quarters = quarters.value_or(
       std::array<double, 4>{first, first + 0.25 * length, first + 0.5 * length, first + 0.75 * length});

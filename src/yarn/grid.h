@@ -14,7 +14,7 @@ namespace selvage::yarn {
 struct GridNet {
   int sections = 0, per_section = 0;
   std::vector<Vec3> points;
-  std::vector<double> weights;               // empty, or one a point
+  std::vector<double> weights;  // empty, or one a point
   std::optional<int> degree_along, degree_round;
   std::vector<double> knots_along, knots_round;  // empty: the default
   bool open_round = false;    // the rows are the clamped form: the seam's point stands at both ends
@@ -22,20 +22,20 @@ struct GridNet {
 };
 
 // The surface of a grid, u round, v along, with the control points that were given untouched.
-//   Round: the closed uniform B-spline (degree 2, or degree_round) over each row's polygon, clamped at its seam, knots
-//   0, 1/per_section, .., 1; degree 2: the seam is the midpoint of the edge from the last point to the first. With
-//   `open_round` the rows are the clamped form already, first = last point.
-//   Along: the clamped cubic (degree sections - 1 for 2 or 3 sections, or degree_along) with knots 0, 1, 2, ..; closed:
+//   Round: the closed uniform B-spline (degree 2, or degree_round) over each row's polygon, clamped at its
+//   seam, knots 0, 1/per_section, .., 1; degree 2: the seam is the midpoint of the edge from the last point
+//   to the first. With `open_round` the rows are the clamped form already, first = last point. Along: the
+//   clamped cubic (degree sections - 1 for 2 or 3 sections, or degree_along) with knots 0, 1, 2, ..; closed:
 //   the periodic one, clamped at its first section's seam.
-//   knots_round needs open_round; with `closed` and knots_along the sections are the clamped form, first = last.
-// Fills surface, axis, closed_along and quarters of `body`. Errors (malformed, geometry): impossible counts, degrees or
-// knots, an open row whose ends differ.
+//   knots_round needs open_round; with `closed` and knots_along the sections are the clamped form, first =
+//   last.
+// Fills surface, axis, closed_along and quarters of `body`. Errors (malformed, geometry): impossible counts,
+// degrees or knots, an open row whose ends differ.
 Status fill_from_grid(Body& body, const GridNet& net);
 
-// The four knots at which an end patch has its corners: the seam, and the three at which the outline has turned by nearest
-// to one, two and three quarters (for an ellipse that begins at an axis: the ends of its axes). Null with fewer than four
-// spans.
+// The four knots at which an end patch has its corners: the seam, and the three at which the outline has
+// turned by nearest to one, two and three quarters (for an ellipse that begins at an axis: the ends of its
+// axes). Null with fewer than four spans.
 std::optional<std::array<double, 4>> find_quarters(const nurbs::Curve& outline);
-
 
 }  // namespace selvage::yarn

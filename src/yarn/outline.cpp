@@ -15,16 +15,19 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// A knot of the outline's first quarter (from the +x extreme to the +y extreme): the shape's point and tangent there.
+// A knot of the outline's first quarter (from the +x extreme to the +y extreme): the shape's point and
+// tangent there.
 struct Joint {
   Vec2 point, tangent;
   bool is_double = false;  // a corner, or a place where the knots shall not depend on the size
 };
 
-// ---- the quarters of each shape ----------------------------------------------------------------------------------
+// ---- the quarters of each shape
+// ----------------------------------------------------------------------------------
 
 // Round the circle of this centre and radius from one angle to another.
-void add_arc(std::vector<Joint>& joints, const Vec2& centre, double radius, double from, double to, int pieces) {
+void add_arc(std::vector<Joint>& joints, const Vec2& centre, double radius, double from, double to,
+             int pieces) {
   for (int i = 0; i <= pieces; ++i) {
     const double a = from + (to - from) * i / pieces;
     // The quarter's ends lie on the axes exactly.
@@ -93,7 +96,8 @@ Vec2 meeting_point(const Joint& a, const Joint& b) {
   return a.point + s * a.tangent;
 }
 
-// The distance from p to the power curve between two angles (size 2, 2), as the vector from the nearest point.
+// The distance from p to the power curve between two angles (size 2, 2), as the vector from the nearest
+// point.
 Vec2 from_power_curve(double exponent, const Vec2& p, double from, double to) {
   double best = std::numeric_limits<double>::infinity(), at = from, step = (to - from) / 8.0;
   for (int i = 0; i <= 8; ++i) {
@@ -132,7 +136,8 @@ double power_piece_error(double exponent, double from, double to) {
 // Angles of the power quarter's joints: the worst piece is halved until there are enough.
 std::vector<double> power_angles(double exponent, int pieces) {
   std::vector<double> angles = {0.0, pi / 2};
-  if (exponent > 2.0) angles.insert(angles.begin() + 1, std::atan(std::sqrt(exponent - 2.0)));  // its inflection
+  if (exponent > 2.0)
+    angles.insert(angles.begin() + 1, std::atan(std::sqrt(exponent - 2.0)));  // its inflection
   std::vector<double> errors;
   for (std::size_t i = 0; i + 1 < angles.size(); ++i)
     errors.push_back(power_piece_error(exponent, angles[i], angles[i + 1]));
@@ -162,14 +167,16 @@ std::vector<Joint> power_quarter(const Power& shape, const SectionSize& size, in
   return joints;
 }
 
-// ---- from a quarter to the closed outline ------------------------------------------------------------------------
+// ---- from a quarter to the closed outline
+// ------------------------------------------------------------------------
 
-// Knot spans of a quarter: a simple knot lies where its joint divides the control polygon's edge (a property of
-// quadratic B-splines); behind a double one the spans begin anew. The seam and the top are symmetric.
+// Knot spans of a quarter: a simple knot lies where its joint divides the control polygon's edge (a property
+// of quadratic B-splines); behind a double one the spans begin anew. The seam and the top are symmetric.
 std::vector<double> quarter_spans(const std::vector<Joint>& joints, const std::vector<Vec2>& control) {
   std::vector<double> spans(control.size(), 1.0);
   for (std::size_t i = 1; i < control.size(); ++i) {
-    const double before = (joints[i].point - control[i - 1]).norm(), after = (control[i] - joints[i].point).norm();
+    const double before = (joints[i].point - control[i - 1]).norm(),
+                 after = (control[i] - joints[i].point).norm();
     spans[i] = joints[i].is_double ? 1.0 : spans[i - 1] * after / before;
   }
   const auto [low, high] = std::minmax_element(spans.begin(), spans.end());
@@ -179,7 +186,8 @@ std::vector<double> quarter_spans(const std::vector<Joint>& joints, const std::v
 
 Outline assemble(const std::vector<Joint>& joints) {
   std::vector<Vec2> control;
-  for (std::size_t i = 0; i + 1 < joints.size(); ++i) control.push_back(meeting_point(joints[i], joints[i + 1]));
+  for (std::size_t i = 0; i + 1 < joints.size(); ++i)
+    control.push_back(meeting_point(joints[i], joints[i + 1]));
   const std::vector<double> spans = quarter_spans(joints, control);
   const std::size_t k = control.size();
   // Cumulative knots of a quarter, 0 .. 1.
@@ -287,7 +295,8 @@ Outline polygon_outline(const Polygon& shape, const SectionSize& size) {
   return outline;
 }
 
-// The vector from the nearest point of the exact shape (or from one that is nearly so) to p, a point of the first quadrant.
+// The vector from the nearest point of the exact shape (or from one that is nearly so) to p, a point of the
+// first quadrant.
 Vec2 from_shape(const Section& section, const SectionSize& size, const Vec2& p) {
   const double a = 0.5 * size.width, h = 0.5 * size.height;
   const auto from_circle = [](const Vec2& q, const Vec2& centre, double radius) -> Vec2 {
@@ -335,7 +344,8 @@ double outline_error(const Section& section, const SectionSize& size, const Outl
   const std::vector<double> breaks = nurbs::breakpoints(outline.knots, outline.degree);
   constexpr int samples = 16;
   double largest = 0.0;
-  for (std::size_t k = 0; k + 1 < breaks.size() && breaks[k] < 0.25; ++k)  // the other quarters mirror the first
+  for (std::size_t k = 0; k + 1 < breaks.size() && breaks[k] < 0.25;
+       ++k)  // the other quarters mirror the first
     for (int i = 0; i <= samples; ++i) {
       const Vec3 p = nurbs::evaluate(curve, breaks[k] + (breaks[k + 1] - breaks[k]) * i / samples);
       largest = std::max(largest, from_shape(section, size, Vec2(p.x(), p.y()).cwiseAbs()).norm());

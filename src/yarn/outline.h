@@ -1,5 +1,5 @@
-// A section's outline as a closed B-spline: how many control points it takes, where they are, how far it is from the exact
-// shape.
+// A section's outline as a closed B-spline: how many control points it takes, where they are, how far it is
+// from the exact shape.
 #pragma once
 
 #include <array>
@@ -17,18 +17,19 @@ struct SectionSize {
   bool operator==(const SectionSize&) const = default;
 };
 
-// The section's own size (a polygon's: of its box about the origin's axes). Zeros for a circle without diameter.
+// The section's own size (a polygon's: of its box about the origin's axes). Zeros for a circle without
+// diameter.
 SectionSize nominal_size(const Section& section);
 
 // Exact enclosed area of the section brought to this size.
 double area(const Section& section, const SectionSize& size);
 
-// Errors (geometry): sizes that are not positive and finite, power exponents outside 0.1 .. 10, a polygon of fewer than three
-// corners, with equal neighbours, without area, or whose edges cross.
+// Errors (geometry): sizes that are not positive and finite, power exponents outside 0.1 .. 10, a polygon of
+// fewer than three corners, with equal neighbours, without area, or whose edges cross.
 Status check_section(const Section& section, const SectionSize& size);
 
-// A closed, clamped B-spline over [0, 1] that runs counter-clockwise (x across to the right, y up) from the section's +x
-// extreme; first point = last point, to the bit.
+// A closed, clamped B-spline over [0, 1] that runs counter-clockwise (x across to the right, y up) from the
+// section's +x extreme; first point = last point, to the bit.
 struct Outline {
   int degree = 2;
   std::vector<double> knots;
@@ -36,13 +37,14 @@ struct Outline {
   std::array<double, 4> quarters{0, 0.25, 0.5, 0.75};  // knots at the section's extremes
 };
 
-// Sections of one yarn share their knots. Affine shapes (all but lenticular and racetrack) do so by nature: the points of
-// size (W, H) are those of size (2, 2) times W/2 and H/2. The others get knots that suit every size when `varying`.
+// Sections of one yarn share their knots. Affine shapes (all but lenticular and racetrack) do so by nature:
+// the points of size (W, H) are those of size (2, 2) times W/2 and H/2. The others get knots that suit every
+// size when `varying`.
 bool is_affine(const Section& section);
 
-// The outline with `pieces` parabolas to a quarter (ignored where the outline is exact anyway: polygon, loop7). The control
-// points are the meeting points of the shape's tangents at neighbouring knots; circles and ellipses are then scaled to
-// their exact area.
+// The outline with `pieces` parabolas to a quarter (ignored where the outline is exact anyway: polygon,
+// loop7). The control points are the meeting points of the shape's tangents at neighbouring knots; circles
+// and ellipses are then scaled to their exact area.
 Outline make_outline(const Section& section, const SectionSize& size, int pieces, bool varying);
 bool is_exact(const Section& section);
 

@@ -32,7 +32,8 @@ nurbs::Curve periodic_uniform(const std::vector<Vec3>& points) {
   const int n = static_cast<int>(points.size());
   nurbs::Curve periodic;
   for (int i = -3; i <= n + 3; ++i) periodic.knots.push_back(static_cast<double>(i) / n);
-  for (int i = 0; i < n + 3; ++i) periodic.points.push_back(points[static_cast<std::size_t>((i - 1 + n) % n)]);
+  for (int i = 0; i < n + 3; ++i)
+    periodic.points.push_back(points[static_cast<std::size_t>((i - 1 + n) % n)]);
   nurbs::Curve curve = nurbs::clamped(periodic);
   curve.points.back() = curve.points.front();
   return curve;
@@ -95,7 +96,8 @@ CentreLine from_loop(const PathRows& rows) {
     double sum = 0.0;
     for (std::size_t k = first_control[i]; k < next; ++k) sum += line.parameters[k];
     parameters.push_back(sum / static_cast<double>(next - first_control[i]));
-    line.largest_miss = std::max(line.largest_miss, (nurbs::evaluate(line.curve, parameters.back()) - p[i]).norm());
+    line.largest_miss =
+        std::max(line.largest_miss, (nurbs::evaluate(line.curve, parameters.back()) - p[i]).norm());
   }
   line.parameters = parameters;
   return line;
@@ -114,7 +116,8 @@ class ArcsAndSegments {
     const Vec3 from = curve_.points.back();
     piece(0.5 * (from + to), 1.0, to, (to - from).norm());
   }
-  // The arc that touches the lines from the present point to `corner` and from there to `to`; half_angle: half its turning.
+  // The arc that touches the lines from the present point to `corner` and from there to `to`; half_angle:
+  // half its turning.
   void arc(const Vec3& corner, const Vec3& to, double half_angle) {
     const double weight = std::cos(half_angle);
     // Speed at its ends is 2 weight |corner - end| / duration: 1, as on the segments.
@@ -156,17 +159,20 @@ Result<CentreLine> from_polyline(const PathRows& rows) {
     const double turning = std::atan2(in.cross(out).norm(), in.dot(out));
     if (turning < 1e-9) continue;
     if (turning > 150.0 / 180.0 * std::numbers::pi)
-      return at_row(i, fmt::format("the polyline turns back by {:.0f} degrees at point {}: no arc rounds more than 150",
-                                   turning * 180.0 / std::numbers::pi, i + 1));
+      return at_row(
+          i, fmt::format("the polyline turns back by {:.0f} degrees at point {}: no arc rounds more than 150",
+                         turning * 180.0 / std::numbers::pi, i + 1));
     corners[i].half_angle = 0.5 * turning;
     corners[i].cut = 1.05 * rows.half_sizes[i] * std::tan(0.5 * turning);
   }
   for (std::size_t i = 0; i + (rows.closed ? 0 : 1) < n; ++i) {
     const double room = (p[next(i)] - p[i]).norm(), wanted = corners[i].cut + corners[next(i)].cut;
     if (wanted > room * (1.0 + 1e-12))
-      return at_row(i, fmt::format("the segment from point {} to point {} is {:.4g} long, but the arcs that round its corners "
-                                   "(1.05 times half the section) need {:.4g}",
-                                   i + 1, next(i) + 1, room, wanted));
+      return at_row(
+          i, fmt::format(
+                 "the segment from point {} to point {} is {:.4g} long, but the arcs that round its corners "
+                 "(1.05 times half the section) need {:.4g}",
+                 i + 1, next(i) + 1, room, wanted));
   }
   const auto toward = [&](std::size_t from, std::size_t to, double distance) -> Vec3 {
     return p[from] + (p[to] - p[from]).normalized() * distance;
@@ -175,7 +181,8 @@ Result<CentreLine> from_polyline(const PathRows& rows) {
   line.parameters.assign(n, 0.0);
   // A closed one begins in the middle of its last segment's straight part, where nothing bends.
   const std::size_t last = n - 1;
-  const Vec3 start = rows.closed ? Vec3(0.5 * (toward(last, 0, corners[last].cut) + toward(0, last, corners[0].cut))) : p[0];
+  const Vec3 start =
+      rows.closed ? Vec3(0.5 * (toward(last, 0, corners[last].cut) + toward(0, last, corners[0].cut))) : p[0];
   ArcsAndSegments path(start);
   for (std::size_t i = 0; i < n; ++i) {
     const bool is_end = !rows.closed && (i == 0 || i == last);
@@ -206,14 +213,25 @@ Result<CentreLine> make_centre_line(const PathRows& rows) {
   if (rows.closed && n < 3) return at_row(0, "a closed path needs at least three points");
   for (std::size_t i = 0; i + (rows.closed ? 0 : 1) < n; ++i)
     if (rows.points[i] == rows.points[(i + 1) % n])
-      return at_row((i + 1) % n, fmt::format("points {} and {} of the path are equal", i + 1, (i + 1) % n + 1));
+      return at_row((i + 1) % n,
+                    fmt::format("points {} and {} of the path are equal", i + 1, (i + 1) % n + 1));
   CentreLine line;
   switch (rows.form) {
-    case PathForm::uniform: line = through_points(rows, nurbs::Parameterization::uniform); break;
-    case PathForm::chord: line = through_points(rows, nurbs::Parameterization::chord); break;
-    case PathForm::centripetal: line = through_points(rows, nurbs::Parameterization::centripetal); break;
-    case PathForm::control: line = from_control(rows); break;
-    case PathForm::loop: line = from_loop(rows); break;
+    case PathForm::uniform:
+      line = through_points(rows, nurbs::Parameterization::uniform);
+      break;
+    case PathForm::chord:
+      line = through_points(rows, nurbs::Parameterization::chord);
+      break;
+    case PathForm::centripetal:
+      line = through_points(rows, nurbs::Parameterization::centripetal);
+      break;
+    case PathForm::control:
+      line = from_control(rows);
+      break;
+    case PathForm::loop:
+      line = from_loop(rows);
+      break;
     case PathForm::polyline: {
       Result<CentreLine> made = from_polyline(rows);
       if (!made) return made;

@@ -1,5 +1,5 @@
-// The centre line of a yarn, from the rows of a path: one B-spline (rational where it has arcs) over [0, 1], and the
-// parameter at which each row's section size holds.
+// The centre line of a yarn, from the rows of a path: one B-spline (rational where it has arcs) over [0, 1],
+// and the parameter at which each row's section size holds.
 #pragma once
 
 #include <optional>
@@ -17,24 +17,27 @@ enum class PathForm { uniform, chord, centripetal, polyline, control, loop };
 struct PathRows {
   PathForm form = PathForm::chord;
   std::vector<Vec3> points;
-  bool closed = false;  // the first point follows the last
+  bool closed = false;                             // the first point follows the last
   std::optional<Vec3> tangent_start, tangent_end;  // directions
-  // polyline: half the section's size in the plane of the bend at row i; corners are rounded by an arc of 1.05 times it.
+  // polyline: half the section's size in the plane of the bend at row i; corners are rounded by an arc
+  // of 1.05 times it.
   std::vector<double> half_sizes;
 };
 
 struct CentreLine {
-  nurbs::Curve curve;              // over [0, 1], C1; closed: the first point equals the last, to the bit
+  nurbs::Curve curve;  // over [0, 1], C1; closed: the first point equals the last, to the bit
   bool closed = false;
-  std::vector<double> parameters;  // one a row: where it is met, or (control, loop) comes nearest by construction
-  double largest_miss = 0;         // loop: the largest distance of the curve from a row's point; 0 for the others
+  std::vector<double>
+      parameters;           // one a row: where it is met, or (control, loop) comes nearest by construction
+  double largest_miss = 0;  // loop: the largest distance of the curve from a row's point; 0 for the others
 };
 
-// uniform, chord, centripetal: the cubic through the rows (nurbs/interpolate.h). control: the rows are control points of
-// the clamped uniform cubic (degree rows - 1 below four rows; closed: the periodic one). loop: ../shared/references 000.
-// polyline: segments and arcs, exact as a rational quadratic. Errors (geometry): equal neighbouring points, a closed path
-// of fewer than three points, polyline corners with no room for their arc or that turn back by more than 150 degrees; the
-// message's place.line holds the index (from 1) of the row concerned.
+// uniform, chord, centripetal: the cubic through the rows (nurbs/interpolate.h). control: the rows are
+// control points of the clamped uniform cubic (degree rows - 1 below four rows; closed: the periodic one).
+// loop: ../shared/references 000. polyline: segments and arcs, exact as a rational quadratic. Errors
+// (geometry): equal neighbouring points, a closed path of fewer than three points, polyline corners with no
+// room for their arc or that turn back by more than 150 degrees; the message's place.line holds the index
+// (from 1) of the row concerned.
 Result<CentreLine> make_centre_line(const PathRows& rows);
 
 }  // namespace selvage::yarn

@@ -76,8 +76,12 @@ Status check_polygon(const std::vector<Vec2>& corners) {
 
 SectionSize nominal_size(const Section& section) {
   return std::visit(Overloaded{
-                        [](const Circle& s) { return SectionSize{s.diameter, s.diameter}; },
-                        [](const Loop7& s) { return SectionSize{s.diameter, s.diameter}; },
+                        [](const Circle& s) {
+                          return SectionSize{s.diameter, s.diameter};
+                        },
+                        [](const Loop7& s) {
+                          return SectionSize{s.diameter, s.diameter};
+                        },
                         [](const Polygon& s) {
                           Vec2 low = s.corners.front(), high = low;
                           for (const Vec2& c : s.corners) {
@@ -86,7 +90,9 @@ SectionSize nominal_size(const Section& section) {
                           }
                           return SectionSize{high.x() - low.x(), high.y() - low.y()};
                         },
-                        [](const auto& s) { return SectionSize{s.width, s.height}; },
+                        [](const auto& s) {
+                          return SectionSize{s.width, s.height};
+                        },
                     },
                     section);
 }
@@ -98,7 +104,8 @@ double area(const Section& section, const SectionSize& size) {
                         [&](const Ellipse&) { return pi / 4.0 * w * h; },
                         [&](const Lenticular&) {
                           const LensArc arc = lens_arc(size);
-                          return arc.radius * arc.radius * (2.0 * arc.half_angle - std::sin(2.0 * arc.half_angle));
+                          return arc.radius * arc.radius *
+                                 (2.0 * arc.half_angle - std::sin(2.0 * arc.half_angle));
                         },
                         [&](const Racetrack&) {
                           const double d = std::min(w, h), straight = std::max(w, h) - d;
@@ -131,7 +138,8 @@ Status check_section(const Section& section, const SectionSize& size) {
     return error(Kind::geometry, fmt::format("a section of {} x {} has no size", size.width, size.height));
   if (const auto* power = std::get_if<Power>(&section))
     if (!(power->exponent >= 0.1 && power->exponent <= 10.0))
-      return error(Kind::geometry, fmt::format("the exponent {} of a power section is outside 0.1 .. 10", power->exponent));
+      return error(Kind::geometry,
+                   fmt::format("the exponent {} of a power section is outside 0.1 .. 10", power->exponent));
   return {};
 }
 

@@ -1,5 +1,5 @@
-// The cross-section of a yarn: the shape that is swept along its path. Axes: x across, y through the thickness;
-// the origin is on the path. Sizes are full widths in file units.
+// The cross-section of a yarn: the shape that is swept along its path. Axes: x across, y through the
+// thickness; the origin is on the path. Sizes are full widths in file units.
 #pragma once
 
 #include <variant>
@@ -27,8 +27,8 @@ struct Racetrack {
   double width = 0, height = 0;
   bool operator==(const Racetrack&) const = default;
 };
-// x = width/2 cos(a), y = height/2 sign(sin a) |sin a|^exponent. 1 is the ellipse, below 1 nears a rectangle, above 1
-// a lens with hollow flanks at the tips.
+// x = width/2 cos(a), y = height/2 sign(sin a) |sin a|^exponent. 1 is the ellipse, below 1 nears a rectangle,
+// above 1 a lens with hollow flanks at the tips.
 struct Power {
   double width = 0, height = 0, exponent = 1;
   bool operator==(const Power&) const = default;

@@ -39,8 +39,10 @@ SizeProfile::SizeProfile(std::vector<double> parameters, std::vector<Values> row
     if (n > 2) {  // one-sided parabola, kept monotone
       const auto end = [&](double h0, double h1, double d0, double d1) {
         double slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
-        if (slope * d0 <= 0.0) slope = 0.0;
-        else if (d0 * d1 <= 0.0 && std::abs(slope) > 3.0 * std::abs(d0)) slope = 3.0 * d0;
+        if (slope * d0 <= 0.0)
+          slope = 0.0;
+        else if (d0 * d1 <= 0.0 && std::abs(slope) > 3.0 * std::abs(d0))
+          slope = 3.0 * d0;
         return slope;
       };
       slopes_[0][c] = end(step(0), step(1), secant(0), secant(1));

@@ -1,5 +1,5 @@
-// Section size and angle along a path: monotone piecewise cubics (Fritsch and Carlson 1980; derivatives by the weighted
-// harmonic mean of Fritsch and Butland 1984), so that no size overshoots its neighbours.
+// Section size and angle along a path: monotone piecewise cubics (Fritsch and Carlson 1980; derivatives by
+// the weighted harmonic mean of Fritsch and Butland 1984), so that no size overshoots its neighbours.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ class SizeProfile {
   struct Jet {
     Values value, slope;
   };
-  // Parameters increase strictly; before the first and after the last the value stands still. closed: the profile returns
-  // to its first row after a period of 1.
+  // Parameters increase strictly; before the first and after the last the value stands still. closed: the
+  // profile returns to its first row after a period of 1.
   SizeProfile(std::vector<double> parameters, std::vector<Values> rows, bool closed);
 
   [[nodiscard]] Jet at(double t) const;

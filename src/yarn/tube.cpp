@@ -18,8 +18,8 @@ namespace {
 constexpr double pi = std::numbers::pi;
 using Row = Eigen::RowVectorXd;
 
-// The exact surface, seen as a few vector-valued functions of t that are blended round the section with constant
-// coefficients: for an affine section C, a W/2 and b H/2; otherwise the path of every control point.
+// The exact surface, seen as a few vector-valued functions of t that are blended round the section with
+// constant coefficients: for an affine section C, a W/2 and b H/2; otherwise the path of every control point.
 class Channels {
  public:
   Channels(const FrameField& frames, const SizeProfile& sizes, const TubeSpec& spec, double twist, int pieces)
@@ -27,8 +27,7 @@ class Channels {
     affine_ = is_affine(spec.section) || sizes.parameters().size() == 1;
     const SizeProfile::Values first = sizes.at(0.0).value;
     // A constant size needs no scaling: the outline of that size itself is swept.
-    unit_ = make_outline(spec.section, SectionSize{first[0], first[1]},
-                         pieces, !affine_);
+    unit_ = make_outline(spec.section, SectionSize{first[0], first[1]}, pieces, !affine_);
     if (affine_)
       for (Vec2& p : unit_.points) p = p.array() / Eigen::Array2d(0.5 * first[0], 0.5 * first[1]);
   }
@@ -90,9 +89,11 @@ class Channels {
 
   // The control point of column i (the last column is the first) from a row of control values.
   [[nodiscard]] Vec3 blend(const Eigen::Ref<const Row>& control, std::size_t i) const {
-    if (!affine_) return control.segment<3>(3 * static_cast<Eigen::Index>(i % (unit_.points.size() - 1))).transpose();
+    if (!affine_)
+      return control.segment<3>(3 * static_cast<Eigen::Index>(i % (unit_.points.size() - 1))).transpose();
     const Vec2& p = unit_.points[i];
-    return (control.segment<3>(0) + p.x() * control.segment<3>(3) + p.y() * control.segment<3>(6)).transpose();
+    return (control.segment<3>(0) + p.x() * control.segment<3>(3) + p.y() * control.segment<3>(6))
+        .transpose();
   }
 
   // Do sections of every size on the way have the same knots?
@@ -109,9 +110,11 @@ class Channels {
   [[nodiscard]] std::vector<Vec2> control_at(const SizeProfile::Values& v) const {
     return make_outline(spec_.section, {v[0], v[1]}, pieces_, true).points;
   }
-  // Central differences along the size's own slope: the control points are smooth functions of width and height.
+  // Central differences along the size's own slope: the control points are smooth functions of width and
+  // height.
   [[nodiscard]] std::vector<Vec2> control_slope(const SizeProfile::Jet& size) const {
-    const double step = 1e-5 / (1.0 + std::abs(size.slope[0]) / size.value[0] + std::abs(size.slope[1]) / size.value[1]);
+    const double step =
+        1e-5 / (1.0 + std::abs(size.slope[0]) / size.value[0] + std::abs(size.slope[1]) / size.value[1]);
     SizeProfile::Values before = size.value, after = size.value;
     for (std::size_t c = 0; c < 2; ++c) {
       before[c] -= step * size.slope[c];
@@ -142,7 +145,8 @@ constexpr int samples_per_span = 7;  // at eighths
 
 class AdaptiveFit {
  public:
-  AdaptiveFit(const Channels& channels, bool closed, const std::vector<double>& breaks) : channels_(channels), closed_(closed) {
+  AdaptiveFit(const Channels& channels, bool closed, const std::vector<double>& breaks)
+      : channels_(channels), closed_(closed) {
     for (std::size_t k = 0; k + 1 < breaks.size(); ++k) spans_.push_back(make_span(breaks[k], breaks[k + 1]));
     for (std::size_t k = 0; k < breaks.size(); ++k) sites_.push_back(channels_.at(breaks[k]));
   }
@@ -210,8 +214,9 @@ class AdaptiveFit {
     control_ = nurbs::interpolate_clamped(t, data, first, last);
   }
 
-  // The largest sampled deviation of each span and what can hide between the samples: half the distance of two samples
-  // holds at most an eighth of the second difference, taken twice for the change of curvature in between.
+  // The largest sampled deviation of each span and what can hide between the samples: half the distance of
+  // two samples holds at most an eighth of the second difference, taken twice for the change of curvature in
+  // between.
   void measure() {
     const int count = static_cast<int>(control_.rows());
     std::vector<Row> deviations(samples_per_span + 2, Row::Zero(channels_.width()));
@@ -228,7 +233,8 @@ class AdaptiveFit {
         deviations[static_cast<std::size_t>(i)] = std::move(here);
       }
       for (std::size_t i = 1; i + 1 < deviations.size(); ++i)
-        hidden = std::max(hidden, channels_.largest(deviations[i - 1] - 2.0 * deviations[i] + deviations[i + 1]) / 4.0);
+        hidden = std::max(
+            hidden, channels_.largest(deviations[i - 1] - 2.0 * deviations[i] + deviations[i + 1]) / 4.0);
       span.error = sampled + hidden;
     }
   }
@@ -241,8 +247,8 @@ class AdaptiveFit {
   Eigen::MatrixXd control_;
 };
 
-// How many parabolas to a quarter give the smallest net: fewer leave less of the tolerance to the sections, whose number
-// grows with the fourth root of its inverse.
+// How many parabolas to a quarter give the smallest net: fewer leave less of the tolerance to the sections,
+// whose number grows with the fourth root of its inverse.
 Result<int> choose_pieces(const TubeSpec& spec, const SizeProfile& sizes) {
   if (is_exact(spec.section)) return 1;
   const bool varying = sizes.parameters().size() > 1;
@@ -253,7 +259,8 @@ Result<int> choose_pieces(const TubeSpec& spec, const SizeProfile& sizes) {
   }
   if (varying && is_affine(spec.section)) {  // every smaller size deviates less
     SectionSize largest;
-    for (const SectionSize& s : all) largest = {std::max(largest.width, s.width), std::max(largest.height, s.height)};
+    for (const SectionSize& s : all)
+      largest = {std::max(largest.width, s.width), std::max(largest.height, s.height)};
     all = {largest};
   } else {  // no need to look at one size twice
     std::sort(all.begin(), all.end(), [](const SectionSize& a, const SectionSize& b) {
@@ -266,8 +273,9 @@ Result<int> choose_pieces(const TubeSpec& spec, const SizeProfile& sizes) {
   for (int pieces = 2; pieces <= 4096 && worse < 3; pieces += pieces < 64 ? 1 : pieces / 16) {
     double error = 0.0;
     for (const SectionSize& s : all)
-      error = std::max(error, outline_error(spec.section, s,
-                                            make_outline(spec.section, s, pieces, varying && !is_affine(spec.section))));
+      error = std::max(
+          error, outline_error(spec.section, s,
+                               make_outline(spec.section, s, pieces, varying && !is_affine(spec.section))));
     if (error > 0.95 * spec.tolerance) continue;
     const double cost = pieces * std::pow(1.0 - error / spec.tolerance, -0.25);
     if (cost < best_cost) {
@@ -278,8 +286,10 @@ Result<int> choose_pieces(const TubeSpec& spec, const SizeProfile& sizes) {
     }
   }
   if (best == 0)
-    return error(Kind::limit, fmt::format("the tolerance {:.3g} would need more than 16000 control points round the section",
-                                          spec.tolerance));
+    return error(
+        Kind::limit,
+        fmt::format("the tolerance {:.3g} would need more than 16000 control points round the section",
+                    spec.tolerance));
   return best;
 }
 
@@ -290,8 +300,8 @@ Message of_yarn(Message message, const Body& body) {
 }
 
 // Sections must stand densely enough for samples to see every turn: no span turns by more than a quarter.
-std::vector<double> first_breaks(const CentreLine& path, const FrameField& frames, const SizeProfile& sizes, double twist,
-                                 std::size_t most) {
+std::vector<double> first_breaks(const CentreLine& path, const FrameField& frames, const SizeProfile& sizes,
+                                 double twist, std::size_t most) {
   std::vector<double> marks = nurbs::breakpoints(path.curve.knots, path.curve.degree);
   for (double t : sizes.parameters())
     if (t > 0.0 && t < 1.0) marks.push_back(t);
@@ -329,8 +339,9 @@ double whole_turns(double twist, const FrameField& frames, Body& body) {
   const double turns = twist * frames.length() / (2.0 * pi), whole = std::round(turns);
   if (std::abs(turns - whole) > 1e-9)
     body.messages.push_back(of_yarn(
-        warning(Kind::geometry, fmt::format("yarn '{}' is closed: its twist of {:.4g} turns was brought to {} whole turns",
-                                            body.name, turns, whole)),
+        warning(Kind::geometry,
+                fmt::format("yarn '{}' is closed: its twist of {:.4g} turns was brought to {} whole turns",
+                            body.name, turns, whole)),
         body));
   return whole * 2.0 * pi / frames.length();
 }
@@ -358,24 +369,28 @@ Status sweep(Body& body, const CentreLine& path, const TubeSpec& spec) {
   if (!pieces) return of_yarn(pieces.error(), body);
   const Channels channels(*frames, sizes, spec, twist, *pieces);
   if (!channels.has_common_knots())
-    return of_yarn(error(Kind::unsupported, "a racetrack section that is wider than high in one place and higher than wide in "
-                                            "another has no common B-spline; use `power` or `ellipse`"),
+    return of_yarn(error(Kind::unsupported,
+                         "a racetrack section that is wider than high in one place and higher than wide in "
+                         "another has no common B-spline; use `power` or `ellipse`"),
                    body);
   double section_error = 0.0;
   for (const SizeAtParameter& s : spec.sizes)
-    section_error = std::max(section_error,
-                             outline_error(spec.section, s.size,
-                                           make_outline(spec.section, s.size, *pieces,
-                                                        !is_affine(spec.section) && sizes.parameters().size() > 1)));
+    section_error =
+        std::max(section_error,
+                 outline_error(spec.section, s.size,
+                               make_outline(spec.section, s.size, *pieces,
+                                            !is_affine(spec.section) && sizes.parameters().size() > 1)));
   const std::size_t columns = channels.outline().points.size();
   const std::size_t most = spec.max_control_points / columns;
   const auto too_many = [&] {
-    return of_yarn(error(Kind::limit,
-                         fmt::format("yarn '{}' would need more than {} sections of {} control points to stay within the "
-                                     "tolerance of {:.3g}: raise the tolerance{}",
-                                     body.name, most, columns, spec.tolerance,
-                                     twist != 0.0 ? ", lower the twist, or drop `rotate`" : ", or split the yarn")),
-                   body);
+    return of_yarn(
+        error(
+            Kind::limit,
+            fmt::format("yarn '{}' would need more than {} sections of {} control points to stay within the "
+                        "tolerance of {:.3g}: raise the tolerance{}",
+                        body.name, most, columns, spec.tolerance,
+                        twist != 0.0 ? ", lower the twist, or drop `rotate`" : ", or split the yarn")),
+        body);
   };
   const std::vector<double> breaks = first_breaks(path, *frames, sizes, twist, most);
   if (breaks.empty()) return too_many();

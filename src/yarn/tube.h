@@ -1,10 +1,12 @@
-// A section swept along a path, as ONE B-spline surface whose distance from the exact swept section is bounded.
+// A section swept along a path, as ONE B-spline surface whose distance from the exact swept section is
+// bounded.
 //
-// The exact surface is C(t) + x(u, t) a(t) + y(u, t) b(t): C the centre line, (x, y) the section's outline of the size that
-// holds at t, a and b the rotation-minimizing frame turned by the section's angle and by twist. The outline is replaced by
-// a closed quadratic B-spline (yarn/outline.h), and C, a, b (times the size) by cubics through their values at sections
-// that are placed where they are needed: spans are halved until the deviation, with what can hide between its samples, is
-// within the tolerance. Basis functions are positive and sum to one, so the two deviations add up to a bound.
+// The exact surface is C(t) + x(u, t) a(t) + y(u, t) b(t): C the centre line, (x, y) the section's outline of
+// the size that holds at t, a and b the rotation-minimizing frame turned by the section's angle and by twist.
+// The outline is replaced by a closed quadratic B-spline (yarn/outline.h), and C, a, b (times the size) by
+// cubics through their values at sections that are placed where they are needed: spans are halved until the
+// deviation, with what can hide between its samples, is within the tolerance. Basis functions are positive
+// and sum to one, so the two deviations add up to a bound.
 #pragma once
 
 #include <cstddef>
@@ -29,14 +31,14 @@ struct TubeSpec {
   Section section;
   std::vector<SizeAtParameter> sizes;  // at least one; increasing parameters; monotone cubics between them
   std::optional<Vec3> up;              // thickness direction of the first section
-  double twist = 0;                    // radians per file unit by which the section turns along the path; 0: none
-  double tolerance = 0;                // > 0, file units
+  double twist = 0;      // radians per file unit by which the section turns along the path; 0: none
+  double tolerance = 0;  // > 0, file units
   std::size_t max_control_points = 50'000'000;
 };
 
-// Fills surface, axis, closed_along, quarters and tube_error of `body` (its name is used in messages; warnings go to
-// body.messages). Errors: geometry (a section without size, an `up` along the path, a path that turns back), limit (more
-// control points than allowed, which twist or a tight tolerance can ask for).
+// Fills surface, axis, closed_along, quarters and tube_error of `body` (its name is used in messages;
+// warnings go to body.messages). Errors: geometry (a section without size, an `up` along the path, a path
+// that turns back), limit (more control points than allowed, which twist or a tight tolerance can ask for).
 Status sweep(Body& body, const CentreLine& path, const TubeSpec& spec);
 
 }  // namespace selvage::yarn

@@ -101,7 +101,8 @@ TEST(BuildTest, PackingThatTheSizeContradictsIsAWarning) {
   Diagnostics diagnostics;
   ASSERT_TRUE(YarnBuilder::create(fabric_of(thread, straight("a", 3)), {}, diagnostics).has_value());
   ASSERT_EQ(diagnostics.messages().size(), 1U);
-  EXPECT_NE(diagnostics.messages().front().text.find("0.628"), std::string::npos) << diagnostics.messages().front().text;
+  EXPECT_NE(diagnostics.messages().front().text.find("0.628"), std::string::npos)
+      << diagnostics.messages().front().text;
 }
 
 TEST(BuildTest, AThreadWithoutSizeSaysWhatIsMissing) {
@@ -151,7 +152,8 @@ TEST(BuildTest, TwistTurnsPerMetreInEveryUnit) {
     Diagnostics diagnostics;
     const Result<yarn::Body> body = build(fabric_of(tow, straight("y", 12.5 / mm), unit), diagnostics);
     ASSERT_TRUE(body.ok()) << to_string(body.error());
-    // 40 turns a metre over 12.5 mm: half a turn, so a quarter in the middle; S is left-handed: across (+y) goes to -z.
+    // 40 turns a metre over 12.5 mm: half a turn, so a quarter in the middle; S is left-handed: across (+y)
+    // goes to -z.
     const Vec3 middle = nurbs::evaluate(body->surface, 0.0, 0.5) * mm;
     EXPECT_LT((middle - Vec3(6.25, 0, -0.4)).norm(), 4e-4) << name_of(unit);
   }

@@ -13,8 +13,8 @@ namespace {
 
 // The published jersey loop for yarn radius 1 (methods.md, 1).
 std::vector<Vec3> jersey_points() {
-  return {{-4, -3, -1.5}, {-1, 0, 0}, {-2, 3.5, 1.5}, {-3, 7, 0}, {0, 10, -1.5},
-          {3, 7, 0},      {2, 3.5, 1.5}, {1, 0, 0},  {4, -3, -1.5}};
+  return {{-4, -3, -1.5}, {-1, 0, 0},    {-2, 3.5, 1.5}, {-3, 7, 0},   {0, 10, -1.5},
+          {3, 7, 0},      {2, 3.5, 1.5}, {1, 0, 0},      {4, -3, -1.5}};
 }
 
 const std::vector<Parameterization> all = {Parameterization::uniform, Parameterization::chord,
@@ -26,7 +26,8 @@ TEST(Interpolate, MeetsEveryDataPointAndEndDerivative) {
     const std::vector<double> t = parameters(points, how);
     const Vec3 d0 = end_derivative(points, t, false, Vec3(1, 0, 0)), d1 = end_derivative(points, t, true);
     const Curve curve = interpolate(points, t, d0, d1);
-    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((evaluate(curve, t[i]) - points[i]).norm(), 15e-12);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      EXPECT_LT((evaluate(curve, t[i]) - points[i]).norm(), 15e-12);
     EXPECT_LT((evaluate_jet(curve, 0.0).d1 - d0).norm(), 1e-11 * d0.norm());
     EXPECT_LT((evaluate_jet(curve, 1.0).d1 - d1).norm(), 1e-11 * d1.norm());
   }
@@ -49,7 +50,8 @@ TEST(Interpolate, AgreesWithADenseSolve) {
       right.row(i) = points[static_cast<std::size_t>(i)].transpose();
       for (int end = 0; end < 2; ++end)
         if (i == (end == 0 ? 0 : count - 3)) {
-          for (int j = 0; j < 4; ++j) matrix(count - 2 + end, span - 3 + j) = rows[1][static_cast<std::size_t>(j)];
+          for (int j = 0; j < 4; ++j)
+            matrix(count - 2 + end, span - 3 + j) = rows[1][static_cast<std::size_t>(j)];
           right.row(count - 2 + end) = (end == 0 ? d0 : d1).transpose();
         }
     }
@@ -91,7 +93,8 @@ TEST(Interpolate, ClosedCurveIsPeriodicThroughTheDataAndTwiceSmoothAtTheSeam) {
     ASSERT_EQ(t.size(), points.size() + 1);
     const Curve curve = interpolate_closed(points, t);
     EXPECT_EQ(curve.points.front(), curve.points.back());
-    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((evaluate(curve, t[i]) - points[i]).norm(), 1e-12);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      EXPECT_LT((evaluate(curve, t[i]) - points[i]).norm(), 1e-12);
     const CurveJet first = evaluate_jet(curve, 0.0), last = evaluate_jet(curve, 1.0);
     EXPECT_LT((first.d1 - last.d1).norm(), 1e-10 * first.d1.norm());
     EXPECT_LT((first.d2 - last.d2).norm(), 1e-9 * first.d2.norm());
@@ -110,7 +113,8 @@ TEST(Interpolate, ClosedCurveIsPeriodicThroughTheDataAndTwiceSmoothAtTheSeam) {
 TEST(Interpolate, TwoPointsAreAStraightLine) {
   const std::vector<Vec3> points = {{0, 0, 0}, {1, 2, 3}};
   const std::vector<double> t = parameters(points, Parameterization::chord);
-  const Curve curve = interpolate(points, t, end_derivative(points, t, false), end_derivative(points, t, true));
+  const Curve curve =
+      interpolate(points, t, end_derivative(points, t, false), end_derivative(points, t, true));
   for (double s = 0; s <= 1.0; s += 0.1) EXPECT_LT((evaluate(curve, s) - s * points[1]).norm(), 1e-15);
 }
 

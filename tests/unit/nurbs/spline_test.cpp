@@ -54,7 +54,8 @@ TEST(Basis, IsTheCoxDeBoorRecursionAndSumsToOne) {
       double sum = 0.0;
       for (int j = 0; j <= degree; ++j) {
         sum += values[static_cast<std::size_t>(j)];
-        EXPECT_NEAR(values[static_cast<std::size_t>(j)], cox_de_boor(curve.knots, span - degree + j, degree, t), 1e-14);
+        EXPECT_NEAR(values[static_cast<std::size_t>(j)],
+                    cox_de_boor(curve.knots, span - degree + j, degree, t), 1e-14);
       }
       EXPECT_NEAR(sum, 1.0, 1e-14);
     }
@@ -65,7 +66,8 @@ TEST(Basis, GrevillePointsReproduceTheStraightLine) {
   Curve curve = wild_curve(3, false);
   const std::vector<double> sites = greville(curve.knots, 3, static_cast<int>(curve.points.size()));
   for (std::size_t i = 0; i < sites.size(); ++i) curve.points[i] = Vec3(sites[i], 2.0 * sites[i], -1.0);
-  for (double t = 0.25; t <= 4.0; t += 0.1) EXPECT_LT((evaluate(curve, t) - Vec3(t, 2.0 * t, -1.0)).norm(), 1e-13);
+  for (double t = 0.25; t <= 4.0; t += 0.1)
+    EXPECT_LT((evaluate(curve, t) - Vec3(t, 2.0 * t, -1.0)).norm(), 1e-13);
 }
 
 TEST(Basis, GaussRuleIntegratesPolynomialsExactly) {
@@ -73,7 +75,8 @@ TEST(Basis, GaussRuleIntegratesPolynomialsExactly) {
     const GaussRule& rule = gauss_rule(n);
     for (int power = 0; power <= 2 * n - 1; ++power) {
       double sum = 0.0;
-      for (std::size_t i = 0; i < rule.nodes.size(); ++i) sum += rule.weights[i] * std::pow(rule.nodes[i], power);
+      for (std::size_t i = 0; i < rule.nodes.size(); ++i)
+        sum += rule.weights[i] * std::pow(rule.nodes[i], power);
       EXPECT_NEAR(sum, power % 2 == 1 ? 0.0 : 2.0 / (power + 1), 1e-14) << n << " " << power;
     }
   }
@@ -101,7 +104,8 @@ TEST(CurveTest, KnotInsertionLeavesTheCurve) {
         const Curve more = insert_knot(curve, knot, knot == 1.7 ? degree - 2 : degree - 1);
         ASSERT_EQ(more.knots.size(), more.points.size() + static_cast<std::size_t>(degree) + 1);
         for (double t = 0.25; t <= 4.0; t += 0.01)
-          ASSERT_LT((evaluate(more, t) - evaluate(curve, t)).norm(), 1e-13) << degree << " " << knot << " " << t;
+          ASSERT_LT((evaluate(more, t) - evaluate(curve, t)).norm(), 1e-13)
+              << degree << " " << knot << " " << t;
       }
     }
 }
@@ -109,7 +113,8 @@ TEST(CurveTest, KnotInsertionLeavesTheCurve) {
 TEST(CurveTest, PartsAndTheReversedCurveAreTheCurve) {
   for (bool rational : {false, true}) {
     const Curve curve = wild_curve(3, rational);
-    for (const auto& [t0, t1] : std::vector<std::pair<double, double>>{{0.25, 0.9}, {0.8, 1.7}, {1.0, 3.3}, {1.7, 4.0}}) {
+    for (const auto& [t0, t1] :
+         std::vector<std::pair<double, double>>{{0.25, 0.9}, {0.8, 1.7}, {1.0, 3.3}, {1.7, 4.0}}) {
       const Curve part = sub_curve(curve, t0, t1);
       ASSERT_EQ(part.knots.size(), part.points.size() + 4);
       EXPECT_EQ(part.first_parameter(), t0);
@@ -165,7 +170,8 @@ TEST(SurfaceTest, GridJetAndTensorProductAgree) {
           for (int a = 0; a < surface.count_u; ++a) {
             // Half-open recursion: the very end of the domain is taken from just inside.
             const double share = cox_de_boor(surface.knots_u, a, 2, std::min(us[i], 4.0 - 1e-13)) *
-                                 cox_de_boor(surface.knots_v, b, 3, std::min(vs[j], 4.0 - 1e-13)) * surface.weight(a, b);
+                                 cox_de_boor(surface.knots_v, b, 3, std::min(vs[j], 4.0 - 1e-13)) *
+                                 surface.weight(a, b);
             sum += share * surface.point(a, b);
             total += share;
           }

@@ -30,8 +30,11 @@ Body bar(const Section& section, const SectionSize& size, EndStyle ends) {
 }
 
 TEST(EndsTest, PatchEdgesAreTheBodysQuarters) {
-  for (const auto& [section, size] : std::vector<std::pair<Section, SectionSize>>{
-           {Circle{}, {1, 1}}, {Ellipse{}, {0.8, 0.2}}, {Lenticular{}, {1.0, 0.5}}, {Power{1, 1, 0.6}, {0.8, 0.5}}}) {
+  for (const auto& [section, size] :
+       std::vector<std::pair<Section, SectionSize>>{{Circle{}, {1, 1}},
+                                                    {Ellipse{}, {0.8, 0.2}},
+                                                    {Lenticular{}, {1.0, 0.5}},
+                                                    {Power{1, 1, 0.6}, {0.8, 0.5}}}) {
     const Body body = bar(section, size, EndStyle::patch);
     ASSERT_EQ(body.start.style, EndStyle::patch);
     for (bool last : {false, true}) {

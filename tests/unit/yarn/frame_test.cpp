@@ -31,7 +31,8 @@ nurbs::Curve helix(double radius, double pitch, double turns, int per_turn) {
 TEST(FrameTest, OnAHelixTheFrameTurnsAgainstTheNormalByTheTorsion) {
   const double radius = 1.0, pitch = 2.0, turns = 2.25;
   const nurbs::Curve curve = helix(radius, pitch, turns, 64);
-  const Result<FrameField> field = FrameField::make(curve, Vec3(-1, 0, 0), false);  // the principal normal at the start
+  const Result<FrameField> field =
+      FrameField::make(curve, Vec3(-1, 0, 0), false);  // the principal normal at the start
   ASSERT_TRUE(field.ok());
   const double c = pitch / (2 * pi), torsion = c / (radius * radius + c * c);
   for (double t : {0.1, 0.37, 0.71, 1.0}) {
@@ -42,7 +43,8 @@ TEST(FrameTest, OnAHelixTheFrameTurnsAgainstTheNormalByTheTorsion) {
     // Against the normal the rotation-minimizing frame falls back by torsion times arc length.
     const double turned = std::atan2(frame.up.dot(binormal), frame.up.dot(normal));
     const double expected = -torsion * field->length_at(t);
-    EXPECT_NEAR(std::remainder(turned - expected, 2 * pi), 0.0, 2e-4) << t;  // the cubic is not quite the helix
+    EXPECT_NEAR(std::remainder(turned - expected, 2 * pi), 0.0, 2e-4)
+        << t;  // the cubic is not quite the helix
     EXPECT_NEAR(frame.across.cross(frame.up).dot(frame.tangent), 1.0, 1e-12);
   }
   EXPECT_NEAR(field->length(), turns * std::hypot(2 * pi * radius, pitch), 1e-5);
@@ -51,7 +53,8 @@ TEST(FrameTest, OnAHelixTheFrameTurnsAgainstTheNormalByTheTorsion) {
 TEST(FrameTest, APlanePathKeepsItsNormal) {
   std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0.3}, {2, 0, -0.2}, {3, 0, 0}};
   const std::vector<double> t = nurbs::parameters(points, nurbs::Parameterization::chord);
-  const nurbs::Curve curve = nurbs::interpolate(points, t, nurbs::end_derivative(points, t, false), nurbs::end_derivative(points, t, true));
+  const nurbs::Curve curve = nurbs::interpolate(points, t, nurbs::end_derivative(points, t, false),
+                                                nurbs::end_derivative(points, t, true));
   const Result<FrameField> field = FrameField::make(curve, std::nullopt, false);
   ASSERT_TRUE(field.ok());
   for (double s = 0; s <= 1; s += 0.05) EXPECT_LT((field->at(s).across - Vec3(0, 1, 0)).norm(), 1e-13);
@@ -64,7 +67,8 @@ TEST(FrameTest, ClosedPathsCloseTheirFrames) {
     const double a = 2 * pi * i / 24;
     points.emplace_back(3 * std::cos(a), 3 * std::sin(a), std::sin(2 * a) + 0.4 * std::cos(3 * a));
   }
-  const nurbs::Curve curve = nurbs::interpolate_closed(points, nurbs::parameters(points, nurbs::Parameterization::chord, true));
+  const nurbs::Curve curve =
+      nurbs::interpolate_closed(points, nurbs::parameters(points, nurbs::Parameterization::chord, true));
   const Result<FrameField> field = FrameField::make(curve, std::nullopt, true);
   ASSERT_TRUE(field.ok());
   EXPECT_GT(std::abs(field->spread_rate()), 1e-3);
@@ -77,9 +81,12 @@ TEST(FrameTest, UpRules) {
     const std::vector<Vec3> points = {Vec3::Zero(), to};
     return nurbs::interpolate(points, {0, 1}, to, to);
   };
-  EXPECT_LT((FrameField::make(straight({1, 0, 0}), std::nullopt, false)->at(0).up - Vec3(0, 0, 1)).norm(), 1e-15);
-  EXPECT_LT((FrameField::make(straight({0, 0, 2}), std::nullopt, false)->at(0).up - Vec3(0, 1, 0)).norm(), 1e-15);
-  EXPECT_LT((FrameField::make(straight({0, 0, -2}), std::nullopt, false)->at(0.3).up - Vec3(0, 1, 0)).norm(), 1e-15);
+  EXPECT_LT((FrameField::make(straight({1, 0, 0}), std::nullopt, false)->at(0).up - Vec3(0, 0, 1)).norm(),
+            1e-15);
+  EXPECT_LT((FrameField::make(straight({0, 0, 2}), std::nullopt, false)->at(0).up - Vec3(0, 1, 0)).norm(),
+            1e-15);
+  EXPECT_LT((FrameField::make(straight({0, 0, -2}), std::nullopt, false)->at(0.3).up - Vec3(0, 1, 0)).norm(),
+            1e-15);
   EXPECT_FALSE(FrameField::make(straight({0, 0, 1}), Vec3(0.05, 0, 1), false).ok());
   EXPECT_TRUE(FrameField::make(straight({0, 0, 1}), Vec3(0.2, 0, 1), false).ok());
 }

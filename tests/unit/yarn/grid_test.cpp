@@ -39,7 +39,8 @@ TEST(GridTest, PublishedFormOfASixteenBySixteenYarn) {
   for (int i = 1; i < 16; ++i) round.push_back(i / 16.0);
   round.insert(round.end(), 3, 1.0);
   EXPECT_EQ(s.knots_u, round);
-  EXPECT_EQ(s.knots_v, (std::vector<double>{0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 13, 13, 13}));
+  EXPECT_EQ(s.knots_v,
+            (std::vector<double>{0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 13, 13, 13}));
   for (int j = 0; j < 16; ++j) {
     const auto given = [&](int i) { return net.points[static_cast<std::size_t>(16 * j + i)]; };
     for (int i = 0; i < 16; ++i) EXPECT_EQ(s.point(i + 1, j), given(i));  // untouched
@@ -54,8 +55,9 @@ TEST(GridTest, VolumeOfAPrismIsAreaTimesLength) {
     ASSERT_TRUE(fill_from_grid(body, bar(sections, 12)).ok());
     EXPECT_EQ(body.surface.degree_v, std::min(3, sections - 1));
     ASSERT_TRUE(finish(body, EndStyle::patch).ok());
-    // Area of the closed quadratic over a regular polygon: that of the polygon of its edges' midpoints, and of each corner
-    // triangle (midpoint, control point, midpoint) the two thirds that lie under a parabola (Archimedes).
+    // Area of the closed quadratic over a regular polygon: that of the polygon of its edges' midpoints, and
+    // of each corner triangle (midpoint, control point, midpoint) the two thirds that lie under a parabola
+    // (Archimedes).
     const double n = 12, c = std::cos(pi / n), s = std::sin(pi / n);
     const double midpoints = 0.5 * n * c * c * std::sin(2 * pi / n);
     const double triangle = c * s * (1 - c * c);  // half the base c s times the height 1 - c^2
@@ -68,7 +70,8 @@ TEST(GridTest, VolumeOfAPrismIsAreaTimesLength) {
 TEST(GridTest, TheOtherWayRoundIsTakenAsItIsAndMarked) {
   GridNet net = bar(4, 8);
   for (std::size_t j = 0; j < 4; ++j)
-    std::reverse(net.points.begin() + static_cast<std::ptrdiff_t>(8 * j), net.points.begin() + static_cast<std::ptrdiff_t>(8 * j + 8));
+    std::reverse(net.points.begin() + static_cast<std::ptrdiff_t>(8 * j),
+                 net.points.begin() + static_cast<std::ptrdiff_t>(8 * j + 8));
   Body body;
   ASSERT_TRUE(fill_from_grid(body, net).ok());
   ASSERT_TRUE(finish(body, EndStyle::patch).ok());
@@ -105,7 +108,8 @@ TEST(GridTest, WeightsMakeAnExactCylinder) {
   net.open_round = true;
   net.degree_round = 2;
   net.knots_round = {0, 0, 0, 0.25, 0.25, 0.5, 0.5, 0.75, 0.75, 1, 1, 1};
-  const std::vector<Vec2> square = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}, {1, 0}};
+  const std::vector<Vec2> square = {{1, 0},   {1, 1},  {0, 1},  {-1, 1}, {-1, 0},
+                                    {-1, -1}, {0, -1}, {1, -1}, {1, 0}};
   for (int j = 0; j < 2; ++j)
     for (std::size_t i = 0; i < 9; ++i) {
       net.points.emplace_back(2.0 * j, square[i].x(), square[i].y());
@@ -136,7 +140,8 @@ TEST(GridTest, RingOfSectionsClosesSmoothly) {
   EXPECT_TRUE(body.closed_along);
   const double first = body.surface.first_v(), last = body.surface.last_v();
   for (double u : {0.0, 0.3, 0.9}) {
-    const nurbs::SurfaceJet a = nurbs::evaluate_jet(body.surface, u, first), b = nurbs::evaluate_jet(body.surface, u, last);
+    const nurbs::SurfaceJet a = nurbs::evaluate_jet(body.surface, u, first),
+                            b = nurbs::evaluate_jet(body.surface, u, last);
     EXPECT_EQ(a.position, b.position);
     EXPECT_LT((a.dv - b.dv).norm(), 1e-12);
   }

@@ -26,32 +26,43 @@ std::vector<Vec2> exact_points(const Section& section, const SectionSize& s, int
   for (int i = 0; i < n; ++i) {
     const double t = 2 * pi * i / n;
     if (std::holds_alternative<Lenticular>(section)) {
-      const double y_centre = (h * h - a * a) / (2 * h), radius = h - y_centre;  // circle through (a,0), (0,h), (-a,0)
+      const double y_centre = (h * h - a * a) / (2 * h),
+                   radius = h - y_centre;  // circle through (a,0), (0,h), (-a,0)
       const double x = a * std::cos(t);
       const double y = y_centre + std::sqrt(std::max(0.0, radius * radius - x * x));
       points.emplace_back(x, t < pi ? y : -y);
     } else if (std::holds_alternative<Racetrack>(section)) {
       const double r = std::min(a, h);
       // March round by length.
-      const double straight_x = 2 * (a - r), straight_y = 2 * (h - r), total = 2 * pi * r + 2 * straight_x + 2 * straight_y;
+      const double straight_x = 2 * (a - r), straight_y = 2 * (h - r),
+                   total = 2 * pi * r + 2 * straight_x + 2 * straight_y;
       double run = total * i / n;
       const auto corner = [&](double cx, double cy, double from) {
         const double angle = from + run / r;
         points.emplace_back(cx + r * std::cos(angle), cy + r * std::sin(angle));
       };
       const double q = pi / 2 * r;
-      if (run < q) corner(a - r, h - r, 0);
-      else if ((run -= q) < straight_x) points.emplace_back(a - r - run, h);
-      else if ((run -= straight_x) < q) corner(-(a - r), h - r, pi / 2);
-      else if ((run -= q) < straight_y) points.emplace_back(-a, h - r - run);
-      else if ((run -= straight_y) < q) corner(-(a - r), -(h - r), pi);
-      else if ((run -= q) < straight_x) points.emplace_back(-(a - r) + run, -h);
-      else if ((run -= straight_x) < q) corner(a - r, -(h - r), 1.5 * pi);
-      else points.emplace_back(a, -(h - r) + (run - q));
+      if (run < q)
+        corner(a - r, h - r, 0);
+      else if ((run -= q) < straight_x)
+        points.emplace_back(a - r - run, h);
+      else if ((run -= straight_x) < q)
+        corner(-(a - r), h - r, pi / 2);
+      else if ((run -= q) < straight_y)
+        points.emplace_back(-a, h - r - run);
+      else if ((run -= straight_y) < q)
+        corner(-(a - r), -(h - r), pi);
+      else if ((run -= q) < straight_x)
+        points.emplace_back(-(a - r) + run, -h);
+      else if ((run -= straight_x) < q)
+        corner(a - r, -(h - r), 1.5 * pi);
+      else
+        points.emplace_back(a, -(h - r) + (run - q));
     } else {
       const auto* power = std::get_if<Power>(&section);
       const double e = power != nullptr ? power->exponent : 1.0;
-      points.emplace_back(a * std::cos(t), h * std::copysign(std::pow(std::abs(std::sin(t)), e), std::sin(t)));
+      points.emplace_back(a * std::cos(t),
+                          h * std::copysign(std::pow(std::abs(std::sin(t)), e), std::sin(t)));
     }
   }
   return points;
@@ -67,10 +78,15 @@ struct Case {
   Section section;
   SectionSize size;
 };
-const std::vector<Case> cases = {
-    {Circle{1.0}, {1, 1}},          {Ellipse{0.8, 0.2}, {0.8, 0.2}}, {Lenticular{1.7, 0.14}, {1.7, 0.14}},
-    {Racetrack{1.4, 0.16}, {1.4, 0.16}}, {Racetrack{0.2, 0.9}, {0.2, 0.9}}, {Power{1, 0.4, 0.5}, {1, 0.4}},
-    {Power{1, 0.4, 1.5}, {1, 0.4}}, {Power{1, 0.4, 2}, {1, 0.4}},    {Power{1, 0.4, 3}, {1, 0.4}}};
+const std::vector<Case> cases = {{Circle{1.0}, {1, 1}},
+                                 {Ellipse{0.8, 0.2}, {0.8, 0.2}},
+                                 {Lenticular{1.7, 0.14}, {1.7, 0.14}},
+                                 {Racetrack{1.4, 0.16}, {1.4, 0.16}},
+                                 {Racetrack{0.2, 0.9}, {0.2, 0.9}},
+                                 {Power{1, 0.4, 0.5}, {1, 0.4}},
+                                 {Power{1, 0.4, 1.5}, {1, 0.4}},
+                                 {Power{1, 0.4, 2}, {1, 0.4}},
+                                 {Power{1, 0.4, 3}, {1, 0.4}}};
 
 TEST(OutlineTest, StaysWithinItsBoundAndTheBoundIsNotLoose) {
   for (std::size_t k = 0; k < cases.size(); ++k) {
@@ -152,7 +168,8 @@ TEST(OutlineTest, PolygonIsItself) {
 }
 
 TEST(OutlineTest, SevenPointSectionHasTheNominalMeanRadius) {
-  // The uniform cubic on a control square: radius 2/3 of the circle's at the knots, 11/24 sqrt 2 between them.
+  // The uniform cubic on a control square: radius 2/3 of the circle's at the knots, 11/24 sqrt 2 between
+  // them.
   const double ratio = (2.0 / 3.0 - 11.0 / 24.0 * std::sqrt(2.0)) / (2.0 / 3.0);
   EXPECT_NEAR(loop7_out_of_roundness(), ratio, 0.02 * ratio);
   const double round = area(Loop7{1}, {1, 1});

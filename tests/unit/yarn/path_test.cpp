@@ -24,13 +24,16 @@ TEST(PathTest, PolylineIsSegmentsAndExactArcs) {
   for (double t = 0; t <= 1.0; t += 0.001) {
     const Vec3 p = nurbs::evaluate(line->curve, t);
     const double on_arc = std::abs((p - Vec3(10 - r, r, 0)).norm() - r);
-    if (p.x() > 10 - r && p.y() < r) EXPECT_LT(on_arc, 1e-13);
-    else EXPECT_LT(std::min(std::abs(p.y()), std::abs(p.x() - 10)), 1e-13);
+    if (p.x() > 10 - r && p.y() < r)
+      EXPECT_LT(on_arc, 1e-13);
+    else
+      EXPECT_LT(std::min(std::abs(p.y()), std::abs(p.x() - 10)), 1e-13);
   }
   // The speed is continuous where arc and segment meet.
   for (double knot : nurbs::breakpoints(line->curve.knots, 2)) {
     if (knot <= 0 || knot >= 1) continue;
-    const Vec3 before = nurbs::evaluate_jet(line->curve, knot - 1e-9).d1, after = nurbs::evaluate_jet(line->curve, knot + 1e-9).d1;
+    const Vec3 before = nurbs::evaluate_jet(line->curve, knot - 1e-9).d1,
+               after = nurbs::evaluate_jet(line->curve, knot + 1e-9).d1;
     EXPECT_LT((before - after).norm(), 1e-6 * before.norm());
   }
 }
@@ -72,8 +75,12 @@ TEST(PathTest, SixPointsOfALoopMakeTenControlPoints) {
   ASSERT_EQ(line->curve.points.size(), 10U);
   // N1, N2 of the second point, by the formula of the method.
   const Vec3 d = (rows.points[2] - rows.points[0]).normalized();
-  EXPECT_LT((line->curve.points[1] - (rows.points[1] - d * (rows.points[1] - rows.points[0]).norm() / 4)).norm(), 1e-15);
-  EXPECT_LT((line->curve.points[2] - (rows.points[1] + d * (rows.points[2] - rows.points[1]).norm() / 4)).norm(), 1e-15);
+  EXPECT_LT(
+      (line->curve.points[1] - (rows.points[1] - d * (rows.points[1] - rows.points[0]).norm() / 4)).norm(),
+      1e-15);
+  EXPECT_LT(
+      (line->curve.points[2] - (rows.points[1] + d * (rows.points[2] - rows.points[1]).norm() / 4)).norm(),
+      1e-15);
   EXPECT_GT(line->largest_miss, 0.0);
   EXPECT_LT(line->largest_miss, 0.5);
 }

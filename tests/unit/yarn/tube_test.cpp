@@ -1,4 +1,5 @@
-// Tubes against analytic volumes and against their own exact definition, sampled far more densely than the builder does.
+// Tubes against analytic volumes and against their own exact definition, sampled far more densely than the
+// builder does.
 #include "yarn/tube.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +46,8 @@ PathRows ring(double radius, int points) {
   rows.form = PathForm::uniform;
   rows.closed = true;
   for (int i = 0; i < points; ++i)
-    rows.points.emplace_back(radius * std::cos(2 * pi * i / points), radius * std::sin(2 * pi * i / points), 0);
+    rows.points.emplace_back(radius * std::cos(2 * pi * i / points), radius * std::sin(2 * pi * i / points),
+                             0);
   return rows;
 }
 
@@ -61,7 +63,8 @@ TEST(TubeTest, StraightTubeHasAreaTimesLength) {
       EXPECT_EQ(body.surface.count_v, 4);  // no more sections than a straight line needs
       EXPECT_TRUE(body.tight_bends.empty());
     }
-  for (const auto& [section, size] : std::vector<std::pair<Section, SectionSize>>{{Lenticular{}, {1.7, 0.14}}, {Racetrack{}, {1.4, 0.16}}}) {
+  for (const auto& [section, size] : std::vector<std::pair<Section, SectionSize>>{
+           {Lenticular{}, {1.7, 0.14}}, {Racetrack{}, {1.4, 0.16}}}) {
     const Body body = make(straight(7), spec_of(section, size, 1e-5));
     const double rim = 2 * (size.width + size.height);
     EXPECT_NEAR(body.volume, 7 * area(section, size), 7 * rim * 1e-5);
@@ -70,8 +73,8 @@ TEST(TubeTest, StraightTubeHasAreaTimesLength) {
 
 TEST(TubeTest, RingHasPappusVolume) {
   const Body body = make(ring(5, 8), spec_of(Circle{}, {1, 1}, 1e-5));
-  // The centre line is the cubic through eight points, not the circle: Pappus with its own length, right to the bend's
-  // second order; and the circle's volume to what eight points give.
+  // The centre line is the cubic through eight points, not the circle: Pappus with its own length, right to
+  // the bend's second order; and the circle's volume to what eight points give.
   EXPECT_NEAR(body.volume, pi / 4 * body.length, 1e-5 * pi * body.length);
   EXPECT_NEAR(body.volume, pi / 4 * 2 * pi * 5, 2e-3 * body.volume);
   EXPECT_TRUE(body.closed_along);
@@ -121,13 +124,16 @@ TEST(TubeTest, DenseSamplingConfirmsTheReportedBound) {
   wave.points = {{0, 0.5, 0.15}, {0.5, 0.5, 0}, {1, 0.5, -0.15}, {1.5, 0.5, 0}, {2, 0.5, 0.15}};
   wave.tangent_start = wave.tangent_end = Vec3(1, 0, 0);
   PathRows loop;
-  loop.points = {{-4, -3, -1.5}, {-1, 0, 0}, {-2, 3.5, 1.5}, {-3, 7, 0}, {0, 10, -1.5}, {3, 7, 0}, {2, 3.5, 1.5}, {1, 0, 0}, {4, -3, -1.5}};
+  loop.points = {{-4, -3, -1.5}, {-1, 0, 0},    {-2, 3.5, 1.5}, {-3, 7, 0},   {0, 10, -1.5},
+                 {3, 7, 0},      {2, 3.5, 1.5}, {1, 0, 0},      {4, -3, -1.5}};
   struct Job {
     PathRows rows;
     TubeSpec spec;
   };
-  std::vector<Job> jobs = {{wave, spec_of(Ellipse{}, {0.8, 0.2}, 2e-4)}, {wave, spec_of(Ellipse{}, {0.8, 0.2}, 2e-6)},
-                           {loop, spec_of(Circle{}, {2, 2}, 2e-3)},      {loop, spec_of(Ellipse{}, {1.6, 0.9}, 1e-3)},
+  std::vector<Job> jobs = {{wave, spec_of(Ellipse{}, {0.8, 0.2}, 2e-4)},
+                           {wave, spec_of(Ellipse{}, {0.8, 0.2}, 2e-6)},
+                           {loop, spec_of(Circle{}, {2, 2}, 2e-3)},
+                           {loop, spec_of(Ellipse{}, {1.6, 0.9}, 1e-3)},
                            {ring(5, 8), spec_of(Circle{}, {1, 1}, 1e-5)}};
   jobs.push_back(jobs[3]);
   jobs.back().spec.twist = 2.0;  // radians per unit
@@ -143,7 +149,8 @@ TEST(TubeTest, DenseSamplingConfirmsTheReportedBound) {
 TEST(TubeTest, FinerTolerancesConvergeWithOrderFour) {
   PathRows wave;
   wave.points = {{0, 0, 0.3}, {1, 0, 0}, {2, 0, -0.3}, {3, 0, 0}, {4, 0, 0.3}};
-  const Body coarse = make(wave, spec_of(Circle{}, {0.5, 0.5}, 1e-3)), fine = make(wave, spec_of(Circle{}, {0.5, 0.5}, 1e-7));
+  const Body coarse = make(wave, spec_of(Circle{}, {0.5, 0.5}, 1e-3)),
+             fine = make(wave, spec_of(Circle{}, {0.5, 0.5}, 1e-7));
   // 10^4 finer: ten times the sections and points round for order four, with room for halving.
   EXPECT_LT(fine.surface.count_v, 40 * coarse.surface.count_v);
   EXPECT_LT(fine.surface.count_u, 16 * coarse.surface.count_u);
@@ -153,11 +160,13 @@ TEST(TubeTest, SizesFollowTheRowsWithoutOvershoot) {
   PathRows rows;
   rows.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
   TubeSpec spec = spec_of(Ellipse{}, {1, 0.4}, 1e-5);
-  spec.sizes = {{0.0, {1.0, 0.4}, 0}, {1.0 / 3, {1.0, 0.4}, 0}, {2.0 / 3, {0.6, 0.6}, 0}, {1.0, {0.6, 0.6}, 0}};
+  spec.sizes = {
+      {0.0, {1.0, 0.4}, 0}, {1.0 / 3, {1.0, 0.4}, 0}, {2.0 / 3, {0.6, 0.6}, 0}, {1.0, {0.6, 0.6}, 0}};
   const Body body = make(rows, spec);
   for (int k = 0; k < 4; ++k) {
     const double t = k / 3.0;
-    const double w = spec.sizes[static_cast<std::size_t>(k)].size.width, h = spec.sizes[static_cast<std::size_t>(k)].size.height;
+    const double w = spec.sizes[static_cast<std::size_t>(k)].size.width,
+                 h = spec.sizes[static_cast<std::size_t>(k)].size.height;
     // across is +y for a path along x with up = z.
     EXPECT_NEAR(nurbs::evaluate(body.surface, 0.0, t).y(), w / 2, 2e-5);
     EXPECT_NEAR(nurbs::evaluate(body.surface, 0.25, t).z(), h / 2, 2e-5);
@@ -170,7 +179,8 @@ TEST(TubeTest, SizesFollowTheRowsWithoutOvershoot) {
   const Body lens = make(rows, spec);
   EXPECT_LE(lens.tube_error, 1e-5);
   for (int k = 0; k < 4; ++k)
-    EXPECT_NEAR(nurbs::evaluate(lens.surface, 0.25, k / 3.0).z(), spec.sizes[static_cast<std::size_t>(k)].size.height / 2, 2e-5);
+    EXPECT_NEAR(nurbs::evaluate(lens.surface, 0.25, k / 3.0).z(),
+                spec.sizes[static_cast<std::size_t>(k)].size.height / 2, 2e-5);
 }
 
 TEST(TubeTest, TwistTurnsTheSectionRightHandedForZ) {
