@@ -1,13 +1,18 @@
-// What the shared object selvage_occt shows to the program: one function that returns its table.
+// What the shared object selvage_occt shows to the program: a table for each part that it implements.
 #include <Standard_Version.hxx>
 
 #include "formats/step/writer.h"
 #include "solid/brep.h"
 #include "solid/occt/check.h"
 
-extern "C" __attribute__((visibility("default"))) const void* selvage_occt() {
-  static const selvage::solid::OcctModule table = {.version = OCC_VERSION_COMPLETE,
-                                                   .check = selvage::solid::occt::check,
-                                                   .open_step = selvage::formats::step::open_writer};
+extern "C" __attribute__((visibility("default"))) const void* selvage_brep() {
+  static const selvage::solid::BrepModule table = {.version = OCC_VERSION_COMPLETE,
+                                                   .check = selvage::solid::occt::check};
+  return &table;
+}
+
+extern "C" __attribute__((visibility("default"))) const void* selvage_step() {
+  static const selvage::formats::step::StepModule table = {.open_writer =
+                                                               selvage::formats::step::open_writer};
   return &table;
 }

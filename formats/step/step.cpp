@@ -1,6 +1,7 @@
 #include "formats/step/step.h"
 
-#include "solid/brep.h"
+#include "core/module.h"
+#include "formats/step/writer.h"
 
 namespace selvage::formats::step {
 
@@ -13,9 +14,9 @@ bool looks_like_step(std::string_view head) {
 
 // OpenCASCADE is opened here, not before: a job that writes no STEP never loads it.
 Result<std::unique_ptr<BodyWriter>> open_bodies(OutputFile& output, const SurfaceOptions& options) {
-  Result<const solid::OcctModule*> module = solid::occt_module();
-  if (!module) return module.error();
-  return (*module)->open_step(output, options);
+  Result<const void*> table = open_module("occt", "selvage_step");
+  if (!table) return table.error();
+  return static_cast<const StepModule*>(*table)->open_writer(output, options);
 }
 
 }  // namespace

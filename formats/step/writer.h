@@ -7,6 +7,11 @@
 
 namespace selvage::formats::step {
 
+// What the module exports for this format, as `selvage_step`.
+struct StepModule {
+  Result<std::unique_ptr<BodyWriter>> (*open_writer)(OutputFile& output, const SurfaceOptions& options);
+};
+
 // Errors: usage (a schema other than AP242 and AP214).
 Result<std::unique_ptr<BodyWriter>> open_writer(OutputFile& output, const SurfaceOptions& options);
 

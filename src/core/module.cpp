@@ -30,18 +30,17 @@ Result<fs::path> find_beside_program(const std::string& file) {
 
 }  // namespace
 
-Result<const void*> open_module(const std::string& name) {
-  const std::string symbol = "selvage_" + name;
-  Result<fs::path> path = find_beside_program(symbol + ".so");
+Result<const void*> open_module(const std::string& name, const std::string& entry) {
+  Result<fs::path> path = find_beside_program("selvage_" + name + ".so");
   if (!path) return path.error();
   // Opening the same file again gives the same handle, and a module stays open until the process ends.
   void* handle = ::dlopen(path->c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr)
     return error(Kind::internal, fmt::format("cannot open the module '{}': {}", path->string(), ::dlerror()));
   using Table = const void* (*)();
-  auto table = reinterpret_cast<Table>(::dlsym(handle, symbol.c_str()));
+  auto table = reinterpret_cast<Table>(::dlsym(handle, entry.c_str()));
   if (table == nullptr)
-    return error(Kind::internal, fmt::format("the module '{}' has no entry '{}'", path->string(), symbol));
+    return error(Kind::internal, fmt::format("the module '{}' has no entry '{}'", path->string(), entry));
   return table();
 }
 

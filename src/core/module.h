@@ -14,9 +14,9 @@ namespace selvage {
 std::filesystem::path program_folder();
 
 // Opens `selvage_NAME.so` beside the program (or in ../lib/selvage) once, and returns what its function
-// `extern "C" const void* selvage_NAME()` gives: a pointer to the module's table of functions, declared in
-// the header that the module implements. Errors (internal): missing file, missing symbol.
-Result<const void*> open_module(const std::string& name);
+// `extern "C" const void* ENTRY()` gives: a pointer to a table of functions, declared in the header of the
+// part that the module implements. Errors (internal): missing file, missing entry.
+Result<const void*> open_module(const std::string& name, const std::string& entry);
 
 // A worker program (`selvage-tetgen`) beside the program or in ../lib/selvage. Error (internal): missing.
 Result<std::filesystem::path> find_worker(const std::string& name);

@@ -4,14 +4,14 @@
 
 namespace selvage::solid {
 
-Result<const OcctModule*> occt_module() {
-  Result<const void*> table = open_module("occt");
+Result<const BrepModule*> brep_module() {
+  Result<const void*> table = open_module("occt", "selvage_brep");
   if (!table) return table.error();
-  return static_cast<const OcctModule*>(*table);
+  return static_cast<const BrepModule*>(*table);
 }
 
 Result<std::vector<BrepCheck>> check_breps(std::span<const yarn::Body> bodies) {
-  Result<const OcctModule*> module = occt_module();
+  Result<const BrepModule*> module = brep_module();
   if (!module) return module.error();
   return (*module)->check(bodies);
 }

@@ -2,13 +2,10 @@
 // shows no type of OpenCASCADE.
 #pragma once
 
-#include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/diagnostics.h"
-#include "formats/format.h"
 #include "yarn/body.h"
 
 namespace selvage::solid {
@@ -24,13 +21,11 @@ struct BrepCheck {
 // Builds each yarn's solid as STEP would write it and lets OpenCASCADE judge it.
 Result<std::vector<BrepCheck>> check_breps(std::span<const yarn::Body> bodies);
 
-// What the module exports.
-struct OcctModule {
-  const char* version;
+// What the module exports for this part, as `selvage_brep` (formats/step has a table of its own there).
+struct BrepModule {
+  const char* version;  // of OpenCASCADE
   Result<std::vector<BrepCheck>> (*check)(std::span<const yarn::Body> bodies);
-  Result<std::unique_ptr<formats::BodyWriter>> (*open_step)(OutputFile& output,
-                                                            const formats::SurfaceOptions& options);
 };
-Result<const OcctModule*> occt_module();
+Result<const BrepModule*> brep_module();
 
 }  // namespace selvage::solid

@@ -5,7 +5,7 @@
 namespace selvage::solid {
 
 Result<const CgalModule*> cgal_module() {
-  Result<const void*> table = open_module("cgal");
+  Result<const void*> table = open_module("cgal", "selvage_cgal");
   if (!table) return table.error();
   return static_cast<const CgalModule*>(*table);
 }
