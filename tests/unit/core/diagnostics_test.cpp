@@ -22,8 +22,10 @@ TEST(Message, NamesYarnAndPlaceInSpace) {
   message.yarn = "warp1";
   message.at = Vec3(1, 0.5, -2);
   EXPECT_EQ(to_string(message), "error: the yarn folds (yarn 'warp1') at (1, 0.5, -2)");
-  message.text = "warp1 folds";
-  EXPECT_EQ(to_string(message), "error: warp1 folds at (1, 0.5, -2)");
+  message.text = "yarn 'warp1' folds";
+  EXPECT_EQ(to_string(message), "error: yarn 'warp1' folds at (1, 0.5, -2)");
+  message.yarn = "y";  // a letter of the text is not its name
+  EXPECT_EQ(to_string(message), "error: yarn 'warp1' folds (yarn 'y') at (1, 0.5, -2)");
 }
 
 TEST(Message, CaretStandsUnderItsColumn) {
