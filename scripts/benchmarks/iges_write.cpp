@@ -23,6 +23,7 @@
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Face.hxx>
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -172,7 +173,7 @@ Outcome bare(const Job& job) {
   char* const full = buffer.get() + room;
   const auto send = [&](const double* values, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
-      at = write_number(at, values[i]);
+      at = std::to_chars(at, at + max_number_length, values[i]).ptr;
       *at++ = ',';
       if (at >= full) {
         require(output->write({buffer.get(), static_cast<std::size_t>(at - buffer.get())}));

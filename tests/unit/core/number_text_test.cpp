@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -43,6 +44,32 @@ TEST(NumberText, Edges) {
     EXPECT_EQ(bits_of(std::strtod(text.c_str(), nullptr)), bits_of(value)) << text;
     EXPECT_LE(text.size(), max_number_length);
   }
+}
+
+// The standard library's shortest form, by another algorithm (Ryu).
+TEST(NumberText, HasTheCharactersOfToChars) {
+  const auto expect_same = [](double value) {
+    char buffer[64];
+    const std::string standard(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+    ASSERT_EQ(number_text(value), standard);
+  };
+  std::mt19937_64 engine(11);
+  std::uniform_real_distribution<double> exponent(-8.0, 18.0);
+  for (int i = 0; i < 1000000; ++i) {
+    const double value = std::pow(10.0, exponent(engine)) * (i % 2 == 0 ? 1.0 : -1.0);
+    expect_same(value);
+    // Few digits: rounded to as many places as a person would write.
+    const double scale = std::pow(10.0, i % 9);
+    expect_same(std::round(value * scale) / scale);
+    expect_same(std::round(value));
+  }
+  for (int power = -7; power < 18; ++power)
+    for (double digit : {1.0, 9.0, 12.0, 123456.0}) {
+      const double value = digit * std::pow(10.0, power);
+      expect_same(value);
+      expect_same(std::nextafter(value, 0.0));
+      expect_same(std::nextafter(value, 1e300));
+    }
 }
 
 TEST(NumberText, IsTheShortest) {
