@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <numeric>
 
 namespace selvage {
@@ -53,8 +54,13 @@ std::string to_string(const Message& message) {
   out += fmt::format("{}: {}", name_of(message.severity), message.text);
   if (!message.yarn.empty() && message.text.find("'" + message.yarn + "'") == std::string::npos)
     out += fmt::format(" (yarn '{}')", message.yarn);
-  if (message.at)
-    out += fmt::format(" at ({:.6g}, {:.6g}, {:.6g})", message.at->x(), message.at->y(), message.at->z());
+  if (message.at) {
+    // What is rounding beside the other coordinates is shown as 0.
+    const double rounding = 1e-9 * message.at->norm();
+    const auto shown = [&](double c) { return std::abs(c) < rounding ? 0.0 : c; };
+    out += fmt::format(" at ({:.6g}, {:.6g}, {:.6g})", shown(message.at->x()), shown(message.at->y()),
+                       shown(message.at->z()));
+  }
   if (!message.excerpt.empty()) {
     out += "\n  " + message.excerpt;
     if (message.caret > 0) {

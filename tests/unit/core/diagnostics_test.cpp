@@ -24,6 +24,9 @@ TEST(Message, NamesYarnAndPlaceInSpace) {
   EXPECT_EQ(to_string(message), "error: the yarn folds (yarn 'warp1') at (1, 0.5, -2)");
   message.text = "yarn 'warp1' folds";
   EXPECT_EQ(to_string(message), "error: yarn 'warp1' folds at (1, 0.5, -2)");
+  message.at = Vec3(1, 2e-17, -1e-16);
+  EXPECT_EQ(to_string(message), "error: yarn 'warp1' folds at (1, 0, 0)");
+  message.at = Vec3(1, 0.5, -2);
   message.yarn = "y";  // a letter of the text is not its name
   EXPECT_EQ(to_string(message), "error: yarn 'warp1' folds (yarn 'y') at (1, 0.5, -2)");
 }
