@@ -1,0 +1,98 @@
+#include "fabric/draft.h"
+
+#include <fmt/format.h>
+
+#include <numeric>
+
+namespace selvage::fabric {
+
+namespace {
+
+constexpr long long max_crossings = 100'000'000;
+
+int wrapped(long long index, int period) {
+  const auto rest = static_cast<int>(index % period);
+  return rest < 0 ? rest + period : rest;
+}
+
+// The square or oblong repeat whose crossings `is_on_top(pick, end)` tells.
+template <class Rule>
+Result<Drawdown> filled(long long picks, long long ends, Rule is_on_top) {
+  if (picks > max_crossings / ends)
+    return error(Kind::limit,
+                 fmt::format("a draft of {} x {} crossings is larger than the {} that are possible", picks,
+                             ends, max_crossings));
+  Drawdown drawdown{static_cast<int>(picks), static_cast<int>(ends), {}};
+  drawdown.bits.reserve(static_cast<std::size_t>(picks * ends));
+  for (long long pick = 0; pick < picks; ++pick)
+    for (long long end = 0; end < ends; ++end) drawdown.bits.push_back(is_on_top(pick, end));
+  return drawdown;
+}
+
+Result<Drawdown> from_rows(const std::vector<std::string>& rows) {
+  if (rows.empty() || rows.front().empty()) return error(Kind::malformed, "the draft has no rows");
+  const std::size_t width = rows.front().size();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].size() != width)
+      return error(Kind::malformed, fmt::format("row {} of the draft has {} signs, the first one has {}",
+                                                i + 1, rows[i].size(), width));
+    if (rows[i].find_first_not_of("01") != std::string::npos)
+      return error(Kind::malformed,
+                   fmt::format("row {} of the draft has a sign that is neither 0 nor 1", i + 1));
+  }
+  return filled(static_cast<long long>(rows.size()), static_cast<long long>(width),
+                [&](long long pick, long long end) {
+                  return rows[static_cast<std::size_t>(pick)][static_cast<std::size_t>(end)] == '1';
+                });
+}
+
+Result<Drawdown> satin(long long n, long long step) {
+  if (step < 2 || step > n - 2 || std::gcd(n, step) != 1)
+    return error(Kind::malformed,
+                 fmt::format("a satin {}/{} does not exist: the step lies between 1 and {} and has "
+                             "no divisor in common with {}",
+                             n, step, n - 1, n));
+  return filled(n, n, [&](long long pick, long long end) { return (end + step * pick) % n == 0; });
+}
+
+}  // namespace
+
+bool Drawdown::warp_on_top(long long pick, long long end) const {
+  return bits[static_cast<std::size_t>(wrapped(pick, picks)) * static_cast<std::size_t>(ends) +
+              static_cast<std::size_t>(wrapped(end, ends))];
+}
+
+std::vector<std::string> rows_of(const Drawdown& drawdown) {
+  std::vector<std::string> rows(static_cast<std::size_t>(drawdown.picks));
+  for (int pick = 0; pick < drawdown.picks; ++pick)
+    for (int end = 0; end < drawdown.ends; ++end)
+      rows[static_cast<std::size_t>(pick)] += drawdown.warp_on_top(pick, end) ? '1' : '0';
+  return rows;
+}
+
+Result<Drawdown> drawdown_of(const Draft& draft) {
+  const long long a = draft.a;
+  const long long b = draft.b;
+  const bool is_pair = draft.form == Draft::Form::twill || draft.form == Draft::Form::basket;
+  if (is_pair && (a < 1 || b < 1))
+    return error(Kind::malformed,
+                 fmt::format("a draft {}/{} does not exist: both numbers are 1 or more", a, b));
+  switch (draft.form) {
+    case Draft::Form::rows:
+      return from_rows(draft.rows);
+    case Draft::Form::plain:
+      return filled(2, 2, [](long long pick, long long end) { return pick == end; });
+    case Draft::Form::twill:
+      return filled(a + b, a + b, [&](long long pick, long long end) { return (pick + end) % (a + b) < a; });
+    case Draft::Form::satin:
+      return satin(a, b);
+    case Draft::Form::basket:
+      return filled(a + b, a + b, [&](long long pick, long long end) { return (pick < a) == (end < a); });
+    case Draft::Form::file:
+      break;
+  }
+  return error(Kind::unsupported,
+               fmt::format("the draft stands in the file '{}', which was not read", draft.file));
+}
+
+}  // namespace selvage::fabric

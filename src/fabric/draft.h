@@ -1,0 +1,42 @@
+// The draft of a weave as an explicit over/under matrix.
+//
+// Seen as text (top row = weft 1, column i = warp i) the matrix is the face of the cloth with the warp
+// upright: a cloth with the warp along x and the weft along y, looked at from +z and turned by 90 degrees,
+// not mirrored. The definitions of the named drafts are those of formats/txt/README.md; "Z twill" is the
+// textile trade's word for a diagonal that rises to the right when the warp is upright (Grosicki, Watson's
+// Textile Design and Colour).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "fabric/model.h"
+
+namespace selvage::fabric {
+
+// One repeat, `picks` wefts by `ends` warps, both at least 1.
+struct Drawdown {
+  int picks = 0, ends = 0;
+  std::vector<bool> bits;  // picks x ends, pick after pick; true: the warp is on top
+
+  // Any whole numbers, from 0 (pick 0 is weft 1): the draft repeats both ways.
+  [[nodiscard]] bool warp_on_top(long long pick, long long end) const;
+  bool operator==(const Drawdown&) const = default;
+};
+
+// Rows as Fabric TXT writes them, '1' where the warp is on top.
+std::vector<std::string> rows_of(const Drawdown& drawdown);
+
+// plain       10 / 01
+// twill a/b   over a, under b; from a pick to the next one end to the left: a Z twill. Period a + b both
+// ways. satin n/s   weft-faced: one warp on top a pick, s ends further to the left from pick to pick. basket
+// a/b  blocks: warps 1..a over picks 1..a and under the next b, the next b warps the other way round.
+//
+// Fails (malformed) on rows that are empty, ragged or hold other signs, on counts below 1 and on a satin
+// whose step does not lie within 2..n-2 or has a divisor in common with n; (limit) on a repeat of more than
+// 100 million crossings; (unsupported) on a draft that is still the name of a file: whoever reads files puts
+// its rows in.
+Result<Drawdown> drawdown_of(const Draft& draft);
+
+}  // namespace selvage::fabric
