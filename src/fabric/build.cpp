@@ -6,7 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <unordered_set>
 
+#include "fabric/braid.h"
+#include "fabric/edits.h"
+#include "fabric/knit.h"
+#include "fabric/plies.h"
+#include "fabric/warpknit.h"
+#include "fabric/weave.h"
 #include "fabric/yarn_spec.h"
 #include "yarn/finish.h"
 #include "yarn/grid.h"
@@ -15,13 +22,6 @@
 namespace selvage::fabric {
 
 namespace {
-
-Message at_yarn(Message message, const Fabric& fabric, const Yarn& yarn) {
-  message.file = fabric.file;
-  if (message.place.line == 0) message.place = yarn.place;
-  message.yarn = yarn.name;
-  return message;
-}
 
 yarn::GridNet net_of(const Grid& grid, bool yarn_closed) {
   yarn::GridNet net;
@@ -38,68 +38,52 @@ yarn::GridNet net_of(const Grid& grid, bool yarn_closed) {
   return net;
 }
 
-Message unsupported(const Fabric& fabric, TextPlace place, std::string_view what) {
-  Message message = error(Kind::unsupported, fmt::format("{} is not supported yet", what));
+Message in_file(const Fabric& fabric, TextPlace place, Message message) {
   message.file = fabric.file;
-  message.place = place;
+  if (message.place.line == 0) message.place = place;
   return message;
 }
 
-}  // namespace
-
-double tolerance_of(const Fabric& fabric, const BuildOptions& options) {
-  if (options.tolerance > 0.0) return options.tolerance;
-  if (fabric.tolerance) return *fabric.tolerance;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const Item& item : fabric.items)
-    if (const auto* yarn = std::get_if<Yarn>(&item))
-      if (const std::optional<double> size = smallest_size(fabric, *yarn))
-        smallest = std::min(smallest, *size);
-  return std::isfinite(smallest) ? smallest / 1000.0 : 0.0;
-}
-
-std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const BuildOptions& options,
-                                               Diagnostics& diagnostics) {
-  YarnBuilder builder;
-  builder.fabric_ = &fabric;
-  builder.options_ = options;
-  const int errors_before = diagnostics.error_count();
-  std::set<std::string> warned;  // a warning about a thread is worth saying once
-  for (const Item& item : fabric.items) {
-    if (const auto* yarn = std::get_if<Yarn>(&item)) {
-      builder.yarns_.push_back(yarn);
-      std::optional<Message> warning = fibre_share_warning(fabric, *yarn, resolved_thread(fabric, *yarn));
-      if (warning && warned.insert(warning->text).second) diagnostics.add(std::move(*warning));
-    }
-    if (const auto* weave = std::get_if<Weave>(&item))
-      diagnostics.add(unsupported(fabric, weave->place, "`weave`"));
-    if (const auto* knit = std::get_if<Knit>(&item))
-      diagnostics.add(unsupported(fabric, knit->place, "`knit`"));
-    if (const auto* warpknit = std::get_if<Warpknit>(&item))
-      diagnostics.add(unsupported(fabric, warpknit->place, "`warpknit`"));
-    if (const auto* braid = std::get_if<Braid>(&item))
-      diagnostics.add(unsupported(fabric, braid->place, "`braid`"));
-    if (const auto* piece = std::get_if<Piece>(&item))
-      diagnostics.add(unsupported(fabric, piece->place, "`piece`"));
+// The names of the threads that a construction uses.
+std::vector<std::string> threads_of(const Item& item) {
+  if (const auto* weave = std::get_if<Weave>(&item)) {
+    std::vector<std::string> names = weave->warp.threads;
+    names.insert(names.end(), weave->weft.threads.begin(), weave->weft.threads.end());
+    return names;
   }
-  for (const Edit& edit : fabric.edits) diagnostics.add(unsupported(fabric, edit.place, "`edit`"));
-  builder.tolerance_ = tolerance_of(fabric, options);
-  if (diagnostics.error_count() > errors_before) return std::nullopt;
-  return builder;
+  if (const auto* knit = std::get_if<Knit>(&item)) return {knit->thread};
+  if (const auto* braid = std::get_if<Braid>(&item)) return {braid->thread, braid->axial_thread};
+  if (const auto* warpknit = std::get_if<Warpknit>(&item)) {
+    std::vector<std::string> names = {warpknit->thread};
+    for (const WarpknitBar& bar : warpknit->bars) names.push_back(bar.thread);
+    return names;
+  }
+  return {};
 }
 
-Status YarnBuilder::sweep_path(yarn::Body& body, const Yarn& yarn, const Thread& thread) const {
-  Result<yarn::PathRows> rows = path_rows_of(*fabric_, yarn, thread);
+// The yarn of a path block as a plan, before edits.
+Result<YarnPlan> plan_of_path(const Fabric& fabric, const Yarn& yarn, const BuildOptions& options) {
+  YarnPlan plan{.name = yarn.name,
+                .group = {},
+                .role = yarn.role.value_or(Role::other),
+                .place = yarn.place,
+                .thread_name = yarn.thread,
+                .thread = resolved_thread(fabric, yarn),
+                .points = {},
+                .line = {},
+                .spec = {}};
+  Result<yarn::PathRows> rows = path_rows_of(fabric, yarn, plan.thread);
   if (!rows) return rows.error();
   const Path& path = std::get<Path>(yarn.shape);
   // Every row becomes a section at least: what cannot be held is refused before it is computed.
   constexpr std::size_t fewest_round = 8;
-  if (path.points.size() > options_.max_control_points / fewest_round)
+  if (path.points.size() > options.max_control_points / fewest_round)
     return error(
         Kind::limit,
         fmt::format(
             "yarn '{}' has {} points: its surface would need more than {} control points; split the yarn",
-            yarn.name, path.points.size(), options_.max_control_points));
+            yarn.name, path.points.size(), options.max_control_points));
+  plan.points = path.points;
   Result<yarn::CentreLine> line = yarn::make_centre_line(*rows);
   if (!line) {
     Message message = line.error();
@@ -109,39 +93,189 @@ Status YarnBuilder::sweep_path(yarn::Body& body, const Yarn& yarn, const Thread&
           path.lines.empty() ? path.place.line + row : path.lines[static_cast<std::size_t>(row - 1)];
     return message;
   }
-  Result<yarn::TubeSpec> spec = tube_spec_of(*fabric_, yarn, thread, line->parameters);
+  plan.line = std::move(*line);
+  Result<yarn::TubeSpec> spec = tube_spec_of(fabric, yarn, plan.thread, plan.line.parameters);
   if (!spec) return spec.error();
-  spec->tolerance = tolerance_;
-  spec->max_control_points = options_.max_control_points;
-  return yarn::sweep(body, *line, *spec);
+  plan.spec = std::move(*spec);
+  return plan;
+}
+
+void describe(yarn::Body& body, const std::string& name, const std::string& thread_name, const Thread& thread,
+              Role role, TextPlace place) {
+  body.name = name;
+  body.thread = thread_name;
+  body.material = thread.material.value_or("");
+  body.role = role;
+  body.color = thread.color.value_or(Color{});
+  body.place = place;
+}
+
+}  // namespace
+
+double tolerance_of(const Fabric& fabric, const BuildOptions& options) {
+  if (options.tolerance > 0.0) return options.tolerance;
+  if (fabric.tolerance) return *fabric.tolerance;
+  double smallest = std::numeric_limits<double>::infinity();
+  const auto look = [&](const std::optional<double>& size) {
+    if (size) smallest = std::min(smallest, *size);
+  };
+  for (const Item& item : fabric.items) {
+    if (const auto* yarn = std::get_if<Yarn>(&item)) look(smallest_size(fabric, *yarn));
+    for (const std::string& name : threads_of(item))
+      if (const Thread* thread = fabric.find_thread(name)) look(smallest_size(fabric, *thread));
+  }
+  return std::isfinite(smallest) ? smallest / 1000.0 : 0.0;
+}
+
+void YarnBuilder::add_entries(Entry entry, const Thread& thread) {
+  entry.parts = static_cast<std::uint32_t>(part_count(thread));
+  for (entry.part = 0; entry.part < entry.parts; ++entry.part) entries_.push_back(entry);
+}
+
+void YarnBuilder::add_construction(Result<std::unique_ptr<Construction>> made, TextPlace place,
+                                   Diagnostics& diagnostics) {
+  if (!made) return diagnostics.add(in_file(*fabric_, place, made.error()));
+  const std::unique_ptr<Construction>& construction = *made;
+  if (construction->data_points() > options_.max_data_points)
+    return diagnostics.add(in_file(
+        *fabric_, place,
+        error(Kind::limit,
+              fmt::format("this would be {} yarns through {:.3g} data points, more than the {:.3g} that "
+                          "one fabric may have: build it in parts",
+                          construction->count(), static_cast<double>(construction->data_points()),
+                          static_cast<double>(options_.max_data_points)))));
+  Entry entry;
+  entry.construction = construction.get();
+  for (std::size_t i = 0; i < construction->count(); ++i) {
+    entry.index = static_cast<std::uint32_t>(i);
+    add_entries(entry, construction->thread(i));
+  }
+  constructions_.push_back(std::move(*made));
+}
+
+std::string YarnBuilder::name_of(const Entry& entry) const {
+  return entry.yarn != nullptr ? entry.yarn->name : entry.construction->name(entry.index);
+}
+
+void YarnBuilder::check_edited_names(Diagnostics& diagnostics) const {
+  if (fabric_->edits.empty()) return;
+  std::unordered_set<std::string> names;
+  for (const Entry& entry : entries_)
+    if (entry.part == 0) names.insert(name_of(entry));
+  for (const Edit& edit : fabric_->edits) {
+    if (names.contains(edit.yarn)) continue;
+    const std::string_view near =
+        nearest_word(edit.yarn, std::vector<std::string_view>(names.begin(), names.end()));
+    diagnostics.add(in_file(
+        *fabric_, edit.place,
+        error(Kind::geometry,
+              fmt::format("there is no yarn '{}' to edit{}", edit.yarn,
+                          near.empty() ? std::string() : fmt::format("; did you mean '{}'?", near)))));
+  }
+}
+
+std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const BuildOptions& options,
+                                               Diagnostics& diagnostics) {
+  YarnBuilder builder;
+  builder.fabric_ = &fabric;
+  builder.options_ = options;
+  const int errors_before = diagnostics.error_count();
+  std::set<std::string> warned;  // a warning about a thread is worth saying once
+  const auto warn = [&](std::optional<Message> warning) {
+    if (warning && warned.insert(warning->text).second) diagnostics.add(std::move(*warning));
+  };
+  for (const Item& item : fabric.items) {
+    if (const auto* yarn = std::get_if<Yarn>(&item)) {
+      const Thread thread = resolved_thread(fabric, *yarn);
+      Entry entry;
+      entry.yarn = yarn;
+      builder.add_entries(entry, std::holds_alternative<Grid>(yarn->shape) ? Thread{} : thread);
+      warn(fibre_share_warning(fabric, *yarn, thread));
+    }
+    if (const auto* weave = std::get_if<Weave>(&item))
+      builder.add_construction(make_weave(fabric, *weave, diagnostics), weave->place, diagnostics);
+    if (const auto* knit = std::get_if<Knit>(&item))
+      builder.add_construction(make_knit(fabric, *knit, diagnostics), knit->place, diagnostics);
+    if (const auto* warpknit = std::get_if<Warpknit>(&item))
+      builder.add_construction(make_warpknit(fabric, *warpknit, diagnostics), warpknit->place, diagnostics);
+    if (const auto* braid = std::get_if<Braid>(&item))
+      builder.add_construction(make_braid(fabric, *braid, diagnostics), braid->place, diagnostics);
+    if (const auto* piece = std::get_if<Piece>(&item))
+      diagnostics.add(
+          in_file(fabric, piece->place, error(Kind::unsupported, "`piece` is not supported yet")));
+    for (const std::string& name : threads_of(item))
+      if (const Thread* thread = fabric.find_thread(name))
+        warn(fibre_share_warning(fabric, *thread, thread->place));
+  }
+  if (diagnostics.error_count() == errors_before) builder.check_edited_names(diagnostics);
+  builder.tolerance_ = tolerance_of(fabric, options);
+  if (diagnostics.error_count() > errors_before) return std::nullopt;
+  return builder;
+}
+
+Message YarnBuilder::placed(Message message, const Entry& entry) const {
+  message.file = fabric_->file;
+  if (message.place.line == 0 && entry.yarn != nullptr) message.place = entry.yarn->place;
+  if (message.yarn.empty()) message.yarn = name_of(entry);
+  return message;
+}
+
+Result<YarnPlan> YarnBuilder::whole_plan(const Entry& entry) const {
+  if (entry.yarn != nullptr && !std::holds_alternative<Path>(entry.yarn->shape))
+    return error(Kind::geometry, fmt::format("yarn '{}' has neither a path nor a grid", entry.yarn->name));
+  Result<YarnPlan> plan = entry.yarn != nullptr ? plan_of_path(*fabric_, *entry.yarn, options_)
+                                                : entry.construction->plan(entry.index);
+  if (!plan) return plan;
+  if (!fabric_->edits.empty())
+    if (Status edited = apply_edits(*fabric_, plan->name, plan->line); !edited) return edited.error();
+  return plan;
+}
+
+Result<YarnPlan> YarnBuilder::plan(std::size_t index) const {
+  const Entry& entry = entries_[index];
+  Result<YarnPlan> plan = whole_plan(entry);
+  if (plan.ok() && entry.parts > 1) plan = part_of(*fabric_, *plan, entry.part);
+  if (!plan) return placed(plan.error(), entry);
+  return plan;
+}
+
+Result<yarn::Body> YarnBuilder::build_grid(const Yarn& yarn) const {
+  const Grid& grid = std::get<Grid>(yarn.shape);
+  yarn::Body body;
+  describe(body, yarn.name, yarn.thread, resolved_thread(*fabric_, yarn), yarn.role.value_or(Role::other),
+           yarn.place);
+  for (const Edit& edit : fabric_->edits)
+    if (edit.yarn == yarn.name)
+      return in_file(*fabric_, edit.place,
+                     error(Kind::unsupported,
+                           fmt::format("yarn '{}' is a grid: it has no centre line to edit", yarn.name)));
+  Status filled = yarn::fill_from_grid(body, net_of(grid, yarn.closed));
+  if (!filled) {
+    filled.error().place = grid.place;
+    return filled.error();
+  }
+  return body;
 }
 
 Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
-  const Yarn& yarn = *yarns_[index];
-  const Thread thread = resolved_thread(*fabric_, yarn);
+  const Entry& entry = entries_[index];
   yarn::Body body;
-  body.name = yarn.name;
-  body.thread = yarn.thread;
-  body.material = thread.material.value_or("");
-  body.role = yarn.role.value_or(Role::other);
-  body.color = thread.color.value_or(Color{});
-  body.place = yarn.place;
-  if (const auto* grid = std::get_if<Grid>(&yarn.shape)) {
-    Status filled = yarn::fill_from_grid(body, net_of(*grid, yarn.closed));
-    if (!filled) {
-      filled.error().place = grid->place;
-      return at_yarn(filled.error(), *fabric_, yarn);
-    }
-  } else if (std::holds_alternative<Path>(yarn.shape)) {
-    Status swept = sweep_path(body, yarn, thread);
-    if (!swept) return at_yarn(swept.error(), *fabric_, yarn);
+  if (entry.yarn != nullptr && std::holds_alternative<Grid>(entry.yarn->shape)) {
+    Result<yarn::Body> filled = build_grid(*entry.yarn);
+    if (!filled) return placed(filled.error(), entry);
+    body = std::move(*filled);
   } else {
-    return at_yarn(error(Kind::geometry, fmt::format("yarn '{}' has neither a path nor a grid", yarn.name)),
-                   *fabric_, yarn);
+    Result<YarnPlan> made = plan(index);
+    if (!made) return made.error();
+    describe(body, made->name, made->thread_name, made->thread, made->role, made->place);
+    body.group = made->group;
+    yarn::TubeSpec& spec = made->spec;
+    spec.tolerance = spec.tolerance > 0.0 ? std::min(spec.tolerance, tolerance_) : tolerance_;
+    spec.max_control_points = options_.max_control_points;
+    if (Status swept = yarn::sweep(body, made->line, spec); !swept) return placed(swept.error(), entry);
   }
-  Status finished = yarn::finish(body, options_.ends);
-  if (!finished) return at_yarn(finished.error(), *fabric_, yarn);
-  for (Message& message : body.messages) message = at_yarn(message, *fabric_, yarn);
+  if (Status finished = yarn::finish(body, options_.ends); !finished) return placed(finished.error(), entry);
+  for (Message& message : body.messages) message = placed(message, entry);
   return body;
 }
 

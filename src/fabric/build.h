@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/diagnostics.h"
 #include "fabric/model.h"
+#include "fabric/plan.h"
 #include "yarn/body.h"
 
 namespace selvage::fabric {
@@ -15,31 +18,50 @@ struct BuildOptions {
   yarn::EndStyle ends = yarn::EndStyle::patch;
   double tolerance = 0;  // file units; 0: the file's, or 1/1000 of the smallest section size in the file
   std::size_t max_control_points = 50'000'000;  // a yarn: a limit error instead of an exhausted memory
+  // Data points of a construction: 500 million loops would be a file of more than a terabyte.
+  std::uint64_t max_data_points = 1'000'000'000;
 };
 
 // The tolerance in force, file units.
 double tolerance_of(const Fabric& fabric, const BuildOptions& options);
 
 // Builds the yarns one at a time, in file order; nothing is kept between calls, so that a million yarns need
-// the memory of one.
+// the memory of one. A yarn of plies or filaments is built as its parts.
 class YarnBuilder {
  public:
-  // Errors: unsupported (constructions and edits that this version has no geometry for, each at its line; all
-  // of them are reported), geometry (a thread without a size, ...). `fabric` outlives the builder.
+  // Errors: geometry (a thread without a size, a construction that cannot be, an edit of a yarn that is not
+  // there), limit; each at its line, all of them are reported. `fabric` outlives the builder.
   static std::optional<YarnBuilder> create(const Fabric& fabric, const BuildOptions& options,
                                            Diagnostics& diagnostics);
 
-  [[nodiscard]] std::size_t count() const { return yarns_.size(); }
+  [[nodiscard]] std::size_t count() const { return entries_.size(); }
+  // The yarn's plan, edits applied; a part's own where the yarn has parts. Error (unsupported): a grid has
+  // none.
+  [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const;
   // Errors: geometry, limit; with the yarn, its file and line. Warnings are in Body::messages.
   [[nodiscard]] Result<yarn::Body> build(std::size_t index) const;
 
  private:
-  Status sweep_path(yarn::Body& body, const Yarn& yarn, const Thread& thread) const;
+  // One yarn to build: a yarn block, or part `part` of yarn `index` of a construction.
+  struct Entry {
+    const Yarn* yarn = nullptr;
+    const Construction* construction = nullptr;
+    std::uint32_t index = 0, part = 0, parts = 1;
+  };
+  void add_construction(Result<std::unique_ptr<Construction>> made, TextPlace place,
+                        Diagnostics& diagnostics);
+  void add_entries(Entry entry, const Thread& thread);
+  void check_edited_names(Diagnostics& diagnostics) const;
+  [[nodiscard]] std::string name_of(const Entry& entry) const;
+  [[nodiscard]] Result<YarnPlan> whole_plan(const Entry& entry) const;
+  [[nodiscard]] Result<yarn::Body> build_grid(const Yarn& yarn) const;
+  [[nodiscard]] Message placed(Message message, const Entry& entry) const;
 
   const Fabric* fabric_ = nullptr;
   BuildOptions options_;
   double tolerance_ = 0;
-  std::vector<const Yarn*> yarns_;
+  std::vector<std::unique_ptr<Construction>> constructions_;
+  std::vector<Entry> entries_;
 };
 
 }  // namespace selvage::fabric

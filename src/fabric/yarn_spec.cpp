@@ -138,6 +138,12 @@ Result<yarn::PathRows> path_rows_of(const Fabric& fabric, const Yarn& yarn, cons
   return rows;
 }
 
+double section_twist(const Thread& thread, Unit units) {
+  if (!thread.twist || !thread.twist->rotates) return 0.0;
+  const double turns_per_unit = thread.twist->turns * millimetres_per(units) / 1000.0;
+  return 2.0 * pi * turns_per_unit * (thread.twist->hand == Hand::z ? 1.0 : -1.0);
+}
+
 Result<yarn::TubeSpec> tube_spec_of(const Fabric& fabric, const Yarn& yarn, const Thread& thread,
                                     const std::vector<double>& row_parameters) {
   const Path& path = std::get<Path>(yarn.shape);
@@ -153,47 +159,68 @@ Result<yarn::TubeSpec> tube_spec_of(const Fabric& fabric, const Yarn& yarn, cons
     spec.sizes.push_back({row_parameters[i], sizes[i], angle});
     if (path.sizes.empty()) break;  // one size for the whole yarn
   }
-  spec.up = yarn.up;
-  if (thread.twist && thread.twist->rotates) {
-    const double turns_per_unit = thread.twist->turns * millimetres_per(fabric.units) / 1000.0;
-    spec.twist = 2.0 * pi * turns_per_unit * (thread.twist->hand == Hand::z ? 1.0 : -1.0);
-  }
+  spec.guide = yarn::FrameGuide::free_from(yarn.up);
+  spec.twist = section_twist(thread, fabric.units);
   return spec;
 }
+
+namespace {
+
+// What is odd about the share of fibre in sections of these sizes; empty: nothing.
+std::string share_oddity(const Thread& thread, const yarn::Section& section,
+                         const std::vector<yarn::SectionSize>& sizes, Unit units) {
+  const double mm = millimetres_per(units);
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (const yarn::SectionSize& size : sizes) {
+    if (!yarn::check_section(section, size).ok()) return {};  // reported where the yarn is built
+    const double share =
+        thread.linear_density->tex() / (1000.0 * *thread.density * yarn::area(section, size) * mm * mm);
+    low = std::min(low, share);
+    high = std::max(high, share);
+  }
+  if (high > 1.0 + 1e-9)
+    return fmt::format(
+        "the fibres would fill {:.3g} times the section ({:.4g} tex of {:.4g} g/cm3): is the diameter in "
+        "truth a "
+        "radius?",
+        high, thread.linear_density->tex(), *thread.density);
+  const auto differs = [&](double share) {
+    return std::abs(share - *thread.packing) > 0.05 * *thread.packing;
+  };
+  if (thread.packing && (differs(high) || differs(low)))
+    return fmt::format(
+        "its size makes {:.3g}{} of the section fibre, but `packing` says {:.3g} (packing sizes only a "
+        "circle "
+        "without a diameter)",
+        low, high > low * 1.001 ? fmt::format(" to {:.3g}", high) : "", *thread.packing);
+  return {};
+}
+
+}  // namespace
 
 std::optional<Message> fibre_share_warning(const Fabric& fabric, const Yarn& yarn, const Thread& thread) {
   const auto* path = std::get_if<Path>(&yarn.shape);
   if (path == nullptr || !thread.linear_density || !thread.density) return std::nullopt;
   const Result<yarn::Section> section = section_of(thread, fabric.units, every_row_has_a_size(*path));
   if (!section) return std::nullopt;  // reported where the yarn is built
-  const double mm = millimetres_per(fabric.units);
-  double low = std::numeric_limits<double>::infinity(), high = 0.0;
-  for (const yarn::SectionSize& size : row_sizes(*path, *section)) {
-    if (!yarn::check_section(*section, size).ok()) return std::nullopt;
-    const double share =
-        thread.linear_density->tex() / (1000.0 * *thread.density * yarn::area(*section, size) * mm * mm);
-    low = std::min(low, share);
-    high = std::max(high, share);
-  }
-  const std::string of_thread =
-      yarn.thread.empty() ? fmt::format("yarn '{}'", yarn.name) : fmt::format("thread '{}'", yarn.thread);
-  if (high > 1.0 + 1e-9)
-    return at_thread(fabric, yarn,
-                     fmt::format("{}: the fibres would fill {:.3g} times the section ({:.4g} tex of {:.4g} "
-                                 "g/cm3): is the diameter "
-                                 "in truth a radius?",
-                                 of_thread, high, thread.linear_density->tex(), *thread.density),
-                     Severity::warning);
-  if (thread.packing && (std::abs(high - *thread.packing) > 0.05 * *thread.packing ||
-                         std::abs(low - *thread.packing) > 0.05 * *thread.packing))
-    return at_thread(
-        fabric, yarn,
-        fmt::format(
-            "{}: its size makes {:.3g}{} of the section fibre, but `packing` says {:.3g} (packing sizes "
-            "only a circle without a diameter)",
-            of_thread, low, high > low * 1.001 ? fmt::format(" to {:.3g}", high) : "", *thread.packing),
-        Severity::warning);
-  return std::nullopt;
+  const std::string oddity = share_oddity(thread, *section, row_sizes(*path, *section), fabric.units);
+  if (oddity.empty()) return std::nullopt;
+  return at_thread(fabric, yarn,
+                   fmt::format("{} '{}': {}", yarn.thread.empty() ? "yarn" : "thread",
+                               yarn.thread.empty() ? yarn.name : yarn.thread, oddity),
+                   Severity::warning);
+}
+
+std::optional<Message> fibre_share_warning(const Fabric& fabric, const Thread& thread, TextPlace place) {
+  if (!thread.linear_density || !thread.density) return std::nullopt;
+  const Result<yarn::Section> section = section_of(thread, fabric.units, false);
+  if (!section) return std::nullopt;
+  const std::string oddity = share_oddity(thread, *section, {yarn::nominal_size(*section)}, fabric.units);
+  if (oddity.empty()) return std::nullopt;
+  Message message = warning(Kind::geometry, fmt::format("thread '{}': {}", thread.name, oddity));
+  message.file = fabric.file;
+  message.place = place;
+  return message;
 }
 
 std::optional<double> smallest_size(const Fabric& fabric, const Yarn& yarn) {
@@ -209,6 +236,14 @@ std::optional<double> smallest_size(const Fabric& fabric, const Yarn& yarn) {
     if (path->sizes.empty()) break;
   }
   return smallest;
+}
+
+std::optional<double> smallest_size(const Fabric& fabric, const Thread& thread) {
+  const Result<yarn::Section> section = section_of(thread, fabric.units, false);
+  if (!section) return std::nullopt;
+  const yarn::SectionSize size = yarn::nominal_size(*section);
+  if (!(size.width > 0.0 && size.height > 0.0)) return std::nullopt;
+  return std::min(size.width, size.height);
 }
 
 }  // namespace selvage::fabric

@@ -19,6 +19,10 @@ double yarn_diameter(double tex, double density, double packing);
 // thread stands.
 Result<yarn::Section> section_of(const Thread& thread, Unit units, bool rows_give_sizes);
 
+// How far a section turns with its thread's twist, radians per file unit (Z is positive); 0 where it does
+// not.
+double section_twist(const Thread& thread, Unit units);
+
 // Section, sizes and angles, up and twist of a path yarn; parameters are those of the centre line's rows.
 // tolerance and max_control_points are the caller's.
 Result<yarn::TubeSpec> tube_spec_of(const Fabric& fabric, const Yarn& yarn, const Thread& thread,
@@ -34,8 +38,12 @@ std::vector<yarn::SectionSize> row_sizes(const Path& path, const yarn::Section& 
 // without linear density and fibre density. Warnings where it is above 1 or differs from a given packing by
 // more than 5 %.
 std::optional<Message> fibre_share_warning(const Fabric& fabric, const Yarn& yarn, const Thread& thread);
+// The same for a yarn of a construction, whose section is its thread's everywhere.
+std::optional<Message> fibre_share_warning(const Fabric& fabric, const Thread& thread, TextPlace place);
 
-// The smallest section size (width or thickness) of a path yarn, file units; none where it has no size.
+// The smallest section size (width or thickness) of a path yarn or of a thread, file units; none where it has
+// no size.
 std::optional<double> smallest_size(const Fabric& fabric, const Yarn& yarn);
+std::optional<double> smallest_size(const Fabric& fabric, const Thread& thread);
 
 }  // namespace selvage::fabric

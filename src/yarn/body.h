@@ -55,6 +55,7 @@ struct Body {
   std::string name;
   std::string thread;    // name of the thread, may be empty
   std::string material;  // name of the material, may be empty
+  std::string group;     // of a ply or a filament: the yarn that it is part of; else empty
   Role role = Role::other;
   Color color;
   TextPlace place;  // in the file that it came from

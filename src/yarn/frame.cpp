@@ -50,12 +50,54 @@ Result<Vec3> first_up(const Vec3& tangent, const std::optional<Vec3>& wanted) {
   return Vec3((up - up.dot(tangent) * tangent).normalized());
 }
 
+// The direction that a guide asks of the frame at a place, and its derivative by t.
+struct Wanted {
+  Vec3 direction, slope;
+};
+
+Wanted wanted_at(const FrameGuide& guide, const Frame& frame) {
+  if (guide.form != FrameGuide::Form::radial) return {guide.direction->normalized(), Vec3::Zero()};
+  const Vec3 axis = guide.direction->normalized(), from = frame.position - guide.origin,
+             step = frame.speed * frame.tangent;
+  return {from - from.dot(axis) * axis, step - step.dot(axis) * axis};
+}
+
+// Too near to the tangent to say anything?
+bool is_idle(const FrameGuide& guide, const Frame& frame) {
+  const Vec3 wanted = wanted_at(guide, frame).direction;
+  const double angle = angle_between(frame.tangent, wanted);
+  return !(wanted.norm() > 0.0) || std::min(angle, std::numbers::pi - angle) < six_degrees;
+}
+
 }  // namespace
 
-Result<FrameField> FrameField::make(const nurbs::Curve& path, const std::optional<Vec3>& up, bool closed,
+// A guide stands still (or moves) in space: its part across the tangent is the frame's, and what the
+// tangent's own turning takes away from it is the turn about the tangent.
+void FrameField::hold(Frame& frame) const {
+  const Wanted wanted = wanted_at(guide_, frame);
+  const double along = wanted.direction.dot(frame.tangent);
+  const Vec3 part = wanted.direction - along * frame.tangent;
+  const double length = part.norm();
+  const auto sideways = [&](const Vec3& side) {
+    return (wanted.slope.dot(side) - along * frame.tangent_dt.dot(side)) / length;
+  };
+  if (guide_.form == FrameGuide::Form::across) {
+    frame.across = part / length;
+    frame.up = frame.tangent.cross(frame.across);
+    frame.turn_dt = sideways(frame.up);
+  } else {
+    frame.up = part / length;
+    frame.across = frame.up.cross(frame.tangent);
+    frame.turn_dt = -sideways(frame.across);
+  }
+}
+
+Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& guide, bool closed,
                                     bool needs_lengths) {
   FrameField field;
   field.path_ = path;
+  field.guide_ = guide;
+  const bool is_free = guide.form == FrameGuide::Form::free;
   const auto node_at = [&](double t) {
     const nurbs::CurveJet jet = nurbs::evaluate_jet(path, t);
     Node node;
@@ -74,9 +116,11 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const std::optiona
     return message;
   };
   if (stops(first)) return stopped(first);
-  Result<Vec3> start = first_up(first.tangent, up);
-  if (!start) return start.error();
-  first.up = *start;
+  if (is_free) {
+    Result<Vec3> start = first_up(first.tangent, guide.direction);
+    if (!start) return start.error();
+    first.up = *start;
+  }
   field.nodes_.push_back(first);
   const std::vector<double> breaks = nurbs::breakpoints(path.knots, path.degree);
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
@@ -97,12 +141,27 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const std::optiona
       Node node = node_at(t);
       const Node& before = field.nodes_.back();
       if (stops(node) || node.tangent.dot(before.tangent) < -0.5) return stopped(node);
-      node.up = reflected(before.up, before.position, before.tangent, node.position, node.tangent);
-      if (closed || needs_lengths) node.length = before.length + nurbs::arc_length(path, before.t, t);
+      if (is_free) {
+        node.up = reflected(before.up, before.position, before.tangent, node.position, node.tangent);
+      } else {
+        Frame frame;
+        frame.position = node.position;
+        frame.tangent = node.tangent;
+        if (is_idle(guide, frame)) {
+          Message message = error(
+              Kind::geometry, guide.form == FrameGuide::Form::radial
+                                  ? "the path meets the axis about which its section is held"
+                                  : "the path runs within 6 degrees of the direction that holds its section");
+          message.at = node.position;
+          return message;
+        }
+      }
+      if ((closed && is_free) || needs_lengths)
+        node.length = before.length + nurbs::arc_length(path, before.t, t);
       field.nodes_.push_back(node);
     }
   }
-  if (closed) {
+  if (closed && is_free) {
     // How far the carried frame has turned about the tangent when it comes back.
     const Node& last = field.nodes_.back();
     const Vec3& start_up = field.nodes_.front().up;
@@ -123,6 +182,16 @@ double FrameField::length_at(double t) const {
   return t <= node.t ? node.length : node.length + nurbs::arc_length(path_, node.t, t);
 }
 
+double FrameField::turn_between(double from, double to) const {
+  if (guide_.form == FrameGuide::Form::free)
+    return spread_rate_ == 0.0 ? 0.0 : std::abs(spread_rate_) * (length_at(to) - length_at(from));
+  constexpr int looks = 4;
+  double turn = 0.0;
+  for (int i = 0; i < looks; ++i)
+    turn += std::abs(at(from + (to - from) * (i + 0.5) / looks).turn_dt) * (to - from) / looks;
+  return turn;
+}
+
 Frame FrameField::at(double t) const {
   const Node& node = node_before(t);
   const nurbs::CurveJet jet = nurbs::evaluate_jet(path_, t);
@@ -131,6 +200,11 @@ Frame FrameField::at(double t) const {
   frame.speed = jet.d1.norm();
   frame.tangent = jet.d1 / frame.speed;
   frame.tangent_dt = (jet.d2 - frame.tangent * jet.d2.dot(frame.tangent)) / frame.speed;
+  if (guide_.form != FrameGuide::Form::free) {
+    hold(frame);
+    return frame;
+  }
+  frame.turn_dt = spread_rate_ * frame.speed;
   frame.up =
       t <= node.t ? node.up : reflected(node.up, node.position, node.tangent, frame.position, frame.tangent);
   if (spread_rate_ != 0.0) {

@@ -1,5 +1,6 @@
-// The frame that carries a section along a path: rotation-minimizing, by double reflection.
-// Wang, Juettler, Zheng, Liu: Computation of Rotation Minimizing Frames, ACM TOG 27(1), 2008.
+// The frame that carries a section along a path: rotation-minimizing, by double reflection (Wang, Juettler,
+// Zheng, Liu: Computation of Rotation Minimizing Frames, ACM TOG 27(1), 2008), or held by what the fabric
+// knows: the cloth's normal, the plane of the yarn, the mandrel of a braid.
 #pragma once
 
 #include <functional>
@@ -12,27 +13,48 @@
 
 namespace selvage::yarn {
 
+// What holds the frame.
+struct FrameGuide {
+  enum class Form {
+    free,    // rotation-minimizing; `direction`, where it is given, is `up` at the start
+    up,      // `up` is `direction`, as near as the tangent lets it
+    across,  // `across` is `direction`, as near as the tangent lets it: a path in a plane, with any slope
+    radial   // `up` points away from the axis through `origin` along `direction`
+  };
+  Form form = Form::free;
+  std::optional<Vec3> direction;  // any length but zero; required but for `free`
+  Vec3 origin = Vec3::Zero();     // radial: a point of the axis
+
+  static FrameGuide free_from(const std::optional<Vec3>& up) { return {Form::free, up, Vec3::Zero()}; }
+  static FrameGuide with_up(const Vec3& up) { return {Form::up, up, Vec3::Zero()}; }
+  static FrameGuide with_across(const Vec3& across) { return {Form::across, across, Vec3::Zero()}; }
+  static FrameGuide about_axis(const Vec3& origin, const Vec3& axis) { return {Form::radial, axis, origin}; }
+};
+
 // Right-handed: tangent = across x up. The section's x axis lies along `across`, its y axis along `up`.
 struct Frame {
   Vec3 position, tangent, across, up;
   double speed = 0;  // |dC/dt|
   Vec3 tangent_dt;   // dT/dt
+  double turn_dt =
+      0;  // radians per unit of t by which it turns about the tangent, against the rotation-minimizing one
 };
 
 class FrameField {
  public:
-  // `up`: the wanted thickness direction at the start; unset: +z, or +y where the path starts within 6
-  // degrees of z. closed: the closing angle is spread evenly over the length. needs_lengths: length_at() will
-  // be called (closed paths always have it); it costs most of the work. Errors (geometry): an `up` within 6
-  // degrees of the path's start, a path that stops or turns back at a point.
-  static Result<FrameField> make(const nurbs::Curve& path, const std::optional<Vec3>& up, bool closed,
+  // A free guide without a direction starts with +z, or +y where the path starts within 6 degrees of z.
+  // closed: the closing angle of a free frame is spread evenly over the length. needs_lengths: length_at()
+  // will be called (free frames of closed paths always have it); it costs most of the work. Errors
+  // (geometry): a guide within 6 degrees of where it says nothing (`up` along the path, ...), a path that
+  // stops or turns back at a point.
+  static Result<FrameField> make(const nurbs::Curve& path, const FrameGuide& guide, bool closed,
                                  bool needs_lengths = true);
 
   // The frame at any parameter; the same bits for the same parameter.
   [[nodiscard]] Frame at(double t) const;
-  // Turning of the frame against the rotation-minimizing one, radians per unit of arc length (closed paths
-  // only).
-  [[nodiscard]] double spread_rate() const { return spread_rate_; }
+  // About how far the frame turns about the tangent between two parameters, against the rotation-minimizing
+  // one, radians (not signed).
+  [[nodiscard]] double turn_between(double from, double to) const;
   // Arc length from the start.
   [[nodiscard]] double length_at(double t) const;
   [[nodiscard]] double length() const { return nodes_.back().length; }
@@ -43,8 +65,10 @@ class FrameField {
     Vec3 position, tangent, up;
   };
   const Node& node_before(double t) const;
+  void hold(Frame& frame) const;
 
   nurbs::Curve path_;
+  FrameGuide guide_;
   std::vector<Node> nodes_;
   double spread_rate_ = 0;
 };

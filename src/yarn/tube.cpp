@@ -46,7 +46,7 @@ class Channels {
     const double c = std::cos(angle), s = std::sin(angle);
     const Vec3 a = c * frame.across + s * frame.up, b = -s * frame.across + c * frame.up;
     // a' and b' of a frame that turns at `rate` against the rotation-minimizing one.
-    const double rate = size.slope[2] + (twist_ + frames_.spread_rate()) * frame.speed;
+    const double rate = size.slope[2] + twist_ * frame.speed + frame.turn_dt;
     const Vec3 a_dt = -frame.tangent_dt.dot(a) * frame.tangent + rate * b;
     const Vec3 b_dt = -frame.tangent_dt.dot(b) * frame.tangent - rate * a;
     const Vec3 c_dt = frame.speed * frame.tangent;
@@ -324,8 +324,8 @@ std::vector<double> first_breaks(const CentreLine& path, const FrameField& frame
   for (std::size_t k = 0; k + 1 < distinct.size(); ++k) {
     const double from = distinct[k], to = distinct[k + 1];
     double turn = std::abs(sizes.at(to).value[2] - sizes.at(from).value[2]);
-    if (const double rate = twist + frames.spread_rate(); rate != 0.0)
-      turn += std::abs(rate) * (frames.length_at(to) - frames.length_at(from));
+    if (twist != 0.0) turn += std::abs(twist) * (frames.length_at(to) - frames.length_at(from));
+    turn += frames.turn_between(from, to);
     const double steps = std::max(1.0, std::ceil(turn / (pi / 2)));
     if (static_cast<double>(breaks.size()) + steps > static_cast<double>(most)) return {};
     for (int i = 1; i <= static_cast<int>(steps); ++i)
@@ -362,7 +362,7 @@ Status sweep(Body& body, const CentreLine& path, const TubeSpec& spec) {
     rows.resize(1);
   }
   const SizeProfile sizes(at, rows, path.closed);
-  Result<FrameField> frames = FrameField::make(path.curve, spec.up, path.closed, spec.twist != 0.0);
+  Result<FrameField> frames = FrameField::make(path.curve, spec.guide, path.closed, spec.twist != 0.0);
   if (!frames) return of_yarn(frames.error(), body);
   const double twist = path.closed && spec.twist != 0.0 ? whole_turns(spec.twist, *frames, body) : spec.twist;
   Result<int> pieces = choose_pieces(spec, sizes);

@@ -2,7 +2,7 @@
 // bounded.
 //
 // The exact surface is C(t) + x(u, t) a(t) + y(u, t) b(t): C the centre line, (x, y) the section's outline of
-// the size that holds at t, a and b the rotation-minimizing frame turned by the section's angle and by twist.
+// the size that holds at t, a and b the frame (yarn/frame.h) turned by the section's angle and by twist.
 // The outline is replaced by a closed quadratic B-spline (yarn/outline.h), and C, a, b (times the size) by
 // cubics through their values at sections that are placed where they are needed: spans are halved until the
 // deviation, with what can hide between its samples, is within the tolerance. Basis functions are positive
@@ -10,11 +10,11 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "core/diagnostics.h"
 #include "yarn/body.h"
+#include "yarn/frame.h"
 #include "yarn/outline.h"
 #include "yarn/path.h"
 
@@ -30,7 +30,7 @@ struct SizeAtParameter {
 struct TubeSpec {
   Section section;
   std::vector<SizeAtParameter> sizes;  // at least one; increasing parameters; monotone cubics between them
-  std::optional<Vec3> up;              // thickness direction of the first section
+  FrameGuide guide;                    // free: from the thickness direction of the first section
   double twist = 0;      // radians per file unit by which the section turns along the path; 0: none
   double tolerance = 0;  // > 0, file units
   std::size_t max_control_points = 50'000'000;

@@ -119,26 +119,17 @@ TEST(BuildTest, AThreadWithoutSizeSaysWhatIsMissing) {
   EXPECT_EQ(body.error().text.find("`tex`"), std::string::npos);
 }
 
-TEST(BuildTest, ConstructionsAndEditsAreRefusedAtTheirLines) {
-  Fabric fabric = fabric_of(cotton(), straight("y", 3));
-  Weave weave;
-  weave.place = {20, 1};
-  Braid braid;
-  braid.place = {30, 1};
-  fabric.items.emplace_back(weave);
-  fabric.items.emplace_back(braid);
+TEST(BuildTest, AnEditOfAYarnThatIsNotThereNamesTheNearest) {
+  Fabric fabric = fabric_of(cotton(), straight("weft1", 3));
   Edit edit;
+  edit.yarn = "weft2";
   edit.place = {40, 1};
   fabric.edits.push_back(edit);
   Diagnostics diagnostics;
   EXPECT_FALSE(YarnBuilder::create(fabric, {}, diagnostics).has_value());
-  std::vector<int> lines;
-  for (const Message& m : diagnostics.messages()) {
-    EXPECT_EQ(m.kind, Kind::unsupported);
-    EXPECT_NE(m.text.find("not supported yet"), std::string::npos);
-    lines.push_back(m.place.line);
-  }
-  EXPECT_EQ(lines, (std::vector<int>{20, 30, 40}));
+  ASSERT_EQ(diagnostics.messages().size(), 1U);
+  EXPECT_EQ(diagnostics.messages().front().place.line, 40);
+  EXPECT_NE(diagnostics.messages().front().text.find("did you mean 'weft1'"), std::string::npos);
 }
 
 TEST(BuildTest, TwistTurnsPerMetreInEveryUnit) {

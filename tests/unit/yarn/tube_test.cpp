@@ -93,7 +93,7 @@ TEST(TubeTest, RingHasPappusVolume) {
 // The exact swept section by its definition: frames, sizes and outline evaluated directly.
 double measured_error(const Body& body, const PathRows& rows, const TubeSpec& spec) {
   const Result<CentreLine> line = make_centre_line(rows);
-  const Result<FrameField> frames = FrameField::make(line->curve, spec.up, rows.closed);
+  const Result<FrameField> frames = FrameField::make(line->curve, spec.guide, rows.closed);
   double largest = 0.0;
   const int along = 40 * body.surface.count_v, round = 40;
   for (int j = 0; j <= along; ++j) {
@@ -213,8 +213,8 @@ TEST(TubeTest, ARigidMotionMovesTheSurface) {
   const Vec3 shift(10, -4, 2);
   for (const Vec3& p : rows.points) moved.points.emplace_back(turn * p + shift);
   TubeSpec a = spec_of(Ellipse{}, {0.4, 0.2}, 1e-4), b = a;
-  a.up = Vec3(0, 0.1, 1);
-  b.up = Vec3(turn * *a.up);
+  a.guide.direction = Vec3(0, 0.1, 1);
+  b.guide.direction = Vec3(turn * *a.guide.direction);
   const Body one = make(rows, a), two = make(moved, b);
   ASSERT_EQ(one.surface.points.size(), two.surface.points.size());
   for (std::size_t i = 0; i < one.surface.points.size(); ++i)

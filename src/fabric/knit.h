@@ -1,0 +1,14 @@
+// The construction `knit` (formats/txt/README.md).
+#pragma once
+
+#include <memory>
+
+#include "fabric/plan.h"
+
+namespace selvage::fabric {
+
+// Errors: at their lines. `fabric` and `knit` outlive the construction; warnings go to `diagnostics`.
+Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit& knit,
+                                                Diagnostics& diagnostics);
+
+}  // namespace selvage::fabric

@@ -1,0 +1,55 @@
+// A yarn before it is swept: everything that decides its geometry. Yarn blocks and constructions give plans,
+// edits move their centre lines, plies and filaments replace one by several, and the tube maker sweeps them.
+// All lengths in file units.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "fabric/model.h"
+#include "yarn/path.h"
+#include "yarn/tube.h"
+
+namespace selvage::fabric {
+
+struct YarnPlan {
+  std::string name;   // warp_1, course_2, ...
+  std::string group;  // of a ply or a filament: the yarn that it is part of; else empty
+  Role role = Role::other;
+  TextPlace place;
+  std::string thread_name;   // may be empty
+  Thread thread;             // with the yarn's own statements over it
+  std::vector<Vec3> points;  // the data points of the centre line; empty where it was not made from points
+  yarn::CentreLine line;
+  yarn::TubeSpec spec;  // its tolerance and limit are the builder's; a tolerance above 0 is an upper bound
+};
+
+// The yarns of one fabric by construction, known by number and name before any of them is computed, and
+// planned one at a time: nothing is kept, so that a cloth of a million loops needs the memory of one yarn.
+// Exactly periodic: yarn i + repeat has the data points of yarn i moved, each coordinate being base + n *
+// pitch with one rounding.
+class Construction {
+ public:
+  virtual ~Construction() = default;
+  [[nodiscard]] virtual std::size_t count() const = 0;
+  [[nodiscard]] virtual std::string name(std::size_t index) const = 0;
+  // The thread of a yarn, of the fabric's list.
+  [[nodiscard]] virtual const Thread& thread(std::size_t index) const = 0;
+  // Data points of all yarns together: what the cloth will cost, before it is built.
+  [[nodiscard]] virtual std::uint64_t data_points() const = 0;
+  // Errors: geometry (the place and the yarn are filled in by the builder where they are missing).
+  [[nodiscard]] virtual Result<YarnPlan> plan(std::size_t index) const = 0;
+};
+
+// The start of a plan: names, thread, its section with its size, and its twist. Errors: as section_of.
+Result<YarnPlan> start_plan(const Fabric& fabric, const Thread& thread, std::string name, Role role,
+                            TextPlace place);
+
+// The plan's centre line through its points, by one of the interpolating forms of a path. Errors: as
+// yarn::make_centre_line.
+Status interpolate(YarnPlan& plan, yarn::PathForm form, const Vec3& tangent_start, const Vec3& tangent_end);
+
+}  // namespace selvage::fabric
