@@ -34,7 +34,7 @@ bool is_number(std::string_view word) {
 
 }  // namespace
 
-Cursor::Cursor(const Source& source, Report& report) : report_(report) {
+Cursor::Cursor(const Source& source, TextReport& report) : report_(report) {
   std::string_view bytes = source.bytes();
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
   at_ = line_begin_ = statement_ = token_ = bytes.data();

@@ -6,14 +6,14 @@
 #include <string_view>
 
 #include "core/source.h"
-#include "formats/txt/report.h"
+#include "core/text_report.h"
 
 namespace selvage::formats::txt {
 
 class Cursor {
  public:
   // `bytes` of the source, without a byte-order mark.
-  Cursor(const Source& source, Report& report);
+  Cursor(const Source& source, TextReport& report);
 
   // --- statements
   // ------------------------------------------------------------------------------------------------- Goes to
@@ -74,7 +74,7 @@ class Cursor {
   // Reports bytes that are no text and stops; false when all of `token` is text.
   bool refuse_foreign(std::string_view token);
 
-  Report& report_;
+  TextReport& report_;
   const char* at_;
   const char* end_;
   const char* line_begin_;

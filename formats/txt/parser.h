@@ -12,9 +12,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/text_report.h"
 #include "fabric/model.h"
 #include "formats/txt/cursor.h"
-#include "formats/txt/report.h"
 #include "formats/txt/words.h"
 
 namespace selvage::formats::txt {
@@ -84,7 +84,7 @@ struct Names {
 
 class Parser : public Cursor {
  public:
-  Parser(const Source& source, Report& messages) : Cursor(source, messages), report(messages) {}
+  Parser(const Source& source, TextReport& messages) : Cursor(source, messages), report(messages) {}
 
   // Reads statements up to the block's `end`. False when that is missing.
   template <class T>
@@ -121,7 +121,7 @@ class Parser : public Cursor {
   std::optional<std::string_view> reference(const Names& names);
   void check_references();
 
-  Report& report;
+  TextReport& report;
   fabric::Fabric fabric;
   Names threads{"thread"}, materials{"material"}, yarns{"yarn"}, pieces{"piece"};
 

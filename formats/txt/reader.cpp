@@ -81,7 +81,7 @@ const Table<Fabric>& file_table() {
 }
 
 // Nothing that could be read as text at all: one error says so. False: there is none.
-bool refuse_binary(const Source& source, Report& report) {
+bool refuse_binary(const Source& source, TextReport& report) {
   const std::string_view bytes = source.bytes();
   const Spot begin{bytes.data(), 1, 1};
   if (bytes.empty()) {
@@ -183,7 +183,7 @@ void read_cell(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 }
 
 std::optional<Fabric> read_fabric(const Source& source, Diagnostics& diagnostics) {
-  Report report(source);
+  TextReport report(source);
   if (!refuse_binary(source, report)) {
     Parser p(source, report);
     p.fabric.file = source.name();
@@ -206,7 +206,7 @@ std::optional<Fabric> read_fabric(const Source& source, Diagnostics& diagnostics
 
 bool is_fabric_txt(std::string_view head) {
   const Source source = Source::from_memory(std::string(head));
-  Report report(source);
+  TextReport report(source);
   Cursor cursor(source, report);
   if (!cursor.next_statement() || !same_word(cursor.take_word(), "fabric")) return false;
   const std::string_view version = cursor.take_word();

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "core/number_text.h"
-#include "formats/txt/report.h"
+#include "core/text_report.h"
 #include "formats/txt/words.h"
 
 namespace selvage::formats::txt {

@@ -10,9 +10,9 @@
 #include <random>
 #include <sstream>
 
+#include "core/text_report.h"
 #include "formats/txt/model_text.h"
 #include "formats/txt/reading.h"
-#include "formats/txt/report.h"
 
 namespace selvage::test {
 
@@ -40,9 +40,9 @@ void expect_message_is_sound(const Message& message, const std::string& text) {
   EXPECT_LE(message.place.line, lines);
   EXPECT_GE(message.place.column, 1);
   EXPECT_FALSE(message.text.empty());
-  EXPECT_EQ(formats::txt::text_prefix(message.text), message.text.size());
-  EXPECT_EQ(formats::txt::text_prefix(message.excerpt), message.excerpt.size());
-  EXPECT_EQ(formats::txt::text_prefix(message.yarn), message.yarn.size());
+  EXPECT_EQ(text_prefix(message.text), message.text.size());
+  EXPECT_EQ(text_prefix(message.excerpt), message.excerpt.size());
+  EXPECT_EQ(text_prefix(message.yarn), message.yarn.size());
   EXPECT_LE(message.excerpt.size(), 600U);
   EXPECT_LE(message.caret, static_cast<int>(message.excerpt.size()) + 1);
 }

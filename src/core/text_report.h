@@ -8,7 +8,7 @@
 #include "core/diagnostics.h"
 #include "core/source.h"
 
-namespace selvage::formats::txt {
+namespace selvage {
 
 // A place in the text; line and column count from 1, columns in bytes.
 struct Spot {
@@ -31,11 +31,11 @@ std::string_view near_word(std::string_view word, const std::vector<std::string_
 // "; did you mean 'WORD'?", or nothing.
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known);
 
-class Report {
+class TextReport {
  public:
   static constexpr int most_errors = 20, most_warnings = 100;
 
-  explicit Report(const Source& source) : source_(source) {}
+  explicit TextReport(const Source& source) : source_(source) {}
 
   void error(const Spot& spot, std::string text, Kind kind = Kind::malformed);
   void warning(const Spot& spot, std::string text);
@@ -56,4 +56,4 @@ class Report {
   int errors_ = 0, warnings_ = 0;
 };
 
-}  // namespace selvage::formats::txt
+}  // namespace selvage

@@ -1,11 +1,11 @@
-#include "formats/txt/report.h"
+#include "core/text_report.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
 
-namespace selvage::formats::txt {
+namespace selvage {
 
 namespace {
 
@@ -109,7 +109,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string_vi
   return near.empty() ? std::string{} : fmt::format("; did you mean {}?", in_quotes(near));
 }
 
-void Report::add(Severity severity, Kind kind, const Spot& spot, std::string text) {
+void TextReport::add(Severity severity, Kind kind, const Spot& spot, std::string text) {
   Message message;
   message.severity = severity;
   message.kind = kind;
@@ -121,17 +121,17 @@ void Report::add(Severity severity, Kind kind, const Spot& spot, std::string tex
   messages_.push_back(std::move(message));
 }
 
-void Report::error(const Spot& spot, std::string text, Kind kind) {
+void TextReport::error(const Spot& spot, std::string text, Kind kind) {
   if (is_full()) return;
   ++errors_;
   add(Severity::error, kind, spot, std::move(text));
 }
 
-void Report::warning(const Spot& spot, std::string text) {
+void TextReport::warning(const Spot& spot, std::string text) {
   if (++warnings_ <= most_warnings) add(Severity::warning, Kind::malformed, spot, std::move(text));
 }
 
-void Report::hand_over(Diagnostics& diagnostics) {
+void TextReport::hand_over(Diagnostics& diagnostics) {
   std::stable_sort(messages_.begin(), messages_.end(), [](const Message& a, const Message& b) {
     return a.place.line != b.place.line ? a.place.line < b.place.line : a.place.column < b.place.column;
   });
@@ -144,4 +144,4 @@ void Report::hand_over(Diagnostics& diagnostics) {
   diagnostics.add(std::move(rest));
 }
 
-}  // namespace selvage::formats::txt
+}  // namespace selvage
