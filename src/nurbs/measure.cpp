@@ -21,7 +21,8 @@ double gauss_length(const Curve& curve, double t0, double t1) {
 double adaptive_length(const Curve& curve, double t0, double t1, double whole, int depth) {
   const double middle = 0.5 * (t0 + t1);
   const double left = gauss_length(curve, t0, middle), right = gauss_length(curve, middle, t1);
-  if (depth == 0 || std::abs(left + right - whole) <= 1e-13 * (left + right)) return left + right;
+  // So put that what is no number ends it, too.
+  if (depth == 0 || !(std::abs(left + right - whole) > 1e-13 * (left + right))) return left + right;
   return adaptive_length(curve, t0, middle, left, depth - 1) +
          adaptive_length(curve, middle, t1, right, depth - 1);
 }
