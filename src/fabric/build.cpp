@@ -191,6 +191,7 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
       entry.yarn = yarn;
       builder.add_entries(entry, std::holds_alternative<Grid>(yarn->shape) ? Thread{} : thread);
       warn(fibre_share_warning(fabric, *yarn, thread));
+      warn(roundness_note(fabric, thread, yarn->place));
     }
     if (const auto* weave = std::get_if<Weave>(&item))
       builder.add_construction(make_weave(fabric, *weave, diagnostics), weave->place, diagnostics);
@@ -204,8 +205,10 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
       diagnostics.add(
           in_file(fabric, piece->place, error(Kind::unsupported, "`piece` is not supported yet")));
     for (const std::string& name : threads_of(item))
-      if (const Thread* thread = fabric.find_thread(name))
+      if (const Thread* thread = fabric.find_thread(name)) {
         warn(fibre_share_warning(fabric, *thread, thread->place));
+        warn(roundness_note(fabric, *thread, thread->place));
+      }
   }
   if (diagnostics.error_count() == errors_before) builder.check_edited_names(diagnostics);
   builder.tolerance_ = tolerance_of(fabric, options);
@@ -269,6 +272,7 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
     if (!made) return made.error();
     describe(body, made->name, made->thread_name, made->thread, made->role, made->place);
     body.group = made->group;
+    body.path_miss = made->line.largest_miss;
     yarn::TubeSpec& spec = made->spec;
     spec.tolerance = spec.tolerance > 0.0 ? std::min(spec.tolerance, tolerance_) : tolerance_;
     spec.max_control_points = options_.max_control_points;

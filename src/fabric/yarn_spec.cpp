@@ -223,6 +223,19 @@ std::optional<Message> fibre_share_warning(const Fabric& fabric, const Thread& t
   return message;
 }
 
+std::optional<Message> roundness_note(const Fabric& fabric, const Thread& thread, TextPlace place) {
+  if (!thread.section || !std::holds_alternative<yarn::Loop7>(*thread.section)) return std::nullopt;
+  Message message =
+      error(Kind::geometry,
+            fmt::format(
+                "section loop7: its radius has the nominal mean, but varies by {:.3g} % of it round the yarn",
+                100.0 * yarn::loop7_out_of_roundness()));
+  message.severity = Severity::note;
+  message.file = fabric.file;
+  message.place = place;
+  return message;
+}
+
 std::optional<double> smallest_size(const Fabric& fabric, const Yarn& yarn) {
   const auto* path = std::get_if<Path>(&yarn.shape);
   if (path == nullptr) return std::nullopt;

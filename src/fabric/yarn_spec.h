@@ -41,6 +41,9 @@ std::optional<Message> fibre_share_warning(const Fabric& fabric, const Yarn& yar
 // The same for a yarn of a construction, whose section is its thread's everywhere.
 std::optional<Message> fibre_share_warning(const Fabric& fabric, const Thread& thread, TextPlace place);
 
+// A note on how far the seven-point section of the loop method is from round; none for other sections.
+std::optional<Message> roundness_note(const Fabric& fabric, const Thread& thread, TextPlace place);
+
 // The smallest section size (width or thickness) of a path yarn or of a thread, file units; none where it has
 // no size.
 std::optional<double> smallest_size(const Fabric& fabric, const Yarn& yarn);

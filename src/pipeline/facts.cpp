@@ -36,6 +36,7 @@ YarnReport facts_of(const yarn::Body& body, Unit units) {
   facts.volume = body.volume * mm * mm * mm;
   if (std::isfinite(body.min_bend_radius)) facts.min_bend_radius = body.min_bend_radius * mm;
   facts.tube_error = body.tube_error * mm;
+  if (body.path_miss > 0) facts.path_miss = body.path_miss * mm;
   facts.count_u = body.surface.count_u;
   facts.count_v = body.surface.count_v;
   return facts;

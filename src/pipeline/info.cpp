@@ -46,7 +46,7 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
   const Unit shown = job.options.units.value_or(file);
   const auto length = [&](double value) { return converted(value, file, shown); };
   Table table({"yarn", "role", "points", "length", "volume", "least bend radius", "tube error", "ends"});
-  double total_length = 0, total_volume = 0;
+  double total_length = 0, total_volume = 0, largest_miss = 0;
   Box3 box;
   for (std::size_t i = 0; i < builder.count(); ++i) {
     job.progress("building yarn", i + 1, builder.count());
@@ -59,10 +59,13 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
                body->closed_along ? "ring" : std::string(yarn::name_of(body->start.style))});
     total_length += length(body->length);
     total_volume += volume;
+    largest_miss = std::max(largest_miss, length(body->path_miss));
     box.extend(yarn::bounds(*body));
   }
   std::string text = fmt::format("  lengths in {}\n{}", name_of(shown), table.text());
   text += fmt::format("  together: length {}, volume {}\n", cell(total_length), cell(total_volume));
+  if (largest_miss > 0)
+    text += fmt::format("  loop paths miss their points by up to {}\n", cell(largest_miss));
   if (!box.isEmpty()) {
     const Vec3 low = box.min().unaryExpr(length), high = box.max().unaryExpr(length);
     text += fmt::format("  within ({:.6g}, {:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})\n", low.x(), low.y(),

@@ -71,7 +71,8 @@ void Job::say_defect(Message message) {
 void Job::show(Message message) {
   if (message.file.empty()) message.file = input.path == "-" ? "<stdin>" : input.path;
   const bool shown = message.severity == Severity::error ||
-                     (message.severity == Severity::warning && !options.quiet) || options.verbose;
+                     (message.severity == Severity::warning && !options.quiet) || options.verbose ||
+                     (options.command == Command::info && !options.quiet);
   if (shown) channel_.send(packet::message, to_string(message));
   if (wants_report()) report.messages.push_back(std::move(message));
 }

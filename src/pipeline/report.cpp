@@ -28,6 +28,7 @@ Json yarn_json(const YarnReport& yarn) {
   if (yarn.min_bend_radius && std::isfinite(*yarn.min_bend_radius))
     out["min_bend_radius"] = *yarn.min_bend_radius;
   out["tube_error"] = yarn.tube_error;
+  if (yarn.path_miss) out["path_miss"] = *yarn.path_miss;
   out["control_points"] = {yarn.count_u, yarn.count_v};
   if (yarn.self_overlap) out["self_overlap"] = *yarn.self_overlap;
   return out;

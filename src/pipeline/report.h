@@ -23,6 +23,7 @@ struct YarnReport {
   double length = 0, volume = 0;
   std::optional<double> min_bend_radius;
   double tube_error = 0;
+  std::optional<double> path_miss;  // loop paths: largest distance of the centre line from its points
   int count_u = 0, count_v = 0;  // control points round and along
 };
 

@@ -77,6 +77,8 @@ struct Body {
   double volume = 0;      // enclosed, of the B-spline itself; with ends `none` as if the ends were planar
   double end_area = 0;    // of the first section (for grids: of the first section's B-spline)
   double tube_error = 0;  // bound on the distance to the exact swept section; 0 for a grid
+  double path_miss =
+      0;  // the centre line's largest distance from the points that it was made after (loop paths)
   double min_bend_radius = 0;          // of the path; infinity for a straight one
   std::vector<TightBend> tight_bends;  // worst first
   std::vector<Message> messages;       // warnings made while building: a fold that made an end planar, ...

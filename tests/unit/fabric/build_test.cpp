@@ -191,5 +191,48 @@ TEST(BuildTest, PolylineCornersUseTheSectionInThePlaneOfTheBend) {
   EXPECT_NEAR(body->volume, pi / 4 * 0.16 * body->length, 2e-3 * body->volume);
 }
 
+// A sine's inner rows: the miss that is told is the largest distance from a row to the sampled curve, or a
+// little more (the curve may come nearer at another parameter than the row's own).
+TEST(BuildTest, LoopPathsTellHowFarTheyMissTheirPoints) {
+  Yarn yarn = straight("y", 3);
+  Path& path = std::get<Path>(yarn.shape);
+  path.form = Path::Form::loop;
+  path.points.clear();
+  for (int i = 0; i < 9; ++i) path.points.emplace_back(i, std::sin(0.9 * i), 0.3 * std::cos(1.3 * i));
+  Diagnostics diagnostics;
+  const Result<yarn::Body> body = build(fabric_of(cotton(), yarn), diagnostics);
+  ASSERT_TRUE(body.ok()) << to_string(body.error());
+  double largest = 0.0;
+  for (const Vec3& point : path.points) {
+    double nearest = 1e9;
+    for (int i = 0; i <= 20000; ++i)
+      nearest = std::min(nearest, (nurbs::evaluate(body->axis, i / 20000.0) - point).norm());
+    largest = std::max(largest, nearest);
+  }
+  EXPECT_GE(body->path_miss, largest - 1e-6);
+  EXPECT_LT(body->path_miss, 1.5 * largest);
+}
+
+TEST(BuildTest, TheSevenPointSectionSaysHowRoundItIs) {
+  Thread thread = cotton();
+  thread.section = yarn::Loop7{};
+  Diagnostics diagnostics;
+  const Result<yarn::Body> body = build(fabric_of(thread, straight("y", 3)), diagnostics);
+  ASSERT_TRUE(body.ok()) << to_string(body.error());
+  ASSERT_EQ(diagnostics.messages().size(), 1U);
+  EXPECT_EQ(diagnostics.messages().front().severity, Severity::note);
+  // Radii of the surface's first ring of points: the spread that the note tells.
+  double low = 1e9, high = 0, sum = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3 p = nurbs::evaluate(body->surface, i / 4000.0, body->surface.first_v());
+    const double radius = std::hypot(p.y(), p.z());
+    low = std::min(low, radius);
+    high = std::max(high, radius);
+    sum += radius / 4000.0;
+  }
+  const std::string told = diagnostics.messages().front().text;
+  EXPECT_NEAR(std::stod(told.substr(told.find("by ") + 3)), 100 * (high - low) / sum, 0.05) << told;
+}
+
 }  // namespace
 }  // namespace selvage::fabric
