@@ -1,0 +1,260 @@
+#include "fabric/piece.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "nurbs/measure.h"
+
+namespace selvage::fabric {
+
+namespace {
+
+using nurbs::Bezier;
+using nurbs::Box2;
+using nurbs::TurningShape;
+
+constexpr std::size_t most_edges = 50'000;
+constexpr double default_tolerance = 1e-6;  // of the extent
+constexpr double no_area = 1e-12;           // of the extent's square
+// Squares and their sums must stay within the range of doubles.
+constexpr double largest_extent = 1e100, smallest_extent = 1e-100;
+
+std::string words(const Vec2& p) {
+  // A sum with 0 has no negative zero.
+  return fmt::format("({:.6g}, {:.6g})", p.x() + 0.0, p.y() + 0.0);
+}
+
+std::string title_of(const PieceCurve& curve) {
+  return fmt::format("{} '{}'", curve.is_line ? "line" : "curve", curve.name);
+}
+
+std::string_view name_of(TurningShape shape) {
+  switch (shape) {
+    case TurningShape::straight:
+      return "a straight line";
+    case TurningShape::c:
+      return "a C";
+    case TurningShape::s:
+      return "an S";
+  }
+  return "a C";
+}
+
+nurbs::Curve curve_of(const std::vector<Vec2>& control) {
+  nurbs::Curve curve;
+  curve.degree = static_cast<int>(control.size()) - 1;
+  curve.knots.assign(control.size(), 0.0);
+  curve.knots.insert(curve.knots.end(), control.size(), 1.0);
+  for (const Vec2& p : control) curve.points.emplace_back(p.x(), p.y(), 0.0);
+  return curve;
+}
+
+CurveFit fit_of(const std::vector<Vec2>& points) {
+  CurveFit fit;
+  fit.bezier = nurbs::fit_bezier(points);
+  fit.shape = nurbs::turning_shape(points);
+  const Bezier& curve = fit.bezier.solved;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    FixedPoint fixed;
+    fixed.at = points[i];
+    fixed.parameter = static_cast<double>(i) / static_cast<double>(points.size() - 1);
+    fixed.error = (nurbs::evaluate(curve, fixed.parameter) - points[i]).norm();
+    fixed.distance =
+        (nurbs::evaluate(curve, nurbs::nearest_parameter(curve, points[i])) - points[i]).norm();
+    fit.points.push_back(fixed);
+  }
+  return fit;
+}
+
+class Builder {
+ public:
+  Builder(const Fabric& fabric, const Piece& piece, Diagnostics& diagnostics)
+      : fabric_(fabric), piece_(piece), diagnostics_(diagnostics) {
+    for (const PieceCurve& curve : piece.curves) rows_.push_back(curve.points);
+  }
+
+  std::optional<PieceShape> build(double tolerance) {
+    const int errors = diagnostics_.error_count();
+    check_size();
+    if (diagnostics_.error_count() == errors) join(tolerance > 0.0 ? tolerance : default_tolerance * extent_);
+    if (diagnostics_.error_count() > errors) return std::nullopt;
+    PieceShape shape;
+    shape.name = piece_.name;
+    shape.place = piece_.place;
+    for (std::size_t i = 0; i < rows_.size(); ++i) shape.edges.push_back(edge(i));
+    check_outline(shape);
+    if (diagnostics_.error_count() > errors) return std::nullopt;
+    orient(shape);
+    return shape;
+  }
+
+ private:
+  void say(Message message, TextPlace place, const std::optional<Vec2>& at = std::nullopt) {
+    message.file = fabric_.file;
+    message.place = place;
+    if (at) message.at = Vec3(at->x(), at->y(), 0.0);
+    diagnostics_.add(std::move(message));
+  }
+
+  void check_size() {
+    if (rows_.size() > most_edges)
+      return say(error(Kind::limit, fmt::format("piece '{}' has {} lines and curves; at most {} can be checked",
+                                                piece_.name, rows_.size(), most_edges)),
+                 piece_.place);
+    Box2 box;
+    for (const std::vector<Vec2>& points : rows_)
+      for (const Vec2& p : points) box.extend(p);
+    extent_ = box.isEmpty() ? 0.0 : box.diagonal().norm();
+    const double largest = box.isEmpty() ? 0.0 : std::max(box.max().cwiseAbs().maxCoeff(), box.min().cwiseAbs().maxCoeff());
+    if (!(largest <= largest_extent) || !(extent_ >= smallest_extent))
+      say(error(Kind::geometry, fmt::format("piece '{}' is {:.3g} {} large: nothing can be computed of it",
+                                            piece_.name, extent_, selvage::name_of(fabric_.units))),
+          piece_.place);
+  }
+
+  // Each start goes onto the end before it.
+  void join(double tolerance) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const std::size_t next = (i + 1) % rows_.size();
+      const Vec2 end = rows_[i].back(), start = rows_[next].front();
+      if ((end - start).norm() <= tolerance) {
+        rows_[next].front() = end;
+        continue;
+      }
+      report_gap(i, next, tolerance);
+    }
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      for (std::size_t k = 1; k < rows_[i].size(); ++k)
+        if (rows_[i][k] == rows_[i][k - 1])
+          return say(error(Kind::geometry,
+                           fmt::format("{} is shorter than the tolerance {:.3g} within which ends are joined",
+                                       title_of(piece_.curves[i]), tolerance)),
+                     piece_.curves[i].place, rows_[i][k]);
+  }
+
+  void report_gap(std::size_t i, std::size_t next, double tolerance) {
+    const PieceCurve &before = piece_.curves[i], &after = piece_.curves[next];
+    const Vec2 &end = rows_[i].back(), &start = rows_[next].front();
+    const std::string gap =
+        fmt::format("{:.4g} {}", (end - start).norm(), selvage::name_of(fabric_.units));
+    if (next == 0)
+      return say(error(Kind::malformed,
+                       fmt::format("the outline of piece '{}' is not closed: {} ends at {}, {} from the start of "
+                                   "{} at {}",
+                                   piece_.name, title_of(before), words(end), gap, title_of(after), words(start))),
+                 before.place, end);
+    const bool turned = (end - rows_[next].back()).norm() <= tolerance;
+    say(error(Kind::malformed, fmt::format("{} starts at {}, {} from the end of {} at {}{}", title_of(after),
+                                           words(start), gap, title_of(before), words(end),
+                                           turned ? "; its other end is there: turn its points round" : "")),
+        after.place, start);
+  }
+
+  PieceEdge edge(std::size_t i) {
+    const PieceCurve& source = piece_.curves[i];
+    PieceEdge edge;
+    edge.name = source.name;
+    edge.place = source.place;
+    if (source.is_line) {
+      edge.curve = curve_of({rows_[i].front(), rows_[i].back()});
+      return edge;
+    }
+    edge.fit = fit_of(rows_[i]);
+    const Bezier& solved = edge.fit->bezier.solved;
+    edge.curve = curve_of({solved.begin(), solved.end()});
+    const TurningShape said = source.shape == PieceCurve::Shape::s ? TurningShape::s : TurningShape::c;
+    if (source.shape != PieceCurve::Shape::found && said != edge.fit->shape)
+      say(warning(Kind::geometry, fmt::format("curve '{}' is called {}, but its points lie on {}", source.name,
+                                              said == TurningShape::s ? 'S' : 'C', name_of(edge.fit->shape))),
+          source.place);
+    return edge;
+  }
+
+  void check_outline(const PieceShape& shape) {
+    std::vector<Bezier> outline;
+    for (const PieceEdge& edge : shape.edges) outline.push_back(edge.bezier());
+    if (is_flat(outline))
+      return say(error(Kind::geometry, fmt::format("piece '{}' encloses no area: all of its outline lies on one "
+                                                   "straight line",
+                                                   piece_.name)),
+                 piece_.place);
+    const std::optional<nurbs::Crossing> crossing = nurbs::find_crossing(outline);
+    if (!crossing) return;
+    const PieceCurve &a = piece_.curves[crossing->a], &b = piece_.curves[crossing->b];
+    const std::string where = crossing->a == crossing->b
+                                  ? fmt::format("{} meets itself", title_of(a))
+                                  : fmt::format("{} and {} meet", title_of(a), title_of(b));
+    say(error(Kind::geometry, fmt::format("the outline of piece '{}' crosses or touches itself: {} at {}",
+                                          piece_.name, where, words(crossing->at))),
+        b.place, crossing->at);
+  }
+
+  [[nodiscard]] bool is_flat(const std::vector<Bezier>& outline) const {
+    const Vec2 origin = outline.front().front();
+    Vec2 farthest = origin;
+    for (const Bezier& curve : outline)
+      for (const Vec2& p : curve)
+        if ((p - origin).squaredNorm() > (farthest - origin).squaredNorm()) farthest = p;
+    const Vec2 along = farthest - origin;
+    for (const Bezier& curve : outline)
+      for (const Vec2& p : curve)
+        if (std::abs(along.x() * (p - origin).y() - along.y() * (p - origin).x()) > no_area * extent_ * extent_)
+          return false;
+    return true;
+  }
+
+  static void orient(PieceShape& shape) {
+    const Vec2 origin = shape.edges.front().bezier().front();
+    for (const PieceEdge& edge : shape.edges) {
+      shape.area += nurbs::swept_area(edge.bezier(), origin);
+      shape.perimeter += nurbs::arc_length(edge.curve);
+      shape.box.extend(nurbs::bounds(edge.bezier()));
+    }
+    if (shape.area > 0.0) return;
+    shape.area = -shape.area;
+    std::reverse(shape.edges.begin() + 1, shape.edges.end());
+    for (PieceEdge& edge : shape.edges) std::reverse(edge.curve.points.begin(), edge.curve.points.end());
+  }
+
+  const Fabric& fabric_;
+  const Piece& piece_;
+  Diagnostics& diagnostics_;
+  std::vector<std::vector<Vec2>> rows_;  // of each line and curve, joined
+  double extent_ = 0;
+};
+
+}  // namespace
+
+double CurveFit::largest_error() const {
+  double largest = 0.0;
+  for (const FixedPoint& point : points) largest = std::max(largest, point.error);
+  return largest;
+}
+
+double CurveFit::largest_distance() const {
+  double largest = 0.0;
+  for (const FixedPoint& point : points) largest = std::max(largest, point.distance);
+  return largest;
+}
+
+Bezier PieceEdge::bezier() const {
+  const auto at = [this](std::size_t i) -> Vec2 { return curve.points[i].head<2>(); };
+  return is_line() ? nurbs::straight_bezier(at(0), at(1)) : Bezier{at(0), at(1), at(2), at(3)};
+}
+
+std::vector<const Piece*> pieces_of(const Fabric& fabric) {
+  std::vector<const Piece*> pieces;
+  for (const Item& item : fabric.items)
+    if (const auto* piece = std::get_if<Piece>(&item)) pieces.push_back(piece);
+  return pieces;
+}
+
+std::optional<PieceShape> build_piece(const Fabric& fabric, const Piece& piece, double tolerance,
+                                      Diagnostics& diagnostics) {
+  if (!(tolerance > 0.0)) tolerance = fabric.tolerance.value_or(0.0);
+  return Builder(fabric, piece, diagnostics).build(tolerance);
+}
+
+}  // namespace selvage::fabric
