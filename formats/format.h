@@ -15,6 +15,7 @@
 #include "core/source.h"
 #include "core/units.h"
 #include "fabric/model.h"
+#include "fabric/piece.h"
 #include "fem/mesh.h"
 #include "yarn/body.h"
 
@@ -37,11 +38,17 @@ struct SurfaceOptions {
   std::string step_schema = "AP242";  // AP242 | AP214
 };
 
-// Takes the yarns of one file, one after the other, in the order in which they shall stand there.
+// Takes the yarns and pieces of one file, one after the other, in the order in which they shall stand there.
+// A format that carries only one of the two (Descriptor) is never given the other.
 class BodyWriter {
  public:
   virtual ~BodyWriter() = default;
-  virtual Status add(const yarn::Body& body) = 0;
+  virtual Status add(const yarn::Body& body) {
+    return error(Kind::unsupported, "this format holds no yarns, such as '" + body.name + "'");
+  }
+  virtual Status add_piece(const fabric::PieceShape& piece) {
+    return error(Kind::unsupported, "this format holds no garment pieces, such as '" + piece.name + "'");
+  }
   // Completes the file's bytes; committing the OutputFile is the caller's.
   virtual Result<WriteFacts> finish() = 0;
 };
@@ -59,9 +66,11 @@ struct Descriptor {
   std::optional<fabric::Fabric> (*read_fabric)(const Source& source, Diagnostics& diagnostics) = nullptr;
 
   Result<WriteFacts> (*write_fabric)(const fabric::Fabric& fabric, OutputFile& output) = nullptr;
-  // `output` outlives the writer.
+  // `output` outlives the writer, which takes yarns as surfaces, garment pieces as curves, or both.
   Result<std::unique_ptr<BodyWriter>> (*open_bodies)(OutputFile& output,
                                                      const SurfaceOptions& options) = nullptr;
+  bool carries_surfaces = true;
+  bool carries_curves = false;
   Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output) = nullptr;
 };
 

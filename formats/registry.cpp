@@ -4,15 +4,16 @@
 #include "formats/inp/inp.h"
 #include "formats/msh/msh.h"
 #include "formats/step/step.h"
+#include "formats/svg/svg.h"
 #include "formats/txt/txt.h"
 #include "formats/vtu/vtu.h"
 
 namespace selvage::formats {
 
 const std::vector<const Descriptor*>& all_formats() {
-  static const std::vector<const Descriptor*> list = {&txt::descriptor(),  &iges::descriptor(),
-                                                      &step::descriptor(), &inp::descriptor(),
-                                                      &msh::descriptor(),  &vtu::descriptor()};
+  static const std::vector<const Descriptor*> list = {
+      &txt::descriptor(), &iges::descriptor(), &step::descriptor(), &svg::descriptor(),
+      &inp::descriptor(), &msh::descriptor(),  &vtu::descriptor()};
   return list;
 }
 

@@ -19,7 +19,8 @@ int print_formats() {
     };
     for (std::string_view extension : format->extensions) append(extensions, extension);
     if (format->write_fabric != nullptr) append(write, "fabric");
-    if (format->open_bodies != nullptr) append(write, "surfaces");
+    if (format->open_bodies != nullptr && format->carries_surfaces) append(write, "surfaces");
+    if (format->open_bodies != nullptr && format->carries_curves) append(write, "curves");
     if (format->write_mesh != nullptr) append(write, "mesh");
     table.add({std::string(format->name), extensions, format->read_fabric != nullptr ? "fabric" : "-",
                write.empty() ? "-" : write, std::string(format->title)});

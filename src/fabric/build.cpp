@@ -201,9 +201,6 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
       builder.add_construction(make_warpknit(fabric, *warpknit, diagnostics), warpknit->place, diagnostics);
     if (const auto* braid = std::get_if<Braid>(&item))
       builder.add_construction(make_braid(fabric, *braid, diagnostics), braid->place, diagnostics);
-    if (const auto* piece = std::get_if<Piece>(&item))
-      diagnostics.add(
-          in_file(fabric, piece->place, error(Kind::unsupported, "`piece` is not supported yet")));
     for (const std::string& name : threads_of(item))
       if (const Thread* thread = fabric.find_thread(name)) {
         warn(fibre_share_warning(fabric, *thread, thread->place));

@@ -30,18 +30,6 @@ std::string title_of(const PieceCurve& curve) {
   return fmt::format("{} '{}'", curve.is_line ? "line" : "curve", curve.name);
 }
 
-std::string_view name_of(TurningShape shape) {
-  switch (shape) {
-    case TurningShape::straight:
-      return "a straight line";
-    case TurningShape::c:
-      return "a C";
-    case TurningShape::s:
-      return "an S";
-  }
-  return "a C";
-}
-
 nurbs::Curve curve_of(const std::vector<Vec2>& control) {
   nurbs::Curve curve;
   curve.degree = static_cast<int>(control.size()) - 1;
@@ -61,8 +49,7 @@ CurveFit fit_of(const std::vector<Vec2>& points) {
     fixed.at = points[i];
     fixed.parameter = static_cast<double>(i) / static_cast<double>(points.size() - 1);
     fixed.error = (nurbs::evaluate(curve, fixed.parameter) - points[i]).norm();
-    fixed.distance =
-        (nurbs::evaluate(curve, nurbs::nearest_parameter(curve, points[i])) - points[i]).norm();
+    fixed.distance = (nurbs::evaluate(curve, nurbs::nearest_parameter(curve, points[i])) - points[i]).norm();
     fit.points.push_back(fixed);
   }
   return fit;
@@ -91,23 +78,24 @@ class Builder {
   }
 
  private:
-  void say(Message message, TextPlace place, const std::optional<Vec2>& at = std::nullopt) {
+  void say(Message message, TextPlace place) {
     message.file = fabric_.file;
     message.place = place;
-    if (at) message.at = Vec3(at->x(), at->y(), 0.0);
     diagnostics_.add(std::move(message));
   }
 
   void check_size() {
     if (rows_.size() > most_edges)
-      return say(error(Kind::limit, fmt::format("piece '{}' has {} lines and curves; at most {} can be checked",
-                                                piece_.name, rows_.size(), most_edges)),
-                 piece_.place);
+      return say(
+          error(Kind::limit, fmt::format("piece '{}' has {} lines and curves; at most {} can be checked",
+                                         piece_.name, rows_.size(), most_edges)),
+          piece_.place);
     Box2 box;
     for (const std::vector<Vec2>& points : rows_)
       for (const Vec2& p : points) box.extend(p);
     extent_ = box.isEmpty() ? 0.0 : box.diagonal().norm();
-    const double largest = box.isEmpty() ? 0.0 : std::max(box.max().cwiseAbs().maxCoeff(), box.min().cwiseAbs().maxCoeff());
+    const double largest =
+        box.isEmpty() ? 0.0 : std::max(box.max().cwiseAbs().maxCoeff(), box.min().cwiseAbs().maxCoeff());
     if (!(largest <= largest_extent) || !(extent_ >= smallest_extent))
       say(error(Kind::geometry, fmt::format("piece '{}' is {:.3g} {} large: nothing can be computed of it",
                                             piece_.name, extent_, selvage::name_of(fabric_.units))),
@@ -131,25 +119,25 @@ class Builder {
           return say(error(Kind::geometry,
                            fmt::format("{} is shorter than the tolerance {:.3g} within which ends are joined",
                                        title_of(piece_.curves[i]), tolerance)),
-                     piece_.curves[i].place, rows_[i][k]);
+                     piece_.curves[i].place);
   }
 
   void report_gap(std::size_t i, std::size_t next, double tolerance) {
     const PieceCurve &before = piece_.curves[i], &after = piece_.curves[next];
     const Vec2 &end = rows_[i].back(), &start = rows_[next].front();
-    const std::string gap =
-        fmt::format("{:.4g} {}", (end - start).norm(), selvage::name_of(fabric_.units));
+    const std::string gap = fmt::format("{:.4g} {}", (end - start).norm(), selvage::name_of(fabric_.units));
     if (next == 0)
-      return say(error(Kind::malformed,
-                       fmt::format("the outline of piece '{}' is not closed: {} ends at {}, {} from the start of "
-                                   "{} at {}",
-                                   piece_.name, title_of(before), words(end), gap, title_of(after), words(start))),
-                 before.place, end);
+      return say(
+          error(Kind::malformed,
+                fmt::format("the outline of piece '{}' is not closed: {} ends at {}, {} from the start of "
+                            "{} at {}",
+                            piece_.name, title_of(before), words(end), gap, title_of(after), words(start))),
+          before.place);
     const bool turned = (end - rows_[next].back()).norm() <= tolerance;
     say(error(Kind::malformed, fmt::format("{} starts at {}, {} from the end of {} at {}{}", title_of(after),
                                            words(start), gap, title_of(before), words(end),
                                            turned ? "; its other end is there: turn its points round" : "")),
-        after.place, start);
+        after.place);
   }
 
   PieceEdge edge(std::size_t i) {
@@ -166,8 +154,12 @@ class Builder {
     edge.curve = curve_of({solved.begin(), solved.end()});
     const TurningShape said = source.shape == PieceCurve::Shape::s ? TurningShape::s : TurningShape::c;
     if (source.shape != PieceCurve::Shape::found && said != edge.fit->shape)
-      say(warning(Kind::geometry, fmt::format("curve '{}' is called {}, but its points lie on {}", source.name,
-                                              said == TurningShape::s ? 'S' : 'C', name_of(edge.fit->shape))),
+      say(warning(
+              Kind::geometry,
+              fmt::format("curve '{}' is called {}, but its points {}", source.name, fabric::name_of(said),
+                          edge.fit->shape == TurningShape::straight ? "lie on a straight line"
+                          : edge.fit->shape == TurningShape::c      ? "turn one way only, as a C does"
+                                                                    : "turn both ways, as an S does")),
           source.place);
     return edge;
   }
@@ -176,10 +168,11 @@ class Builder {
     std::vector<Bezier> outline;
     for (const PieceEdge& edge : shape.edges) outline.push_back(edge.bezier());
     if (is_flat(outline))
-      return say(error(Kind::geometry, fmt::format("piece '{}' encloses no area: all of its outline lies on one "
-                                                   "straight line",
-                                                   piece_.name)),
-                 piece_.place);
+      return say(
+          error(Kind::geometry, fmt::format("piece '{}' encloses no area: all of its outline lies on one "
+                                            "straight line",
+                                            piece_.name)),
+          piece_.place);
     const std::optional<nurbs::Crossing> crossing = nurbs::find_crossing(outline);
     if (!crossing) return;
     const PieceCurve &a = piece_.curves[crossing->a], &b = piece_.curves[crossing->b];
@@ -188,7 +181,7 @@ class Builder {
                                   : fmt::format("{} and {} meet", title_of(a), title_of(b));
     say(error(Kind::geometry, fmt::format("the outline of piece '{}' crosses or touches itself: {} at {}",
                                           piece_.name, where, words(crossing->at))),
-        b.place, crossing->at);
+        b.place);
   }
 
   [[nodiscard]] bool is_flat(const std::vector<Bezier>& outline) const {
@@ -200,7 +193,8 @@ class Builder {
     const Vec2 along = farthest - origin;
     for (const Bezier& curve : outline)
       for (const Vec2& p : curve)
-        if (std::abs(along.x() * (p - origin).y() - along.y() * (p - origin).x()) > no_area * extent_ * extent_)
+        if (std::abs(along.x() * (p - origin).y() - along.y() * (p - origin).x()) >
+            no_area * extent_ * extent_)
           return false;
     return true;
   }
@@ -226,6 +220,18 @@ class Builder {
 };
 
 }  // namespace
+
+std::string_view name_of(TurningShape shape) {
+  switch (shape) {
+    case TurningShape::straight:
+      return "straight";
+    case TurningShape::c:
+      return "C";
+    case TurningShape::s:
+      return "S";
+  }
+  return "straight";
+}
 
 double CurveFit::largest_error() const {
   double largest = 0.0;

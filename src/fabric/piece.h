@@ -21,6 +21,8 @@ struct FixedPoint {
   double distance = 0;   // distance to the nearest point of the curve
 };
 
+std::string_view name_of(nurbs::TurningShape shape);  // "straight", "C", "S"
+
 // How a curve was found from its fixed points, which keep their order in the file.
 struct CurveFit {
   nurbs::BezierFit bezier;
@@ -53,11 +55,12 @@ struct PieceShape {
 // The pieces of a fabric, in file order.
 std::vector<const Piece*> pieces_of(const Fabric& fabric);
 
-// `tolerance`, file units: a start this near to the end before it is moved onto it; 0: the file's `tolerance`,
-// or 1e-6 of the piece's extent. Everything that is wrong goes to `diagnostics`, at its line, and then there
-// is no shape: malformed (an end that does not meet the next start, an outline that is not closed), geometry
-// (it crosses or touches itself, encloses no area, or is too large or small for the arithmetic), limit (over
-// 50,000 lines and curves). Warnings: a curve whose points do not turn as its word (C or S) says.
+// `tolerance`, file units: a start this near to the end before it is moved onto it; 0: the file's
+// `tolerance`, or 1e-6 of the piece's extent. Everything that is wrong goes to `diagnostics`, at its line,
+// and then there is no shape: malformed (an end that does not meet the next start, an outline that is not
+// closed), geometry (it crosses or touches itself, encloses no area, or is too large or small for the
+// arithmetic), limit (over 50,000 lines and curves). Warnings: a curve whose points do not turn as its word
+// (C or S) says.
 std::optional<PieceShape> build_piece(const Fabric& fabric, const Piece& piece, double tolerance,
                                       Diagnostics& diagnostics);
 

@@ -1,6 +1,5 @@
 #include "nurbs/bezier.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "nurbs/basis.h"
@@ -65,29 +64,20 @@ double swept_area(const Bezier& curve, const Vec2& origin) {
 }
 
 double nearest_parameter(const Bezier& curve, const Vec2& target) {
-  constexpr int samples = 64;
-  int best = 0;
-  double least = (curve[0] - target).squaredNorm();
-  for (int i = 1; i <= samples; ++i) {
-    const double distance = (evaluate(curve, static_cast<double>(i) / samples) - target).squaredNorm();
-    if (distance < least) {
-      least = distance;
-      best = i;
+  const auto distance = [&](double t) { return (evaluate(curve, t) - target).squaredNorm(); };
+  const auto slope = [&](double t) { return (evaluate(curve, t) - target).dot(derivative(curve, t)); };
+  double nearest = distance(1.0) < distance(0.0) ? 1.0 : 0.0;
+  // The slope is of degree 5: of its few roots, those where it rises are the minima.
+  constexpr int intervals = 64;
+  for (int i = 0; i < intervals; ++i) {
+    double low = static_cast<double>(i) / intervals, high = static_cast<double>(i + 1) / intervals;
+    if (!(slope(low) < 0.0) || slope(high) < 0.0) continue;
+    for (int step = 0; step < 60; ++step) {
+      const double middle = 0.5 * (low + high);
+      (slope(middle) < 0.0 ? low : high) = middle;
     }
+    if (distance(high) < distance(nearest)) nearest = high;
   }
-  // Between the neighbouring samples the distance falls, then rises: its slope is bisected.
-  double low = std::max(best - 1, 0) / static_cast<double>(samples);
-  double high = std::min(best + 1, samples) / static_cast<double>(samples);
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    const double slope = (evaluate(curve, middle) - target).dot(derivative(curve, middle));
-    (slope < 0.0 ? low : high) = middle;
-  }
-  const double found = 0.5 * (low + high);
-  double nearest = found;
-  for (double t : {static_cast<double>(best) / samples, 0.0, 1.0})
-    if ((evaluate(curve, t) - target).squaredNorm() < (evaluate(curve, nearest) - target).squaredNorm())
-      nearest = t;
   return nearest;
 }
 

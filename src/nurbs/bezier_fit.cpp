@@ -69,7 +69,8 @@ TurningShape turning_shape(const std::vector<Vec2>& points) {
   constexpr double straight = 1e-9;
   bool left = false, right = false;
   for (std::size_t i = 2; i < points.size(); ++i) {
-    const Vec2 in = (points[i - 1] - points[i - 2]).normalized(), out = (points[i] - points[i - 1]).normalized();
+    const Vec2 in = (points[i - 1] - points[i - 2]).normalized(),
+               out = (points[i] - points[i - 1]).normalized();
     const double sine = in.x() * out.y() - in.y() * out.x();
     left = left || sine > straight;
     right = right || sine < -straight;
@@ -86,9 +87,8 @@ BezierFit fit_bezier(const std::vector<Vec2>& points) {
     return fit;
   }
   const LeastSquares sums = equations(points);
-  fit.solved =
-      assembled(points, points.size() == 3 ? elevated_parabola(points)
-                                           : Eigen::Matrix2d(sums.matrix.inverse() * sums.right));
+  fit.solved = assembled(points, points.size() == 3 ? elevated_parabola(points)
+                                                    : Eigen::Matrix2d(sums.matrix.inverse() * sums.right));
   Box2 box;
   for (const Vec2& p : points) box.extend(p);
   Eigen::Matrix2d inner = start;

@@ -178,7 +178,8 @@ std::optional<Crossing> find_crossing(const std::vector<Bezier>& outline) {
       if (parts[order[next]].box.min().x() > parts[order[first]].box.max().x()) break;
       const std::size_t a = std::min(order[first], order[next]), b = std::max(order[first], order[next]);
       const Joints joints = {b == a + 1, (b + 1) % parts.size() == a};
-      if (const std::optional<Vec2> at = search.between(parts[a], parts[b], joints)) return Crossing{a, b, *at};
+      if (const std::optional<Vec2> at = search.between(parts[a], parts[b], joints))
+        return Crossing{a, b, *at};
     }
   return std::nullopt;
 }

@@ -1,4 +1,6 @@
-// `selvage convert`: each yarn is built once, handed to every surface format, and forgotten.
+// `selvage convert`: each yarn and each piece is built once, handed to every surface format, and forgotten.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "pipeline/facts.h"
@@ -38,6 +40,14 @@ bool open_writers(Job& job, const fabric::Fabric& fabric, std::size_t count, Ope
   return true;
 }
 
+std::string formats_with(bool formats::Descriptor::*what) {
+  std::string names;
+  for (const formats::Descriptor* format : formats::all_formats())
+    if (format->open_bodies != nullptr && format->*what)
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", format->name);
+  return names;
+}
+
 bool add_to_all(Job& job, const yarn::Body& body, OpenOutputs& outputs) {
   for (OpenOutput& output : outputs) {
     if (!output.writer) continue;
@@ -49,9 +59,48 @@ bool add_to_all(Job& job, const yarn::Body& body, OpenOutputs& outputs) {
   return true;
 }
 
+// What a format cannot hold is said before anything is written: yarns in a drawing, pieces where none can be.
+bool can_carry(Job& job, const fabric::Fabric& fabric, std::size_t yarns, const OpenOutputs& outputs) {
+  const std::vector<const fabric::Piece*> pieces = fabric::pieces_of(fabric);
+  for (const OpenOutput& output : outputs) {
+    const formats::Descriptor& format = *output.plan->format;
+    if (format.open_bodies == nullptr || format.write_fabric != nullptr) continue;
+    if (yarns > 0 && !format.carries_surfaces)
+      job.say(
+          error(Kind::unsupported, fmt::format("{} holds garment pieces (`piece`) only, and this input has "
+                                               "{} yarn{}: write it as {}",
+                                               format.name, yarns, yarns == 1 ? "" : "s",
+                                               formats_with(&formats::Descriptor::carries_surfaces))));
+    if (!pieces.empty() && !format.carries_curves) {
+      Message message =
+          error(Kind::unsupported,
+                fmt::format("{} holds no garment pieces, such as '{}': write it as {}", format.name,
+                            pieces.front()->name, formats_with(&formats::Descriptor::carries_curves)));
+      message.place = pieces.front()->place;
+      job.say(std::move(message));
+    }
+  }
+  return !job.has_failed();
+}
+
+void write_pieces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
+  const Unit units = job.options.units.value_or(fabric.units);
+  for (const fabric::Piece* piece : fabric::pieces_of(fabric)) {
+    std::optional<fabric::PieceShape> shape = job.build_piece(fabric, *piece);
+    if (!shape) continue;  // the others are tried, so that every error is told
+    convert_lengths(*shape, fabric.units, units);
+    for (OpenOutput& output : outputs) {
+      if (!output.writer || job.has_failed()) continue;
+      if (Status status = output.writer->add_piece(*shape); !status.ok()) job.say(status.error());
+    }
+  }
+}
+
 void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
   const std::optional<fabric::YarnBuilder> builder = job.builder(fabric);
-  if (!builder || !open_writers(job, fabric, builder->count(), outputs)) return;
+  if (!builder || !can_carry(job, fabric, builder->count(), outputs) ||
+      !open_writers(job, fabric, builder->count() + fabric::pieces_of(fabric).size(), outputs))
+    return;
   const Unit units = job.options.units.value_or(fabric.units);
   std::optional<double> thinnest;
   for (std::size_t i = 0; i < builder->count(); ++i) {
@@ -63,6 +112,7 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
     convert_lengths(*body, fabric.units, units);
     if (!job.has_failed() && !add_to_all(job, *body, outputs)) return;
   }
+  write_pieces(job, fabric, outputs);
   if (job.has_failed()) return;
   for (OpenOutput& output : outputs)
     if (output.writer && !take_facts(job, output, output.writer->finish())) return;

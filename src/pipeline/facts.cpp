@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "nurbs/measure.h"
 #include "solid/tessellation.h"
 
 namespace selvage::pipeline {
@@ -39,6 +40,27 @@ YarnReport facts_of(const yarn::Body& body, Unit units) {
   if (body.path_miss > 0) facts.path_miss = body.path_miss * mm;
   facts.count_u = body.surface.count_u;
   facts.count_v = body.surface.count_v;
+  return facts;
+}
+
+PieceReport facts_of(const fabric::PieceShape& piece, Unit units, bool with_table) {
+  const double mm = millimetres_per(units);
+  PieceReport facts{piece.name, piece.area * mm * mm, piece.perimeter * mm, {}};
+  for (const fabric::PieceEdge& edge : piece.edges) {
+    facts.edges.push_back({edge.name, edge.is_line(), nurbs::arc_length(edge.curve) * mm, {}});
+    if (!with_table || !edge.fit) continue;
+    PieceReport::Fit& fit = facts.edges.back().fit.emplace();
+    fit.shape = fabric::name_of(edge.fit->shape);
+    fit.iterations = edge.fit->bezier.iterations;
+    fit.largest_error = edge.fit->largest_error() * mm;
+    fit.largest_distance = edge.fit->largest_distance() * mm;
+    for (const fabric::FixedPoint& point : edge.fit->points)
+      fit.points.push_back({point.parameter, point.at * mm, point.error * mm, point.distance * mm});
+    for (std::size_t k = 0; k < 4; ++k) {
+      fit.solved[k] = edge.fit->bezier.solved[k] * mm;
+      fit.descended[k] = edge.fit->bezier.descended[k] * mm;
+    }
+  }
   return facts;
 }
 

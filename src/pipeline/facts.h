@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/units.h"
+#include "fabric/piece.h"
 #include "pipeline/report.h"
 #include "yarn/body.h"
 
@@ -13,6 +14,9 @@ namespace selvage::pipeline {
 // Lengths of the body in `units`, those of the result in mm. `closed` is told from the joints of the end
 // faces: whether they keep within the rounding of the coordinates.
 YarnReport facts_of(const yarn::Body& body, Unit units);
+
+// The same of a garment piece; `with_table`: with the fixed points and control points of its curves.
+PieceReport facts_of(const fabric::PieceShape& piece, Unit units, bool with_table);
 
 // The smallest distance across any section, file units: twice the least distance from a section's centre to
 // its control points.

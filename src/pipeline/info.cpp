@@ -6,6 +6,7 @@
 
 #include "pipeline/facts.h"
 #include "pipeline/job.h"
+#include "pipeline/pieces.h"
 #include "pipeline/scaling.h"
 #include "pipeline/table.h"
 
@@ -74,6 +75,19 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
   return text;
 }
 
+std::string piece_tables(Job& job, const fabric::Fabric& fabric) {
+  const Unit shown = job.options.units.value_or(fabric.units);
+  std::vector<fabric::PieceShape> shapes;
+  for (const fabric::Piece* piece : fabric::pieces_of(fabric))
+    if (std::optional<fabric::PieceShape> shape = job.build_piece(fabric, *piece))
+      shapes.push_back(std::move(*shape));
+  if (shapes.empty()) return {};
+  std::string text = piece_table(shapes, fabric.units, shown);
+  if (job.options.table)
+    for (const fabric::PieceShape& shape : shapes) text += curve_tables(shape, fabric.units, shown);
+  return text;
+}
+
 }  // namespace
 
 void info(Job& job) {
@@ -81,8 +95,10 @@ void info(Job& job) {
   if (!fabric) return;
   const std::string head = heading(job, *fabric);
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
-  const std::string yarns = builder ? yarn_table(job, *builder, fabric->units) : std::string();
-  if (!job.options.json) job.print(head + yarns);
+  std::string tables;
+  if (builder && builder->count() > 0) tables = yarn_table(job, *builder, fabric->units);
+  if (builder) tables += piece_tables(job, *fabric);
+  if (!job.options.json) job.print(head + tables);
 }
 
 }  // namespace selvage::pipeline

@@ -134,7 +134,7 @@ std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {
   forward(diagnostics);
   if (!made) return std::nullopt;
   report.yarn_count = made->count();
-  if (made->count() == 0) {
+  if (made->count() == 0 && fabric::pieces_of(fabric).empty()) {
     say(error(Kind::geometry, "there is no yarn in this input"));
     return std::nullopt;
   }
@@ -160,6 +160,21 @@ std::optional<std::vector<yarn::Body>> Job::build_all(const fabric::YarnBuilder&
   }
   if (bodies.size() != builder.count()) return std::nullopt;
   return bodies;
+}
+
+std::optional<fabric::PieceShape> Job::build_piece(const fabric::Fabric& fabric, const fabric::Piece& piece,
+                                                   bool defects) {
+  Diagnostics diagnostics;
+  std::optional<fabric::PieceShape> shape =
+      fabric::build_piece(fabric, piece, options.tolerance, diagnostics);
+  if (!defects) {
+    forward(diagnostics);
+  } else {
+    for (const Message& message : diagnostics.messages())
+      message.severity == Severity::error ? say_defect(message) : say(message);
+  }
+  if (shape && wants_report()) report.pieces.push_back(facts_of(*shape, file_units(), options.table));
+  return shape;
 }
 
 namespace {

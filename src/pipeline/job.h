@@ -12,6 +12,7 @@
 #include "core/units.h"
 #include "fabric/build.h"
 #include "fabric/model.h"
+#include "fabric/piece.h"
 #include "pipeline/inputs.h"
 #include "pipeline/options.h"
 #include "pipeline/outputs.h"
@@ -57,12 +58,17 @@ class Job {
   // Reads the input; nothing when that failed (it was said why). The fabric of an input that cannot be built
   // is fine.
   std::optional<fabric::Fabric> read();
-  // The builder of its yarns; nothing when that failed.
+  // The builder of its yarns; nothing when that failed. It may have none where the fabric holds pieces.
   std::optional<fabric::YarnBuilder> builder(const fabric::Fabric& fabric);
   // One yarn, in the file's unit, with its warnings said and its facts in the report; nothing when it failed.
   std::optional<yarn::Body> build(const fabric::YarnBuilder& builder, std::size_t index);
   // All of them; nothing when one failed (the others were tried, so that every error is told).
   std::optional<std::vector<yarn::Body>> build_all(const fabric::YarnBuilder& builder);
+
+  // One garment piece, in the file's unit, with its warnings said and its facts in the report; nothing when
+  // it failed. `defects`: what is wrong with its outline is a defect, not a failure of the input.
+  std::optional<fabric::PieceShape> build_piece(const fabric::Fabric& fabric, const fabric::Piece& piece,
+                                                bool defects = false);
 
   [[nodiscard]] fabric::BuildOptions build_options() const;
   [[nodiscard]] Unit file_units() const { return report.units.value_or(Unit::mm); }

@@ -72,11 +72,26 @@ MeshReport facts_of(const fem::Mesh& mesh) {
   return facts;
 }
 
+// Tetrahedra fill yarns; a garment piece is flat.
+bool has_only_yarns(Job& job, const fabric::Fabric& fabric) {
+  const std::vector<const fabric::Piece*> pieces = fabric::pieces_of(fabric);
+  if (pieces.empty()) return true;
+  Message message =
+      error(Kind::unsupported,
+            fmt::format("piece '{}' is a flat face, which has no volume to fill with tetrahedra: "
+                        "convert it to STEP or IGES, and mesh the face there",
+                        pieces.front()->name));
+  message.place = pieces.front()->place;
+  job.say(std::move(message));
+  return false;
+}
+
 }  // namespace
 
 void mesh(Job& job) {
   const std::optional<fabric::Fabric> fabric = job.read();
   if (!fabric) return;
+  if (!has_only_yarns(job, *fabric)) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);
   if (!outputs) return;
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);

@@ -41,7 +41,8 @@ struct Options {
   double min_dihedral = 0;  // degrees; 0: the mesher's choice
   bool allow_overlap = false;
 
-  bool json = false;  // info
+  bool json = false;   // info
+  bool table = false;  // info: the fixed points and control points of garment curves
 };
 
 }  // namespace selvage::pipeline

@@ -34,6 +34,35 @@ Json yarn_json(const YarnReport& yarn) {
   return out;
 }
 
+Json fit_json(const PieceReport::Fit& fit) {
+  const auto plane = [](const Vec2& p) { return Json::array({p.x(), p.y()}); };
+  Json points = Json::array(), solved = Json::array(), descended = Json::array();
+  for (const PieceReport::Point& point : fit.points)
+    points.push_back({{"parameter", point.parameter},
+                      {"point", plane(point.at)},
+                      {"error", point.error},
+                      {"distance", point.distance}});
+  for (const Vec2& p : fit.solved) solved.push_back(plane(p));
+  for (const Vec2& p : fit.descended) descended.push_back(plane(p));
+  return {{"shape", fit.shape},
+          {"points", points},
+          {"largest_error", fit.largest_error},
+          {"largest_distance", fit.largest_distance},
+          {"control_points", solved},
+          {"control_points_by_descent", descended},
+          {"descent_steps", fit.iterations}};
+}
+
+Json piece_json(const PieceReport& piece) {
+  Json edges = Json::array();
+  for (const PieceReport::Edge& edge : piece.edges) {
+    Json out = {{"name", edge.name}, {"kind", edge.is_line ? "line" : "curve"}, {"length", edge.length}};
+    if (edge.fit) out["fit"] = fit_json(*edge.fit);
+    edges.push_back(std::move(out));
+  }
+  return {{"name", piece.name}, {"perimeter", piece.perimeter}, {"area", piece.area}, {"edges", edges}};
+}
+
 Json output_json(const OutputReport& output) {
   Json out = {
       {"path", output.path}, {"format", output.format}, {"bytes", output.bytes}, {"sha256", output.sha256}};
@@ -86,6 +115,7 @@ std::string to_json(const InputReport& report) {
   if (report.units) out["units"] = name_of(*report.units);
   if (report.yarn_count) out["yarn_count"] = *report.yarn_count;
   if (report.yarn_count) out["yarns"] = list_json(report.yarns, yarn_json);
+  if (!report.pieces.empty()) out["pieces"] = list_json(report.pieces, piece_json);
   if (report.overlaps) {
     out["overlaps"] = list_json(*report.overlaps, [](const OverlapReport& overlap) {
       return Json{{"a", overlap.a}, {"b", overlap.b}, {"depth", overlap.depth}, {"at", point(overlap.at)}};

@@ -27,6 +27,31 @@ struct YarnReport {
   int count_u = 0, count_v = 0;  // control points round and along
 };
 
+// A garment piece. Lengths in mm, areas in mm2; points are x, y.
+struct PieceReport {
+  struct Point {
+    double parameter = 0;
+    Vec2 at = Vec2::Zero();
+    double error = 0, distance = 0;  // to the curve at the parameter, and to its nearest point
+  };
+  struct Fit {  // with --table
+    std::string shape;
+    std::vector<Point> points;
+    std::array<Vec2, 4> solved, descended;  // control points
+    int iterations = 0;
+    double largest_error = 0, largest_distance = 0;
+  };
+  struct Edge {
+    std::string name;
+    bool is_line = false;
+    double length = 0;
+    std::optional<Fit> fit;
+  };
+  std::string name;
+  double area = 0, perimeter = 0;
+  std::vector<Edge> edges;
+};
+
 struct OverlapReport {
   std::string a, b;
   double depth = 0;
@@ -55,6 +80,7 @@ struct InputReport {
   std::optional<Unit> units;
   std::optional<std::size_t> yarn_count;
   std::vector<YarnReport> yarns;
+  std::vector<PieceReport> pieces;
   std::optional<std::vector<OverlapReport>> overlaps;  // none: not looked for
   std::optional<double> min_gap;
   std::optional<double> creo_absolute_accuracy;

@@ -61,4 +61,27 @@ void convert_lengths(yarn::Body& body, Unit from, Unit to) {
   }
 }
 
+void convert_lengths(fabric::PieceShape& piece, Unit from, Unit to) {
+  if (from == to) return;
+  const Ratio scale = ratio(from, to);
+  const auto point = [&](auto& p) {
+    for (double& x : p) x = scale(x);
+  };
+  for (fabric::PieceEdge& edge : piece.edges) {
+    for (Vec3& p : edge.curve.points) point(p);
+    if (!edge.fit) continue;
+    for (nurbs::Bezier* bezier : {&edge.fit->bezier.solved, &edge.fit->bezier.descended})
+      for (Vec2& p : *bezier) point(p);
+    for (fabric::FixedPoint& fixed : edge.fit->points) {
+      point(fixed.at);
+      fixed.error = scale(fixed.error);
+      fixed.distance = scale(fixed.distance);
+    }
+  }
+  piece.area = scale(scale(piece.area));
+  piece.perimeter = scale(piece.perimeter);
+  point(piece.box.min());
+  point(piece.box.max());
+}
+
 }  // namespace selvage::pipeline

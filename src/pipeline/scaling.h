@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/units.h"
+#include "fabric/piece.h"
 #include "yarn/body.h"
 
 namespace selvage::pipeline {
@@ -10,8 +11,9 @@ namespace selvage::pipeline {
 // of them is a decimal multiple of the other).
 double converted(double value, Unit from, Unit to);
 
-// The same yarn in another unit: every length, area and volume of it, messages excepted. Equal numbers stay
-// equal, so that seams and joints stay closed.
+// The same yarn or piece in another unit: every length, area and volume of it, messages excepted. Equal
+// numbers stay equal, so that seams and joints stay closed.
 void convert_lengths(yarn::Body& body, Unit from, Unit to);
+void convert_lengths(fabric::PieceShape& piece, Unit from, Unit to);
 
 }  // namespace selvage::pipeline

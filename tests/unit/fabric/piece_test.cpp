@@ -1,0 +1,179 @@
+// Garment pieces from text: outlines, areas, what is refused and where.
+#include "fabric/piece.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/source.h"
+#include "formats/txt/txt.h"
+
+namespace selvage::fabric {
+namespace {
+
+struct Built {
+  std::optional<PieceShape> shape;
+  Diagnostics diagnostics;
+};
+
+Built build(const std::string& body, double tolerance = 0) {
+  Built built;
+  Diagnostics reading;
+  const std::optional<Fabric> fabric = formats::txt::descriptor().read_fabric(
+      Source::from_memory("fabric 1\nunits cm\npiece p\n" + body + "end\n", "p.txt"), reading);
+  EXPECT_TRUE(fabric) << body;
+  if (fabric) built.shape = build_piece(*fabric, *pieces_of(*fabric).front(), tolerance, built.diagnostics);
+  return built;
+}
+
+// The one error of a piece, as the user sees it.
+std::string refusal(const std::string& body) {
+  const Built built = build(body);
+  EXPECT_FALSE(built.shape);
+  EXPECT_EQ(built.diagnostics.error_count(), 1);
+  return built.diagnostics.has_errors() ? to_string(*built.diagnostics.first_error()) : "";
+}
+
+TEST(Piece, SquareInEitherDirection) {
+  for (const char* body : {"line a 0 0 2 0\nline b 2 0 2 3\nline c 2 3 0 3\nline d 0 3 0 0\n",
+                           "line d 0 0 0 3\nline c 0 3 2 3\nline b 2 3 2 0\nline a 2 0 0 0\n"}) {
+    const Built built = build(body);
+    ASSERT_TRUE(built.shape);
+    const PieceShape& shape = *built.shape;
+    EXPECT_DOUBLE_EQ(shape.area, 6);
+    EXPECT_NEAR(shape.perimeter, 10, 1e-13);
+    EXPECT_EQ(shape.box.sizes(), Vec2(2, 3));
+    ASSERT_EQ(shape.edges.size(), 4U);
+    EXPECT_EQ(shape.edges[0].name, body[5] == 'a' ? "a" : "d");
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_EQ(shape.edges[i].curve.points.back(), shape.edges[(i + 1) % 4].curve.points.front());
+    // Counter-clockwise: the second line leaves the first to the left.
+    const Vec3 first = shape.edges[0].curve.points[1] - shape.edges[0].curve.points[0];
+    const Vec3 second = shape.edges[1].curve.points[1] - shape.edges[1].curve.points[0];
+    EXPECT_GT(first.cross(second).z(), 0);
+  }
+}
+
+// A parabola over its chord encloses two thirds of the box; its length has a closed form.
+TEST(Piece, ParabolaSegment) {
+  const Built built = build("curve arc C\n0 0\n1 1\n2 0\nend\nline chord 2 0 0 0\n");
+  ASSERT_TRUE(built.shape);
+  EXPECT_TRUE(built.diagnostics.messages().empty());
+  EXPECT_NEAR(built.shape->area, 4.0 / 3, 1e-14);
+  EXPECT_NEAR(built.shape->perimeter, 2 + std::sqrt(5.0) + std::asinh(2.0) / 2, 1e-12);
+  EXPECT_NEAR(built.shape->box.max().y(), 1, 1e-15);
+  EXPECT_EQ(built.shape->edges[0].fit->shape, nurbs::TurningShape::c);
+  EXPECT_LT(built.shape->edges[0].fit->largest_error(), 1e-15);
+}
+
+TEST(Piece, ErrorTable) {
+  // Four inner points, three of them in line: the cubic cannot meet them all.
+  const Built built = build("curve c\n0 0\n1 1\n2 1\n3 1\n4 2\n5 0\nend\nline l 5 0 0 0\n");
+  ASSERT_TRUE(built.shape);
+  for (const PieceEdge& edge : built.shape->edges) {
+    if (!edge.fit) continue;
+    ASSERT_EQ(edge.fit->points.size(), 6U);
+    double largest = 0;
+    for (std::size_t i = 0; i < 6; ++i) {
+      const FixedPoint& point = edge.fit->points[i];
+      EXPECT_EQ(point.parameter, static_cast<double>(i) / 5);
+      EXPECT_NEAR(point.error,
+                  (nurbs::evaluate(edge.fit->bezier.solved, static_cast<double>(i) / 5) - point.at).norm(),
+                  1e-15);
+      EXPECT_LE(point.distance, point.error);
+      largest = std::max(largest, point.error);
+    }
+    EXPECT_EQ(edge.fit->largest_error(), largest);
+    EXPECT_GT(largest, 0.05);
+    EXPECT_EQ(edge.fit->points.front().error, 0);
+    EXPECT_EQ(edge.fit->points.back().error, 0);
+  }
+}
+
+TEST(Piece, WordThatSaysOtherwiseIsAWarningAtItsLine) {
+  const Built built = build("curve arc S\n0 0\n1 1\n2 0\nend\nline chord 2 0 0 0\n");
+  ASSERT_TRUE(built.shape);
+  ASSERT_EQ(built.diagnostics.messages().size(), 1U);
+  EXPECT_EQ(to_string(built.diagnostics.messages()[0]),
+            "p.txt:4:1: warning: curve 'arc' is called S, but its points turn one way only, as a C does");
+  const Built straight = build("curve arc C\n0 0\n1 0\n2 0\nend\nline b 2 0 2 2\nline c 2 2 0 0\n");
+  ASSERT_TRUE(straight.shape);
+  ASSERT_EQ(straight.diagnostics.messages().size(), 1U);
+  EXPECT_NE(straight.diagnostics.messages()[0].text.find("straight line"), std::string::npos);
+}
+
+TEST(Piece, GapsAreErrorsAtTheLineOfTheNextStart) {
+  EXPECT_EQ(refusal("line a 0 0 2 0\nline b 2.5 0 2 2\nline c 2 2 0 0\n"),
+            "p.txt:5:1: error: line 'b' starts at (2.5, 0), 0.5 cm from the end of line 'a' at (2, 0)"
+            "");
+}
+
+TEST(Piece, TurnedLineIsSaidToBeTurned) {
+  const Built built = build("line a 0 0 2 0\nline b 2 2 2 0\nline c 2 2 0 0\n");
+  EXPECT_FALSE(built.shape);
+  EXPECT_NE(built.diagnostics.first_error()->text.find("turn its points round"), std::string::npos);
+}
+
+TEST(Piece, OpenOutline) {
+  const std::string text = refusal("line a 0 0 2 0\nline b 2 0 2 2\nline c 2 2 0 0.5\n");
+  EXPECT_NE(
+      text.find(
+          "p.txt:6:1: error: the outline of piece 'p' is not closed: line 'c' ends at (0, 0.5), 0.5 cm"),
+      std::string::npos)
+      << text;
+}
+
+TEST(Piece, EveryGapIsTold) {
+  const Built built = build("line a 0 0 2 0\nline b 3 0 2 2\nline c 3 2 0 1\n");
+  EXPECT_EQ(built.diagnostics.error_count(), 3);
+}
+
+TEST(Piece, EndsWithinTheToleranceAreJoined) {
+  const std::string body = "line a 0 0 2 0\nline b 2.01 0 2 2\nline c 2 2 0 0\n";
+  EXPECT_FALSE(build(body).shape);
+  const Built built = build(body, 0.02);
+  ASSERT_TRUE(built.shape);
+  EXPECT_DOUBLE_EQ(built.shape->area, 2);
+  const Built gone = build("line a 0 0 2 0\nline b 2.01 0 2 0\nline c 2 0 0 2\nline d 0 2 0 0\n", 0.02);
+  ASSERT_FALSE(gone.shape);
+  EXPECT_EQ(to_string(*gone.diagnostics.first_error()),
+            "p.txt:5:1: error: line 'b' is shorter than the tolerance 0.02 within which ends are joined");
+}
+
+TEST(Piece, OutlineThatCrossesItself) {
+  const std::string text = refusal("line a 0 0 2 2\nline b 2 2 2 0\nline c 2 0 0 2\nline d 0 2 0 0\n");
+  EXPECT_NE(
+      text.find("p.txt:6:1: error: the outline of piece 'p' crosses or touches itself: line 'a' and line 'c' "
+                "meet at (1, 1)"),
+      std::string::npos)
+      << text;
+}
+
+TEST(Piece, NoArea) {
+  EXPECT_NE(refusal("line a 0 0 2 2\nline b 2 2 0 0\n").find("p.txt:3:1: error: piece 'p' encloses no area"),
+            std::string::npos);
+  EXPECT_NE(refusal("curve a\n0 0\n1 0\n3 0\nend\nline b 3 0 0 0\n").find("no area"), std::string::npos);
+}
+
+TEST(Piece, NumbersBeyondTheArithmetic) {
+  EXPECT_NE(refusal("line a 0 0 1e300 0\nline b 1e300 0 0 1e300\nline c 0 1e300 0 0\n")
+                .find("nothing can be computed"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal("line a 0 0 1e-300 0\nline b 1e-300 0 0 1e-300\nline c 0 1e-300 0 0\n").find("nothing can be"),
+      std::string::npos);
+  const Built large = build("line a 0 0 1e90 0\nline b 1e90 0 0 1e90\nline c 0 1e90 0 0\n");
+  ASSERT_TRUE(large.shape);
+  EXPECT_NEAR(large.shape->area / 5e179, 1, 1e-12);
+}
+
+// One closed curve alone is an outline: a drop.
+TEST(Piece, OneClosedCurve) {
+  const Built built = build("curve drop\n0 0\n2 1\n1 2\n0 0\nend\n");
+  ASSERT_TRUE(built.shape);
+  EXPECT_EQ(built.shape->edges.size(), 1U);
+  EXPECT_GT(built.shape->area, 0);
+}
+
+}  // namespace
+}  // namespace selvage::fabric

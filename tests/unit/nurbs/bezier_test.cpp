@@ -1,0 +1,236 @@
+// Plane Beziers: the fit through fixed points by two methods, and outlines that cross themselves.
+#include "nurbs/bezier.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "nurbs/bezier_fit.h"
+#include "nurbs/measure.h"
+
+namespace selvage::nurbs {
+namespace {
+
+std::vector<Vec2> samples_of(const Bezier& curve, int n) {
+  std::vector<Vec2> points;
+  for (int i = 0; i <= n; ++i) points.push_back(evaluate(curve, static_cast<double>(i) / n));
+  points.front() = curve.front();
+  points.back() = curve.back();
+  return points;
+}
+
+double apart(const Bezier& a, const Bezier& b) {
+  double largest = 0;
+  for (std::size_t k = 0; k < 4; ++k) largest = std::max(largest, (a[k] - b[k]).norm());
+  return largest;
+}
+
+std::vector<Vec2> random_points(std::mt19937& random, int count, double size, const Vec2& origin) {
+  std::uniform_real_distribution<double> value(-size, size);
+  std::vector<Vec2> points;
+  for (int i = 0; i < count; ++i) points.push_back(origin + Vec2(value(random), value(random)));
+  return points;
+}
+
+// The same least squares as one dense system in all unknowns, by Householder reflections.
+Bezier dense_fit(const std::vector<Vec2>& points) {
+  const auto n = static_cast<Eigen::Index>(points.size()) - 1;
+  Eigen::MatrixXd shares(n - 1, 2), rest(n - 1, 2);
+  for (Eigen::Index i = 1; i < n; ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(n);
+    shares.row(i - 1) << 3 * t * std::pow(1 - t, 2), 3 * t * t * (1 - t);
+    rest.row(i - 1) = (points[static_cast<std::size_t>(i)] - std::pow(1 - t, 3) * points.front() -
+                       std::pow(t, 3) * points.back())
+                          .transpose();
+  }
+  const Eigen::MatrixXd inner = shares.colPivHouseholderQr().solve(rest);
+  return {points.front(), Vec2(inner.row(0)), Vec2(inner.row(1)), points.back()};
+}
+
+TEST(BezierFit, FindsTheCubicThatThePointsWereTakenFrom) {
+  std::mt19937 random(1);
+  for (int n : {3, 4, 7, 40, 1000}) {
+    const std::vector<Vec2> control = random_points(random, 4, 10, Vec2(100, -30));
+    const Bezier curve = {control[0], control[1], control[2], control[3]};
+    const BezierFit fit = fit_bezier(samples_of(curve, n));
+    EXPECT_LT(apart(fit.solved, curve), 1e-11) << n;
+    EXPECT_LT(apart(fit.descended, curve), 1e-10) << n;
+  }
+}
+
+TEST(BezierFit, BothMethodsAgreeWithADenseSolve) {
+  std::mt19937 random(2);
+  int most_steps = 0;
+  for (int count = 4; count < 60; ++count) {
+    for (const double size : {1e-3, 1.0, 1e6}) {
+      const std::vector<Vec2> points = random_points(random, count, size, Vec2(3 * size, size));
+      const Bezier reference = dense_fit(points);
+      const BezierFit fit = fit_bezier(points);
+      EXPECT_LT(apart(fit.solved, reference), 1e-12 * size) << count;
+      EXPECT_LT(apart(fit.descended, reference), 1e-11 * size) << count;
+      EXPECT_GT(fit.iterations, 0);
+      most_steps = std::max(most_steps, fit.iterations);
+    }
+  }
+  EXPECT_LT(most_steps, 200);
+}
+
+TEST(BezierFit, KeepsEndsAndTwoInnerPointsToTheBit) {
+  const std::vector<Vec2> points = {{0, 72}, {3.2, 72.3}, {6, 73}, {7.8, 74.4}};
+  const BezierFit fit = fit_bezier(points);
+  EXPECT_EQ(fit.solved[0], points[0]);
+  EXPECT_EQ(fit.solved[3], points[3]);
+  EXPECT_LT((evaluate(fit.solved, 1.0 / 3) - points[1]).norm(), 1e-13);
+  EXPECT_LT((evaluate(fit.solved, 2.0 / 3) - points[2]).norm(), 1e-13);
+}
+
+// Elevated by hand: the parabola's middle control point is 2 Q1 - (Q0 + Q2) / 2 = (1, 2) here.
+TEST(BezierFit, OneInnerPointIsTheElevatedParabola) {
+  const BezierFit fit = fit_bezier({{0, 0}, {1, 1}, {2, 0}});
+  const Bezier expected = {Vec2(0, 0), Vec2(2.0 / 3, 4.0 / 3), Vec2(4.0 / 3, 4.0 / 3), Vec2(2, 0)};
+  EXPECT_LT(apart(fit.solved, expected), 1e-15);
+  EXPECT_LT(apart(fit.descended, expected), 1e-13);
+  const BezierFit skew = fit_bezier({{5, 1}, {7, -3}, {4, 4}});
+  EXPECT_LT(apart(skew.solved, skew.descended), 1e-12);
+  // A parabola has no third difference.
+  EXPECT_LT((skew.solved[3] - 3 * skew.solved[2] + 3 * skew.solved[1] - skew.solved[0]).norm(), 1e-13);
+  EXPECT_LT((evaluate(skew.solved, 0.5) - Vec2(7, -3)).norm(), 1e-14);
+}
+
+TEST(BezierFit, NoInnerPointIsTheStraightLine) {
+  const BezierFit fit = fit_bezier({{0, 0}, {3, 6}});
+  EXPECT_LT(apart(fit.solved, {Vec2(0, 0), Vec2(1, 2), Vec2(2, 4), Vec2(3, 6)}), 1e-15);
+  EXPECT_EQ(apart(fit.solved, fit.descended), 0);
+  EXPECT_EQ(fit.iterations, 0);
+}
+
+TEST(BezierFit, CoincidentPointsAreNoTrouble) {
+  const std::vector<Vec2> loop = {{0, 0}, {1, 1}, {1, 1}, {2, 0}, {0, 0}};  // closed, one point twice
+  const BezierFit fit = fit_bezier(loop);
+  EXPECT_LT(apart(fit.solved, dense_fit(loop)), 1e-13);
+  EXPECT_LT(apart(fit.solved, fit.descended), 1e-11);
+}
+
+TEST(TurningShape, ByTheSignOfTheTurning) {
+  EXPECT_EQ(turning_shape({{0, 0}, {1, 0}, {2, 1}, {2, 2}}), TurningShape::c);
+  EXPECT_EQ(turning_shape({{0, 0}, {1, 0}, {2, -1}, {2, -2}}), TurningShape::c);
+  EXPECT_EQ(turning_shape({{0, 0}, {1, 0}, {2, 1}, {3, 1}}), TurningShape::s);
+  EXPECT_EQ(turning_shape({{0, 0}, {1, 0.1}, {2, 0.2}, {3, 0.3}}), TurningShape::straight);
+  EXPECT_EQ(turning_shape({{0, 0}, {1, 0}, {2, 0}, {3, 1}}), TurningShape::c);
+  EXPECT_EQ(turning_shape({{0, 0}, {1, 1}}), TurningShape::straight);
+}
+
+// The area under a cubic Bezier in control points (integrated by hand), against the quadrature.
+TEST(Bezier, SweptAreaIsTheIntegral) {
+  std::mt19937 random(3);
+  for (int trial = 0; trial < 20; ++trial) {
+    const std::vector<Vec2> p = random_points(random, 4, 1, Vec2::Zero());
+    const auto turn = [&](std::size_t i, std::size_t j) { return p[i].x() * p[j].y() - p[i].y() * p[j].x(); };
+    const double by_hand =
+        (6 * turn(0, 1) + 3 * turn(0, 2) + turn(0, 3) + 3 * turn(1, 2) + 3 * turn(1, 3) + 6 * turn(2, 3)) /
+        20;
+    EXPECT_NEAR(swept_area({p[0], p[1], p[2], p[3]}, Vec2::Zero()), by_hand, 1e-14);
+  }
+}
+
+TEST(Bezier, BoxHoldsTheCurveTightly) {
+  std::mt19937 random(4);
+  for (int trial = 0; trial < 50; ++trial) {
+    const std::vector<Vec2> p = random_points(random, 4, 1, Vec2::Zero());
+    const Bezier curve = {p[0], p[1], p[2], p[3]};
+    Box2 seen;
+    for (int i = 0; i <= 20'000; ++i) seen.extend(evaluate(curve, i / 20'000.0));
+    const Box2 box = bounds(curve);
+    EXPECT_LT((box.min() - seen.min()).cwiseAbs().maxCoeff(), 1e-7);
+    EXPECT_LT((box.max() - seen.max()).cwiseAbs().maxCoeff(), 1e-7);
+  }
+}
+
+TEST(Bezier, NearestPointIsNoFartherThanAnySample) {
+  std::mt19937 random(5);
+  for (int trial = 0; trial < 100; ++trial) {
+    const std::vector<Vec2> p = random_points(random, 5, 1, Vec2::Zero());
+    const Bezier curve = {p[0], p[1], p[2], p[3]};
+    const double t = nearest_parameter(curve, p[4]);
+    const double found = (evaluate(curve, t) - p[4]).norm();
+    for (int i = 0; i <= 5000; ++i) EXPECT_LE(found, (evaluate(curve, i / 5000.0) - p[4]).norm() + 1e-15);
+    EXPECT_LT(
+        (evaluate(curve, nearest_parameter(curve, evaluate(curve, 0.3141))) - evaluate(curve, 0.3141)).norm(),
+        1e-14);
+  }
+}
+
+std::vector<Bezier> polygon(const std::vector<Vec2>& corners) {
+  std::vector<Bezier> outline;
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    outline.push_back(straight_bezier(corners[i], corners[(i + 1) % corners.size()]));
+  return outline;
+}
+
+TEST(Crossing, NoneInSimpleOutlines) {
+  EXPECT_FALSE(find_crossing(polygon({{0, 0}, {4, 0}, {4, 3}})));
+  EXPECT_FALSE(find_crossing(polygon({{0, 0}, {4, 0}, {4, 3}, {2, 0.001}, {0, 3}})));
+  // Corners in a straight line, and a very sharp one.
+  EXPECT_FALSE(find_crossing(polygon({{0, 0}, {1, 0}, {2, 0}, {1, 1}})));
+  EXPECT_FALSE(find_crossing(polygon({{0, 0}, {1, 0}, {0, 1e-4}})));
+  // A lens: both curves share both ends. A drop: one curve, closed.
+  EXPECT_FALSE(find_crossing({{Vec2(0, 0), Vec2(1, -1), Vec2(2, -1), Vec2(3, 0)},
+                              {Vec2(3, 0), Vec2(2, 1), Vec2(1, 1), Vec2(0, 0)}}));
+  EXPECT_FALSE(find_crossing({{Vec2(0, 0), Vec2(3, 1), Vec2(-1, 3), Vec2(0, 0)}}));
+}
+
+TEST(Crossing, FoundWhereItIs) {
+  const auto bow = find_crossing(polygon({{0, 0}, {2, 2}, {2, 0}, {0, 2}}));
+  ASSERT_TRUE(bow);
+  EXPECT_EQ(bow->a, 0U);
+  EXPECT_EQ(bow->b, 2U);
+  EXPECT_LT((bow->at - Vec2(1, 1)).norm(), 1e-12);
+
+  // The loop of a single cubic: by symmetry it meets itself on x = 0.
+  const auto loop =
+      find_crossing({{Vec2(-1, 0), Vec2(3, 3), Vec2(-3, 3), Vec2(1, 0)}, straight_bezier({1, 0}, {-1, 0})});
+  ASSERT_TRUE(loop);
+  EXPECT_EQ(loop->a, loop->b);
+  EXPECT_NEAR(loop->at.x(), 0, 1e-8);
+
+  // A neighbour's curve comes back through the line that it left: y of the cubic is 9 t (1 - t) (1 - 2 t).
+  const auto back =
+      find_crossing({straight_bezier({0, 0}, {3, 0}), {Vec2(3, 0), Vec2(2, 3), Vec2(1, -3), Vec2(0, 0)}});
+  ASSERT_TRUE(back);
+  EXPECT_LT((back->at - Vec2(1.5, 0)).norm(), 1e-8);
+}
+
+TEST(Crossing, TouchingCounts) {
+  // A corner on a side.
+  EXPECT_TRUE(find_crossing(polygon({{0, 0}, {4, 0}, {4, 3}, {2, 0}, {0, 3}})));
+  // A line run back over itself, by neighbours and by others.
+  EXPECT_TRUE(find_crossing(polygon({{0, 0}, {4, 0}, {2, 0}, {2, 2}})));
+  EXPECT_TRUE(find_crossing(polygon({{0, 0}, {4, 0}})));
+  EXPECT_TRUE(find_crossing(polygon({{0, 0}, {1, 0}, {1, 1}, {1, 0}, {2, 0}, {2, -1}, {0, -1}})));
+  // A curve that touches a line from above, and one a little higher that does not.
+  for (const double height : {0.0, 1e-6}) {
+    std::vector<Bezier> outline = polygon({{0, 0}, {4, 0}, {4, 2}, {0, 2}});
+    outline[2] = {Vec2(4, 2), Vec2(3, -2.0 / 3 + height), Vec2(1, -2.0 / 3 + height), Vec2(0, 2)};
+    EXPECT_EQ(find_crossing(outline).has_value(), height == 0.0) << height;
+  }
+}
+
+// A comb of ten thousand teeth: every pair at once would be 10^8.
+TEST(Crossing, LongOutlines) {
+  std::vector<Vec2> corners;
+  for (int i = 0; i < 5000; ++i) {
+    corners.emplace_back(i, 0);
+    corners.emplace_back(i + 0.5, 10);
+  }
+  corners.emplace_back(4999, -1);
+  corners.emplace_back(0, -1);
+  EXPECT_FALSE(find_crossing(polygon(corners)));
+  corners[1] = Vec2(3000.2, 10);
+  EXPECT_TRUE(find_crossing(polygon(corners)));
+}
+
+}  // namespace
+}  // namespace selvage::nurbs
