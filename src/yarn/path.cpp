@@ -69,6 +69,29 @@ CentreLine from_control(const PathRows& rows) {
   return line;
 }
 
+// Where the curve is nearest to a point between two parameters: Newton's method on the distance's derivative,
+// kept inside by halving.
+double nearest_between(const nurbs::Curve& curve, const Vec3& point, double low, double high) {
+  const auto slope = [&](double t, double* change) {
+    const nurbs::CurveJet jet = nurbs::evaluate_jet(curve, t);
+    if (change != nullptr) *change = jet.d1.squaredNorm() + (jet.position - point).dot(jet.d2);
+    return (jet.position - point).dot(jet.d1);
+  };
+  if (slope(low, nullptr) >= 0.0) return low;
+  if (slope(high, nullptr) <= 0.0) return high;
+  double t = 0.5 * (low + high);
+  for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
+    double change = 0.0;
+    const double here = slope(t, &change);
+    (here < 0.0 ? low : high) = t;
+    const double next = change > 0.0 ? t - here / change : low;
+    const double previous = t;
+    t = next > low && next < high ? next : 0.5 * (low + high);
+    if (t == previous) break;
+  }
+  return t;
+}
+
 CentreLine from_loop(const PathRows& rows) {
   const std::vector<Vec3>& p = rows.points;
   const std::size_t n = p.size();
@@ -90,12 +113,16 @@ CentreLine from_loop(const PathRows& rows) {
   PathRows as_control = rows;
   as_control.points = control;
   CentreLine line = from_control(as_control);
+  // Between the control points of a row and those of its neighbours the curve passes by the row.
   std::vector<double> parameters;
   for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t next = i + 1 < n ? first_control[i + 1] : control.size();
-    double sum = 0.0;
-    for (std::size_t k = first_control[i]; k < next; ++k) sum += line.parameters[k];
-    parameters.push_back(sum / static_cast<double>(next - first_control[i]));
+    const std::size_t first = first_control[i], next = i + 1 < n ? first_control[i + 1] : control.size();
+    const double before = first > 0 ? line.parameters[first - 1] : 0.0,
+                 after = next < control.size() ? line.parameters[next] : 1.0;
+    const double low = 0.5 * (before + line.parameters[first]),
+                 high = 0.5 * (line.parameters[next - 1] + after);
+    const bool is_end = !rows.closed && (i == 0 || i + 1 == n);
+    parameters.push_back(is_end ? line.parameters[first] : nearest_between(line.curve, p[i], low, high));
     line.largest_miss =
         std::max(line.largest_miss, (nurbs::evaluate(line.curve, parameters.back()) - p[i]).norm());
   }

@@ -28,7 +28,7 @@ struct CentreLine {
   nurbs::Curve curve;  // over [0, 1], C1; closed: the first point equals the last, to the bit
   bool closed = false;
   std::vector<double>
-      parameters;           // one a row: where it is met, or (control, loop) comes nearest by construction
+      parameters;  // one a row: where it is met, comes nearest (loop), or has its largest share (control)
   double largest_miss = 0;  // loop: the largest distance of the curve from a row's point; 0 for the others
 };
 

@@ -209,8 +209,7 @@ TEST(BuildTest, LoopPathsTellHowFarTheyMissTheirPoints) {
       nearest = std::min(nearest, (nurbs::evaluate(body->axis, i / 20000.0) - point).norm());
     largest = std::max(largest, nearest);
   }
-  EXPECT_GE(body->path_miss, largest - 1e-6);
-  EXPECT_LT(body->path_miss, 1.5 * largest);
+  EXPECT_NEAR(body->path_miss, largest, 3e-6);
 }
 
 TEST(BuildTest, TheSevenPointSectionSaysHowRoundItIs) {
