@@ -7,13 +7,14 @@
 #include "formats/svg/svg.h"
 #include "formats/txt/txt.h"
 #include "formats/vtu/vtu.h"
+#include "formats/wif/wif.h"
 
 namespace selvage::formats {
 
 const std::vector<const Descriptor*>& all_formats() {
   static const std::vector<const Descriptor*> list = {
-      &txt::descriptor(), &iges::descriptor(), &step::descriptor(), &svg::descriptor(),
-      &inp::descriptor(), &msh::descriptor(),  &vtu::descriptor()};
+      &txt::descriptor(), &wif::descriptor(), &iges::descriptor(), &step::descriptor(),
+      &svg::descriptor(), &inp::descriptor(), &msh::descriptor(),  &vtu::descriptor()};
   return list;
 }
 

@@ -8,8 +8,6 @@ namespace selvage::fabric {
 
 namespace {
 
-constexpr long long max_crossings = 100'000'000;
-
 int wrapped(long long index, int period) {
   const auto rest = static_cast<int>(index % period);
   return rest < 0 ? rest + period : rest;
@@ -18,10 +16,10 @@ int wrapped(long long index, int period) {
 // The square or oblong repeat whose crossings `is_on_top(pick, end)` tells.
 template <class Rule>
 Result<Drawdown> filled(long long picks, long long ends, Rule is_on_top) {
-  if (picks > max_crossings / ends)
+  if (picks > most_crossings / ends)
     return error(Kind::limit,
                  fmt::format("a draft of {} x {} crossings is larger than the {} that are possible", picks,
-                             ends, max_crossings));
+                             ends, most_crossings));
   Drawdown drawdown{static_cast<int>(picks), static_cast<int>(ends), {}};
   drawdown.bits.reserve(static_cast<std::size_t>(picks * ends));
   for (long long pick = 0; pick < picks; ++pick)

@@ -15,6 +15,9 @@
 
 namespace selvage::fabric {
 
+// A repeat of more crossings is refused.
+inline constexpr long long most_crossings = 100'000'000;
+
 // One repeat, `picks` wefts by `ends` warps, both at least 1.
 struct Drawdown {
   int picks = 0, ends = 0;

@@ -1,0 +1,109 @@
+#include "formats/wif/ini.h"
+
+#include <fmt/format.h>
+#include <strings.h>
+
+#include <algorithm>
+
+namespace selvage::formats::wif {
+
+namespace {
+
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
+std::string_view without_mark(std::string_view bytes) {
+  return bytes.starts_with(byte_order_mark) ? bytes.substr(byte_order_mark.size()) : bytes;
+}
+
+// Takes the next line, without its end, off the front of `rest`.
+std::string_view next_line(std::string_view& rest) {
+  const std::size_t length = std::min(rest.find_first_of("\r\n"), rest.size());
+  const std::string_view line = rest.substr(0, length);
+  const bool is_pair = rest.substr(length, 2) == "\r\n";
+  rest.remove_prefix(std::min(length + (is_pair ? 2U : 1U), rest.size()));
+  return line;
+}
+
+// The name between the brackets of a section's line; empty: it is none.
+std::string_view section_name(std::string_view line) {
+  const std::size_t close = line.rfind(']');
+  if (!line.starts_with('[') || close == std::string_view::npos) return {};
+  return trimmed(line.substr(1, close - 1));
+}
+
+Spot spot_of(const char* at, std::string_view line, int number) {
+  return {at, number, static_cast<int>(at - line.data()) + 1};
+}
+
+}  // namespace
+
+bool same_word(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && ::strncasecmp(a.data(), b.data(), a.size()) == 0;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t from = std::min(text.find_first_not_of(" \t"), text.size());
+  text.remove_prefix(from);
+  return text.substr(0, text.find_last_not_of(" \t") + 1);
+}
+
+const Entry* Section::find(std::string_view key) const {
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const Entry& entry) { return same_word(entry.key, key); });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+const Section* Ini::find(std::string_view name) const {
+  const auto found = std::find_if(sections_.begin(), sections_.end(),
+                                  [&](const Section& section) { return same_word(section.name, name); });
+  return found == sections_.end() ? nullptr : &*found;
+}
+
+Ini::Ini(const Source& source, TextReport& report) {
+  std::string_view rest = without_mark(source.bytes());
+  int number = 0;
+  while (!rest.empty()) {
+    const std::string_view line = next_line(rest);
+    read_line(line, ++number, report);
+  }
+  end_ = {source.bytes().data() + source.bytes().size(), number + 1, 1};
+}
+
+void Ini::open_section(std::string_view name, const Spot& spot, TextReport& report) {
+  for (current_ = 0; current_ < sections_.size(); ++current_) {
+    if (!same_word(sections_[current_].name, name)) continue;
+    return report.warning(
+        spot, fmt::format("the section {} stands here once more; its entries are joined", in_quotes(name)));
+  }
+  sections_.push_back({name, spot, {}});
+}
+
+void Ini::read_line(std::string_view line, int number, TextReport& report) {
+  const std::string_view text = trimmed(line);
+  if (text.empty() || text.starts_with(';')) return;
+  const Spot spot = spot_of(text.data(), line, number);
+  if (const std::string_view name = section_name(text); !name.empty())
+    return open_section(name, spot, report);
+  if (sections_.empty()) {
+    if (!warned_of_prelude_) report.warning(spot, "text before the first section is passed by");
+    warned_of_prelude_ = true;
+    return;
+  }
+  const std::size_t equals = text.find('=');
+  Entry entry;
+  entry.has_value = equals != std::string_view::npos;
+  entry.key = trimmed(text.substr(0, equals));
+  entry.value = entry.has_value ? trimmed(text.substr(equals + 1)) : text.substr(text.size());
+  entry.key_spot = spot;
+  entry.value_spot = spot_of(entry.value.data(), line, number);
+  sections_[current_].entries.push_back(entry);
+}
+
+bool has_wif_section(std::string_view head) {
+  head = without_mark(head);
+  while (!head.empty())
+    if (same_word(section_name(trimmed(next_line(head))), "WIF")) return true;
+  return false;
+}
+
+}  // namespace selvage::formats::wif

@@ -1,0 +1,146 @@
+#include "formats/wif/values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace selvage::formats::wif {
+
+namespace {
+
+// The whole of `text` as a number, with an optional '+'.
+template <class T>
+std::optional<T> parsed(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  T value{};
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+Spot spot_in(const Entry& entry, std::string_view part) {
+  Spot spot = entry.value_spot;
+  spot.column += static_cast<int>(part.data() - spot.at);
+  spot.at = part.data();
+  return spot;
+}
+
+std::optional<int> whole(const Entry& entry, std::string_view text, TextReport& report) {
+  const std::optional<int> value = parsed<int>(text);
+  if (!value)
+    report.error(spot_in(entry, text), text.empty() ? fmt::format("{} has no value", in_quotes(entry.key))
+                                                    : fmt::format("{} is no whole number", in_quotes(text)));
+  return value;
+}
+
+std::optional<int> key_number(const Entry& entry, std::string_view noun, TextReport& report) {
+  const std::optional<int> number = parsed<int>(entry.key);
+  if (number && *number >= 1) return number;
+  report.error(entry.key_spot, number
+                                   ? fmt::format("there is no {} {}: they count from 1", noun, *number)
+                                   : fmt::format("{} is not the number of a {}", in_quotes(entry.key), noun));
+  return std::nullopt;
+}
+
+std::string beyond(int number, const Counted& counted) {
+  return counted.limit.empty()
+             ? fmt::format("{} {} is beyond the {} that are taken", counted.noun, number, counted.most)
+             : fmt::format("{} {} is beyond the {} {}s of {}", counted.noun, number, counted.most,
+                           counted.noun, counted.limit);
+}
+
+}  // namespace
+
+std::string_view without_comment(std::string_view value) {
+  return trimmed(value.substr(0, value.find(';')));
+}
+
+std::optional<int> whole_number(const Entry& entry, TextReport& report) {
+  return whole(entry, without_comment(entry.value), report);
+}
+
+std::optional<double> real_number(const Entry& entry, TextReport& report) {
+  const std::string_view text = without_comment(entry.value);
+  const std::optional<double> value = parsed<double>(text);
+  if (value && std::isfinite(*value)) return value;
+  const bool has_comma = text.find(',') != std::string_view::npos;
+  report.error(entry.value_spot, text.empty()
+                                     ? fmt::format("{} has no value", in_quotes(entry.key))
+                                     : fmt::format("{} is no number{}", in_quotes(text),
+                                                   has_comma ? ": a decimal comma? WIF has the point" : ""));
+  return std::nullopt;
+}
+
+std::optional<bool> boolean(const Entry& entry, TextReport& report) {
+  const std::string_view text = without_comment(entry.value);
+  for (const std::string_view word : {"true", "on", "yes", "1"})
+    if (same_word(text, word)) return true;
+  for (const std::string_view word : {"false", "off", "no", "0"})
+    if (same_word(text, word)) return false;
+  report.error(entry.value_spot,
+               fmt::format("{} is neither true (on, yes, 1) nor false (off, no, 0)", in_quotes(text)));
+  return std::nullopt;
+}
+
+std::optional<std::vector<int>> whole_numbers(const Entry& entry, TextReport& report) {
+  std::vector<int> values;
+  std::string_view rest = without_comment(entry.value);
+  while (!rest.empty()) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    const std::string_view part = trimmed(rest.substr(0, comma));
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+    if (part.empty()) continue;
+    const std::optional<int> value = whole(entry, part, report);
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+  }
+  return values;
+}
+
+bool Numbered::is_nothing() const {
+  const std::string_view value = without_comment(entry->value);
+  return value.empty() || parsed<int>(value) == 0;
+}
+
+bool is_within(int number, const Counted& counted, const Entry& entry, TextReport& report) {
+  if (number >= 1 && number <= counted.most) return true;
+  report.error(entry.value_spot,
+               number < 1 ? fmt::format("there is no {} {}: they count from 1", counted.noun, number)
+                          : beyond(number, counted));
+  return false;
+}
+
+std::vector<Numbered> numbered(const Section& section, const Counted& counted, TextReport& report) {
+  std::vector<Numbered> lines;
+  lines.reserve(section.entries.size());
+  for (const Entry& entry : section.entries) {
+    if (!entry.has_value) report.warning(entry.key_spot, "a line without '='");
+    const std::optional<int> number = key_number(entry, counted.noun, report);
+    if (!number) continue;
+    const Numbered line{*number, &entry};
+    if (*number <= counted.most)
+      lines.push_back(line);
+    else if (line.is_nothing())
+      report.warning(entry.key_spot, beyond(*number, counted) + "; it is passed by");
+    else
+      report.error(entry.key_spot, beyond(*number, counted),
+                   counted.limit.empty() ? Kind::limit : Kind::malformed);
+  }
+  std::stable_sort(lines.begin(), lines.end(),
+                   [](const Numbered& a, const Numbered& b) { return a.number < b.number; });
+  std::vector<Numbered> once;
+  once.reserve(lines.size());
+  for (const Numbered& line : lines) {
+    if (once.empty() || once.back().number != line.number)
+      once.push_back(line);
+    else
+      report.warning(line.entry->key_spot, fmt::format("{} {} stands here once more; the first one counts",
+                                                       counted.noun, line.number));
+  }
+  return once;
+}
+
+}  // namespace selvage::formats::wif

@@ -1,0 +1,50 @@
+// Values of WIF entries: whole numbers, reals, booleans, lists, and sections whose keys are numbers. What is
+// wrong goes to the report, at the value's place.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "formats/wif/ini.h"
+
+namespace selvage::formats::wif {
+
+// More threads of a system, shafts or treadles than that are taken for a mistake.
+inline constexpr int most_threads = 1'000'000;
+
+// A value without the comment that may follow it behind a ';'. (Not for texts: a title may have a ';'.)
+std::string_view without_comment(std::string_view value);
+
+// The value as it should be; nothing after an error.
+std::optional<int> whole_number(const Entry& entry, TextReport& report);
+std::optional<double> real_number(const Entry& entry, TextReport& report);
+std::optional<bool> boolean(const Entry& entry, TextReport& report);
+// Whole numbers separated by commas; empty parts are passed by ("1,2," is written by some).
+std::optional<std::vector<int>> whole_numbers(const Entry& entry, TextReport& report);
+
+// An entry whose key is a number from 1.
+struct Numbered {
+  int number = 0;
+  const Entry* entry = nullptr;
+  // "4=" and "4=0" say the same as no entry at all.
+  [[nodiscard]] bool is_nothing() const;
+};
+
+// What a numbered section's keys count. `limit`: the section that says `most`, as "[WARP]"; empty: none does.
+struct Counted {
+  std::string_view noun;  // "thread"
+  int most = most_threads;
+  std::string_view limit = {};
+};
+
+// Is `number` within 1..most? Else an error at `entry`'s value that says so.
+bool is_within(int number, const Counted& counted, const Entry& entry, TextReport& report);
+
+// The section's entries with numbers 1..counted.most, ascending. Errors: other keys, and greater numbers
+// unless they carry nothing, which is a warning like a number that stands there twice (the first one counts)
+// or a line without '='.
+std::vector<Numbered> numbered(const Section& section, const Counted& counted, TextReport& report);
+
+}  // namespace selvage::formats::wif

@@ -1,0 +1,105 @@
+"""WIF files of several programs' habits: the draft, colours and pitches that the program reads are those of an oracle."""
+
+import pathlib
+import re
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+from oracle import Wif  # noqa: E402
+from program import BAD, Case, ROOT, SAMPLES, run  # noqa: E402
+
+OWN = pathlib.Path(__file__).resolve().parent / "files"
+FIXTURES = ROOT.parent / "shared" / "fixtures" / "wif"
+UNITS = {"mm": 1, "cm": 10, "inch": 25.4}
+
+
+class Text:
+    """The weave of a Fabric TXT as the program writes it."""
+
+    def __init__(self, text):
+        self.unit = UNITS[re.search(r"^units (\w+)$", text, re.MULTILINE)[1]]
+        threads = re.findall(r"^thread (\S+)\n  diameter (\S+)\n(?:  color (\d+) (\d+) (\d+)\n)?", text, re.MULTILINE)
+        self.color = {name: tuple(map(int, rgb)) if rgb[0] else None for name, _, *rgb in threads}
+        self.diameter = {name: float(diameter) * self.unit for name, diameter, *_ in threads}
+        self.systems = {name: (names.split(","), int(count), float(pitch) * self.unit) for name, names, count, pitch
+                        in re.findall(r"^  (warp|weft) (\S+) (\d+) pitch (\S+)$", text, re.MULTILINE)}
+        self.rows = re.search(r"^  draft\n((?:    [01]+\n)+)  end$", text, re.MULTILINE)[1].split()
+
+
+class WifCase(Case):
+    def fixtures(self, kind):
+        files = sorted((FIXTURES / kind).glob("*.wif"))
+        self.assertTrue(files, f"no files in {FIXTURES / kind}: the fixtures stand beside the project's folder")
+        return files
+
+    def text_of(self, path):
+        done = self.succeeds("convert", path, "--to", "txt", "-o", "-", "--quiet")
+        return Text(done.stdout)
+
+    def agrees(self, path):
+        wif, text = Wif(path), self.text_of(path)
+        self.assertEqual(text.rows, wif.rows)
+        for system, count in (("warp", wif.ends), ("weft", wif.picks)):
+            names, written, pitch = text.systems[system]
+            self.assertEqual(written, count)
+            self.assertEqual([text.color[names[i % len(names)]] for i in range(count)], wif.colors[system])
+            if wif.spacing[system]:
+                self.assertAlmostEqual(pitch, wif.spacing[system], delta=1e-9 * pitch)
+
+
+class Reading(WifCase):
+    def test_good_fixtures(self):
+        files = self.fixtures("desired_basic_wif") + self.fixtures("basic_wif") + self.fixtures("warn_wif")
+        self.assertEqual(len(files), 15)
+        for path in files:
+            with self.subTest(path.name):
+                self.agrees(path)
+
+    def test_habits_of_programs(self):
+        files = sorted(OWN.glob("*.wif"))
+        self.assertGreaterEqual(len(files), 8)
+        for path in files:
+            with self.subTest(path.name):
+                self.agrees(path)
+
+    def test_samples(self):
+        files = sorted(SAMPLES.glob("*.wif"))
+        self.assertEqual(len(files), 3)
+        for path in files:
+            with self.subTest(path.name):
+                self.agrees(path)
+                self.assertNotIn("warning", run("convert", path, "--to", "txt", "-o", "-").stderr)
+
+    def test_warnings(self):
+        for path in self.fixtures("warn_wif"):
+            with self.subTest(path.name):
+                messages = run("convert", path, "--to", "txt", "-o", "-").stderr
+                self.assertRegex(messages, r"wif:\d+:7: warning: color (0|11) is not in \[COLOR TABLE\]")
+
+    def test_bad_fixtures(self):
+        expected = {"default warp color too big": "82:7: error: color 11 ",
+                    "default warp color too small": "82:7: error: color 0 ",
+                    "default weft color too big": "88:7: error: color 11 ",
+                    "default weft color too small": "88:7: error: color 0 ",
+                    "missing liftplan": "error: there is neither [LIFTPLAN] nor [TIEUP] and [TREADLING]",
+                    "missing tieup": "35:1: error: [TREADLING] needs [TIEUP], which is missing",
+                    "missing treadling": "error: [TREADLING] is missing",
+                    "missing_color_table_warp": "69:3: error: color 3, but there is no [COLOR TABLE]",
+                    "missing_color_table_weft": "69:3: error: color 3, but there is no [COLOR TABLE]",
+                    "too many treadles in treadline": "44:3: error: treadle 7 is beyond the 6 treadles of [WEAVING]",
+                    "warp_color too big": "39:3: error: color 11 ",
+                    "warp_color too small": "30:3: error: color 0 ",
+                    "weft_color too big": "35:3: error: color 11 ",
+                    "weft_color too small": "32:3: error: color 0 "}
+        files = self.fixtures("bad_wif")
+        self.assertEqual([path.stem for path in files], sorted(expected))
+        for path in files:
+            with self.subTest(path.name):
+                self.assertIn(expected[path.stem], self.fails(1, "convert", path, "--to", "txt", "-o", "-"))
+
+
+if __name__ == "__main__":
+    unittest.main()
