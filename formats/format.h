@@ -2,6 +2,7 @@
 // `selvage formats` and the conformance tests all come from it. CONTRIBUTING.md: how to add one.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -53,6 +54,13 @@ class BodyWriter {
   virtual Result<WriteFacts> finish() = 0;
 };
 
+// An `edit` to be added to a text, its numbers spelt as they shall stand there.
+struct NewEdit {
+  fabric::Edit edit;                    // its place means nothing
+  std::string length;                   // length
+  std::array<std::string, 3> vector{};  // target or direction
+};
+
 struct Descriptor {
   std::string_view name;                     // the word of --to: "iges"
   std::string_view title;                    // one line for `selvage formats`
@@ -66,6 +74,9 @@ struct Descriptor {
   std::optional<fabric::Fabric> (*read_fabric)(const Source& source, Diagnostics& diagnostics) = nullptr;
 
   Result<WriteFacts> (*write_fabric)(const fabric::Fabric& fabric, OutputFile& output) = nullptr;
+  // The bytes of a text with the edit as a line of its own after line `after` (from 1); no other byte
+  // changes.
+  std::string (*insert_edit)(std::string_view bytes, int after, const NewEdit& edit) = nullptr;
   // `output` outlives the writer, which takes yarns as surfaces, garment pieces as curves, or both.
   Result<std::unique_ptr<BodyWriter>> (*open_bodies)(OutputFile& output,
                                                      const SurfaceOptions& options) = nullptr;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <unordered_map>
 #include <vector>
 
@@ -161,6 +162,8 @@ bool Parser::read_block(std::string_view kind, std::string_view name, const Spot
     } else {
       const Statement<T>& statement = table.statements[static_cast<std::size_t>(step)];
       statement.read(*this, target, statement.word);
+      if constexpr (std::is_same_v<T, fabric::Fabric>)
+        target.item_ends.resize(target.items.size(), this->statement().line);
     }
   }
   block_ = block.outer;

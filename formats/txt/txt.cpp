@@ -1,5 +1,6 @@
 #include "formats/txt/txt.h"
 
+#include "formats/txt/edit_line.h"
 #include "formats/txt/reader.h"
 #include "formats/txt/writer.h"
 
@@ -11,7 +12,8 @@ const Descriptor& descriptor() {
                                   .extensions = {".txt"},
                                   .sniff = is_fabric_txt,
                                   .read_fabric = read_fabric,
-                                  .write_fabric = write_fabric};
+                                  .write_fabric = write_fabric,
+                                  .insert_edit = insert_edit};
   return self;
 }
 

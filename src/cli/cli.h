@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "pipeline/edit.h"
 #include "pipeline/options.h"
 
 namespace selvage::cli {
@@ -12,6 +13,7 @@ namespace selvage::cli {
 struct Parsed {
   pipeline::Options options;
   std::string shard, units, ends = "patch";
+  pipeline::EditRequest edit;
   std::function<int()> action;
 };
 
@@ -19,6 +21,7 @@ void add_convert(CLI::App& program, Parsed& parsed);
 void add_check(CLI::App& program, Parsed& parsed);
 void add_mesh(CLI::App& program, Parsed& parsed);
 void add_info(CLI::App& program, Parsed& parsed);
+void add_edit(CLI::App& program, Parsed& parsed);
 void add_formats(CLI::App& program, Parsed& parsed);
 
 // Options that several subcommands have (common.cpp).

@@ -13,8 +13,7 @@ namespace {
 
 constexpr std::array<std::string_view, 7> later_options = {
     "--instances", "--cut", "--matrix", "--periodic", "--gap", "--relax", "--as-published"};
-constexpr std::array<std::string_view, 6> later_commands = {"roundtrip", "diff", "edit",
-                                                            "relax",     "view", "report"};
+constexpr std::array<std::string_view, 5> later_commands = {"roundtrip", "diff", "relax", "view", "report"};
 
 Status parse_shard(const std::string& text, pipeline::Options& options) {
   if (text.empty()) return {};

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -23,5 +24,9 @@ inline std::string number_text(double value) {
   char buffer[max_number_length];
   return {buffer, write_number(buffer, value)};
 }
+
+// The number that the whole text is: what std::from_chars takes, with an optional leading '+'. Nothing for
+// any other text, for infinities and nan, and for a number that is out of a double's range.
+std::optional<double> read_number(std::string_view text);
 
 }  // namespace selvage

@@ -157,6 +157,12 @@ std::string YarnBuilder::name_of(const Entry& entry) const {
   return entry.yarn != nullptr ? entry.yarn->name : entry.construction->name(entry.index);
 }
 
+std::optional<std::size_t> YarnBuilder::find(std::string_view name) const {
+  for (std::size_t i = 0; i < entries_.size(); ++i)
+    if (name_of(entries_[i]) == name) return i;
+  return std::nullopt;
+}
+
 void YarnBuilder::check_edited_names(Diagnostics& diagnostics) const {
   if (fabric_->edits.empty()) return;
   std::unordered_set<std::string> names;

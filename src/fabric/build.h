@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/diagnostics.h"
@@ -35,6 +37,8 @@ class YarnBuilder {
                                            Diagnostics& diagnostics);
 
   [[nodiscard]] std::size_t count() const { return entries_.size(); }
+  // The first yarn (or part of a yarn) of this name; none where there is no such yarn.
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
   // The yarn's plan, edits applied; a part's own where the yarn has parts. Error (unsupported): a grid has
   // none.
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const;

@@ -240,7 +240,8 @@ struct Fabric {
   std::optional<double> tolerance;
   std::vector<Thread> threads;
   std::vector<Material> materials;
-  std::vector<Item> items;  // in file order
+  std::vector<Item> items;     // in file order
+  std::vector<int> item_ends;  // the last line of each item, where they come from a text; else empty
   std::vector<Edit> edits;
   std::optional<Cell> cell;
 

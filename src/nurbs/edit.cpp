@@ -309,11 +309,11 @@ Message unreachable(const Triangle& t, int number, const Vec3& target, const Vec
 
 Status check_weights(const Joint& joint, int number) {
   if (joint.rows.size() == 3) return {};
-  const std::string reason =
-      joint.rows.size() == 1 ? "it is the curve's end, which stands on its control point; the nearest point "
-                               "that they reach is where it is, " +
-                                   text_of(joint.position)
-                             : "they can where three control points hold it, at a simple knot of a cubic";
+  const std::string reason = joint.rows.size() == 1
+                                 ? "it is an end, which stands on its control point; the nearest point "
+                                   "that they reach is where it is, " +
+                                       text_of(joint.position)
+                                 : "they can where three control points hold it, at a simple knot of a cubic";
   return error(Kind::geometry, fmt::format("weights do not move joint {}: {}", number, reason));
 }
 

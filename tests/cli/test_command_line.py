@@ -16,7 +16,7 @@ class Usage(Case):
     def test_version_and_help(self):
         self.assertRegex(self.succeeds("--version").stdout, r"^selvage \d+\.\d+\.\d+\n$")
         everything = self.succeeds("--help").stdout
-        for command in ("convert", "check", "mesh", "info", "formats"):
+        for command in ("convert", "check", "mesh", "info", "edit", "formats"):
             self.assertIn(command, everything)
         for command in ("convert", "check", "mesh", "info"):
             text = self.succeeds(command, "--help").stdout
@@ -33,7 +33,7 @@ class Usage(Case):
                      self.out)
 
     def test_words_of_later_versions(self):
-        for word in ("roundtrip", "diff", "edit", "relax", "view", "report"):
+        for word in ("roundtrip", "diff", "relax", "view", "report"):
             self.refused(f"'selvage {word}' is not in this version", word, GRID)
         for word in ("--instances", "--cut", "--matrix", "--relax", "--as-published"):
             self.refused(f"'{word}' is not in this version", "convert", GRID, word, "-o", self.out)

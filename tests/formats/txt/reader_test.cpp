@@ -48,6 +48,14 @@ const std::string grid_rows = "0 0 0\n0 1 0\n0 0 1\n1 0 0\n1 1 0\n1 0 1\n";
 
 }  // namespace
 
+TEST(Reader, KnowsWhereItemsEnd) {
+  const Fabric fabric = good(
+      "fabric 1\nthread t\nend\nyarn a t\n path\n 0 0 0\n 1 0 0\n end\n\n up 0 0 1\nend # a\n# no\ntitle x\n"
+      "weave\nwarp t 1 pitch 1\nweft t 1 pitch 1\ndraft\n1\nend\nend\nyarn b t\n path\n 0 1 0\n 1 1 0\n "
+      "end\nend");
+  EXPECT_EQ(fabric.item_ends, (std::vector<int>{11, 20, 26}));
+}
+
 TEST(Reader, Header) {
   const Fabric fabric = good("\n# first\nFABRIC 1 # version\nTitle \"a # b\"\nunits INCH\ntolerance 1e-3");
   EXPECT_EQ(fabric.title, "a # b");

@@ -80,6 +80,15 @@ TEST(NumberText, IsTheShortest) {
   EXPECT_EQ(number_text(0.1 + 0.2), "0.30000000000000004");
 }
 
+TEST(NumberText, ReadsWhatIsANumberAsAWhole) {
+  EXPECT_EQ(read_number("-2.50"), -2.5);
+  EXPECT_EQ(read_number("+.25"), 0.25);
+  EXPECT_EQ(read_number("1e-3"), 0.001);
+  for (const char* text :
+       {"", "+", "+-1", "-+1", " 1", "1 ", "1,5", "0x10", "nan", "inf", "1e999", "1.2.3", "one"})
+    EXPECT_FALSE(read_number(text)) << text;
+}
+
 TEST(NumberText, Integers) {
   char buffer[max_number_length];
   for (long long value :
