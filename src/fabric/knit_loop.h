@@ -1,0 +1,40 @@
+// The data points of the loops of a weft knit, in units of the yarn's half thickness r.
+//
+// The knit loop is that of ../shared/references 001 (methods.md, 1): nine points, wales 8 r and courses 7 r
+// apart, legs 1.5 r before the cloth's middle plane, sinker and head 1.5 r behind it. Everything else is
+// ours. A purl loop is its mirror image in that plane. The feet and legs of a loop lie on the side of its
+// own stitch, its head on the side that the stitch above it asks for: behind a knit loop, before a purl loop,
+// because it is what the next loop's legs pass. Where own stitch and stitch above differ the leg has two
+// points instead of one and crosses the middle plane between them; where neighbours in a course differ the
+// sinker crosses the plane at their common point, and each arm gets a point that keeps it on its side of
+// the leg that it passes.
+#pragma once
+
+#include <vector>
+
+#include "core/vec.h"
+#include "fabric/knit_chart.h"
+
+namespace selvage::fabric {
+
+inline constexpr double wale_spacing = 8;    // in r
+inline constexpr double course_spacing = 7;  // in r
+
+// The needles and courses of a chart, counted from 0, that a cloth uses; bounds inclusive. What lies outside
+// is seen as if it were not there: under the first course nothing is held, the loops of the last one stand as
+// if their like followed, and the sinkers at the sides are those of the outer wales.
+struct KnitField {
+  StitchChart chart;
+  long long first_course = 0, last_course = 0;
+  long long first_wale = 0, last_wale = 0;
+};
+
+// Appends the points that one needle gives to one course, from the sinker on its left to the last point
+// before the sinker on its right, which is the next needle's first point. x from the left side of the wale
+// (0 .. 8), y from the course's lower crossings, z from the middle plane.
+void add_stitch_points(const KnitField& field, long long course, long long wale, std::vector<Vec3>& points);
+
+// The last point of a course: x from the right side of the last wale.
+Vec3 last_sinker_point(const KnitField& field, long long course);
+
+}  // namespace selvage::fabric
