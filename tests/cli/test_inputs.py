@@ -70,6 +70,7 @@ class Bad(Case):
         places = {"decimal_comma": r":5:12: error: .*comma", "misspelt": r":3:3: error: .*diameter", "nan": r":3:12: error: ",
                   "unknown_thread": r":2:8: error: .*nothread", "version": r":1:8: error: ", "no_end": r":\d+:\d+: error: .*end",
                   "short_grid": r":\d+:\d+: error: ", "zero_length": r":\d+:\d+: error: ", "binary": r":1:1: error: ",
+                  "edit_joint": r":10:1: error: .*no joint 4", "edit_weight": r":12:1: error: .*off the plane",
                   "empty": r":1:1: error: "}
         self.assertEqual(sorted(places), sorted(path.stem for path in BAD.glob("*.txt")))
         for name, pattern in places.items():

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fabric/build.h"
+#include "nurbs/edit.h"
 #include "nurbs/measure.h"
 
 namespace selvage::fabric {
@@ -89,6 +90,27 @@ TEST(Edits, LeaveEveryOtherControlPointAndTheSizesWhereTheyWere) {
     EXPECT_EQ(before->line.parameters, after->line.parameters);
     EXPECT_EQ(before->line.curve.knots, after->line.curve.knots);
     EXPECT_TRUE(after->line.curve.weights.empty());
+  }
+}
+
+TEST(Edits, JointsAreWhereTheFormatsPageSaysTheyAre) {
+  for (const bool closed : {false, true}) {
+    const Fabric chord = wave(Path::Form::chord, closed);
+    const Result<YarnPlan> through = plan_of(chord);
+    ASSERT_TRUE(through.ok());
+    EXPECT_EQ(nurbs::joint_count(through->line.curve, closed), 8);
+    for (int k = 1; k <= 8; ++k)
+      EXPECT_LT((joint_at(through->line.curve, k) - through->points[static_cast<std::size_t>(k - 1)]).norm(),
+                1e-13);
+    const Result<YarnPlan> control = plan_of(wave(Path::Form::control, closed));
+    const Result<YarnPlan> loop = plan_of(wave(Path::Form::loop, closed));
+    ASSERT_TRUE(control.ok() && loop.ok());
+    EXPECT_EQ(nurbs::joint_count(control->line.curve, closed), closed ? 8 : 8 - 2);
+    EXPECT_EQ(nurbs::joint_count(loop->line.curve, closed), closed ? 2 * 8 : 2 * 8 - 4);
+    for (int k = 1; closed && k <= 8; ++k) {
+      const Vec3& row = control->points[static_cast<std::size_t>(k - 1)];
+      EXPECT_LT(joint_at(control->line.curve, k).normalized().cross(row.normalized()).norm(), 1e-13);
+    }
   }
 }
 
