@@ -224,38 +224,55 @@ void read_stitch(Parser& p, Warpknit& warpknit, std::string_view) {
 // --- braid
 // ----------------------------------------------------------------------------------------------------------
 
-void read_carriers(Parser& p, Braid& braid, std::string_view) {
+// What a braid's statements say, and where its carriers stand: only the whole block tells whether they may be
+// odd.
+struct BraidBlock : Braid {
+  Spot carriers_spot{};
+};
+
+void read_carriers(Parser& p, BraidBlock& braid, std::string_view) {
   const auto count = p.count("the number of carriers", 2);
-  if (count && *count % 2 != 0)
-    p.error(p.last(), "half of the carriers run each way round: their number has to be even");
-  if (count && p.finish()) braid.carriers = *count;
+  if (!count || !p.finish()) return;
+  braid.carriers = *count;
+  braid.carriers_spot = p.last();
+  braid.carriers_place = p.last().place();
 }
 
-void read_pattern(Parser& p, Braid& braid, std::string_view) {
+void read_pattern(Parser& p, BraidBlock& braid, std::string_view) {
   const auto numbers = p.pair("the pattern", '/');
   if (!numbers || !p.finish()) return;
   braid.over = (*numbers)[0];
   braid.under = (*numbers)[1];
 }
 
-void read_radius(Parser& p, Braid& braid, std::string_view) {
+void read_radius(Parser& p, BraidBlock& braid, std::string_view) {
   const auto value = p.positive("the radius");
-  if (value && p.finish()) braid.radius = *value;
+  if (!value || !p.finish()) return;
+  braid.radius = *value;
+  braid.radius_place = p.last().place();
 }
 
-void read_angle(Parser& p, Braid& braid, std::string_view) {
+void read_flat(Parser& p, BraidBlock& braid, std::string_view) {
+  braid.flat = true;
+  braid.radius_place = p.statement().place();
+  if (!p.more()) return;
+  const auto value = p.positive("the width");
+  if (value && p.finish()) braid.width = *value;
+}
+
+void read_angle(Parser& p, BraidBlock& braid, std::string_view) {
   const auto value = p.number("the angle");
   if (value && !(*value > 0.0 && *value < 90.0))
     p.error(p.last(), "the angle between yarn and axis lies between 0 and 90 degrees, both excluded");
   if (value && p.finish()) braid.angle = *value;
 }
 
-void read_length(Parser& p, Braid& braid, std::string_view) {
+void read_length(Parser& p, BraidBlock& braid, std::string_view) {
   const auto value = p.positive("the length");
   if (value && p.finish()) braid.length = *value;
 }
 
-void read_axial(Parser& p, Braid& braid, std::string_view) {
+void read_axial(Parser& p, BraidBlock& braid, std::string_view) {
   braid.axial_place = p.statement().place();
   const auto thread = p.reference(p.threads);
   const auto count = thread ? p.count("the number of axial yarns") : std::nullopt;
@@ -331,19 +348,24 @@ void read_warpknit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 }
 
 void read_braid(Parser& p, fabric::Fabric& fabric, std::string_view word) {
-  static const Table<Braid> table({{"thread", read_construction_thread<Braid>, Times::once},
-                                   {"carriers", read_carriers, Times::once},
-                                   {"pattern", read_pattern, Times::once},
-                                   {"radius", read_radius, Times::once},
-                                   {"angle", read_angle, Times::once},
-                                   {"length", read_length, Times::once},
-                                   {"axial", read_axial}});
-  Braid braid;
+  static const Table<BraidBlock> table({{"thread", read_construction_thread<BraidBlock>, Times::once},
+                                        {"carriers", read_carriers, Times::once},
+                                        {"pattern", read_pattern, Times::once},
+                                        {"radius", read_radius, Times::once},
+                                        {"flat", read_flat, Times::once, "radius"},
+                                        {"angle", read_angle, Times::once},
+                                        {"length", read_length, Times::once},
+                                        {"axial", read_axial}});
+  BraidBlock braid;
   const Spot opened = p.statement();
   braid.place = opened.place();
   p.finish();
   p.read_block(word, "", opened, table, braid);
-  fabric.items.emplace_back(std::move(braid));
+  if (braid.carriers % 2 != 0 && !braid.flat)
+    p.error(braid.carriers_spot,
+            "half of the carriers of a tube run each way round: their number has to be even (or the braid "
+            "`flat`)");
+  fabric.items.emplace_back(static_cast<Braid&&>(braid));
 }
 
 }  // namespace selvage::formats::txt

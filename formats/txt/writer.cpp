@@ -295,7 +295,12 @@ void write_item(Lines& out, const fabric::Braid& braid) {
   out.line(1, "carriers").value(braid.carriers);
   out.line(1, "pattern");
   write_pair(out, braid.over, "/", braid.under);
-  out.line(1, "radius").value(braid.radius);
+  if (!braid.flat)
+    out.line(1, "radius").value(braid.radius);
+  else if (braid.width > 0.0)
+    out.line(1, "flat").value(braid.width);
+  else
+    out.line(1, "flat");
   out.line(1, "angle").value(braid.angle);
   out.line(1, "length").value(braid.length);
   if (!braid.axial_thread.empty()) out.line(1, "axial").name(braid.axial_thread).value(braid.axial_count);

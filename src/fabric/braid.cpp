@@ -1,11 +1,307 @@
 #include "fabric/braid.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "fabric/braid_fit.h"
+#include "fabric/braid_shape.h"
+#include "fabric/clearance.h"
+#include "fabric/yarn_spec.h"
+#include "nurbs/interpolate.h"
+
 namespace selvage::fabric {
 
-Result<std::unique_ptr<Construction>> make_braid(const Fabric&, const Braid& braid, Diagnostics&) {
-  Message message = error(Kind::unsupported, "`braid` is not supported yet");
-  message.place = braid.place;
+namespace {
+
+constexpr double pi = std::numbers::pi;
+// Crossing yarns keep this share of the braiders' thickness apart: more than the tubes' tolerances take.
+constexpr double clearance = 1.0 / 200.0;
+// Longest rest of a braider at a crossing, in steps on each side: the remaining 0.3 are its way to the other
+// side.
+constexpr double longest_plateau = 0.35;
+
+// For messages: four digits, never less than the value.
+double rounded_up(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
+  return std::ceil(value / unit * (1.0 - 1e-9)) * unit;
+}
+
+Message at_place(TextPlace place, std::string text) {
+  Message message = error(Kind::geometry, std::move(text));
+  message.place = place;
   return message;
+}
+
+class BraidConstruction : public Construction {
+ public:
+  BraidConstruction(const Fabric& fabric, const Braid& braid, const Thread& thread, const Thread* axial,
+                    const BraidShape& shape, int points)
+      : fabric_(fabric), braid_(braid), thread_(thread), axial_(axial), shape_(shape), points_(points) {
+    const std::int64_t period = std::int64_t{shape.over} + shape.under;
+    repeat_ = shape.flat ? 2 : period;
+    class_count_ = period % 2 == 0 ? period / 2 : period;
+    // A cell cuts a braid that goes on beyond it.
+    const double more = fabric.cell ? static_cast<double>(repeat_) * shape.step : 0.0;
+    first_repeat_ = fabric.cell ? -1 : 0;
+    begin_ = -more;
+    end_ = braid.length + more;
+  }
+
+  [[nodiscard]] std::size_t count() const override { return braiders() + axials(); }
+
+  [[nodiscard]] std::string name(std::size_t index) const override {
+    return index < braiders() ? fmt::format("braider_{}", index + 1)
+                              : fmt::format("axial_{}", index - braiders() + 1);
+  }
+
+  [[nodiscard]] const Thread& thread(std::size_t index) const override {
+    return index < braiders() ? thread_ : *axial_;
+  }
+
+  [[nodiscard]] std::uint64_t data_points() const override {
+    const double each = std::ceil((end_ - begin_) / shape_.step * points_) + 2.0;
+    const double all = each * static_cast<double>(braiders()) + 2.0 * static_cast<double>(axials());
+    constexpr double most = 1e18;
+    return static_cast<std::uint64_t>(std::min(all, most));
+  }
+
+  [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override {
+    const bool is_braider = index < braiders();
+    Result<YarnPlan> plan = start_plan(fabric_, thread(index), name(index),
+                                       is_braider ? Role::braider : Role::axial, braid_.place);
+    if (!plan) return plan;
+    plan->spec.guide = shape_.flat ? yarn::FrameGuide::with_up(Vec3::UnitZ())
+                                   : yarn::FrameGuide::about_axis(Vec3::Zero(), Vec3::UnitZ());
+    if (is_braider) {
+      place_braider(*plan, static_cast<std::int64_t>(index));
+      return plan;
+    }
+    if (Status made = place_axial(*plan, static_cast<std::int64_t>(index - braiders())); !made)
+      return made.error();
+    return plan;
+  }
+
+ private:
+  [[nodiscard]] std::size_t braiders() const { return static_cast<std::size_t>(shape_.carriers); }
+  [[nodiscard]] std::size_t axials() const { return static_cast<std::size_t>(braid_.axial_count); }
+
+  // How a braider follows from one of the first ones of its kind: a strip's by its place on the way there and
+  // back, a tube's by a rotation.
+  struct Copy {
+    Braider original;
+    std::int64_t ahead = 0;  // steps on a strip's way
+    Vec2 turn = Vec2(1.0, 0.0);
+  };
+  [[nodiscard]] Copy copy_of(std::int64_t index) const {
+    const std::int64_t carriers = shape_.carriers;
+    if (shape_.flat) return {{0, 1}, 2 * index, Vec2(1.0, 0.0)};
+    const std::int64_t half = carriers / 2;
+    const std::int64_t place = index % half, original = place % class_count_;
+    return {{2 * original, index < half ? 1 : -1}, 0, unit_at(2 * (place - original), carriers)};
+  }
+
+  [[nodiscard]] BraidPoint point(const Copy& copy, double t) const {
+    BraidPoint point = braid_point(shape_, copy.original, t);
+    const auto turned = [&](const Vec3& v) {
+      return Vec3(copy.turn.x() * v.x() - copy.turn.y() * v.y(),
+                  copy.turn.y() * v.x() + copy.turn.x() * v.y(), v.z());
+    };
+    if (!shape_.flat) point = {turned(point.position), turned(point.derivative)};
+    return point;
+  }
+
+  void place_braider(YarnPlan& plan, std::int64_t index) const {
+    const Copy copy = copy_of(index);
+    const int axis = shape_.flat ? 0 : 2;
+    const std::int64_t round = 2 * std::int64_t{shape_.carriers} * points_;  // a strip's way in points
+    const double pitch = static_cast<double>(repeat_) * shape_.step;
+    const std::int64_t per_repeat = repeat_ * points_;
+    std::vector<double> parameters;
+    const auto add = [&](const BraidPoint& at, double along) {
+      plan.points.push_back(at.position);
+      plan.points.back()[axis] = along;
+      parameters.push_back((along - begin_) / (end_ - begin_));
+      return Vec3(at.derivative / shape_.step * (end_ - begin_));
+    };
+    const auto point_at = [&](std::int64_t k) {
+      if (shape_.flat) k = ((k + copy.ahead * points_) % round + round) % round;
+      return point(copy, static_cast<double>(k) / points_ - 0.5);
+    };
+    Vec3 first = Vec3::Zero();
+    const double room = 0.25 * shape_.step / points_;  // the last point stands no nearer to its neighbour
+    for (std::int64_t k = first_repeat_ * per_repeat;; ++k) {
+      const std::int64_t within = ((k % per_repeat) + per_repeat) % per_repeat;
+      const double base = static_cast<double>(within) * shape_.step / points_;
+      const double along = base + static_cast<double>((k - within) / per_repeat) * pitch;
+      if (along > end_ - room && !plan.points.empty()) break;
+      const Vec3 derivative = add(point_at(k), along);
+      if (plan.points.size() == 1) first = derivative;
+    }
+    const double last_t = end_ / shape_.step - 0.5 + static_cast<double>(copy.ahead);
+    const Vec3 last = add(point(copy, last_t), end_);
+    parameters.back() = 1.0;
+    plan.line.curve = nurbs::interpolate(plan.points, parameters, first, last);
+    plan.line.parameters = std::move(parameters);
+  }
+
+  [[nodiscard]] Status place_axial(YarnPlan& plan, std::int64_t index) const {
+    const std::int64_t runs = run_count(shape_);
+    const Run run = run_of(shape_, index * runs / braid_.axial_count);
+    for (const double along : {begin_, end_}) {
+      if (shape_.flat) {
+        plan.points.emplace_back(along, shape_.column * (run.middle() - 0.5 * shape_.carriers), 0.0);
+      } else {
+        const Vec2 out = shape_.radius * unit_at(run.first + run.last, 2 * std::int64_t{shape_.carriers});
+        plan.points.emplace_back(out.x(), out.y(), along);
+      }
+    }
+    const Vec3 axis = shape_.flat ? Vec3::UnitX() : Vec3::UnitZ();
+    return interpolate(plan, yarn::PathForm::chord, axis, axis);
+  }
+
+  const Fabric& fabric_;
+  const Braid& braid_;
+  const Thread& thread_;
+  const Thread* axial_;
+  BraidShape shape_;
+  int points_;               // data points a step
+  std::int64_t repeat_ = 1;  // steps after which the pattern is there again (a tube's turned)
+  std::int64_t class_count_ = 1;
+  std::int64_t first_repeat_ = 0;
+  double begin_ = 0, end_ = 0;
+};
+
+Status check_counts(const Braid& braid, const BraidShape& shape) {
+  const std::int64_t period = std::lcm(std::int64_t{2}, std::int64_t{braid.over} + braid.under);
+  if (!shape.flat && braid.carriers % period != 0)
+    return at_place(
+        braid.carriers_place,
+        fmt::format("the pattern {}/{} does not close round a tube of {} carriers: it takes a "
+                    "multiple of {}, such as {}",
+                    braid.over, braid.under, braid.carriers, period, (braid.carriers / period + 1) * period));
+  const std::int64_t runs = run_count(shape);
+  if (braid.axial_count > runs)
+    return at_place(braid.axial_place,
+                    fmt::format("{} axial yarns are too many: between {} carriers in the pattern {}/{} there "
+                                "is room for {} (one wherever the same braiders stay on top)",
+                                braid.axial_count, braid.carriers, braid.over, braid.under, runs));
+  return {};
+}
+
+// Braiders side by side need `width` across the yarn.
+Status check_widths(const Braid& braid, const BraidShape& shape, double width, std::string_view unit) {
+  const double cosine = std::cos(braid.angle / 180.0 * pi);
+  if (2.0 * shape.column * cosine >= width * (1.0 - 1e-9)) return {};
+  const double needed = 0.5 * width / cosine;  // a column
+  if (shape.flat)
+    return at_place(
+        braid.radius_place,
+        fmt::format(
+            "{} braiders {:.4g} {} wide do not fit side by side into this strip: at {:.4g} degrees it "
+            "has to be at least {:.4g} {} wide",
+            braid.carriers, width, unit, braid.angle,
+            rounded_up(strip_columns(shape, braid.angle) * needed + width), unit));
+  return at_place(
+      braid.radius_place,
+      fmt::format("{} braiders {:.4g} {} wide do not fit side by side round a radius of {:.4g} {} at {:.4g} "
+                  "degrees: the radius has to be at least {:.4g} {}, or the braiders at most {:.4g} {} wide",
+                  braid.carriers, width, unit, shape.radius, unit, braid.angle,
+                  rounded_up(needed * braid.carriers / (2.0 * pi)), unit, 2.0 * shape.column * cosine, unit));
+}
+
+// The mandrel has room for the innermost yarns.
+Status check_radius(const Braid& braid, double reach, std::string_view unit) {
+  if (braid.flat || braid.radius > reach) return {};
+  return at_place(braid.radius_place,
+                  fmt::format("a radius of {:.4g} {} leaves no room for the yarns inside: the cloth's middle "
+                              "surface needs more than {:.4g} {}",
+                              braid.radius, unit, rounded_up(reach), unit));
+}
+
+// Step, columns and the rest at crossings, for braiders of this size.
+BraidShape shape_of(const Braid& braid, const yarn::SectionSize& size) {
+  BraidShape shape;
+  shape.flat = braid.flat;
+  shape.carriers = braid.carriers;
+  shape.over = braid.over;
+  shape.under = braid.under;
+  shape.radius = braid.radius;
+  const double angle = braid.angle / 180.0 * pi;
+  if (!braid.flat)
+    shape.column = 2.0 * pi * braid.radius / braid.carriers;
+  else if (braid.width > 0.0)
+    shape.column = (braid.width - size.width) / strip_columns(shape, braid.angle);
+  else
+    shape.column = 0.5 * (size.width + size.height) / std::cos(angle);
+  shape.step = shape.column / std::tan(angle);
+  // Over the flat part of a wide section the crossing yarn rests; what is left of the step is its slope.
+  const double flat_part = std::max(size.width - size.height, 0.0);
+  const double rest = 0.5 * flat_part * (1.0 + std::abs(std::cos(2.0 * angle))) / std::sin(2.0 * angle);
+  shape.plateau = std::min(rest * std::cos(angle) / shape.step, longest_plateau);
+  return shape;
+}
+
+// Data points a step: even, so that crossings and the ends are among them; enough for the slope between two
+// crossings, 5 degrees of the helix, the turns of a strip.
+int points_of(const BraidShape& shape) {
+  constexpr double on_slope = 6.0, round = 72.0, steep = 8.0;
+  double points = std::max(12.0, on_slope / (1.0 - 2.0 * shape.plateau));
+  points = std::max(
+      points, shape.flat ? std::min(steep * shape.column / shape.step, 1000.0) : round / shape.carriers);
+  return 2 * static_cast<int>(std::ceil(0.5 * points));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Braid& braid,
+                                                 Diagnostics& diagnostics) {
+  const Thread& thread = *fabric.find_thread(braid.thread);
+  const Thread* axial = braid.axial_count > 0 ? fabric.find_thread(braid.axial_thread) : nullptr;
+  const std::string_view unit = name_of(fabric.units);
+  const auto outline_of = [&](const Thread& of, TextPlace place) -> Result<std::vector<Vec2>> {
+    const Result<yarn::Section> section = section_of(of, fabric.units, false);
+    Status checked;
+    if (!section)
+      checked = section.error();
+    else
+      checked = yarn::check_section(*section, yarn::nominal_size(*section));
+    if (!checked) return at_place(place, fmt::format("thread '{}': {}", of.name, checked.error().text));
+    return outline_polygon(*section);
+  };
+  const Result<std::vector<Vec2>> outline = outline_of(thread, braid.thread_place);
+  if (!outline) return outline.error();
+  Result<std::vector<Vec2>> axial_outline = std::vector<Vec2>();
+  if (axial != nullptr) axial_outline = outline_of(*axial, braid.axial_place);
+  if (!axial_outline) return axial_outline.error();
+
+  const yarn::SectionSize size = yarn::nominal_size(*section_of(thread, fabric.units, false));
+  const double inlay =
+      axial == nullptr ? 0.0 : yarn::nominal_size(*section_of(*axial, fabric.units, false)).height;
+  BraidShape shape = shape_of(braid, size);
+  const double least = 0.5 * (size.height + inlay);
+  if (Status fits = check_counts(braid, shape); !fits) return fits.error();
+  if (Status fits = check_radius(braid, least + 0.5 * size.height, unit); !fits) return fits.error();
+  if (Status fits = check_widths(braid, shape, size.width, unit); !fits) return fits.error();
+  const double wanted = clearance * size.height;
+  const double gap = fit_amplitude(shape, least, wanted, *outline, *axial_outline);
+  if (Status fits = check_radius(braid, shape.amplitude + 0.5 * size.height, unit); !fits)
+    return fits.error();
+  if (gap < 0.5 * wanted) {
+    Message message =
+        warning(Kind::geometry,
+                fmt::format("crossing yarns have too little room and overlap, by about {:.2g} {}: fewer "
+                            "carriers, narrower yarns or a larger {} give it",
+                            -gap, unit, braid.flat ? "width" : "radius"));
+    message.file = fabric.file;
+    message.place = braid.place;
+    diagnostics.add(std::move(message));
+  }
+  return std::unique_ptr<Construction>(
+      std::make_unique<BraidConstruction>(fabric, braid, thread, axial, shape, points_of(shape)));
 }
 
 }  // namespace selvage::fabric

@@ -189,9 +189,14 @@ struct Braid {
   TextPlace place;
   std::string thread;
   TextPlace thread_place;
-  int carriers = 0;
+  int carriers = 0;  // even on a tube
+  TextPlace carriers_place;
   int over = 1, under = 1;  // pattern 2/2
-  double radius = 0, angle = 0 /* degrees */, length = 0;
+  bool flat = false;        // a strip instead of a tube
+  double radius = 0;        // of a tube
+  double width = 0;         // of a strip; 0: what its yarns need
+  TextPlace radius_place;   // of `radius` or `flat`
+  double angle = 0 /* degrees */, length = 0;
   std::string axial_thread;
   TextPlace axial_place;
   int axial_count = 0;

@@ -202,7 +202,9 @@ class Flat {
     add(path + ".carriers", v.carriers);
     add(path + ".over", v.over);
     add(path + ".under", v.under);
+    add(path + ".flat", v.flat);
     add(path + ".radius", v.radius);
+    add(path + ".width", v.width);
     add(path + ".angle", v.angle);
     add(path + ".length", v.length);
     add(path + ".axial_thread", v.axial_thread);

@@ -281,10 +281,12 @@ class Maker {
       case 3: {
         Braid braid;
         braid.thread = one_of(threads_);
-        braid.carriers = 2 * (1 + up_to(100));
+        braid.flat = coin();
+        braid.carriers = braid.flat ? 2 + up_to(100) : 2 * (1 + up_to(100));
         braid.over = count();
         braid.under = count();
-        braid.radius = positive();
+        if (!braid.flat) braid.radius = positive();
+        if (braid.flat && coin()) braid.width = positive();
         braid.angle = between(1.0, 89.0);
         braid.length = positive();
         if (coin()) {

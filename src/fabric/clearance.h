@@ -1,0 +1,33 @@
+// The gap between two yarns whose paths are known as functions, before either is swept: constructions choose
+// their amplitudes by it.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "core/vec.h"
+#include "yarn/section.h"
+
+namespace selvage::fabric {
+
+// A place on a path with the section's axes; `derivative` by the path's parameter.
+struct SweptStation {
+  Vec3 position, derivative;
+  Vec3 across, up;  // unit, perpendicular to the derivative and to each other
+};
+
+struct SweptYarn {
+  std::function<SweptStation(double)> at;
+  std::vector<Vec2> outline;  // of the section, a polygon
+};
+
+// Points on the outline of a section of its own size, closest where it bends most.
+std::vector<Vec2> outline_polygon(const yarn::Section& section);
+
+// The least signed distance (negative: inside) of the surface of `a` between two parameters from the section
+// of `b` in whose plane each of its points lies, searched from parameter `near_b`, at most `reach_b` away
+// from it. Sampled: `stations` along the path.
+double least_gap(const SweptYarn& a, double from, double to, int stations, const SweptYarn& b, double near_b,
+                 double reach_b);
+
+}  // namespace selvage::fabric
