@@ -78,7 +78,8 @@ int write_surface(Records& records, const Entity& entity, const nurbs::Surface& 
   return pointer;
 }
 
-int write_curve(Records& records, const Entity& entity, const nurbs::Curve& curve, const Vec3* normal) {
+int write_curve(Records& records, const Entity& entity, const nurbs::Curve& curve, const Vec3* normal,
+                int property) {
   const int pointer = records.begin(entity);
   records.integer(static_cast<std::int64_t>(curve.points.size()) - 1);
   records.integer(curve.degree);
@@ -93,7 +94,7 @@ int write_curve(Records& records, const Entity& entity, const nurbs::Curve& curv
   records.real(curve.last_parameter());
   const Vec3 direction = normal != nullptr ? *normal : Vec3::Zero();
   records.reals(direction.data(), 3);
-  records.end();
+  records.end(property);
   return pointer;
 }
 
@@ -146,15 +147,21 @@ int write_planar_end(Records& records, const Common& common, const yarn::Body& b
   const int flat =
       write_curve(records, common.entity(126, 0, dependent_in_2d), plane.in_parameters(outline), &up);
   const int curve = write_curve(records, common.entity(126, 0, dependent), outline, &plane.normal);
+  return write_trimmed(records, common, write_boundary(records, common, surface, flat, curve), surface);
+}
 
-  const int boundary = records.begin(common.entity(142, 0, dependent));
+int write_boundary(Records& records, const Common& common, int surface, int flat, int spatial) {
+  const int pointer = records.begin(common.entity(142, 0, dependent));
   records.integer(0);  // how the curve was made: not said
   records.integer(surface);
   records.integer(flat);
-  records.integer(curve);
+  records.integer(spatial);
   records.integer(2);  // the curve in space is the true one
   records.end();
+  return pointer;
+}
 
+int write_trimmed(Records& records, const Common& common, int boundary, int surface) {
   const int pointer = records.begin(common.entity(144));
   records.integer(surface);
   records.integer(1);  // the outer boundary is not the surface's own

@@ -31,7 +31,9 @@ bool is_closed(const nurbs::Curve& curve);
 int write_surface(Records& records, const Entity& entity, const nurbs::Surface& surface, int property = 0);
 
 // 126, form 0. `normal`: unit normal of the plane in which the curve lies; null: it lies in none.
-int write_curve(Records& records, const Entity& entity, const nurbs::Curve& curve, const Vec3* normal);
+// `property` as above.
+int write_curve(Records& records, const Entity& entity, const nurbs::Curve& curve, const Vec3* normal,
+                int property = 0);
 
 // The plane of an end as a bilinear surface a little larger than the end curve, whose parameters are lengths
 // along two axes of the plane. The end curve runs counter-clockwise in them.
@@ -46,6 +48,10 @@ EndPlane end_plane(const yarn::Body& body, const nurbs::Curve& end_curve, bool l
 // 144 on a 128, bounded by a 142 of two 126s, of which the one in space is the body's own end curve.
 int write_planar_end(Records& records, const Common& common, const yarn::Body& body, bool last);
 inline constexpr int entities_of_planar_end = 5;
+
+// 142: the boundary of a trimmed surface by a curve in its parameters and the same in space.
+int write_boundary(Records& records, const Common& common, int surface, int flat, int spatial);
+int write_trimmed(Records& records, const Common& common, int boundary, int surface);  // 144, without holes
 
 int write_group(Records& records, const Common& common, std::span<const int> members);  // 402, form 7
 int write_name(Records& records, const Common& common, std::string_view ascii_name);    // 406, form 15

@@ -104,7 +104,8 @@ HeaderText header_text(const Header& header) {
   HeaderText text;
   const std::string file_name = ascii(header.file_name);
   const std::string title = ascii(header.title);
-  std::string prologue = "Fabric geometry by Selvage " SELVAGE_VERSION ": one closed B-spline body a yarn.";
+  std::string prologue =
+      "Selvage " SELVAGE_VERSION ": a closed B-spline body a yarn, a trimmed plane a piece.";
   add_line(text.bytes, prologue, 'S', ++text.start_lines);
   for (std::string_view rest = title; !rest.empty(); rest.remove_prefix(std::min(columns, rest.size())))
     add_line(text.bytes, rest.substr(0, columns), 'S', ++text.start_lines);

@@ -16,13 +16,14 @@ bool sniff(std::string_view head) {
 }  // namespace
 
 const Descriptor& descriptor() {
-  static const Descriptor self = {.name = "iges",
-                                  .title = "IGES 5.3, B-spline surfaces or solids",
-                                  .extensions = {".igs", ".iges"},
-                                  .sniff = sniff,
-                                  .open_bodies = [](OutputFile& output, const SurfaceOptions& options) {
-                                    return open_writer(output, options);
-                                  }};
+  static const Descriptor self = {
+      .name = "iges",
+      .title = "IGES 5.3, B-spline surfaces or solids, garment pieces",
+      .extensions = {".igs", ".iges"},
+      .sniff = sniff,
+      .open_bodies = [](OutputFile& output,
+                        const SurfaceOptions& options) { return open_writer(output, options); },
+      .carries_curves = true};
   return self;
 }
 

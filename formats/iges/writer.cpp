@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "core/clock.h"
 #include "formats/iges/entities.h"
 #include "formats/iges/header.h"
+#include "formats/iges/piece.h"
 #include "formats/iges/solid.h"
 
 namespace selvage::formats::iges {
@@ -52,20 +54,26 @@ class Writer final : public BodyWriter {
         records_(output, header_text(header_).bytes.size(), limits) {}
 
   Status add(const yarn::Body& body) override;
+  Status add_piece(const fabric::PieceShape& piece) override;
   Result<WriteFacts> finish() override;
 
  private:
   struct Shared {
-    std::vector<std::pair<yarn::Color, int>> colors;  // and their 314
-    std::array<bool, yarn::all_roles.size()> levels{};
+    std::vector<std::pair<yarn::Color, int>> colors;        // and their 314
+    std::array<bool, yarn::all_roles.size() + 1> levels{};  // by role, and that of pieces
   };
 
   Status check(const yarn::Body& body);
-  Status check_room(const yarn::Body& body);
+  Status check(const fabric::PieceShape& piece);
+  // `values`: an upper bound of the lines that `write` writes; `what`: "yarn warp1".
+  Status check_room(std::int64_t values, const std::string& what, const std::function<void()>& write);
+  Status add_checked(const std::string& name, const std::string& what, std::int64_t values,
+                     const std::function<void()>& write);
   void write(const yarn::Body& body);
+  void write(const fabric::PieceShape& piece);
   void write_surfaces(const Common& common, const yarn::Body& body);
   int color(const yarn::Color& color);
-  int level(yarn::Role role);
+  int level(std::size_t index, std::string_view name);
   [[nodiscard]] int entities_of_end(const yarn::EndFace& end) const;
 
   OutputFile* output_;
@@ -73,7 +81,7 @@ class Writer final : public BodyWriter {
   Header header_;
   Records records_;
   Shared shared_;
-  std::string name_;  // of the present yarn, in ASCII
+  std::string name_;  // of the present yarn or piece, in ASCII
   std::uint64_t bodies_ = 0;
   double largest_ = 0;
   double smallest_size_ = std::numeric_limits<double>::infinity();
@@ -121,32 +129,52 @@ Status Writer::check(const yarn::Body& body) {
   return {};
 }
 
-// Far from the limit a rough bound is enough; near it the yarn is written without being kept, and its lines
-// counted.
-Status Writer::check_room(const yarn::Body& body) {
+std::int64_t most_values(const yarn::Body& body) {
   std::int64_t values = 1000;
   for (const nurbs::Surface* surface : {&body.surface, &body.start.surface, &body.end.surface})
     values += static_cast<std::int64_t>(4 * surface->points.size() +
                                         4 * (surface->knots_u.size() + surface->knots_v.size()) +
                                         16 * static_cast<std::size_t>(surface->count_u + surface->count_v));
+  return values;
+}
+
+std::int64_t most_values(const fabric::PieceShape& piece) {
+  return 1000 + 150 * static_cast<std::int64_t>(piece.edges.size());
+}
+
+Status Writer::check(const fabric::PieceShape& piece) {
+  for (const fabric::PieceEdge& edge : piece.edges) {
+    const std::optional<double> coordinates = largest_of(numbers_of(edge.curve.points));
+    if (!coordinates)
+      return error(Kind::geometry,
+                   fmt::format("piece {} has a coordinate that is not a finite number", piece.name));
+    largest_ = std::max(largest_, *coordinates);
+    smallest_size_ = std::min(smallest_size_, (edge.curve.points.front() - edge.curve.points[1]).norm());
+  }
+  return {};
+}
+
+// Far from the limit a rough bound is enough; near it the thing is written without being kept, and its lines
+// counted.
+Status Writer::check_room(std::int64_t values, const std::string& what, const std::function<void()>& write) {
   const Records::Lines now = records_.lines();
   const std::int64_t most = records_.limits().lines;
-  if (now.parameters + values <= most && now.directory + 200 <= most) return {};
+  if (now.parameters + values <= most && now.directory + values <= most) return {};
 
   const Shared before = shared_;
   records_.measure(true);
-  write(body);
+  write();
   const Records::Lines needed = records_.measure(false);
   shared_ = before;
   if (needed.parameters <= most && needed.directory <= most) return {};
   const bool parameters = needed.parameters > most;
-  return yarn_error(
-      Kind::limit, body,
-      fmt::format(
-          "with yarn {} the IGES file would need {} {} lines, but lines are numbered to {} at most ({} yarns "
-          "fit): split the fabric over several files",
-          body.name, parameters ? needed.parameters : needed.directory,
-          parameters ? "parameter" : "directory", most, bodies_));
+  return error(
+      Kind::limit,
+      fmt::format("with {} the IGES file would need {} {} lines, but lines are numbered to {} at most ({} {} "
+                  "fit): split the fabric over several files",
+                  what, parameters ? needed.parameters : needed.directory,
+                  parameters ? "parameter" : "directory", most, bodies_,
+                  what.starts_with("yarn") ? "yarns" : "yarns and pieces"));
 }
 
 int Writer::color(const yarn::Color& color) {
@@ -157,11 +185,10 @@ int Writer::color(const yarn::Color& color) {
   return pointer;
 }
 
-int Writer::level(yarn::Role role) {
-  const auto index = static_cast<std::size_t>(role);
+int Writer::level(std::size_t index, std::string_view name) {
   const int level = static_cast<int>(index) + 1;
   if (!shared_.levels[index]) {
-    write_level_name(records_, level, yarn::name_of(role));
+    write_level_name(records_, level, name);
     shared_.levels[index] = true;
   }
   return level;
@@ -198,7 +225,9 @@ void Writer::write_surfaces(const Common& common, const yarn::Body& body) {
 }
 
 void Writer::write(const yarn::Body& body) {
-  Common common{.color = color(body.color), .level = level(body.role), .label = name_};
+  Common common{.color = color(body.color),
+                .level = level(static_cast<std::size_t>(body.role), yarn::name_of(body.role)),
+                .label = name_};
   int entities = 2;  // the first face and the group
   if (options_.iges_solid)
     entities = entities_of_solid(body);
@@ -212,15 +241,41 @@ void Writer::write(const yarn::Body& body) {
   write_name(records_, common, name_);
 }
 
+void Writer::write(const fabric::PieceShape& piece) {
+  Common common{
+      .color = color(yarn::Color{}), .level = level(yarn::all_roles.size(), "piece"), .label = name_};
+  common.name = records_.next() + 2 * entities_of_piece(piece);
+  write_piece(records_, common, piece);
+  write_name(records_, common, name_);
+}
+
 Status Writer::add(const yarn::Body& body) {
   if (Status status = check(body); !status.ok()) return status;
-  name_ = ascii(body.name);
-  if (Status status = check_room(body); !status.ok()) return status;
-  if (name_ != body.name && !std::exchange(renamed_, true))
-    messages_.push_back(
-        warning(Kind::unsupported,
-                fmt::format("IGES strings are ASCII: yarn {} is named {} in the file", body.name, name_)));
-  write(body);
+  Status added = add_checked(body.name, "yarn " + body.name, most_values(body), [&] { write(body); });
+  if (added.ok()) return added;
+  if (added.error().kind == Kind::limit) {
+    added.error().yarn = body.name;
+    added.error().place = body.place;
+  }
+  return added;
+}
+
+Status Writer::add_piece(const fabric::PieceShape& piece) {
+  Status status = check(piece);
+  if (status.ok())
+    status = add_checked(piece.name, "piece " + piece.name, most_values(piece), [&] { write(piece); });
+  if (!status.ok() && status.error().kind != Kind::io) status.error().place = piece.place;
+  return status;
+}
+
+Status Writer::add_checked(const std::string& name, const std::string& what, std::int64_t values,
+                           const std::function<void()>& write) {
+  name_ = ascii(name);
+  if (Status status = check_room(values, what, write); !status.ok()) return status;
+  if (name_ != name && !std::exchange(renamed_, true))
+    messages_.push_back(warning(
+        Kind::unsupported, fmt::format("IGES strings are ASCII: {} is named {} in the file", what, name_)));
+  write();
   ++bodies_;
   // What is still to come is as what came.
   const auto entities = static_cast<std::uint64_t>(records_.lines().directory / 2);

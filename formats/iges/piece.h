@@ -1,0 +1,18 @@
+// A garment piece: its outline as curves (126) and its inside as a trimmed plane (144).
+#pragma once
+
+#include "fabric/piece.h"
+#include "formats/iges/entities.h"
+
+namespace selvage::formats::iges {
+
+// Writes the 144 (on a plane as a bilinear 128, bounded by a 142 whose two curves, in the plane's parameters
+// and in space, are 102s of one 126 an edge), then for each edge an independent 126 of its own name, and the
+// 402 form 7 that holds them all. The plane's parameters are x and y themselves. `common.name` is the 406
+// form 15 of the piece.
+void write_piece(Records& records, const Common& common, const fabric::PieceShape& piece);
+
+// How many entities write_piece writes for this piece.
+int entities_of_piece(const fabric::PieceShape& piece);
+
+}  // namespace selvage::formats::iges
