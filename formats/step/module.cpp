@@ -4,10 +4,12 @@
 #include "formats/step/writer.h"
 #include "solid/brep.h"
 #include "solid/occt/check.h"
+#include "solid/occt/piece.h"
 
 extern "C" __attribute__((visibility("default"))) const void* selvage_brep() {
   static const selvage::solid::BrepModule table = {.version = OCC_VERSION_COMPLETE,
-                                                   .check = selvage::solid::occt::check};
+                                                   .check = selvage::solid::occt::check,
+                                                   .check_pieces = selvage::solid::occt::check_pieces};
   return &table;
 }
 

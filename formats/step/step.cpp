@@ -22,11 +22,13 @@ Result<std::unique_ptr<BodyWriter>> open_bodies(OutputFile& output, const Surfac
 }  // namespace
 
 const Descriptor& descriptor() {
-  static const Descriptor self = {.name = "step",
-                                  .title = "STEP AP242 or AP214, manifold solids with names and colours",
-                                  .extensions = {".stp", ".step"},
-                                  .sniff = looks_like_step,
-                                  .open_bodies = open_bodies};
+  static const Descriptor self = {
+      .name = "step",
+      .title = "STEP AP242 or AP214, manifold solids and faces with names and colours",
+      .extensions = {".stp", ".step"},
+      .sniff = looks_like_step,
+      .open_bodies = open_bodies,
+      .carries_curves = true};
   return self;
 }
 

@@ -39,6 +39,7 @@
 #include "formats/step/stream.h"
 #include "solid/occt/check.h"
 #include "solid/occt/guard.h"
+#include "solid/occt/piece.h"
 #include "solid/occt/shape.h"
 
 namespace selvage::formats::step {
@@ -87,7 +88,8 @@ Handle(TCollection_HAsciiString) text(const std::string& words) {
 // fibre.
 constexpr double uncertainty = 1e-7;
 
-struct Yarn {
+// A yarn's solid or a piece's shell.
+struct Part {
   TopoDS_Shape shape;
   std::string name;
   yarn::Color color;
@@ -103,6 +105,16 @@ class StepBodyWriter : public BodyWriter {
 
   Status add(const yarn::Body& body) override {
     return solid::occt::guarded(fmt::format("yarn '{}' to STEP", body.name), [&] { return add_shape(body); });
+  }
+
+  Status add_piece(const fabric::PieceShape& piece) override {
+    return solid::occt::guarded(fmt::format("piece '{}' to STEP", piece.name), [&]() -> Status {
+      const solid::FaceCheck verdict = solid::occt::check_piece(piece);
+      if (!verdict.defects.empty()) return verdict.defects.front();
+      ++facts_.entities["SHELL_BASED_SURFACE_MODEL"];
+      add_part({solid::occt::build_piece(piece, 1.0), piece.name, yarn::Color{}});
+      return {};
+    });
   }
 
   Result<WriteFacts> finish() override {
@@ -136,17 +148,21 @@ class StepBodyWriter : public BodyWriter {
     } else {
       ++facts_.entities["MANIFOLD_SOLID_BREP"];
     }
-    const TDF_Label part = shapes_->AddShape(yarn.shape, false, false);
-    const TDF_Label component = shapes_->AddComponent(assembly_, part, TopLoc_Location());
-    const TCollection_ExtendedString name(body.name.c_str(), true);
-    TDataStd_Name::Set(part, name);
-    TDataStd_Name::Set(component, name);
-    yarns_.push_back({yarn.shape, body.name, body.color});
+    add_part({yarn.shape, body.name, body.color});
     return {};
   }
 
+  void add_part(Part added) {
+    const TDF_Label part = shapes_->AddShape(added.shape, false, false);
+    const TDF_Label component = shapes_->AddComponent(assembly_, part, TopLoc_Location());
+    const TCollection_ExtendedString name(added.name.c_str(), true);
+    TDataStd_Name::Set(part, name);
+    TDataStd_Name::Set(component, name);
+    parts_.push_back(std::move(added));
+  }
+
   Result<WriteFacts> write() {
-    if (yarns_.empty()) return error(Kind::geometry, "there is no yarn to write");
+    if (parts_.empty()) return error(Kind::geometry, "there is neither a yarn nor a piece to write");
     static std::mutex one_at_a_time;  // OpenCASCADE's settings are the process's
     const std::lock_guard lock(one_at_a_time);
     configure(options_);
@@ -187,25 +203,25 @@ class StepBodyWriter : public BodyWriter {
     const Handle(Transfer_FinderProcess) found = writer.WS()->TransferWriter()->FinderProcess();
     STEPConstruct_Styles styles(writer.WS());
     std::map<std::array<int, 3>, Handle(StepVisual_PresentationStyleAssignment)> assignments;
-    for (const Yarn& yarn : yarns_) {
-      const Handle(StepRepr_RepresentationItem) item = STEPConstruct::FindEntity(found, yarn.shape);
-      const Handle(StepRepr_RepresentationContext) context = styles.FindContext(yarn.shape);
+    for (const Part& part : parts_) {
+      const Handle(StepRepr_RepresentationItem) item = STEPConstruct::FindEntity(found, part.shape);
+      const Handle(StepRepr_RepresentationContext) context = styles.FindContext(part.shape);
       if (item.IsNull() || context.IsNull())
-        return error(Kind::internal, fmt::format("OpenCASCADE left out yarn '{}'", yarn.name));
-      item->SetName(text(yarn.name));
-      auto& assignment = assignments[{yarn.color.red, yarn.color.green, yarn.color.blue}];
+        return error(Kind::internal, fmt::format("OpenCASCADE left out '{}'", part.name));
+      item->SetName(text(part.name));
+      auto& assignment = assignments[{part.color.red, part.color.green, part.color.blue}];
       if (assignment.IsNull()) {
         // Not OpenCASCADE's own colour, which is single precision; and no style of curves: it would draw
         // lines 0.1 wide.
         const Handle(StepVisual_ColourRgb) color = new StepVisual_ColourRgb;
-        color->Init(text(""), yarn.color.red / 255.0, yarn.color.green / 255.0, yarn.color.blue / 255.0);
+        color->Init(text(""), part.color.red / 255.0, part.color.green / 255.0, part.color.blue / 255.0);
         assignment = styles.MakeColorPSA(item, color, {}, {}, 0.0);
       }
       styles.ClearStyles();
       styles.AddStyle(item, assignment, {});
       Handle(StepVisual_MechanicalDesignGeometricPresentationRepresentation) presentation;
       if (!styles.CreateMDGPR(context, presentation))
-        return error(Kind::internal, fmt::format("OpenCASCADE refuses the colour of yarn '{}'", yarn.name));
+        return error(Kind::internal, fmt::format("OpenCASCADE refuses the colour of '{}'", part.name));
       writer.Model()->AddWithRefs(presentation);
     }
     return {};
@@ -244,7 +260,7 @@ class StepBodyWriter : public BodyWriter {
   Handle(TDocStd_Document) document_;
   Handle(XCAFDoc_ShapeTool) shapes_;
   TDF_Label assembly_;
-  std::vector<Yarn> yarns_;  // in file order
+  std::vector<Part> parts_;  // in file order
   WriteFacts facts_;
 };
 

@@ -16,4 +16,10 @@ Result<std::vector<BrepCheck>> check_breps(std::span<const yarn::Body> bodies) {
   return (*module)->check(bodies);
 }
 
+Result<std::vector<FaceCheck>> check_piece_faces(std::span<const fabric::PieceShape> pieces) {
+  Result<const BrepModule*> module = brep_module();
+  if (!module) return module.error();
+  return (*module)->check_pieces(pieces);
+}
+
 }  // namespace selvage::solid
