@@ -1,4 +1,5 @@
-// `selvage check`: is every yarn a closed, valid solid within its tolerance, and do no two share space?
+// `selvage check`: is every yarn a closed, valid solid within its tolerance, and do no two share space? Is
+// the outline of every garment piece closed and simple, and its face valid?
 #include "solid/check.h"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 
 #include "pipeline/facts.h"
 #include "pipeline/overlaps.h"
+#include "pipeline/pieces.h"
 #include "pipeline/scaling.h"
 #include "pipeline/table.h"
 #include "solid/brep.h"
@@ -23,6 +25,7 @@ struct Findings {
   std::vector<yarn::Body> bodies;
   solid::SolidCheck solids;
   std::vector<solid::BrepCheck> breps;
+  PieceFindings pieces;
   double tolerance = 0;  // file units
 };
 
@@ -67,8 +70,7 @@ std::string brep_word(const solid::BrepCheck& brep) {
   return brep.valid ? fmt::format("{} free edges", brep.free_edges) : "invalid";
 }
 
-void print_tables(const Job& job, const Findings& found, std::size_t defects) {
-  const Unit file = job.file_units(), shown = job.options.units.value_or(file);
+std::string yarn_tables(const Findings& found, Unit file, Unit shown) {
   const auto length = [&](double value) { return cell(converted(value, file, shown)); };
   Table yarns({"yarn", "points", "length", "volume", "least bend radius", "tube error", "closed",
                "crosses itself", "B-rep", "defects"});
@@ -82,7 +84,7 @@ void print_tables(const Job& job, const Findings& found, std::size_t defects) {
                std::string(yes_no(solid.self_intersecting)), brep_word(found.breps[i]),
                std::to_string(defects_of(found, i, file).size())});
   }
-  std::string text = fmt::format("{}: lengths in {}\n{}", job.input.path, name_of(shown), yarns.text());
+  std::string text = yarns.text();
   if (!found.solids.overlaps.empty()) {
     Table overlaps({"overlap of", "and", "depth", "x", "y", "z"});
     for (const solid::Overlap& overlap : found.solids.overlaps)
@@ -92,7 +94,21 @@ void print_tables(const Job& job, const Findings& found, std::size_t defects) {
   }
   if (found.solids.min_gap)
     text += fmt::format("  smallest gap between yarns: {}\n", length(*found.solids.min_gap));
-  text += defects == 0 ? "  sound: every yarn is a closed valid solid, no two overlap\n"
+  return text;
+}
+
+void print_tables(const Job& job, const Findings& found, std::size_t defects) {
+  const Unit file = job.file_units(), shown = job.options.units.value_or(file);
+  std::string text = fmt::format("{}: lengths in {}\n", job.input.path, name_of(shown)), sound;
+  if (!found.bodies.empty()) {
+    text += yarn_tables(found, file, shown);
+    sound = "every yarn is a closed valid solid, no two overlap";
+  }
+  if (!found.pieces.shapes.empty()) {
+    text += face_table(found.pieces, file, shown);
+    sound += fmt::format("{}every piece is a valid face in a closed outline", sound.empty() ? "" : "; ");
+  }
+  text += defects == 0 ? fmt::format("  sound: {}\n", sound)
                        : fmt::format("  {} defect{}\n", defects, defects == 1 ? "" : "s");
   job.print(text);
 }
@@ -104,6 +120,10 @@ std::optional<Findings> examine(Job& job, const fabric::Fabric& fabric) {
   if (!bodies) return std::nullopt;
   Findings found;
   found.bodies = std::move(*bodies);
+  std::optional<PieceFindings> pieces = examine_pieces(job, fabric);
+  if (!pieces) return std::nullopt;
+  found.pieces = std::move(*pieces);
+  if (found.bodies.empty()) return found;
   found.tolerance = fabric::tolerance_of(fabric, job.build_options());
   solid::CheckOptions options;
   options.threads = static_cast<int>(job.threads);
@@ -132,8 +152,8 @@ bool check(Job& job) {
   if (!fabric) return false;
   const std::optional<Findings> found = examine(job, *fabric);
   if (!found) return false;
-  report_check(job, found->solids, found->bodies);
-  std::size_t defects = found->solids.overlaps.size();
+  if (!found->bodies.empty()) report_check(job, found->solids, found->bodies);
+  std::size_t defects = found->solids.overlaps.size() + found->pieces.defects;
   for (std::size_t i = 0; i < found->bodies.size(); ++i) {
     for (Message& message : defects_of(*found, i, fabric->units)) {
       ++defects;

@@ -45,7 +45,10 @@ YarnReport facts_of(const yarn::Body& body, Unit units) {
 
 PieceReport facts_of(const fabric::PieceShape& piece, Unit units, bool with_table) {
   const double mm = millimetres_per(units);
-  PieceReport facts{piece.name, piece.area * mm * mm, piece.perimeter * mm, {}};
+  PieceReport facts;
+  facts.name = piece.name;
+  facts.area = piece.area * mm * mm;
+  facts.perimeter = piece.perimeter * mm;
   for (const fabric::PieceEdge& edge : piece.edges) {
     facts.edges.push_back({edge.name, edge.is_line(), nurbs::arc_length(edge.curve) * mm, {}});
     if (!with_table || !edge.fit) continue;

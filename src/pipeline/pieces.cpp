@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/scaling.h"
 #include "pipeline/table.h"
@@ -14,6 +15,9 @@ namespace {
 using fabric::CurveFit;
 using fabric::PieceEdge;
 using fabric::PieceShape;
+
+// OpenCASCADE integrates areas to 1e-9 of itself.
+constexpr double area_agreement = 1e-6;
 
 // Errors beside rounding are shown as they are, rounding itself as few digits.
 std::string small(double value) {
@@ -71,6 +75,50 @@ std::string curve_tables(const PieceShape& piece, Unit file, Unit shown) {
     text += point_table(*edge.fit) + control_table(edge.fit->bezier);
   }
   return text;
+}
+
+std::optional<PieceFindings> examine_pieces(Job& job, const fabric::Fabric& fabric) {
+  PieceFindings found;
+  for (const fabric::Piece* piece : fabric::pieces_of(fabric)) {
+    if (std::optional<PieceShape> shape = job.build_piece(fabric, *piece, /*defects=*/true))
+      found.shapes.push_back(std::move(*shape));
+    else
+      ++found.defects;
+  }
+  if (found.shapes.empty()) return found;
+  Result<std::vector<solid::FaceCheck>> faces = solid::check_piece_faces(found.shapes);
+  if (!faces) {
+    job.say(faces.error());
+    return std::nullopt;
+  }
+  found.faces = std::move(*faces);
+  for (std::size_t i = 0; i < found.shapes.size(); ++i) {
+    const PieceShape& shape = found.shapes[i];
+    solid::FaceCheck& face = found.faces[i];
+    if (face.defects.empty() && std::abs(face.area - shape.area) > area_agreement * shape.area) {
+      face.defects.push_back(
+          error(Kind::geometry,
+                fmt::format("piece '{}': the face's area is {:.9g}, that of the outline {:.9g} {}^2",
+                            shape.name, face.area, shape.area, name_of(fabric.units))));
+      face.defects.back().place = shape.place;
+    }
+    found.defects += face.defects.size();
+    for (const Message& defect : face.defects) job.say_defect(defect);
+    if (job.wants_report()) job.report.pieces[i].valid = face.defects.empty();
+  }
+  return found;
+}
+
+std::string face_table(const PieceFindings& found, Unit file, Unit shown) {
+  const auto length = [&](double value) { return converted(value, file, shown); };
+  Table table({"piece", "edges", "perimeter", "area", "closed", "crosses itself", "B-rep", "defects"});
+  for (std::size_t i = 0; i < found.shapes.size(); ++i) {
+    const PieceShape& shape = found.shapes[i];
+    table.add({shape.name, std::to_string(shape.edges.size()), cell(length(shape.perimeter)),
+               cell(length(length(shape.area))), "yes", "no", found.faces[i].valid ? "valid" : "invalid",
+               std::to_string(found.faces[i].defects.size())});
+  }
+  return found.shapes.empty() ? std::string() : table.text();
 }
 
 }  // namespace selvage::pipeline

@@ -1,4 +1,4 @@
-// Garment pieces in the tables of `selvage info`.
+// Garment pieces in the tables of `selvage info`, and in `selvage check`.
 #pragma once
 
 #include <string>
@@ -6,6 +6,8 @@
 
 #include "core/units.h"
 #include "fabric/piece.h"
+#include "pipeline/job.h"
+#include "solid/brep.h"
 
 namespace selvage::pipeline {
 
@@ -15,5 +17,16 @@ std::string piece_table(const std::vector<fabric::PieceShape>& pieces, Unit file
 // For each curve of the piece: its shape, the error at each fixed point, and the control points by both
 // methods.
 std::string curve_tables(const fabric::PieceShape& piece, Unit file, Unit shown);
+
+// What `check` found: every piece whose outline is closed and does not cross itself, with OpenCASCADE's
+// verdict on its face.
+struct PieceFindings {
+  std::vector<fabric::PieceShape> shapes;
+  std::vector<solid::FaceCheck> faces;
+  std::size_t defects = 0;  // all were said
+};
+// Nothing when OpenCASCADE could not be asked (it was said why).
+std::optional<PieceFindings> examine_pieces(Job& job, const fabric::Fabric& fabric);
+std::string face_table(const PieceFindings& found, Unit file, Unit shown);
 
 }  // namespace selvage::pipeline

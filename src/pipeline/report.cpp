@@ -60,7 +60,10 @@ Json piece_json(const PieceReport& piece) {
     if (edge.fit) out["fit"] = fit_json(*edge.fit);
     edges.push_back(std::move(out));
   }
-  return {{"name", piece.name}, {"perimeter", piece.perimeter}, {"area", piece.area}, {"edges", edges}};
+  Json out = {{"name", piece.name}, {"perimeter", piece.perimeter}, {"area", piece.area}};
+  if (piece.valid) out["valid"] = *piece.valid;
+  out["edges"] = std::move(edges);
+  return out;
 }
 
 Json output_json(const OutputReport& output) {

@@ -24,7 +24,7 @@ struct YarnReport {
   std::optional<double> min_bend_radius;
   double tube_error = 0;
   std::optional<double> path_miss;  // loop paths: largest distance of the centre line from its points
-  int count_u = 0, count_v = 0;  // control points round and along
+  int count_u = 0, count_v = 0;     // control points round and along
 };
 
 // A garment piece. Lengths in mm, areas in mm2; points are x, y.
@@ -50,6 +50,7 @@ struct PieceReport {
   std::string name;
   double area = 0, perimeter = 0;
   std::vector<Edge> edges;
+  std::optional<bool> valid;  // the face, by OpenCASCADE
 };
 
 struct OverlapReport {
