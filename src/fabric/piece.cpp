@@ -49,7 +49,8 @@ CurveFit fit_of(const std::vector<Vec2>& points) {
     fixed.at = points[i];
     fixed.parameter = static_cast<double>(i) / static_cast<double>(points.size() - 1);
     fixed.error = (nurbs::evaluate(curve, fixed.parameter) - points[i]).norm();
-    fixed.distance = (nurbs::evaluate(curve, nurbs::nearest_parameter(curve, points[i])) - points[i]).norm();
+    fixed.distance = std::min(
+        fixed.error, (nurbs::evaluate(curve, nurbs::nearest_parameter(curve, points[i])) - points[i]).norm());
     fit.points.push_back(fixed);
   }
   return fit;
