@@ -1,4 +1,5 @@
 // The explicit list of formats: to add a format is to add a folder and a line here.
+#include "formats/dxf/dxf.h"
 #include "formats/format.h"
 #include "formats/iges/iges.h"
 #include "formats/inp/inp.h"
@@ -13,8 +14,8 @@ namespace selvage::formats {
 
 const std::vector<const Descriptor*>& all_formats() {
   static const std::vector<const Descriptor*> list = {
-      &txt::descriptor(), &wif::descriptor(), &iges::descriptor(), &step::descriptor(),
-      &svg::descriptor(), &inp::descriptor(), &msh::descriptor(),  &vtu::descriptor()};
+      &txt::descriptor(), &wif::descriptor(), &iges::descriptor(), &step::descriptor(), &svg::descriptor(),
+      &dxf::descriptor(), &inp::descriptor(), &msh::descriptor(),  &vtu::descriptor()};
   return list;
 }
 

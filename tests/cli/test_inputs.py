@@ -71,6 +71,9 @@ class Bad(Case):
                   "unknown_thread": r":2:8: error: .*nothread", "version": r":1:8: error: ", "no_end": r":\d+:\d+: error: .*end",
                   "short_grid": r":\d+:\d+: error: ", "zero_length": r":\d+:\d+: error: ", "binary": r":1:1: error: ",
                   "edit_joint": r":10:1: error: .*no joint 4", "edit_weight": r":12:1: error: .*off the plane",
+                  "piece_gap": r":5:3: error: line 'side' starts at", "piece_open": r":6:3: error: .*not closed",
+                  "piece_crossing": r":10:3: error: .*'a' and line 'c' meet at \(10, 10\)",
+                  "piece_flat": r":3:1: error: .*no area",
                   "empty": r":1:1: error: "}
         self.assertEqual(sorted(places), sorted(path.stem for path in BAD.glob("*.txt")))
         for name, pattern in places.items():
