@@ -13,7 +13,7 @@ namespace {
 struct Pairs {
   char digits[200];
   constexpr Pairs() : digits() {
-    for (int i = 0; i < 100; ++i) {
+    for (std::size_t i = 0; i < 100; ++i) {
       digits[2 * i] = static_cast<char>('0' + i / 10);
       digits[2 * i + 1] = static_cast<char>('0' + i % 10);
     }
@@ -61,11 +61,12 @@ char* write_number(char* out, double value) {
     }
     *out++ = 'e';
     *out++ = whole > 0 ? '+' : '-';
-    std::memcpy(out, pairs.digits + 2 * std::abs(whole - 1), 2);
+    std::memcpy(out, pairs.digits + 2 * static_cast<std::size_t>(std::abs(whole - 1)), 2);
     return out + 2;
   }
   if (whole <= 0) {  // 0.00ddd
-    std::memcpy(out, "0.0000", 6);
+    std::memset(out, '0', 6);
+    out[1] = '.';
     out += 2 - whole;
     std::memcpy(out, first, static_cast<std::size_t>(count));
     return out + count;

@@ -77,7 +77,7 @@ std::vector<double> greville(const std::vector<double>& knots, int degree, int c
   std::vector<double> sites(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     double sum = 0.0;
-    for (int k = 1; k <= degree; ++k) sum += knots[static_cast<std::size_t>(i + k)];
+    for (int k = 1; k <= degree; ++k) sum += knots[static_cast<std::size_t>(i) + static_cast<std::size_t>(k)];
     sites[static_cast<std::size_t>(i)] = sum / degree;
   }
   return sites;

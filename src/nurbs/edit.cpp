@@ -56,7 +56,8 @@ class Rows {
   // Knots of the periodic form, any index; knot(0) is the seam.
   [[nodiscard]] double knot(int i) const {
     const int n = spans(), wrapped = ((i % n) + n) % n;
-    return breaks_[at(wrapped)] + (breaks_.back() - breaks_.front()) * ((i - wrapped) / n);
+    const int turns = (i - wrapped) / n;
+    return breaks_[at(wrapped)] + turns * (breaks_.back() - breaks_.front());
   }
 
   [[nodiscard]] Row get(int i) const {
@@ -227,7 +228,7 @@ Vec3 nearest_reachable(const Triangle& t, const Vec3& target) {
                                        t.joint(t.high[0], t.high[1]), t.joint(t.low[0], t.high[1])};
   if (!t.is_flat()) {
     const Vec3 normal = t.normal.normalized();
-    const Vec3 foot = target - (target - t.rows[1].point).dot(normal) * normal;
+    Vec3 foot = target - (target - t.rows[1].point).dot(normal) * normal;
     int left = 0, right = 0;
     for (std::size_t k = 0; k < 4; ++k) {
       const Vec3 &from = corners[k], &to = corners[(k + 1) % 4];

@@ -121,7 +121,8 @@ Eigen::MatrixXd interpolate_periodic(const std::vector<double>& t, const Eigen::
   std::vector<double> knots;
   for (Eigen::Index i = -3; i <= n + 3; ++i) {
     const Eigen::Index wrapped = ((i % n) + n) % n;
-    knots.push_back(t[at(wrapped)] + period * static_cast<double>((i - wrapped) / n));
+    const Eigen::Index turns = (i - wrapped) / n;
+    knots.push_back(t[at(wrapped)] + period * static_cast<double>(turns));
   }
   knots[at(n + 3)] = t.back();
   // The unknown row i stands in the middle of the three functions that live at data point i (rows i - 1, i, i

@@ -106,7 +106,7 @@ double volume_flux(const Surface& surface, const Vec3& origin) {
     for (const Node& u : nodes_u) {
       Vec4 p = Vec4::Zero(), du = Vec4::Zero(), dv = Vec4::Zero();
       for (int i = 0; i <= surface.degree_u; ++i) {
-        const auto k = static_cast<std::size_t>(u.first + i);
+        const auto k = static_cast<std::size_t>(u.first) + static_cast<std::size_t>(i);
         p += u.value[static_cast<std::size_t>(i)] * line[k];
         du += u.slope[static_cast<std::size_t>(i)] * line[k];
         dv += u.value[static_cast<std::size_t>(i)] * slope_line[k];

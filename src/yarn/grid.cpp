@@ -38,6 +38,7 @@ nurbs::Curve closed_uniform(const std::vector<Vec3>& points, const std::vector<d
 
 std::vector<double> clamped_integer_knots(int count, int degree) {
   std::vector<double> knots;
+  knots.reserve(at(count + degree + 1));
   for (int i = 0; i < count + degree + 1; ++i) knots.push_back(std::clamp(i - degree, 0, count - degree));
   return knots;
 }

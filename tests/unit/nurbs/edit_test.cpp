@@ -143,6 +143,19 @@ TEST(MoveJointByControl, NextToAClampedEnd) {
   EXPECT_TRUE(same_bits(end->points.back(), Vec3(9, 9, 9)));
 }
 
+// Short segments before the joint, a long one behind it: the share of the first of the three points is 100 /
+// 132.
+TEST(MoveJointByControl, TakesThePointWithTheLargestShare) {
+  Curve curve;
+  curve.points = random_points(9, 4);
+  curve.knots = {0, 0, 0, 0, 1, 2, 12, 13, 14, 15, 15, 15, 15};
+  const Vec3 step(0.1, 0.7, 0.0);
+  const Result<Curve> moved = move_joint_by_control(curve, false, 3, joint_at(curve, 3) + step);
+  ASSERT_TRUE(moved.ok());
+  EXPECT_EQ(changed_points(curve, *moved), (std::vector<std::size_t>{2}));
+  EXPECT_LT((moved->points[2] - curve.points[2] - 1.32 * step).norm(), 1e-14);
+}
+
 Vec3 affine(const Vec3& p) {
   Eigen::Matrix3d m;
   m << 0.8, -0.3, 0.1, 0.2, 1.1, -0.4, 0.05, 0.3, 0.9;
