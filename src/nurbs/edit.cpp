@@ -22,7 +22,8 @@ constexpr double position_tolerance = 1e-9;
 
 // Coordinates of a message; what is rounding beside the others is shown as 0.
 std::string text_of(const Vec3& p) {
-  const auto shown = [&](double c) { return std::abs(c) < 1e-12 * p.norm() ? 0.0 : c; };
+  const double rounding = 1e-12 * p.lpNorm<Eigen::Infinity>();
+  const auto shown = [&](double c) { return std::abs(c) < rounding ? 0.0 : c; };
   return fmt::format("({:.12g}, {:.12g}, {:.12g})", shown(p.x()), shown(p.y()), shown(p.z()));
 }
 
@@ -424,16 +425,10 @@ Result<Curve> move_joint_by_control(const Curve& curve, bool closed, int number,
   const Joint joint = joint_of(rows, closed, number);
   const int moved = joint.rows[at(joint.main)];
   const double share = joint.shares[at(joint.main)];
-  if (joint.rows.size() == 1) {
-    rows.set(moved, {target, rows.get(moved).weight});
-    return rows.curve();
-  }
-  // The second round takes away what the first one's rounding left.
-  for (int round = 0; round < 2; ++round) {
-    const Vec3 miss = target - evaluate(rows.curve(), joint.parameter);
-    const Row row = rows.get(moved);
-    rows.set(moved, {row.point + miss / share, row.weight});
-  }
+  const Row row = rows.get(moved);
+  // An end becomes the target to the bit.
+  rows.set(moved, {joint.rows.size() == 1 ? target : Vec3(row.point + (target - joint.position) / share),
+                   row.weight});
   if (!rows.get(moved).point.allFinite())
     return error(Kind::geometry,
                  fmt::format("joint {} cannot go so far: no number holds its control point", number));
