@@ -77,6 +77,7 @@ void read_draft_rows(Parser& p, Draft& draft) {
 
 void read_draft(Parser& p, Weave& weave, std::string_view) {
   Draft& draft = weave.draft;
+  draft.place = p.statement().place();
   if (!p.more()) return read_draft_rows(p, draft);
   const auto form = p.choice("draft", draft_words);
   if (!form) return p.skip_statement();

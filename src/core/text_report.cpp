@@ -79,6 +79,19 @@ void add_excerpt(Message& message, const Spot& spot, std::string_view bytes) {
 
 }  // namespace
 
+Spot spot_at(const Source& source, TextPlace place) {
+  std::string_view rest = source.bytes();
+  for (int line = 1; line < place.line; ++line) {
+    const std::size_t newline = rest.find('\n');
+    if (newline == std::string_view::npos)
+      return {rest.data() + rest.size(), line, static_cast<int>(rest.size()) + 1};
+    rest.remove_prefix(newline + 1);
+  }
+  const auto column =
+      std::clamp<std::size_t>(static_cast<std::size_t>(std::max(place.column, 1)), 1, rest.size() + 1);
+  return {rest.data() + column - 1, std::max(place.line, 1), static_cast<int>(column)};
+}
+
 std::size_t text_prefix(std::string_view bytes) {
   std::size_t done = 0;
   while (done < bytes.size() && !is_control(bytes[done])) {

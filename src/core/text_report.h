@@ -19,6 +19,10 @@ struct Spot {
   [[nodiscard]] TextPlace place() const { return {line, column}; }
 };
 
+// The spot of a place in the text of `source`, whose lines end with LF; the text's end where there is no such
+// place.
+Spot spot_at(const Source& source, TextPlace place);
+
 // The number of bytes at the beginning of `bytes` that are whole UTF-8 characters and no control characters
 // but tab.
 std::size_t text_prefix(std::string_view bytes);

@@ -140,6 +140,7 @@ struct WeaveSystem {
 struct Draft {
   enum class Form { rows, plain, twill, satin, basket, file };
   Form form = Form::plain;
+  TextPlace place;
   std::vector<std::string> rows;  // of '0' and '1', top row = weft 1
   int a = 0, b = 0;               // twill a/b, satin a/b, basket a/b
   std::string file;

@@ -9,6 +9,7 @@
 #include "core/sha256.h"
 #include "core/source.h"
 #include "pipeline/detect.h"
+#include "pipeline/drafts.h"
 #include "pipeline/facts.h"
 
 namespace selvage::pipeline {
@@ -120,12 +121,21 @@ std::optional<fabric::Fabric> Job::read() {
   }
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
+  if (fabric) take_drafts(*fabric, *source, diagnostics);
   forward(diagnostics);
   if (!fabric && !diagnostics.has_errors())
     say(error(Kind::internal,
               fmt::format("the reader of {} gave neither a fabric nor a reason", (*format)->name)));
+  if (diagnostics.has_errors()) return std::nullopt;
   if (fabric) report.units = fabric->units;
   return fabric;
+}
+
+// The hash of the input says nothing of the files that it names: with them in its settings it is never taken
+// for done by `--resume`.
+void Job::take_drafts(fabric::Fabric& fabric, const Source& source, Diagnostics& diagnostics) {
+  for (const std::string& file : resolve_drafts(fabric, source, diagnostics))
+    if (wants_report()) report.settings += " draft=" + file;
 }
 
 std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {

@@ -9,6 +9,7 @@
 
 #include "core/diagnostics.h"
 #include "core/process.h"
+#include "core/source.h"
 #include "core/units.h"
 #include "fabric/build.h"
 #include "fabric/model.h"
@@ -76,6 +77,7 @@ class Job {
  private:
   void show(Message message);
   void forward(const Diagnostics& diagnostics);
+  void take_drafts(fabric::Fabric& fabric, const Source& source, Diagnostics& diagnostics);
 
   const Channel& channel_;
   int errors_ = 0, warnings_ = 0;

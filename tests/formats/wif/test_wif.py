@@ -101,5 +101,89 @@ class Reading(WifCase):
                 self.assertIn(expected[path.stem], self.fails(1, "convert", path, "--to", "txt", "-o", "-"))
 
 
+CLOTH = """fabric 1
+thread t
+  diameter 0.3
+end
+weave
+  warp t 8 pitch 1
+  weft t 8 pitch 1
+  {}
+end
+"""
+
+
+class DraftFile(WifCase):
+    """`draft file NAME` in a Fabric TXT."""
+
+    def cloth(self, draft, name="cloth.txt"):
+        path = self.folder / name
+        path.write_text(CLOTH.format(draft))
+        return path
+
+    def as_text(self, path):
+        return self.succeeds("convert", path, "--to", "txt", "-o", "-", "--quiet").stdout
+
+    def test_is_the_files_draft_in_rows(self):
+        for sample in sorted(SAMPLES.glob("*.wif")):
+            with self.subTest(sample.name):
+                (self.folder / "drafts").mkdir(exist_ok=True)
+                (self.folder / "drafts" / "a b.wif").write_bytes(sample.read_bytes())
+                named = self.cloth('draft file "drafts/a b.wif"')
+                rows = self.cloth("draft\n" + "\n".join(Wif(sample).rows) + "\nend", "rows.txt")
+                self.assertEqual(self.as_text(named), self.as_text(rows))
+                plain = self.cloth("draft plain", "plain.txt")
+                self.assertNotEqual(self.as_text(named), self.as_text(plain))
+
+    def test_a_wif_and_its_text_are_one_fabric(self):
+        for sample in sorted(SAMPLES.glob("*.wif")):
+            with self.subTest(sample.name):
+                text = self.folder / "same.txt"
+                text.write_text(self.as_text(sample))
+                self.assertEqual(self.as_text(text), text.read_text())
+
+    def test_may_be_a_fabric_text(self):
+        self.cloth("draft twill 2/1", "twill.txt")
+        self.assertIn("draft twill 2/1", self.as_text(self.cloth("draft file twill.txt")))
+
+    def test_faults_are_told_in_the_file_and_at_the_draft(self):
+        (self.folder / "bad.wif").write_text((BAD / "wif_no_tieup.wif").read_text())
+        self.cloth("draft file cloth.txt", "again.txt")
+        (self.folder / "none.txt").write_text("fabric 1\n")
+        for name, parts in {"missing.wif": ["No such file"],
+                            "bad.wif": ["it has errors", "bad.wif:25:1: error: [TREADLING] needs [TIEUP]"],
+                            "none.txt": ["it has 0 weaves, not one"],
+                            "again.txt": ["its draft stands in a file, too: 'cloth.txt'"],
+                            "-": ["No such file"]}.items():
+            with self.subTest(name):
+                messages = self.fails(1, "convert", self.cloth(f'draft file "{name}"'), "--to", "txt", "-o", "-")
+                self.assertIn(f"cloth.txt:8:3: error: no draft in the file '{name}': ", messages)
+                self.assertIn(f'  draft file "{name}"\n', messages)
+                for part in parts:
+                    self.assertIn(part, messages)
+
+    def test_resume_sees_that_the_file_changed(self):
+        draft = self.folder / "draft.wif"
+        draft.write_bytes((SAMPLES / "wif_herringbone.wif").read_bytes())
+        arguments = ("convert", self.cloth("draft file draft.wif"), "--to", "txt", "-o", self.out, "--report",
+                     self.folder / "report.json")
+        self.succeeds(*arguments)
+        first = self.out.read_text()
+        draft.write_bytes((SAMPLES / "wif_satin_liftplan.wif").read_bytes())
+        self.succeeds(*arguments, "--resume")
+        self.assertNotEqual(self.out.read_text(), first)
+
+
+class BadSamples(Case):
+    def test_each_is_refused_at_its_place(self):
+        expected = {"wif_no_tieup.wif": "25:1: error: [TREADLING] needs [TIEUP], which is missing",
+                    "wif_shaft_beyond.wif": "27:3: error: shaft 5 is beyond the 4 shafts of [WEAVING]",
+                    "wif_treadle_beyond.wif": "33:3: error: treadle 9 is beyond the 4 treadles of [WEAVING]"}
+        self.assertEqual(sorted(path.name for path in BAD.glob("*.wif")), sorted(expected))
+        for name, message in expected.items():
+            with self.subTest(name):
+                self.assertIn(f"{name}:{message}", self.fails(1, "convert", BAD / name, "--to", "txt", "-o", "-"))
+
+
 if __name__ == "__main__":
     unittest.main()
