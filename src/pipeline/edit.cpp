@@ -18,7 +18,7 @@ namespace {
 
 void say(const EditRequest& request, Message message) {
   if (message.file.empty()) message.file = request.input == "-" ? "<stdin>" : request.input;
-  if (request.quiet && message.severity != Severity::error) return;
+  if (message.severity == Severity::note || (request.quiet && message.severity != Severity::error)) return;
   std::fprintf(stderr, "%s\n", to_string(message).c_str());
 }
 
@@ -26,8 +26,8 @@ void say_all(const EditRequest& request, const std::vector<Message>& messages) {
   for (const Message& message : messages) say(request, message);
 }
 
-// The line behind which the edit belongs: the end of the item that makes the yarn (of the last one, where its place
-// is not known), or an edit behind it.
+// The line behind which the edit belongs: the end of the item that makes the yarn (of the last one, where its
+// place is not known), or an edit behind it.
 int line_before(const fabric::Fabric& fabric, TextPlace yarn) {
   int line = 0;
   for (std::size_t i = 0; i < fabric.items.size(); ++i) {

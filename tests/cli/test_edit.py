@@ -5,7 +5,7 @@ import os
 import re
 import unittest
 
-from program import Case, GRID, PATH, files_below, run
+from program import Case, GRID, PATH, SAMPLES, files_below, run
 
 TEXT = """fabric 1
 # a wave
@@ -117,6 +117,17 @@ class Meaning(Editing):
         self.edited(flat.encode(), "--yarn", "a", "--point", "3", "--to", nearest, "--by", "weight")
         self.assertIn(f"edit a weight 3 to {nearest.replace(',', ' ')}\n", (self.folder / "edited.txt").read_text())
         self.succeeds("check", self.folder / "edited.txt")
+
+    def test_a_yarn_of_a_construction(self):
+        """The line stands behind the block, and the yarn next to it keeps its length."""
+        jersey = (SAMPLES / "jersey.txt").read_bytes()
+        data = self.edited(jersey, "--yarn", "course_2", "--point", "5", "--length", "14", "--along", "0,1,0")
+        self.assertEqual(data, jersey + b"edit course_2 length 14 point 5 along 0 1 0\n")
+        edited = self.folder / "edited.txt"
+        self.assertAlmostEqual(self.length(edited, "course_2"), 14, delta=1e-7)
+        self.assertEqual(self.length(edited, "course_3"), self.length(SAMPLES / "jersey.txt", "course_3"))
+        message = self.fails(1, "edit", edited, "--yarn", "coarse_2", "--point", "5", "--to", "1,1,1", "-o", self.out)
+        self.assertIn("did you mean 'course_2'?", message)
 
     def test_a_yarn_that_folds_is_told(self):
         self.input.write_text(TEXT)
