@@ -59,8 +59,8 @@ Status complete(const Words& words, formats::NewEdit& added) {
 }  // namespace
 
 void add_edit(CLI::App& program, Parsed& parsed) {
-  CLI::App& command = *program.add_subcommand(
-      "edit", "move a point of a yarn: adds an `edit` line to a Fabric TXT file");
+  CLI::App& command =
+      *program.add_subcommand("edit", "move a point of a yarn: adds an `edit` line to a Fabric TXT file");
   pipeline::EditRequest& request = parsed.edit;
   const auto words = std::make_shared<Words>();
   command.add_option("INPUT", request.input, "a file of Fabric TXT, or - for standard input")->required();
