@@ -22,11 +22,14 @@ void add_check(CLI::App& program, Parsed& parsed);
 void add_mesh(CLI::App& program, Parsed& parsed);
 void add_info(CLI::App& program, Parsed& parsed);
 void add_edit(CLI::App& program, Parsed& parsed);
+void add_view(CLI::App& program, Parsed& parsed);
 void add_formats(CLI::App& program, Parsed& parsed);
 
 // Options that several subcommands have (common.cpp).
 void add_common(CLI::App& command, Parsed& parsed);
 void add_output(CLI::App& command, Parsed& parsed);
+// -o and --resume, without --to.
+void add_place(CLI::App& command, Parsed& parsed);
 void add_ends(CLI::App& command, Parsed& parsed);
 void add_units(CLI::App& command, Parsed& parsed, const std::string& help);
 // Runs the pipeline with the parsed options when the subcommand was named.

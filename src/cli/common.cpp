@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<std::string_view, 7> later_options = {
     "--instances", "--cut", "--matrix", "--periodic", "--gap", "--relax", "--as-published"};
-constexpr std::array<std::string_view, 5> later_commands = {"roundtrip", "diff", "relax", "view", "report"};
+constexpr std::array<std::string_view, 4> later_commands = {"roundtrip", "diff", "relax", "report"};
 
 Status parse_shard(const std::string& text, pipeline::Options& options) {
   if (text.empty()) return {};
@@ -70,9 +70,13 @@ void add_common(CLI::App& command, Parsed& parsed) {
 }
 
 void add_output(CLI::App& command, Parsed& parsed) {
-  command.add_option("-o,--output", parsed.options.output, "a file, a folder, or - for standard output");
+  add_place(command, parsed);
   command.add_option("--to", parsed.options.formats,
                      "formats to write, separated by commas (see selvage formats)");
+}
+
+void add_place(CLI::App& command, Parsed& parsed) {
+  command.add_option("-o,--output", parsed.options.output, "a file, a folder, or - for standard output");
   command.add_flag("--resume", parsed.options.resume,
                    "skip inputs that --report says are done, if their outputs are whole");
 }

@@ -54,6 +54,7 @@ int run(int count, char** words) {
   add_mesh(program, parsed);
   add_info(program, parsed);
   add_edit(program, parsed);
+  add_view(program, parsed);
   add_formats(program, parsed);
   try {
     program.parse(count, words);

@@ -101,12 +101,13 @@ Result<YarnPlan> plan_of_path(const Fabric& fabric, const Yarn& yarn, const Buil
 }
 
 void describe(yarn::Body& body, const std::string& name, const std::string& thread_name, const Thread& thread,
-              Role role, TextPlace place) {
+              Unit units, Role role, TextPlace place) {
   body.name = name;
   body.thread = thread_name;
   body.material = thread.material.value_or("");
   body.role = role;
   body.color = thread.color.value_or(Color{});
+  body.twist = fibre_twist(thread, units);
   body.place = place;
 }
 
@@ -248,8 +249,8 @@ Result<YarnPlan> YarnBuilder::plan(std::size_t index) const {
 Result<yarn::Body> YarnBuilder::build_grid(const Yarn& yarn) const {
   const Grid& grid = std::get<Grid>(yarn.shape);
   yarn::Body body;
-  describe(body, yarn.name, yarn.thread, resolved_thread(*fabric_, yarn), yarn.role.value_or(Role::other),
-           yarn.place);
+  describe(body, yarn.name, yarn.thread, resolved_thread(*fabric_, yarn), fabric_->units,
+           yarn.role.value_or(Role::other), yarn.place);
   for (const Edit& edit : fabric_->edits)
     if (edit.yarn == yarn.name)
       return in_file(*fabric_, edit.place,
@@ -273,10 +274,11 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
   } else {
     Result<YarnPlan> made = plan(index);
     if (!made) return made.error();
-    describe(body, made->name, made->thread_name, made->thread, made->role, made->place);
+    describe(body, made->name, made->thread_name, made->thread, fabric_->units, made->role, made->place);
     body.group = made->group;
     body.path_miss = made->line.largest_miss;
     yarn::TubeSpec& spec = made->spec;
+    body.section_turns = spec.twist != 0.0;
     spec.tolerance = spec.tolerance > 0.0 ? std::min(spec.tolerance, tolerance_) : tolerance_;
     spec.max_control_points = options_.max_control_points;
     if (Status swept = yarn::sweep(body, made->line, spec); !swept) return placed(swept.error(), entry);

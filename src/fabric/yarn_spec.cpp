@@ -138,10 +138,14 @@ Result<yarn::PathRows> path_rows_of(const Fabric& fabric, const Yarn& yarn, cons
   return rows;
 }
 
-double section_twist(const Thread& thread, Unit units) {
-  if (!thread.twist || !thread.twist->rotates) return 0.0;
+double fibre_twist(const Thread& thread, Unit units) {
+  if (!thread.twist) return 0.0;
   const double turns_per_unit = thread.twist->turns * millimetres_per(units) / 1000.0;
-  return 2.0 * pi * turns_per_unit * (thread.twist->hand == Hand::z ? 1.0 : -1.0);
+  return thread.twist->hand == Hand::z ? turns_per_unit : -turns_per_unit;
+}
+
+double section_twist(const Thread& thread, Unit units) {
+  return thread.twist && thread.twist->rotates ? 2.0 * pi * fibre_twist(thread, units) : 0.0;
 }
 
 Result<yarn::TubeSpec> tube_spec_of(const Fabric& fabric, const Yarn& yarn, const Thread& thread,

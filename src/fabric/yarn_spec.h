@@ -19,6 +19,10 @@ double yarn_diameter(double tex, double density, double packing);
 // thread stands.
 Result<yarn::Section> section_of(const Thread& thread, Unit units, bool rows_give_sizes);
 
+// How far the fibres turn about the path, turns per file unit (Z is positive: a right-handed helix); 0
+// without twist.
+double fibre_twist(const Thread& thread, Unit units);
+
 // How far a section turns with its thread's twist, radians per file unit (Z is positive); 0 where it does
 // not.
 double section_twist(const Thread& thread, Unit units);

@@ -28,6 +28,10 @@ std::string settings_of(const Options& options) {
   if (options.command == Command::mesh)
     text += fmt::format(" size={} order={} min-dihedral={}{}", options.size, options.order,
                         options.min_dihedral, options.allow_overlap ? " allow-overlap" : "");
+  else if (options.command == Command::view)
+    text += fmt::format(" from={} size={}x{} background={},{},{}{}", name_of(options.from),
+                        options.picture_width, options.picture_height, options.background.red,
+                        options.background.green, options.background.blue, options.flat ? " flat" : "");
   else
     text += fmt::format(" step-schema={}", options.step_schema);
   return text;
@@ -49,6 +53,8 @@ std::string_view name_of(Command command) {
       return "mesh";
     case Command::info:
       return "info";
+    case Command::view:
+      return "view";
   }
   return "convert";
 }
@@ -210,6 +216,9 @@ Verdict work(Job& job, const std::string& earlier) {
       break;
     case Command::info:
       info(job);
+      break;
+    case Command::view:
+      view(job);
       break;
     case Command::check:
       defective = check(job);

@@ -93,6 +93,7 @@ Verdict run_job(Job& job, const std::string& earlier, const Channel& channel);
 void convert(Job& job);
 void mesh(Job& job);
 void info(Job& job);
+void view(Job& job);
 // True when a defect was found.
 bool check(Job& job);
 

@@ -8,11 +8,12 @@
 
 #include "core/units.h"
 #include "formats/format.h"
+#include "view/camera.h"
 #include "yarn/body.h"
 
 namespace selvage::pipeline {
 
-enum class Command { convert, check, mesh, info };
+enum class Command { convert, check, mesh, info, view };
 std::string_view name_of(Command command);
 
 struct Options {
@@ -40,6 +41,12 @@ struct Options {
   int order = 1;
   double min_dihedral = 0;  // degrees; 0: the mesher's choice
   bool allow_overlap = false;
+
+  // view
+  view::From from = view::From::top;
+  int picture_width = 1200, picture_height = 900;  // pixels
+  yarn::Color background{255, 255, 255};
+  bool flat = false;
 
   bool json = false;   // info
   bool table = false;  // info: the fixed points and control points of garment curves

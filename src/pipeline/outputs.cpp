@@ -13,6 +13,11 @@ namespace fs = std::filesystem;
 using formats::Descriptor;
 using Formats = std::vector<const Descriptor*>;
 
+const Descriptor& picture_format() {
+  static const Descriptor self = {.name = "png", .title = "PNG picture", .extensions = {".png"}};
+  return self;
+}
+
 namespace {
 
 bool can_be_written(const Descriptor& format, Command command) {
@@ -49,10 +54,25 @@ Result<const Descriptor*> named_format(std::string_view name, Command command) {
 // The format that the name of -o tells; null when it tells none.
 const Descriptor* told_by_output(const Options& options) {
   if (options.output.empty() || options.output == "-" || options.output.ends_with('/')) return nullptr;
+  if (options.command == Command::view)
+    return fs::path(options.output).extension() == ".png" ? &picture_format() : nullptr;
   return format_with_extension(fs::path(options.output).extension().string());
 }
 
+// Pictures are PNG; a name that asks for something else is refused.
+Result<Formats> picture_formats(const Options& options) {
+  const std::string extension = fs::path(options.output).extension().string();
+  if (extension == ".html")
+    return error(Kind::usage,
+                 "pictures as HTML are not in this version of selvage; name a .png file with -o");
+  if (format_with_extension(extension) != nullptr)
+    return error(Kind::usage, fmt::format("'selvage view' writes PNG pictures, and '{}' is no name for one",
+                                          options.output));
+  return Formats{&picture_format()};
+}
+
 Result<Formats> wanted_formats(const Options& options) {
+  if (options.command == Command::view) return picture_formats(options);
   Formats wanted;
   std::string_view rest = options.formats;
   while (!rest.empty()) {
@@ -151,7 +171,7 @@ Status check_names(const Options& options, const InputList& list,
 
 Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list) {
   std::vector<std::vector<PlannedOutput>> plan(list.inputs.size());
-  if (options.command != Command::convert && options.command != Command::mesh) {
+  if (options.command == Command::check || options.command == Command::info) {
     if (Status status = check_names(options, list, plan); !status.ok()) return status.error();
     return plan;
   }

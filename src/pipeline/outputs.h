@@ -11,6 +11,9 @@
 
 namespace selvage::pipeline {
 
+// What `selvage view` writes. A picture is no format of fabrics: `selvage formats` and --to do not know it.
+const formats::Descriptor& picture_format();
+
 struct PlannedOutput {
   const formats::Descriptor* format = nullptr;
   std::filesystem::path path;

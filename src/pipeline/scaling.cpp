@@ -52,6 +52,7 @@ void convert_lengths(yarn::Body& body, Unit from, Unit to) {
   point(body.start.origin);
   point(body.end.origin);
   for (double* length : {&body.length, &body.tube_error, &body.min_bend_radius}) *length = scale(*length);
+  body.twist = Ratio{scale.down, scale.up}(body.twist);
   body.end_area = scale(scale(body.end_area));
   body.volume = scale(scale(scale(body.volume)));
   for (yarn::TightBend& bend : body.tight_bends) {

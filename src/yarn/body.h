@@ -58,7 +58,9 @@ struct Body {
   std::string group;     // of a ply or a filament: the yarn that it is part of; else empty
   Role role = Role::other;
   Color color;
-  TextPlace place;  // in the file that it came from
+  double twist = 0;            // of the fibres, turns per file unit along the centre line; > 0: Z, < 0: S
+  bool section_turns = false;  // with the twist: the fibres follow the lines of constant u
+  TextPlace place;             // in the file that it came from
 
   // u: round the section, closed and clamped: column 0 equals the last column, to the bit. v: along the path,
   // clamped.

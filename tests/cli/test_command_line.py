@@ -16,9 +16,9 @@ class Usage(Case):
     def test_version_and_help(self):
         self.assertRegex(self.succeeds("--version").stdout, r"^selvage \d+\.\d+\.\d+\n$")
         everything = self.succeeds("--help").stdout
-        for command in ("convert", "check", "mesh", "info", "edit", "formats"):
+        for command in ("convert", "check", "mesh", "info", "edit", "view", "formats"):
             self.assertIn(command, everything)
-        for command in ("convert", "check", "mesh", "info"):
+        for command in ("convert", "check", "mesh", "info", "view"):
             text = self.succeeds(command, "--help").stdout
             for option in ("INPUT", "-j", "--report", "--quiet", "--verbose", "--no-progress", "--timeout", "--memory",
                            "--strict", "--tolerance", "--shard"):
@@ -33,7 +33,7 @@ class Usage(Case):
                      self.out)
 
     def test_words_of_later_versions(self):
-        for word in ("roundtrip", "diff", "relax", "view", "report"):
+        for word in ("roundtrip", "diff", "relax", "report"):
             self.refused(f"'selvage {word}' is not in this version", word, GRID)
         for word in ("--instances", "--cut", "--matrix", "--relax", "--as-published"):
             self.refused(f"'{word}' is not in this version", "convert", GRID, word, "-o", self.out)
@@ -47,9 +47,15 @@ class Usage(Case):
             self.refused(re.escape(option), "convert", GRID, "-o", self.out, option, value)
         for option, value in (("--order", "3"), ("--size", "0"), ("--min-dihedral", "90")):
             self.refused(re.escape(option), "mesh", GRID, "-o", self.out, option, value)
+        for option, value in (("--size", "0x9"), ("--size", "12"), ("--size", "9x9x9"), ("--size", "99999x9"),
+                              ("--size", "ax9"), ("--size", "-4x9"), ("--from", "below"), ("--background", "white"),
+                              ("--background", "0,0,256"), ("--background", "0,0")):
+            self.refused(re.escape(option), "view", GRID, "-o", self.out, option, value)
 
     def test_formats_that_do_not_fit(self):
         self.refused("selvage mesh", "convert", GRID, "--to", "inp", "-o", self.out)
+        self.refused("HTML", "view", GRID, "-o", self.folder / "x.html")
+        self.refused("writes PNG pictures", "view", GRID, "-o", self.folder / "x.igs")
         self.refused("cannot write iges", "mesh", GRID, "--to", "iges", "-o", self.out)
         self.refused("names a file of iges, but --to asks for step", "convert", GRID, "--to", "step", "-o",
                      self.folder / "x.igs")

@@ -1,8 +1,8 @@
 #include <exception>
 #include <mutex>
 
+#include "core/parallel.h"
 #include "solid/cgal/overlaps.h"
-#include "solid/cgal/parallel.h"
 #include "solid/cgal/verdict.h"
 #include "solid/cgal/yarn_check.h"
 #include "solid/check.h"

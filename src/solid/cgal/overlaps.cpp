@@ -5,9 +5,9 @@
 #include <limits>
 #include <mutex>
 
+#include "core/parallel.h"
 #include "solid/cgal/contact.h"
 #include "solid/cgal/depth.h"
-#include "solid/cgal/parallel.h"
 
 namespace selvage::solid {
 

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace selvage::solid {
+namespace selvage {
 
 // Calls work(i) for i = 0 .. count - 1, in any order, on `threads` threads. The first exception is thrown
 // again here.
@@ -35,4 +35,4 @@ void for_each_index(std::size_t count, int threads, const Work& work) {
   if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace selvage::solid
+}  // namespace selvage

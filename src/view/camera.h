@@ -1,0 +1,40 @@
+// Where the eye is: an orthographic camera that holds a whole fabric.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "core/vec.h"
+#include "yarn/body.h"
+
+namespace selvage::view {
+
+// top: looking along -z, x to the right, y up. bottom: along +z, x to the left, y up (the cloth turned over
+// about y). front: along +y, x to the right, z up. back: along -y, x to the left, z up. side: along -x, y to
+// the right, z up. iso: from above, the front and the right (along (-1, 1, -1)), z up: x and y run equally
+// shortened, to the lower right and to the upper right.
+enum class From { top, bottom, front, back, side, iso };
+inline constexpr std::array<From, 6> all_views = {From::top,  From::bottom, From::front,
+                                                  From::back, From::side,   From::iso};
+std::string_view name_of(From from);
+std::optional<From> view_named(std::string_view word);
+
+// Camera space: pixels; x to the right, y up, z toward the eye, the origin in the picture's centre.
+class Camera {
+ public:
+  // The bodies (not none) fill the picture but for a margin of 4 % of its smaller side.
+  Camera(From from, std::span<const yarn::Body> bodies, int width, int height);
+
+  [[nodiscard]] Vec3 to_picture(const Vec3& point) const { return scale_ * (turn_ * (point - centre_)); }
+  [[nodiscard]] Vec3 direction(const Vec3& vector) const { return turn_ * vector; }
+  [[nodiscard]] double pixels_per_unit() const { return scale_; }
+
+ private:
+  Eigen::Matrix3d turn_;  // rows: right, up, toward the eye
+  Vec3 centre_;
+  double scale_ = 1;
+};
+
+}  // namespace selvage::view

@@ -1,0 +1,102 @@
+#include "view/embree/scene.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace selvage::view::embree {
+
+namespace {
+
+struct Quad {
+  std::uint32_t a, b, c, d;
+};
+
+// Counter-clockwise seen from outside; a triangle repeats its last corner.
+void fill_quads(const Skin& skin, Quad* quads) {
+  const auto columns = static_cast<std::uint32_t>(skin.columns);
+  const auto rows = static_cast<std::uint32_t>(skin.rows);
+  for (std::uint32_t row = 0; row + 1 < rows; ++row)
+    for (std::uint32_t column = 0; column + 1 < columns; ++column) {
+      const std::uint32_t first = row * columns + column;
+      *quads++ = {first, first + 1, first + 1 + columns, first + columns};
+    }
+  if (!skin.has_ends) return;
+  const std::uint32_t start_centre = rows * columns, end_centre = start_centre + 1,
+                      end = (rows - 1) * columns;
+  for (std::uint32_t k = 0; k + 1 < columns; ++k) *quads++ = {k + 1, k, start_centre, start_centre};
+  for (std::uint32_t k = end; k + 1 < end + columns; ++k) *quads++ = {k, k + 1, end_centre, end_centre};
+}
+
+bool add_skin(RTCDevice device, RTCScene scene, const Skin& skin) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
+  auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), skin.points.size()));
+  auto* quads = static_cast<Quad*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
+                                                           RTC_FORMAT_UINT4, sizeof(Quad), skin.facets()));
+  const bool made = points != nullptr && quads != nullptr;
+  if (made) {
+    for (const Vec3f& p : skin.points)
+      for (float x : p) *points++ = x;
+    fill_quads(skin, quads);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);  // numbered in this order
+  }
+  rtcReleaseGeometry(geometry);
+  return made;
+}
+
+RTCRay ray_of(const Vec3f& origin, const Vec3f& direction, float near, float far) {
+  RTCRay ray{};
+  ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
+  ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
+  ray.tnear = near, ray.tfar = far;
+  ray.mask = 0xffffffffU;
+  return ray;
+}
+
+}  // namespace
+
+Result<Scene> Scene::make(const std::vector<Skin>& skins) {
+  // One thread builds the tree, so that it is the same at every run; the rays are shared out by the caller.
+  Scene made;
+  made.device_.reset(rtcNewDevice("threads=1,set_affinity=0"));
+  if (!made.device_)
+    return error(Kind::internal,
+                 fmt::format("Embree: no device (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
+  made.scene_.reset(rtcNewScene(made.device_.get()));
+  rtcSetSceneFlags(made.scene_.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+  bool whole = true;
+  for (const Skin& skin : skins) whole = whole && add_skin(made.device_.get(), made.scene_.get(), skin);
+  if (whole) rtcCommitScene(made.scene_.get());
+  const RTCError failure = rtcGetDeviceError(made.device_.get());
+  if (failure == RTC_ERROR_OUT_OF_MEMORY)
+    return error(Kind::limit, "the picture needs more memory than there is; make it smaller with --size");
+  if (failure != RTC_ERROR_NONE)
+    return error(Kind::internal, fmt::format("Embree fails with error {}", static_cast<int>(failure)));
+  return made;
+}
+
+std::optional<Hit> Scene::nearest(const Vec3f& origin, const Vec3f& direction, float beyond) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit found{};
+  found.ray = ray_of(origin, direction, beyond, std::numeric_limits<float>::infinity());
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene_.get(), &context, &found);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return Hit{found.hit.geomID, found.hit.primID,
+             found.hit.u,      found.hit.v,
+             found.ray.tfar,   Vec3f(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z).normalized()};
+}
+
+bool Scene::is_blocked(const Vec3f& origin, const Vec3f& direction, float reach) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay ray = ray_of(origin, direction, 0, reach);
+  rtcOccluded1(scene_.get(), &context, &ray);
+  return ray.tfar < 0;
+}
+
+}  // namespace selvage::view::embree

@@ -1,0 +1,46 @@
+// All skins of a picture in one Embree scene. Internal to the module selvage_embree.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "view/skin.h"
+
+namespace selvage::view::embree {
+
+// Where a ray meets a skin.
+struct Hit {
+  std::uint32_t yarn = 0;
+  std::uint32_t facet = 0;
+  float u = 0, v = 0;  // in the facet: along the columns, along the rows
+  float distance = 0;
+  Vec3f facing = Vec3f::Zero();  // the facet's own normal, outward, unit
+};
+
+class Scene {
+ public:
+  // `skins` outlive the scene. Error (limit): not enough memory.
+  static Result<Scene> make(const std::vector<Skin>& skins);
+
+  // The nearest hit along `direction` (unit) farther than `beyond`.
+  [[nodiscard]] std::optional<Hit> nearest(const Vec3f& origin, const Vec3f& direction,
+                                           float beyond = 0) const;
+  // Is there anything along `direction` (unit) nearer than `reach`?
+  [[nodiscard]] bool is_blocked(const Vec3f& origin, const Vec3f& direction, float reach) const;
+
+ private:
+  template <auto Release>
+  struct Releaser {
+    template <class T>
+    void operator()(T* handle) const {
+      Release(handle);
+    }
+  };
+  std::unique_ptr<RTCDeviceTy, Releaser<rtcReleaseDevice>> device_;
+  std::unique_ptr<RTCSceneTy, Releaser<rtcReleaseScene>> scene_;
+};
+
+}  // namespace selvage::view::embree

@@ -1,0 +1,57 @@
+// Pictures of yarns, ray-traced without a display. Implemented in the module selvage_embree (the only user of
+// Embree and libpng); call it through render() and png(), which open the module.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "view/camera.h"
+#include "yarn/body.h"
+
+namespace selvage::view {
+
+inline constexpr int largest_side = 16384;  // pixels
+
+struct PictureOptions {
+  int width = 1200, height = 900;  // pixels, 1 .. largest_side
+  From from = From::top;
+  yarn::Color background{255, 255, 255};
+  bool flat = false;  // without ambient occlusion and shadows: some four times as fast
+  int threads = 1;    // the picture is the same, to the bit, with any number
+  std::function<void(std::size_t done, std::size_t total)> progress;  // may be empty
+};
+
+// 8 bits a channel, red, green, blue; rows from the top, without padding.
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+// What the picture shows:
+// - yarns in their colours, by parallel light rays (orthographic), lit from the upper left of the picture;
+// - cut ends lighter than the yarn's side;
+// - a twisted yarn's fibres as fine stripes with the twist's hand and pitch, where they are wide enough to
+// see;
+// - magenta where the yarn that is seen holds a part of another yarn inside itself, along the line of sight;
+//   orange where it holds a part of itself (neighbouring loops, a fold). A surface that lies inside another
+//   yarn cannot be seen itself, so the place is marked on the skin before it. Overlaps that are shallower
+//   than the picture's own accuracy (a fifth of a pixel, and the yarns' tube_error) are not marked.
+// Errors: geometry (no yarn, coordinates that are not finite), limit (more than 2^31 facets), internal.
+Result<Picture> render(std::span<const yarn::Body> bodies, const PictureOptions& options);
+
+// The picture as a PNG file. Error (internal): libpng refuses.
+Result<std::string> png(const Picture& picture);
+
+// What the module exports.
+struct EmbreeModule {
+  const char* version;  // of Embree
+  Result<Picture> (*render)(std::span<const yarn::Body> bodies, const PictureOptions& options);
+  Result<std::string> (*png)(const Picture& picture);
+};
+Result<const EmbreeModule*> embree_module();
+
+}  // namespace selvage::view
