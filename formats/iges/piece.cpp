@@ -8,20 +8,6 @@ namespace selvage::formats::iges {
 
 namespace {
 
-// The plane z = 0 over the piece's box and a little more, parameterized by x and y.
-nurbs::Surface plane_of(const fabric::PieceShape& piece) {
-  const Vec2 margin = Vec2::Constant(0.1 * piece.box.sizes().maxCoeff());
-  const Vec2 low = piece.box.min() - margin, high = piece.box.max() + margin;
-  nurbs::Surface plane;
-  plane.degree_u = plane.degree_v = 1;
-  plane.count_u = plane.count_v = 2;
-  plane.knots_u = {low.x(), low.x(), high.x(), high.x()};
-  plane.knots_v = {low.y(), low.y(), high.y(), high.y()};
-  plane.points = {
-      {low.x(), low.y(), 0}, {high.x(), low.y(), 0}, {low.x(), high.y(), 0}, {high.x(), high.y(), 0}};
-  return plane;
-}
-
 // The outline as one curve: a 102 of 126s. `status` says whether it lies in space or in the parameters.
 int write_outline(Records& records, const Common& common, const fabric::PieceShape& piece,
                   std::string_view status) {
@@ -37,6 +23,19 @@ int write_outline(Records& records, const Common& common, const fabric::PieceSha
 }
 
 }  // namespace
+
+nurbs::Surface plane_of(const fabric::PieceShape& piece) {
+  const Vec2 margin = Vec2::Constant(0.1 * piece.box.sizes().maxCoeff());
+  const Vec2 low = piece.box.min() - margin, high = piece.box.max() + margin;
+  nurbs::Surface plane;
+  plane.degree_u = plane.degree_v = 1;
+  plane.count_u = plane.count_v = 2;
+  plane.knots_u = {low.x(), low.x(), high.x(), high.x()};
+  plane.knots_v = {low.y(), low.y(), high.y(), high.y()};
+  plane.points = {
+      {low.x(), low.y(), 0}, {high.x(), low.y(), 0}, {low.x(), high.y(), 0}, {high.x(), high.y(), 0}};
+  return plane;
+}
 
 int entities_of_piece(const fabric::PieceShape& piece) {
   // 128, 142, 144, two 102s, the group; and for each edge three 126s and a name.

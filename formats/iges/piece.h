@@ -12,6 +12,9 @@ namespace selvage::formats::iges {
 // form 15 of the piece.
 void write_piece(Records& records, const Common& common, const fabric::PieceShape& piece);
 
+// The plane z = 0 over the piece's box and a little more.
+nurbs::Surface plane_of(const fabric::PieceShape& piece);
+
 // How many entities write_piece writes for this piece.
 int entities_of_piece(const fabric::PieceShape& piece);
 

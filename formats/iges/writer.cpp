@@ -148,9 +148,13 @@ Status Writer::check(const fabric::PieceShape& piece) {
     if (!coordinates)
       return error(Kind::geometry,
                    fmt::format("piece {} has a coordinate that is not a finite number", piece.name));
-    largest_ = std::max(largest_, *coordinates);
-    smallest_size_ = std::min(smallest_size_, (edge.curve.points.front() - edge.curve.points[1]).norm());
+    double length = 0;  // of the control polygon
+    for (std::size_t i = 1; i < edge.curve.points.size(); ++i)
+      length += (edge.curve.points[i] - edge.curve.points[i - 1]).norm();
+    smallest_size_ = std::min(smallest_size_, length);
   }
+  const nurbs::Surface plane = plane_of(piece);
+  largest_ = std::max(largest_, largest_of(numbers_of(plane.points)).value_or(0));
   return {};
 }
 

@@ -88,6 +88,7 @@ class Writer final : public BodyWriter {
   std::string new_id(std::string_view name) {
     std::string id;
     for (const char c : name) {
+      if ((static_cast<unsigned char>(c) & 0xC0U) == 0x80U) continue;  // its character has its '_' already
       const bool keep = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
       id += keep && static_cast<unsigned char>(c) < 0x80 ? c : '_';
     }

@@ -273,14 +273,17 @@ def read_entity(e):
         read_curve(r, e)
     elif key == (142, 0):
         need(r.integer() in (0, 1, 2, 3), "{}: way of creation", e.what)
-        e.on, e.flat, e.space = (read_pointers(r, e, 1, t)[0] for t in (128, 126, 126))
+        e.on = read_pointers(r, e, 1, 128)[0]
+        e.flat, e.space = (read_pointers(r, e, 1, 126, 102)[0] for _ in range(2))
         need(r.integer() in (0, 1, 2, 3), "{}: preference", e.what)
+    elif key == (102, 0):
+        e.parts = read_pointers(r, e, r.integer(), 126)
     elif key == (144, 0):
         e.on = read_pointers(r, e, 1, 128)[0]
         need((r.integer(), r.integer()) == (1, 0), "{}: boundaries", e.what)
         e.outer = read_pointers(r, e, 1, 142)[0]
     elif key == (402, 7):
-        e.members = read_pointers(r, e, r.integer(), 128, 144)
+        e.members = read_pointers(r, e, r.integer(), 128, 144, 126)
     elif key == (406, 15):
         need(r.integer() == 1, "{}: count of values", e.what)
         e.name = r.string()
@@ -337,12 +340,22 @@ def check_pointers(entities):
     for e in entities.values():
         inside = any(entities[p].type != 402 for p in parents[e.de]) and e.type != 406
         need(e.status[2:4] == ("01" if inside else "00"), "{}: subordinate flag of {!r}", e.what, e.status)
-        use = "02" if e.type == 314 else "05" if e.type == 126 and is_flat(e, entities) else "00"
+        use = "02" if e.type == 314 else "05" if e.type in (126, 102) and is_flat(e, entities) else "00"
         need(e.status[4:6] == use, "{}: use flag of {!r}", e.what, e.status)
 
 
 def is_flat(e, entities):
-    return any(c.type == 142 and c.flat == e.de for c in entities.values())
+    return any(c.type == 142 and e.de in [c.flat, *getattr(entities[c.flat], "parts", [])] for c in entities.values())
+
+
+def curves_of(e, entities):
+    """The B-splines of a curve entity in their order: of a 126 itself, of a 102 its parts, which meet to the last bit."""
+    if e.type == 126:
+        return [e.curve]
+    curves = [entities[part].curve for part in e.parts]
+    for a, b in zip(curves, curves[1:]):
+        need(a.points[-1] == b.points[0], "{}: parts that do not meet", e.what)
+    return curves
 
 
 def check_knots(knots, what):

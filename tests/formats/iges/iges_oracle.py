@@ -14,11 +14,12 @@ import math
 import sys
 
 from bspline import cross, distance_to, dot, flux, minus, planar_flux
-from iges_file import UNITS, Fault, check_pointers, need, parse_directory, parse_global, read_entity
+from iges_file import UNITS, Fault, check_pointers, curves_of, need, parse_directory, parse_global, read_entity
 from iges_file import split_sections
 
 FEW_ULPS = 64 * 2.0**-52
 ROLES = ["warp", "weft", "wale", "course", "braider", "axial", "binder", "other"]
+PIECE_LEVEL = len(ROLES) + 1
 
 
 # ---- what the entities say together -----------------------------------------------------------------------
@@ -27,18 +28,32 @@ ROLES = ["warp", "weft", "wale", "course", "braider", "axial", "binder", "other"
 def check_trimmed(e, entities):
     boundary = entities[e.outer]
     surface = entities[e.on].surface
-    flat, space = entities[boundary.flat].curve, entities[boundary.space].curve
+    flats, spaces = (curves_of(entities[of], entities) for of in (boundary.flat, boundary.space))
     need(boundary.on == e.on, "{}: bounded by a curve on another surface", e.what)
-    need(flat.points[0] == flat.points[-1] and space.points[0] == space.points[-1],
-         "{}: boundary is open", e.what)
-    for i in range(33):
-        t = flat.low() + (flat.high() - flat.low()) * i / 32
-        x, y, z = flat.at(t)[0]
-        need(z == 0, "{}: parameter curve leaves its plane", e.what)
-        u0, u1, v0, v1 = entities[e.on].range
-        need(u0 < x < u1 and v0 < y < v1, "{}: parameter curve leaves the surface", e.what)
-        gap = math.hypot(*minus(surface.at(x, y)[0], space.at(t)[0]))
-        need(gap <= FEW_ULPS * space_size(space), "{}: the two boundary curves are {} apart", e.what, gap)
+    need(len(flats) == len(spaces), "{}: boundaries of {} and {} parts", e.what, len(flats), len(spaces))
+    for curves in (flats, spaces):
+        need(curves[0].points[0] == curves[-1].points[-1], "{}: boundary is open", e.what)
+    u0, u1, v0, v1 = entities[e.on].range
+    for flat, space in zip(flats, spaces):
+        for i in range(33):
+            t = flat.low() + (flat.high() - flat.low()) * i / 32
+            x, y, z = flat.at(t)[0]
+            need(z == 0, "{}: parameter curve leaves its plane", e.what)
+            need(u0 < x < u1 and v0 < y < v1, "{}: parameter curve leaves the surface", e.what)
+            gap = math.hypot(*minus(surface.at(x, y)[0], space.at(t)[0]))
+            need(gap <= FEW_ULPS * space_size(space), "{}: the two boundary curves are {} apart", e.what, gap)
+
+
+def check_piece(group, entities):
+    """A garment piece: one trimmed plane, then the curves of its outline, each with a name of its own."""
+    face, *edges = [entities[m] for m in group.members]
+    need(face.type == 144 and all(e.type == 126 for e in edges), "{}: members", group.what)
+    outline = curves_of(entities[entities[face.outer].space], entities)
+    need([e.curve.points for e in edges] == [c.points for c in outline], "{}: curves beside the outline", group.what)
+    need(group.level == PIECE_LEVEL and all(e.level == PIECE_LEVEL for e in edges), "{}: level", group.what)
+    for e in edges:
+        need(len(e.properties) == 1 and entities[e.properties[0]].form == 15, "{}: name", e.what)
+        need(e.label == entities[e.properties[0]].name[:8].strip(), "{}: label", e.what)
 
 
 def space_size(curve):
@@ -256,6 +271,8 @@ def check(path, model_path=None):
     for e in entities.values():
         if e.type == 144:
             check_trimmed(e, entities)
+        if e.type == 402 and any(entities[m].type == 126 for m in e.members):
+            check_piece(e, entities)
     points = [x for e in entities.values() if e.type == 128 for p in e.surface.points for x in p]
     need(all(abs(x) <= g["largest"] for x in points), "a coordinate passes the bound {}", g["largest"])
     if model_path:
