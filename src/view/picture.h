@@ -39,7 +39,7 @@ struct Picture {
 // - magenta where the yarn that is seen holds a part of another yarn inside itself, along the line of sight;
 //   orange where it holds a part of itself (neighbouring loops, a fold). A surface that lies inside another
 //   yarn cannot be seen itself, so the place is marked on the skin before it. Overlaps that are shallower
-//   than the picture's own accuracy (a fifth of a pixel, and the yarns' tube_error) are not marked.
+//   than the picture's own accuracy (0.6 pixel, and the yarns' tube_error) are not marked.
 // Errors: geometry (no yarn, coordinates that are not finite), limit (more than 2^31 facets), internal.
 Result<Picture> render(std::span<const yarn::Body> bodies, const PictureOptions& options);
 

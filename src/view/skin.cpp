@@ -18,6 +18,7 @@ constexpr double most_facets = 2147483648.0;
 // Surface points along several lines of one parameter, the others held: points[k * lines + line].
 struct Lines {
   std::size_t lines = 0;
+  bool are_neighbours = false;  // the grid has no line between two of these
   std::vector<Vec3> points;
   [[nodiscard]] const Vec3& at(std::size_t k, std::size_t line) const { return points[k * lines + line]; }
 };
@@ -29,7 +30,14 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - t * ab).norm();
 }
 
+// Neither does a line leave its chord, nor a quadrilateral between two lines its plane, by more than `chord`.
+// (The middle of a quadrilateral cut into triangles is off its bilinear surface by a quarter of its mixed
+// difference.)
 bool is_straight(const Lines& lines, std::size_t from, std::size_t to, double chord) {
+  for (std::size_t line = 0; line + 1 < lines.lines && lines.are_neighbours; ++line) {
+    const Vec3 here = lines.at(to, line) - lines.at(from, line);
+    if ((lines.at(to, line + 1) - lines.at(from, line + 1) - here).norm() > 4.0 * chord) return false;
+  }
   for (std::size_t k = from + 1; k < to; ++k)
     for (std::size_t line = 0; line < lines.lines; ++line)
       if (distance_to_segment(lines.at(k, line), lines.at(from, line), lines.at(to, line)) > chord)
@@ -40,18 +48,15 @@ bool is_straight(const Lines& lines, std::size_t from, std::size_t to, double ch
 // One parameter of the surface, u or v.
 class Direction {
  public:
-  Direction(const nurbs::Surface& surface, bool is_u, double chord)
-      : surface_(surface), is_u_(is_u), chord_(chord) {
-    const auto spread = [](const std::vector<double>& breaks, std::size_t most) {
-      std::vector<double> chosen;
-      const std::size_t count = std::min(most, breaks.size());
-      for (std::size_t k = 0; k < count; ++k)
-        chosen.push_back(breaks[k * (breaks.size() - 1) / std::max<std::size_t>(1, count - 1)]);
-      return chosen;
-    };
-    held_ = is_u ? spread(nurbs::breakpoints(surface.knots_v, surface.degree_v), 24)
-                 : spread(nurbs::breakpoints(surface.knots_u, surface.degree_u), 9);
+  // Round the section: judged at up to 24 sections, spread over the yarn.
+  Direction(const nurbs::Surface& surface, double chord) : surface_(surface), is_u_(true), chord_(chord) {
+    const std::vector<double> breaks = nurbs::breakpoints(surface.knots_v, surface.degree_v);
+    const std::size_t count = std::min<std::size_t>(24, breaks.size());
+    for (std::size_t k = 0; k < count; ++k) held_.push_back(breaks[k * (breaks.size() - 1) / (count - 1)]);
   }
+  // Along the yarn: judged at the grid's own columns.
+  Direction(const nurbs::Surface& surface, const std::vector<double>& columns, double chord)
+      : surface_(surface), is_u_(false), chord_(chord), held_(columns) {}
 
   // Parameters between which the lines are straight within the chord; every edge of the surface twice.
   [[nodiscard]] std::vector<double> parameters(std::size_t fewest) const {
@@ -80,7 +85,7 @@ class Direction {
   }
 
   [[nodiscard]] Lines lines_at(const std::vector<double>& parameters) const {
-    Lines lines{held_.size(), {}};
+    Lines lines{held_.size(), !is_u_, {}};
     if (!is_u_) {
       lines.points = nurbs::evaluate_grid(surface_, held_, parameters);
       return lines;
@@ -226,8 +231,8 @@ Result<Skin> make_skin(const yarn::Body& body, const Camera& camera, double chor
   };
   for (const Vec3& p : body.surface.points)
     if (!p.allFinite()) return fault(Kind::geometry, "has coordinates that are not finite");
-  std::vector<double> us = Direction(body.surface, true, chord * pixel).parameters(fewest_round);
-  const std::vector<double> vs = Direction(body.surface, false, chord * pixel).parameters(1);
+  std::vector<double> us = Direction(body.surface, chord * pixel).parameters(fewest_round);
+  const std::vector<double> vs = Direction(body.surface, us, chord * pixel).parameters(1);
   if (static_cast<double>(us.size()) * static_cast<double>(vs.size()) > most_facets)
     return fault(Kind::limit, "needs more than 2^31 facets in this picture; make the picture smaller");
   if (body.inward) std::reverse(us.begin(), us.end());
@@ -239,7 +244,7 @@ Result<Skin> make_skin(const yarn::Body& body, const Camera& camera, double chor
   skin.along = fibre_turns(body, vs);
   close_ends(skin, body);
   skin.size = std::sqrt(4.0 / std::numbers::pi * std::abs(body.end_area)) * camera.pixels_per_unit();
-  skin.uncertainty = chord + body.tube_error * camera.pixels_per_unit();
+  skin.uncertainty = 3.0 * chord + body.tube_error * camera.pixels_per_unit();
   return skin;
 }
 

@@ -33,7 +33,8 @@ struct Skin {
   [[nodiscard]] std::size_t facets() const { return quads() + (has_ends ? 2 * (columns - 1) : 0); }
 };
 
-// `chord`: pixels by which the grid's lines may leave the surface's. Errors: geometry (coordinates that are
+// `chord`: pixels by which each of the grid's columns and rows may leave the surface, and the inside of a
+// quadrilateral these. Errors: geometry (coordinates that are
 // not finite), limit (more than 2^31 facets).
 Result<Skin> make_skin(const yarn::Body& body, const Camera& camera, double chord);
 

@@ -3,10 +3,11 @@
 import math
 import shutil
 import struct
+import subprocess
 import unittest
 import zlib
 
-from program import BAD, Case, GRID, PATH, RING, files_below, run
+from program import BAD, Case, GRID, PATH, PROGRAM, RING, SAMPLES, files_below
 
 
 def decode(data):
@@ -81,11 +82,90 @@ class Pictures(Case):
         self.assertGreater(count(0.9), 20)
         self.assertGreater(count(0.5), count(0.9))
 
+    def test_a_yarn_in_itself_is_tinted_otherwise(self):
+        crossing = "fabric 1\nyarn a\n diameter 1\n path polyline\n -3 -2 0\n 3 2 0\n 3 -2 0\n -3 2 0\n end\nend\n"
+        r, g, b = self.picture(crossing)[100][100]
+        self.assertGreater(r, 2 * b)
+        self.assertGreater(g, 1.5 * b)
+
+    def test_silhouettes_have_the_analytic_area(self):
+        def covered(pixel, full=0):  # a yarn of this brightness on white
+            return (255 - pixel[1]) / (255 - full)
+        rod = fabric(("a", "0 0 0", "-2 0 0", "2 0 0", ""))
+        rows = self.picture(rod, size="400x200")
+        unit = sum(map(covered, rows[100])) / 4  # pixels a millimetre, by the rod's length
+        self.assertGreater(unit, 80)
+        self.assertAlmostEqual(sum(map(covered, (p for row in rows for p in row))) / (4 * unit**2), 1, delta=0.01)
+        rows = self.picture(rod, "--from", "side", "--flat")
+        end = rows[100][100][1]
+        across = sum(covered(pixel, end) for pixel in rows[100])
+        self.assertGreater(across, 150)
+        area = sum(covered(pixel, end) for row in rows for pixel in row)
+        self.assertAlmostEqual(area / (math.pi / 4 * across**2), 1, delta=0.01)
+
+    def slope_of_stripes(self, twist):
+        """How far the stripes in the middle of an upright yarn go to the right a pixel up; and pixels a millimetre."""
+        text = fabric(("a", "200 200 200", "0 -2 0", "0 2 0", f"twist {twist}"))
+        rows = self.picture(text, "--flat", size="300x600")
+        unit = 600 / 4 * (1 - 0.08 * 300 / 600)
+        up, half, slopes = 40, int(0.2 * unit), []
+        for y in range(200, 400, 20):
+            lower, upper = ([pixel[1] for pixel in rows[k]] for k in (y, y - up))
+            def difference(shift):
+                return sum((lower[x] - upper[x + shift])**2 for x in range(150 - half, 150 + half))
+            slopes.append(min(range(-25, 26), key=difference) / up)
+        return sorted(slopes)[len(slopes) // 2]
+
+    def test_z_is_seen_as_z(self):
+        # The middle stroke of the letter: to the right as it goes up. A fibre that makes T turns a millimetre on a
+        # yarn of diameter D has the slope pi D T in front.
+        for hand, sign in (("Z", 1), ("S", -1)):
+            slope = self.slope_of_stripes(f"100 {hand}")
+            self.assertAlmostEqual(slope, sign * math.pi * 0.1, delta=0.04, msg=hand)
+        turning = self.slope_of_stripes("100 Z rotate")
+        self.assertAlmostEqual(turning, math.pi * 0.1, delta=0.04)
+
+    def test_ends_are_lighter(self):
+        side, end = (self.picture(fabric(("a", RED, "-2 0 0", "2 0 0", "")), "--from", view, "--flat")[100][100][1]
+                     for view in ("front", "side"))
+        self.assertGreater(end, side + 20)
+
+    def test_background(self):
+        self.assertEqual(self.picture(fabric(*CROSS), "--background", "1,20,255")[0][0], (1, 20, 255))
+
     def test_the_same_bytes_with_any_number_of_threads(self):
         for threads in (1, 2, 5):
             self.succeeds("view", PATH, "-o", self.folder / f"{threads}.png", "-j", threads, "--size", "300x200",
                           "--from", "iso")
         self.assertEqual(len(set(files_below(self.folder).values())), 1)
+
+
+class Files(Case):
+    def test_several_inputs(self):
+        self.succeeds("view", GRID, RING, "-o", self.out, "--size", "40x30")
+        self.assertEqual(sorted(files_below(self.out)), ["plain4_grid.png", "ring.png"])
+        self.assertIn("names one file", self.fails(2, "view", GRID, RING, "-o", self.folder / "x.png"))
+
+    def test_beside_the_input_and_standard_output(self):
+        shutil.copy(GRID, self.folder / "a.txt")
+        self.succeeds("view", self.folder / "a.txt", "--size", "40x30")
+        self.assertEqual(decode((self.folder / "a.png").read_bytes())[:2], (40, 30))
+        done = subprocess.run([PROGRAM, "view", GRID, "-o", "-", "--size", "40x30"], capture_output=True)
+        self.assertEqual(done.stdout, (self.folder / "a.png").read_bytes())
+
+    def test_resume_goes_by_the_options_too(self):
+        report, picture = self.folder / "r.json", self.folder / "x.png"
+        def again(*options):
+            return self.succeeds("view", GRID, "-o", picture, "--size", "40x30", "--report", report, "--resume", *options).stderr
+        again()
+        self.assertIn("up to date", again())
+        self.assertNotIn("up to date", again("--from", "iso"))
+
+    def test_what_cannot_be_shown(self):
+        self.fails(1, "view", BAD / "misspelt.txt", "-o", self.folder / "x.png")
+        piece = self.fails(1, "view", SAMPLES / "back_piece.txt", "-o", self.folder / "x.png")
+        self.assertIn("no yarn to show", piece)
+        self.assertEqual(files_below(self.folder), {})
 
 
 if __name__ == "__main__":
