@@ -118,7 +118,7 @@ class Search {
       for (std::size_t j = 0; j < of_b.size(); ++j) {
         const bool last_of_a = i + 1 == of_a.size(), last_of_b = j + 1 == of_b.size();
         const Joints kept = {joints.a_to_b && last_of_a && j == 0, joints.b_to_a && i == 0 && last_of_b};
-        if (const std::optional<Vec2> found = between(of_a[i], of_b[j], kept)) return found;
+        if (std::optional<Vec2> found = between(of_a[i], of_b[j], kept)) return found;
       }
     return std::nullopt;
   }
@@ -136,7 +136,7 @@ class Search {
       return std::nullopt;
     const auto [left, right] = whole.halves(touch_);
     for (const Part* half : {&left, &right})
-      if (const std::optional<Vec2> found = within(*half)) return found;
+      if (std::optional<Vec2> found = within(*half)) return found;
     return between(left, right, {true, whole.first() == whole.last()});
   }
 
@@ -162,6 +162,7 @@ std::optional<Crossing> find_crossing(const std::vector<Bezier>& outline) {
   if (outline.empty()) return std::nullopt;
   const Search search(relative_touch * box.diagonal().norm());
   std::vector<Part> parts;
+  parts.reserve(outline.size());
   for (const Bezier& curve : outline) parts.push_back(search.part(curve));
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (const std::optional<Vec2> at = search.within(parts[i])) return Crossing{i, i, *at};

@@ -57,7 +57,7 @@ class Documents(Case):
 
     def test_every_sample_is_described(self):
         text = (ROOT / "samples" / "README.md").read_text()
-        patterns = re.findall(r"`([\w*]+\.txt)`", text)
+        patterns = re.findall(r"`([\w*-]+\.txt)`", text)
         for path in sorted((ROOT / "samples").glob("*.txt")):
             self.assertTrue(any(path.match(pattern) for pattern in patterns), path.name)
 
