@@ -40,39 +40,50 @@ void read_weft(Parser& p, Weave& weave, std::string_view) {
   read_system(p, weave.weft);
 }
 
-struct DraftRows {
-  Draft& draft;
+// Rows of signs, one character each and equally many a row: a draft's, a chart's.
+struct SignRows {
+  std::string_view kind;     // "draft"
+  std::string_view signs;    // "01"
+  std::string_view meaning;  // of the signs
+  std::vector<std::string>& rows;
+  std::vector<int>* lines = nullptr;  // where each row stands; null: nobody asks
   bool good = true;
 };
 
-void read_draft_row(Parser& p, DraftRows& rows) {
+void read_sign_row(Parser& p, SignRows& rows) {
   const Spot spot = p.statement();
   const std::string_view text = p.take_rest();
   std::string row;
   for (const char& c : text) {
     if (c == ' ' || c == '\t') continue;
-    if (c != '0' && c != '1') {
+    const char sign = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    if (rows.signs.find(sign) == std::string_view::npos) {
       const auto before = static_cast<int>(&c - text.data());
       rows.good = false;
-      return p.error({&c, spot.line, spot.column + before}, "a draft has the signs 0 and 1 (1: warp on top)");
+      return p.error({&c, spot.line, spot.column + before},
+                     fmt::format("a {} has the signs {}", rows.kind, rows.meaning));
     }
-    row += c;
+    row += sign;
   }
-  if (!rows.draft.rows.empty() && row.size() != rows.draft.rows.front().size()) {
+  if (!rows.rows.empty() && row.size() != rows.rows.front().size()) {
     rows.good = false;
-    p.error(spot, fmt::format("this row of the draft has {} signs, the first one has {}", row.size(),
-                              rows.draft.rows.front().size()));
+    p.error(spot, fmt::format("this row of the {} has {} signs, the first one has {}", rows.kind, row.size(),
+                              rows.rows.front().size()));
     return;
   }
-  rows.draft.rows.push_back(std::move(row));
+  rows.rows.push_back(std::move(row));
+  if (rows.lines != nullptr) rows.lines->push_back(spot.line);
+}
+
+void read_sign_rows(Parser& p, SignRows rows) {
+  static const Table<SignRows> table({}, read_sign_row, true);
+  if (p.read_block(rows.kind, "", p.statement(), table, rows) && rows.good && rows.rows.empty())
+    p.error(p.last(), fmt::format("the {} has no rows", rows.kind));
 }
 
 void read_draft_rows(Parser& p, Draft& draft) {
-  static const Table<DraftRows> table({}, read_draft_row);
   draft.form = Draft::Form::rows;
-  DraftRows rows{draft};
-  if (p.read_block("draft", "", p.statement(), table, rows) && rows.good && draft.rows.empty())
-    p.error(p.last(), "the draft has no rows");
+  read_sign_rows(p, {"draft", "01", "0 and 1 (1: warp on top)", draft.rows});
 }
 
 void read_draft(Parser& p, Weave& weave, std::string_view) {
@@ -141,6 +152,13 @@ void read_knit_wales(Parser& p, Knit& knit, std::string_view) {
 void read_method(Parser& p, Knit& knit, std::string_view) {
   const auto method = p.choice("method", knit_method_words);
   if (method && p.finish()) knit.method = *method;
+}
+
+void read_chart(Parser& p, Knit& knit, std::string_view) {
+  if (!p.finish()) return;
+  knit.chart_place = p.statement().place();
+  read_sign_rows(
+      p, {"chart", "KPTM", "K (knit), P (purl), T (tuck) and M (miss)", knit.chart, &knit.chart_lines});
 }
 
 // --- warpknit
@@ -302,11 +320,13 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   static const Table<Knit> table({{"thread", read_construction_thread<Knit>, Times::once},
                                   {"courses", read_knit_courses, Times::once},
                                   {"wales", read_knit_wales, Times::once},
-                                  {"method", read_method}});
+                                  {"method", read_method},
+                                  {"chart", read_chart}});
   Knit knit;
   const Spot opened = p.statement();
   knit.place = opened.place();
-  const auto form = p.choice("knit", knit_words);
+  const bool has_form = p.more();
+  const auto form = has_form ? p.choice("knit", knit_words) : std::optional(Knit::Form::chart);
   knit.form = form.value_or(Knit::Form::jersey);
   const auto rib = knit.form == Knit::Form::rib ? p.pair("the rib", 'x') : std::nullopt;
   if (rib) {
@@ -314,7 +334,14 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     knit.rib_b = (*rib)[1];
   }
   if (form && (rib || *form != Knit::Form::rib)) p.finish();
-  p.read_block(word, "", opened, table, knit);
+  const int errors = p.report.errors();
+  if (p.read_block(word, "", opened, table, knit) && p.report.errors() == errors && form) {
+    if (has_form && !knit.chart.empty())
+      p.error(opened, fmt::format("a knit '{}' has its own stitches: leave out either the word or the chart",
+                                  word_of(knit_words, *form)));
+    if (!has_form && knit.chart.empty())
+      p.error(p.last(), "'knit' ends without its 'chart'; or, behind the word 'knit': jersey, purl or rib");
+  }
   fabric.items.emplace_back(std::move(knit));
 }
 

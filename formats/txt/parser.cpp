@@ -26,15 +26,19 @@ std::string Block::title() const {
 // --- blocks
 // ---------------------------------------------------------------------------------------------------------
 
-bool Parser::at_row() const {
+bool Parser::at_row(const Block& block) const {
   if (!starts_name(first_character())) return true;
   const std::string_view word = statement_word();
-  return same_word(word, "nan") || same_word(word, "inf") || same_word(word, "infinity");
+  if (same_word(word, "nan") || same_word(word, "inf") || same_word(word, "infinity")) return true;
+  if (!block.table->rows_of_letters || same_word(word, "end")) return false;
+  for (const Block* open = &block; open != nullptr; open = open->outer)
+    if (find_word(open->table->words, word) >= 0) return false;
+  return true;
 }
 
 int Parser::next_in_block(Block& block) {
   while (next_statement()) {
-    if (block.table->has_rows && at_row()) {
+    if (block.table->has_rows && at_row(block)) {
       unwinding_ = false;
       return row_step;
     }

@@ -41,6 +41,7 @@ struct TableWords {
       slots;  // for each word its own index, or that of the one that it stands instead of
   std::vector<Times> times;
   bool has_rows = false;
+  bool rows_of_letters = false;  // rows may begin with a letter: all lines but words of open blocks are rows
 };
 
 template <class T>
@@ -48,9 +49,10 @@ struct Table : TableWords {
   using Row = void (*)(Parser&, T&);
 
   // `row` reads a line that does not begin with a letter; null: there are no such lines.
-  explicit Table(std::vector<Statement<T>> list, Row read_row = nullptr)
+  explicit Table(std::vector<Statement<T>> list, Row read_row = nullptr, bool letters = false)
       : statements(std::move(list)), row(read_row) {
     has_rows = row != nullptr;
+    rows_of_letters = letters;
     for (const Statement<T>& statement : statements) {
       std::size_t slot = words.size();
       for (std::size_t i = 0; i < words.size(); ++i)
@@ -140,7 +142,7 @@ class Parser : public Cursor {
   int note_given(Block& block, int index, std::string_view word);
   int unknown_word(const Block& block, std::string_view word);
   int missing_end(const Block& block);
-  [[nodiscard]] bool at_row() const;
+  [[nodiscard]] bool at_row(const Block& block) const;
   // Reports; returns the word that was meant.
   std::string_view missing_choice(std::string_view what, std::string_view word,
                                   const std::vector<std::string_view>& known);

@@ -266,12 +266,18 @@ void write_item(Lines& out, const fabric::Weave& weave) {
 }
 
 void write_item(Lines& out, const fabric::Knit& knit) {
-  out.line(0, "knit").word(word_of(knit_words, knit.form));
+  out.line(0, "knit");
+  if (knit.form != Knit::Form::chart) out.word(word_of(knit_words, knit.form));
   if (knit.form == Knit::Form::rib) write_pair(out, knit.rib_a, "x", knit.rib_b);
   out.line(1, "thread").name(knit.thread);
   out.line(1, "courses").value(knit.courses);
   out.line(1, "wales").value(knit.wales);
   if (knit.method) out.line(1, "method").word(word_of(knit_method_words, *knit.method));
+  if (knit.form == Knit::Form::chart) {
+    out.line(1, "chart");
+    for (const std::string& row : knit.chart) out.line(2, row);
+    out.line(1, "end");
+  }
   out.line(0, "end");
 }
 

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fabric/knit_chart.h"
 #include "fabric/knit_loop.h"
 #include "fabric/yarn_spec.h"
+#include "nurbs/interpolate.h"
 
 namespace selvage::fabric {
 
@@ -14,19 +16,41 @@ namespace {
 
 // With a unit cell the cloth goes on beyond it. The influence of a spline's end falls by 2 + sqrt(3) from
 // data point to data point: four wales of eight points make the loops inside periodic to the last bits.
-constexpr int margin_wales = 4;
-constexpr int margin_courses = 2;
+constexpr long long margin_wales = 4;
 
-yarn::PathForm form_of(Knit::Method method) {
+nurbs::Parameterization parameterization_of(Knit::Method method) {
   switch (method) {
     case Knit::Method::uniform:
-      return yarn::PathForm::uniform;
+      return nurbs::Parameterization::uniform;
     case Knit::Method::centripetal:
-      return yarn::PathForm::centripetal;
+      return nurbs::Parameterization::centripetal;
     case Knit::Method::chord:
       break;
   }
-  return yarn::PathForm::chord;
+  return nurbs::Parameterization::chord;
+}
+
+// The derivative at the start of a course that goes on as its own mirror image in the plane x = const. It
+// lies along x, so that the end face lies in that plane; and loops that are mirror images of themselves have
+// the same shape at the ends as in the middle of the cloth.
+Vec3 mirrored_derivative(const std::vector<Vec3>& points, const std::vector<double>& parameters, bool last,
+                         nurbs::Parameterization how) {
+  const std::size_t count = std::min<std::size_t>(points.size() - 1, 28);  // 28: to 1e-16
+  std::vector<Vec3> both(2 * count + 1);
+  for (std::size_t i = 0; i <= count; ++i) {
+    const Vec3& point = points[last ? points.size() - 1 - i : i];
+    const double plane = last ? points.back().x() : points.front().x();
+    const Vec3 image(2 * plane - point.x(), point.y(), point.z());
+    both[count - i] = last ? point : image;
+    both[count + i] = last ? image : point;
+  }
+  const std::vector<double> t = nurbs::parameters(both, how);
+  const nurbs::Curve curve = nurbs::interpolate(both, t, nurbs::end_derivative(both, t, false),
+                                                nurbs::end_derivative(both, t, true));
+  const std::size_t end = parameters.size() - 1;
+  const double step = last ? parameters[end] - parameters[end - 1] : parameters[1] - parameters[0];
+  const double scale = (t[count + 1] - t[count]) / step;
+  return {scale * nurbs::evaluate_jet(curve, t[count]).d1.x(), 0, 0};
 }
 
 class KnitConstruction final : public Construction {
@@ -84,10 +108,12 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
   points.push_back(last_sinker_point(field_, course(index)));
   place_from(points.size() - 1, field_.last_wale + 1);
   plan->spec.guide = yarn::FrameGuide::with_up(Vec3::UnitZ());
-  if (Status made = interpolate(*plan, form_of(knit_.method.value_or(Knit::Method::chord)), Vec3::UnitX(),
-                                Vec3::UnitX());
-      !made)
-    return made.error();
+  const nurbs::Parameterization how = parameterization_of(knit_.method.value_or(Knit::Method::chord));
+  yarn::CentreLine& line = plan->line;
+  line.parameters = nurbs::parameters(points, how);
+  line.curve =
+      nurbs::interpolate(points, line.parameters, mirrored_derivative(points, line.parameters, false, how),
+                         mirrored_derivative(points, line.parameters, true, how));
   return plan;
 }
 
@@ -107,7 +133,9 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
   Result<yarn::Section> section = section_of(*thread, fabric.units, false);
   if (!section) return failed(section.error(), knit.thread_place);
   const yarn::SectionSize size = yarn::nominal_size(*section);
-  const long long beside = fabric.cell ? margin_wales : 0, beyond = fabric.cell ? margin_courses : 0;
+  const long long beside = fabric.cell ? margin_wales : 0;
+  // The loops of courses below reach up into the cell as far as they are held, and one course further.
+  const long long beyond = fabric.cell ? chart->longest_hold() + 2 : 0;
   return std::unique_ptr<Construction>(std::make_unique<KnitConstruction>(
       fabric, knit, *thread,
       KnitField{std::move(*chart), -beyond, knit.courses - 1 + beyond, -beside, knit.wales - 1 + beside},

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace selvage::fabric {
 
 namespace {
@@ -32,8 +34,49 @@ Result<StitchChart> StitchChart::of(const Knit& knit) {
       chart.stitches_.assign(static_cast<std::size_t>(knit.rib_a), Stitch::knit);
       chart.stitches_.resize(static_cast<std::size_t>(chart.wales_), Stitch::purl);
       break;
+    case Knit::Form::chart:
+      if (Status filled = chart.fill(knit); !filled) return filled.error();
+      break;
   }
   return chart;
+}
+
+Status StitchChart::fill(const Knit& knit) {
+  if (knit.chart.empty() || knit.chart.front().empty())
+    return error(Kind::malformed, "the chart has no rows");
+  courses_ = static_cast<int>(knit.chart.size());
+  wales_ = static_cast<int>(knit.chart.front().size());
+  for (auto row = knit.chart.rbegin(); row != knit.chart.rend(); ++row) {
+    if (row->size() != knit.chart.front().size())
+      return error(Kind::malformed, "the rows of the chart are not equally long");
+    if (row->find_first_not_of("KPTM") != std::string::npos)
+      return error(Kind::malformed, "the chart has a sign that is none of K, P, T and M");
+    for (const char sign : *row) stitches_.push_back(static_cast<Stitch>(sign));
+  }
+  for (int wale = 0; wale < wales_; ++wale)
+    if (Status held = measure_holding(knit, wale); !held) return held;
+  return {};
+}
+
+// No loop of this wale stays on its needle for longer than it can.
+Status StitchChart::measure_holding(const Knit& knit, int wale) {
+  int run = 0;
+  for (long long course = 0; course < 2LL * courses_; ++course) {  // runs go on into the next repeat
+    run = is_loop(at(course, wale)) ? 0 : run + 1;
+    longest_hold_ = std::max(longest_hold_, run);
+    if (run <= max_held) continue;
+    Message message = error(
+        Kind::geometry, fmt::format("wale {} of the chart has more than {} tucks and misses one above the "
+                                    "other: no loop can be held over more courses",
+                                    wale + 1, max_held));
+    const auto row = static_cast<std::size_t>(courses_ - 1 - course % courses_);
+    if (row < knit.chart_lines.size())
+      message.place = {knit.chart_lines[row], 1};
+    else
+      message.place = knit.chart_place;
+    return message;
+  }
+  return {};
 }
 
 Stitch StitchChart::at(long long course, long long wale) const {

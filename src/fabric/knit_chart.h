@@ -18,20 +18,29 @@ inline bool is_loop(Stitch stitch) {
   return stitch == Stitch::knit || stitch == Stitch::purl;
 }
 
+// Courses over which a loop can stay on its needle: tucks and misses one above the other in one wale.
+inline constexpr int max_held = 6;
+
 class StitchChart {
  public:
   // jersey: knit everywhere. purl: courses of knit and purl in turn, the first one knit (1 x 1 purl, links
   // and links). rib a x b: a wales of knit and b of purl in turn. Rows of a chart: top row = last course.
-  // Errors (malformed): a chart without rows, ragged rows or unknown signs; rib numbers below 1.
+  // Errors: (malformed) a chart without rows, ragged rows or unknown signs, rib numbers below 1; (geometry) a
+  // loop that would be held for longer than max_held courses, at the chart's row.
   static Result<StitchChart> of(const Knit& knit);
 
   // Any whole numbers, from 0 (course 0 is the first one, wale 0 the left one): the chart repeats both ways.
   [[nodiscard]] Stitch at(long long course, long long wale) const;
   [[nodiscard]] int courses() const { return courses_; }  // of one repeat
   [[nodiscard]] int wales() const { return wales_; }
+  // Tucks and misses one above the other, the most that there are in a wale.
+  [[nodiscard]] int longest_hold() const { return longest_hold_; }
 
  private:
-  int courses_ = 0, wales_ = 0;
+  Status fill(const Knit& knit);
+  Status measure_holding(const Knit& knit, int wale);
+
+  int courses_ = 0, wales_ = 0, longest_hold_ = 0;
   std::vector<Stitch> stitches_;  // courses x wales, first course first
 };
 

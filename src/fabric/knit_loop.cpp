@@ -7,63 +7,198 @@ namespace selvage::fabric {
 
 namespace {
 
-constexpr double depth = 1.5;  // of legs, sinkers and heads before or behind the middle plane
+// All points are of the left half, x from the loop's middle, y from the course's lower crossings (or, where
+// the name says `top`, from those of the course whose loop is drawn through this one), z for a knit loop.
+using Point = std::array<double, 3>;
+
 constexpr double middle = wale_spacing / 2;
-
-// A point of the left half of a loop: x from the loop's middle, z for a knit loop.
-constexpr std::array<double, 3> foot = {-1, 0, 0};
-constexpr std::array<double, 3> leg = {-2, 3.5, depth};
-constexpr std::array<double, 3> shoulder = {-3, 7, 0};
+constexpr double depth = 1.5;  // of legs, sinkers and heads before or behind the middle plane
+constexpr double sinker_y = -3;
+constexpr double head_over_top = 3;
+constexpr Point foot = {-1, 0, 0};
+constexpr Point leg = {-2, 3.5, depth};
+constexpr Point shoulder_top = {-3, 0, 0};
 // Where own stitch and stitch above differ: the leg before it crosses the middle plane, and after.
-constexpr std::array<double, 3> lower_leg = {-1.3, 1.75, 1.05};
-constexpr std::array<double, 3> upper_leg = {-2.7, 5.25, -1.05};
+constexpr Point lower_leg = {-1.4, 1.95, 1};
+constexpr Point upper_leg_top = {-2.8, -1.15, -2.35};
 // On the arm of a sinker that starts in the middle plane.
-constexpr std::array<double, 3> arm = {-2.75, -1.75, -1};
+constexpr Point arm = {-2.7, -2.7, -1.7};
 
-// +1: knit, -1: purl.
+// Yarns that lie on one needle are stacked through the thickness.
+constexpr double layer = 2;
+// What a tuck under the new loop does to that loop's arms and sinkers, and to the loop that it lies behind.
+constexpr Point arm_behind_tucks = {-2.3, -2, -1};
+constexpr double arm_back = 2.5, sinker_back = 1.8;
+constexpr double leg_forward = 0.5, shoulder_forward = 0.4, head_forward = -0.3;
+constexpr Point tuck_leg = {-3.1, 3, -1};
+constexpr Point tuck_shoulder_top = {-3.4, 0, -2};
+constexpr double tuck_head_over_top = 3.5, tuck_head = -3.5;
+constexpr double float_y = -2, float_z = -2.5;
+
+// What one needle does in one course.
+struct Needle {
+  Stitch stitch = Stitch::knit;
+  double side = 1;  // of its loops: 1 where they are knit, -1 where they are purl
+  int behind = 0;   // tucks on the needle behind which the yarn has to pass
+};
+
+// What becomes of the yarn that one course gives to a needle.
+struct Hold {
+  double top = course_spacing;  // y of the lower crossings of the course that knits it off
+  bool turns = false;           // the stitch that knits it off is of the other kind
+  int tucks = 0;                // laid on the needle above the held loop until then
+};
+
+bool is_inside(const KnitField& field, long long course) {
+  return course >= field.first_course && course <= field.last_course;
+}
+
+// The loop that the needle holds when the course begins; first_course - 1: none.
+long long held_course(const KnitField& field, long long course, long long wale) {
+  long long held = course - 1;
+  while (is_inside(field, held) && !is_loop(field.chart.at(held, wale))) --held;
+  return held;
+}
+
+// The first later course that knits on this needle; last_course + 1: none.
+long long next_loop_course(const KnitField& field, long long course, long long wale) {
+  long long next = course + 1;
+  while (is_inside(field, next) && !is_loop(field.chart.at(next, wale))) ++next;
+  return next;
+}
+
+int count_tucks(const KnitField& field, long long first, long long end, long long wale) {
+  int count = 0;
+  for (long long course = first; course < end; ++course)
+    count += field.chart.at(course, wale) == Stitch::tuck ? 1 : 0;
+  return count;
+}
+
 double side_of(Stitch stitch) {
   return stitch == Stitch::purl ? -1.0 : 1.0;
 }
 
-// z of the sinker between a wale and the one on its left.
-double sinker_z(const KnitField& field, long long course, long long wale) {
-  const double left = side_of(field.chart.at(course, std::max(wale - 1, field.first_wale)));
-  const double right = side_of(field.chart.at(course, std::min(wale, field.last_wale)));
-  return left == right ? -depth * right : 0.0;
+Needle needle_at(const KnitField& field, long long course, long long wale) {
+  Needle needle;
+  needle.stitch = field.chart.at(course, wale);
+  const long long held = held_course(field, course, wale);
+  const bool holds = is_inside(field, held);
+  if (is_loop(needle.stitch)) {
+    needle.side = side_of(needle.stitch);
+  } else {  // on the bed of the loop that it joins, or else of the one that joins it
+    const long long like = holds ? held : next_loop_course(field, course, wale);
+    needle.side = is_inside(field, like) ? side_of(field.chart.at(like, wale)) : 1.0;
+  }
+  // A loop of the other kind comes from the other side, where the tucks are not in its way.
+  const bool comes_from_behind = !holds || side_of(field.chart.at(held, wale)) == needle.side;
+  if (comes_from_behind)
+    needle.behind = count_tucks(field, std::max(held + 1, field.first_course), course, wale);
+  return needle;
 }
 
-constexpr double sinker_y = -3;
+Hold hold_of(const KnitField& field, long long course, long long wale, double side) {
+  Hold hold;
+  const long long next = next_loop_course(field, course, wale);
+  hold.top = course_spacing * static_cast<double>(next - course);
+  hold.turns = is_inside(field, next) && side_of(field.chart.at(next, wale)) != side;
+  hold.tucks = count_tucks(field, course + 1, next, wale);
+  return hold;
+}
+
+// z of the sinker between a wale and the one on its left.
+double sinker_z(const KnitField& field, long long course, long long wale) {
+  const Needle left = needle_at(field, course, std::max(wale - 1, field.first_wale));
+  const Needle right = needle_at(field, course, std::min(wale, field.last_wale));
+  if (left.side != right.side) return 0.0;
+  return -right.side * (depth + sinker_back * std::max(left.behind, right.behind));
+}
+
+// The points of one half of a stitch, from its sinker to before its head.
+class Half {
+ public:
+  Half(const Needle& needle, const Hold& hold, bool starts_in_the_middle) {
+    if (needle.stitch == Stitch::tuck) add_tuck(needle, hold);
+    if (is_loop(needle.stitch)) add_loop(needle, hold, starts_in_the_middle);
+  }
+  [[nodiscard]] const Point* begin() const { return points_.data(); }
+  [[nodiscard]] const Point* end() const { return points_.data() + count_; }
+
+ private:
+  void add(const Point& point, double up = 0, double forward = 0) {
+    points_[count_++] = {point[0], point[1] + up, point[2] + forward};
+  }
+  void add_loop(const Needle& needle, const Hold& hold, bool starts_in_the_middle);
+  void add_tuck(const Needle& needle, const Hold& hold);
+
+  std::array<Point, 6> points_{};
+  std::size_t count_ = 0;
+};
+
+void Half::add_loop(const Needle& needle, const Hold& hold, bool starts_in_the_middle) {
+  if (needle.behind > 0)
+    add(arm_behind_tucks, 0, -arm_back * needle.behind);
+  else if (starts_in_the_middle)
+    add(arm);
+  add(foot);
+  const bool is_held = hold.top > course_spacing;
+  // A held loop is drawn up: a straight leg from the foot to the shoulder, before the plane at both ends.
+  const auto on_leg = [&](double y) {
+    return Point{foot[0] + (shoulder_top[0] - foot[0]) * y / hold.top, y, depth};
+  };
+  if (hold.turns) {
+    add(is_held ? on_leg(leg[1]) : lower_leg);
+    add(upper_leg_top, hold.top);
+    add(shoulder_top, hold.top, 0.5 * layer * hold.tucks);
+  } else {
+    add(is_held ? on_leg(leg[1]) : leg);
+    if (is_held) add(on_leg(hold.top - leg[1]), 0, leg_forward * hold.tucks);
+    add(shoulder_top, hold.top, shoulder_forward * hold.tucks);
+  }
+}
+
+void Half::add_tuck(const Needle& needle, const Hold& hold) {
+  const double back = -layer * needle.behind;
+  add(tuck_leg, 0, back);
+  const bool is_held = hold.top > course_spacing;
+  if (hold.turns) {
+    add(upper_leg_top, hold.top, back - layer);
+    add(shoulder_top, hold.top, 0.5 * (back + layer * (hold.tucks - 1)));
+  } else {
+    if (is_held) add({tuck_shoulder_top[0], hold.top - course_spacing + tuck_leg[1], tuck_leg[2]}, 0, back);
+    add(tuck_shoulder_top, hold.top, back);
+  }
+}
+
+Point head_of(const Needle& needle, const Hold& hold) {
+  switch (needle.stitch) {
+    case Stitch::miss:
+      return {0, float_y, float_z - sinker_back * needle.behind};
+    case Stitch::tuck:
+      if (hold.turns) return {0, hold.top + head_over_top, depth + layer * hold.tucks};
+      return {0, hold.top + tuck_head_over_top, tuck_head - layer * needle.behind};
+    case Stitch::knit:
+    case Stitch::purl:
+      break;
+  }
+  if (hold.turns) return {0, hold.top + head_over_top, depth + layer * hold.tucks};
+  return {0, hold.top + head_over_top, -depth + head_forward * hold.tucks};
+}
 
 }  // namespace
 
 void add_stitch_points(const KnitField& field, long long course, long long wale, std::vector<Vec3>& points) {
-  const double side = side_of(field.chart.at(course, wale));
-  const double head = course < field.last_course ? side_of(field.chart.at(course + 1, wale)) : side;
+  const Needle needle = needle_at(field, course, wale);
+  const Hold hold = hold_of(field, course, wale, needle.side);
   const double left_sinker = sinker_z(field, course, wale);
   const double right_sinker = sinker_z(field, course, wale + 1);
-  points.emplace_back(0, sinker_y, left_sinker);
-  const auto add = [&](const std::array<double, 3>& p, double mirror) {
-    points.emplace_back(middle + mirror * p[0], p[1], side * p[2]);
+  const auto add = [&](const Point& p, double mirror) {
+    points.emplace_back(middle + mirror * p[0], p[1], needle.side * p[2]);
   };
-  if (left_sinker == 0.0) add(arm, 1);
-  add(foot, 1);
-  if (head == side) {
-    add(leg, 1);
-  } else {
-    add(lower_leg, 1);
-    add(upper_leg, 1);
-  }
-  add(shoulder, 1);
-  points.emplace_back(middle, 10, -depth * head);
-  add(shoulder, -1);
-  if (head == side) {
-    add(leg, -1);
-  } else {
-    add(upper_leg, -1);
-    add(lower_leg, -1);
-  }
-  add(foot, -1);
-  if (right_sinker == 0.0) add(arm, -1);
+  points.emplace_back(0, sinker_y, left_sinker);
+  for (const Point& point : Half(needle, hold, left_sinker == 0.0)) add(point, 1);
+  add(head_of(needle, hold), 1);
+  const Half right(needle, hold, right_sinker == 0.0);
+  for (const Point* point = right.end(); point != right.begin();) add(*--point, -1);
 }
 
 Vec3 last_sinker_point(const KnitField& field, long long course) {

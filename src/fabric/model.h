@@ -156,7 +156,7 @@ struct Weave {
 };
 
 struct Knit {
-  enum class Form { jersey, purl, rib };
+  enum class Form { jersey, purl, rib, chart };
   enum class Method { uniform, chord, centripetal };
   TextPlace place;
   Form form = Form::jersey;
@@ -165,6 +165,10 @@ struct Knit {
   TextPlace thread_place;
   int courses = 0, wales = 0;
   std::optional<Method> method;
+  std::vector<std::string>
+      chart;  // of 'K', 'P', 'T', 'M', top row = last course; empty unless `form` says so
+  TextPlace chart_place;
+  std::vector<int> chart_lines;  // source line of each row; may be empty
 };
 
 struct WarpknitBar {

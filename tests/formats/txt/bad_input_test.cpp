@@ -63,6 +63,11 @@ std::string in_grid(const std::string& rows) {
   return with_thread("yarn y t\n  grid 2 3\n" + rows + "\n  end\nend\n");
 }
 const std::string six_rows = "0 0 0\n0 1 0\n0 0 1\n1 0 0\n1 1 0\n1 0 1";
+// `chart` is line 8.
+std::string chart(const std::string& rows) {
+  return with_thread("knit\n thread t\n courses 3\n chart\n" + rows + "\n end\n wales 3\nend\n");
+}
+
 // `draft` is line 8.
 std::string weave(std::string draft, std::string extra = "") {
   return with_thread("weave\n  warp t 4 pitch 1\n  weft t 4 pitch 1\n  " + draft + "\n" + extra + "end\n");
@@ -388,7 +393,22 @@ const std::vector<Case> construction_cases = {
      {{5, 6, "did you mean 'jersey'"}}},
     {"knit_form_missing",
      with_thread("knit\n thread t\n courses 3\n wales 3\nend\n"),
-     {{5, 5, "missing: jersey, purl, rib"}}},
+     {{9, 1, "'knit' ends without its 'chart'; or, behind the word 'knit': jersey, purl or rib"}}},
+    {"knit_form_and_chart",
+     with_thread("knit purl\n thread t\n courses 3\n wales 3\n chart\n  K\n end\nend\n"),
+     {{5, 1, "leave out either"}}},
+    {"knit_chart_sign", chart("KTK\nK X\nKMP"), {{10, 3, "K (knit), P (purl), T (tuck) and M (miss)"}}},
+    {"knit_chart_word", chart("KTK\nKnot"), {{10, 2, "K (knit), P (purl), T (tuck) and M (miss)"}}},
+    {"knit_chart_ragged", chart("KTK\nkt"), {{10, 1, "2 signs, the first one has 3"}}},
+    {"knit_chart_empty",
+     with_thread("knit\n thread t\n courses 3\n wales 3\n chart\n end\nend\n"),
+     {{10, 2, "no rows"}}},
+    {"knit_chart_open",
+     with_thread("knit\n chart\n KK\n thread t\n courses 3\n wales 3\nend\n"),
+     {{8, 2, "'end' is missing: 'chart'"}}},
+    {"knit_negative",
+     with_thread("knit jersey\n thread t\n courses -3\n wales -1\nend\n"),
+     {{7, 10, "1 or more"}, {8, 8, "1 or more"}}},
     {"knit_rib",
      with_thread("knit rib 1\n thread t\n courses 3\n wales 3\nend\n"),
      {{5, 10, "joined by 'x'"}}},

@@ -181,6 +181,7 @@ class Flat {
     add(path + ".courses", v.courses);
     add(path + ".wales", v.wales);
     add(path + ".method", v.method);
+    add(path + ".chart", v.chart);
   }
   void add(const std::string& path, const WarpknitBar& v) {
     add(path + ".thread", v.thread);

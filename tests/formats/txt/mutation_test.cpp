@@ -108,6 +108,8 @@ class Mutator {
                                                    "\xFF",
                                                    "closed",
                                                    "draft",
+                                                   "chart",
+                                                   "KPTM",
                                                    "weave",
                                                    "piece",
                                                    "fabric 1",

@@ -265,7 +265,7 @@ class Maker {
       }
       case 1: {
         Knit knit;
-        knit.form = static_cast<Knit::Form>(up_to(2));
+        knit.form = static_cast<Knit::Form>(up_to(3));
         if (knit.form == Knit::Form::rib) {
           knit.rib_a = count();
           knit.rib_b = count();
@@ -274,6 +274,13 @@ class Maker {
         knit.courses = count();
         knit.wales = count();
         maybe(knit.method, [&] { return static_cast<Knit::Method>(up_to(2)); });
+        if (knit.form == Knit::Form::chart) {
+          const int rows = 1 + up_to(3), wales = 1 + up_to(4);
+          for (int i = 0; i < rows; ++i) {
+            std::string& row = knit.chart.emplace_back();
+            for (int j = 0; j < wales; ++j) row += "KPTM"[up_to(3)];
+          }
+        }
         return knit;
       }
       case 2:
