@@ -80,6 +80,32 @@ def step_write(bin_folder, folder, quick):
                    f"{row['bytes'] / 1e6:.1f}", f"{row['peak_rss_mib']:.0f}"] for row in rows])
 
 
+# Chang et al. (methods.md, 1): mean time of one drawing of the centre lines of 50 x 50 loops, s. On their machine, with its
+# drawing: a published constant, shown beside our time and not a ratio that says much.
+PUBLISHED_JERSEY = 0.307
+
+
+def knit_build(bin_folder, folder, quick):
+    command = [f"{bin_folder}/knit_build", "--folder", folder] + (["--repeats", "5", "--sizes", "50,158"] if quick else [])
+    found = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    first = {row["method"]: row["seconds_a_loop"] for row in reversed(found["lines"])}
+    lines = table(
+        ["jersey", "parameters", "centre lines, ms", "published, ms", "ns a loop", "to 50 x 50", "SparseLU of the same systems, ms",
+         "times SparseLU's speed"],
+        [[f"{row['size']} x {row['size']}", row["method"], f"{1e3 * row['seconds']:.2f}",
+          f"{1e3 * PUBLISHED_JERSEY:.0f}" if row["size"] == 50 else "", f"{1e9 * row['seconds_a_loop']:.0f}",
+          f"{row['seconds_a_loop'] / first[row['method']]:.2f}", f"{1e3 * row['peer_seconds']:.2f}", f"{row['times_peer']:.1f}"]
+         for row in found["lines"]])
+    least = found["bodies"][0]
+    bodies = table(
+        ["jersey", "loops built", "tubes, s", "us a loop", "to the first", "IGES, s", "us a loop", "to the first", "MB"],
+        [[f"{row['size']} x {row['size']}", str(row["loops"]), f"{row['tube_seconds']:.2f}", f"{1e6 * row['tube_seconds_a_loop']:.1f}",
+          f"{row['tube_seconds_a_loop'] / least['tube_seconds_a_loop']:.2f}", f"{row['iges_seconds']:.2f}",
+          f"{1e6 * row['iges_seconds_a_loop']:.1f}", f"{row['iges_seconds_a_loop'] / least['iges_seconds_a_loop']:.2f}",
+          f"{row['bytes'] / 1e6:.0f}"] for row in found["bodies"]])
+    return lines + "\n" + bodies
+
+
 def machine():
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown")
     return f"{model}, {os.cpu_count()} cores"
@@ -100,7 +126,11 @@ def main():
             "The bare loop sends the same values through `to_chars` and the same buffered write; OpenCASCADE writes about ten "
             "digits, selvage all of them.\n\n" + iges_write(given.bin, folder, given.quick) +
             "\n## Whole processes\n\n" + whole_process(given.bin, folder, given.quick) +
-            "\n## Writing STEP: the time a yarn stays the same\n\n" + step_write(given.bin, folder, given.quick))
+            "\n## Writing STEP: the time a yarn stays the same\n\n" + step_write(given.bin, folder, given.quick) +
+            "\n## Jersey: centre lines, tubes and the IGES file; the cost of a loop stays the same\n\n"
+            "SparseLU is Eigen's general sparse solver on the systems of all courses, in the same run and in turns with ours. The "
+            "published time is a constant from another machine, drawing included. Tubes and file are those of as many "
+            "whole courses as have 25,000 loops.\n\n" + knit_build(given.bin, folder, given.quick))
     pathlib.Path(given.out).write_text(text)
     print(text)
 

@@ -61,7 +61,8 @@ Status StitchChart::fill(const Knit& knit) {
 // No loop of this wale stays on its needle for longer than it can.
 Status StitchChart::measure_holding(const Knit& knit, int wale) {
   int run = 0;
-  for (long long course = 0; course < 2LL * courses_; ++course) {  // runs go on into the next repeat
+  const long long end = static_cast<long long>(courses_) + max_held + 1;  // runs go on into the next repeat
+  for (long long course = 0; course < end; ++course) {
     run = is_loop(at(course, wale)) ? 0 : run + 1;
     longest_hold_ = std::max(longest_hold_, run);
     if (run <= max_held) continue;

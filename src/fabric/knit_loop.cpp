@@ -19,20 +19,20 @@ constexpr Point foot = {-1, 0, 0};
 constexpr Point leg = {-2, 3.5, depth};
 constexpr Point shoulder_top = {-3, 0, 0};
 // Where own stitch and stitch above differ: the leg before it crosses the middle plane, and after.
-constexpr Point lower_leg = {-1.4, 1.95, 1};
-constexpr Point upper_leg_top = {-2.8, -1.15, -2.35};
+constexpr Point lower_leg = {-1.15, 1.4, 0.8};
+constexpr Point upper_leg_top = {-2.4, -1.15, -0.9};
 // On the arm of a sinker that starts in the middle plane.
-constexpr Point arm = {-2.7, -2.7, -1.7};
+constexpr Point arm = {-2.35, -2.15, -1.3};
 
 // Yarns that lie on one needle are stacked through the thickness.
 constexpr double layer = 2;
 // What a tuck under the new loop does to that loop's arms and sinkers, and to the loop that it lies behind.
-constexpr Point arm_behind_tucks = {-2.3, -2, -1};
-constexpr double arm_back = 2.5, sinker_back = 1.8;
-constexpr double leg_forward = 0.5, shoulder_forward = 0.4, head_forward = -0.3;
-constexpr Point tuck_leg = {-3.1, 3, -1};
-constexpr Point tuck_shoulder_top = {-3.4, 0, -2};
-constexpr double tuck_head_over_top = 3.5, tuck_head = -3.5;
+constexpr Point arm_behind_tucks = {-1.55, -1.65, -1.3};
+constexpr double sinker_back = 1.55;
+constexpr double leg_forward = 1.25, shoulder_forward = 1.25, head_forward = -0.7;
+constexpr Point tuck_leg = {-1, 2.45, 1};
+constexpr Point tuck_shoulder_top = {-3.15, 0.2, -1.15};
+constexpr double tuck_head_over_top = 3.5, tuck_head = -5;
 constexpr double float_y = -2, float_z = -2.5;
 
 // What one needle does in one course.
@@ -105,12 +105,17 @@ Hold hold_of(const KnitField& field, long long course, long long wale, double si
   return hold;
 }
 
+// How much further back a sinker or a float lies that passes behind tucks.
+double room_for(int tucks) {
+  return tucks > 0 ? sinker_back + layer * (tucks - 1) : 0.0;
+}
+
 // z of the sinker between a wale and the one on its left.
 double sinker_z(const KnitField& field, long long course, long long wale) {
   const Needle left = needle_at(field, course, std::max(wale - 1, field.first_wale));
   const Needle right = needle_at(field, course, std::min(wale, field.last_wale));
   if (left.side != right.side) return 0.0;
-  return -right.side * (depth + sinker_back * std::max(left.behind, right.behind));
+  return -right.side * (depth + room_for(std::max(left.behind, right.behind)));
 }
 
 // The points of one half of a stitch, from its sinker to before its head.
@@ -136,7 +141,7 @@ class Half {
 
 void Half::add_loop(const Needle& needle, const Hold& hold, bool starts_in_the_middle) {
   if (needle.behind > 0)
-    add(arm_behind_tucks, 0, -arm_back * needle.behind);
+    add(arm_behind_tucks, 0, -layer * (needle.behind - 1));
   else if (starts_in_the_middle)
     add(arm);
   add(foot);
@@ -146,7 +151,13 @@ void Half::add_loop(const Needle& needle, const Hold& hold, bool starts_in_the_m
     return Point{foot[0] + (shoulder_top[0] - foot[0]) * y / hold.top, y, depth};
   };
   if (hold.turns) {
-    add(is_held ? on_leg(leg[1]) : lower_leg);
+    if (is_held) {
+      add(on_leg(leg[1]));
+      const double last = hold.top - course_spacing + lower_leg[1];
+      add(on_leg(last), 0, lower_leg[2] - depth);
+    } else {
+      add(lower_leg);
+    }
     add(upper_leg_top, hold.top);
     add(shoulder_top, hold.top, 0.5 * layer * hold.tucks);
   } else {
@@ -158,13 +169,14 @@ void Half::add_loop(const Needle& needle, const Hold& hold, bool starts_in_the_m
 
 void Half::add_tuck(const Needle& needle, const Hold& hold) {
   const double back = -layer * needle.behind;
-  add(tuck_leg, 0, back);
+  const double leg_back = hold.turns ? back - layer : back;
   const bool is_held = hold.top > course_spacing;
+  add(tuck_leg, 0, leg_back);
+  if (is_held) add({tuck_shoulder_top[0], tuck_leg[1], tuck_leg[2]}, hold.top - course_spacing, leg_back);
   if (hold.turns) {
     add(upper_leg_top, hold.top, back - layer);
     add(shoulder_top, hold.top, 0.5 * (back + layer * (hold.tucks - 1)));
   } else {
-    if (is_held) add({tuck_shoulder_top[0], hold.top - course_spacing + tuck_leg[1], tuck_leg[2]}, 0, back);
     add(tuck_shoulder_top, hold.top, back);
   }
 }
@@ -172,7 +184,7 @@ void Half::add_tuck(const Needle& needle, const Hold& hold) {
 Point head_of(const Needle& needle, const Hold& hold) {
   switch (needle.stitch) {
     case Stitch::miss:
-      return {0, float_y, float_z - sinker_back * needle.behind};
+      return {0, float_y, float_z - room_for(needle.behind)};
     case Stitch::tuck:
       if (hold.turns) return {0, hold.top + head_over_top, depth + layer * hold.tucks};
       return {0, hold.top + tuck_head_over_top, tuck_head - layer * needle.behind};

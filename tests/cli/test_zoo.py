@@ -52,7 +52,10 @@ class Zoo(Case):
             self.assertTrue(yarn["closed"], yarn)
             self.assertFalse(yarn["self_overlap"] and done.returncode == 0, yarn)
         defects = [line for line in done.stderr.splitlines() if ": error: " in line]
-        unexpected = [line for line in defects if "overlap" not in line]
+        expected = ["overlap"]
+        if re.search(r"^knit\b", sample.read_text(), re.MULTILINE):
+            expected.append("crosses itself")  # neighbouring loops of a course are one yarn: their overlap is this
+        unexpected = [line for line in defects if not any(words in line for words in expected)]
         self.assertEqual(unexpected, [])
         self.assertEqual(done.returncode, 3 if defects else 0, done.stderr)
         volumes, faces = self.in_gmsh(self.folder / (sample.stem + ".stp"))
