@@ -20,7 +20,7 @@ struct PictureOptions {
   int width = 1200, height = 900;  // pixels, 1 .. largest_side
   From from = From::top;
   yarn::Color background{255, 255, 255};
-  bool flat = false;  // without ambient occlusion and shadows: some four times as fast
+  bool flat = false;  // without ambient occlusion and shadows, for speed
   int threads = 1;    // the picture is the same, to the bit, with any number
   std::function<void(std::size_t done, std::size_t total)> progress;  // may be empty
 };

@@ -62,11 +62,14 @@ class Direction {
   [[nodiscard]] std::vector<double> parameters(std::size_t fewest) const {
     const std::vector<double> fine = fine_parameters();
     const Lines lines = lines_at(fine);
-    const std::size_t longest = std::max<std::size_t>(1, (fine.size() - 1) / fewest);
+    const std::size_t last = fine.size() - 1, longest = std::max<std::size_t>(1, last / fewest);
+    std::vector<std::size_t> next_edge(fine.size(), last);
+    for (std::size_t k = last; k-- > 0;)
+      next_edge[k] = k + 1 < last && !is_edge(fine[k + 1]) ? next_edge[k + 1] : k + 1;
     std::vector<double> chosen{fine.front()};
-    for (std::size_t i = 0; i + 1 < fine.size();) {
-      if (is_edge(fine[i]) && i > 0) chosen.push_back(fine[i]);
-      i = farthest(fine, lines, i, longest);
+    for (std::size_t i = 0; i < last;) {
+      if (i > 0 && next_edge[i - 1] == i) chosen.push_back(fine[i]);
+      i = farthest(lines, i, std::min(i + longest, next_edge[i]));
       chosen.push_back(fine[i]);
     }
     return chosen;
@@ -123,13 +126,8 @@ class Direction {
     return fine;
   }
 
-  // The farthest sample from `start` to which the lines are straight, at most `longest` on and not past an
-  // edge.
-  [[nodiscard]] std::size_t farthest(const std::vector<double>& fine, const Lines& lines, std::size_t start,
-                                     std::size_t longest) const {
-    std::size_t limit = std::min(start + longest, fine.size() - 1);
-    for (std::size_t k = start + 1; k < limit; ++k)
-      if (is_edge(fine[k])) limit = k;
+  // The farthest sample from `start`, up to `limit`, to which the lines are straight.
+  [[nodiscard]] std::size_t farthest(const Lines& lines, std::size_t start, std::size_t limit) const {
     std::size_t good = start + 1;
     std::size_t step = 1;
     for (; good + step <= limit && is_straight(lines, start, good + step, chord_); step *= 2) good += step;
