@@ -66,6 +66,15 @@ void add_common(CLI::App& command, Parsed& parsed) {
   command.add_flag("--strict", o.strict, "a warning fails its input");
   command.add_option("--tolerance", o.tolerance, "of tubes, in the input's unit, instead of the input's own")
       ->check(CLI::PositiveNumber);
+  command
+      .add_option("--detail", o.detail,
+                  "yarn, plies or filaments: how far yarns are taken apart (default: as far as "
+                  "their threads say)")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, fabric::Detail>{{"yarn", fabric::Detail::yarn},
+                                                {"plies", fabric::Detail::plies},
+                                                {"filaments", fabric::Detail::filaments}},
+          CLI::ignore_case));
   command.add_option("--shard", parsed.shard, "I/N: only the I-th of N equal parts of the inputs, from 0");
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <set>
 #include <unordered_set>
 
@@ -71,7 +72,8 @@ Result<YarnPlan> plan_of_path(const Fabric& fabric, const Yarn& yarn, const Buil
                 .thread = resolved_thread(fabric, yarn),
                 .points = {},
                 .line = {},
-                .spec = {}};
+                .spec = {},
+                .messages = {}};
   Result<yarn::PathRows> rows = path_rows_of(fabric, yarn, plan.thread);
   if (!rows) return rows.error();
   const Path& path = std::get<Path>(yarn.shape);
@@ -128,9 +130,21 @@ double tolerance_of(const Fabric& fabric, const BuildOptions& options) {
   return std::isfinite(smallest) ? smallest / 1000.0 : 0.0;
 }
 
-void YarnBuilder::add_entries(Entry entry, const Thread& thread) {
-  entry.parts = static_cast<std::uint32_t>(part_count(thread));
+bool YarnBuilder::add_entries(Entry entry, const Thread& thread, std::size_t yarns, TextPlace place,
+                              Diagnostics& diagnostics) {
+  const std::uint64_t parts = part_count(thread, options_.detail);
+  if (parts > options_.max_parts / std::max<std::size_t>(yarns, 1)) {
+    diagnostics.add(
+        in_file(*fabric_, place,
+                error(Kind::limit,
+                      fmt::format("{} yarns of {} plies or filaments are more than the {} that can be built: "
+                                  "`--detail yarn` builds the plain yarns",
+                                  yarns, parts, options_.max_parts))));
+    return false;
+  }
+  entry.parts = static_cast<std::uint32_t>(parts);
   for (entry.part = 0; entry.part < entry.parts; ++entry.part) entries_.push_back(entry);
+  return true;
 }
 
 void YarnBuilder::add_construction(Result<std::unique_ptr<Construction>> made, TextPlace place,
@@ -149,7 +163,7 @@ void YarnBuilder::add_construction(Result<std::unique_ptr<Construction>> made, T
   entry.construction = construction.get();
   for (std::size_t i = 0; i < construction->count(); ++i) {
     entry.index = static_cast<std::uint32_t>(i);
-    add_entries(entry, construction->thread(i));
+    if (!add_entries(entry, construction->thread(i), construction->count(), place, diagnostics)) return;
   }
   constructions_.push_back(std::move(*made));
 }
@@ -186,6 +200,7 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
   YarnBuilder builder;
   builder.fabric_ = &fabric;
   builder.options_ = options;
+  builder.last_bundle_ = std::make_shared<LastBundle>();
   const int errors_before = diagnostics.error_count();
   std::set<std::string> warned;  // a warning about a thread is worth saying once
   const auto warn = [&](std::optional<Message> warning) {
@@ -196,7 +211,15 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
       const Thread thread = resolved_thread(fabric, *yarn);
       Entry entry;
       entry.yarn = yarn;
-      builder.add_entries(entry, std::holds_alternative<Grid>(yarn->shape) ? Thread{} : thread);
+      const bool is_grid = std::holds_alternative<Grid>(yarn->shape);
+      builder.add_entries(entry, is_grid ? Thread{} : thread, 1, yarn->place, diagnostics);
+      if (is_grid && part_count(thread, options.detail) > 1)
+        diagnostics.add(
+            in_file(fabric, yarn->place,
+                    warning(Kind::unsupported,
+                            fmt::format("yarn '{}' is a grid: it is built as it stands, without plies "
+                                        "and filaments",
+                                        yarn->name))));
       warn(fibre_share_warning(fabric, *yarn, thread));
       warn(roundness_note(fabric, thread, yarn->place));
     }
@@ -238,10 +261,37 @@ Result<YarnPlan> YarnBuilder::whole_plan(const Entry& entry) const {
   return plan;
 }
 
+// The bundle is a function of the yarn alone: that the last one is kept changes no result.
+struct YarnBuilder::LastBundle {
+  std::mutex mutex;
+  std::size_t first_entry = 0;
+  std::shared_ptr<const Bundle> bundle;
+};
+
+Result<YarnPlan> YarnBuilder::part_plan(const Entry& entry) const {
+  const auto first = static_cast<std::size_t>(&entry - entries_.data()) - entry.part;
+  std::shared_ptr<const Bundle> bundle;
+  {
+    const std::lock_guard lock(last_bundle_->mutex);
+    if (last_bundle_->first_entry == first) bundle = last_bundle_->bundle;
+  }
+  if (bundle == nullptr) {
+    Result<YarnPlan> parent = whole_plan(entry);
+    if (!parent) return parent;
+    const bool own_tolerance = options_.tolerance <= 0.0 && !fabric_->tolerance;
+    Result<Bundle> made = Bundle::make(std::move(*parent), fabric_->units, options_.detail, own_tolerance);
+    if (!made) return made.error();
+    bundle = std::make_shared<const Bundle>(std::move(*made));
+    const std::lock_guard lock(last_bundle_->mutex);
+    last_bundle_->first_entry = first;
+    last_bundle_->bundle = bundle;
+  }
+  return bundle->part(entry.part);
+}
+
 Result<YarnPlan> YarnBuilder::plan(std::size_t index) const {
   const Entry& entry = entries_[index];
-  Result<YarnPlan> plan = whole_plan(entry);
-  if (plan.ok() && entry.parts > 1) plan = part_of(*fabric_, *plan, entry.part);
+  Result<YarnPlan> plan = entry.parts > 1 ? part_plan(entry) : whole_plan(entry);
   if (!plan) return placed(plan.error(), entry);
   return plan;
 }
@@ -276,6 +326,7 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
     if (!made) return made.error();
     describe(body, made->name, made->thread_name, made->thread, fabric_->units, made->role, made->place);
     body.group = made->group;
+    body.messages = made->messages;
     body.path_miss = made->line.largest_miss;
     yarn::TubeSpec& spec = made->spec;
     body.section_turns = spec.twist != 0.0;

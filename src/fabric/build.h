@@ -12,6 +12,7 @@
 #include "core/diagnostics.h"
 #include "fabric/model.h"
 #include "fabric/plan.h"
+#include "fabric/plies.h"
 #include "yarn/body.h"
 
 namespace selvage::fabric {
@@ -19,16 +20,19 @@ namespace selvage::fabric {
 struct BuildOptions {
   yarn::EndStyle ends = yarn::EndStyle::patch;
   double tolerance = 0;  // file units; 0: the file's, or 1/1000 of the smallest section size in the file
+  Detail detail = Detail::filaments;  // yarns are taken apart into plies and filaments as their threads say
   std::size_t max_control_points = 50'000'000;  // a yarn: a limit error instead of an exhausted memory
   // Data points of a construction: 500 million loops would be a file of more than a terabyte.
   std::uint64_t max_data_points = 1'000'000'000;
+  std::uint64_t max_parts = 10'000'000;  // yarns, plies and filaments of one statement together
 };
 
 // The tolerance in force, file units.
 double tolerance_of(const Fabric& fabric, const BuildOptions& options);
 
 // Builds the yarns one at a time, in file order; nothing is kept between calls, so that a million yarns need
-// the memory of one. A yarn of plies or filaments is built as its parts.
+// the memory of one (of a yarn that is taken apart: of its centre lines). A yarn of plies or filaments is
+// built as its parts, in their order.
 class YarnBuilder {
  public:
   // Errors: geometry (a thread without a size, a construction that cannot be, an edit of a yarn that is not
@@ -54,10 +58,13 @@ class YarnBuilder {
   };
   void add_construction(Result<std::unique_ptr<Construction>> made, TextPlace place,
                         Diagnostics& diagnostics);
-  void add_entries(Entry entry, const Thread& thread);
+  // False, with the error, when there are too many.
+  bool add_entries(Entry entry, const Thread& thread, std::size_t yarns, TextPlace place,
+                   Diagnostics& diagnostics);
   void check_edited_names(Diagnostics& diagnostics) const;
   [[nodiscard]] std::string name_of(const Entry& entry) const;
   [[nodiscard]] Result<YarnPlan> whole_plan(const Entry& entry) const;
+  [[nodiscard]] Result<YarnPlan> part_plan(const Entry& entry) const;
   [[nodiscard]] Result<yarn::Body> build_grid(const Yarn& yarn) const;
   [[nodiscard]] Message placed(Message message, const Entry& entry) const;
 
@@ -66,6 +73,9 @@ class YarnBuilder {
   double tolerance_ = 0;
   std::vector<std::unique_ptr<Construction>> constructions_;
   std::vector<Entry> entries_;
+  // The yarn taken apart last: its parts are mostly asked for one after the other.
+  struct LastBundle;
+  std::shared_ptr<LastBundle> last_bundle_;
 };
 
 }  // namespace selvage::fabric

@@ -8,9 +8,6 @@
 
 namespace selvage::fabric {
 
-namespace {
-
-// Negative inside.
 double signed_distance(const std::vector<Vec2>& polygon, const Vec2& p) {
   double nearest = std::numeric_limits<double>::infinity();
   bool inside = false;
@@ -25,8 +22,6 @@ double signed_distance(const std::vector<Vec2>& polygon, const Vec2& p) {
   }
   return inside ? -std::sqrt(nearest) : std::sqrt(nearest);
 }
-
-}  // namespace
 
 std::vector<Vec2> outline_polygon(const yarn::Section& section) {
   constexpr int pieces = 8, looks = 2;  // in a quarter, in a piece of it

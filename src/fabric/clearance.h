@@ -24,6 +24,9 @@ struct SweptYarn {
 // Points on the outline of a section of its own size, closest where it bends most.
 std::vector<Vec2> outline_polygon(const yarn::Section& section);
 
+// Distance of a point from a polygon; negative inside.
+double signed_distance(const std::vector<Vec2>& polygon, const Vec2& p);
+
 // The least signed distance (negative: inside) of the surface of `a` between two parameters from the section
 // of `b` in whose plane each of its points lies, searched from parameter `near_b`, at most `reach_b` away
 // from it. Sampled: `stations` along the path.

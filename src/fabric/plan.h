@@ -25,6 +25,7 @@ struct YarnPlan {
   std::vector<Vec3> points;  // the data points of the centre line; empty where it was not made from points
   yarn::CentreLine line;
   yarn::TubeSpec spec;  // its tolerance and limit are the builder's; a tolerance above 0 is an upper bound
+  std::vector<Message> messages;  // warnings made while planning; they become the body's
 };
 
 // The yarns of one fabric by construction, known by number and name before any of them is computed, and

@@ -43,7 +43,9 @@ std::optional<TextPlace> try_edit(const EditRequest& request, const fabric::Fabr
   fabric::Fabric after = before;
   after.edits.push_back(request.edit.edit);
   Diagnostics diagnostics;
-  const std::optional<fabric::YarnBuilder> builder = fabric::YarnBuilder::create(after, {}, diagnostics);
+  fabric::BuildOptions options;
+  options.detail = fabric::Detail::yarn;  // an edit moves the centre line of the whole yarn
+  const std::optional<fabric::YarnBuilder> builder = fabric::YarnBuilder::create(after, options, diagnostics);
   say_all(request, diagnostics.messages());
   if (!builder) return std::nullopt;
   const std::optional<std::size_t> index = builder->find(request.edit.edit.yarn);

@@ -110,6 +110,7 @@ fabric::BuildOptions Job::build_options() const {
   fabric::BuildOptions build;
   build.ends = options.ends;
   build.tolerance = options.tolerance;
+  build.detail = options.detail;
   return build;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/units.h"
+#include "fabric/plies.h"
 #include "formats/format.h"
 #include "view/camera.h"
 #include "yarn/body.h"
@@ -31,8 +32,9 @@ struct Options {
   std::string report;
   bool resume = false;
 
-  std::optional<Unit> units;  // of surfaces and tables; none: the input's
-  double tolerance = 0;       // input's unit; 0: the input's
+  std::optional<Unit> units;                          // of surfaces and tables; none: the input's
+  double tolerance = 0;                               // input's unit; 0: the input's
+  fabric::Detail detail = fabric::Detail::filaments;  // how far yarns are taken apart
   yarn::EndStyle ends = yarn::EndStyle::patch;
   bool iges_solid = false;
   std::string step_schema = "AP242";
