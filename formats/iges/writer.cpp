@@ -71,7 +71,8 @@ class Writer final : public BodyWriter {
                      const std::function<void()>& write);
   void write(const yarn::Body& body);
   void write(const fabric::PieceShape& piece);
-  void write_surfaces(const Common& common, const yarn::Body& body);
+  int write_surfaces(const Common& common, const yarn::Body& body);
+  Status close_group();
   int color(const yarn::Color& color);
   int level(std::size_t index, std::string_view name);
   [[nodiscard]] int entities_of_end(const yarn::EndFace& end) const;
@@ -82,6 +83,11 @@ class Writer final : public BodyWriter {
   Records records_;
   Shared shared_;
   std::string name_;  // of the present yarn or piece, in ASCII
+  int last_ = 0;      // directory pointer of the yarn written last: of its group or solid
+  // The yarn whose plies or filaments come at present, what they share, and theirs so far.
+  std::string group_;
+  Common group_common_;
+  std::vector<int> members_;
   std::uint64_t bodies_ = 0;
   double largest_ = 0;
   double smallest_size_ = std::numeric_limits<double>::infinity();
@@ -211,7 +217,7 @@ int Writer::entities_of_end(const yarn::EndFace& end) const {
   return 0;
 }
 
-void Writer::write_surfaces(const Common& common, const yarn::Body& body) {
+int Writer::write_surfaces(const Common& common, const yarn::Body& body) {
   std::array<int, 3> faces{};
   std::size_t count = 0;
   faces[count++] = write_surface(records_, common.entity(128), body.surface, common.name);
@@ -225,7 +231,7 @@ void Writer::write_surfaces(const Common& common, const yarn::Body& body) {
   // all shells of a file and then splits it, which fails where two of them point outward: so a face that
   // points inward leads.
   if (count > 1 && !body.inward) std::swap(faces[0], faces[1]);
-  write_group(records_, common, {faces.data(), count});
+  return write_group(records_, common, {faces.data(), count});
 }
 
 void Writer::write(const yarn::Body& body) {
@@ -239,9 +245,9 @@ void Writer::write(const yarn::Body& body) {
     entities += entities_of_end(body.start) + entities_of_end(body.end);
   common.name = records_.next() + 2 * entities;
   if (options_.iges_solid)
-    write_solid(records_, common, body);
+    last_ = write_solid(records_, common, body);
   else
-    write_surfaces(common, body);
+    last_ = write_surfaces(common, body);
   write_name(records_, common, name_);
 }
 
@@ -255,13 +261,39 @@ void Writer::write(const fabric::PieceShape& piece) {
 
 Status Writer::add(const yarn::Body& body) {
   if (Status status = check(body); !status.ok()) return status;
+  if (body.group != group_)
+    if (Status closed = close_group(); !closed.ok()) return closed;
   Status added = add_checked(body.name, "yarn " + body.name, most_values(body), [&] { write(body); });
+  if (added.ok() && !body.group.empty()) {
+    group_ = body.group;
+    group_common_ = {.color = color(body.color), .level = static_cast<int>(body.role) + 1, .label = {}};
+    members_.push_back(last_);
+  }
   if (added.ok()) return added;
   if (added.error().kind == Kind::limit) {
     added.error().yarn = body.name;
     added.error().place = body.place;
   }
   return added;
+}
+
+// The plies and filaments of a yarn, one group with the yarn's name.
+Status Writer::close_group() {
+  if (members_.empty()) return {};
+  const std::string name = ascii(group_);
+  Common common = group_common_;
+  common.label = name;
+  const auto values = 1000 + 2 * static_cast<std::int64_t>(members_.size());
+  const auto write = [&] {
+    common.name = records_.next() + 2;
+    write_group(records_, common, members_);
+    write_name(records_, common, name);
+  };
+  if (Status status = check_room(values, "yarn " + group_, write); !status.ok()) return status;
+  write();
+  members_.clear();
+  group_.clear();
+  return records_.status();
 }
 
 Status Writer::add_piece(const fabric::PieceShape& piece) {
@@ -293,6 +325,7 @@ Status Writer::add_checked(const std::string& name, const std::string& what, std
 }
 
 Result<WriteFacts> Writer::finish() {
+  if (Status closed = close_group(); !closed.ok()) return closed.error();
   const Result<std::uint64_t> end = records_.finish();
   if (!end) return end.error();
   header_.largest = largest_;

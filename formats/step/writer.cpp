@@ -112,7 +112,7 @@ class StepBodyWriter : public BodyWriter {
       const solid::FaceCheck verdict = solid::occt::check_piece(piece);
       if (!verdict.defects.empty()) return verdict.defects.front();
       ++facts_.entities["SHELL_BASED_SURFACE_MODEL"];
-      add_part({solid::occt::build_piece(piece, 1.0), piece.name, yarn::Color{}});
+      add_part({solid::occt::build_piece(piece, 1.0), piece.name, yarn::Color{}}, "");
       return {};
     });
   }
@@ -148,17 +148,31 @@ class StepBodyWriter : public BodyWriter {
     } else {
       ++facts_.entities["MANIFOLD_SOLID_BREP"];
     }
-    add_part({yarn.shape, body.name, body.color});
+    add_part({yarn.shape, body.name, body.color}, body.group);
     return {};
   }
 
-  void add_part(Part added) {
+  // Plies and filaments are parts of an assembly of their own, named as the yarn that they make up.
+  void add_part(Part added, const std::string& group) {
     const TDF_Label part = shapes_->AddShape(added.shape, false, false);
-    const TDF_Label component = shapes_->AddComponent(assembly_, part, TopLoc_Location());
-    const TCollection_ExtendedString name(added.name.c_str(), true);
+    add_component(group.empty() ? assembly_ : group_assembly(group), part, added.name);
+    parts_.push_back(std::move(added));
+  }
+
+  TDF_Label group_assembly(const std::string& group) {
+    const auto [known, is_new] = groups_.try_emplace(group);
+    if (is_new) {
+      known->second = shapes_->NewShape();
+      add_component(assembly_, known->second, group);
+    }
+    return known->second;
+  }
+
+  void add_component(const TDF_Label& assembly, const TDF_Label& part, const std::string& named) {
+    const TDF_Label component = shapes_->AddComponent(assembly, part, TopLoc_Location());
+    const TCollection_ExtendedString name(named.c_str(), true);
     TDataStd_Name::Set(part, name);
     TDataStd_Name::Set(component, name);
-    parts_.push_back(std::move(added));
   }
 
   Result<WriteFacts> write() {
@@ -260,7 +274,8 @@ class StepBodyWriter : public BodyWriter {
   Handle(TDocStd_Document) document_;
   Handle(XCAFDoc_ShapeTool) shapes_;
   TDF_Label assembly_;
-  std::vector<Part> parts_;  // in file order
+  std::map<std::string, TDF_Label> groups_;  // by the yarn's name
+  std::vector<Part> parts_;                  // in file order
   WriteFacts facts_;
 };
 

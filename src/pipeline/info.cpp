@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <map>
 
 #include "pipeline/facts.h"
 #include "pipeline/job.h"
@@ -49,6 +50,7 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
   Table table({"yarn", "role", "points", "length", "volume", "least bend radius", "tube error", "ends"});
   double total_length = 0, total_volume = 0, largest_miss = 0;
   Box3 box;
+  std::map<std::string, int> groups;  // yarns of plies or filaments
   for (std::size_t i = 0; i < builder.count(); ++i) {
     job.progress("building yarn", i + 1, builder.count());
     const std::optional<yarn::Body> body = job.build(builder, i);
@@ -58,12 +60,18 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
                fmt::format("{}x{}", body->surface.count_u, body->surface.count_v), cell(length(body->length)),
                cell(volume), cell(length(body->min_bend_radius)), cell(length(body->tube_error)),
                body->closed_along ? "ring" : std::string(yarn::name_of(body->start.style))});
+    if (!body->group.empty()) ++groups[body->group];
     total_length += length(body->length);
     total_volume += volume;
     largest_miss = std::max(largest_miss, length(body->path_miss));
     box.extend(yarn::bounds(*body));
   }
   std::string text = fmt::format("  lengths in {}\n{}", name_of(shown), table.text());
+  if (!groups.empty()) {
+    text += "  taken apart";
+    for (const auto& [yarn, parts] : groups) text += fmt::format(" {} ({} parts)", yarn, parts);
+    text += "\n";
+  }
   text += fmt::format("  together: length {}, volume {}\n", cell(total_length), cell(total_volume));
   if (largest_miss > 0)
     text += fmt::format("  loop paths miss their points by up to {}\n", cell(largest_miss));

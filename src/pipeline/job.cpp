@@ -25,6 +25,8 @@ std::string settings_of(const Options& options) {
                                  options.tolerance);
   if (options.units) text += fmt::format(" units={}", name_of(*options.units));
   if (options.iges_solid) text += " iges-solid";
+  if (options.detail != fabric::Detail::filaments)
+    text += options.detail == fabric::Detail::yarn ? " detail=yarn" : " detail=plies";
   if (options.command == Command::mesh)
     text += fmt::format(" size={} order={} min-dihedral={}{}", options.size, options.order,
                         options.min_dihedral, options.allow_overlap ? " allow-overlap" : "");
