@@ -18,7 +18,8 @@ namespace selvage::fabric {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-// Crossing yarns keep this share of the braiders' thickness apart: more than the tubes' tolerances take.
+// Crossing yarns keep this share of the braiders' thickness apart, and at least what the file's tolerance may
+// take from them.
 constexpr double clearance = 1.0 / 200.0;
 // Longest rest of a braider at a crossing, in steps on each side: the remaining 0.3 are its way to the other
 // side.
@@ -286,7 +287,7 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
   if (Status fits = check_counts(braid, shape); !fits) return fits.error();
   if (Status fits = check_radius(braid, least + 0.5 * size.height, unit); !fits) return fits.error();
   if (Status fits = check_widths(braid, shape, size.width, unit); !fits) return fits.error();
-  const double wanted = clearance * size.height;
+  const double wanted = std::max(clearance * size.height, 2.0 * fabric.tolerance.value_or(0.0));
   const double gap = fit_amplitude(shape, least, wanted, *outline, *axial_outline);
   if (Status fits = check_radius(braid, shape.amplitude + 0.5 * size.height, unit); !fits)
     return fits.error();

@@ -189,7 +189,9 @@ TEST(Plies, LengthIsTheHelixs) {
       const double formula = 20.0 * std::sqrt(1.0 + std::pow(2.0 * pi * radius * turns / 1000.0, 2));
       EXPECT_NEAR(nurbs::arc_length(plan.line.curve), formula, 1e-4 * formula) << count;
       // The plies' discs fill the yarn's: the outermost touch its circle.
-      if (radius > 1e-9) EXPECT_NEAR(radius + 0.5 * diameter_of(plan), 0.5, 1e-9);
+      if (radius > 1e-9) {
+        EXPECT_NEAR(radius + 0.5 * diameter_of(plan), 0.5, 1e-9);
+      }
       for (const Vec3& p : sampled(plan, 500))
         EXPECT_NEAR(p.tail<2>().norm(), radius, 1e-4 * diameter_of(plan));
     }
@@ -259,10 +261,12 @@ TEST(Filaments, DoNotOverlapStraightTwistedOrBent) {
       for (const std::vector<Vec3>& path : {straight, bent}) {
         const std::vector<YarnPlan> plans = plans_of(fabric_with(filament_thread(count, 0.9, turns), path));
         ASSERT_EQ(plans.size(), static_cast<std::size_t>(count));
-        // What is left free is 0.5 % at most where nothing bends; nothing is lost to the inclination.
+        // What is left free is 1 % at most where nothing bends; nothing is lost to the inclination.
         const double clearance = least_clearance(plans);
         EXPECT_GE(clearance, 1.0 + 1e-3) << count << " filaments, " << turns << " turns";
-        if (path == straight) EXPECT_LE(clearance, 1.008) << count << " filaments, " << turns << " turns";
+        if (path == straight) {
+          EXPECT_LE(clearance, 1.011) << count << " filaments, " << turns << " turns";
+        }
       }
 }
 
