@@ -130,7 +130,7 @@ def main():
             "\n## Jersey: centre lines, tubes and the IGES file; the cost of a loop stays the same\n\n"
             "SparseLU is Eigen's general sparse solver on the systems of all courses, in the same run and in turns with ours. The "
             "published time is a constant from another machine, drawing included. Tubes and file are those of as many "
-            "whole courses as have 25,000 loops.\n\n" + knit_build(given.bin, folder, given.quick))
+            "whole courses as have 5,000 loops.\n\n" + knit_build(given.bin, folder, given.quick))
     pathlib.Path(given.out).write_text(text)
     print(text)
 
