@@ -11,6 +11,7 @@
 #include "core/source.h"
 #include "fabric/build.h"
 #include "pipeline/detect.h"
+#include "pipeline/drafts.h"
 
 namespace selvage::pipeline {
 
@@ -84,9 +85,10 @@ bool work(const EditRequest& request) {
         error(Kind::unsupported, fmt::format("this is {} ({}): an `edit` line belongs in a Fabric TXT file",
                                              (*format)->name, (*format)->title)));
   Diagnostics diagnostics;
-  const std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
+  std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
+  if (fabric) resolve_drafts(*fabric, *source, diagnostics);
   say_all(request, diagnostics.messages());
-  if (!fabric) return false;
+  if (!fabric || diagnostics.has_errors()) return false;
   const std::optional<TextPlace> place = try_edit(request, *fabric);
   if (!place) return false;
   const std::string text =

@@ -162,6 +162,11 @@ class DraftFile(WifCase):
                 for part in parts:
                     self.assertIn(part, messages)
 
+    def test_edit_reads_it_too(self):
+        messages = self.fails(1, "edit", self.cloth("draft file missing.wif"), "--yarn", "warp_1", "--point", "1", "--to",
+                              "0,0,0", "-o", self.folder / "edited.txt")
+        self.assertIn("cloth.txt:8:3: error: no draft in the file 'missing.wif': ", messages)
+
     def test_resume_sees_that_the_file_changed(self):
         draft = self.folder / "draft.wif"
         draft.write_bytes((SAMPLES / "wif_herringbone.wif").read_bytes())
