@@ -17,6 +17,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double clearance = 0.005;  // of a part's diameter
+constexpr std::size_t most_plies = 1000, most_filaments = 100'000;
 constexpr double share_kept = 0.98;  // a share nearer to the packing than this needs no words
 
 std::uint64_t ply_count(const Thread& thread, Detail detail) {
@@ -229,6 +230,9 @@ Result<Bundle> Bundle::make(YarnPlan parent, Unit units, Detail detail, bool own
   auto content = std::make_unique<Content>();
   content->plies = static_cast<std::size_t>(ply_count(parent.thread, detail));
   content->filaments = static_cast<std::size_t>(filament_count(parent.thread, detail));
+  if (content->plies > most_plies || content->filaments > most_filaments)
+    return error(Kind::limit,
+                 fmt::format("a yarn has at most {} plies of {} filaments each", most_plies, most_filaments));
   content->parent = std::move(parent);
   content->units = units;
   content->detail = detail;

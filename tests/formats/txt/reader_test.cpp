@@ -380,6 +380,23 @@ end
   EXPECT_EQ(braid.axial_thread, "t");
   EXPECT_EQ(braid.axial_count, 8);
   EXPECT_EQ(braid.axial_place.line, 29);
+  EXPECT_FALSE(braid.flat);
+}
+
+TEST(Reader, FlatBraids) {
+  const std::string block =
+      "fabric 1\nthread t\n  diameter 1\nend\nbraid\n  thread t\n  carriers 5\n  pattern 2/2\n  ";
+  for (const double width : {0.0, 12.5}) {
+    const Fabric fabric =
+        good(block + (width > 0.0 ? "flat 12.5" : "Flat") + "\n  angle 30\n  length 20\nend\n");
+    const Braid& braid = item<Braid>(fabric, 0);
+    EXPECT_TRUE(braid.flat);
+    EXPECT_EQ(braid.carriers, 5);
+    EXPECT_EQ(braid.width, width);
+    EXPECT_EQ(braid.carriers_place.line, 7);
+    EXPECT_EQ(braid.carriers_place.column, 12);
+    EXPECT_EQ(braid.radius_place.line, 9);
+  }
 }
 
 TEST(Reader, EditsPieceAndCell) {

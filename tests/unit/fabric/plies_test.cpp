@@ -322,6 +322,7 @@ TEST(Plies, WhatCannotBe) {
   flat.section = yarn::Ellipse{2.0, 1.0};
   EXPECT_TRUE(has(error_of(fabric_with(flat, straight)), "round section"));
   EXPECT_TRUE(has(error_of(fabric_with(filament_thread(2000000000, 0.7), straight)), "--detail yarn"));
+  EXPECT_TRUE(has(error_of(fabric_with(ply_thread(1001, 1.0, Hand::z), straight)), "at most 1000 plies"));
   Fabric sized = fabric_with(filament_thread(3, 0.5), straight);
   std::get<Path>(std::get<Yarn>(sized.items[0]).shape).sizes = {SizeAt{1.0, 1.0, {}}, SizeAt{2.0, 2.0, {}}};
   EXPECT_TRUE(has(error_of(sized), "same section all along"));
