@@ -24,6 +24,8 @@ constexpr double clearance = 1.0 / 200.0;
 // Longest rest of a braider at a crossing, in steps on each side: the remaining 0.3 are its way to the other
 // side.
 constexpr double longest_plateau = 0.35;
+// Degrees; beyond, the braiders of a strip lie on each other at its edges.
+constexpr double steepest_strip = 80.0;
 
 // For messages: four digits, never less than the value.
 double rounded_up(double value) {
@@ -177,6 +179,12 @@ class BraidConstruction : public Construction {
 };
 
 Status check_counts(const Braid& braid, const BraidShape& shape) {
+  if (braid.flat && braid.angle > steepest_strip)
+    return at_place(
+        braid.radius_place,
+        fmt::format("braiders at {:.6g} degrees to the axis of a strip turn back on themselves at its "
+                    "edges: at most {:.4g} degrees",
+                    braid.angle, steepest_strip));
   const std::int64_t period = std::lcm(std::int64_t{2}, std::int64_t{braid.over} + braid.under);
   if (!shape.flat && braid.carriers % period != 0)
     return at_place(

@@ -354,6 +354,8 @@ TEST(BraidErrors, SayWhatWouldDo) {
       << first_error(with("4", "1/1", "radius 0.5"));
   EXPECT_TRUE(has(first_error(with("8", "1/1", "radius 9", "  axial t 9\n")), "there is room for 8"));
   EXPECT_TRUE(has(first_error(with("9", "1/1", "flat 3")), "at least"));
+  EXPECT_TRUE(has(first_error(braid_text("  carriers 5\n  pattern 2/2\n  flat\n  angle 81\n  length 9\n")),
+                  "at most 80 degrees"));
   EXPECT_TRUE(has(first_error(with("1000000000", "1/1", "radius 1e9")), "data points"));
   EXPECT_TRUE(has(first_error(with("1000000000", "1/1", "radius 5")), "radius has to be at least"));
 }
