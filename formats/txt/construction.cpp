@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "fabric/lapping.h"
 #include "formats/txt/blocks.h"
 
 namespace selvage::formats::txt {
@@ -164,35 +165,6 @@ void read_chart(Parser& p, Knit& knit, std::string_view) {
 // --- warpknit
 // -------------------------------------------------------------------------------------------------------
 
-// Overlaps "A-B", whole numbers, separated by '/' or blanks, at the end perhaps "//". Returns where the
-// notation breaks; null: it does not.
-const char* find_lapping_fault(std::string_view text) {
-  const char* p = text.data();
-  const char* const end = p + text.size();
-  const auto is_digit = [&] { return p != end && *p >= '0' && *p <= '9'; };
-  const auto skip = [&](auto is_part) {
-    while (p != end && is_part(*p)) ++p;
-  };
-  const auto blank = [](char c) { return c == ' ' || c == '\t'; };
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  while (true) {
-    if (!is_digit()) return p;
-    skip(digit);
-    if (p == end || *p != '-') return p;
-    ++p;
-    if (!is_digit()) return p;
-    skip(digit);
-    const char* const overlap_end = p;
-    skip(blank);
-    int slashes = 0;
-    for (; p != end && *p == '/'; ++p) ++slashes;
-    skip(blank);
-    if (p == end) return nullptr;
-    if (slashes > 1) return p;
-    if (slashes == 0 && p == overlap_end) return p;
-  }
-}
-
 void read_bar(Parser& p, Warpknit& warpknit, std::string_view) {
   fabric::WarpknitBar bar;
   bar.place = p.statement().place();
@@ -209,11 +181,10 @@ void read_bar(Parser& p, Warpknit& warpknit, std::string_view) {
   }
   while (!lapping.empty() && (lapping.back() == ' ' || lapping.back() == '\t')) lapping.remove_suffix(1);
   if (lapping.empty()) return p.error(p.here(), "the bar's lapping is missing, such as 1-0/1-2");
-  if (const char* fault = find_lapping_fault(lapping)) {
-    const auto before = static_cast<int>(fault - lapping.data());
-    return p.error(
-        {fault, spot.line, spot.column + before},
-        "this is no lapping: overlaps such as 1-0, separated by '/' or blanks, closed by '//' or not");
+  bar.lapping_place = spot.place();
+  if (const Result<fabric::Lapping> read = fabric::parse_lapping(lapping, bar.lapping_place); !read) {
+    const int before = read.error().place.column - spot.column;
+    return p.error({spot.at + before, spot.line, spot.column + before}, read.error().text);
   }
   bar.lapping = lapping;
   warpknit.bars.push_back(std::move(bar));
@@ -369,8 +340,8 @@ void read_warpknit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     if (!is_classic && warpknit.bars.empty()) p.error(p.last(), "'warpknit' ends without a 'bar'");
     if (!is_classic && !warpknit.thread.empty())
       p.error(opened,
-              "the threads of this warp knit are those of its bars: 'thread' belongs to tricot, satin and "
-              "queens-cord");
+              "the threads of this warp knit are those of its bars: 'thread' belongs to those known by name, "
+              "such as tricot");
   }
   fabric.items.emplace_back(std::move(warpknit));
 }

@@ -64,8 +64,13 @@ inline constexpr std::array<Word<Knit::Method>, 3> knit_method_words{
      {"centripetal", Knit::Method::centripetal}}};
 inline constexpr std::array<Word<Warpknit::Stitch>, 2> stitch_words{
     {{"closed", Warpknit::Stitch::closed}, {"open", Warpknit::Stitch::open}}};
-inline constexpr std::array<Word<std::string_view>, 3> classic_words{
-    {{"tricot", "tricot"}, {"satin", "satin"}, {"queens-cord", "queens-cord"}}};
+inline constexpr std::array<Word<std::string_view>, 7> classic_words{{{"tricot", "tricot"},
+                                                                      {"satin", "satin"},
+                                                                      {"queens-cord", "queens-cord"},
+                                                                      {"locknit", "locknit"},
+                                                                      {"atlas", "atlas"},
+                                                                      {"velvet", "velvet"},
+                                                                      {"cord", "cord"}}};
 inline constexpr std::array<Word<PieceCurve::Shape>, 2> curve_words{
     {{"C", PieceCurve::Shape::c}, {"S", PieceCurve::Shape::s}}};
 

@@ -174,7 +174,8 @@ struct Knit {
 struct WarpknitBar {
   std::string thread;
   TextPlace place;
-  std::string lapping;  // as written, blanks kept as they separate the overlaps
+  std::string lapping;      // as written, blanks kept as they separate the overlaps
+  TextPlace lapping_place;  // of its first character
   bool fall_plate = false;
 };
 

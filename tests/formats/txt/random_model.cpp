@@ -313,8 +313,9 @@ class Maker {
                                                       "10-0 / 0-0"};
     Warpknit warpknit;
     if (coin()) {
-      warpknit.classic =
-          std::vector<std::string>{"tricot", "satin", "queens-cord"}[static_cast<std::size_t>(up_to(2))];
+      warpknit
+          .classic = std::vector<std::string>{"tricot", "satin",  "queens-cord", "locknit",
+                                              "atlas",  "velvet", "cord"}[static_cast<std::size_t>(up_to(6))];
       warpknit.thread = one_of(threads_);
     } else {
       for (int i = up_to(3); i >= 0; --i) {
