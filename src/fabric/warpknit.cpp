@@ -18,8 +18,11 @@ namespace {
 constexpr int longest_hold = 8;
 // Courses by which yarns are continued on each side of a fabric with a unit cell.
 constexpr int continued_courses = 2;
-// Most data points of a course: a loop of seven, an underlap of two.
-constexpr std::uint64_t points_of_a_course = 9;
+// Most data points of a course: a loop of eleven, an underlap of two.
+constexpr std::uint64_t points_of_a_course = 13;
+
+// How much further the foot before a loop reaches down than the one after it, in yarns lying across.
+constexpr double low_foot = 0.4;
 
 struct Bar {
   Lapping lapping;
@@ -47,10 +50,14 @@ struct Measures {
 
   [[nodiscard]] double foot_x(const Bar& bar) const { return (0.5 + bar.feet_behind) * across; }
   [[nodiscard]] double leg_x() const { return (0.5 + bars_with_feet) * across; }
-  // Underlaps reach a course's line from below at -foot_y and leave it at foot_y.
+  // Underlaps reach a course's line from below, at -reach_y, and leave it at foot_y.
+  [[nodiscard]] double reach_y(const Bar& bar) const {
+    // A fall-plate bar's below all feet that its arch takes in; a loop's out of the way of its own underlap.
+    return bar.is_fall_plate ? deepest_foot + along : foot_y(bar) + low_foot * along;
+  }
   [[nodiscard]] double foot_y(const Bar& bar) const { return (0.5 + bar.feet_before) * along; }
   [[nodiscard]] double head_y() const { return deepest_foot + (2.0 + fall_plates) * along; }
-  [[nodiscard]] double arch_y(const Bar& bar) const { return deepest_foot + (1.0 + bar.feet_before) * along; }
+  [[nodiscard]] double arch_y(const Bar& bar) const { return deepest_foot + (1.2 + bar.feet_before) * along; }
   [[nodiscard]] double underlap_z(const Bar& bar) const {
     return -(1.0 + (fall_plates > 0 ? 1.0 : 0.0) + bar.bars_behind) * layer;
   }
@@ -118,7 +125,7 @@ class YarnPoints {
 
   // From below the first course straight to its foot.
   void begin(long long course, const Overlap& overlap) {
-    const double x = foot_x(overlap), z = m_.underlap_z(bar_), foot = m_.foot_y(bar_);
+    const double x = foot_x(overlap), z = m_.underlap_z(bar_), foot = m_.reach_y(bar_);
     put(course, overlap, x, -m_.course_pitch, z);
     put(course, overlap, x, -0.5 * (m_.course_pitch + foot), z);
   }
@@ -126,9 +133,8 @@ class YarnPoints {
   // From the foot that an underlap has reached, or past the needle, to the foot from which the next begins.
   void overlap(long long course, const Overlap& overlap, int hold) {
     const double x = foot_x(overlap), foot = m_.foot_y(bar_), back = m_.underlap_z(bar_);
-    put(course, overlap, x, -foot, back);
-    if (!overlap.is_laid_in() && bar_.is_fall_plate) put(course, overlap, 0.0, m_.arch_y(bar_), m_.arch_z());
-    if (!overlap.is_laid_in() && !bar_.is_fall_plate) loop(course, overlap, hold);
+    points_.push_back(foot_of(course, overlap));
+    if (!overlap.is_laid_in()) bar_.is_fall_plate ? low_arch(course, overlap) : loop(course, overlap, hold);
     put(course, overlap, -x, foot, back);
   }
 
@@ -144,8 +150,8 @@ class YarnPoints {
 
   // The foot of the course after the last, and straight up from it.
   void finish(long long course, const Overlap& overlap) {
-    const double x = foot_x(overlap), z = m_.underlap_z(bar_), foot = m_.foot_y(bar_);
-    put(course, overlap, x, -foot, z);
+    const double x = foot_x(overlap), z = m_.underlap_z(bar_), foot = m_.reach_y(bar_);
+    points_.push_back(foot_of(course, overlap));
     put(course, overlap, x, 0.5 * (m_.course_pitch - foot), z);
     put(course, overlap, x, m_.course_pitch, z);
   }
@@ -168,22 +174,39 @@ class YarnPoints {
     points_.push_back(point(course, overlap, x, y, z));
   }
   [[nodiscard]] Vec3 foot_of(long long course, const Overlap& overlap) const {
-    return point(course, overlap, foot_x(overlap), -m_.foot_y(bar_), m_.underlap_z(bar_));
+    return point(course, overlap, foot_x(overlap), -m_.reach_y(bar_), m_.underlap_z(bar_));
   }
   [[nodiscard]] double foot_x(const Overlap& overlap) const {
     return overlap.is_laid_in() ? 0.0 : m_.foot_x(bar_);
   }
 
+  // The same points up one side of the needle, over `top`, and down the other side.
+  void arch(long long course, const Overlap& overlap, const std::vector<Vec3>& flank, const Vec3& top) {
+    for (const Vec3& p : flank) put(course, overlap, p.x(), p.y(), p.z());
+    put(course, overlap, top.x(), top.y(), top.z());
+    for (auto p = flank.rbegin(); p != flank.rend(); ++p) put(course, overlap, -p->x(), p->y(), p->z());
+  }
+
   // Leg, head and leg of a loop whose head is drawn through by the loop `hold` courses above.
   void loop(long long course, const Overlap& overlap, int hold) {
-    const double neck = 0.5 * (m_.foot_x(bar_) + m_.leg_x()), wide = m_.leg_x();
-    const double low = m_.head_y(), high = hold * m_.course_pitch;
-    const double face = m_.leg_z(bar_), head = m_.head_z(bar_);
-    put(course, overlap, neck, low, face);
-    put(course, overlap, wide, high, 0.5 * (face + head));
-    put(course, overlap, 0.0, high + low, head);
-    put(course, overlap, -wide, high, 0.5 * (face + head));
-    put(course, overlap, -neck, low, face);
+    const double foot = m_.foot_x(bar_), wide = m_.leg_x(), rise = m_.head_y();
+    const double face = m_.leg_z(bar_), head = m_.head_z(bar_), next = hold * m_.course_pitch;
+    std::vector<Vec3> flank;
+    // Out of the way of the underlaps of the bars behind before these come past.
+    if (bar_.bars_behind > 0) flank.emplace_back(foot, m_.foot_y(bar_) + 0.4 * m_.along, -0.1 * m_.layer);
+    flank.emplace_back(foot, rise - 0.25 * m_.along, face);  // through the loop below: in front of its head
+    flank.emplace_back(wide, next, 0.5 * (face + head));     // beside the feet of the next loop
+    flank.emplace_back(0.75 * wide, next + 0.7 * rise, head);
+    arch(course, overlap, flank, {0.0, next + rise, head});
+  }
+
+  // Up before the underlaps of the bars behind that come, round their feet, and behind them down again.
+  void low_arch(long long course, const Overlap& overlap) {
+    const double foot = m_.foot_x(bar_), flank = m_.deepest_foot, z = m_.arch_z();
+    put(course, overlap, foot, -flank, z);
+    put(course, overlap, foot, flank, z);
+    put(course, overlap, 0.0, m_.arch_y(bar_), z);
+    put(course, overlap, -foot, flank, 1.3 * z);
   }
 
   const Bar& bar_;
@@ -219,7 +242,9 @@ Result<YarnPlan> WarpknitConstruction::plan(std::size_t index) const {
   plan->points = std::move(points).of_guide(guide_of(index));
   if (Status made = interpolate(*plan, yarn::PathForm::loop, Vec3::UnitY(), Vec3::UnitY()); !made)
     return made.error();
-  plan->spec.guide = yarn::FrameGuide::free_from(Vec3::UnitZ());
+  // Legs of loops run along the cloth's normal in places, where it says nothing about their sections.
+  plan->spec.guide =
+      bar.has_feet ? yarn::FrameGuide::free_from(Vec3::UnitZ()) : yarn::FrameGuide::with_up(Vec3::UnitZ());
   return plan;
 }
 
@@ -293,7 +318,7 @@ Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, const s
   // Side by side on one needle: two feet a bar, the two legs of the loop below, half a space to each side.
   const double across = 2.0 * m.bars_with_feet + 2.0;
   // One above the other within a course: feet from the lowest to the highest, arches, heads, the next feet.
-  const double along = 2.0 * most_feet_before + 4.0 + m.fall_plates;
+  const double along = 2.0 * most_feet_before + 4.0 + low_foot + 2.0 * m.fall_plates;
   const auto too_small = [&](std::string_view what, double pitch, double yarns) {
     return error(Kind::geometry,
                  fmt::format("the {} pitch {} is too small for yarns of {:.4g}: the loops of {} bars "
@@ -306,7 +331,7 @@ Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, const s
   m.course_pitch = warpknit.course_pitch;
   m.across = warpknit.wale_pitch / across;
   m.along = warpknit.course_pitch / along;
-  m.layer = thickest;
+  m.layer = 1.12 * thickest;  // the loop path misses its points by a few per cent of a yarn
   m.deepest_foot = (0.5 + most_feet_before) * m.along;
   return m;
 }

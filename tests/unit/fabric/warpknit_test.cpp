@@ -1,0 +1,148 @@
+// Lapping notation, and warp knits that cannot be.
+#include <gtest/gtest.h>
+
+#include "fabric/build.h"
+#include "fabric/lapping.h"
+#include "formats/txt/txt.h"
+
+namespace selvage::fabric {
+namespace {
+
+std::string lapping_error(std::string_view text) {
+  const Result<Lapping> read = parse_lapping(text, {3, 10});
+  return read ? std::string("none") : read.error().text + " at " + std::to_string(read.error().place.column);
+}
+
+TEST(Lapping, IsReadInEverySpelling) {
+  const Lapping satin = {{1, 0}, {3, 4}};
+  for (const char* text : {"1-0/3-4", "1-0/3-4//", "1-0 3-4", "1-0\t3-4 //", "1-0 / 3-4 / /"}) {
+    const Result<Lapping> read = parse_lapping(text, {});
+    ASSERT_TRUE(read) << text << ": " << read.error().text;
+    EXPECT_EQ(*read, satin) << text;
+  }
+}
+
+TEST(Lapping, FaultsAreSaidAtTheirColumn) {
+  EXPECT_NE(lapping_error("1-0/1-2/").find("does not close"), std::string::npos);
+  EXPECT_NE(lapping_error("1-0/1-2///").find("does not close"), std::string::npos);
+  EXPECT_NE(lapping_error("1-0/1").find("at 15"), std::string::npos);
+  EXPECT_NE(lapping_error("1-0/-2").find("at 14"), std::string::npos);
+  EXPECT_NE(lapping_error("1-0//1-2").find("nothing may follow"), std::string::npos);
+  EXPECT_NE(lapping_error("1-99999999999").find("at 12"), std::string::npos);
+  EXPECT_NE(lapping_error("1-10000").find("counted from 0 to 9999"), std::string::npos);
+  EXPECT_NE(lapping_error("").find("at 10"), std::string::npos);
+  EXPECT_NE(lapping_error("1_0").find("at 11"), std::string::npos);
+}
+
+// Overlap and underlap in opposite directions: closed.
+TEST(Lapping, OpenAndClosedLaps) {
+  const auto laps = [](std::string_view text) {
+    const Lapping lapping = *parse_lapping(text, {});
+    std::string letters;
+    for (std::size_t i = 0; i < lapping.size(); ++i)
+      letters += "col"[static_cast<int>(lap_at(lapping, static_cast<long long>(i)))];
+    return letters;
+  };
+  EXPECT_EQ(laps("1-0/1-2"), "cc");
+  EXPECT_EQ(laps("0-1/2-1"), "oo");
+  EXPECT_EQ(laps("1-0/0-1"), "oo");
+  EXPECT_EQ(laps("1-0/1-0"), "cc");
+  EXPECT_EQ(laps("0-0/3-3"), "ll");
+  EXPECT_EQ(laps("1-0/1-2/2-3/2-1"), "coco");  // open on the way, closed where it turns
+}
+
+// `stitch open` keeps the needles and opens every lap.
+TEST(Lapping, ClassicsOpenAndClosed) {
+  for (const char* name : {"tricot", "cord", "satin", "velvet", "locknit", "queens-cord", "atlas"}) {
+    const auto closed = classic_lappings(name, Warpknit::Stitch::closed),
+               open = classic_lappings(name, Warpknit::Stitch::open);
+    ASSERT_EQ(closed.size(), open.size()) << name;
+    ASSERT_FALSE(closed.empty()) << name;
+    for (std::size_t b = 0; b < closed.size(); ++b) {
+      const Lapping one = *parse_lapping(closed[b], {}), other = *parse_lapping(open[b], {});
+      ASSERT_EQ(one.size(), other.size()) << name;
+      for (std::size_t i = 0; i < one.size(); ++i) {
+        EXPECT_EQ(one[i].needle(), other[i].needle()) << name;
+        EXPECT_EQ(lap_at(other, static_cast<long long>(i)), Lap::open) << name;
+      }
+    }
+  }
+  EXPECT_TRUE(classic_lappings("jersey", Warpknit::Stitch::open).empty());
+}
+
+struct Built {
+  Diagnostics diagnostics;
+  std::optional<Fabric> fabric;
+  std::optional<YarnBuilder> builder;
+
+  explicit Built(const std::string& body, const std::string& after = {}) {
+    const Source source = Source::from_memory(
+        "fabric 1\nthread t\n  diameter 0.1\nend\nwarpknit\n" + body + "end\n" + after, "w.txt");
+    fabric = formats::txt::descriptor().read_fabric(source, diagnostics);
+    if (fabric && !diagnostics.has_errors()) builder = YarnBuilder::create(*fabric, {}, diagnostics);
+  }
+  [[nodiscard]] std::string message() const {
+    return diagnostics.has_errors() ? to_string(*diagnostics.first_error()) : std::string();
+  }
+};
+
+TEST(Warpknit, OneYarnAGuideAndBar) {
+  const Built built("  bar t 1-0/1-2\n  bar t 1-0/3-4\n  wales 5 pitch 1\n  courses 4 pitch 1\n");
+  ASSERT_TRUE(built.builder) << built.message();
+  ASSERT_EQ(built.builder->count(), 10U);
+  const Result<YarnPlan> plan = built.builder->plan(8);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->name, "bar2_4");
+  EXPECT_EQ(plan->role, Role::wale);
+}
+
+// The pitches that the messages name are the smallest ones.
+TEST(Warpknit, SmallestPitches) {
+  const auto with = [](const std::string& wales, const std::string& courses) {
+    return Built("  bar t 1-0/1-2\n  wales 3 pitch " + wales + "\n  courses 3 pitch " + courses + "\n")
+        .message();
+  };
+  EXPECT_EQ(with("0.4", "0.45"), "");
+  EXPECT_NE(with("0.39", "0.45").find("at least 0.4"), std::string::npos) << with("0.39", "0.45");
+  EXPECT_NE(with("0.4", "0.43").find("at least 0.44"), std::string::npos) << with("0.4", "0.43");
+  EXPECT_NE(with("0.39", "0.45").find("w.txt:5"), std::string::npos);
+}
+
+TEST(Warpknit, WhatCannotBeIsSaidAtItsPlace) {
+  const std::string size = "  wales 3 pitch 1\n  courses 3 pitch 1\n";
+  EXPECT_NE(Built("  bar t 1-0/1-3\n" + size)
+                .message()
+                .find("w.txt:6:9: error: overlap 2 of this lapping, 1-3, goes over 2"),
+            std::string::npos)
+      << Built("  bar t 1-0/1-3\n" + size).message();
+  EXPECT_NE(Built("  bar t 0-0/2-2\n" + size).message().find("no bar of this warp knit forms loops"),
+            std::string::npos);
+  EXPECT_NE(Built("  bar t 1-0/1-2 fall-plate\n" + size).message().find("forms loops"), std::string::npos);
+  EXPECT_NE(Built("  bar t 1-0/1-2/\n" + size).message().find("does not close"), std::string::npos);
+  EXPECT_NE(Built("  bar t 1-0/1-2\n  wales -3 pitch 1\n  courses 3 pitch 1\n").message().find("w.txt:7:9"),
+            std::string::npos);
+  const Built held("  bar t 1-0/1-1/1-1/1-1/1-1/1-1/1-1/1-1/1-1/1-1\n" + size);
+  ASSERT_TRUE(held.builder);
+  EXPECT_FALSE(held.builder->plan(0).ok());
+}
+
+TEST(Warpknit, AbsurdSizesAreRefusedBeforeTheyAreBuilt) {
+  const std::string message =
+      Built("  bar t 1-0/1-2\n  wales 1000000000 pitch 1\n  courses 1000000000 pitch 1\n").message();
+  EXPECT_NE(message.find("data points"), std::string::npos) << message;
+}
+
+// With a unit cell the yarns go on by more than a pitch on both sides, and are the same within.
+TEST(Warpknit, CellContinuesTheYarns) {
+  const std::string body = "  bar t 1-0/1-2\n  wales 3 pitch 1\n  courses 4 pitch 1\n";
+  const Built plain(body), cut(body, "cell 1 0 -1  3 2 1\nend\n");
+  ASSERT_TRUE(plain.builder && cut.builder) << cut.message();
+  const std::vector<Vec3> a = plain.builder->plan(1)->points, b = cut.builder->plan(1)->points;
+  EXPECT_LE(b.front().y(), a.front().y() - 1.0);
+  EXPECT_GE(b.back().y(), a.back().y() + 1.0);
+  for (std::size_t i = 2; i + 2 < a.size(); ++i)
+    EXPECT_NE(std::find(b.begin(), b.end(), a[i]), b.end()) << "data point " << i;
+}
+
+}  // namespace
+}  // namespace selvage::fabric
