@@ -16,14 +16,16 @@ SAMPLES = ROOT / "samples"
 
 # The committed pictures: name, sample, where the eye is.
 PICTURES = [
-    ("weave", "plain4_path.txt", "iso"),
-    ("twill", "twill_cell.txt", "iso"),
+    ("weave", "weave_plain.txt", "iso"),
+    ("satin", "weave_satin5.txt", "iso"),
+    ("orthogonal", "weave_orthogonal.txt", "iso"),
     ("jersey", "jersey.txt", "top"),
-    ("jersey_iso", "jersey.txt", "iso"),
+    ("purl", "knit_purl.txt", "iso"),
     ("tricot_front", "warpknit_tricot.txt", "top"),
     ("tricot_back", "warpknit_tricot.txt", "bottom"),
     ("braid", "braid_triaxial.txt", "iso"),
     ("plait", "braid_flat3.txt", "top"),
+    ("plies", "cabled.txt", "iso"),
 ]
 PICTURE_SIZE = (480, 360)
 COLORS = 128  # of a committed picture
