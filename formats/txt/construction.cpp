@@ -34,10 +34,15 @@ void read_system(Parser& p, WeaveSystem& system) {
   system.pitch = *pitch;
 }
 
-void read_warp(Parser& p, Weave& weave, std::string_view) {
+// A weave's statements, and where its draft stands: only the whole block tells whether there has to be one.
+struct WeaveBlock : Weave {
+  std::optional<Spot> draft_place;
+};
+
+void read_warp(Parser& p, WeaveBlock& weave, std::string_view) {
   read_system(p, weave.warp);
 }
-void read_weft(Parser& p, Weave& weave, std::string_view) {
+void read_weft(Parser& p, WeaveBlock& weave, std::string_view) {
   read_system(p, weave.weft);
 }
 
@@ -87,8 +92,9 @@ void read_draft_rows(Parser& p, Draft& draft) {
   read_sign_rows(p, {"draft", "01", "0 and 1 (1: warp on top)", draft.rows});
 }
 
-void read_draft(Parser& p, Weave& weave, std::string_view) {
+void read_draft(Parser& p, WeaveBlock& weave, std::string_view) {
   Draft& draft = weave.draft;
+  weave.draft_place = p.statement();
   draft.place = p.statement().place();
   if (!p.more()) return read_draft_rows(p, draft);
   const auto form = p.choice("draft", draft_words);
@@ -118,12 +124,48 @@ void read_draft(Parser& p, Weave& weave, std::string_view) {
   p.finish();
 }
 
-void read_profile(Parser& p, Weave& weave, std::string_view) {
+void read_profile(Parser& p, WeaveBlock& weave, std::string_view) {
   const auto profile = p.choice("profile", profile_words);
-  if (profile && p.finish()) weave.profile = *profile;
+  if (!profile) return;
+  if (*profile == Weave::Profile::sine && p.more()) {
+    const auto amplitude = p.positive("the amplitude");
+    if (!amplitude) return;
+    weave.amplitude = *amplitude;
+  }
+  if (p.finish()) weave.profile = *profile;
 }
 
-void read_layers(Parser& p, Weave& weave, std::string_view) {
+void read_crimp(Parser& p, WeaveBlock& weave, std::string_view) {
+  const auto share = p.number("the warp's share of the crimp");
+  if (share && !(*share >= 0.0 && *share <= 1.0)) p.error(p.last(), "a share lies between 0 and 1");
+  if (share && p.finish()) weave.crimp = *share;
+}
+
+void read_binder(Parser& p, WeaveBlock& weave, std::string_view) {
+  fabric::Binder binder;
+  binder.place = p.statement().place();
+  const auto thread = p.reference(p.threads);
+  if (!thread) return;
+  binder.thread = *thread;
+  const auto every = p.expect("every") ? p.count("every how many gaps") : std::nullopt;
+  if (!every) return;
+  binder.every = *every;
+  const auto has_first = p.choice("binder", binder_words);
+  if (!has_first) return;
+  if (*has_first) {
+    const auto first = p.count("the first gap");
+    if (!first || !p.expect("levels")) return;
+    binder.first = *first;
+  }
+  do {
+    const auto level = p.count("a level", 0);
+    if (!level) return;
+    binder.levels.push_back(*level);
+  } while (p.more());
+  if (p.finish()) weave.binders.push_back(std::move(binder));
+}
+
+void read_layers(Parser& p, WeaveBlock& weave, std::string_view) {
   const auto layers = p.count("the number of layers");
   if (layers && p.finish()) weave.layers = *layers;
 }
@@ -274,17 +316,28 @@ void read_axial(Parser& p, BraidBlock& braid, std::string_view) {
 }  // namespace
 
 void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
-  static const Table<Weave> table({{"warp", read_warp, Times::once},
-                                   {"weft", read_weft, Times::once},
-                                   {"draft", read_draft, Times::once},
-                                   {"profile", read_profile},
-                                   {"layers", read_layers}});
-  Weave weave;
+  static const Table<WeaveBlock> table({{"warp", read_warp, Times::once},
+                                        {"weft", read_weft, Times::once},
+                                        {"draft", read_draft},
+                                        {"profile", read_profile},
+                                        {"crimp", read_crimp},
+                                        {"layers", read_layers},
+                                        {"binder", read_binder, Times::any}});
+  WeaveBlock weave;
   const Spot opened = p.statement();
   weave.place = opened.place();
   p.finish();
-  p.read_block(word, "", opened, table, weave);
-  fabric.items.emplace_back(std::move(weave));
+  const int errors = p.report.errors();
+  if (p.read_block(word, "", opened, table, weave) && p.report.errors() == errors) {
+    const bool is_straight = weave.profile == Weave::Profile::straight;
+    if (!is_straight && !weave.draft_place) p.error(p.last(), "'weave' ends without its 'draft'");
+    if (is_straight && weave.draft_place)
+      p.error(*weave.draft_place, "straight yarns do not interlace: leave out the draft, or the profile");
+    if (!is_straight && !weave.binders.empty())
+      p.error(opened, "a binder goes through straight layers: it needs 'profile straight'");
+    if (is_straight && weave.crimp) p.error(opened, "straight yarns have no crimp to share");
+  }
+  fabric.items.emplace_back(static_cast<Weave&&>(weave));
 }
 
 void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {

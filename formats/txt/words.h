@@ -51,11 +51,13 @@ inline constexpr std::array<Word<Draft::Form>, 5> draft_words{{{"plain", Draft::
                                                                {"satin", Draft::Form::satin},
                                                                {"basket", Draft::Form::basket},
                                                                {"file", Draft::Form::file}}};
-inline constexpr std::array<Word<Weave::Profile>, 4> profile_words{
+inline constexpr std::array<Word<Weave::Profile>, 5> profile_words{
     {{"peirce", Weave::Profile::peirce},
      {"sine", Weave::Profile::sine},
      {"lenticular", Weave::Profile::lenticular},
-     {"racetrack", Weave::Profile::racetrack}}};
+     {"racetrack", Weave::Profile::racetrack},
+     {"straight", Weave::Profile::straight}}};
+inline constexpr std::array<Word<bool>, 2> binder_words{{{"first", true}, {"levels", false}}};
 inline constexpr std::array<Word<Knit::Form>, 3> knit_words{
     {{"jersey", Knit::Form::jersey}, {"purl", Knit::Form::purl}, {"rib", Knit::Form::rib}}};
 inline constexpr std::array<Word<Knit::Method>, 3> knit_method_words{

@@ -259,9 +259,17 @@ void write_item(Lines& out, const fabric::Weave& weave) {
   out.line(0, "weave");
   write_system(out, "warp", weave.warp);
   write_system(out, "weft", weave.weft);
-  write_draft(out, weave.draft);
+  if (weave.profile != Weave::Profile::straight) write_draft(out, weave.draft);
   if (weave.profile) out.line(1, "profile").word(word_of(profile_words, *weave.profile));
+  if (weave.amplitude) out.value(*weave.amplitude);
+  if (weave.crimp) out.line(1, "crimp").value(*weave.crimp);
   if (weave.layers) out.line(1, "layers").value(*weave.layers);
+  for (const fabric::Binder& binder : weave.binders) {
+    out.line(1, "binder").name(binder.thread).word("every").value(binder.every);
+    if (binder.first != 1) out.word("first").value(binder.first);
+    out.word("levels");
+    for (int level : binder.levels) out.value(level);
+  }
   out.line(0, "end");
 }
 

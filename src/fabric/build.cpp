@@ -50,6 +50,7 @@ std::vector<std::string> threads_of(const Item& item) {
   if (const auto* weave = std::get_if<Weave>(&item)) {
     std::vector<std::string> names = weave->warp.threads;
     names.insert(names.end(), weave->weft.threads.begin(), weave->weft.threads.end());
+    for (const Binder& binder : weave->binders) names.push_back(binder.thread);
     return names;
   }
   if (const auto* knit = std::get_if<Knit>(&item)) return {knit->thread};

@@ -146,13 +146,26 @@ struct Draft {
   std::string file;
 };
 
+// A yarn of a weave with straight yarns that runs along the warp, in gaps between warps, and through the
+// layers.
+struct Binder {
+  std::string thread;
+  TextPlace place;
+  int every = 1;            // every how many gaps there is one
+  int first = 1;            // the gap of the first one; gap 1 is between warp 1 and warp 2
+  std::vector<int> levels;  // at weft 1, 2, ...; how many layers of weft are below it; repeats
+};
+
 struct Weave {
-  enum class Profile { peirce, sine, lenticular, racetrack };
+  enum class Profile { peirce, sine, lenticular, racetrack, straight };
   TextPlace place;
   WeaveSystem warp, weft;
   Draft draft;
   std::optional<Profile> profile;
+  std::optional<double> amplitude;  // sine: of both systems, file units
+  std::optional<double> crimp;      // the warp's share of the crimp height, 0 .. 1
   std::optional<int> layers;
+  std::vector<Binder> binders;
 };
 
 struct Knit {

@@ -1,11 +1,379 @@
 #include "fabric/weave.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fabric/draft.h"
+#include "fabric/interlacing.h"
+#include "fabric/weave_system.h"
+#include "fabric/yarn_spec.h"
+
 namespace selvage::fabric {
 
-Result<std::unique_ptr<Construction>> make_weave(const Fabric&, const Weave& weave, Diagnostics&) {
-  Message message = error(Kind::unsupported, "`weave` is not supported yet");
-  message.place = weave.place;
+namespace {
+
+Message at_line(Message message, TextPlace place) {
+  if (message.place.line == 0) message.place = place;
   return message;
+}
+
+// The yarns of one kind and layer, one after the other in the construction's order.
+struct Block {
+  enum class Kind { warp, weft, binder } kind = Kind::warp;
+  int layer = 0;        // from 0; of wefts between straight warps one more than of these
+  std::size_t set = 0;  // binder: which line
+  std::size_t first = 0, count = 0;
+};
+
+Vec3 along_warp(double s, double z, double y) {
+  return {s, y, z};
+}
+Vec3 along_weft(double s, double z, double x) {
+  return {x, s, z};
+}
+
+// How far yarns of one direction go: from and to, and the crossings that they pass (numbers of the other
+// system).
+struct Reach {
+  double from = 0, to = 0;
+  long long first = 0, last = 0;
+};
+
+// 0 .. count x pitch; with a cell, at least one pitch beyond both it and the cloth.
+Reach reach_over(const System& crossed, bool has_cell, double low, double high) {
+  const double pitch = crossed.text->pitch;
+  long long before = 0, after = 0;
+  if (has_cell) {
+    before = 1 + static_cast<long long>(std::ceil(std::max(0.0, -low / pitch)));
+    after = 1 + static_cast<long long>(std::ceil(std::max(0.0, high / pitch - crossed.text->count)));
+  }
+  const long long last = crossed.text->count - 1 + after;
+  return {static_cast<double>(-before) * pitch, static_cast<double>(last + 1) * pitch, -before, last};
+}
+
+class WeaveConstruction final : public Construction {
+ public:
+  WeaveConstruction(const Fabric& fabric, const Weave& weave, System warp, System weft)
+      : fabric_(fabric), weave_(weave), warp_(std::move(warp)), weft_(std::move(weft)) {
+    const bool has_cell = fabric.cell.has_value();
+    const Cell cell = fabric.cell.value_or(Cell{});
+    along_x_ = reach_over(weft_, has_cell, cell.low.x(), cell.high.x());
+    along_y_ = reach_over(warp_, has_cell, cell.low.y(), cell.high.y());
+  }
+
+  // Everything that can go wrong, before any yarn is planned.
+  Status prepare(Diagnostics& diagnostics);
+
+  [[nodiscard]] std::size_t count() const override { return blocks_.back().first + blocks_.back().count; }
+  [[nodiscard]] std::string name(std::size_t index) const override;
+  [[nodiscard]] const Thread& thread(std::size_t index) const override;
+  [[nodiscard]] std::uint64_t data_points() const override { return data_points_; }
+  [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
+
+ private:
+  struct Place {
+    const Block* block;
+    long long yarn;  // of its block, from 0
+  };
+  [[nodiscard]] Place place_of(std::size_t index) const;
+  [[nodiscard]] bool is_straight() const { return weave_.profile == Weave::Profile::straight; }
+  [[nodiscard]] int layers() const { return weave_.layers.value_or(1); }
+  void add_block(Block::Kind kind, int layer, std::size_t set, std::size_t count);
+  Status prepare_interlacing();
+  Status prepare_binders();
+  void warn_of_widths(Diagnostics& diagnostics) const;
+  [[nodiscard]] double straight_z(bool is_weft, int layer) const;
+  [[nodiscard]] long long binder_gap(const Binder& binder, long long yarn) const {
+    return binder.first + yarn * binder.every;
+  }
+  [[nodiscard]] Pass binder_pass(const Binder& binder, const WovenThread& own, long long column) const;
+  [[nodiscard]] std::vector<Pass> passes_of(const Place& place) const;
+  [[nodiscard]] double layer_shift(int layer) const { return (layer - 0.5 * (layers() - 1)) * layer_pitch_; }
+  Status plan_sine(YarnPlan& plan, const std::vector<Pass>& passes, const Reach& reach, bool is_weft,
+                   double across) const;
+
+  const Fabric& fabric_;
+  const Weave& weave_;
+  System warp_, weft_;
+  std::vector<WovenThread> binders_;  // one a binder line
+  Reach along_x_, along_y_;
+  Drawdown drawdown_;
+  Heights heights_;
+  std::optional<Bend> warp_bend_, weft_bend_;  // none: sine
+  double layer_pitch_ = 0;
+  std::vector<Block> blocks_;
+  std::uint64_t data_points_ = 0;
+};
+
+void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, std::size_t count) {
+  Block block{kind, layer, set, 0, count};
+  if (!blocks_.empty()) block.first = blocks_.back().first + blocks_.back().count;
+  blocks_.push_back(block);
+  const Reach& reach = kind == Block::Kind::weft ? along_y_ : along_x_;
+  data_points_ += count * static_cast<std::uint64_t>(reach.last - reach.first + 3);
+}
+
+// Does any yarn of the draft change sides from one crossing to the next? {warps, wefts}
+std::pair<bool, bool> changes_of(const Drawdown& drawdown) {
+  bool warps = false, wefts = false;
+  for (int pick = 0; pick < drawdown.picks; ++pick)
+    for (int end = 0; end < drawdown.ends; ++end) {
+      const bool here = drawdown.warp_on_top(pick, end);
+      warps = warps || here != drawdown.warp_on_top(pick + 1, end);
+      wefts = wefts || here != drawdown.warp_on_top(pick, end + 1);
+    }
+  return {warps, wefts};
+}
+
+Status WeaveConstruction::prepare_interlacing() {
+  Result<Drawdown> drawdown = drawdown_of(weave_.draft);
+  if (!drawdown) return at_line(drawdown.error(), weave_.place);
+  drawdown_ = std::move(*drawdown);
+  const auto bend_over = [&](const System& crossed) -> std::optional<Bend> {
+    if (!weave_.profile) return natural_bend(crossed);
+    switch (*weave_.profile) {
+      case Weave::Profile::lenticular:
+        return Bend::lens;
+      case Weave::Profile::racetrack:
+        return Bend::racetrack;
+      case Weave::Profile::sine:
+        return std::nullopt;
+      default:
+        return Bend::round;
+    }
+  };
+  warp_bend_ = bend_over(weft_);
+  weft_bend_ = bend_over(warp_);
+  // A sine has room for any height over any pitch.
+  const auto [warps_change, wefts_change] = changes_of(drawdown_);
+  const SystemPair pair{&warp_,
+                        &weft_,
+                        warp_bend_.value_or(Bend::round),
+                        weft_bend_.value_or(Bend::round),
+                        warps_change && warp_bend_,
+                        wefts_change && weft_bend_};
+  Result<Heights> heights = share_crimp(pair, weave_.crimp);
+  if (!heights) return at_line(heights.error(), weave_.place);
+  heights_ = *heights;
+  double top = 0.0;
+  for (const WovenThread& woven : warp_.threads)
+    top = std::max(top, heights_.warp(woven.size.height) + 0.5 * woven.size.height);
+  for (const WovenThread& woven : weft_.threads)
+    top = std::max(top, heights_.weft(woven.size.height) + 0.5 * woven.size.height);
+  if (weave_.amplitude) top = *weave_.amplitude + 0.5 * std::max(warp_.thickest, weft_.thickest);
+  layer_pitch_ = 2.0 * top;
+  for (int layer = 0; layer < layers(); ++layer) {
+    add_block(Block::Kind::warp, layer, 0, static_cast<std::size_t>(warp_.text->count));
+    add_block(Block::Kind::weft, layer, 0, static_cast<std::size_t>(weft_.text->count));
+  }
+  return {};
+}
+
+Status WeaveConstruction::prepare_binders() {
+  for (int layer = 0; layer <= layers(); ++layer) {
+    if (layer < layers()) add_block(Block::Kind::warp, layer, 0, static_cast<std::size_t>(warp_.text->count));
+    add_block(Block::Kind::weft, layer, 0, static_cast<std::size_t>(weft_.text->count));
+  }
+  for (std::size_t set = 0; set < weave_.binders.size(); ++set) {
+    const Binder& binder = weave_.binders[set];
+    Result<WovenThread> woven = woven_thread(fabric_, binder.thread, binder.place);
+    if (!woven) return woven.error();
+    binders_.push_back(std::move(*woven));
+    for (int level : binder.levels)
+      if (level > layers() + 1)
+        return at_line(
+            error(Kind::geometry,
+                  fmt::format("level {} is above all layers: {} layers of warp have {} layers of weft, "
+                              "so levels go from 0 to {}",
+                              level, layers(), layers() + 1, layers() + 1)),
+            binder.place);
+    const int gaps = warp_.text->count - 1;
+    if (binder.first > gaps)
+      return at_line(
+          error(Kind::geometry, fmt::format("there is no gap {}: {} warps have {} gaps between them",
+                                            binder.first, warp_.text->count, gaps)),
+          binder.place);
+    add_block(Block::Kind::binder, 0, set,
+              static_cast<std::size_t>((gaps - binder.first) / binder.every + 1));
+  }
+  for (const Block& block : blocks_) {
+    if (block.kind != Block::Kind::binder) continue;
+    Result<yarn::CentreLine> line =
+        bridge_passes(passes_of({&block, 0}), along_x_.from, along_x_.to, along_warp, 0.0);
+    if (!line) return at_line(line.error(), weave_.binders[block.set].place);
+  }
+  return {};
+}
+
+void WeaveConstruction::warn_of_widths(Diagnostics& diagnostics) const {
+  const auto warn = [&](TextPlace place, std::string text) {
+    Message message = warning(Kind::geometry, std::move(text));
+    message.file = fabric_.file;
+    message.place = place;
+    diagnostics.add(std::move(message));
+  };
+  for (const System* system : {&warp_, &weft_})
+    if (system->widest > system->text->pitch)
+      warn(system->text->place, fmt::format("yarns {:.6g} wide at a pitch of {:.6g} overlap their neighbours",
+                                            system->widest, system->text->pitch));
+  for (std::size_t set = 0; set < binders_.size(); ++set)
+    if (const double gap = warp_.text->pitch - warp_.widest; binders_[set].size.width > gap)
+      warn(weave_.binders[set].place,
+           fmt::format("a binder {:.6g} wide overlaps the warps: between them there is {:.6g}",
+                       binders_[set].size.width, gap));
+}
+
+Status WeaveConstruction::prepare(Diagnostics& diagnostics) {
+  Status status = is_straight() ? prepare_binders() : prepare_interlacing();
+  if (status.ok()) warn_of_widths(diagnostics);
+  return status;
+}
+
+WeaveConstruction::Place WeaveConstruction::place_of(std::size_t index) const {
+  const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), index,
+                                      [](std::size_t i, const Block& block) { return i < block.first; });
+  const Block& block = *std::prev(after);
+  return {&block, static_cast<long long>(index - block.first)};
+}
+
+std::string WeaveConstruction::name(std::size_t index) const {
+  const auto [block, yarn] = place_of(index);
+  if (block->kind == Block::Kind::binder) {
+    std::size_t before = 0;
+    for (const Block& other : blocks_)
+      if (other.kind == Block::Kind::binder && other.first < block->first) before += other.count;
+    return fmt::format("binder_{}", before + static_cast<std::size_t>(yarn) + 1);
+  }
+  const std::string_view kind = block->kind == Block::Kind::warp ? "warp" : "weft";
+  const std::string layer =
+      layers() > 1 || is_straight() ? fmt::format("layer{}_", block->layer + 1) : std::string();
+  return fmt::format("{}{}_{}", layer, kind, yarn + 1);
+}
+
+const Thread& WeaveConstruction::thread(std::size_t index) const {
+  const auto [block, yarn] = place_of(index);
+  if (block->kind == Block::Kind::binder) return *binders_[block->set].thread;
+  return *(block->kind == Block::Kind::warp ? warp_ : weft_).thread(yarn).thread;
+}
+
+double WeaveConstruction::straight_z(bool is_weft, int layer) const {
+  return (layer - 0.5 * layers() + (is_weft ? 0.0 : 0.5)) * (warp_.thickest + weft_.thickest);
+}
+
+// Between the layers of weft a binder lies where the warps do; outside it touches the outermost weft.
+Pass WeaveConstruction::binder_pass(const Binder& binder, const WovenThread& own, long long column) const {
+  const auto n = static_cast<long long>(binder.levels.size());
+  const int level = binder.levels[static_cast<std::size_t>(((column % n) + n) % n)];
+  const WovenThread& weft = weft_.thread(column);
+  const Bend bend = std::holds_alternative<yarn::Lenticular>(weft.section) ? Bend::lens
+                    : std::holds_alternative<yarn::Circle>(weft.section)   ? Bend::round
+                                                                           : Bend::racetrack;
+  const Obstacle obstacle = obstacle_of(bend, weft.size, own.size.height);
+  Pass pass{weft_.at(static_cast<double>(column)), 0.0, obstacle, obstacle};
+  const double outside = 0.5 * (weft.size.height + own.size.height);
+  if (level == 0)
+    pass.z = straight_z(true, 0) - outside;
+  else if (level == layers() + 1)
+    pass.z = straight_z(true, layers()) + outside;
+  else
+    pass.z = straight_z(false, level - 1);
+  return pass;
+}
+
+std::vector<Pass> WeaveConstruction::passes_of(const Place& place) const {
+  const auto& [block, yarn] = place;
+  const bool is_weft = block->kind == Block::Kind::weft;
+  const Reach& reach = is_weft ? along_y_ : along_x_;
+  std::vector<Pass> passes;
+  for (long long k = reach.first; k <= reach.last; ++k) {
+    if (block->kind == Block::Kind::binder) {
+      passes.push_back(binder_pass(weave_.binders[block->set], binders_[block->set], k));
+      continue;
+    }
+    const System &own = is_weft ? weft_ : warp_, &crossed = is_weft ? warp_ : weft_;
+    Pass pass;
+    pass.s = crossed.at(static_cast<double>(k));
+    if (is_straight()) {
+      pass.z = straight_z(is_weft, block->layer);
+    } else {
+      const double thickness = own.thread(yarn).size.height;
+      const bool on_top = is_weft ? !drawdown_.warp_on_top(yarn, k) : drawdown_.warp_on_top(k, yarn);
+      const double height =
+          weave_.amplitude.value_or(is_weft ? heights_.weft(thickness) : heights_.warp(thickness));
+      pass.z = layer_shift(block->layer) + (on_top ? height : -height);
+      pass.below = pass.above = obstacle_of((is_weft ? weft_bend_ : warp_bend_).value_or(Bend::round),
+                                            crossed.thread(k).size, thickness);
+    }
+    passes.push_back(pass);
+  }
+  return passes;
+}
+
+// Half waves of a cosine from crossing to crossing, level over floats: a cubic through eight points a pitch.
+Status WeaveConstruction::plan_sine(YarnPlan& plan, const std::vector<Pass>& passes, const Reach& reach,
+                                    bool is_weft, double across) const {
+  const System& crossed = is_weft ? warp_ : weft_;
+  const auto place = is_weft ? along_weft : along_warp;
+  constexpr int steps = 8;
+  const auto add = [&](double crossing, double z) {
+    plan.points.push_back(place(crossed.at(crossing), z, across));
+  };
+  for (int i = 0; i < steps / 2; ++i)
+    add(static_cast<double>(reach.first) - 0.5 + static_cast<double>(i) / steps, passes.front().z);
+  for (std::size_t k = 0; k + 1 < passes.size(); ++k) {
+    const double middle = 0.5 * (passes[k].z + passes[k + 1].z), half = 0.5 * (passes[k].z - passes[k + 1].z);
+    for (int i = 0; i < steps; ++i)
+      add(static_cast<double>(reach.first + static_cast<long long>(k)) + static_cast<double>(i) / steps,
+          middle + half * std::cos(std::numbers::pi * i / steps));
+  }
+  for (int i = 0; i <= steps / 2; ++i)
+    add(static_cast<double>(reach.last) + static_cast<double>(i) / steps, passes.back().z);
+  const Vec3 direction = is_weft ? Vec3::UnitY() : Vec3::UnitX();
+  return interpolate(plan, yarn::PathForm::chord, direction, direction);
+}
+
+Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
+  const Place place = place_of(index);
+  const auto& [block, yarn] = place;
+  const bool is_weft = block->kind == Block::Kind::weft, is_binder = block->kind == Block::Kind::binder;
+  const Role role = is_binder ? Role::binder : is_weft ? Role::weft : Role::warp;
+  const TextPlace text = is_binder ? weave_.binders[block->set].place : weave_.place;
+  Result<YarnPlan> plan = start_plan(fabric_, thread(index), name(index), role, text);
+  if (!plan) return plan;
+  const Reach& reach = is_weft ? along_y_ : along_x_;
+  const double across =
+      is_binder ? static_cast<double>(binder_gap(weave_.binders[block->set], yarn)) * warp_.text->pitch
+                : (is_weft ? weft_ : warp_).at(static_cast<double>(yarn));
+  const std::vector<Pass> passes = passes_of(place);
+  plan->spec.guide = yarn::FrameGuide::with_across(is_weft ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitY()));
+  const bool is_sine = !is_straight() && !(is_weft ? weft_bend_ : warp_bend_);
+  if (is_sine) {
+    if (Status made = plan_sine(*plan, passes, reach, is_weft, across); !made) return made.error();
+    return plan;
+  }
+  Result<yarn::CentreLine> line =
+      bridge_passes(passes, reach.from, reach.to, is_weft ? along_weft : along_warp, across);
+  if (!line) return line.error();
+  plan->line = std::move(*line);
+  for (const Pass& pass : passes)
+    plan->points.push_back((is_weft ? along_weft : along_warp)(pass.s, pass.z, across));
+  return plan;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Construction>> make_weave(const Fabric& fabric, const Weave& weave,
+                                                 Diagnostics& diagnostics) {
+  Result<System> warp = system_of(fabric, weave.warp);
+  if (!warp) return at_line(warp.error(), weave.place);
+  Result<System> weft = system_of(fabric, weave.weft);
+  if (!weft) return at_line(weft.error(), weave.place);
+  auto made = std::make_unique<WeaveConstruction>(fabric, weave, std::move(*warp), std::move(*weft));
+  if (Status prepared = made->prepare(diagnostics); !prepared) return at_line(prepared.error(), weave.place);
+  return std::unique_ptr<Construction>(std::move(made));
 }
 
 }  // namespace selvage::fabric

@@ -1,4 +1,6 @@
-// The construction `weave` (formats/txt/README.md).
+// The construction `weave` (formats/txt/README.md): warp i along x at y = (i - 1/2) pitch(warp), weft j along
+// y at x = (j - 1/2) pitch(weft), about z = 0. Yarns that cross touch: their axes are half the sum of their
+// thicknesses apart there.
 #pragma once
 
 #include <memory>
@@ -7,7 +9,9 @@
 
 namespace selvage::fabric {
 
-// Errors: at their lines. `fabric` and `weave` outlive the construction; warnings go to `diagnostics`.
+// Errors: at their lines: a draft that cannot be, pitches too small for the sections (with the smallest
+// ones), levels of binders that are not there. `fabric` and `weave` outlive the construction; warnings (yarns
+// of one system wider than their pitch) go to `diagnostics`.
 Result<std::unique_ptr<Construction>> make_weave(const Fabric& fabric, const Weave& weave,
                                                  Diagnostics& diagnostics);
 

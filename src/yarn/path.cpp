@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "yarn/arcs.h"
+
 namespace selvage::yarn {
 
 namespace {
@@ -129,47 +131,6 @@ CentreLine from_loop(const PathRows& rows) {
   line.parameters = parameters;
   return line;
 }
-
-// A rational quadratic built piece by piece, each piece at the speed at which the one before ended.
-class ArcsAndSegments {
- public:
-  explicit ArcsAndSegments(const Vec3& start) {
-    curve_.degree = 2;
-    curve_.knots = {0, 0, 0};
-    curve_.points = {start};
-    curve_.weights = {1};
-  }
-  void segment(const Vec3& to) {
-    const Vec3 from = curve_.points.back();
-    piece(0.5 * (from + to), 1.0, to, (to - from).norm());
-  }
-  // The arc that touches the lines from the present point to `corner` and from there to `to`; half_angle:
-  // half its turning.
-  void arc(const Vec3& corner, const Vec3& to, double half_angle) {
-    const double weight = std::cos(half_angle);
-    // Speed at its ends is 2 weight |corner - end| / duration: 1, as on the segments.
-    piece(corner, weight, to, 2.0 * weight * (corner - curve_.points.back()).norm());
-  }
-  [[nodiscard]] double now() const { return curve_.knots.back(); }
-  nurbs::Curve finish() {
-    curve_.knots.push_back(curve_.knots.back());
-    const double total = curve_.knots.back();
-    for (double& knot : curve_.knots) knot /= total;
-    return std::move(curve_);
-  }
-
- private:
-  void piece(const Vec3& middle, double weight, const Vec3& to, double duration) {
-    const double end = curve_.knots.back() + duration;
-    curve_.points.push_back(middle);
-    curve_.points.push_back(to);
-    curve_.weights.push_back(weight);
-    curve_.weights.push_back(1.0);
-    curve_.knots.push_back(end);
-    curve_.knots.push_back(end);
-  }
-  nurbs::Curve curve_;
-};
 
 Result<CentreLine> from_polyline(const PathRows& rows) {
   const std::vector<Vec3>& p = rows.points;

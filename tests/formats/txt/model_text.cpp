@@ -166,12 +166,21 @@ class Flat {
     add(path + ".b", v.b);
     add(path + ".file", v.file);
   }
+  void add(const std::string& path, const Binder& v) {
+    add(path + ".thread", v.thread);
+    add(path + ".every", v.every);
+    add(path + ".first", v.first);
+    add(path + ".levels", v.levels);
+  }
   void add(const std::string& path, const Weave& v) {
     add(path + ".warp", v.warp);
     add(path + ".weft", v.weft);
     add(path + ".draft", v.draft);
     add(path + ".profile", v.profile);
+    add(path + ".amplitude", v.amplitude);
+    add(path + ".crimp", v.crimp);
     add(path + ".layers", v.layers);
+    add(path + ".binders", v.binders);
   }
   void add(const std::string& path, const Knit& v) {
     add(path + ".form", v.form);

@@ -258,9 +258,22 @@ class Maker {
         Weave weave;
         weave.warp = system();
         weave.weft = system();
-        weave.draft = draft();
-        maybe(weave.profile, [&] { return static_cast<Weave::Profile>(up_to(3)); });
+        maybe(weave.profile, [&] { return static_cast<Weave::Profile>(up_to(4)); });
         maybe(weave.layers, [&] { return count(); });
+        if (weave.profile == Weave::Profile::sine) maybe(weave.amplitude, [&] { return positive(); });
+        if (weave.profile == Weave::Profile::straight) {
+          weave.draft = {};
+          for (int i = up_to(2); i > 0; --i) {
+            Binder& binder = weave.binders.emplace_back();
+            binder.thread = one_of(threads_);
+            binder.every = count();
+            binder.first = count();
+            for (int k = up_to(4); k >= 0; --k) binder.levels.push_back(up_to(5));
+          }
+        } else {
+          weave.draft = draft();
+          maybe(weave.crimp, [&] { return up_to(8) / 8.0; });
+        }
         return weave;
       }
       case 1: {

@@ -1,0 +1,138 @@
+#include "fabric/weave_system.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "fabric/yarn_spec.h"
+
+namespace selvage::fabric {
+
+const WovenThread& System::thread(long long yarn) const {
+  const auto n = static_cast<long long>(threads.size());
+  return threads[static_cast<std::size_t>(((yarn % n) + n) % n)];
+}
+
+Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, TextPlace place) {
+  WovenThread woven;
+  woven.thread = fabric.find_thread(name);
+  if (woven.thread == nullptr) {
+    Message message = error(Kind::geometry, fmt::format("there is no thread '{}'", name));
+    message.place = place;
+    return message;
+  }
+  Result<yarn::Section> section = section_of(*woven.thread, fabric.units, false);
+  if (!section) {
+    Message message = error(Kind::geometry, fmt::format("thread '{}': {}", name, section.error().text));
+    message.place = woven.thread->place;
+    return message;
+  }
+  woven.section = *section;
+  woven.size = yarn::nominal_size(woven.section);
+  if (Status checked = yarn::check_section(woven.section, woven.size); !checked) {
+    Message message = checked.error();
+    message.place = woven.thread->place;
+    return message;
+  }
+  return woven;
+}
+
+Result<System> system_of(const Fabric& fabric, const WeaveSystem& text) {
+  System system;
+  system.text = &text;
+  for (const std::string& name : text.threads) {
+    Result<WovenThread> woven = woven_thread(fabric, name, text.place);
+    if (!woven) return woven.error();
+    system.thickest = std::max(system.thickest, woven->size.height);
+    system.widest = std::max(system.widest, woven->size.width);
+    system.threads.push_back(std::move(*woven));
+  }
+  return system;
+}
+
+std::optional<Bend> natural_bend(const System& crossed) {
+  Bend bend = Bend::round;
+  for (const WovenThread& woven : crossed.threads) {
+    if (std::holds_alternative<yarn::Lenticular>(woven.section))
+      bend = Bend::lens;
+    else if (std::holds_alternative<yarn::Racetrack>(woven.section))
+      bend = Bend::racetrack;
+    else if (!std::holds_alternative<yarn::Circle>(woven.section) &&
+             !std::holds_alternative<yarn::Loop7>(woven.section))
+      return std::nullopt;
+  }
+  return bend;
+}
+
+namespace {
+
+// The worst of all neighbouring pairs of the crossed system's threads, for the thickest own thread: {flats,
+// spread}.
+std::pair<double, double> worst_pair(const System& own, const System& crossed, Bend bend) {
+  std::pair<double, double> worst{0.0, 0.0};
+  double least_room = std::numeric_limits<double>::infinity();
+  // Equal threads need to be looked at once.
+  std::set<std::pair<const Thread*, const Thread*>> seen;
+  for (std::size_t j = 0; j < crossed.threads.size(); ++j) {
+    const WovenThread &a = crossed.threads[j], &b = crossed.threads[(j + 1) % crossed.threads.size()];
+    if (!seen.insert({a.thread, b.thread}).second) continue;
+    const Obstacle first = obstacle_of(bend, a.size, own.thickest),
+                   last = obstacle_of(bend, b.size, own.thickest);
+    const std::pair<double, double> pair{first.flat + last.flat, first.radius + last.radius};
+    const double room = largest_height(crossed.text->pitch - pair.first, pair.second);
+    if (room < least_room || worst.second == 0.0) {
+      least_room = room;
+      worst = pair;
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+double most_height(const System& own, const System& crossed, Bend bend, bool changes_sides) {
+  if (!changes_sides) return std::numeric_limits<double>::infinity();
+  const auto [flats, spread] = worst_pair(own, crossed, bend);
+  return largest_height(crossed.text->pitch - flats, spread);
+}
+
+Result<Heights> share_crimp(const SystemPair& pair, const std::optional<double>& wanted) {
+  const System &warp = *pair.warp, &weft = *pair.weft;
+  const double both = warp.thickest + weft.thickest;
+  const double warp_most = most_height(warp, weft, pair.warp_bend, pair.warp_changes),
+               weft_most = most_height(weft, warp, pair.weft_bend, pair.weft_changes);
+  // A jammed cloth fits to the last bit only: rounding must not refuse it.
+  const double slack = 1e-9 * both;
+  const auto too_tight = [&](const System& own, const System& crossed, Bend bend, double height) {
+    const auto [flats, spread] = worst_pair(own, crossed, bend);
+    Message message = error(
+        Kind::geometry,
+        fmt::format("the pitch {:.6g} is too small: no yarn fits over and under these at a crimp height of "
+                    "{:.6g}; the smallest pitch is {:.6g}",
+                    crossed.text->pitch, height, flats + smallest_pitch(height, spread)));
+    message.place = crossed.text->place;
+    return message;
+  };
+  double warp_height = wanted.value_or(0.5) * both;
+  if (!wanted) {
+    warp_height = std::min(warp_height, warp_most);
+    if (both - warp_height > weft_most) warp_height = std::min(both, both - weft_most);
+  }
+  if (warp_height > warp_most + slack) {
+    // With nothing asked for, equal shares tell what is missing.
+    const double height = wanted ? warp_height : 0.5 * both;
+    return height > warp_most + slack ? too_tight(warp, weft, pair.warp_bend, height)
+                                      : too_tight(weft, warp, pair.weft_bend, height);
+  }
+  if (both - warp_height > weft_most + slack)
+    return too_tight(weft, warp, pair.weft_bend, both - warp_height);
+  // No axis of a thin thread may come to lie beyond the middle.
+  double shift = 0.5 * (warp.thickest - warp_height);
+  for (const WovenThread& woven : warp.threads) shift = std::min(shift, 0.5 * woven.size.height);
+  for (const WovenThread& woven : weft.threads) shift = std::max(shift, -0.5 * woven.size.height);
+  return Heights{shift};
+}
+
+}  // namespace selvage::fabric

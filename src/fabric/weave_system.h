@@ -1,0 +1,60 @@
+// One of a weave's two systems, warp or weft: its threads with their sections, and where its yarns are.
+#pragma once
+
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "fabric/interlacing.h"
+#include "fabric/model.h"
+
+namespace selvage::fabric {
+
+struct WovenThread {
+  const Thread* thread = nullptr;
+  yarn::Section section;
+  yarn::SectionSize size;
+};
+
+struct System {
+  const WeaveSystem* text = nullptr;
+  std::vector<WovenThread> threads;  // used in turn, as the text lists them
+  double thickest = 0, widest = 0;
+
+  // Yarns are numbered from 0 and go on in both directions.
+  [[nodiscard]] const WovenThread& thread(long long yarn) const;
+  // Where a yarn lies, one rounding: (yarn + 1/2) pitch.
+  [[nodiscard]] double at(double yarn) const { return (yarn + 0.5) * text->pitch; }
+};
+
+// Errors (geometry): a thread without a size, at the system's line.
+Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, TextPlace place);
+Result<System> system_of(const Fabric& fabric, const WeaveSystem& text);
+
+// The bend that yarns make over these threads where the text does not say it: by the form of their sections.
+// None for sections whose arc would be too flat to be used (ellipse, power, polygon): sines cross those.
+std::optional<Bend> natural_bend(const System& crossed);
+
+// How high the axes of both systems lie where they cross: a yarn of thickness H is at +-(H/2 - shift) in the
+// warp,
+// +-(H/2 + shift) in the weft, so that every pair touches.
+struct Heights {
+  double shift = 0;
+  [[nodiscard]] double warp(double thickness) const { return 0.5 * thickness - shift; }
+  [[nodiscard]] double weft(double thickness) const { return 0.5 * thickness + shift; }
+};
+
+// What the axes of one system may rise by from crossing to crossing, at most: infinity where they never
+// change sides.
+double most_height(const System& own, const System& crossed, Bend bend, bool changes_sides);
+
+// Shares the crimp: the warp's height is `wanted` of both (equal where nothing is wanted), or the nearest
+// share that both systems have room for. Error (geometry), at the line of the system whose pitch is too
+// small: with the smallest.
+struct SystemPair {
+  const System *warp, *weft;
+  Bend warp_bend, weft_bend;  // of the warp over the weft, of the weft over the warp
+  bool warp_changes = true, weft_changes = true;
+};
+Result<Heights> share_crimp(const SystemPair& pair, const std::optional<double>& wanted);
+
+}  // namespace selvage::fabric
