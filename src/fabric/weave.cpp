@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "fabric/draft.h"
 #include "fabric/interlacing.h"
@@ -19,6 +21,8 @@ Message at_line(Message message, TextPlace place) {
   if (message.place.line == 0) message.place = place;
   return message;
 }
+
+constexpr int most_layers = 100'000;
 
 // The yarns of one kind and layer, one after the other in the construction's order.
 struct Block {
@@ -44,11 +48,15 @@ struct Reach {
 
 // 0 .. count x pitch; with a cell, at least one pitch beyond both it and the cloth.
 Reach reach_over(const System& crossed, bool has_cell, double low, double high) {
+  constexpr double most = 1e15;  // pitches: past what any limit lets through, and exact in both number types
   const double pitch = crossed.text->pitch;
   long long before = 0, after = 0;
   if (has_cell) {
-    before = 1 + static_cast<long long>(std::ceil(std::max(0.0, -low / pitch)));
-    after = 1 + static_cast<long long>(std::ceil(std::max(0.0, high / pitch - crossed.text->count)));
+    const auto pitches = [&](double beyond) {
+      return 1 + static_cast<long long>(std::clamp(std::ceil(beyond), 0.0, most));
+    };
+    before = pitches(-low / pitch);
+    after = pitches(high / pitch - crossed.text->count);
   }
   const long long last = crossed.text->count - 1 + after;
   return {static_cast<double>(-before) * pitch, static_cast<double>(last + 1) * pitch, -before, last};
@@ -84,6 +92,7 @@ class WeaveConstruction final : public Construction {
   void add_block(Block::Kind kind, int layer, std::size_t set, std::size_t count);
   Status prepare_interlacing();
   Status prepare_binders();
+  [[nodiscard]] Status check_binder(const Block& block) const;
   void warn_of_widths(Diagnostics& diagnostics) const;
   [[nodiscard]] double straight_z(bool is_weft, int layer) const;
   [[nodiscard]] long long binder_gap(const Binder& binder, long long yarn) const {
@@ -113,7 +122,10 @@ void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, 
   if (!blocks_.empty()) block.first = blocks_.back().first + blocks_.back().count;
   blocks_.push_back(block);
   const Reach& reach = kind == Block::Kind::weft ? along_y_ : along_x_;
-  data_points_ += count * static_cast<std::uint64_t>(reach.last - reach.first + 3);
+  const auto crossings = static_cast<std::uint64_t>(reach.last - reach.first + 3);
+  constexpr auto most = std::numeric_limits<std::uint64_t>::max();
+  const bool fits = count == 0 || crossings <= (most - data_points_) / count;
+  data_points_ = fits ? data_points_ + count * crossings : most;
 }
 
 // Does any yarn of the draft change sides from one crossing to the next? {warps, wefts}
@@ -201,10 +213,25 @@ Status WeaveConstruction::prepare_binders() {
   }
   for (const Block& block : blocks_) {
     if (block.kind != Block::Kind::binder) continue;
-    Result<yarn::CentreLine> line =
-        bridge_passes(passes_of({&block, 0}), along_x_.from, along_x_.to, along_warp, 0.0);
-    if (!line) return at_line(line.error(), weave_.binders[block.set].place);
+    if (Status fits = check_binder(block); !fits) return fits;
   }
+  return {};
+}
+
+// One repeat of a binder's levels over the wefts' threads tells whether it has room everywhere.
+Status WeaveConstruction::check_binder(const Block& block) const {
+  constexpr long long most = 1'000'000;  // columns; a longer repeat shows its faults when its yarn is planned
+  const Binder& binder = weave_.binders[block.set];
+  const auto levels = static_cast<long long>(binder.levels.size()),
+             threads = static_cast<long long>(weft_.threads.size());
+  const long long repeat = levels / std::gcd(levels, threads) * threads + 1;
+  const long long last = std::min({along_x_.last, along_x_.first + repeat, along_x_.first + most});
+  std::vector<Pass> passes;
+  for (long long k = along_x_.first; k <= last; ++k)
+    passes.push_back(binder_pass(binder, binders_[block.set], k));
+  Result<yarn::CentreLine> line =
+      bridge_passes(passes, along_x_.from, weft_.at(static_cast<double>(last) + 0.5), along_warp, 0.0);
+  if (!line) return at_line(line.error(), binder.place);
   return {};
 }
 
@@ -227,6 +254,10 @@ void WeaveConstruction::warn_of_widths(Diagnostics& diagnostics) const {
 }
 
 Status WeaveConstruction::prepare(Diagnostics& diagnostics) {
+  if (layers() > most_layers)
+    return at_line(error(Kind::limit, fmt::format("{} layers are more than the {} that a weave may have",
+                                                  layers(), most_layers)),
+                   weave_.place);
   Status status = is_straight() ? prepare_binders() : prepare_interlacing();
   if (status.ok()) warn_of_widths(diagnostics);
   return status;

@@ -1,0 +1,216 @@
+// Interlacing as topology: where a warp and a weft cross, the centre lines' own z says which is on top, and
+// the text's draft, read here by itself, says which has to be.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+
+#include "nurbs/spline.h"
+#include "property/zoo.h"
+
+namespace selvage::zoo {
+namespace {
+
+using fabric::Draft;
+using fabric::Weave;
+using fabric::YarnPlan;
+using Profile = Weave::Profile;
+
+// The definitions of formats/txt/README.md, warps and wefts counted from 1.
+bool warp_has_to_be_on_top(const Draft& draft, int warp, int weft) {
+  const int i = warp - 1, j = weft - 1, period = draft.a + draft.b;
+  switch (draft.form) {
+    case Draft::Form::rows: {
+      const std::string& row = draft.rows[static_cast<std::size_t>(j) % draft.rows.size()];
+      return row[static_cast<std::size_t>(i) % row.size()] == '1';
+    }
+    case Draft::Form::plain:
+      return (warp + weft) % 2 == 0;
+    case Draft::Form::twill:
+      return (i + j) % period < draft.a;
+    case Draft::Form::satin:
+      return (i + draft.b * j) % draft.a == 0;
+    case Draft::Form::basket:
+      return (i % period < draft.a) == (j % period < draft.a);
+    case Draft::Form::file:
+      break;
+  }
+  ADD_FAILURE() << "a draft that was not read";
+  return false;
+}
+
+using Plans = std::map<std::string, YarnPlan>;
+
+Plans by_name(const fabric::Fabric& fabric) {
+  Plans plans;
+  for (YarnPlan& plan : plans_of(fabric)) plans.emplace(plan.name, plan);
+  return plans;
+}
+
+// The place of a centre line at a coordinate that grows along it.
+Vec3 place_at(const YarnPlan& plan, int axis, double value) {
+  double low = 0.0, high = 1.0;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    (nurbs::evaluate(plan.line.curve, middle)[axis] < value ? low : high) = middle;
+  }
+  return nurbs::evaluate(plan.line.curve, 0.5 * (low + high));
+}
+
+struct Crossing {
+  double warp_z = 0, weft_z = 0;
+};
+
+Crossing crossing_of(const YarnPlan& warp, const YarnPlan& weft) {
+  const double x = nurbs::evaluate(weft.line.curve, 0.0).x(), y = nurbs::evaluate(warp.line.curve, 0.0).y();
+  const Vec3 on_warp = place_at(warp, 0, x), on_weft = place_at(weft, 1, y);
+  EXPECT_NEAR(on_warp.y(), y, 1e-12);
+  EXPECT_NEAR(on_weft.x(), x, 1e-12);
+  return {on_warp.z(), on_weft.z()};
+}
+
+double thickness(const YarnPlan& plan) {
+  return plan.spec.sizes.front().size.height;
+}
+
+// Everything about a weave's order that its centre lines show otherwise than its text says.
+class Differences {
+ public:
+  Differences(const Weave& weave, const Plans& plans) : weave_(weave), plans_(plans) {
+    const int layers = weave.layers.value_or(1);
+    if (weave.profile == Profile::straight) {
+      look_at_stack(layers);
+      look_at_binders(layers);
+    } else {
+      for (int layer = 1; layer <= layers; ++layer) look_at_layer(layer, layers);
+    }
+  }
+  [[nodiscard]] const std::vector<std::string>& found() const { return found_; }
+
+ private:
+  const YarnPlan& plan(const std::string& name) {
+    const auto plan = plans_.find(name);
+    if (plan != plans_.end()) return plan->second;
+    throw std::runtime_error("no yarn " + name);
+  }
+  void expect(bool holds, const std::string& text) {
+    if (!holds) found_.push_back(text);
+  }
+  static std::string yarn(const std::string& prefix, const char* kind, int number) {
+    return prefix + kind + "_" + std::to_string(number);
+  }
+
+  void look_at_layer(int layer, int layers) {
+    const std::string prefix = layers > 1 ? "layer" + std::to_string(layer) + "_" : "";
+    for (int i = 1; i <= weave_.warp.count; ++i)
+      for (int j = 1; j <= weave_.weft.count; ++j) {
+        const YarnPlan &warp = plan(yarn(prefix, "warp", i)), &weft = plan(yarn(prefix, "weft", j));
+        const Crossing crossing = crossing_of(warp, weft);
+        const std::string at = warp.name + " x " + weft.name;
+        expect((crossing.warp_z > crossing.weft_z) == warp_has_to_be_on_top(weave_.draft, i, j), at);
+        if (!weave_.amplitude)
+          expect(std::abs(std::abs(crossing.warp_z - crossing.weft_z) -
+                          0.5 * (thickness(warp) + thickness(weft))) < 1e-9,
+                 at + " do not touch");
+        if (layer < layers) {
+          const std::string above = "layer" + std::to_string(layer + 1) + "_";
+          const Crossing next = crossing_of(plan(yarn(above, "warp", i)), plan(yarn(above, "weft", j)));
+          expect(std::min(next.warp_z, next.weft_z) > std::max(crossing.warp_z, crossing.weft_z),
+                 at + " and the layer above");
+        }
+      }
+  }
+
+  void look_at_stack(int layers) {
+    for (int layer = 1; layer <= layers; ++layer) {
+      const std::string below = "layer" + std::to_string(layer) + "_",
+                        above = "layer" + std::to_string(layer + 1) + "_";
+      for (int i = 1; i <= weave_.warp.count; ++i)
+        for (int j = 1; j <= weave_.weft.count; ++j) {
+          const YarnPlan& warp = plan(yarn(below, "warp", i));
+          const Crossing under = crossing_of(warp, plan(yarn(below, "weft", j))),
+                         over = crossing_of(warp, plan(yarn(above, "weft", j)));
+          expect(under.weft_z < under.warp_z && over.warp_z < over.weft_z, warp.name);
+        }
+    }
+  }
+
+  void look_at_binders(int layers) {
+    int number = 0;
+    for (const fabric::Binder& binder : weave_.binders)
+      for (int gap = binder.first; gap < weave_.warp.count; gap += binder.every) {
+        const YarnPlan& yarn_plan = plan(yarn("", "binder", ++number));
+        expect(std::abs(nurbs::evaluate(yarn_plan.line.curve, 0.0).y() - gap * weave_.warp.pitch) < 1e-9,
+               yarn_plan.name + " is in another gap");
+        for (int j = 1; j <= weave_.weft.count; ++j) {
+          int below = 0;
+          for (int layer = 1; layer <= layers + 1; ++layer) {
+            const Crossing crossing =
+                crossing_of(yarn_plan, plan(yarn("layer" + std::to_string(layer) + "_", "weft", j)));
+            if (crossing.weft_z < crossing.warp_z) ++below;
+          }
+          const std::size_t place = static_cast<std::size_t>(j - 1) % binder.levels.size();
+          expect(below == binder.levels[place], yarn_plan.name + " at weft " + std::to_string(j));
+        }
+      }
+    expect(plans_.count(yarn("", "binder", number + 1)) == 0, "more binders than the text asks for");
+  }
+
+  const Weave& weave_;
+  const Plans& plans_;
+  std::vector<std::string> found_;
+};
+
+std::vector<std::string> differences(const Weave& weave, const Plans& plans) {
+  return Differences(weave, plans).found();
+}
+
+TEST(WeaveProperty, EveryYarnOfTheZooGoesOverAndUnderAsItsDraftSays) {
+  const std::vector<const ZooFabric*> weaves = with<Weave>();
+  EXPECT_GE(weaves.size(), 15U);
+  for (const ZooFabric* zoo : weaves)
+    EXPECT_EQ(differences(item_of<Weave>(*zoo), by_name(zoo->fabric)), std::vector<std::string>())
+        << zoo->name;
+}
+
+TEST(WeaveProperty, AYarnTurnedUpsideDownIsSeen) {
+  for (const ZooFabric* zoo : with<Weave>()) {
+    const Weave& weave = item_of<Weave>(*zoo);
+    Plans plans = by_name(zoo->fabric);
+    for (const char* name : {"warp_2", "layer1_weft_1", "binder_1"}) {
+      const auto found = plans.find(name);
+      if (found == plans.end()) continue;
+      for (Vec3& point : found->second.line.curve.points) point.z() = -point.z();
+      EXPECT_NE(differences(weave, plans), std::vector<std::string>()) << zoo->name << ": " << name;
+      for (Vec3& point : found->second.line.curve.points) point.z() = -point.z();
+    }
+  }
+}
+
+TEST(WeaveProperty, OneWrongBitOfADraftIsSeen) {
+  for (const ZooFabric* zoo : with<Weave>()) {
+    Weave weave = item_of<Weave>(*zoo);
+    if (weave.draft.form != Draft::Form::rows || weave.draft.rows.empty()) continue;
+    const Plans plans = by_name(zoo->fabric);
+    char& bit = weave.draft.rows[1][2];
+    bit = bit == '1' ? '0' : '1';
+    EXPECT_NE(differences(weave, plans), std::vector<std::string>()) << zoo->name;
+  }
+}
+
+TEST(WeaveProperty, OneWrongLevelOfABinderIsSeen) {
+  int seen = 0;
+  for (const ZooFabric* zoo : with<Weave>()) {
+    Weave weave = item_of<Weave>(*zoo);
+    if (weave.binders.empty()) continue;
+    const Plans plans = by_name(zoo->fabric);
+    int& level = weave.binders.back().levels.front();
+    level = level == 0 ? 1 : level - 1;
+    EXPECT_NE(differences(weave, plans), std::vector<std::string>()) << zoo->name;
+    ++seen;
+  }
+  EXPECT_GE(seen, 3);
+}
+
+}  // namespace
+}  // namespace selvage::zoo
