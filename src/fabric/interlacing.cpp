@@ -23,10 +23,11 @@ double peirce_height(double length, double spread, double angle) {
 std::optional<Bridge> find_bridge(double pitch, double height, double spread) {
   const double drop = spread - height;
   const double straight_squared = pitch * pitch + drop * drop - spread * spread;
-  // A jammed bridge has no straight: what rounding leaves of it is none.
-  if (!(pitch > 0.0) || straight_squared < -1e-12 * spread * spread) return std::nullopt;
+  // A jammed bridge has no straight: what rounding leaves of it is none, not a piece too short to be swept.
+  const double rounding = 1e-12 * spread * spread;
+  if (!(pitch > 0.0) || straight_squared < -rounding) return std::nullopt;
   Bridge bridge;
-  bridge.straight = std::sqrt(std::max(0.0, straight_squared));
+  bridge.straight = straight_squared < rounding ? 0.0 : std::sqrt(straight_squared);
   bridge.angle = std::atan2(pitch, drop) - std::atan2(bridge.straight, spread);
   if (bridge.angle > 0.5 * std::numbers::pi + 1e-9) return std::nullopt;
   return bridge;
@@ -83,7 +84,7 @@ Result<yarn::CentreLine> bridge_passes(const std::vector<Pass>& passes, double s
     const auto [last_corner, landing] = turned(last, s_last, b.z, -1.0, -sign);
     path.segment(place(s_first, a.z, across));
     path.arc(corner, lifted, half);
-    path.segment(landing);
+    if (bridge->straight > 0.0) path.segment(landing);
     path.arc(last_corner, place(s_last, b.z, across), half);
   }
   path.segment(place(s_to, passes.back().z, across));
