@@ -42,8 +42,8 @@ double largest_height(double pitch, double spread) {
   return pitch <= 0.0 ? 0.0 : spread - std::sqrt(spread * spread - pitch * pitch);
 }
 
-Obstacle obstacle_of(Bend bend, const yarn::SectionSize& other, double own_thickness) {
-  const double own = 0.5 * own_thickness;
+Obstacle obstacle_of(Bend bend, const yarn::SectionSize& other, double own_thickness, double clearance) {
+  const double own = 0.5 * own_thickness + clearance;
   switch (bend) {
     case Bend::round:
       break;

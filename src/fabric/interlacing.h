@@ -45,10 +45,10 @@ struct Obstacle {
   double radius = 0;  // of the axis's arc: the other's, plus half the own thickness
 };
 
-// What a yarn of this thickness bends round when it crosses a section: a circle of its thickness (round), the
-// arc of a lens, or a racetrack.
+// What a yarn of this thickness bends round when it crosses a section at this clearance: a circle of its
+// thickness (round), the arc of a lens, or a racetrack.
 enum class Bend { round, lens, racetrack };
-Obstacle obstacle_of(Bend bend, const yarn::SectionSize& other, double own_thickness);
+Obstacle obstacle_of(Bend bend, const yarn::SectionSize& other, double own_thickness, double clearance);
 
 // A yarn above or below one other: where it is level.
 struct Pass {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "fabric/build.h"
 #include "fabric/draft.h"
 #include "fabric/interlacing.h"
 #include "fabric/weave_system.h"
@@ -67,6 +68,8 @@ class WeaveConstruction final : public Construction {
   WeaveConstruction(const Fabric& fabric, const Weave& weave, System warp, System weft)
       : fabric_(fabric), weave_(weave), warp_(std::move(warp)), weft_(std::move(weft)) {
     const bool has_cell = fabric.cell.has_value();
+    // Both tubes are modelled within the tolerance: at twice that they do not overlap.
+    clearance_ = 2.0 * tolerance_of(fabric, {});
     const Cell cell = fabric.cell.value_or(Cell{});
     along_x_ = reach_over(weft_, has_cell, cell.low.x(), cell.high.x());
     along_y_ = reach_over(warp_, has_cell, cell.low.y(), cell.high.y());
@@ -112,6 +115,7 @@ class WeaveConstruction final : public Construction {
   Drawdown drawdown_;
   Heights heights_;
   std::optional<Bend> warp_bend_, weft_bend_;  // none: sine
+  double clearance_ = 0;                       // between yarns that cross
   double layer_pitch_ = 0;
   std::vector<Block> blocks_;
   std::uint64_t data_points_ = 0;
@@ -167,7 +171,7 @@ Status WeaveConstruction::prepare_interlacing() {
                         weft_bend_.value_or(Bend::round),
                         warps_change && warp_bend_,
                         wefts_change && weft_bend_};
-  Result<Heights> heights = share_crimp(pair, weave_.crimp);
+  Result<Heights> heights = share_crimp(pair, weave_.crimp, clearance_);
   if (!heights) return at_line(heights.error(), weave_.place);
   heights_ = *heights;
   double top = 0.0;
@@ -176,7 +180,7 @@ Status WeaveConstruction::prepare_interlacing() {
   for (const WovenThread& woven : weft_.threads)
     top = std::max(top, heights_.weft(woven.size.height) + 0.5 * woven.size.height);
   if (weave_.amplitude) top = *weave_.amplitude + 0.5 * std::max(warp_.thickest, weft_.thickest);
-  layer_pitch_ = 2.0 * top;
+  layer_pitch_ = 2.0 * top + clearance_;
   for (int layer = 0; layer < layers(); ++layer) {
     add_block(Block::Kind::warp, layer, 0, static_cast<std::size_t>(warp_.text->count));
     add_block(Block::Kind::weft, layer, 0, static_cast<std::size_t>(weft_.text->count));
@@ -291,7 +295,8 @@ const Thread& WeaveConstruction::thread(std::size_t index) const {
 }
 
 double WeaveConstruction::straight_z(bool is_weft, int layer) const {
-  return (layer - 0.5 * layers() + (is_weft ? 0.0 : 0.5)) * (warp_.thickest + weft_.thickest);
+  return (layer - 0.5 * layers() + (is_weft ? 0.0 : 0.5)) *
+         (warp_.thickest + weft_.thickest + 2.0 * clearance_);
 }
 
 // Between the layers of weft a binder lies where the warps do; outside it touches the outermost weft.
@@ -302,9 +307,9 @@ Pass WeaveConstruction::binder_pass(const Binder& binder, const WovenThread& own
   const Bend bend = std::holds_alternative<yarn::Lenticular>(weft.section) ? Bend::lens
                     : std::holds_alternative<yarn::Circle>(weft.section)   ? Bend::round
                                                                            : Bend::racetrack;
-  const Obstacle obstacle = obstacle_of(bend, weft.size, own.size.height);
+  const Obstacle obstacle = obstacle_of(bend, weft.size, own.size.height, clearance_);
   Pass pass{weft_.at(static_cast<double>(column)), 0.0, obstacle, obstacle};
-  const double outside = 0.5 * (weft.size.height + own.size.height);
+  const double outside = 0.5 * (weft.size.height + own.size.height) + clearance_;
   if (level == 0)
     pass.z = straight_z(true, 0) - outside;
   else if (level == layers() + 1)
@@ -336,7 +341,7 @@ std::vector<Pass> WeaveConstruction::passes_of(const Place& place) const {
           weave_.amplitude.value_or(is_weft ? heights_.weft(thickness) : heights_.warp(thickness));
       pass.z = layer_shift(block->layer) + (on_top ? height : -height);
       pass.below = pass.above = obstacle_of((is_weft ? weft_bend_ : warp_bend_).value_or(Bend::round),
-                                            crossed.thread(k).size, thickness);
+                                            crossed.thread(k).size, thickness, heights_.clearance);
     }
     passes.push_back(pass);
   }

@@ -1,6 +1,6 @@
 // The construction `weave` (formats/txt/README.md): warp i along x at y = (i - 1/2) pitch(warp), weft j along
-// y at x = (j - 1/2) pitch(weft), about z = 0. Yarns that cross touch: their axes are half the sum of their
-// thicknesses apart there.
+// y at x = (j - 1/2) pitch(weft), about z = 0. Yarns that cross are twice the tolerance apart, so that their
+// modelled tubes do not overlap; in a jammed cloth, which has no room for that, they touch.
 #pragma once
 
 #include <memory>

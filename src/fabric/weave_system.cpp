@@ -70,7 +70,7 @@ namespace {
 
 // The worst of all neighbouring pairs of the crossed system's threads, for the thickest own thread: {flats,
 // spread}.
-std::pair<double, double> worst_pair(const System& own, const System& crossed, Bend bend) {
+std::pair<double, double> worst_pair(const System& own, const System& crossed, Bend bend, double clearance) {
   std::pair<double, double> worst{0.0, 0.0};
   double least_room = std::numeric_limits<double>::infinity();
   // Equal threads need to be looked at once.
@@ -78,8 +78,8 @@ std::pair<double, double> worst_pair(const System& own, const System& crossed, B
   for (std::size_t j = 0; j < crossed.threads.size(); ++j) {
     const WovenThread &a = crossed.threads[j], &b = crossed.threads[(j + 1) % crossed.threads.size()];
     if (!seen.insert({a.thread, b.thread}).second) continue;
-    const Obstacle first = obstacle_of(bend, a.size, own.thickest),
-                   last = obstacle_of(bend, b.size, own.thickest);
+    const Obstacle first = obstacle_of(bend, a.size, own.thickest, clearance),
+                   last = obstacle_of(bend, b.size, own.thickest, clearance);
     const std::pair<double, double> pair{first.flat + last.flat, first.radius + last.radius};
     const double room = largest_height(crossed.text->pitch - pair.first, pair.second);
     if (room < least_room || worst.second == 0.0) {
@@ -92,21 +92,24 @@ std::pair<double, double> worst_pair(const System& own, const System& crossed, B
 
 }  // namespace
 
-double most_height(const System& own, const System& crossed, Bend bend, bool changes_sides) {
+double most_height(const System& own, const System& crossed, Bend bend, bool changes_sides,
+                   double clearance) {
   if (!changes_sides) return std::numeric_limits<double>::infinity();
-  const auto [flats, spread] = worst_pair(own, crossed, bend);
+  const auto [flats, spread] = worst_pair(own, crossed, bend, clearance);
   return largest_height(crossed.text->pitch - flats, spread);
 }
 
-Result<Heights> share_crimp(const SystemPair& pair, const std::optional<double>& wanted) {
+namespace {
+
+Result<Heights> share_at(const SystemPair& pair, const std::optional<double>& wanted, double clearance) {
   const System &warp = *pair.warp, &weft = *pair.weft;
-  const double both = warp.thickest + weft.thickest;
-  const double warp_most = most_height(warp, weft, pair.warp_bend, pair.warp_changes),
-               weft_most = most_height(weft, warp, pair.weft_bend, pair.weft_changes);
+  const double both = warp.thickest + weft.thickest + 2.0 * clearance;
+  const double warp_most = most_height(warp, weft, pair.warp_bend, pair.warp_changes, clearance),
+               weft_most = most_height(weft, warp, pair.weft_bend, pair.weft_changes, clearance);
   // A jammed cloth fits to the last bit only: rounding must not refuse it.
   const double slack = 1e-9 * both;
   const auto too_tight = [&](const System& own, const System& crossed, Bend bend, double height) {
-    const auto [flats, spread] = worst_pair(own, crossed, bend);
+    const auto [flats, spread] = worst_pair(own, crossed, bend, clearance);
     Message message = error(
         Kind::geometry,
         fmt::format("the pitch {:.6g} is too small: no yarn fits over and under these at a crimp height of "
@@ -129,10 +132,19 @@ Result<Heights> share_crimp(const SystemPair& pair, const std::optional<double>&
   if (both - warp_height > weft_most + slack)
     return too_tight(weft, warp, pair.weft_bend, both - warp_height);
   // No axis of a thin thread may come to lie beyond the middle.
-  double shift = 0.5 * (warp.thickest - warp_height);
-  for (const WovenThread& woven : warp.threads) shift = std::min(shift, 0.5 * woven.size.height);
-  for (const WovenThread& woven : weft.threads) shift = std::max(shift, -0.5 * woven.size.height);
-  return Heights{shift};
+  double shift = 0.5 * (warp.thickest + clearance - warp_height);
+  for (const WovenThread& woven : warp.threads)
+    shift = std::min(shift, 0.5 * (woven.size.height + clearance));
+  for (const WovenThread& woven : weft.threads)
+    shift = std::max(shift, -0.5 * (woven.size.height + clearance));
+  return Heights{shift, clearance};
+}
+
+}  // namespace
+
+Result<Heights> share_crimp(const SystemPair& pair, const std::optional<double>& wanted, double clearance) {
+  Result<Heights> apart = share_at(pair, wanted, clearance);
+  return apart.ok() ? apart : share_at(pair, wanted, 0.0);
 }
 
 }  // namespace selvage::fabric

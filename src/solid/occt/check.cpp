@@ -119,8 +119,8 @@ class Judge {
   void judge_volume() {
     if (!yarn_.closed) return;
     GProp_GProps properties;
-    const double reached = BRepGProp::VolumePropertiesGK(yarn_.shape, properties, volume_precision,
-                                                         /*OnlyClosed=*/false, /*IsUseSpan=*/true);
+    const double reached = BRepGProp::VolumeProperties(yarn_.shape, properties, volume_precision,
+                                                       /*OnlyClosed=*/false);
     verdict_.volume = properties.Mass() / (scale_ * scale_ * scale_);
     if (reached >= 0 && verdict_.volume > 0) return;
     verdict_.valid = false;
