@@ -328,9 +328,10 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   weave.place = opened.place();
   p.finish();
   const int errors = p.report.errors();
-  if (p.read_block(word, "", opened, table, weave) && p.report.errors() == errors) {
-    const bool is_straight = weave.profile == Weave::Profile::straight;
-    if (!is_straight && !weave.draft_place) p.error(p.last(), "'weave' ends without its 'draft'");
+  const bool is_closed = p.read_block(word, "", opened, table, weave);
+  const bool is_straight = weave.profile == Weave::Profile::straight;
+  if (is_closed && !is_straight && !weave.draft_place) p.error(p.last(), "'weave' ends without its 'draft'");
+  if (is_closed && p.report.errors() == errors) {
     if (is_straight && weave.draft_place)
       p.error(*weave.draft_place, "straight yarns do not interlace: leave out the draft, or the profile");
     if (!is_straight && !weave.binders.empty())
