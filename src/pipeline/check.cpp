@@ -17,9 +17,8 @@ namespace selvage::pipeline {
 
 namespace {
 
-// The solid's volume may differ from the B-spline's by what OpenCASCADE's quadrature leaves (measured: up to
-// 4e-4).
-constexpr double volume_agreement = 1e-3;
+// The solid's volume may differ from the B-spline's by what quadrature leaves on rational surfaces.
+constexpr double volume_agreement = 1e-4;
 
 struct Findings {
   std::vector<yarn::Body> bodies;
