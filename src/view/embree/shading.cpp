@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 namespace selvage::view::embree {
 
@@ -162,15 +164,21 @@ class Shared {
 Inside inside_of(const Scene& scene, const std::vector<Skin>& skins, const Vec3f& origin,
                  const Vec3f& direction, const Hit& first) {
   constexpr int most_hits = 32;
-  constexpr float step = 1e-3F;  // pixels
+  // Two facets that share an edge may both be hit there: nearer than this, in pixels, one skin is met once.
+  // Other skins are not: those of yarns that touch lie nearer.
+  constexpr float one_place = 1e-3F;
   const Shared shared(skins, direction);
   std::vector<Hit> entered;  // not left yet: `first`'s yarn and others
-  float from = first.distance;
+  Hit last = first;
   int depth = 1;  // how often the ray is inside the first yarn
   for (int k = 0; k < most_hits; ++k) {
-    const std::optional<Hit> hit = scene.nearest(origin, direction, from + step);
+    const std::optional<Hit> hit = scene.nearest(
+        origin, direction, std::nextafter(last.distance, std::numeric_limits<float>::infinity()));
     if (!hit) break;
-    from = hit->distance;
+    const Hit before = std::exchange(last, *hit);
+    if (before.yarn == hit->yarn && hit->distance - before.distance < one_place &&
+        before.facing.dot(direction) * hit->facing.dot(direction) > 0.0F)
+      continue;
     const bool own = hit->yarn == first.yarn;
     if (hit->facing.dot(direction) < 0.0F) {
       entered.push_back(*hit);
