@@ -79,9 +79,8 @@ std::string yarn_tables(const Findings& found, Unit file, Unit shown) {
     const double cubic = converted(converted(converted(body.volume, file, shown), file, shown), file, shown);
     yarns.add({body.name, fmt::format("{}x{}", body.surface.count_u, body.surface.count_v),
                length(body.length), cell(cubic), length(body.min_bend_radius), length(body.tube_error),
-               std::string(yes_no(solid.closed && solid.bounds_volume)),
-               std::string(yes_no(solid.self_intersecting)), brep_word(found.breps[i]),
-               std::to_string(defects_of(found, i, file).size())});
+               std::string(yes_no(solid.is_shut())), std::string(yes_no(solid.self_intersecting)),
+               brep_word(found.breps[i]), std::to_string(defects_of(found, i, file).size())});
   }
   std::string text = yarns.text();
   if (!found.solids.overlaps.empty()) {

@@ -23,7 +23,7 @@ void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn
   const double mm = millimetres_per(job.file_units());
   InputReport& report = job.report;
   for (std::size_t i = 0; i < check.yarns.size() && i < report.yarns.size(); ++i) {
-    report.yarns[i].closed = check.yarns[i].closed && check.yarns[i].bounds_volume;
+    report.yarns[i].closed = check.yarns[i].is_shut();
     report.yarns[i].self_overlap = check.yarns[i].self_intersecting || !bodies[i].tight_bends.empty();
   }
   report.overlaps.emplace();

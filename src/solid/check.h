@@ -24,9 +24,12 @@ struct YarnCheck {
   bool closed = false;             // CGAL is_closed on the tessellation
   bool self_intersecting = false;  // CGAL does_self_intersect
   bool bounds_volume = false;      // CGAL does_bound_a_volume
-  bool outward = false;            // CGAL is_outward_oriented
-  double end_gap = 0;              // largest distance between an end face's edge and the body's
-  double volume = 0;               // of the tessellation
+  // Without a gap, and running round a volume. One that crosses itself is closed all the same: that is
+  // another defect.
+  [[nodiscard]] bool is_shut() const { return closed && (bounds_volume || self_intersecting); }
+  bool outward = false;  // CGAL is_outward_oriented
+  double end_gap = 0;    // largest distance between an end face's edge and the body's
+  double volume = 0;     // of the tessellation
   std::optional<Vec3> self_intersection_at;
   std::vector<Message> defects;  // errors, each with yarn, place and remedy; empty: a valid solid
 };

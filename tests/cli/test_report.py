@@ -23,7 +23,7 @@ class Report(Case):
         report = self.report()
         self.assertEqual(list(report), ["selvage", "libraries", "started", "seconds", "ok", "counts", "inputs"])
         self.assertRegex(report["selvage"], r"^\d+\.\d+\.\d+$")
-        self.assertEqual(sorted(report["libraries"]), ["cgal", "occt", "tetgen"])
+        self.assertEqual(sorted(report["libraries"]), ["cgal", "embree", "occt", "tetgen"])
         self.assertFalse(report["ok"])
         self.assertEqual(report["counts"], {"inputs": 3, "done": 1, "failed": 2, "skipped": 0})
         good, bad, missing = report["inputs"]

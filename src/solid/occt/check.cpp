@@ -50,7 +50,10 @@ Rule gauss(int points) {
 // one. OpenCASCADE's own quadratures, the adaptive ones too, are off by up to 11 % on long tubes whose spans
 // are uneven.
 double flux_of(const Geom_BSplineSurface& surface) {
-  const Rule rule_u = gauss(3 * surface.UDegree() / 2 + 1), rule_v = gauss(3 * surface.VDegree() / 2 + 1);
+  const bool is_rational = surface.IsURational() || surface.IsVRational();
+  const int more = is_rational ? 12 : 0;
+  const Rule rule_u = gauss(3 * surface.UDegree() / 2 + 1 + more),
+             rule_v = gauss(3 * surface.VDegree() / 2 + 1 + more);
   double flux = 0.0;
   for (int j = 1; j < surface.NbVKnots(); ++j) {
     const double v = surface.VKnot(j), width_v = surface.VKnot(j + 1) - v;

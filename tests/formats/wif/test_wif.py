@@ -142,6 +142,21 @@ class DraftFile(WifCase):
                 text.write_text(self.as_text(sample))
                 self.assertEqual(self.as_text(text), text.read_text())
 
+    def test_a_wif_and_the_equal_draft_are_the_same_yarns(self):
+        """Byte for byte in IGES; the draft in the text is the oracle's."""
+        for sample in sorted(SAMPLES.glob("*.wif")):
+            with self.subTest(sample.name):
+                head, rest = self.as_text(sample).split("  draft\n")
+                text = self.folder / "same.txt"
+                text.write_text(head + "  draft\n" + "\n".join(Wif(sample).rows) + "\n" + rest[rest.index("  end\n"):])
+                files = []
+                for number, source in enumerate((sample, text)):
+                    files.append(self.folder / str(number) / "cloth.igs")
+                    files[-1].parent.mkdir(exist_ok=True)
+                    self.succeeds("convert", source, "-o", files[-1], "--quiet")
+                self.assertEqual(files[0].read_bytes(), files[1].read_bytes())
+                self.assertIn(b"warp_1", files[0].read_bytes())
+
     def test_may_be_a_fabric_text(self):
         self.cloth("draft twill 2/1", "twill.txt")
         self.assertIn("draft twill 2/1", self.as_text(self.cloth("draft file twill.txt")))
