@@ -103,15 +103,15 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
     return;
   const Unit units = job.options.units.value_or(fabric.units);
   std::optional<double> thinnest;
-  for (std::size_t i = 0; i < builder->count(); ++i) {
-    job.progress("writing yarn", i + 1, builder->count());
-    std::optional<yarn::Body> body = job.build(*builder, i);
-    if (!body) continue;  // the others are tried, so that every error is told
+  bool is_written = true;
+  job.for_each_yarn(*builder, "writing yarn", [&](yarn::Body&& body) {
     if (job.wants_report())
-      thinnest = std::min(thinnest.value_or(thinnest_section(*body)), thinnest_section(*body));
-    convert_lengths(*body, fabric.units, units);
-    if (!job.has_failed() && !add_to_all(job, *body, outputs)) return;
-  }
+      thinnest = std::min(thinnest.value_or(thinnest_section(body)), thinnest_section(body));
+    convert_lengths(body, fabric.units, units);
+    if (!job.has_failed()) is_written = add_to_all(job, body, outputs);
+    return is_written;
+  });
+  if (!is_written) return;
   write_pieces(job, fabric, outputs);
   if (job.has_failed()) return;
   for (OpenOutput& output : outputs)

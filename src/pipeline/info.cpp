@@ -51,21 +51,19 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
   double total_length = 0, total_volume = 0, largest_miss = 0;
   Box3 box;
   std::map<std::string, int> groups;  // yarns of plies or filaments
-  for (std::size_t i = 0; i < builder.count(); ++i) {
-    job.progress("building yarn", i + 1, builder.count());
-    const std::optional<yarn::Body> body = job.build(builder, i);
-    if (!body) continue;
-    const double volume = length(length(length(body->volume)));
-    table.add({body->name, std::string(yarn::name_of(body->role)),
-               fmt::format("{}x{}", body->surface.count_u, body->surface.count_v), cell(length(body->length)),
-               cell(volume), cell(length(body->min_bend_radius)), cell(length(body->tube_error)),
-               body->closed_along ? "ring" : std::string(yarn::name_of(body->start.style))});
-    if (!body->group.empty()) ++groups[body->group];
-    total_length += length(body->length);
+  job.for_each_yarn(builder, "building yarn", [&](yarn::Body&& body) {
+    const double volume = length(length(length(body.volume)));
+    table.add({body.name, std::string(yarn::name_of(body.role)),
+               fmt::format("{}x{}", body.surface.count_u, body.surface.count_v), cell(length(body.length)),
+               cell(volume), cell(length(body.min_bend_radius)), cell(length(body.tube_error)),
+               body.closed_along ? "ring" : std::string(yarn::name_of(body.start.style))});
+    if (!body.group.empty()) ++groups[body.group];
+    total_length += length(body.length);
     total_volume += volume;
-    largest_miss = std::max(largest_miss, length(body->path_miss));
-    box.extend(yarn::bounds(*body));
-  }
+    largest_miss = std::max(largest_miss, length(body.path_miss));
+    box.extend(yarn::bounds(body));
+    return true;
+  });
   std::string text = fmt::format("  lengths in {}\n{}", name_of(shown), table.text());
   if (!groups.empty()) {
     text += "  taken apart";

@@ -6,6 +6,7 @@
 #include <exception>
 #include <new>
 
+#include "core/parallel.h"
 #include "core/sha256.h"
 #include "core/source.h"
 #include "pipeline/detect.h"
@@ -160,23 +161,33 @@ std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {
   return made;
 }
 
-std::optional<yarn::Body> Job::build(const fabric::YarnBuilder& builder, std::size_t index) {
-  Result<yarn::Body> body = builder.build(index);
-  if (!body) {
-    say(body.error());
-    return std::nullopt;
+void Job::for_each_yarn(const fabric::YarnBuilder& builder, std::string_view verb,
+                        const std::function<bool(yarn::Body&&)>& take) {
+  const std::size_t batch = 2 * threads;  // more would only cost memory
+  for (std::size_t first = 0; first < builder.count(); first += batch) {
+    std::vector<std::optional<Result<yarn::Body>>> built(std::min(batch, builder.count() - first));
+    for_each_index(built.size(), static_cast<int>(threads),
+                   [&](std::size_t i) { built[i] = builder.build(first + i); });
+    for (std::size_t i = 0; i < built.size(); ++i) {
+      progress(verb, first + i + 1, builder.count());
+      Result<yarn::Body>& body = *built[i];
+      if (!body) {
+        say(body.error());
+        continue;
+      }
+      say_all(body->messages);
+      if (wants_report()) report.yarns.push_back(facts_of(*body, file_units()));
+      if (!take(std::move(*body))) return;
+    }
   }
-  say_all(body->messages);
-  if (wants_report()) report.yarns.push_back(facts_of(*body, file_units()));
-  return std::move(*body);
 }
 
 std::optional<std::vector<yarn::Body>> Job::build_all(const fabric::YarnBuilder& builder) {
   std::vector<yarn::Body> bodies;
-  for (std::size_t i = 0; i < builder.count(); ++i) {
-    progress("building yarn", i + 1, builder.count());
-    if (std::optional<yarn::Body> body = build(builder, i)) bodies.push_back(std::move(*body));
-  }
+  for_each_yarn(builder, "building yarn", [&](yarn::Body&& body) {
+    bodies.push_back(std::move(body));
+    return true;
+  });
   if (bodies.size() != builder.count()) return std::nullopt;
   return bodies;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -61,8 +62,12 @@ class Job {
   std::optional<fabric::Fabric> read();
   // The builder of its yarns; nothing when that failed. It may have none where the fabric holds pieces.
   std::optional<fabric::YarnBuilder> builder(const fabric::Fabric& fabric);
-  // One yarn, in the file's unit, with its warnings said and its facts in the report; nothing when it failed.
-  std::optional<yarn::Body> build(const fabric::YarnBuilder& builder, std::size_t index);
+  // Builds the yarns, a few at once on this job's threads, and hands them to `take` one by one in their
+  // order, in the file's unit, with their warnings said and their facts in the report. One that fails is told
+  // and left out; the others are tried, so that every error is told. `verb` is for the progress. Stops when
+  // `take` gives false.
+  void for_each_yarn(const fabric::YarnBuilder& builder, std::string_view verb,
+                     const std::function<bool(yarn::Body&&)>& take);
   // All of them; nothing when one failed (the others were tried, so that every error is told).
   std::optional<std::vector<yarn::Body>> build_all(const fabric::YarnBuilder& builder);
 
