@@ -152,14 +152,19 @@ void YarnBuilder::add_construction(Result<std::unique_ptr<Construction>> made, T
                                    Diagnostics& diagnostics) {
   if (!made) return diagnostics.add(in_file(*fabric_, place, made.error()));
   const std::unique_ptr<Construction>& construction = *made;
+  // What a data point of a jersey costs at the default tolerance: some 100 control points, 9 kB of IGES.
+  constexpr double gigabytes_a_point = 9e-6;
+  const auto points = static_cast<double>(construction->data_points());
   if (construction->data_points() > options_.max_data_points)
     return diagnostics.add(in_file(
         *fabric_, place,
-        error(Kind::limit,
-              fmt::format("this would be {} yarns through {:.3g} data points, more than the {:.3g} that "
-                          "one fabric may have: build it in parts",
-                          construction->count(), static_cast<double>(construction->data_points()),
-                          static_cast<double>(options_.max_data_points)))));
+        error(
+            Kind::limit,
+            fmt::format(
+                "this would be {} yarn{} through {:.3g} data points, about {:.2g} GB of IGES; one fabric may "
+                "have {:.3g} data points: build it in parts",
+                construction->count(), construction->count() == 1 ? "" : "s", points,
+                gigabytes_a_point * points, static_cast<double>(options_.max_data_points)))));
   Entry entry;
   entry.construction = construction.get();
   for (std::size_t i = 0; i < construction->count(); ++i) {
