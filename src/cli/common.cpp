@@ -30,6 +30,8 @@ Status complete(Parsed& parsed) {
   pipeline::Options& options = parsed.options;
   if (Status status = parse_shard(parsed.shard, options); !status.ok()) return status;
   if (!parsed.units.empty()) options.units = unit_named(parsed.units);
+  if (parsed.detail == "yarn") options.detail = fabric::Detail::yarn;
+  if (parsed.detail == "plies") options.detail = fabric::Detail::plies;
   for (yarn::EndStyle style :
        {yarn::EndStyle::patch, yarn::EndStyle::fan, yarn::EndStyle::planar, yarn::EndStyle::none})
     if (parsed.ends == yarn::name_of(style)) options.ends = style;
@@ -67,14 +69,10 @@ void add_common(CLI::App& command, Parsed& parsed) {
   command.add_option("--tolerance", o.tolerance, "of tubes, in the input's unit, instead of the input's own")
       ->check(CLI::PositiveNumber);
   command
-      .add_option("--detail", o.detail,
+      .add_option("--detail", parsed.detail,
                   "yarn, plies or filaments: how far yarns are taken apart (default: as far as "
                   "their threads say)")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, fabric::Detail>{{"yarn", fabric::Detail::yarn},
-                                                {"plies", fabric::Detail::plies},
-                                                {"filaments", fabric::Detail::filaments}},
-          CLI::ignore_case));
+      ->check(CLI::IsMember({"yarn", "plies", "filaments"}));
   command.add_option("--shard", parsed.shard, "I/N: only the I-th of N equal parts of the inputs, from 0");
 }
 
