@@ -138,8 +138,9 @@ class BraidConstruction : public Construction {
     const double room = 0.25 * shape_.step / points_;  // the last point stands no nearer to its neighbour
     for (std::int64_t k = first_repeat_ * per_repeat;; ++k) {
       const std::int64_t within = ((k % per_repeat) + per_repeat) % per_repeat;
+      const std::int64_t repeat = (k - within) / per_repeat;
       const double base = static_cast<double>(within) * shape_.step / points_;
-      const double along = base + static_cast<double>((k - within) / per_repeat) * pitch;
+      const double along = base + static_cast<double>(repeat) * pitch;
       if (along > end_ - room && !plan.points.empty()) break;
       const Vec3 derivative = add(point_at(k), along);
       if (plan.points.size() == 1) first = derivative;

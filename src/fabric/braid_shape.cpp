@@ -79,7 +79,7 @@ Vec2 unit_at(std::int64_t k, std::int64_t n) {
   const std::int64_t quarter = eighth / 2 + (backward ? 1 : 0);
   const std::int64_t rest = backward ? quarter * n - 4 * k : 4 * k - quarter * n;  // of 4 n
   const double angle = 0.5 * std::numbers::pi * static_cast<double>(rest) / static_cast<double>(n);
-  const Vec2 near(std::cos(angle), backward ? -std::sin(angle) : std::sin(angle));
+  Vec2 near(std::cos(angle), backward ? -std::sin(angle) : std::sin(angle));
   switch (quarter % 4) {
     case 0:
       return near;

@@ -212,8 +212,8 @@ Status WeaveConstruction::prepare_binders() {
           error(Kind::geometry, fmt::format("there is no gap {}: {} warps have {} gaps between them",
                                             binder.first, warp_.text->count, gaps)),
           binder.place);
-    add_block(Block::Kind::binder, 0, set,
-              static_cast<std::size_t>((gaps - binder.first) / binder.every + 1));
+    const int count = (gaps - binder.first) / binder.every + 1;
+    add_block(Block::Kind::binder, 0, set, static_cast<std::size_t>(count));
   }
   for (const Block& block : blocks_) {
     if (block.kind != Block::Kind::binder) continue;
