@@ -66,10 +66,12 @@ class BraidConstruction : public Construction {
   }
 
   [[nodiscard]] std::uint64_t data_points() const override {
-    const double each = std::ceil((end_ - begin_) / shape_.step * points_) + 2.0;
-    const double all = each * static_cast<double>(braiders()) + 2.0 * static_cast<double>(axials());
-    constexpr double most = 1e18;
-    return static_cast<std::uint64_t>(std::min(all, most));
+    const double all =
+        points_of_a_braider() * static_cast<double>(braiders()) + 2.0 * static_cast<double>(axials());
+    return static_cast<std::uint64_t>(std::min(all, most_points));
+  }
+  [[nodiscard]] std::uint64_t longest() const override {
+    return static_cast<std::uint64_t>(std::min(points_of_a_braider(), most_points));
   }
 
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override {
@@ -89,6 +91,10 @@ class BraidConstruction : public Construction {
   }
 
  private:
+  static constexpr double most_points = 1e18;  // that a 64-bit count holds with room to spare
+  [[nodiscard]] double points_of_a_braider() const {
+    return std::ceil((end_ - begin_) / shape_.step * points_) + 2.0;
+  }
   [[nodiscard]] std::size_t braiders() const { return static_cast<std::size_t>(shape_.carriers); }
   [[nodiscard]] std::size_t axials() const { return static_cast<std::size_t>(braid_.axial_count); }
 

@@ -63,6 +63,13 @@ std::vector<std::string> threads_of(const Item& item) {
   return {};
 }
 
+// Data points that a yarn may have: every one becomes a section at least. What cannot be held is refused
+// before it is computed.
+std::size_t most_rows(const BuildOptions& options) {
+  constexpr std::size_t fewest_round = 8;
+  return options.max_control_points / fewest_round;
+}
+
 // The yarn of a path block as a plan, before edits.
 Result<YarnPlan> plan_of_path(const Fabric& fabric, const Yarn& yarn, const BuildOptions& options) {
   YarnPlan plan{.name = yarn.name,
@@ -78,9 +85,7 @@ Result<YarnPlan> plan_of_path(const Fabric& fabric, const Yarn& yarn, const Buil
   Result<yarn::PathRows> rows = path_rows_of(fabric, yarn, plan.thread);
   if (!rows) return rows.error();
   const Path& path = std::get<Path>(yarn.shape);
-  // Every row becomes a section at least: what cannot be held is refused before it is computed.
-  constexpr std::size_t fewest_round = 8;
-  if (path.points.size() > options.max_control_points / fewest_round)
+  if (path.points.size() > most_rows(options))
     return error(
         Kind::limit,
         fmt::format(
@@ -165,6 +170,13 @@ void YarnBuilder::add_construction(Result<std::unique_ptr<Construction>> made, T
                 "have {:.3g} data points: build it in parts",
                 construction->count(), construction->count() == 1 ? "" : "s", points,
                 gigabytes_a_point * points, static_cast<double>(options_.max_data_points)))));
+  if (construction->longest() > most_rows(options_))
+    return diagnostics.add(in_file(
+        *fabric_, place,
+        error(Kind::limit,
+              fmt::format("one of its yarns would have {:.3g} data points, more than the {} that one surface "
+                          "can have: build it in parts",
+                          static_cast<double>(construction->longest()), most_rows(options_)))));
   Entry entry;
   entry.construction = construction.get();
   for (std::size_t i = 0; i < construction->count(); ++i) {

@@ -66,8 +66,11 @@ class KnitConstruction final : public Construction {
   }
   [[nodiscard]] const Thread& thread(std::size_t /*index*/) const override { return thread_; }
   [[nodiscard]] std::uint64_t data_points() const override {
+    return count() * longest();  // below 2^64: counts are below 2^31
+  }
+  [[nodiscard]] std::uint64_t longest() const override {
     constexpr std::uint64_t points_a_loop = 8;
-    return count() * (points_a_loop * wales() + 1);  // below 2^64: counts are below 2^31
+    return points_a_loop * wales() + 1;
   }
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
 

@@ -41,6 +41,8 @@ class Construction {
   [[nodiscard]] virtual const Thread& thread(std::size_t index) const = 0;
   // Data points of all yarns together: what the cloth will cost, before it is built.
   [[nodiscard]] virtual std::uint64_t data_points() const = 0;
+  // Those of the longest yarn: what has to be held at once.
+  [[nodiscard]] virtual std::uint64_t longest() const = 0;
   // Errors: geometry (the place and the yarn are filled in by the builder where they are missing).
   [[nodiscard]] virtual Result<YarnPlan> plan(std::size_t index) const = 0;
 };

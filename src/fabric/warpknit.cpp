@@ -93,11 +93,13 @@ class WarpknitConstruction final : public Construction {
     return *bars_[bar_of(index)].thread;
   }
   [[nodiscard]] std::uint64_t data_points() const override {
-    const std::uint64_t a_yarn =
-        points_of_a_course * static_cast<std::uint64_t>(last_course_ - first_course_) + 6;
+    const std::uint64_t a_yarn = longest();
     const auto yarns = static_cast<std::uint64_t>(count());
     constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
     return yarns > most / a_yarn ? most : yarns * a_yarn;
+  }
+  [[nodiscard]] std::uint64_t longest() const override {
+    return points_of_a_course * static_cast<std::uint64_t>(last_course_ - first_course_) + 6;
   }
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
 

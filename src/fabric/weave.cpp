@@ -24,6 +24,7 @@ Message at_line(Message message, TextPlace place) {
 }
 
 constexpr int most_layers = 100'000;
+constexpr int points_a_wave = 8;  // of a sine, from crossing to crossing
 
 // The yarns of one kind and layer, one after the other in the construction's order.
 struct Block {
@@ -82,6 +83,7 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] std::string name(std::size_t index) const override;
   [[nodiscard]] const Thread& thread(std::size_t index) const override;
   [[nodiscard]] std::uint64_t data_points() const override { return data_points_; }
+  [[nodiscard]] std::uint64_t longest() const override { return std::max(points_of(false), points_of(true)); }
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
 
  private:
@@ -90,6 +92,15 @@ class WeaveConstruction final : public Construction {
     long long yarn;  // of its block, from 0
   };
   [[nodiscard]] Place place_of(std::size_t index) const;
+  // Data points of a weft, or of a yarn along the warp.
+  [[nodiscard]] std::uint64_t points_of(bool is_weft) const {
+    const Reach& reach = is_weft ? along_y_ : along_x_;
+    const auto crossings = static_cast<std::uint64_t>(reach.last - reach.first + 3);
+    return is_sine(is_weft) ? points_a_wave * crossings : crossings;
+  }
+  [[nodiscard]] bool is_sine(bool is_weft) const {
+    return !is_straight() && !(is_weft ? weft_bend_ : warp_bend_);
+  }
   [[nodiscard]] bool is_straight() const { return weave_.profile == Weave::Profile::straight; }
   [[nodiscard]] int layers() const { return weave_.layers.value_or(1); }
   void add_block(Block::Kind kind, int layer, std::size_t set, std::size_t count);
@@ -125,11 +136,10 @@ void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, 
   Block block{kind, layer, set, 0, count};
   if (!blocks_.empty()) block.first = blocks_.back().first + blocks_.back().count;
   blocks_.push_back(block);
-  const Reach& reach = kind == Block::Kind::weft ? along_y_ : along_x_;
-  const auto crossings = static_cast<std::uint64_t>(reach.last - reach.first + 3);
+  const std::uint64_t each = points_of(kind == Block::Kind::weft);
   constexpr auto most = std::numeric_limits<std::uint64_t>::max();
-  const bool fits = count == 0 || crossings <= (most - data_points_) / count;
-  data_points_ = fits ? data_points_ + count * crossings : most;
+  const bool fits = count == 0 || each <= (most - data_points_) / count;
+  data_points_ = fits ? data_points_ + count * each : most;
 }
 
 // Does any yarn of the draft change sides from one crossing to the next? {warps, wefts}
@@ -146,7 +156,7 @@ std::pair<bool, bool> changes_of(const Drawdown& drawdown) {
 
 Status WeaveConstruction::prepare_interlacing() {
   Result<Drawdown> drawdown = drawdown_of(weave_.draft);
-  if (!drawdown) return at_line(drawdown.error(), weave_.place);
+  if (!drawdown) return drawdown.error();
   drawdown_ = std::move(*drawdown);
   const auto bend_over = [&](const System& crossed) -> std::optional<Bend> {
     if (!weave_.profile) return natural_bend(crossed);
@@ -172,7 +182,7 @@ Status WeaveConstruction::prepare_interlacing() {
                         warps_change && warp_bend_,
                         wefts_change && weft_bend_};
   Result<Heights> heights = share_crimp(pair, weave_.crimp, clearance_);
-  if (!heights) return at_line(heights.error(), weave_.place);
+  if (!heights) return heights.error();
   heights_ = *heights;
   double top = 0.0;
   for (const WovenThread& woven : warp_.threads)
@@ -259,9 +269,8 @@ void WeaveConstruction::warn_of_widths(Diagnostics& diagnostics) const {
 
 Status WeaveConstruction::prepare(Diagnostics& diagnostics) {
   if (layers() > most_layers)
-    return at_line(error(Kind::limit, fmt::format("{} layers are more than the {} that a weave may have",
-                                                  layers(), most_layers)),
-                   weave_.place);
+    return error(Kind::limit,
+                 fmt::format("{} layers are more than the {} that a weave may have", layers(), most_layers));
   Status status = is_straight() ? prepare_binders() : prepare_interlacing();
   if (status.ok()) warn_of_widths(diagnostics);
   return status;
@@ -353,7 +362,7 @@ Status WeaveConstruction::plan_sine(YarnPlan& plan, const std::vector<Pass>& pas
                                     bool is_weft, double across) const {
   const System& crossed = is_weft ? warp_ : weft_;
   const auto place = is_weft ? along_weft : along_warp;
-  constexpr int steps = 8;
+  constexpr int steps = points_a_wave;
   const auto add = [&](double crossing, double z) {
     plan.points.push_back(place(crossed.at(crossing), z, across));
   };
@@ -385,8 +394,7 @@ Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
                 : (is_weft ? weft_ : warp_).at(static_cast<double>(yarn));
   const std::vector<Pass> passes = passes_of(place);
   plan->spec.guide = yarn::FrameGuide::with_across(is_weft ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitY()));
-  const bool is_sine = !is_straight() && !(is_weft ? weft_bend_ : warp_bend_);
-  if (is_sine) {
+  if (is_sine(is_weft)) {
     if (Status made = plan_sine(*plan, passes, reach, is_weft, across); !made) return made.error();
     return plan;
   }
@@ -404,11 +412,11 @@ Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
 Result<std::unique_ptr<Construction>> make_weave(const Fabric& fabric, const Weave& weave,
                                                  Diagnostics& diagnostics) {
   Result<System> warp = system_of(fabric, weave.warp);
-  if (!warp) return at_line(warp.error(), weave.place);
+  if (!warp) return warp.error();
   Result<System> weft = system_of(fabric, weave.weft);
-  if (!weft) return at_line(weft.error(), weave.place);
+  if (!weft) return weft.error();
   auto made = std::make_unique<WeaveConstruction>(fabric, weave, std::move(*warp), std::move(*weft));
-  if (Status prepared = made->prepare(diagnostics); !prepared) return at_line(prepared.error(), weave.place);
+  if (Status prepared = made->prepare(diagnostics); !prepared) return prepared.error();
   return std::unique_ptr<Construction>(std::move(made));
 }
 

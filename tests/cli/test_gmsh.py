@@ -43,7 +43,6 @@ def tetrahedra_by_volume(path):
     return found
 
 
-@unittest.skipUnless(GMSH, "gmsh is not installed")
 class Gmsh(Case):
     def gmsh(self, *arguments):
         run = subprocess.run([GMSH, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=600)

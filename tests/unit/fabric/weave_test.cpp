@@ -287,6 +287,25 @@ TEST(Weave, LayersAreATrueThicknessApartAboutTheMiddle) {
   EXPECT_NEAR(highest[1], 0.3, 1e-9);
 }
 
+// What has to be held at once is refused before it is computed; and what is announced is enough for what is
+// made.
+TEST(Weave, AYarnOfTooManyDataPointsIsRefusedBeforeItIsBuilt) {
+  for (const auto profile : {Weave::Profile::peirce, Weave::Profile::sine}) {
+    Fabric fabric = square(0.3, 0.7);
+    weave_of(fabric).profile = profile;
+    const std::size_t needed = plan_of(fabric, "warp_1").points.size();
+    BuildOptions options;
+    options.max_control_points = 8 * (needed - 1);
+    const Message message = refusal_of(fabric, options);
+    EXPECT_EQ(message.kind, Kind::limit);
+    EXPECT_EQ(message.place.line, 4);
+    EXPECT_NE(message.text.find("one of its yarns"), std::string::npos) << message.text;
+    options.max_control_points = 8 * 2 * needed;
+    Diagnostics diagnostics;
+    EXPECT_TRUE(YarnBuilder::create(fabric, options, diagnostics).has_value());
+  }
+}
+
 TEST(Weave, ThreadsAreUsedInTurn) {
   Fabric fabric = square(0.3, 0.7);
   weave_of(fabric).warp.threads = {"a", "a", "b"};
