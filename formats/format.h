@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cad/model.h"
 #include "core/diagnostics.h"
 #include "core/output.h"
 #include "core/source.h"
@@ -34,6 +35,7 @@ struct SurfaceOptions {
   Unit units = Unit::mm;              // of all lengths
   std::uint64_t expected_bodies = 0;  // how many will be added; a guess only costs speed
   double max_coordinate = 0;          // upper bound of |coordinate| over all bodies, if known; 0: unknown
+  std::string date;                   // YYYYMMDD.HHNNSS for headers; empty: now
   double tolerance = 0;               // of the modelled tubes, file units; 0: unknown
   bool iges_solid = false;            // IGES: 186 solids instead of three 128s a yarn
   std::string step_schema = "AP242";  // AP242 | AP214
@@ -46,6 +48,13 @@ class BodyWriter {
   virtual ~BodyWriter() = default;
   virtual Status add(const yarn::Body& body) {
     return error(Kind::unsupported, "this format holds no yarns, such as '" + body.name + "'");
+  }
+  // Geometry of a CAD file that is neither a yarn nor a piece.
+  virtual Status add_part(const cad::Part& part) {
+    return error(Kind::unsupported, "this format holds no free surfaces, such as '" + part.name + "'");
+  }
+  virtual Status add_curve(const cad::NamedCurve& curve) {
+    return error(Kind::unsupported, "this format holds no free curves, such as '" + curve.name + "'");
   }
   virtual Status add_piece(const fabric::PieceShape& piece) {
     return error(Kind::unsupported, "this format holds no garment pieces, such as '" + piece.name + "'");
@@ -72,6 +81,10 @@ struct Descriptor {
   // Readers report every error and warning to `diagnostics`; nothing comes back exactly when there was an
   // error.
   std::optional<fabric::Fabric> (*read_fabric)(const Source& source, Diagnostics& diagnostics) = nullptr;
+
+  // A CAD file as it stands; fabric/from_cad.h makes a fabric of it. A format has this or read_fabric.
+  std::optional<cad::Model> (*read_model)(const Source& source, Diagnostics& diagnostics) = nullptr;
+  [[nodiscard]] bool is_readable() const { return read_fabric != nullptr || read_model != nullptr; }
 
   Result<WriteFacts> (*write_fabric)(const fabric::Fabric& fabric, OutputFile& output) = nullptr;
   // The bytes of a text with the edit as a line of its own after line `after` (from 1); no other byte

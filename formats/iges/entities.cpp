@@ -98,50 +98,9 @@ int write_curve(Records& records, const Entity& entity, const nurbs::Curve& curv
   return pointer;
 }
 
-nurbs::Curve EndPlane::in_parameters(const nurbs::Curve& curve) const {
-  nurbs::Curve flat = curve;
-  for (Vec3& point : flat.points) {
-    const Vec3 offset = point - origin;
-    point = Vec3(offset.dot(axis_u), offset.dot(axis_v), 0);
-  }
-  return flat;
-}
-
-EndPlane end_plane(const yarn::Body& body, const nurbs::Curve& end_curve, bool last) {
-  const yarn::EndFace& face = last ? body.end : body.start;
-  EndPlane plane;
-  plane.origin = face.origin;
-  // Where u runs counter-clockwise seen along the path, the yarn's own direction is the normal for it.
-  plane.inward = last == body.inward;
-  plane.normal = plane.inward ? Vec3(-face.normal) : face.normal;
-  Vec3 across = end_curve.points.front() - plane.origin;
-  across -= across.dot(plane.normal) * plane.normal;
-  plane.axis_u = across.norm() > 0 ? Vec3(across.normalized()) : plane.normal.unitOrthogonal();
-  plane.axis_v = plane.normal.cross(plane.axis_u).normalized();
-
-  Vec2 low = Vec2::Zero(), high = Vec2::Zero();
-  for (const Vec3& point : plane.in_parameters(end_curve).points) {
-    low = low.cwiseMin(point.head<2>());
-    high = high.cwiseMax(point.head<2>());
-  }
-  const Vec2 margin = Vec2::Constant(0.1 * (high - low).maxCoeff());
-  low -= margin;
-  high += margin;
-
-  nurbs::Surface& surface = plane.surface;
-  surface.degree_u = surface.degree_v = 1;
-  surface.count_u = surface.count_v = 2;
-  surface.knots_u = {low.x(), low.x(), high.x(), high.x()};
-  surface.knots_v = {low.y(), low.y(), high.y(), high.y()};
-  for (const double v : {low.y(), high.y()})
-    for (const double u : {low.x(), high.x()})
-      surface.points.emplace_back(plane.origin + u * plane.axis_u + v * plane.axis_v);
-  return plane;
-}
-
 int write_planar_end(Records& records, const Common& common, const yarn::Body& body, bool last) {
   const nurbs::Curve outline = yarn::end_curve(body, last);
-  const EndPlane plane = end_plane(body, outline, last);
+  const yarn::EndPlane plane = yarn::end_plane(body, outline, last);
   const Vec3 up = Vec3::UnitZ();
   const int surface = write_surface(records, common.entity(128, 0, dependent), plane.surface);
   const int flat =

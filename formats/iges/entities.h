@@ -7,6 +7,7 @@
 
 #include "formats/iges/records.h"
 #include "yarn/body.h"
+#include "yarn/end_plane.h"
 
 namespace selvage::formats::iges {
 
@@ -34,16 +35,6 @@ int write_surface(Records& records, const Entity& entity, const nurbs::Surface& 
 // `property` as above.
 int write_curve(Records& records, const Entity& entity, const nurbs::Curve& curve, const Vec3* normal,
                 int property = 0);
-
-// The plane of an end as a bilinear surface a little larger than the end curve, whose parameters are lengths
-// along two axes of the plane. The end curve runs counter-clockwise in them.
-struct EndPlane {
-  nurbs::Surface surface;
-  Vec3 origin, axis_u, axis_v, normal;
-  bool inward = false;                                                        // `normal` points into the yarn
-  [[nodiscard]] nurbs::Curve in_parameters(const nurbs::Curve& curve) const;  // z = 0
-};
-EndPlane end_plane(const yarn::Body& body, const nurbs::Curve& end_curve, bool last);
 
 // 144 on a 128, bounded by a 142 of two 126s, of which the one in space is the body's own end curve.
 int write_planar_end(Records& records, const Common& common, const yarn::Body& body, bool last);

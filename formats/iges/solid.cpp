@@ -52,7 +52,7 @@ nurbs::Curve first_column(const nurbs::Surface& surface) {
   return column;
 }
 
-Rim add_rim(Topology& topology, const yarn::Body& body, bool last, const EndPlane* plane) {
+Rim add_rim(Topology& topology, const yarn::Body& body, bool last, const yarn::EndPlane* plane) {
   const EndStyle style = (last ? body.end : body.start).style;
   Rim rim{topology.edges.size(), edges_of_rim(style), topology.vertices.size()};
   const Vec3* normal = plane != nullptr ? &plane->normal : nullptr;
@@ -75,7 +75,8 @@ void add_uses(std::vector<Use>& loop, const Rim& rim, bool forward) {
     loop.push_back({false, rim.first_edge + (forward ? k : rim.count - 1 - k), forward});
 }
 
-void add_end(Topology& topology, const yarn::Body& body, bool last, const Rim& rim, const EndPlane* plane) {
+void add_end(Topology& topology, const yarn::Body& body, bool last, const Rim& rim,
+             const yarn::EndPlane* plane) {
   const yarn::EndFace& end = last ? body.end : body.start;
   Face face;
   face.surface = plane != nullptr ? &plane->surface : &end.surface;
@@ -102,7 +103,7 @@ Topology ring(const yarn::Body& body) {
   return topology;
 }
 
-Topology tube(const yarn::Body& body, const EndPlane* start, const EndPlane* end) {
+Topology tube(const yarn::Body& body, const yarn::EndPlane* start, const yarn::EndPlane* end) {
   Topology topology;
   const Rim first = add_rim(topology, body, false, start), last = add_rim(topology, body, true, end);
   const std::size_t seam = topology.edges.size();
@@ -174,10 +175,10 @@ int entities_of_solid(const yarn::Body& body) {
 }
 
 int write_solid(Records& records, const Common& common, const yarn::Body& body) {
-  std::array<EndPlane, 2> planes;
-  const auto plane_of = [&](bool last) -> const EndPlane* {
+  std::array<yarn::EndPlane, 2> planes;
+  const auto plane_of = [&](bool last) -> const yarn::EndPlane* {
     if ((last ? body.end : body.start).style != EndStyle::planar) return nullptr;
-    planes[last] = end_plane(body, yarn::end_curve(body, last), last);
+    planes[last] = yarn::end_plane(body, yarn::end_curve(body, last), last);
     return &planes[last];
   };
   const Topology topology = body.closed_along ? ring(body) : tube(body, plane_of(false), plane_of(true));

@@ -123,7 +123,8 @@ Status Writer::check(const yarn::Body& body) {
                       "patch, fan or planar, or leave out --iges-solid",
                       body.name));
     if (end->style != EndStyle::planar) continue;
-    const EndPlane plane = end_plane(body, yarn::end_curve(body, end == &body.end), end == &body.end);
+    const yarn::EndPlane plane =
+        yarn::end_plane(body, yarn::end_curve(body, end == &body.end), end == &body.end);
     const std::optional<double> corners = largest_of(numbers_of(plane.surface.points));
     if (!corners)
       return yarn_error(Kind::geometry, body,

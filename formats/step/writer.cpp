@@ -112,7 +112,7 @@ class StepBodyWriter : public BodyWriter {
       const solid::FaceCheck verdict = solid::occt::check_piece(piece);
       if (!verdict.defects.empty()) return verdict.defects.front();
       ++facts_.entities["SHELL_BASED_SURFACE_MODEL"];
-      add_part({solid::occt::build_piece(piece, 1.0), piece.name, yarn::Color{}}, "");
+      add_component_of({solid::occt::build_piece(piece, 1.0), piece.name, yarn::Color{}}, "");
       return {};
     });
   }
@@ -148,12 +148,12 @@ class StepBodyWriter : public BodyWriter {
     } else {
       ++facts_.entities["MANIFOLD_SOLID_BREP"];
     }
-    add_part({yarn.shape, body.name, body.color}, body.group);
+    add_component_of({yarn.shape, body.name, body.color}, body.group);
     return {};
   }
 
   // Plies and filaments are parts of an assembly of their own, named as the yarn that they make up.
-  void add_part(Part added, const std::string& group) {
+  void add_component_of(Part added, const std::string& group) {
     const TDF_Label part = shapes_->AddShape(added.shape, false, false);
     add_component(group.empty() ? assembly_ : group_assembly(group), part, added.name);
     parts_.push_back(std::move(added));

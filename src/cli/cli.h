@@ -12,7 +12,7 @@ namespace selvage::cli {
 // Where the parsed values go: `action` is what the chosen subcommand does; its value is the exit code.
 struct Parsed {
   pipeline::Options options;
-  std::string shard, units, ends = "patch", detail = "filaments";
+  std::string shard, units, ends, detail = "filaments";
   pipeline::EditRequest edit;
   std::function<int()> action;
 };

@@ -90,7 +90,8 @@ void add_place(CLI::App& command, Parsed& parsed) {
 
 void add_ends(CLI::App& command, Parsed& parsed) {
   command
-      .add_option("--ends", parsed.ends, "how a yarn is sealed: patch, fan, planar, none (default: patch)")
+      .add_option("--ends", parsed.ends,
+                  "how a yarn is sealed: patch, fan, planar, none (default: as the input has it, else patch)")
       ->check(CLI::IsMember({"patch", "fan", "planar", "none"}));
 }
 

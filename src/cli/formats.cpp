@@ -10,6 +10,11 @@ namespace selvage::cli {
 
 namespace {
 
+std::string read_word(const formats::Descriptor& format) {
+  if (format.read_fabric != nullptr) return "fabric";
+  return format.read_model != nullptr ? "surfaces" : "-";
+}
+
 int print_formats() {
   pipeline::Table table({"name", "extensions", "read", "write", "what"});
   for (const formats::Descriptor* format : formats::all_formats()) {
@@ -22,8 +27,8 @@ int print_formats() {
     if (format->open_bodies != nullptr && format->carries_surfaces) append(write, "surfaces");
     if (format->open_bodies != nullptr && format->carries_curves) append(write, "curves");
     if (format->write_mesh != nullptr) append(write, "mesh");
-    table.add({std::string(format->name), extensions, format->read_fabric != nullptr ? "fabric" : "-",
-               write.empty() ? "-" : write, std::string(format->title)});
+    table.add({std::string(format->name), extensions, read_word(*format), write.empty() ? "-" : write,
+               std::string(format->title)});
   }
   std::fputs(table.text().c_str(), stdout);
   return std::fflush(stdout) == 0 ? 0 : 1;

@@ -332,8 +332,23 @@ Result<yarn::Body> YarnBuilder::build_grid(const Yarn& yarn) const {
   return body;
 }
 
+// A yarn of a CAD file keeps its end faces unless others are asked for.
+Result<yarn::Body> YarnBuilder::as_read(yarn::Body body, const Entry& entry) const {
+  if (options_.ends) {
+    body.messages.clear();
+    body.tight_bends.clear();
+    if (Status finished = yarn::finish(body, *options_.ends); !finished)
+      return placed(finished.error(), entry);
+  }
+  for (Message& message : body.messages) message = placed(message, entry);
+  return body;
+}
+
 Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
   const Entry& entry = entries_[index];
+  if (entry.yarn != nullptr)
+    if (const auto* read = std::get_if<std::shared_ptr<const yarn::Body>>(&entry.yarn->shape))
+      return as_read(**read, entry);
   yarn::Body body;
   if (entry.yarn != nullptr && std::holds_alternative<Grid>(entry.yarn->shape)) {
     Result<yarn::Body> filled = build_grid(*entry.yarn);
@@ -352,7 +367,8 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
     spec.max_control_points = options_.max_control_points;
     if (Status swept = yarn::sweep(body, made->line, spec); !swept) return placed(swept.error(), entry);
   }
-  if (Status finished = yarn::finish(body, options_.ends); !finished) return placed(finished.error(), entry);
+  if (Status finished = yarn::finish(body, options_.ends.value_or(yarn::EndStyle::patch)); !finished)
+    return placed(finished.error(), entry);
   for (Message& message : body.messages) message = placed(message, entry);
   return body;
 }

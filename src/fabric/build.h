@@ -18,7 +18,7 @@
 namespace selvage::fabric {
 
 struct BuildOptions {
-  yarn::EndStyle ends = yarn::EndStyle::patch;
+  std::optional<yarn::EndStyle> ends;  // none: as the file has them; where it does not say, patch
   double tolerance = 0;  // file units; 0: the file's, or 1/1000 of the smallest section size in the file
   Detail detail = Detail::filaments;  // yarns are taken apart into plies and filaments as their threads say
   std::size_t max_control_points = 50'000'000;  // a yarn: a limit error instead of an exhausted memory
@@ -66,6 +66,7 @@ class YarnBuilder {
   [[nodiscard]] Result<YarnPlan> whole_plan(const Entry& entry) const;
   [[nodiscard]] Result<YarnPlan> part_plan(const Entry& entry) const;
   [[nodiscard]] Result<yarn::Body> build_grid(const Yarn& yarn) const;
+  [[nodiscard]] Result<yarn::Body> as_read(yarn::Body body, const Entry& entry) const;
   [[nodiscard]] Message placed(Message message, const Entry& entry) const;
 
   const Fabric* fabric_ = nullptr;

@@ -2,12 +2,14 @@
 // grammar but not yet built. Numbers are as written, in the file's unit.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "cad/model.h"
 #include "core/diagnostics.h"
 #include "core/units.h"
 #include "core/vec.h"
@@ -126,7 +128,8 @@ struct Yarn {
   std::optional<Vec3> tangent_start, tangent_end, up;
   TextPlace up_place;
   bool closed = false;
-  std::variant<std::monostate, Path, Grid> shape;
+  // The last: a yarn as it was read from a CAD file, end faces and all.
+  std::variant<std::monostate, Path, Grid, std::shared_ptr<const yarn::Body>> shape;
 };
 
 // Threads used in turn: `W1,W2`.
@@ -268,6 +271,11 @@ struct Fabric {
   std::vector<int> item_ends;  // the last line of each item, where they come from a text; else empty
   std::vector<Edit> edits;
   std::optional<Cell> cell;
+  // Of a CAD file: what is neither a yarn nor a piece, as it was read, and the file's date and form.
+  std::vector<cad::Part> parts;
+  std::vector<cad::NamedCurve> curves;
+  std::string date;               // YYYYMMDD.HHNNSS; empty: not known
+  bool yarns_are_solids = false;  // IGES: 186s, not groups of 128s
 
   [[nodiscard]] const Thread* find_thread(std::string_view name) const;
   [[nodiscard]] const Material* find_material(std::string_view name) const;

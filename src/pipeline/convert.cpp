@@ -19,9 +19,10 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
       output.to_standard_output ? job.input.stem.filename().string() : output.path.filename().string();
   surface.units = job.options.units.value_or(fabric.units);
   surface.expected_bodies = count;
+  surface.date = fabric.date;
   surface.tolerance =
       converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, surface.units);
-  surface.iges_solid = job.options.iges_solid;
+  surface.iges_solid = job.options.iges_solid || fabric.yarns_are_solids;
   surface.step_schema = job.options.step_schema;
   return surface;
 }
@@ -96,10 +97,31 @@ void write_pieces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) 
   }
 }
 
+void write_others(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
+  const Unit units = job.options.units.value_or(fabric.units);
+  const auto to_all = [&](const auto& add) {
+    for (OpenOutput& output : outputs) {
+      if (!output.writer || job.has_failed()) continue;
+      if (Status status = add(*output.writer); !status.ok()) job.say(status.error());
+    }
+  };
+  for (cad::Part part : fabric.parts) {
+    convert_lengths(part, fabric.units, units);
+    to_all([&](formats::BodyWriter& writer) { return writer.add_part(part); });
+  }
+  for (cad::NamedCurve curve : fabric.curves) {
+    convert_lengths(curve, fabric.units, units);
+    to_all([&](formats::BodyWriter& writer) { return writer.add_curve(curve); });
+  }
+}
+
 void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
   const std::optional<fabric::YarnBuilder> builder = job.builder(fabric);
   if (!builder || !can_carry(job, fabric, builder->count(), outputs) ||
-      !open_writers(job, fabric, builder->count() + fabric::pieces_of(fabric).size(), outputs))
+      !open_writers(
+          job, fabric,
+          builder->count() + fabric::pieces_of(fabric).size() + fabric.parts.size() + fabric.curves.size(),
+          outputs))
     return;
   const Unit units = job.options.units.value_or(fabric.units);
   std::optional<double> thinnest;
@@ -113,6 +135,7 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
   });
   if (!is_written) return;
   write_pieces(job, fabric, outputs);
+  write_others(job, fabric, outputs);
   if (job.has_failed()) return;
   for (OpenOutput& output : outputs)
     if (output.writer && !take_facts(job, output, output.writer->finish())) return;

@@ -41,11 +41,10 @@ Result<const Descriptor*> detect_readable(const Source& source) {
   const Descriptor* format = sniff(source.bytes().substr(0, head_size));
   if (format == nullptr)
     format = format_with_extension(std::filesystem::path(source.name()).extension().string());
-  if (format != nullptr && format->read_fabric != nullptr) return format;
+  if (format != nullptr && format->is_readable()) return format;
   std::string readable;
   for (const Descriptor* other : all_formats())
-    if (other->read_fabric != nullptr)
-      readable += fmt::format("{}{}", readable.empty() ? "" : ", ", other->name);
+    if (other->is_readable()) readable += fmt::format("{}{}", readable.empty() ? "" : ", ", other->name);
   Message message =
       format != nullptr
           ? error(Kind::unsupported,
@@ -61,11 +60,11 @@ Result<const Descriptor*> detect_readable(const Source& source) {
 
 bool is_readable_format(const std::filesystem::path& path) {
   if (const Descriptor* format = format_with_extension(path.extension().string()))
-    return format->read_fabric != nullptr;
+    return format->is_readable();
   const Result<Source> source = Source::open(path);
   if (!source) return false;
   const Descriptor* format = sniff(source->bytes().substr(0, head_size));
-  return format != nullptr && format->read_fabric != nullptr;
+  return format != nullptr && format->is_readable();
 }
 
 }  // namespace selvage::pipeline

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "core/sha256.h"
 #include "core/source.h"
+#include "fabric/from_cad.h"
 #include "pipeline/detect.h"
 #include "pipeline/drafts.h"
 #include "pipeline/facts.h"
@@ -22,8 +23,8 @@ constexpr auto progress_interval = std::chrono::milliseconds(50);
 
 // Everything on the command line that changes the bytes of an output.
 std::string settings_of(const Options& options) {
-  std::string text = fmt::format("{} ends={} tolerance={}", name_of(options.command), name_of(options.ends),
-                                 options.tolerance);
+  std::string text = fmt::format("{} ends={} tolerance={}", name_of(options.command),
+                                 options.ends ? name_of(*options.ends) : "input", options.tolerance);
   if (options.units) text += fmt::format(" units={}", name_of(*options.units));
   if (options.iges_solid) text += " iges-solid";
   if (options.detail != fabric::Detail::filaments)
@@ -130,7 +131,12 @@ std::optional<fabric::Fabric> Job::read() {
     return std::nullopt;
   }
   Diagnostics diagnostics;
-  std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
+  std::optional<fabric::Fabric> fabric;
+  if ((*format)->read_fabric != nullptr) {
+    fabric = (*format)->read_fabric(*source, diagnostics);
+  } else if (std::optional<cad::Model> model = (*format)->read_model(*source, diagnostics)) {
+    fabric = fabric::fabric_of(std::move(*model), diagnostics);
+  }
   if (fabric) take_drafts(*fabric, *source, diagnostics);
   forward(diagnostics);
   if (!fabric && !diagnostics.has_errors())
@@ -154,8 +160,9 @@ std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {
   forward(diagnostics);
   if (!made) return std::nullopt;
   report.yarn_count = made->count();
-  if (made->count() == 0 && fabric::pieces_of(fabric).empty()) {
-    say(error(Kind::geometry, "there is no yarn in this input"));
+  if (made->count() == 0 && fabric::pieces_of(fabric).empty() && fabric.parts.empty() &&
+      fabric.curves.empty()) {
+    say(error(Kind::geometry, "there is nothing in this input"));
     return std::nullopt;
   }
   return made;

@@ -35,7 +35,7 @@ struct Options {
   std::optional<Unit> units;                          // of surfaces and tables; none: the input's
   double tolerance = 0;                               // input's unit; 0: the input's
   fabric::Detail detail = fabric::Detail::filaments;  // how far yarns are taken apart
-  yarn::EndStyle ends = yarn::EndStyle::patch;
+  std::optional<yarn::EndStyle> ends;                 // none: as the input has them, or patch
   bool iges_solid = false;
   std::string step_schema = "AP242";
 

@@ -85,4 +85,25 @@ void convert_lengths(fabric::PieceShape& piece, Unit from, Unit to) {
   point(piece.box.max());
 }
 
+void convert_lengths(cad::Part& part, Unit from, Unit to) {
+  if (from == to) return;
+  const Ratio scale = ratio(from, to);
+  const auto all = [&](std::vector<Vec3>& points) {
+    for (Vec3& p : points)
+      for (double& x : p) x = scale(x);
+  };
+  for (cad::Face& face : part.faces) {
+    all(face.surface.points);
+    for (cad::Loop& loop : face.loops)
+      for (cad::Edge& edge : loop.edges) all(edge.curve.points);
+  }
+}
+
+void convert_lengths(cad::NamedCurve& curve, Unit from, Unit to) {
+  if (from == to) return;
+  const Ratio scale = ratio(from, to);
+  for (Vec3& p : curve.curve.points)
+    for (double& x : p) x = scale(x);
+}
+
 }  // namespace selvage::pipeline

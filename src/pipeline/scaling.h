@@ -1,6 +1,7 @@
 // Lengths in another unit, for `--units`.
 #pragma once
 
+#include "cad/model.h"
 #include "core/units.h"
 #include "fabric/piece.h"
 #include "yarn/body.h"
@@ -15,5 +16,8 @@ double converted(double value, Unit from, Unit to);
 // numbers stay equal, so that seams and joints stay closed.
 void convert_lengths(yarn::Body& body, Unit from, Unit to);
 void convert_lengths(fabric::PieceShape& piece, Unit from, Unit to);
+// Parameters (knots and curves in them) keep their numbers.
+void convert_lengths(cad::Part& part, Unit from, Unit to);
+void convert_lengths(cad::NamedCurve& curve, Unit from, Unit to);
 
 }  // namespace selvage::pipeline

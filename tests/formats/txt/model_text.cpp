@@ -54,6 +54,7 @@ class Flat {
     std::visit([&](const auto& one) { add(path, one); }, value);
   }
   void add(const std::string&, const std::monostate&) {}
+  void add(const std::string&, const std::shared_ptr<const yarn::Body>&) {}  // of no text
 
   void add(const std::string& path, const LinearDensity& v) {
     add(path + ".value", v.value);

@@ -1,0 +1,90 @@
+// What a CAD file holds, whoever wrote it: surfaces, their trimming, solids, curves, names and colours. The
+// readers of IGES and STEP fill it; yarns are recognised in it (cad/recognize.h), files are compared and
+// judged by it. Everything is placed (transformations and instances applied) and in the file's unit.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/units.h"
+#include "core/vec.h"
+#include "nurbs/spline.h"
+#include "yarn/body.h"
+
+namespace selvage::cad {
+
+using yarn::Color;
+
+// Where something stands in its file.
+struct Origin {
+  TextPlace place;     // line 0: unknown
+  std::string entity;  // as its format names it: "128 at D37", "#120"; may be empty
+};
+
+// One piece of a face's boundary, in the direction of its loop.
+struct Edge {
+  nurbs::Curve curve;  // in space; without points at a pole, where the surface's own edge has no length, and
+                       // where the file gives `flat` only
+  nurbs::Curve flat;   // in the surface's parameters, z = 0; without points where the file gives none
+  int id = -1;         // the faces of a part that share an edge have it under one id; -1: not shared by name
+};
+// A closed chain: each edge's end is the next one's start.
+struct Loop {
+  std::vector<Edge> edges;
+};
+
+struct Face {
+  // As in the file, restricted to the range that the file gives; it need not be clamped.
+  nurbs::Surface surface;
+  bool reversed = false;    // the face's outside is against S_u x S_v
+  std::vector<Loop> loops;  // empty: the whole surface; else the outer one first, then holes
+  std::string name;
+  std::optional<Color> color;
+  int level = 0;  // IGES
+  Origin origin;
+};
+
+// What belongs together, by the file's own word.
+struct Part {
+  enum class Kind {
+    surfaces,  // one face, or a group of them (IGES 402 form 7 with nothing but faces in it)
+    shell,     // faces joined along their edges, not said to enclose anything
+    solid      // faces that enclose a volume (IGES 186, STEP manifold solid); the first shell's come first
+  };
+  Kind kind = Kind::surfaces;
+  std::vector<Face> faces;
+  std::string name;
+  std::string group;  // of the outermost group or assembly below the file that holds it; empty: none
+  std::optional<Color> color;
+  int level = 0;
+  Origin origin;
+};
+
+struct NamedCurve {
+  nurbs::Curve curve;
+  std::string name;
+  std::optional<Color> color;
+  int level = 0;
+  Origin origin;
+};
+
+struct Model {
+  std::string file;  // as messages name it
+  std::string title;
+  std::string date;  // YYYYMMDD.HHNNSS of the file; empty: not known
+  Unit units = Unit::mm;
+  double resolution = 0;           // IGES parameter 19, STEP uncertainty; file units; 0: not given
+  std::vector<Part> parts;         // in file order; every face is in one
+  std::vector<NamedCurve> curves;  // that stand for themselves
+  // Every entity of the file, by its format's name ("128", "MANIFOLD_SOLID_BREP"), and of these the ones that
+  // are not understood, with a word on what they are ("212 (general note)").
+  std::map<std::string, std::uint64_t> entities, unknown;
+
+  [[nodiscard]] std::size_t face_count() const;
+};
+
+}  // namespace selvage::cad
