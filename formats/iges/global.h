@@ -1,0 +1,40 @@
+// The global section: what holds for the whole file.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/units.h"
+#include "formats/iges/parameters.h"
+
+namespace selvage::formats::iges {
+
+struct Global {
+  Delimiters delimiters;
+  std::string product, file_name, system, preprocessor, receiver;  // 3-6, 12
+  double scale = 1;                                                // 13: model space over real space
+  int unit_flag = 1;                                               // 14, 1-11
+  std::string unit_name;                                           // 15
+  std::string date;                                                // 18, YYYYMMDD.HHNNSS; empty: not given
+  double resolution = 0;                                           // 19, as in the file; 0: not given
+  double largest = 0;                                              // 20
+  std::string author, organization;                                // 21, 22
+  int version = 3;                                                 // 23: 11 is 5.3
+  int drafting = 0;                                                // 24
+  std::string modified, protocol;                                  // 25, 26
+
+  // What coordinates of the file are multiplied by to be lengths in `units`: 1 but for a scale and for units
+  // that Selvage does not have, which become mm.
+  Unit units = Unit::inch;
+  double factor = 1;
+};
+
+// Errors: no delimiters, a value of the wrong type, a scale or unit that is none. Strings are made readable
+// text (Latin-1 becomes UTF-8, control characters become '_').
+std::optional<Global> read_global(const Lines& lines, TextReport& report);
+
+// Foreign bytes as text: UTF-8 as it is, other 8-bit characters taken for Latin-1, control characters as '_';
+// without blanks at the end.
+std::string readable(std::string_view bytes);
+
+}  // namespace selvage::formats::iges

@@ -1,0 +1,73 @@
+// The lines of a fixed-length ASCII IGES file, found once and not copied: five sections in order, of which
+// each line has its letter in column 73 and its number within the section in columns 74-80.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/source.h"
+#include "core/text_report.h"
+
+namespace selvage::formats::iges {
+
+enum class Section { start, global, directory, parameter, terminate };
+
+inline constexpr std::size_t section_count = 5;
+
+// One line of the file, without its line end. The data of a parameter line are columns 1-64, else 1-72.
+struct Line {
+  const char* at = nullptr;  // column 1
+  int length = 0;            // all columns that are there
+  int data = 0;              // of them, those that hold data
+  int number = 0;            // in the file, from 1
+  bool is_shifted = false;   // its letter stands in another column than 73: a character was lost or put in
+
+  [[nodiscard]] std::string_view text() const { return {at, static_cast<std::size_t>(length)}; }
+  [[nodiscard]] std::string_view data_text() const { return {at, static_cast<std::size_t>(data)}; }
+  // `column` from 1.
+  [[nodiscard]] Spot spot(int column = 1) const { return {at + column - 1, number, column}; }
+};
+
+class Lines {
+ public:
+  // Lines that end with LF or CR LF, or of 80 columns without any end. Refused, with a message that names
+  // it: compressed ASCII, binary, what is no IGES file. Errors: a line without a section letter, sections out
+  // of order, line numbers out of order (a line is missing). `source` outlives this.
+  static std::optional<Lines> index(const Source& source, TextReport& report);
+
+  [[nodiscard]] int count(Section section) const { return ranges_[static_cast<std::size_t>(section)].count; }
+  // `number` from 1 to count(section).
+  [[nodiscard]] Line line(Section section, int number) const {
+    const int at = ranges_[static_cast<std::size_t>(section)].first + number - 1;
+    if (stride_ == 0) return irregular_[static_cast<std::size_t>(at)];
+    return {bytes_.data() + static_cast<std::size_t>(at) * stride_, 80,
+            section == Section::parameter ? 64 : 72, at + 1};
+  }
+  // Where the file ends.
+  [[nodiscard]] Spot end() const { return end_; }
+
+ private:
+  struct Range {
+    int first = 0, count = 0;  // lines of the file, from 0
+  };
+  class Order;
+  Lines() = default;
+
+  bool index_regular(TextReport& report, bool& failed);
+  bool index_irregular(TextReport& report);
+
+  std::string_view bytes_;
+  std::size_t stride_ = 0;  // of a file all of whose lines are equally long, line end included; else 0
+  std::vector<Line> irregular_;
+  std::array<Range, section_count> ranges_{};
+  Spot end_;
+};
+
+// The number in a field of a directory line or a line number: leading and trailing blanks, leading zeros;
+// nothing when it is blank; `valid` is false when it is no number or has more than 9 digits.
+std::optional<int> column_number(std::string_view field, bool& valid);
+
+}  // namespace selvage::formats::iges

@@ -1,0 +1,318 @@
+#include "formats/iges/parameters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/iges/real_text.h"
+
+namespace selvage::formats::iges {
+
+namespace {
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t';
+}
+bool is_digit(char c) {
+  return static_cast<unsigned char>(c - '0') < 10;
+}
+
+// The integer that all of `token` is, possibly written as a real.
+bool read_integer(std::string_view token, std::int64_t& value) {
+  const bool negative = token.front() == '-';
+  std::string_view digits = token.substr(negative || token.front() == '+' ? 1 : 0);
+  if (!digits.empty() && digits.size() <= 18 && std::all_of(digits.begin(), digits.end(), is_digit)) {
+    value = 0;
+    for (const char c : digits) value = 10 * value + (c - '0');
+    if (negative) value = -value;
+    return true;
+  }
+  double real = 0;
+  const char* const end = token.data() + token.size();
+  if (read_real(token.data(), end, real) != end || std::trunc(real) != real || std::abs(real) > 1e15)
+    return false;
+  value = static_cast<std::int64_t>(real);
+  return true;
+}
+
+}  // namespace
+
+Parameters::Parameters(const Lines& lines, Section section, int first, int last, Delimiters delimiters)
+    : lines_(&lines), section_(section), line_(first), last_(last), delimiters_(delimiters) {
+  if (first < 1 || last < first || last > lines.count(section)) {
+    done_ = true;
+    value_spot_ = lines.end();
+    fail("there are no parameters");
+    return;
+  }
+  enter(first);
+  value_spot_ = here();
+}
+
+Spot Parameters::here() const {
+  return {at_, line().number, static_cast<int>(at_ - start_) + 1};
+}
+
+void Parameters::enter(int number) {
+  line_ = number;
+  const Line present = line();
+  at_ = start_ = present.at;
+  end_ = present.at + present.data;
+}
+
+bool Parameters::next_line() {
+  if (line_ >= last_) return false;
+  enter(line_ + 1);
+  return true;
+}
+
+// To the next character that is no blank; false where there is none.
+bool Parameters::skip_blanks() {
+  for (;;) {
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+    if (at_ != end_) return true;
+    if (!next_line()) return false;
+  }
+}
+
+void Parameters::fail(std::string text) {
+  fail(value_spot_, std::move(text));
+}
+
+void Parameters::fail(const Spot& spot, std::string text) {
+  if (!failure_) failure_ = Failure{spot, std::move(text), false};
+}
+
+void Parameters::give_up(std::string text) {
+  if (!failure_) failure_ = Failure{value_spot_, std::move(text), true};
+}
+
+std::size_t Parameters::room() const {
+  if (done_ || failure_) return 0;
+  constexpr std::size_t widest = 73;
+  return static_cast<std::size_t>(end_ - at_) + static_cast<std::size_t>(last_ - line_) * widest;
+}
+
+bool Parameters::take_delimiter() {
+  if (!skip_blanks()) {
+    fail(here(), fmt::format("the parameters end without {}", in_quotes({&delimiters_.record, 1})));
+    return false;
+  }
+  if (*at_ != delimiters_.parameter && *at_ != delimiters_.record) {
+    fail(here(), fmt::format("{} or {} is missing here", in_quotes({&delimiters_.parameter, 1}),
+                             in_quotes({&delimiters_.record, 1})));
+    return false;
+  }
+  done_ = *at_ == delimiters_.record;
+  ++at_;
+  return true;
+}
+
+// A number that fills its line to the last column and goes on in the first of the next one. `at_` is there.
+bool Parameters::join(std::string_view& token) {
+  const char* const begin = at_;
+  while (at_ != end_ && *at_ != delimiters_.parameter && *at_ != delimiters_.record && !is_blank(*at_)) ++at_;
+  joined_ = token;
+  joined_.append(begin, at_);
+  token = joined_;
+  return joined_.size() <= 100;
+}
+
+// The characters of the next value, without blanks round them, and past its delimiter. False after an error
+// or the record delimiter.
+bool Parameters::field(std::string_view& token) {
+  token = {};
+  if (failure_ || done_) return false;
+  if (!skip_blanks()) return take_delimiter();  // which fails
+  value_spot_ = here();
+  const char* const begin = at_;
+  while (at_ != end_ && *at_ != delimiters_.parameter && *at_ != delimiters_.record) ++at_;
+  const char* last = at_;
+  while (last != begin && is_blank(last[-1])) --last;
+  token = {begin, static_cast<std::size_t>(last - begin)};
+  if (at_ == end_ && last == end_ && next_line() && at_ != end_ && !is_blank(*at_) &&
+      *at_ != delimiters_.parameter && *at_ != delimiters_.record && !join(token)) {
+    fail("a value of more than 100 characters");
+    return false;
+  }
+  return take_delimiter();
+}
+
+std::int64_t Parameters::integer(std::int64_t otherwise) {
+  std::string_view token;
+  if (!field(token) || token.empty()) return otherwise;
+  std::int64_t value = 0;
+  if (!read_integer(token, value)) {
+    fail(fmt::format("{} is no integer", in_quotes(token)));
+    return otherwise;
+  }
+  return value;
+}
+
+int Parameters::pointer() {
+  const std::int64_t value = integer();
+  if (std::abs(value) > most_pointer) {
+    fail(fmt::format("{} cannot be a directory pointer", value));
+    return 0;
+  }
+  return static_cast<int>(value);
+}
+
+double Parameters::real(double otherwise) {
+  std::string_view token;
+  if (!field(token) || token.empty()) return otherwise;
+  double value = 0;
+  const char* const end = token.data() + token.size();
+  if (read_real(token.data(), end, value) != end) {
+    fail(fmt::format("{} is no number", in_quotes(token)));
+    return otherwise;
+  }
+  return value;
+}
+
+// As it stands in the file, over line ends.
+bool Parameters::characters(std::size_t count, std::string& text) {
+  while (count > 0) {
+    if (at_ == end_) {
+      if (line().is_shifted) {
+        fail("a string runs over the end of a line whose columns are shifted: its characters cannot be told");
+        return false;
+      }
+      if (!next_line()) {
+        fail("the string is longer than what is left of the parameters");
+        return false;
+      }
+    }
+    const std::size_t part = std::min(count, static_cast<std::size_t>(end_ - at_));
+    text.append(at_, part);
+    at_ += part;
+    count -= part;
+  }
+  return true;
+}
+
+std::string Parameters::text() {
+  if (failure_ || done_) return {};
+  if (!skip_blanks()) {
+    take_delimiter();
+    return {};
+  }
+  value_spot_ = here();
+  if (!is_digit(*at_)) {
+    if (*at_ == delimiters_.parameter || *at_ == delimiters_.record)
+      take_delimiter();
+    else
+      fail("a string (its length, H and its characters) is due here");
+    return {};
+  }
+  std::size_t length = 0;
+  while (at_ != end_ && is_digit(*at_) && length < 100'000'000)
+    length = 10 * length + static_cast<std::size_t>(*at_++ - '0');
+  if (at_ == end_ || (*at_ != 'H' && *at_ != 'h')) {
+    fail("a string (its length, H and its characters) is due here");
+    return {};
+  }
+  ++at_;
+  if (length > room()) {
+    fail("the string is longer than what is left of the parameters");
+    return {};
+  }
+  std::string value;
+  if (!characters(length, value)) return {};
+  if (at_ == end_) next_line();
+  take_delimiter();
+  return value;
+}
+
+void Parameters::skip() {
+  if (failure_ || done_ || !skip_blanks()) {
+    integer();
+    return;
+  }
+  const char* p = at_;
+  while (p != end_ && is_digit(*p)) ++p;
+  if (p != at_ && p != end_ && (*p == 'H' || *p == 'h')) {
+    text();
+    return;
+  }
+  std::string_view token;
+  field(token);
+}
+
+bool Parameters::slow_real(double& value) {
+  if (done_) {
+    fail("the parameters end here");
+    return false;
+  }
+  value = real();
+  return ok();
+}
+
+bool Parameters::reals(double* out, std::size_t count) {
+  if (failure_) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (at_ == end_ || is_blank(*at_))
+      if (done_ || !skip_blanks()) return slow_real(out[i]);
+    double value = 0;
+    const char* const behind = read_real(at_, end_, value);
+    if (behind != at_ && behind != end_ && *behind == delimiters_.parameter && !done_) {
+      out[i] = value;
+      at_ = behind + 1;
+    } else if (!slow_real(out[i])) {
+      const std::string so_far = fmt::format("; {} of {} numbers were read", i, count);
+      if (failure_) failure_->text += so_far;
+      return false;
+    }
+  }
+  return true;
+}
+
+std::size_t Parameters::count(std::string_view what, std::size_t fields_each) {
+  const std::int64_t value = integer();
+  if (!ok()) return 0;
+  if (value < 0) {
+    fail(fmt::format("a number of {} cannot be {}", what, value));
+    return 0;
+  }
+  const auto number = static_cast<std::size_t>(value);
+  if (fields_each > 0 && number > room() / fields_each) {
+    fail(fmt::format("{} {}: more than the entity's {} lines can hold", value, what, last_ - line_ + 1));
+    return 0;
+  }
+  return number;
+}
+
+std::optional<Delimiters> read_delimiters(Parameters& cursor) {
+  const auto one = [&](char& delimiter, std::string_view what) {
+    if (!cursor.ok() || !cursor.skip_blanks()) return false;
+    cursor.value_spot_ = cursor.here();
+    const char* const at = cursor.at_;
+    if (*at == cursor.delimiters_.parameter) {  // defaulted
+      ++cursor.at_;
+      return true;
+    }
+    constexpr std::string_view not_allowed = "0123456789+-.DEH \t";
+    if (cursor.end_ - at < 4 || at[0] != '1' || at[1] != 'H' ||
+        not_allowed.find(at[2]) != std::string_view::npos || static_cast<unsigned char>(at[2]) < 0x20) {
+      cursor.fail(fmt::format("the global section does not begin with the {} delimiter, such as 1H{},", what,
+                              delimiter));
+      return false;
+    }
+    delimiter = at[2];
+    cursor.at_ += 3;
+    return cursor.take_delimiter();
+  };
+  Delimiters& own = cursor.delimiters_;
+  if (!one(own.parameter, "parameter") || !one(own.record, "record")) {
+    cursor.fail("the global section ends before its second parameter");
+    return std::nullopt;
+  }
+  if (own.parameter == own.record) {
+    cursor.fail(fmt::format("both delimiters are {}", in_quotes({&own.record, 1})));
+    return std::nullopt;
+  }
+  return own;
+}
+
+}  // namespace selvage::formats::iges

@@ -1,0 +1,104 @@
+// The parameters of one entity, or of the global section: free format, read one after the other.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "formats/iges/lines.h"
+
+namespace selvage::formats::iges {
+
+// What parts the values of a file: global parameters 1 and 2.
+struct Delimiters {
+  char parameter = ',';
+  char record = ';';
+};
+
+inline constexpr std::int64_t most_pointer = 9'999'999;
+
+// A cursor over the lines `first` to `last` (numbers in the section). Cheap to copy; nothing is kept but
+// views of the file, so that any number of threads may have one each.
+//
+// After the record delimiter every value is defaulted, as the standard has it: integer() and real() give
+// their default, text() an empty string. reals() and count() do not put up with it.
+//
+// The first error stays (ok(), failure()) and all values after it are the defaults. Values: a number may have
+// blanks on both sides; an integer may be written as a real without a fraction, a real as an integer;
+// exponents have an E or a D; a string is nHtext of any characters, over as many lines as it needs.
+class Parameters {
+ public:
+  struct Failure {
+    Spot spot;
+    std::string text;
+    bool unsupported =
+        false;  // well formed, but not something that this version does: not an error of the file
+  };
+
+  Parameters(const Lines& lines, Section section, int first, int last, Delimiters delimiters);
+
+  std::int64_t integer(std::int64_t otherwise = 0);
+  double real(double otherwise = 0);
+  bool logical(bool otherwise = false) { return integer(otherwise ? 1 : 0) != 0; }
+  // A directory pointer as it stands: 0 for none, possibly negative or nonsense; File::entity() judges it.
+  int pointer();
+  std::string text();
+  void skip();  // any value
+
+  // `count` reals into `out`; a defaulted one is 0. An error where the record ends before.
+  bool reals(double* out, std::size_t count);
+  // How many things follow, each of at least `fields_each` values: an error where it is negative, or more
+  // than there is room for. `what` for the message: "control points". 0 after an error.
+  std::size_t count(std::string_view what, std::size_t fields_each = 1);
+
+  // An upper bound of the number of values left: of what a count in the file may claim.
+  [[nodiscard]] std::size_t room() const;
+  // Has the record delimiter been passed?
+  [[nodiscard]] bool at_end() const { return done_; }
+
+  [[nodiscard]] bool ok() const { return !failure_; }
+  [[nodiscard]] const std::optional<Failure>& failure() const { return failure_; }
+  // The first one stays. At the value read last, or at `spot`.
+  void fail(std::string text);
+  void fail(const Spot& spot, std::string text);
+  void replace_failure(const Spot& spot, std::string text) {
+    failure_ = Failure{spot, std::move(text), false};
+  }
+  // The same for what is well formed but not done here: a warning, and the entity is left out.
+  void give_up(std::string text);
+  // Where the value read last began.
+  [[nodiscard]] Spot spot() const { return value_spot_; }
+
+ private:
+  friend std::optional<Delimiters> read_delimiters(Parameters& cursor);
+
+  [[nodiscard]] Line line() const { return lines_->line(section_, line_); }
+  [[nodiscard]] Spot here() const;
+  void enter(int line);
+  bool next_line();
+  bool skip_blanks();
+  bool field(std::string_view& token);
+  bool join(std::string_view& token);
+  bool take_delimiter();
+  bool slow_real(double& value);
+  bool characters(std::size_t count, std::string& text);
+
+  const Lines* lines_;
+  Section section_;
+  int line_, last_;
+  Delimiters delimiters_;
+  const char* at_ = nullptr;
+  const char* end_ = nullptr;    // of the data on the present line
+  const char* start_ = nullptr;  // of the present line
+  bool done_ = false;
+  Spot value_spot_;
+  std::string joined_;  // a number that was broken across two lines
+  std::optional<Failure> failure_;
+};
+
+// The delimiters, which are the first two values of the global section; nothing after an error.
+std::optional<Delimiters> read_delimiters(Parameters& cursor);
+
+}  // namespace selvage::formats::iges

@@ -1,0 +1,111 @@
+// What the functions that read entities share: other entities by pointer, attributes, messages. types.h lists
+// these functions, a table row an entity type.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "cad/model.h"
+#include "formats/iges/file.h"
+#include "formats/iges/placement.h"
+
+namespace selvage::formats::iges {
+
+// Name, colour and level of an entity.
+struct Attributes {
+  std::string name;  // of its property 406 form 15, else its label; may be empty
+  std::optional<cad::Color> color;
+  int level = 0;
+};
+
+// Where something stands that other entities hold: groups and subfigure instances.
+struct Context {
+  Placement placement;  // applied after the entity's own
+  std::string group;    // name of the outermost group; empty: none
+};
+
+class Reading {
+ public:
+  Reading(const File& file, TextReport& report, cad::Model& model);
+
+  [[nodiscard]] const File& file() const { return file_; }
+  [[nodiscard]] TextReport& report() { return report_; }
+  [[nodiscard]] cad::Model& model() { return model_; }
+
+  // The geometry of the entity at `pointer`, with its own transformation applied, for an entity that is made
+  // of it and whose parameters are `by`: these fail where there is no such entity, where it is of another
+  // kind or holds `by`'s entity itself, and give up where it is of a type that is not understood. The entity
+  // is then part of the other one and does not stand for itself.
+  std::optional<nurbs::Curve> curve(int pointer, Parameters& by);
+  std::optional<nurbs::Surface> surface(int pointer, Parameters& by);
+  std::optional<cad::Face> face(int pointer, Parameters& by);
+  std::optional<cad::Part> part(int pointer, Parameters& by);
+  // The entry there, whatever it is (an edge list, a vertex list, a boundary); null after by.fail().
+  const DirectoryEntry* entry(int pointer, Parameters& by);
+  // The same, of one type; it is marked as part of the other one.
+  const DirectoryEntry* entry(int pointer, int type, Parameters& by);
+  // Call it for what is read through entry(): the entity does not stand for itself.
+  void use(int pointer);
+
+  // The entity's transformation, with those that the 124 has itself; the identity after an error (reported).
+  const Placement& placement(const DirectoryEntry& entry);
+
+  // Puts the entity into the model: as a part, a curve, or what it holds. Groups and instances call it for
+  // their members. `by` as above.
+  void stand(int pointer, const Context& context, Parameters& by);
+  // Is it a surface or a face, so that a group of nothing else is one part?
+  [[nodiscard]] bool is_face(int pointer) const;
+  // A part that is a face each member, in their order.
+  void stand_together(const DirectoryEntry& group, const std::string& name, const std::vector<int>& members,
+                      const Context& context, Parameters& by);
+
+  // Name, colour and level; `parameters` stand behind the entity's own.
+  Attributes attributes(const DirectoryEntry& entry, Parameters& parameters);
+
+  // Against files that hold little and say much (a subfigure of subfigures): counts control points over all
+  // that is made, and fails past most_points.
+  bool spend(std::size_t points, Parameters& by);
+  static constexpr std::size_t most_points = 100'000'000;
+
+  void warning(const DirectoryEntry& entry, const std::string& text);
+  // Reports the failure of an entity's parameters, if there is one, once; true if there is none.
+  bool finish(const DirectoryEntry& entry, Parameters& parameters);
+
+  // Everything that stands for itself.
+  void stand_all();
+
+ private:
+  template <class Shape, class Read>
+  std::optional<Shape> shape(int pointer, Parameters& by, std::string_view kind, Read read);
+  class Nested;
+
+  void stand_entry(const DirectoryEntry& entry, const Context& context);
+  void count_entities();
+  void find_members();
+  void drop_used();
+  [[nodiscard]] std::optional<cad::Color> color(const DirectoryEntry& entry);
+  cad::Face made_face(const DirectoryEntry& entry, Parameters& parameters, bool& made);
+  [[nodiscard]] cad::Origin origin(const DirectoryEntry& entry) const;
+  static std::size_t index(const DirectoryEntry& entry) {
+    return static_cast<std::size_t>(entry.pointer / 2);
+  }
+
+  const File& file_;
+  TextReport& report_;
+  cad::Model& model_;
+  // By the index of the entity: part of another one; held by a group or definition; being read at present;
+  // its failure was reported.
+  std::vector<char> used_, held_, active_, failed_;
+  int depth_ = 0;
+  std::size_t points_ = 0;
+  std::unordered_map<int, Placement> placements_;
+  std::unordered_map<int, std::optional<cad::Color>> colors_;
+  // Of each face of the model, and of each curve: its entity, or 0 where it may not be dropped.
+  std::vector<int> face_pointers_, curve_pointers_;
+};
+
+}  // namespace selvage::formats::iges
