@@ -1,5 +1,6 @@
 #include "formats/iges/iges.h"
 
+#include "formats/iges/reader.h"
 #include "formats/iges/writer.h"
 
 namespace selvage::formats::iges {
@@ -7,7 +8,8 @@ namespace selvage::formats::iges {
 namespace {
 
 bool sniff(std::string_view head) {
-  if (head.size() < 80 || head[72] != 'S') return false;
+  if (head.size() < 80 || (head[72] != 'S' && head[72] != 'C'))
+    return false;  // C: compressed, refused by name
   for (const char c : head.substr(73, 7))
     if (c != ' ' && (c < '0' || c > '9')) return false;
   return head.substr(0, 72).find_first_of("\r\n") == std::string_view::npos;
@@ -21,6 +23,7 @@ const Descriptor& descriptor() {
       .title = "IGES 5.3, B-spline surfaces or solids, garment pieces",
       .extensions = {".igs", ".iges"},
       .sniff = sniff,
+      .read_model = read_model,
       .open_bodies = [](OutputFile& output,
                         const SurfaceOptions& options) { return open_writer(output, options); },
       .carries_curves = true};

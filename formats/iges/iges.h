@@ -5,7 +5,7 @@
 
 namespace selvage::formats::iges {
 
-// Extensions .igs and .iges; recognised by the `S` in column 73 of the first line. Writer only.
+// Extensions .igs and .iges; recognised by the `S` in column 73 of the first line.
 const Descriptor& descriptor();
 
 }  // namespace selvage::formats::iges

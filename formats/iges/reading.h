@@ -52,7 +52,7 @@ class Reading {
   void use(int pointer);
 
   // The entity's transformation, with those that the 124 has itself; the identity after an error (reported).
-  const Placement& placement(const DirectoryEntry& entry);
+  Placement placement(const DirectoryEntry& entry);
 
   // Puts the entity into the model: as a part, a curve, or what it holds. Groups and instances call it for
   // their members. `by` as above.
@@ -60,7 +60,7 @@ class Reading {
   // Is it a surface or a face, so that a group of nothing else is one part?
   [[nodiscard]] bool is_face(int pointer) const;
   // A part that is a face each member, in their order.
-  void stand_together(const DirectoryEntry& group, const std::string& name, const std::vector<int>& members,
+  void stand_together(const DirectoryEntry& group, const Attributes& own, const std::vector<int>& members,
                       const Context& context, Parameters& by);
 
   // Name, colour and level; `parameters` stand behind the entity's own.
@@ -84,11 +84,18 @@ class Reading {
   class Nested;
 
   void stand_entry(const DirectoryEntry& entry, const Context& context);
+  void stand_face(const DirectoryEntry& entry, const Context& context, Parameters& parameters);
+  void stand_part(const DirectoryEntry& entry, const Context& context, Parameters& parameters,
+                  std::optional<cad::Part> part);
+  void stand_curve(const DirectoryEntry& entry, const Context& context, Parameters& parameters,
+                   std::optional<nurbs::Curve> curve);
+  std::optional<cad::Face> read_face(const DirectoryEntry& entry, Parameters& by);
   void count_entities();
   void find_members();
+  void find_circles(const std::unordered_map<int, std::vector<int>>& members);
+  void read_levels();
   void drop_used();
   [[nodiscard]] std::optional<cad::Color> color(const DirectoryEntry& entry);
-  cad::Face made_face(const DirectoryEntry& entry, Parameters& parameters, bool& made);
   [[nodiscard]] cad::Origin origin(const DirectoryEntry& entry) const;
   static std::size_t index(const DirectoryEntry& entry) {
     return static_cast<std::size_t>(entry.pointer / 2);
@@ -102,7 +109,6 @@ class Reading {
   std::vector<char> used_, held_, active_, failed_;
   int depth_ = 0;
   std::size_t points_ = 0;
-  std::unordered_map<int, Placement> placements_;
   std::unordered_map<int, std::optional<cad::Color>> colors_;
   // Of each face of the model, and of each curve: its entity, or 0 where it may not be dropped.
   std::vector<int> face_pointers_, curve_pointers_;

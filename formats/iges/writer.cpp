@@ -350,7 +350,7 @@ Result<std::unique_ptr<BodyWriter>> open_writer(OutputFile& output, const Surfac
   Header header{.title = options.title,
                 .file_name = options.file_name,
                 .units = options.units,
-                .time = iges_timestamp()};
+                .time = options.date.empty() ? iges_timestamp() : options.date};
   return std::unique_ptr<BodyWriter>(std::make_unique<Writer>(output, options, std::move(header), limits));
 }
 

@@ -80,6 +80,7 @@ struct Model {
   double resolution = 0;           // IGES parameter 19, STEP uncertainty; file units; 0: not given
   std::vector<Part> parts;         // in file order; every face is in one
   std::vector<NamedCurve> curves;  // that stand for themselves
+  std::map<int, std::string> levels;  // names of levels, as far as the file gives them (IGES 406 form 3)
   // Every entity of the file, by its format's name ("128", "MANIFOLD_SOLID_BREP"), and of these the ones that
   // are not understood, with a word on what they are ("212 (general note)").
   std::map<std::string, std::uint64_t> entities, unknown;

@@ -1,0 +1,185 @@
+// 126 and 128: what is read with nearly every file, and nearly all of its bytes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "formats/iges/types.h"
+#include "nurbs/basis.h"
+#include "nurbs/restrict.h"
+
+namespace selvage::formats::iges {
+
+namespace {
+
+// The highest index and the degree of one direction.
+struct Direction {
+  std::int64_t last = 0, degree = 0;
+
+  [[nodiscard]] std::size_t points() const { return static_cast<std::size_t>(last) + 1; }
+  [[nodiscard]] std::size_t knots() const { return static_cast<std::size_t>(last + degree) + 2; }
+};
+
+std::int64_t read_last(Parameters& in) {
+  const std::int64_t last = in.integer();
+  if (in.ok() && (last < 1 || last > 1'000'000'000))
+    in.fail(fmt::format("the highest index of control points cannot be {}", last));
+  return last;
+}
+
+std::int64_t read_degree(Parameters& in, std::int64_t last) {
+  const std::int64_t degree = in.integer();
+  if (!in.ok()) return 0;
+  if (degree < 1 || degree > last)
+    in.fail(fmt::format("a degree of {} with {} control points", degree, last + 1));
+  else if (degree > nurbs::max_degree)
+    in.fail(fmt::format("a degree of {}: at most {} is read", degree, nurbs::max_degree));
+  return degree;
+}
+
+// Not decreasing, with a domain, and nowhere so many equal ones that the shape falls apart.
+bool read_knots(Parameters& in, const Direction& direction, std::vector<double>& knots,
+                std::string_view which) {
+  knots.resize(direction.knots());
+  Parameters start = in;
+  if (!in.reals(knots.data(), knots.size())) return false;
+  const auto order = static_cast<std::size_t>(direction.degree) + 1;
+  const std::size_t points = direction.points();
+  const auto fail = [&](std::size_t at, std::string text) {
+    std::vector<double> before(at + 1);
+    start.reals(before.data(), at);
+    start.real();
+    in.fail(start.spot(), std::move(text));
+    return false;
+  };
+  for (std::size_t i = 1; i < knots.size(); ++i)
+    if (knots[i] < knots[i - 1])
+      return fail(i, fmt::format("{} {} is {} and thus below the one before it, {}", which, i + 1, knots[i],
+                                 knots[i - 1]));
+  if (!(knots[order - 1] < knots[points]))
+    return fail(points,
+                fmt::format("the {}s span nothing: from {} to {}", which, knots[order - 1], knots[points]));
+  for (std::size_t i = 1; i + order <= points; ++i)  // inner ones
+    if (knots[i] == knots[i + order - 1] && knots[i] > knots[order - 1] && knots[i] < knots[points])
+      return fail(i, fmt::format("{} {} stands {} times or more: the shape of degree {} falls apart there",
+                                 which, knots[i], order, direction.degree));
+  return true;
+}
+
+// Empty where all are 1.
+bool read_weights(Parameters& in, std::size_t count, std::vector<double>& weights) {
+  weights.resize(count);
+  Parameters start = in;
+  if (!in.reals(weights.data(), count)) return false;
+  const auto bad = std::find_if(weights.begin(), weights.end(), [](double weight) { return !(weight > 0); });
+  if (bad != weights.end()) {
+    std::vector<double> before(count);
+    start.reals(before.data(), static_cast<std::size_t>(bad - weights.begin()));
+    start.real();
+    in.fail(start.spot(), fmt::format("a weight of {}: weights have to be above 0", *bad));
+    return false;
+  }
+  if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 1; })) {
+    weights.clear();
+    weights.shrink_to_fit();
+  }
+  return true;
+}
+
+struct Range {
+  double from = 0, to = 0;
+};
+
+// What of the domain the file says is the shape: all of it where the file says nothing, or more than there
+// is.
+Range used_range(Reading& reading, const DirectoryEntry& entry, const Range& said, const Range& domain,
+                 std::string_view which) {
+  const double slack = 1e-9 * (domain.to - domain.from);
+  if (said.from == domain.from && said.to == domain.to) return domain;
+  if (said.from == 0 && said.to == 0) return domain;  // defaulted
+  if (!(said.from < said.to) || said.from < domain.from - slack || said.to > domain.to + slack) {
+    reading.warning(
+        entry, fmt::format("its range {} to {} of {} is not within the knots' {} to {}; all of it is taken",
+                           said.from, said.to, which, domain.from, domain.to));
+    return domain;
+  }
+  Range used{std::max(said.from, domain.from), std::min(said.to, domain.to)};
+  if (used.from - domain.from <= slack) used.from = domain.from;
+  if (domain.to - used.to <= slack) used.to = domain.to;
+  return used;
+}
+
+bool is_all(const Range& used, const Range& domain) {
+  return used.from == domain.from && used.to == domain.to;
+}
+
+std::optional<nurbs::Curve> read_curve(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
+  Direction along;
+  along.last = read_last(in);
+  along.degree = read_degree(in, along.last);
+  for (int flag = 1; flag <= 4; ++flag)
+    in.integer();  // planar, closed, polynomial, periodic: seen in the numbers
+  if (!in.ok()) return std::nullopt;
+  if (along.knots() + 4 * along.points() > in.room()) {
+    in.fail(fmt::format("{} control points: more than the entity's lines can hold", along.points()));
+    return std::nullopt;
+  }
+  nurbs::Curve curve;
+  curve.degree = static_cast<int>(along.degree);
+  if (!read_knots(in, along, curve.knots, "knot") || !read_weights(in, along.points(), curve.weights))
+    return std::nullopt;
+  curve.points.resize(along.points());
+  if (!in.reals(curve.points.data()->data(), 3 * curve.points.size())) return std::nullopt;
+  const double from = in.real(), to = in.real();
+  for (int part = 0; part < 3; ++part) in.real();  // the plane's normal: seen in the points
+  if (!in.ok()) return std::nullopt;
+  const Range domain{curve.first_parameter(), curve.last_parameter()};
+  const Range used = used_range(reading, entry, {from, to}, domain, "the parameter");
+  if (is_all(used, domain)) return curve;
+  return nurbs::restricted(curve, used.from, used.to);
+}
+
+std::optional<nurbs::Surface> read_surface(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
+  Direction u, v;
+  u.last = read_last(in);
+  v.last = read_last(in);
+  u.degree = read_degree(in, u.last);
+  v.degree = read_degree(in, v.last);
+  for (int flag = 1; flag <= 5; ++flag) in.integer();  // closed, polynomial, periodic: seen in the numbers
+  if (!in.ok()) return std::nullopt;
+  if (u.knots() + v.knots() + 4 * u.points() * v.points() > in.room()) {
+    in.fail(
+        fmt::format("{} x {} control points: more than the entity's lines can hold", u.points(), v.points()));
+    return std::nullopt;
+  }
+  nurbs::Surface surface;
+  surface.degree_u = static_cast<int>(u.degree);
+  surface.degree_v = static_cast<int>(v.degree);
+  surface.count_u = static_cast<int>(u.points());
+  surface.count_v = static_cast<int>(v.points());
+  const std::size_t count = u.points() * v.points();
+  if (!read_knots(in, u, surface.knots_u, "knot of u") || !read_knots(in, v, surface.knots_v, "knot of v") ||
+      !read_weights(in, count, surface.weights))
+    return std::nullopt;
+  surface.points.resize(count);
+  if (!in.reals(surface.points.data()->data(), 3 * count)) return std::nullopt;
+  std::array<double, 4> ranges{};
+  for (double& range : ranges) range = in.real();
+  if (!in.ok()) return std::nullopt;
+  const Range domain_u{surface.first_u(), surface.last_u()}, domain_v{surface.first_v(), surface.last_v()};
+  const Range used_u = used_range(reading, entry, {ranges[0], ranges[1]}, domain_u, "u");
+  const Range used_v = used_range(reading, entry, {ranges[2], ranges[3]}, domain_v, "v");
+  if (is_all(used_u, domain_u) && is_all(used_v, domain_v)) return surface;
+  return nurbs::restricted(surface, used_u.from, used_u.to, used_v.from, used_v.to);
+}
+
+}  // namespace
+
+std::span<const EntityType> bspline_types() {
+  static constexpr std::array<EntityType, 2> types = {
+      {{.number = 126, .curve = read_curve}, {.number = 128, .surface = read_surface}}};
+  return types;
+}
+
+}  // namespace selvage::formats::iges

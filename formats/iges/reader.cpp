@@ -1,0 +1,35 @@
+#include "formats/iges/reader.h"
+
+#include "formats/iges/reading.h"
+
+namespace selvage::formats::iges {
+
+namespace {
+
+std::optional<cad::Model> read(const Source& source, TextReport& report) {
+  const std::optional<File> file = File::open(source, report);
+  if (!file) return std::nullopt;
+  const Global& global = file->global();
+  cad::Model model;
+  model.file = source.name();
+  // Our own writer puts the file's name where there is no title.
+  if (global.product != global.file_name) model.title = global.product;
+  model.date = global.date;
+  model.units = global.units;
+  model.resolution = global.resolution;
+  Reading reading(*file, report, model);
+  reading.stand_all();
+  if (report.errors() > 0) return std::nullopt;
+  return model;
+}
+
+}  // namespace
+
+std::optional<cad::Model> read_model(const Source& source, Diagnostics& diagnostics) {
+  TextReport report(source);
+  std::optional<cad::Model> model = read(source, report);
+  report.hand_over(diagnostics);
+  return model;
+}
+
+}  // namespace selvage::formats::iges

@@ -1,0 +1,247 @@
+// What of an IGES file stands for itself, and how it comes into the model.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/iges/reading.h"
+#include "formats/iges/types.h"
+
+namespace selvage::formats::iges {
+
+namespace {
+
+constexpr std::size_t cost_of_instance = 30;  // in control points, so that nothing is free
+
+// A flat curve (use 5) has no place in space; a definition (2) stands only where it is used.
+bool may_stand(const DirectoryEntry& entry) {
+  return !entry.is_physically_dependent() && entry.use != 2 && entry.use != 5;
+}
+
+}  // namespace
+
+void Reading::stand(int pointer, const Context& context, Parameters& by) {
+  const DirectoryEntry* const found = entry(pointer, by);
+  if (found == nullptr || !spend(cost_of_instance, by)) return;
+  if (active_[index(*found)] != 0) {
+    by.fail(fmt::format("D{} is part of itself", pointer));
+    return;
+  }
+  if (depth_ >= 64) {
+    by.fail("groups and subfigures are nested too deep");
+    return;
+  }
+  stand_entry(*found, context);
+}
+
+void Reading::stand_entry(const DirectoryEntry& entry, const Context& context) {
+  const EntityType* const type = type_of(entry);
+  if (type == nullptr || report_.is_full()) return;
+  Parameters parameters = file_.parameters(entry);
+  if (type->face != nullptr || type->surface != nullptr) {
+    stand_face(entry, context, parameters);
+    return;
+  }
+  if (type->stand == nullptr && type->part == nullptr && type->curve == nullptr) return;
+  active_[index(entry)] = 1;
+  ++depth_;
+  const Context inner{context.placement * placement(entry), context.group};
+  if (!parameters.ok())
+    finish(entry, parameters);
+  else if (type->stand != nullptr)
+    type->stand(*this, entry, parameters, inner);
+  else if (type->part != nullptr)
+    stand_part(entry, inner, parameters, type->part(*this, entry, parameters));
+  else
+    stand_curve(entry, inner, parameters, type->curve(*this, entry, parameters));
+  finish(entry, parameters);
+  --depth_;
+  active_[index(entry)] = 0;
+}
+
+void Reading::stand_face(const DirectoryEntry& entry, const Context& context, Parameters& parameters) {
+  std::optional<cad::Face> face = read_face(entry, parameters);
+  if (!face) return;
+  context.placement.apply(*face);
+  cad::Part part;
+  part.name = face->name;
+  part.color = face->color;
+  part.level = face->level;
+  part.group = context.group;
+  part.origin = face->origin;
+  part.faces.push_back(std::move(*face));
+  face_pointers_.push_back(entry.pointer);
+  model_.parts.push_back(std::move(part));
+}
+
+void Reading::stand_part(const DirectoryEntry& entry, const Context& context, Parameters& parameters,
+                         std::optional<cad::Part> part) {
+  if (!part) return;
+  std::size_t points = 0;
+  for (const cad::Face& face : part->faces) points += face.surface.points.size();
+  spend(points, parameters);
+  Attributes own = attributes(entry, parameters);
+  if (!parameters.ok()) return;
+  part->name = std::move(own.name);
+  part->color = own.color;
+  part->level = own.level;
+  part->group = context.group;
+  part->origin = origin(entry);
+  context.placement.apply(*part);
+  face_pointers_.insert(face_pointers_.end(), part->faces.size(), 0);
+  model_.parts.push_back(std::move(*part));
+}
+
+void Reading::stand_curve(const DirectoryEntry& entry, const Context& context, Parameters& parameters,
+                          std::optional<nurbs::Curve> curve) {
+  if (!curve) return;
+  spend(curve->points.size(), parameters);
+  Attributes own = attributes(entry, parameters);
+  if (!parameters.ok()) return;
+  context.placement.apply(*curve);
+  curve_pointers_.push_back(entry.pointer);
+  model_.curves.push_back({std::move(*curve), std::move(own.name), own.color, own.level, origin(entry)});
+}
+
+void Reading::stand_together(const DirectoryEntry& group, const Attributes& own,
+                             const std::vector<int>& members, const Context& context, Parameters& by) {
+  cad::Part part;
+  part.name = own.name;
+  part.color = own.color;
+  part.level = own.level;
+  part.group = context.group;
+  part.origin = origin(group);
+  for (const int member : members) {
+    const DirectoryEntry* const found = entry(member, by);
+    if (found == nullptr || report_.is_full()) return;
+    std::optional<cad::Face> face = read_face(*found, by);
+    if (!face) continue;
+    context.placement.apply(*face);
+    part.faces.push_back(std::move(*face));
+    face_pointers_.push_back(0);
+  }
+  if (!part.faces.empty()) model_.parts.push_back(std::move(part));
+}
+
+// Groups of groups, instances of definitions that hold instances: no entity may hold itself.
+void Reading::find_circles(const std::unordered_map<int, std::vector<int>>& members) {
+  enum class State : char { fresh, open, done };
+  std::vector<State> states(file_.directory().size(), State::fresh);
+  struct Step {
+    const DirectoryEntry* entry;
+    std::size_t next;
+  };
+  std::vector<Step> path;
+  for (const DirectoryEntry& root : file_.directory()) {
+    if (members.count(root.pointer) == 0 || states[index(root)] != State::fresh) continue;
+    path.push_back({&root, 0});
+    states[index(root)] = State::open;
+    while (!path.empty()) {
+      Step& step = path.back();
+      const auto found = members.find(step.entry->pointer);
+      if (found == members.end() || step.next == found->second.size()) {
+        states[index(*step.entry)] = State::done;
+        path.pop_back();
+        continue;
+      }
+      const DirectoryEntry* const member = file_.entity(found->second[step.next++]);
+      if (member == nullptr || states[index(*member)] == State::done) continue;
+      if (states[index(*member)] == State::open) {
+        if (std::exchange(failed_[index(*member)], 1) == 0)
+          report_.error(file_.spot(*member), fmt::format("{}: it holds itself (through D{})", member->name(),
+                                                         step.entry->pointer));
+        continue;
+      }
+      states[index(*member)] = State::open;
+      path.push_back({member, 0});
+    }
+  }
+}
+
+void Reading::find_members() {
+  std::unordered_map<int, std::vector<int>> members;
+  for (const DirectoryEntry& entry : file_.directory()) {
+    const EntityType* const type = type_of(entry);
+    if (type == nullptr || type->members == nullptr) continue;
+    Parameters parameters = file_.parameters(entry);
+    std::vector<int> held;
+    if (parameters.ok()) held = type->members(*this, entry, parameters);
+    if (!finish(entry, parameters)) continue;
+    for (const int pointer : held)
+      if (const DirectoryEntry* const member = file_.entity(pointer)) held_[index(*member)] = 1;
+    members.emplace(entry.pointer, std::move(held));
+  }
+  find_circles(members);
+}
+
+void Reading::count_entities() {
+  const DirectoryEntry* blanked = nullptr;
+  std::uint64_t blanked_count = 0;
+  // Few kinds, many entities: names are made once a kind.
+  std::map<std::pair<int, int>, std::uint64_t> types, unknown;
+  std::map<std::pair<int, int>, const DirectoryEntry*> first;
+  for (const DirectoryEntry& entry : file_.directory()) {
+    ++types[{entry.type, 0}];
+    if (type_of(entry) == nullptr && ++unknown[{entry.type, entry.form}] == 1)
+      first[{entry.type, entry.form}] = &entry;
+    if (entry.blanked && !entry.is_physically_dependent() && blanked_count++ == 0) blanked = &entry;
+  }
+  for (const auto& [kind, count] : types) model_.entities[std::to_string(kind.first)] = count;
+  for (const auto& [kind, count] : unknown) {
+    const auto [type, form] = kind;
+    const std::string_view title = entity_title(type);
+    const std::string name = fmt::format("{}{} ({})", type, form != 0 ? fmt::format(" form {}", form) : "",
+                                         title.empty() ? "no type of IGES 5.3" : title);
+    model_.unknown[name] += count;
+    const bool is_geometry = (type >= 100 && type < 200) || (type >= 408 && type < 500) || type > 500;
+    if (is_geometry)
+      report_.warning(
+          file_.spot(*first[kind]),
+          fmt::format("{} of type {}: not understood, and left out",
+                      count == 1 ? std::string("an entity") : fmt::format("{} entities", count), name));
+  }
+  if (blanked != nullptr)
+    report_.warning(file_.spot(*blanked),
+                    fmt::format("{} marked as not to be shown (blanked); taken all the same",
+                                blanked_count == 1 ? std::string("an entity is")
+                                                   : fmt::format("{} entities are", blanked_count)));
+}
+
+void Reading::read_levels() {
+  for (const DirectoryEntry& entry : file_.directory()) {
+    if (entry.type != 406 || entry.form != 3 || entry.level < 0) continue;
+    Parameters parameters = file_.parameters(entry);
+    parameters.integer();  // how many
+    parameters.integer();  // function code
+    std::string name = readable(parameters.text());
+    if (finish(entry, parameters) && !name.empty()) model_.levels.emplace(entry.level, std::move(name));
+  }
+}
+
+// Surfaces and curves that say that they stand for themselves, but are part of something.
+void Reading::drop_used() {
+  const auto is_used = [this](int pointer) {
+    return pointer != 0 && used_[index(*file_.entity(pointer))] != 0;
+  };
+  std::size_t next = 0;
+  std::erase_if(model_.parts, [&](const cad::Part& part) {
+    const int pointer = part.faces.size() == 1 ? face_pointers_[next] : 0;
+    next += part.faces.size();
+    return is_used(pointer);
+  });
+  next = 0;
+  std::erase_if(model_.curves, [&](const cad::NamedCurve&) { return is_used(curve_pointers_[next++]); });
+}
+
+void Reading::stand_all() {
+  count_entities();
+  read_levels();
+  find_members();
+  if (report_.errors() > 0) return;
+  const Context top{Placement::scaling(file_.global().factor), {}};
+  for (const DirectoryEntry& entry : file_.directory())
+    if (may_stand(entry) && held_[index(entry)] == 0) stand_entry(entry, top);
+  drop_used();
+}
+
+}  // namespace selvage::formats::iges
