@@ -18,8 +18,20 @@ constexpr std::array<std::string_view, section_count> names = {"start", "global"
                                                                "terminate"};
 
 std::optional<std::size_t> section_of(char letter) {
-  const std::size_t at = letters.find(letter);
-  return at == std::string_view::npos || letter == '\0' ? std::nullopt : std::optional(at);
+  switch (letter) {
+    case 'P':
+      return 3;
+    case 'D':
+      return 2;
+    case 'G':
+      return 1;
+    case 'S':
+      return 0;
+    case 'T':
+      return 4;
+    default:
+      return std::nullopt;
+  }
 }
 
 std::string_view without_trailing_blanks(std::string_view text) {
@@ -157,12 +169,12 @@ bool Lines::index_regular(TextReport& report, bool& failed) {
   const auto count = static_cast<std::int64_t>((size + stride - columns) / stride);
   if (count > static_cast<std::int64_t>(section_count) * most_lines) return false;
   const char* at = bytes_.data();
-  for (std::int64_t i = 1; i < count; ++i, at += stride)
+  for (std::int64_t i = 1; i <= count; ++i, at += stride) {
+    if (!section_of(at[letter_column])) return false;
+    if (i == count) break;
     if ((stride > columns && at[stride - 1] != '\n') || (stride == columns + 2 && at[columns] != '\r'))
       return false;
-  at = bytes_.data();
-  for (std::int64_t i = 0; i < count; ++i, at += stride)
-    if (letters.find(at[letter_column]) == std::string_view::npos) return false;
+  }
   stride_ = stride;
   at = bytes_.data();
   Order order(*this, report);
