@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "pipeline/diff.h"
 #include "pipeline/edit.h"
 #include "pipeline/options.h"
 
@@ -14,6 +15,7 @@ struct Parsed {
   pipeline::Options options;
   std::string shard, units, ends, detail = "filaments";
   pipeline::EditRequest edit;
+  pipeline::DiffRequest diff;
   std::function<int()> action;
 };
 
@@ -21,17 +23,24 @@ void add_convert(CLI::App& program, Parsed& parsed);
 void add_check(CLI::App& program, Parsed& parsed);
 void add_mesh(CLI::App& program, Parsed& parsed);
 void add_info(CLI::App& program, Parsed& parsed);
+void add_diff(CLI::App& program, Parsed& parsed);
 void add_edit(CLI::App& program, Parsed& parsed);
 void add_view(CLI::App& program, Parsed& parsed);
 void add_formats(CLI::App& program, Parsed& parsed);
 
 // Options that several subcommands have (common.cpp).
 void add_common(CLI::App& command, Parsed& parsed);
+// Of these, the inputs and what every batch has, without --tolerance.
+void add_batch(CLI::App& command, Parsed& parsed);
+// Of these, what a single job has: -j, --quiet, --timeout, ...
+void add_running(CLI::App& command, Parsed& parsed, pipeline::Options& options);
 void add_output(CLI::App& command, Parsed& parsed);
 // -o and --resume, without --to.
 void add_place(CLI::App& command, Parsed& parsed);
 void add_ends(CLI::App& command, Parsed& parsed);
 void add_units(CLI::App& command, Parsed& parsed, const std::string& help);
+// Takes over what was parsed as words. Errors (usage): a shard that is none, --resume without a report.
+Status complete(const Parsed& parsed, pipeline::Options& options);
 // Runs the pipeline with the parsed options when the subcommand was named.
 void run_pipeline(CLI::App& command, Parsed& parsed, pipeline::Command what);
 

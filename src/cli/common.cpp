@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<std::string_view, 7> later_options = {
     "--instances", "--cut", "--matrix", "--periodic", "--gap", "--relax", "--as-published"};
-constexpr std::array<std::string_view, 4> later_commands = {"roundtrip", "diff", "relax", "report"};
+constexpr std::array<std::string_view, 3> later_commands = {"roundtrip", "relax", "report"};
 
 Status parse_shard(const std::string& text, pipeline::Options& options) {
   if (text.empty()) return {};
@@ -26,8 +26,9 @@ Status parse_shard(const std::string& text, pipeline::Options& options) {
   return error(Kind::usage, fmt::format("--shard {}: it is I/N with 0 <= I < N, for example 0/4", text));
 }
 
-Status complete(Parsed& parsed) {
-  pipeline::Options& options = parsed.options;
+}  // namespace
+
+Status complete(const Parsed& parsed, pipeline::Options& options) {
   if (Status status = parse_shard(parsed.shard, options); !status.ok()) return status;
   if (!parsed.units.empty()) options.units = unit_named(parsed.units);
   if (parsed.detail == "yarn") options.detail = fabric::Detail::yarn;
@@ -39,8 +40,6 @@ Status complete(Parsed& parsed) {
     return error(Kind::usage, "--resume goes by the report of the run before: name it with --report FILE");
   return {};
 }
-
-}  // namespace
 
 std::string later_option(const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
@@ -55,25 +54,34 @@ std::string later_command(const std::string& word) {
 
 void add_common(CLI::App& command, Parsed& parsed) {
   pipeline::Options& o = parsed.options;
+  add_batch(command, parsed);
+  command.add_option("--tolerance", o.tolerance, "of tubes, in the input's unit, instead of the input's own")
+      ->check(CLI::PositiveNumber);
+}
+
+void add_batch(CLI::App& command, Parsed& parsed) {
+  pipeline::Options& o = parsed.options;
   command.add_option("INPUT", o.inputs, "files, folders, patterns, @LIST of paths, - for standard input")
       ->required();
+  add_running(command, parsed, o);
+  command.add_option("--report", o.report, "write a JSON report to this file");
+  command.add_option("--shard", parsed.shard, "I/N: only the I-th of N equal parts of the inputs, from 0");
+}
+
+void add_running(CLI::App& command, Parsed& parsed, pipeline::Options& o) {
   command.add_option("-j", o.workers, "inputs worked on at once (default: one a core)")
       ->check(CLI::Range(1, 4096));
-  command.add_option("--report", o.report, "write a JSON report to this file");
   command.add_flag("--quiet", o.quiet, "errors only");
   command.add_flag("-v,--verbose", o.verbose, "say more");
   command.add_flag("--no-progress", o.no_progress, "no progress bar or lines");
   command.add_option("--timeout", o.timeout, "seconds an input may take")->check(CLI::PositiveNumber);
   command.add_option("--memory", o.memory, "MB of memory an input may take")->check(CLI::PositiveNumber);
   command.add_flag("--strict", o.strict, "a warning fails its input");
-  command.add_option("--tolerance", o.tolerance, "of tubes, in the input's unit, instead of the input's own")
-      ->check(CLI::PositiveNumber);
   command
       .add_option("--detail", parsed.detail,
                   "yarn, plies or filaments: how far yarns are taken apart (default: as far as "
                   "their threads say)")
       ->check(CLI::IsMember({"yarn", "plies", "filaments"}));
-  command.add_option("--shard", parsed.shard, "I/N: only the I-th of N equal parts of the inputs, from 0");
 }
 
 void add_output(CLI::App& command, Parsed& parsed) {
@@ -103,7 +111,8 @@ void run_pipeline(CLI::App& command, Parsed& parsed, pipeline::Command what) {
   command.callback([&parsed, what] {
     parsed.action = [&parsed, what] {
       parsed.options.command = what;
-      if (Status status = complete(parsed); !status.ok()) return pipeline::refuse(status.error());
+      if (Status status = complete(parsed, parsed.options); !status.ok())
+        return pipeline::refuse(status.error());
       return pipeline::run(parsed.options);
     };
   });

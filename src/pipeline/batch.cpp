@@ -33,12 +33,6 @@ constexpr int well = 0, failed = 1, usage = 2, defect = 3, interrupted = 130;
 constexpr double report_interval = 10;  // seconds
 constexpr double report_share = 0.05;
 
-std::size_t available_cores() {
-  cpu_set_t set;
-  if (::sched_getaffinity(0, sizeof set, &set) != 0) return 1;
-  return static_cast<std::size_t>(std::max(1, CPU_COUNT(&set)));
-}
-
 class Batch {
  public:
   Batch(const Options& options, std::vector<Input> inputs, std::vector<std::vector<PlannedOutput>> outputs,
@@ -104,7 +98,7 @@ double seconds_since(Clock::time_point start) {
 
 int Batch::run_one(std::size_t index, const Channel& channel) const {
   Job job(options_, inputs_[index], outputs_[index], channel);
-  const std::size_t workers = options_.workers > 0 ? options_.workers : available_cores();
+  const std::size_t workers = available_cores(options_);
   job.threads = std::max<std::size_t>(1, workers / std::min(workers, inputs_.size()));
   return static_cast<int>(run_job(job, entry_of_earlier(inputs_[index].path), channel));
 }
@@ -259,7 +253,7 @@ int Batch::run(const std::vector<Message>& missing) {
 
   JobPool pool;
   pool.count = inputs_.size();
-  pool.at_once = options_.workers > 0 ? options_.workers : available_cores();
+  pool.at_once = available_cores(options_);
   pool.seconds = options_.timeout;
   pool.mebibytes = options_.memory;
   pool.run = [this](std::size_t job, const Channel& channel) { return run_one(job, channel); };
@@ -303,6 +297,13 @@ Status check_report_place(const Options& options) {
 }
 
 }  // namespace
+
+std::size_t available_cores(const Options& options) {
+  if (options.workers > 0) return options.workers;
+  cpu_set_t set;
+  if (::sched_getaffinity(0, sizeof set, &set) != 0) return 1;
+  return static_cast<std::size_t>(std::max(1, CPU_COUNT(&set)));
+}
 
 int refuse(const Message& message) {
   Message shown = message;

@@ -9,6 +9,9 @@ namespace selvage::pipeline {
 // results to standard output.
 int run(const Options& options);
 
+// How many jobs or threads at once: -j, or one a core that this process may use.
+std::size_t available_cores(const Options& options);
+
 // Says what is wrong with the command line; returns 2.
 int refuse(const Message& message);
 

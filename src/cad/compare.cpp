@@ -1,0 +1,411 @@
+#include "cad/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <numeric>
+
+#include "cad/basis.h"
+#include "cad/outline.h"
+#include "core/parallel.h"
+
+namespace selvage::cad {
+
+namespace {
+
+using nurbs::Surface;
+
+// What the arithmetic of distance_to leaves, as a share of the largest coordinate.
+constexpr double arithmetic = 1e-13;
+
+struct Limits {
+  double points = 0;     // control points that are this near are equal
+  double distances = 0;  // surfaces over different bases
+  double motion = 0;     // what a motion may leave
+};
+
+// Two surfaces that belong together.
+struct SurfaceFinding {
+  Reach reach;
+  std::optional<ControlChange> points;  // where the bases agree
+};
+
+struct PairFinding {
+  Reach reach;              // the worst of its surfaces
+  std::size_t surface = 0;  // that has it, in a
+  bool is_equal = true;     // within the limits
+  std::optional<ControlChange> points;
+  std::size_t changed = 0, count = 0;
+  std::optional<Motion> motion;
+};
+
+class Comparer {
+ public:
+  Comparer(const Subject& a, const Subject& b, const CompareOptions& options)
+      : a_(things_of(a)), b_(things_of(b)), subject_a_(a), subject_b_(b), options_(options) {
+    double size = 0;
+    for (const Things* things : {&a_, &b_})
+      for (const Thing& thing : things->list)
+        if (!thing.box.isEmpty())
+          size =
+              std::max({size, thing.box.min().cwiseAbs().maxCoeff(), thing.box.max().cwiseAbs().maxCoeff()});
+    limits_.points = options.tolerance + options.rounding * size;
+    limits_.distances = std::max(limits_.points, arithmetic * size);
+    limits_.motion = std::max(limits_.points, 10 * arithmetic * size);
+    near_ = std::max(2 * limits_.points, 1e-6 * size);
+  }
+
+  Comparison run();
+
+ private:
+  [[nodiscard]] PairFinding look_at(const Thing& a, const Thing& b) const;
+  // Surface i of a is surface partner[i] of b.
+  [[nodiscard]] PairFinding look_at(const Thing& a, const Thing& b,
+                                    const std::vector<std::size_t>& partner) const;
+  [[nodiscard]] SurfaceFinding compare_surfaces(const Thing& a, std::size_t i, const Thing& b,
+                                                std::size_t j) const;
+  [[nodiscard]] std::vector<std::size_t> partners(const Thing& a, const Thing& b) const;
+  [[nodiscard]] PairFinding compare_unions(const Thing& a, const Thing& b) const;
+  void find_motion(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
+                   const std::vector<SurfaceFinding>& found, PairFinding& finding) const;
+  void report_pair(const Thing& a, const Thing& b, const PairFinding& finding);
+  void report_lonely(const Thing& thing, Difference::Kind kind);
+  void absorb_regrouped(Pairing& pairing);
+  void add_notes();
+
+  Things a_, b_;
+  const Subject& subject_a_;
+  const Subject& subject_b_;
+  const CompareOptions& options_;
+  Limits limits_;
+  double near_ = 0;
+  Comparison out_;
+  std::size_t without_name_ = 0, without_color_ = 0;
+};
+
+SurfaceFinding Comparer::compare_surfaces(const Thing& a, std::size_t i, const Thing& b,
+                                          std::size_t j) const {
+  const Surface &s = *a.surfaces[i], &t = *b.surfaces[j];
+  SurfaceFinding finding;
+  finding.points = compare_control_points(s, t, limits_.points);
+  const bool is_trimmed =
+      i < a.faces.size() && j < b.faces.size() && (!a.faces[i]->loops.empty() || !b.faces[j]->loops.empty());
+  if (finding.points) {
+    finding.reach = {finding.points->largest, finding.points->bound,
+                     s.point(finding.points->i, finding.points->j)};
+    if (finding.reach.at_most <= limits_.points && !is_trimmed) return finding;
+  }
+  const bool by_points = finding.points && finding.reach.at_most <= limits_.points;
+  if (!finding.points) finding.reach = {};
+  if (is_trimmed) {
+    const Reach outlines = outline_distance(*a.faces[i], *b.faces[j], limits_.distances);
+    if (!by_points && !(is_flat(s) && is_flat(t))) {
+      const Reach surfaces = trimmed_distance(*a.faces[i], *b.faces[j], limits_.distances);
+      finding.reach = surfaces.at_most > outlines.at_most ? surfaces : outlines;
+      finding.points.reset();
+    } else if (!by_points || outlines.at_most > std::max(limits_.distances, finding.reach.at_most)) {
+      finding.reach = outlines;
+      finding.points.reset();
+    }
+    return finding;
+  }
+  if (finding.points) return finding;
+  const Reach there = distance_to(s, domain(s), SurfaceSet({&t}), limits_.distances);
+  const Reach back = distance_to(t, domain(t), SurfaceSet({&s}), limits_.distances);
+  finding.reach = there.at_most >= back.at_most ? there : back;
+  return finding;
+}
+
+// Which surface of b belongs to each one of a, which has as many: the same number where that is the nearest,
+// by the boxes.
+std::vector<std::size_t> Comparer::partners(const Thing& a, const Thing& b) const {
+  const std::size_t count = a.surfaces.size();
+  std::vector<std::size_t> partner(count);
+  std::iota(partner.begin(), partner.end(), 0);
+  constexpr std::size_t most = 4000;
+  if (count == 1 || count > most) return partner;
+  const auto boxes = [](const Thing& thing) {
+    std::vector<Box3> list(thing.surfaces.size());
+    for (std::size_t k = 0; k < list.size(); ++k)
+      for (const Vec3& p : thing.surfaces[k]->points) list[k].extend(p);
+    return list;
+  };
+  const std::vector<Box3> of_a = boxes(a), of_b = boxes(b);
+  const Vec3 shift = b.box.center() - a.box.center();
+  const auto distance = [&](std::size_t i, std::size_t j) {
+    return (of_a[i].min() + shift - of_b[j].min()).norm() + (of_a[i].max() + shift - of_b[j].max()).norm();
+  };
+  std::vector<bool> taken(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t best = count;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t j = (i + k) % count;  // its own number first
+      if (taken[j]) continue;
+      const double d = distance(i, j);
+      if (d >= least) continue;
+      least = d;
+      best = j;
+    }
+    partner[i] = best;
+    taken[best] = true;
+  }
+  return partner;
+}
+
+// Each surface against all of the other side's.
+PairFinding Comparer::compare_unions(const Thing& a, const Thing& b) const {
+  PairFinding finding;
+  const SurfaceSet all_a(a.surfaces), all_b(b.surfaces);
+  for (std::size_t i = 0; i < a.surfaces.size(); ++i) {
+    const Range range = i < a.faces.size() ? used_range(*a.faces[i]) : domain(*a.surfaces[i]);
+    const Reach reach = distance_to(*a.surfaces[i], range, all_b, limits_.distances);
+    if (reach.at_most < finding.reach.at_most) continue;
+    finding.reach = reach;
+    finding.surface = i;
+  }
+  for (std::size_t j = 0; j < b.surfaces.size(); ++j) {
+    const Range range = j < b.faces.size() ? used_range(*b.faces[j]) : domain(*b.surfaces[j]);
+    const Reach reach = distance_to(*b.surfaces[j], range, all_a, limits_.distances);
+    if (reach.at_most <= finding.reach.at_most) continue;
+    finding.reach = reach;
+    finding.surface = a.surfaces.size();
+  }
+  finding.is_equal = finding.reach.at_most <= limits_.distances;
+  return finding;
+}
+
+// Of a shape with symmetries another way to lay the parameters may be nearer than the one that was moved.
+void Comparer::find_motion(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
+                           const std::vector<SurfaceFinding>& found, PairFinding& finding) const {
+  for (const bool plain : {true, false}) {
+    std::vector<Vec3> from, to;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      if (!found[k].points) return;
+      const bool as_is = plain && found[k].points->fits_as_it_is;
+      const Alignment alignment = as_is ? Alignment{} : found[k].points->alignment;
+      const Surface &s = *a.surfaces[k], &t = *b.surfaces[partner[k]];
+      from.insert(from.end(), s.points.begin(), s.points.end());
+      for (int j = 0; j < s.count_v; ++j)
+        for (int i = 0; i < s.count_u; ++i) to.push_back(t.points[alignment.index_in(t, i, j)]);
+    }
+    finding.motion = motion_between(from, to, std::min(limits_.motion, 1e-3 * finding.reach.at_least));
+    if (finding.motion) return;
+  }
+}
+
+PairFinding Comparer::look_at(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner) const {
+  PairFinding finding;
+  std::vector<SurfaceFinding> found;
+  for (std::size_t i = 0; i < a.surfaces.size(); ++i) {
+    const SurfaceFinding& one = found.emplace_back(compare_surfaces(a, i, b, partner[i]));
+    finding.count += a.surfaces[i]->points.size();
+    if (one.points) finding.changed += one.points->changed;
+    finding.is_equal =
+        finding.is_equal && one.reach.at_most <= (one.points ? limits_.points : limits_.distances);
+    if (i > 0 && one.reach.at_most <= finding.reach.at_most) continue;
+    finding.reach = one.reach;
+    finding.points = one.points;
+    finding.surface = i;
+  }
+  if (!finding.is_equal && finding.reach.at_least > limits_.points)
+    find_motion(a, b, partner, found, finding);
+  return finding;
+}
+
+// Mostly the surfaces have kept their order.
+PairFinding Comparer::look_at(const Thing& a, const Thing& b) const {
+  const std::size_t count = a.surfaces.size();
+  if (count != b.surfaces.size()) return compare_unions(a, b);
+  std::vector<std::size_t> in_order(count);
+  std::iota(in_order.begin(), in_order.end(), 0);
+  bool bases_agree = true;
+  for (std::size_t k = 0; k < count && bases_agree; ++k)
+    bases_agree = have_one_basis(*a.surfaces[k], *b.surfaces[k]);
+  std::optional<PairFinding> ordered;
+  if (bases_agree || count == 1) {
+    ordered = look_at(a, b, in_order);
+    if (ordered->is_equal || ordered->motion || count == 1) return *ordered;
+  }
+  const std::vector<std::size_t> partner = partners(a, b);
+  if (ordered && partner == in_order) return *ordered;
+  PairFinding other = look_at(a, b, partner);
+  return ordered && ordered->reach.at_most <= other.reach.at_most ? *ordered : other;
+}
+
+std::string surface_label(const Thing& thing, std::size_t k) {
+  if (k >= thing.surfaces.size()) return "a surface of the second file";
+  if (thing.surfaces.size() == 1) return {};
+  if (thing.kind == Thing::Kind::yarn)
+    return k == 0 ? "body" : k == 1 && thing.surfaces.size() == 3 ? "start" : "end";
+  const std::string& name = thing.faces[k]->name;
+  if (!name.empty() && name != thing.name) return fmt::format("surface '{}'", name);
+  return fmt::format("surface {} of {}", k + 1, thing.surfaces.size());
+}
+
+Difference difference_of(const Thing& a, const Thing& b, Difference::Kind kind) {
+  Difference difference;
+  difference.kind = kind;
+  difference.what = a.kind;
+  difference.name = a.name;
+  difference.other_name = b.name;
+  if (!a.faces.empty()) difference.entity = a.faces.front()->origin.entity;
+  return difference;
+}
+
+void Comparer::report_pair(const Thing& a, const Thing& b, const PairFinding& finding) {
+  const std::size_t before = out_.differences.size();
+  if (!finding.is_equal && finding.motion) {
+    Difference& moved = out_.differences.emplace_back(difference_of(a, b, Difference::Kind::moved));
+    moved.motion = *finding.motion;
+    moved.reach = finding.reach;
+  } else if (!finding.is_equal) {
+    Difference& reshaped = out_.differences.emplace_back(difference_of(a, b, Difference::Kind::reshaped));
+    reshaped.reach = finding.reach;
+    reshaped.surface = surface_label(a, finding.surface);
+    if (finding.points) {
+      const Surface& surface = *a.surfaces[finding.surface];
+      const int count_j = a.kind == Thing::Kind::curve ? 1 : surface.count_v;
+      const std::size_t rows = a.kind == Thing::Kind::curve ? 2 : 1;
+      reshaped.control_point = {finding.points->i + 1,  finding.points->j + 1, surface.count_u, count_j,
+                                finding.changed / rows, finding.count / rows};
+    }
+  } else if (finding.reach.at_most > out_.largest) {
+    out_.largest = finding.reach.at_most;
+    out_.largest_of = a.name;
+  }
+  if (a.name != b.name) {
+    if (a.name.empty() || b.name.empty())
+      ++without_name_;
+    else
+      out_.differences.push_back(difference_of(a, b, Difference::Kind::renamed));
+  }
+  if (a.color.has_value() != b.color.has_value()) ++without_color_;
+  if (a.color && b.color && *a.color != *b.color) {
+    Difference& recoloured = out_.differences.emplace_back(difference_of(a, b, Difference::Kind::recoloured));
+    recoloured.before = *a.color;
+    recoloured.after = *b.color;
+  }
+  if (out_.differences.size() == before) ++out_.equal;
+}
+
+void Comparer::report_lonely(const Thing& thing, Difference::Kind kind) {
+  Difference& difference = out_.differences.emplace_back(difference_of(thing, thing, kind));
+  difference.box = thing.box;
+  difference.surfaces = thing.surfaces.size();
+}
+
+// Things without a partner whose surfaces lie on those of the other side that have none either: the same
+// surfaces, cut or grouped in another way.
+void Comparer::absorb_regrouped(Pairing& pairing) {
+  if (pairing.only_a.empty() || pairing.only_b.empty()) return;
+  for (const bool curves : {false, true}) {
+    const auto surfaces_of = [&](const std::vector<Thing>& list, const std::vector<std::size_t>& which) {
+      std::vector<const Surface*> all;
+      for (const std::size_t i : which)
+        if ((list[i].kind == Thing::Kind::curve) == curves)
+          all.insert(all.end(), list[i].surfaces.begin(), list[i].surfaces.end());
+      return all;
+    };
+    const std::vector<const Surface*> of_a = surfaces_of(a_.list, pairing.only_a);
+    const std::vector<const Surface*> of_b = surfaces_of(b_.list, pairing.only_b);
+    if (of_a.empty() || of_b.empty()) continue;
+    const SurfaceSet all_a(of_a), all_b(of_b);
+    const auto lies_on = [&](const Thing& thing, const SurfaceSet& others) {
+      if ((thing.kind == Thing::Kind::curve) != curves) return false;
+      double most = 0;
+      for (std::size_t k = 0; k < thing.surfaces.size(); ++k) {
+        const Surface& s = *thing.surfaces[k];
+        const Range range = k < thing.faces.size() ? used_range(*thing.faces[k]) : domain(s);
+        const Vec3 middle = nurbs::evaluate(s, 0.5 * (range.u0 + range.u1), 0.5 * (range.v0 + range.v1));
+        if (others.near(middle).distance > near_) return false;
+        most = std::max(most, distance_to(s, range, others, limits_.distances).at_most);
+        if (most > limits_.distances) return false;
+      }
+      if (most > out_.largest) {
+        out_.largest = most;
+        out_.largest_of = thing.name;
+      }
+      return true;
+    };
+    const std::size_t count_a = pairing.only_a.size(), count_b = pairing.only_b.size();
+    std::erase_if(pairing.only_a, [&](std::size_t i) { return lies_on(a_.list[i], all_b); });
+    std::erase_if(pairing.only_b, [&](std::size_t j) { return lies_on(b_.list[j], all_a); });
+    const std::size_t gone_a = count_a - pairing.only_a.size(), gone_b = count_b - pairing.only_b.size();
+    out_.equal += gone_a;
+    if (gone_a + gone_b > 0)
+      out_.notes.push_back(
+          fmt::format("{} of the first file and {} of the second are the same {}, cut or grouped in "
+                      "another way",
+                      gone_a, gone_b, curves ? "curves" : "surfaces"));
+  }
+}
+
+Comparison::Counts counts_of(const Things& things) {
+  Comparison::Counts counts;
+  for (const Thing& thing : things.list) {
+    if (thing.kind == Thing::Kind::curve) {
+      ++counts.curves;
+      continue;
+    }
+    ++(thing.kind == Thing::Kind::yarn ? counts.yarns : counts.parts);
+    counts.surfaces += thing.surfaces.size();
+  }
+  return counts;
+}
+
+void Comparer::add_notes() {
+  if (without_name_ > 0) out_.notes.push_back(fmt::format("{} have a name in one file only", without_name_));
+  if (without_color_ > 0)
+    out_.notes.push_back(fmt::format("{} have a colour in one file only", without_color_));
+  const std::string &title_a = subject_a_.model.title, &title_b = subject_b_.model.title;
+  if (title_a != title_b) out_.notes.push_back(fmt::format("titles: '{}' and '{}'", title_a, title_b));
+}
+
+Comparison Comparer::run() {
+  out_.a = counts_of(a_);
+  out_.b = counts_of(b_);
+  Pairing pairing = pair_things(a_.list, b_.list, near_);
+  std::vector<PairFinding> findings(pairing.pairs.size());
+  std::mutex guard;
+  std::size_t done = 0;
+  for_each_index(findings.size(), options_.threads, [&](std::size_t k) {
+    const auto [i, j] = pairing.pairs[k];
+    findings[k] = look_at(a_.list[i], b_.list[j]);
+    if (!options_.progress) return;
+    const std::lock_guard lock(guard);
+    options_.progress(++done, findings.size());
+  });
+  absorb_regrouped(pairing);
+  std::size_t next = 0;
+  for (std::size_t k = 0; k <= findings.size(); ++k) {
+    const std::size_t until = k < findings.size() ? pairing.pairs[k].first : a_.list.size();
+    for (; next < pairing.only_a.size() && pairing.only_a[next] < until; ++next)
+      report_lonely(a_.list[pairing.only_a[next]], Difference::Kind::removed);
+    if (k == findings.size()) break;
+    const auto [i, j] = pairing.pairs[k];
+    report_pair(a_.list[i], b_.list[j], findings[k]);
+    out_.matches.push_back({i, j, findings[k].reach.at_most, findings[k].reach.at_least});
+  }
+  for (const std::size_t j : pairing.only_b) report_lonely(b_.list[j], Difference::Kind::added);
+  add_notes();
+  return std::move(out_);
+}
+
+}  // namespace
+
+std::string_view name_of(Difference::Kind kind) {
+  constexpr std::array<std::string_view, 6> names = {"added",    "removed", "moved",
+                                                     "reshaped", "renamed", "recoloured"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+Comparison compare(const Subject& a, const Subject& b, const CompareOptions& options) {
+  return Comparer(a, b, options).run();
+}
+
+}  // namespace selvage::cad

@@ -1,0 +1,513 @@
+#include "cad/distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <queue>
+#include <span>
+
+#include "cad/bernstein.h"
+#include "nurbs/basis.h"
+
+namespace selvage::cad {
+
+namespace {
+
+using nurbs::Surface;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Values of a parameter at which a surface is sampled: three inside each knot span (its ends may be poles).
+std::vector<double> sample_sites(const std::vector<double>& breaks) {
+  std::vector<double> sites;
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+    for (const double share : {1.0 / 6, 0.5, 5.0 / 6})
+      sites.push_back(breaks[k] + share * (breaks[k + 1] - breaks[k]));
+  return sites;
+}
+
+struct Sample {
+  Vec3 point;
+  std::uint32_t surface, u, v;
+};
+
+// Samples in a tree of boxes: a k-d tree in an array, the median of each part in its middle.
+class SampleTree {
+ public:
+  explicit SampleTree(std::vector<Sample> samples) : samples_(std::move(samples)) {
+    axes_.resize(samples_.size());
+    divide(0, samples_.size());
+  }
+  // The nearest sample that is not on one of the surfaces `but`; null when there is none.
+  [[nodiscard]] const Sample* nearest(const Vec3& point, std::span<const std::size_t> but) const {
+    double best = infinity;
+    std::size_t found = samples_.size();
+    search(0, samples_.size(), point, but, best, found);
+    return found < samples_.size() ? &samples_[found] : nullptr;
+  }
+
+ private:
+  void divide(std::size_t first, std::size_t last) {
+    if (last - first < 2) return;
+    Box3 box;
+    for (std::size_t k = first; k < last; ++k) box.extend(samples_[k].point);
+    Eigen::Index axis = 0;
+    box.sizes().maxCoeff(&axis);
+    const std::size_t middle = first + (last - first) / 2;
+    const auto position = [&](std::size_t k) { return samples_.begin() + static_cast<std::ptrdiff_t>(k); };
+    std::nth_element(position(first), position(middle), position(last),
+                     [axis](const Sample& a, const Sample& b) { return a.point[axis] < b.point[axis]; });
+    axes_[middle] = static_cast<std::uint8_t>(axis);
+    divide(first, middle);
+    divide(middle + 1, last);
+  }
+  void search(std::size_t first, std::size_t last, const Vec3& point, std::span<const std::size_t> but,
+              double& best, std::size_t& found) const {
+    if (first >= last) return;
+    const std::size_t middle = first + (last - first) / 2;
+    const double distance = (samples_[middle].point - point).squaredNorm();
+    if (distance < best && std::find(but.begin(), but.end(), samples_[middle].surface) == but.end()) {
+      best = distance;
+      found = middle;
+    }
+    const auto axis = static_cast<Eigen::Index>(axes_[middle]);
+    const double side = point[axis] - samples_[middle].point[axis];
+    const auto low = [&] { search(first, middle, point, but, best, found); };
+    const auto high = [&] { search(middle + 1, last, point, but, best, found); };
+    side < 0 ? low() : high();
+    if (side * side < best) side < 0 ? high() : low();
+  }
+
+  std::vector<Sample> samples_;
+  std::vector<std::uint8_t> axes_;
+};
+
+struct Target {
+  const Surface* surface = nullptr;
+  std::vector<double> breaks_u, breaks_v, sites_u, sites_v;
+  Range range;
+  bool closed_u = false, closed_v = false;
+  bool is_curve = false;  // two equal rows
+};
+
+// Whether the two boundary curves of a direction are the same to `near`, point by point.
+bool is_closed(const Target& target, bool in_u, double near) {
+  const Range& r = target.range;
+  for (const double t : in_u ? target.sites_v : target.sites_u) {
+    const Vec3 a =
+        in_u ? nurbs::evaluate(*target.surface, r.u0, t) : nurbs::evaluate(*target.surface, t, r.v0);
+    const Vec3 b =
+        in_u ? nurbs::evaluate(*target.surface, r.u1, t) : nurbs::evaluate(*target.surface, t, r.v1);
+    if ((a - b).norm() > near) return false;
+  }
+  return true;
+}
+
+Target target_of(const Surface& surface, double near) {
+  Target target;
+  target.surface = &surface;
+  target.breaks_u = nurbs::breakpoints(surface.knots_u, surface.degree_u);
+  target.breaks_v = nurbs::breakpoints(surface.knots_v, surface.degree_v);
+  target.sites_u = sample_sites(target.breaks_u);
+  target.sites_v = sample_sites(target.breaks_v);
+  target.range = domain(surface);
+  const auto half = surface.points.begin() + static_cast<std::ptrdiff_t>(surface.count_u);
+  target.is_curve = surface.degree_v == 1 && surface.count_v == 2 &&
+                    std::equal(surface.points.begin(), half, half, surface.points.end());
+  target.closed_u = is_closed(target, true, near);
+  target.closed_v = !target.is_curve && is_closed(target, false, near);
+  return target;
+}
+
+double brought_inside(double value, double low, double high, bool closed) {
+  if (closed && (value < low || value > high)) value = low + std::fmod(value - low, high - low);
+  if (closed && value < low) value += high - low;
+  return std::clamp(value, low, high);
+}
+
+// Gauss and Newton's method, damped: the nearest point of the surface round (u, v).
+SurfaceSet::Foot descend(const Target& target, std::size_t index, const Vec3& point, double u, double v) {
+  nurbs::SurfaceJet jet = nurbs::evaluate_jet(*target.surface, u, v);
+  double best = (jet.position - point).norm(), damping = 1e-12;
+  for (int step = 0; step < 40 && best > 0; ++step) {
+    const Vec3 miss = point - jet.position;
+    const double a = jet.du.squaredNorm(), b = jet.du.dot(jet.dv), c = jet.dv.squaredNorm();
+    const double more = damping * (a + c) + std::numeric_limits<double>::min();
+    const double determinant = (a + more) * (c + more) - b * b;
+    const double p = miss.dot(jet.du), q = miss.dot(jet.dv);
+    const double next_u = brought_inside(u + ((c + more) * p - b * q) / determinant, target.range.u0,
+                                         target.range.u1, target.closed_u);
+    const double next_v = brought_inside(v + ((a + more) * q - b * p) / determinant, target.range.v0,
+                                         target.range.v1, target.closed_v);
+    const nurbs::SurfaceJet next = nurbs::evaluate_jet(*target.surface, next_u, next_v);
+    const double distance = (next.position - point).norm();
+    if (!(distance < best)) {
+      if (damping > 1e3 || (next_u == u && next_v == v)) break;
+      damping = std::max(damping * 100, 1e-6);
+      continue;
+    }
+    const bool is_settled = best - distance <= 1e-15 * best;
+    u = next_u;
+    v = next_v;
+    jet = next;
+    best = distance;
+    damping = std::max(damping / 10, 1e-12);
+    if (is_settled) break;
+  }
+  return {index, u, v, best};
+}
+
+// `t` moved onto the nearest of the sorted `values` that is within `near`.
+double snapped(double t, const std::vector<double>& values, double near) {
+  const auto above = std::lower_bound(values.begin(), values.end(), t);
+  if (above != values.end() && *above - t <= near) return *above;
+  if (above != values.begin() && t - *(above - 1) <= near) return *(above - 1);
+  return t;
+}
+
+// The sorted breaks between two values, with these at the ends.
+std::vector<double> cut_to(const std::vector<double>& breaks, double low, double high) {
+  std::vector<double> values = {low};
+  for (const double value : breaks)
+    if (value > low && value < high) values.push_back(value);
+  values.push_back(high);
+  return values;
+}
+
+}  // namespace
+
+struct SurfaceSet::Impl {
+  std::vector<Target> targets;
+  std::unique_ptr<SampleTree> tree;
+  double size = 0;  // largest coordinate
+};
+
+Range domain(const Surface& surface) {
+  return {surface.first_u(), surface.last_u(), surface.first_v(), surface.last_v()};
+}
+
+nurbs::Surface as_surface(const nurbs::Curve& curve) {
+  Surface surface;
+  surface.degree_u = curve.degree;
+  surface.degree_v = 1;
+  surface.count_u = static_cast<int>(curve.points.size());
+  surface.count_v = 2;
+  surface.knots_u = curve.knots;
+  surface.knots_v = {0, 0, 1, 1};
+  for (int row = 0; row < 2; ++row) {
+    surface.points.insert(surface.points.end(), curve.points.begin(), curve.points.end());
+    surface.weights.insert(surface.weights.end(), curve.weights.begin(), curve.weights.end());
+  }
+  return surface;
+}
+
+SurfaceSet::SurfaceSet(std::vector<const Surface*> surfaces) {
+  auto made = std::make_unique<Impl>();
+  Box3 box;
+  for (const Surface* surface : surfaces)
+    for (const Vec3& p : surface->points) box.extend(p);
+  if (!box.isEmpty()) made->size = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  std::vector<Sample> samples;
+  for (const Surface* surface : surfaces) {
+    const Target& target = made->targets.emplace_back(target_of(*surface, 1e-9 * made->size));
+    const std::vector<Vec3> points = nurbs::evaluate_grid(*surface, target.sites_u, target.sites_v);
+    const auto index = static_cast<std::uint32_t>(made->targets.size() - 1);
+    for (std::size_t k = 0; k < points.size(); ++k)
+      samples.push_back({points[k], index, static_cast<std::uint32_t>(k % target.sites_u.size()),
+                         static_cast<std::uint32_t>(k / target.sites_u.size())});
+  }
+  made->tree = std::make_unique<SampleTree>(std::move(samples));
+  impl_ = std::move(made);
+}
+SurfaceSet::~SurfaceSet() = default;
+SurfaceSet::SurfaceSet(SurfaceSet&&) noexcept = default;
+SurfaceSet& SurfaceSet::operator=(SurfaceSet&&) noexcept = default;
+
+SurfaceSet::Foot SurfaceSet::near(const Vec3& point) const {
+  Foot best{0, 0, 0, infinity};
+  std::vector<std::size_t> tried;
+  // Next to a border, or where surfaces meet, the nearest sample may be on another one.
+  for (int trial = 0; trial < 3; ++trial) {
+    const Sample* sample = impl_->tree->nearest(point, tried);
+    if (sample == nullptr) break;
+    const Target& target = impl_->targets[sample->surface];
+    const Foot foot =
+        descend(target, sample->surface, point, target.sites_u[sample->u], target.sites_v[sample->v]);
+    if (foot.distance < best.distance) best = foot;
+    if (impl_->targets.size() == 1 || best.distance <= 1e-12 * impl_->size) break;
+    tried.push_back(sample->surface);
+  }
+  return best;
+}
+
+double SurfaceSet::least_distance(const Vec3& point, const Foot& foot) const {
+  struct Piece {
+    double distance;
+    std::size_t target;
+    Range range;
+    bool operator<(const Piece& other) const { return distance > other.distance; }
+  };
+  std::priority_queue<Piece> queue;
+  const auto push = [&](std::size_t target, const Range& range) {
+    const Box3 box = piece_bounds(*impl_->targets[target].surface, range);
+    const double distance = box.isEmpty() ? 0.0 : box.exteriorDistance(point);
+    if (distance < foot.distance) queue.push({distance, target, range});
+  };
+  for (std::size_t t = 0; t < impl_->targets.size(); ++t) {
+    const Target& target = impl_->targets[t];
+    for (std::size_t j = 0; j + 1 < target.breaks_v.size(); ++j)
+      for (std::size_t i = 0; i + 1 < target.breaks_u.size(); ++i)
+        push(t, {target.breaks_u[i], target.breaks_u[i + 1], target.breaks_v[j], target.breaks_v[j + 1]});
+  }
+  const double near_enough = std::min(0.99 * foot.distance, foot.distance - 1e-14 * impl_->size);
+  for (int boxes = 0; boxes < 100'000 && !queue.empty(); ++boxes) {
+    const Piece piece = queue.top();
+    if (piece.distance >= near_enough) return piece.distance;
+    queue.pop();
+    const Range& r = piece.range;
+    const double u = 0.5 * (r.u0 + r.u1), v = 0.5 * (r.v0 + r.v1);
+    if (!(u > r.u0 && u < r.u1 && v > r.v0 && v < r.v1)) return piece.distance;
+    for (const Range& part :
+         {Range{r.u0, u, r.v0, v}, Range{u, r.u1, r.v0, v}, Range{r.u0, u, v, r.v1}, Range{u, r.u1, v, r.v1}})
+      push(piece.target, part);
+  }
+  return queue.empty() ? foot.distance : queue.top().distance;
+}
+
+// One walk over a surface: the cells that are open, the worst one first.
+class Surveyor {
+ public:
+  Surveyor(const Surface& surface, const SurfaceSet& others, double enough, std::size_t most_cells)
+      : surface_(surface),
+        others_(others),
+        targets_(others.impl_->targets),
+        enough_(enough),
+        left_(most_cells) {}
+
+  Reach survey(const Range& range);
+
+ private:
+  struct Cell {
+    double bound = 0;
+    Range range;
+    int depth = 0;
+    bool operator<(const Cell& other) const { return bound < other.bound; }
+  };
+  // Where a cell lies in the parameters of one of the others.
+  struct Image {
+    std::size_t target = 0;
+    BilinearMap map;
+  };
+
+  void look_at(const Range& range, int depth);
+  using Feet = std::array<SurfaceSet::Foot, 4>;
+  Feet feet_of(const Range& range);
+  [[nodiscard]] std::optional<Image> image_of(Feet feet) const;
+  void compare_rectangle(const Range& range, int depth, const Image& image);
+  double box_bound(const Range& range);
+  void keep(double bound, const Range& range, int depth);
+  // Where the difference says too little, the box may say more.
+  void keep_difference(double bound, const Range& range, int depth) {
+    keep(bound > enough_ ? std::min(bound, box_bound(range)) : bound, range, depth);
+  }
+  void take_foot(const Vec3& point, const SurfaceSet::Foot& foot);
+
+  const Surface& surface_;
+  const SurfaceSet& others_;
+  const std::vector<Target>& targets_;
+  double enough_;
+  std::size_t left_;
+  std::priority_queue<Cell> cells_;
+  double settled_ = 0;  // the largest bound of the cells that need no more
+  Vec3 worst_ = Vec3::Zero();
+  SurfaceSet::Foot worst_foot_;
+  static constexpr int deepest = 40, deepest_search = 20;
+  static constexpr double largest_skew = 0.2;  // of a rectangle's image, by its sides
+};
+
+void Surveyor::take_foot(const Vec3& point, const SurfaceSet::Foot& foot) {
+  if (foot.distance <= worst_foot_.distance) return;
+  worst_foot_ = foot;
+  worst_ = point;
+}
+
+void Surveyor::keep(double bound, const Range& range, int depth) {
+  if (bound <= enough_)
+    settled_ = std::max(settled_, bound);
+  else
+    cells_.push({bound, range, depth});
+}
+
+// Any point of the cell's box is within its half diagonal of the middle one.
+double Surveyor::box_bound(const Range& range) {
+  const Box3 box = piece_bounds(surface_, range);
+  if (box.isEmpty()) return infinity;
+  const Vec3 middle = nurbs::evaluate(surface_, 0.5 * (range.u0 + range.u1), 0.5 * (range.v0 + range.v1));
+  const SurfaceSet::Foot foot = others_.near(middle);
+  take_foot(middle, foot);
+  const Vec3 far = (box.max() - middle).cwiseMax(middle - box.min());
+  return foot.distance + far.norm();
+}
+
+// Of four points inside the cell: its corners may stand on a seam or a pole.
+Surveyor::Feet Surveyor::feet_of(const Range& range) {
+  Feet feet;
+  const double du = range.u1 - range.u0, dv = range.v1 - range.v0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double u = range.u0 + du * (k % 2 == 0 ? 0.25 : 0.75), v = range.v0 + dv * (k < 2 ? 0.25 : 0.75);
+    const Vec3 point = nurbs::evaluate(surface_, u, v);
+    feet[k] = others_.near(point);
+    take_foot(point, feet[k]);
+  }
+  return feet;
+}
+
+// None when the feet are far from the corners of a rectangle.
+std::optional<Surveyor::Image> Surveyor::image_of(Feet feet) const {
+  const Target& target = targets_[feet[0].surface];
+  const double period_u = target.range.u1 - target.range.u0, period_v = target.range.v1 - target.range.v0;
+  for (SurfaceSet::Foot& foot : feet) {  // the same turn round a closed surface
+    if (target.closed_u) foot.u -= period_u * std::round((foot.u - feet[0].u) / period_u);
+    if (target.closed_v) foot.v -= period_v * std::round((foot.v - feet[0].v) / period_v);
+  }
+  Image image;
+  image.target = feet[0].surface;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto value = [&](std::size_t corner) { return k == 0 ? feet[corner].u : feet[corner].v; };
+    const double c00 = value(0), c10 = value(1), c01 = value(2), c11 = value(3);
+    // The bilinear function over [0, 1]^2 with these values at 1/4 and 3/4.
+    const double s = 2 * ((c10 - c00) + (c11 - c01)) / 2, t = 2 * ((c01 - c00) + (c11 - c10)) / 2;
+    const double st = 4 * (c11 - c10 - c01 + c00);
+    const double middle = (c00 + c10 + c01 + c11) / 4;
+    image.map.of[k] = {middle - (s + t) / 2 + st / 4, s - st / 2, t - st / 2, st};
+  }
+  if (target.is_curve) image.map.of[1] = {0, 0, 1, 0};
+  if (!image.map.make_rectangle(largest_skew)) return std::nullopt;
+  return image;
+}
+
+// The cell's image is cut at the borders and knots of the target; what lies outside is looked at again.
+void Surveyor::compare_rectangle(const Range& range, int depth, const Image& image) {
+  const Target& target = targets_[image.target];
+  const bool swaps = image.map.is_swapped();
+  const auto cuts_of = [&](bool along_u) {  // fractions of the cell's side, with 0 and 1
+    const bool other_u = along_u != swaps;
+    const std::vector<double>& breaks = other_u ? target.breaks_u : target.breaks_v;
+    const bool is_closed = other_u ? target.closed_u : target.closed_v;
+    const auto [start, slope] = image.map.line(other_u);
+    std::vector<double> cuts = {0.0, 1.0};
+    if (slope == 0) return cuts;
+    const double period = breaks.back() - breaks.front();
+    for (const double turn : {-period, 0.0, period}) {
+      if (turn != 0 && !is_closed) continue;
+      for (const double knot : breaks) cuts.push_back((knot + turn - start) / slope);
+    }
+    std::sort(cuts.begin(), cuts.end());
+    std::vector<double> kept;
+    for (const double cut : cuts) {
+      if (cut < 0 || cut > 1) continue;
+      if (kept.empty() || cut - kept.back() > 1e-7) kept.push_back(cut);
+    }
+    if (1 - kept.back() < 1e-7) kept.pop_back();
+    kept.push_back(1.0);
+    return kept;
+  };
+  const std::vector<double> us = cuts_of(true), vs = cuts_of(false);
+  const auto between = [](double low, double high, double share) {
+    return share == 1.0 ? high : low + share * (high - low);
+  };
+  for (std::size_t j = 0; j + 1 < vs.size(); ++j)
+    for (std::size_t i = 0; i + 1 < us.size(); ++i) {
+      const Range part = {between(range.u0, range.u1, us[i]), between(range.u0, range.u1, us[i + 1]),
+                          between(range.v0, range.v1, vs[j]), between(range.v0, range.v1, vs[j + 1])};
+      Range there = image.map.rectangle(us[i], us[i + 1], vs[j], vs[j + 1]);
+      const auto fit = [](double& a, double& b, const std::vector<double>& breaks, bool is_closed) {
+        const double low = breaks.front(), high = breaks.back(), middle = 0.5 * (a + b);
+        if (is_closed) {
+          const double turn = (high - low) * std::floor((middle - low) / (high - low));
+          a -= turn;
+          b -= turn;
+        }
+        const double near = 1e-7 * (high - low);
+        a = snapped(a, breaks, near * 0.1);
+        b = snapped(b, breaks, near * 0.1);
+        if (std::min(a, b) < low - near || std::max(a, b) > high + near) return false;
+        a = std::clamp(a, low, high);
+        b = std::clamp(b, low, high);
+        return true;
+      };
+      const bool is_inside = fit(there.u0, there.u1, target.breaks_u, target.closed_u) &&
+                             fit(there.v0, there.v1, target.breaks_v, target.closed_v);
+      const bool is_whole = us.size() == 2 && vs.size() == 2;
+      if (is_inside)
+        keep_difference(piece_difference(surface_, part, *target.surface, there, swaps), part, depth);
+      else if (is_whole || depth >= deepest)
+        keep(box_bound(part), part, depth);
+      else
+        look_at(part, depth + 1);
+    }
+}
+
+void Surveyor::look_at(const Range& range, int depth) {
+  if (left_ > 0) --left_;
+  const Feet feet = feet_of(range);
+  const bool same_low = feet[0].surface == feet[1].surface, same_high = feet[2].surface == feet[3].surface;
+  const bool same_left = feet[0].surface == feet[2].surface, same_right = feet[1].surface == feet[3].surface;
+  if (same_low && same_high && same_left && same_right) {
+    if (const std::optional<Image> image = image_of(feet)) return compare_rectangle(range, depth, *image);
+  } else if (depth < deepest_search) {
+    // Over a border of two of the others: what is on one side of it alone tells where the border is.
+    const double u = 0.5 * (range.u0 + range.u1), v = 0.5 * (range.v0 + range.v1);
+    if (same_low && same_high) {
+      look_at({range.u0, range.u1, range.v0, v}, depth + 1);
+      look_at({range.u0, range.u1, v, range.v1}, depth + 1);
+      return;
+    }
+    if (same_left && same_right) {
+      look_at({range.u0, u, range.v0, range.v1}, depth + 1);
+      look_at({u, range.u1, range.v0, range.v1}, depth + 1);
+      return;
+    }
+  }
+  keep(box_bound(range), range, depth);
+}
+
+Reach Surveyor::survey(const Range& range) {
+  const std::vector<double> us =
+      cut_to(nurbs::breakpoints(surface_.knots_u, surface_.degree_u), range.u0, range.u1);
+  const std::vector<double> vs =
+      cut_to(nurbs::breakpoints(surface_.knots_v, surface_.degree_v), range.v0, range.v1);
+  left_ += (us.size() - 1) * (vs.size() - 1);  // each is looked at once in any case
+  for (std::size_t j = 0; j + 1 < vs.size(); ++j)
+    for (std::size_t i = 0; i + 1 < us.size(); ++i) look_at({us[i], us[i + 1], vs[j], vs[j + 1]}, 0);
+  while (!cells_.empty() && left_ > 0) {
+    const Cell cell = cells_.top();
+    if (cell.bound <= 1.1 * worst_foot_.distance || cell.depth >= deepest) break;
+    cells_.pop();
+    const Range& r = cell.range;
+    const double u = 0.5 * (r.u0 + r.u1), v = 0.5 * (r.v0 + r.v1);
+    if (!(u > r.u0 && u < r.u1 && v > r.v0 && v < r.v1)) {
+      settled_ = std::max(settled_, cell.bound);
+      continue;
+    }
+    for (const Range& part :
+         {Range{r.u0, u, r.v0, v}, Range{u, r.u1, r.v0, v}, Range{r.u0, u, v, r.v1}, Range{u, r.u1, v, r.v1}})
+      look_at(part, cell.depth + 1);
+  }
+  Reach reach;
+  reach.at_most = cells_.empty() ? settled_ : std::max(settled_, cells_.top().bound);
+  reach.at = worst_;
+  if (reach.at_most > enough_) reach.at_least = others_.least_distance(worst_, worst_foot_);
+  reach.at_most = std::max(reach.at_most, reach.at_least);
+  return reach;
+}
+
+Reach distance_to(const Surface& surface, const Range& range, const SurfaceSet& others, double enough,
+                  std::size_t most_cells) {
+  return Surveyor(surface, others, enough, most_cells).survey(range);
+}
+
+}  // namespace selvage::cad

@@ -1,0 +1,29 @@
+// Faces that are parts of their surfaces: their outlines, and how far two such faces are apart.
+#pragma once
+
+#include <vector>
+
+#include "cad/distance.h"
+#include "cad/model.h"
+
+namespace selvage::cad {
+
+// The curves round a face in space, without seams (edges that it has twice) and poles; those of the whole
+// surface where it has no loops. A surface closed in both directions has none.
+std::vector<nurbs::Curve> outline(const Face& face);
+
+// The larger of the distances of each outline from the other; infinite where only one of the faces has one.
+Reach outline_distance(const Face& a, const Face& b, double enough);
+
+// The box of the face's loops in its surface's parameters; the whole domain where they are not given there.
+Range used_range(const Face& face);
+
+// The control points lie in one plane (to 1e-9 of their extent): the face is its outline's inside.
+bool is_flat(const nurbs::Surface& surface);
+
+// How far a face is from the other one's surface: from a whole surface to a trimmed one, of two trimmed ones
+// both ways over their used_range. Together with the outlines' distance this tells how far the faces are
+// apart.
+Reach trimmed_distance(const Face& a, const Face& b, double enough);
+
+}  // namespace selvage::cad

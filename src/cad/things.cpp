@@ -1,0 +1,236 @@
+#include "cad/things.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <unordered_map>
+
+#include "cad/distance.h"
+
+namespace selvage::cad {
+
+namespace {
+
+void measure(Thing& thing) {
+  Vec3 mean = Vec3::Zero();
+  std::size_t count = 0;
+  for (const nurbs::Surface* surface : thing.surfaces)
+    for (const Vec3& p : surface->points) {
+      thing.box.extend(p);
+      mean += p;
+      ++count;
+    }
+  if (count == 0) return;
+  mean /= static_cast<double>(count);
+  double sum = 0;
+  for (const nurbs::Surface* surface : thing.surfaces)
+    for (const Vec3& p : surface->points) sum += (p - mean).squaredNorm();
+  thing.spread = std::sqrt(sum / static_cast<double>(count));
+}
+
+using Indices = std::vector<std::size_t>;
+
+// Things by the cell that holds their box's centre.
+class PlaceIndex {
+ public:
+  PlaceIndex(const std::vector<Thing>& things, const Indices& which, double cell)
+      : things_(things), cell_(cell) {
+    for (const std::size_t i : which) cells_[key(corner(things[i].box.center()))].push_back(i);
+  }
+  // The nearest one by its box's corners, at most `near` (at most the cell's size) away; npos where there is
+  // none.
+  [[nodiscard]] std::size_t nearest(const Thing& thing, double near, const std::vector<bool>& taken) const {
+    std::size_t found = npos;
+    const std::array<std::int64_t, 3> middle = corner(thing.box.center());
+    for (std::int64_t x = -1; x <= 1; ++x)
+      for (std::int64_t y = -1; y <= 1; ++y)
+        for (std::int64_t z = -1; z <= 1; ++z) {
+          const auto cell = cells_.find(key({middle[0] + x, middle[1] + y, middle[2] + z}));
+          if (cell == cells_.end()) continue;
+          for (const std::size_t i : cell->second) {
+            const Thing& other = things_[i];
+            if (taken[i] || (other.kind == Thing::Kind::curve) != (thing.kind == Thing::Kind::curve))
+              continue;
+            const double distance = std::max((other.box.min() - thing.box.min()).cwiseAbs().maxCoeff(),
+                                             (other.box.max() - thing.box.max()).cwiseAbs().maxCoeff());
+            if (distance > near || (distance == near && found != npos && i > found)) continue;
+            near = distance;
+            found = i;
+          }
+        }
+    return found;
+  }
+  static constexpr std::size_t npos = std::numeric_limits<std::size_t>::max();
+
+ private:
+  [[nodiscard]] std::array<std::int64_t, 3> corner(const Vec3& p) const {
+    std::array<std::int64_t, 3> out{};
+    for (std::size_t k = 0; k < 3; ++k)
+      out[k] = static_cast<std::int64_t>(
+          std::floor(std::clamp(p[static_cast<Eigen::Index>(k)] / cell_, -1e15, 1e15)));
+    return out;
+  }
+  static std::uint64_t key(const std::array<std::int64_t, 3>& cell) {
+    std::uint64_t hash = 0;
+    for (const std::int64_t c : cell) hash = (hash ^ static_cast<std::uint64_t>(c)) * 0x9E3779B97F4A7C15ULL;
+    return hash;
+  }
+
+  const std::vector<Thing>& things_;
+  double cell_;
+  std::unordered_map<std::uint64_t, Indices> cells_;
+};
+
+class Pairer {
+ public:
+  Pairer(const std::vector<Thing>& a, const std::vector<Thing>& b, double near)
+      : a_(a), b_(b), near_(near), taken_a_(a.size()), taken_b_(b.size()) {}
+
+  Pairing pair() {
+    by_name();
+    by_place(left(taken_a_), left(taken_b_));
+    by_shape();
+    by_neighbourhood();
+    std::sort(pairing_.pairs.begin(), pairing_.pairs.end());
+    pairing_.only_a = left(taken_a_);
+    pairing_.only_b = left(taken_b_);
+    return std::move(pairing_);
+  }
+
+ private:
+  static Indices left(const std::vector<bool>& taken) {
+    Indices out;
+    for (std::size_t i = 0; i < taken.size(); ++i)
+      if (!taken[i]) out.push_back(i);
+    return out;
+  }
+  void take(std::size_t i, std::size_t j) {
+    taken_a_[i] = taken_b_[j] = true;
+    pairing_.pairs.emplace_back(i, j);
+  }
+  [[nodiscard]] bool same_sort(const Thing& a, const Thing& b) const {
+    return (a.kind == Thing::Kind::curve) == (b.kind == Thing::Kind::curve);
+  }
+
+  void by_name() {
+    struct Group {
+      Indices a, b;
+    };
+    std::map<std::pair<std::string, bool>, Group> groups;
+    for (std::size_t i = 0; i < a_.size(); ++i)
+      if (!a_[i].name.empty()) groups[{a_[i].name, a_[i].kind == Thing::Kind::curve}].a.push_back(i);
+    for (std::size_t j = 0; j < b_.size(); ++j)
+      if (!b_[j].name.empty()) groups[{b_[j].name, b_[j].kind == Thing::Kind::curve}].b.push_back(j);
+    for (const auto& [name, group] : groups) {
+      if (group.a.size() == 1 && group.b.size() == 1)
+        take(group.a.front(), group.b.front());
+      else if (!group.a.empty() && !group.b.empty())
+        by_place(group.a, group.b);
+    }
+  }
+
+  void by_place(const Indices& from, const Indices& to) {
+    if (from.empty() || to.empty()) return;
+    const PlaceIndex index(b_, to, std::max(near_, std::numeric_limits<double>::min()));
+    for (const std::size_t i : from)
+      if (const std::size_t j = index.nearest(a_[i], near_, taken_b_); j != PlaceIndex::npos) take(i, j);
+  }
+
+  // Equal in everything that a motion leaves.
+  [[nodiscard]] bool same_shape(const Thing& a, const Thing& b) const {
+    if (!same_sort(a, b) || a.surfaces.size() != b.surfaces.size()) return false;
+    if (std::abs(a.spread - b.spread) > std::max(near_, 1e-9 * a.spread)) return false;
+    for (std::size_t k = 0; k < a.surfaces.size(); ++k) {
+      const nurbs::Surface &s = *a.surfaces[k], &t = *b.surfaces[k];
+      if (s.points.size() != t.points.size() || s.degree_u + s.degree_v != t.degree_u + t.degree_v)
+        return false;
+    }
+    return true;
+  }
+
+  template <class Fits>
+  void nearest_that(const Fits& fits) {
+    const Indices from = left(taken_a_), to = left(taken_b_);
+    if (from.empty() || to.empty() || from.size() > most_pairs / to.size()) return;
+    for (const std::size_t i : from) {
+      double best = std::numeric_limits<double>::infinity();
+      std::size_t found = PlaceIndex::npos;
+      for (const std::size_t j : to) {
+        if (taken_b_[j]) continue;
+        const double distance = (a_[i].box.center() - b_[j].box.center()).squaredNorm();
+        if (distance >= best || !fits(a_[i], b_[j])) continue;
+        best = distance;
+        found = j;
+      }
+      if (found != PlaceIndex::npos) take(i, found);
+    }
+  }
+  void by_shape() {
+    nearest_that([this](const Thing& a, const Thing& b) { return same_shape(a, b); });
+  }
+  void by_neighbourhood() {
+    nearest_that([this](const Thing& a, const Thing& b) {
+      const double reach = 0.25 * std::min(a.box.diagonal().norm(), b.box.diagonal().norm());
+      return same_sort(a, b) && a.surfaces.size() == b.surfaces.size() &&
+             (a.box.min() - b.box.min()).norm() <= reach && (a.box.max() - b.box.max()).norm() <= reach;
+    });
+  }
+
+  static constexpr std::size_t most_pairs = 400'000'000;
+  const std::vector<Thing>& a_;
+  const std::vector<Thing>& b_;
+  double near_;
+  std::vector<bool> taken_a_, taken_b_;
+  Pairing pairing_;
+};
+
+}  // namespace
+
+std::string_view name_of(Thing::Kind kind) {
+  switch (kind) {
+    case Thing::Kind::yarn:
+      return "yarn";
+    case Thing::Kind::part:
+      return "part";
+    case Thing::Kind::curve:
+      return "curve";
+  }
+  return "part";
+}
+
+Things things_of(const Subject& subject) {
+  Things things;
+  for (std::size_t i = 0; i < subject.model.parts.size(); ++i) {
+    const Part& part = subject.model.parts[i];
+    if (part.faces.empty()) continue;
+    Thing& thing = things.list.emplace_back();
+    thing.kind = i < subject.yarns ? Thing::Kind::yarn : Thing::Kind::part;
+    thing.name = part.name;
+    thing.color = part.color;
+    for (const Face& face : part.faces) {
+      if (thing.name.empty() && part.faces.size() == 1) thing.name = face.name;
+      if (!thing.color) thing.color = face.color;
+      thing.faces.push_back(&face);
+      thing.surfaces.push_back(&face.surface);
+    }
+    measure(thing);
+  }
+  for (const NamedCurve& curve : subject.model.curves) {
+    Thing& thing = things.list.emplace_back();
+    thing.kind = Thing::Kind::curve;
+    thing.name = curve.name;
+    thing.color = curve.color;
+    thing.surfaces.push_back(&things.curves.emplace_back(as_surface(curve.curve)));
+    measure(thing);
+  }
+  return things;
+}
+
+Pairing pair_things(const std::vector<Thing>& a, const std::vector<Thing>& b, double near) {
+  return Pairer(a, b, near).pair();
+}
+
+}  // namespace selvage::cad

@@ -1,0 +1,189 @@
+#include "pipeline/differences.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace selvage::pipeline {
+
+using cad::Difference;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+std::string point_text(const Vec3& p) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
+}
+
+std::string color_text(const yarn::Color& c) {
+  return fmt::format("{},{},{}", c.red, c.green, c.blue);
+}
+
+std::string counted(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+// "yarn 'warp1'", or "part #120" where there is no name.
+std::string thing_text(const Difference& d) {
+  if (!d.name.empty()) return fmt::format("{} '{}'", name_of(d.what), d.name);
+  return fmt::format("{} {}", name_of(d.what), d.entity.empty() ? "without a name" : d.entity);
+}
+
+std::string reach_text(const cad::Reach& reach, Unit units) {
+  const double low = reach.at_least, high = reach.at_most;
+  if (!std::isfinite(high)) return fmt::format("by {:.6g} {} or more", low, name_of(units));
+  if (high <= 1.000001 * low) return fmt::format("by {:.6g} {}", low, name_of(units));
+  return fmt::format("by {:.6g} to {:.6g} {}", low, high, name_of(units));
+}
+
+std::string shape_text(const Difference& d, Unit units) {
+  const std::string where = d.surface.empty() ? "" : fmt::format(" of its {}", d.surface);
+  if (d.control_point) {
+    const Difference::ControlPoint& c = *d.control_point;
+    const std::string index = c.count_j == 1
+                                  ? fmt::format("{} of {}", c.i, c.count_i)
+                                  : fmt::format("({}, {}) of {} x {}", c.i, c.j, c.count_i, c.count_j);
+    if (d.reach.at_least == 0)
+      return fmt::format("its knots or weights{} {}", where, reach_text(d.reach, units));
+    return fmt::format("control point {}{} at {} {}; {} of {} points differ", index, where,
+                       point_text(d.reach.at), reach_text(d.reach, units), c.changed, c.points);
+  }
+  return fmt::format("{}{}at {} {}", d.surface, d.surface.empty() ? "" : " ", point_text(d.reach.at),
+                     reach_text(d.reach, units));
+}
+
+std::string motion_text(const cad::Motion& motion, Unit units) {
+  std::string text =
+      fmt::format("by {}, {:.6g} {}", point_text(motion.shift), motion.shift.norm(), name_of(units));
+  if (motion.angle > 0)
+    text += fmt::format(", and turned by {:.6g} degrees about {}", motion.angle, point_text(motion.axis));
+  return text;
+}
+
+constexpr std::array<Difference::Kind, 6> all_kinds = {
+    Difference::Kind::added,    Difference::Kind::removed, Difference::Kind::moved,
+    Difference::Kind::reshaped, Difference::Kind::renamed, Difference::Kind::recoloured};
+
+std::size_t count_of(const cad::Comparison& found, Difference::Kind kind) {
+  std::size_t count = 0;
+  for (const Difference& d : found.differences) count += d.kind == kind ? 1 : 0;
+  return count;
+}
+
+std::string counts_text(const cad::Comparison::Counts& counts) {
+  std::string text;
+  const auto add = [&](std::size_t count, std::string_view noun) {
+    if (count > 0) text += fmt::format("{}{}", text.empty() ? "" : ", ", counted(count, noun));
+  };
+  add(counts.yarns, "yarn");
+  add(counts.parts, "part");
+  add(counts.surfaces, "surface");
+  add(counts.curves, "curve");
+  return text.empty() ? "nothing" : text;
+}
+
+Json point_json(const Vec3& p) {
+  return Json::array({p.x(), p.y(), p.z()});
+}
+
+Json difference_json(const Difference& d) {
+  Json out = {{"kind", name_of(d.kind)}, {"what", name_of(d.what)}, {"name", d.name}};
+  if (d.kind == Difference::Kind::renamed) out["other_name"] = d.other_name;
+  if (!d.entity.empty()) out["entity"] = d.entity;
+  if (d.kind == Difference::Kind::added || d.kind == Difference::Kind::removed) {
+    out["surfaces"] = d.surfaces;
+    out["box"] = {point_json(d.box.min()), point_json(d.box.max())};
+  }
+  if (d.kind == Difference::Kind::moved) {
+    out["vector"] = point_json(d.motion.shift);
+    if (d.motion.angle > 0) {
+      out["angle"] = d.motion.angle;
+      out["axis"] = point_json(d.motion.axis);
+    }
+  }
+  if (d.kind == Difference::Kind::reshaped || d.kind == Difference::Kind::moved) {
+    out["at_least"] = d.reach.at_least;
+    if (std::isfinite(d.reach.at_most)) out["at_most"] = d.reach.at_most;
+    out["at"] = point_json(d.reach.at);
+  }
+  if (!d.surface.empty()) out["surface"] = d.surface;
+  if (d.control_point) {
+    out["control_point"] = {d.control_point->i, d.control_point->j};
+    out["points_changed"] = d.control_point->changed;
+    out["points"] = d.control_point->points;
+  }
+  if (d.kind == Difference::Kind::recoloured) {
+    out["from"] = {d.before.red, d.before.green, d.before.blue};
+    out["to"] = {d.after.red, d.after.green, d.after.blue};
+  }
+  return out;
+}
+
+Json counts_json(const cad::Comparison::Counts& counts) {
+  return {{"yarns", counts.yarns},
+          {"parts", counts.parts},
+          {"surfaces", counts.surfaces},
+          {"curves", counts.curves}};
+}
+
+}  // namespace
+
+std::string line_of(const Difference& d, Unit units) {
+  std::string text = fmt::format("{}: {}", name_of(d.kind), thing_text(d));
+  switch (d.kind) {
+    case Difference::Kind::added:
+    case Difference::Kind::removed:
+      return text + fmt::format(", {}between {} and {}",
+                                d.what == cad::Thing::Kind::curve ? "" : counted(d.surfaces, "surface") + " ",
+                                point_text(d.box.min()), point_text(d.box.max()));
+    case Difference::Kind::moved:
+      return text + " " + motion_text(d.motion, units);
+    case Difference::Kind::reshaped:
+      return text + ", " + shape_text(d, units);
+    case Difference::Kind::renamed:
+      return text + fmt::format(" to '{}'", d.other_name);
+    case Difference::Kind::recoloured:
+      return text + fmt::format(" from {} to {}", color_text(d.before), color_text(d.after));
+  }
+  return text;
+}
+
+std::string summary_of(const cad::Comparison& found, double tolerance, Unit units) {
+  std::string text;
+  if (found.differences.empty()) {
+    text = fmt::format("equal: {}", counts_text(found.a));
+  } else {
+    std::string kinds;
+    for (const Difference::Kind kind : all_kinds)
+      if (const std::size_t count = count_of(found, kind); count > 0)
+        kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", count, name_of(kind));
+    text = fmt::format("different: {}; the other {} equal", kinds, found.equal);
+  }
+  if (found.largest > 0)
+    text += fmt::format(", at most {:.6g} {} apart{}", found.largest, name_of(units),
+                        found.largest_of.empty() ? "" : fmt::format(" ('{}')", found.largest_of));
+  return text + fmt::format(" (tolerance {:g} {})", tolerance, name_of(units));
+}
+
+std::string to_json(const cad::Comparison& found, const std::string& a, const std::string& b,
+                    double tolerance, Unit units) {
+  Json list = Json::array(), kinds = Json::object();
+  for (const Difference& d : found.differences) list.push_back(difference_json(d));
+  for (const Difference::Kind kind : all_kinds) kinds[std::string(name_of(kind))] = count_of(found, kind);
+  const Json out = {{"a", a},
+                    {"b", b},
+                    {"units", name_of(units)},
+                    {"tolerance", tolerance},
+                    {"equal", found.differences.empty()},
+                    {"counts", {{"a", counts_json(found.a)}, {"b", counts_json(found.b)}}},
+                    {"same", found.equal},
+                    {"largest_deviation", found.largest},
+                    {"kinds", kinds},
+                    {"differences", list},
+                    {"notes", found.notes}};
+  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace selvage::pipeline

@@ -1,0 +1,214 @@
+// What is told of two models whose difference is known.
+#include "cad/compare.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <numbers>
+
+#include "unit/cad/surfaces.h"
+
+namespace selvage::cad {
+namespace {
+
+using nurbs::Surface;
+using namespace test;
+using Kind = Difference::Kind;
+
+Subject cloth(int yarns) {
+  Subject subject;
+  for (int k = 0; k < yarns; ++k) {
+    subject.model.parts.push_back(test::part_of(
+        "yarn" + std::to_string(k + 1), {wavy_tube(k), cylinder(0.1, 0.2, 0, k), cylinder(0.1, 0.2, 3, k)}));
+    subject.model.parts.back().color = Color{10, 20, 30};
+  }
+  subject.yarns = subject.model.parts.size();
+  return subject;
+}
+
+Comparison compared(const Subject& a, const Subject& b, double tolerance = 0) {
+  CompareOptions options;
+  options.tolerance = tolerance;
+  options.threads = 2;
+  return compare(a, b, options);
+}
+
+TEST(Compare, EqualModelsHaveNoDifference) {
+  const Comparison found = compared(cloth(20), cloth(20));
+  EXPECT_TRUE(found.differences.empty());
+  EXPECT_EQ(found.equal, 20U);
+  EXPECT_EQ(found.a.surfaces, 60U);
+  EXPECT_EQ(found.largest, 0);
+}
+
+TEST(Compare, OnePointOfOneYarnAmongTwoThousand) {
+  const Subject before = cloth(2000);
+  Subject after = before;
+  after.model.parts[1234].faces[0].surface.point(6, 8).y() += 1e-9;
+  const Comparison found = compared(before, after);
+  ASSERT_EQ(found.differences.size(), 1U);
+  const Difference& d = found.differences[0];
+  EXPECT_EQ(d.kind, Kind::reshaped);
+  EXPECT_EQ(d.what, Thing::Kind::yarn);
+  EXPECT_EQ(d.name, "yarn1235");
+  EXPECT_EQ(d.surface, "body");
+  ASSERT_TRUE(d.control_point);
+  EXPECT_EQ(d.control_point->i, 7);
+  EXPECT_EQ(d.control_point->j, 9);
+  EXPECT_EQ(d.control_point->changed, 1U);
+  EXPECT_NEAR(d.reach.at_least, 1e-9, 3e-13);
+  EXPECT_EQ(found.equal, 1999U);
+  EXPECT_TRUE(compared(before, after, 2e-9).differences.empty());
+  EXPECT_NEAR(compared(before, after, 2e-9).largest, 1e-9, 3e-13);
+}
+
+TEST(Compare, Moved) {
+  const Subject before = cloth(5);
+  Subject after = before;
+  for (Face& face : after.model.parts[2].faces)
+    for (Vec3& p : face.surface.points) p += Vec3(0.5, 0, -2);
+  const Eigen::AngleAxisd turn(std::numbers::pi / 6, Vec3(0, 0.6, 0.8));
+  for (Face& face : after.model.parts[4].faces)
+    for (Vec3& p : face.surface.points) p = turn * p;
+  const Comparison found = compared(before, after);
+  ASSERT_EQ(found.differences.size(), 2U);
+  EXPECT_EQ(found.differences[0].kind, Kind::moved);
+  EXPECT_EQ(found.differences[0].name, "yarn3");
+  EXPECT_LE((found.differences[0].motion.shift - Vec3(0.5, 0, -2)).norm(), 1e-12);
+  EXPECT_EQ(found.differences[0].motion.angle, 0);
+  EXPECT_EQ(found.differences[1].kind, Kind::moved);
+  EXPECT_NEAR(found.differences[1].motion.angle, 30, 1e-9);
+  EXPECT_LE((found.differences[1].motion.axis - Vec3(0, 0.6, 0.8)).norm(), 1e-9);
+}
+
+TEST(Compare, AddedRemovedRenamedRecoloured) {
+  const Subject before = cloth(6);
+  Subject after = before;
+  after.model.parts[1].name = "other";
+  after.model.parts[3].color = Color{1, 2, 3};
+  after.model.parts.erase(after.model.parts.begin() + 5);
+  after.model.parts.push_back(test::part_of("new", {sheet()}));
+  for (Vec3& p : after.model.parts.back().faces[0].surface.points) p += Vec3(100, 0, 0);
+  after.yarns = 5;
+  const Comparison found = compared(before, after);
+  ASSERT_EQ(found.differences.size(), 4U);
+  EXPECT_EQ(found.differences[0].kind, Kind::renamed);
+  EXPECT_EQ(found.differences[0].name, "yarn2");
+  EXPECT_EQ(found.differences[0].other_name, "other");
+  EXPECT_EQ(found.differences[1].kind, Kind::recoloured);
+  EXPECT_EQ(found.differences[1].name, "yarn4");
+  EXPECT_EQ(found.differences[2].kind, Kind::removed);
+  EXPECT_EQ(found.differences[2].name, "yarn6");
+  EXPECT_EQ(found.differences[3].kind, Kind::added);
+  EXPECT_EQ(found.differences[3].name, "new");
+  EXPECT_EQ(found.equal, 3U);
+}
+
+TEST(Compare, OrderDirectionsSeamsAndMissingNamesAreNoDifference) {
+  const Subject before = cloth(7);
+  Subject after;
+  for (const Part& part : before.model.parts) {
+    Part other = part;
+    other.name.clear();
+    other.color.reset();
+    for (Face& face : other.faces) face.name.clear();
+    std::swap(other.faces[0], other.faces[2]);
+    other.faces[0].surface = swapped(backward_v(other.faces[0].surface));
+    other.faces[1].surface = stretched(other.faces[1].surface, 3, 1);
+    other.faces[2].surface = reseamed(refined_v(other.faces[2].surface, {0.4}), 0.3);
+    after.model.parts.insert(after.model.parts.begin(), other);
+  }
+  after.yarns = 0;
+  const Comparison found = compared(before, after, 1e-9);
+  EXPECT_TRUE(found.differences.empty());
+  EXPECT_EQ(found.equal, 7U);
+  EXPECT_EQ(found.notes.size(), 2U);  // names, colours
+  EXPECT_LE(found.largest, 1e-11);
+}
+
+TEST(Compare, SurfacesCutAndGroupedInAnotherWay) {
+  const Subject before = cloth(3);
+  Subject loose;  // every surface a part of its own, the bodies in two pieces
+  for (const Part& part : before.model.parts)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Surface& s = part.faces[k].surface;
+      if (k > 0) {
+        loose.model.parts.push_back(test::part_of("", {s}));
+        continue;
+      }
+      loose.model.parts.push_back(test::part_of("", {cut_v(s, 0, 0.61)}));
+      loose.model.parts.push_back(test::part_of("", {cut_v(s, 0.61, 1)}));
+    }
+  const Comparison found = compared(before, loose, 1e-9);
+  EXPECT_TRUE(found.differences.empty());
+  // The same in one part of four faces, under the yarn's name.
+  Subject whole = before;
+  for (Part& part : whole.model.parts) {
+    const Surface s = part.faces[0].surface;
+    part.faces[0].surface = cut_v(s, 0, 0.61);
+    part.faces.push_back(part.faces[0]);
+    part.faces.back().surface = cut_v(s, 0.61, 1);
+  }
+  EXPECT_TRUE(compared(before, whole, 1e-9).differences.empty());
+  whole.model.parts[1].faces.back().surface.point(3, 3).z() += 0.01;
+  const Comparison changed = compared(before, whole, 1e-9);
+  ASSERT_EQ(changed.differences.size(), 1U);
+  EXPECT_EQ(changed.differences[0].kind, Kind::reshaped);
+  EXPECT_EQ(changed.differences[0].name, "yarn2");
+  EXPECT_GT(changed.differences[0].reach.at_least, 1e-4);
+  EXPECT_LE(changed.differences[0].reach.at_most, 0.012);
+}
+
+TEST(Compare, KnotsAndWeightsCount) {
+  const Subject before = cloth(2);
+  Subject after = before;
+  after.model.parts[0].faces[0].surface.knots_v[7] += 1e-9;
+  after.model.parts[1].faces[1].surface.weights[4] *= 1 + 1e-9;
+  const Comparison found = compared(before, after);
+  ASSERT_EQ(found.differences.size(), 2U);
+  for (const Difference& d : found.differences) {
+    EXPECT_EQ(d.kind, Kind::reshaped);
+    EXPECT_LE(d.reach.at_most, 1e-7);
+  }
+  EXPECT_TRUE(compared(before, after, 1e-7).differences.empty());
+}
+
+TEST(Compare, TrimmedFaces) {
+  // A square hole's worth of plane: two planes of different size with the same outline are the same face.
+  const auto plane = [](double low, double high) {
+    Surface s;
+    s.degree_u = s.degree_v = 1;
+    s.count_u = s.count_v = 2;
+    s.knots_u = s.knots_v = {low, low, high, high};
+    s.points = {{low, low, 1}, {high, low, 1}, {low, high, 1}, {high, high, 1}};
+    return s;
+  };
+  const auto square = [](double low, double high) {
+    Loop loop;
+    const std::vector<Vec3> corners = {{low, low, 0}, {high, low, 0}, {high, high, 0}, {low, high, 0}};
+    for (std::size_t k = 0; k < 4; ++k) {
+      Edge edge;
+      edge.flat = {1, {0, 0, 1, 1}, {corners[k], corners[(k + 1) % 4]}, {}};
+      edge.curve = edge.flat;
+      for (Vec3& p : edge.curve.points) p.z() = 1;
+      loop.edges.push_back(edge);
+    }
+    return loop;
+  };
+  const auto model = [&](double size, double low, double high) {
+    Subject subject;
+    subject.model.parts = {test::part_of("face", {plane(-size, size)})};
+    subject.model.parts[0].faces[0].loops = {square(low, high)};
+    return subject;
+  };
+  EXPECT_TRUE(compared(model(2, -1, 1), model(5, -1, 1), 1e-12).differences.empty());
+  const Comparison larger = compared(model(2, -1, 1), model(2, -1, 1.25), 1e-12);
+  ASSERT_EQ(larger.differences.size(), 1U);
+  // The farthest point of the larger outline from the smaller one: its corner.
+  EXPECT_LE(larger.differences[0].reach.at_least, std::sqrt(2) * 0.25 + 1e-9);
+  EXPECT_GE(larger.differences[0].reach.at_most, std::sqrt(2) * 0.25 - 1e-9);
+  EXPECT_GE(larger.differences[0].reach.at_least, 0.3);
+}
+
+}  // namespace
+}  // namespace selvage::cad
