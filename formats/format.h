@@ -13,6 +13,7 @@
 
 #include "cad/model.h"
 #include "core/diagnostics.h"
+#include "core/findings.h"
 #include "core/output.h"
 #include "core/source.h"
 #include "core/units.h"
@@ -84,6 +85,8 @@ struct Descriptor {
 
   // A CAD file as it stands; fabric/from_cad.h makes a fabric of it. A format has this or read_fabric.
   std::optional<cad::Model> (*read_model)(const Source& source, Diagnostics& diagnostics) = nullptr;
+  // Does the file keep to its format in every respect? Defects and warnings that the reader puts up with.
+  void (*check_structure)(const Source& source, Findings& findings) = nullptr;
   [[nodiscard]] bool is_readable() const { return read_fabric != nullptr || read_model != nullptr; }
 
   Result<WriteFacts> (*write_fabric)(const fabric::Fabric& fabric, OutputFile& output) = nullptr;

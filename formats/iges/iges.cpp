@@ -1,6 +1,7 @@
 #include "formats/iges/iges.h"
 
 #include "formats/iges/reader.h"
+#include "formats/iges/structure.h"
 #include "formats/iges/writer.h"
 
 namespace selvage::formats::iges {
@@ -24,6 +25,7 @@ const Descriptor& descriptor() {
       .extensions = {".igs", ".iges"},
       .sniff = sniff,
       .read_model = read_model,
+      .check_structure = check_structure,
       .open_bodies = [](OutputFile& output,
                         const SurfaceOptions& options) { return open_writer(output, options); },
       .carries_curves = true};
