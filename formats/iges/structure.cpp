@@ -58,11 +58,16 @@ class LineCheck {
       findings_.defect("lines of a wrong length",
                        fmt::format("the line has {} columns; 80 are due", line.text.size()), line.place());
     check_characters(line);
-    const std::size_t section = line.text.size() > 72 ? letters.find(line.text[72]) : std::string_view::npos;
+    // Where one character was lost or put in, the section letter stands beside its column.
+    const std::size_t length = line.text.size();
+    const bool shifted =
+        (length == 79 || length == 81) && letters.find(line.text[72]) == std::string_view::npos;
+    const std::size_t column = shifted ? length - 7 : 73;
+    const std::size_t section =
+        length >= column ? letters.find(line.text[column - 1]) : std::string_view::npos;
     if (section == std::string_view::npos) {
       findings_.defect("lines without a section letter", "no section letter (S, G, D, P or T) in column 73",
                        line.place(73));
-      ++unplaced_;
       return;
     }
     if (section < last_)
@@ -71,9 +76,8 @@ class LineCheck {
           fmt::format("a line of the {} section after the {} section", names[section], names[last_]),
           line.place(73));
     last_ = std::max(last_, section);
-    check_number(line, section);
+    check_number(line, section, column + 1);
     file_.sections[section].push_back(line);
-    unplaced_ = 0;
   }
 
   void check_characters(const RawLine& line) {
@@ -86,8 +90,8 @@ class LineCheck {
         line.place(static_cast<int>(bad - line.text.begin()) + 1));
   }
 
-  void check_number(const RawLine& line, std::size_t section) {
-    const std::string_view field = line.columns(74, 80);
+  void check_number(const RawLine& line, std::size_t section, std::size_t column) {
+    const std::string_view field = line.columns(column, column + 6);
     int& expected = ++expected_[section];
     const std::optional<int> number = trimmed(field).empty() ? std::nullopt : field_number(field);
     if (!number) {
@@ -138,7 +142,7 @@ class LineCheck {
   Findings& findings_;
   std::array<int, 5> expected_{};
   std::size_t last_ = 0;
-  int dos_ = 0, unix_ = 0, unplaced_ = 0;
+  int dos_ = 0, unix_ = 0;
 };
 
 bool is_number_start(std::string_view text, std::size_t at) {

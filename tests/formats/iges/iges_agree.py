@@ -214,8 +214,8 @@ class Comparison:
         if (mine is None) != (wanted is None) or (mine and max(abs(a - b) for a, b in zip(mine, wanted)) > 1):
             if model.color(e) or mine is not None:
                 self.say("{}: colour {} instead of {}", what, mine, wanted)
-        if own["level"] not in {c.level for c in [e, *chain]}:
-            self.say("{}: level {} instead of {}", what, own["level"], e.level)
+        if own["level"] not in {model.level(c) for c in [e, *chain]}:
+            self.say("{}: level {} instead of {}", what, own["level"], model.level(e))
 
     def parts(self):
         """Every face of theirs is one of ours, in parts of the same kind."""
@@ -302,8 +302,8 @@ class Comparison:
         wanted = self.model.color(e)
         if wanted and (not own["color"] or max(abs(a - 2.55 * b) for a, b in zip(own["color"], wanted)) > 1):
             self.say("{}: colour {} instead of {}", own["entity"], own["color"], wanted)
-        if own["level"] != e.level:
-            self.say("{}: level {} instead of {}", own["entity"], own["level"], e.level)
+        if own["level"] != self.model.level(e):
+            self.say("{}: level {} instead of {}", own["entity"], own["level"], self.model.level(e))
 
     def header(self):
         f = self.model.file
@@ -329,7 +329,7 @@ def seen(model):
         s = f.surface
         u0, u1, v0, v1 = s.range
         return {"chain": f.chain, "range": s.range, "reversed": f.reversed, "name": model.name(f.entity),
-                "color": model.color(f.entity), "level": f.entity.level,
+                "color": model.color(f.entity), "level": model.level(f.entity),
                 "samples": [s.at(u0 + (u1 - u0) * i / 4, v0 + (v1 - v0) * j / 3) for i in range(5) for j in range(4)]
                 if s.is_bounded() else [], "loops": [[curve(c) for c in loop] for loop in f.loops]}
 

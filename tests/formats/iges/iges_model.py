@@ -506,6 +506,14 @@ class Model:
             return tuple(Values(self.target(-e.color, e, 314).values, "314").reals(3))
         return STANDARD_COLORS.get(e.color)
 
+    def level(self, e):
+        """Of several (406 form 1) the first."""
+        if e.level >= 0:
+            return e.level
+        v = Values(self.target(-e.level, e, 406).values, "406")
+        v.integer()
+        return v.integer()
+
     def groups(self):
         """402s that collect, with their members."""
         found = []
