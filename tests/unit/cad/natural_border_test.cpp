@@ -1,0 +1,174 @@
+// Faces whose loops say no more than the surface does, and faces whose loops do.
+#include "cad/natural_border.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "nurbs/restrict.h"
+
+namespace selvage::test {
+
+namespace {
+
+using cad::Edge;
+using cad::Face;
+using cad::Loop;
+
+// A bent patch of degrees 3 and 2 over [0, 2] x [0, 3].
+nurbs::Surface patch() {
+  nurbs::Surface surface;
+  surface.degree_u = 3;
+  surface.degree_v = 2;
+  surface.count_u = 5;
+  surface.count_v = 5;
+  surface.knots_u = {0, 0, 0, 0, 1, 2, 2, 2, 2};
+  surface.knots_v = {0, 0, 0, 1, 2, 3, 3, 3};
+  for (int j = 0; j < 5; ++j)
+    for (int i = 0; i < 5; ++i) surface.points.emplace_back(i, 1.5 * j, 0.2 * ((3 * i + 5 * j) % 4));
+  return surface;
+}
+
+// A cylinder of radius 1 and height 3, exact: u round it.
+nurbs::Surface cylinder() {
+  nurbs::Surface surface;
+  surface.degree_u = 2;
+  surface.degree_v = 1;
+  surface.count_u = 9;
+  surface.count_v = 2;
+  surface.knots_u = {0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4};
+  surface.knots_v = {0, 0, 1, 1};
+  const double x[] = {1, 1, 0, -1, -1, -1, 0, 1, 1}, y[] = {0, 1, 1, 1, 0, -1, -1, -1, 0};
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 9; ++i) {
+      surface.points.emplace_back(x[i], y[i], 3.0 * j);
+      surface.weights.push_back(i % 2 == 0 ? 1 : std::sqrt(0.5));
+    }
+  return surface;
+}
+
+Loop without_flats(Loop loop) {
+  for (Edge& edge : loop.edges) edge.flat = {};
+  return loop;
+}
+Loop without_curves(Loop loop) {
+  for (Edge& edge : loop.edges) edge.curve = {};
+  return loop;
+}
+
+Face face_of(const nurbs::Surface& surface, std::vector<Loop> loops) {
+  Face face;
+  face.surface = surface;
+  face.loops = std::move(loops);
+  return face;
+}
+
+TEST(NaturalBorder, ItsOwnBorderIsOne) {
+  for (const nurbs::Surface& surface : {patch(), cylinder()}) {
+    const Loop border = cad::natural_border(surface, 1e-9);
+    ASSERT_EQ(border.edges.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const nurbs::Curve &a = border.edges[i].curve, &b = border.edges[(i + 1) % 4].curve;
+      EXPECT_EQ(a.points.back(), b.points.front());
+      const Vec3 middle = nurbs::evaluate(border.edges[i].flat, border.edges[i].flat.knots[1]);
+      EXPECT_LT((nurbs::evaluate(surface, middle.x(), middle.y()) - a.points.front()).norm(), 1e-14);
+    }
+    EXPECT_TRUE(cad::has_natural_border(face_of(surface, {border}), 1e-9));
+    EXPECT_TRUE(cad::has_natural_border(face_of(surface, {without_flats(border)}), 1e-9));
+    EXPECT_TRUE(cad::has_natural_border(face_of(surface, {without_curves(border)}), 1e-9));
+  }
+}
+
+// Edges cut at other places than the sides, run the other way round, and of another degree.
+TEST(NaturalBorder, OtherEdgesAlongTheSameWay) {
+  Loop border = without_flats(cad::natural_border(patch(), 1e-9));
+  Loop cut;
+  for (auto edge = border.edges.rbegin(); edge != border.edges.rend(); ++edge) {
+    const nurbs::Curve back = nurbs::reversed(edge->curve);
+    const double t0 = back.first_parameter(), t1 = back.last_parameter(), t = t0 + 0.3 * (t1 - t0);
+    cut.edges.push_back({nurbs::restricted(back, t0, t), {}, -1});
+    cut.edges.push_back({nurbs::restricted(back, t, t1), {}, -1});
+  }
+  std::rotate(cut.edges.begin(), cut.edges.begin() + 3, cut.edges.end());
+  Face face = face_of(patch(), {cut});
+  EXPECT_TRUE(cad::drop_natural_border(face, 1e-9));
+  EXPECT_TRUE(face.loops.empty());
+}
+
+TEST(NaturalBorder, ATubeWithItsRimsAndWithoutItsSeam) {
+  const Loop border = without_flats(cad::natural_border(cylinder(), 1e-9));
+  const Loop first{{border.edges[0]}}, last{{border.edges[2]}};
+  EXPECT_TRUE(cad::has_natural_border(face_of(cylinder(), {first, last}), 1e-9));
+  EXPECT_FALSE(cad::has_natural_border(face_of(cylinder(), {first}), 1e-9));
+}
+
+// A rim whose circle begins at another place than the surface's seam.
+TEST(NaturalBorder, ARimThatBeginsElsewhere) {
+  Loop first, last;
+  for (const double z : {0.0, 3.0}) {
+    nurbs::Curve circle = without_flats(cad::natural_border(cylinder(), 1e-9)).edges[0].curve;
+    for (Vec3& p : circle.points) p = Vec3(-p.y(), p.x(), z);
+    (z == 0 ? first : last).edges.push_back({circle, {}, -1});
+  }
+  EXPECT_TRUE(cad::has_natural_border(face_of(cylinder(), {first, last}), 1e-9));
+}
+
+TEST(NaturalBorder, WhatIsTrimmedStaysSo) {
+  const Loop border = cad::natural_border(patch(), 1e-9);
+  // A corner cut off.
+  Loop corner = without_flats(border);
+  nurbs::Curve& bottom = corner.edges[0].curve;
+  bottom = nurbs::restricted(bottom, bottom.first_parameter(), 1.5);
+  nurbs::Curve& right = corner.edges[1].curve;
+  right = nurbs::restricted(right, 0.5, right.last_parameter());
+  corner.edges.insert(corner.edges.begin() + 1, Edge{{.degree = 1,
+                                                      .knots = {0, 0, 1, 1},
+                                                      .points = {bottom.points.back(), right.points.front()},
+                                                      .weights = {}},
+                                                     {},
+                                                     -1});
+  EXPECT_FALSE(cad::has_natural_border(face_of(patch(), {corner}), 1e-9));
+  // A side that is off by more than the tolerance, in the middle only.
+  Loop bulge = without_flats(border);
+  bulge.edges[3].curve.points[2].z() += 1e-3;
+  EXPECT_FALSE(cad::has_natural_border(face_of(patch(), {bulge}), 1e-5));
+  EXPECT_TRUE(cad::has_natural_border(face_of(patch(), {bulge}), 1e-3));
+  // A hole beside the border.
+  Loop hole;
+  hole.edges.push_back({.curve = {},
+                        .flat = {.degree = 1,
+                                 .knots = {0, 0, 1, 2, 3, 3},
+                                 .points = {{0.5, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0.5, 1, 0}},
+                                 .weights = {}}});
+  Face face = face_of(patch(), {border, hole});
+  EXPECT_FALSE(cad::drop_natural_border(face, 1e-9));
+  EXPECT_EQ(face.loops.size(), 2U);
+  // One side twice instead of all four.
+  EXPECT_FALSE(cad::has_natural_border(face_of(patch(), {Loop{{border.edges[0], border.edges[0]}}}), 1e-9));
+}
+
+// A fan: the last row is one point, the loop its rim alone, or with the seam and the pole.
+TEST(NaturalBorder, Poles) {
+  nurbs::Surface fan = cylinder();
+  for (int i = 0; i < 9; ++i) fan.point(i, 1) = Vec3(0, 0, 3);
+  const Loop border = without_flats(cad::natural_border(fan, 1e-9));
+  EXPECT_TRUE(border.edges[2].curve.points.empty());
+  EXPECT_TRUE(cad::has_natural_border(face_of(fan, {border}), 1e-9));
+  EXPECT_TRUE(cad::has_natural_border(face_of(fan, {Loop{{border.edges[0]}}}), 1e-9));
+}
+
+TEST(NaturalBorder, OpenKnots) {
+  nurbs::Surface surface = patch();
+  surface.knots_u = {-3, -2, -1, 0, 1, 2, 3, 4, 5};
+  const Loop border = cad::natural_border(surface, 1e-9);
+  for (const Edge& edge : border.edges) {
+    const Vec3 flat = nurbs::evaluate(edge.flat, edge.flat.knots[1]);
+    EXPECT_LT((nurbs::evaluate(surface, flat.x(), flat.y()) - edge.curve.points.front()).norm(), 1e-13);
+  }
+  EXPECT_TRUE(cad::has_natural_border(face_of(surface, {without_flats(border)}), 1e-9));
+}
+
+}  // namespace
+
+}  // namespace selvage::test
