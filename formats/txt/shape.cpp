@@ -109,7 +109,7 @@ struct GridRows {
   std::size_t seen = 0;           // rows, wrong ones included
   bool section_has_size = false;  // its points so far are not all the same
   bool sections_differ = false;   // not every section is the first one again
-  Spot knots_along_spot{}, knots_round_spot{};
+  Spot knots_along_spot{}, knots_round_spot{}, corners_spot{};
 };
 
 // The words that may stand behind the counts, or on lines of their own before the rows. Each is read up to
@@ -162,8 +162,22 @@ void read_grid_closed(Parser&, GridRows& rows) {
   rows.grid.closed_along = true;
 }
 
-constexpr std::array<Word<GridWord>, 4> grid_words{
-    {{"degree", read_degree}, {"knots", read_knots}, {"open", read_open}, {"closed", read_grid_closed}}};
+void read_corners(Parser& p, GridRows& rows) {
+  rows.corners_spot = p.last();
+  std::array<double, 4> corners{};
+  for (double& corner : corners) {
+    const auto value = p.number("a corner of the end patches");
+    if (!value) return;
+    corner = *value;
+  }
+  rows.grid.corners = corners;
+}
+
+constexpr std::array<Word<GridWord>, 5> grid_words{{{"degree", read_degree},
+                                                    {"knots", read_knots},
+                                                    {"open", read_open},
+                                                    {"closed", read_grid_closed},
+                                                    {"corners", read_corners}}};
 
 // From the word that was taken to the end of the line.
 void read_grid_words(Parser& p, GridRows& rows, std::string_view word) {
@@ -176,8 +190,9 @@ void read_grid_words(Parser& p, GridRows& rows, std::string_view word) {
       known->value(p, rows);
       word = p.take_word();
     } else {
-      p.error(p.last(), fmt::format("unknown word {} of the grid; known: degree, knots, open, closed",
-                                    in_quotes(word)));
+      p.error(p.last(),
+              fmt::format("unknown word {} of the grid; known: degree, knots, open, closed, corners",
+                          in_quotes(word)));
     }
   }
   if (p.report.errors() > errors) rows.reading.good = false;
@@ -226,6 +241,11 @@ void check_grid_words(Parser& p, const GridRows& rows) {
                    fmt::format("degree {} round needs more than {} points", degree_round, grid.per_section));
   check_knots(p, rows, true);
   check_knots(p, rows, false);
+  if (grid.corners)
+    for (std::size_t k = 1; k < 4; ++k)
+      if (!((*grid.corners)[k - 1] < (*grid.corners)[k]))
+        return p.error(rows.corners_spot,
+                       "corners are four parameters round, each larger than the one before");
 }
 
 // Compares the row just added with those before it.
@@ -322,7 +342,8 @@ fabric::Grid read_grid(Parser& p, ShapeReading& reading) {
   static const Table<GridRows> table({{"degree", read_grid_words, Times::any},
                                       {"knots", read_grid_words, Times::any},
                                       {"open", read_grid_words},
-                                      {"closed", read_grid_words}},
+                                      {"closed", read_grid_words},
+                                      {"corners", read_grid_words}},
                                      read_grid_row);
   Grid grid;
   grid.place = reading.spot.place();

@@ -8,6 +8,7 @@
 
 #include "core/number_text.h"
 #include "core/text_report.h"
+#include "fabric/grid_form.h"
 #include "formats/txt/words.h"
 
 namespace selvage::formats::txt {
@@ -199,6 +200,10 @@ void write_grid(Lines& out, const fabric::Grid& grid) {
   write_knots(out, "round", grid.knots_round);
   if (grid.open_round) out.line(2, "open round");
   if (grid.closed_along) out.line(2, "closed");
+  if (grid.corners) {
+    out.line(2, "corners");
+    for (const double corner : *grid.corners) out.value(corner);
+  }
   const auto per_section = static_cast<std::size_t>(grid.per_section);
   for (std::size_t i = 0; i < grid.points.size(); ++i) {
     if (i > 0 && per_section > 0 && i % per_section == 0) out.blank_line();
@@ -213,6 +218,7 @@ void write_item(Lines& out, const fabric::Yarn& yarn) {
   out.line(0, "yarn").name(yarn.name);
   if (!yarn.thread.empty()) out.name(yarn.thread);
   if (yarn.role) out.line(1, "role").word(word_of(role_words, *yarn.role));
+  if (!yarn.group.empty()) out.line(1, "group").name(yarn.group);
   write_thread_statements(out, 1, yarn.own);
   if (yarn.closed) out.line(1, "closed");
   if (yarn.tangent_start) out.line(1, "tangent start").values(*yarn.tangent_start);
@@ -222,6 +228,8 @@ void write_item(Lines& out, const fabric::Yarn& yarn) {
     write_path(out, *path);
   else if (const auto* grid = std::get_if<fabric::Grid>(&yarn.shape))
     write_grid(out, *grid);
+  else if (const auto* read = std::get_if<std::shared_ptr<const yarn::Body>>(&yarn.shape))
+    write_grid(out, fabric::grid_of(**read));
   else
     out.fail(fmt::format("the yarn {} has no path and no grid", in_quotes(yarn.name)));
   out.line(0, "end");
@@ -383,6 +391,12 @@ Result<WriteFacts> write_fabric(const fabric::Fabric& fabric, OutputFile& output
   if (Status status = out.finish(); !status) return status.error();
   if (!fabric.threads.empty()) facts.entities["thread"] = fabric.threads.size();
   if (!fabric.materials.empty()) facts.entities["material"] = fabric.materials.size();
+  if (const std::size_t others = fabric.parts.size() + fabric.curves.size(); others > 0)
+    facts.messages.push_back(warning(
+        Kind::unsupported,
+        fmt::format("{} surface group{} or curve{} that {} no yarn: a Fabric TXT cannot hold {}, left out",
+                    others, others == 1 ? "" : "s", others == 1 ? "" : "s", others == 1 ? "is" : "are",
+                    others == 1 ? "it" : "them")));
   return facts;
 }
 

@@ -27,6 +27,11 @@ void read_role(Parser& p, YarnReading& reading, std::string_view) {
   if (role && p.finish()) reading.yarn.role = *role;
 }
 
+void read_group(Parser& p, YarnReading& reading, std::string_view) {
+  const auto group = p.name("the name of the group");
+  if (group && p.finish()) reading.yarn.group = *group;
+}
+
 void read_closed(Parser& p, YarnReading& reading, std::string_view) {
   if (p.finish()) reading.yarn.closed = true;
 }
@@ -87,6 +92,7 @@ Table<YarnReading> make_yarn_table() {
                                                     {"path", read_shape, Times::once},
                                                     {"grid", read_shape, Times::once, "path"},
                                                     {"closed", read_closed},
+                                                    {"group", read_group},
                                                     {"tangent", read_tangent, Times::any},
                                                     {"up", read_up}};
   for (const auto& own : thread_statements())

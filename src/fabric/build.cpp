@@ -36,6 +36,7 @@ yarn::GridNet net_of(const Grid& grid, bool yarn_closed) {
   net.knots_round = grid.knots_round;
   net.open_round = grid.open_round;
   net.closed_along = grid.closed_along || yarn_closed;
+  net.corners = grid.corners;
   return net;
 }
 
@@ -324,6 +325,7 @@ Result<yarn::Body> YarnBuilder::build_grid(const Yarn& yarn) const {
       return in_file(*fabric_, edit.place,
                      error(Kind::unsupported,
                            fmt::format("yarn '{}' is a grid: it has no centre line to edit", yarn.name)));
+  body.group = yarn.group;
   Status filled = yarn::fill_from_grid(body, net_of(grid, yarn.closed));
   if (!filled) {
     filled.error().place = grid.place;

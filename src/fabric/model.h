@@ -2,6 +2,7 @@
 // grammar but not yet built. Numbers are as written, in the file's unit.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -114,6 +115,7 @@ struct Grid {
   std::vector<double> knots_along, knots_round;  // empty: the default
   bool open_round = false;                       // the rows are the clamped form, seam point at both ends
   bool closed_along = false;                     // word `closed` of the grid: a ring
+  std::optional<std::array<double, 4>> corners;  // of the end patches: parameters round; none: found
   std::vector<Vec3> points;
   std::vector<double> weights;  // empty: all 1
 };
@@ -121,6 +123,7 @@ struct Grid {
 struct Yarn {
   std::string name;
   TextPlace place;
+  std::string group;   // the yarn whose ply or filament this is; mostly empty
   std::string thread;  // empty: the statements are all inline
   TextPlace thread_place;
   Thread own;  // inline statements; its name is empty

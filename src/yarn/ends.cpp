@@ -176,20 +176,36 @@ Vec3 end_centre(const Body& body, const nurbs::Curve& outline, bool last) {
   return sum / static_cast<double>(outline.points.size() - 1);
 }
 
-Status seal_end(Body& body, bool last, EndStyle style) {
-  const nurbs::Curve outline = end_curve(body, last);
-  EndFace face;
-  face.style = style;
+// Centre and outward normal of the end. Round the section the outline turns about the path (against it when
+// the body's normals point inward); out of the yarn is against the path at the start.
+Status place_end(const Body& body, bool last, const nurbs::Curve& outline, const Vec3& turning,
+                 EndFace& face) {
   face.origin = end_centre(body, outline, last);
-  // Round the section the outline turns about the path (against it when the body's normals point inward); out
-  // of the yarn is against the path at the start.
-  const Vec3 turning = area_vector(outline);
   const double sign = (last != body.inward) ? 1.0 : -1.0;
   if (turning.norm() == 0.0)
     return seal_message(
         body, last, Severity::error,
         fmt::format("the {} section of yarn '{}' has no area", last ? "last" : "first", body.name));
   face.normal = sign * turning.normalized();
+  return {};
+}
+
+// A patch keeps the outline's turning; a fan's u follows the outline and v runs inward: its normal is the
+// opposite one.
+void find_inward(EndFace& face, const Vec3& turning) {
+  if (face.style == EndStyle::patch) face.inward = face.normal.dot(turning) < 0.0;
+  if (face.style == EndStyle::fan) {
+    const nurbs::SurfaceJet jet = nurbs::evaluate_jet(face.surface, face.surface.first_u(), 0.0);
+    face.inward = jet.du.cross(jet.dv).dot(face.normal) < 0.0;
+  }
+}
+
+Status seal_end(Body& body, bool last, EndStyle style) {
+  const nurbs::Curve outline = end_curve(body, last);
+  EndFace face;
+  face.style = style;
+  const Vec3 turning = area_vector(outline);
+  if (Status placed = place_end(body, last, outline, turning, face); !placed) return placed;
   double size = 0.0;
   for (const Vec3& p : outline.points) size = std::max(size, (p - face.origin).norm());
   // Rounding of the coordinates aside; the trimmed plane is only as good as the outline is flat.
@@ -227,18 +243,24 @@ Status seal_end(Body& body, bool last, EndStyle style) {
         fmt::format("the {} of yarn '{}' is not flat (by {:.3g}): a plane cannot seal it; use --ends patch",
                     last ? "end" : "start", body.name, unflat));
   }
-  // A patch keeps the outline's turning; a fan's u follows the outline and v runs inward: its normal is the
-  // opposite one.
-  if (face.style == EndStyle::patch) face.inward = face.normal.dot(turning) < 0.0;
-  if (face.style == EndStyle::fan) {
-    const nurbs::SurfaceJet jet = nurbs::evaluate_jet(face.surface, face.surface.first_u(), 0.0);
-    face.inward = jet.du.cross(jet.dv).dot(face.normal) < 0.0;
-  }
+  find_inward(face, turning);
   (last ? body.end : body.start) = std::move(face);
   return {};
 }
 
 }  // namespace
+
+Status place_ends(Body& body) {
+  for (const bool last : {false, true}) {
+    EndFace& face = last ? body.end : body.start;
+    if (body.closed_along || face.style == EndStyle::none) continue;
+    const nurbs::Curve outline = end_curve(body, last);
+    const Vec3 turning = area_vector(outline);
+    if (Status placed = place_end(body, last, outline, turning, face); !placed) return placed;
+    find_inward(face, turning);
+  }
+  return {};
+}
 
 Status seal(Body& body, EndStyle style) {
   body.start = body.end = EndFace{};

@@ -34,4 +34,8 @@ double flatness(const nurbs::Curve& curve, const Vec3& origin, const Vec3& norma
 // of the styles asked for can seal.
 Status seal(Body& body, EndStyle style);
 
+// For end faces that have their style and surface already: fills origin, normal and inward. Error (geometry):
+// a section without area.
+Status place_ends(Body& body);
+
 }  // namespace selvage::yarn

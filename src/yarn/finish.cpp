@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -96,13 +97,17 @@ void find_bends(Body& body) {
 
 }  // namespace
 
-Status finish(Body& body, EndStyle ends) {
-  const Vec3 origin = body.axis.points.front();
-  // Sign first, with open ends: S_u x S_v outward makes the flux positive.
+namespace {
+
+// Finds which way the body's normals point; with open ends, because sealing needs to know.
+Status orient(Body& body, double side, const Vec3& origin) {
   body.inward = false;
-  const double side = nurbs::volume_flux(body.surface, origin);
   double flux = side;
+  const std::array<EndStyle, 2> styles = {body.start.style, body.end.style};
+  body.start.style = body.end.style = EndStyle::none;
   if (!body.closed_along) flux += end_flux(body, false, origin) + end_flux(body, true, origin);
+  body.start.style = styles[0];
+  body.end.style = styles[1];
   if (!std::isfinite(flux) || flux == 0.0) {
     Message message = error(Kind::geometry, fmt::format("yarn '{}' encloses no volume", body.name));
     message.yarn = body.name;
@@ -110,13 +115,35 @@ Status finish(Body& body, EndStyle ends) {
     return message;
   }
   body.inward = flux < 0.0;
-  Status sealed = seal(body, ends);
-  if (!sealed) return sealed;
+  return {};
+}
+
+void measure(Body& body, double side, const Vec3& origin) {
   body.volume = body.inward ? -side : side;
   if (!body.closed_along) body.volume += end_flux(body, false, origin) + end_flux(body, true, origin);
   body.end_area = area_vector(end_curve(body, false)).norm();
   body.length = nurbs::arc_length(body.axis);
   find_bends(body);
+}
+
+}  // namespace
+
+Status finish(Body& body, EndStyle ends) {
+  const Vec3 origin = body.axis.points.front();
+  const double side = nurbs::volume_flux(body.surface, origin);
+  body.start = body.end = EndFace{};
+  if (Status oriented = orient(body, side, origin); !oriented) return oriented;
+  if (Status sealed = seal(body, ends); !sealed) return sealed;
+  measure(body, side, origin);
+  return {};
+}
+
+Status finish_as_sealed(Body& body) {
+  const Vec3 origin = body.axis.points.front();
+  const double side = nurbs::volume_flux(body.surface, origin);
+  if (Status oriented = orient(body, side, origin); !oriented) return oriented;
+  if (Status placed = place_ends(body); !placed) return placed;
+  measure(body, side, origin);
   return {};
 }
 

@@ -10,4 +10,8 @@ namespace selvage::yarn {
 // a body without volume.
 Status finish(Body& body, EndStyle ends);
 
+// The same for a body whose end faces are there already, with their styles and surfaces (yarns that were
+// read): they keep every bit, their centres and directions are found.
+Status finish_as_sealed(Body& body);
+
 }  // namespace selvage::yarn

@@ -159,6 +159,13 @@ std::optional<std::array<double, 4>> find_quarters(const nurbs::Curve& outline) 
   return quarters;
 }
 
+std::array<double, 4> quarters_of(const nurbs::Surface& surface) {
+  const double first = surface.first_u(), length = surface.last_u() - first;
+  return find_quarters(nurbs::boundary_row(surface, false))
+      .value_or(
+          std::array<double, 4>{first, first + 0.25 * length, first + 0.5 * length, first + 0.75 * length});
+}
+
 Status fill_from_grid(Body& body, const GridNet& net) {
   const int degree_round = net.degree_round.value_or(net.open_round ? std::min(2, net.per_section - 1) : 2);
   const int degree_along =
@@ -242,12 +249,14 @@ Status fill_from_grid(Body& body, const GridNet& net) {
     }
   body.axis = centre_line->curves.front();
   body.closed_along = net.closed_along;
-  const std::optional<std::array<double, 4>> quarters = find_quarters(nurbs::boundary_row(surface, false));
-  // With fewer than four spans there is no place for a patch's corners at knots; sub_curve makes the knots it
-  // needs.
-  const double first = surface.first_u(), length = surface.last_u() - first;
-  body.quarters = quarters.value_or(
-      std::array<double, 4>{first, first + 0.25 * length, first + 0.5 * length, first + 0.75 * length});
+  if (net.corners) {
+    body.quarters = *net.corners;
+    for (const double corner : *net.corners)
+      if (!std::binary_search(surface.knots_u.begin(), surface.knots_u.end(), corner))
+        return problem(fmt::format("the corner {} is no knot round", corner));
+  } else {
+    body.quarters = quarters_of(surface);
+  }
   return {};
 }
 

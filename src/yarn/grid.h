@@ -1,6 +1,7 @@
 // An explicit control grid as a yarn's surface: the form of the original yarn file (methods.md, 3).
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct GridNet {
   std::vector<double> knots_along, knots_round;  // empty: the default
   bool open_round = false;    // the rows are the clamped form: the seam's point stands at both ends
   bool closed_along = false;  // a ring
+  std::optional<std::array<double, 4>> corners;  // Body::quarters; none: found by the outline's shape
 };
 
 // The surface of a grid, u round, v along, with the control points that were given untouched.
@@ -37,5 +39,9 @@ Status fill_from_grid(Body& body, const GridNet& net);
 // turned by nearest to one, two and three quarters (for an ellipse that begins at an axis: the ends of its
 // axes). Null with fewer than four spans.
 std::optional<std::array<double, 4>> find_quarters(const nurbs::Curve& outline);
+
+// Those of a body's first section; with fewer than four spans a quarter of the range each (sub_curve makes
+// the knots it needs).
+std::array<double, 4> quarters_of(const nurbs::Surface& surface);
 
 }  // namespace selvage::yarn

@@ -141,6 +141,7 @@ class Flat {
     add(path + ".knots_round", v.knots_round);
     add(path + ".open_round", v.open_round);
     add(path + ".closed_along", v.closed_along);
+    if (v.corners) add(path + ".corners", std::vector<double>(v.corners->begin(), v.corners->end()));
     add(path + ".points", v.points);
     add(path + ".weights", v.weights);
   }
@@ -149,6 +150,7 @@ class Flat {
     add(path + ".thread", v.thread);
     add(path + ".own", v.own);
     add(path + ".role", v.role);
+    add(path + ".group", v.group);
     add(path + ".tangent_start", v.tangent_start);
     add(path + ".tangent_end", v.tangent_end);
     add(path + ".up", v.up);
