@@ -12,11 +12,18 @@ bool looks_like_step(std::string_view head) {
   return start != std::string_view::npos && head.substr(start).starts_with("ISO-10303-21");
 }
 
-// OpenCASCADE is opened here, not before: a job that writes no STEP never loads it.
+// OpenCASCADE is opened here, not before: a job without STEP never loads it.
 Result<std::unique_ptr<BodyWriter>> open_bodies(OutputFile& output, const SurfaceOptions& options) {
   Result<const void*> table = open_module("occt", "selvage_step");
   if (!table) return table.error();
   return static_cast<const StepModule*>(*table)->open_writer(output, options);
+}
+
+std::optional<cad::Model> read_model(const Source& source, Diagnostics& diagnostics) {
+  Result<const void*> table = open_module("occt", "selvage_step");
+  if (table) return static_cast<const StepModule*>(*table)->read_model(source, diagnostics);
+  diagnostics.add(table.error());
+  return std::nullopt;
 }
 
 }  // namespace
@@ -27,6 +34,7 @@ const Descriptor& descriptor() {
       .title = "STEP AP242 or AP214, manifold solids and faces with names and colours",
       .extensions = {".stp", ".step"},
       .sniff = looks_like_step,
+      .read_model = read_model,
       .open_bodies = open_bodies,
       .carries_curves = true};
   return self;

@@ -4,8 +4,6 @@
 
 #include <APIHeaderSection_MakeHeader.hxx>
 #include <Interface_HArray1OfHAsciiString.hxx>
-#include <Interface_Static.hxx>
-#include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <STEPConstruct.hxx>
 #include <STEPConstruct_Styles.hxx>
@@ -32,10 +30,10 @@
 #include <XSControl_WorkSession.hxx>
 #include <array>
 #include <map>
-#include <mutex>
 #include <ostream>
 
 #include "core/clock.h"
+#include "formats/step/session.h"
 #include "formats/step/stream.h"
 #include "solid/occt/check.h"
 #include "solid/occt/guard.h"
@@ -45,39 +43,6 @@
 namespace selvage::formats::step {
 
 namespace {
-
-// OpenCASCADE's words.
-const char* schema_word(std::string_view schema) {
-  if (schema == "AP242") return "AP242DIS";
-  if (schema == "AP214") return "AP214IS";
-  return nullptr;
-}
-
-const char* unit_word(Unit unit) {
-  switch (unit) {
-    case Unit::m:
-      return "M";
-    case Unit::cm:
-      return "CM";
-    case Unit::mm:
-      return "MM";
-    case Unit::um:
-      return "UM";
-    case Unit::inch:
-      return "INCH";
-  }
-  return "MM";
-}
-
-// OpenCASCADE keeps these for the whole process; they are set here and nowhere else, before each file.
-void configure(const SurfaceOptions& options) {
-  STEPCAFControl_Controller::Init();
-  Interface_Static::SetCVal("write.step.schema", schema_word(options.step_schema));
-  // Shapes and file in the same unit: no number is multiplied on its way.
-  Interface_Static::SetCVal("xstep.cascade.unit", unit_word(options.units));
-  Interface_Static::SetCVal("write.step.unit", unit_word(options.units));
-  Interface_Static::SetIVal("write.surfacecurve.mode", 0);
-}
 
 Handle(TCollection_HAsciiString) text(const std::string& words) {
   return new TCollection_HAsciiString(words.c_str());
@@ -177,9 +142,7 @@ class StepBodyWriter : public BodyWriter {
 
   Result<WriteFacts> write() {
     if (parts_.empty()) return error(Kind::geometry, "there is neither a yarn nor a piece to write");
-    static std::mutex one_at_a_time;  // OpenCASCADE's settings are the process's
-    const std::lock_guard lock(one_at_a_time);
-    configure(options_);
+    const Session session = Session::to_write(options_.units, options_.step_schema);
     shapes_->UpdateAssemblies();
     const std::string title = options_.title.empty() ? "fabric" : options_.title;
     TDataStd_Name::Set(assembly_, TCollection_ExtendedString(title.c_str(), true));

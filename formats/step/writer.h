@@ -10,6 +10,7 @@ namespace selvage::formats::step {
 // What the module exports for this format, as `selvage_step`.
 struct StepModule {
   Result<std::unique_ptr<BodyWriter>> (*open_writer)(OutputFile& output, const SurfaceOptions& options);
+  std::optional<cad::Model> (*read_model)(const Source& source, Diagnostics& diagnostics);
 };
 
 // Errors: usage (a schema other than AP242 and AP214).

@@ -1,0 +1,271 @@
+#include "formats/step/faces.h"
+
+#include <BRepAdaptor_Surface.hxx>
+#include <BRepTools.hxx>
+#include <BRepTools_WireExplorer.hxx>
+#include <BRep_Tool.hxx>
+#include <Geom_BSplineSurface.hxx>
+#include <Geom_Surface.hxx>
+#include <Precision.hxx>
+#include <TopLoc_Location.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Iterator.hxx>
+#include <TopoDS_Wire.hxx>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "formats/step/geometry.h"
+
+namespace selvage::formats::step {
+
+namespace {
+
+using Chain = std::vector<TopoDS_Edge>;  // oriented, in the direction of the loop round the forward face
+
+Chain chain_of(const TopoDS_Wire& wire, const TopoDS_Face& face) {
+  Chain listed, linked;
+  for (TopoDS_Iterator it(wire); it.More(); it.Next())
+    if (it.Value().ShapeType() == TopAbs_EDGE) listed.push_back(TopoDS::Edge(it.Value()));
+  for (BRepTools_WireExplorer it(wire, face); it.More() && linked.size() <= listed.size(); it.Next())
+    linked.push_back(it.Current());
+  if (linked.size() == listed.size()) return linked;
+  if (wire.Orientation() == TopAbs_REVERSED) std::reverse(listed.begin(), listed.end());
+  return listed;
+}
+
+// The outer one first.
+std::vector<Chain> chains_of(const TopoDS_Face& face) {
+  std::vector<Chain> chains;
+  const TopoDS_Wire outer = BRepTools::OuterWire(face);
+  for (TopoDS_Iterator it(face); it.More(); it.Next()) {
+    if (it.Value().ShapeType() != TopAbs_WIRE) continue;
+    Chain chain = chain_of(TopoDS::Wire(it.Value()), face);
+    if (chain.empty()) continue;
+    if (!outer.IsNull() && it.Value().IsSame(outer))
+      chains.insert(chains.begin(), std::move(chain));
+    else
+      chains.push_back(std::move(chain));
+  }
+  return chains;
+}
+
+// A loop in parameter space as a polygon, in its direction.
+constexpr int samples = 8;  // an edge
+using Polygon = std::vector<gp_Pnt2d>;
+
+// Nothing where an edge has no curve there.
+Polygon polygon_of(const Chain& chain, const TopoDS_Face& face) {
+  Polygon polygon;
+  for (const TopoDS_Edge& edge : chain) {
+    double first = 0, last = 0;
+    const Handle(Geom2d_Curve) curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
+    if (curve.IsNull()) return {};
+    const bool backward = edge.Orientation() == TopAbs_REVERSED;
+    for (int i = 0; i <= samples; ++i) {
+      const double share = static_cast<double>(backward ? samples - i : i) / samples;
+      polygon.push_back(curve->Value(first + share * (last - first)));
+    }
+  }
+  return polygon;
+}
+
+Range2 box_of(const Polygon& polygon) {
+  Range2 box{polygon.front().X(), polygon.front().X(), polygon.front().Y(), polygon.front().Y()};
+  for (const gp_Pnt2d& p : polygon) {
+    box.u0 = std::min(box.u0, p.X());
+    box.u1 = std::max(box.u1, p.X());
+    box.v0 = std::min(box.v0, p.Y());
+    box.v1 = std::max(box.v1, p.Y());
+  }
+  return box;
+}
+
+double area_of(const Polygon& polygon) {
+  double area = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const gp_Pnt2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    area += a.X() * b.Y() - b.X() * a.Y();
+  }
+  return 0.5 * area;
+}
+
+// How far two parameters may be from each other and be one: what the face's tolerance is there, and no more
+// than a ten thousandth of the range.
+std::array<double, 2> slack(const TopoDS_Face& face, const Range2& range) {
+  const BRepAdaptor_Surface adaptor(face, false);
+  const double tolerance = std::max(BRep_Tool::Tolerance(face), 10 * Precision::Confusion());
+  const auto within = [](double resolution, double width) {
+    return std::clamp(resolution, 1e-9 * width, 1e-4 * width);
+  };
+  return {within(adaptor.UResolution(tolerance), range.u1 - range.u0),
+          within(adaptor.VResolution(tolerance), range.v1 - range.v0)};
+}
+
+// Does the loop run once round a rectangle of parameters?
+bool is_rectangle(const Polygon& polygon, const Range2& box, const TopoDS_Face& face) {
+  const double width = box.u1 - box.u0, height = box.v1 - box.v0;
+  if (!(width > 0) || !(height > 0)) return false;
+  const auto [slack_u, slack_v] = slack(face, box);
+  for (const gp_Pnt2d& p : polygon)
+    if (p.X() - box.u0 > slack_u && box.u1 - p.X() > slack_u && p.Y() - box.v0 > slack_v &&
+        box.v1 - p.Y() > slack_v)
+      return false;
+  return std::abs(std::abs(area_of(polygon)) - width * height) < 4 * (slack_u * height + slack_v * width);
+}
+
+// The rectangle brought to a border of the surface that it misses by no more than the slack.
+Range2 snapped(Range2 box, const Range2& whole, const TopoDS_Face& face) {
+  const auto [slack_u, slack_v] = slack(face, box);
+  const auto snap = [](double& value, double border, double within) {
+    if (std::abs(value - border) <= within) value = border;
+  };
+  snap(box.u0, whole.u0, slack_u);
+  snap(box.u1, whole.u1, slack_u);
+  snap(box.v0, whole.v0, slack_v);
+  snap(box.v1, whole.v1, slack_v);
+  return box;
+}
+
+Range2 bounds_of(const Handle(Geom_Surface) & surface) {
+  Range2 whole;
+  surface->Bounds(whole.u0, whole.u1, whole.v0, whole.v1);
+  return whole;
+}
+
+bool is_finite(const Range2& range) {
+  return !Precision::IsInfinite(range.u0) && !Precision::IsInfinite(range.u1) &&
+         !Precision::IsInfinite(range.v0) && !Precision::IsInfinite(range.v1);
+}
+
+bool is_whole(const Range2& box, const Range2& whole, const TopoDS_Face& face) {
+  const auto [slack_u, slack_v] = slack(face, whole);
+  return box.u1 - box.u0 >= whole.u1 - whole.u0 - slack_u && box.v1 - box.v0 >= whole.v1 - whole.v0 - slack_v;
+}
+
+nurbs::Curve flat_of(const TopoDS_Edge& edge, const TopoDS_Face& face) {
+  double first = 0, last = 0;
+  const Handle(Geom2d_Curve) curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
+  if (curve.IsNull()) return {};
+  nurbs::Curve flat = to_spline(curve, first, last);
+  return edge.Orientation() == TopAbs_REVERSED ? nurbs::reversed(flat) : flat;
+}
+
+bool lies_in(const nurbs::Curve& flat, const nurbs::Surface& surface) {
+  const double du = 1e-6 * (surface.last_u() - surface.first_u()),
+               dv = 1e-6 * (surface.last_v() - surface.first_v());
+  return std::all_of(flat.points.begin(), flat.points.end(), [&](const Vec3& p) {
+    return p.x() >= surface.first_u() - du && p.x() <= surface.last_u() + du &&
+           p.y() >= surface.first_v() - dv && p.y() <= surface.last_v() + dv;
+  });
+}
+
+class FaceMaker {
+ public:
+  FaceMaker(const TopoDS_Face& face, const Handle(StepShape_FaceSurface) & entity, double scale, EdgeIds& ids)
+      : face_(TopoDS::Face(face.Oriented(TopAbs_FORWARD))), ids_(ids) {
+    surface_ = BRep_Tool::Surface(face_, location_);
+    if (surface_.IsNull()) throw Standard_Failure("a face without a surface");
+    if (!entity.IsNull()) exact_ = exact_spline(entity->FaceGeometry(), scale);
+    result_.reversed = face.Orientation() == TopAbs_REVERSED;
+  }
+
+  cad::Face make() {
+    const std::vector<Chain> chains = chains_of(face_);
+    std::vector<Polygon> polygons;
+    for (const Chain& chain : chains) polygons.push_back(polygon_of(chain, face_));
+    const Range2 whole = bounds_of(surface_);
+    if (chains.empty()) {
+      if (!is_finite(whole)) throw Standard_Failure("a face without a boundary on an unbounded surface");
+      take_surface(whole, whole);
+    } else if (polygons.size() == 1 && !polygons[0].empty() &&
+               is_rectangle(polygons[0], box_of(polygons[0]), face_)) {
+      take_surface(snapped(box_of(polygons[0]), whole, face_), whole);
+    } else {
+      take_surface(trimmed_range(polygons, whole), whole);
+      take_loops(chains);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void take_surface(const Range2& range, const Range2& whole) {
+    const bool is_spline = surface_->IsKind(STANDARD_TYPE(Geom_BSplineSurface));
+    result_.surface = exact_ && is_spline && is_whole(range, whole, face_) ? std::move(*exact_)
+                                                                           : to_spline(surface_, range);
+    place(result_.surface, location_.Transformation());
+  }
+
+  // B-spline surfaces are kept whole under their loops; others are given where the loops are.
+  [[nodiscard]] Range2 trimmed_range(const std::vector<Polygon>& polygons, const Range2& whole) const {
+    if (surface_->IsKind(STANDARD_TYPE(Geom_BSplineSurface))) return whole;
+    Polygon all;
+    for (const Polygon& polygon : polygons) all.insert(all.end(), polygon.begin(), polygon.end());
+    Range2 box = whole;
+    if (!all.empty()) {
+      box = box_of(all);
+      // Between two samples a curve may bulge out.
+      const double du = 0.05 * (box.u1 - box.u0), dv = 0.05 * (box.v1 - box.v0);
+      box = {std::max(box.u0 - du, whole.u0), std::min(box.u1 + du, whole.u1),
+             std::max(box.v0 - dv, whole.v0), std::min(box.v1 + dv, whole.v1)};
+      if (surface_->IsUPeriodic()) box.u0 = whole.u0, box.u1 = whole.u1;
+      if (surface_->IsVPeriodic()) box.v0 = whole.v0, box.v1 = whole.v1;
+    }
+    if (!is_finite(box)) throw Standard_Failure("a face without a boundary on an unbounded surface");
+    return box;
+  }
+
+  void take_loops(const std::vector<Chain>& chains) {
+    const bool has_flats = keeps_parameters(surface_);
+    for (const Chain& chain : chains) {
+      cad::Loop loop;
+      for (const TopoDS_Edge& edge : chain) {
+        cad::Edge piece;
+        piece.curve = to_curve(edge);
+        if (has_flats || piece.curve.points.empty()) piece.flat = flat_of(edge, face_);
+        if (!lies_in(piece.flat, result_.surface)) piece.flat = {};
+        piece.id = ids_.try_emplace(edge.TShape().get(), static_cast<int>(ids_.size())).first->second;
+        if (piece.curve.points.empty() && piece.flat.points.empty()) continue;
+        loop.edges.push_back(std::move(piece));
+      }
+      if (!loop.edges.empty()) result_.loops.push_back(std::move(loop));
+    }
+  }
+
+  TopoDS_Face face_;
+  EdgeIds& ids_;
+  TopLoc_Location location_;
+  Handle(Geom_Surface) surface_;
+  std::optional<nurbs::Surface> exact_;
+  cad::Face result_;
+};
+
+}  // namespace
+
+cad::Face to_face(const TopoDS_Face& face, const Handle(StepShape_FaceSurface) & entity, double scale,
+                  EdgeIds& ids) {
+  return FaceMaker(face, entity, scale, ids).make();
+}
+
+void stretch(nurbs::Curve& curve, double factor) {
+  for (Vec3& p : curve.points) p *= factor;
+}
+
+void stretch(cad::Face& face, double factor) {
+  for (Vec3& p : face.surface.points) p *= factor;
+  for (cad::Loop& loop : face.loops)
+    for (cad::Edge& edge : loop.edges) stretch(edge.curve, factor);
+}
+
+nurbs::Curve to_curve(const TopoDS_Edge& edge) {
+  if (BRep_Tool::Degenerated(edge)) return {};
+  double first = 0, last = 0;
+  TopLoc_Location location;
+  const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, location, first, last);
+  if (curve.IsNull()) return {};
+  nurbs::Curve spline = to_spline(curve, first, last);
+  place(spline, location.Transformation());
+  return edge.Orientation() == TopAbs_REVERSED ? nurbs::reversed(spline) : spline;
+}
+
+}  // namespace selvage::formats::step

@@ -1,0 +1,145 @@
+// The STEP reader: yarns come back with every bit, names, colours, groups, units; bad files get an error.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+#include <filesystem>
+
+#include "bodies.h"
+#include "cad/from_body.h"
+#include "formats/step/step.h"
+
+namespace selvage {
+namespace {
+
+using formats::SurfaceOptions;
+using yarn::EndStyle;
+namespace fs = std::filesystem;
+
+std::string written(const std::vector<yarn::Body>& bodies, const SurfaceOptions& options = {}) {
+  std::string folder = (fs::temp_directory_path() / "selvage-read-XXXXXX").string();
+  EXPECT_NE(::mkdtemp(folder.data()), nullptr);
+  const fs::path path = fs::path(folder) / "fabric.stp";
+  std::string bytes;
+  {
+    Result<OutputFile> output = OutputFile::create(path);
+    EXPECT_TRUE(output.ok());
+    auto writer = formats::step::descriptor().open_bodies(*output, options);
+    EXPECT_TRUE(writer.ok());
+    for (const yarn::Body& body : bodies) EXPECT_TRUE((*writer)->add(body).ok());
+    EXPECT_TRUE((*writer)->finish().ok());
+    EXPECT_TRUE(output->commit().ok());
+    Result<Source> source = Source::open(path);
+    EXPECT_TRUE(source.ok());
+    if (source) bytes = source->bytes();
+  }
+  fs::remove_all(folder);
+  return bytes;
+}
+
+struct Reading {
+  std::optional<cad::Model> model;
+  std::vector<Message> messages;
+};
+
+Reading read(const std::string& bytes) {
+  Diagnostics diagnostics;
+  Reading reading;
+  reading.model = formats::step::descriptor().read_model(Source::from_memory(bytes, "a.stp"), diagnostics);
+  reading.messages = diagnostics.messages();
+  EXPECT_EQ(reading.model.has_value(), !diagnostics.has_errors());
+  return reading;
+}
+
+cad::Model model_of(const std::string& bytes) {
+  Reading reading = read(bytes);
+  EXPECT_TRUE(reading.model.has_value());
+  for (const Message& message : reading.messages) ADD_FAILURE() << to_string(message);
+  return reading.model.value_or(cad::Model{});
+}
+
+void expect_same(const nurbs::Surface& a, const nurbs::Surface& b) {
+  EXPECT_EQ(a.degree_u, b.degree_u);
+  EXPECT_EQ(a.degree_v, b.degree_v);
+  EXPECT_EQ(a.count_u, b.count_u);
+  EXPECT_EQ(a.count_v, b.count_v);
+  EXPECT_EQ(a.knots_u, b.knots_u);
+  EXPECT_EQ(a.knots_v, b.knots_v);
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.weights, b.weights);
+}
+
+void expect_body(const cad::Part& part, const yarn::Body& body) {
+  SCOPED_TRACE(body.name);
+  const cad::Part own = cad::part_of(body);
+  EXPECT_EQ(part.kind, own.kind == cad::Part::Kind::solid ? own.kind : cad::Part::Kind::shell);
+  EXPECT_EQ(part.name, body.name);
+  EXPECT_EQ(part.group, body.group);
+  EXPECT_EQ(part.color, body.color);
+  ASSERT_EQ(part.faces.size(), own.faces.size());
+  for (std::size_t i = 0; i < own.faces.size(); ++i) {
+    SCOPED_TRACE(i);
+    EXPECT_EQ(part.faces[i].loops.size(), own.faces[i].loops.size());
+    if (own.faces[i].loops.empty()) {
+      expect_same(part.faces[i].surface, own.faces[i].surface);
+      EXPECT_EQ(part.faces[i].reversed, own.faces[i].reversed);
+    }
+    EXPECT_EQ(part.faces[i].color, body.color);
+    EXPECT_GT(part.faces[i].origin.place.line, 1);
+  }
+}
+
+TEST(StepReader, YarnsComeBackWithEveryBit) {
+  for (const Unit unit : all_units) {
+    SCOPED_TRACE(name_of(unit));
+    const double size = 1.0 / millimetres_per(unit);
+    std::vector<yarn::Body> bodies;
+    for (const EndStyle style : {EndStyle::patch, EndStyle::fan, EndStyle::planar, EndStyle::none})
+      for (const double stretch : {1.0, 0.1234567890123, 987.654321})
+        bodies.push_back(
+            tests::wave(fmt::format("wave_{}_{}", name_of(style), stretch), style, size * stretch));
+    bodies.push_back(tests::ring("ring", size, 5 * size));
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      bodies[i].color = {static_cast<int>(i), 255 - static_cast<int>(i), 17};
+      if (i > 4 && i < 7) bodies[i].group = "cord";
+    }
+    SurfaceOptions options;
+    options.units = unit;
+    options.title = "Thirteen yarns";
+    const cad::Model model = model_of(written(bodies, options));
+    EXPECT_EQ(model.units, unit);
+    EXPECT_EQ(model.title, "Thirteen yarns");
+    EXPECT_NEAR(model.resolution * millimetres_per(unit), 1e-7, 1e-16);
+    ASSERT_EQ(model.parts.size(), bodies.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) expect_body(model.parts[i], bodies[i]);
+    EXPECT_EQ(model.entities.at("MANIFOLD_SOLID_BREP"), 10U);
+    EXPECT_TRUE(model.unknown.empty());
+    EXPECT_TRUE(model.curves.empty());
+  }
+}
+
+TEST(StepReader, EveryColorSurvives) {
+  std::vector<yarn::Body> bodies;
+  for (int i = 0; i < 256; i += 3) {
+    bodies.push_back(tests::tube(std::to_string(i), EndStyle::patch, 1.0, {3.0 * i, 0, 0}));
+    bodies.back().color = {i, std::min(i + 1, 255), std::min(i + 2, 255)};
+  }
+  const cad::Model model = model_of(written(bodies));
+  ASSERT_EQ(model.parts.size(), bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) EXPECT_EQ(model.parts[i].color, bodies[i].color);
+}
+
+// A small file of one yarn, cut short at many places: an error with its line, nothing else.
+TEST(StepReader, TruncatedFilesAreErrors) {
+  const std::string whole = written({tests::tube("yarn", EndStyle::planar)});
+  const std::size_t end = whole.rfind("END-ISO-10303-21;") + std::string_view("END-ISO-10303-21;").size();
+  for (std::size_t cut = 0; cut < end; ++cut) {
+    const Reading reading = read(whole.substr(0, cut));
+    ASSERT_FALSE(reading.model.has_value()) << cut;
+    ASSERT_EQ(reading.messages.size(), 1U) << cut;
+    ASSERT_GT(reading.messages[0].place.line, 0) << cut;
+  }
+}
+
+}  // namespace
+}  // namespace selvage
