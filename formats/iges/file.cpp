@@ -177,11 +177,9 @@ Parameters File::parameters(const DirectoryEntry& entry) const {
 
 Trailer read_trailer(Parameters& parameters) {
   Trailer trailer;
-  for (std::vector<int>* const pointers : {&trailer.associativities, &trailer.properties}) {
-    if (parameters.at_end() || !parameters.ok()) break;
-    const std::size_t count = parameters.count("pointers behind the parameters");
-    for (std::size_t i = 0; i < count && parameters.ok(); ++i) pointers->push_back(parameters.pointer());
-  }
+  for (std::vector<int>* const list : {&trailer.associativities, &trailer.properties})
+    if (!parameters.at_end() && parameters.ok())
+      *list = parameters.pointers("pointers behind the parameters");
   return trailer;
 }
 

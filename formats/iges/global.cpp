@@ -69,15 +69,15 @@ void take_units(Global& global, const Spot& flag, const Spot& scale, TextReport&
                                      row->flag, row->names[0], in_quotes(global.unit_name)));
   global.units = row->unit;
   global.factor = row->factor;
-  if (row->factor != 1) report.warning(flag, fmt::format("lengths in {} are turned into mm", row->names[0]));
+  if (row->factor != 1) report.note(flag, fmt::format("lengths in {} are turned into mm", row->names[0]));
   if (global.scale == 1) return;
   if (!(global.scale > 0)) {
     report.error(scale, fmt::format("a model space scale cannot be {}", global.scale));
     return;
   }
   global.factor /= global.scale;
-  report.warning(scale,
-                 fmt::format("the model is drawn at the scale {}; it is brought to true size", global.scale));
+  report.note(scale,
+              fmt::format("the model is drawn at the scale {}; it is brought to true size", global.scale));
 }
 
 }  // namespace

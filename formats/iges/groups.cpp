@@ -19,9 +19,7 @@ bool is_known_property(int form) {
 }
 
 std::vector<int> members_of(Reading& /*reading*/, const DirectoryEntry& /*entry*/, Parameters& in) {
-  std::vector<int> members(in.count("members"));
-  for (int& member : members) member = in.pointer();
-  return members;
+  return in.pointers("members");
 }
 
 // A group of faces is one part. What any other group holds stands alone, with the outermost group's name.

@@ -109,16 +109,6 @@ bool Parameters::take_delimiter() {
   return true;
 }
 
-// A number that fills its line to the last column and goes on in the first of the next one. `at_` is there.
-bool Parameters::join(std::string_view& token) {
-  const char* const begin = at_;
-  while (at_ != end_ && *at_ != delimiters_.parameter && *at_ != delimiters_.record && !is_blank(*at_)) ++at_;
-  joined_ = token;
-  joined_.append(begin, at_);
-  token = joined_;
-  return joined_.size() <= 100;
-}
-
 // The characters of the next value, without blanks round them, and past its delimiter. False after an error
 // or the record delimiter.
 bool Parameters::field(std::string_view& token) {
@@ -131,9 +121,11 @@ bool Parameters::field(std::string_view& token) {
   const char* last = at_;
   while (last != begin && is_blank(last[-1])) --last;
   token = {begin, static_cast<std::size_t>(last - begin)};
+  // Were it joined with what follows, a lost delimiter would make one number of two.
   if (at_ == end_ && last == end_ && next_line() && at_ != end_ && !is_blank(*at_) &&
-      *at_ != delimiters_.parameter && *at_ != delimiters_.record && !join(token)) {
-    fail("a value of more than 100 characters");
+      *at_ != delimiters_.parameter && *at_ != delimiters_.record) {
+    fail(fmt::format("{} runs over the end of its line, or the delimiter behind it is missing",
+                     in_quotes(token)));
     return false;
   }
   return take_delimiter();
@@ -281,6 +273,16 @@ std::size_t Parameters::count(std::string_view what, std::size_t fields_each) {
     return 0;
   }
   return number;
+}
+
+std::vector<int> Parameters::pointers(std::string_view what) {
+  std::vector<int> all(count(what));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (done_) fail(fmt::format("the parameters end behind {} of {} {}", i, all.size(), what));
+    if (!ok()) return {};
+    all[i] = pointer();
+  }
+  return all;
 }
 
 std::optional<Delimiters> read_delimiters(Parameters& cursor) {

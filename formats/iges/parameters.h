@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "formats/iges/lines.h"
 
@@ -53,6 +54,9 @@ class Parameters {
   // than there is room for. `what` for the message: "control points". 0 after an error.
   std::size_t count(std::string_view what, std::size_t fields_each = 1);
 
+  // A count, and so many directory pointers; an error where the record ends before.
+  std::vector<int> pointers(std::string_view what);
+
   // An upper bound of the number of values left: of what a count in the file may claim.
   [[nodiscard]] std::size_t room() const;
   // Has the record delimiter been passed?
@@ -80,7 +84,6 @@ class Parameters {
   bool next_line();
   bool skip_blanks();
   bool field(std::string_view& token);
-  bool join(std::string_view& token);
   bool take_delimiter();
   bool slow_real(double& value);
   bool characters(std::size_t count, std::string& text);
@@ -94,7 +97,6 @@ class Parameters {
   const char* start_ = nullptr;  // of the present line
   bool done_ = false;
   Spot value_spot_;
-  std::string joined_;  // a number that was broken across two lines
   std::optional<Failure> failure_;
 };
 

@@ -120,10 +120,14 @@ void Reading::use(int pointer) {
 }
 
 bool Reading::spend(std::size_t points, Parameters& by) {
+  const bool was_full = is_full();
   points_ += std::min(points, most_points + 1);
-  if (points_ <= most_points) return true;
-  by.fail(fmt::format("with this entity the file would hold more than {} control points, instances and all",
-                      most_points));
+  if (!is_full()) return true;
+  if (was_full)
+    by.give_up({});  // said once
+  else
+    by.fail(fmt::format("with this entity the file would hold more than {} control points, instances and all",
+                        most_points));
   return false;
 }
 

@@ -70,6 +70,7 @@ class Reading {
   // that is made, and fails past most_points.
   bool spend(std::size_t points, Parameters& by);
   static constexpr std::size_t most_points = 100'000'000;
+  [[nodiscard]] bool is_full() const { return points_ > most_points; }
 
   void warning(const DirectoryEntry& entry, const std::string& text);
   // Reports the failure of an entity's parameters, if there is one, once; true if there is none.

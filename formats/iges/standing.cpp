@@ -11,7 +11,7 @@ namespace selvage::formats::iges {
 
 namespace {
 
-constexpr std::size_t cost_of_instance = 30;  // in control points, so that nothing is free
+constexpr std::size_t cost_of_instance = 300;  // in control points, so that nothing is free
 
 // A flat curve (use 5) has no place in space; a definition (2) stands only where it is used.
 bool may_stand(const DirectoryEntry& entry) {
@@ -36,7 +36,7 @@ void Reading::stand(int pointer, const Context& context, Parameters& by) {
 
 void Reading::stand_entry(const DirectoryEntry& entry, const Context& context) {
   const EntityType* const type = type_of(entry);
-  if (type == nullptr || report_.is_full()) return;
+  if (type == nullptr || is_full() || report_.is_full()) return;
   Parameters parameters = file_.parameters(entry);
   if (type->face != nullptr || type->surface != nullptr) {
     stand_face(entry, context, parameters);
@@ -182,8 +182,10 @@ void Reading::count_entities() {
   std::map<std::pair<int, int>, const DirectoryEntry*> first;
   for (const DirectoryEntry& entry : file_.directory()) {
     ++types[{entry.type, 0}];
-    if (type_of(entry) == nullptr && ++unknown[{entry.type, entry.form}] == 1)
-      first[{entry.type, entry.form}] = &entry;
+    if (type_of(entry) == nullptr) {
+      ++unknown[{entry.type, entry.form}];
+      if (!entry.is_physically_dependent()) first.emplace(std::pair(entry.type, entry.form), &entry);
+    }
     if (entry.blanked && !entry.is_physically_dependent() && blanked_count++ == 0) blanked = &entry;
   }
   for (const auto& [kind, count] : types) model_.entities[std::to_string(kind.first)] = count;
@@ -194,17 +196,17 @@ void Reading::count_entities() {
                                          title.empty() ? "no type of IGES 5.3" : title);
     model_.unknown[name] += count;
     const bool is_geometry = (type >= 100 && type < 200) || (type >= 408 && type < 500) || type > 500;
-    if (is_geometry)
+    if (is_geometry && first.count(kind) != 0)  // what is part of something else is told with that
       report_.warning(
           file_.spot(*first[kind]),
           fmt::format("{} of type {}: not understood, and left out",
                       count == 1 ? std::string("an entity") : fmt::format("{} entities", count), name));
   }
   if (blanked != nullptr)
-    report_.warning(file_.spot(*blanked),
-                    fmt::format("{} marked as not to be shown (blanked); taken all the same",
-                                blanked_count == 1 ? std::string("an entity is")
-                                                   : fmt::format("{} entities are", blanked_count)));
+    report_.note(file_.spot(*blanked),
+                 fmt::format("{} marked as not to be shown (blanked); taken all the same",
+                             blanked_count == 1 ? std::string("an entity is")
+                                                : fmt::format("{} entities are", blanked_count)));
 }
 
 void Reading::read_levels() {

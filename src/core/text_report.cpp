@@ -144,6 +144,10 @@ void TextReport::warning(const Spot& spot, std::string text) {
   if (++warnings_ <= most_warnings) add(Severity::warning, Kind::malformed, spot, std::move(text));
 }
 
+void TextReport::note(const Spot& spot, std::string text) {
+  add(Severity::note, Kind::malformed, spot, std::move(text));
+}
+
 void TextReport::hand_over(Diagnostics& diagnostics) {
   std::stable_sort(messages_.begin(), messages_.end(), [](const Message& a, const Message& b) {
     return a.place.line != b.place.line ? a.place.line < b.place.line : a.place.column < b.place.column;

@@ -43,6 +43,7 @@ class TextReport {
 
   void error(const Spot& spot, std::string text, Kind kind = Kind::malformed);
   void warning(const Spot& spot, std::string text);
+  void note(const Spot& spot, std::string text);  // for what is said once a file
 
   [[nodiscard]] int errors() const { return errors_; }
   [[nodiscard]] bool is_full() const { return errors_ >= most_errors; }

@@ -28,7 +28,7 @@ struct IgesEntity {
   std::string parameters;
   std::string status = "00000000";
   int color = 0, level = 0, transformation = 0;
-  std::string label;
+  std::string label{};
 };
 struct IgesText {
   std::string global =
