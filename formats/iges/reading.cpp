@@ -115,6 +115,29 @@ const DirectoryEntry* Reading::entry(int pointer, int type, Parameters& by) {
   return found;
 }
 
+const std::vector<int>* Reading::edge_list(int pointer, Parameters& by) {
+  const DirectoryEntry* const list = entry(pointer, 504, by);
+  if (list == nullptr) return nullptr;
+  const auto [known, is_new] = edge_lists_.try_emplace(list->pointer);
+  std::optional<std::vector<int>>& curves = known->second;
+  if (is_new) {
+    Parameters in = file_.parameters(*list);
+    std::vector<int> found(in.count("edges", 5));
+    for (int& curve : found) {
+      curve = in.pointer();
+      use(curve);
+      for (int k = 0; k < 2; ++k) {  // start and end: a list of vertices, and the vertex in it
+        use(in.pointer());
+        in.integer();
+      }
+    }
+    if (finish(*list, in)) curves = std::move(found);
+  }
+  if (curves) return &*curves;
+  by.give_up({});  // said once
+  return nullptr;
+}
+
 void Reading::use(int pointer) {
   if (const DirectoryEntry* const found = file_.entity(pointer)) used_[index(*found)] = 1;
 }

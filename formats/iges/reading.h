@@ -48,6 +48,8 @@ class Reading {
   const DirectoryEntry* entry(int pointer, Parameters& by);
   // The same, of one type; it is marked as part of the other one.
   const DirectoryEntry* entry(int pointer, int type, Parameters& by);
+  // The pointers to the curves of a 504, its edges in order; each list is read once. Null after by.fail().
+  const std::vector<int>* edge_list(int pointer, Parameters& by);
   // Call it for what is read through entry(): the entity does not stand for itself.
   void use(int pointer);
 
@@ -111,6 +113,7 @@ class Reading {
   int depth_ = 0;
   std::size_t points_ = 0;
   std::unordered_map<int, std::optional<cad::Color>> colors_;
+  std::unordered_map<int, std::optional<std::vector<int>>> edge_lists_;
   // Of each face of the model, and of each curve: its entity, or 0 where it may not be dropped.
   std::vector<int> face_pointers_, curve_pointers_;
 };

@@ -32,6 +32,7 @@ const EntityType* type_of(const DirectoryEntry& entry);
 
 // The lists.
 std::span<const EntityType> bspline_types();    // 126, 128
+std::span<const EntityType> topology_types();   // 186, 514, 510, 508, 504, 502
 std::span<const EntityType> structure_types();  // 124, 314, 402, 406 and what needs no function
 
 }  // namespace selvage::formats::iges

@@ -1,0 +1,192 @@
+// 186, 514, 510, 508, 504, 502: solids by their faces, edges and vertices.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "cad/natural_border.h"
+#include "formats/iges/types.h"
+
+namespace selvage::formats::iges {
+
+namespace {
+
+// An item of a loop, before its curves are read.
+struct Use {
+  bool is_vertex = false;  // a pole
+  int list = 0;            // a 504, or a 502 for a vertex
+  std::int64_t index = 0;  // in it, from 1
+  bool forward = true;
+  int flat = 0;  // pointer to the curve in the surface's parameters, where there is exactly one; else 0
+};
+
+// How many a list has, for its items' indices.
+std::size_t size_of_list(Reading& reading, const Use& use, Parameters& by) {
+  const int type = use.is_vertex ? 502 : 504;
+  const DirectoryEntry* const list = reading.entry(use.list, type, by);
+  if (list == nullptr) return 0;
+  Parameters in = reading.file().parameters(*list);
+  const std::size_t count = in.count(use.is_vertex ? "vertices" : "edges", use.is_vertex ? 3 : 5);
+  if (!reading.finish(*list, in)) by.give_up({});
+  return count;
+}
+
+// The curve of an edge: field 5 i + 1 of the 504. Nothing after an error.
+int edge_curve(Reading& reading, const Use& use, Parameters& by) {
+  const std::vector<int>* const curves = reading.edge_list(use.list, by);
+  if (curves == nullptr) return 0;
+  if (use.index < 1 || use.index > static_cast<std::int64_t>(curves->size())) {
+    by.fail(fmt::format("edge {} of the list D{}, which has {}", use.index, use.list, curves->size()));
+    return 0;
+  }
+  return (*curves)[static_cast<std::size_t>(use.index) - 1];
+}
+
+// One number for an edge of one list in the whole file: an edge takes five values, so a line of 64 columns
+// has fewer than 16 of them.
+int id_of(const DirectoryEntry& list, std::int64_t index) {
+  return static_cast<int>(16LL * list.first_line + index);
+}
+
+// Files differ in which way a curve in the parameters runs where an edge is used backwards: the curve in
+// space decides.
+void align_flat(cad::Edge& edge, const nurbs::Surface& surface) {
+  if (edge.curve.points.empty() || edge.flat.points.empty()) return;
+  const auto on_surface = [&](double t) {
+    const Vec3 uv = nurbs::evaluate(edge.flat, t);
+    return nurbs::evaluate(surface, uv.x(), uv.y());
+  };
+  const Vec3 start = on_surface(edge.flat.first_parameter()), end = on_surface(edge.flat.last_parameter());
+  const Vec3 from = nurbs::evaluate(edge.curve, edge.curve.first_parameter());
+  const Vec3 to = nurbs::evaluate(edge.curve, edge.curve.last_parameter());
+  if ((start - from).norm() + (end - to).norm() > (start - to).norm() + (end - from).norm())
+    edge.flat = nurbs::reversed(edge.flat);
+}
+
+std::optional<std::vector<Use>> read_uses(Reading& reading, int pointer, Parameters& by) {
+  const DirectoryEntry* const entry = reading.entry(pointer, 508, by);
+  if (entry == nullptr) return std::nullopt;
+  Parameters in = reading.file().parameters(*entry);
+  std::vector<Use> uses(in.count("edges of the loop", 5));
+  for (Use& use : uses) {
+    use.is_vertex = in.integer() == 1;
+    use.list = in.pointer();
+    use.index = in.integer();
+    use.forward = in.logical(true);
+    const std::size_t curves = in.count("curves in the parameters", 2);
+    for (std::size_t k = 0; k < curves && in.ok(); ++k) {
+      in.skip();  // whether it is an isoparametric curve
+      const int flat = in.pointer();
+      reading.use(flat);
+      use.flat = curves == 1 ? flat : 0;
+    }
+    if (!in.ok()) break;
+    if (use.is_vertex) {
+      const std::size_t vertices = size_of_list(reading, use, in);
+      if (in.ok() && (use.index < 1 || use.index > static_cast<std::int64_t>(vertices)))
+        in.fail(fmt::format("vertex {} of the list D{}, which has {}", use.index, use.list, vertices));
+    } else {
+      edge_curve(reading, use, in);
+    }
+  }
+  if (in.ok() && uses.empty()) in.fail("a loop without edges");
+  if (reading.finish(*entry, in)) return uses;
+  by.give_up({});
+  return std::nullopt;
+}
+
+std::optional<cad::Loop> read_loop(Reading& reading, int pointer, const nurbs::Surface& surface,
+                                   Parameters& by) {
+  const std::optional<std::vector<Use>> uses = read_uses(reading, pointer, by);
+  if (!uses) return std::nullopt;
+  cad::Loop loop;
+  for (const Use& use : *uses) {
+    cad::Edge edge;
+    if (!use.is_vertex) {
+      std::optional<nurbs::Curve> curve = reading.curve(edge_curve(reading, use, by), by);
+      if (!curve) return std::nullopt;
+      edge.curve = use.forward ? std::move(*curve) : nurbs::reversed(*curve);
+      edge.id = id_of(*reading.file().entity(use.list), use.index);
+    }
+    if (use.flat != 0) {
+      std::optional<nurbs::Curve> flat = reading.curve(use.flat, by);
+      if (!flat) return std::nullopt;
+      edge.flat = std::move(*flat);
+      align_flat(edge, surface);
+    }
+    loop.edges.push_back(std::move(edge));
+  }
+  return loop;
+}
+
+// 510: SURF, N, OF (is the first loop the outer one), N loops.
+std::optional<cad::Face> read_face(Reading& reading, const DirectoryEntry& /*entry*/, Parameters& in) {
+  const int surface_pointer = in.pointer();
+  const std::size_t count = in.count("loops");
+  in.skip();
+  std::vector<int> loops(count);
+  for (int& loop : loops) loop = in.pointer();
+  std::optional<nurbs::Surface> surface = reading.surface(surface_pointer, in);
+  if (!surface) return std::nullopt;
+  cad::Face face;
+  face.surface = std::move(*surface);
+  for (const int pointer : loops) {
+    std::optional<cad::Loop> loop = read_loop(reading, pointer, face.surface, in);
+    if (!loop) return std::nullopt;
+    face.loops.push_back(std::move(*loop));
+  }
+  cad::drop_natural_border(face, cad::border_tolerance(face, reading.file().global().resolution));
+  return face;
+}
+
+// 514: N, and for each face its pointer and whether it points as the shell does.
+std::optional<cad::Part> read_shell(Reading& reading, const DirectoryEntry& /*entry*/, Parameters& in) {
+  const std::size_t count = in.count("faces", 2);
+  cad::Part part;
+  part.kind = cad::Part::Kind::shell;
+  for (std::size_t i = 0; i < count && in.ok(); ++i) {
+    const int pointer = in.pointer();
+    const bool forward = in.logical(true);
+    if (reading.entry(pointer, 510, in) == nullptr) return std::nullopt;
+    std::optional<cad::Face> face = reading.face(pointer, in);
+    if (!face) return std::nullopt;
+    face->reversed = !forward;
+    part.faces.push_back(std::move(*face));
+  }
+  if (in.ok() && part.faces.empty()) in.fail("a shell without faces");
+  return in.ok() ? std::optional(std::move(part)) : std::nullopt;
+}
+
+// 186: the outer shell and whether it points out, N voids, each alike.
+std::optional<cad::Part> read_solid(Reading& reading, const DirectoryEntry& /*entry*/, Parameters& in) {
+  cad::Part solid;
+  solid.kind = cad::Part::Kind::solid;
+  std::size_t shells = 1;
+  for (std::size_t i = 0; i < shells && in.ok(); ++i) {
+    const int pointer = in.pointer();
+    const bool forward = in.logical(true);
+    if (i == 0) shells += in.count("voids", 2);
+    if (reading.entry(pointer, 514, in) == nullptr) return std::nullopt;
+    std::optional<cad::Part> shell = reading.part(pointer, in);
+    if (!shell) return std::nullopt;
+    for (cad::Face& face : shell->faces) {
+      if (!forward) face.reversed = !face.reversed;
+      solid.faces.push_back(std::move(face));
+    }
+  }
+  return in.ok() ? std::optional(std::move(solid)) : std::nullopt;
+}
+
+}  // namespace
+
+std::span<const EntityType> topology_types() {
+  static constexpr std::array<EntityType, 6> types = {{{.number = 186, .part = read_solid},
+                                                       {.number = 514, .part = read_shell},
+                                                       {.number = 510, .face = read_face},
+                                                       {.number = 508},
+                                                       {.number = 504},
+                                                       {.number = 502}}};
+  return types;
+}
+
+}  // namespace selvage::formats::iges
