@@ -1,0 +1,158 @@
+#include "cad/borders.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "nurbs/spline.h"
+
+namespace selvage::cad {
+
+namespace {
+
+constexpr int fewest_points = 8, points_a_span = 4, most_points = 2000;
+constexpr int newton_steps = 30;
+
+}  // namespace
+
+Border::Border(const nurbs::Surface& surface, int side) : surface_(&surface), side_(side) {
+  const bool along_v = side < 2;
+  first_ = along_v ? surface.first_v() : surface.first_u();
+  last_ = along_v ? surface.last_v() : surface.last_u();
+  sample(along_v ? nurbs::breakpoints(surface.knots_v, surface.degree_v)
+                 : nurbs::breakpoints(surface.knots_u, surface.degree_u));
+}
+
+Border::Border(const nurbs::Curve& curve)
+    : curve_(&curve), first_(curve.first_parameter()), last_(curve.last_parameter()) {
+  sample(nurbs::breakpoints(curve.knots, curve.degree));
+}
+
+Vec3 Border::at(double t) const {
+  if (curve_ != nullptr) return nurbs::evaluate(*curve_, t);
+  const nurbs::Surface& s = *surface_;
+  switch (side_) {
+    case 0:
+      return nurbs::evaluate(s, s.first_u(), t);
+    case 1:
+      return nurbs::evaluate(s, s.last_u(), t);
+    case 2:
+      return nurbs::evaluate(s, t, s.first_v());
+    default:
+      return nurbs::evaluate(s, t, s.last_v());
+  }
+}
+
+void Border::sample(const std::vector<double>& spans) {
+  const auto count = static_cast<int>(std::max<std::size_t>(spans.size(), 2)) - 1;
+  const int each = std::max({1, (fewest_points + count - 1) / count, std::min(points_a_span, most_points / count)});
+  for (int i = 0; i < count; ++i)
+    for (int k = 0; k < each; ++k)
+      parameters_.push_back(std::lerp(spans[static_cast<std::size_t>(i)], spans[static_cast<std::size_t>(i) + 1],
+                                      static_cast<double>(k) / each));
+  parameters_.push_back(last_);
+  for (const double t : parameters_) {
+    points_.push_back(at(t));
+    box_.extend(points_.back());
+    if (points_.size() < 2) continue;
+    const double step = (points_.back() - points_[points_.size() - 2]).norm();
+    length_ += step;
+    step_ = std::max(step_, step);
+  }
+}
+
+double Border::distance(const Vec3& p, double hint, double enough, double most) const {
+  if (box_.exteriorDistance(p) - step_ > most) return std::numeric_limits<double>::infinity();
+  double best = std::numeric_limits<double>::infinity();
+  for (const double share : {hint, 1 - hint}) {
+    best = std::min(best, (at(std::lerp(first_, last_, share)) - p).norm());
+    if (best <= enough) return best;
+  }
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const double squared = (points_[i] - p).squaredNorm();
+    if (squared < least) {
+      least = squared;
+      nearest = i;
+    }
+  }
+  best = std::min(best, std::sqrt(least));
+  // No point of the border is farther from its nearest sample than that one's step.
+  return best <= enough || std::sqrt(least) - step_ > most ? best : std::min(best, refined(p, nearest));
+}
+
+// Golden sections between the neighbours of the nearest point, which needs no derivative at a kink.
+double Border::refined(const Vec3& p, std::size_t nearest) const {
+  double low = parameters_[nearest == 0 ? 0 : nearest - 1];
+  double high = parameters_[std::min(nearest + 1, parameters_.size() - 1)];
+  const double golden = (std::sqrt(5.0) - 1) / 2;
+  double a = high - golden * (high - low), b = low + golden * (high - low);
+  double at_a = (at(a) - p).norm(), at_b = (at(b) - p).norm();
+  for (int i = 0; i < 2 * newton_steps; ++i) {
+    if (at_a < at_b) {
+      high = b;
+      b = a;
+      at_b = at_a;
+      a = high - golden * (high - low);
+      at_a = (at(a) - p).norm();
+    } else {
+      low = a;
+      a = b;
+      at_a = at_b;
+      b = low + golden * (high - low);
+      at_b = (at(b) - p).norm();
+    }
+  }
+  return std::min(at_a, at_b);
+}
+
+std::vector<Border> borders_of(const Face& face) {
+  std::vector<Border> borders;
+  if (face.loops.empty()) {
+    for (int side = 0; side < 4; ++side) borders.emplace_back(face.surface, side);
+    return borders;
+  }
+  for (const Loop& loop : face.loops)
+    for (const Edge& edge : loop.edges)
+      if (!edge.curve.points.empty()) borders.emplace_back(edge.curve);
+  return borders;
+}
+
+Nearest nearest_on(const nurbs::Surface& surface, const Vec3& p, std::optional<Vec2> start) {
+  const double u0 = surface.first_u(), u1 = surface.last_u(), v0 = surface.first_v(), v1 = surface.last_v();
+  Nearest best{std::numeric_limits<double>::infinity(), u0, v0};
+  if (start) {
+    best = {0, std::clamp(start->x(), u0, u1), std::clamp(start->y(), v0, v1)};
+    best.distance = (nurbs::evaluate(surface, best.u, best.v) - p).norm();
+  } else {
+    const int nu = std::clamp(3 * surface.count_u, 8, 64), nv = std::clamp(3 * surface.count_v, 8, 256);
+    for (int i = 0; i <= nu; ++i)
+      for (int j = 0; j <= nv; ++j) {
+        const double u = std::lerp(u0, u1, static_cast<double>(i) / nu), v = std::lerp(v0, v1, static_cast<double>(j) / nv);
+        const double distance = (nurbs::evaluate(surface, u, v) - p).norm();
+        if (distance < best.distance) best = {distance, u, v};
+      }
+  }
+  double u = best.u, v = best.v;
+  for (int step = 0; step < newton_steps; ++step) {
+    const nurbs::SurfaceJet jet = nurbs::evaluate_jet(surface, u, v);
+    const Vec3 gap = p - jet.position;
+    const double aa = jet.du.squaredNorm(), bb = jet.dv.squaredNorm(), ab = jet.du.dot(jet.dv);
+    const double ga = gap.dot(jet.du), gb = gap.dot(jet.dv), determinant = aa * bb - ab * ab;
+    double du = aa > 0 ? ga / aa : 0, dv = bb > 0 ? gb / bb : 0;
+    if (determinant > 1e-14 * aa * bb) {
+      du = (ga * bb - gb * ab) / determinant;
+      dv = (gb * aa - ga * ab) / determinant;
+    }
+    const double next_u = std::clamp(u + du, u0, u1), next_v = std::clamp(v + dv, v0, v1);
+    if (next_u == u && next_v == v) break;
+    u = next_u;
+    v = next_v;
+    const double distance = (nurbs::evaluate(surface, u, v) - p).norm();
+    if (distance < best.distance) best = {distance, u, v};
+  }
+  return best;
+}
+
+}  // namespace selvage::cad

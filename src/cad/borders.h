@@ -1,0 +1,58 @@
+// The borders of faces in space, whatever they are made of: the sides of a surface's range, or the edges of
+// its loops.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "cad/model.h"
+
+namespace selvage::cad {
+
+// One smooth piece of a face's border, with points on it. Refers to the face, which outlives it.
+class Border {
+ public:
+  // The side u = first (0), u = last (1), v = first (2) or v = last (3) of the surface.
+  Border(const nurbs::Surface& surface, int side);
+  explicit Border(const nurbs::Curve& curve);
+
+  [[nodiscard]] Vec3 at(double t) const;
+  [[nodiscard]] double first() const { return first_; }
+  [[nodiscard]] double last() const { return last_; }
+  [[nodiscard]] double length() const { return length_; }  // of the polygon through points()
+  // Evenly in the parameter over each span, ends included: at least nine.
+  [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
+  [[nodiscard]] const Box3& box() const { return box_; }
+  [[nodiscard]] int side() const { return side_; }  // -1: an edge of a loop
+
+  // The distance of `p`: at `hint` (0 to 1, from first to last) or its mirror image where that is at most
+  // `enough`, else the least, searched for near the nearest of points(). Where it is more than `most` only
+  // that is sure of the result.
+  [[nodiscard]] double distance(const Vec3& p, double hint, double enough, double most) const;
+
+ private:
+  void sample(const std::vector<double>& spans);
+  [[nodiscard]] double refined(const Vec3& p, std::size_t nearest) const;
+
+  const nurbs::Surface* surface_ = nullptr;
+  const nurbs::Curve* curve_ = nullptr;
+  int side_ = -1;
+  double first_ = 0, last_ = 0, length_ = 0;
+  double step_ = 0;  // longest distance between two points
+  std::vector<double> parameters_;
+  std::vector<Vec3> points_;
+  Box3 box_;
+};
+
+// The sides of an untrimmed face (0 to 3 in that order), or its loops' edges. Edges without a curve in space
+// (poles, or parameters only) are left out.
+std::vector<Border> borders_of(const Face& face);
+
+// The nearest point of a surface: distance and parameters, by Newton's method from the best of a grid, or
+// from `start` where that is given.
+struct Nearest {
+  double distance = 0, u = 0, v = 0;
+};
+Nearest nearest_on(const nurbs::Surface& surface, const Vec3& p, std::optional<Vec2> start = std::nullopt);
+
+}  // namespace selvage::cad

@@ -1,0 +1,380 @@
+#include "cad/judge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "cad/borders.h"
+
+namespace selvage::cad {
+
+namespace {
+
+constexpr double least_tolerance = 1e-6;  // of the part's size
+constexpr double reach = 1e-2;            // of the part's size: edges farther apart are no neighbours
+constexpr double rounding = 1e-12;        // of the part's size
+constexpr double far_off = 1e-3;          // of the part's size: an edge that lies off its surface
+constexpr double no_area = 1e-12;         // of the square of the part's size
+constexpr double outside = 1e-6;          // of the range of parameters
+
+std::string who(const Face& face) {
+  std::string name = face.origin.entity.empty() ? std::string("a face") : face.origin.entity;
+  return face.name.empty() ? name : fmt::format("{} ('{}')", name, face.name);
+}
+
+// Where a face has no place of its own, its part's.
+TextPlace place_of(const Part& part, const Face& face) {
+  return face.origin.place.line > 0 ? face.origin.place : part.origin.place;
+}
+
+class Judge {
+ public:
+  Judge(const Model& model, Findings& findings) : model_(model), findings_(findings) {}
+
+  Measures run() {
+    Box3 all;
+    for (const Part& part : model_.parts)
+      for (const Face& face : part.faces)
+        for (const Vec3& p : face.surface.points) all.extend(p);
+    for (const NamedCurve& curve : model_.curves)
+      for (const Vec3& p : curve.curve.points) all.extend(p);
+    m_.size = all.isEmpty() ? 0 : all.sizes().maxCoeff();
+    for (const Part& part : model_.parts) judge_part(part);
+    m_.tolerance = std::max(model_.resolution, least_tolerance * m_.size);
+    find_duplicates();
+    return m_;
+  }
+
+ private:
+  struct Owned {
+    Border border;
+    const Face* face;
+  };
+
+  Message message(Severity severity, const Part& part, const Face& face, std::string text,
+                  std::optional<Vec3> at = std::nullopt) {
+    Message made = error(Kind::geometry, std::move(text));
+    made.severity = severity;
+    made.place = place_of(part, face);
+    made.at = at;
+    return made;
+  }
+
+  void judge_part(const Part& part) {
+    Box3 box;
+    bool sound = true;
+    for (const Face& face : part.faces) {
+      for (const Vec3& p : face.surface.points) box.extend(p);
+      sound = judge_spline(part, face) && sound;
+    }
+    m_.faces += part.faces.size();
+    if (!sound || box.isEmpty()) return;
+    size_ = box.sizes().maxCoeff();
+    tolerance_ = std::max(model_.resolution, least_tolerance * size_);
+    std::vector<Owned> borders;
+    for (const Face& face : part.faces) {
+      for (Border& border : borders_of(face)) borders.push_back({std::move(border), &face});
+      judge_loops(part, face);
+    }
+    for (const Face& face : part.faces)
+      if (face.loops.empty()) judge_whole(part, face, borders);
+    std::erase_if(borders, [&](const Owned& owned) { return owned.border.length() <= tolerance_; });
+    m_.borders += borders.size();
+    for (const Owned& owned : borders)
+      if (m_.shortest_border == 0 || owned.border.length() < m_.shortest_border) {
+        m_.shortest_border = owned.border.length();
+        m_.shortest_entity = who(*owned.face);
+        m_.shortest_place = place_of(part, *owned.face);
+      }
+    // A face by itself has a border by rights.
+    if (part.kind == Part::Kind::surfaces && part.faces.size() == 1) return;
+    for (std::size_t i = 0; i < borders.size(); ++i) judge_border(part, borders, i);
+  }
+
+  // Knots and weights; false: it cannot be evaluated.
+  bool judge_spline(const Part& part, const Face& face) {
+    const nurbs::Surface& s = face.surface;
+    m_.largest_degree = std::max({m_.largest_degree, s.degree_u, s.degree_v});
+    bool sound = !s.is_empty();
+    for (const bool in_u : {true, false}) {
+      const std::vector<double>& knots = in_u ? s.knots_u : s.knots_v;
+      const int degree = in_u ? s.degree_u : s.degree_v;
+      if (!std::is_sorted(knots.begin(), knots.end())) {
+        findings_.add("knots out of order", message(Severity::error, part, face,
+                                                    fmt::format("{}: its knots in {} are out of order", who(face),
+                                                                in_u ? "u" : "v")));
+        sound = false;
+        continue;
+      }
+      for (std::size_t i = 0; i < knots.size();) {
+        std::size_t next = i;
+        while (next < knots.size() && knots[next] == knots[i]) ++next;
+        const bool is_end = i == 0 || next == knots.size();
+        if (next - i > static_cast<std::size_t>(degree) + (is_end ? 1 : 0))
+          findings_.add("knots that are repeated too often",
+                        message(Severity::error, part, face,
+                                fmt::format("{}: the knot {} in {} is there {} times, at degree {}", who(face), knots[i],
+                                            in_u ? "u" : "v", next - i, degree)));
+        i = next;
+      }
+    }
+    if (!s.weights.empty()) {
+      const double least = *std::min_element(s.weights.begin(), s.weights.end());
+      m_.least_weight = std::min(m_.least_weight, least);
+      if (!(least > 0)) {
+        findings_.add("weights that are not positive",
+                      message(Severity::error, part, face, fmt::format("{}: a weight of {}", who(face), least)));
+        sound = false;
+      }
+    }
+    return sound;
+  }
+
+  void judge_loops(const Part& part, const Face& face) {
+    for (const Loop& loop : face.loops) {
+      for (std::size_t i = 0; i < loop.edges.size(); ++i) {
+        const Vec3 end = end_of(face, loop.edges[i], true),
+                   next = end_of(face, loop.edges[(i + 1) % loop.edges.size()], false);
+        const double gap = (end - next).norm();
+        if (gap > tolerance_)
+          findings_.add("loops that are not closed",
+                        message(Severity::error, part, face,
+                                fmt::format("{}: its boundary is not closed: {:.3g} {} between two of its edges", who(face),
+                                            gap, name_of(model_.units)),
+                                end));
+      }
+      for (const Edge& edge : loop.edges) judge_edge(part, face, edge);
+    }
+  }
+
+  static Vec3 end_of(const Face& face, const Edge& edge, bool last) {
+    const nurbs::Curve& c = edge.curve.points.empty() ? edge.flat : edge.curve;
+    if (c.points.empty()) return face.surface.points.front();
+    const Vec3 p = nurbs::evaluate(c, last ? c.last_parameter() : c.first_parameter());
+    return &c == &edge.curve ? p : nurbs::evaluate(face.surface, p.x(), p.y());
+  }
+
+  void judge_edge(const Part& part, const Face& face, const Edge& edge) {
+    const nurbs::Surface& s = face.surface;
+    const Vec2 low(s.first_u(), s.first_v()), high(s.last_u(), s.last_v()), slack = outside * (high - low);
+    bool leaves = false;
+    double off = 0;
+    std::optional<Vec3> off_at;
+    for (const double share : {0.0, 0.21, 0.5, 0.77, 1.0}) {
+      std::optional<Vec2> start;
+      if (!edge.flat.points.empty()) {
+        const Vec3 flat =
+            nurbs::evaluate(edge.flat, std::lerp(edge.flat.first_parameter(), edge.flat.last_parameter(), share));
+        start = flat.head<2>();
+        leaves = leaves || ((*start - low + slack).minCoeff() < 0) || ((high + slack - *start).minCoeff() < 0);
+      }
+      if (edge.curve.points.empty()) continue;
+      const Vec3 p =
+          nurbs::evaluate(edge.curve, std::lerp(edge.curve.first_parameter(), edge.curve.last_parameter(), share));
+      double distance = start ? nearest_on(s, p, start).distance : 0;
+      if (!start || distance > tolerance_) distance = nearest_on(s, p).distance;
+      if (distance > off) {
+        off = distance;
+        off_at = p;
+      }
+    }
+    if (leaves)
+      findings_.add("loops that leave the range of their surface",
+                    message(Severity::error, part, face,
+                            fmt::format("{}: its boundary leaves the range of its surface", who(face))));
+    if (off > 10 * tolerance_)
+      findings_.add("edges off their surface",
+                    message(off > far_off * size_ ? Severity::error : Severity::warning, part, face,
+                            fmt::format("{}: an edge lies {:.3g} {} off its surface", who(face), off, name_of(model_.units)),
+                            off_at));
+  }
+
+  // An untrimmed face: poles, area, and whether it nearly closes.
+  void judge_whole(const Part& part, const Face& face, const std::vector<Owned>& borders) {
+    std::array<const Border*, 4> sides{};
+    for (const Owned& owned : borders)
+      if (owned.face == &face && owned.border.side() >= 0)
+        sides[static_cast<std::size_t>(owned.border.side())] = &owned.border;
+    const double area = area_of(face.surface);
+    if (area <= no_area * size_ * size_) {
+      findings_.add("faces without area",
+                    message(Severity::error, part, face, fmt::format("{}: a face without area", who(face))));
+      return;
+    }
+    if (!m_.least_area || area < *m_.least_area) {
+      m_.least_area = area;
+      m_.least_area_entity = who(face);
+      m_.least_area_place = place_of(part, face);
+    }
+    m_.largest_area = std::max(m_.largest_area.value_or(0), area);
+    for (std::size_t i = 0; i < 4; ++i)
+      if (sides[i]->length() <= tolerance_) {
+        ++m_.poles;
+        findings_.add("poles", message(Severity::note, part, face,
+                                       fmt::format("{}: its border {} is one point, a pole", who(face),
+                                                   std::array{"u0", "u1", "v0", "v1"}[i]),
+                                       sides[i]->points().front()));
+      }
+    for (const std::size_t i : {std::size_t{0}, std::size_t{2}}) {
+      if (sides[i]->length() <= tolerance_) continue;
+      double gap = 0;
+      for (std::size_t k = 0; k < sides[i]->points().size(); ++k)
+        gap = std::max(gap, (sides[i]->points()[k] - sides[i + 1]->points()[k]).norm());
+      if (gap > rounding * size_ && gap <= tolerance_)
+        findings_.add("surfaces that nearly close",
+                      message(Severity::warning, part, face,
+                              fmt::format("{}: it is open in {} by {:.3g} {}, less than the tolerance: systems differ in "
+                                          "whether they close it; let its first and last control points be equal",
+                                          who(face), i == 0 ? "u" : "v", gap, name_of(model_.units)),
+                              sides[i]->points().front()));
+    }
+  }
+
+  static double area_of(const nurbs::Surface& s) {
+    constexpr int steps = 12;
+    std::vector<double> us, vs;
+    for (int i = 0; i <= steps; ++i) {
+      us.push_back(std::lerp(s.first_u(), s.last_u(), static_cast<double>(i) / steps));
+      vs.push_back(std::lerp(s.first_v(), s.last_v(), static_cast<double>(i) / steps));
+    }
+    const std::vector<Vec3> grid = nurbs::evaluate_grid(s, us, vs);
+    double area = 0;
+    for (std::size_t j = 0; j < steps; ++j)
+      for (std::size_t i = 0; i < steps; ++i) {
+        const Vec3 &a = grid[j * (steps + 1) + i], &b = grid[j * (steps + 1) + i + 1], &c = grid[(j + 1) * (steps + 1) + i],
+                   &d = grid[(j + 1) * (steps + 1) + i + 1];
+        area += 0.5 * ((b - a).cross(c - a).norm() + (b - d).cross(c - d).norm());
+      }
+    return area;
+  }
+
+  // Has this border a neighbour all along, and how far is it?
+  void judge_border(const Part& part, const std::vector<Owned>& borders, std::size_t own) {
+    const Border& border = borders[own].border;
+    const double far = reach * size_;
+    const Box3 near(border.box().min().array() - far, border.box().max().array() + far);
+    std::vector<const Border*> others;
+    for (std::size_t i = 0; i < borders.size(); ++i)
+      if (i != own && near.intersects(borders[i].border.box())) others.push_back(&borders[i].border);
+    double gap = 0;
+    Vec3 gap_at = border.points().front();
+    const std::size_t count = border.points().size();
+    for (std::size_t k = 0; k < count && gap <= far; ++k) {
+      double least = INFINITY;
+      for (const Border* other : others) {
+        least = std::min(least, other->distance(border.points()[k], static_cast<double>(k) / static_cast<double>(count - 1),
+                                                rounding * size_, least));
+        if (least <= rounding * size_) break;
+      }
+      if (least > gap) {
+        gap = least;
+        gap_at = border.points()[k];
+      }
+    }
+    const Face& face = *borders[own].face;
+    const Severity severity = part.kind == Part::Kind::solid ? Severity::error : Severity::warning;
+    if (gap > far) {
+      ++m_.open_borders;
+      findings_.add("open edges",
+                    message(severity, part, face,
+                            fmt::format("{}: an edge of length {:.3g} {} has no other face beside it: the {} is open", who(face),
+                                        border.length(), name_of(model_.units),
+                                        part.kind == Part::Kind::solid   ? "solid"
+                                        : part.kind == Part::Kind::shell ? "shell"
+                                                                         : "group of surfaces"),
+                            gap_at));
+      return;
+    }
+    if (gap > m_.largest_gap) {
+      m_.largest_gap = gap;
+      m_.gap_at = gap_at;
+      m_.gap_entity = who(face);
+    }
+    if (gap > tolerance_)
+      findings_.add("gaps between edges",
+                    message(severity, part, face,
+                            fmt::format("{}: an edge and its neighbour are up to {:.3g} {} apart; {:.3g} are within the "
+                                        "file's resolution",
+                                        who(face), gap, name_of(model_.units), tolerance_),
+                            gap_at));
+  }
+
+  // Points that tell a face: of its surface's inside, or of its outer loop.
+  struct Signature {
+    const Part* part;
+    const Face* face;
+    Box3 box;
+    std::vector<Vec3> points;
+  };
+
+  static Signature signature(const Part& part, const Face& face) {
+    Signature made{&part, &face, {}, {}};
+    if (face.loops.empty()) {
+      for (const double a : {0.2, 0.5, 0.8})
+        for (const double b : {0.2, 0.5, 0.8})
+          made.points.push_back(nurbs::evaluate(face.surface, std::lerp(face.surface.first_u(), face.surface.last_u(), a),
+                                                std::lerp(face.surface.first_v(), face.surface.last_v(), b)));
+    } else {
+      for (const Edge& edge : face.loops.front().edges)
+        if (!edge.curve.points.empty())
+          for (const double a : {0.0, 0.5})
+            made.points.push_back(nurbs::evaluate(
+                edge.curve, std::lerp(edge.curve.first_parameter(), edge.curve.last_parameter(), a)));
+      // Two half spheres have one outline: their insides differ.
+      made.points.push_back(nurbs::evaluate(face.surface, 0.5 * (face.surface.first_u() + face.surface.last_u()),
+                                            0.5 * (face.surface.first_v() + face.surface.last_v())));
+    }
+    for (const Vec3& p : made.points) made.box.extend(p);
+    return made;
+  }
+
+  void find_duplicates() {
+    std::vector<Signature> all;
+    for (const Part& part : model_.parts)
+      for (const Face& face : part.faces)
+        if (!face.surface.is_empty() && std::is_sorted(face.surface.knots_u.begin(), face.surface.knots_u.end()) &&
+            std::is_sorted(face.surface.knots_v.begin(), face.surface.knots_v.end()))
+          all.push_back(signature(part, face));
+    std::sort(all.begin(), all.end(),
+              [](const Signature& a, const Signature& b) { return a.box.min().x() < b.box.min().x(); });
+    // Twice the same, not two that nearly touch.
+    const double tolerance = std::min(m_.tolerance, 1e-6 * m_.size);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t k = i + 1; k < all.size() && all[k].box.min().x() - all[i].box.min().x() <= tolerance; ++k)
+        if (is_same(all[i], all[k], tolerance)) {
+          const bool in_order = all[i].face->origin.place.line <= all[k].face->origin.place.line;
+          const Signature &first = in_order ? all[i] : all[k], &second = in_order ? all[k] : all[i];
+          findings_.add("faces that are there twice",
+                        message(Severity::error, *second.part, *second.face,
+                                fmt::format("{}: the same face as {}, at the same place", who(*second.face),
+                                            who(*first.face)),
+                                second.points.front()));
+          break;
+        }
+  }
+
+  static bool is_same(const Signature& a, const Signature& b, double tolerance) {
+    if (a.points.size() != b.points.size() || a.face->loops.size() != b.face->loops.size()) return false;
+    if ((a.box.min() - b.box.min()).cwiseAbs().maxCoeff() > tolerance ||
+        (a.box.max() - b.box.max()).cwiseAbs().maxCoeff() > tolerance)
+      return false;
+    return std::all_of(a.points.begin(), a.points.end(), [&](const Vec3& p) {
+      return std::any_of(b.points.begin(), b.points.end(), [&](const Vec3& q) { return (p - q).norm() <= tolerance; });
+    });
+  }
+
+  const Model& model_;
+  Findings& findings_;
+  Measures m_;
+  double size_ = 0, tolerance_ = 0;  // of the part at hand
+};
+
+}  // namespace
+
+Measures judge(const Model& model, Findings& findings) {
+  return Judge(model, findings).run();
+}
+
+}  // namespace selvage::cad
