@@ -45,11 +45,12 @@ Vec3 Border::at(double t) const {
 
 void Border::sample(const std::vector<double>& spans) {
   const auto count = static_cast<int>(std::max<std::size_t>(spans.size(), 2)) - 1;
-  const int each = std::max({1, (fewest_points + count - 1) / count, std::min(points_a_span, most_points / count)});
+  const int each =
+      std::max({1, (fewest_points + count - 1) / count, std::min(points_a_span, most_points / count)});
   for (int i = 0; i < count; ++i)
     for (int k = 0; k < each; ++k)
-      parameters_.push_back(std::lerp(spans[static_cast<std::size_t>(i)], spans[static_cast<std::size_t>(i) + 1],
-                                      static_cast<double>(k) / each));
+      parameters_.push_back(std::lerp(spans[static_cast<std::size_t>(i)],
+                                      spans[static_cast<std::size_t>(i) + 1], static_cast<double>(k) / each));
   parameters_.push_back(last_);
   for (const double t : parameters_) {
     points_.push_back(at(t));
@@ -129,7 +130,8 @@ Nearest nearest_on(const nurbs::Surface& surface, const Vec3& p, std::optional<V
     const int nu = std::clamp(3 * surface.count_u, 8, 64), nv = std::clamp(3 * surface.count_v, 8, 256);
     for (int i = 0; i <= nu; ++i)
       for (int j = 0; j <= nv; ++j) {
-        const double u = std::lerp(u0, u1, static_cast<double>(i) / nu), v = std::lerp(v0, v1, static_cast<double>(j) / nv);
+        const double u = std::lerp(u0, u1, static_cast<double>(i) / nu),
+                     v = std::lerp(v0, v1, static_cast<double>(j) / nv);
         const double distance = (nurbs::evaluate(surface, u, v) - p).norm();
         if (distance < best.distance) best = {distance, u, v};
       }

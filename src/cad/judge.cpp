@@ -103,8 +103,8 @@ class Judge {
       const int degree = in_u ? s.degree_u : s.degree_v;
       if (!std::is_sorted(knots.begin(), knots.end())) {
         findings_.add("knots out of order", message(Severity::error, part, face,
-                                                    fmt::format("{}: its knots in {} are out of order", who(face),
-                                                                in_u ? "u" : "v")));
+                                                    fmt::format("{}: its knots in {} are out of order",
+                                                                who(face), in_u ? "u" : "v")));
         sound = false;
         continue;
       }
@@ -115,8 +115,8 @@ class Judge {
         if (next - i > static_cast<std::size_t>(degree) + (is_end ? 1 : 0))
           findings_.add("knots that are repeated too often",
                         message(Severity::error, part, face,
-                                fmt::format("{}: the knot {} in {} is there {} times, at degree {}", who(face), knots[i],
-                                            in_u ? "u" : "v", next - i, degree)));
+                                fmt::format("{}: the knot {} in {} is there {} times, at degree {}",
+                                            who(face), knots[i], in_u ? "u" : "v", next - i, degree)));
         i = next;
       }
     }
@@ -124,8 +124,9 @@ class Judge {
       const double least = *std::min_element(s.weights.begin(), s.weights.end());
       m_.least_weight = std::min(m_.least_weight, least);
       if (!(least > 0)) {
-        findings_.add("weights that are not positive",
-                      message(Severity::error, part, face, fmt::format("{}: a weight of {}", who(face), least)));
+        findings_.add(
+            "weights that are not positive",
+            message(Severity::error, part, face, fmt::format("{}: a weight of {}", who(face), least)));
         sound = false;
       }
     }
@@ -139,11 +140,12 @@ class Judge {
                    next = end_of(face, loop.edges[(i + 1) % loop.edges.size()], false);
         const double gap = (end - next).norm();
         if (gap > tolerance_)
-          findings_.add("loops that are not closed",
-                        message(Severity::error, part, face,
-                                fmt::format("{}: its boundary is not closed: {:.3g} {} between two of its edges", who(face),
-                                            gap, name_of(model_.units)),
-                                end));
+          findings_.add(
+              "loops that are not closed",
+              message(Severity::error, part, face,
+                      fmt::format("{}: its boundary is not closed: {:.3g} {} between two of its edges",
+                                  who(face), gap, name_of(model_.units)),
+                      end));
       }
       for (const Edge& edge : loop.edges) judge_edge(part, face, edge);
     }
@@ -165,14 +167,15 @@ class Judge {
     for (const double share : {0.0, 0.21, 0.5, 0.77, 1.0}) {
       std::optional<Vec2> start;
       if (!edge.flat.points.empty()) {
-        const Vec3 flat =
-            nurbs::evaluate(edge.flat, std::lerp(edge.flat.first_parameter(), edge.flat.last_parameter(), share));
+        const Vec3 flat = nurbs::evaluate(
+            edge.flat, std::lerp(edge.flat.first_parameter(), edge.flat.last_parameter(), share));
         start = flat.head<2>();
-        leaves = leaves || ((*start - low + slack).minCoeff() < 0) || ((high + slack - *start).minCoeff() < 0);
+        leaves =
+            leaves || ((*start - low + slack).minCoeff() < 0) || ((high + slack - *start).minCoeff() < 0);
       }
       if (edge.curve.points.empty()) continue;
-      const Vec3 p =
-          nurbs::evaluate(edge.curve, std::lerp(edge.curve.first_parameter(), edge.curve.last_parameter(), share));
+      const Vec3 p = nurbs::evaluate(
+          edge.curve, std::lerp(edge.curve.first_parameter(), edge.curve.last_parameter(), share));
       double distance = start ? nearest_on(s, p, start).distance : 0;
       if (!start || distance > tolerance_) distance = nearest_on(s, p).distance;
       if (distance > off) {
@@ -187,7 +190,8 @@ class Judge {
     if (off > 10 * tolerance_)
       findings_.add("edges off their surface",
                     message(off > far_off * size_ ? Severity::error : Severity::warning, part, face,
-                            fmt::format("{}: an edge lies {:.3g} {} off its surface", who(face), off, name_of(model_.units)),
+                            fmt::format("{}: an edge lies {:.3g} {} off its surface", who(face), off,
+                                        name_of(model_.units)),
                             off_at));
   }
 
@@ -223,12 +227,14 @@ class Judge {
       for (std::size_t k = 0; k < sides[i]->points().size(); ++k)
         gap = std::max(gap, (sides[i]->points()[k] - sides[i + 1]->points()[k]).norm());
       if (gap > rounding * size_ && gap <= tolerance_)
-        findings_.add("surfaces that nearly close",
-                      message(Severity::warning, part, face,
-                              fmt::format("{}: it is open in {} by {:.3g} {}, less than the tolerance: systems differ in "
-                                          "whether they close it; let its first and last control points be equal",
-                                          who(face), i == 0 ? "u" : "v", gap, name_of(model_.units)),
-                              sides[i]->points().front()));
+        findings_.add(
+            "surfaces that nearly close",
+            message(
+                Severity::warning, part, face,
+                fmt::format("{}: it is open in {} by {:.3g} {}, less than the tolerance: systems differ in "
+                            "whether they close it; let its first and last control points be equal",
+                            who(face), i == 0 ? "u" : "v", gap, name_of(model_.units)),
+                sides[i]->points().front()));
     }
   }
 
@@ -243,8 +249,8 @@ class Judge {
     double area = 0;
     for (std::size_t j = 0; j < steps; ++j)
       for (std::size_t i = 0; i < steps; ++i) {
-        const Vec3 &a = grid[j * (steps + 1) + i], &b = grid[j * (steps + 1) + i + 1], &c = grid[(j + 1) * (steps + 1) + i],
-                   &d = grid[(j + 1) * (steps + 1) + i + 1];
+        const Vec3 &a = grid[j * (steps + 1) + i], &b = grid[j * (steps + 1) + i + 1],
+                   &c = grid[(j + 1) * (steps + 1) + i], &d = grid[(j + 1) * (steps + 1) + i + 1];
         area += 0.5 * ((b - a).cross(c - a).norm() + (b - d).cross(c - d).norm());
       }
     return area;
@@ -264,7 +270,8 @@ class Judge {
     for (std::size_t k = 0; k < count && gap <= far; ++k) {
       double least = INFINITY;
       for (const Border* other : others) {
-        least = std::min(least, other->distance(border.points()[k], static_cast<double>(k) / static_cast<double>(count - 1),
+        least = std::min(least, other->distance(border.points()[k],
+                                                static_cast<double>(k) / static_cast<double>(count - 1),
                                                 rounding * size_, least));
         if (least <= rounding * size_) break;
       }
@@ -277,14 +284,15 @@ class Judge {
     const Severity severity = part.kind == Part::Kind::solid ? Severity::error : Severity::warning;
     if (gap > far) {
       ++m_.open_borders;
-      findings_.add("open edges",
-                    message(severity, part, face,
-                            fmt::format("{}: an edge of length {:.3g} {} has no other face beside it: the {} is open", who(face),
-                                        border.length(), name_of(model_.units),
-                                        part.kind == Part::Kind::solid   ? "solid"
-                                        : part.kind == Part::Kind::shell ? "shell"
-                                                                         : "group of surfaces"),
-                            gap_at));
+      findings_.add(
+          "open edges",
+          message(severity, part, face,
+                  fmt::format("{}: an edge of length {:.3g} {} has no other face beside it: the {} is open",
+                              who(face), border.length(), name_of(model_.units),
+                              part.kind == Part::Kind::solid   ? "solid"
+                              : part.kind == Part::Kind::shell ? "shell"
+                                                               : "group of surfaces"),
+                  gap_at));
       return;
     }
     if (gap > m_.largest_gap) {
@@ -293,12 +301,14 @@ class Judge {
       m_.gap_entity = who(face);
     }
     if (gap > tolerance_)
-      findings_.add("gaps between edges",
-                    message(severity, part, face,
-                            fmt::format("{}: an edge and its neighbour are up to {:.3g} {} apart; {:.3g} are within the "
-                                        "file's resolution",
-                                        who(face), gap, name_of(model_.units), tolerance_),
-                            gap_at));
+      findings_.add(
+          "gaps between edges",
+          message(
+              severity, part, face,
+              fmt::format("{}: an edge and its neighbour are up to {:.3g} {} apart; {:.3g} are within the "
+                          "file's resolution",
+                          who(face), gap, name_of(model_.units), tolerance_),
+              gap_at));
   }
 
   // Points that tell a face: of its surface's inside, or of its outer loop.
@@ -314,7 +324,8 @@ class Judge {
     if (face.loops.empty()) {
       for (const double a : {0.2, 0.5, 0.8})
         for (const double b : {0.2, 0.5, 0.8})
-          made.points.push_back(nurbs::evaluate(face.surface, std::lerp(face.surface.first_u(), face.surface.last_u(), a),
+          made.points.push_back(nurbs::evaluate(face.surface,
+                                                std::lerp(face.surface.first_u(), face.surface.last_u(), a),
                                                 std::lerp(face.surface.first_v(), face.surface.last_v(), b)));
     } else {
       for (const Edge& edge : face.loops.front().edges)
@@ -323,7 +334,8 @@ class Judge {
             made.points.push_back(nurbs::evaluate(
                 edge.curve, std::lerp(edge.curve.first_parameter(), edge.curve.last_parameter(), a)));
       // Two half spheres have one outline: their insides differ.
-      made.points.push_back(nurbs::evaluate(face.surface, 0.5 * (face.surface.first_u() + face.surface.last_u()),
+      made.points.push_back(nurbs::evaluate(face.surface,
+                                            0.5 * (face.surface.first_u() + face.surface.last_u()),
                                             0.5 * (face.surface.first_v() + face.surface.last_v())));
     }
     for (const Vec3& p : made.points) made.box.extend(p);
@@ -334,7 +346,8 @@ class Judge {
     std::vector<Signature> all;
     for (const Part& part : model_.parts)
       for (const Face& face : part.faces)
-        if (!face.surface.is_empty() && std::is_sorted(face.surface.knots_u.begin(), face.surface.knots_u.end()) &&
+        if (!face.surface.is_empty() &&
+            std::is_sorted(face.surface.knots_u.begin(), face.surface.knots_u.end()) &&
             std::is_sorted(face.surface.knots_v.begin(), face.surface.knots_v.end()))
           all.push_back(signature(part, face));
     std::sort(all.begin(), all.end(),
@@ -342,7 +355,8 @@ class Judge {
     // Twice the same, not two that nearly touch.
     const double tolerance = std::min(m_.tolerance, 1e-6 * m_.size);
     for (std::size_t i = 0; i < all.size(); ++i)
-      for (std::size_t k = i + 1; k < all.size() && all[k].box.min().x() - all[i].box.min().x() <= tolerance; ++k)
+      for (std::size_t k = i + 1; k < all.size() && all[k].box.min().x() - all[i].box.min().x() <= tolerance;
+           ++k)
         if (is_same(all[i], all[k], tolerance)) {
           const bool in_order = all[i].face->origin.place.line <= all[k].face->origin.place.line;
           const Signature &first = in_order ? all[i] : all[k], &second = in_order ? all[k] : all[i];
@@ -361,7 +375,8 @@ class Judge {
         (a.box.max() - b.box.max()).cwiseAbs().maxCoeff() > tolerance)
       return false;
     return std::all_of(a.points.begin(), a.points.end(), [&](const Vec3& p) {
-      return std::any_of(b.points.begin(), b.points.end(), [&](const Vec3& q) { return (p - q).norm() <= tolerance; });
+      return std::any_of(b.points.begin(), b.points.end(),
+                         [&](const Vec3& q) { return (p - q).norm() <= tolerance; });
     });
   }
 

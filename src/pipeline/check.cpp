@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "pipeline/cad_check.h"
 #include "pipeline/facts.h"
 #include "pipeline/overlaps.h"
 #include "pipeline/pieces.h"
@@ -95,12 +96,16 @@ std::string yarn_tables(const Findings& found, Unit file, Unit shown) {
   return text;
 }
 
-void print_tables(const Job& job, const Findings& found, std::size_t defects) {
+void print_tables(const Job& job, const Findings& found, const CadCheck& cad, std::size_t defects) {
   const Unit file = job.file_units(), shown = job.options.units.value_or(file);
   std::string text = fmt::format("{}: lengths in {}\n", job.input.path, name_of(shown)), sound;
+  if (cad.has_model()) {
+    text += cad.table(file, shown);
+    sound = "the file keeps to its format, its surfaces are sound";
+  }
   if (!found.bodies.empty()) {
     text += yarn_tables(found, file, shown);
-    sound = "every yarn is a closed valid solid, no two overlap";
+    sound += fmt::format("{}every yarn is a closed valid solid, no two overlap", sound.empty() ? "" : "; ");
   }
   if (!found.pieces.shapes.empty()) {
     text += face_table(found.pieces, file, shown);
@@ -146,12 +151,17 @@ std::optional<Findings> examine(Job& job, const fabric::Fabric& fabric) {
 }  // namespace
 
 bool check(Job& job) {
-  const std::optional<fabric::Fabric> fabric = job.read();
+  CadCheck cad;
+  const std::optional<fabric::Fabric> fabric = job.read(cad.look());
+  cad.say(job);
   if (!fabric) return false;
   const std::optional<Findings> found = examine(job, *fabric);
   if (!found) return false;
   if (!found->bodies.empty()) report_check(job, found->solids, found->bodies);
-  std::size_t defects = found->solids.overlaps.size() + found->pieces.defects;
+  if (cad.has_model() && found->bodies.empty())
+    if (const std::optional<double> accuracy = cad::absolute_accuracy(*cad.measures()))
+      job.report.creo_absolute_accuracy = *accuracy * millimetres_per(fabric->units);
+  std::size_t defects = cad.defects() + found->solids.overlaps.size() + found->pieces.defects;
   for (std::size_t i = 0; i < found->bodies.size(); ++i) {
     for (Message& message : defects_of(*found, i, fabric->units)) {
       ++defects;
@@ -160,7 +170,7 @@ bool check(Job& job) {
   }
   for (const solid::Overlap& overlap : found->solids.overlaps)
     job.say_defect(overlap_message(overlap, found->bodies, fabric->units));
-  print_tables(job, *found, defects);
+  print_tables(job, *found, cad, defects);
   return defects > 0;
 }
 

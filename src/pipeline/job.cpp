@@ -118,7 +118,7 @@ fabric::BuildOptions Job::build_options() const {
   return build;
 }
 
-std::optional<fabric::Fabric> Job::read() {
+std::optional<fabric::Fabric> Job::read(const CadLook& look) {
   Result<Source> source = Source::open(input.path);
   if (!source) {
     say(source.error());
@@ -132,9 +132,11 @@ std::optional<fabric::Fabric> Job::read() {
   }
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric;
+  if (look.file) look.file(*source, **format);
   if ((*format)->read_fabric != nullptr) {
     fabric = (*format)->read_fabric(*source, diagnostics);
   } else if (std::optional<cad::Model> model = (*format)->read_model(*source, diagnostics)) {
+    if (look.model) look.model(*model, **format);
     fabric = fabric::fabric_of(std::move(*model), diagnostics);
   }
   if (fabric) take_drafts(*fabric, *source, diagnostics);

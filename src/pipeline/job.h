@@ -15,6 +15,7 @@
 #include "fabric/build.h"
 #include "fabric/model.h"
 #include "fabric/piece.h"
+#include "formats/format.h"
 #include "pipeline/inputs.h"
 #include "pipeline/options.h"
 #include "pipeline/outputs.h"
@@ -32,6 +33,13 @@ inline constexpr char result = 'r';    // a piece of standard output
 inline constexpr char progress = 'p';  // what is being done right now
 inline constexpr char report = 'j';    // the InputReport as JSON
 }  // namespace packet
+
+// What is to look at a CAD file while it is read; either may be empty.
+struct CadLook {
+  std::function<void(const Source&, const formats::Descriptor&)> file;  // before it is read
+  std::function<void(const cad::Model&, const formats::Descriptor&)>
+      model;  // before yarns are recognised in it
+};
 
 class Job {
  public:
@@ -59,7 +67,7 @@ class Job {
 
   // Reads the input; nothing when that failed (it was said why). The fabric of an input that cannot be built
   // is fine.
-  std::optional<fabric::Fabric> read();
+  std::optional<fabric::Fabric> read(const CadLook& look = {});
   // The builder of its yarns; nothing when that failed. It may have none where the fabric holds pieces.
   std::optional<fabric::YarnBuilder> builder(const fabric::Fabric& fabric);
   // Builds the yarns, a few at once on this job's threads, and hands them to `take` one by one in their

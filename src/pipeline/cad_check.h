@@ -1,0 +1,32 @@
+// `selvage check` on a CAD file: its format, its geometry, and what other systems would stumble on.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cad/judge.h"
+#include "core/findings.h"
+#include "pipeline/job.h"
+
+namespace selvage::pipeline {
+
+class CadCheck {
+ public:
+  // To be called by Job::read(); the check outlives it.
+  CadLook look();
+
+  // Says what was found: defects, warnings, and notes, which -v shows.
+  void say(Job& job) const;
+  [[nodiscard]] std::size_t defects() const;
+  // Was there a CAD file that could be read?
+  [[nodiscard]] bool has_model() const { return measures_.has_value(); }
+  // A table of what was measured, lengths in `shown`; of `file` they are now.
+  [[nodiscard]] std::string table(Unit file, Unit shown) const;
+  [[nodiscard]] const std::optional<cad::Measures>& measures() const { return measures_; }
+
+ private:
+  Findings structure_, geometry_;
+  std::optional<cad::Measures> measures_;
+};
+
+}  // namespace selvage::pipeline
