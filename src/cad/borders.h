@@ -22,6 +22,8 @@ class Border {
   [[nodiscard]] double length() const { return length_; }  // of the polygon through points()
   // Evenly in the parameter over each span, ends included: at least nine.
   [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
+  // Where points()[i] is between first and last parameter, 0 to 1.
+  [[nodiscard]] double share(std::size_t i) const { return (parameters_[i] - first_) / (last_ - first_); }
   [[nodiscard]] const Box3& box() const { return box_; }
   [[nodiscard]] int side() const { return side_; }  // -1: an edge of a loop
 

@@ -270,9 +270,8 @@ class Judge {
     for (std::size_t k = 0; k < count && gap <= far; ++k) {
       double least = INFINITY;
       for (const Border* other : others) {
-        least = std::min(least, other->distance(border.points()[k],
-                                                static_cast<double>(k) / static_cast<double>(count - 1),
-                                                rounding * size_, least));
+        least =
+            std::min(least, other->distance(border.points()[k], border.share(k), rounding * size_, least));
         if (least <= rounding * size_) break;
       }
       if (least > gap) {
