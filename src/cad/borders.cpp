@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "nurbs/spline.h"
+#include "cad/outline.h"
 
 namespace selvage::cad {
 
@@ -15,45 +15,29 @@ constexpr int newton_steps = 30;
 
 }  // namespace
 
-Border::Border(const nurbs::Surface& surface, int side) : surface_(&surface), side_(side) {
-  const bool along_v = side < 2;
-  first_ = along_v ? surface.first_v() : surface.first_u();
-  last_ = along_v ? surface.last_v() : surface.last_u();
-  sample(along_v ? nurbs::breakpoints(surface.knots_v, surface.degree_v)
-                 : nurbs::breakpoints(surface.knots_u, surface.degree_u));
-}
+Border::Border(const nurbs::Surface& surface, int side)
+    : Border(constant_curve(surface, side < 2,
+                            side == 0   ? surface.first_u()
+                            : side == 1 ? surface.last_u()
+                            : side == 2 ? surface.first_v()
+                                        : surface.last_v()),
+             side) {}
 
-Border::Border(const nurbs::Curve& curve)
-    : curve_(&curve), first_(curve.first_parameter()), last_(curve.last_parameter()) {
-  sample(nurbs::breakpoints(curve.knots, curve.degree));
-}
-
-Vec3 Border::at(double t) const {
-  if (curve_ != nullptr) return nurbs::evaluate(*curve_, t);
-  const nurbs::Surface& s = *surface_;
-  switch (side_) {
-    case 0:
-      return nurbs::evaluate(s, s.first_u(), t);
-    case 1:
-      return nurbs::evaluate(s, s.last_u(), t);
-    case 2:
-      return nurbs::evaluate(s, t, s.first_v());
-    default:
-      return nurbs::evaluate(s, t, s.last_v());
-  }
-}
-
-void Border::sample(const std::vector<double>& spans) {
+Border::Border(nurbs::Curve curve, int side)
+    : curve_(std::move(curve)),
+      side_(side),
+      first_(curve_.first_parameter()),
+      last_(curve_.last_parameter()) {
+  const std::vector<double> spans = nurbs::breakpoints(curve_.knots, curve_.degree);
   const auto count = static_cast<int>(std::max<std::size_t>(spans.size(), 2)) - 1;
   const int each =
       std::max({1, (fewest_points + count - 1) / count, std::min(points_a_span, most_points / count)});
-  for (int i = 0; i < count; ++i)
+  for (std::size_t i = 0; i + 1 < spans.size(); ++i)
     for (int k = 0; k < each; ++k)
-      parameters_.push_back(std::lerp(spans[static_cast<std::size_t>(i)],
-                                      spans[static_cast<std::size_t>(i) + 1], static_cast<double>(k) / each));
+      parameters_.push_back(std::lerp(spans[i], spans[i + 1], static_cast<double>(k) / each));
   parameters_.push_back(last_);
   for (const double t : parameters_) {
-    points_.push_back(at(t));
+    points_.push_back(nurbs::evaluate(curve_, t));
     box_.extend(points_.back());
     if (points_.size() < 2) continue;
     const double step = (points_.back() - points_[points_.size() - 2]).norm();
@@ -66,7 +50,7 @@ double Border::distance(const Vec3& p, double hint, double enough, double most) 
   if (box_.exteriorDistance(p) - step_ > most) return std::numeric_limits<double>::infinity();
   double best = std::numeric_limits<double>::infinity();
   for (const double share : {hint, 1 - hint}) {
-    best = std::min(best, (at(std::lerp(first_, last_, share)) - p).norm());
+    best = std::min(best, (nurbs::evaluate(curve_, std::lerp(first_, last_, share)) - p).norm());
     if (best <= enough) return best;
   }
   std::size_t nearest = 0;
@@ -83,29 +67,23 @@ double Border::distance(const Vec3& p, double hint, double enough, double most) 
   return best <= enough || std::sqrt(least) - step_ > most ? best : std::min(best, refined(p, nearest));
 }
 
-// Golden sections between the neighbours of the nearest point, which needs no derivative at a kink.
 double Border::refined(const Vec3& p, std::size_t nearest) const {
-  double low = parameters_[nearest == 0 ? 0 : nearest - 1];
-  double high = parameters_[std::min(nearest + 1, parameters_.size() - 1)];
-  const double golden = (std::sqrt(5.0) - 1) / 2;
-  double a = high - golden * (high - low), b = low + golden * (high - low);
-  double at_a = (at(a) - p).norm(), at_b = (at(b) - p).norm();
-  for (int i = 0; i < 2 * newton_steps; ++i) {
-    if (at_a < at_b) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      a = high - golden * (high - low);
-      at_a = (at(a) - p).norm();
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      b = low + golden * (high - low);
-      at_b = (at(b) - p).norm();
-    }
+  const double low = parameters_[nearest == 0 ? 0 : nearest - 1];
+  const double high = parameters_[std::min(nearest + 1, parameters_.size() - 1)];
+  double t = parameters_[nearest], best = (points_[nearest] - p).norm();
+  for (int step = 0; step < newton_steps; ++step) {
+    const nurbs::CurveJet jet = nurbs::evaluate_jet(curve_, t);
+    const Vec3 gap = p - jet.position;
+    best = std::min(best, gap.norm());
+    // Newton's method on the derivative of the squared distance; Gauss's form where that is no minimum.
+    const double bend = jet.d1.squaredNorm() - gap.dot(jet.d2);
+    const double slope = bend > 0 ? bend : jet.d1.squaredNorm();
+    if (!(slope > 0)) break;
+    const double next = std::clamp(t + gap.dot(jet.d1) / slope, low, high);
+    if (std::abs(next - t) <= 1e-15 * (high - low)) break;
+    t = next;
   }
-  return std::min(at_a, at_b);
+  return best;
 }
 
 std::vector<Border> borders_of(const Face& face) {

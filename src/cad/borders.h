@@ -9,16 +9,13 @@
 
 namespace selvage::cad {
 
-// One smooth piece of a face's border, with points on it. Refers to the face, which outlives it.
+// One piece of a face's border, with points on it.
 class Border {
  public:
   // The side u = first (0), u = last (1), v = first (2) or v = last (3) of the surface.
   Border(const nurbs::Surface& surface, int side);
-  explicit Border(const nurbs::Curve& curve);
+  explicit Border(nurbs::Curve curve, int side = -1);
 
-  [[nodiscard]] Vec3 at(double t) const;
-  [[nodiscard]] double first() const { return first_; }
-  [[nodiscard]] double last() const { return last_; }
   [[nodiscard]] double length() const { return length_; }  // of the polygon through points()
   // Evenly in the parameter over each span, ends included: at least nine.
   [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
@@ -28,17 +25,15 @@ class Border {
   [[nodiscard]] int side() const { return side_; }  // -1: an edge of a loop
 
   // The distance of `p`: at `hint` (0 to 1, from first to last) or its mirror image where that is at most
-  // `enough`, else the least, searched for near the nearest of points(). Where it is more than `most` only
-  // that is sure of the result.
+  // `enough`, else the least, by Newton's method from the nearest of points(). Where it is more than `most`
+  // only that is sure of the result.
   [[nodiscard]] double distance(const Vec3& p, double hint, double enough, double most) const;
 
  private:
-  void sample(const std::vector<double>& spans);
   [[nodiscard]] double refined(const Vec3& p, std::size_t nearest) const;
 
-  const nurbs::Surface* surface_ = nullptr;
-  const nurbs::Curve* curve_ = nullptr;
-  int side_ = -1;
+  nurbs::Curve curve_;
+  int side_;
   double first_ = 0, last_ = 0, length_ = 0;
   double step_ = 0;  // longest distance between two points
   std::vector<double> parameters_;

@@ -256,6 +256,16 @@ class Judge {
     return area;
   }
 
+  // Of one face, edges that follow each other meet at a corner and are no neighbours; the two sides of a seam
+  // have both ends in common.
+  [[nodiscard]] bool may_be_seam(const Border& a, const Border& b) const {
+    if (a.side() >= 0) return a.side() / 2 == b.side() / 2;
+    const auto near = [&](const Vec3& p, const Vec3& q) { return (p - q).norm() <= reach * size_; };
+    const Vec3 &a0 = a.points().front(), &a1 = a.points().back(), &b0 = b.points().front(),
+               &b1 = b.points().back();
+    return (near(a0, b0) && near(a1, b1)) || (near(a0, b1) && near(a1, b0));
+  }
+
   // Has this border a neighbour all along, and how far is it?
   void judge_border(const Part& part, const std::vector<Owned>& borders, std::size_t own) {
     const Border& border = borders[own].border;
@@ -263,7 +273,9 @@ class Judge {
     const Box3 near(border.box().min().array() - far, border.box().max().array() + far);
     std::vector<const Border*> others;
     for (std::size_t i = 0; i < borders.size(); ++i)
-      if (i != own && near.intersects(borders[i].border.box())) others.push_back(&borders[i].border);
+      if (i != own && near.intersects(borders[i].border.box()) &&
+          (borders[i].face != borders[own].face || may_be_seam(border, borders[i].border)))
+        others.push_back(&borders[i].border);
     double gap = 0;
     Vec3 gap_at = border.points().front();
     const std::size_t count = border.points().size();

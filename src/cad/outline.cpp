@@ -10,12 +10,9 @@
 
 namespace selvage::cad {
 
-namespace {
-
 using nurbs::Curve;
 using nurbs::Surface;
 
-// The surface's curve of constant u (or v).
 Curve constant_curve(const Surface& surface, bool of_u, double t) {
   Curve curve;
   const std::vector<double>& across = of_u ? surface.knots_u : surface.knots_v;
@@ -40,6 +37,8 @@ Curve constant_curve(const Surface& surface, bool of_u, double t) {
   }
   return curve;
 }
+
+namespace {
 
 double size_of(const std::vector<Vec3>& points) {
   Box3 box;
