@@ -74,7 +74,7 @@ std::string IgesText::bytes() const {
   Section start('S', line_end), globals('G', line_end), directory('D', line_end), parameters('P', line_end),
       terminate('T', line_end);
   start.add("Made by a test");
-  for (const std::string& line : broken(global, 72, ',')) globals.add(line);
+  for (const std::string& line : broken(global, 72, parameter_delimiter)) globals.add(line);
   for (const IgesEntity& entity : entities) {
     const int pointer = directory.count() + 1, first = parameters.count() + 1;
     const std::string values = fmt::format(
