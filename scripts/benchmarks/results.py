@@ -55,6 +55,18 @@ def iges_write(bin_folder, folder, quick):
           number(row, "times_occt", ".0f")] for row in rows])
 
 
+def iges_read(bin_folder, folder, quick):
+    command = [f"{bin_folder}/iges_read", "--folder", folder] + (["--repeats", "3", "--yarns", "8,64"] if quick else [])
+    rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
+    number = lambda row, key, form, factor=1: format(factor * row[key], form) if key in row else ""
+    return table(
+        ["reader", "yarns", "ms", "of them until the entities are there, ms", "MB/s", "128s/s", "memory, MiB",
+         "times the bare loop's time", "times OpenCASCADE's speed"],
+        [[row["reader"], str(row["yarns"]), f"{1e3 * row['seconds']:.2f}", number(row, "parsing_seconds", ".2f", 1e3),
+          f"{row['mb_per_s']:.0f}", f"{row['surfaces_per_s']:.0f}", f"{row['peak_rss_growth_mib']:.1f}",
+          number(row, "time_to_bare_loop", ".2f"), number(row, "times_occt", ".0f")] for row in rows])
+
+
 def whole_process(bin_folder, folder, quick):
     source, program = f"{folder}/version.cpp", f"{folder}/version"
     pathlib.Path(source).write_text(VERSION_PROGRAM)
@@ -125,6 +137,10 @@ def main():
             "## Writing IGES: yarns of 18 x 16 control points, three surfaces each\n\n"
             "The bare loop sends the same values through `to_chars` and the same buffered write; OpenCASCADE writes about ten "
             "digits, selvage all of them.\n\n" + iges_write(given.bin, folder, given.quick) +
+            "\n## Reading IGES: the same yarns\n\n"
+            "A file in the system's cache to a model of surfaces, yarns grouped and named. The bare loop is `from_chars` on every "
+            "number of the same parameter lines, added up; OpenCASCADE makes its entities of the file and then its shapes of "
+            "them.\n\n" + iges_read(given.bin, folder, given.quick) +
             "\n## Whole processes\n\n" + whole_process(given.bin, folder, given.quick) +
             "\n## Writing STEP: the time a yarn stays the same\n\n" + step_write(given.bin, folder, given.quick) +
             "\n## Jersey: centre lines, tubes and the IGES file; the cost of a loop stays the same\n\n"
