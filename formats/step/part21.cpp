@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <map>
+#include <numeric>
 
 namespace selvage::formats::step {
 
@@ -125,11 +126,25 @@ class Lexer {
       take_while([](char part) {
         return is_digit(part) || part == '.' || part == 'E' || part == 'e' || part == '+' || part == '-';
       });
+      check_size({spot_.at, static_cast<std::size_t>(at_ - spot_.at)});
       return Token::number;
     }
     if (!is_name(c)) throw Failure{spot_, fmt::format("{} is no part of a STEP file", in_quotes({&c, 1}))};
     take_while(is_name);
     return Token::word;
+  }
+
+  // OpenCASCADE does not stop at an infinite knot.
+  void check_size(std::string_view number) const {
+    const std::size_t exponent = number.find_first_of("eE");
+    if (exponent == std::string_view::npos && number.size() < 300) return;
+    if (exponent != std::string_view::npos && number.substr(exponent + 1).starts_with('-')) return;
+    std::string plain(number);
+    if (exponent != std::string_view::npos) std::erase(plain, '+');
+    double value = 0;
+    const auto [last, failed] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
+    if (failed == std::errc::result_out_of_range)
+      throw Failure{spot_, "a number that is larger than any number may be"};
   }
 
   Token take_reference() {
@@ -191,6 +206,40 @@ class Index {
   const Part21& file_;
   std::vector<int> table_;
 };
+
+// Of a graph: a node that is reached from itself, the last step from `by`.
+struct Circle {
+  std::size_t at = 0, by = 0;
+};
+
+// Node i leads to targets[firsts[i]] up to firsts[i + 1]; negative ones lead nowhere. Depth first without
+// recursion: a chain may be as long as the file.
+std::optional<Circle> find_circle(const std::vector<std::size_t>& firsts, const std::vector<int>& targets) {
+  enum : char { untouched, open, done };
+  std::vector<char> state(firsts.size() - 1, untouched);
+  std::vector<std::pair<std::size_t, std::size_t>> path;  // node, where it leads next
+  for (std::size_t root = 0; root < state.size(); ++root) {
+    if (state[root] != untouched) continue;
+    state[root] = open;
+    path.assign(1, {root, firsts[root]});
+    while (!path.empty()) {
+      auto& [at, next] = path.back();
+      if (next == firsts[at + 1]) {
+        state[at] = done;
+        path.pop_back();
+        continue;
+      }
+      const int target = targets[next++];
+      if (target < 0) continue;
+      const auto to = static_cast<std::size_t>(target);
+      if (state[to] == open) return Circle{to, at};
+      if (state[to] == done) continue;
+      state[to] = open;
+      path.emplace_back(to, firsts[to]);
+    }
+  }
+  return std::nullopt;
+}
 
 class FileReader {
  public:
@@ -434,36 +483,41 @@ class FileReader {
     if (report_.errors() == 0) check_circles();
   }
 
-  // Depth first without recursion: a chain may be as long as the file.
   void check_circles() {
-    enum : char { untouched, open, done };
-    std::vector<char> state(file_.statements.size(), untouched);
-    std::vector<std::pair<std::size_t, std::size_t>> path;  // statement, its next reference
-    for (std::size_t root = 0; root < state.size(); ++root) {
-      if (state[root] != untouched) continue;
-      state[root] = open;
-      path.assign(1, {root, file_.statements[root].first_ref});
-      while (!path.empty()) {
-        auto& [at, next] = path.back();
-        if (next == refs_end(at)) {
-          state[at] = done;
-          path.pop_back();
-          continue;
-        }
-        const int target = targets_[next++];
-        if (target < 0) continue;
-        const auto to = static_cast<std::size_t>(target);
-        if (state[to] == open) {
-          report_.error(spot_of(file_.statements[to]),
-                        fmt::format("#{} refers to itself, by way of #{}", file_.statements[to].id,
-                                    file_.statements[at].id));
-          return;
-        }
-        if (state[to] == done) continue;
-        state[to] = open;
-        path.emplace_back(to, file_.statements[to].first_ref);
-      }
+    std::vector<std::size_t> firsts;
+    for (const Statement& statement : file_.statements) firsts.push_back(statement.first_ref);
+    firsts.push_back(file_.refs.size());
+    if (const std::optional<Circle> circle = find_circle(firsts, targets_)) {
+      report_circle(*circle, "refers to itself");
+      return;
     }
+    check_assemblies();
+  }
+
+  // A product that is part of itself: there the entities do not refer to each other, but a third one to both.
+  void check_assemblies() {
+    std::vector<std::pair<int, int>> uses;  // whole, part
+    for (std::size_t i = 0; i < file_.statements.size(); ++i)
+      if (file_.type_of(file_.statements[i]) == "NEXT_ASSEMBLY_USAGE_OCCURRENCE" &&
+          refs_end(i) >= file_.statements[i].first_ref + 2)
+        uses.emplace_back(targets_[file_.statements[i].first_ref],
+                          targets_[file_.statements[i].first_ref + 1]);
+    std::sort(uses.begin(), uses.end());
+    std::vector<std::size_t> firsts(file_.statements.size() + 1, 0);
+    std::vector<int> parts;
+    for (const auto& [whole, part] : uses) {
+      if (whole < 0) continue;
+      ++firsts[static_cast<std::size_t>(whole) + 1];
+      parts.push_back(part);
+    }
+    std::partial_sum(firsts.begin(), firsts.end(), firsts.begin());
+    if (const std::optional<Circle> circle = find_circle(firsts, parts))
+      report_circle(*circle, "is part of itself");
+  }
+
+  void report_circle(const Circle& circle, std::string_view what) {
+    const Statement &at = file_.statements[circle.at], &by = file_.statements[circle.by];
+    report_.error(spot_of(at), fmt::format("#{} {}, by way of #{}", at.id, what, by.id));
   }
 
   const Source& source_;

@@ -38,6 +38,7 @@
 #include <streambuf>
 #include <unordered_map>
 
+#include "cad/natural_border.h"
 #include "formats/step/faces.h"
 #include "formats/step/part21.h"
 #include "formats/step/session.h"
@@ -48,7 +49,7 @@ namespace selvage::formats::step {
 namespace {
 
 // A file that holds little may say much: an assembly of assemblies of assemblies.
-constexpr std::size_t most_points = 100'000'000;
+constexpr std::size_t most_points = 100'000'000, face_cost = 100;
 
 // Bytes as a stream without a copy.
 class ByteStream : public std::streambuf {
@@ -267,6 +268,8 @@ class ModelReader {
 
   Status walk(const TDF_Label& label, const TopLoc_Location& above, const std::string& group, int depth,
               const std::optional<cad::Color>& color_above) {
+    Status spent = spend(face_cost);
+    if (!spent.ok()) return spent;
     TDF_Label product = label;
     std::string name = name_of_label(label);
     TopLoc_Location place = above;
@@ -307,12 +310,22 @@ class ModelReader {
     return status;
   }
 
+  // Nothing but faces, bare or in shells of their own: a group of surfaces.
+  static bool holds_only_faces(const TopoDS_Shape& shape) {
+    for (TopoDS_Iterator it(shape); it.More(); it.Next()) {
+      const TopAbs_ShapeEnum kind = it.Value().ShapeType();
+      if (kind != TopAbs_FACE && (kind != TopAbs_SHELL || it.Value().NbChildren() != 1)) return false;
+    }
+    return shape.NbChildren() > 0;
+  }
+
   Status take_shape(const TopoDS_Shape& shape, Context& context) {
     switch (shape.ShapeType()) {
       case TopAbs_SOLID:
         return take_part(shape, cad::Part::Kind::solid, context);
-      case TopAbs_SHELL:
-        return take_part(shape, cad::Part::Kind::shell, context);
+      case TopAbs_SHELL:  // one face is joined to nothing
+        return take_part(shape, shape.NbChildren() == 1 ? cad::Part::Kind::surfaces : cad::Part::Kind::shell,
+                         context);
       case TopAbs_FACE:
         return take_part(shape, cad::Part::Kind::surfaces, context);
       case TopAbs_WIRE:
@@ -324,10 +337,8 @@ class ModelReader {
       default:
         break;
     }
-    bool only_faces = shape.NbChildren() > 0;
-    for (TopoDS_Iterator it(shape); it.More(); it.Next())
-      only_faces = only_faces && it.Value().ShapeType() == TopAbs_FACE;
-    return only_faces ? take_part(shape, cad::Part::Kind::surfaces, context) : take_children(shape, context);
+    return holds_only_faces(shape) ? take_part(shape, cad::Part::Kind::surfaces, context)
+                                   : take_children(shape, context);
   }
 
   Status take_children(const TopoDS_Shape& shape, Context& context) {
@@ -355,7 +366,13 @@ class ModelReader {
     EdgeIds ids;
     Status status = take_faces(shape, part, part.color, ids, context);
     if (!status.ok()) return status;
-    if (!part.faces.empty()) model_.parts.push_back(std::move(part));
+    if (part.faces.empty()) return {};
+    // Files give a group its colour face by face.
+    const std::optional<cad::Color>& first = part.faces.front().color;
+    if (!part.color && std::all_of(part.faces.begin(), part.faces.end(),
+                                   [&](const cad::Face& face) { return face.color == first; }))
+      part.color = first;
+    model_.parts.push_back(std::move(part));
     return {};
   }
 
@@ -370,6 +387,14 @@ class ModelReader {
     return {};
   }
 
+  // Every placement of a thing costs something, empty ones too.
+  Status spend(std::size_t points) {
+    points_ += points;
+    if (points_ <= most_points) return {};
+    return error(Kind::limit, fmt::format("more than {} control points, every instance counted (or {} faces)",
+                                          most_points, most_points / face_cost));
+  }
+
   Status take_face(const TopoDS_Face& shape, cad::Part& part, const std::optional<cad::Color>& color,
                    EdgeIds& ids, const Context& context) {
     const auto entity = Handle(StepShape_FaceSurface)::DownCast(item_of(shape));
@@ -377,6 +402,7 @@ class ModelReader {
     try {
       cad::Face face = to_face(shape, one_unit_ ? entity : Handle(StepShape_FaceSurface)(), working_, ids);
       stretch(face, scale_ / working_);
+      cad::drop_natural_border(face, cad::border_tolerance(face, model_.resolution));
       face.name = name_of_item(entity);
       face.color = color_in(context, shape, color);
       face.origin = origin;
@@ -387,9 +413,7 @@ class ModelReader {
     } catch (const Standard_Failure& failure) {
       lost_face(origin, failure);
     }
-    if (points_ > most_points)
-      return error(Kind::limit, fmt::format("more than {} control points, instances counted", most_points));
-    return {};
+    return spend(face_cost);
   }
 
   void lost_face(const cad::Origin& origin, const Standard_Failure& failure) {

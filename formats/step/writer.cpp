@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <APIHeaderSection_MakeHeader.hxx>
+#include <BRep_Builder.hxx>
 #include <Interface_HArray1OfHAsciiString.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <STEPConstruct.hxx>
@@ -23,6 +24,8 @@
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopLoc_Location.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Iterator.hxx>
 #include <Transfer_FinderProcess.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
@@ -30,9 +33,11 @@
 #include <XSControl_WorkSession.hxx>
 #include <array>
 #include <map>
+#include <optional>
 #include <ostream>
 
 #include "core/clock.h"
+#include "formats/step/part_shape.h"
 #include "formats/step/session.h"
 #include "formats/step/stream.h"
 #include "solid/occt/check.h"
@@ -53,11 +58,12 @@ Handle(TCollection_HAsciiString) text(const std::string& words) {
 // fibre.
 constexpr double uncertainty = 1e-7;
 
-// A yarn's solid or a piece's shell.
+// A yarn's solid, a piece's shell, or what came from a CAD file.
 struct Part {
   TopoDS_Shape shape;
   std::string name;
-  yarn::Color color;
+  std::optional<yarn::Color> color;
+  std::vector<std::pair<TopoDS_Shape, yarn::Color>> colors;  // of faces that have their own
 };
 
 class StepBodyWriter : public BodyWriter {
@@ -77,7 +83,24 @@ class StepBodyWriter : public BodyWriter {
       const solid::FaceCheck verdict = solid::occt::check_piece(piece);
       if (!verdict.defects.empty()) return verdict.defects.front();
       ++facts_.entities["SHELL_BASED_SURFACE_MODEL"];
-      add_component_of({solid::occt::build_piece(piece, 1.0), piece.name, yarn::Color{}}, "");
+      add_component_of({solid::occt::build_piece(piece, 1.0), piece.name, yarn::Color{}, {}}, "");
+      return {};
+    });
+  }
+
+  Status add_part(const cad::Part& part) override {
+    return solid::occt::guarded(fmt::format("'{}' to STEP", part.name), [&] { return add_foreign(part); });
+  }
+
+  Status add_curve(const cad::NamedCurve& curve) override {
+    return solid::occt::guarded(fmt::format("curve '{}' to STEP", curve.name), [&]() -> Status {
+      Status finite = check_finite(curve.curve.points, curve.name);
+      if (!finite.ok()) return finite;
+      ++facts_.entities["GEOMETRIC_CURVE_SET"];
+      TopoDS_Compound set;
+      BRep_Builder().MakeCompound(set);
+      BRep_Builder().Add(set, build_edge(curve.curve));
+      add_component_of({set, curve.name, curve.color, {}}, "");
       return {};
     });
   }
@@ -88,11 +111,8 @@ class StepBodyWriter : public BodyWriter {
 
  private:
   Status add_shape(const yarn::Body& body) {
-    // OpenCASCADE would write "nan", which no reader reads.
-    for (const Vec3& p : body.surface.points)
-      if (!p.allFinite())
-        return error(Kind::geometry,
-                     fmt::format("yarn '{}' has a control point that is no number", body.name));
+    Status finite = check_finite(body.surface.points, "yarn '" + body.name + "'");
+    if (!finite.ok()) return finite;
     const bool open_by_choice = !body.closed_along && (body.start.style == yarn::EndStyle::none ||
                                                        body.end.style == yarn::EndStyle::none);
     if (!open_by_choice) {
@@ -113,7 +133,42 @@ class StepBodyWriter : public BodyWriter {
     } else {
       ++facts_.entities["MANIFOLD_SOLID_BREP"];
     }
-    add_component_of({yarn.shape, body.name, body.color}, body.group);
+    add_component_of({yarn.shape, body.name, body.color, {}}, body.group);
+    return {};
+  }
+
+  // OpenCASCADE would write "nan", which no reader reads.
+  static Status check_finite(const std::vector<Vec3>& points, const std::string& what) {
+    for (const Vec3& p : points)
+      if (!p.allFinite()) return error(Kind::geometry, what + " has a control point that is no number");
+    return {};
+  }
+
+  Status add_foreign(const cad::Part& part) {
+    Box3 box;
+    for (const cad::Face& face : part.faces) {
+      Status finite = check_finite(face.surface.points, "'" + part.name + "'");
+      if (!finite.ok()) return finite;
+      for (const Vec3& p : face.surface.points) box.extend(p);
+    }
+    if (part.faces.empty()) return {};
+    const double tolerance =
+        std::max(1e-6 * box.diagonal().norm(), uncertainty / millimetres_per(options_.units));
+    const PartShape built = build_part(part, tolerance);
+    if (part.kind == cad::Part::Kind::solid && !built.closed) {
+      Message open = warning(Kind::geometry,
+                             fmt::format("the faces of '{}' do not close it: it is written as an open shell, "
+                                         "not as a solid",
+                                         part.name));
+      open.place = part.origin.place;
+      facts_.messages.push_back(std::move(open));
+    }
+    ++facts_.entities[built.closed ? "MANIFOLD_SOLID_BREP" : "SHELL_BASED_SURFACE_MODEL"];
+    Part added{built.shape, part.name, part.color, {}};
+    for (std::size_t i = 0; i < part.faces.size(); ++i)
+      if (part.faces[i].color && part.faces[i].color != added.color && !built.faces[i].IsNull())
+        added.colors.emplace_back(built.faces[i], *part.faces[i].color);
+    add_component_of(std::move(added), part.group);
     return {};
   }
 
@@ -174,34 +229,57 @@ class StepBodyWriter : public BodyWriter {
     }
   }
 
-  // Name and colour of each solid: a STYLED_ITEM in the context of its part, in file order; yarns of one
-  // colour share it.
+  // Yarns of one colour share its style.
+  using Assignments = std::map<std::array<int, 3>, Handle(StepVisual_PresentationStyleAssignment)>;
+
+  // Name and colour of each solid: a STYLED_ITEM in the context of its part, in file order.
   Status add_styles(STEPControl_Writer& writer) {
     const Handle(Transfer_FinderProcess) found = writer.WS()->TransferWriter()->FinderProcess();
     STEPConstruct_Styles styles(writer.WS());
-    std::map<std::array<int, 3>, Handle(StepVisual_PresentationStyleAssignment)> assignments;
+    Assignments assignments;
     for (const Part& part : parts_) {
-      const Handle(StepRepr_RepresentationItem) item = STEPConstruct::FindEntity(found, part.shape);
       const Handle(StepRepr_RepresentationContext) context = styles.FindContext(part.shape);
-      if (item.IsNull() || context.IsNull())
-        return error(Kind::internal, fmt::format("OpenCASCADE left out '{}'", part.name));
-      item->SetName(text(part.name));
-      auto& assignment = assignments[{part.color.red, part.color.green, part.color.blue}];
-      if (assignment.IsNull()) {
-        // Not OpenCASCADE's own colour, which is single precision; and no style of curves: it would draw
-        // lines 0.1 wide.
-        const Handle(StepVisual_ColourRgb) color = new StepVisual_ColourRgb;
-        color->Init(text(""), part.color.red / 255.0, part.color.green / 255.0, part.color.blue / 255.0);
-        assignment = styles.MakeColorPSA(item, color, {}, {}, 0.0);
-      }
       styles.ClearStyles();
-      styles.AddStyle(item, assignment, {});
+      for (const TopoDS_Shape& shape : named_shapes(part)) {
+        const Handle(StepRepr_RepresentationItem) item = STEPConstruct::FindEntity(found, shape);
+        if (item.IsNull() || context.IsNull())
+          return error(Kind::internal, fmt::format("OpenCASCADE left out '{}'", part.name));
+        item->SetName(text(part.name));
+        if (part.color) styles.AddStyle(item, style_of(*part.color, item, styles, assignments), {});
+      }
+      for (const auto& [face, color] : part.colors) {
+        const Handle(StepRepr_RepresentationItem) item = STEPConstruct::FindEntity(found, face);
+        if (!item.IsNull()) styles.AddStyle(item, style_of(color, item, styles, assignments), {});
+      }
+      if (styles.NbStyles() == 0) continue;
       Handle(StepVisual_MechanicalDesignGeometricPresentationRepresentation) presentation;
       if (!styles.CreateMDGPR(context, presentation))
         return error(Kind::internal, fmt::format("OpenCASCADE refuses the colour of '{}'", part.name));
       writer.Model()->AddWithRefs(presentation);
     }
     return {};
+  }
+
+  // A compound is no entity of a STEP file: what is in it has the name.
+  static std::vector<TopoDS_Shape> named_shapes(const Part& part) {
+    if (part.shape.ShapeType() != TopAbs_COMPOUND) return {part.shape};
+    std::vector<TopoDS_Shape> shapes;
+    for (TopoDS_Iterator it(part.shape); it.More(); it.Next()) shapes.push_back(it.Value());
+    return shapes;
+  }
+
+  static const Handle(StepVisual_PresentationStyleAssignment) &
+      style_of(const yarn::Color& color, const Handle(StepRepr_RepresentationItem) & item,
+               STEPConstruct_Styles& styles, Assignments& assignments) {
+    auto& assignment = assignments[{color.red, color.green, color.blue}];
+    if (assignment.IsNull()) {
+      // Not OpenCASCADE's own colour, which is single precision; and no style of curves: it would draw lines
+      // 0.1 wide.
+      const Handle(StepVisual_ColourRgb) rgb = new StepVisual_ColourRgb;
+      rgb->Init(text(""), color.red / 255.0, color.green / 255.0, color.blue / 255.0);
+      assignment = styles.MakeColorPSA(item, rgb, {}, {}, 0.0);
+    }
+    return assignment;
   }
 
   Result<WriteFacts> send(const Handle(StepData_StepModel) & model) {

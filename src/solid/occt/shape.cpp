@@ -66,6 +66,8 @@ Knots different_knots(const std::vector<double>& knots) {
   return result;
 }
 
+}  // namespace
+
 Handle(Geom_BSplineCurve) spatial_curve(const Curve& curve, double scale) {
   const int count = as_int(curve.points.size());
   TColgp_Array1OfPnt poles(1, count);
@@ -96,6 +98,8 @@ Handle(Geom_BSplineSurface) spatial_surface(const Surface& surface, double scale
   return new Geom_BSplineSurface(poles, weights, u.values, v.values, u.multiplicities, v.multiplicities,
                                  surface.degree_u, surface.degree_v);
 }
+
+namespace {
 
 // The straight line in parameter space that runs from `from` to `to` while the edge's parameter runs from
 // first to last.

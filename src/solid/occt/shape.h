@@ -1,6 +1,8 @@
 // A yarn as an OpenCASCADE solid. Internal to the module selvage_occt.
 #pragma once
 
+#include <Geom_BSplineCurve.hxx>
+#include <Geom_BSplineSurface.hxx>
 #include <TopoDS_Shape.hxx>
 #include <vector>
 
@@ -29,6 +31,10 @@ struct YarnShape {
 // a check asks for a scale that brings the yarn's thickness near 1 (unit_scale). Exceptions:
 // Standard_Failure, for what OpenCASCADE refuses (a knot of too high multiplicity, ...).
 YarnShape build_shape(const yarn::Body& body, double scale);
+
+// The same numbers as OpenCASCADE's, all lengths multiplied by `scale`. Exceptions: Standard_Failure.
+Handle(Geom_BSplineCurve) spatial_curve(const nurbs::Curve& curve, double scale);
+Handle(Geom_BSplineSurface) spatial_surface(const nurbs::Surface& surface, double scale);
 
 // A power of two, so that scaling costs no bit, that brings the thickness of the yarn into [0.5, 2).
 double unit_scale(const yarn::Body& body);

@@ -16,7 +16,8 @@ using formats::SurfaceOptions;
 using yarn::EndStyle;
 namespace fs = std::filesystem;
 
-std::string written(const std::vector<yarn::Body>& bodies, const SurfaceOptions& options = {}) {
+std::string written_by(const std::function<void(formats::BodyWriter&)>& add,
+                       const SurfaceOptions& options = {}) {
   std::string folder = (fs::temp_directory_path() / "selvage-read-XXXXXX").string();
   EXPECT_NE(::mkdtemp(folder.data()), nullptr);
   const fs::path path = fs::path(folder) / "fabric.stp";
@@ -26,8 +27,9 @@ std::string written(const std::vector<yarn::Body>& bodies, const SurfaceOptions&
     EXPECT_TRUE(output.ok());
     auto writer = formats::step::descriptor().open_bodies(*output, options);
     EXPECT_TRUE(writer.ok());
-    for (const yarn::Body& body : bodies) EXPECT_TRUE((*writer)->add(body).ok());
-    EXPECT_TRUE((*writer)->finish().ok());
+    add(**writer);
+    const auto facts = (*writer)->finish();
+    EXPECT_TRUE(facts.ok()) << to_string(facts.error());
     EXPECT_TRUE(output->commit().ok());
     Result<Source> source = Source::open(path);
     EXPECT_TRUE(source.ok());
@@ -35,6 +37,14 @@ std::string written(const std::vector<yarn::Body>& bodies, const SurfaceOptions&
   }
   fs::remove_all(folder);
   return bytes;
+}
+
+std::string written(const std::vector<yarn::Body>& bodies, const SurfaceOptions& options = {}) {
+  return written_by(
+      [&](formats::BodyWriter& writer) {
+        for (const yarn::Body& body : bodies) EXPECT_TRUE(writer.add(body).ok());
+      },
+      options);
 }
 
 struct Reading {
@@ -72,7 +82,7 @@ void expect_same(const nurbs::Surface& a, const nurbs::Surface& b) {
 void expect_body(const cad::Part& part, const yarn::Body& body) {
   SCOPED_TRACE(body.name);
   const cad::Part own = cad::part_of(body);
-  EXPECT_EQ(part.kind, own.kind == cad::Part::Kind::solid ? own.kind : cad::Part::Kind::shell);
+  EXPECT_EQ(part.kind, own.kind);
   EXPECT_EQ(part.name, body.name);
   EXPECT_EQ(part.group, body.group);
   EXPECT_EQ(part.color, body.color);
@@ -129,6 +139,63 @@ TEST(StepReader, EveryColorSurvives) {
   for (std::size_t i = 0; i < bodies.size(); ++i) EXPECT_EQ(model.parts[i].color, bodies[i].color);
 }
 
+std::string written_parts(const std::vector<cad::Part>& parts, const std::vector<cad::NamedCurve>& curves) {
+  return written_by([&](formats::BodyWriter& writer) {
+    for (const cad::Part& part : parts) {
+      const Status added = writer.add_part(part);
+      EXPECT_TRUE(added.ok()) << to_string(added.error());
+    }
+    for (const cad::NamedCurve& curve : curves) EXPECT_TRUE(writer.add_curve(curve).ok());
+  });
+}
+
+// What is no yarn is written as it stands: solids sewn of untrimmed and trimmed faces, shells, loose faces,
+// curves.
+TEST(StepReader, ForeignPartsComeBack) {
+  std::vector<cad::Part> parts;
+  for (const EndStyle style : {EndStyle::patch, EndStyle::fan, EndStyle::planar}) {
+    parts.push_back(cad::part_of(tests::wave("wave_" + std::string(name_of(style)), style)));
+    parts.back().group = style == EndStyle::planar ? "" : "two";
+  }
+  parts.push_back(cad::part_of(tests::ring("ring", 1.0, 5.0)));
+  parts.push_back(cad::part_of(tests::wave("open", EndStyle::none)));
+  parts.push_back(parts[0]);
+  parts.back().kind = cad::Part::Kind::surfaces;
+  parts.back().name = "loose", parts.back().group = "";
+  parts.push_back(parts[0]);
+  parts.back().kind = cad::Part::Kind::shell;
+  parts.back().name = "shell", parts.back().group = "";
+  parts.back().faces.pop_back();
+  parts.push_back(parts[0]);
+  parts.back().name = "motley", parts.back().group = "";
+  parts.back().faces[1].color = cad::Color{1, 2, 3};
+  cad::NamedCurve curve;
+  curve.name = "line";
+  curve.color = cad::Color{4, 5, 6};
+  curve.curve = {1, {0, 0, 1, 1}, {{0, 0, 0}, {1, 2, 3}}, {}};
+  const cad::Model model = model_of(written_parts(parts, {curve}));
+  ASSERT_EQ(model.parts.size(), parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    SCOPED_TRACE(parts[i].name);
+    const cad::Part &read = model.parts[i], &own = parts[i];
+    EXPECT_EQ(read.kind, own.kind);
+    EXPECT_EQ(read.name, own.name);
+    EXPECT_EQ(read.group, own.group);
+    EXPECT_EQ(read.color, own.color);
+    ASSERT_EQ(read.faces.size(), own.faces.size());
+    for (std::size_t f = 0; f < own.faces.size(); ++f) {
+      expect_same(read.faces[f].surface, own.faces[f].surface);
+      EXPECT_EQ(read.faces[f].reversed, own.faces[f].reversed);
+      EXPECT_EQ(read.faces[f].loops.size(), own.faces[f].loops.size());
+      EXPECT_EQ(read.faces[f].color, own.faces[f].color);
+    }
+  }
+  ASSERT_EQ(model.curves.size(), 1U);
+  EXPECT_EQ(model.curves[0].name, "line");
+  EXPECT_EQ(model.curves[0].color, curve.color);
+  EXPECT_EQ(model.curves[0].curve.points, curve.curve.points);
+}
+
 // A small file of one yarn, cut short at many places: an error with its line, nothing else.
 TEST(StepReader, TruncatedFilesAreErrors) {
   const std::string whole = written({tests::tube("yarn", EndStyle::planar)});
@@ -138,6 +205,51 @@ TEST(StepReader, TruncatedFilesAreErrors) {
     ASSERT_FALSE(reading.model.has_value()) << cut;
     ASSERT_EQ(reading.messages.size(), 1U) << cut;
     ASSERT_GT(reading.messages[0].place.line, 0) << cut;
+  }
+}
+
+// The bytes with the one place of `from` replaced.
+std::string with(std::string bytes, const std::string& from, const std::string& to) {
+  const std::size_t at = bytes.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  if (at != std::string::npos) bytes.replace(at, from.size(), to);
+  return bytes;
+}
+
+void expect_error(const std::string& bytes, const std::string& words) {
+  const Reading reading = read(bytes);
+  EXPECT_FALSE(reading.model.has_value()) << words;
+  bool found = false;
+  for (const Message& message : reading.messages) {
+    EXPECT_GT(message.place.line, 0) << message.text;
+    found = found || message.text.find(words) != std::string::npos;
+  }
+  EXPECT_TRUE(found) << words << (reading.messages.empty() ? "" : ": " + to_string(reading.messages[0]));
+}
+
+TEST(StepReader, BadFilesAreErrorsWithTheirLine) {
+  const std::string whole = written({tests::tube("yarn", EndStyle::planar)});
+  expect_error("", "not a STEP file");
+  expect_error("ISO-10303-21;\n", "'HEADER;' is missing");
+  expect_error(with(whole, "'AP242", "'IFC2X3 AP242"), "schema 'IFC2X3");
+  expect_error(with(whole, "DATA;", "DATA;\n#1 = ORIGIN();"), "#1 is defined a second time");
+  expect_error(with(whole, "ADVANCED_FACE('',(", "ADVANCED_FACE('',(#99999,"),
+               "refers to #99999, which is not");
+  expect_error(with(whole, "(0.,", "(1E999,"), "larger than any number");
+  expect_error(with(whole, "(0.,", "(0.,,"), "where a value should stand");
+  expect_error(with(whole, "(0.,", "(@,"), "no part of a STEP file");
+  expect_error(with(whole, "DATA;", "DATA; /* no end"), "this comment has no end");
+  expect_error(with(whole, "DATA;", "DATA;\n#90000=MAPPED_ITEM('',#90001);#90001=MAPPED_ITEM('',#90000);"),
+               "refers to itself");
+  expect_error(with(whole, "DATA;", "DATA;\n#0 = ORIGIN();"), "'#' is not followed");
+}
+
+TEST(StepReader, WhatIsLostIsTold) {
+  const std::string whole = written({tests::tube("yarn", EndStyle::patch)});
+  for (const char* type : {"MANIFOLD_SOLID_BREP(", "CLOSED_SHELL("}) {
+    std::string bytes = with(whole, type, "NO_SUCH_" + std::string(type));
+    const Reading reading = read(bytes);
+    EXPECT_FALSE(reading.messages.empty()) << type;
   }
 }
 

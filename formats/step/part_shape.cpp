@@ -1,0 +1,254 @@
+#include "formats/step/part_shape.h"
+
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepLib.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <Geom2d_BSplineCurve.hxx>
+#include <Precision.hxx>
+#include <ShapeFix_Face.hxx>
+#include <TColStd_Array1OfInteger.hxx>
+#include <TColStd_Array1OfReal.hxx>
+#include <TColgp_Array1OfPnt2d.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
+#include <TopoDS_Vertex.hxx>
+#include <TopoDS_Wire.hxx>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "solid/occt/shape.h"
+
+namespace selvage::formats::step {
+
+namespace {
+
+Handle(Geom2d_BSplineCurve) flat_curve(const nurbs::Curve& flat) {
+  nurbs::Curve spatial = flat;
+  const Handle(Geom_BSplineCurve) spline = solid::occt::spatial_curve(spatial, 1.0);
+  TColgp_Array1OfPnt2d poles(1, spline->NbPoles());
+  TColStd_Array1OfReal weights(1, spline->NbPoles());
+  for (int i = 1; i <= spline->NbPoles(); ++i) {
+    poles.SetValue(i, {spline->Pole(i).X(), spline->Pole(i).Y()});
+    weights.SetValue(i, spline->Weight(i));
+  }
+  if (!flat.is_rational())
+    return new Geom2d_BSplineCurve(poles, spline->Knots(), spline->Multiplicities(), flat.degree);
+  return new Geom2d_BSplineCurve(poles, weights, spline->Knots(), spline->Multiplicities(), flat.degree);
+}
+
+Vec3 point_of(const TopoDS_Vertex& vertex) {
+  const gp_Pnt p = BRep_Tool::Pnt(vertex);
+  return {p.X(), p.Y(), p.Z()};
+}
+
+// One vertex for all ends of edges that are one place.
+class Vertices {
+ public:
+  explicit Vertices(double tolerance) : tolerance_(tolerance) {}
+
+  TopoDS_Vertex at(const Vec3& place) {
+    const Cell home = cell(place);
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dz = -1; dz <= 1; ++dz) {
+          const Cell near{std::get<0>(home) + dx, std::get<1>(home) + dy, std::get<2>(home) + dz};
+          const auto found = cells_.find(near);
+          if (found == cells_.end()) continue;
+          for (const TopoDS_Vertex& vertex : found->second)
+            if ((point_of(vertex) - place).norm() <= tolerance_) return vertex;
+        }
+    TopoDS_Vertex vertex;
+    BRep_Builder().MakeVertex(vertex, gp_Pnt(place.x(), place.y(), place.z()), tolerance_);
+    cells_[home].push_back(vertex);
+    return vertex;
+  }
+
+ private:
+  using Cell = std::tuple<double, double, double>;  // whole numbers
+  [[nodiscard]] Cell cell(const Vec3& p) const {
+    const Vec3 q = (p / (2 * tolerance_)).array().floor();
+    return {q.x(), q.y(), q.z()};
+  }
+
+  double tolerance_;
+  std::map<Cell, std::vector<TopoDS_Vertex>> cells_;
+};
+
+class PartBuilder {
+ public:
+  PartBuilder(const cad::Part& part, double tolerance)
+      : part_(part), tolerance_(tolerance), vertices_(tolerance) {}
+
+  PartShape build() {
+    std::vector<TopoDS_Face> faces;
+    for (const cad::Face& face : part_.faces) faces.push_back(build_face(face));
+    return part_.kind == cad::Part::Kind::surfaces ? loose(faces) : joined(faces);
+  }
+
+ private:
+  TopoDS_Face build_face(const cad::Face& face) {
+    const Handle(Geom_BSplineSurface) surface = solid::occt::spatial_surface(face.surface, 1.0);
+    TopoDS_Face built;
+    if (face.loops.empty()) {
+      BRepBuilderAPI_MakeFace maker(surface, Precision::Confusion());
+      if (!maker.IsDone()) throw Standard_Failure("a surface that makes no face");
+      built = maker.Face();
+    } else {
+      builder_.MakeFace(built, surface, Precision::Confusion());
+      for (const cad::Loop& loop : face.loops) builder_.Add(built, build_wire(loop, surface));
+      built = fixed(built);
+    }
+    if (face.reversed) built.Reverse();
+    return built;
+  }
+
+  // Curves in parameter space, seams and orientations, which a STEP file does not need but sewing does.
+  static TopoDS_Face fixed(const TopoDS_Face& face) {
+    const Handle(ShapeFix_Face) fix = new ShapeFix_Face(face);
+    fix->Perform();
+    const TopoDS_Shape result = fix->Result();
+    if (result.IsNull() || result.ShapeType() != TopAbs_FACE) return face;
+    return TopoDS::Face(result.Oriented(TopAbs_FORWARD));
+  }
+
+  TopoDS_Wire build_wire(const cad::Loop& loop, const Handle(Geom_BSplineSurface) & surface) {
+    TopoDS_Wire wire;
+    builder_.MakeWire(wire);
+    for (const cad::Edge& edge : loop.edges) {
+      const TopoDS_Edge built = edge_of(edge, surface);
+      if (!built.IsNull()) builder_.Add(wire, built);
+    }
+    wire.Closed(true);
+    return wire;
+  }
+
+  // In the loop's direction. Poles are left out: OpenCASCADE puts them back.
+  TopoDS_Edge edge_of(const cad::Edge& edge, const Handle(Geom_BSplineSurface) & surface) {
+    if (edge.curve.points.empty() && edge.flat.points.empty()) return {};
+    if (edge.id >= 0) {
+      const auto known = shared_.find(edge.id);
+      if (known != shared_.end()) return turned(known->second, edge);
+    }
+    TopoDS_Edge built;
+    if (!edge.curve.points.empty()) {
+      builder_.MakeEdge(built, solid::occt::spatial_curve(edge.curve, 1.0), Precision::Confusion());
+      finish_edge(built, edge.curve.points.front(), edge.curve.points.back(), edge.curve);
+    } else {
+      const Vec3 from = on_surface(surface, edge.flat.points.front()),
+                 to = on_surface(surface, edge.flat.points.back());
+      BRepBuilderAPI_MakeEdge maker(flat_curve(edge.flat), surface, vertices_.at(from), vertices_.at(to));
+      if (!maker.IsDone()) return {};  // of no length
+      built = maker.Edge();
+      BRepLib::BuildCurve3d(built);
+    }
+    if (edge.id >= 0) shared_.emplace(edge.id, built);
+    return built;
+  }
+
+  void finish_edge(TopoDS_Edge& edge, const Vec3& from, const Vec3& to, const nurbs::Curve& curve) {
+    builder_.Add(edge, vertices_.at(from).Oriented(TopAbs_FORWARD));
+    builder_.Add(edge, vertices_.at(to).Oriented(TopAbs_REVERSED));
+    builder_.Range(edge, curve.first_parameter(), curve.last_parameter());
+  }
+
+  static Vec3 on_surface(const Handle(Geom_BSplineSurface) & surface, const Vec3& at) {
+    const gp_Pnt p = surface->Value(at.x(), at.y());
+    return {p.X(), p.Y(), p.Z()};
+  }
+
+  // A shared edge in the direction of this use of it, told by a point before its middle (a closed edge has
+  // but one end).
+  static TopoDS_Edge turned(const TopoDS_Edge& shared, const cad::Edge& use) {
+    if (use.curve.points.empty()) return TopoDS::Edge(shared.Reversed());
+    double first = 0, last = 0;
+    const Handle(Geom_Curve) curve = BRep_Tool::Curve(shared, first, last);
+    if (curve.IsNull()) return TopoDS::Edge(shared.Reversed());
+    const auto point = [&](double share) {
+      const gp_Pnt p = curve->Value(first + share * (last - first));
+      return Vec3(p.X(), p.Y(), p.Z());
+    };
+    const double t0 = use.curve.first_parameter(), t1 = use.curve.last_parameter();
+    const Vec3 mine = nurbs::evaluate(use.curve, t0 + 0.25 * (t1 - t0));
+    const bool same = (mine - point(0.25)).norm() <= (mine - point(0.75)).norm();
+    return same ? shared : TopoDS::Edge(shared.Reversed());
+  }
+
+  PartShape loose(const std::vector<TopoDS_Face>& faces) {
+    PartShape result;
+    TopoDS_Compound compound;
+    builder_.MakeCompound(compound);
+    for (const TopoDS_Face& face : faces) {
+      TopoDS_Shell shell;
+      builder_.MakeShell(shell);
+      builder_.Add(shell, face);
+      if (faces.size() == 1)
+        result.shape = shell;
+      else
+        builder_.Add(compound, shell);
+      result.faces.push_back(face);
+    }
+    if (faces.size() != 1) result.shape = compound;
+    return result;
+  }
+
+  PartShape joined(const std::vector<TopoDS_Face>& faces) {
+    BRepBuilderAPI_Sewing sewing(tolerance_);
+    for (const TopoDS_Face& face : faces) sewing.Add(face);
+    sewing.Perform();
+    PartShape result;
+    result.shape = sewing.SewedShape();
+    if (result.shape.IsNull()) throw Standard_Failure("faces that make no shell");
+    for (const TopoDS_Face& face : faces) result.faces.push_back(sewing.ModifiedSubShape(face));
+    if (result.shape.ShapeType() == TopAbs_FACE) {
+      TopoDS_Shell shell;
+      builder_.MakeShell(shell);
+      builder_.Add(shell, result.shape);
+      result.shape = shell;
+    }
+    if (part_.kind == cad::Part::Kind::solid) make_solid(result);
+    return result;
+  }
+
+  // The first shell is the outer one.
+  void make_solid(PartShape& result) {
+    TopoDS_Solid solid;
+    builder_.MakeSolid(solid);
+    int shells = 0;
+    for (TopExp_Explorer it(result.shape, TopAbs_SHELL); it.More(); it.Next(), ++shells) {
+      if (!BRep_Tool::IsClosed(it.Current())) return;
+      builder_.Add(solid, it.Current());
+    }
+    if (shells == 0) return;
+    if (shells == 1) BRepLib::OrientClosedSolid(solid);
+    result.shape = solid;
+    result.closed = true;
+  }
+
+  const cad::Part& part_;
+  double tolerance_;
+  BRep_Builder builder_;
+  Vertices vertices_;
+  std::map<int, TopoDS_Edge> shared_;
+};
+
+}  // namespace
+
+PartShape build_part(const cad::Part& part, double tolerance) {
+  return PartBuilder(part, tolerance).build();
+}
+
+TopoDS_Edge build_edge(const nurbs::Curve& curve) {
+  BRepBuilderAPI_MakeEdge maker(solid::occt::spatial_curve(curve, 1.0));
+  if (!maker.IsDone()) throw Standard_Failure("a curve that makes no edge");
+  return maker.Edge();
+}
+
+}  // namespace selvage::formats::step

@@ -1,0 +1,26 @@
+// Parts of a cad::Model as OpenCASCADE's shapes. Internal to the module selvage_occt.
+#pragma once
+
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Shape.hxx>
+#include <vector>
+
+#include "cad/model.h"
+
+namespace selvage::formats::step {
+
+struct PartShape {
+  // A solid; a shell or several in a compound where the faces leave gaps or are not said to be joined.
+  TopoDS_Shape shape;
+  bool closed = false;
+  std::vector<TopoDS_Shape> faces;  // as they stand in `shape`, in the part's order; null: not there
+};
+
+// Faces share an edge where the part says so by its id; where they do not, edges that lie on each other
+// within `tolerance` (the part's unit) become one. An untrimmed face has its surface's natural border.
+// Surfaces keep every number. Exceptions: Standard_Failure.
+PartShape build_part(const cad::Part& part, double tolerance);
+
+TopoDS_Edge build_edge(const nurbs::Curve& curve);
+
+}  // namespace selvage::formats::step
