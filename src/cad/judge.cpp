@@ -89,7 +89,7 @@ class Judge {
         m_.shortest_place = place_of(part, *owned.face);
       }
     // A face by itself has a border by rights.
-    if (part.kind == Part::Kind::surfaces && part.faces.size() == 1) return;
+    if (part.kind != Part::Kind::solid && part.faces.size() == 1) return;
     for (std::size_t i = 0; i < borders.size(); ++i) judge_border(part, borders, i);
   }
 

@@ -12,12 +12,11 @@ namespace selvage::cad {
 // Measures of a model, in its unit.
 struct Measures {
   std::size_t faces = 0, borders = 0;
-  std::size_t open_borders =
-      0;                   // of parts that have more than one face, or are solids: no other one beside them
-  std::size_t poles = 0;   // borders of untrimmed faces that are one point
-  double size = 0;         // largest side of the box round everything
-  double tolerance = 0;    // up to which edges count as joined: see judge()
-  double largest_gap = 0;  // between edges that are neighbours
+  std::size_t open_borders = 0;  // of solids and of parts with several faces: no other face beside them
+  std::size_t poles = 0;         // borders of untrimmed faces that are one point
+  double size = 0;               // largest side of the box round everything
+  double tolerance = 0;          // up to which edges count as joined: see judge()
+  double largest_gap = 0;        // between edges that are neighbours
   std::optional<Vec3> gap_at;
   std::string gap_entity;
   double shortest_border = 0;  // that is no pole; 0: there is none

@@ -8,7 +8,8 @@ namespace selvage::pipeline {
 CadLook CadCheck::look() {
   return {.file =
               [this](const Source& source, const formats::Descriptor& format) {
-                if (format.check_structure != nullptr) format.check_structure(source, structure_);
+                has_structure_ = format.check_structure != nullptr;
+                if (has_structure_) format.check_structure(source, structure_);
               },
           .model =
               [this](const cad::Model& model, const formats::Descriptor& format) {

@@ -20,6 +20,10 @@ class CadCheck {
   [[nodiscard]] std::size_t defects() const;
   // Was there a CAD file that could be read?
   [[nodiscard]] bool has_model() const { return measures_.has_value(); }
+  // What is true when there is no defect.
+  [[nodiscard]] std::string_view sound() const {
+    return has_structure_ ? "the file keeps to its format, its surfaces are sound" : "its surfaces are sound";
+  }
   // A table of what was measured, lengths in `shown`; of `file` they are now.
   [[nodiscard]] std::string table(Unit file, Unit shown) const;
   [[nodiscard]] const std::optional<cad::Measures>& measures() const { return measures_; }
@@ -27,6 +31,7 @@ class CadCheck {
  private:
   Findings structure_, geometry_;
   std::optional<cad::Measures> measures_;
+  bool has_structure_ = false;
 };
 
 }  // namespace selvage::pipeline

@@ -101,7 +101,7 @@ void print_tables(const Job& job, const Findings& found, const CadCheck& cad, st
   std::string text = fmt::format("{}: lengths in {}\n", job.input.path, name_of(shown)), sound;
   if (cad.has_model()) {
     text += cad.table(file, shown);
-    sound = "the file keeps to its format, its surfaces are sound";
+    sound = cad.sound();
   }
   if (!found.bodies.empty()) {
     text += yarn_tables(found, file, shown);

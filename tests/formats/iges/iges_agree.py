@@ -17,7 +17,7 @@ import sys
 import shapes
 from any_iges import Fault
 from iges_model import Model
-from shapes import dot, minus, norm, times
+from shapes import cross, dot, minus, norm, times
 
 CLOSE = 1e-12  # of the model's size, B-splines
 FORMULA = 1e-9  # of the model's size, by Gauss-Newton with differences
@@ -139,7 +139,9 @@ class Comparison:
             share = 1e-6  # by chords, here
         self.surface(what, own, own_face["surface"]["samples"], other.surface, other.loops, share)
         self.side(what, own_face, other)
-        if len(own_face["loops"]) != len(other.loops):
+        if other.loops and not own_face["loops"]:
+            self.natural(what, own, other.loops)
+        elif len(own_face["loops"]) != len(other.loops):
             self.say("{}: {} loops, {} by the standard", what, len(own_face["loops"]), len(other.loops))
         for i, (loop, space) in enumerate(zip(own_face["loops"], other.loops)):
             name = "%s loop %d" % (what, i)
@@ -151,6 +153,25 @@ class Comparison:
             self.checked["loops"] += 1
         self.looks(what, own_face, other)
         self.checked["faces"] += 1
+
+    def natural(self, what, own, loops):
+        """Ours says that the loops are no more than the border of the whole surface."""
+        u0, u1, v0, v1 = own.range
+        sides = [shapes.Curve(lambda t, u=u: own.at(u, t), v0, v1) for u in (u0, u1)]
+        sides += [shapes.Curve(lambda t, v=v: own.at(t, v), u0, u1) for v in (v0, v1)]
+        curves = [c for loop in loops for c in loop]
+        near = max(1e-5 * self.size, self.model.file.resolution)
+        for p in (p for c in curves for p in c.samples(7)):
+            if min(side.off(p) for side in sides) > near:
+                self.say("{}: a loop inside the surface is missing", what)
+                return
+        for i, side in enumerate(sides):
+            points = side.samples(7)
+            partner = sides[i ^ 1].samples(7)
+            is_seam = max(norm(minus(p, q)) for p, q in zip(points, partner)) <= near
+            is_pole = max(norm(minus(p, points[0])) for p in points) <= near
+            if not is_seam and not is_pole and max(min(c.off(p) for c in curves) for p in points) > near:
+                self.say("{}: a side of the surface is no border of the face", what)
 
     def closed(self, what, curves):
         for a, b in zip(curves, curves[1:] + curves[:1]):
@@ -190,7 +211,7 @@ class Comparison:
         """Do the outsides agree?"""
         for s in own_face["surface"]["samples"][5:]:
             p, n = times(s[2:5], self.factor), s[5:8]
-            m = other.surface.normal(p)
+            m = cross(*other.surface.slopes(s[0], s[1])) if other.surface.spline else other.surface.normal(p)
             if norm(n) < 1e-9 * self.size * self.size or norm(m) < 1e-12:
                 continue
             if (dot(n, m) < 0) != (own_face["reversed"] != other.reversed):

@@ -1,0 +1,110 @@
+"""`selvage check` on CAD files: sound ones, planted faults with their lines, what other systems stumble on."""
+
+import json
+import unittest
+
+from program import GRID, PATH, RING, Case, run
+
+
+class CheckCad(Case):
+    def written(self, name, *options, source=GRID):
+        path = self.folder / name
+        self.succeeds("convert", source, "-o", path, *options)
+        return path
+
+    def broken(self, path, line, column, text):
+        """The file with `text` over line `line` from `column`, both from 1; every line is 80 columns and LF."""
+        data = path.read_bytes()
+        at = 81 * (line - 1) + column - 1
+        self.assertNotEqual(data[at : at + len(text)].decode(), text)
+        other = path.with_name("broken" + path.suffix)
+        other.write_bytes(data[:at] + text.encode() + data[at + len(text) :])
+        return other
+
+    def line_of(self, path, beginning):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if line.startswith(beginning):
+                return number
+        self.fail(beginning)
+
+    def test_own_files_are_sound(self):
+        for name, options in (("a.igs", ()), ("b.igs", ("--iges-solid",)), ("c.stp", ())):
+            for source in (GRID, PATH, RING):
+                with self.subTest(name, source=source):
+                    done = run("check", self.written(name, *options, source=source))
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    self.assertEqual(done.stderr, "")
+                    self.assertIn("its surfaces are sound; every yarn is a closed valid solid", done.stdout)
+
+    def test_fan_has_poles(self):
+        path = self.written("fan.igs", "--ends", "fan")
+        done = run("check", path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, r"fan\.igs:\d+:1: warning: Creo lists surfaces with a pole .*: 8 of them")
+        self.assertEqual(run("check", path, "--strict").returncode, 1)
+
+    def test_structure(self):
+        good = self.written("good.igs")
+        lines = good.read_text().splitlines()
+        last = len(lines)
+        body = self.line_of(good, "128,17,15")
+        for line, column, text, message in (
+                (last, 10, "     99", r"counts 99 lines in the global section"),
+                (body, 79, "77", r"sequence number P\d+ follows"),
+                (body, 70, "999", r"points back to"),
+                (body, 15, "0", r"PROP1 says that it is open in u, and it is closed"),
+                (last, 1, "X", r"where the number of start lines is due")):
+            with self.subTest(message):
+                done = run("check", self.broken(good, line, column, text))
+                self.assertIn(done.returncode, (1, 3), done.stderr)
+                self.assertRegex(done.stderr, r"broken\.igs:%d:\d+: error: .*%s" % (line, message))
+        done = run("check", self.broken(good, body, 15, "0"))
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("1 defect", done.stdout)
+
+    def moved_corner(self, path):
+        """The file with the first control point of its first end face moved: one digit of its largest coordinate."""
+        lines = path.read_text().splitlines()
+        end_face = [i for i, line in enumerate(lines) if line.startswith("128,") and line[72] == "P"][1]
+        pointer = lines[end_face][64:72]
+        words = [(i, at, word) for i, line in enumerate(lines) if line[64:73] == pointer + "P"
+                 for at, word in self.words(line[:64])]
+        counts = [int(word) for _, _, word in words[1:5]]
+        first = 10 + sum(counts) + 4 + (counts[0] + 1) * (counts[1] + 1)
+        line, at, word = max(words[first : first + 3], key=lambda w: abs(float(w[2])))
+        digit = at + word.index(".") + 1
+        while not lines[line][digit].isdigit():
+            self.fail(word)
+        return self.broken(path, line + 1, digit + 1, str((int(lines[line][digit]) + 1) % 10))
+
+    @staticmethod
+    def words(line):
+        at = 0
+        for word in line.rstrip().rstrip(";").split(","):
+            if word.strip():
+                yield at, word
+            at += len(word) + 1
+
+    def test_gap_is_in_the_report(self):
+        good = self.written("good.igs")
+        report = self.folder / "r.json"
+        done = run("check", good, "--report", report)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        entry = json.loads(report.read_text())["inputs"][0]
+        self.assertNotIn("error", {m["severity"] for m in entry["messages"]})
+        self.assertGreater(entry["creo_absolute_accuracy"], 0)
+        bad = self.moved_corner(good)
+        done = run("check", bad, "--report", report)
+        texts = [m["text"] for m in json.loads(report.read_text())["inputs"][0]["messages"]]
+        self.assertTrue(any("an edge" in text and ("apart" in text or "no other face" in text) for text in texts), texts)
+
+    def test_not_readable(self):
+        path = self.folder / "cut.igs"
+        path.write_bytes(self.written("good.igs").read_bytes()[:3000])
+        done = run("check", path)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stderr, r"cut\.igs:\d+:\d+: error: ")
+
+
+if __name__ == "__main__":
+    unittest.main()
