@@ -32,6 +32,58 @@ Curve polyline(const std::vector<Vec3>& points) {
   return curve;
 }
 
+// Composites within composites: a file of few lines may say very much with them.
+constexpr std::size_t cost_of_nesting = 300;  // in control points
+constexpr std::size_t deepest_nesting = 30;
+
+std::vector<Curve> read_links(Reading& reading, Parameters& in, std::vector<int>& trail);
+
+// The curve at `pointer`, or those of the composite there. `trail`: the composites that hold it.
+std::vector<Curve> read_links(Reading& reading, int pointer, Parameters& by, std::vector<int>& trail) {
+  const DirectoryEntry* const entry = reading.entry(pointer, by);
+  if (entry == nullptr) return {};
+  std::vector<Curve> links;
+  if (entry->type != 102) {
+    if (std::optional<Curve> curve = reading.curve(pointer, by)) links.push_back(std::move(*curve));
+    return links;
+  }
+  reading.use(pointer);
+  if (std::find(trail.begin(), trail.end(), entry->pointer) != trail.end())
+    by.fail(fmt::format("D{} is part of itself", pointer));
+  else if (trail.size() > deepest_nesting)
+    by.fail(fmt::format("D{} is nested in more than {} others", pointer, deepest_nesting));
+  if (!by.ok() || (trail.size() > 1 && !reading.spend(cost_of_nesting, by))) return {};
+  trail.push_back(entry->pointer);
+  Parameters in = reading.file().parameters(*entry);
+  links = read_links(reading, in, trail);
+  trail.pop_back();
+  if (!reading.finish(*entry, in)) {
+    by.give_up({});
+    return {};
+  }
+  const Placement placement = reading.placement(*entry);
+  for (Curve& curve : links) placement.apply(curve);
+  return links;
+}
+
+// Those of the composite whose parameters are `in`; points among them mean nothing for its shape.
+std::vector<Curve> read_links(Reading& reading, Parameters& in, std::vector<int>& trail) {
+  const std::size_t count = in.count("curves");
+  std::vector<Curve> links;
+  for (std::size_t i = 0; i < count && in.ok(); ++i) {
+    const int pointer = in.pointer();
+    const DirectoryEntry* const part = reading.entry(pointer, in);
+    if (part == nullptr) break;
+    if (is_point(*part))
+      reading.use(pointer);
+    else
+      for (Curve& curve : read_links(reading, pointer, in, trail)) links.push_back(std::move(curve));
+  }
+  if (in.ok() && links.empty()) in.fail("it has no curves");
+  if (!in.ok()) links.clear();
+  return links;
+}
+
 Vec2 read_pair(Parameters& in) {
   const double x = in.real(), y = in.real();
   return {x, y};
@@ -119,33 +171,46 @@ std::optional<Curve> read_spline(Reading& reading, const DirectoryEntry& entry, 
   return curve;
 }
 
-std::optional<Curve> read_composite(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
-  const std::size_t count = in.count("curves");
-  if (in.ok() && count == 0) in.fail("it has no curves");
-  std::vector<Curve> pieces;
-  for (std::size_t i = 0; i < count && in.ok(); ++i) {
-    const int pointer = in.pointer();
-    const DirectoryEntry* const part = reading.entry(pointer, in);
-    if (part != nullptr && is_point(*part)) {
-      reading.use(pointer);
-      continue;
-    }
-    if (std::optional<Curve> curve = reading.curve(pointer, in)) pieces.push_back(std::move(*curve));
-  }
-  if (!in.ok()) return std::nullopt;
-  if (pieces.empty()) {
-    in.fail("it has no curves");
-    return std::nullopt;
-  }
-  std::vector<Vec3> points;
+// The pieces as they are, those of composites in it one by one; empty after an error.
+std::vector<Curve> read_pieces(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
+  std::vector<int> trail = {entry.pointer};
+  return read_links(reading, in, trail);
+}
+
+// The largest gap between pieces, and whether it is too large for one curve.
+std::pair<double, bool> gap_of(const std::vector<Curve>& pieces, std::vector<Vec3>& points) {
   for (const Curve& piece : pieces) points.insert(points.end(), piece.points.begin(), piece.points.end());
   const double gap = nurbs::largest_gap(pieces);
-  if (gap > most_gap(points)) {
+  return {gap, gap > most_gap(points)};
+}
+
+std::optional<Curve> read_composite(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
+  const std::vector<Curve> pieces = read_pieces(reading, entry, in);
+  if (pieces.empty()) return std::nullopt;
+  std::vector<Vec3> points;
+  const auto [gap, too_large] = gap_of(pieces, points);
+  if (too_large) {
     in.give_up(fmt::format("its curves do not meet, by {:.3g}", gap));
     return std::nullopt;
   }
   warn_of_gap(reading, entry, gap, points);
   return nurbs::chained(pieces);
+}
+
+// By itself it may be in pieces.
+void stand_composite(Reading& reading, const DirectoryEntry& entry, Parameters& in, const Context& context) {
+  std::vector<Curve> pieces = read_pieces(reading, entry, in);
+  if (pieces.empty()) return;
+  std::vector<Vec3> points;
+  const auto [gap, too_large] = gap_of(pieces, points);
+  if (too_large) {
+    reading.warning(
+        entry, fmt::format("its curves do not meet, by {:.3g}: they stay {} curves", gap, pieces.size()));
+  } else {
+    warn_of_gap(reading, entry, gap, points);
+    pieces = {nurbs::chained(pieces)};
+  }
+  reading.stand_curves(entry, context, in, std::move(pieces));
 }
 
 bool is_ordinary_line(int form) {
@@ -174,7 +239,8 @@ std::optional<ArcFrame> read_arc_frame(Reading& reading, const DirectoryEntry& e
     return std::nullopt;
   }
   if (miss > 1e-6 * radius)
-    reading.warning(entry, fmt::format("its ends are {} and {} from its centre; the first counts", radius, b.norm()));
+    reading.warning(
+        entry, fmt::format("its ends are {} and {} from its centre; the first counts", radius, b.norm()));
   ArcFrame arc;
   const auto lifted = [z](const Vec2& p) { return Vec3(p.x(), p.y(), z); };
   arc.center = lifted(center);
@@ -220,45 +286,15 @@ void warn_of_gap(Reading& reading, const DirectoryEntry& entry, double gap, cons
     reading.warning(entry, fmt::format("its pieces do not meet, by {:.3g}; they are joined", gap));
 }
 
-std::vector<Curve> read_chain(Reading& reading, int pointer, Parameters& by, int depth) {
-  const DirectoryEntry* const entry = reading.entry(pointer, by);
-  if (entry == nullptr) return {};
-  if (entry->type != 102) {
-    std::optional<Curve> curve = reading.curve(pointer, by);
-    if (!curve) return {};
-    std::vector<Curve> one;
-    one.push_back(std::move(*curve));
-    return one;
-  }
-  reading.use(pointer);
-  if (depth > 30) {
-    by.fail(fmt::format("D{} is part of itself, or nested too deep", pointer));
-    return {};
-  }
-  Parameters in = reading.file().parameters(*entry);
-  const std::size_t count = in.count("curves");
-  std::vector<Curve> chain;
-  for (std::size_t i = 0; i < count && in.ok(); ++i) {
-    const int part = in.pointer();
-    const DirectoryEntry* const found = reading.entry(part, in);
-    if (found != nullptr && is_point(*found)) continue;
-    if (found == nullptr || !reading.spend(1, in)) break;
-    for (Curve& curve : read_chain(reading, part, in, depth + 1)) chain.push_back(std::move(curve));
-  }
-  if (in.ok() && chain.empty()) in.fail("it has no curves");
-  if (!reading.finish(*entry, in)) {
-    by.give_up({});
-    return {};
-  }
-  const Placement placement = reading.placement(*entry);
-  for (Curve& curve : chain) placement.apply(curve);
-  return chain;
+std::vector<Curve> read_chain(Reading& reading, int pointer, Parameters& by) {
+  std::vector<int> trail;
+  return read_links(reading, pointer, by, trail);
 }
 
 std::span<const EntityType> curve_types() {
   static constexpr std::array<EntityType, 8> types = {
       {{.number = 100, .curve = read_arc},
-       {.number = 102, .curve = read_composite},
+       {.number = 102, .curve = read_composite, .stand = stand_composite},
        {.number = 104, .curve = read_conic},
        {.number = 106, .curve = read_copious, .has_form = is_read_copious},
        {.number = 110, .curve = read_line, .has_form = is_ordinary_line},

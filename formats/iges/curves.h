@@ -20,9 +20,9 @@ bool is_point(const DirectoryEntry& entry);
 // `pieces` + 1 increasing values.
 std::optional<std::vector<double>> read_breaks(Parameters& in, std::size_t pieces);
 
-// The curves that the entity at `pointer` is made of, in order: those of a 102 (and of 102s in it) one by one,
-// any other one alone. Empty after by.fail() or by.give_up().
-std::vector<nurbs::Curve> read_chain(Reading& reading, int pointer, Parameters& by, int depth = 0);
+// The curves that the entity at `pointer` is made of, in order: those of a 102 (and of 102s in it) one by
+// one, any other one alone. Empty after by.fail() or by.give_up().
+std::vector<nurbs::Curve> read_chain(Reading& reading, int pointer, Parameters& by);
 
 double size_of(const std::vector<Vec3>& points);  // the diagonal of their box
 // Pieces that are farther apart than this are not joined.

@@ -65,6 +65,10 @@ class Reading {
   void stand_together(const DirectoryEntry& group, const Attributes& own, const std::vector<int>& members,
                       const Context& context, Parameters& by);
 
+  // Several curves with the attributes of one entity; `parameters` stand behind its own.
+  void stand_curves(const DirectoryEntry& entry, const Context& context, Parameters& parameters,
+                    std::vector<nurbs::Curve> curves);
+
   // Name, colour and level; `parameters` stand behind the entity's own.
   Attributes attributes(const DirectoryEntry& entry, Parameters& parameters);
 
@@ -90,8 +94,6 @@ class Reading {
   void stand_face(const DirectoryEntry& entry, const Context& context, Parameters& parameters);
   void stand_part(const DirectoryEntry& entry, const Context& context, Parameters& parameters,
                   std::optional<cad::Part> part);
-  void stand_curve(const DirectoryEntry& entry, const Context& context, Parameters& parameters,
-                   std::optional<nurbs::Curve> curve);
   std::optional<cad::Face> read_face(const DirectoryEntry& entry, Parameters& by);
   void count_entities();
   void find_members();

@@ -52,8 +52,8 @@ void Reading::stand_entry(const DirectoryEntry& entry, const Context& context) {
     type->stand(*this, entry, parameters, inner);
   else if (type->part != nullptr)
     stand_part(entry, inner, parameters, type->part(*this, entry, parameters));
-  else
-    stand_curve(entry, inner, parameters, type->curve(*this, entry, parameters));
+  else if (std::optional<nurbs::Curve> curve = type->curve(*this, entry, parameters))
+    stand_curves(entry, inner, parameters, {std::move(*curve)});
   finish(entry, parameters);
   --depth_;
   active_[index(entry)] = 0;
@@ -92,15 +92,17 @@ void Reading::stand_part(const DirectoryEntry& entry, const Context& context, Pa
   model_.parts.push_back(std::move(*part));
 }
 
-void Reading::stand_curve(const DirectoryEntry& entry, const Context& context, Parameters& parameters,
-                          std::optional<nurbs::Curve> curve) {
-  if (!curve) return;
-  spend(curve->points.size(), parameters);
-  Attributes own = attributes(entry, parameters);
+void Reading::stand_curves(const DirectoryEntry& entry, const Context& context, Parameters& parameters,
+                           std::vector<nurbs::Curve> curves) {
+  if (curves.empty()) return;
+  for (const nurbs::Curve& curve : curves) spend(curve.points.size(), parameters);
+  const Attributes own = attributes(entry, parameters);
   if (!parameters.ok()) return;
-  context.placement.apply(*curve);
-  curve_pointers_.push_back(entry.pointer);
-  model_.curves.push_back({std::move(*curve), std::move(own.name), own.color, own.level, origin(entry)});
+  for (nurbs::Curve& curve : curves) {
+    context.placement.apply(curve);
+    curve_pointers_.push_back(entry.pointer);
+    model_.curves.push_back({std::move(curve), own.name, own.color, own.level, origin(entry)});
+  }
 }
 
 void Reading::stand_together(const DirectoryEntry& group, const Attributes& own,

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "cad/natural_border.h"
+#include "formats/iges/surfaces.h"
 #include "formats/iges/types.h"
 
 namespace selvage::formats::iges {
@@ -48,21 +49,6 @@ int id_of(const DirectoryEntry& list, std::int64_t index) {
   return static_cast<int>(16LL * list.first_line + index);
 }
 
-// Files differ in which way a curve in the parameters runs where an edge is used backwards: the curve in
-// space decides.
-void align_flat(cad::Edge& edge, const nurbs::Surface& surface) {
-  if (edge.curve.points.empty() || edge.flat.points.empty()) return;
-  const auto on_surface = [&](double t) {
-    const Vec3 uv = nurbs::evaluate(edge.flat, t);
-    return nurbs::evaluate(surface, uv.x(), uv.y());
-  };
-  const Vec3 start = on_surface(edge.flat.first_parameter()), end = on_surface(edge.flat.last_parameter());
-  const Vec3 from = nurbs::evaluate(edge.curve, edge.curve.first_parameter());
-  const Vec3 to = nurbs::evaluate(edge.curve, edge.curve.last_parameter());
-  if ((start - from).norm() + (end - to).norm() > (start - to).norm() + (end - from).norm())
-    edge.flat = nurbs::reversed(edge.flat);
-}
-
 std::optional<std::vector<Use>> read_uses(Reading& reading, int pointer, Parameters& by) {
   const DirectoryEntry* const entry = reading.entry(pointer, 508, by);
   if (entry == nullptr) return std::nullopt;
@@ -95,8 +81,8 @@ std::optional<std::vector<Use>> read_uses(Reading& reading, int pointer, Paramet
   return std::nullopt;
 }
 
-std::optional<cad::Loop> read_loop(Reading& reading, int pointer, const nurbs::Surface& surface,
-                                   Parameters& by) {
+// The curves in the parameters are still as in the file.
+std::optional<cad::Loop> read_loop(Reading& reading, int pointer, Parameters& by) {
   const std::optional<std::vector<Use>> uses = read_uses(reading, pointer, by);
   if (!uses) return std::nullopt;
   cad::Loop loop;
@@ -112,7 +98,6 @@ std::optional<cad::Loop> read_loop(Reading& reading, int pointer, const nurbs::S
       std::optional<nurbs::Curve> flat = reading.curve(use.flat, by);
       if (!flat) return std::nullopt;
       edge.flat = std::move(*flat);
-      align_flat(edge, surface);
     }
     loop.edges.push_back(std::move(edge));
   }
@@ -126,15 +111,24 @@ std::optional<cad::Face> read_face(Reading& reading, const DirectoryEntry& /*ent
   in.skip();
   std::vector<int> loops(count);
   for (int& loop : loops) loop = in.pointer();
-  std::optional<nurbs::Surface> surface = reading.surface(surface_pointer, in);
-  if (!surface) return std::nullopt;
   cad::Face face;
-  face.surface = std::move(*surface);
   for (const int pointer : loops) {
-    std::optional<cad::Loop> loop = read_loop(reading, pointer, face.surface, in);
+    std::optional<cad::Loop> loop = read_loop(reading, pointer, in);
     if (!loop) return std::nullopt;
     face.loops.push_back(std::move(*loop));
   }
+  std::optional<nurbs::Surface> surface = bounded_surface(reading, surface_pointer, face.loops, in);
+  if (!surface) return std::nullopt;
+  face.surface = std::move(*surface);
+  const FlatMap map(reading, surface_pointer, face.surface);
+  for (cad::Loop& loop : face.loops)
+    for (cad::Edge& edge : loop.edges) {
+      if (edge.flat.points.empty()) continue;
+      // Beside the curve in space only what is exact; a pole has no other one, and needs none.
+      std::optional<nurbs::Curve> flat = map(edge.flat, true);
+      edge.flat = flat ? std::move(*flat) : nurbs::Curve{};
+      align_flat(edge, face.surface);
+    }
   cad::drop_natural_border(face, cad::border_tolerance(face, reading.file().global().resolution));
   return face;
 }

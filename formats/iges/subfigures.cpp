@@ -1,0 +1,93 @@
+// 308 and 408: definitions and their instances. Instances are flattened: what stands in the model stands
+// for itself.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+
+#include "formats/iges/types.h"
+
+namespace selvage::formats::iges {
+
+namespace {
+
+std::vector<int> members_of_definition(Reading& /*reading*/, const DirectoryEntry& /*entry*/,
+                                       Parameters& in) {
+  in.integer();  // how deep it nests
+  in.text();     // its name
+  std::vector<int> members(in.count("members"));
+  for (int& member : members) member = in.pointer();
+  return members;
+}
+
+std::vector<int> definition_of_instance(Reading& /*reading*/, const DirectoryEntry& /*entry*/,
+                                        Parameters& in) {
+  return {in.pointer()};
+}
+
+// How many control points an entity stands for at least, instances and all: lines of 64 columns hold one each
+// or more. Counted before anything is made; circles were found before.
+class Expansion {
+ public:
+  explicit Expansion(Reading& reading) : reading_(reading) {}
+
+  double points(const DirectoryEntry& entry) {
+    const auto known = known_.find(entry.pointer);
+    if (known != known_.end()) return known->second;
+    double sum = std::max(1.0, static_cast<double>(entry.line_count));
+    const EntityType* const type = type_of(entry);
+    if (type != nullptr && type->members != nullptr && depth_ < 64) {
+      ++depth_;
+      Parameters in = reading_.file().parameters(entry);
+      for (const int pointer : type->members(reading_, entry, in))
+        if (const DirectoryEntry* const member = reading_.file().entity(pointer)) sum += points(*member);
+      --depth_;
+    }
+    known_.emplace(entry.pointer, sum);
+    return sum;
+  }
+
+ private:
+  Reading& reading_;
+  std::unordered_map<int, double> known_;
+  int depth_ = 0;
+};
+
+void stand_instance(Reading& reading, const DirectoryEntry& entry, Parameters& in, const Context& context) {
+  const int pointer = in.pointer();
+  const double x = in.real(), y = in.real(), z = in.real(), scale = in.real(1);
+  const DirectoryEntry* const definition = reading.entry(pointer, 308, in);
+  if (definition == nullptr) return;
+  if (!(scale > 0)) {
+    in.fail(fmt::format("an instance at a scale of {}", scale));
+    return;
+  }
+  const double points = Expansion(reading).points(entry);
+  if (points > static_cast<double>(Reading::most_points)) {
+    in.fail(fmt::format("this instance stands for {:.2g} control points or more: at most {} are made", points,
+                        Reading::most_points));
+    return;
+  }
+  Parameters inside = reading.file().parameters(*definition);
+  const std::vector<int> members = members_of_definition(reading, *definition, inside);
+  Context inner = context;
+  inner.placement = context.placement * Placement::of(scale * Eigen::Matrix3d::Identity(), {x, y, z}) *
+                    reading.placement(*definition);
+  for (const int member : members) {
+    if (!inside.ok() || !in.ok()) break;
+    reading.stand(member, inner, in);
+  }
+  if (!reading.finish(*definition, inside)) in.give_up({});
+}
+
+}  // namespace
+
+std::span<const EntityType> subfigure_types() {
+  static constexpr std::array<EntityType, 2> types = {
+      {{.number = 308, .members = members_of_definition},
+       {.number = 408, .stand = stand_instance, .members = definition_of_instance}}};
+  return types;
+}
+
+}  // namespace selvage::formats::iges

@@ -1,0 +1,52 @@
+// Surfaces that have to know what bounds them, and how parameters of the file become those of B-splines.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "formats/iges/reading.h"
+#include "nurbs/analytic.h"
+
+namespace selvage::formats::iges {
+
+// 108 and 190 to 198: by formula, some of them without end.
+bool is_analytic(const DirectoryEntry& entry);
+std::optional<nurbs::Analytic> read_analytic(Reading& reading, const DirectoryEntry& entry, Parameters& in);
+
+// The surface at `pointer` for a face with these loops, its own transformation applied: one by formula as far
+// as the loops reach, every other one as it is. Nothing after by.fail() or by.give_up().
+std::optional<nurbs::Surface> bounded_surface(Reading& reading, int pointer,
+                                              const std::vector<cad::Loop>& loops, Parameters& by);
+
+// What is due to a curve in the parameters that the standard gives to the surface at `pointer`, so that it
+// is one in those of the B-spline `surface`: these run along arcs otherwise than the angle does.
+class FlatMap {
+ public:
+  FlatMap(Reading& reading, int pointer, const nurbs::Surface& surface);
+
+  // Nothing where it cannot be told. Straight lines along the parameters stay exact; others are interpolated
+  // where the map is not the identity, unless `only_exact`.
+  [[nodiscard]] std::optional<nurbs::Curve> operator()(const nurbs::Curve& flat, bool only_exact) const;
+
+ private:
+  struct Axis {
+    double scale = 1, shift = 0;
+    std::vector<double> angles;  // the arc's knots; empty: no arc
+
+    [[nodiscard]] double operator()(double value) const;
+    [[nodiscard]] bool is_identity() const { return angles.empty() && scale == 1 && shift == 0; }
+  };
+  [[nodiscard]] Vec3 at(const Vec3& p) const { return {u_(p.x()), v_(p.y()), 0}; }
+
+  bool is_known_ = true;
+  Axis u_, v_;
+};
+
+// Files differ in which way a curve in the parameters runs where an edge is used backwards: the curve in
+// space decides.
+void align_flat(cad::Edge& edge, const nurbs::Surface& surface);
+
+// The points of a loop's curves in space, dense enough to tell its way round an axis.
+std::vector<Vec3> points_along(const cad::Loop& loop);
+
+}  // namespace selvage::formats::iges
