@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -24,10 +25,21 @@
 
 namespace selvage::formats {
 
+// By the format's own names: {"128": 12}.
+using EntityCounts = std::map<std::string, std::uint64_t>;
+
 // What was written, for the report.
 struct WriteFacts {
-  std::map<std::string, std::uint64_t> entities;  // by the format's own names: {"128": 12}
-  std::vector<Message> messages;                  // warnings
+  EntityCounts entities;
+  std::vector<Message> messages;    // warnings
+  std::vector<EntityCounts> parts;  // of each file where there are several; else empty
+};
+
+// A file that is one of several that hold a fabric together, as it says itself.
+struct PartMark {
+  int number = 1, count = 1;  // from 1
+  std::string set;            // the same in all files of one writing, and in no other
+  bool operator==(const PartMark&) const = default;
 };
 
 struct SurfaceOptions {
@@ -39,7 +51,12 @@ struct SurfaceOptions {
   std::string date;                   // YYYYMMDD.HHNNSS for headers; empty: now
   double tolerance = 0;               // of the modelled tubes, file units; 0: unknown
   bool iges_solid = false;            // IGES: 186 solids instead of three 128s a yarn
+  std::int64_t iges_lines = 0;        // IGES: of a section of one file; 0: as many as there are numbers for
+  bool split_yarns = false;           // IGES: a yarn that fits into no file is cut
   std::string step_schema = "AP242";  // AP242 | AP214
+  // For formats whose files have a largest size: opens file `number` (2, 3, ...) of the fabric. What it gives
+  // outlives the writer. Null: there can be one file only.
+  std::function<Result<OutputFile*>(int number)> next_part;
 };
 
 // Takes the yarns and pieces of one file, one after the other, in the order in which they shall stand there.
@@ -87,6 +104,8 @@ struct Descriptor {
   std::optional<cad::Model> (*read_model)(const Source& source, Diagnostics& diagnostics) = nullptr;
   // Does the file keep to its format in every respect? Defects and warnings that the reader puts up with.
   void (*check_structure)(const Source& source, Findings& findings) = nullptr;
+  // What the beginning of a file (at most 4 KiB) says of the set that it is part of; none: it stands alone.
+  std::optional<PartMark> (*part_mark)(std::string_view head) = nullptr;
   [[nodiscard]] bool is_readable() const { return read_fabric != nullptr || read_model != nullptr; }
 
   Result<WriteFacts> (*write_fabric)(const fabric::Fabric& fabric, OutputFile& output) = nullptr;

@@ -16,6 +16,7 @@
 #include "pipeline/inputs.h"
 #include "pipeline/job.h"
 #include "pipeline/outputs.h"
+#include "pipeline/parts.h"
 #include "pipeline/report.h"
 
 namespace selvage::pipeline {
@@ -184,7 +185,11 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
 // Hidden files of a run that was killed where there are no unnamed files (core/output.h).
 void Batch::remove_leftovers(std::size_t job) const {
   for (const PlannedOutput& output : outputs_[job])
-    if (!output.to_standard_output) ::unlink(OutputFile::hidden_name(output.path).c_str());
+    if (!output.to_standard_output) {
+      ::unlink(OutputFile::hidden_name(output.path).c_str());
+      for (int number = 1; ::unlink(OutputFile::hidden_name(part_path(output.path, number)).c_str()) == 0;)
+        ++number;
+    }
 }
 
 double Batch::tick() {

@@ -24,14 +24,19 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
       converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, surface.units);
   surface.iges_solid = job.options.iges_solid || fabric.yarns_are_solids;
   surface.step_schema = job.options.step_schema;
+  surface.iges_lines = job.options.iges_lines;
+  surface.split_yarns = job.options.split_yarns;
   return surface;
 }
 
 bool open_writers(Job& job, const fabric::Fabric& fabric, std::size_t count, OpenOutputs& outputs) {
   for (OpenOutput& output : outputs) {
     if (output.plan->format->write_fabric != nullptr) continue;
+    formats::SurfaceOptions options = surface_options(job, fabric, *output.plan, count);
+    if (!output.plan->to_standard_output)
+      options.next_part = [&output](int number) { return open_part(output, number); };
     Result<std::unique_ptr<formats::BodyWriter>> writer =
-        output.plan->format->open_bodies(output.file, surface_options(job, fabric, *output.plan, count));
+        output.plan->format->open_bodies(output.file, options);
     if (!writer) {
       job.say(writer.error());
       return false;

@@ -8,6 +8,7 @@
 
 #include "core/sha256.h"
 #include "core/source.h"
+#include "pipeline/parts.h"
 #include "pipeline/versions.h"
 
 namespace selvage::pipeline {
@@ -176,15 +177,25 @@ bool is_still_valid(const std::string& entry, const std::string& input_sha256, c
   if (!earlier.is_object() || !earlier.contains("ok") || earlier["ok"] != true) return false;
   if (text_at(earlier, "sha256") != input_sha256 || text_at(earlier, "settings") != settings) return false;
   const auto outputs = earlier.find("outputs");
-  if (outputs == earlier.end() || !outputs->is_array() || outputs->size() != output_paths.size())
-    return false;
-  return std::all_of(output_paths.begin(), output_paths.end(), [&](const std::string& path) {
+  if (outputs == earlier.end() || !outputs->is_array()) return false;
+  std::size_t matched = 0;
+  const auto is_whole = [&](const std::string& path) {
     const auto found = std::find_if(outputs->begin(), outputs->end(),
                                     [&](const Json& output) { return text_at(output, "path") == path; });
     if (found == outputs->end()) return false;
     const Result<std::string> now = sha256_of_file(path);
-    return now.ok() && *now == text_at(*found, "sha256");
-  });
+    if (!now.ok() || *now != text_at(*found, "sha256")) return false;
+    ++matched;
+    return true;
+  };
+  for (const std::string& path : output_paths) {
+    if (is_whole(path)) continue;
+    // It may have taken several files.
+    int number = 1;
+    while (is_whole(part_path(path, number).string())) ++number;
+    if (number == 1) return false;
+  }
+  return matched == outputs->size();
 }
 
 std::string marked_skipped(const std::string& entry) {
