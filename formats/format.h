@@ -22,6 +22,7 @@
 #include "fabric/piece.h"
 #include "fem/mesh.h"
 #include "yarn/body.h"
+#include "yarn/congruence.h"
 
 namespace selvage::formats {
 
@@ -59,6 +60,13 @@ struct SurfaceOptions {
   std::function<Result<OutputFile*>(int number)> next_part;
 };
 
+// A yarn that is another one in another place.
+struct Instance {
+  std::size_t shape = 0;                   // the same for all copies of one shape, in one colour and role
+  std::shared_ptr<const yarn::Body> body;  // the shape, where it was modelled: the first copy
+  yarn::RigidMotion motion;                // from there to this copy
+};
+
 // Takes the yarns and pieces of one file, one after the other, in the order in which they shall stand there.
 // A format that carries only one of the two (Descriptor) is never given the other.
 class BodyWriter {
@@ -67,6 +75,9 @@ class BodyWriter {
   virtual Status add(const yarn::Body& body) {
     return error(Kind::unsupported, "this format holds no yarns, such as '" + body.name + "'");
   }
+  // `body` is what the copy is by itself: its name and group are the copy's. A format that repeats nothing
+  // writes it in full.
+  virtual Status add_instance(const yarn::Body& body, const Instance& /*instance*/) { return add(body); }
   // Geometry of a CAD file that is neither a yarn nor a piece.
   virtual Status add_part(const cad::Part& part) {
     return error(Kind::unsupported, "this format holds no free surfaces, such as '" + part.name + "'");

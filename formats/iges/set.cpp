@@ -1,6 +1,8 @@
 // A fabric over as many files as it needs.
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "formats/iges/writer.h"
 #include "yarn/cut.h"
 
@@ -18,12 +20,15 @@ class SetWriter final : public BodyWriter {
     file_ = open_file(output, options_, limits_);
   }
 
-  Status add(const yarn::Body& body) override {
-    if (!pending_.empty() && body.group != pending_.front().group)
-      if (Status status = put_pending(); !status.ok()) return status;
-    if (body.group.empty()) return put_yarn(body);
-    pending_.push_back(body);
-    return {};
+  Status add(const yarn::Body& body) override { return add_item(body, nullptr); }
+  Status add_instance(const yarn::Body& body, const Instance& instance) override {
+    if (!std::exchange(repeats_, true))
+      facts_.messages.push_back(
+          warning(Kind::unsupported,
+                  "IGES: equal yarns are placed by reference (308, 408); Abaqus/CAE passes "
+                  "these by, and shows none of them: for such a reader leave out "
+                  "--instances"));
+    return add_item(body, &instance);
   }
 
   Status add_piece(const fabric::PieceShape& piece) override {
@@ -62,6 +67,7 @@ class SetWriter final : public BodyWriter {
     return add(*file_);
   }
 
+  Status add_item(const yarn::Body& body, const Instance* instance);
   Status put_pending();
   Status put_yarn(const yarn::Body& body);
   Status put_in_pieces(const yarn::Body& body, const Message& why);
@@ -73,10 +79,24 @@ class SetWriter final : public BodyWriter {
   Records::Limits limits_;
   OutputFile* output_;
   std::unique_ptr<FileWriter> file_;
-  std::vector<yarn::Body> pending_;  // of one group
+  std::vector<FileWriter::Item> pending_;  // of one group
+  bool repeats_ = false;
   std::vector<Finished> finished_;
   WriteFacts facts_;
 };
+
+Status SetWriter::add_item(const yarn::Body& body, const Instance* instance) {
+  if (!pending_.empty() && body.group != pending_.front().body.group)
+    if (Status status = put_pending(); !status.ok()) return status;
+  if (!body.group.empty()) {
+    pending_.push_back({body, instance != nullptr ? std::optional(*instance) : std::nullopt});
+    return {};
+  }
+  if (instance == nullptr) return put_yarn(body);
+  Status status = put([&](FileWriter& file) { return file.add_instance(body, *instance); });
+  const bool is_too_long = !status.ok() && status.error().kind == Kind::limit && file_->is_empty();
+  return is_too_long ? put_yarn(body) : status;
+}
 
 Status SetWriter::put_pending() {
   if (pending_.empty()) return {};

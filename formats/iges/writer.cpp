@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -60,7 +61,8 @@ class Writer final : public FileWriter {
         records_(output, header_text(header_).bytes.size(), limits) {}
 
   Status add(const yarn::Body& body) override;
-  Status add_group(std::span<const yarn::Body> parts) override;
+  Status add_instance(const yarn::Body& body, const Instance& instance) override;
+  Status add_group(std::span<const Item> parts) override;
   Status add_piece(const fabric::PieceShape& piece) override;
   Result<WriteFacts> finish() override;
 
@@ -73,6 +75,7 @@ class Writer final : public FileWriter {
   struct Shared {
     std::vector<std::pair<yarn::Color, int>> colors;        // and their 314
     std::array<bool, yarn::all_roles.size() + 1> levels{};  // by role, and that of pieces
+    std::map<std::size_t, int> definitions;                 // of shapes that have copies: their 308
   };
 
   // What fails leaves no trace.
@@ -91,10 +94,14 @@ class Writer final : public FileWriter {
   Status add_checked(const std::string& name, const std::string& what, std::int64_t values,
                      const std::function<void()>& write, std::uint64_t bodies = 1);
   int write(const yarn::Body& body);
-  void write_group_of(std::span<const yarn::Body> parts);
+  int write(const yarn::Body& body, const Instance& instance);
+  int definition_of(const Instance& instance);
+  Status check(const yarn::Body& body, const Instance& instance);
+  std::int64_t most_values_of(const yarn::Body& body, const Instance* instance) const;
+  void write_group_of(std::span<const Item> parts);
   void warn_of_name(const std::string& name, const std::string& what);
   void write(const fabric::PieceShape& piece);
-  int write_surfaces(const Common& common, const yarn::Body& body);
+  std::vector<int> write_faces(const Common& common, const yarn::Body& body);
   int color(const yarn::Color& color);
   int level(std::size_t index, std::string_view name);
   [[nodiscard]] int entities_of_end(const yarn::EndFace& end) const;
@@ -256,21 +263,20 @@ int Writer::entities_of_end(const yarn::EndFace& end) const {
   return 0;
 }
 
-int Writer::write_surfaces(const Common& common, const yarn::Body& body) {
-  std::array<int, 3> faces{};
-  std::size_t count = 0;
-  faces[count++] = write_surface(records_, common.entity(128), body.surface, common.name);
+// The faces of a yarn that is no solid.
+std::vector<int> Writer::write_faces(const Common& common, const yarn::Body& body) {
+  std::vector<int> faces = {write_surface(records_, common.entity(128), body.surface, common.name)};
   for (const yarn::EndFace* end : {&body.start, &body.end}) {
     if (body.closed_along || end->style == EndStyle::none) continue;
-    faces[count++] = end->style == EndStyle::planar
-                         ? write_planar_end(records_, common, body, end == &body.end)
-                         : write_surface(records_, common.entity(128), end->surface, common.name);
+    faces.push_back(end->style == EndStyle::planar
+                        ? write_planar_end(records_, common, body, end == &body.end)
+                        : write_surface(records_, common.entity(128), end->surface, common.name));
   }
   // Whoever sews the group takes the direction of the shell from its first member. Gmsh makes one solid of
   // all shells of a file and then splits it, which fails where two of them point outward: so a face that
   // points inward leads.
-  if (count > 1 && !body.inward) std::swap(faces[0], faces[1]);
-  return write_group(records_, common, {faces.data(), count});
+  if (faces.size() > 1 && !body.inward) std::swap(faces[0], faces[1]);
+  return faces;
 }
 
 // Returns the directory pointer of its group or solid.
@@ -285,18 +291,48 @@ int Writer::write(const yarn::Body& body) {
   else if (!body.closed_along)
     entities += entities_of_end(body.start) + entities_of_end(body.end);
   common.name = records_.next() + 2 * entities;
-  const int pointer =
-      options_.iges_solid ? write_solid(records_, common, body) : write_surfaces(common, body);
+  const int pointer = options_.iges_solid ? write_solid(records_, common, body)
+                                          : write_group(records_, common, write_faces(common, body));
   write_name(records_, common, name_);
   return pointer;
 }
 
-void Writer::write_group_of(std::span<const yarn::Body> parts) {
+// Returns the directory pointer of the 308, which comes before the first copy.
+int Writer::definition_of(const Instance& instance) {
+  const auto known = shared_.definitions.find(instance.shape);
+  if (known != shared_.definitions.end()) return known->second;
+  const yarn::Body& body = *instance.body;
+  const std::string name = ascii(body.name);
+  const Common common{.color = color(body.color),
+                      .level = level(static_cast<std::size_t>(body.role), yarn::name_of(body.role)),
+                      .label = name,
+                      .status = dependent};
+  const std::vector<int> members =
+      options_.iges_solid ? std::vector{write_solid(records_, common, body)} : write_faces(common, body);
+  const int pointer = write_definition(records_, common, name, members);
+  shared_.definitions.emplace(instance.shape, pointer);
+  return pointer;
+}
+
+int Writer::write(const yarn::Body& body, const Instance& instance) {
+  const int definition = definition_of(instance);
+  const std::string name = ascii(body.name);
+  Common common{.color = color(body.color),
+                .level = level(static_cast<std::size_t>(body.role), yarn::name_of(body.role)),
+                .label = name};
+  common.name = records_.next() + 2 * entities_of_instance(instance.motion);
+  const int pointer = write_instance(records_, common, definition, instance.motion);
+  write_name(records_, common, name);
+  return pointer;
+}
+
+void Writer::write_group_of(std::span<const Item> parts) {
   std::vector<int> members;
-  for (const yarn::Body& part : parts) members.push_back(write(part));
-  const std::string name = ascii(parts.back().group);
-  Common common{
-      .color = color(parts.back().color), .level = static_cast<int>(parts.back().role) + 1, .label = name};
+  for (const Item& part : parts)
+    members.push_back(part.instance ? write(part.body, *part.instance) : write(part.body));
+  const yarn::Body& last = parts.back().body;
+  const std::string name = ascii(last.group);
+  Common common{.color = color(last.color), .level = static_cast<int>(last.role) + 1, .label = name};
   common.name = records_.next() + 2;
   write_group(records_, common, members);
   write_name(records_, common, name);
@@ -326,15 +362,37 @@ Status Writer::add(const yarn::Body& body) {
   });
 }
 
-Status Writer::add_group(std::span<const yarn::Body> parts) {
+// A shape that is new to the file counts as well.
+Status Writer::check(const yarn::Body& body, const Instance& instance) {
+  Status status = check(body);
+  if (status.ok() && !shared_.definitions.contains(instance.shape)) status = check(*instance.body);
+  return status;
+}
+
+std::int64_t Writer::most_values_of(const yarn::Body& body, const Instance* instance) const {
+  if (instance == nullptr) return most_values(body);
+  return 1000 + (shared_.definitions.contains(instance->shape) ? 0 : most_values(*instance->body));
+}
+
+Status Writer::add_instance(const yarn::Body& body, const Instance& instance) {
+  return whole_or_nothing([&]() -> Status {
+    if (Status status = check(body, instance); !status.ok()) return status;
+    return of_yarn(add_checked(body.name, "yarn " + body.name, most_values_of(body, &instance),
+                               [&] { write(body, instance); }),
+                   body.name, body.place);
+  });
+}
+
+Status Writer::add_group(std::span<const Item> parts) {
   return whole_or_nothing([&]() -> Status {
     std::int64_t values = 1000 + 2 * static_cast<std::int64_t>(parts.size());
-    for (const yarn::Body& part : parts) {
-      if (Status status = check(part); !status.ok()) return status;
-      values += most_values(part);
+    for (const Item& part : parts) {
+      if (Status status = part.instance ? check(part.body, *part.instance) : check(part.body); !status.ok())
+        return status;
+      values += most_values_of(part.body, part.instance ? &*part.instance : nullptr);
     }
-    const yarn::Body& last = parts.back();
-    for (const yarn::Body& part : parts) warn_of_name(part.name, "yarn " + part.name);
+    const yarn::Body& last = parts.back().body;
+    for (const Item& part : parts) warn_of_name(part.body.name, "yarn " + part.body.name);
     return of_yarn(
         add_checked(
             last.group, "yarn " + last.group, values, [&] { write_group_of(parts); }, parts.size()),

@@ -14,8 +14,13 @@ namespace selvage::formats::iges {
 // finite; a solid of a yarn whose ends are open), limit (more lines in a section than the limits allow), io.
 class FileWriter : public BodyWriter {
  public:
+  // A yarn, or a copy of one.
+  struct Item {
+    yarn::Body body;
+    std::optional<Instance> instance{};
+  };
   // The plies or filaments of a yarn, one after the other, and the group that has the yarn's name.
-  virtual Status add_group(std::span<const yarn::Body> parts) = 0;
+  virtual Status add_group(std::span<const Item> parts) = 0;
   // The lines of the longer section of a file that holds nothing but this yarn.
   virtual std::int64_t lines_of(const yarn::Body& body) = 0;
   [[nodiscard]] virtual bool is_empty() const = 0;

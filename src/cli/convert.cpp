@@ -19,6 +19,9 @@ void add_convert(CLI::App& program, Parsed& parsed) {
       ->check(CLI::Range(std::int64_t{100}, std::int64_t{9'999'999}));
   command.add_flag("--split-yarns", parsed.options.split_yarns,
                    "IGES: a yarn that is too long for one file is cut into several, each closed");
+  command.add_flag("--instances", parsed.options.instances,
+                   "IGES, STEP: yarns that are equal up to a motion are written once and placed (not every "
+                   "reader knows IGES's 308 and 408: Abaqus/CAE passes them by)");
   command.add_option("--step-schema", parsed.options.step_schema, "STEP: AP242 or AP214 (default: AP242)")
       ->check(CLI::IsMember({"AP242", "AP214"}, CLI::ignore_case));
   run_pipeline(command, parsed, pipeline::Command::convert);

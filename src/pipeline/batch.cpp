@@ -118,6 +118,8 @@ void Batch::receive(std::size_t job, char kind, std::string_view bytes) {
     work.results += bytes;
   } else if (kind == packet::report) {
     work.report = bytes;
+  } else if (kind == packet::files) {
+    files_ += std::stoul(std::string(bytes));
   } else if (kind == packet::progress) {
     doing_ = bytes;
     progress_.set(counts_.done + counts_.failed + counts_.skipped, counts_.failed, doing_);
@@ -172,7 +174,6 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
     ++counts_.skipped;
   } else if (verdict == Verdict::done || verdict == Verdict::defect) {
     ++counts_.done;
-    files_ += outputs_[job].size();
     if (verdict == Verdict::defect) ++defects_;
   } else {
     ++counts_.failed;

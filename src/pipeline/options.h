@@ -38,6 +38,7 @@ struct Options {
   std::optional<yarn::EndStyle> ends;                 // none: as the input has them, or patch
   bool iges_solid = false;
   std::int64_t iges_lines = 0;  // of a section of one file; 0: what the format can number
+  bool instances = false;       // repeat equal yarns by reference
   bool split_yarns = false;     // cut those that are too long for one file
   std::string step_schema = "AP242";
 

@@ -128,6 +128,10 @@ std::string to_json(const InputReport& report) {
   if (report.min_gap) out["min_gap"] = *report.min_gap;
   if (report.creo_absolute_accuracy) out["creo_absolute_accuracy"] = *report.creo_absolute_accuracy;
   if (!report.outputs.empty()) out["outputs"] = list_json(report.outputs, output_json);
+  if (report.instances)
+    out["instances"] = {{"shapes", report.instances->shapes},
+                        {"copies", report.instances->copies},
+                        {"largest_deviation", report.instances->largest_deviation}};
   if (report.mesh) out["mesh"] = mesh_json(*report.mesh);
   out["messages"] = list_json(report.messages, [to_mm](const Message& m) { return message_json(m, to_mm); });
   return text_of(out);

@@ -112,6 +112,7 @@ void commit_all(Job& job, OpenOutputs& outputs) {
   if (job.has_failed()) return;  // --strict
   for (OpenOutput& output : outputs)
     if (Status status = commit(output); !status.ok()) return job.say(status.error());
+  job.tell_files(written.size());
   for (const OutputReport& output : written) {
     if (!job.options.verbose) continue;
     Message note;
