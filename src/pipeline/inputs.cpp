@@ -43,10 +43,8 @@ class Expansion {
  private:
   // A name that no file has may be that of a fabric in several files.
   void add_file(const std::string& path) {
-    const fs::path first = part_path(path, 1);
-    std::error_code failure;
-    const bool is_set = !fs::exists(path, failure) && mark_of(first);
-    list.inputs.push_back(input_at(is_set ? first.string() : path, fs::path(path).filename()));
+    const std::string file = first_file(path).string();
+    list.inputs.push_back(input_at(file, fs::path(file).filename()));
   }
 
   // The outputs of a fabric in several files have no number.

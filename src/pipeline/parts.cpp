@@ -114,6 +114,13 @@ std::optional<PartMark> mark_of(const fs::path& path) {
   return mark_in(*format, *source);
 }
 
+fs::path first_file(const fs::path& path) {
+  std::error_code failure;
+  if (fs::exists(path, failure)) return path;
+  const fs::path first = part_path(path, 1);
+  return mark_of(first) ? first : path;
+}
+
 std::vector<fs::path> files_of(const fs::path& path) {
   std::vector<fs::path> files = {path};
   const std::optional<fs::path> whole = whole_path(path);

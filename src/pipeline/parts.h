@@ -25,6 +25,9 @@ std::optional<int> part_number(const std::filesystem::path& part);
 // What the file says of itself; nothing where it cannot be read, or stands alone.
 std::optional<formats::PartMark> mark_of(const std::filesystem::path& path);
 
+// What to open for a name: its file or, where there is none, the first file of the set that it stands for.
+std::filesystem::path first_file(const std::filesystem::path& path);
+
 // The files of the set whose first one this is, in order; just the path itself where it is no such file.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& path);
 
