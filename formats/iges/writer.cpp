@@ -305,7 +305,7 @@ int Writer::definition_of(const Instance& instance) {
   const std::string name = ascii(body.name);
   const Common common{.color = color(body.color),
                       .level = level(static_cast<std::size_t>(body.role), yarn::name_of(body.role)),
-                      .label = name,
+                      .label = {},  // names are the copies'
                       .status = dependent};
   const std::vector<int> members =
       options_.iges_solid ? std::vector{write_solid(records_, common, body)} : write_faces(common, body);

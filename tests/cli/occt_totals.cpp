@@ -5,9 +5,13 @@
 #include <fmt/format.h>
 
 #include <IGESControl_Reader.hxx>
+#include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
+#include <Interface_Check.hxx>
+#include <Interface_CheckIterator.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
+#include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <cstdio>
 #include <string_view>
@@ -24,8 +28,11 @@ void count_iges(const char* path) {
   int surfaces = 0;
   for (int i = 1; ok && i <= reader.IGESModel()->NbEntities(); ++i)
     surfaces += reader.IGESModel()->Entity(i)->TypeNumber() == 128 ? 1 : 0;
-  fmt::print("{{\"ok\": {}, \"roots\": {}, \"128\": {}}}\n", ok, ok ? reader.NbRootsForTransfer() : 0,
-             surfaces);
+  int fails = 0;
+  Interface_CheckIterator checks = reader.WS()->ModelCheckList();
+  for (checks.Start(); checks.More(); checks.Next()) fails += checks.Value()->NbFails();
+  fmt::print("{{\"ok\": {}, \"fails\": {}, \"roots\": {}, \"128\": {}}}\n", ok, fails,
+             ok ? reader.NbRootsForTransfer() : 0, surfaces);
 }
 
 void read_iges(const char* path) {

