@@ -90,6 +90,8 @@ std::string name_of_label(const TDF_Label& label) {
   std::string result(static_cast<std::size_t>(text.LengthOfCString()), '\0');
   Standard_PCharacter buffer = result.data();
   text.ToUTF8CString(buffer);
+  // What OpenCASCADE calls a product without a name is none.
+  if (result.starts_with("Open CASCADE STEP translator") || result.starts_with("=>[")) return {};
   return result;
 }
 
