@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -21,13 +22,25 @@
 #include "fabric/piece.h"
 #include "fem/mesh.h"
 #include "yarn/body.h"
+#include "yarn/congruence.h"
 
 namespace selvage::formats {
 
+// By the format's own names: {"128": 12}.
+using EntityCounts = std::map<std::string, std::uint64_t>;
+
 // What was written, for the report.
 struct WriteFacts {
-  std::map<std::string, std::uint64_t> entities;  // by the format's own names: {"128": 12}
-  std::vector<Message> messages;                  // warnings
+  EntityCounts entities;
+  std::vector<Message> messages;    // warnings
+  std::vector<EntityCounts> parts;  // of each file where there are several; else empty
+};
+
+// A file that is one of several that hold a fabric together, as it says itself.
+struct PartMark {
+  int number = 1, count = 1;  // from 1
+  std::string set;            // the same in all files of one writing, and in no other
+  bool operator==(const PartMark&) const = default;
 };
 
 struct SurfaceOptions {
@@ -39,7 +52,19 @@ struct SurfaceOptions {
   std::string date;                   // YYYYMMDD.HHNNSS for headers; empty: now
   double tolerance = 0;               // of the modelled tubes, file units; 0: unknown
   bool iges_solid = false;            // IGES: 186 solids instead of three 128s a yarn
+  std::int64_t iges_lines = 0;        // IGES: of a section of one file; 0: as many as there are numbers for
+  bool split_yarns = false;           // IGES: a yarn that fits into no file is cut
   std::string step_schema = "AP242";  // AP242 | AP214
+  // For formats whose files have a largest size: opens file `number` (2, 3, ...) of the fabric. What it gives
+  // outlives the writer. Null: there can be one file only.
+  std::function<Result<OutputFile*>(int number)> next_part;
+};
+
+// A yarn that is another one in another place.
+struct Instance {
+  std::size_t shape = 0;                   // the same for all copies of one shape, in one colour and role
+  std::shared_ptr<const yarn::Body> body;  // the shape, where it was modelled: the first copy
+  yarn::RigidMotion motion;                // from there to this copy
 };
 
 // Takes the yarns and pieces of one file, one after the other, in the order in which they shall stand there.
@@ -50,6 +75,9 @@ class BodyWriter {
   virtual Status add(const yarn::Body& body) {
     return error(Kind::unsupported, "this format holds no yarns, such as '" + body.name + "'");
   }
+  // `body` is what the copy is by itself: its name and group are the copy's. A format that repeats nothing
+  // writes it in full.
+  virtual Status add_instance(const yarn::Body& body, const Instance& /*instance*/) { return add(body); }
   // Geometry of a CAD file that is neither a yarn nor a piece.
   virtual Status add_part(const cad::Part& part) {
     return error(Kind::unsupported, "this format holds no free surfaces, such as '" + part.name + "'");
@@ -87,6 +115,8 @@ struct Descriptor {
   std::optional<cad::Model> (*read_model)(const Source& source, Diagnostics& diagnostics) = nullptr;
   // Does the file keep to its format in every respect? Defects and warnings that the reader puts up with.
   void (*check_structure)(const Source& source, Findings& findings) = nullptr;
+  // What the beginning of a file (at most 4 KiB) says of the set that it is part of; none: it stands alone.
+  std::optional<PartMark> (*part_mark)(std::string_view head) = nullptr;
   [[nodiscard]] bool is_readable() const { return read_fabric != nullptr || read_model != nullptr; }
 
   Result<WriteFacts> (*write_fabric)(const fabric::Fabric& fabric, OutputFile& output) = nullptr;

@@ -155,6 +155,37 @@ int write_level_name(Records& records, int level, std::string_view name) {
   return pointer;
 }
 
+int write_definition(Records& records, const Common& common, std::string_view ascii_name,
+                     std::span<const int> members) {
+  const int pointer = records.begin(common.entity(308, 0, definition));
+  records.integer(0);  // depth: no instances inside
+  records.text(ascii_name);
+  records.integer(static_cast<std::int64_t>(members.size()));
+  for (const int member : members) records.integer(member);
+  records.end();
+  return pointer;
+}
+
+int write_instance(Records& records, const Common& common, int definition_pointer,
+                   const yarn::RigidMotion& motion) {
+  Entity entity = common.entity(408);
+  if (!motion.is_translation()) {
+    entity.matrix = records.begin({.type = 124, .label = common.label});
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) records.real(motion.rotation(row, column));
+      records.real(motion.offset[row]);
+    }
+    records.end();
+  }
+  const Vec3 shift = motion.is_translation() ? motion.offset : Vec3::Zero();
+  const int pointer = records.begin(entity);
+  records.integer(definition_pointer);
+  records.reals(shift.data(), 3);
+  records.real(1);  // scale
+  records.end(common.name);
+  return pointer;
+}
+
 int write_color(Records& records, const yarn::Color& color) {
   const int pointer = records.begin({.type = 314, .status = definition, .label = {}});
   for (const int part : {color.red, color.green, color.blue}) records.real(part * 100.0 / 255.0);  // percent

@@ -7,6 +7,7 @@
 
 #include "formats/iges/records.h"
 #include "yarn/body.h"
+#include "yarn/congruence.h"
 #include "yarn/end_plane.h"
 
 namespace selvage::formats::iges {
@@ -16,10 +17,12 @@ struct Common {
   int color = 0;           // directory pointer of the 314
   int level = 0;           // by role
   std::string_view label;  // the yarn's name
-  int name = 0;            // directory pointer of the 406 form 15
+  int name = 0;            // directory pointer of the 406 form 15; 0: none
+  std::string_view status = independent;
 
-  [[nodiscard]] Entity entity(int type, int form = 0, std::string_view status = independent) const {
-    return {type, form, status, color, level, label};
+  [[nodiscard]] Entity entity(int type, int form = 0) const { return entity(type, form, status); }
+  [[nodiscard]] Entity entity(int type, int form, std::string_view its_status) const {
+    return {type, form, its_status, color, level, label};
   }
 };
 
@@ -47,6 +50,14 @@ int write_trimmed(Records& records, const Common& common, int boundary, int surf
 int write_group(Records& records, const Common& common, std::span<const int> members);  // 402, form 7
 int write_name(Records& records, const Common& common, std::string_view ascii_name);    // 406, form 15
 int write_level_name(Records& records, int level, std::string_view name);               // 406, form 3
-int write_color(Records& records, const yarn::Color& color);                            // 314
+// 308, of members that say that they are dependent; `ascii_name`: of the shape.
+int write_definition(Records& records, const Common& common, std::string_view ascii_name,
+                     std::span<const int> members);
+// 408, after a 124 where the motion turns. Returns the pointer of the 408.
+int write_instance(Records& records, const Common& common, int definition, const yarn::RigidMotion& motion);
+inline int entities_of_instance(const yarn::RigidMotion& motion) {
+  return motion.is_translation() ? 1 : 2;
+}
+int write_color(Records& records, const yarn::Color& color);  // 314
 
 }  // namespace selvage::formats::iges

@@ -16,6 +16,7 @@ namespace selvage::formats::iges {
 namespace {
 
 constexpr std::size_t columns = 72;  // of a start or global line
+constexpr std::string_view part_words = ": B-spline yarns, file ";
 
 void add_line(std::string& bytes, std::string_view data, char section, int number) {
   fmt::format_to(std::back_inserter(bytes), "{:<72}{}{:>7}\n", data, section, number);
@@ -104,8 +105,10 @@ HeaderText header_text(const Header& header) {
   HeaderText text;
   const std::string file_name = ascii(header.file_name);
   const std::string title = ascii(header.title);
-  std::string prologue =
-      "Selvage " SELVAGE_VERSION ": a closed B-spline body a yarn, a trimmed plane a piece.";
+  const std::string prologue =
+      header.part ? fmt::format("Selvage " SELVAGE_VERSION "{}{} of {}, set {}.", part_words,
+                                header.part->number, header.part->count, header.part->set)
+                  : "Selvage " SELVAGE_VERSION ": a closed B-spline body a yarn, a trimmed plane a piece.";
   add_line(text.bytes, prologue, 'S', ++text.start_lines);
   for (std::string_view rest = title; !rest.empty(); rest.remove_prefix(std::min(columns, rest.size())))
     add_line(text.bytes, rest.substr(0, columns), 'S', ++text.start_lines);
@@ -144,6 +147,27 @@ HeaderText header_text(const Header& header) {
   lines.close();
   text.global_lines = lines.count();
   return text;
+}
+
+std::optional<PartMark> part_mark(std::string_view head) {
+  std::string_view rest = head.substr(0, columns);
+  constexpr std::string_view maker = "Selvage ", between = " of ", set_word = ", set ";
+  const std::size_t words = rest.find(part_words);
+  if (!rest.starts_with(maker) || words == std::string_view::npos) return std::nullopt;
+  rest.remove_prefix(words + part_words.size());
+  PartMark mark;
+  const auto take_number = [&rest](int& number, std::string_view after) {
+    const auto [end, failure] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+    if (failure != std::errc() || number < 1) return false;
+    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+    if (!rest.starts_with(after)) return false;
+    rest.remove_prefix(after.size());
+    return true;
+  };
+  if (!take_number(mark.number, between) || !take_number(mark.count, set_word)) return std::nullopt;
+  mark.set = rest.substr(0, rest.find('.'));
+  if (mark.number > mark.count || mark.set.empty()) return std::nullopt;
+  return mark;
 }
 
 std::string terminate_text(const HeaderText& header, std::int64_t directory_lines,

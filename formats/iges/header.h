@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "core/units.h"
+#include "formats/format.h"
 
 namespace selvage::formats::iges {
 
@@ -18,18 +20,22 @@ struct Header {
   std::string title;      // of the fabric, may be empty
   std::string file_name;  // without folders
   Unit units = Unit::mm;
-  std::string time;          // YYYYMMDD.HHNNSS
-  double resolution = 1e-6;  // parameter 19, file units
-  double largest = 0;        // parameter 20: no coordinate is larger in magnitude
+  std::string time;                // YYYYMMDD.HHNNSS
+  double resolution = 1e-6;        // parameter 19, file units
+  double largest = 0;              // parameter 20: no coordinate is larger in magnitude
+  std::optional<PartMark> part{};  // of a fabric in several files
 };
 
-// The lines of both sections. Their number does not depend on `resolution` and `largest`, so that these can
-// be put in at the end.
+// The lines of both sections. Their number does not depend on `resolution`, `largest` and `part`, so that
+// these can be put in at the end.
 struct HeaderText {
   std::string bytes;
   int start_lines = 0, global_lines = 0;
 };
 HeaderText header_text(const Header& header);
+
+// What the first line of a file says of the set that it is part of.
+std::optional<PartMark> part_mark(std::string_view head);
 
 std::string terminate_text(const HeaderText& header, std::int64_t directory_lines,
                            std::int64_t parameter_lines);

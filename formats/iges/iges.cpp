@@ -1,5 +1,6 @@
 #include "formats/iges/iges.h"
 
+#include "formats/iges/header.h"
 #include "formats/iges/reader.h"
 #include "formats/iges/structure.h"
 #include "formats/iges/writer.h"
@@ -26,6 +27,7 @@ const Descriptor& descriptor() {
       .sniff = sniff,
       .read_model = read_model,
       .check_structure = check_structure,
+      .part_mark = part_mark,
       .open_bodies = [](OutputFile& output,
                         const SurfaceOptions& options) { return open_writer(output, options); },
       .carries_curves = true};

@@ -165,7 +165,8 @@ void Records::file_entity(std::int64_t first_line, std::int64_t line_count) {
   };
   field(first, 1, entity_.type);
   field(first, 2, first_line);
-  for (const std::size_t number : {3, 4, 6, 7, 8}) field(first, number, 0);
+  for (const std::size_t number : {3, 4, 6, 8}) field(first, number, 0);
+  field(first, 7, entity_.matrix);
   field(first, 5, entity_.level);
   std::memcpy(first + 64, entity_.status.data(), 8);
   first[72] = 'D';

@@ -55,6 +55,7 @@ struct Entity {
   int color = 0;  // directory pointer of a 314; 0: none
   int level = 0;
   std::string_view label;  // ASCII; its first 8 characters are kept
+  int matrix = 0;          // directory pointer of a 124; 0: none
 };
 
 class Records {

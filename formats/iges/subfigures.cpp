@@ -54,6 +54,14 @@ class Expansion {
   int depth_ = 0;
 };
 
+// What has no name of its own has the instance's.
+void take_over(const Attributes& own, cad::Part& part) {
+  if (part.name.empty()) part.name = own.name;
+  if (!part.color) part.color = own.color;
+  for (cad::Face& face : part.faces)
+    if (face.name.empty()) face.name = own.name;
+}
+
 void stand_instance(Reading& reading, const DirectoryEntry& entry, Parameters& in, const Context& context) {
   const int pointer = in.pointer();
   const double x = in.real(), y = in.real(), z = in.real(), scale = in.real(1);
@@ -74,10 +82,19 @@ void stand_instance(Reading& reading, const DirectoryEntry& entry, Parameters& i
   Context inner = context;
   inner.placement = context.placement * Placement::of(scale * Eigen::Matrix3d::Identity(), {x, y, z}) *
                     reading.placement(*definition);
-  for (const int member : members) {
-    if (!inside.ok() || !in.ok()) break;
-    reading.stand(member, inner, in);
-  }
+  const Attributes own = reading.attributes(entry, in);
+  if (!in.ok()) return;
+  const std::size_t before = reading.model().parts.size();
+  // Faces that are placed together are one part, as in a group.
+  if (members.size() > 1 &&
+      std::all_of(members.begin(), members.end(), [&](int member) { return reading.is_face(member); }))
+    reading.stand_together(entry, own, members, inner, in);
+  else
+    for (const int member : members) {
+      if (!inside.ok() || !in.ok()) break;
+      reading.stand(member, inner, in);
+    }
+  if (reading.model().parts.size() == before + 1) take_over(own, reading.model().parts.back());
   if (!reading.finish(*definition, inside)) in.give_up({});
 }
 

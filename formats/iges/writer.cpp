@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -38,6 +39,12 @@ std::optional<double> largest_of(std::span<const double> values) {
   return std::isfinite(magnitude) ? std::optional(magnitude) : std::nullopt;
 }
 
+// FNV-1a over whole doubles.
+void take_digest(const std::vector<Vec3>& points, std::uint64_t& digest) {
+  for (const double value : numbers_of(points))
+    digest = (digest ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001B3;
+}
+
 // The mean thickness of the yarn's first section: the length of its control polygon over pi.
 double size_of(const nurbs::Surface& surface) {
   double length = 0;
@@ -45,7 +52,7 @@ double size_of(const nurbs::Surface& surface) {
   return length / std::numbers::pi;
 }
 
-class Writer final : public BodyWriter {
+class Writer final : public FileWriter {
  public:
   Writer(OutputFile& output, const SurfaceOptions& options, Header header, Records::Limits limits)
       : output_(&output),
@@ -54,25 +61,47 @@ class Writer final : public BodyWriter {
         records_(output, header_text(header_).bytes.size(), limits) {}
 
   Status add(const yarn::Body& body) override;
+  Status add_instance(const yarn::Body& body, const Instance& instance) override;
+  Status add_group(std::span<const Item> parts) override;
   Status add_piece(const fabric::PieceShape& piece) override;
   Result<WriteFacts> finish() override;
+
+  std::int64_t lines_of(const yarn::Body& body) override;
+  [[nodiscard]] bool is_empty() const override { return bodies_ == 0; }
+  [[nodiscard]] const Header& header() const override { return header_; }
+  [[nodiscard]] std::uint64_t digest() const override { return extremes_.digest; }
 
  private:
   struct Shared {
     std::vector<std::pair<yarn::Color, int>> colors;        // and their 314
     std::array<bool, yarn::all_roles.size() + 1> levels{};  // by role, and that of pieces
+    std::map<std::size_t, int> definitions;                 // of shapes that have copies: their 308
   };
 
+  // What fails leaves no trace.
+  template <class Work>
+  Status whole_or_nothing(Work work) {
+    const Extremes before = extremes_;
+    Status status = work();
+    if (!status.ok()) extremes_ = before;
+    return status;
+  }
   Status check(const yarn::Body& body);
   Status check(const fabric::PieceShape& piece);
   // `values`: an upper bound of the lines that `write` writes; `what`: "yarn warp1".
   Status check_room(std::int64_t values, const std::string& what, const std::function<void()>& write);
+  Records::Lines measured(const std::function<void()>& write);
   Status add_checked(const std::string& name, const std::string& what, std::int64_t values,
-                     const std::function<void()>& write);
-  void write(const yarn::Body& body);
+                     const std::function<void()>& write, std::uint64_t bodies = 1);
+  int write(const yarn::Body& body);
+  int write(const yarn::Body& body, const Instance& instance);
+  int definition_of(const Instance& instance);
+  Status check(const yarn::Body& body, const Instance& instance);
+  std::int64_t most_values_of(const yarn::Body& body, const Instance* instance) const;
+  void write_group_of(std::span<const Item> parts);
+  void warn_of_name(const std::string& name, const std::string& what);
   void write(const fabric::PieceShape& piece);
-  int write_surfaces(const Common& common, const yarn::Body& body);
-  Status close_group();
+  std::vector<int> write_faces(const Common& common, const yarn::Body& body);
   int color(const yarn::Color& color);
   int level(std::size_t index, std::string_view name);
   [[nodiscard]] int entities_of_end(const yarn::EndFace& end) const;
@@ -83,14 +112,13 @@ class Writer final : public BodyWriter {
   Records records_;
   Shared shared_;
   std::string name_;  // of the present yarn or piece, in ASCII
-  int last_ = 0;      // directory pointer of the yarn written last: of its group or solid
-  // The yarn whose plies or filaments come at present, what they share, and theirs so far.
-  std::string group_;
-  Common group_common_;
-  std::vector<int> members_;
   std::uint64_t bodies_ = 0;
-  double largest_ = 0;
-  double smallest_size_ = std::numeric_limits<double>::infinity();
+  // Of all that was written.
+  struct Extremes {
+    double largest = 0;
+    double smallest_size = std::numeric_limits<double>::infinity();
+    std::uint64_t digest = 0xCBF29CE484222325;  // of control points
+  } extremes_;
   std::vector<Message> messages_;
   bool renamed_ = false;
 };
@@ -113,6 +141,7 @@ Status Writer::check(const yarn::Body& body) {
           Kind::geometry, body,
           fmt::format("yarn {} has a coordinate, weight or knot that is not a finite number", body.name));
     largest = std::max(largest, *coordinates);
+    take_digest(surface->points, extremes_.digest);
   }
   for (const yarn::EndFace* end : {&body.start, &body.end}) {
     if (body.closed_along) break;
@@ -131,8 +160,8 @@ Status Writer::check(const yarn::Body& body) {
                         fmt::format("yarn {} has an end plane that is not finite", body.name));
     largest = std::max(largest, *corners);
   }
-  largest_ = std::max(largest_, largest);
-  smallest_size_ = std::min(smallest_size_, size_of(body.surface));
+  extremes_.largest = std::max(extremes_.largest, largest);
+  extremes_.smallest_size = std::min(extremes_.smallest_size, size_of(body.surface));
   return {};
 }
 
@@ -158,10 +187,10 @@ Status Writer::check(const fabric::PieceShape& piece) {
     double length = 0;  // of the control polygon
     for (std::size_t i = 1; i < edge.curve.points.size(); ++i)
       length += (edge.curve.points[i] - edge.curve.points[i - 1]).norm();
-    smallest_size_ = std::min(smallest_size_, length);
+    extremes_.smallest_size = std::min(extremes_.smallest_size, length);
   }
   const nurbs::Surface plane = plane_of(piece);
-  largest_ = std::max(largest_, largest_of(numbers_of(plane.points)).value_or(0));
+  extremes_.largest = std::max(extremes_.largest, largest_of(numbers_of(plane.points)).value_or(0));
   return {};
 }
 
@@ -172,20 +201,36 @@ Status Writer::check_room(std::int64_t values, const std::string& what, const st
   const std::int64_t most = records_.limits().lines;
   if (now.parameters + values <= most && now.directory + values <= most) return {};
 
-  const Shared before = shared_;
-  records_.measure(true);
-  write();
-  const Records::Lines needed = records_.measure(false);
-  shared_ = before;
+  const Records::Lines needed = measured(write);
   if (needed.parameters <= most && needed.directory <= most) return {};
   const bool parameters = needed.parameters > most;
+  const std::int64_t count = parameters ? needed.parameters : needed.directory;
+  const std::string_view section = parameters ? "parameter" : "directory";
+  if (is_empty())
+    return error(Kind::limit, fmt::format("{} alone needs {} {} lines of an IGES file, where lines are "
+                                          "numbered to {} at most",
+                                          what, count, section, most));
   return error(
       Kind::limit,
       fmt::format("with {} the IGES file would need {} {} lines, but lines are numbered to {} at most ({} {} "
-                  "fit): split the fabric over several files",
-                  what, parameters ? needed.parameters : needed.directory,
-                  parameters ? "parameter" : "directory", most, bodies_,
+                  "fit), and this output is one file: name a file with -o, and the fabric is split over "
+                  "several",
+                  what, count, section, most, bodies_,
                   what.starts_with("yarn") ? "yarns" : "yarns and pieces"));
+}
+
+// What the sections would have with it.
+Records::Lines Writer::measured(const std::function<void()>& write) {
+  const Shared before = shared_;
+  records_.measure(true);
+  write();
+  shared_ = before;
+  return records_.measure(false);
+}
+
+std::int64_t Writer::lines_of(const yarn::Body& body) {
+  const Records::Lines now = records_.lines(), with = measured([&] { write(body); });
+  return std::max(with.parameters - now.parameters, with.directory - now.directory);
 }
 
 int Writer::color(const yarn::Color& color) {
@@ -218,24 +263,25 @@ int Writer::entities_of_end(const yarn::EndFace& end) const {
   return 0;
 }
 
-int Writer::write_surfaces(const Common& common, const yarn::Body& body) {
-  std::array<int, 3> faces{};
-  std::size_t count = 0;
-  faces[count++] = write_surface(records_, common.entity(128), body.surface, common.name);
+// The faces of a yarn that is no solid.
+std::vector<int> Writer::write_faces(const Common& common, const yarn::Body& body) {
+  std::vector<int> faces = {write_surface(records_, common.entity(128), body.surface, common.name)};
   for (const yarn::EndFace* end : {&body.start, &body.end}) {
     if (body.closed_along || end->style == EndStyle::none) continue;
-    faces[count++] = end->style == EndStyle::planar
-                         ? write_planar_end(records_, common, body, end == &body.end)
-                         : write_surface(records_, common.entity(128), end->surface, common.name);
+    faces.push_back(end->style == EndStyle::planar
+                        ? write_planar_end(records_, common, body, end == &body.end)
+                        : write_surface(records_, common.entity(128), end->surface, common.name));
   }
   // Whoever sews the group takes the direction of the shell from its first member. Gmsh makes one solid of
   // all shells of a file and then splits it, which fails where two of them point outward: so a face that
   // points inward leads.
-  if (count > 1 && !body.inward) std::swap(faces[0], faces[1]);
-  return write_group(records_, common, {faces.data(), count});
+  if (faces.size() > 1 && !body.inward) std::swap(faces[0], faces[1]);
+  return faces;
 }
 
-void Writer::write(const yarn::Body& body) {
+// Returns the directory pointer of its group or solid.
+int Writer::write(const yarn::Body& body) {
+  name_ = ascii(body.name);
   Common common{.color = color(body.color),
                 .level = level(static_cast<std::size_t>(body.role), yarn::name_of(body.role)),
                 .label = name_};
@@ -245,11 +291,51 @@ void Writer::write(const yarn::Body& body) {
   else if (!body.closed_along)
     entities += entities_of_end(body.start) + entities_of_end(body.end);
   common.name = records_.next() + 2 * entities;
-  if (options_.iges_solid)
-    last_ = write_solid(records_, common, body);
-  else
-    last_ = write_surfaces(common, body);
+  const int pointer = options_.iges_solid ? write_solid(records_, common, body)
+                                          : write_group(records_, common, write_faces(common, body));
   write_name(records_, common, name_);
+  return pointer;
+}
+
+// Returns the directory pointer of the 308, which comes before the first copy.
+int Writer::definition_of(const Instance& instance) {
+  const auto known = shared_.definitions.find(instance.shape);
+  if (known != shared_.definitions.end()) return known->second;
+  const yarn::Body& body = *instance.body;
+  const std::string name = ascii(body.name);
+  const Common common{.color = color(body.color),
+                      .level = level(static_cast<std::size_t>(body.role), yarn::name_of(body.role)),
+                      .label = {},  // names are the copies'
+                      .status = dependent};
+  const std::vector<int> members =
+      options_.iges_solid ? std::vector{write_solid(records_, common, body)} : write_faces(common, body);
+  const int pointer = write_definition(records_, common, name, members);
+  shared_.definitions.emplace(instance.shape, pointer);
+  return pointer;
+}
+
+int Writer::write(const yarn::Body& body, const Instance& instance) {
+  const int definition = definition_of(instance);
+  const std::string name = ascii(body.name);
+  Common common{.color = color(body.color),
+                .level = level(static_cast<std::size_t>(body.role), yarn::name_of(body.role)),
+                .label = name};
+  common.name = records_.next() + 2 * entities_of_instance(instance.motion);
+  const int pointer = write_instance(records_, common, definition, instance.motion);
+  write_name(records_, common, name);
+  return pointer;
+}
+
+void Writer::write_group_of(std::span<const Item> parts) {
+  std::vector<int> members;
+  for (const Item& part : parts)
+    members.push_back(part.instance ? write(part.body, *part.instance) : write(part.body));
+  const yarn::Body& last = parts.back().body;
+  const std::string name = ascii(last.group);
+  Common common{.color = color(last.color), .level = static_cast<int>(last.role) + 1, .label = name};
+  common.name = records_.next() + 2;
+  write_group(records_, common, members);
+  write_name(records_, common, name);
 }
 
 void Writer::write(const fabric::PieceShape& piece) {
@@ -260,60 +346,77 @@ void Writer::write(const fabric::PieceShape& piece) {
   write_name(records_, common, name_);
 }
 
-Status Writer::add(const yarn::Body& body) {
-  if (Status status = check(body); !status.ok()) return status;
-  if (body.group != group_)
-    if (Status closed = close_group(); !closed.ok()) return closed;
-  Status added = add_checked(body.name, "yarn " + body.name, most_values(body), [&] { write(body); });
-  if (added.ok() && !body.group.empty()) {
-    group_ = body.group;
-    group_common_ = {.color = color(body.color), .level = static_cast<int>(body.role) + 1, .label = {}};
-    members_.push_back(last_);
-  }
-  if (added.ok()) return added;
-  if (added.error().kind == Kind::limit) {
-    added.error().yarn = body.name;
-    added.error().place = body.place;
-  }
-  return added;
-}
-
-// The plies and filaments of a yarn, one group with the yarn's name.
-Status Writer::close_group() {
-  if (members_.empty()) return {};
-  const std::string name = ascii(group_);
-  Common common = group_common_;
-  common.label = name;
-  const auto values = 1000 + 2 * static_cast<std::int64_t>(members_.size());
-  const auto write = [&] {
-    common.name = records_.next() + 2;
-    write_group(records_, common, members_);
-    write_name(records_, common, name);
-  };
-  if (Status status = check_room(values, "yarn " + group_, write); !status.ok()) return status;
-  write();
-  members_.clear();
-  group_.clear();
-  return records_.status();
-}
-
-Status Writer::add_piece(const fabric::PieceShape& piece) {
-  Status status = check(piece);
-  if (status.ok())
-    status = add_checked(piece.name, "piece " + piece.name, most_values(piece), [&] { write(piece); });
-  if (!status.ok() && status.error().kind != Kind::io) status.error().place = piece.place;
+// A limit is told of the yarn.
+Status of_yarn(Status status, const std::string& name, TextPlace place) {
+  if (status.ok() || status.error().kind != Kind::limit) return status;
+  status.error().yarn = name;
+  status.error().place = place;
   return status;
 }
 
+Status Writer::add(const yarn::Body& body) {
+  return whole_or_nothing([&]() -> Status {
+    if (Status status = check(body); !status.ok()) return status;
+    return of_yarn(add_checked(body.name, "yarn " + body.name, most_values(body), [&] { write(body); }),
+                   body.name, body.place);
+  });
+}
+
+// A shape that is new to the file counts as well.
+Status Writer::check(const yarn::Body& body, const Instance& instance) {
+  Status status = check(body);
+  if (status.ok() && !shared_.definitions.contains(instance.shape)) status = check(*instance.body);
+  return status;
+}
+
+std::int64_t Writer::most_values_of(const yarn::Body& body, const Instance* instance) const {
+  if (instance == nullptr) return most_values(body);
+  return 1000 + (shared_.definitions.contains(instance->shape) ? 0 : most_values(*instance->body));
+}
+
+Status Writer::add_instance(const yarn::Body& body, const Instance& instance) {
+  return whole_or_nothing([&]() -> Status {
+    if (Status status = check(body, instance); !status.ok()) return status;
+    return of_yarn(add_checked(body.name, "yarn " + body.name, most_values_of(body, &instance),
+                               [&] { write(body, instance); }),
+                   body.name, body.place);
+  });
+}
+
+Status Writer::add_group(std::span<const Item> parts) {
+  return whole_or_nothing([&]() -> Status {
+    std::int64_t values = 1000 + 2 * static_cast<std::int64_t>(parts.size());
+    for (const Item& part : parts) {
+      if (Status status = part.instance ? check(part.body, *part.instance) : check(part.body); !status.ok())
+        return status;
+      values += most_values_of(part.body, part.instance ? &*part.instance : nullptr);
+    }
+    const yarn::Body& last = parts.back().body;
+    for (const Item& part : parts) warn_of_name(part.body.name, "yarn " + part.body.name);
+    return of_yarn(
+        add_checked(
+            last.group, "yarn " + last.group, values, [&] { write_group_of(parts); }, parts.size()),
+        last.group, last.place);
+  });
+}
+
+Status Writer::add_piece(const fabric::PieceShape& piece) {
+  return whole_or_nothing([&] {
+    Status status = check(piece);
+    if (status.ok())
+      status = add_checked(piece.name, "piece " + piece.name, most_values(piece), [&] { write(piece); });
+    if (!status.ok() && status.error().kind != Kind::io) status.error().place = piece.place;
+    return status;
+  });
+}
+
 Status Writer::add_checked(const std::string& name, const std::string& what, std::int64_t values,
-                           const std::function<void()>& write) {
+                           const std::function<void()>& write, std::uint64_t bodies) {
   name_ = ascii(name);
   if (Status status = check_room(values, what, write); !status.ok()) return status;
-  if (name_ != name && !std::exchange(renamed_, true))
-    messages_.push_back(warning(
-        Kind::unsupported, fmt::format("IGES strings are ASCII: {} is named {} in the file", what, name_)));
+  warn_of_name(name, what);
   write();
-  ++bodies_;
+  bodies_ += bodies;
   // What is still to come is as what came.
   const auto entities = static_cast<std::uint64_t>(records_.lines().directory / 2);
   if (options_.expected_bodies > bodies_) {
@@ -325,12 +428,18 @@ Status Writer::add_checked(const std::string& name, const std::string& what, std
   return records_.status();
 }
 
+void Writer::warn_of_name(const std::string& name, const std::string& what) {
+  const std::string written = ascii(name);
+  if (written == name || std::exchange(renamed_, true)) return;
+  messages_.push_back(warning(
+      Kind::unsupported, fmt::format("IGES strings are ASCII: {} is named {} in the file", what, written)));
+}
+
 Result<WriteFacts> Writer::finish() {
-  if (Status closed = close_group(); !closed.ok()) return closed.error();
   const Result<std::uint64_t> end = records_.finish();
   if (!end) return end.error();
-  header_.largest = largest_;
-  header_.resolution = resolution_for(bodies_ > 0 ? smallest_size_ : 0, largest_);
+  header_.largest = extremes_.largest;
+  header_.resolution = resolution_for(bodies_ > 0 ? extremes_.smallest_size : 0, extremes_.largest);
   const HeaderText text = header_text(header_);
   const Records::Lines lines = records_.lines();
   if (Status status = output_->write_at(0, text.bytes); !status.ok()) return status.error();
@@ -345,13 +454,14 @@ Result<WriteFacts> Writer::finish() {
 
 }  // namespace
 
-Result<std::unique_ptr<BodyWriter>> open_writer(OutputFile& output, const SurfaceOptions& options,
-                                                Records::Limits limits) {
+std::unique_ptr<FileWriter> open_file(OutputFile& output, const SurfaceOptions& options,
+                                      Records::Limits limits) {
   Header header{.title = options.title,
                 .file_name = options.file_name,
                 .units = options.units,
-                .time = options.date.empty() ? iges_timestamp() : options.date};
-  return std::unique_ptr<BodyWriter>(std::make_unique<Writer>(output, options, std::move(header), limits));
+                .time = options.date.empty() ? iges_timestamp() : options.date,
+                .part = {}};
+  return std::make_unique<Writer>(output, options, std::move(header), limits);
 }
 
 }  // namespace selvage::formats::iges

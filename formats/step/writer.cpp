@@ -32,6 +32,8 @@
 #include <XSControl_TransferWriter.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <array>
+#include <gp_Trsf.hxx>
+#include <gp_Vec.hxx>
 #include <map>
 #include <optional>
 #include <ostream>
@@ -78,6 +80,11 @@ class StepBodyWriter : public BodyWriter {
     return solid::occt::guarded(fmt::format("yarn '{}' to STEP", body.name), [&] { return add_shape(body); });
   }
 
+  Status add_instance(const yarn::Body& body, const Instance& instance) override {
+    return solid::occt::guarded(fmt::format("yarn '{}' to STEP", body.name),
+                                [&] { return add_copy(body, instance); });
+  }
+
   Status add_piece(const fabric::PieceShape& piece) override {
     return solid::occt::guarded(fmt::format("piece '{}' to STEP", piece.name), [&]() -> Status {
       const solid::FaceCheck verdict = solid::occt::check_piece(piece);
@@ -110,9 +117,40 @@ class StepBodyWriter : public BodyWriter {
   }
 
  private:
+  // A place of a part that is there already, or comes with it.
+  Status add_copy(const yarn::Body& body, const Instance& instance) {
+    const auto [known, is_new] = copied_.try_emplace(instance.shape);
+    if (is_new) {
+      Result<Part> part = part_of(*instance.body);
+      if (!part) {
+        copied_.erase(known);
+        return part.error();
+      }
+      known->second = add_part_of(std::move(*part));
+    }
+    gp_Trsf motion;
+    const Eigen::Matrix3d& r = instance.motion.rotation;
+    const Vec3& t = instance.motion.offset;
+    if (instance.motion.is_translation())
+      motion.SetTranslation(gp_Vec(t.x(), t.y(), t.z()));
+    else
+      motion.SetValues(r(0, 0), r(0, 1), r(0, 2), t.x(), r(1, 0), r(1, 1), r(1, 2), t.y(), r(2, 0), r(2, 1),
+                       r(2, 2), t.z());
+    add_component(body.group.empty() ? assembly_ : group_assembly(body.group), known->second, body.name,
+                  TopLoc_Location(motion));
+    return {};
+  }
+
   Status add_shape(const yarn::Body& body) {
+    Result<Part> part = part_of(body);
+    if (!part) return part.error();
+    add_component_of(std::move(*part), body.group);
+    return {};
+  }
+
+  Result<Part> part_of(const yarn::Body& body) {
     Status finite = check_finite(body.surface.points, "yarn '" + body.name + "'");
-    if (!finite.ok()) return finite;
+    if (!finite.ok()) return finite.error();
     const bool open_by_choice = !body.closed_along && (body.start.style == yarn::EndStyle::none ||
                                                        body.end.style == yarn::EndStyle::none);
     if (!open_by_choice) {
@@ -133,8 +171,7 @@ class StepBodyWriter : public BodyWriter {
     } else {
       ++facts_.entities["MANIFOLD_SOLID_BREP"];
     }
-    add_component_of({yarn.shape, body.name, body.color, {}}, body.group);
-    return {};
+    return Part{yarn.shape, body.name, body.color, {}};
   }
 
   // OpenCASCADE would write "nan", which no reader reads.
@@ -174,25 +211,32 @@ class StepBodyWriter : public BodyWriter {
 
   // Plies and filaments are parts of an assembly of their own, named as the yarn that they make up.
   void add_component_of(Part added, const std::string& group) {
+    const std::string name = added.name;
+    const TDF_Label part = add_part_of(std::move(added));
+    add_component(group.empty() ? assembly_ : group_assembly(group), part, name);
+  }
+
+  TDF_Label add_part_of(Part added) {
     const TDF_Label part = shapes_->AddShape(added.shape, false, false);
-    add_component(group.empty() ? assembly_ : group_assembly(group), part, added.name);
+    TDataStd_Name::Set(part, TCollection_ExtendedString(added.name.c_str(), true));
     parts_.push_back(std::move(added));
+    return part;
   }
 
   TDF_Label group_assembly(const std::string& group) {
     const auto [known, is_new] = groups_.try_emplace(group);
     if (is_new) {
       known->second = shapes_->NewShape();
+      TDataStd_Name::Set(known->second, TCollection_ExtendedString(group.c_str(), true));
       add_component(assembly_, known->second, group);
     }
     return known->second;
   }
 
-  void add_component(const TDF_Label& assembly, const TDF_Label& part, const std::string& named) {
-    const TDF_Label component = shapes_->AddComponent(assembly, part, TopLoc_Location());
-    const TCollection_ExtendedString name(named.c_str(), true);
-    TDataStd_Name::Set(part, name);
-    TDataStd_Name::Set(component, name);
+  void add_component(const TDF_Label& assembly, const TDF_Label& part, const std::string& named,
+                     const TopLoc_Location& place = {}) {
+    const TDF_Label component = shapes_->AddComponent(assembly, part, place);
+    TDataStd_Name::Set(component, TCollection_ExtendedString(named.c_str(), true));
   }
 
   Result<WriteFacts> write() {
@@ -316,6 +360,7 @@ class StepBodyWriter : public BodyWriter {
   Handle(XCAFDoc_ShapeTool) shapes_;
   TDF_Label assembly_;
   std::map<std::string, TDF_Label> groups_;  // by the yarn's name
+  std::map<std::size_t, TDF_Label> copied_;  // parts that stand in several places, by the shape's number
   std::vector<Part> parts_;                  // in file order
   WriteFacts facts_;
 };

@@ -11,8 +11,8 @@ namespace selvage::cli {
 
 namespace {
 
-constexpr std::array<std::string_view, 7> later_options = {
-    "--instances", "--cut", "--matrix", "--periodic", "--gap", "--relax", "--as-published"};
+constexpr std::array<std::string_view, 6> later_options = {"--cut", "--matrix", "--periodic",
+                                                           "--gap", "--relax",  "--as-published"};
 constexpr std::array<std::string_view, 3> later_commands = {"roundtrip", "relax", "report"};
 
 Status parse_shard(const std::string& text, pipeline::Options& options) {

@@ -130,6 +130,19 @@ Status OutputFile::resize(std::uint64_t size) {
   return {};
 }
 
+Status OutputFile::set_target(const fs::path& target) {
+  const fs::path hidden = hidden_name(target_);
+  target_ = target;
+  std::error_code failure;
+  if (fs::is_directory(target, failure)) {
+    errno = EISDIR;
+    return io_error("cannot write");
+  }
+  if (has_hidden_name_ && ::rename(hidden.c_str(), hidden_name(target_).c_str()) != 0)
+    return io_error("cannot write");
+  return {};
+}
+
 std::uint64_t OutputFile::size() const {
   struct stat facts {};
   return ::fstat(descriptor_, &facts) == 0 ? static_cast<std::uint64_t>(facts.st_size) : 0;

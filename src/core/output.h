@@ -44,6 +44,8 @@ class OutputFile {
   [[nodiscard]] std::uint64_t size() const;
   [[nodiscard]] Result<std::string> contents() const;
   [[nodiscard]] const std::filesystem::path& target() const { return target_; }
+  // Another name for commit() to give, in the same folder. Error (io): it is a directory.
+  Status set_target(const std::filesystem::path& target);
   // The hidden name used where there are no unnamed files: removed before and after each run.
   static std::filesystem::path hidden_name(const std::filesystem::path& target);
 

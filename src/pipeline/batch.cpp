@@ -16,6 +16,7 @@
 #include "pipeline/inputs.h"
 #include "pipeline/job.h"
 #include "pipeline/outputs.h"
+#include "pipeline/parts.h"
 #include "pipeline/report.h"
 
 namespace selvage::pipeline {
@@ -117,6 +118,8 @@ void Batch::receive(std::size_t job, char kind, std::string_view bytes) {
     work.results += bytes;
   } else if (kind == packet::report) {
     work.report = bytes;
+  } else if (kind == packet::files) {
+    files_ += std::stoul(std::string(bytes));
   } else if (kind == packet::progress) {
     doing_ = bytes;
     progress_.set(counts_.done + counts_.failed + counts_.skipped, counts_.failed, doing_);
@@ -171,7 +174,6 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
     ++counts_.skipped;
   } else if (verdict == Verdict::done || verdict == Verdict::defect) {
     ++counts_.done;
-    files_ += outputs_[job].size();
     if (verdict == Verdict::defect) ++defects_;
   } else {
     ++counts_.failed;
@@ -184,7 +186,11 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
 // Hidden files of a run that was killed where there are no unnamed files (core/output.h).
 void Batch::remove_leftovers(std::size_t job) const {
   for (const PlannedOutput& output : outputs_[job])
-    if (!output.to_standard_output) ::unlink(OutputFile::hidden_name(output.path).c_str());
+    if (!output.to_standard_output) {
+      ::unlink(OutputFile::hidden_name(output.path).c_str());
+      for (int number = 1; ::unlink(OutputFile::hidden_name(part_path(output.path, number)).c_str()) == 0;)
+        ++number;
+    }
 }
 
 double Batch::tick() {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pipeline/facts.h"
+#include "pipeline/instances.h"
 #include "pipeline/scaling.h"
 #include "pipeline/writing.h"
 
@@ -24,14 +25,19 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
       converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, surface.units);
   surface.iges_solid = job.options.iges_solid || fabric.yarns_are_solids;
   surface.step_schema = job.options.step_schema;
+  surface.iges_lines = job.options.iges_lines;
+  surface.split_yarns = job.options.split_yarns;
   return surface;
 }
 
 bool open_writers(Job& job, const fabric::Fabric& fabric, std::size_t count, OpenOutputs& outputs) {
   for (OpenOutput& output : outputs) {
     if (output.plan->format->write_fabric != nullptr) continue;
+    formats::SurfaceOptions options = surface_options(job, fabric, *output.plan, count);
+    if (!output.plan->to_standard_output)
+      options.next_part = [&output](int number) { return open_part(output, number); };
     Result<std::unique_ptr<formats::BodyWriter>> writer =
-        output.plan->format->open_bodies(output.file, surface_options(job, fabric, *output.plan, count));
+        output.plan->format->open_bodies(output.file, options);
     if (!writer) {
       job.say(writer.error());
       return false;
@@ -49,10 +55,12 @@ std::string formats_with(bool formats::Descriptor::*what) {
   return names;
 }
 
-bool add_to_all(Job& job, const yarn::Body& body, OpenOutputs& outputs) {
+bool add_to_all(Job& job, const yarn::Body& body, const std::optional<formats::Instance>& instance,
+                OpenOutputs& outputs) {
   for (OpenOutput& output : outputs) {
     if (!output.writer) continue;
-    if (Status status = output.writer->add(body); !status.ok()) {
+    const Status status = instance ? output.writer->add_instance(body, *instance) : output.writer->add(body);
+    if (!status.ok()) {
       job.say(status.error());
       return false;
     }
@@ -115,6 +123,27 @@ void write_others(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) 
   }
 }
 
+// The first of two passes; what fails here is told in the second one.
+std::optional<InstanceFinder> find_instances(Job& job, const fabric::Fabric& fabric,
+                                             const fabric::YarnBuilder& builder) {
+  if (!job.options.instances) return std::nullopt;
+  const Unit units = job.options.units.value_or(fabric.units);
+  InstanceFinder finder(converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, units));
+  for (std::size_t index = 0; index < builder.count(); ++index) {
+    job.progress("comparing yarn", index + 1, builder.count());
+    Result<yarn::Body> body = builder.build(index);
+    if (!body) continue;
+    convert_lengths(*body, fabric.units, units);
+    finder.count(*body);
+  }
+  return finder;
+}
+
+void report_instances(Job& job, const InstanceFinder& finder, Unit units) {
+  job.report.instances = finder.found();
+  job.report.instances->largest_deviation *= millimetres_per(units);
+}
+
 void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
   const std::optional<fabric::YarnBuilder> builder = job.builder(fabric);
   if (!builder || !can_carry(job, fabric, builder->count(), outputs) ||
@@ -124,13 +153,15 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
           outputs))
     return;
   const Unit units = job.options.units.value_or(fabric.units);
+  std::optional<InstanceFinder> finder = find_instances(job, fabric, *builder);
   std::optional<double> thinnest;
   bool is_written = true;
   job.for_each_yarn(*builder, "writing yarn", [&](yarn::Body&& body) {
     if (job.wants_report())
       thinnest = std::min(thinnest.value_or(thinnest_section(body)), thinnest_section(body));
     convert_lengths(body, fabric.units, units);
-    if (!job.has_failed()) is_written = add_to_all(job, body, outputs);
+    if (job.has_failed()) return true;
+    is_written = add_to_all(job, body, finder ? finder->place(body) : std::nullopt, outputs);
     return is_written;
   });
   if (!is_written) return;
@@ -139,6 +170,7 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
   if (job.has_failed()) return;
   for (OpenOutput& output : outputs)
     if (output.writer && !take_facts(job, output, output.writer->finish())) return;
+  if (finder) report_instances(job, *finder, units);
   if (thinnest)
     job.report.creo_absolute_accuracy = creo_accuracy(*thinnest * millimetres_per(fabric.units), {});
 }

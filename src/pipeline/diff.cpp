@@ -14,6 +14,7 @@
 #include "pipeline/batch.h"
 #include "pipeline/differences.h"
 #include "pipeline/job.h"
+#include "pipeline/parts.h"
 #include "pipeline/subject.h"
 
 namespace selvage::pipeline {
@@ -49,7 +50,7 @@ Verdict work(const DiffRequest& request, const Channel& channel) {
   bool has_failed = false;
   const std::vector<PlannedOutput> no_outputs;
   for (std::size_t k = 0; k < 2; ++k) {
-    const Input input{*paths[k], {}};
+    const Input input{first_file(*paths[k]).string(), {}};
     Job job(request.options, input, no_outputs, channel);
     job.threads = available_cores(request.options);
     const std::optional<fabric::Fabric> fabric = job.read();

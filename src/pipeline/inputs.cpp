@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <string_view>
+#include <unordered_set>
 
 #include "core/source.h"
 #include "pipeline/detect.h"
+#include "pipeline/parts.h"
 
 namespace selvage::pipeline {
 
@@ -39,7 +41,18 @@ class Expansion {
   InputList list;
 
  private:
-  void add_file(const std::string& path) { list.inputs.push_back({path, fs::path(path).stem()}); }
+  // A name that no file has may be that of a fabric in several files.
+  void add_file(const std::string& path) {
+    const std::string file = first_file(path).string();
+    list.inputs.push_back(input_at(file, fs::path(file).filename()));
+  }
+
+  // The outputs of a fabric in several files have no number.
+  static Input input_at(const std::string& path, const fs::path& name) {
+    const std::optional<fs::path> whole = whole_path(name);
+    const bool is_set = whole && mark_of(path);
+    return {path, is_set ? fs::path(*whole).replace_extension() : fs::path(name).replace_extension()};
+  }
 
   Status add_standard_input() {
     if (std::any_of(list.inputs.begin(), list.inputs.end(),
@@ -56,7 +69,7 @@ class Expansion {
     collect(folder, files);
     std::sort(files.begin(), files.end());
     for (const fs::path& file : files)
-      list.inputs.push_back({file.string(), file.lexically_relative(folder).replace_extension()});
+      list.inputs.push_back(input_at(file.string(), file.lexically_relative(folder)));
     if (files.empty() && list.missing.empty())
       list.missing.push_back(about(folder.string(), Kind::io, "no readable file in this folder"));
     return {};
@@ -112,6 +125,18 @@ class Expansion {
   }
 
  public:
+  // Files 2, 3, ... of a fabric whose first one is an input, too, are read with that one.
+  void drop_later_parts() {
+    std::unordered_set<std::string> paths;
+    for (const Input& input : list.inputs) paths.insert(fs::path(input.path).lexically_normal().string());
+    std::erase_if(list.inputs, [&](const Input& input) {
+      const std::optional<fs::path> whole = whole_path(input.path);
+      if (!whole || !paths.contains(part_path(*whole, 1).lexically_normal().string())) return false;
+      const std::optional<formats::PartMark> mark = mark_of(input.path);
+      return mark && mark->number > 1;
+    });
+  }
+
   [[nodiscard]] bool is_one_file() const {
     return !from_folder_ && list.inputs.size() == 1 && list.missing.empty();
   }
@@ -126,6 +151,7 @@ Result<InputList> expand_inputs(const std::vector<std::string>& arguments) {
   Expansion expansion;
   for (const std::string& argument : arguments)
     if (Status status = expansion.add(argument); !status.ok()) return status.error();
+  expansion.drop_later_parts();
   expansion.list.one_file = expansion.is_one_file();
   if (expansion.list.inputs.empty() && expansion.list.missing.empty())
     return error(Kind::usage, "no input: the list is empty");

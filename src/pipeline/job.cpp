@@ -13,6 +13,7 @@
 #include "pipeline/detect.h"
 #include "pipeline/drafts.h"
 #include "pipeline/facts.h"
+#include "pipeline/parts.h"
 
 namespace selvage::pipeline {
 
@@ -27,6 +28,9 @@ std::string settings_of(const Options& options) {
                                  options.ends ? name_of(*options.ends) : "input", options.tolerance);
   if (options.units) text += fmt::format(" units={}", name_of(*options.units));
   if (options.iges_solid) text += " iges-solid";
+  if (options.iges_lines > 0) text += fmt::format(" iges-lines={}", options.iges_lines);
+  if (options.split_yarns) text += " split-yarns";
+  if (options.instances) text += " instances";
   if (options.detail != fabric::Detail::filaments)
     text += options.detail == fabric::Detail::yarn ? " detail=yarn" : " detail=plies";
   if (options.command == Command::mesh)
@@ -39,6 +43,13 @@ std::string settings_of(const Options& options) {
   else
     text += fmt::format(" step-schema={}", options.step_schema);
   return text;
+}
+
+// Of a fabric in several files: all but the first.
+std::vector<std::filesystem::path> further_files(const std::string& path) {
+  std::vector<std::filesystem::path> files = files_of(path);
+  files.erase(files.begin());
+  return files;
 }
 
 std::string plural(std::size_t count, std::string_view noun) {
@@ -124,7 +135,11 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
     say(source.error());
     return std::nullopt;
   }
-  if (wants_report()) report.sha256 = sha256(source->bytes());
+  if (wants_report()) {
+    Result<std::string> digest =
+        files_of(input.path).size() > 1 ? digest_of(input.path) : sha256(source->bytes());
+    if (digest) report.sha256 = *digest;  // a missing file is told by the reading
+  }
   Result<const formats::Descriptor*> format = detect_readable(*source);
   if (!format) {
     say(format.error());
@@ -132,10 +147,14 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
   }
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric;
-  if (look.file) look.file(*source, **format);
+  if (look.file) {
+    look.file(*source, **format);
+    for (const std::filesystem::path& file : further_files(input.path))
+      if (const Result<Source> further = Source::open(file)) look.file(*further, **format);
+  }
   if ((*format)->read_fabric != nullptr) {
     fabric = (*format)->read_fabric(*source, diagnostics);
-  } else if (std::optional<cad::Model> model = (*format)->read_model(*source, diagnostics)) {
+  } else if (std::optional<cad::Model> model = read_whole_model(**format, *source, diagnostics)) {
     if (look.model) look.model(*model, **format);
     fabric = fabric::fabric_of(std::move(*model), diagnostics);
   }
@@ -220,7 +239,7 @@ namespace {
 
 bool may_be_skipped(Job& job, const std::string& earlier) {
   if (earlier.empty() || job.input.path == "-") return false;
-  const Result<std::string> now = sha256_of_file(job.input.path);
+  const Result<std::string> now = digest_of(job.input.path);
   if (!now.ok()) return false;
   std::vector<std::string> paths;
   for (const PlannedOutput& output : job.outputs) paths.push_back(output.path.string());

@@ -32,6 +32,7 @@ inline constexpr char message = 'm';   // a line or block for standard error
 inline constexpr char result = 'r';    // a piece of standard output
 inline constexpr char progress = 'p';  // what is being done right now
 inline constexpr char report = 'j';    // the InputReport as JSON
+inline constexpr char files = 'f';     // how many files were written, as decimal digits
 }  // namespace packet
 
 // What is to look at a CAD file while it is read; either may be empty.
@@ -58,6 +59,7 @@ class Job {
   void say_defect(Message message);
   void say_all(const std::vector<Message>& messages);
   void print(std::string_view text) const { channel_.send(packet::result, text); }
+  void tell_files(std::size_t count) const { channel_.send(packet::files, std::to_string(count)); }
   // "verb done of total", at most 20 times a second.
   void progress(std::string_view verb, std::size_t done, std::size_t total);
 

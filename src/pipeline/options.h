@@ -37,6 +37,9 @@ struct Options {
   fabric::Detail detail = fabric::Detail::filaments;  // how far yarns are taken apart
   std::optional<yarn::EndStyle> ends;                 // none: as the input has them, or patch
   bool iges_solid = false;
+  std::int64_t iges_lines = 0;  // of a section of one file; 0: what the format can number
+  bool instances = false;       // repeat equal yarns by reference
+  bool split_yarns = false;     // cut those that are too long for one file
   std::string step_schema = "AP242";
 
   double size = 0;  // wanted edge length, input's unit; 0: the mesher's choice

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "pipeline/detect.h"
+#include "pipeline/parts.h"
 
 namespace selvage::pipeline {
 
@@ -136,12 +137,25 @@ std::string identity(const fs::path& path) {
 }
 
 Status check_names(const Options& options, const InputList& list,
-                   const std::vector<std::vector<PlannedOutput>>& plan) {
+                   std::vector<std::vector<PlannedOutput>>& plan) {
   const std::string report =
       options.report.empty() || options.report == "-" ? std::string() : identity(options.report);
   std::unordered_map<std::string, std::size_t> input_of;
-  for (std::size_t i = 0; i < plan.size(); ++i)
-    if (list.inputs[i].path != "-") input_of.emplace(identity(list.inputs[i].path), i);
+  // Of names that may be files of a set: by the identity of the name that stands for the set.
+  std::unordered_map<std::string, std::vector<fs::path>> parts_of;
+  const auto note_part = [&](const fs::path& path) {
+    if (const std::optional<fs::path> whole = whole_path(path)) parts_of[identity(*whole)].push_back(path);
+  };
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    if (list.inputs[i].path == "-") continue;
+    const std::vector<fs::path> files = files_of(list.inputs[i].path);
+    for (const fs::path& file : files) {
+      input_of.emplace(identity(file), i);
+      note_part(file);
+    }
+    // To write what stands for the set would be to replace it.
+    if (files.size() > 1) input_of.emplace(identity(*whole_path(files.front())), i);
+  }
   if (input_of.contains(report))
     return error(Kind::usage, fmt::format("the report '{}' would replace an input", options.report));
   std::unordered_map<std::string, std::size_t> writer_of;
@@ -162,8 +176,15 @@ Status check_names(const Options& options, const InputList& list,
                 "'{}' and '{}' would both write '{}'; nothing was done (the files of a folder keep their "
                 "subfolders: name the folder above them as the input)",
                 list.inputs[found->second].path, list.inputs[i].path, output.path.string()));
+      note_part(output.path);
     }
   }
+  for (std::vector<PlannedOutput>& outputs : plan)
+    for (PlannedOutput& output : outputs)
+      if (const auto found = parts_of.find(identity(output.path)); found != parts_of.end())
+        for (const fs::path& part : found->second)
+          if (const std::optional<int> number = part_number(part))
+            output.taken.push_back(part_path(output.path, *number));
   return {};
 }
 
@@ -188,10 +209,10 @@ Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& opti
       return error(Kind::usage, "standard input has no folder for its outputs; name one with -o");
     for (const Descriptor* format : *wanted) {
       if (options.output == "-")
-        plan[i].push_back({format, "<stdout>", true});
+        plan[i].push_back({format, "<stdout>", true, {}});
       else
         plan[i].push_back(
-            {format, as_file ? fs::path(options.output) : output_path(options, input, *format), false});
+            {format, as_file ? fs::path(options.output) : output_path(options, input, *format), false, {}});
     }
   }
   if (Status status = check_names(options, list, plan); !status.ok()) return status.error();

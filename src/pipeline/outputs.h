@@ -18,6 +18,8 @@ struct PlannedOutput {
   const formats::Descriptor* format = nullptr;
   std::filesystem::path path;
   bool to_standard_output = false;
+  // Names that inputs and other outputs have, of those that this one may need where it takes several files.
+  std::vector<std::filesystem::path> taken{};
 };
 
 // The outputs of each input, in the order of `list.inputs`; empty lists for commands that write no files.

@@ -8,6 +8,7 @@
 
 #include "core/sha256.h"
 #include "core/source.h"
+#include "pipeline/parts.h"
 #include "pipeline/versions.h"
 
 namespace selvage::pipeline {
@@ -127,6 +128,10 @@ std::string to_json(const InputReport& report) {
   if (report.min_gap) out["min_gap"] = *report.min_gap;
   if (report.creo_absolute_accuracy) out["creo_absolute_accuracy"] = *report.creo_absolute_accuracy;
   if (!report.outputs.empty()) out["outputs"] = list_json(report.outputs, output_json);
+  if (report.instances)
+    out["instances"] = {{"shapes", report.instances->shapes},
+                        {"copies", report.instances->copies},
+                        {"largest_deviation", report.instances->largest_deviation}};
   if (report.mesh) out["mesh"] = mesh_json(*report.mesh);
   out["messages"] = list_json(report.messages, [to_mm](const Message& m) { return message_json(m, to_mm); });
   return text_of(out);
@@ -176,15 +181,25 @@ bool is_still_valid(const std::string& entry, const std::string& input_sha256, c
   if (!earlier.is_object() || !earlier.contains("ok") || earlier["ok"] != true) return false;
   if (text_at(earlier, "sha256") != input_sha256 || text_at(earlier, "settings") != settings) return false;
   const auto outputs = earlier.find("outputs");
-  if (outputs == earlier.end() || !outputs->is_array() || outputs->size() != output_paths.size())
-    return false;
-  return std::all_of(output_paths.begin(), output_paths.end(), [&](const std::string& path) {
+  if (outputs == earlier.end() || !outputs->is_array()) return false;
+  std::size_t matched = 0;
+  const auto is_whole = [&](const std::string& path) {
     const auto found = std::find_if(outputs->begin(), outputs->end(),
                                     [&](const Json& output) { return text_at(output, "path") == path; });
     if (found == outputs->end()) return false;
     const Result<std::string> now = sha256_of_file(path);
-    return now.ok() && *now == text_at(*found, "sha256");
-  });
+    if (!now.ok() || *now != text_at(*found, "sha256")) return false;
+    ++matched;
+    return true;
+  };
+  for (const std::string& path : output_paths) {
+    if (is_whole(path)) continue;
+    // It may have taken several files.
+    int number = 1;
+    while (is_whole(part_path(path, number).string())) ++number;
+    if (number == 1) return false;
+  }
+  return matched == outputs->size();
 }
 
 std::string marked_skipped(const std::string& entry) {

@@ -65,6 +65,12 @@ struct OutputReport {
   std::map<std::string, std::uint64_t> entities;
 };
 
+// What --instances found.
+struct InstancesReport {
+  std::size_t shapes = 0, copies = 0;  // the yarns that are written by reference, and of how many shapes
+  double largest_deviation = 0;        // of a copy from the yarn as it was built; mm
+};
+
 struct MeshReport {
   std::size_t nodes = 0, tets = 0;
   double min_dihedral = 0, max_aspect = 0;
@@ -86,6 +92,7 @@ struct InputReport {
   std::optional<double> min_gap;
   std::optional<double> creo_absolute_accuracy;
   std::vector<OutputReport> outputs;
+  std::optional<InstancesReport> instances;
   std::optional<MeshReport> mesh;
   std::vector<Message> messages;
 };

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/sha256.h"
+#include "pipeline/parts.h"
 
 namespace selvage::pipeline {
 
@@ -15,10 +18,81 @@ std::optional<OpenOutputs> open_outputs(Job& job) {
       job.say(file.error());
       return std::nullopt;
     }
-    outputs.push_back({&plan, std::move(*file), {}, nullptr});
+    outputs.push_back({&plan, std::move(*file), {}, {}, nullptr});
   }
   return outputs;
 }
+
+Result<OutputFile*> open_part(OpenOutput& output, int number) {
+  for (const int part : {1, number}) {
+    const std::filesystem::path path = part_path(output.plan->path, part);
+    const auto& taken = output.plan->taken;
+    if (std::find(taken.begin(), taken.end(), path) == taken.end()) continue;
+    return error(Kind::usage,
+                 fmt::format("'{}' does not fit into one file, and its file {}, '{}', would replace "
+                             "an input or another output; name another place with -o",
+                             output.plan->path.string(), part, path.string()));
+  }
+  Result<OutputFile> file = OutputFile::create(part_path(output.plan->path, number));
+  if (!file) return file.error();
+  return &output.parts.emplace_back(std::move(*file));
+}
+
+namespace {
+
+// One output file for the report.
+Result<OutputReport> report_of(const Job& job, const OpenOutput& output, const OutputFile& file,
+                               const formats::EntityCounts& entities) {
+  OutputReport facts{
+      file.target().string(), std::string(output.plan->format->name), {}, file.size(), entities};
+  if (output.plan->to_standard_output) facts.path = output.plan->path.string();
+  if (!job.wants_report()) return facts;
+  Result<std::string> digest = sha256_of(file);
+  if (!digest) return digest.error();
+  facts.sha256 = *digest;
+  return facts;
+}
+
+// All files of an output, named and for the report; false when that failed (it was said why).
+bool report_files(Job& job, OpenOutput& output, std::vector<OutputReport>& written) {
+  const std::vector<formats::EntityCounts>& parts = output.facts.parts;
+  if (!output.parts.empty()) {
+    const std::filesystem::path first = part_path(output.plan->path, 1);
+    if (Status status = output.file.set_target(first); !status.ok()) {
+      job.say(status.error());
+      return false;
+    }
+    job.say(
+        warning(Kind::limit, fmt::format("too long for one {} file: written as {} files, '{}' to '{}', each "
+                                         "whole; '{}' stands for all of them",
+                                         output.plan->format->name, parts.size(), first.string(),
+                                         output.parts.back().target().string(), first.string())));
+  }
+  for (std::size_t k = 0; k <= output.parts.size(); ++k) {
+    const OutputFile& file = k == 0 ? output.file : output.parts[k - 1];
+    Result<OutputReport> facts =
+        report_of(job, output, file, parts.empty() ? output.facts.entities : parts[k]);
+    if (!facts) {
+      job.say(facts.error());
+      return false;
+    }
+    written.push_back(std::move(*facts));
+  }
+  return true;
+}
+
+// In order, and what an earlier run left in the same place goes last.
+Status commit(OpenOutput& output) {
+  Status status = output.file.commit();
+  for (OutputFile& part : output.parts)
+    if (status.ok()) status = part.commit();
+  if (!status.ok() || output.plan->to_standard_output || output.plan->format->part_mark == nullptr)
+    return status;
+  const auto count = static_cast<int>(output.parts.size());
+  return remove_stale_parts(output.plan->path, count > 0 ? count + 2 : 1, output.plan->taken);
+}
+
+}  // namespace
 
 bool take_facts(Job& job, OpenOutput& output, Result<formats::WriteFacts> facts) {
   if (!facts) {
@@ -33,21 +107,12 @@ bool take_facts(Job& job, OpenOutput& output, Result<formats::WriteFacts> facts)
 void commit_all(Job& job, OpenOutputs& outputs) {
   if (job.has_failed()) return;
   std::vector<OutputReport> written;
-  for (OpenOutput& output : outputs) {
-    OutputReport facts{output.plan->path.string(),
-                       std::string(output.plan->format->name),
-                       {},
-                       output.file.size(),
-                       output.facts.entities};
-    if (job.wants_report()) {
-      Result<std::string> digest = sha256_of(output.file);
-      if (!digest) return job.say(digest.error());
-      facts.sha256 = *digest;
-    }
-    written.push_back(std::move(facts));
-  }
   for (OpenOutput& output : outputs)
-    if (Status status = output.file.commit(); !status.ok()) return job.say(status.error());
+    if (!report_files(job, output, written)) return;
+  if (job.has_failed()) return;  // --strict
+  for (OpenOutput& output : outputs)
+    if (Status status = commit(output); !status.ok()) return job.say(status.error());
+  job.tell_files(written.size());
   for (const OutputReport& output : written) {
     if (!job.options.verbose) continue;
     Message note;

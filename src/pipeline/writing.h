@@ -14,6 +14,7 @@ namespace selvage::pipeline {
 struct OpenOutput {
   const PlannedOutput* plan = nullptr;
   OutputFile file;
+  std::deque<OutputFile> parts;  // files 2, 3, ... where one does not hold all
   formats::WriteFacts facts;
   std::unique_ptr<formats::BodyWriter> writer;  // of surface formats; refers to `file`
 };
@@ -23,6 +24,10 @@ using OpenOutputs = std::deque<OpenOutput>;
 
 // Nothing when one cannot be opened (it was said why).
 std::optional<OpenOutputs> open_outputs(Job& job);
+
+// Opens the next file of an output, for its writer. Errors: io; usage: an input or another output has the
+// name.
+Result<OutputFile*> open_part(OpenOutput& output, int number);
 
 // Takes the facts of one finished format; false when it failed (it was said why).
 bool take_facts(Job& job, OpenOutput& output, Result<formats::WriteFacts> facts);

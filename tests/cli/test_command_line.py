@@ -35,7 +35,7 @@ class Usage(Case):
     def test_words_of_later_versions(self):
         for word in ("roundtrip", "relax", "report"):
             self.refused(f"'selvage {word}' is not in this version", word, GRID)
-        for word in ("--instances", "--cut", "--matrix", "--relax", "--as-published"):
+        for word in ("--cut", "--matrix", "--relax", "--as-published"):
             self.refused(f"'{word}' is not in this version", "convert", GRID, word, "-o", self.out)
         for word in ("--matrix", "--periodic", "--gap=0.1"):
             self.refused("is not in this version", "mesh", GRID, word, "-o", self.out)
@@ -43,7 +43,8 @@ class Usage(Case):
     def test_values(self):
         for option, value in (("-j", "0"), ("-j", "x"), ("--timeout", "-1"), ("--memory", "0"), ("--ends", "round"),
                               ("--units", "feet"), ("--tolerance", "0"), ("--step-schema", "AP203"), ("--shard", "2/2"),
-                              ("--shard", "1"), ("--shard", "-1/2"), ("--shard", "0/0")):
+                              ("--shard", "1"), ("--shard", "-1/2"), ("--shard", "0/0"), ("--iges-lines", "99"),
+                              ("--iges-lines", "10000000")):
             self.refused(re.escape(option), "convert", GRID, "-o", self.out, option, value)
         for option, value in (("--order", "3"), ("--size", "0"), ("--min-dihedral", "90")):
             self.refused(re.escape(option), "mesh", GRID, "-o", self.out, option, value)

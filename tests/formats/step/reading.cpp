@@ -99,8 +99,8 @@ ReadFile read_step(const std::string& path) {
     TDF_Label label;
     if (!XCAFDoc_ShapeTool::GetReferredShape(components(i), label)) return file;
     const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
-    ReadPart part = examine(shape);
-    part.name = name_of(label);
+    ReadPart part = examine(XCAFDoc_ShapeTool::GetShape(components(i)));  // where it was placed
+    part.name = name_of(components(i));
     Quantity_Color color;
     if (colors->GetColor(shape, XCAFDoc_ColorSurf, color) ||
         colors->GetColor(shape, XCAFDoc_ColorGen, color)) {
