@@ -304,10 +304,13 @@ class ModelReader {
         context.colors.emplace(XCAFDoc_ShapeTool::GetShape(subshape).TShape().get(), *own);
     const std::size_t first_part = model_.parts.size(), first_curve = model_.curves.size();
     Status status = take_shape(XCAFDoc_ShapeTool::GetShape(product).Moved(place), context);
-    // One thing in a product without a name of its own has the product's.
-    if (model_.parts.size() == first_part + 1 && model_.parts.back().name.empty())
+    // One thing in a product without a name of its own has the product's; where the product stands in several
+    // places, that of the place, which tells them apart.
+    TDF_LabelSequence users;
+    const bool is_repeated = XCAFDoc_ShapeTool::GetUsers(product, users) > 1 && !name.empty();
+    if (model_.parts.size() == first_part + 1 && (model_.parts.back().name.empty() || is_repeated))
       model_.parts.back().name = name;
-    if (model_.curves.size() == first_curve + 1 && model_.curves.back().name.empty())
+    if (model_.curves.size() == first_curve + 1 && (model_.curves.back().name.empty() || is_repeated))
       model_.curves.back().name = name;
     return status;
   }

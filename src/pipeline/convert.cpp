@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/parallel.h"
 #include "pipeline/facts.h"
 #include "pipeline/instances.h"
 #include "pipeline/scaling.h"
@@ -129,12 +130,17 @@ std::optional<InstanceFinder> find_instances(Job& job, const fabric::Fabric& fab
   if (!job.options.instances) return std::nullopt;
   const Unit units = job.options.units.value_or(fabric.units);
   InstanceFinder finder(converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, units));
-  for (std::size_t index = 0; index < builder.count(); ++index) {
-    job.progress("comparing yarn", index + 1, builder.count());
-    Result<yarn::Body> body = builder.build(index);
-    if (!body) continue;
-    convert_lengths(*body, fabric.units, units);
-    finder.count(*body);
+  const std::size_t batch = 2 * job.threads;
+  for (std::size_t first = 0; first < builder.count(); first += batch) {
+    job.progress("comparing yarn", first + 1, builder.count());
+    std::vector<std::optional<Result<yarn::Body>>> built(std::min(batch, builder.count() - first));
+    for_each_index(built.size(), static_cast<int>(job.threads),
+                   [&](std::size_t i) { built[i] = builder.build(first + i); });
+    for (std::optional<Result<yarn::Body>>& body : built) {
+      if (!body->ok()) continue;
+      convert_lengths(**body, fabric.units, units);
+      finder.count(**body);
+    }
   }
   return finder;
 }
