@@ -139,11 +139,15 @@ class Comparison:
             share = 1e-6  # by chords, here
         self.surface(what, own, own_face["surface"]["samples"], other.surface, other.loops, share)
         self.side(what, own_face, other)
-        if other.loops and not own_face["loops"]:
+        loops = own_face["loops"]
+        if other.loops and not loops:
             self.natural(what, own, other.loops)
-        elif len(own_face["loops"]) != len(other.loops):
-            self.say("{}: {} loops, {} by the standard", what, len(own_face["loops"]), len(other.loops))
-        for i, (loop, space) in enumerate(zip(own_face["loops"], other.loops)):
+        elif other.outer_is_border and loops:
+            self.natural(what, own, [[ours_curve(e["curve"], self.factor) for e in loops[0] if e["curve"]]])
+            loops = loops[1:]
+        if loops and len(loops) != len(other.loops):
+            self.say("{}: {} loops, {} by the standard", what, len(loops), len(other.loops))
+        for i, (loop, space) in enumerate(zip(loops, other.loops)):
             name = "%s loop %d" % (what, i)
             curves = [ours_curve(e["curve"], self.factor) for e in loop if e["curve"]]
             if space and curves:

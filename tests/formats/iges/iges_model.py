@@ -15,7 +15,10 @@ DEPTH = 50
 
 class Face:
     """surface, loops (lists of curves in space, in order), flats (the same in parameters, or None each), reversed,
-    chain (the directory pointers from the part down to the surface), entity (whose name and colour it has)."""
+    chain (the directory pointers from the part down to the surface), entity (whose name and colour it has).
+    outer_is_border: the outer loop is the border of the surface, and not among the loops."""
+
+    outer_is_border = False
 
 
 class Part:
@@ -332,7 +335,9 @@ class Model:
             surface, outer, holes, first = v.integer(), v.integer(), v.integer(), v.integer()
             loops = [self.boundary_142(first, e, place)] if outer else []
             loops += [self.boundary_142(p, e, place) for p in v.integers(holes)]
-        return self.face(self.surface(surface, e), [e.de, surface], e, place, loops)
+        face = self.face(self.surface(surface, e), [e.de, surface], e, place, loops)
+        face.outer_is_border = e.type == 144 and not outer and bool(loops)
+        return face
 
     def plane_108(self, e, place):
         v = Values(e.values, e.what)
@@ -366,7 +371,8 @@ class Model:
         v.integer()
         loops = [self.loop_508(p, e) for p in v.integers(n)]
         place = place.after(self.own_place(e))
-        return self.face(self.surface(surface, e), [parent.de, e.de, surface], e, place, loops, turned)
+        # A mirror image of a solid has its outside outside.
+        return self.face(self.surface(surface, e), [parent.de, e.de, surface], e, place, loops, turned != place.mirrors())
 
     def shell_514(self, de, parent, place, turned=False):
         e = self.target(de, parent, 514)
