@@ -30,7 +30,7 @@ std::vector<std::string> files_below(const fs::path& folder, const std::vector<s
 fs::path dumped(const fs::path& file) {
   fs::path dump = scratch() / (file.filename().string() + ".json");
   const Output done =
-      run(std::string(SELVAGE_BIN) + "/dump_cad '" + file.string() + "' 2>&1 > '" + dump.string() + "'");
+      run("{ " + std::string(SELVAGE_BIN) + "/dump_cad '" + file.string() + "' > '" + dump.string() + "'; }");
   EXPECT_EQ(done.exit_code, 0) << done.text;
   return dump;
 }

@@ -268,23 +268,33 @@ class Comparison:
         return sum(other.surface.off(times(s[2:5], self.factor)) for s in samples[6:9])
 
     def part(self, own, found):
-        kinds = {p.kind for p in found}
-        if found and kinds != {own["kind"]} :
-            solid_group = own["kind"] == "surfaces" and kinds <= {"surfaces"}
-            if not solid_group:
-                self.say("{}: a part of kind {} instead of {}", own["entity"], own["kind"], kinds)
-        groups = [(g, set(members)) for g, members in self.model.groups()]
-        if own["kind"] == "surfaces" and len(found) > 1:
+        if not found:
+            return
+        if {p.kind for p in found} != {own["kind"]}:
+            self.say("{}: a part of kind {} instead of {}", own["entity"], own["kind"], {p.kind for p in found})
+        home = found[0].entity
+        if own["kind"] == "surfaces" and (len(found) > 1 or de_of(own["entity"]) != home.de):
             members = {p.entity.de for p in found}
-            home = [g for g, m in groups if members <= m]
-            if not home:
+            groups = [g for g, m in self.model.groups() if members <= set(m)]
+            if not groups:
                 self.say("{}: a part of faces that no group of the file holds", own["entity"])
-            elif self.model.name(home[0]) and own["name"] != self.model.name(home[0]):
-                self.say("{}: name {!r} instead of {!r}", own["entity"], own["name"], self.model.name(home[0]))
-        if own["kind"] == "solid" and found:
-            name = self.model.name(found[0].entity)
-            if name and own["name"] != name:
-                self.say("{}: name {!r} instead of {!r}", own["entity"], own["name"], name)
+                return
+            home = groups[0]
+        elif len({id(p) for p in found}) != 1:
+            self.say("{}: faces of several solids or shells", own["entity"])
+        if de_of(own["entity"]) != home.de:
+            self.say("{}: a part that is {}", own["entity"], home.what)
+        self.own_looks(own, home)
+
+    def own_looks(self, own, e):
+        """What the entity itself says of its name, colour and level."""
+        name, color = self.model.name(e), self.model.color(e)
+        if name and own["name"] != name:
+            self.say("{}: name {!r} instead of {!r}", own["entity"], own["name"], name)
+        if color and (not own["color"] or max(abs(a - 2.55 * b) for a, b in zip(own["color"], color)) > 1):
+            self.say("{}: colour {} instead of {}", own["entity"], own["color"], color)
+        if own["level"] != self.model.level(e):
+            self.say("{}: level {} instead of {}", own["entity"], own["level"], self.model.level(e))
 
     def curves(self):
         left = list(self.model.curves)
@@ -303,7 +313,7 @@ class Comparison:
             else:
                 left.remove(other)
                 self.curve(own["entity"], mine, other, APPROXIMATE.get(other.entity.type, FORMULA))
-            self.curve_looks(own, other)
+            self.own_looks(own, other.entity)
             self.checked["curves"] += 1
         for entity in own_left:
             self.say("{}: a curve that is not in the file, or there twice", entity)
@@ -318,17 +328,6 @@ class Comparison:
         self.near("%s: our points" % pieces[0].entity.what,
                   max(min(c.off(p) for c in pieces) for p in mine.samples(9)), FORMULA)
         return True
-
-    def curve_looks(self, own, other):
-        e = other.entity
-        name = self.model.name(e)
-        if name and own["name"] != name:
-            self.say("{}: name {!r} instead of {!r}", own["entity"], own["name"], name)
-        wanted = self.model.color(e)
-        if wanted and (not own["color"] or max(abs(a - 2.55 * b) for a, b in zip(own["color"], wanted)) > 1):
-            self.say("{}: colour {} instead of {}", own["entity"], own["color"], wanted)
-        if own["level"] != self.model.level(e):
-            self.say("{}: level {} instead of {}", own["entity"], own["level"], self.model.level(e))
 
     def header(self):
         f = self.model.file
