@@ -191,18 +191,29 @@ void Reading::count_entities() {
     if (entry.blanked && !entry.is_physically_dependent() && blanked_count++ == 0) blanked = &entry;
   }
   for (const auto& [kind, count] : types) model_.entities[std::to_string(kind.first)] = count;
+  constexpr std::size_t most_kinds = 100;  // told by name: a file of noise has many
+  std::size_t kinds = 0;
   for (const auto& [kind, count] : unknown) {
     const auto [type, form] = kind;
     const std::string_view title = entity_title(type);
     const std::string name = fmt::format("{}{} ({})", type, form != 0 ? fmt::format(" form {}", form) : "",
                                          title.empty() ? "no type of IGES 5.3" : title);
+    if (++kinds > most_kinds) {
+      model_.unknown["others"] += count;
+      continue;
+    }
     model_.unknown[name] += count;
     const bool is_geometry = (type >= 100 && type < 200) || (type >= 408 && type < 500) || type > 500;
-    if (is_geometry && first.count(kind) != 0)  // what is part of something else is told with that
-      report_.warning(
-          file_.spot(*first[kind]),
-          fmt::format("{} of type {}: not understood, and left out",
-                      count == 1 ? std::string("an entity") : fmt::format("{} entities", count), name));
+    const auto stands = first.find(kind);  // what is part of something else is told with that
+    const std::string text =
+        fmt::format("{} of type {}: not understood, and left out",
+                    count == 1 ? std::string("an entity") : fmt::format("{} entities", count), name);
+    if (is_geometry && stands != first.end())
+      report_.warning(file_.spot(*stands->second), text);
+    else
+      report_.note(stands != first.end() ? file_.spot(*stands->second)
+                                         : file_.lines().line(Section::directory, 1).spot(),
+                   text);
   }
   if (blanked != nullptr)
     report_.note(file_.spot(*blanked),
