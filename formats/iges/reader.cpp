@@ -14,6 +14,7 @@ std::optional<cad::Model> read(const Source& source, TextReport& report) {
   model.file = source.name();
   // Our own writer puts the file's name where there is no title.
   if (global.product != global.file_name) model.title = global.product;
+  model.file_name = global.file_name;
   model.date = global.date;
   model.units = global.units;
   model.resolution = global.resolution;

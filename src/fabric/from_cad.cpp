@@ -11,6 +11,7 @@ Fabric fabric_of(cad::Model model, Diagnostics& diagnostics) {
   fabric.units = model.units;
   fabric.units_given = true;
   fabric.date = std::move(model.date);
+  fabric.file_name = std::move(model.file_name);
   fabric.curves = std::move(model.curves);
   cad::Recognized found = cad::recognize_yarns(std::move(model.parts));
   for (yarn::Body& body : found.yarns) {

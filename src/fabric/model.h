@@ -278,6 +278,7 @@ struct Fabric {
   std::vector<cad::Part> parts;
   std::vector<cad::NamedCurve> curves;
   std::string date;               // YYYYMMDD.HHNNSS; empty: not known
+  std::string file_name;          // that it gives itself in its header; empty: none
   bool yarns_are_solids = false;  // IGES: 186s, not groups of 128s
 
   [[nodiscard]] const Thread* find_thread(std::string_view name) const;

@@ -19,6 +19,9 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
   surface.title = fabric.title.value_or("");
   surface.file_name =
       output.to_standard_output ? job.input.stem.filename().string() : output.path.filename().string();
+  // A file that is read and written again stays the same to the byte, under whatever name.
+  for (const std::string_view extension : output.format->extensions)
+    if (fabric.file_name.ends_with(extension)) surface.file_name = fabric.file_name;
   surface.units = job.options.units.value_or(fabric.units);
   surface.expected_bodies = count;
   surface.date = fabric.date;
