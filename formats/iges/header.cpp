@@ -166,7 +166,7 @@ std::optional<PartMark> part_mark(std::string_view head) {
   };
   if (!take_number(mark.number, between) || !take_number(mark.count, set_word)) return std::nullopt;
   mark.set = rest.substr(0, rest.find('.'));
-  if (mark.number > mark.count || mark.set.empty()) return std::nullopt;
+  if (mark.number > mark.count || mark.count > most_files || mark.set.empty()) return std::nullopt;
   return mark;
 }
 

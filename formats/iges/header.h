@@ -34,6 +34,9 @@ struct HeaderText {
 };
 HeaderText header_text(const Header& header);
 
+// A set has no more files: their numbers fit into the first line, and nobody has so many by intent.
+inline constexpr int most_files = 99'999;
+
 // What the first line of a file says of the set that it is part of.
 std::optional<PartMark> part_mark(std::string_view head);
 

@@ -158,6 +158,8 @@ Status SetWriter::finish_file() {
 
 Status SetWriter::open_next() {
   if (Status status = finish_file(); !status.ok()) return status;
+  if (finished_.size() == most_files)
+    return error(Kind::limit, fmt::format("the fabric needs more than {} files", most_files));
   Result<OutputFile*> next = options_.next_part(static_cast<int>(finished_.size()) + 1);
   if (!next) return next.error();
   output_ = *next;

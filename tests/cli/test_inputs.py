@@ -47,12 +47,14 @@ class Kinds(Case):
         self.assertEqual(self.converted(self.folder / "fabric.dat"), ["fabric.igs"])
 
     def test_shards_are_a_partition(self):
+        inputs = self.folder / "in"  # the outputs can be read, too, and are no inputs
+        inputs.mkdir()
         for i in range(7):
-            shutil.copy(RING, self.folder / f"r{i}.txt")
+            shutil.copy(RING, inputs / f"r{i}.txt")
         parts = []
         for i in range(3):
             out = self.folder / f"part{i}"
-            self.succeeds("convert", self.folder / "", "--to", "iges", "-o", f"{out}/", "--shard", f"{i}/3")
+            self.succeeds("convert", inputs, "--to", "iges", "-o", f"{out}/", "--shard", f"{i}/3")
             parts.append({name for name in files_below(out) if name.startswith("r")})
         self.assertEqual(sorted(map(len, parts)), [2, 2, 3])
         self.assertEqual(set.union(*parts), {f"r{i}.igs" for i in range(7)})

@@ -160,6 +160,7 @@ TEST(Set, MarksOfOtherFilesAreNone) {
   EXPECT_FALSE(part_mark("Selvage 1.0: B-spline yarns, file 0 of 2, set ab."));
   EXPECT_FALSE(part_mark("Selvage 1.0: B-spline yarns, file 3 of 2, set ab."));
   EXPECT_FALSE(part_mark("Selvage 1.0: B-spline yarns, file 99999999999 of 2, set ab."));
+  EXPECT_FALSE(part_mark("Selvage 1.0: B-spline yarns, file 1 of 2000000000, set ab."));
   EXPECT_FALSE(part_mark("Selvage 1.0: B-spline yarns, file 1 of 2, set ."));
   EXPECT_FALSE(part_mark("Other: B-spline yarns, file 1 of 2, set ab."));
   EXPECT_EQ(part_mark("Selvage 1.0: B-spline yarns, file 1 of 2, set ab.  "),
