@@ -389,7 +389,8 @@ Comparison Comparer::run() {
     if (k == findings.size()) break;
     const auto [i, j] = pairing.pairs[k];
     report_pair(a_.list[i], b_.list[j], findings[k]);
-    out_.matches.push_back({i, j, findings[k].reach.at_most, findings[k].reach.at_least});
+    out_.matches.push_back(
+        {a_.list[i].kind, a_.list[i].name, findings[k].reach.at_least, findings[k].reach.at_most});
   }
   for (const std::size_t j : pairing.only_b) report_lonely(b_.list[j], Difference::Kind::added);
   add_notes();

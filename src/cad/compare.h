@@ -57,11 +57,11 @@ struct Comparison {
   std::string largest_of;               // the thing that has it
   std::vector<std::string> notes;       // what is no difference of geometry: units, missing names, ...
   struct Match {
-    std::size_t a = 0, b = 0;  // indices in Things::list
-    double deviation = 0;      // at most; infinite where it has no bound
-    double found = 0;          // at least
+    Thing::Kind what = Thing::Kind::part;
+    std::string name;                  // in a
+    double at_least = 0, at_most = 0;  // how far it is from its partner; infinite: no bound
   };
-  std::vector<Match> matches;
+  std::vector<Match> matches;  // in the order of a
 };
 
 // Both models in one unit. A name or a colour that only one of the two has is a note, not a difference.

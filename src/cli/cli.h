@@ -24,6 +24,7 @@ void add_check(CLI::App& program, Parsed& parsed);
 void add_mesh(CLI::App& program, Parsed& parsed);
 void add_info(CLI::App& program, Parsed& parsed);
 void add_diff(CLI::App& program, Parsed& parsed);
+void add_roundtrip(CLI::App& program, Parsed& parsed);
 void add_edit(CLI::App& program, Parsed& parsed);
 void add_view(CLI::App& program, Parsed& parsed);
 void add_formats(CLI::App& program, Parsed& parsed);

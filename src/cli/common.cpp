@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<std::string_view, 6> later_options = {"--cut", "--matrix", "--periodic",
                                                            "--gap", "--relax",  "--as-published"};
-constexpr std::array<std::string_view, 3> later_commands = {"roundtrip", "relax", "report"};
+constexpr std::array<std::string_view, 2> later_commands = {"relax", "report"};
 
 Status parse_shard(const std::string& text, pipeline::Options& options) {
   if (text.empty()) return {};

@@ -52,6 +52,7 @@ int run(int count, char** words) {
   add_convert(program, parsed);
   add_check(program, parsed);
   add_mesh(program, parsed);
+  add_roundtrip(program, parsed);
   add_diff(program, parsed);
   add_info(program, parsed);
   add_edit(program, parsed);

@@ -13,11 +13,14 @@
 #include "core/clock.h"
 #include "core/process.h"
 #include "core/progress.h"
+#include "core/temporary.h"
 #include "pipeline/inputs.h"
 #include "pipeline/job.h"
+#include "pipeline/junit.h"
 #include "pipeline/outputs.h"
 #include "pipeline/parts.h"
 #include "pipeline/report.h"
+#include "pipeline/roundtrip.h"
 
 namespace selvage::pipeline {
 
@@ -63,9 +66,12 @@ class Batch {
   double tick();
   void remove_leftovers(std::size_t job) const;
 
-  [[nodiscard]] bool wants_report() const { return !options_.report.empty() || options_.json; }
+  [[nodiscard]] bool wants_report() const {
+    return !options_.report.empty() || !options_.junit.empty() || options_.json;
+  }
   [[nodiscard]] std::string report_text(bool ok) const;
   Status write_report(bool ok) const;
+  Status write_junit(const std::vector<Message>& missing) const;
   [[nodiscard]] std::string entry_of_earlier(const std::string& path) const;
   [[nodiscard]] int exit_code() const;
   void summarize() const;
@@ -99,6 +105,7 @@ double seconds_since(Clock::time_point start) {
 
 int Batch::run_one(std::size_t index, const Channel& channel) const {
   Job job(options_, inputs_[index], outputs_[index], channel);
+  job.number = index;
   const std::size_t workers = available_cores(options_);
   job.threads = std::max<std::size_t>(1, workers / std::min(workers, inputs_.size()));
   return static_cast<int>(run_job(job, entry_of_earlier(inputs_[index].path), channel));
@@ -226,6 +233,18 @@ Status Batch::write_report(bool ok) const {
   return file->commit();
 }
 
+Status Batch::write_junit(const std::vector<Message>& missing) const {
+  if (options_.junit.empty()) return {};
+  std::vector<JunitInput> all;
+  for (std::size_t i = 0; i < work_.size(); ++i) all.push_back({inputs_[i].path, work_[i].report});
+  for (std::size_t i = 0; i < missing.size(); ++i) all.push_back({missing[i].file, missing_reports_[i]});
+  Result<OutputFile> file =
+      options_.junit == "-" ? OutputFile::standard_output() : OutputFile::create(options_.junit);
+  if (!file) return file.error();
+  if (Status status = file->write(junit_text(all, started_, seconds_since(start_))); !status) return status;
+  return file->commit();
+}
+
 int Batch::exit_code() const {
   if (counts_.failed > 0) return exit_code::failed;
   return defects_ > 0 ? exit_code::defect : exit_code::well;
@@ -280,7 +299,8 @@ int Batch::run(const std::vector<Message>& missing) {
                  std::strerror(output_failure_));
     if (code == exit_code::well) code = exit_code::failed;
   }
-  if (Status status = write_report(code == exit_code::well); !status.ok()) {
+  for (const Status& status : {write_report(code == exit_code::well), write_junit(missing)}) {
+    if (status.ok()) continue;
     std::fprintf(stderr, "%s\n", to_string(status.error()).c_str());
     if (code == exit_code::well) code = exit_code::failed;
   }
@@ -296,10 +316,12 @@ Result<std::map<std::string, std::string>> earlier_entries(const Options& option
 }
 
 // A report that cannot be written is better known before the work than after it.
-Status check_report_place(const Options& options) {
-  if (options.report.empty() || options.report == "-") return {};
-  Result<OutputFile> trial = OutputFile::create(options.report);
-  return trial ? Status{} : Status{trial.error()};
+Status check_report_places(const Options& options) {
+  for (const std::string* place : {&options.report, &options.junit}) {
+    if (place->empty() || *place == "-") continue;
+    if (const Result<OutputFile> trial = OutputFile::create(*place); !trial) return trial.error();
+  }
+  return {};
 }
 
 }  // namespace
@@ -318,14 +340,22 @@ int refuse(const Message& message) {
   return exit_code::usage;
 }
 
-int run(const Options& options) {
+int run(const Options& wanted) {
+  Options options = wanted;
+  std::optional<TemporaryFolder> scratch;
+  if (options.command == Command::roundtrip) {
+    if (const Result<std::vector<Trip>> trips = wanted_trips(options); !trips) return refuse(trips.error());
+    Result<TemporaryFolder> made = TemporaryFolder::create();
+    if (!made) return refuse(made.error());
+    options.scratch = scratch.emplace(std::move(*made)).path();
+  }
   Result<InputList> list = expand_inputs(options.inputs);
   if (!list) return refuse(list.error());
   Result<std::vector<std::vector<PlannedOutput>>> plan = plan_outputs(options, *list);
   if (!plan) return refuse(plan.error());
   Result<std::map<std::string, std::string>> earlier = earlier_entries(options);
   if (!earlier) return refuse(earlier.error());
-  if (Status status = check_report_place(options); !status.ok()) return refuse(status.error());
+  if (Status status = check_report_places(options); !status.ok()) return refuse(status.error());
   keep_part(list->inputs, options.part, options.parts);
   keep_part(*plan, options.part, options.parts);
   if (options.part > 0) list->missing.clear();

@@ -70,6 +70,8 @@ std::string_view name_of(Command command) {
       return "info";
     case Command::view:
       return "view";
+    case Command::roundtrip:
+      return "roundtrip";
   }
   return "convert";
 }
@@ -96,7 +98,7 @@ void Job::show(Message message) {
                      (message.severity == Severity::warning && !options.quiet) || options.verbose ||
                      (options.command == Command::info && !options.quiet);
   if (shown) channel_.send(packet::message, to_string(message));
-  if (wants_report()) report.messages.push_back(std::move(message));
+  if (wants_report() || keeps_messages) report.messages.push_back(std::move(message));
 }
 
 void Job::say_all(const std::vector<Message>& messages) {
@@ -264,6 +266,9 @@ Verdict work(Job& job, const std::string& earlier) {
       break;
     case Command::check:
       defective = check(job);
+      break;
+    case Command::roundtrip:
+      defective = roundtrip(job);
       break;
   }
   if (job.has_failed()) return Verdict::failed;

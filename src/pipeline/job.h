@@ -50,7 +50,9 @@ class Job {
   const Options& options;
   const Input& input;
   const std::vector<PlannedOutput>& outputs;
-  std::size_t threads = 1;  // that this job may use
+  std::size_t threads = 1;      // that this job may use
+  std::size_t number = 0;       // of the input in this run
+  bool keeps_messages = false;  // in its report, whether or not that is written
   InputReport report;
 
   // Passes a message on; one without a file gets the input's name.
@@ -65,7 +67,9 @@ class Job {
 
   // An error, or with --strict a warning, was said.
   [[nodiscard]] bool has_failed() const { return errors_ > 0 || (options.strict && warnings_ > 0); }
-  [[nodiscard]] bool wants_report() const { return !options.report.empty() || options.json; }
+  [[nodiscard]] bool wants_report() const {
+    return !options.report.empty() || !options.junit.empty() || options.json;
+  }
 
   // Reads the input; nothing when that failed (it was said why). The fabric of an input that cannot be built
   // is fine.
@@ -87,6 +91,7 @@ class Job {
                                                 bool defects = false);
 
   [[nodiscard]] fabric::BuildOptions build_options() const;
+  [[nodiscard]] const Channel& channel() const { return channel_; }
   [[nodiscard]] Unit file_units() const { return report.units.value_or(Unit::mm); }
 
  private:
@@ -111,5 +116,7 @@ void info(Job& job);
 void view(Job& job);
 // True when a defect was found.
 bool check(Job& job);
+// True when something came back different.
+bool roundtrip(Job& job);
 
 }  // namespace selvage::pipeline

@@ -14,7 +14,7 @@
 
 namespace selvage::pipeline {
 
-enum class Command { convert, check, mesh, info, view };
+enum class Command { convert, check, mesh, info, view, roundtrip };
 std::string_view name_of(Command command);
 
 struct Options {
@@ -52,6 +52,11 @@ struct Options {
   int picture_width = 1200, picture_height = 900;  // pixels
   yarn::Color background{255, 255, 255};
   bool flat = false;
+
+  // roundtrip
+  std::optional<double> difference_tolerance;  // input's unit; none: what each format keeps
+  std::string junit;                           // JUnit XML goes to this file; empty: nowhere
+  std::string scratch;                         // a folder that is there while the run is
 
   bool json = false;   // info
   bool table = false;  // info: the fixed points and control points of garment curves

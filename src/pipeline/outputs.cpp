@@ -192,7 +192,8 @@ Status check_names(const Options& options, const InputList& list,
 
 Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list) {
   std::vector<std::vector<PlannedOutput>> plan(list.inputs.size());
-  if (options.command == Command::check || options.command == Command::info) {
+  if (options.command == Command::check || options.command == Command::info ||
+      options.command == Command::roundtrip) {
     if (Status status = check_names(options, list, plan); !status.ok()) return status.error();
     return plan;
   }

@@ -79,6 +79,29 @@ Json mesh_json(const MeshReport& mesh) {
           {"max_aspect", mesh.max_aspect}, {"volume", mesh.volume}, {"volume_error", mesh.volume_error}};
 }
 
+Json roundtrip_json(const RoundtripReport& trip) {
+  Json out = {{"format", trip.format}, {"seconds", trip.seconds}};
+  if (!trip.error.empty()) {
+    out["error"] = trip.error;
+    return out;
+  }
+  Json yarns = Json::array();
+  for (const RoundtripReport::Yarn& yarn : trip.yarns) {
+    yarns.push_back({{"name", yarn.name}});
+    if (std::isfinite(yarn.deviation)) yarns.back()["deviation"] = yarn.deviation;
+  }
+  out["equal"] = trip.equal;
+  if (std::isfinite(trip.largest)) out["largest_deviation"] = trip.largest;
+  if (!trip.largest_of.empty()) out["largest_of"] = trip.largest_of;
+  out["closed"] = {trip.closed_before, trip.closed_after};
+  out["volume"] = {trip.volume_before, trip.volume_after};
+  out["yarn_count"] = {trip.yarns_before, trip.yarns_after};
+  out["yarns"] = yarns;
+  out["differences"] = trip.differences;
+  if (!trip.notes.empty()) out["notes"] = trip.notes;
+  return out;
+}
+
 Json message_json(const Message& message, double to_mm) {
   std::string where = message.file;
   if (message.place.line > 0) where += fmt::format(":{}", message.place.line);
@@ -133,6 +156,7 @@ std::string to_json(const InputReport& report) {
                         {"copies", report.instances->copies},
                         {"largest_deviation", report.instances->largest_deviation}};
   if (report.mesh) out["mesh"] = mesh_json(*report.mesh);
+  if (!report.roundtrips.empty()) out["roundtrips"] = list_json(report.roundtrips, roundtrip_json);
   out["messages"] = list_json(report.messages, [to_mm](const Message& m) { return message_json(m, to_mm); });
   return text_of(out);
 }

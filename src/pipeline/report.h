@@ -78,6 +78,24 @@ struct MeshReport {
   double volume_error = 0;  // relative to the B-spline yarns, >= 0
 };
 
+// Through one format and back. Lengths in mm, volumes in mm3.
+struct RoundtripReport {
+  std::string format;
+  std::string error;  // why it did not come back; empty: it did
+  bool equal = false;
+  double seconds = 0;
+  double largest = 0;  // deviation: a bound on the distance, or of control points
+  std::string largest_of;
+  std::size_t yarns_before = 0, yarns_after = 0, closed_before = 0, closed_after = 0;
+  double volume_before = 0, volume_after = 0;  // of all yarns
+  struct Yarn {
+    std::string name;
+    double deviation = 0;
+  };
+  std::vector<Yarn> yarns;
+  std::vector<std::string> differences, notes;
+};
+
 struct InputReport {
   std::string path;
   std::string settings;  // what the outputs depend on beside the input: `--resume` compares it
@@ -94,6 +112,7 @@ struct InputReport {
   std::vector<OutputReport> outputs;
   std::optional<InstancesReport> instances;
   std::optional<MeshReport> mesh;
+  std::vector<RoundtripReport> roundtrips;
   std::vector<Message> messages;
 };
 

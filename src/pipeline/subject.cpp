@@ -18,8 +18,7 @@ void add_piece(const fabric::PieceShape& piece, cad::Model& model) {
 
 }  // namespace
 
-std::optional<cad::Subject> subject_of(Job& job, const fabric::Fabric& fabric,
-                                       const std::function<void(const yarn::Body&)>& look) {
+std::optional<cad::Subject> subject_of(Job& job, const fabric::Fabric& fabric, const Onlooker& onlooker) {
   const std::optional<fabric::YarnBuilder> builder = job.builder(fabric);
   if (!builder) return std::nullopt;
   cad::Subject subject;
@@ -27,14 +26,16 @@ std::optional<cad::Subject> subject_of(Job& job, const fabric::Fabric& fabric,
   subject.model.title = fabric.title.value_or("");
   subject.model.units = fabric.units;
   job.for_each_yarn(*builder, "building yarn", [&](yarn::Body&& body) {
-    if (look) look(body);
+    if (onlooker.yarn) onlooker.yarn(body);
     subject.model.parts.push_back(cad::part_of(body));
     return true;
   });
   subject.yarns = subject.model.parts.size();
   for (const fabric::Piece* piece : fabric::pieces_of(fabric))
-    if (const std::optional<fabric::PieceShape> shape = job.build_piece(fabric, *piece))
+    if (const std::optional<fabric::PieceShape> shape = job.build_piece(fabric, *piece)) {
+      if (onlooker.piece) onlooker.piece(*shape);
       add_piece(*shape, subject.model);
+    }
   if (job.has_failed()) return std::nullopt;
   subject.model.parts.insert(subject.model.parts.end(), fabric.parts.begin(), fabric.parts.end());
   subject.model.curves.insert(subject.model.curves.end(), fabric.curves.begin(), fabric.curves.end());

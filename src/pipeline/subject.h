@@ -9,10 +9,14 @@
 
 namespace selvage::pipeline {
 
-// In the fabric's unit. `look` is given each yarn before it becomes a part; may be null. Nothing when the
-// input failed (it was said why).
-std::optional<cad::Subject> subject_of(Job& job, const fabric::Fabric& fabric,
-                                       const std::function<void(const yarn::Body&)>& look = nullptr);
+// Is shown each yarn and piece before it becomes a part; either may be null.
+struct Onlooker {
+  std::function<void(const yarn::Body&)> yarn;
+  std::function<void(const fabric::PieceShape&)> piece;
+};
+
+// In the fabric's unit. Nothing when the input failed (it was said why).
+std::optional<cad::Subject> subject_of(Job& job, const fabric::Fabric& fabric, const Onlooker& onlooker = {});
 
 // The same in another unit.
 void convert_lengths(cad::Subject& subject, Unit to);

@@ -33,7 +33,7 @@ class Usage(Case):
                      self.out)
 
     def test_words_of_later_versions(self):
-        for word in ("roundtrip", "relax", "report"):
+        for word in ("relax", "report"):
             self.refused(f"'selvage {word}' is not in this version", word, GRID)
         for word in ("--cut", "--matrix", "--relax", "--as-published"):
             self.refused(f"'{word}' is not in this version", "convert", GRID, word, "-o", self.out)

@@ -1,0 +1,22 @@
+// The results of `selvage roundtrip` as JUnit XML, which every CI shows.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace selvage::pipeline {
+
+// Text as it may stand in XML 1.0, in an element or in quotes; bytes that are no UTF-8 and characters that
+// XML does not know become '?'.
+std::string xml_text(std::string_view text);
+
+struct JunitInput {
+  std::string path;
+  std::string entry;  // of the report, as JSON; empty: not done
+};
+// One test case an input and format: a failure where the geometry came back different, an error where it did
+// not come back. An input that was not reached is skipped.
+std::string junit_text(const std::vector<JunitInput>& inputs, const std::string& started, double seconds);
+
+}  // namespace selvage::pipeline

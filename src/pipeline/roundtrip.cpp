@@ -1,0 +1,306 @@
+// `selvage roundtrip`: written, read back, compared; for every surface format.
+#include "pipeline/roundtrip.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "cad/compare.h"
+#include "pipeline/detect.h"
+#include "pipeline/differences.h"
+#include "pipeline/facts.h"
+#include "pipeline/subject.h"
+#include "pipeline/table.h"
+
+namespace selvage::pipeline {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// OpenCASCADE's reader brings every length to millimetres and makes closed surfaces periodic and back: a few
+// roundings of each coordinate. IGES and TXT are read as they stand.
+constexpr double step_rounding = 1e-14;
+
+constexpr std::size_t shown_differences = 20;
+
+// What was read of an input: as it is compared, and what is told of its yarns.
+struct Reading {
+  cad::Subject subject;
+  std::size_t yarns = 0, closed = 0;
+  double volume = 0;  // mm3
+};
+
+struct Original {
+  fabric::Fabric fabric;
+  std::vector<yarn::Body> bodies;
+  std::vector<fabric::PieceShape> pieces;
+  Reading reading;
+};
+
+void take_facts(Reading& reading, const yarn::Body& body, Unit units) {
+  const YarnReport facts = facts_of(body, units);
+  ++reading.yarns;
+  if (facts.closed.value_or(false)) ++reading.closed;
+  reading.volume += facts.volume;
+}
+
+std::optional<Original> read_original(Job& job) {
+  std::optional<fabric::Fabric> fabric = job.read();
+  if (!fabric) return std::nullopt;
+  Original original;
+  original.fabric = std::move(*fabric);
+  Onlooker onlooker;
+  onlooker.yarn = [&](const yarn::Body& body) {
+    take_facts(original.reading, body, original.fabric.units);
+    original.bodies.push_back(body);
+  };
+  onlooker.piece = [&](const fabric::PieceShape& piece) { original.pieces.push_back(piece); };
+  std::optional<cad::Subject> subject = subject_of(job, original.fabric, onlooker);
+  if (!subject) return std::nullopt;
+  original.reading.subject = std::move(*subject);
+  return original;
+}
+
+// The same yarns as control grids, and nothing of the statements that made them.
+fabric::Fabric as_grids(const Original& original) {
+  fabric::Fabric grids;
+  grids.title = original.fabric.title;
+  grids.units = original.fabric.units;
+  grids.units_given = true;
+  for (const yarn::Body& body : original.bodies) {
+    auto& yarn = std::get<fabric::Yarn>(grids.items.emplace_back(fabric::Yarn{}));
+    yarn.name = body.name;
+    yarn.role = body.role;
+    yarn.own.color = body.color;
+    yarn.shape = std::make_shared<const yarn::Body>(body);
+  }
+  for (const fabric::Piece* piece : fabric::pieces_of(original.fabric)) grids.items.emplace_back(*piece);
+  return grids;
+}
+
+Status add_all(const Original& original, formats::BodyWriter& writer) {
+  const auto added = [&](const auto& list, const auto& add) -> Status {
+    for (const auto& item : list)
+      if (Status status = add(item); !status) return status;
+    return {};
+  };
+  if (Status s = added(original.bodies, [&](const auto& x) { return writer.add(x); }); !s) return s;
+  if (Status s = added(original.pieces, [&](const auto& x) { return writer.add_piece(x); }); !s) return s;
+  if (Status s = added(original.fabric.parts, [&](const auto& x) { return writer.add_part(x); }); !s)
+    return s;
+  return added(original.fabric.curves, [&](const auto& x) { return writer.add_curve(x); });
+}
+
+Status write(const Job& job, const Original& original, const Trip& trip, const std::filesystem::path& path) {
+  Result<OutputFile> output = OutputFile::create(path);
+  if (!output) return output.error();
+  if (trip.format->write_fabric != nullptr) {
+    const Result<formats::WriteFacts> facts = trip.format->write_fabric(as_grids(original), *output);
+    if (!facts) return facts.error();
+    return output->commit();
+  }
+  formats::SurfaceOptions surface;
+  surface.title = original.fabric.title.value_or("");
+  surface.file_name = path.filename().string();
+  surface.units = original.fabric.units;
+  surface.expected_bodies = original.bodies.size();
+  surface.date = original.fabric.date;
+  surface.tolerance = fabric::tolerance_of(original.fabric, job.build_options());
+  surface.iges_solid = trip.iges_solid;
+  surface.step_schema = job.options.step_schema;
+  Result<std::unique_ptr<formats::BodyWriter>> writer = trip.format->open_bodies(*output, surface);
+  if (!writer) return writer.error();
+  if (Status status = add_all(original, **writer); !status) return status;
+  if (const Result<formats::WriteFacts> facts = (*writer)->finish(); !facts) return facts.error();
+  return output->commit();
+}
+
+// By a job of its own, whose messages are this job's. Nothing when it cannot be read.
+std::optional<Reading> read_back(const Job& job, const std::filesystem::path& path, std::string& failure) {
+  const Input input{path.string(), {}};
+  Job again(job.options, input, job.outputs, job.channel());
+  again.threads = job.threads;
+  again.keeps_messages = true;
+  Reading reading;
+  const std::optional<fabric::Fabric> fabric = again.read();
+  if (fabric) {
+    Onlooker onlooker;
+    onlooker.yarn = [&](const yarn::Body& body) { take_facts(reading, body, fabric->units); };
+    std::optional<cad::Subject> subject = subject_of(again, *fabric, onlooker);
+    if (subject && !again.has_failed()) {
+      reading.subject = std::move(*subject);
+      return reading;
+    }
+  }
+  for (const Message& message : again.report.messages)
+    if (message.severity == Severity::error) failure += message.text + "\n";
+  if (failure.empty()) failure = "it was not read back\n";
+  return std::nullopt;
+}
+
+class Traveller {
+ public:
+  Traveller(Job& job, const Original& original) : job_(job), original_(original) {}
+
+  bool travel(const Trip& trip);  // true: it came back different
+  [[nodiscard]] std::string table() const { return table_.text(); }
+
+ private:
+  void compare(const Trip& trip, Reading& back, RoundtripReport& report);
+  void add_row(const Trip& trip, const RoundtripReport& report);
+
+  Job& job_;
+  const Original& original_;
+  Table table_{{"format", "yarns", "closed before", "closed after", "volume before", "volume after",
+                "largest deviation", "of", "verdict"}};
+};
+
+void Traveller::compare(const Trip& trip, Reading& back, RoundtripReport& report) {
+  const Reading& before = original_.reading;
+  const Unit units = original_.fabric.units;
+  const double mm = millimetres_per(units);
+  cad::CompareOptions options;
+  options.tolerance = job_.options.difference_tolerance.value_or(0);
+  if (trip.name == "step" && !job_.options.difference_tolerance) options.rounding = step_rounding;
+  options.threads = static_cast<int>(job_.threads);
+  options.progress = [&](std::size_t done, std::size_t total) { job_.progress("comparing", done, total); };
+  std::string unit_note;
+  if (back.subject.model.units != units) {
+    unit_note = fmt::format("its unit came back as {}", name_of(back.subject.model.units));
+    convert_lengths(back.subject, units);
+  }
+  const cad::Comparison found = cad::compare(before.subject, back.subject, options);
+  report.equal = found.differences.empty() && unit_note.empty() && back.closed == before.closed;
+  report.largest = 0;
+  for (const cad::Comparison::Match& match : found.matches) {
+    const double deviation = match.at_most * mm;
+    if (match.what == cad::Thing::Kind::yarn) report.yarns.push_back({match.name, deviation});
+    if (deviation <= report.largest) continue;
+    report.largest = deviation;
+    report.largest_of = match.name;
+  }
+  if (!unit_note.empty()) report.differences.push_back(unit_note);
+  if (back.closed != before.closed)
+    report.differences.push_back(
+        fmt::format("closed yarns: {} before, {} after", before.closed, back.closed));
+  for (const cad::Difference& difference : found.differences) {
+    if (report.differences.size() == shown_differences) break;
+    report.differences.push_back(line_of(difference, units));
+  }
+  if (found.differences.size() > report.differences.size())
+    report.differences.push_back(fmt::format("... {} differences in all", found.differences.size()));
+  report.notes = found.notes;
+}
+
+void Traveller::add_row(const Trip& trip, const RoundtripReport& report) {
+  if (!report.error.empty()) {
+    table_.add({trip.name, std::to_string(report.yarns_before), std::to_string(report.closed_before), "-",
+                cell(report.volume_before), "-", "-", "-", "failed"});
+    return;
+  }
+  table_.add({trip.name, std::to_string(report.yarns_before), std::to_string(report.closed_before),
+              std::to_string(report.closed_after), cell(report.volume_before), cell(report.volume_after),
+              report.largest == 0 ? "0" : cell(report.largest),
+              report.largest_of.empty() ? "-" : report.largest_of, report.equal ? "equal" : "different"});
+}
+
+bool Traveller::travel(const Trip& trip) {
+  const Clock::time_point start = Clock::now();
+  RoundtripReport report;
+  report.format = trip.name;
+  report.yarns_before = original_.reading.yarns;
+  report.closed_before = original_.reading.closed;
+  report.volume_before = original_.reading.volume;
+  const std::filesystem::path path =
+      std::filesystem::path(job_.options.scratch) /
+      fmt::format("{}-{}{}", job_.number, trip.name, trip.format->extensions.front());
+  if (Status written = write(job_, original_, trip, path); !written) {
+    report.error = written.error().text;
+    job_.say(written.error());
+  } else if (std::optional<Reading> back = read_back(job_, path, report.error)) {
+    report.yarns_after = back->yarns;
+    report.closed_after = back->closed;
+    report.volume_after = back->volume;
+    compare(trip, *back, report);
+  } else {
+    job_.say(error(Kind::internal, fmt::format("what was written as {} cannot be read back", trip.name)));
+  }
+  std::error_code ignored;  // the folder goes at the end in any case
+  std::filesystem::remove(path, ignored);
+  report.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  add_row(trip, report);
+  const bool is_different = report.error.empty() && !report.equal;
+  if (is_different)
+    for (const std::string& line : report.differences) {
+      Message message = error(Kind::geometry, fmt::format("through {}: {}", trip.name, line));
+      job_.say_defect(std::move(message));
+    }
+  job_.report.roundtrips.push_back(std::move(report));
+  return is_different;
+}
+
+bool comes_and_goes(const formats::Descriptor& format) {
+  return format.is_readable() &&
+         ((format.open_bodies != nullptr && format.carries_surfaces) || format.write_fabric != nullptr);
+}
+
+std::vector<Trip> all_trips() {
+  std::vector<Trip> all;
+  for (const formats::Descriptor* format : formats::all_formats()) {
+    if (!comes_and_goes(*format)) continue;
+    all.push_back({std::string(format->name), format, false});
+    if (format->name == "iges") all.push_back({"iges-solid", format, true});
+  }
+  return all;
+}
+
+std::string names_of(const std::vector<Trip>& trips) {
+  std::string names;
+  for (const Trip& trip : trips) names += fmt::format("{}{}", names.empty() ? "" : ", ", trip.name);
+  return names;
+}
+
+}  // namespace
+
+Result<std::vector<Trip>> wanted_trips(const Options& options) {
+  std::vector<Trip> all = all_trips();
+  if (options.formats.empty()) return all;
+  std::vector<Trip> wanted;
+  std::string_view rest = options.formats;
+  while (!rest.empty()) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    const std::string_view name = rest.substr(0, comma);
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Trip& trip) { return trip.name == name; });
+    if (found == all.end())
+      return error(Kind::usage, fmt::format("'{}' is no format of surfaces that is both written and read: {}",
+                                            name, names_of(all)));
+    wanted.push_back(*found);
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  return wanted;
+}
+
+bool roundtrip(Job& job) {
+  const Result<std::vector<Trip>> trips = wanted_trips(job.options);
+  if (!trips) {
+    job.say(trips.error());
+    return false;
+  }
+  const std::optional<Original> original = read_original(job);
+  if (!original) return false;
+  Traveller traveller(job, *original);
+  bool is_different = false;
+  for (const Trip& trip : *trips) {
+    job.progress(trip.name, job.report.roundtrips.size() + 1, trips->size());
+    is_different = traveller.travel(trip) || is_different;
+  }
+  job.print(fmt::format("{}: deviations in mm, volumes in mm3\n{}", job.input.path, traveller.table()));
+  return is_different;
+}
+
+}  // namespace selvage::pipeline
