@@ -118,6 +118,15 @@ def knit_build(bin_folder, folder, quick):
     return lines + "\n" + bodies
 
 
+def compare(bin_folder, folder, quick):
+    command = [f"{bin_folder}/compare"] + (["--repeats", "1", "--yarns", "125,250,500,1000"] if quick else [])
+    rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
+    first = {row["pair"]: row["microseconds_a_yarn"] for row in reversed(rows)}
+    return table(["pair", "yarns", "s", "us a yarn", "to the first"],
+                 [[row["pair"], str(row["yarns"]), f"{row['seconds']:.3f}", f"{row['microseconds_a_yarn']:.1f}",
+                   f"{row['microseconds_a_yarn'] / first[row['pair']]:.2f}"] for row in rows])
+
+
 def machine():
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown")
     return f"{model}, {os.cpu_count()} cores"
@@ -146,7 +155,9 @@ def main():
             "\n## Jersey: centre lines, tubes and the IGES file; the cost of a loop stays the same\n\n"
             "SparseLU is Eigen's general sparse solver on the systems of all courses, in the same run and in turns with ours. The "
             "published time is a constant from another machine, drawing included. Tubes and file are those of as many "
-            "whole courses as have 5,000 loops.\n\n" + knit_build(given.bin, folder, given.quick))
+            "whole courses as have 5,000 loops.\n\n" + knit_build(given.bin, folder, given.quick) +
+            "\n## Comparing two cloths in memory, two threads: the time a yarn stays the same\n\n" +
+            compare(given.bin, folder, given.quick))
     pathlib.Path(given.out).write_text(text)
     print(text)
 

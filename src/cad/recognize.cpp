@@ -166,6 +166,8 @@ class Recognizer {
     const Part& part = parts_[candidate.id.part];
     const Face& face = part.faces[candidate.id.face];
     body.name = !part.name.empty() ? part.name : face.name;
+    body.is_named = !body.name.empty();
+    body.is_colored = face.color || part.color;
     body.group = part.group;
     body.place = part.origin.place.line != 0 ? part.origin.place : face.origin.place;
     if (face.color || part.color) body.color = face.color ? *face.color : *part.color;

@@ -31,6 +31,11 @@ void measure(Thing& thing) {
   thing.spread = std::sqrt(sum / static_cast<double>(count));
 }
 
+// What OpenCASCADE calls a product that has no name.
+bool is_invented(std::string_view name) {
+  return name.starts_with("Open CASCADE STEP translator");
+}
+
 using Indices = std::vector<std::size_t>;
 
 // Things by the cell that holds their box's centre.
@@ -209,6 +214,7 @@ Things things_of(const Subject& subject) {
     Thing& thing = things.list.emplace_back();
     thing.kind = i < subject.yarns ? Thing::Kind::yarn : Thing::Kind::part;
     thing.name = part.name;
+    if (is_invented(thing.name)) thing.name.clear();
     thing.color = part.color;
     for (const Face& face : part.faces) {
       if (thing.name.empty() && part.faces.size() == 1) thing.name = face.name;

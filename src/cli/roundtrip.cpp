@@ -15,8 +15,7 @@ void add_roundtrip(CLI::App& program, Parsed& parsed) {
   command
       .add_option(
           "--tolerance", options.difference_tolerance,
-          "distances up to this, in the input's unit, are no difference (default: 0; STEP: 1e-14 of the "
-          "largest coordinate)")
+          "distances up to this, in the input's unit, are no difference (default: 0, every bit counts)")
       ->check(CLI::NonNegativeNumber);
   command.add_option("--junit", options.junit, "write the results as JUnit XML to this file");
   run_pipeline(command, parsed, pipeline::Command::roundtrip);

@@ -54,9 +54,9 @@ struct Options {
   bool flat = false;
 
   // roundtrip
-  std::optional<double> difference_tolerance;  // input's unit; none: what each format keeps
-  std::string junit;                           // JUnit XML goes to this file; empty: nowhere
-  std::string scratch;                         // a folder that is there while the run is
+  double difference_tolerance = 0;  // input's unit; distances up to it are no difference
+  std::string junit;                // JUnit XML goes to this file; empty: nowhere
+  std::string scratch;              // a folder that is there while the run is
 
   bool json = false;   // info
   bool table = false;  // info: the fixed points and control points of garment curves

@@ -21,10 +21,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// OpenCASCADE's reader brings every length to millimetres and makes closed surfaces periodic and back: a few
-// roundings of each coordinate. IGES and TXT are read as they stand.
-constexpr double step_rounding = 1e-14;
-
 constexpr std::size_t shown_differences = 20;
 
 // What was read of an input: as it is compared, and what is told of its yarns.
@@ -119,10 +115,13 @@ Status write(const Job& job, const Original& original, const Trip& trip, const s
   return output->commit();
 }
 
-// By a job of its own, whose messages are this job's. Nothing when it cannot be read.
+// By a job of its own, whose warnings were told before. Nothing when it cannot be read.
 std::optional<Reading> read_back(const Job& job, const std::filesystem::path& path, std::string& failure) {
   const Input input{path.string(), {}};
-  Job again(job.options, input, job.outputs, job.channel());
+  Options quiet = job.options;
+  quiet.quiet = true;
+  quiet.verbose = false;
+  Job again(quiet, input, job.outputs, job.channel());
   again.threads = job.threads;
   again.keeps_messages = true;
   Reading reading;
@@ -164,8 +163,7 @@ void Traveller::compare(const Trip& trip, Reading& back, RoundtripReport& report
   const Unit units = original_.fabric.units;
   const double mm = millimetres_per(units);
   cad::CompareOptions options;
-  options.tolerance = job_.options.difference_tolerance.value_or(0);
-  if (trip.name == "step" && !job_.options.difference_tolerance) options.rounding = step_rounding;
+  options.tolerance = job_.options.difference_tolerance;
   options.threads = static_cast<int>(job_.threads);
   options.progress = [&](std::size_t done, std::size_t total) { job_.progress("comparing", done, total); };
   std::string unit_note;

@@ -27,7 +27,13 @@ std::optional<cad::Subject> subject_of(Job& job, const fabric::Fabric& fabric, c
   subject.model.units = fabric.units;
   job.for_each_yarn(*builder, "building yarn", [&](yarn::Body&& body) {
     if (onlooker.yarn) onlooker.yarn(body);
-    subject.model.parts.push_back(cad::part_of(body));
+    cad::Part& part = subject.model.parts.emplace_back(cad::part_of(body));
+    if (!body.is_named) part.name.clear();
+    if (!body.is_colored) part.color.reset();
+    for (cad::Face& face : part.faces) {
+      face.name = part.name;
+      face.color = part.color;
+    }
     return true;
   });
   subject.yarns = subject.model.parts.size();

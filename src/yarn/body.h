@@ -58,6 +58,8 @@ struct Body {
   std::string group;     // of a ply or a filament: the yarn that it is part of; else empty
   Role role = Role::other;
   Color color;
+  // Of a CAD file: whether it says them, or they were given here.
+  bool is_named = true, is_colored = true;
   double twist = 0;            // of the fibres, turns per file unit along the centre line; > 0: Z, < 0: S
   bool section_turns = false;  // with the twist: the fibres follow the lines of constant u
   TextPlace place;             // in the file that it came from
