@@ -217,7 +217,7 @@ Things things_of(const Subject& subject) {
     if (is_invented(thing.name)) thing.name.clear();
     thing.color = part.color;
     for (const Face& face : part.faces) {
-      if (thing.name.empty() && part.faces.size() == 1) thing.name = face.name;
+      if (thing.name.empty() && part.faces.size() == 1) thing.name = is_invented(face.name) ? "" : face.name;
       if (!thing.color) thing.color = face.color;
       thing.faces.push_back(&face);
       thing.surfaces.push_back(&face.surface);

@@ -149,7 +149,7 @@ class Traveller {
   [[nodiscard]] std::string table() const { return table_.text(); }
 
  private:
-  void compare(const Trip& trip, Reading& back, RoundtripReport& report);
+  void compare(Reading& back, RoundtripReport& report);
   void add_row(const Trip& trip, const RoundtripReport& report);
 
   Job& job_;
@@ -158,7 +158,7 @@ class Traveller {
                 "largest deviation", "of", "verdict"}};
 };
 
-void Traveller::compare(const Trip& trip, Reading& back, RoundtripReport& report) {
+void Traveller::compare(Reading& back, RoundtripReport& report) {
   const Reading& before = original_.reading;
   const Unit units = original_.fabric.units;
   const double mm = millimetres_per(units);
@@ -223,7 +223,7 @@ bool Traveller::travel(const Trip& trip) {
     report.yarns_after = back->yarns;
     report.closed_after = back->closed;
     report.volume_after = back->volume;
-    compare(trip, *back, report);
+    compare(*back, report);
   } else {
     job_.say(error(Kind::internal, fmt::format("what was written as {} cannot be read back", trip.name)));
   }

@@ -7,13 +7,24 @@ namespace selvage::pipeline {
 
 namespace {
 
-void add_piece(const fabric::PieceShape& piece, cad::Model& model) {
-  for (const fabric::PieceEdge& edge : piece.edges) {
-    cad::NamedCurve& curve = model.curves.emplace_back();
-    curve.curve = edge.curve;
-    curve.name = piece.name + "/" + edge.name;
-    curve.origin.place = edge.place;
-  }
+// A plane, over x and y, that is trimmed by the piece's edges.
+cad::Part part_of(const fabric::PieceShape& piece) {
+  cad::Part part;
+  part.name = piece.name;
+  part.origin.place = piece.place;
+  cad::Face& face = part.faces.emplace_back();
+  face.name = piece.name;
+  const Vec2 low = piece.box.min(), high = piece.box.max();
+  face.surface.degree_u = face.surface.degree_v = 1;
+  face.surface.count_u = face.surface.count_v = 2;
+  face.surface.knots_u = {low.x(), low.x(), high.x(), high.x()};
+  face.surface.knots_v = {low.y(), low.y(), high.y(), high.y()};
+  for (const double y : {low.y(), high.y()})
+    for (const double x : {low.x(), high.x()}) face.surface.points.emplace_back(x, y, 0);
+  cad::Loop& loop = face.loops.emplace_back();
+  for (const fabric::PieceEdge& edge : piece.edges)
+    loop.edges.push_back({.curve = edge.curve, .flat = edge.curve});
+  return part;
 }
 
 }  // namespace
@@ -40,7 +51,7 @@ std::optional<cad::Subject> subject_of(Job& job, const fabric::Fabric& fabric, c
   for (const fabric::Piece* piece : fabric::pieces_of(fabric))
     if (const std::optional<fabric::PieceShape> shape = job.build_piece(fabric, *piece)) {
       if (onlooker.piece) onlooker.piece(*shape);
-      add_piece(*shape, subject.model);
+      subject.model.parts.push_back(part_of(*shape));
     }
   if (job.has_failed()) return std::nullopt;
   subject.model.parts.insert(subject.model.parts.end(), fabric.parts.begin(), fabric.parts.end());

@@ -12,7 +12,7 @@ import xml.etree.ElementTree as ElementTree
 from program import BAD, Case, GRID, PATH, RING, SAMPLES, environment, run, start
 
 ALL = ["iges", "iges-solid", "step", "txt"]
-LARGE = "fabric 1\nthread a\n  diameter 0.5\nend\nweave\n  warp a 600 pitch 1.0\n  weft a 40 pitch 1.0\n  draft plain\nend\n"
+LARGE = "fabric 1\nthread a\n  diameter 0.5\nend\nweave\n  warp a 120 pitch 1.0\n  weft a 40 pitch 1.0\n  draft plain\nend\n"
 
 
 class Trips(Case):
