@@ -263,7 +263,7 @@ double SurfaceSet::least_distance(const Vec3& point, const Foot& foot) const {
         push(t, {target.breaks_u[i], target.breaks_u[i + 1], target.breaks_v[j], target.breaks_v[j + 1]});
   }
   const double near_enough = std::min(0.99 * foot.distance, foot.distance - 1e-14 * impl_->size);
-  for (int boxes = 0; boxes < 100'000 && !queue.empty(); ++boxes) {
+  for (int boxes = 0; boxes < 10'000 && !queue.empty(); ++boxes) {
     const Piece piece = queue.top();
     if (piece.distance >= near_enough) return piece.distance;
     queue.pop();

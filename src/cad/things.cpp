@@ -31,6 +31,36 @@ void measure(Thing& thing) {
   thing.spread = std::sqrt(sum / static_cast<double>(count));
 }
 
+// The edges of a model's trimmed faces, by their ends. Some writers draw an outline a second time, as curves.
+class Edges {
+ public:
+  explicit Edges(const Model& model) {
+    for (const Part& part : model.parts)
+      for (const Face& face : part.faces)
+        for (const Loop& loop : face.loops)
+          for (const Edge& edge : loop.edges)
+            if (!edge.curve.points.empty()) by_ends_.emplace(key(edge.curve), &edge.curve);
+  }
+  [[nodiscard]] bool contain(const nurbs::Curve& curve) const {
+    if (curve.points.empty()) return false;
+    const auto [first, last] = by_ends_.equal_range(key(curve));
+    return std::any_of(first, last, [&](const auto& entry) {
+      const std::vector<Vec3>& points = entry.second->points;
+      return std::equal(points.begin(), points.end(), curve.points.begin(), curve.points.end()) ||
+             std::equal(points.rbegin(), points.rend(), curve.points.begin(), curve.points.end());
+    });
+  }
+
+ private:
+  // The same for both directions.
+  static std::array<double, 6> key(const nurbs::Curve& curve) {
+    const Vec3 &a = curve.points.front(), &b = curve.points.back();
+    const Vec3 low = a.cwiseMin(b), high = a.cwiseMax(b);
+    return {low.x(), low.y(), low.z(), high.x(), high.y(), high.z()};
+  }
+  std::multimap<std::array<double, 6>, const nurbs::Curve*> by_ends_;
+};
+
 // What OpenCASCADE calls a product that has no name.
 bool is_invented(std::string_view name) {
   return name.starts_with("Open CASCADE STEP translator");
@@ -224,7 +254,9 @@ Things things_of(const Subject& subject) {
     }
     measure(thing);
   }
+  const Edges edges(subject.model);
   for (const NamedCurve& curve : subject.model.curves) {
+    if (edges.contain(curve.curve)) continue;
     Thing& thing = things.list.emplace_back();
     thing.kind = Thing::Kind::curve;
     thing.name = curve.name;

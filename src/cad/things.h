@@ -34,7 +34,8 @@ struct Things {
   std::vector<Thing> list;
   std::deque<nurbs::Surface> curves;
 };
-// The model outlives them.
+// Without curves that are the edge of a face in the same model, control point by control point. The model
+// outlives them.
 Things things_of(const Subject& subject);
 
 struct Pairing {

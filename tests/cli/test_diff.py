@@ -35,7 +35,7 @@ class Differences(Case):
         return path
 
     def lines(self, code, *arguments):
-        done = run("diff", *arguments)
+        done = run("diff", *arguments, "--no-progress")
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         self.assertEqual(done.stderr, "")
         return done.stdout.splitlines()
@@ -44,7 +44,7 @@ class Differences(Case):
         return json.loads("\n".join(self.lines(code, *arguments, "--json")))
 
     def test_a_file_and_itself(self):
-        for path, words in ((GRID, "4 yarns, 12 surfaces"), (RING, "1 yarn, 1 surface"), (PIECE, "curves")):
+        for path, words in ((GRID, "4 yarns, 12 surfaces"), (RING, "1 yarn, 1 surface"), (PIECE, "1 part, 1 surface")):
             lines = self.lines(0, path, path)
             self.assertEqual(len(lines), 1)
             self.assertTrue(lines[0].startswith("equal: "), lines)
