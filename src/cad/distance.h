@@ -61,7 +61,7 @@ Range domain(const nurbs::Surface& surface);
 // divided until the bound is at most `enough`, or within a tenth of what was found, or `most_cells` were
 // looked at. `at_most` holds up to the rounding of the arithmetic, some 1e-14 of the coordinates' size.
 Reach distance_to(const nurbs::Surface& surface, const Range& range, const SurfaceSet& others, double enough,
-                  std::size_t most_cells = 300);
+                  std::size_t most_cells = 2000);
 
 // A curve as a surface of no width: over the curve's parameter in u and [0, 1] in v.
 nurbs::Surface as_surface(const nurbs::Curve& curve);
