@@ -5,17 +5,11 @@
 #include <cmath>
 #include <cstring>
 
+#include "nurbs/turn.h"
+
 namespace selvage::formats::iges {
 
 namespace {
-
-bool is_clamped(const std::vector<double>& knots, int degree) {
-  const auto order = static_cast<std::ptrdiff_t>(degree) + 1;
-  const auto all_equal = [](auto first, auto last) {
-    return std::all_of(first, last, [first](double knot) { return knot == *first; });
-  };
-  return all_equal(knots.begin(), knots.begin() + order) && all_equal(knots.end() - order, knots.end());
-}
 
 // Weights that are all the same do not make a surface rational.
 bool is_polynomial(const std::vector<double>& weights) {
@@ -33,7 +27,7 @@ void write_weights(Records& records, const std::vector<double>& weights, std::si
 }  // namespace
 
 bool is_closed_u(const nurbs::Surface& surface) {
-  if (!is_clamped(surface.knots_u, surface.degree_u)) return false;
+  if (!nurbs::is_clamped(surface.knots_u, surface.degree_u)) return false;
   const int last = surface.count_u - 1;
   for (int j = 0; j < surface.count_v; ++j)
     if (surface.point(0, j) != surface.point(last, j) || surface.weight(0, j) != surface.weight(last, j))
@@ -42,7 +36,7 @@ bool is_closed_u(const nurbs::Surface& surface) {
 }
 
 bool is_closed_v(const nurbs::Surface& surface) {
-  if (!is_clamped(surface.knots_v, surface.degree_v)) return false;
+  if (!nurbs::is_clamped(surface.knots_v, surface.degree_v)) return false;
   const int last = surface.count_v - 1;
   for (int i = 0; i < surface.count_u; ++i)
     if (surface.point(i, 0) != surface.point(i, last) || surface.weight(i, 0) != surface.weight(i, last))
@@ -51,7 +45,7 @@ bool is_closed_v(const nurbs::Surface& surface) {
 }
 
 bool is_closed(const nurbs::Curve& curve) {
-  return is_clamped(curve.knots, curve.degree) && curve.points.front() == curve.points.back() &&
+  return nurbs::is_clamped(curve.knots, curve.degree) && curve.points.front() == curve.points.back() &&
          (curve.weights.empty() || curve.weights.front() == curve.weights.back());
 }
 

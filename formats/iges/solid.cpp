@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "nurbs/turn.h"
+
 namespace selvage::formats::iges {
 
 namespace {
@@ -41,17 +43,6 @@ std::size_t edges_of_rim(EndStyle style) {
   return style == EndStyle::patch ? 4 : 1;
 }
 
-nurbs::Curve first_column(const nurbs::Surface& surface) {
-  nurbs::Curve column;
-  column.degree = surface.degree_v;
-  column.knots = surface.knots_v;
-  for (int j = 0; j < surface.count_v; ++j) {
-    column.points.push_back(surface.point(0, j));
-    if (surface.is_rational()) column.weights.push_back(surface.weight(0, j));
-  }
-  return column;
-}
-
 Rim add_rim(Topology& topology, const yarn::Body& body, bool last, const yarn::EndPlane* plane) {
   const EndStyle style = (last ? body.end : body.start).style;
   Rim rim{topology.edges.size(), edges_of_rim(style), topology.vertices.size()};
@@ -85,7 +76,7 @@ void add_end(Topology& topology, const yarn::Body& body, bool last, const Rim& r
   if (end.style == EndStyle::fan) {  // along the seam to the pole in the centre and back
     const std::size_t centre = topology.vertices.size(), seam = topology.edges.size();
     topology.vertices.push_back(end.surface.point(0, end.surface.count_v - 1));
-    topology.edges.push_back({first_column(end.surface), rim.first_vertex, centre, nullptr});
+    topology.edges.push_back({nurbs::boundary_column(end.surface, false), rim.first_vertex, centre, nullptr});
     face.loop.insert(face.loop.end(), {{false, seam, true}, {true, centre, true}, {false, seam, false}});
   }
   topology.faces.push_back(std::move(face));
@@ -96,7 +87,7 @@ Topology ring(const yarn::Body& body) {
   Topology topology;
   topology.vertices = {body.surface.points.front()};
   topology.edges = {{nurbs::boundary_row(body.surface, false), 0, 0, nullptr},
-                    {first_column(body.surface), 0, 0, nullptr}};
+                    {nurbs::boundary_column(body.surface, false), 0, 0, nullptr}};
   topology.faces = {{&body.surface,
                      !body.inward,
                      {{false, 0, true}, {false, 1, true}, {false, 0, false}, {false, 1, false}}}};
@@ -107,7 +98,8 @@ Topology tube(const yarn::Body& body, const yarn::EndPlane* start, const yarn::E
   Topology topology;
   const Rim first = add_rim(topology, body, false, start), last = add_rim(topology, body, true, end);
   const std::size_t seam = topology.edges.size();
-  topology.edges.push_back({first_column(body.surface), first.first_vertex, last.first_vertex, nullptr});
+  topology.edges.push_back(
+      {nurbs::boundary_column(body.surface, false), first.first_vertex, last.first_vertex, nullptr});
   Face face{&body.surface, !body.inward, {}};
   add_uses(face.loop, first, true);
   face.loop.push_back({false, seam, true});

@@ -24,7 +24,7 @@ void read_curve_row(Parser& p, CurveRows& rows) {
   rows.good = rows.good && count == 2;
   if (count != 2) return;
   const Vec2 point(xy[0], xy[1]);
-  if (!points.empty() && points.back() == point) {
+  if (!points.empty() && points.back() == point && rows.curve.shape != PieceCurve::Shape::control) {
     p.error(spot, "this point equals the one before it");
     rows.good = false;
   }
@@ -47,7 +47,11 @@ void read_curve(Parser& p, PieceReading& reading, std::string_view word) {
     curve.shape = p.choice("shape of curve", curve_words).value_or(PieceCurve::Shape::found);
   if (name) p.finish();
   CurveRows rows{curve};
-  if (p.read_block(word, curve.name, opened, table, rows) && rows.good && curve.points.size() < 3)
+  const bool complete = p.read_block(word, curve.name, opened, table, rows) && rows.good;
+  if (complete && curve.shape == PieceCurve::Shape::control && curve.points.size() != 4)
+    p.error(p.last(),
+            fmt::format("a curve by its control points has four; this one has {}", curve.points.size()));
+  else if (complete && curve.points.size() < 3)
     p.error(p.last(), fmt::format("a curve has at least 3 points, two make a 'line'; this one has {}",
                                   curve.points.size()));
   reading.piece.curves.push_back(std::move(curve));

@@ -166,18 +166,36 @@ void read_corners(Parser& p, GridRows& rows) {
   rows.corners_spot = p.last();
   std::array<double, 4> corners{};
   for (double& corner : corners) {
-    const auto value = p.number("a corner of the end patches");
-    if (!value) return;
+    const auto value = p.number("a corner of the end patches (there are four)");
+    if (!value) {
+      p.take_rest();
+      return;
+    }
     corner = *value;
   }
   rows.grid.corners = corners;
 }
 
-constexpr std::array<Word<GridWord>, 5> grid_words{{{"degree", read_degree},
+void read_centre(Parser& p, GridRows& rows) {
+  constexpr std::array<Word<std::size_t>, 2> ends{{{"start", 0}, {"end", 1}}};
+  const Spot spot = p.last();
+  const auto end = p.choice("end of the grid", ends);
+  const auto centre = end ? p.point("the centre of the end's fan") : std::nullopt;
+  if (!centre) {
+    p.take_rest();
+    return;
+  }
+  if (rows.grid.fan_centres[*end])
+    p.error(spot, fmt::format("the centre at the {} is given twice", ends[*end].text));
+  rows.grid.fan_centres[*end] = *centre;
+}
+
+constexpr std::array<Word<GridWord>, 6> grid_words{{{"degree", read_degree},
                                                     {"knots", read_knots},
                                                     {"open", read_open},
                                                     {"closed", read_grid_closed},
-                                                    {"corners", read_corners}}};
+                                                    {"corners", read_corners},
+                                                    {"centre", read_centre}}};
 
 // From the word that was taken to the end of the line.
 void read_grid_words(Parser& p, GridRows& rows, std::string_view word) {
@@ -190,9 +208,9 @@ void read_grid_words(Parser& p, GridRows& rows, std::string_view word) {
       known->value(p, rows);
       word = p.take_word();
     } else {
-      p.error(p.last(),
-              fmt::format("unknown word {} of the grid; known: degree, knots, open, closed, corners",
-                          in_quotes(word)));
+      p.error(p.last(), fmt::format("unknown word {} of the grid; known: degree, knots, open, closed, "
+                                    "corners, centre",
+                                    in_quotes(word)));
     }
   }
   if (p.report.errors() > errors) rows.reading.good = false;
@@ -343,7 +361,8 @@ fabric::Grid read_grid(Parser& p, ShapeReading& reading) {
                                       {"knots", read_grid_words, Times::any},
                                       {"open", read_grid_words},
                                       {"closed", read_grid_words},
-                                      {"corners", read_grid_words}},
+                                      {"corners", read_grid_words},
+                                      {"centre", read_grid_words, Times::any}},
                                      read_grid_row);
   Grid grid;
   grid.place = reading.spot.place();

@@ -73,8 +73,12 @@ inline constexpr std::array<Word<std::string_view>, 7> classic_words{{{"tricot",
                                                                       {"atlas", "atlas"},
                                                                       {"velvet", "velvet"},
                                                                       {"cord", "cord"}}};
-inline constexpr std::array<Word<PieceCurve::Shape>, 2> curve_words{
-    {{"C", PieceCurve::Shape::c}, {"S", PieceCurve::Shape::s}}};
+inline constexpr std::array<Word<PieceCurve::Shape>, 3> curve_words{
+    {{"C", PieceCurve::Shape::c}, {"S", PieceCurve::Shape::s}, {"control", PieceCurve::Shape::control}}};
+inline constexpr std::array<Word<yarn::EndStyle>, 4> end_words{{{"patch", yarn::EndStyle::patch},
+                                                                {"fan", yarn::EndStyle::fan},
+                                                                {"planar", yarn::EndStyle::planar},
+                                                                {"none", yarn::EndStyle::none}}};
 
 // The sections, by their index in yarn::Section.
 inline constexpr std::array<Word<int>, 7> section_words{{{"circle", 0},

@@ -8,7 +8,7 @@
 
 #include "core/number_text.h"
 #include "core/text_report.h"
-#include "fabric/grid_form.h"
+#include "fabric/as_grid.h"
 #include "formats/txt/words.h"
 
 namespace selvage::formats::txt {
@@ -204,6 +204,9 @@ void write_grid(Lines& out, const fabric::Grid& grid) {
     out.line(2, "corners");
     for (const double corner : *grid.corners) out.value(corner);
   }
+  for (const std::size_t end : {0U, 1U})
+    if (grid.fan_centres[end])
+      out.line(2, end == 0 ? "centre start" : "centre end").values(*grid.fan_centres[end]);
   const auto per_section = static_cast<std::size_t>(grid.per_section);
   for (std::size_t i = 0; i < grid.points.size(); ++i) {
     if (i > 0 && per_section > 0 && i % per_section == 0) out.blank_line();
@@ -221,6 +224,11 @@ void write_item(Lines& out, const fabric::Yarn& yarn) {
   if (!yarn.group.empty()) out.line(1, "group").name(yarn.group);
   write_thread_statements(out, 1, yarn.own);
   if (yarn.closed) out.line(1, "closed");
+  if (yarn.ends) {
+    const auto [start, end] = *yarn.ends;
+    out.line(1, "ends").word(word_of(end_words, start));
+    if (end != start) out.word(word_of(end_words, end));
+  }
   if (yarn.tangent_start) out.line(1, "tangent start").values(*yarn.tangent_start);
   if (yarn.tangent_end) out.line(1, "tangent end").values(*yarn.tangent_end);
   if (yarn.up) out.line(1, "up").values(*yarn.up);
@@ -228,8 +236,6 @@ void write_item(Lines& out, const fabric::Yarn& yarn) {
     write_path(out, *path);
   else if (const auto* grid = std::get_if<fabric::Grid>(&yarn.shape))
     write_grid(out, *grid);
-  else if (const auto* read = std::get_if<std::shared_ptr<const yarn::Body>>(&yarn.shape))
-    write_grid(out, fabric::grid_of(**read));
   else
     out.fail(fmt::format("the yarn {} has no path and no grid", in_quotes(yarn.name)));
   out.line(0, "end");
@@ -367,6 +373,37 @@ void write_cell(Lines& out, const fabric::Cell& cell) {
   out.line(0, "end");
 }
 
+// A yarn of a CAD file as a grid.
+struct EndsChanged {
+  std::size_t yarns = 0;
+  std::string first;
+};
+void write_body(Lines& out, const yarn::Body& body, EndsChanged& changed) {
+  const fabric::GridYarn grid = fabric::as_grid(body);
+  if (!grid.keeps_ends && changed.yarns++ == 0) changed.first = body.name;
+  write_item(out, grid.yarn);
+}
+
+void warn_of_losses(const fabric::Fabric& fabric, const EndsChanged& changed, WriteFacts& facts) {
+  const auto warn = [&](std::string text) {
+    facts.messages.push_back(warning(Kind::unsupported, std::move(text)));
+  };
+  const auto plural = [](std::size_t count, std::string_view noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+  };
+  if (changed.yarns > 0)
+    warn(fmt::format(
+        "Fabric TXT says how a yarn is sealed, not with which surfaces: {}, such as '{}', will be "
+        "sealed anew when the text is read",
+        plural(changed.yarns, "yarn"), changed.first));
+  if (!fabric.parts.empty())
+    warn(fmt::format("Fabric TXT holds no free surfaces: {}, such as '{}', left out",
+                     plural(fabric.parts.size(), "part"), fabric.parts.front().name));
+  if (!fabric.curves.empty())
+    warn(fmt::format("Fabric TXT holds no free curves: {}, such as '{}', left out",
+                     plural(fabric.curves.size(), "curve"), fabric.curves.front().name));
+}
+
 }  // namespace
 
 Result<WriteFacts> write_fabric(const fabric::Fabric& fabric, OutputFile& output) {
@@ -380,23 +417,24 @@ Result<WriteFacts> write_fabric(const fabric::Fabric& fabric, OutputFile& output
   for (const Thread& thread : fabric.threads) write_thread(out, thread);
   WriteFacts facts;
   constexpr std::array<std::string_view, 6> kinds = {"yarn", "weave", "knit", "warpknit", "braid", "piece"};
+  EndsChanged changed;
   for (const fabric::Item& item : fabric.items) {
     out.blank_line();
-    std::visit([&](const auto& one) { write_item(out, one); }, item);
+    const auto* yarn = std::get_if<fabric::Yarn>(&item);
+    if (const fabric::ReadBody* read =
+            yarn != nullptr ? std::get_if<fabric::ReadBody>(&yarn->shape) : nullptr)
+      write_body(out, **read, changed);
+    else
+      std::visit([&](const auto& one) { write_item(out, one); }, item);
     ++facts.entities[std::string(kinds[item.index()])];
   }
   if (!fabric.edits.empty()) out.blank_line();
   for (const fabric::Edit& edit : fabric.edits) write_edit(out, edit);
   if (fabric.cell) write_cell(out, *fabric.cell);
   if (Status status = out.finish(); !status) return status.error();
+  warn_of_losses(fabric, changed, facts);
   if (!fabric.threads.empty()) facts.entities["thread"] = fabric.threads.size();
   if (!fabric.materials.empty()) facts.entities["material"] = fabric.materials.size();
-  if (const std::size_t others = fabric.parts.size() + fabric.curves.size(); others > 0)
-    facts.messages.push_back(warning(
-        Kind::unsupported,
-        fmt::format("{} surface group{} or curve{} that {} no yarn: a Fabric TXT cannot hold {}, left out",
-                    others, others == 1 ? "" : "s", others == 1 ? "" : "s", others == 1 ? "is" : "are",
-                    others == 1 ? "it" : "them")));
   return facts;
 }
 

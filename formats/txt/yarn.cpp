@@ -13,7 +13,7 @@ using fabric::Yarn;
 struct YarnReading {
   Yarn yarn;
   ShapeReading shape;
-  std::optional<Spot> tangent, up;  // where they are given
+  std::optional<Spot> tangent, up, ends;  // where they are given
 };
 
 // A thread's statement as one of the yarn.
@@ -34,6 +34,13 @@ void read_group(Parser& p, YarnReading& reading, std::string_view) {
 
 void read_closed(Parser& p, YarnReading& reading, std::string_view) {
   if (p.finish()) reading.yarn.closed = true;
+}
+
+void read_ends(Parser& p, YarnReading& reading, std::string_view) {
+  reading.ends = p.statement();
+  const auto start = p.choice("way to seal an end", end_words);
+  const auto end = start && p.more() ? p.choice("way to seal an end", end_words) : start;
+  if (end && p.finish()) reading.yarn.ends = std::array<yarn::EndStyle, 2>{*start, *end};
 }
 
 void read_up(Parser& p, YarnReading& reading, std::string_view) {
@@ -85,6 +92,9 @@ void check_yarn(Parser& p, const YarnReading& reading) {
                      "this tangent changes nothing: only open paths through data points have end tangents");
   if (reading.up && path == nullptr)
     p.report.warning(*reading.up, "this direction changes nothing: a grid has its sections as they are");
+  const auto* grid = std::get_if<fabric::Grid>(&yarn.shape);
+  if (reading.ends && (yarn.closed || (grid != nullptr && grid->closed_along)))
+    p.report.warning(*reading.ends, "this changes nothing: a ring has no ends");
 }
 
 Table<YarnReading> make_yarn_table() {
@@ -94,7 +104,8 @@ Table<YarnReading> make_yarn_table() {
                                                     {"closed", read_closed},
                                                     {"group", read_group},
                                                     {"tangent", read_tangent, Times::any},
-                                                    {"up", read_up}};
+                                                    {"up", read_up},
+                                                    {"ends", read_ends}};
   for (const auto& own : thread_statements())
     statements.push_back({own.word, read_own, own.times, own.instead_of});
   return Table<YarnReading>(std::move(statements));

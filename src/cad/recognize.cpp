@@ -4,291 +4,326 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <limits>
+#include <tuple>
 #include <unordered_map>
-#include <unordered_set>
 
-#include "cad/seal.h"
+#include "cad/border.h"
+#include "cad/lid.h"
+#include "cad/places.h"
 #include "cad/tube.h"
-#include "yarn/finish.h"
-#include "yarn/grid.h"
+#include "nurbs/turn.h"
+#include "yarn/ends.h"
 
 namespace selvage::cad {
 
 namespace {
 
-using yarn::EndStyle;
+constexpr std::size_t nothing = std::numeric_limits<std::size_t>::max();
+// Of one face: a file of many equal yarns in one place must not cost their square.
+constexpr std::size_t most_trials = 64;
 
-constexpr double sealing = 1e-4;  // of the end curve's extent: a border nearer than this seals
-
-struct FaceId {
+// A tube that is not complete by its part alone.
+struct Tube {
   std::size_t part = 0, face = 0;
+  std::size_t order = 0;  // of the face in the file
+  TubeKind kind;
+  yarn::Body body;
+  std::array<std::size_t, 2> lids{nothing, nothing};
+};
+// Any other face of such parts.
+struct Candidate {
+  std::size_t part = 0, face = 0, order = 0;
+  bool taken = false;
+};
+// A candidate that fits an end. Smaller is better.
+struct Fit {
+  std::size_t tube = 0, candidate = 0;
+  bool last = false;
+  bool other_part = false, other_name = false, inexact = false, other_look = false;
+  std::size_t distance = 0;  // in the order of the file
+  Lid lid;
+
+  [[nodiscard]] auto rank() const {
+    return std::tuple(other_part, other_name, inexact, other_look, distance, tube, last, candidate);
+  }
 };
 
-struct Candidate {  // a tube
-  FaceId id;
-  Tube tube;
-};
+void put(yarn::Body& body, bool last, Lid& lid) {
+  (last ? body.end : body.start) = std::move(lid.face);
+}
 
-struct Lid {  // a face that may seal one
-  FaceId id;
-  Cap cap;
-  bool used = false;
-};
+bool has_patch(const yarn::Body& body) {
+  return body.start.style == yarn::EndStyle::patch || body.end.style == yarn::EndStyle::patch;
+}
 
-// Lids by the middle of their borders.
-class LidIndex {
- public:
-  explicit LidIndex(const std::vector<Lid>& lids) : lids_(lids) {
-    std::vector<double> sizes;
-    for (const Lid& lid : lids) sizes.push_back(lid.cap.size);
-    if (!sizes.empty()) {
-      std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2),
-                       sizes.end());
-      cell_ = std::max(0.1 * sizes[sizes.size() / 2], 1e-300);
-    }
-    for (std::size_t i = 0; i < lids.size(); ++i) cells_.emplace(key(cell_of(lids[i].cap.middle)), i);
+// Brings a lid to its end. `other` counts the ends that are sealed by something that no end face can be.
+void seal_end(yarn::Body& body, bool last, Lid& lid, std::array<bool, 2>& other) {
+  if (lid.face.style == yarn::EndStyle::patch) {
+    if (has_patch(body) && body.quarters != lid.quarters)
+      lid.face = {};  // its corners do not stand where those of the other end do
+    else
+      body.quarters = lid.quarters;
   }
+  other[last ? 1 : 0] = lid.face.style == yarn::EndStyle::none;
+  put(body, last, lid);
+}
 
-  // Those whose middle is within `reach` of p; where that is many cells, those of the neighbouring cells.
-  [[nodiscard]] std::vector<std::size_t> near(const Vec3& p, double reach) const {
-    std::vector<std::size_t> found;
-    const auto rings = static_cast<std::int64_t>(std::clamp(std::ceil(reach / cell_), 1.0, 4.0));
-    const Cell middle = cell_of(p);
-    for (std::int64_t x = -rings; x <= rings; ++x)
-      for (std::int64_t y = -rings; y <= rings; ++y)
-        for (std::int64_t z = -rings; z <= rings; ++z) {
-          const auto [from, to] = cells_.equal_range(key({middle[0] + x, middle[1] + y, middle[2] + z}));
-          for (auto at = from; at != to; ++at)
-            if ((lids_[at->second].cap.middle - p).norm() <= reach) found.push_back(at->second);
-        }
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-    return found;
+// Ends that are sealed by something else get a standard face: the first style that works.
+bool replace_ends(yarn::Body& body, const std::array<bool, 2>& other) {
+  if (!other[0] && !other[1]) return false;
+  yarn::Body trial;
+  trial.name = body.name;
+  trial.surface = body.surface;
+  trial.axis = body.axis;
+  trial.quarters = body.quarters;
+  for (const yarn::EndStyle style : {yarn::EndStyle::patch, yarn::EndStyle::fan}) {
+    if (!yarn::seal(trial, style)) continue;
+    if (other[0]) body.start = trial.start;
+    if (other[1]) body.end = trial.end;
+    break;
   }
-
- private:
-  using Cell = std::array<std::int64_t, 3>;
-  [[nodiscard]] Cell cell_of(const Vec3& p) const {
-    Cell cell{};
-    for (std::size_t k = 0; k < 3; ++k)
-      cell[k] = static_cast<std::int64_t>(
-          std::clamp(std::floor(p[static_cast<Eigen::Index>(k)] / cell_), -1e15, 1e15));
-    return cell;
-  }
-  static std::uint64_t key(const Cell& cell) {
-    std::uint64_t hash = 0;
-    for (const std::int64_t part : cell)
-      hash = (hash ^ static_cast<std::uint64_t>(part)) * 0x9E3779B97F4A7C15ULL;
-    return hash;
-  }
-
-  const std::vector<Lid>& lids_;
-  double cell_ = 1;
-  std::unordered_multimap<std::uint64_t, std::size_t> cells_;
-};
-
-// The line through the middles of the sections' control points.
-nurbs::Curve centre_line(const nurbs::Surface& surface) {
-  nurbs::Curve line;
-  line.degree = surface.degree_v;
-  line.knots = surface.knots_v;
-  for (int j = 0; j < surface.count_v; ++j) {
-    Vec3 sum = Vec3::Zero();
-    for (int i = 0; i + 1 < surface.count_u; ++i) sum += surface.point(i, j);
-    line.points.emplace_back(sum / (surface.count_u - 1));
-  }
-  return line;
+  return true;
 }
 
 class Recognizer {
  public:
-  explicit Recognizer(std::vector<Part> parts) : parts_(std::move(parts)) {
-    taken_.resize(parts_.size());
-    for (std::size_t p = 0; p < parts_.size(); ++p) taken_[p].resize(parts_[p].faces.size());
-  }
+  Recognizer(Model& model, Diagnostics& diagnostics) : model_(model), diagnostics_(diagnostics) {}
 
-  Recognized run() {
-    sort_faces();
-    const LidIndex index(lids_);
-    for (Candidate& candidate : tubes_) take(candidate, index);
-    keep_rest();
-    name_all();
-    return std::move(out_);
+  std::vector<FoundYarn> take() {
+    for (std::size_t p = 0; p < model_.parts.size(); ++p) {
+      if (!take_part(p)) collect(p);
+      order_ += model_.parts[p].faces.size();
+    }
+    match_loose();
+    finish_loose();
+    std::stable_sort(found_.begin(), found_.end(),
+                     [](const Ordered& a, const Ordered& b) { return a.order < b.order; });
+    std::erase_if(model_.parts, [](const Part& part) { return part.faces.empty(); });
+    warn();
+    std::vector<FoundYarn> yarns;
+    yarns.reserve(found_.size());
+    for (Ordered& found : found_) yarns.push_back(std::move(found.yarn));
+    return yarns;
   }
 
  private:
-  void sort_faces() {
-    for (std::size_t p = 0; p < parts_.size(); ++p)
-      for (std::size_t f = 0; f < parts_[p].faces.size(); ++f) {
-        const Face& face = parts_[p].faces[f];
-        if (face.surface.is_empty()) continue;
-        std::optional<Tube> tube;
-        if (face.loops.empty()) tube = as_tube(face.surface);
-        if (tube)
-          tubes_.push_back({{p, f}, std::move(*tube)});
-        else if (std::optional<Cap> cap = as_cap(face))
-          lids_.push_back({{p, f}, std::move(*cap)});
-      }
-  }
-
-  struct Sealed {
-    std::size_t lid = 0;
-    Fit fit;
+  struct Ordered {
+    std::size_t order;
+    FoundYarn yarn;
   };
-  // The best lid for one end.
-  std::optional<Sealed> find_lid(const Candidate& candidate, const LidIndex& index,
-                                 const nurbs::Curve& outline, std::optional<std::size_t> other) {
-    const double size = extent(outline.points), tolerance = sealing * size;
-    const Vec3 middle = middle_of({outline});
-    std::optional<Sealed> best;
-    double best_cost = 0;
-    for (const std::size_t i : index.near(middle, 0.3 * size)) {
-      const Lid& lid = lids_[i];
-      if (lid.used || other == i) continue;
-      const bool is_own = lid.id.part == candidate.id.part;
-      // A solid's faces are its own.
-      if (!is_own && (parts_[lid.id.part].kind == Part::Kind::solid ||
-                      parts_[candidate.id.part].kind == Part::Kind::solid))
-        continue;
-      std::optional<Fit> fit = fit_cap(lid.cap, outline, tolerance);
-      if (!fit) continue;
-      const double cost =
-          (lid.cap.middle - middle).norm() + (is_own ? 0.0 : size) + (fit->exact ? 0.0 : 0.1 * size);
-      if (best && cost >= best_cost) continue;
-      best_cost = cost;
-      best = Sealed{i, std::move(*fit)};
+
+  // The face, clamped.
+  static const Face& clamped(const Face& face, std::optional<Face>& made) {
+    const nurbs::Surface& s = face.surface;
+    if (nurbs::is_clamped(s.knots_u, s.degree_u) && nurbs::is_clamped(s.knots_v, s.degree_v)) return face;
+    made = face;
+    made->surface = nurbs::clamped(s);
+    return *made;
+  }
+
+  // A part that is one yarn and nothing else.
+  bool take_part(std::size_t index) {
+    Part& part = model_.parts[index];
+    if (part.faces.size() != 1 && part.faces.size() != 3) return false;
+    std::array<std::optional<Face>, 3> made;
+    std::array<const Face*, 3> faces{};
+    std::optional<TubeKind> kind;
+    std::size_t tube = nothing;
+    for (std::size_t f = 0; f < part.faces.size(); ++f) {
+      faces[f] = &clamped(part.faces[f], made[f]);
+      std::optional<TubeKind> found = tube_kind(*faces[f], model_.resolution);
+      if (found && tube != nothing) return false;
+      if (!found) continue;
+      tube = f;
+      kind = found;
     }
-    return best;
-  }
-
-  void describe(yarn::Body& body, const Candidate& candidate) const {
-    const Part& part = parts_[candidate.id.part];
-    const Face& face = part.faces[candidate.id.face];
-    body.name = !part.name.empty() ? part.name : face.name;
-    body.is_named = !body.name.empty();
-    body.is_colored = face.color || part.color;
-    body.group = part.group;
-    body.place = part.origin.place.line != 0 ? part.origin.place : face.origin.place;
-    if (face.color || part.color) body.color = face.color ? *face.color : *part.color;
-    const int level = part.level != 0 ? part.level : face.level;
-    if (level >= 1 && level <= static_cast<int>(yarn::all_roles.size()))
-      body.role = yarn::all_roles[static_cast<std::size_t>(level - 1)];
-  }
-
-  void warn(const yarn::Body& body, std::string text) {
-    Message message = warning(Kind::geometry, std::move(text));
-    message.yarn = body.name;
-    message.place = body.place;
-    out_.messages.push_back(std::move(message));
-  }
-
-  void take(Candidate& candidate, const LidIndex& index) {
-    yarn::Body body;
-    describe(body, candidate);
-    body.surface = std::move(candidate.tube.surface);
-    body.closed_along = candidate.tube.closed_along;
-    body.axis = centre_line(body.surface);
-    std::array<std::optional<Sealed>, 2> ends;
-    if (!body.closed_along) {
-      ends[0] = find_lid(candidate, index, yarn::end_curve(body, false), std::nullopt);
-      ends[1] = find_lid(candidate, index, yarn::end_curve(body, true),
-                         ends[0] ? std::optional(ends[0]->lid) : std::nullopt);
+    if (tube == nothing || kind->is_ring != (part.faces.size() == 1)) return false;
+    yarn::Body body = body_of(faces[tube]->surface, *kind);
+    std::array<bool, 2> other{};
+    if (!kind->is_ring) {
+      const TubeEnd start(body, false, kind->tolerance), end(body, true, kind->tolerance);
+      const std::size_t a = tube == 0 ? 1 : 0, b = tube == 2 ? 1 : 2;
+      std::array<std::optional<Lid>, 2> lids = {lid_of(*faces[a], start), lid_of(*faces[b], end)};
+      if (!lids[0] || !lids[1]) lids = {lid_of(*faces[b], start), lid_of(*faces[a], end)};
+      if (!lids[0] || !lids[1]) return false;
+      for (const bool last : {false, true}) seal_end(body, last, *lids[last ? 1 : 0], other);
     }
-    if (!is_whole(candidate, ends)) return;
-    if (!place(body, ends)) return;
-    taken_[candidate.id.part][candidate.id.face] = true;
-    for (const std::optional<Sealed>& end : ends) {
-      if (!end) continue;
-      Lid& lid = lids_[end->lid];
-      lid.used = true;
-      taken_[lid.id.part][lid.id.face] = true;
-    }
-    out_.yarns.push_back(std::move(body));
-  }
-
-  // A solid is a yarn as a whole or not at all.
-  [[nodiscard]] bool is_whole(const Candidate& candidate,
-                              const std::array<std::optional<Sealed>, 2>& ends) const {
-    const Part& part = parts_[candidate.id.part];
-    if (part.kind != Part::Kind::solid) return true;
-    const auto faces = static_cast<std::size_t>(1 + (ends[0] ? 1 : 0) + (ends[1] ? 1 : 0));
-    return faces == part.faces.size();
-  }
-
-  bool place(yarn::Body& body, std::array<std::optional<Sealed>, 2>& ends) {
-    set_quarters(body, ends);
-    bool anew = false;
-    for (const bool last : {false, true}) {
-      const std::optional<Sealed>& end = ends[last ? 1 : 0];
-      if (!end) continue;
-      const bool fits =
-          end->fit.exact && (end->fit.face.style != EndStyle::patch || end->fit.quarters == body.quarters);
-      anew = anew || !fits;
-      (last ? body.end : body.start) = end->fit.face;
-    }
-    if (!anew) return yarn::finish_as_sealed(body).ok();
-    const EndStyle style = ends[0] ? ends[0]->fit.face.style : ends[1]->fit.face.style;
-    if (!yarn::finish(body, style).ok()) return false;
-    if (!ends[0]) body.start = {};
-    if (!ends[1]) body.end = {};
-    warn(body,
-         fmt::format("the end faces of yarn '{}' are made anew: their sides do not run as its end curves do",
-                     body.name));
+    add(std::move(body), other, part, part.faces[tube], order_ + tube);
+    part.faces.clear();
     return true;
   }
 
-  static void set_quarters(yarn::Body& body, const std::array<std::optional<Sealed>, 2>& ends) {
-    for (const std::optional<Sealed>& end : ends)
-      if (end && end->fit.exact && end->fit.face.style == EndStyle::patch) {
-        body.quarters = end->fit.quarters;
-        return;
+  void add(yarn::Body body, const std::array<bool, 2>& other, const Part& part, const Face& side,
+           std::size_t order) {
+    body.name = !part.name.empty() ? part.name : side.name;
+    body.group = part.group;
+    body.color = part.color ? *part.color : side.color.value_or(yarn::Color{});
+    body.is_named = !body.name.empty();
+    body.is_colored = part.color || side.color;
+    body.role = role_of(part.level != 0 ? part.level : side.level);
+    body.place = part.origin.place.line > 0 ? part.origin.place : side.origin.place;
+    if (replace_ends(body, other) && replaced_++ == 0) first_replaced_ = body.name;
+    found_.push_back({order, {std::move(body), part.kind == Part::Kind::solid}});
+  }
+
+  // As our files have it: levels by role, each with its name.
+  [[nodiscard]] yarn::Role role_of(int level) const {
+    const auto index = static_cast<std::size_t>(level) - 1;
+    const auto name = model_.levels.find(level);
+    if (level < 1 || index >= yarn::all_roles.size() || name == model_.levels.end() ||
+        name->second != yarn::name_of(yarn::all_roles[index]))
+      return yarn::Role::other;
+    return yarn::all_roles[index];
+  }
+
+  // The faces of a part whose surfaces may belong to anything.
+  void collect(std::size_t index) {
+    const Part& part = model_.parts[index];
+    if (part.kind != Part::Kind::surfaces) return;
+    for (std::size_t f = 0; f < part.faces.size(); ++f) {
+      std::optional<Face> made;
+      const Face& face = clamped(part.faces[f], made);
+      if (std::optional<TubeKind> kind = tube_kind(face, model_.resolution))
+        tubes_.push_back({index, f, order_ + f, *kind, body_of(face.surface, *kind), {nothing, nothing}});
+      else
+        candidates_.push_back({index, f, order_ + f, false});
+    }
+  }
+
+  void match_loose() {
+    Places places;
+    for (std::size_t t = 0; t < tubes_.size(); ++t) {
+      if (tubes_[t].kind.is_ring) continue;
+      for (const bool last : {false, true}) {
+        const nurbs::Curve outline = yarn::end_curve(tubes_[t].body, last);
+        places.add({SampledCurve(outline).points}, 2 * t + (last ? 1 : 0));
       }
-    body.quarters = yarn::quarters_of(body.surface);
-  }
-
-  void keep_rest() {
-    for (std::size_t p = 0; p < parts_.size(); ++p) {
-      Part& part = parts_[p];
-      std::vector<Face> left;
-      for (std::size_t f = 0; f < part.faces.size(); ++f)
-        if (!taken_[p][f]) left.push_back(std::move(part.faces[f]));
-      if (left.empty() && !part.faces.empty()) continue;
-      part.faces = std::move(left);
-      out_.rest.push_back(std::move(part));
+    }
+    std::vector<Fit> fits;
+    if (!tubes_.empty())
+      for (std::size_t c = 0; c < candidates_.size(); ++c) find_fits(places, c, fits);
+    std::sort(fits.begin(), fits.end(), [](const Fit& a, const Fit& b) { return a.rank() < b.rank(); });
+    sealed_by_other_.resize(tubes_.size());
+    for (Fit& fit : fits) {
+      Tube& tube = tubes_[fit.tube];
+      std::size_t& lid = tube.lids[fit.last ? 1 : 0];
+      if (lid != nothing || candidates_[fit.candidate].taken) continue;
+      lid = fit.candidate;
+      candidates_[fit.candidate].taken = true;
+      seal_end(tube.body, fit.last, fit.lid, sealed_by_other_[fit.tube]);
     }
   }
 
-  void name_all() {
-    std::unordered_set<std::string> names;
-    for (const yarn::Body& body : out_.yarns) names.insert(body.name);
-    std::unordered_set<std::string> given;
-    std::unordered_map<std::string, std::size_t> next;
-    for (std::size_t i = 0; i < out_.yarns.size(); ++i) {
-      std::string& name = out_.yarns[i].name;
-      if (!name.empty() && given.insert(name).second) continue;
-      const std::string stem = name.empty() ? "yarn_" : name + ".";
-      std::size_t& number = next.try_emplace(stem, name.empty() ? i + 1 : 2).first->second;
-      std::string made = stem + std::to_string(number);
-      while (names.contains(made)) made = stem + std::to_string(++number);
-      ++number;
-      names.insert(made);
-      given.insert(made);
-      name = std::move(made);
+  void find_fits(const Places& places, std::size_t index, std::vector<Fit>& fits) {
+    const Candidate& candidate = candidates_[index];
+    const Part& part = model_.parts[candidate.part];
+    std::optional<Face> made;
+    const Face& face = clamped(part.faces[candidate.face], made);
+    const Polylines border = border_of(face, 0);
+    if (border.empty()) return;
+    std::vector<std::size_t> near = places.near(border);
+    const auto distance = [&](std::size_t end) {
+      const std::size_t order = tubes_[end / 2].order;
+      return order > candidate.order ? order - candidate.order : candidate.order - order;
+    };
+    std::stable_sort(near.begin(), near.end(),
+                     [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
+    if (near.size() > most_trials) near.resize(most_trials);
+    for (const std::size_t end : near) {
+      const Tube& tube = tubes_[end / 2];
+      const bool last = end % 2 == 1;
+      std::optional<Lid> lid = lid_of(face, TubeEnd(tube.body, last, tube.kind.tolerance));
+      if (!lid) continue;
+      const Part& home = model_.parts[tube.part];
+      const Face& side = home.faces[tube.face];
+      Fit fit;
+      fit.tube = end / 2;
+      fit.candidate = index;
+      fit.last = last;
+      fit.other_part = tube.part != candidate.part;
+      fit.other_name = side.name.empty() || side.name != face.name;
+      fit.inexact = lid->gap > 0;
+      fit.other_look = side.level != face.level || side.color != face.color;
+      fit.distance = distance(end);
+      fit.lid = std::move(*lid);
+      fits.push_back(std::move(fit));
     }
   }
 
-  std::vector<Part> parts_;
-  std::vector<std::vector<bool>> taken_;  // by part and face
-  std::vector<Candidate> tubes_;
-  std::vector<Lid> lids_;
-  Recognized out_;
+  // Whether an open tube is a yarn: nothing else belongs to it, or it is the one tube of a small group.
+  [[nodiscard]] bool is_open_yarn(const Tube& tube) const {
+    return model_.parts[tube.part].faces.size() <= 3 && tubes_of_part_.at(tube.part) == 1;
+  }
+
+  void finish_loose() {
+    for (const Tube& tube : tubes_) ++tubes_of_part_[tube.part];
+    std::vector<std::pair<std::size_t, std::size_t>> taken;  // part, face
+    for (std::size_t t = 0; t < tubes_.size(); ++t) {
+      Tube& tube = tubes_[t];
+      const bool is_sealed = tube.kind.is_ring || (tube.lids[0] != nothing && tube.lids[1] != nothing);
+      if (!is_sealed && !is_open_yarn(tube)) continue;  // what it took belongs to no yarn
+      const Part& part = model_.parts[tube.part];
+      taken.emplace_back(tube.part, tube.face);
+      std::size_t own = 1;
+      for (const std::size_t lid : tube.lids) {
+        if (lid == nothing) continue;
+        taken.emplace_back(candidates_[lid].part, candidates_[lid].face);
+        if (candidates_[lid].part == tube.part) ++own;
+      }
+      if (!is_sealed && own < part.faces.size() && misfits_++ == 0) first_misfit_ = part.name;
+      if (!is_sealed && own == part.faces.size() && loose_++ == 0)
+        first_loose_ = !part.name.empty() ? part.name : part.faces[tube.face].name;
+      add(std::move(tube.body), sealed_by_other_[t], part, part.faces[tube.face], tube.order);
+    }
+    leftover_ = candidates_.size() + tubes_.size() - taken.size();
+    std::sort(taken.begin(), taken.end(), std::greater<>());
+    for (const auto& [part, face] : taken)
+      model_.parts[part].faces.erase(model_.parts[part].faces.begin() + static_cast<std::ptrdiff_t>(face));
+  }
+
+  void warn() {
+    const auto say = [&](std::string text) {
+      Message message = warning(Kind::geometry, std::move(text));
+      message.file = model_.file;
+      diagnostics_.add(std::move(message));
+    };
+    const auto yarns = [](std::size_t count, const std::string& name) {
+      return fmt::format("{} yarn{}{}", count, count == 1 ? "" : "s",
+                         name.empty() ? "" : fmt::format(", such as '{}',", name));
+    };
+    const auto have = [](std::size_t count) { return count == 1 ? "has" : "have"; };
+    if (replaced_ > 0)
+      say(
+          fmt::format("{} {} ends that are sealed by other faces than patches, fans and planes: these were "
+                      "replaced",
+                      yarns(replaced_, first_replaced_), have(replaced_)));
+    if (misfits_ > 0)
+      say(
+          fmt::format("{} {} open ends: faces of the same group do not meet them, and are kept as free "
+                      "surfaces",
+                      yarns(misfits_, first_misfit_), have(misfits_)));
+    if (loose_ > 0 && leftover_ > 0)
+      say(fmt::format("{} {} open ends: no surface of the file meets them", yarns(loose_, first_loose_),
+                      have(loose_)));
+  }
+
+  Model& model_;
+  Diagnostics& diagnostics_;
+  std::size_t order_ = 0;  // of the present part's first face
+  std::vector<Ordered> found_;
+  std::vector<Tube> tubes_;
+  std::vector<Candidate> candidates_;
+  std::vector<std::array<bool, 2>> sealed_by_other_;
+  std::unordered_map<std::size_t, std::size_t> tubes_of_part_;
+  std::size_t replaced_ = 0, misfits_ = 0, loose_ = 0, leftover_ = 0;
+  std::string first_replaced_, first_misfit_, first_loose_;
 };
 
 }  // namespace
 
-Recognized recognize_yarns(std::vector<Part> parts) {
-  return Recognizer(std::move(parts)).run();
+std::vector<FoundYarn> take_yarns(Model& model, Diagnostics& diagnostics) {
+  return Recognizer(model, diagnostics).take();
 }
 
 }  // namespace selvage::cad

@@ -1,33 +1,40 @@
-// Yarns in a CAD file, found by their geometry: a surface closed round, and the faces that seal its two ends,
-// in whatever order, grouping and direction the file has them.
+// Yarns and garment pieces in a CAD file, found by their geometry.
 #pragma once
 
 #include <vector>
 
 #include "cad/model.h"
 #include "core/diagnostics.h"
-#include "yarn/body.h"
 
 namespace selvage::cad {
 
-struct Recognized {
-  std::vector<yarn::Body> yarns;  // in the order of their tubes in the file
-  std::vector<Part> rest;         // what is no yarn, or no part of one
-  std::vector<Message> messages;  // warnings
+struct FoundYarn {
+  // Complete but for what yarn/finish.h finds of it (finish_as_sealed). Its name may be empty, or another's.
+  yarn::Body body;
+  bool was_solid = false;
 };
 
-// A tube is an untrimmed surface that is closed in one direction (first and last control column equal to
-// 1e-9 of its size; they are made equal to the bit), and no pole at an end; one closed in both is a ring.
-// Tubes that are closed in v, or not clamped, are brought to the form of yarn::Body, which moves no control
-// point of a clamped one.
-//
-// An end is sealed by a face whose border is the tube's end curve, to 1e-4 of its extent: a patch, whose
-// corners become Body::quarters; a fan; a trimmed plane. Faces of the same part are preferred, then the
-// nearest. A patch whose sides do not run with the end curve's parameter is made anew, with a warning.
-// Without such a face the end is open.
-//
-// A part of kind `solid` is a yarn only if nothing of it is left over. Names: the part's, else the face's,
-// else yarn_1, ...; of equal ones the later get .2, .3, ... Cost: near to linear in the number of faces.
-Recognized recognize_yarns(std::vector<Part> parts);
+// Takes the yarns out of the model, in file order. A yarn is a tube (cad/tube.h), alone as a ring, or with
+// two faces whose borders are its end curves (cad/lid.h): a solid or shell of just these, a group of them, or
+// any such surfaces of the file, loose or in groups, in any order, which are found by their places. End faces
+// keep their control points; one that is neither patch, fan nor plane is replaced by one (a warning says so).
+// A tube whose ends no face seals is a yarn with open ends where nothing else belongs to it, or where its
+// group holds one or two faces besides (that do not fit: a warning; they stay as they are). All else stays.
+std::vector<FoundYarn> take_yarns(Model& model, Diagnostics& diagnostics);
+
+// A plane outline of lines and cubics.
+struct Outline {
+  struct Side {
+    std::string name;
+    nurbs::Curve curve;  // over [0, 1], degree 1 or 3, without weights and inner knots
+  };
+  std::string name;
+  std::vector<Side> sides;  // in order, each one's last point is the next one's first
+  Origin origin;
+};
+
+// Takes the garment pieces out of the model: a face in z = 0 whose loop is of lines and cubics, each of which
+// stands in the model as a curve of its own as well, number for number. Both are taken.
+std::vector<Outline> take_outlines(Model& model);
 
 }  // namespace selvage::cad

@@ -1,33 +1,26 @@
-// Surfaces that are closed round, brought to the form of a yarn's body.
+// Surfaces that are closed round: what the side of a yarn looks like in a file.
 #pragma once
 
 #include <optional>
 
-#include "nurbs/spline.h"
+#include "cad/model.h"
 
 namespace selvage::cad {
 
-struct Tube {
-  nurbs::Surface surface;  // u round, clamped, first column equal to the last to the bit; v along, clamped
-  bool closed_along = false;
+struct TubeKind {
+  bool round_is_v = false;  // the direction round the section is v
+  bool is_ring = false;     // closed along as well
+  double size = 0;          // mean thickness of the thinner end
+  double tolerance = 0;     // within which points are one there
 };
 
-// Nothing for a surface that is closed in neither direction, or that has a pole at an end.
-std::optional<Tube> as_tube(const nurbs::Surface& surface);
+// Is the whole face (clamped) a tube: closed in one direction, with two ends that enclose an area, or a ring,
+// closed in both? Of the two directions of a ring u is round, unless v is less than half as long.
+// `resolution`: of the file, or 0.
+std::optional<TubeKind> tube_kind(const Face& face, double resolution);
 
-// A cap with a pole in its middle: closed round, its first row the border (turned round if need be), its last
-// row one point. Nothing for another surface.
-std::optional<nurbs::Surface> as_fan(const nurbs::Surface& surface);
-
-// The surface with u and v exchanged.
-nurbs::Surface transposed(const nurbs::Surface& surface);
-// The surface with u (v) run backwards; knots become (first + last) - knot.
-nurbs::Surface reversed_u(const nurbs::Surface& surface);
-nurbs::Surface reversed_v(const nurbs::Surface& surface);
-// The surface clamped in both directions; the same numbers where it is already.
-nurbs::Surface clamped(const nurbs::Surface& surface);
-
-// Largest extent of the control points' box.
-double extent(const std::vector<Vec3>& points);
+// The tube as a yarn: surface, closed_along, axis and quarters. Control points keep their bits, but where
+// the last column (or row of a ring) is not quite the first.
+yarn::Body body_of(const nurbs::Surface& surface, const TubeKind& kind);
 
 }  // namespace selvage::cad

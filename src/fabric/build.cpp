@@ -11,6 +11,7 @@
 
 #include "fabric/braid.h"
 #include "fabric/edits.h"
+#include "fabric/grid_net.h"
 #include "fabric/knit.h"
 #include "fabric/plies.h"
 #include "fabric/warpknit.h"
@@ -24,20 +25,16 @@ namespace selvage::fabric {
 
 namespace {
 
-yarn::GridNet net_of(const Grid& grid, bool yarn_closed) {
-  yarn::GridNet net;
-  net.sections = grid.sections;
-  net.per_section = grid.per_section;
-  net.points = grid.points;
-  net.weights = grid.weights;
-  net.degree_along = grid.degree_along;
-  net.degree_round = grid.degree_round;
-  net.knots_along = grid.knots_along;
-  net.knots_round = grid.knots_round;
-  net.open_round = grid.open_round;
-  net.closed_along = grid.closed_along || yarn_closed;
-  net.corners = grid.corners;
-  return net;
+// How a yarn of the text is sealed: as the options say, or the yarn itself.
+yarn::Sealings sealings_of(const Yarn* yarn, const BuildOptions& options) {
+  yarn::Sealings sealings;
+  const Grid* grid = yarn != nullptr ? std::get_if<Grid>(&yarn->shape) : nullptr;
+  for (std::size_t end = 0; end < 2; ++end) {
+    if (yarn != nullptr && yarn->ends) sealings[end].style = (*yarn->ends)[end];
+    if (options.ends) sealings[end].style = *options.ends;
+    if (grid != nullptr) sealings[end].centre = grid->fan_centres[end];
+  }
+  return sealings;
 }
 
 Message in_file(const Fabric& fabric, TextPlace place, Message message) {
@@ -336,12 +333,8 @@ Result<yarn::Body> YarnBuilder::build_grid(const Yarn& yarn) const {
 
 // A yarn of a CAD file keeps its end faces unless others are asked for.
 Result<yarn::Body> YarnBuilder::as_read(yarn::Body body, const Entry& entry) const {
-  if (options_.ends) {
-    body.messages.clear();
-    body.tight_bends.clear();
-    if (Status finished = yarn::finish(body, *options_.ends); !finished)
-      return placed(finished.error(), entry);
-  }
+  const Status finished = options_.ends ? yarn::finish(body, *options_.ends) : yarn::finish_as_sealed(body);
+  if (!finished) return placed(finished.error(), entry);
   for (Message& message : body.messages) message = placed(message, entry);
   return body;
 }
@@ -369,7 +362,8 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
     spec.max_control_points = options_.max_control_points;
     if (Status swept = yarn::sweep(body, made->line, spec); !swept) return placed(swept.error(), entry);
   }
-  if (Status finished = yarn::finish(body, options_.ends.value_or(yarn::EndStyle::patch)); !finished)
+  if (entry.yarn != nullptr && body.group.empty()) body.group = entry.yarn->group;
+  if (Status finished = yarn::finish(body, sealings_of(entry.yarn, options_)); !finished)
     return placed(finished.error(), entry);
   for (Message& message : body.messages) message = placed(message, entry);
   return body;

@@ -117,8 +117,14 @@ struct Grid {
   bool closed_along = false;                     // word `closed` of the grid: a ring
   std::optional<std::array<double, 4>> corners;  // of the end patches: parameters round; none: found
   std::vector<Vec3> points;
-  std::vector<double> weights;  // empty: all 1
+  std::vector<double> weights;                     // empty: all 1
+  std::array<std::optional<Vec3>, 2> fan_centres;  // at the start, at the end; none: the section's
 };
+
+// A yarn as it was read from a CAD file, end faces and all: name, role, colour, group, surface, axis,
+// quarters, and of the end faces style and surface. What follows from these (which way normals point,
+// lengths, volume, bends) is found when it is built.
+using ReadBody = std::shared_ptr<const yarn::Body>;
 
 struct Yarn {
   std::string name;
@@ -131,8 +137,8 @@ struct Yarn {
   std::optional<Vec3> tangent_start, tangent_end, up;
   TextPlace up_place;
   bool closed = false;
-  // The last: a yarn as it was read from a CAD file, end faces and all.
-  std::variant<std::monostate, Path, Grid, std::shared_ptr<const yarn::Body>> shape;
+  std::optional<std::array<yarn::EndStyle, 2>> ends;  // of its start and its end; none: not said
+  std::variant<std::monostate, Path, Grid, ReadBody> shape;
 };
 
 // Threads used in turn: `W1,W2`.
@@ -228,7 +234,7 @@ struct Braid {
 };
 
 struct PieceCurve {
-  enum class Shape { found, c, s };
+  enum class Shape { found, c, s, control };  // control: the points are the curve's four control points
   std::string name;
   TextPlace place;
   bool is_line = false;

@@ -116,7 +116,7 @@ class Builder {
     }
     for (std::size_t i = 0; i < rows_.size(); ++i)
       for (std::size_t k = 1; k < rows_[i].size(); ++k)
-        if (rows_[i][k] == rows_[i][k - 1])
+        if (rows_[i][k] == rows_[i][k - 1] && piece_.curves[i].shape != PieceCurve::Shape::control)
           return say(error(Kind::geometry,
                            fmt::format("{} is shorter than the tolerance {:.3g} within which ends are joined",
                                        title_of(piece_.curves[i]), tolerance)),
@@ -148,6 +148,10 @@ class Builder {
     edge.place = source.place;
     if (source.is_line) {
       edge.curve = curve_of({rows_[i].front(), rows_[i].back()});
+      return edge;
+    }
+    if (source.shape == PieceCurve::Shape::control) {
+      edge.curve = curve_of(rows_[i]);
       return edge;
     }
     edge.fit = fit_of(rows_[i]);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nurbs/turn.h"
+
 namespace selvage::yarn {
 
 std::string_view name_of(Role role) {
@@ -70,18 +72,9 @@ double largest_distance(const nurbs::Curve& a, const nurbs::Curve& b) {
 
 // The four sides of a patch, each in the direction in which the body's end curve runs.
 std::array<nurbs::Curve, 4> patch_sides(const nurbs::Surface& patch) {
-  const auto column = [&](int i) {
-    nurbs::Curve curve;
-    curve.degree = patch.degree_v;
-    curve.knots = patch.knots_v;
-    for (int j = 0; j < patch.count_v; ++j) {
-      curve.points.push_back(patch.point(i, j));
-      if (patch.is_rational()) curve.weights.push_back(patch.weight(i, j));
-    }
-    return curve;
-  };
-  return {nurbs::boundary_row(patch, false), column(patch.count_u - 1),
-          nurbs::reversed(nurbs::boundary_row(patch, true)), nurbs::reversed(column(0))};
+  return {nurbs::boundary_row(patch, false), nurbs::boundary_column(patch, true),
+          nurbs::reversed(nurbs::boundary_row(patch, true)),
+          nurbs::reversed(nurbs::boundary_column(patch, false))};
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "yarn/end_plane.h"
 
+#include "yarn/ends.h"
+
 namespace selvage::yarn {
 
 nurbs::Curve EndPlane::in_parameters(const nurbs::Curve& curve) const {
@@ -12,12 +14,14 @@ nurbs::Curve EndPlane::in_parameters(const nurbs::Curve& curve) const {
 }
 
 EndPlane end_plane(const Body& body, const nurbs::Curve& end_curve, bool last) {
-  const EndFace& face = last ? body.end : body.start;
   EndPlane plane;
-  plane.origin = face.origin;
+  // From the outline alone, so that a yarn that was read from a file has the same plane, to the bit.
+  plane.origin = Vec3::Zero();
+  for (std::size_t i = 1; i < end_curve.points.size(); ++i) plane.origin += end_curve.points[i];
+  plane.origin /= static_cast<double>(end_curve.points.size() - 1);
   // Where u runs counter-clockwise seen along the path, the yarn's own direction is the normal for it.
   plane.inward = last == body.inward;
-  plane.normal = plane.inward ? Vec3(-face.normal) : face.normal;
+  plane.normal = area_vector(end_curve).normalized();
   Vec3 across = end_curve.points.front() - plane.origin;
   across -= across.dot(plane.normal) * plane.normal;
   plane.axis_u = across.norm() > 0 ? Vec3(across.normalized()) : plane.normal.unitOrthogonal();

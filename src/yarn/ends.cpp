@@ -176,100 +176,119 @@ Vec3 end_centre(const Body& body, const nurbs::Curve& outline, bool last) {
   return sum / static_cast<double>(outline.points.size() - 1);
 }
 
-// Centre and outward normal of the end. Round the section the outline turns about the path (against it when
-// the body's normals point inward); out of the yarn is against the path at the start.
-Status place_end(const Body& body, bool last, const nurbs::Curve& outline, const Vec3& turning,
-                 EndFace& face) {
-  face.origin = end_centre(body, outline, last);
-  const double sign = (last != body.inward) ? 1.0 : -1.0;
-  if (turning.norm() == 0.0)
-    return seal_message(
-        body, last, Severity::error,
-        fmt::format("the {} section of yarn '{}' has no area", last ? "last" : "first", body.name));
-  face.normal = sign * turning.normalized();
-  return {};
+bool has_same_points(const nurbs::Surface& a, const nurbs::Surface& b) {
+  if (a.count_u != b.count_u || a.count_v != b.count_v || a.degree_u != b.degree_u ||
+      a.degree_v != b.degree_v || a.knots_u != b.knots_u || a.knots_v != b.knots_v || a.points != b.points)
+    return false;
+  for (int j = 0; j < a.count_v; ++j)
+    for (int i = 0; i < a.count_u; ++i)
+      if (a.weight(i, j) != b.weight(i, j)) return false;
+  return true;
 }
 
-// A patch keeps the outline's turning; a fan's u follows the outline and v runs inward: its normal is the
-// opposite one.
-void find_inward(EndFace& face, const Vec3& turning) {
-  if (face.style == EndStyle::patch) face.inward = face.normal.dot(turning) < 0.0;
-  if (face.style == EndStyle::fan) {
-    const nurbs::SurfaceJet jet = nurbs::evaluate_jet(face.surface, face.surface.first_u(), 0.0);
-    face.inward = jet.du.cross(jet.dv).dot(face.normal) < 0.0;
-  }
+Vec3 centre_of_fan(const nurbs::Surface& fan) {
+  return fan.point(0, fan.count_v - 1);
 }
 
-Status seal_end(Body& body, bool last, EndStyle style) {
+// The surface of a patch or fan that seals this end of the body.
+nurbs::Surface standard_surface(const Body& body, bool last) {
+  const EndFace& face = last ? body.end : body.start;
+  if (face.style == EndStyle::patch) return coons_patch(end_quarters(body, last));
+  return fan(end_curve(body, last), centre_of_fan(face.surface));
+}
+
+Status seal_end(Body& body, bool last, const Sealing& sealing) {
+  EndFace& face = last ? body.end : body.start;
   const nurbs::Curve outline = end_curve(body, last);
-  EndFace face;
+  const EndStyle style = sealing.style;
   face.style = style;
-  const Vec3 turning = area_vector(outline);
-  if (Status placed = place_end(body, last, outline, turning, face); !placed) return placed;
+  if (style == EndStyle::patch) face.surface = coons_patch(end_quarters(body, last));
+  if (style == EndStyle::fan)
+    face.surface = fan(outline, sealing.centre.value_or(end_centre(body, outline, last)));
+  if (Status completed = complete_end(body, last); !completed) return completed;
   double size = 0.0;
   for (const Vec3& p : outline.points) size = std::max(size, (p - face.origin).norm());
   // Rounding of the coordinates aside; the trimmed plane is only as good as the outline is flat.
   const double scale = std::max(size, face.origin.cwiseAbs().maxCoeff());
   const double unflat = flatness(outline, face.origin, face.normal);
   const bool is_flat = unflat <= 1e-9 * scale;
-  if (style == EndStyle::patch) {
-    face.surface = coons_patch(end_quarters(body, last));
-    // The patch runs round as the outline does, so its normal is the outline's turning direction.
-    if (is_folded(face.surface, turning.normalized())) {
-      if (!is_flat) {
-        (last ? body.end : body.start) = face;
-        return seal_message(
-            body, last, Severity::error,
-            fmt::format("the patch that shall seal the {} of yarn '{}' folds over itself, and the end is not "
-                        "flat (by {:.3g}), so that no plane can seal it either; use --ends fan",
-                        last ? "end" : "start", body.name, unflat));
-      }
-      face.style = EndStyle::planar;
-      face.surface = {};
-      (last ? body.end : body.start) = face;
-      body.messages.push_back(seal_message(body, last, Severity::warning,
-                                           fmt::format("the patch that shall seal the {} of yarn '{}' would "
-                                                       "fold over itself (the section is too long or "
-                                                       "concave): it is sealed by a trimmed plane instead",
-                                                       last ? "end" : "start", body.name)));
-      return {};
-    }
-  } else if (style == EndStyle::fan) {
-    face.surface = fan(outline, face.origin);
+  // The patch runs round as the outline does, so its normal is the outline's turning direction.
+  if (style == EndStyle::patch && is_folded(face.surface, area_vector(outline).normalized())) {
+    if (!is_flat)
+      return seal_message(
+          body, last, Severity::error,
+          fmt::format("the patch that shall seal the {} of yarn '{}' folds over itself, and the end is not "
+                      "flat (by {:.3g}), so that no plane can seal it either; use --ends fan",
+                      last ? "end" : "start", body.name, unflat));
+    face.style = EndStyle::planar;
+    face.surface = {};
+    face.inward = false;
+    body.messages.push_back(seal_message(body, last, Severity::warning,
+                                         fmt::format("the patch that shall seal the {} of yarn '{}' would "
+                                                     "fold over itself (the section is too long or "
+                                                     "concave): it is sealed by a trimmed plane instead",
+                                                     last ? "end" : "start", body.name)));
   } else if (style == EndStyle::planar && !is_flat) {
-    (last ? body.end : body.start) = face;
     return seal_message(
         body, last, Severity::error,
         fmt::format("the {} of yarn '{}' is not flat (by {:.3g}): a plane cannot seal it; use --ends patch",
                     last ? "end" : "start", body.name, unflat));
   }
-  find_inward(face, turning);
-  (last ? body.end : body.start) = std::move(face);
   return {};
 }
 
 }  // namespace
 
-Status place_ends(Body& body) {
+Status complete_end(Body& body, bool last) {
+  EndFace& face = last ? body.end : body.start;
+  const nurbs::Curve outline = end_curve(body, last);
+  face.origin = face.style == EndStyle::fan ? centre_of_fan(face.surface) : end_centre(body, outline, last);
+  // Round the section the outline turns about the path (against it when the body's normals point inward); out
+  // of the yarn is against the path at the start.
+  const Vec3 turning = area_vector(outline);
+  const double sign = (last != body.inward) ? 1.0 : -1.0;
+  if (turning.norm() == 0.0)
+    return seal_message(
+        body, last, Severity::error,
+        fmt::format("the {} section of yarn '{}' has no area", last ? "last" : "first", body.name));
+  face.normal = sign * turning.normalized();
+  // A patch keeps the outline's turning; a fan's u follows the outline and v runs inward: its normal is the
+  // opposite one.
+  if (face.style == EndStyle::patch) face.inward = face.normal.dot(turning) < 0.0;
+  if (face.style == EndStyle::fan) {
+    const nurbs::SurfaceJet jet =
+        nurbs::evaluate_jet(face.surface, face.surface.first_u(), face.surface.first_v());
+    face.inward = jet.du.cross(jet.dv).dot(face.normal) < 0.0;
+  }
+  return {};
+}
+
+bool is_standard_end(const Body& body, bool last) {
+  const EndFace& face = last ? body.end : body.start;
+  if (face.style != EndStyle::patch && face.style != EndStyle::fan) return true;
+  return has_same_points(face.surface, standard_surface(body, last));
+}
+
+void renew_end(Body& body, bool last) {
+  EndFace& face = last ? body.end : body.start;
+  if (face.style == EndStyle::patch || face.style == EndStyle::fan)
+    face.surface = standard_surface(body, last);
+}
+
+Status seal(Body& body, const Sealings& sealings) {
+  body.start = body.end = EndFace{};
+  if (body.closed_along) return {};
   for (const bool last : {false, true}) {
-    EndFace& face = last ? body.end : body.start;
-    if (body.closed_along || face.style == EndStyle::none) continue;
-    const nurbs::Curve outline = end_curve(body, last);
-    const Vec3 turning = area_vector(outline);
-    if (Status placed = place_end(body, last, outline, turning, face); !placed) return placed;
-    find_inward(face, turning);
+    const Sealing& sealing = sealings[last ? 1 : 0];
+    if (sealing.style == EndStyle::none) continue;
+    Status status = seal_end(body, last, sealing);
+    if (!status) return status;
   }
   return {};
 }
 
 Status seal(Body& body, EndStyle style) {
-  body.start = body.end = EndFace{};
-  if (body.closed_along || style == EndStyle::none) return {};
-  for (bool last : {false, true}) {
-    Status status = seal_end(body, last, style);
-    if (!status) return status;
-  }
-  return {};
+  return seal(body, Sealings{Sealing{style, {}}, Sealing{style, {}}});
 }
 
 }  // namespace selvage::yarn

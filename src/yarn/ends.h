@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "yarn/body.h"
 
@@ -29,13 +30,26 @@ Vec3 area_vector(const nurbs::Curve& closed);
 // `normal`.
 double flatness(const nurbs::Curve& curve, const Vec3& origin, const Vec3& normal);
 
+// What is asked of one end.
+struct Sealing {
+  EndStyle style = EndStyle::patch;
+  std::optional<Vec3> centre;  // where a fan's rows meet; none: the end of the body's axis
+};
+using Sealings = std::array<Sealing, 2>;  // of the start and of the end
+
 // Fills body.start and body.end from the finished surface. A patch that folds becomes planar where the end is
 // flat (with a warning in body.messages). Rings and `none` get no faces. Error (geometry): an end that none
 // of the styles asked for can seal.
+Status seal(Body& body, const Sealings& sealings);
 Status seal(Body& body, EndStyle style);
 
-// For end faces that have their style and surface already: fills origin, normal and inward. Error (geometry):
-// a section without area.
-Status place_ends(Body& body);
+// Fills what follows from the body in an end face that was read with its style and surface: origin, normal
+// and `inward`. Error (geometry): the section there has no area.
+Status complete_end(Body& body, bool last);
+
+// Is the end face, number for number, what seal() makes of this body with this style?
+bool is_standard_end(const Body& body, bool last);
+// Makes a patch or fan anew, after the body's points were changed.
+void renew_end(Body& body, bool last);
 
 }  // namespace selvage::yarn

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,8 +13,14 @@ namespace selvage::yarn {
 
 namespace {
 
-// The volume flux of one end. Planar, fan and open ends are what their outline says (a fan of a flat end is
-// flat); a patch is integrated.
+// The volume flux of one end as its outline says: as if a plane through its first point sealed it.
+double open_flux(const Body& body, bool last, const Vec3& origin) {
+  const nurbs::Curve outline = end_curve(body, last);
+  const double sign = (last != body.inward) ? 1.0 : -1.0;
+  return sign * area_vector(outline).dot(outline.points.front() - origin) / 3.0;
+}
+
+// The volume flux of one end. Planar and open ends are what their outline says; a patch or fan is integrated.
 double end_flux(const Body& body, bool last, const Vec3& origin) {
   const EndFace& end = last ? body.end : body.start;
   if (end.style == EndStyle::patch || end.style == EndStyle::fan) {
@@ -95,19 +100,14 @@ void find_bends(Body& body) {
   body.messages.push_back(std::move(message));
 }
 
-}  // namespace
-
-namespace {
-
-// Finds which way the body's normals point; with open ends, because sealing needs to know.
-Status orient(Body& body, double side, const Vec3& origin) {
+// Finds which way the body's normals point, with open ends: S_u x S_v outward makes the flux positive.
+// Returns the flux of the side alone.
+Result<double> orient(Body& body) {
+  const Vec3 origin = body.axis.points.front();
   body.inward = false;
+  const double side = nurbs::volume_flux(body.surface, origin);
   double flux = side;
-  const std::array<EndStyle, 2> styles = {body.start.style, body.end.style};
-  body.start.style = body.end.style = EndStyle::none;
-  if (!body.closed_along) flux += end_flux(body, false, origin) + end_flux(body, true, origin);
-  body.start.style = styles[0];
-  body.end.style = styles[1];
+  if (!body.closed_along) flux += open_flux(body, false, origin) + open_flux(body, true, origin);
   if (!std::isfinite(flux) || flux == 0.0) {
     Message message = error(Kind::geometry, fmt::format("yarn '{}' encloses no volume", body.name));
     message.yarn = body.name;
@@ -115,10 +115,12 @@ Status orient(Body& body, double side, const Vec3& origin) {
     return message;
   }
   body.inward = flux < 0.0;
-  return {};
+  return side;
 }
 
-void measure(Body& body, double side, const Vec3& origin) {
+// `side`: from orient().
+void measure(Body& body, double side) {
+  const Vec3 origin = body.axis.points.front();
   body.volume = body.inward ? -side : side;
   if (!body.closed_along) body.volume += end_flux(body, false, origin) + end_flux(body, true, origin);
   body.end_area = area_vector(end_curve(body, false)).norm();
@@ -128,22 +130,25 @@ void measure(Body& body, double side, const Vec3& origin) {
 
 }  // namespace
 
-Status finish(Body& body, EndStyle ends) {
-  const Vec3 origin = body.axis.points.front();
-  const double side = nurbs::volume_flux(body.surface, origin);
-  body.start = body.end = EndFace{};
-  if (Status oriented = orient(body, side, origin); !oriented) return oriented;
+Status finish(Body& body, const Sealings& ends) {
+  const Result<double> side = orient(body);
+  if (!side) return side.error();
   if (Status sealed = seal(body, ends); !sealed) return sealed;
-  measure(body, side, origin);
+  measure(body, *side);
   return {};
 }
 
+Status finish(Body& body, EndStyle ends) {
+  return finish(body, Sealings{Sealing{ends, {}}, Sealing{ends, {}}});
+}
+
 Status finish_as_sealed(Body& body) {
-  const Vec3 origin = body.axis.points.front();
-  const double side = nurbs::volume_flux(body.surface, origin);
-  if (Status oriented = orient(body, side, origin); !oriented) return oriented;
-  if (Status placed = place_ends(body); !placed) return placed;
-  measure(body, side, origin);
+  const Result<double> side = orient(body);
+  if (!side) return side.error();
+  for (const bool last : {false, true})
+    if (!body.closed_along && (last ? body.end : body.start).style != EndStyle::none)
+      if (Status completed = complete_end(body, last); !completed) return completed;
+  measure(body, *side);
   return {};
 }
 

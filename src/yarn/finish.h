@@ -2,16 +2,17 @@
 #pragma once
 
 #include "yarn/body.h"
+#include "yarn/ends.h"
 
 namespace selvage::yarn {
 
 // From a body with name, place, surface, axis, closed_along and quarters: finds which way its normals point,
 // seals it, and measures length, volume, end area and bends. Errors (geometry): an end that cannot be sealed,
 // a body without volume.
+Status finish(Body& body, const Sealings& ends);
 Status finish(Body& body, EndStyle ends);
 
-// The same for a body whose end faces are there already, with their styles and surfaces (yarns that were
-// read): they keep every bit, their centres and directions are found.
+// The same for a body that has its end faces (style and surface) already, and keeps them.
 Status finish_as_sealed(Body& body);
 
 }  // namespace selvage::yarn

@@ -159,12 +159,48 @@ std::optional<std::array<double, 4>> find_quarters(const nurbs::Curve& outline) 
   return quarters;
 }
 
-std::array<double, 4> quarters_of(const nurbs::Surface& surface) {
-  const double first = surface.first_u(), length = surface.last_u() - first;
-  return find_quarters(nurbs::boundary_row(surface, false))
-      .value_or(
-          std::array<double, 4>{first, first + 0.25 * length, first + 0.5 * length, first + 0.75 * length});
+nurbs::Curve section_centres(const nurbs::Surface& surface) {
+  // The mean of a curve over its parameter weighs each control point by the knots that it spans.
+  std::vector<double> shares(at(surface.count_u));
+  const double range = surface.last_u() - surface.first_u();
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    shares[i] = (surface.knots_u[i + at(surface.degree_u) + 1] - surface.knots_u[i]) /
+                ((surface.degree_u + 1) * range);
+  nurbs::Curve centres;
+  centres.degree = surface.degree_v;
+  centres.knots = surface.knots_v;
+  for (int j = 0; j < surface.count_v; ++j) {
+    Vec3 centre = Vec3::Zero();
+    for (int i = 0; i < surface.count_u; ++i) centre += shares[at(i)] * surface.point(i, j);
+    centres.points.push_back(centre);
+  }
+  return centres;
 }
+
+std::array<double, 4> quarters_of(const nurbs::Surface& surface) {
+  if (const auto quarters = find_quarters(nurbs::boundary_row(surface, false))) return *quarters;
+  // With fewer than four spans there is no place for a patch's corners at knots; sub_curve makes the knots it
+  // needs.
+  const double first = surface.first_u(), length = surface.last_u() - first;
+  return {first, first + 0.25 * length, first + 0.5 * length, first + 0.75 * length};
+}
+
+namespace {
+
+Status set_corners(Body& body, const GridNet& net) {
+  if (!net.corners) return {};
+  const std::array<double, 4>& corners = body.quarters = *net.corners;
+  const double first = body.surface.first_u(), last = body.surface.last_u();
+  if (first == corners[0] && first < corners[1] && corners[1] < corners[2] && corners[2] < corners[3] &&
+      corners[3] < last)
+    return {};
+  return problem(
+      fmt::format("the corners {}, {}, {}, {} have to begin with the first knot round, {}, and to increase "
+                  "below the last, {}",
+                  corners[0], corners[1], corners[2], corners[3], first, last));
+}
+
+}  // namespace
 
 Status fill_from_grid(Body& body, const GridNet& net) {
   const int degree_round = net.degree_round.value_or(net.open_round ? std::min(2, net.per_section - 1) : 2);
@@ -249,15 +285,8 @@ Status fill_from_grid(Body& body, const GridNet& net) {
     }
   body.axis = centre_line->curves.front();
   body.closed_along = net.closed_along;
-  if (net.corners) {
-    body.quarters = *net.corners;
-    for (const double corner : *net.corners)
-      if (!std::binary_search(surface.knots_u.begin(), surface.knots_u.end(), corner))
-        return problem(fmt::format("the corner {} is no knot round", corner));
-  } else {
-    body.quarters = quarters_of(surface);
-  }
-  return {};
+  body.quarters = quarters_of(surface);
+  return set_corners(body, net);
 }
 
 }  // namespace selvage::yarn

@@ -20,7 +20,7 @@ struct GridNet {
   std::vector<double> knots_along, knots_round;  // empty: the default
   bool open_round = false;    // the rows are the clamped form: the seam's point stands at both ends
   bool closed_along = false;  // a ring
-  std::optional<std::array<double, 4>> corners;  // Body::quarters; none: found by the outline's shape
+  std::optional<std::array<double, 4>> corners;  // Body::quarters; none: quarters_of()
 };
 
 // The surface of a grid, u round, v along, with the control points that were given untouched.
@@ -29,19 +29,23 @@ struct GridNet {
 //   to the first. With `open_round` the rows are the clamped form already, first = last point. Along: the
 //   clamped cubic (degree sections - 1 for 2 or 3 sections, or degree_along) with knots 0, 1, 2, ..; closed:
 //   the periodic one, clamped at its first section's seam.
+//   corners: the first u, then values that increase within the range.
 //   knots_round needs open_round; with `closed` and knots_along the sections are the clamped form, first =
 //   last.
 // Fills surface, axis, closed_along and quarters of `body`. Errors (malformed, geometry): impossible counts,
-// degrees or knots, an open row whose ends differ.
+// degrees, knots or corners, an open row whose ends differ.
 Status fill_from_grid(Body& body, const GridNet& net);
+
+// The centres of a surface's sections (their mean over u, of the control points alone) as a curve along v.
+nurbs::Curve section_centres(const nurbs::Surface& surface);
+
+// Where the corners of the end patches stand that are not told: find_quarters() of the first section, or,
+// with fewer than four spans, even parts of the range of u.
+std::array<double, 4> quarters_of(const nurbs::Surface& surface);
 
 // The four knots at which an end patch has its corners: the seam, and the three at which the outline has
 // turned by nearest to one, two and three quarters (for an ellipse that begins at an axis: the ends of its
 // axes). Null with fewer than four spans.
 std::optional<std::array<double, 4>> find_quarters(const nurbs::Curve& outline);
-
-// Those of a body's first section; with fewer than four spans a quarter of the range each (sub_curve makes
-// the knots it needs).
-std::array<double, 4> quarters_of(const nurbs::Surface& surface);
 
 }  // namespace selvage::yarn

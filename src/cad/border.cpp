@@ -1,0 +1,121 @@
+#include "cad/border.h"
+
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+
+#include "cad/natural_border.h"
+#include "nurbs/turn.h"
+
+namespace selvage::cad {
+
+namespace {
+
+double length_of(const std::vector<Vec3>& points) {
+  double length = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  return length;
+}
+
+// The four edges of a surface.
+std::array<nurbs::Curve, 4> edges_of(const nurbs::Surface& surface) {
+  return {nurbs::boundary_row(surface, false), nurbs::boundary_row(surface, true),
+          nurbs::boundary_column(surface, false), nurbs::boundary_column(surface, true)};
+}
+
+bool is_point(const nurbs::Curve& curve, double tolerance) {
+  return std::all_of(curve.points.begin(), curve.points.end(),
+                     [&](const Vec3& p) { return (p - curve.points.front()).norm() <= tolerance; });
+}
+
+}  // namespace
+
+SampledCurve::SampledCurve(const nurbs::Curve& sampled) : curve(&sampled) {
+  const std::vector<double> breaks = nurbs::breakpoints(sampled.knots, sampled.degree);
+  const int parts = breaks.size() < 5 ? 8 : 2;  // of a span
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+    for (int i = 0; i < parts; ++i) parameters.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / parts);
+  parameters.push_back(breaks.back());
+  points.reserve(parameters.size());
+  for (const double t : parameters) points.push_back(nurbs::evaluate(sampled, t));
+}
+
+double SampledCurve::length() const {
+  return length_of(points);
+}
+
+SampledCurve::Nearest SampledCurve::nearest(const Vec3& p) const {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if ((points[i] - p).squaredNorm() < (points[best] - p).squaredNorm()) best = i;
+  Nearest result{parameters[best], (points[best] - p).norm()};
+  if (result.distance == 0) return result;
+  // Newton's method for the foot of the perpendicular, within the neighbouring samples.
+  const double low = parameters[best > 0 ? best - 1 : 0];
+  const double high = parameters[std::min(best + 1, parameters.size() - 1)];
+  double t = result.parameter;
+  for (int step = 0; step < 12; ++step) {
+    const nurbs::CurveJet jet = nurbs::evaluate_jet(*curve, t);
+    const Vec3 offset = jet.position - p;
+    if (offset.norm() < result.distance) result = {t, offset.norm()};
+    const double slope = jet.d1.squaredNorm() + offset.dot(jet.d2);
+    if (!(slope > 0)) break;
+    const double next = std::clamp(t - offset.dot(jet.d1) / slope, low, high);
+    if (next == t) break;
+    t = next;
+  }
+  return result;
+}
+
+double closeness(double size, double largest_coordinate, double resolution) {
+  return std::max(std::clamp(resolution, 1e-6 * size, 1e-4 * size), 16 * DBL_EPSILON * largest_coordinate);
+}
+
+Polylines border_of(const Face& face, double tolerance) {
+  Polylines border;
+  const bool is_whole = has_natural_border(face, tolerance);
+  if (face.loops.size() > 1 && !is_whole) return border;
+  if (is_whole) {
+    const std::array<nurbs::Curve, 4> sides = edges_of(face.surface);
+    for (std::size_t pair : {0U, 2U}) {
+      // Two edges that are one are a seam.
+      if (sides[pair].points.size() == sides[pair + 1].points.size() &&
+          largest_difference(sides[pair].points, sides[pair + 1].points) <= tolerance)
+        continue;
+      for (const std::size_t k : {pair, pair + 1})
+        if (!is_point(sides[k], tolerance)) border.push_back(SampledCurve(sides[k]).points);
+    }
+    return border;
+  }
+  for (const Edge& edge : face.loops.front().edges) {
+    if (!edge.curve.points.empty()) {
+      border.push_back(SampledCurve(edge.curve).points);
+    } else if (!edge.flat.points.empty()) {
+      border.push_back(SampledCurve(edge.flat).points);
+      for (Vec3& p : border.back()) p = nurbs::evaluate(face.surface, p.x(), p.y());
+    }
+  }
+  return border;
+}
+
+bool runs_along(const Polylines& border, const SampledCurve& closed, double tolerance) {
+  if (border.empty()) return false;
+  double length = 0;
+  for (const std::vector<Vec3>& line : border) {
+    length += length_of(line);
+    for (const Vec3& p : line)
+      if (closed.nearest(p).distance > tolerance) return false;
+  }
+  // Polylines of different samples: the lengths differ by their chords.
+  return std::abs(length / closed.length() - 1) < 0.1;
+}
+
+double largest_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
+  return largest;
+}
+
+}  // namespace selvage::cad

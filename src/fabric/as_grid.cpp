@@ -1,0 +1,116 @@
+#include "fabric/as_grid.h"
+
+#include <algorithm>
+
+#include "fabric/grid_net.h"
+#include "yarn/ends.h"
+#include "yarn/grid.h"
+
+namespace selvage::fabric {
+
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+bool same_numbers(const nurbs::Surface& a, const nurbs::Surface& b) {
+  return a.degree_u == b.degree_u && a.degree_v == b.degree_v && a.count_u == b.count_u &&
+         a.count_v == b.count_v && a.knots_u == b.knots_u && a.knots_v == b.knots_v && a.points == b.points &&
+         a.weights == b.weights;
+}
+
+// What the grid gives, and whether that is the body's surface.
+bool gives(const Grid& grid, const yarn::Body& body, yarn::Body& built) {
+  built = {};
+  return yarn::fill_from_grid(built, net_of(grid, false)).ok() && built.closed_along == body.closed_along &&
+         same_numbers(built.surface, body.surface);
+}
+
+// The columns [first, last) of the surface as the grid's rows.
+Grid rows_of(const nurbs::Surface& surface, int first, int last) {
+  Grid grid;
+  grid.sections = surface.count_v;
+  grid.per_section = last - first;
+  grid.points.reserve(at(grid.sections) * at(grid.per_section));
+  for (int j = 0; j < surface.count_v; ++j)
+    for (int i = first; i < last; ++i) {
+      grid.points.push_back(surface.point(i, j));
+      if (surface.is_rational()) grid.weights.push_back(surface.weight(i, j));
+    }
+  return grid;
+}
+
+// The words for the direction along the yarn.
+void describe_along(Grid& grid, const yarn::Body& body) {
+  const nurbs::Surface& surface = body.surface;
+  grid.closed_along = body.closed_along;
+  const int standard = std::min(3, body.closed_along ? surface.count_v : surface.count_v - 1);
+  if (surface.degree_v != standard) grid.degree_along = surface.degree_v;
+  bool is_standard = !body.closed_along;
+  for (std::size_t i = 0; is_standard && i < surface.knots_v.size(); ++i)
+    is_standard = surface.knots_v[i] ==
+                  std::clamp(static_cast<int>(i) - surface.degree_v, 0, surface.count_v - surface.degree_v);
+  if (!is_standard) grid.knots_along = surface.knots_v;
+}
+
+// The clamped form of the sections, which any surface has.
+Grid open_form(const yarn::Body& body, yarn::Body& built) {
+  const nurbs::Surface& surface = body.surface;
+  Grid grid = rows_of(surface, 0, surface.count_u);
+  grid.open_round = true;
+  describe_along(grid, body);
+  if (surface.degree_u != std::min(2, surface.count_u - 1)) grid.degree_round = surface.degree_u;
+  if (gives(grid, body, built)) return grid;
+  grid.knots_round = surface.knots_u;
+  gives(grid, body, built);
+  return grid;
+}
+
+// The closed polygon where that gives the surface (a quadratic of uniform knots has its points but for the
+// seam's); nothing where it does not.
+std::optional<Grid> closed_form(const yarn::Body& body, yarn::Body& built) {
+  const nurbs::Surface& surface = body.surface;
+  if (surface.degree_u != 2 || surface.count_u < 5) return std::nullopt;
+  const auto spans = surface.count_u - 2;
+  for (int i = 0; i <= spans; ++i)
+    if (surface.knots_u[at(i) + 2] != static_cast<double>(i) / spans) return std::nullopt;
+  Grid grid = rows_of(surface, 1, surface.count_u - 1);
+  describe_along(grid, body);
+  if (!gives(grid, body, built)) return std::nullopt;
+  return grid;
+}
+
+}  // namespace
+
+GridYarn as_grid(const yarn::Body& body) {
+  GridYarn result;
+  Yarn& yarn = result.yarn;
+  yarn.name = body.name;
+  yarn.place = body.place;
+  yarn.role = body.role;
+  yarn.group = body.group;
+  if (body.color != Color{}) yarn.own.color = body.color;
+  yarn::Body built;
+  std::optional<Grid> closed = closed_form(body, built);
+  Grid grid = closed ? std::move(*closed) : open_form(body, built);
+  if (body.closed_along) {
+    yarn.shape = std::move(grid);
+    return result;
+  }
+  if (built.quarters != body.quarters) grid.corners = body.quarters;
+  if (body.start.style != yarn::EndStyle::patch || body.end.style != yarn::EndStyle::patch)
+    yarn.ends = std::array<yarn::EndStyle, 2>{body.start.style, body.end.style};
+  for (const bool last : {false, true}) {
+    const yarn::EndFace& face = last ? body.end : body.start;
+    result.keeps_ends = result.keeps_ends && yarn::is_standard_end(body, last);
+    if (face.style != yarn::EndStyle::fan) continue;
+    const Vec3& centre = face.surface.point(0, face.surface.count_v - 1);
+    if (centre != (last ? built.axis.points.back() : built.axis.points.front()))
+      grid.fan_centres[last ? 1 : 0] = centre;
+  }
+  yarn.shape = std::move(grid);
+  return result;
+}
+
+}  // namespace selvage::fabric

@@ -1,0 +1,17 @@
+// A finished yarn as a `grid` of Fabric TXT.
+#pragma once
+
+#include "fabric/model.h"
+
+namespace selvage::fabric {
+
+struct GridYarn {
+  Yarn yarn;               // its shape is a Grid, with only as many words as are needed
+  bool keeps_ends = true;  // building it gives the same end faces, to the bit
+};
+
+// Building the yarn (without other options) gives the body's surface to the bit, and its end faces where they
+// are those that this program makes; others are made anew.
+GridYarn as_grid(const yarn::Body& body);
+
+}  // namespace selvage::fabric

@@ -1,0 +1,88 @@
+#include "nurbs/turn.h"
+
+#include <algorithm>
+
+#include "nurbs/restrict.h"
+
+namespace selvage::nurbs {
+
+namespace {
+
+std::vector<double> reversed_knots(const std::vector<double>& knots) {
+  std::vector<double> out(knots.size());
+  const double sum = knots.front() + knots.back();
+  std::transform(knots.rbegin(), knots.rend(), out.begin(), [sum](double knot) { return sum - knot; });
+  return out;
+}
+
+}  // namespace
+
+Surface transposed(const Surface& surface) {
+  Surface out;
+  out.degree_u = surface.degree_v;
+  out.degree_v = surface.degree_u;
+  out.count_u = surface.count_v;
+  out.count_v = surface.count_u;
+  out.knots_u = surface.knots_v;
+  out.knots_v = surface.knots_u;
+  out.points.reserve(surface.points.size());
+  out.weights.reserve(surface.weights.size());
+  for (int i = 0; i < surface.count_u; ++i)
+    for (int j = 0; j < surface.count_v; ++j) {
+      out.points.push_back(surface.point(i, j));
+      if (surface.is_rational()) out.weights.push_back(surface.weight(i, j));
+    }
+  return out;
+}
+
+Surface reversed_u(const Surface& surface) {
+  Surface out = surface;
+  out.knots_u = reversed_knots(surface.knots_u);
+  for (int j = 0; j < surface.count_v; ++j) {
+    const auto row = static_cast<std::ptrdiff_t>(surface.index(0, j));
+    std::reverse(out.points.begin() + row, out.points.begin() + row + surface.count_u);
+    if (surface.is_rational())
+      std::reverse(out.weights.begin() + row, out.weights.begin() + row + surface.count_u);
+  }
+  return out;
+}
+
+Surface reversed_v(const Surface& surface) {
+  Surface out = surface;
+  out.knots_v = reversed_knots(surface.knots_v);
+  for (int j = 0; j < surface.count_v; ++j)
+    for (int i = 0; i < surface.count_u; ++i) {
+      const std::size_t from = surface.index(i, surface.count_v - 1 - j);
+      out.points[out.index(i, j)] = surface.points[from];
+      if (surface.is_rational()) out.weights[out.index(i, j)] = surface.weights[from];
+    }
+  return out;
+}
+
+Curve boundary_column(const Surface& surface, bool last) {
+  Curve curve;
+  curve.degree = surface.degree_v;
+  curve.knots = surface.knots_v;
+  const int i = last ? surface.count_u - 1 : 0;
+  for (int j = 0; j < surface.count_v; ++j) {
+    curve.points.push_back(surface.point(i, j));
+    if (surface.is_rational()) curve.weights.push_back(surface.weight(i, j));
+  }
+  return curve;
+}
+
+bool is_clamped(const std::vector<double>& knots, int degree) {
+  const auto order = static_cast<std::ptrdiff_t>(degree) + 1;
+  const auto all_equal = [](auto first, auto last) {
+    return std::all_of(first, last, [first](double knot) { return knot == *first; });
+  };
+  return all_equal(knots.begin(), knots.begin() + order) && all_equal(knots.end() - order, knots.end());
+}
+
+Surface clamped(const Surface& surface) {
+  if (is_clamped(surface.knots_u, surface.degree_u) && is_clamped(surface.knots_v, surface.degree_v))
+    return surface;
+  return restricted(surface, surface.first_u(), surface.last_u(), surface.first_v(), surface.last_v());
+}
+
+}  // namespace selvage::nurbs

@@ -1,0 +1,25 @@
+// The same surface with other parameters, and its clamped form.
+#pragma once
+
+#include "nurbs/spline.h"
+
+namespace selvage::nurbs {
+
+// u and v change places: the normal turns over. No number changes.
+Surface transposed(const Surface& surface);
+
+// u (v) runs backwards: the normal turns over. Control points and weights keep their bits, a knot becomes
+// (first + last) - knot.
+Surface reversed_u(const Surface& surface);
+Surface reversed_v(const Surface& surface);
+
+// The control column i = 0 or i = count_u - 1 of a surface clamped in u: exactly its boundary curve.
+Curve boundary_column(const Surface& surface, bool last);
+
+bool is_clamped(const std::vector<double>& knots, int degree);
+
+// The clamped form of a surface whose end knots are not repeated, in both directions; one that is clamped
+// keeps all its bits.
+Surface clamped(const Surface& surface);
+
+}  // namespace selvage::nurbs
