@@ -92,8 +92,9 @@ class Recognizer {
 
   std::vector<FoundYarn> take() {
     for (std::size_t p = 0; p < model_.parts.size(); ++p) {
+      const std::size_t faces = model_.parts[p].faces.size();
       if (!take_part(p)) collect(p);
-      order_ += model_.parts[p].faces.size();
+      order_ += faces;
     }
     match_loose();
     finish_loose();

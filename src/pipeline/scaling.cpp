@@ -1,6 +1,9 @@
 #include "pipeline/scaling.h"
 
+#include <array>
 #include <numeric>
+
+#include "yarn/ends.h"
 
 namespace selvage::pipeline {
 
@@ -46,9 +49,14 @@ void convert_lengths(yarn::Body& body, Unit from, Unit to) {
   const auto point = [&](Vec3& p) {
     for (double& x : p) x = scale(x);
   };
+  // End faces that seal() made are made anew, so that they are what it would make of the converted yarn.
+  const std::array<bool, 2> standard = {yarn::is_standard_end(body, false),
+                                        yarn::is_standard_end(body, true)};
   for (nurbs::Surface* surface : {&body.surface, &body.start.surface, &body.end.surface})
     for (Vec3& p : surface->points) point(p);
   for (Vec3& p : body.axis.points) point(p);
+  for (const bool last : {false, true})
+    if (standard[last ? 1 : 0]) yarn::renew_end(body, last);
   point(body.start.origin);
   point(body.end.origin);
   for (double* length : {&body.length, &body.tube_error, &body.min_bend_radius}) *length = scale(*length);
