@@ -17,24 +17,6 @@ std::vector<double> reversed_knots(const std::vector<double>& knots) {
 
 }  // namespace
 
-Surface transposed(const Surface& surface) {
-  Surface out;
-  out.degree_u = surface.degree_v;
-  out.degree_v = surface.degree_u;
-  out.count_u = surface.count_v;
-  out.count_v = surface.count_u;
-  out.knots_u = surface.knots_v;
-  out.knots_v = surface.knots_u;
-  out.points.reserve(surface.points.size());
-  out.weights.reserve(surface.weights.size());
-  for (int i = 0; i < surface.count_u; ++i)
-    for (int j = 0; j < surface.count_v; ++j) {
-      out.points.push_back(surface.point(i, j));
-      if (surface.is_rational()) out.weights.push_back(surface.weight(i, j));
-    }
-  return out;
-}
-
 Surface reversed_u(const Surface& surface) {
   Surface out = surface;
   out.knots_u = reversed_knots(surface.knots_u);

@@ -1,12 +1,10 @@
 // The same surface with other parameters, and its clamped form.
 #pragma once
 
+#include "nurbs/chain.h"  // transposed()
 #include "nurbs/spline.h"
 
 namespace selvage::nurbs {
-
-// u and v change places: the normal turns over. No number changes.
-Surface transposed(const Surface& surface);
 
 // u (v) runs backwards: the normal turns over. Control points and weights keep their bits, a knot becomes
 // (first + last) - knot.
