@@ -111,7 +111,7 @@ class Trips(Case):
             self.assertEqual(list(place.iterdir()), [])
 
     def test_places_that_cannot_be_written(self):
-        self.assertIn("folder", self.fails(2, "roundtrip", GRID, "--junit", self.folder))
+        self.assertIn("Is a directory", self.fails(2, "roundtrip", GRID, "--junit", self.folder))
         self.assertIn("temporary folder", self.fails(2, "roundtrip", GRID, env=environment(TMPDIR=str(self.folder / "no"))))
 
 
