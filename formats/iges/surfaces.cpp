@@ -326,6 +326,8 @@ std::optional<Surface> bounded_surface(Reading& reading, int pointer, const std:
   }
   cad::Face face;
   face.loops = loops;
+  for (cad::Loop& loop : face.loops)
+    for (cad::Edge& edge : loop.edges) edge.flat = {};  // in the file's parameters, still
   face.surface = shape->part(*range);
   placement.apply(face.surface);
   const double tolerance = cad::border_tolerance(face, reading.file().global().resolution);

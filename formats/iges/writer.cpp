@@ -16,6 +16,7 @@
 #include "core/clock.h"
 #include "formats/iges/entities.h"
 #include "formats/iges/header.h"
+#include "formats/iges/part.h"
 #include "formats/iges/piece.h"
 #include "formats/iges/solid.h"
 
@@ -52,7 +53,7 @@ double size_of(const nurbs::Surface& surface) {
   return length / std::numbers::pi;
 }
 
-class Writer final : public FileWriter {
+class Writer final : public FileWriter, private ColorSource {
  public:
   Writer(OutputFile& output, const SurfaceOptions& options, Header header, Records::Limits limits)
       : output_(&output),
@@ -64,6 +65,8 @@ class Writer final : public FileWriter {
   Status add_instance(const yarn::Body& body, const Instance& instance) override;
   Status add_group(std::span<const Item> parts) override;
   Status add_piece(const fabric::PieceShape& piece) override;
+  Status add_part(const cad::Part& part) override;
+  Status add_curve(const cad::NamedCurve& curve) override;
   Result<WriteFacts> finish() override;
 
   std::int64_t lines_of(const yarn::Body& body) override;
@@ -103,6 +106,9 @@ class Writer final : public FileWriter {
   void write(const fabric::PieceShape& piece);
   std::vector<int> write_faces(const Common& common, const yarn::Body& body);
   int color(const yarn::Color& color);
+  int pointer(const std::optional<cad::Color>& of) override { return of ? color(*of) : 0; }
+  void take_size(const std::vector<Vec3>& points);
+  Status close_group();
   int level(std::size_t index, std::string_view name);
   [[nodiscard]] int entities_of_end(const yarn::EndFace& end) const;
 
@@ -112,6 +118,9 @@ class Writer final : public FileWriter {
   Records records_;
   Shared shared_;
   std::string name_;  // of the present yarn or piece, in ASCII
+  // The group whose parts come at present, and theirs so far.
+  std::string group_;
+  std::vector<int> members_;
   std::uint64_t bodies_ = 0;
   // Of all that was written.
   struct Extremes {
@@ -410,6 +419,70 @@ Status Writer::add_piece(const fabric::PieceShape& piece) {
   });
 }
 
+void Writer::take_size(const std::vector<Vec3>& points) {
+  Box3 box;
+  for (const Vec3& p : points) box.extend(p);
+  extremes_.largest = std::max(extremes_.largest, largest_of(numbers_of(points)).value_or(0));
+  extremes_.smallest_size = std::min(extremes_.smallest_size, box.sizes().norm());
+  take_digest(points, extremes_.digest);
+}
+
+// What stands in a group of the file it comes from stands in one again, as the plies of a yarn do.
+Status Writer::add_part(const cad::Part& part) {
+  const std::string what = part.name.empty() ? "part " + part.origin.entity : "part " + part.name;
+  Status added = whole_or_nothing([&]() -> Status {
+    if (const std::string fault = fault_of(part); !fault.empty())
+      return error(Kind::geometry, what + " " + fault);
+    if (part.group != group_)
+      if (Status closed = close_group(); !closed.ok()) return closed;
+    for (const cad::Face& face : part.faces) take_size(face.surface.points);
+    int last = 0;
+    // Its group, too, has to find room at the end.
+    const std::int64_t values =
+        most_values_of_part(part) + 4 * static_cast<std::int64_t>(members_.size()) + 1000;
+    Status status = add_checked(part.name, what, values, [&] { last = write_part(records_, *this, part); });
+    if (status.ok() && !part.group.empty()) {
+      group_ = part.group;
+      members_.push_back(last);
+    }
+    return status;
+  });
+  if (!added.ok() && added.error().kind != Kind::io) added.error().place = part.origin.place;
+  return added;
+}
+
+Status Writer::close_group() {
+  if (members_.empty()) return {};
+  const std::string name = ascii(group_);
+  const auto write = [&] {
+    Common common{.label = name};
+    common.name = records_.next() + 2;
+    write_group(records_, common, members_);
+    write_name(records_, common, name);
+  };
+  if (Status status =
+          check_room(1000 + 2 * static_cast<std::int64_t>(members_.size()), "group " + group_, write);
+      !status.ok())
+    return status;
+  write();
+  members_.clear();
+  group_.clear();
+  return records_.status();
+}
+
+Status Writer::add_curve(const cad::NamedCurve& curve) {
+  const std::string what = curve.name.empty() ? "curve " + curve.origin.entity : "curve " + curve.name;
+  if (!largest_of(numbers_of(curve.curve.points)) || !largest_of(curve.curve.knots) ||
+      !largest_of(curve.curve.weights))
+    return error(Kind::geometry, what + " has a coordinate, weight or knot that is not a finite number");
+  return whole_or_nothing([&] {
+    take_size(curve.curve.points);
+    const auto values =
+        1000 + 5 * static_cast<std::int64_t>(curve.curve.points.size() + curve.curve.knots.size());
+    return add_checked(curve.name, what, values, [&] { write_free_curve(records_, *this, curve); });
+  });
+}
+
 Status Writer::add_checked(const std::string& name, const std::string& what, std::int64_t values,
                            const std::function<void()>& write, std::uint64_t bodies) {
   name_ = ascii(name);
@@ -436,6 +509,7 @@ void Writer::warn_of_name(const std::string& name, const std::string& what) {
 }
 
 Result<WriteFacts> Writer::finish() {
+  if (Status closed = close_group(); !closed.ok()) return closed.error();
   const Result<std::uint64_t> end = records_.finish();
   if (!end) return end.error();
   header_.largest = extremes_.largest;

@@ -90,7 +90,9 @@ Span angles(const std::vector<Track>& tracks) {
     all.add(track.span.low + shift);
     all.add(track.span.high + shift);
   }
-  if (all.length() >= 2 * pi - angle_slack) all.high = all.low + 2 * pi;
+  // A seam alone: there and back along one meridian.
+  const bool only_seam = all.length() >= 0 && all.length() < angle_slack;
+  if (only_seam || all.length() >= 2 * pi - angle_slack) all.high = all.low + 2 * pi;
   return all;
 }
 

@@ -79,6 +79,9 @@ OcctReading read_with_occt(const std::filesystem::path& file, double sewing) {
   reading.roots = reader.NbRootsForTransfer();
   const TopoDS_Shape all = reader.OneShape();
   reading.faces = count(all, TopAbs_FACE);
+  GProp_GProps areas;
+  BRepGProp::SurfaceProperties(all, areas, 1e-10);
+  reading.area = areas.Mass();
   reading.solids_in_file = count(all, TopAbs_SOLID);
   if (sewing <= 0) {
     for (TopExp_Explorer solid(all, TopAbs_SOLID); solid.More(); solid.Next())

@@ -18,6 +18,7 @@ struct OcctReading {
   int load_fails = 0,
       load_warnings = 0;  // of its check list; the note that a closed surface was made periodic aside
   int roots = 0, faces = 0, solids_in_file = 0;
+  double area = 0;                // of all faces, mm^2
   std::vector<OcctSolid> solids;  // those of the file, or one a shell of what was sewn
 };
 
