@@ -20,8 +20,10 @@ namespace selvage::cad {
 namespace {
 
 constexpr std::size_t nothing = std::numeric_limits<std::size_t>::max();
-// Of one face: a file of many equal yarns in one place must not cost their square.
+// Of one face at a time: a file of many equal yarns in one place must not cost their square.
 constexpr std::size_t most_trials = 64;
+// Each leaves about a tenth of the equal yarns of one place.
+constexpr int most_rounds = 8;
 
 // A tube that is not complete by its part alone.
 struct Tube {
@@ -193,36 +195,48 @@ class Recognizer {
   }
 
   void match_loose() {
+    sealed_by_other_.resize(tubes_.size());
+    if (tubes_.empty()) return;
+    // Where more ends are in one place than are tried of a face, what is left over is tried again.
+    for (int round = 0; round < most_rounds && match_free(); ++round) continue;
+  }
+
+  [[nodiscard]] bool is_free(std::size_t tube, bool last) const {
+    return !tubes_[tube].kind.is_ring && tubes_[tube].lids[last ? 1 : 0] == nothing;
+  }
+
+  // Brings faces to the ends that have none yet. True where that may leave some that another call finds.
+  bool match_free() {
     Places places;
-    for (std::size_t t = 0; t < tubes_.size(); ++t) {
-      if (tubes_[t].kind.is_ring) continue;
+    for (std::size_t t = 0; t < tubes_.size(); ++t)
       for (const bool last : {false, true}) {
+        if (!is_free(t, last)) continue;
         const nurbs::Curve outline = yarn::end_curve(tubes_[t].body, last);
         places.add({SampledCurve(outline).points}, 2 * t + (last ? 1 : 0));
       }
-    }
     std::vector<Fit> fits;
-    if (!tubes_.empty())
-      for (std::size_t c = 0; c < candidates_.size(); ++c) find_fits(places, c, fits);
+    bool all_tried = true;
+    for (std::size_t c = 0; c < candidates_.size(); ++c)
+      if (!candidates_[c].taken && !find_fits(places, c, fits)) all_tried = false;
     std::sort(fits.begin(), fits.end(), [](const Fit& a, const Fit& b) { return a.rank() < b.rank(); });
-    sealed_by_other_.resize(tubes_.size());
     for (Fit& fit : fits) {
+      if (!is_free(fit.tube, fit.last) || candidates_[fit.candidate].taken) continue;
       Tube& tube = tubes_[fit.tube];
-      std::size_t& lid = tube.lids[fit.last ? 1 : 0];
-      if (lid != nothing || candidates_[fit.candidate].taken) continue;
-      lid = fit.candidate;
+      tube.lids[fit.last ? 1 : 0] = fit.candidate;
       candidates_[fit.candidate].taken = true;
       seal_end(tube.body, fit.last, fit.lid, sealed_by_other_[fit.tube]);
     }
+    return !all_tried && !fits.empty();
   }
 
-  void find_fits(const Places& places, std::size_t index, std::vector<Fit>& fits) {
+  // False where ends are near that were not tried.
+  bool find_fits(const Places& places, std::size_t index, std::vector<Fit>& fits) {
     const Candidate& candidate = candidates_[index];
     const Part& part = model_.parts[candidate.part];
     std::optional<Face> made;
     const Face& face = clamped(part.faces[candidate.face], made);
     const Polylines border = border_of(face, 0);
-    if (border.empty()) return;
+    if (border.empty()) return true;
     std::vector<std::size_t> near = places.near(border);
     const auto distance = [&](std::size_t end) {
       const std::size_t order = tubes_[end / 2].order;
@@ -230,7 +244,8 @@ class Recognizer {
     };
     std::stable_sort(near.begin(), near.end(),
                      [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
-    if (near.size() > most_trials) near.resize(most_trials);
+    const bool all_tried = near.size() <= most_trials;
+    if (!all_tried) near.resize(most_trials);
     for (const std::size_t end : near) {
       const Tube& tube = tubes_[end / 2];
       const bool last = end % 2 == 1;
@@ -250,6 +265,7 @@ class Recognizer {
       fit.lid = std::move(*lid);
       fits.push_back(std::move(fit));
     }
+    return all_tried;
   }
 
   // Whether an open tube is a yarn: nothing else belongs to it, or it is the one tube of a small group.

@@ -286,7 +286,7 @@ TEST(Recognize, VolumesOfStraightYarnsAndRingsAreThoseOfTheirSplines) {
 }
 
 // What the quadrature of rational surfaces leaves.
-constexpr double rational_error = 1e-9;
+constexpr double rational_error = 1e-12;
 
 Body body_of(const std::string& name, Surface surface, EndStyle ends, bool is_ring = false) {
   Body body;
@@ -449,6 +449,14 @@ TEST(Recognize, TwoEqualYarnsInOnePlace) {
     const std::vector<Body> twice(2, wave("yarn", {}, ends));
     expect_taken(model_of(twice), twice);
     for (const unsigned seed : {1U, 2U, 3U, 4U}) expect_taken(loosened(model_of(twice), seed), twice);
+  }
+}
+
+// More than are tried of one face at a time.
+TEST(Recognize, HundredEqualYarnsInOnePlace) {
+  for (const EndStyle ends : {EndStyle::patch, EndStyle::planar}) {
+    const std::vector<Body> many(100, wave("yarn", {.sections = 4, .round = 8}, ends));
+    for (const unsigned seed : {1U, 2U}) expect_taken(loosened(model_of(many), seed), many);
   }
 }
 
