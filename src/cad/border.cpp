@@ -30,7 +30,67 @@ bool is_point(const nurbs::Curve& curve, double tolerance) {
                      [&](const Vec3& p) { return (p - curve.points.front()).norm() <= tolerance; });
 }
 
+struct Chord {
+  double distance;    // squared
+  std::size_t index;  // from this sample to the next one
+};
+
+double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double length = along.squaredNorm();
+  const double t = length > 0 ? std::clamp((p - a).dot(along) / length, 0.0, 1.0) : 0.0;
+  return (a + t * along - p).squaredNorm();
+}
+
+// Nearest first.
+std::array<Chord, 4> nearest_chords(const std::vector<Vec3>& points, const Vec3& p) {
+  std::array<Chord, 4> found;
+  found.fill({std::numeric_limits<double>::infinity(), 0});
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    Chord chord{squared_distance(p, points[k], points[k + 1]), k};
+    for (Chord& other : found)
+      if (chord.distance < other.distance) std::swap(chord, other);
+  }
+  return found;
+}
+
+// Newton's method for the foot of the perpendicular within a smooth piece. It stays off the piece's ends,
+// where the derivatives are the next piece's.
+void improve(Nearest& nearest, const Vec3& p, double from, double to,
+             const std::function<nurbs::CurveJet(double)>& jet) {
+  double t = (from + to) / 2;
+  for (int step = 0; step < 24; ++step) {
+    const nurbs::CurveJet at = jet(t);
+    const Vec3 offset = at.position - p;
+    const double distance = offset.norm(), speed = at.d1.squaredNorm();
+    if (distance < nearest.distance) nearest = {t, distance};
+    if (!(speed > 0)) return;
+    // Where the curve bends too much for Newton's step, Gauss's leads downhill still.
+    const double slope = speed + offset.dot(at.d2);
+    double next = t - offset.dot(at.d1) / (slope > 0 ? slope : speed);
+    if (!(next > from)) next = (t + from) / 2;
+    if (!(next < to)) next = (t + to) / 2;
+    if (next == t) return;
+    t = next;
+  }
+}
+
 }  // namespace
+
+Nearest nearest_on(const std::vector<double>& parameters, const std::vector<Vec3>& points, const Vec3& p,
+                   double enough, const std::function<nurbs::CurveJet(double)>& jet) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if ((points[i] - p).squaredNorm() < (points[best] - p).squaredNorm()) best = i;
+  Nearest nearest{parameters[best], (points[best] - p).norm()};
+  if (nearest.distance == 0) return nearest;
+  for (const Chord& chord : nearest_chords(points, p)) {
+    if (!std::isfinite(chord.distance)) break;
+    improve(nearest, p, parameters[chord.index], parameters[chord.index + 1], jet);
+    if (nearest.distance <= enough) break;
+  }
+  return nearest;
+}
 
 SampledCurve::SampledCurve(const nurbs::Curve& sampled) : curve(&sampled) {
   const std::vector<double> breaks = nurbs::breakpoints(sampled.knots, sampled.degree);
@@ -46,27 +106,8 @@ double SampledCurve::length() const {
   return length_of(points);
 }
 
-SampledCurve::Nearest SampledCurve::nearest(const Vec3& p) const {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < points.size(); ++i)
-    if ((points[i] - p).squaredNorm() < (points[best] - p).squaredNorm()) best = i;
-  Nearest result{parameters[best], (points[best] - p).norm()};
-  if (result.distance == 0) return result;
-  // Newton's method for the foot of the perpendicular, within the neighbouring samples.
-  const double low = parameters[best > 0 ? best - 1 : 0];
-  const double high = parameters[std::min(best + 1, parameters.size() - 1)];
-  double t = result.parameter;
-  for (int step = 0; step < 12; ++step) {
-    const nurbs::CurveJet jet = nurbs::evaluate_jet(*curve, t);
-    const Vec3 offset = jet.position - p;
-    if (offset.norm() < result.distance) result = {t, offset.norm()};
-    const double slope = jet.d1.squaredNorm() + offset.dot(jet.d2);
-    if (!(slope > 0)) break;
-    const double next = std::clamp(t - offset.dot(jet.d1) / slope, low, high);
-    if (next == t) break;
-    t = next;
-  }
-  return result;
+Nearest SampledCurve::nearest(const Vec3& p) const {
+  return nearest_on(parameters, points, p, 0, [&](double t) { return nurbs::evaluate_jet(*curve, t); });
 }
 
 double closeness(double size, double largest_coordinate, double resolution) {

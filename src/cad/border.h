@@ -1,11 +1,25 @@
 // Where faces end: their borders as points, and whether two borders are one curve.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "cad/model.h"
 
 namespace selvage::cad {
+
+// A place of a curve, and how far it is from some point.
+struct Nearest {
+  double parameter, distance;
+};
+
+// The place of a curve that is nearest to `p`, or any within `enough` of it. `points` are the curve's at the
+// increasing `parameters` (as many, at least two), the knots among them; `jet` gives it at a parameter, where
+// d2 may be zero (then places far from `p` are found less exactly). Looks along the samples' nearest chords:
+// the nearest sample need not be next to the nearest place, where a closed curve begins or samples are
+// uneven.
+Nearest nearest_on(const std::vector<double>& parameters, const std::vector<Vec3>& points, const Vec3& p,
+                   double enough, const std::function<nurbs::CurveJet(double)>& jet);
 
 // Points of a curve at its knots and between them, with their parameters: enough to find the nearest place.
 struct SampledCurve {
@@ -15,10 +29,7 @@ struct SampledCurve {
 
   explicit SampledCurve(const nurbs::Curve& sampled);
   [[nodiscard]] double length() const;  // of the polyline through the points
-  // The parameter of the curve's point that is nearest to `p`, and how far that is.
-  struct Nearest {
-    double parameter, distance;
-  };
+  // The curve's place that is nearest to `p`.
   [[nodiscard]] Nearest nearest(const Vec3& p) const;
 };
 

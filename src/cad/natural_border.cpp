@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "cad/border.h"
 #include "nurbs/restrict.h"
 
 namespace selvage::cad {
@@ -50,38 +51,16 @@ class Side {
     return (points_.front() - points_.back()).norm() <= tolerance;
   }
 
-  struct Foot {
-    double parameter = 0, distance = 0;
-  };
-  [[nodiscard]] Foot nearest(const Vec3& p) const {
-    std::size_t best = 0;
-    double least = (points_[0] - p).squaredNorm();
-    for (std::size_t i = 1; i < points_.size(); ++i)
-      if (const double d = (points_[i] - p).squaredNorm(); d < least) least = d, best = i;
-    Foot foot{parameters_[best], std::sqrt(least)};
-    if (best > 0) improve(foot, p, parameters_[best - 1], parameters_[best]);
-    if (best + 1 < points_.size()) improve(foot, p, parameters_[best], parameters_[best + 1]);
-    return foot;
+  // Any place within `enough` will do.
+  [[nodiscard]] Nearest nearest(const Vec3& p, double enough) const {
+    return nearest_on(parameters_, points_, p, enough, [&](double t) -> nurbs::CurveJet {
+      const nurbs::SurfaceJet jet =
+          along_u_ ? nurbs::evaluate_jet(*surface_, t, fixed_) : nurbs::evaluate_jet(*surface_, fixed_, t);
+      return {jet.position, along_u_ ? jet.du : jet.dv, Vec3::Zero()};
+    });
   }
 
  private:
-  // Gauss and Newton's iteration within a smooth piece.
-  void improve(Foot& foot, const Vec3& p, double from, double to) const {
-    double t = (from + to) / 2;
-    for (int step = 0; step < 12; ++step) {
-      const nurbs::SurfaceJet jet =
-          along_u_ ? nurbs::evaluate_jet(*surface_, t, fixed_) : nurbs::evaluate_jet(*surface_, fixed_, t);
-      const Vec3& slope = along_u_ ? jet.du : jet.dv;
-      const double distance = (jet.position - p).norm();
-      if (distance < foot.distance) foot = {t, distance};
-      const double speed = slope.squaredNorm();
-      if (!(speed > 0)) return;
-      const double next = std::clamp(t + (p - jet.position).dot(slope) / speed, from, to);
-      if (next == t) return;
-      t = next;
-    }
-  }
-
   const nurbs::Surface* surface_;
   bool along_u_;
   double fixed_ = 0;
@@ -126,7 +105,7 @@ std::optional<double> share_in_space(const Side& side, const std::vector<Vec3>& 
   double sum = 0, before = 0, sign = 0;
   for (std::size_t i = 0; i < points.size();
        i = i + 1 == points.size() ? i + 1 : std::min(i + stride, points.size() - 1)) {
-    const Side::Foot foot = side.nearest(points[i]);
+    const Nearest foot = side.nearest(points[i], tolerance);
     if (foot.distance > tolerance) return std::nullopt;
     if (i > 0) {
       double step = foot.parameter - before;

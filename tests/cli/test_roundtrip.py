@@ -38,7 +38,8 @@ class Trips(Case):
         return cases, done
 
     def test_nothing_is_lost(self):
-        inputs = (GRID, PATH, RING, SAMPLES / "jersey.txt", SAMPLES / "weave_racetrack.txt")
+        inputs = (GRID, PATH, RING, SAMPLES / "jersey.txt", SAMPLES / "weave_racetrack.txt",
+                  SAMPLES / "sections.txt")
         found, done = self.trips(0, *inputs)
         for path, trips in zip(inputs, found):
             info = json.loads(run("info", path, "--json").stdout)["inputs"][0]

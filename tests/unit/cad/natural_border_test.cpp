@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cad/border.h"
 #include "nurbs/restrict.h"
 
 namespace selvage::test {
@@ -101,6 +102,73 @@ TEST(NaturalBorder, ATubeWithItsRimsAndWithoutItsSeam) {
   const Loop first{{border.edges[0]}}, last{{border.edges[2]}};
   EXPECT_TRUE(cad::has_natural_border(face_of(cylinder(), {first, last}), 1e-9));
   EXPECT_FALSE(cad::has_natural_border(face_of(cylinder(), {first}), 1e-9));
+}
+
+// A bent tube with sharp edges: a flat hexagon, 1 x 0.4, sides of unequal lengths, degree 2; the path is
+// cubic.
+nurbs::Surface hexagonal_tube() {
+  const double x[] = {0.5, 0.2, -0.3, -0.5, -0.2, 0.3, 0.5}, y[] = {0, 0.2, 0.2, 0, -0.2, -0.2, 0};
+  nurbs::Surface surface;
+  surface.degree_u = 2;
+  surface.degree_v = 3;
+  surface.count_u = 13;
+  surface.count_v = 5;
+  surface.knots_u = {0, 0, 0, 0.16, 0.16, 0.38, 0.38, 0.5, 0.5, 0.66, 0.66, 0.88, 0.88, 1, 1, 1};
+  surface.knots_v = {0, 0, 0, 0, 0.5, 1, 1, 1, 1};
+  for (int j = 0; j < 5; ++j)
+    for (int i = 0; i < 13; ++i) {
+      const int a = i / 2, b = (i + 1) / 2;
+      surface.points.emplace_back((x[a] + x[b]) / 2, (y[a] + y[b]) / 2 + 0.1 * (j % 3), 0.8 * j);
+    }
+  return surface;
+}
+
+// The edges of `curve` between these shares of its parameters.
+std::vector<Edge> cut(const nurbs::Curve& curve, const std::vector<double>& shares) {
+  const double t0 = curve.first_parameter(), length = curve.last_parameter() - t0;
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i + 1 < shares.size(); ++i)
+    edges.push_back({nurbs::restricted(curve, t0 + shares[i] * length, t0 + shares[i + 1] * length), {}, -1});
+  return edges;
+}
+
+// As solids have it: rims in four edges, whose points are not the surface's samples, and a seam used twice.
+// The last points before the rim closes are nearest to its beginning, but not on its first piece.
+TEST(NaturalBorder, ATubeWithItsRimsInFourEdges) {
+  for (const nurbs::Surface& surface : {cylinder(), hexagonal_tube()})
+    for (const std::vector<double>& shares :
+         {std::vector<double>{0, 0.25, 0.5, 0.75, 1}, {0, 0.16, 0.5, 0.66, 1}, {0, 0.01, 0.02, 0.97, 1}}) {
+      SCOPED_TRACE(shares[1]);
+      const Loop border = without_flats(cad::natural_border(surface, 1e-9));
+      Loop loop;
+      for (const std::size_t side : {0U, 2U}) {
+        const std::vector<Edge> rim = cut(border.edges[side].curve, shares);
+        loop.edges.insert(loop.edges.end(), rim.begin(), rim.end());
+        loop.edges.push_back(border.edges[side + 1]);
+      }
+      EXPECT_TRUE(cad::has_natural_border(face_of(surface, {loop}), 1e-9));
+      Loop without_last = loop;
+      without_last.edges.erase(without_last.edges.begin() + 3);
+      EXPECT_FALSE(cad::has_natural_border(face_of(surface, {without_last}), 1e-9));
+      Loop moved = loop;
+      for (Vec3& p : moved.edges[3].curve.points) p.z() += 1e-6;
+      EXPECT_FALSE(cad::has_natural_border(face_of(surface, {moved}), 1e-7));
+    }
+}
+
+// Every point of a closed curve is its own nearest one, also where the curve closes and next to its creases.
+TEST(SampledCurve, FindsItsOwnPoints) {
+  for (const nurbs::Surface& surface : {cylinder(), hexagonal_tube()}) {
+    const nurbs::Curve rim = cad::natural_border(surface, 1e-9).edges[0].curve;
+    const cad::SampledCurve samples(rim);
+    const double t0 = rim.first_parameter(), length = rim.last_parameter() - t0;
+    for (int k = 0; k <= 1000; ++k) {
+      const Vec3 p = nurbs::evaluate(rim, t0 + length * k / 1000);
+      const auto found = samples.nearest(p);
+      EXPECT_LT(found.distance, 1e-12) << k;
+      EXPECT_LT((nurbs::evaluate(rim, found.parameter) - p).norm(), 1e-12) << k;
+    }
+  }
 }
 
 // A rim whose circle begins at another place than the surface's seam.
