@@ -323,7 +323,8 @@ INSTANTIATE_TEST_SUITE_P(Samples, Foreign,
                                            Sample{"filaments7", "1e-2"}, Sample{"braid_tape", "1e-2"},
                                            Sample{"knit_rib_1x1", "1e-2"},
                                            Sample{"warpknit_pillar_atlas", "1e-2"},
-                                           Sample{"braid_flat3", "1e-2"}, Sample{"weave_hybrid", "1e-2"}),
+                                           Sample{"braid_flat3", "1e-2"}, Sample{"weave_hybrid", "1e-2"},
+                                           Sample{"sections", "1e-2"}),
                          [](const auto& test) {
                            std::string name = test.param.name;
                            return name;
