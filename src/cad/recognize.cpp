@@ -163,6 +163,7 @@ class Recognizer {
     body.group = part.group;
     body.color = part.color ? *part.color : side.color.value_or(yarn::Color{});
     body.is_named = !body.name.empty();
+    body.resolution = model_.resolution;
     body.is_colored = part.color || side.color;
     body.role = role_of(part.level != 0 ? part.level : side.level);
     body.place = part.origin.place.line > 0 ? part.origin.place : side.origin.place;

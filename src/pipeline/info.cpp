@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "nurbs/measure.h"
 #include "pipeline/facts.h"
 #include "pipeline/job.h"
 #include "pipeline/pieces.h"
@@ -41,7 +42,60 @@ std::string heading(const Job& job, const fabric::Fabric& fabric) {
   for (const fabric::Item& item : fabric.items) ++kinds[kind_of(item)];
   text += "  holds     ";
   for (const auto& [kind, count] : kinds) text += fmt::format(" {} {}{}", count, kind, count == 1 ? "" : "s");
+  const auto others = [&](std::size_t count, std::string_view what) {
+    if (count > 0) text += fmt::format(" {} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  others(fabric.parts.size(), "other part");
+  others(fabric.curves.size(), "curve");
   return text + "\n";
+}
+
+// What a CAD file says of itself: "4 x 128, 1 x 314".
+std::string counted(const std::map<std::string, std::uint64_t>& counts) {
+  std::string text;
+  for (const auto& [name, count] : counts)
+    text += fmt::format("{}{} x {}", text.empty() ? "" : ", ", count, name);
+  return text;
+}
+
+std::string file_facts(const cad::Model& model) {
+  std::string text;
+  if (model.resolution > 0) text += fmt::format("  resolution {:.6g}\n", model.resolution);
+  text += fmt::format("  entities   {}\n", counted(model.entities));
+  if (!model.unknown.empty()) text += fmt::format("  not understood  {}\n", counted(model.unknown));
+  return text;
+}
+
+// What is neither a yarn nor a garment piece.
+std::string other_tables(const Job& job, const fabric::Fabric& fabric) {
+  const Unit file = fabric.units, shown = job.options.units.value_or(file);
+  std::string text;
+  if (!fabric.parts.empty()) {
+    constexpr std::array<std::string_view, 3> kinds = {"surfaces", "shell", "solid"};
+    Table table({"part", "kind", "faces", "trimmed", "extent", "entity"});
+    for (const cad::Part& part : fabric.parts) {
+      Box3 box;
+      std::size_t trimmed = 0;
+      for (const cad::Face& face : part.faces) {
+        for (const Vec3& p : face.surface.points) box.extend(p);
+        trimmed += face.loops.empty() ? 0 : 1;
+      }
+      table.add({part.name.empty() ? "-" : part.name, std::string(kinds[static_cast<std::size_t>(part.kind)]),
+                 std::to_string(part.faces.size()), std::to_string(trimmed),
+                 box.isEmpty() ? "-" : cell(converted(box.diagonal().norm(), file, shown)),
+                 part.origin.entity});
+    }
+    text += table.text();
+  }
+  if (!fabric.curves.empty()) {
+    Table table({"curve", "degree", "points", "length", "entity"});
+    for (const cad::NamedCurve& curve : fabric.curves)
+      table.add({curve.name.empty() ? "-" : curve.name, std::to_string(curve.curve.degree),
+                 std::to_string(curve.curve.points.size()),
+                 cell(converted(nurbs::arc_length(curve.curve), file, shown)), curve.origin.entity});
+    text += table.text();
+  }
+  return text;
 }
 
 std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) {
@@ -97,13 +151,20 @@ std::string piece_tables(Job& job, const fabric::Fabric& fabric) {
 }  // namespace
 
 void info(Job& job) {
-  const std::optional<fabric::Fabric> fabric = job.read();
+  std::string of_file;
+  CadLook look;
+  look.model = [&](const cad::Model& model, const formats::Descriptor&) {
+    of_file = file_facts(model);
+    job.report.entities = model.entities;
+    job.report.unknown = model.unknown;
+  };
+  const std::optional<fabric::Fabric> fabric = job.read(look);
   if (!fabric) return;
-  const std::string head = heading(job, *fabric);
+  const std::string head = heading(job, *fabric) + of_file;
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
   std::string tables;
   if (builder && builder->count() > 0) tables = yarn_table(job, *builder, fabric->units);
-  if (builder) tables += piece_tables(job, *fabric);
+  if (builder) tables += piece_tables(job, *fabric) + other_tables(job, *fabric);
   if (!job.options.json) job.print(head + tables);
 }
 

@@ -148,6 +148,8 @@ std::string to_json(const InputReport& report) {
       return Json{{"a", overlap.a}, {"b", overlap.b}, {"depth", overlap.depth}, {"at", point(overlap.at)}};
     });
   }
+  if (!report.entities.empty()) out["entities"] = report.entities;
+  if (!report.unknown.empty()) out["not_understood"] = report.unknown;
   if (report.min_gap) out["min_gap"] = *report.min_gap;
   if (report.creo_absolute_accuracy) out["creo_absolute_accuracy"] = *report.creo_absolute_accuracy;
   if (!report.outputs.empty()) out["outputs"] = list_json(report.outputs, output_json);

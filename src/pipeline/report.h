@@ -104,6 +104,7 @@ struct InputReport {
   std::string sha256;
   std::optional<Unit> units;
   std::optional<std::size_t> yarn_count;
+  std::map<std::string, std::uint64_t> entities, unknown;  // of a CAD input, by their names: `info`
   std::vector<YarnReport> yarns;
   std::vector<PieceReport> pieces;
   std::optional<std::vector<OverlapReport>> overlaps;  // none: not looked for

@@ -382,7 +382,11 @@ bool add_plane(Skinner& skinner, const yarn::EndFace& face, const Ids& outline, 
 double sewing_gap(const yarn::Body& body) {
   double largest = 0.0;
   for (const Vec3& p : body.surface.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  return 16.0 * (std::nextafter(largest, std::numeric_limits<double>::infinity()) - largest);
+  const double rounding = 16.0 * (std::nextafter(largest, std::numeric_limits<double>::infinity()) - largest);
+  // Other systems write ten digits or recompute edges: what such a file resolves, if it is not worse than
+  // that.
+  constexpr double ten_digits = 1e-8;
+  return std::max(rounding, std::min(body.resolution, ten_digits * largest));
 }
 
 double smallest_extent(const yarn::Body& body) {

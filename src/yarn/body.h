@@ -63,6 +63,8 @@ struct Body {
   double twist = 0;            // of the fibres, turns per file unit along the centre line; > 0: Z, < 0: S
   bool section_turns = false;  // with the twist: the fibres follow the lines of constant u
   TextPlace place;             // in the file that it came from
+  // Of a CAD file: the distance below which it calls two points one; 0: only rounding is none.
+  double resolution = 0;
 
   // u: round the section, closed and clamped: column 0 equals the last column, to the bit. v: along the path,
   // clamped.
