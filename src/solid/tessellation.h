@@ -24,8 +24,8 @@ struct Tessellation {
 };
 
 // The largest distance at which two points of a joint count as one: rounding of the coordinates
-// (16 ulp of the yarn's largest coordinate), and for a yarn that was read what its file resolves, but no more than
-// 1e-8 of that coordinate.
+// (16 ulp of the yarn's largest coordinate), and for a yarn that was read what its file resolves, but no more
+// than 1e-8 of that coordinate.
 double sewing_gap(const yarn::Body& body);
 
 // The thickness of the yarn at its thinnest section across its thinner direction, file units.
