@@ -59,7 +59,8 @@ void convert_lengths(yarn::Body& body, Unit from, Unit to) {
     if (standard[last ? 1 : 0]) yarn::renew_end(body, last);
   point(body.start.origin);
   point(body.end.origin);
-  for (double* length : {&body.length, &body.tube_error, &body.min_bend_radius, &body.resolution}) *length = scale(*length);
+  for (double* length : {&body.length, &body.tube_error, &body.min_bend_radius, &body.resolution})
+    *length = scale(*length);
   body.twist = Ratio{scale.down, scale.up}(body.twist);
   body.end_area = scale(scale(body.end_area));
   body.volume = scale(scale(scale(body.volume)));
