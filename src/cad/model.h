@@ -76,11 +76,11 @@ struct Model {
   std::string file;  // as messages name it
   std::string title;
   std::string file_name;  // that the file gives itself in its header (IGES); empty: none
-  std::string date;  // YYYYMMDD.HHNNSS of the file; empty: not known
+  std::string date;       // YYYYMMDD.HHNNSS of the file; empty: not known
   Unit units = Unit::mm;
-  double resolution = 0;           // IGES parameter 19, STEP uncertainty; file units; 0: not given
-  std::vector<Part> parts;         // in file order; every face is in one
-  std::vector<NamedCurve> curves;  // that stand for themselves
+  double resolution = 0;              // IGES parameter 19, STEP uncertainty; file units; 0: not given
+  std::vector<Part> parts;            // in file order; every face is in one
+  std::vector<NamedCurve> curves;     // that stand for themselves
   std::map<int, std::string> levels;  // names of levels, as far as the file gives them (IGES 406 form 3)
   // Every entity of the file, by its format's name ("128", "MANIFOLD_SOLID_BREP"), and of these the ones that
   // are not understood, with a word on what they are ("212 (general note)").
