@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "cad/borders.h"
 
@@ -365,19 +366,28 @@ class Judge {
               [](const Signature& a, const Signature& b) { return a.box.min().x() < b.box.min().x(); });
     // Twice the same, not two that nearly touch.
     const double tolerance = std::min(m_.tolerance, 1e-6 * m_.size);
+    std::vector<std::pair<const Signature*, const Signature*>> pairs;  // in file order
+    std::map<std::pair<const Part*, const Part*>, std::size_t> shared;
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t k = i + 1; k < all.size() && all[k].box.min().x() - all[i].box.min().x() <= tolerance;
            ++k)
         if (is_same(all[i], all[k], tolerance)) {
           const bool in_order = all[i].face->origin.place.line <= all[k].face->origin.place.line;
-          const Signature &first = in_order ? all[i] : all[k], &second = in_order ? all[k] : all[i];
-          findings_.add("faces that are there twice",
-                        message(Severity::error, *second.part, *second.face,
-                                fmt::format("{}: the same face as {}, at the same place", who(*second.face),
-                                            who(*first.face)),
-                                second.points.front()));
+          pairs.emplace_back(in_order ? &all[i] : &all[k], in_order ? &all[k] : &all[i]);
+          ++shared[std::minmax(all[i].part, all[k].part)];
           break;
         }
+    for (const auto& [first, second] : pairs) {
+      // Two parts that have one face in common touch there (a yarn that was cut); one that has all of its
+      // faces in another is there twice.
+      const std::size_t fewest = std::min(first->part->faces.size(), second->part->faces.size());
+      if (first->part != second->part && shared[std::minmax(first->part, second->part)] < fewest) continue;
+      findings_.add("faces that are there twice",
+                    message(Severity::error, *second->part, *second->face,
+                            fmt::format("{}: the same face as {}, at the same place", who(*second->face),
+                                        who(*first->face)),
+                            second->points.front()));
+    }
   }
 
   static bool is_same(const Signature& a, const Signature& b, double tolerance) {

@@ -114,8 +114,8 @@ class Writing(Set):
         names = self.yarns(self.out / "w.1.igs")[0]
         self.assertEqual(names[:2], ["warp_1.part1", "warp_1.part2"])
         self.assertEqual(len({name.split(".")[0] for name in names}), 8)
-        checked = run("check", self.out / "w.1.igs")
-        self.assertNotIn("open", checked.stdout.lower(), checked.stdout)
+        # The pieces are closed, and that two of them touch is no defect.
+        self.assertIn("every yarn is a closed valid solid, no two overlap", self.succeeds("check", self.out / "w.1.igs").stdout)
 
 
 class Reading(Set):
