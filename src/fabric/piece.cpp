@@ -209,12 +209,13 @@ class Builder {
     for (const PieceEdge& edge : shape.edges) {
       shape.area += nurbs::swept_area(edge.bezier(), origin);
       shape.perimeter += nurbs::arc_length(edge.curve);
-      shape.box.extend(nurbs::bounds(edge.bezier()));
     }
-    if (shape.area > 0.0) return;
-    shape.area = -shape.area;
-    std::reverse(shape.edges.begin() + 1, shape.edges.end());
-    for (PieceEdge& edge : shape.edges) std::reverse(edge.curve.points.begin(), edge.curve.points.end());
+    if (shape.area <= 0.0) {
+      shape.area = -shape.area;
+      std::reverse(shape.edges.begin() + 1, shape.edges.end());
+      for (PieceEdge& edge : shape.edges) std::reverse(edge.curve.points.begin(), edge.curve.points.end());
+    }
+    shape.box = box_of(shape.edges);
   }
 
   const Fabric& fabric_;
@@ -253,6 +254,12 @@ double CurveFit::largest_distance() const {
 Bezier PieceEdge::bezier() const {
   const auto at = [this](std::size_t i) -> Vec2 { return curve.points[i].head<2>(); };
   return is_line() ? nurbs::straight_bezier(at(0), at(1)) : Bezier{at(0), at(1), at(2), at(3)};
+}
+
+nurbs::Box2 box_of(const std::vector<PieceEdge>& edges) {
+  nurbs::Box2 box;
+  for (const PieceEdge& edge : edges) box.extend(nurbs::bounds(edge.bezier()));
+  return box;
 }
 
 std::vector<const Piece*> pieces_of(const Fabric& fabric) {

@@ -52,6 +52,10 @@ struct PieceShape {
   nurbs::Box2 box;  // of the curves themselves
 };
 
+// The box of the curves themselves. It follows from their control points alone, so that a piece that was
+// written and read again, or converted to another unit, has the same one to the bit.
+nurbs::Box2 box_of(const std::vector<PieceEdge>& edges);
+
 // The pieces of a fabric, in file order.
 std::vector<const Piece*> pieces_of(const Fabric& fabric);
 

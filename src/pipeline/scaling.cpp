@@ -90,8 +90,7 @@ void convert_lengths(fabric::PieceShape& piece, Unit from, Unit to) {
   }
   piece.area = scale(scale(piece.area));
   piece.perimeter = scale(piece.perimeter);
-  point(piece.box.min());
-  point(piece.box.max());
+  piece.box = fabric::box_of(piece.edges);
 }
 
 void convert_lengths(cad::Part& part, Unit from, Unit to) {
