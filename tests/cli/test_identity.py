@@ -56,7 +56,6 @@ class Identity(unittest.TestCase):
         return a.stat().st_size
 
     def test_every_sample(self):
-        tried = built = 0
         for sample in part():
             size = self.trip(sample)
             if size > SMALL or sample.suffix != ".txt":
@@ -64,18 +63,12 @@ class Identity(unittest.TestCase):
             for unit in UNITS:
                 self.trip(sample, "--units", unit)
             text = sample.read_text(encoding="utf-8-sig")
-            if "draft file" in text:
+            if re.search(PHYSICAL, text, re.M | re.I):
                 continue
             for unit in UNITS:
                 changed = self.folder / sample.name
                 changed.write_text(with_unit(text, unit), encoding="utf-8")
-                # A thread that is sized by its tex is another one beside lengths in metres: the fabric may be
-                # impossible then.
-                tried += 1
-                if run("convert", str(changed), "-o", str(self.folder / "try.igs"), "--quiet").returncode == 0:
-                    built += 1
-                    self.trip(changed)
-        self.assertGreater(built, tried / 2)
+                self.trip(changed)
 
     def test_every_end_and_solids(self):
         for sample in part():
@@ -85,6 +78,10 @@ class Identity(unittest.TestCase):
                 self.trip(sample, "--ends", ends)
             self.trip(sample, "--iges-solid")
 
+
+# With lengths in another unit beside it, a thread of so many tex or turns a metre makes another fabric, possibly an
+# impossible one; a draft stands in a file of its own.
+PHYSICAL = r"^\s*(tex|denier|ne|twist|plies|filaments|draft\s+file)\b"
 
 # Ends that are not flat to rounding cannot be planar.
 FLAT = {"plain4_grid": False}
