@@ -1,6 +1,8 @@
 #include "nurbs/restrict.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "nurbs/basis.h"
 
@@ -41,13 +43,12 @@ Restriction::Row polar_form(const std::vector<double>& knots, int degree, int k,
   return {k - degree, points[at(degree)]};
 }
 
-Restriction restriction(const std::vector<double>& knots, int degree, int count, double t0, double t1) {
+// The control points over knots that hold all the old ones of their range.
+Restriction over_knots(const std::vector<double>& knots, int degree, int count,
+                       std::vector<double> new_knots) {
   Restriction result;
-  std::vector<double>& made = result.knots;
-  made.assign(at(degree) + 1, t0);
-  for (const double knot : knots)
-    if (knot > t0 && knot < t1) made.push_back(knot);
-  made.insert(made.end(), at(degree) + 1, t1);
+  result.knots = std::move(new_knots);
+  const std::vector<double>& made = result.knots;
   const int new_count = static_cast<int>(made.size()) - degree - 1;
   for (int i = 0; i < new_count; ++i) {
     // A span that the new basis function lives on, as near to the middle of its arguments as there is one.
@@ -58,6 +59,14 @@ Restriction restriction(const std::vector<double>& knots, int degree, int count,
     result.rows.push_back(polar_form(knots, degree, span, made.data() + i + 1));
   }
   return result;
+}
+
+Restriction restriction(const std::vector<double>& knots, int degree, int count, double t0, double t1) {
+  std::vector<double> made(at(degree) + 1, t0);
+  for (const double knot : knots)
+    if (knot > t0 && knot < t1) made.push_back(knot);
+  made.insert(made.end(), at(degree) + 1, t1);
+  return over_knots(knots, degree, count, std::move(made));
 }
 
 Vec4 homogeneous(const Vec3& point, double weight) {
@@ -85,9 +94,9 @@ Curve restricted(const Curve& curve, double t0, double t1) {
   return part;
 }
 
-Surface restricted(const Surface& surface, double u0, double u1, double v0, double v1) {
-  const Restriction along_u = restriction(surface.knots_u, surface.degree_u, surface.count_u, u0, u1);
-  const Restriction along_v = restriction(surface.knots_v, surface.degree_v, surface.count_v, v0, v1);
+namespace {
+
+Surface combined(const Surface& surface, const Restriction& along_u, const Restriction& along_v) {
   const std::size_t nu = along_u.rows.size(), nv = along_v.rows.size();
   std::vector<Vec4> rows(nu * at(surface.count_v), Vec4::Zero());  // new in u, old in v
   for (int j = 0; j < surface.count_v; ++j)
@@ -113,6 +122,21 @@ Surface restricted(const Surface& surface, double u0, double u1, double v0, doub
       if (surface.is_rational()) part.weights.push_back(sum.w());
     }
   return part;
+}
+
+}  // namespace
+
+Surface restricted(const Surface& surface, double u0, double u1, double v0, double v1) {
+  return combined(surface, restriction(surface.knots_u, surface.degree_u, surface.count_u, u0, u1),
+                  restriction(surface.knots_v, surface.degree_v, surface.count_v, v0, v1));
+}
+
+Surface refined(const Surface& surface, const std::vector<double>& new_v) {
+  std::vector<double> made;
+  std::merge(surface.knots_v.begin(), surface.knots_v.end(), new_v.begin(), new_v.end(),
+             std::back_inserter(made));
+  return combined(surface, over_knots(surface.knots_u, surface.degree_u, surface.count_u, surface.knots_u),
+                  over_knots(surface.knots_v, surface.degree_v, surface.count_v, std::move(made)));
 }
 
 }  // namespace selvage::nurbs

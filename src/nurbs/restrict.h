@@ -12,4 +12,8 @@ namespace selvage::nurbs {
 Curve restricted(const Curve& curve, double t0, double t1);
 Surface restricted(const Surface& surface, double u0, double u1, double v0, double v1);
 
+// The same surface with these knots inserted along v (increasing, inside the domain; multiplicities
+// afterwards at most the degree). Control points whose knots do not change keep their values up to rounding.
+Surface refined(const Surface& surface, const std::vector<double>& new_v);
+
 }  // namespace selvage::nurbs

@@ -1,0 +1,308 @@
+#include "contact/displacement_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace selvage::contact {
+
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+constexpr double hold_stiffness = 1e6;
+
+// Cholesky's factor of a symmetric band matrix, in place; column j holds rows j .. j + width - 1.
+void factor_band(Eigen::MatrixXd& band) {
+  const Eigen::Index n = band.cols(), width = band.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double pivot = std::sqrt(std::max(band(0, j), 1e-300));
+    const Eigen::Index below = std::min(width, n - j);
+    band.col(j).head(below) /= pivot;
+    for (Eigen::Index k = 1; k < below; ++k) {
+      const double factor = band(k, j);
+      if (factor != 0.0) band.col(j + k).head(below - k) -= factor * band.col(j).segment(k, below - k);
+    }
+  }
+}
+
+void solve_band(const Eigen::MatrixXd& band, Eigen::Ref<Eigen::VectorXd> x) {
+  const Eigen::Index n = band.cols(), width = band.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    x[j] /= band(0, j);
+    const Eigen::Index below = std::min(width, n - j);
+    x.segment(j + 1, below - 1) -= x[j] * band.col(j).segment(1, below - 1);
+  }
+  for (Eigen::Index j = n; j-- > 0;) {
+    const Eigen::Index below = std::min(width, n - j);
+    x[j] = (x[j] - band.col(j).segment(1, below - 1).dot(x.segment(j + 1, below - 1))) / band(0, j);
+  }
+}
+
+}  // namespace
+
+DisplacementSystem::DisplacementSystem(std::span<const Strand> strands, const Stiffness& stiffness, int modes)
+    : strands_(strands),
+      stiffness_(stiffness),
+      modes_(modes),
+      stations_(strands.size()),
+      held_(strands.size()) {
+  for (std::size_t y = 0; y < strands.size(); ++y) {
+    offsets_.push_back(size_);
+    size_ += static_cast<Eigen::Index>(strands[y].nodes()) * modes;
+    const int count =
+        2 * std::max(2, static_cast<int>(std::lround(strands[y].length() / strands[y].spacing())));
+    for (int i = 0; i < count; ++i) {
+      Station station;
+      station.length = strands[y].length() / count;
+      station.stencil = strands[y].stencil((i + 0.5) * station.length);
+      stations_[y].push_back(station);
+    }
+    if (strands[y].is_cyclic()) continue;
+    for (double arc : {0.0, strands[y].length()}) {
+      const Stencil end = strands[y].stencil(arc);
+      std::array<double, 4> turn = end.slope;
+      for (double& t : turn) t *= strands[y].spacing();
+      held_[y].push_back({end.first, turn, stiffness.end_turn});
+    }
+  }
+  update(1);
+  for (std::vector<Station>& list : stations_)
+    for (Station& station : list) {
+      station.old_span = station.strain;  // update() left the present length there
+      station.strain = 0.0;
+    }
+}
+
+Eigen::Index DisplacementSystem::length(std::size_t strand) const {
+  return static_cast<Eigen::Index>(strands_[strand].nodes()) * modes_;
+}
+
+void DisplacementSystem::hold(std::size_t strand, double arc) {
+  const Stencil stencil = strands_[strand].stencil(arc);
+  held_[strand].push_back({stencil.first, stencil.value, hold_stiffness});
+}
+
+Eigen::Index DisplacementSystem::column(std::size_t strand, int node) const {
+  return offsets_[strand] + static_cast<Eigen::Index>(node % strands_[strand].nodes()) * modes_;
+}
+
+// The spans between the ends of the stations' stretches, on the present centre line.
+void DisplacementSystem::update(int threads) {
+  for_each_index(strands_.size(), threads, [&](std::size_t y) {
+    const Strand& strand = strands_[y];
+    Vec3 last = strand.frame_at(strand.body().surface.first_v()).centre;
+    double arc = 0.0;
+    for (Station& station : stations_[y]) {
+      arc += station.length;
+      const Vec3 next = strand.frame_at(strand.parameter_at(arc)).centre;
+      const double span = (next - last).norm();
+      station.along = (next - last) / span;
+      station.strain = station.old_span > 0.0 ? span / station.old_span - 1.0 : span;
+      last = next;
+    }
+  });
+}
+
+void DisplacementSystem::apply_energy(const Eigen::VectorXd& x, Eigen::VectorXd& y, int threads) const {
+  for_each_index(strands_.size(), threads, [&](std::size_t s) {
+    const double h = strands_[s].spacing();
+    for (const Station& station : stations_[s]) {
+      const double share = station.length / h;
+      for (int m = 0; m < modes_; ++m) {
+        double value = 0.0, bend = 0.0;
+        for (int k = 0; k < 4; ++k) {
+          const double c = x[column(s, station.stencil.first + k) + m];
+          value += station.stencil.value[at(k)] * c;
+          bend += station.stencil.bend[at(k)] * c;
+        }
+        const bool moves = m < translation_modes;
+        const double stiff = moves ? 1.0 : field_degree(m - translation_modes);
+        value *= share * stiff * (moves ? stiffness_.place : stiffness_.shape);
+        bend *= share * stiff * (moves ? stiffness_.bend : stiffness_.shape_bend) * h * h * h * h;
+        for (int k = 0; k < 4; ++k)
+          y[column(s, station.stencil.first + k) + m] +=
+              value * station.stencil.value[at(k)] + bend * station.stencil.bend[at(k)];
+      }
+      double strain = 0.0;
+      for (int k = 0; k < 4; ++k)
+        strain += station.stencil.slope[at(k)] *
+                  station.along.dot(x.segment<3>(column(s, station.stencil.first + k)));
+      strain *= share * stiffness_.stretch * h * h;
+      for (int k = 0; k < 4; ++k)
+        y.segment<3>(column(s, station.stencil.first + k)) +=
+            strain * station.stencil.slope[at(k)] * station.along;
+    }
+    for (const Hold& held : held_[s])
+      for (int m = 0; m < translation_modes; ++m) {
+        double value = 0.0;
+        for (int k = 0; k < 4; ++k) value += held.share[at(k)] * x[column(s, held.first + k) + m];
+        for (int k = 0; k < 4; ++k)
+          y[column(s, held.first + k) + m] += held.stiffness * value * held.share[at(k)];
+      }
+  });
+}
+
+// Of the energy at the present shape: centre lines that were stretched pull back.
+void DisplacementSystem::gradient(Eigen::VectorXd& g) const {
+  g.setZero();
+  for (std::size_t s = 0; s < strands_.size(); ++s) {
+    const double h = strands_[s].spacing();
+    for (const Station& station : stations_[s]) {
+      const double pull = station.strain * (station.length / h) * stiffness_.stretch * h * h;
+      for (int k = 0; k < 4; ++k)
+        g.segment<3>(column(s, station.stencil.first + k)) +=
+            pull * station.stencil.slope[at(k)] * station.along;
+    }
+  }
+}
+
+double DisplacementSystem::apply(const Demand& demand, const Eigen::VectorXd& x) const {
+  const auto side = [&](const Demand::Side& one) {
+    double sum = 0.0;
+    for (int k = 0; k < 4; ++k)
+      sum += one.form.segment(k * modes_, modes_).dot(x.segment(column(one.strand, one.first + k), modes_));
+    return sum;
+  };
+  return side(demand.plus) - (demand.has_minus ? side(demand.minus) : 0.0);
+}
+
+void DisplacementSystem::scatter(const Demand& demand, double value, Eigen::VectorXd& y) const {
+  const auto side = [&](const Demand::Side& one, double factor) {
+    for (int k = 0; k < 4; ++k)
+      y.segment(column(one.strand, one.first + k), modes_) += factor * one.form.segment(k * modes_, modes_);
+  };
+  side(demand.plus, value);
+  if (demand.has_minus) side(demand.minus, -value);
+}
+
+void DisplacementSystem::factor(std::span<const Demand> demands, const std::vector<char>& active,
+                                int threads) {
+  const Eigen::Index width = 4 * modes_;
+  bands_.assign(strands_.size(), {});
+  std::vector<std::vector<const Demand::Side*>> sides(strands_.size());
+  std::vector<std::vector<double>> weights(strands_.size());
+  for (std::size_t k = 0; k < demands.size(); ++k) {
+    if (!active[k]) continue;
+    const Demand& demand = demands[k];
+    sides[demand.plus.strand].push_back(&demand.plus);
+    weights[demand.plus.strand].push_back(demand.weight);
+    if (!demand.has_minus) continue;
+    sides[demand.minus.strand].push_back(&demand.minus);
+    weights[demand.minus.strand].push_back(demand.weight);
+  }
+  for_each_index(strands_.size(), threads, [&](std::size_t s) {
+    const Strand& strand = strands_[s];
+    Band& band = bands_[s];
+    band = Band::Zero(width, length(s));
+    const double h = strand.spacing();
+    // Entries of the lower triangle within the band; those that go round a ring's seam are left out.
+    const auto entry = [&](int node_i, int mode_i, int node_j, int mode_j, double value) {
+      const Eigen::Index i = static_cast<Eigen::Index>(node_i % strand.nodes()) * modes_ + mode_i;
+      const Eigen::Index j = static_cast<Eigen::Index>(node_j % strand.nodes()) * modes_ + mode_j;
+      if (i >= j && i - j < width) band(i - j, j) += value;
+    };
+    for (const Station& station : stations_[s]) {
+      const double share = station.length / h;
+      for (int k = 0; k < 4; ++k)
+        for (int l = 0; l < 4; ++l) {
+          const int node_k = station.stencil.first + k, node_l = station.stencil.first + l;
+          for (int m = 0; m < modes_; ++m) {
+            const bool moves = m < translation_modes;
+            const double stiff = moves ? 1.0 : field_degree(m - translation_modes);
+            entry(node_k, m, node_l, m,
+                  share * stiff *
+                      ((moves ? stiffness_.place : stiffness_.shape) * station.stencil.value[at(k)] *
+                           station.stencil.value[at(l)] +
+                       (moves ? stiffness_.bend : stiffness_.shape_bend) * h * h * h * h *
+                           station.stencil.bend[at(k)] * station.stencil.bend[at(l)]));
+          }
+          const double strain = share * stiffness_.stretch * h * h * station.stencil.slope[at(k)] *
+                                station.stencil.slope[at(l)];
+          for (int m = 0; m < 3; ++m)
+            for (int c = 0; c < 3; ++c)
+              entry(node_k, m, node_l, c, strain * station.along[m] * station.along[c]);
+        }
+    }
+    for (const Hold& held : held_[s])
+      for (int k = 0; k < 4; ++k)
+        for (int l = 0; l < 4; ++l)
+          for (int m = 0; m < translation_modes; ++m)
+            entry(held.first + k, m, held.first + l, m,
+                  held.stiffness * held.share[at(k)] * held.share[at(l)]);
+    for (std::size_t d = 0; d < sides[s].size(); ++d) {
+      const Demand::Side& side = *sides[s][d];
+      const double stiff = stiffness_.contact * weights[s][d];
+      for (int k = 0; k < 4; ++k)
+        for (int m = 0; m < modes_; ++m) {
+          const double factor = stiff * side.form[k * modes_ + m];
+          if (factor == 0.0) continue;
+          for (int l = 0; l < 4; ++l)
+            for (int c = 0; c < modes_; ++c)
+              entry(side.first + k, m, side.first + l, c, factor * side.form[l * modes_ + c]);
+        }
+    }
+    factor_band(band);
+  });
+}
+
+void DisplacementSystem::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z, int threads) const {
+  z = r;
+  for_each_index(strands_.size(), threads,
+                 [&](std::size_t s) { solve_band(bands_[s], z.segment(offsets_[s], length(s))); });
+}
+
+Eigen::VectorXd DisplacementSystem::solve(std::span<const Demand> demands, int threads) {
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(size_), start(size_);
+  gradient(start);
+  std::vector<char> active(demands.size());
+  const auto activate = [&] {
+    bool changed = false;
+    for (std::size_t k = 0; k < demands.size(); ++k) {
+      const char now = demands[k].is_equal || demands[k].missing - apply(demands[k], x) > 0.0 ? 1 : 0;
+      changed = changed || now != active[k];
+      active[k] = now;
+    }
+    return changed;
+  };
+  constexpr int rounds = 6, most_steps = 80;
+  for (int round = 0; round < rounds; ++round) {
+    if (!activate() && round > 0) break;
+    factor(demands, active, threads);
+    const auto multiply = [&](const Eigen::VectorXd& p, Eigen::VectorXd& y) {
+      y.setZero(size_);
+      apply_energy(p, y, threads);
+      for (std::size_t k = 0; k < demands.size(); ++k)
+        if (active[k] != 0)
+          scatter(demands[k], stiffness_.contact * demands[k].weight * apply(demands[k], p), y);
+    };
+    // r = -(gradient + K x - contact forces)
+    Eigen::VectorXd r(size_), z(size_), p, q(size_);
+    multiply(x, r);
+    r = -start - r;
+    for (std::size_t k = 0; k < demands.size(); ++k)
+      if (active[k] != 0) scatter(demands[k], stiffness_.contact * demands[k].weight * demands[k].missing, r);
+    precondition(r, z, threads);
+    p = z;
+    double rz = r.dot(z);
+    const double goal = 1e-5 * rz;
+    for (int step = 0; step < most_steps && rz > goal && rz > 0.0; ++step) {
+      multiply(p, q);
+      const double curvature = p.dot(q);
+      if (!(curvature > 0.0)) break;
+      const double alpha = rz / curvature;
+      x += alpha * p;
+      r -= alpha * q;
+      precondition(r, z, threads);
+      const double next = r.dot(z);
+      p = z + (next / rz) * p;
+      rz = next;
+    }
+  }
+  return x;
+}
+
+}  // namespace selvage::contact

@@ -1,0 +1,281 @@
+#include "contact/near_skins.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/parallel.h"
+#include "nurbs/spline.h"
+
+namespace selvage::contact {
+
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+constexpr int least_round = 24, leaf_columns = 4;
+
+struct SurfacePoint {
+  nurbs::SurfaceJet jet;
+  Vec3 normal = Vec3::Zero();  // outward
+};
+
+SurfacePoint point_at(const yarn::Body& body, const Vec2& site) {
+  SurfacePoint out;
+  out.jet = nurbs::evaluate_jet(body.surface, site.x(), site.y());
+  const Vec3 cross = out.jet.du.cross(out.jet.dv);
+  const double size = cross.norm();
+  if (size > 0.0) out.normal = (body.inward ? -1.0 : 1.0) / size * cross;
+  return out;
+}
+
+double wrapped(double t, double first, double last) {
+  return t - (last - first) * std::floor((t - first) / (last - first));
+}
+
+Vec2 inside(const yarn::Body& body, Vec2 site) {
+  const nurbs::Surface& s = body.surface;
+  site.x() = wrapped(site.x(), s.first_u(), s.last_u());
+  site.y() = body.closed_along ? wrapped(site.y(), s.first_v(), s.last_v())
+                               : std::clamp(site.y(), s.first_v(), s.last_v());
+  return site;
+}
+
+void fill(Facing& facing, const SurfacePoint& p, const SurfacePoint& q) {
+  facing.on_a = p.jet.position;
+  facing.on_b = q.jet.position;
+  facing.normal = (p.normal - q.normal).normalized();
+  facing.gap = (facing.on_b - facing.on_a).dot(facing.normal);
+}
+
+}  // namespace
+
+NearSkins::NearSkins(std::span<const Strand> strands) : strands_(strands), skins_(strands.size()) {
+  for (std::size_t y = 0; y < strands.size(); ++y) {
+    const Strand& strand = strands[y];
+    const nurbs::Surface& s = strand.body().surface;
+    Skin& skin = skins_[y];
+    skin.cyclic = strand.is_cyclic();
+    const std::vector<double> breaks = nurbs::breakpoints(s.knots_u, s.degree_u);
+    const int parts = std::max(1, static_cast<int>(std::ceil(static_cast<double>(least_round) /
+                                                             static_cast<double>(breaks.size() - 1))));
+    for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+      for (int i = 0; i < parts; ++i) skin.us.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / parts);
+    skin.us.push_back(breaks.back());
+    skin.round = static_cast<int>(skin.us.size()) - 1;
+    skin.along = std::max(2, static_cast<int>(std::ceil(2.0 * strand.length() / strand.spacing())));
+    for (int j = 0; j <= skin.along; ++j) {
+      skin.arcs.push_back(strand.length() * j / skin.along);
+      skin.vs.push_back(j == skin.along ? s.last_v() : strand.parameter_at(skin.arcs.back()));
+    }
+    sample(y);
+    for (int j = 0; j < skin.along; ++j)
+      for (int i = 0; i < skin.round; i += leaf_columns)
+        leaves_.push_back({static_cast<std::uint32_t>(y), j, i, std::min(leaf_columns, skin.round - i)});
+  }
+  std::vector<Vec3> centres;
+  centres.reserve(leaves_.size());
+  for (const Leaf& leaf : leaves_) centres.push_back(box_of(leaf).center());
+  std::vector<std::uint32_t> order(leaves_.size());
+  std::iota(order.begin(), order.end(), 0U);
+  nodes_.reserve(2 * leaves_.size());
+  if (!order.empty()) root_ = build(order.data(), order.data() + order.size(), centres);
+}
+
+std::uint32_t NearSkins::build(std::uint32_t* first, std::uint32_t* last, const std::vector<Vec3>& centres) {
+  const auto node = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  if (last - first == 1) {
+    nodes_[node].left = nodes_[node].right = *first;
+    nodes_[node].is_leaf = true;
+    return node;
+  }
+  Box3 box;
+  for (const std::uint32_t* k = first; k != last; ++k) box.extend(centres[*k]);
+  Eigen::Index axis = 0;
+  box.sizes().maxCoeff(&axis);
+  std::uint32_t* middle = first + (last - first) / 2;
+  std::nth_element(first, middle, last, [&](std::uint32_t x, std::uint32_t y) {
+    return std::pair(centres[x][axis], x) < std::pair(centres[y][axis], y);
+  });
+  const std::uint32_t left = build(first, middle, centres), right = build(middle, last, centres);
+  nodes_[node].left = left;
+  nodes_[node].right = right;
+  return node;
+}
+
+void NearSkins::sample(std::size_t strand) {
+  const yarn::Body& body = strands_[strand].body();
+  Skin& skin = skins_[strand];
+  const std::vector<double> us(skin.us.begin(), skin.us.end());
+  skin.points = nurbs::evaluate_grid(body.surface, us, skin.vs);
+  // Normals from the differences of samples: they only choose directions.
+  skin.normals.resize(skin.points.size());
+  const int n = skin.round + 1;
+  for (int j = 0; j <= skin.along; ++j)
+    for (int i = 0; i <= skin.round; ++i) {
+      const int left = i == 0 ? skin.round - 1 : i - 1, right = i == skin.round ? 1 : i + 1;
+      const int low = j > 0 ? j - 1 : (skin.cyclic ? skin.along - 1 : 0);
+      const int high = j < skin.along ? j + 1 : (skin.cyclic ? 1 : skin.along);
+      const Vec3 du = skin.points[at(j * n + right)] - skin.points[at(j * n + left)];
+      const Vec3 dv = skin.points[at(high * n + i)] - skin.points[at(low * n + i)];
+      skin.normals[at(j * n + i)] = (body.inward ? -1.0 : 1.0) * du.cross(dv).normalized();
+    }
+}
+
+Box3 NearSkins::box_of(const Leaf& leaf) const {
+  const Skin& skin = skins_[leaf.strand];
+  const int n = skin.round + 1;
+  Box3 box;
+  for (int j = leaf.row; j <= leaf.row + 1; ++j)
+    for (int i = leaf.column; i <= leaf.column + leaf.columns; ++i) box.extend(skin.points[at(j * n + i)]);
+  return box;
+}
+
+bool NearSkins::are_neighbours(const Leaf& a, const Leaf& b) const {
+  if (a.strand != b.strand) return false;
+  const Strand& strand = strands_[a.strand];
+  const Skin& skin = skins_[a.strand];
+  double apart = std::abs(skin.arcs[at(a.row)] - skin.arcs[at(b.row)]);
+  if (strand.is_cyclic()) apart = std::min(apart, strand.length() - apart);
+  return apart < 1.5 * strand.width();
+}
+
+void NearSkins::cast(const Leaf& from, const Leaf& onto, double reach, std::vector<Facing>& found) const {
+  const Skin &skin_a = skins_[from.strand], &skin_b = skins_[onto.strand];
+  const int na = skin_a.round + 1, nb = skin_b.round + 1;
+  const double inward =
+      -0.45 * std::min(strands_[from.strand].thickness(), strands_[onto.strand].thickness());
+  const bool flip = strands_[onto.strand].body().inward;
+  const int rows = from.row + 1 == skin_a.along && !skin_a.cyclic ? 2 : 1;
+  for (int i = onto.column; i < onto.column + onto.columns; ++i) {
+    const int j = onto.row;
+    const std::array<int, 4> corner = {j * nb + i, j * nb + i + 1, (j + 1) * nb + i + 1, (j + 1) * nb + i};
+    for (int half = 0; half < 2; ++half) {
+      const Vec3& p0 = skin_b.points[at(corner[0])];
+      const Vec3 e1 = skin_b.points[at(corner[at(half + 1)])] - p0,
+                 e2 = skin_b.points[at(corner[at(half + 2)])] - p0;
+      Vec3 face = e1.cross(e2);
+      if (flip) face = -face;
+      for (int row = from.row; row < from.row + rows; ++row)
+        for (int column = from.column; column < from.column + from.columns; ++column) {
+          const auto k = at(row * na + column);
+          const Vec3& n = skin_a.normals[k];
+          const double facing = face.dot(n);
+          if (facing >= 0.0) continue;
+          const Vec3 way = skin_a.points[k] - p0;
+          // p + t n in the triangle's plane.
+          const double t = -face.dot(way) / facing;
+          if (t < inward || t > reach) continue;
+          const Vec3 hit = way + t * n;
+          const double size = e1.cross(e2).squaredNorm();
+          const double s1 = hit.cross(e2).dot(e1.cross(e2)) / size;
+          const double s2 = e1.cross(hit).dot(e1.cross(e2)) / size;
+          constexpr double edge = -1e-3;
+          if (s1 < edge || s2 < edge || s1 + s2 > 1.0 - edge) continue;
+          const double u0 = skin_b.us[at(i)], u1 = skin_b.us[at(i + 1)];
+          const double v0 = skin_b.vs[at(j)], v1 = skin_b.vs[at(j + 1)];
+          Facing facing_pair;
+          facing_pair.a = from.strand;
+          facing_pair.b = onto.strand;
+          facing_pair.site_a = {skin_a.us[at(column)], skin_a.vs[at(row)]};
+          facing_pair.site_b = half == 0 ? Vec2(u0 + (s1 + s2) * (u1 - u0), v0 + s2 * (v1 - v0))
+                                         : Vec2(u0 + s1 * (u1 - u0), v0 + (s1 + s2) * (v1 - v0));
+          fill(facing_pair, point_at(strands_[from.strand].body(), facing_pair.site_a),
+               point_at(strands_[onto.strand].body(), facing_pair.site_b));
+          if (facing_pair.gap <= reach && facing_pair.normal.allFinite()) found.push_back(facing_pair);
+        }
+    }
+  }
+}
+
+void NearSkins::look_from(const Leaf& leaf, double reach, std::vector<Facing>& found) const {
+  Box3 box = box_of(leaf);
+  const double margin = reach + 0.45 * strands_[leaf.strand].thickness();
+  box.min().array() -= margin;
+  box.max().array() += margin;
+  std::array<std::uint32_t, 128> stack{};
+  std::size_t depth = 0;
+  stack[depth++] = root_;
+  while (depth > 0) {
+    const Node& node = nodes_[stack[--depth]];
+    if (!node.box.intersects(box)) continue;
+    if (!node.is_leaf) {
+      stack[depth++] = node.right;
+      stack[depth++] = node.left;
+    } else if (const Leaf& other = leaves_[node.left]; !are_neighbours(leaf, other)) {
+      cast(leaf, other, reach, found);
+    }
+  }
+}
+
+std::vector<Facing> NearSkins::find(double reach, int threads) {
+  for_each_index(strands_.size(), threads, [&](std::size_t y) { sample(y); });
+  for (std::size_t k = nodes_.size(); k-- > 0;) {
+    Node& node = nodes_[k];
+    node.box = node.is_leaf ? box_of(leaves_[node.left]) : nodes_[node.left].box;
+    if (!node.is_leaf) node.box.extend(nodes_[node.right].box);
+  }
+  constexpr std::size_t block = 512;
+  const std::size_t blocks = (leaves_.size() + block - 1) / block;
+  std::vector<std::vector<Facing>> parts(blocks);
+  for_each_index(blocks, threads, [&](std::size_t b) {
+    for (std::size_t k = b * block; k < std::min(leaves_.size(), (b + 1) * block); ++k)
+      look_from(leaves_[k], reach, parts[b]);
+  });
+  std::vector<Facing> all;
+  for (const std::vector<Facing>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+Facing settled(std::span<const Strand> strands, const Facing& facing) {
+  const yarn::Body &a = strands[facing.a].body(), &b = strands[facing.b].body();
+  Facing best = facing;
+  Vec2 site_a = facing.site_a, site_b = facing.site_b;
+  const double limit = 0.5 * strands[facing.a].thickness();
+  for (int step = 0; step < 12; ++step) {
+    const SurfacePoint p = point_at(a, site_a), q = point_at(b, site_b);
+    // Both surfaces as osculating paraboloids would need curvatures; each point goes instead toward the other
+    // one's foot, with the curvature of the gap from differences of the normals.
+    Facing now = facing;
+    now.site_a = site_a;
+    now.site_b = site_b;
+    fill(now, p, q);
+    if (!now.normal.allFinite()) break;
+    const Vec3 n = now.normal;
+    const Vec3 t1 = (p.jet.du - p.jet.du.dot(n) * n).normalized(), t2 = n.cross(t1);
+    const auto residual = [&](const Vec2& sa, const Vec2& sb) {
+      const SurfacePoint x = point_at(a, inside(a, sa)), y = point_at(b, inside(b, sb));
+      const Vec3 way = (y.jet.position - x.jet.position) / limit, turn = x.normal + y.normal;
+      return Eigen::Vector4d(way.dot(t1), way.dot(t2), turn.dot(t1), turn.dot(t2));
+    };
+    const Eigen::Vector4d r = residual(site_a, site_b);
+    if (r.norm() < 1e-7) return now;
+    Eigen::Matrix4d jacobian;
+    const Eigen::Vector4d unit = limit * Eigen::Vector4d(1.0 / p.jet.du.norm(), 1.0 / p.jet.dv.norm(),
+                                                         1.0 / q.jet.du.norm(), 1.0 / q.jet.dv.norm());
+    constexpr double h = 1e-5;
+    for (int k = 0; k < 4; ++k) {
+      Eigen::Vector4d x;
+      x << site_a, site_b;
+      x[k] += h * unit[k];
+      jacobian.col(k) = (residual(x.head<2>(), x.tail<2>()) - r) / h;
+    }
+    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix4d> solver;
+    solver.setThreshold(1e-4);
+    solver.compute(jacobian);
+    Eigen::Vector4d move = solver.solve(-r);
+    if (!move.allFinite()) break;
+    if (const double size = move.norm(); size > 0.3) move *= 0.3 / size;
+    move = move.cwiseProduct(unit);
+    site_a = inside(a, site_a + move.head<2>());
+    site_b = inside(b, site_b + move.tail<2>());
+    if ((point_at(a, site_a).jet.position - facing.on_a).norm() > 2.0 * limit) break;
+  }
+  return best;
+}
+
+}  // namespace selvage::contact

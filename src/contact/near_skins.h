@@ -1,0 +1,65 @@
+// Which points of the yarns' surfaces stand against which others, now: rays along the outward normals of
+// sampled points meet the sampled surfaces that face them, and the gap is then taken on the B-splines.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contact/strand.h"
+
+namespace selvage::contact {
+
+// A point of one yarn and the point of a surface that faces it.
+struct Facing {
+  std::uint32_t a = 0, b = 0;  // strands; equal: a yarn faces itself
+  Vec2 site_a = Vec2::Zero(), site_b = Vec2::Zero();
+  Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();  // unit, from a to b: the mean of a's outward normal and b's inward one
+  double gap = 0;              // (on_b - on_a) . normal; < 0: overlap
+};
+
+class NearSkins {
+ public:
+  // `strands` outlives this. The tree's structure is made from their present shape.
+  explicit NearSkins(std::span<const Strand> strands);
+
+  // Samples the present surfaces anew and gives all facings with a gap up to `reach` (of each strand: by its
+  // index), as seen from the samples. Overlaps are seen down to a good third of the thickness.
+  std::vector<Facing> find(double reach, int threads);
+
+ private:
+  struct Skin {
+    int round = 0, along = 0;  // samples: round + 1 columns (the last is the first), along + 1 rows
+    std::vector<double> us, vs, arcs;
+    std::vector<Vec3> points, normals;
+    bool cyclic = false;
+  };
+  struct Leaf {
+    std::uint32_t strand = 0;
+    std::int32_t row = 0, column = 0, columns = 0;  // quads (column .. column + columns - 1, row)
+  };
+  struct Node {
+    Box3 box;
+    std::uint32_t left = 0, right = 0;  // nodes; a leaf has left == right == the leaf's number, is_leaf
+    bool is_leaf = false;
+  };
+  std::uint32_t build(std::uint32_t* first, std::uint32_t* last, const std::vector<Vec3>& centres);
+  void sample(std::size_t strand);
+  [[nodiscard]] Box3 box_of(const Leaf& leaf) const;
+  void look_from(const Leaf& leaf, double reach, std::vector<Facing>& found) const;
+  void cast(const Leaf& from, const Leaf& onto, double reach, std::vector<Facing>& found) const;
+  [[nodiscard]] bool are_neighbours(const Leaf& a, const Leaf& b) const;
+
+  std::span<const Strand> strands_;
+  std::vector<Skin> skins_;
+  std::vector<Leaf> leaves_;
+  std::vector<Node> nodes_;
+  std::uint32_t root_ = 0;
+};
+
+// The facing at the place where the two surfaces are nearest (or deepest in each other) that belongs to this
+// one: both normals on one line. Steps of Newton's method; where it does not converge, the facing as it was.
+Facing settled(std::span<const Strand> strands, const Facing& facing);
+
+}  // namespace selvage::contact
