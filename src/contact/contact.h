@@ -19,7 +19,15 @@
 
 namespace selvage::contact {
 
-// One connected place where two surfaces overlap or are near.
+// A local minimum of the gap between two surfaces.
+struct Minimum {
+  std::optional<Vec2> site_a, site_b;  // (u, v); none on an end face
+  Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();  // a's, unit, outward
+  double gap = 0;              // (on_b - on_a) . normal; negative: minus the depth
+};
+
+// One connected place where two surfaces overlap; or a local minimum of the gap, where they are near.
 struct Contact {
   std::size_t a = 0, b = 0;  // indices of the yarns, a <= b; equal: a yarn meets itself
   // (u, v) of both points on the yarns' surfaces; none on an end face.
@@ -31,7 +39,8 @@ struct Contact {
   // >= 0: the distance. < 0: minus the depth, the least distance by which one of the two has to be moved
   // (along `direction`, in which it is least) for this overlap to vanish. Right to 1 %.
   double gap = 0;
-  double area = 0;  // of a's surface that lies in b (overlap), or nearer to it than the reach
+  double area = 0;             // of a's surface that lies in b; 0 where they are near only
+  std::vector<Minimum> spots;  // every local minimum of the gap in this place, the deepest first
 
   [[nodiscard]] bool is_overlap() const { return gap < 0; }
   [[nodiscard]] double depth() const { return gap < 0 ? -gap : 0; }

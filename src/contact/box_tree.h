@@ -1,0 +1,94 @@
+// A tree of boxes: which of them are near each other.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace selvage::contact {
+
+class BoxTree {
+ public:
+  explicit BoxTree(std::vector<Box3> boxes);
+
+  // Calls visit(i, j), i < j, once for each pair of boxes no farther apart than `reach`, in an order that
+  // depends on the boxes alone.
+  template <class Visit>
+  void near_pairs(double reach, const Visit& visit) const;
+
+  // Calls visit(i) for each box that holds `point`, and for each that the ray from it along +x meets.
+  template <class Visit>
+  void along_ray(const Vec3& point, const Visit& visit) const;
+
+ private:
+  struct Node {
+    Box3 box;
+    std::uint32_t first = 0;  // leaf: into order_; else the left child, the right one follows it
+    std::uint32_t count = 0;  // 0: not a leaf
+  };
+  static constexpr std::uint32_t leaf_size = 4;
+  void split(std::uint32_t node);
+  [[nodiscard]] bool near(const Box3& a, const Box3& b, double reach) const {
+    return a.squaredExteriorDistance(b) <= reach * reach;
+  }
+
+  std::vector<Box3> boxes_;
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> order_;
+};
+
+template <class Visit>
+void BoxTree::near_pairs(double reach, const Visit& visit) const {
+  if (nodes_.empty()) return;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> stack = {{0U, 0U}};
+  while (!stack.empty()) {
+    const auto [m, n] = stack.back();
+    stack.pop_back();
+    const Node &a = nodes_[m], &b = nodes_[n];
+    if (m != n && !near(a.box, b.box, reach)) continue;
+    if (m == n && a.count == 0) {
+      stack.push_back({a.first, a.first});
+      stack.push_back({a.first + 1, a.first + 1});
+      stack.push_back({a.first, a.first + 1});
+    } else if (a.count > 0 && b.count > 0) {
+      for (std::uint32_t i = a.first; i < a.first + a.count; ++i)
+        for (std::uint32_t j = m == n ? i + 1 : b.first; j < b.first + b.count; ++j) {
+          const auto [x, y] = std::minmax(order_[i], order_[j]);
+          if (near(boxes_[x], boxes_[y], reach)) visit(x, y);
+        }
+    } else if (b.count > 0 ||
+               (a.count == 0 && a.box.diagonal().squaredNorm() >= b.box.diagonal().squaredNorm())) {
+      stack.push_back({a.first, n});
+      stack.push_back({a.first + 1, n});
+    } else {
+      stack.push_back({m, b.first});
+      stack.push_back({m, b.first + 1});
+    }
+  }
+}
+
+template <class Visit>
+void BoxTree::along_ray(const Vec3& point, const Visit& visit) const {
+  if (nodes_.empty()) return;
+  const auto meets = [&](const Box3& box) {
+    return box.max().x() >= point.x() && box.min().y() <= point.y() && box.max().y() >= point.y() &&
+           box.min().z() <= point.z() && box.max().z() >= point.z();
+  };
+  std::vector<std::uint32_t> stack = {0U};
+  while (!stack.empty()) {
+    const Node& node = nodes_[stack.back()];
+    stack.pop_back();
+    if (!meets(node.box)) continue;
+    if (node.count == 0) {
+      stack.push_back(node.first);
+      stack.push_back(node.first + 1);
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+      if (meets(boxes_[order_[i]])) visit(order_[i]);
+  }
+}
+
+}  // namespace selvage::contact

@@ -1,0 +1,175 @@
+#include "contact/critical.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace selvage::contact {
+
+namespace {
+
+using Vec4 = Eigen::Vector4d;
+using Mat4 = Eigen::Matrix4d;
+
+double wrapped(double t, double first, double last) {
+  const double period = last - first;
+  return t - period * std::floor((t - first) / period);
+}
+
+// Sites outside the domain go round (closed directions) or to its border.
+Vec2 inside(const Face& face, Vec2 site) {
+  const nurbs::Surface& s = *face.surface;
+  site.x() = face.round_u ? wrapped(site.x(), s.first_u(), s.last_u())
+                          : std::clamp(site.x(), s.first_u(), s.last_u());
+  site.y() = face.round_v ? wrapped(site.y(), s.first_v(), s.last_v())
+                          : std::clamp(site.y(), s.first_v(), s.last_v());
+  return site;
+}
+
+struct SurfacePoint {
+  nurbs::SurfaceJet jet;
+  Vec3 normal = Vec3::Zero();  // outward; zero where there is none
+};
+
+SurfacePoint point_at(const Face& face, const Vec2& site) {
+  const Vec2 s = inside(face, site);
+  SurfacePoint out;
+  out.jet = nurbs::evaluate_jet(*face.surface, s.x(), s.y());
+  const Vec3 cross = out.jet.du.cross(out.jet.dv);
+  const double size = cross.norm();
+  if (size > 0.0) out.normal = (face.inward ? -1.0 : 1.0) / size * cross;
+  return out;
+}
+
+// The four equations of a critical pair, in lengths of `scale`.
+struct Equations {
+  const Face& a;
+  const Face& b;
+  double scale;
+
+  [[nodiscard]] static Vec4 residual(const SurfacePoint& p, const SurfacePoint& q, double scale) {
+    const Vec3 t1 = p.jet.du.normalized(), t2 = p.normal.cross(t1);
+    const Vec3 way = (p.jet.position - q.jet.position) / scale;
+    return {q.normal.dot(t1), q.normal.dot(t2), way.dot(t1), way.dot(t2)};
+  }
+  [[nodiscard]] Vec4 residual(const Vec4& x) const {
+    return residual(point_at(a, x.head<2>()), point_at(b, x.tail<2>()), scale);
+  }
+  // Central differences; a step moves one of the two points only.
+  [[nodiscard]] Mat4 jacobian(const Vec4& x, const Vec4& unit) const {
+    constexpr double h = 1e-6;
+    const SurfacePoint p = point_at(a, x.head<2>()), q = point_at(b, x.tail<2>());
+    Mat4 out;
+    for (int k = 0; k < 4; ++k) {
+      Vec4 up = x, down = x;
+      up[k] += h * unit[k];
+      down[k] -= h * unit[k];
+      const Vec4 high = k < 2 ? residual(point_at(a, up.head<2>()), q, scale)
+                              : residual(p, point_at(b, up.tail<2>()), scale);
+      const Vec4 low = k < 2 ? residual(point_at(a, down.head<2>()), q, scale)
+                             : residual(p, point_at(b, down.tail<2>()), scale);
+      out.col(k) = (high - low) / (2.0 * h);
+    }
+    return out;
+  }
+};
+
+}  // namespace
+
+std::optional<Critical> find_critical(const Face& a, const Vec2& site_a, const Face& b, const Vec2& site_b) {
+  Vec4 x;
+  x << inside(a, site_a), inside(b, site_b);
+  const SurfacePoint p0 = point_at(a, site_a), q0 = point_at(b, site_b);
+  // Lengths are measured by how far the section's u goes round: S_u times its whole range.
+  const double scale = 0.25 * p0.jet.du.norm() * (a.surface->last_u() - a.surface->first_u());
+  if (!(scale > 0.0)) return std::nullopt;
+  // Unknowns in lengths too, so that a step means the same in each.
+  const Vec4 unit = scale * Vec4(1.0 / p0.jet.du.norm(), 1.0 / p0.jet.dv.norm(), 1.0 / q0.jet.du.norm(),
+                                 1.0 / q0.jet.dv.norm());
+  if (!unit.allFinite()) return std::nullopt;
+  const Equations equations{a, b, scale};
+  Vec4 r = equations.residual(x);
+  constexpr double accuracy = 1e-10;
+  for (int step = 0; step < 40 && r.norm() > accuracy; ++step) {
+    Eigen::CompleteOrthogonalDecomposition<Mat4> solver;
+    solver.setThreshold(1e-5);  // along a line of solutions: the shortest step
+    solver.compute(equations.jacobian(x, unit));
+    Vec4 move = solver.solve(-r);
+    if (!move.allFinite()) return std::nullopt;
+    if (const double size = move.norm(); size > 0.3) move *= 0.3 / size;
+    bool better = false;
+    for (int halving = 0; halving < 8 && !better; ++halving, move *= 0.5) {
+      Vec4 next = x + move.cwiseProduct(unit);
+      next << inside(a, next.head<2>()), inside(b, next.tail<2>());
+      const Vec4 residual = equations.residual(next);
+      if (residual.norm() < r.norm()) {
+        x = next;
+        r = residual;
+        better = true;
+      }
+    }
+    if (!better) break;
+  }
+  if (!(r.norm() <= 1e-7)) return std::nullopt;
+  const SurfacePoint p = point_at(a, x.head<2>()), q = point_at(b, x.tail<2>());
+  if (!(p.normal.dot(q.normal) < -0.5))
+    return std::nullopt;  // the same way round: one surface touches the other inside
+  const Vec3 way = p.jet.position - q.jet.position;
+  return Critical{x.head<2>(), x.tail<2>(), p.jet.position, q.jet.position, p.normal, way.dot(p.normal)};
+}
+
+Nearest find_nearest(const Face& a, const Cell& cell_a, const Vec2& site_a, const Face& b, const Cell& cell_b,
+                     const Vec2& site_b) {
+  Vec4 low, high, x;
+  low << cell_a.low, cell_b.low;
+  high << cell_a.high, cell_b.high;
+  x << site_a, site_b;
+  x = x.cwiseMax(low).cwiseMin(high);
+  const auto jets = [&](const Vec4& at) {
+    return std::pair(nurbs::evaluate_jet(*a.surface, at[0], at[1]),
+                     nurbs::evaluate_jet(*b.surface, at[2], at[3]));
+  };
+  auto [p, q] = jets(x);
+  double cost = (p.position - q.position).squaredNorm();
+  double damping = 1e-6;
+  for (int step = 0; step < 60 && cost > 0.0; ++step) {
+    Eigen::Matrix<double, 3, 4> slope;
+    slope << p.du, p.dv, -q.du, -q.dv;
+    const Vec3 way = p.position - q.position;
+    const Vec4 gradient = slope.transpose() * way;
+    Mat4 normal = slope.transpose() * slope;
+    const Vec4 scale = normal.diagonal().cwiseMax(1e-300);
+    // Parameters at a bound that the gradient presses against stay there.
+    for (int k = 0; k < 4; ++k) {
+      const bool held = (x[k] <= low[k] && gradient[k] > 0.0) || (x[k] >= high[k] && gradient[k] < 0.0);
+      normal(k, k) += damping * scale[k];
+      if (!held) continue;
+      normal.row(k).setZero();
+      normal.col(k).setZero();
+      normal(k, k) = 1.0;
+    }
+    Vec4 right = -gradient;
+    for (int k = 0; k < 4; ++k)
+      if ((x[k] <= low[k] && gradient[k] > 0.0) || (x[k] >= high[k] && gradient[k] < 0.0)) right[k] = 0.0;
+    const Vec4 move = normal.ldlt().solve(right);
+    if (!move.allFinite()) break;
+    const Vec4 next = (x + move).cwiseMax(low).cwiseMin(high);
+    const auto [np, nq] = jets(next);
+    const double value = (np.position - nq.position).squaredNorm();
+    if (value < cost) {
+      const bool settled = value > cost * (1.0 - 1e-12);
+      x = next;
+      p = np;
+      q = nq;
+      cost = value;
+      damping = std::max(damping * 0.2, 1e-12);
+      if (settled) break;
+    } else {
+      damping *= 8.0;
+      if (damping > 1e8) break;
+    }
+  }
+  return {x.head<2>(), x.tail<2>(), p.position, q.position};
+}
+
+}  // namespace selvage::contact

@@ -1,0 +1,276 @@
+#include "contact/face.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "contact/patch.h"
+#include "core/parallel.h"
+
+namespace selvage::contact {
+
+namespace {
+
+constexpr int round_samples = 24;
+
+struct SectionSize {
+  double width = 0, thickness = 0;
+  Vec3 centre = Vec3::Zero();
+};
+
+// Extents of a section across its longer and its thinner principal direction.
+SectionSize size_of_section(const std::vector<Vec3>& points) {
+  SectionSize size;
+  for (const Vec3& p : points) size.centre += p / static_cast<double>(points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vec3& p : points) spread += (p - size.centre) * (p - size.centre).transpose();
+  // Eigenvalues increase: the section's normal, its thin direction, its long one.
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
+  axes.computeDirect(spread);
+  const auto extent = [&](const Vec3& axis) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vec3& p : points) {
+      low = std::min(low, (p - size.centre).dot(axis));
+      high = std::max(high, (p - size.centre).dot(axis));
+    }
+    return high - low;
+  };
+  size.width = extent(axes.eigenvectors().col(2));
+  size.thickness = extent(axes.eigenvectors().col(1));
+  return size;
+}
+
+// Straight lines from an end's outline to its centre.
+nurbs::Surface flat_end(const yarn::Body& body, bool last) {
+  const nurbs::Curve outline = yarn::end_curve(body, last);
+  nurbs::Surface face;
+  face.degree_u = outline.degree;
+  face.degree_v = 1;
+  face.count_u = static_cast<int>(outline.points.size());
+  face.count_v = 2;
+  face.knots_u = outline.knots;
+  face.knots_v = {0.0, 0.0, 1.0, 1.0};
+  face.points = outline.points;
+  face.points.insert(face.points.end(), outline.points.size(), last ? body.end.origin : body.start.origin);
+  if (outline.is_rational()) {
+    face.weights = outline.weights;
+    face.weights.insert(face.weights.end(), outline.weights.begin(), outline.weights.end());
+  }
+  return face;
+}
+
+bool faces_against(const nurbs::Surface& face, const Vec3& normal) {
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k < 8; ++k) {
+    const nurbs::SurfaceJet jet =
+        nurbs::evaluate_jet(face, face.first_u() + (k + 0.5) / 8.0 * (face.last_u() - face.first_u()), 0.25);
+    sum += jet.du.cross(jet.dv);
+  }
+  return sum.dot(normal) < 0.0;
+}
+
+// Where the cells of one direction end: knots, and places between them.
+std::vector<double> cut(const std::vector<double>& breaks, const std::vector<int>& parts) {
+  std::vector<double> ends;
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+    for (int i = 0; i < parts[k]; ++i) ends.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / parts[k]);
+  ends.push_back(breaks.back());
+  return ends;
+}
+
+// How often each span of u is cut so that no cell turns by more than about 30 degrees.
+std::vector<int> cuts_round(const nurbs::Surface& s, const std::vector<double>& breaks) {
+  std::vector<int> parts(breaks.size() - 1, 1);
+  const double vs[3] = {s.first_v(), 0.5 * (s.first_v() + s.last_v()), s.last_v()};
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+    for (const double v : vs) {
+      const double step = 1e-6 * (breaks[k + 1] - breaks[k]);
+      const Vec3 from = nurbs::evaluate_jet(s, breaks[k] + step, v).du,
+                 to = nurbs::evaluate_jet(s, breaks[k + 1] - step, v).du;
+      const double angle = std::atan2(from.cross(to).norm(), from.dot(to));
+      if (std::isfinite(angle))
+        parts[k] = std::max(parts[k], static_cast<int>(std::ceil(angle / 0.55 - 1e-6)));
+    }
+  return parts;
+}
+
+}  // namespace
+
+struct CellModel::Made {
+  struct MadeFace {
+    std::optional<nurbs::Surface> own;  // of a flat end
+    Face face;
+  };
+  std::vector<MadeFace> faces;
+  std::vector<Cell> cells;    // their face: index into `faces`
+  std::vector<Piece> pieces;  // their first_cell: within `cells`
+  double thickness = 0, length = 0, touching = 0;
+};
+
+namespace {
+
+void add_cells(const nurbs::Surface& s, bool inward, const std::vector<double>& us,
+               const std::vector<double>& vs, std::uint32_t face, std::vector<Cell>& cells) {
+  for (std::uint32_t j = 0; j + 1 < vs.size(); ++j)
+    for (std::uint32_t i = 0; i + 1 < us.size(); ++i) {
+      Cell cell;
+      cell.face = face;
+      cell.i = i;
+      cell.j = j;
+      cell.low = {us[i], vs[j]};
+      cell.high = {us[i + 1], vs[j + 1]};
+      const Patch patch = patch_of(s, cell.low, cell.high);
+      for (const Vec3& p : patch.points) cell.box.extend(p);
+      const Vec3 across = patch.points.back() - patch.points.front(),
+                 other = patch.point(0, patch.count_v - 1) - patch.point(patch.count_u - 1, 0);
+      const Vec3 normal = across.cross(other) * (inward ? -1.0 : 1.0);
+      if (const double size = normal.norm(); size > 0.0) cell.normal = normal / size;
+      cells.push_back(cell);
+    }
+}
+
+}  // namespace
+
+CellModel::Made CellModel::make(const yarn::Body& body) {
+  Made made;
+  const nurbs::Surface& s = body.surface;
+  if (s.is_empty()) return made;
+  // Sections at the knots along the yarn.
+  const std::vector<double> breaks = nurbs::breakpoints(s.knots_v, s.degree_v);
+  std::vector<double> round;
+  for (int k = 0; k < round_samples; ++k)
+    round.push_back(s.first_u() + (s.last_u() - s.first_u()) * k / round_samples);
+  const std::vector<Vec3> points = nurbs::evaluate_grid(s, round, breaks);
+  std::vector<SectionSize> sections;
+  std::vector<double> along = {0.0};
+  double widest = 0.0;
+  for (std::size_t j = 0; j < breaks.size(); ++j) {
+    sections.push_back(
+        size_of_section({points.begin() + static_cast<std::ptrdiff_t>(j * round_samples),
+                         points.begin() + static_cast<std::ptrdiff_t>((j + 1) * round_samples)}));
+    widest = std::max(widest, sections.back().width);
+    if (j > 0) along.push_back(along[j - 1] + (sections[j].centre - sections[j - 1].centre).norm());
+  }
+  made.length = along.back();
+  double largest = 0.0;
+  for (const Vec3& p : s.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  made.touching = 64.0 * std::max(16.0 * std::numeric_limits<double>::epsilon() * largest,
+                                  std::min(body.resolution, 1e-8 * largest));
+  made.thickness = widest;
+  for (const SectionSize& section : sections)
+    if (section.thickness > 1e-3 * widest) made.thickness = std::min(made.thickness, section.thickness);
+  // Rows of cells: as long as the section is wide at most.
+  std::vector<int> parts;
+  for (std::size_t j = 0; j + 1 < breaks.size(); ++j) {
+    const double wide = std::max({sections[j].width, sections[j + 1].width, 0.05 * widest});
+    parts.push_back(
+        static_cast<int>(std::clamp(std::ceil((along[j + 1] - along[j]) / (0.8 * wide)), 1.0, 1e4)));
+  }
+  const std::vector<double> vs = cut(breaks, parts);
+  const std::vector<double> breaks_u = nurbs::breakpoints(s.knots_u, s.degree_u);
+  const std::vector<double> us = cut(breaks_u, cuts_round(s, breaks_u));
+  Face side;
+  side.inward = body.inward;
+  side.round_u = true;
+  side.round_v = body.closed_along;
+  side.count_u = static_cast<std::uint32_t>(us.size() - 1);
+  side.count_v = static_cast<std::uint32_t>(vs.size() - 1);
+  made.faces.push_back({std::nullopt, side});
+  add_cells(s, body.inward, us, vs, 0, made.cells);
+  // Pieces: rows together while they are short.
+  std::uint32_t row = 0;
+  double begun = 0.0;
+  Piece piece;
+  for (std::size_t j = 0; j + 1 < breaks.size(); ++j)
+    for (int k = 0; k < parts[j]; ++k, ++row) {
+      if (piece.count == 0) begun = along[j] + (along[j + 1] - along[j]) * k / parts[j];
+      piece.width = std::max({piece.width, sections[j].width, sections[j + 1].width});
+      const double thin = std::min(sections[j].thickness, sections[j + 1].thickness);
+      piece.thickness = piece.count == 0 ? thin : std::min(piece.thickness, thin);
+      piece.count += side.count_u;
+      const double end = along[j] + (along[j + 1] - along[j]) * (k + 1) / parts[j];
+      piece.place = 0.5 * (begun + end);
+      if (end - begun < 0.3 * piece.width && row + 1 < side.count_v) continue;
+      made.pieces.push_back(piece);
+      piece = Piece();
+      piece.first_cell = (row + 1) * side.count_u;
+    }
+  if (body.closed_along) return made;
+  for (const bool last : {false, true}) {
+    const yarn::EndFace& end = last ? body.end : body.start;
+    if (end.style == yarn::EndStyle::none) continue;
+    Made::MadeFace face;
+    face.face.is_side = false;
+    if (end.style == yarn::EndStyle::planar) {
+      face.own = flat_end(body, last);
+      face.face.inward = faces_against(*face.own, end.normal);
+    } else {
+      face.face.surface = &end.surface;
+      face.face.inward = end.inward;
+    }
+    const nurbs::Surface& surface = face.own ? *face.own : end.surface;
+    if (surface.is_empty()) continue;
+    const std::vector<double> eu = nurbs::breakpoints(surface.knots_u, surface.degree_u),
+                              ev = nurbs::breakpoints(surface.knots_v, surface.degree_v);
+    face.face.round_u = end.style != yarn::EndStyle::patch;
+    face.face.count_u = static_cast<std::uint32_t>(eu.size() - 1);
+    face.face.count_v = static_cast<std::uint32_t>(ev.size() - 1);
+    face.face.first_cell = static_cast<std::uint32_t>(made.cells.size());
+    add_cells(surface, face.face.inward, eu, ev, static_cast<std::uint32_t>(made.faces.size()), made.cells);
+    Piece whole = last ? made.pieces.back() : made.pieces.front();
+    whole.place = last ? made.length : 0.0;
+    whole.first_cell = face.face.first_cell;
+    whole.count = face.face.count_u * face.face.count_v;
+    made.pieces.push_back(whole);
+    made.faces.push_back(std::move(face));
+  }
+  return made;
+}
+
+CellModel::CellModel(std::span<const yarn::Body> bodies, int threads)
+    : bodies_(bodies),
+      thickness_(bodies.size(), 0.0),
+      length_(bodies.size(), 0.0),
+      touching_(bodies.size(), 0.0) {
+  std::vector<Made> made(bodies.size());
+  for_each_index(bodies.size(), threads, [&](std::size_t i) { made[i] = make(bodies[i]); });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto first_face = static_cast<std::uint32_t>(faces_.size()),
+               first_cell = static_cast<std::uint32_t>(cells_.size());
+    thickness_[b] = made[b].thickness;
+    length_[b] = made[b].length;
+    touching_[b] = made[b].touching;
+    for (Made::MadeFace& face : made[b].faces) {
+      Face out = face.face;
+      out.body = static_cast<std::uint32_t>(b);
+      out.first_cell += first_cell;
+      if (out.is_side) out.surface = &bodies[b].surface;
+      if (face.own) out.surface = &flat_ends_.emplace_back(std::move(*face.own));
+      faces_.push_back(out);
+    }
+    for (Cell& cell : made[b].cells) {
+      cell.face += first_face;
+      cells_.push_back(cell);
+    }
+    piece_of_.resize(cells_.size());
+    for (Piece& piece : made[b].pieces) {
+      piece.body = static_cast<std::uint32_t>(b);
+      piece.first_cell += first_cell;
+      for (std::uint32_t k = 0; k < piece.count; ++k) {
+        piece.box.extend(cells_[piece.first_cell + k].box);
+        piece_of_[piece.first_cell + k] = static_cast<std::uint32_t>(pieces_.size());
+      }
+      pieces_.push_back(piece);
+    }
+    made[b] = {};
+  }
+}
+
+double CellModel::way_along(const Piece& a, const Piece& b) const {
+  const double way = std::abs(a.place - b.place);
+  return bodies_[a.body].closed_along ? std::min(way, length_[a.body] - way) : way;
+}
+
+}  // namespace selvage::contact

@@ -1,0 +1,78 @@
+// The B-spline surfaces of yarns, cut into cells: what the search for contacts looks at.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/vec.h"
+#include "yarn/body.h"
+
+namespace selvage::contact {
+
+// One surface of a yarn: its side, or what seals an end (a flat end as straight lines from its outline to its
+// centre).
+struct Face {
+  std::uint32_t body = 0;
+  const nurbs::Surface* surface = nullptr;
+  bool is_side = true;
+  bool inward = false;                    // S_u x S_v points into the yarn
+  bool round_u = false, round_v = false;  // the parameter goes round
+  std::uint32_t first_cell = 0;           // cell (i, j) is first_cell + j * count_u + i
+  std::uint32_t count_u = 0, count_v = 0;
+};
+
+// A part of a face within one knot span of either direction, about as long as its yarn is wide at most.
+struct Cell {
+  std::uint32_t face = 0;
+  std::uint32_t i = 0, j = 0;                    // its place among the face's cells
+  Vec2 low = Vec2::Zero(), high = Vec2::Zero();  // (u, v)
+  Box3 box;                                      // of its Bezier control points
+  Vec3 normal = Vec3::Zero();                    // unit, outward, of its middle; zero where it has none
+};
+
+// Cells that belong together in the tree: some rows of a side, or an end face.
+struct Piece {
+  std::uint32_t body = 0;
+  std::uint32_t first_cell = 0, count = 0;
+  Box3 box;
+  double place = 0;      // its middle, along the yarn, file units of length
+  double width = 0;      // of the yarn's section here
+  double thickness = 0;  // across its thinner direction
+};
+
+// All bodies' cells.
+class CellModel {
+ public:
+  // `bodies` outlive the model. Empty surfaces take no part.
+  CellModel(std::span<const yarn::Body> bodies, int threads);
+
+  [[nodiscard]] std::span<const yarn::Body> bodies() const { return bodies_; }
+  [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
+  [[nodiscard]] const std::vector<Cell>& cells() const { return cells_; }
+  [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
+  [[nodiscard]] const Face& face_of(const Cell& cell) const { return faces_[cell.face]; }
+  [[nodiscard]] const Piece& piece_of_cell(std::uint32_t cell) const { return pieces_[piece_of_[cell]]; }
+  // Length along the yarn between two places of it; on a ring the shorter way.
+  [[nodiscard]] double way_along(const Piece& a, const Piece& b) const;
+  // The least thickness of the body's sections (but for those that shrink to a point); 0: it has no surface.
+  [[nodiscard]] double thickness(std::size_t body) const { return thickness_[body]; }
+  // Depths up to this count as touching: rounding of the coordinates, and what a file that was read resolves.
+  [[nodiscard]] double touching(std::size_t body) const { return touching_[body]; }
+
+ private:
+  struct Made;
+  static Made make(const yarn::Body& body);
+
+  std::span<const yarn::Body> bodies_;
+  std::deque<nurbs::Surface> flat_ends_;
+  std::vector<Face> faces_;
+  std::vector<Cell> cells_;
+  std::vector<Piece> pieces_;
+  std::vector<std::uint32_t> piece_of_;
+  std::vector<double> thickness_, length_, touching_;
+};
+
+}  // namespace selvage::contact

@@ -1,0 +1,211 @@
+#include "contact/overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "contact/patch.h"
+
+namespace selvage::contact {
+
+namespace {
+
+// Off the middle of the raster's cells by an odd amount, so that no line meets an edge of a regular grid on
+// purpose.
+constexpr double offset = 0.5 + 0.01234567;
+
+}  // namespace
+
+Sheet::Sheet(const CellModel& model, std::vector<Part> of, int steps_a_part)
+    : parts(std::move(of)), steps(steps_a_part) {
+  points.reserve(parts.size() * points_a_part());
+  std::vector<Vec3> sampled;
+  for (const Part& part : parts) {
+    const Face& face = model.face_of(model.cells()[part.cell]);
+    sample(patch_of(*face.surface, part.low, part.high), steps, steps, sampled);
+    points.insert(points.end(), sampled.begin(), sampled.end());
+  }
+}
+
+Axes::Axes(const Vec3& direction, const std::vector<Vec3>& points)
+    : x(direction.unitOrthogonal()), y(direction.cross(x)), n(direction) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (const Vec3& p : points) {
+    const Vec3 way = seen(p - middle);
+    xx += way.x() * way.x();
+    xy += way.x() * way.y();
+    yy += way.y() * way.y();
+  }
+  const double turn = 0.5 * std::atan2(2.0 * xy, xx - yy);
+  x = std::cos(turn) * x + std::sin(turn) * y;
+  y = n.cross(x);
+}
+
+Overlay::Overlay(const CellModel& model, const Sheet& a, const Sheet& b, const Axes& axes,
+                 const Rectangle& rectangle, int lines)
+    : model_(model),
+      sheet_a_(a),
+      sheet_b_(b),
+      axes_(axes),
+      lines_(lines),
+      low_(rectangle.min()),
+      step_((rectangle.max() - rectangle.min()) / lines),
+      a_(static_cast<std::size_t>(lines) * static_cast<std::size_t>(lines)),
+      b_(a_.size()) {
+  pass(a, true, a_);
+  pass(b, false, b_);
+}
+
+Vec2 Overlay::centre(std::size_t line) const {
+  const auto n = static_cast<std::size_t>(lines_);
+  return low_ + step_.cwiseProduct(
+                    Vec2(static_cast<double>(line % n) + offset, static_cast<double>(line / n) + offset));
+}
+
+int Overlay::line_at(const Vec2& p) const {
+  const Vec2 at = (p - low_).cwiseQuotient(step_);
+  const double i = std::floor(at.x()), j = std::floor(at.y());
+  if (!(i >= 0.0 && j >= 0.0 && i < lines_ && j < lines_)) return -1;
+  return static_cast<int>(j) * lines_ + static_cast<int>(i);
+}
+
+void Overlay::pass(const Sheet& sheet, bool out, std::vector<Hit>& hits) const {
+  const auto steps = static_cast<std::size_t>(sheet.steps), row = steps + 1;
+  std::vector<Vec3> seen(sheet.points_a_part());
+  for (std::size_t k = 0; k < sheet.parts.size(); ++k) {
+    const Vec3* points = sheet.points.data() + k * sheet.points_a_part();
+    Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (std::size_t m = 0; m < seen.size(); ++m) {
+      seen[m] = axes_.seen(points[m]);
+      low = low.cwiseMin(seen[m].head<2>());
+      high = high.cwiseMax(seen[m].head<2>());
+    }
+    const Vec2 end = low_ + lines_ * step_;
+    if (high.x() < low_.x() || high.y() < low_.y() || low.x() > end.x() || low.y() > end.y()) continue;
+    const bool inward = model_.face_of(model_.cells()[sheet.parts[k].cell]).inward;
+    const double share = 1.0 / static_cast<double>(steps);
+    for (std::size_t j = 0; j < steps; ++j)
+      for (std::size_t i = 0; i < steps; ++i) {
+        const std::size_t c = j * row + i;
+        const Vec2 at(static_cast<double>(i) * share, static_cast<double>(j) * share);
+        const Vec2 du(share, 0.0), dv(0.0, share);
+        // Corners counter-clockwise seen from outside.
+        if (inward) {
+          pass({seen[c], seen[c + row + 1], seen[c + 1]}, {at, at + du + dv, at + du},
+               static_cast<std::int32_t>(k), out, hits);
+          pass({seen[c], seen[c + row], seen[c + row + 1]}, {at, at + dv, at + du + dv},
+               static_cast<std::int32_t>(k), out, hits);
+        } else {
+          pass({seen[c], seen[c + 1], seen[c + row + 1]}, {at, at + du, at + du + dv},
+               static_cast<std::int32_t>(k), out, hits);
+          pass({seen[c], seen[c + row + 1], seen[c + row]}, {at, at + du + dv, at + dv},
+               static_cast<std::int32_t>(k), out, hits);
+        }
+      }
+  }
+}
+
+void Overlay::pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& places, std::int32_t part,
+                   bool out, std::vector<Hit>& hits) const {
+  const Vec2 e1 = (seen[1] - seen[0]).head<2>(), e2 = (seen[2] - seen[0]).head<2>();
+  const double size = e1.x() * e2.y() - e1.y() * e2.x();
+  if (out ? !(size > 0.0) : !(size < 0.0)) return;
+  const auto first = [&](Eigen::Index axis) {
+    const double low = std::min({seen[0][axis], seen[1][axis], seen[2][axis]});
+    return static_cast<int>(
+        std::clamp(std::ceil((low - low_[axis]) / step_[axis] - offset), 0.0, static_cast<double>(lines_)));
+  };
+  const auto last = [&](Eigen::Index axis) {
+    const double high = std::max({seen[0][axis], seen[1][axis], seen[2][axis]});
+    return static_cast<int>(
+        std::clamp(std::floor((high - low_[axis]) / step_[axis] - offset), -1.0, lines_ - 1.0));
+  };
+  const int i0 = first(0), i1 = last(0), j0 = first(1), j1 = last(1);
+  // A little beyond the edges, so that no line slips between two triangles.
+  constexpr double slack = -1e-9;
+  for (int j = j0; j <= j1; ++j)
+    for (int i = i0; i <= i1; ++i) {
+      const Vec2 way = low_ + step_.cwiseProduct(Vec2(i + offset, j + offset)) - seen[0].head<2>();
+      const double w1 = (way.x() * e2.y() - way.y() * e2.x()) / size,
+                   w2 = (e1.x() * way.y() - e1.y() * way.x()) / size, w0 = 1.0 - w1 - w2;
+      if (w0 < slack || w1 < slack || w2 < slack) continue;
+      const double height = w0 * seen[0].z() + w1 * seen[1].z() + w2 * seen[2].z();
+      Hit& hit = hits[static_cast<std::size_t>(j * lines_ + i)];
+      if (hit.part >= 0 && (out ? height <= hit.height : height >= hit.height)) continue;
+      const Vec2 place = w0 * places[0] + w1 * places[1] + w2 * places[2];
+      hit = {height, part, static_cast<float>(place.x()), static_cast<float>(place.y())};
+    }
+}
+
+Overlay::Place Overlay::place(const Hit& hit, const Sheet& sheet, std::size_t line) const {
+  const Part& part = sheet.parts[static_cast<std::size_t>(hit.part)];
+  const Vec2 share(std::clamp(static_cast<double>(hit.s), 0.0, 1.0),
+                   std::clamp(static_cast<double>(hit.t), 0.0, 1.0));
+  return {part.cell, part.low + (part.high - part.low).cwiseProduct(share),
+          axes_.placed(centre(line), hit.height)};
+}
+
+bool Overlay::is_peak(std::size_t line) const {
+  const int i = static_cast<int>(line) % lines_, j = static_cast<int>(line) / lines_;
+  for (int dj = -1; dj <= 1; ++dj)
+    for (int di = -1; di <= 1; ++di) {
+      const int x = i + di, y = j + dj;
+      if ((di == 0 && dj == 0) || x < 0 || y < 0 || x >= lines_ || y >= lines_) continue;
+      const auto other = static_cast<std::size_t>(y * lines_ + x);
+      if (!is_met(other)) continue;
+      if (depth(other) > depth(line) || (depth(other) == depth(line) && other < line)) return false;
+    }
+  return true;
+}
+
+std::vector<int> Overlay::regions(double least_depth, int& count) const {
+  std::vector<int> label(size(), -1);
+  std::vector<std::size_t> stack;
+  count = 0;
+  const auto in = [&](std::size_t k) { return is_met(k) && depth(k) > least_depth && label[k] < 0; };
+  for (std::size_t k = 0; k < size(); ++k) {
+    if (!in(k)) continue;
+    label[k] = count;
+    stack.push_back(k);
+    while (!stack.empty()) {
+      const int i = static_cast<int>(stack.back()) % lines_, j = static_cast<int>(stack.back()) / lines_;
+      stack.pop_back();
+      for (int y = std::max(0, j - 1); y <= std::min(lines_ - 1, j + 1); ++y)
+        for (int x = std::max(0, i - 1); x <= std::min(lines_ - 1, i + 1); ++x) {
+          const auto other = static_cast<std::size_t>(y * lines_ + x);
+          if (!in(other)) continue;
+          label[other] = count;
+          stack.push_back(other);
+        }
+    }
+    ++count;
+  }
+  return label;
+}
+
+std::vector<Part> Overlay::parts_about(std::size_t line, int radius, bool of_a) const {
+  const Sheet& sheet = of_a ? sheet_a_ : sheet_b_;
+  const std::vector<Hit>& hits = of_a ? a_ : b_;
+  const int i = static_cast<int>(line) % lines_, j = static_cast<int>(line) / lines_;
+  std::map<std::int32_t, Rectangle> ranges;
+  for (int y = std::max(0, j - radius); y <= std::min(lines_ - 1, j + radius); ++y)
+    for (int x = std::max(0, i - radius); x <= std::min(lines_ - 1, i + radius); ++x) {
+      const Hit& hit = hits[static_cast<std::size_t>(y * lines_ + x)];
+      if (hit.part >= 0) ranges[hit.part].extend(Vec2(hit.s, hit.t));
+    }
+  std::vector<Part> parts;
+  const double more = 1.0 / sheet.steps;
+  for (const auto& [k, range] : ranges) {
+    const Part& whole = sheet.parts[static_cast<std::size_t>(k)];
+    const Vec2 low = (range.min() - Vec2::Constant(more)).cwiseMax(0.0),
+               high = (range.max() + Vec2::Constant(more)).cwiseMin(1.0);
+    parts.push_back({whole.cell, whole.low + (whole.high - whole.low).cwiseProduct(low),
+                     whole.low + (whole.high - whole.low).cwiseProduct(high)});
+  }
+  return parts;
+}
+
+}  // namespace selvage::contact

@@ -1,0 +1,93 @@
+// Two facing sheets of surface seen along one direction: how deep each line along it lies in both.
+#pragma once
+
+#include <vector>
+
+#include "contact/face.h"
+
+namespace selvage::contact {
+
+// A rectangle of a cell's parameters.
+struct Part {
+  std::uint32_t cell = 0;
+  Vec2 low = Vec2::Zero(), high = Vec2::Zero();
+};
+
+// Parts of one yarn's surface as points, steps x steps quads each.
+struct Sheet {
+  std::vector<Part> parts;
+  int steps = 0;
+  std::vector<Vec3> points;  // (steps + 1)^2 a part, u fastest
+
+  Sheet(const CellModel& model, std::vector<Part> parts, int steps);
+  [[nodiscard]] std::size_t points_a_part() const {
+    return static_cast<std::size_t>(steps + 1) * static_cast<std::size_t>(steps + 1);
+  }
+};
+
+// Unit axes, right-handed; `n` is what is looked along.
+struct Axes {
+  Vec3 x, y, n;
+
+  // x along the longest way of the points as seen along n.
+  Axes(const Vec3& n, const std::vector<Vec3>& points);
+  [[nodiscard]] Vec3 seen(const Vec3& p) const { return {p.dot(x), p.dot(y), p.dot(n)}; }
+  [[nodiscard]] Vec3 placed(const Vec2& p, double height) const { return p.x() * x + p.y() * y + height * n; }
+};
+
+using Rectangle = Eigen::AlignedBox2d;
+
+// Lines along `n` on a raster of lines x lines over a rectangle: the highest way out of A and the lowest way
+// into B on each.
+class Overlay {
+ public:
+  Overlay(const CellModel& model, const Sheet& a, const Sheet& b, const Axes& axes,
+          const Rectangle& rectangle, int lines);
+
+  [[nodiscard]] int lines() const { return lines_; }
+  [[nodiscard]] std::size_t size() const { return a_.size(); }
+  [[nodiscard]] const Axes& axes() const { return axes_; }
+  // Both sheets are met.
+  [[nodiscard]] bool is_met(std::size_t line) const { return a_[line].part >= 0 && b_[line].part >= 0; }
+  // How far the two overlap on the line; below 0: minus the gap.
+  [[nodiscard]] double depth(std::size_t line) const { return a_[line].height - b_[line].height; }
+  // No neighbour is deeper; among equal ones the first.
+  [[nodiscard]] bool is_peak(std::size_t line) const;
+
+  struct Place {
+    std::uint32_t cell = 0;
+    Vec2 site = Vec2::Zero();
+    Vec3 point = Vec3::Zero();
+  };
+  [[nodiscard]] Place on_a(std::size_t line) const { return place(a_[line], sheet_a_, line); }
+  [[nodiscard]] Place on_b(std::size_t line) const { return place(b_[line], sheet_b_, line); }
+
+  [[nodiscard]] Vec2 centre(std::size_t line) const;
+  [[nodiscard]] const Vec2& step() const { return step_; }
+  [[nodiscard]] int line_at(const Vec2& p) const;  // -1: outside
+  // For each line the number of its connected region of overlapping lines (from 0), or -1.
+  [[nodiscard]] std::vector<int> regions(double least_depth, int& count) const;
+  // The parts of both sheets that lines within `radius` steps of this one meet, with half a step more.
+  [[nodiscard]] std::vector<Part> parts_about(std::size_t line, int radius, bool of_a) const;
+
+ private:
+  struct Hit {
+    double height = 0;
+    std::int32_t part = -1;
+    float s = 0, t = 0;  // 0 .. 1 within the part
+  };
+  void pass(const Sheet& sheet, bool out, std::vector<Hit>& hits) const;
+  void pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& places, std::int32_t part, bool out,
+            std::vector<Hit>& hits) const;
+  [[nodiscard]] Place place(const Hit& hit, const Sheet& sheet, std::size_t line) const;
+
+  const CellModel& model_;
+  const Sheet& sheet_a_;
+  const Sheet& sheet_b_;
+  Axes axes_;
+  int lines_;
+  Vec2 low_, step_;
+  std::vector<Hit> a_, b_;
+};
+
+}  // namespace selvage::contact

@@ -1,0 +1,178 @@
+#include "contact/patch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "nurbs/basis.h"
+
+namespace selvage::contact {
+
+namespace {
+
+using nurbs::BasisRow;
+using nurbs::max_degree;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Bezier control points over [low, high] as combinations of the degree + 1 control points of a knot span.
+struct Extraction {
+  int first = 0;  // control point
+  std::array<BasisRow, max_degree + 1> rows;
+};
+
+void extract(const std::vector<double>& knots, int degree, int count, double low, double high,
+             Extraction& out) {
+  const int span = nurbs::find_span(knots, degree, count, 0.5 * (low + high));
+  out.first = span - degree;
+  std::array<BasisRow, max_degree + 1> points;
+  for (int k = 0; k <= degree; ++k) {
+    for (int i = 0; i <= degree; ++i)
+      std::fill_n(points[at(i)].begin(), degree + 1, 0.0), points[at(i)][at(i)] = 1.0;
+    // Arguments: `degree - k` times low, k times high.
+    for (int r = 1; r <= degree; ++r) {
+      const double t = r <= degree - k ? low : high;
+      for (int i = degree; i >= r; --i) {
+        const double from = knots[at(span - degree + i)], to = knots[at(span + 1 + i - r)];
+        const double share = (t - from) / (to - from);
+        for (int c = i - r; c <= i; ++c)
+          points[at(i)][at(c)] = (1.0 - share) * points[at(i - 1)][at(c)] + share * points[at(i)][at(c)];
+      }
+    }
+    std::copy_n(points[at(degree)].begin(), degree + 1, out.rows[at(k)].begin());
+  }
+}
+
+// Bernstein polynomials of a degree at even steps: (steps + 1) x (degree + 1).
+const std::vector<double>& bernstein_table(int degree, int steps, std::vector<double>& scratch) {
+  scratch.assign(at((steps + 1) * (degree + 1)), 0.0);
+  for (int s = 0; s <= steps; ++s) {
+    double* row = scratch.data() + s * (degree + 1);
+    const double t = static_cast<double>(s) / steps;
+    row[0] = 1.0;
+    for (int k = 1; k <= degree; ++k) {
+      double saved = 0.0;
+      for (int i = 0; i < k; ++i) {
+        const double value = row[i];
+        row[i] = saved + (1.0 - t) * value;
+        saved = t * value;
+      }
+      row[k] = saved;
+    }
+  }
+  return scratch;
+}
+
+}  // namespace
+
+Patch patch_of(const nurbs::Surface& s, const Vec2& low, const Vec2& high) {
+  thread_local Extraction u, v;
+  extract(s.knots_u, s.degree_u, s.count_u, low.x(), high.x(), u);
+  extract(s.knots_v, s.degree_v, s.count_v, low.y(), high.y(), v);
+  const int p = s.degree_u, q = s.degree_v;
+  Patch out;
+  out.count_u = p + 1;
+  out.count_v = q + 1;
+  out.points.resize(at((p + 1) * (q + 1)));
+  if (s.is_rational()) out.weights.resize(out.points.size());
+  std::array<Vec3, max_degree + 1> line;
+  std::array<double, max_degree + 1> line_weights{};
+  for (int l = 0; l <= q; ++l) {
+    for (int i = 0; i <= p; ++i) {
+      Vec3 sum = Vec3::Zero();
+      double total = 0.0;
+      for (int j = 0; j <= q; ++j) {
+        const std::size_t k = s.index(u.first + i, v.first + j);
+        const double share = v.rows[at(l)][at(j)] * (s.is_rational() ? s.weights[k] : 1.0);
+        sum += share * s.points[k];
+        total += share;
+      }
+      line[at(i)] = sum;
+      line_weights[at(i)] = total;
+    }
+    for (int k = 0; k <= p; ++k) {
+      Vec3 sum = Vec3::Zero();
+      double total = 0.0;
+      for (int i = 0; i <= p; ++i) {
+        sum += u.rows[at(k)][at(i)] * line[at(i)];
+        total += u.rows[at(k)][at(i)] * line_weights[at(i)];
+      }
+      const std::size_t n = at(l * (p + 1) + k);
+      out.points[n] = s.is_rational() ? Vec3(sum / total) : sum;
+      if (s.is_rational()) out.weights[n] = total;
+    }
+  }
+  return out;
+}
+
+void sample(const Patch& patch, int cells_u, int cells_v, std::vector<Vec3>& out) {
+  thread_local std::vector<double> table_u, table_v;
+  thread_local std::vector<Vec3> line;
+  thread_local std::vector<double> line_weights;
+  const int nu = patch.count_u, nv = patch.count_v;
+  bernstein_table(nu - 1, cells_u, table_u);
+  bernstein_table(nv - 1, cells_v, table_v);
+  out.clear();
+  out.reserve(at((cells_u + 1) * (cells_v + 1)));
+  line.resize(at(nu));
+  line_weights.resize(at(nu));
+  const bool rational = !patch.weights.empty();
+  for (int l = 0; l <= cells_v; ++l) {
+    for (int i = 0; i < nu; ++i) {
+      Vec3 sum = Vec3::Zero();
+      double total = 0.0;
+      for (int j = 0; j < nv; ++j) {
+        const std::size_t n = at(j * nu + i);
+        const double share = table_v[at(l * nv + j)] * (rational ? patch.weights[n] : 1.0);
+        sum += share * patch.points[n];
+        total += share;
+      }
+      line[at(i)] = sum;
+      line_weights[at(i)] = total;
+    }
+    for (int k = 0; k <= cells_u; ++k) {
+      Vec3 sum = Vec3::Zero();
+      double total = 0.0;
+      for (int i = 0; i < nu; ++i) {
+        sum += table_u[at(k * nu + i)] * line[at(i)];
+        total += table_u[at(k * nu + i)] * line_weights[at(i)];
+      }
+      out.push_back(rational ? Vec3(sum / total) : sum);
+    }
+  }
+}
+
+double lowest(const Patch& patch, const Vec3& direction) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec3& p : patch.points) least = std::min(least, p.dot(direction));
+  return least;
+}
+
+double highest(const Patch& patch, const Vec3& direction) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (const Vec3& p : patch.points) most = std::max(most, p.dot(direction));
+  return most;
+}
+
+double slab_gap(const Patch& a, const Vec3& normal_a, const Patch& b, const Vec3& normal_b) {
+  const auto middle = [](const Patch& patch) -> Vec3 {
+    return 0.25 * (patch.points.front() + patch.points.back() + patch.point(patch.count_u - 1, 0) +
+                   patch.point(0, patch.count_v - 1));
+  };
+  const auto gap = [&](const Vec3& n) { return lowest(b, n) - highest(a, n); };
+  double best = -std::numeric_limits<double>::infinity();
+  const Vec3 way = middle(b) - middle(a);
+  const double length = way.norm();
+  if (length > 0.0) best = gap(way / length);
+  if (normal_a.squaredNorm() > 0.0) best = std::max(best, gap(normal_a));
+  if (normal_b.squaredNorm() > 0.0) best = std::max(best, gap(-normal_b));
+  const Vec3 both = normal_a - normal_b;
+  const double size = both.norm();
+  if (size > 1e-3) best = std::max(best, gap(both / size));
+  return best;
+}
+
+}  // namespace selvage::contact
