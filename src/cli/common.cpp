@@ -11,8 +11,8 @@ namespace selvage::cli {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> later_options = {"--cut", "--matrix", "--periodic",
-                                                           "--gap", "--relax",  "--as-published"};
+constexpr std::array<std::string_view, 5> later_options = {"--cut", "--matrix", "--periodic", "--gap",
+                                                           "--relax"};
 constexpr std::array<std::string_view, 2> later_commands = {"relax", "report"};
 
 Status parse_shard(const std::string& text, pipeline::Options& options) {
@@ -82,6 +82,8 @@ void add_running(CLI::App& command, Parsed& parsed, pipeline::Options& o) {
                   "yarn, plies or filaments: how far yarns are taken apart (default: as far as "
                   "their threads say)")
       ->check(CLI::IsMember({"yarn", "plies", "filaments"}));
+  command.add_flag("--as-published", o.as_published,
+                   "constructions exactly as their paper gives them, overlaps and all");
 }
 
 void add_output(CLI::App& command, Parsed& parsed) {

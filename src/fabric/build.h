@@ -21,6 +21,8 @@ struct BuildOptions {
   std::optional<yarn::EndStyle> ends;  // none: as the file has them; where it does not say, patch
   double tolerance = 0;  // file units; 0: the file's, or 1/1000 of the smallest section size in the file
   Detail detail = Detail::filaments;  // yarns are taken apart into plies and filaments as their threads say
+  // Constructions exactly as their paper gives them, overlaps and all; else mended so that no yarns overlap.
+  bool as_published = false;
   std::size_t max_control_points = 50'000'000;  // a yarn: a limit error instead of an exhausted memory
   // Data points of a construction: 500 million loops would be a file of more than a terabyte.
   std::uint64_t max_data_points = 1'000'000'000;

@@ -33,6 +33,7 @@ std::string settings_of(const Options& options) {
   if (options.instances) text += " instances";
   if (options.detail != fabric::Detail::filaments)
     text += options.detail == fabric::Detail::yarn ? " detail=yarn" : " detail=plies";
+  if (options.as_published) text += " as-published";
   if (options.command == Command::mesh)
     text += fmt::format(" size={} order={} min-dihedral={}{}", options.size, options.order,
                         options.min_dihedral, options.allow_overlap ? " allow-overlap" : "");
@@ -128,6 +129,7 @@ fabric::BuildOptions Job::build_options() const {
   build.ends = options.ends;
   build.tolerance = options.tolerance;
   build.detail = options.detail;
+  build.as_published = options.as_published;
   return build;
 }
 

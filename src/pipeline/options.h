@@ -35,7 +35,8 @@ struct Options {
   std::optional<Unit> units;                          // of surfaces and tables; none: the input's
   double tolerance = 0;                               // input's unit; 0: the input's
   fabric::Detail detail = fabric::Detail::filaments;  // how far yarns are taken apart
-  std::optional<yarn::EndStyle> ends;                 // none: as the input has them, or patch
+  bool as_published = false;           // constructions as their paper gives them, overlaps and all
+  std::optional<yarn::EndStyle> ends;  // none: as the input has them, or patch
   bool iges_solid = false;
   std::int64_t iges_lines = 0;  // of a section of one file; 0: what the format can number
   bool instances = false;       // repeat equal yarns by reference

@@ -35,7 +35,7 @@ class Usage(Case):
     def test_words_of_later_versions(self):
         for word in ("relax", "report"):
             self.refused(f"'selvage {word}' is not in this version", word, GRID)
-        for word in ("--cut", "--matrix", "--relax", "--as-published"):
+        for word in ("--cut", "--matrix", "--relax"):
             self.refused(f"'{word}' is not in this version", "convert", GRID, word, "-o", self.out)
         for word in ("--matrix", "--periodic", "--gap=0.1"):
             self.refused("is not in this version", "mesh", GRID, word, "-o", self.out)
