@@ -13,7 +13,7 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-constexpr double hold_stiffness = 1e6;
+constexpr double hold_stiffness = 1e5;
 
 // Cholesky's factor of a symmetric band matrix, in place; column j holds rows j .. j + width - 1.
 void factor_band(Eigen::MatrixXd& band) {
@@ -63,10 +63,14 @@ DisplacementSystem::DisplacementSystem(std::span<const Strand> strands, const St
     }
     if (strands[y].is_cyclic()) continue;
     for (double arc : {0.0, strands[y].length()}) {
+      // An end stays in its plane, and its path perpendicular to it.
+      const Frame& frame = strands[y].row_frame(arc > 0.0 ? strands[y].rows() - 1 : 0);
       const Stencil end = strands[y].stencil(arc);
       std::array<double, 4> turn = end.slope;
       for (double& t : turn) t *= strands[y].spacing();
-      held_[y].push_back({end.first, turn, stiffness.end_turn});
+      held_[y].push_back({end.first, end.value, frame.along, hold_stiffness});
+      held_[y].push_back({end.first, turn, frame.x, stiffness.end_turn});
+      held_[y].push_back({end.first, turn, frame.y, stiffness.end_turn});
     }
   }
   update(1);
@@ -83,7 +87,8 @@ Eigen::Index DisplacementSystem::length(std::size_t strand) const {
 
 void DisplacementSystem::hold(std::size_t strand, double arc) {
   const Stencil stencil = strands_[strand].stencil(arc);
-  held_[strand].push_back({stencil.first, stencil.value, hold_stiffness});
+  for (int axis = 0; axis < 3; ++axis)
+    held_[strand].push_back({stencil.first, stencil.value, Vec3::Unit(axis), hold_stiffness});
 }
 
 Eigen::Index DisplacementSystem::column(std::size_t strand, int node) const {
@@ -136,13 +141,14 @@ void DisplacementSystem::apply_energy(const Eigen::VectorXd& x, Eigen::VectorXd&
         y.segment<3>(column(s, station.stencil.first + k)) +=
             strain * station.stencil.slope[at(k)] * station.along;
     }
-    for (const Hold& held : held_[s])
-      for (int m = 0; m < translation_modes; ++m) {
-        double value = 0.0;
-        for (int k = 0; k < 4; ++k) value += held.share[at(k)] * x[column(s, held.first + k) + m];
-        for (int k = 0; k < 4; ++k)
-          y[column(s, held.first + k) + m] += held.stiffness * value * held.share[at(k)];
-      }
+    for (const Hold& held : held_[s]) {
+      double value = 0.0;
+      for (int k = 0; k < 4; ++k)
+        value += held.share[at(k)] * held.direction.dot(x.segment<3>(column(s, held.first + k)));
+      for (int k = 0; k < 4; ++k)
+        y.segment<3>(column(s, held.first + k)) +=
+            held.stiffness * value * held.share[at(k)] * held.direction;
+    }
   });
 }
 
@@ -230,9 +236,11 @@ void DisplacementSystem::factor(std::span<const Demand> demands, const std::vect
     for (const Hold& held : held_[s])
       for (int k = 0; k < 4; ++k)
         for (int l = 0; l < 4; ++l)
-          for (int m = 0; m < translation_modes; ++m)
-            entry(held.first + k, m, held.first + l, m,
-                  held.stiffness * held.share[at(k)] * held.share[at(l)]);
+          for (int m = 0; m < 3; ++m)
+            for (int c = 0; c < 3; ++c)
+              entry(held.first + k, m, held.first + l, c,
+                    held.stiffness * held.share[at(k)] * held.share[at(l)] * held.direction[m] *
+                        held.direction[c]);
     for (std::size_t d = 0; d < sides[s].size(); ++d) {
       const Demand::Side& side = *sides[s][d];
       const double stiff = stiffness_.contact * weights[s][d];

@@ -59,10 +59,11 @@ class DisplacementSystem {
     double strain = 0;  // present, of the span to the next station
     double old_span = 0;
   };
-  // A sum of node values that has to stay zero.
+  // A sum of the nodes' translations that has to stay zero along a direction.
   struct Hold {
     int first = 0;
     std::array<double, 4> share{};
+    Vec3 direction = Vec3::Zero();
     double stiffness = 0;
   };
   using Band = Eigen::MatrixXd;  // column j: rows j .. j + width - 1 of the lower triangle
