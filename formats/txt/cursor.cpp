@@ -311,18 +311,18 @@ std::optional<int> Cursor::integer(std::string_view what, int least, int most) {
   return static_cast<int>(*value);
 }
 
-int Cursor::row(double* values, int most, std::string_view what) {
+int Cursor::row(double* values, int most, std::string_view what, std::string_view word) {
   for (int count = 0;; ++count) {
     if (!more()) return count;
     token_ = at_;
-    if (count == most) {
+    const bool is_number = count < most && parse_number(values[count]);
+    if (is_number) continue;
+    if (!word.empty() && same_word(word_at(at_), word)) return count;
+    if (count == most)
       report_.error(last(), fmt::format("{}: more than {} values", what, most));
-      return -1;
-    }
-    if (!parse_number(values[count])) {
+    else
       explain_number(what);
-      return -1;
-    }
+    return -1;
   }
 }
 

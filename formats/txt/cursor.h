@@ -56,8 +56,9 @@ class Cursor {
   bool comma();
   std::optional<double> number(std::string_view what);
   std::optional<int> integer(std::string_view what, int least, int most);
-  // The numbers up to the end of the line, at most `most` of them; returns how many. An error gives -1.
-  int row(double* values, int most, std::string_view what);
+  // The numbers up to the end of the line, or up to the word `word` where one may follow them, at most `most`
+  // of them; returns how many. An error gives -1.
+  int row(double* values, int most, std::string_view what, std::string_view word = {});
   // Reports what is left on the line. True when there is nothing.
   bool finish();
 

@@ -55,6 +55,15 @@ void note_line(const Parser& p, Path& path, int line) {
   path.lines.push_back(line);
 }
 
+// The word behind the numbers of a row.
+void read_fixed(Parser& p, Path& path) {
+  if (!p.more()) return;
+  p.take_word();
+  if (!p.finish()) return;
+  path.fixed.resize(path.points.size() - 1, false);
+  path.fixed.push_back(true);
+}
+
 bool is_good_row(Parser& p, const PathRows& rows, const std::array<double, 6>& row, int count) {
   const Path& path = rows.path;
   if (count < 0) return false;
@@ -80,7 +89,7 @@ bool is_good_row(Parser& p, const PathRows& rows, const std::array<double, 6>& r
 
 void read_path_row(Parser& p, PathRows& rows) {
   std::array<double, 6> row{};
-  const int count = p.row(row.data(), 6, "a row of the path");
+  const int count = p.row(row.data(), 6, "a row of the path", fixed_word);
   ++rows.seen;
   const bool good = is_good_row(p, rows, row, count);
   rows.reading.good = rows.reading.good && good;
@@ -91,6 +100,7 @@ void read_path_row(Parser& p, PathRows& rows) {
   if (!good) return;
   rows.reading.last_row = p.statement();
   add_size(p, path, row, count);
+  read_fixed(p, path);
   note_line(p, path, rows.reading.last_row.line);
 }
 
@@ -346,6 +356,7 @@ fabric::Path read_path(Parser& p, ShapeReading& reading) {
   reading.good = true;
   PathRows rows{path, reading};
   const bool complete = p.read_block("path", "", reading.spot, table, rows);
+  if (!path.fixed.empty()) path.fixed.resize(path.points.size(), false);
   if (complete && rows.seen < 2) {
     p.error(p.last(), fmt::format("a path has at least 2 rows; this one has {}", rows.seen));
     reading.good = false;

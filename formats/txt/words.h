@@ -46,6 +46,8 @@ inline constexpr std::array<Word<Path::Form>, 6> path_words{{{"chord", Path::For
                                                              {"polyline", Path::Form::polyline},
                                                              {"control", Path::Form::control},
                                                              {"loop", Path::Form::loop}}};
+// Behind a row of a path.
+inline constexpr std::string_view fixed_word = "fixed";
 inline constexpr std::array<Word<Draft::Form>, 5> draft_words{{{"plain", Draft::Form::plain},
                                                                {"twill", Draft::Form::twill},
                                                                {"satin", Draft::Form::satin},

@@ -179,9 +179,11 @@ void write_path(Lines& out, const fabric::Path& path) {
   for (std::size_t i = 0; i < path.points.size(); ++i) {
     const Vec3& point = path.points[i];
     out.row(2, point.x()).value(point.y()).value(point.z());
-    if (path.sizes.empty() || !path.sizes[i]) continue;
-    out.value(path.sizes[i]->width).value(path.sizes[i]->height);
-    if (path.sizes[i]->angle) out.value(*path.sizes[i]->angle);
+    if (!path.sizes.empty() && path.sizes[i]) {
+      out.value(path.sizes[i]->width).value(path.sizes[i]->height);
+      if (path.sizes[i]->angle) out.value(*path.sizes[i]->angle);
+    }
+    if (!path.fixed.empty() && path.fixed[i]) out.word(fixed_word);
   }
   out.line(1, "end");
 }
@@ -373,14 +375,14 @@ void write_cell(Lines& out, const fabric::Cell& cell) {
   out.line(0, "end");
 }
 
-// A yarn of a CAD file as a grid.
+// A yarn that has its surface already, as a grid.
 struct EndsChanged {
   std::size_t yarns = 0;
   std::string first;
 };
-void write_body(Lines& out, const yarn::Body& body, EndsChanged& changed) {
-  const fabric::GridYarn grid = fabric::as_grid(body);
-  if (!grid.keeps_ends && changed.yarns++ == 0) changed.first = body.name;
+void write_body(Lines& out, const fabric::Fabric& fabric, const fabric::Yarn& yarn, EndsChanged& changed) {
+  const fabric::GridYarn grid = fabric::as_grid(fabric, yarn);
+  if (!grid.keeps_ends && changed.yarns++ == 0) changed.first = yarn.name;
   write_item(out, grid.yarn);
 }
 
@@ -421,9 +423,8 @@ Result<WriteFacts> write_fabric(const fabric::Fabric& fabric, OutputFile& output
   for (const fabric::Item& item : fabric.items) {
     out.blank_line();
     const auto* yarn = std::get_if<fabric::Yarn>(&item);
-    if (const fabric::ReadBody* read =
-            yarn != nullptr ? std::get_if<fabric::ReadBody>(&yarn->shape) : nullptr)
-      write_body(out, **read, changed);
+    if (yarn != nullptr && std::holds_alternative<fabric::ReadBody>(yarn->shape))
+      write_body(out, fabric, *yarn, changed);
     else
       std::visit([&](const auto& one) { write_item(out, one); }, item);
     ++facts.entities[std::string(kinds[item.index()])];

@@ -21,6 +21,7 @@ struct Parsed {
 
 void add_convert(CLI::App& program, Parsed& parsed);
 void add_check(CLI::App& program, Parsed& parsed);
+void add_relax(CLI::App& program, Parsed& parsed);
 void add_mesh(CLI::App& program, Parsed& parsed);
 void add_info(CLI::App& program, Parsed& parsed);
 void add_diff(CLI::App& program, Parsed& parsed);
@@ -40,7 +41,12 @@ void add_output(CLI::App& command, Parsed& parsed);
 void add_place(CLI::App& command, Parsed& parsed);
 void add_ends(CLI::App& command, Parsed& parsed);
 void add_units(CLI::App& command, Parsed& parsed, const std::string& help);
-// Takes over what was parsed as words. Errors (usage): a shard that is none, --resume without a report.
+// Of surfaces in files: IGES and STEP.
+void add_surfaces(CLI::App& command, Parsed& parsed);
+// --relax (but not for `selvage relax` itself) and what goes with it.
+void add_relaxing(CLI::App& command, Parsed& parsed, bool with_flag);
+// Takes over what was parsed as words. Errors (usage): a shard that is none, --resume without a report,
+// options that go with --relax without it.
 Status complete(const Parsed& parsed, pipeline::Options& options);
 // Runs the pipeline with the parsed options when the subcommand was named.
 void run_pipeline(CLI::App& command, Parsed& parsed, pipeline::Command what);

@@ -51,6 +51,7 @@ int run(int count, char** words) {
   Parsed parsed;
   add_convert(program, parsed);
   add_check(program, parsed);
+  add_relax(program, parsed);
   add_mesh(program, parsed);
   add_roundtrip(program, parsed);
   add_diff(program, parsed);

@@ -17,6 +17,7 @@ void add_mesh(CLI::App& program, Parsed& parsed) {
   command.add_option("--min-dihedral", o.min_dihedral, "wanted smallest angle between faces, degrees")
       ->check(CLI::Range(0.1, 70.0));
   command.add_flag("--allow-overlap", o.allow_overlap, "mesh overlapping yarns as they are, with a warning");
+  add_relaxing(command, parsed, true);
   run_pipeline(command, parsed, pipeline::Command::mesh);
 }
 

@@ -113,4 +113,16 @@ GridYarn as_grid(const yarn::Body& body) {
   return result;
 }
 
+GridYarn as_grid(const Fabric& fabric, const Yarn& yarn) {
+  const yarn::Body& body = *std::get<ReadBody>(yarn.shape);
+  GridYarn result = as_grid(body);
+  result.yarn.thread = yarn.thread;
+  result.yarn.own = yarn.own;
+  result.yarn.own.color.reset();
+  // What it would be without a word.
+  const Color usual = resolved_thread(fabric, result.yarn).color.value_or(Color{});
+  if (body.color != usual) result.yarn.own.color = body.color;
+  return result;
+}
+
 }  // namespace selvage::fabric

@@ -14,4 +14,8 @@ struct GridYarn {
 // are those that this program makes; others are made anew.
 GridYarn as_grid(const yarn::Body& body);
 
+// The same of a yarn whose shape is a body (ReadBody), with the thread and the statements of its own that it
+// has in the fabric.
+GridYarn as_grid(const Fabric& fabric, const Yarn& yarn);
+
 }  // namespace selvage::fabric

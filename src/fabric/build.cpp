@@ -188,6 +188,10 @@ std::string YarnBuilder::name_of(const Entry& entry) const {
   return entry.yarn != nullptr ? entry.yarn->name : entry.construction->name(entry.index);
 }
 
+YarnBuilder::Origin YarnBuilder::origin(std::size_t index) const {
+  return {entries_[index].yarn, entries_[index].parts > 1};
+}
+
 std::optional<std::size_t> YarnBuilder::find(std::string_view name) const {
   for (std::size_t i = 0; i < entries_.size(); ++i)
     if (name_of(entries_[i]) == name) return i;
@@ -227,7 +231,8 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
       const Thread thread = resolved_thread(fabric, *yarn);
       Entry entry;
       entry.yarn = yarn;
-      const bool is_grid = std::holds_alternative<Grid>(yarn->shape);
+      const bool is_grid =
+          std::holds_alternative<Grid>(yarn->shape) || std::holds_alternative<ReadBody>(yarn->shape);
       builder.add_entries(entry, is_grid ? Thread{} : thread, 1, yarn->place, diagnostics);
       if (is_grid && part_count(thread, options.detail) > 1)
         diagnostics.add(
@@ -323,6 +328,9 @@ Result<yarn::Body> YarnBuilder::build_grid(const Yarn& yarn) const {
                      error(Kind::unsupported,
                            fmt::format("yarn '{}' is a grid: it has no centre line to edit", yarn.name)));
   body.group = yarn.group;
+  // Its rows are as they are; the word `rotate` says that the fibres keep to their columns.
+  const std::optional<Twist> twist = resolved_thread(*fabric_, yarn).twist;
+  body.section_turns = twist && twist->rotates && twist->turns != 0.0;
   Status filled = yarn::fill_from_grid(body, net_of(grid, yarn.closed));
   if (!filled) {
     filled.error().place = grid.place;

@@ -43,6 +43,13 @@ class YarnBuilder {
                                            Diagnostics& diagnostics);
 
   [[nodiscard]] std::size_t count() const { return entries_.size(); }
+  // What the text says of a yarn: its block (null: a construction makes it), and whether it is only a ply or
+  // a filament of that.
+  struct Origin {
+    const Yarn* yarn = nullptr;
+    bool is_part = false;
+  };
+  [[nodiscard]] Origin origin(std::size_t index) const;
   // The first yarn (or part of a yarn) of this name; none where there is no such yarn.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
   // The yarn's plan, edits applied; a part's own where the yarn has parts. Error (unsupported): a grid has

@@ -102,6 +102,9 @@ struct Path {
   std::vector<Vec3> points;
   // Empty when no row carries a size; else one entry a point (a row without a size has nullopt).
   std::vector<std::optional<SizeAt>> sizes;
+  // Empty when no row has the word `fixed`; else one entry a point: it stays where it is when yarns are moved
+  // apart.
+  std::vector<bool> fixed;
   std::vector<int>
       lines;  // source line of each row; empty when the rows stand on consecutive lines after `place`
 };

@@ -251,8 +251,8 @@ int Batch::exit_code() const {
 }
 
 void Batch::summarize() const {
-  const bool writes = options_.command == Command::convert || options_.command == Command::mesh ||
-                      options_.command == Command::view;
+  const bool writes = options_.command == Command::convert || options_.command == Command::relax ||
+                      options_.command == Command::mesh || options_.command == Command::view;
   if (options_.quiet || !writes || options_.output == "-") return;
   std::string text = fmt::format("selvage: {} of {} inputs done", counts_.done, counts_.inputs);
   if (counts_.skipped > 0) text += fmt::format(", {} were up to date", counts_.skipped);

@@ -1,4 +1,5 @@
-// `selvage convert`: each yarn and each piece is built once, handed to every surface format, and forgotten.
+// `selvage convert` and `selvage relax`: each yarn and each piece is built once, handed to every surface
+// format, and forgotten.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 #include "core/parallel.h"
 #include "pipeline/facts.h"
 #include "pipeline/instances.h"
+#include "pipeline/relaxing.h"
 #include "pipeline/scaling.h"
 #include "pipeline/writing.h"
 
@@ -187,7 +189,8 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
 }  // namespace
 
 void convert(Job& job) {
-  const std::optional<fabric::Fabric> fabric = job.read();
+  std::optional<fabric::Fabric> fabric = job.read();
+  if (fabric && job.options.relaxing.wanted) fabric = relaxed(job, std::move(*fabric));
   if (!fabric) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);
   if (!outputs) return;

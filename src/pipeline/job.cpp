@@ -22,6 +22,16 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto progress_interval = std::chrono::milliseconds(50);
 
+std::string words_of(const RelaxSettings& relaxing) {
+  if (!relaxing.wanted) return {};
+  std::string text = " relax";
+  if (relaxing.gap) text += fmt::format(" gap={}", *relaxing.gap);
+  if (relaxing.overlap) text += fmt::format(" overlap={}", *relaxing.overlap);
+  if (relaxing.stiff_section) text += " stiff-section";
+  if (relaxing.max_iterations > 0) text += fmt::format(" max-iterations={}", relaxing.max_iterations);
+  return text;
+}
+
 // Everything on the command line that changes the bytes of an output.
 std::string settings_of(const Options& options) {
   std::string text = fmt::format("{} ends={} tolerance={}", name_of(options.command),
@@ -34,6 +44,7 @@ std::string settings_of(const Options& options) {
   if (options.detail != fabric::Detail::filaments)
     text += options.detail == fabric::Detail::yarn ? " detail=yarn" : " detail=plies";
   if (options.as_published) text += " as-published";
+  text += words_of(options.relaxing);
   if (options.command == Command::mesh)
     text += fmt::format(" size={} order={} min-dihedral={}{}", options.size, options.order,
                         options.min_dihedral, options.allow_overlap ? " allow-overlap" : "");
@@ -63,6 +74,8 @@ std::string_view name_of(Command command) {
   switch (command) {
     case Command::convert:
       return "convert";
+    case Command::relax:
+      return "relax";
     case Command::check:
       return "check";
     case Command::mesh:
@@ -84,6 +97,7 @@ Job::Job(const Options& options_in, const Input& input_in, const std::vector<Pla
 }
 
 void Job::say(Message message) {
+  if (says_once && message.severity != Severity::error && !said_.insert(to_string(message)).second) return;
   if (message.severity == Severity::error) ++errors_;
   if (message.severity == Severity::warning) ++warnings_;
   show(std::move(message));
@@ -118,10 +132,14 @@ void Job::forward(const Diagnostics& diagnostics) {
 }
 
 void Job::progress(std::string_view verb, std::size_t done, std::size_t total) {
+  progress(fmt::format("{} {} of {}", verb, done, total));
+}
+
+void Job::progress(std::string_view what) {
   const Clock::time_point now = Clock::now();
   if (now - last_progress_ < progress_interval) return;
   last_progress_ = now;
-  channel_.send(packet::progress, fmt::format("{}: {} {} of {}", input.path, verb, done, total));
+  channel_.send(packet::progress, fmt::format("{}: {}", input.path, what));
 }
 
 fabric::BuildOptions Job::build_options() const {
@@ -255,6 +273,7 @@ Verdict work(Job& job, const std::string& earlier) {
   bool defective = false;
   switch (job.options.command) {
     case Command::convert:
+    case Command::relax:
       convert(job);
       break;
     case Command::mesh:
@@ -274,7 +293,7 @@ Verdict work(Job& job, const std::string& earlier) {
       break;
   }
   if (job.has_failed()) return Verdict::failed;
-  return defective ? Verdict::defect : Verdict::done;
+  return defective || job.unsolved ? Verdict::defect : Verdict::done;
 }
 
 // Libraries may throw; nothing passes this line.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,6 +54,8 @@ class Job {
   std::size_t threads = 1;      // that this job may use
   std::size_t number = 0;       // of the input in this run
   bool keeps_messages = false;  // in its report, whether or not that is written
+  bool says_once = false;       // warnings and notes that were said are not said again
+  bool unsolved = false;        // the yarns cannot be moved apart (it was said why): nothing is written
   InputReport report;
 
   // Passes a message on; one without a file gets the input's name.
@@ -64,6 +67,8 @@ class Job {
   void tell_files(std::size_t count) const { channel_.send(packet::files, std::to_string(count)); }
   // "verb done of total", at most 20 times a second.
   void progress(std::string_view verb, std::size_t done, std::size_t total);
+  // The same in other words.
+  void progress(std::string_view what);
 
   // An error, or with --strict a warning, was said.
   [[nodiscard]] bool has_failed() const { return errors_ > 0 || (options.strict && warnings_ > 0); }
@@ -101,6 +106,7 @@ class Job {
 
   const Channel& channel_;
   int errors_ = 0, warnings_ = 0;
+  std::set<std::string> said_;  // with says_once
   std::chrono::steady_clock::time_point last_progress_;
 };
 
@@ -109,7 +115,8 @@ class Job {
 // `--resume` goes by, empty if there is none.
 Verdict run_job(Job& job, const std::string& earlier, const Channel& channel);
 
-// The subcommands, one file each. They say what went wrong; the caller looks at Job::has_failed().
+// The subcommands, one file each (`relax` is a conversion). They say what went wrong; the caller looks at
+// Job::has_failed().
 void convert(Job& job);
 void mesh(Job& job);
 void info(Job& job);

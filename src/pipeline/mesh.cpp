@@ -6,6 +6,7 @@
 
 #include "fem/mesher.h"
 #include "pipeline/overlaps.h"
+#include "pipeline/relaxing.h"
 #include "pipeline/writing.h"
 #include "solid/check.h"
 
@@ -35,7 +36,9 @@ bool check_overlaps(Job& job, const std::vector<yarn::Body>& bodies) {
     if (job.options.allow_overlap) {
       message.severity = Severity::warning;
     } else {
-      message.text += "; move or thin one of them, or mesh them as they are with --allow-overlap";
+      message.text += job.options.relaxing.wanted
+                          ? "; thin one of them, or mesh them as they are with --allow-overlap"
+                          : "; --relax moves them apart, --allow-overlap meshes them as they are";
     }
     job.say(std::move(message));
   }
@@ -89,9 +92,10 @@ bool has_only_yarns(Job& job, const fabric::Fabric& fabric) {
 }  // namespace
 
 void mesh(Job& job) {
-  const std::optional<fabric::Fabric> fabric = job.read();
+  std::optional<fabric::Fabric> fabric = job.read();
+  if (!fabric || !has_only_yarns(job, *fabric)) return;
+  if (job.options.relaxing.wanted) fabric = relaxed(job, std::move(*fabric));
   if (!fabric) return;
-  if (!has_only_yarns(job, *fabric)) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);
   if (!outputs) return;
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);

@@ -14,8 +14,17 @@
 
 namespace selvage::pipeline {
 
-enum class Command { convert, check, mesh, info, view, roundtrip };
+enum class Command { convert, relax, check, mesh, info, view, roundtrip };
 std::string_view name_of(Command command);
+
+// --relax and what goes with it; lengths in the input's unit.
+struct RelaxSettings {
+  bool wanted = false;
+  std::optional<double> gap;      // the least one, >= 0; none: 1 % of the smaller thickness
+  std::optional<double> overlap;  // > 0: contact to this depth instead of a gap
+  bool stiff_section = false;     // only paths move
+  int max_iterations = 0;         // 0: the default
+};
 
 struct Options {
   Command command = Command::convert;
@@ -47,6 +56,8 @@ struct Options {
   int order = 1;
   double min_dihedral = 0;  // degrees; 0: the mesher's choice
   bool allow_overlap = false;
+
+  RelaxSettings relaxing;
 
   // view
   view::From from = view::From::top;

@@ -38,7 +38,7 @@ Result<const Descriptor*> fitting(const Descriptor& format, Command command) {
   if (can_be_written(format, command)) return &format;
   std::string text = fmt::format("'selvage {}' cannot write {}; it writes: {}", name_of(command), format.name,
                                  writable_names(command));
-  if (command == Command::convert && format.write_mesh != nullptr) text += " (for a mesh: selvage mesh)";
+  if (command != Command::mesh && format.write_mesh != nullptr) text += " (for a mesh: selvage mesh)";
   return error(Kind::usage, std::move(text));
 }
 
@@ -85,9 +85,9 @@ Result<Formats> wanted_formats(const Options& options) {
   }
   if (!wanted.empty()) return wanted;
   const Descriptor* told = told_by_output(options);
-  const Formats usual = options.command == Command::mesh
-                            ? Formats{format_named("inp")}
-                            : Formats{format_named("iges"), format_named("step")};
+  Formats usual = {format_named("iges"), format_named("step")};
+  if (options.command == Command::mesh) usual = {format_named("inp")};
+  if (options.command == Command::relax) usual = {format_named("txt")};
   for (const Descriptor* choice : told != nullptr ? Formats{told} : usual) {
     Result<const Descriptor*> format = fitting(*choice, options.command);
     if (!format) return format.error();

@@ -79,6 +79,38 @@ Json mesh_json(const MeshReport& mesh) {
           {"max_aspect", mesh.max_aspect}, {"volume", mesh.volume}, {"volume_error", mesh.volume_error}};
 }
 
+template <class T, class Make>
+Json list_json(const std::vector<T>& list, Make make) {
+  Json out = Json::array();
+  for (const T& item : list) out.push_back(make(item));
+  return out;
+}
+
+Json relax_json(const RelaxReport& relax) {
+  const auto state = [](const RelaxReport::State& from) {
+    Json to = {{"overlaps", from.overlaps}};
+    if (from.overlaps > 0) to["depth"] = from.depth;
+    if (from.min_gap) to["min_gap"] = *from.min_gap;
+    return to;
+  };
+  Json out = {{"solved", relax.solved},
+              {"iterations", relax.iterations},
+              {"before", state(relax.before)},
+              {"after", state(relax.after)},
+              {"largest_move", relax.largest_move},
+              {"largest_area_change", relax.area_change},
+              {"largest_length_change", relax.length_change},
+              {"largest_volume_change", relax.volume_change}};
+  if (!relax.moved_most.empty()) out["moved_most"] = relax.moved_most;
+  if (!relax.reason.empty()) out["reason"] = relax.reason;
+  if (!relax.jams.empty()) {
+    out["jams"] = list_json(relax.jams, [](const RelaxReport::Jam& jam) {
+      return Json{{"a", jam.a}, {"b", jam.b}, {"gap", jam.gap}, {"at", point(jam.at)}};
+    });
+  }
+  return out;
+}
+
 Json roundtrip_json(const RoundtripReport& trip) {
   Json out = {{"format", trip.format}, {"seconds", trip.seconds}};
   if (!trip.error.empty()) {
@@ -111,13 +143,6 @@ Json message_json(const Message& message, double to_mm) {
   out["text"] = message.text;
   if (!message.yarn.empty()) out["yarn"] = message.yarn;
   if (message.at) out["at"] = point(*message.at * to_mm);
-  return out;
-}
-
-template <class T, class Make>
-Json list_json(const std::vector<T>& list, Make make) {
-  Json out = Json::array();
-  for (const T& item : list) out.push_back(make(item));
   return out;
 }
 
@@ -157,6 +182,7 @@ std::string to_json(const InputReport& report) {
     out["instances"] = {{"shapes", report.instances->shapes},
                         {"copies", report.instances->copies},
                         {"largest_deviation", report.instances->largest_deviation}};
+  if (report.relax) out["relax"] = relax_json(*report.relax);
   if (report.mesh) out["mesh"] = mesh_json(*report.mesh);
   if (!report.roundtrips.empty()) out["roundtrips"] = list_json(report.roundtrips, roundtrip_json);
   out["messages"] = list_json(report.messages, [to_mm](const Message& m) { return message_json(m, to_mm); });

@@ -71,6 +71,30 @@ struct InstancesReport {
   double largest_deviation = 0;        // of a copy from the yarn as it was built; mm
 };
 
+// Yarns moved apart: before and after. Lengths in mm, changes relative.
+struct RelaxReport {
+  struct State {
+    std::size_t overlaps = 0;
+    double depth = 0;  // of the deepest
+    std::optional<double> min_gap;
+  };
+  struct Jam {
+    std::string a, b;
+    double gap = 0;  // the largest that was reached; negative: an overlap
+    Vec3 at = Vec3::Zero();
+  };
+  bool solved = false;
+  int iterations = 0;
+  State before, after;
+  double largest_move = 0;
+  std::string moved_most;                                        // the yarn; empty: none moved
+  double area_change = 0, length_change = 0, volume_change = 0;  // the largest ones
+  std::string reason;                                            // where not solved
+  std::vector<Jam> jams;
+
+  [[nodiscard]] bool is_moved() const { return iterations > 0 || !moved_most.empty(); }
+};
+
 struct MeshReport {
   std::size_t nodes = 0, tets = 0;
   double min_dihedral = 0, max_aspect = 0;
@@ -112,6 +136,7 @@ struct InputReport {
   std::optional<double> creo_absolute_accuracy;
   std::vector<OutputReport> outputs;
   std::optional<InstancesReport> instances;
+  std::optional<RelaxReport> relax;
   std::optional<MeshReport> mesh;
   std::vector<RoundtripReport> roundtrips;
   std::vector<Message> messages;

@@ -16,9 +16,9 @@ class Usage(Case):
     def test_version_and_help(self):
         self.assertRegex(self.succeeds("--version").stdout, r"^selvage \d+\.\d+\.\d+\n$")
         everything = self.succeeds("--help").stdout
-        for command in ("convert", "check", "mesh", "info", "edit", "view", "formats"):
+        for command in ("convert", "relax", "check", "mesh", "info", "edit", "view", "formats"):
             self.assertIn(command, everything)
-        for command in ("convert", "check", "mesh", "info", "view"):
+        for command in ("convert", "relax", "check", "mesh", "info", "view"):
             text = self.succeeds(command, "--help").stdout
             for option in ("INPUT", "-j", "--report", "--quiet", "--verbose", "--no-progress", "--timeout", "--memory",
                            "--strict", "--tolerance", "--shard"):
@@ -33,11 +33,10 @@ class Usage(Case):
                      self.out)
 
     def test_words_of_later_versions(self):
-        for word in ("relax", "report"):
-            self.refused(f"'selvage {word}' is not in this version", word, GRID)
-        for word in ("--cut", "--matrix", "--relax"):
+        self.refused("'selvage report' is not in this version", "report", GRID)
+        for word in ("--cut", "--matrix"):
             self.refused(f"'{word}' is not in this version", "convert", GRID, word, "-o", self.out)
-        for word in ("--matrix", "--periodic", "--gap=0.1"):
+        for word in ("--matrix", "--periodic"):
             self.refused("is not in this version", "mesh", GRID, word, "-o", self.out)
 
     def test_values(self):

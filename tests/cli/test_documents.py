@@ -64,7 +64,7 @@ class Documents(Case):
 
     def test_options_of_the_help_are_in_the_readme(self):
         text = (ROOT / "README.md").read_text()
-        for command in ("convert", "check", "mesh", "diff", "roundtrip", "info", "edit", "view"):
+        for command in ("convert", "relax", "check", "mesh", "diff", "roundtrip", "info", "edit", "view"):
             for option in re.findall(r"^\s+(?:-\w,)?(--[\w-]+)", run(command, "--help").stdout, re.MULTILINE):
                 if option not in ("--help", "--output", "--verbose"):  # -h, -o, -v
                     self.assertIn(option, text, command)

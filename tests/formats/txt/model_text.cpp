@@ -131,6 +131,7 @@ class Flat {
     add(path + ".form", v.form);
     add(path + ".points", v.points);
     add(path + ".sizes", v.sizes);
+    for (std::size_t i = 0; i < v.fixed.size(); ++i) add(path + ".fixed", static_cast<int>(v.fixed[i]));
   }
   void add(const std::string& path, const Grid& v) {
     add(path + ".sections", v.sections);

@@ -167,6 +167,8 @@ class Maker {
       size = SizeAt{positive(), positive(), std::nullopt};
       maybe(size->angle, [&] { return number(); });
     }
+    if (coin())
+      for (int i = 0; i < rows; ++i) path.fixed.push_back(i == 1 || coin());
     return path;
   }
   std::vector<double> knots(int count, int degree) {

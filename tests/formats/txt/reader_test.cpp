@@ -215,6 +215,18 @@ end
   EXPECT_EQ(path.sizes[2], (SizeAt{3, 1.5, -400}));
 }
 
+TEST(Reader, FixedRows) {
+  const Fabric fabric = good(
+      "fabric 1\nyarn a\n  section circle 1\n  path\n    0 0 0\n    1 0 0 Fixed\n    2 0 0 1 1 fixed # "
+      "stays\n"
+      "    3 0 0 1 1 30 fixed\n    4 0 0\n  end\nend\n");
+  EXPECT_EQ(path_of(fabric).fixed, (std::vector<bool>{false, true, true, true, false}));
+  EXPECT_EQ(path_of(fabric).sizes[3], (SizeAt{1, 1, 30}));
+  const Fabric free =
+      good("fabric 1\nyarn a\n  section circle 1\n  path\n    0 0 0\n    1 0 0\n  end\nend\n");
+  EXPECT_TRUE(path_of(free).fixed.empty());
+}
+
 TEST(Reader, PathForms) {
   const std::vector<std::pair<std::string, Path::Form>> forms = {{"", Path::Form::chord},
                                                                  {"chord", Path::Form::chord},

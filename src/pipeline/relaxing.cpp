@@ -1,0 +1,350 @@
+#include "pipeline/relaxing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+#include "contact/interlacing.h"
+#include "contact/relax.h"
+#include "core/parallel.h"
+#include "pipeline/table.h"
+
+namespace selvage::pipeline {
+
+namespace {
+
+constexpr std::size_t most_told = 20;  // jammed pairs
+
+using contact::Relaxation;
+
+struct Built {
+  std::vector<yarn::Body> bodies;
+  std::vector<fabric::Yarn> yarns;  // what the text says of each, without its shape
+};
+
+// What remains to be said of a yarn in the text when it stands there with its surface.
+fabric::Yarn yarn_of(const fabric::YarnBuilder& builder, std::size_t index, const yarn::Body& body) {
+  const fabric::YarnBuilder::Origin origin = builder.origin(index);
+  fabric::Yarn yarn;
+  yarn.name = body.name;
+  yarn.place = body.place;
+  yarn.group = body.group;
+  yarn.role = body.role;
+  yarn.closed = body.closed_along;
+  if (origin.is_part) {
+    // A part has another size and count than the thread of the whole.
+    if (const Result<fabric::YarnPlan> plan = builder.plan(index)) yarn.own = plan->thread;
+    yarn.own.name.clear();
+  } else if (origin.yarn != nullptr) {
+    yarn.thread = origin.yarn->thread;
+    yarn.own = origin.yarn->own;
+  } else {
+    yarn.thread = body.thread;
+  }
+  return yarn;
+}
+
+// Its thread is taken apart no more: `plies` and `filaments` of the thread would ask for it again.
+void keep_whole(const fabric::Fabric& fabric, fabric::Yarn& yarn) {
+  fabric::Thread thread = fabric::resolved_thread(fabric, yarn);
+  if (!thread.plies && !thread.filaments) return;
+  thread.plies.reset();
+  thread.filaments.reset();
+  thread.name.clear();
+  yarn.thread.clear();
+  yarn.own = std::move(thread);
+}
+
+// Names of a text are given once; two constructions may have made the same ones.
+void make_names_unique(Built& built) {
+  std::unordered_set<std::string> given;
+  for (std::size_t i = 0; i < built.bodies.size(); ++i) {
+    std::string name = built.bodies[i].name;
+    for (int k = 2; !given.insert(name).second; ++k) name = fmt::format("{}_{}", built.bodies[i].name, k);
+    built.bodies[i].name = built.yarns[i].name = name;
+  }
+}
+
+// The yarns as they come; their warnings are said, but for those of tight bends, which are looked for again
+// when the yarns have moved.
+std::optional<Built> build(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilder& builder) {
+  Built built;
+  const std::size_t batch = 2 * job.threads;
+  for (std::size_t first = 0; first < builder.count(); first += batch) {
+    std::vector<std::optional<Result<yarn::Body>>> some(std::min(batch, builder.count() - first));
+    for_each_index(some.size(), static_cast<int>(job.threads),
+                   [&](std::size_t i) { some[i] = builder.build(first + i); });
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      job.progress("building yarn", first + i + 1, builder.count());
+      if (!some[i]->ok()) {
+        job.say(some[i]->error());
+        continue;
+      }
+      yarn::Body& body = **some[i];
+      if (!body.tight_bends.empty()) body.messages.pop_back();  // it is the last one
+      job.say_all(body.messages);
+      built.yarns.push_back(yarn_of(builder, first + i, body));
+      keep_whole(fabric, built.yarns.back());
+      built.bodies.push_back(std::move(body));
+    }
+  }
+  if (built.bodies.size() != builder.count()) return std::nullopt;
+  make_names_unique(built);
+  return built;
+}
+
+// The rows with the word `fixed`, as parameters of the yarns (and of the parts of these).
+std::vector<contact::FixedPoint> fixed_points(const Job& job, const fabric::Fabric& fabric,
+                                              const fabric::YarnBuilder& builder) {
+  std::vector<contact::FixedPoint> fixed;
+  std::optional<fabric::YarnBuilder> whole;  // parts have other rows; their parameters are the yarn's
+  for (std::size_t i = 0; i < builder.count(); ++i) {
+    const fabric::Yarn* yarn = builder.origin(i).yarn;
+    const auto* path = yarn != nullptr ? std::get_if<fabric::Path>(&yarn->shape) : nullptr;
+    if (path == nullptr || path->fixed.empty()) continue;
+    if (!whole) {
+      fabric::BuildOptions options = job.build_options();
+      options.detail = fabric::Detail::yarn;
+      Diagnostics said_before;
+      whole = fabric::YarnBuilder::create(fabric, options, said_before);
+      if (!whole) return fixed;
+    }
+    const std::optional<std::size_t> index = whole->find(yarn->name);
+    if (!index) continue;
+    const Result<fabric::YarnPlan> plan = whole->plan(*index);
+    if (!plan) continue;  // told where it was built
+    for (std::size_t row = 0; row < path->fixed.size(); ++row)
+      if (path->fixed[row]) fixed.push_back({i, plan->line.parameters[row]});
+  }
+  return fixed;
+}
+
+std::vector<Vec3> periods_of(const fabric::Fabric& fabric) {
+  std::vector<Vec3> periods;
+  if (!fabric.cell) return periods;
+  const Vec3 size = (fabric.cell->high - fabric.cell->low).cwiseAbs();
+  if (fabric.cell->periodic_x) periods.emplace_back(size.x(), 0, 0);
+  if (fabric.cell->periodic_y) periods.emplace_back(0, size.y(), 0);
+  if (fabric.cell->periodic_z) periods.emplace_back(0, 0, size.z());
+  return periods;
+}
+
+contact::RelaxOptions relax_options(Job& job, const fabric::Fabric& fabric,
+                                    const fabric::YarnBuilder& builder) {
+  const RelaxSettings& given = job.options.relaxing;
+  contact::RelaxOptions options;
+  options.gap = given.gap;
+  if (given.overlap) {
+    options.gap = -*given.overlap;
+    options.make_contact = true;
+  }
+  options.stiff_section = given.stiff_section;
+  options.fixed = fixed_points(job, fabric, builder);
+  options.periods = periods_of(fabric);
+  if (given.max_iterations > 0) options.max_iterations = given.max_iterations;
+  options.threads = static_cast<int>(job.threads);
+  const std::string unit(name_of(fabric.units));
+  options.progress = [&job, unit](int iteration, double missing) {
+    job.progress(missing > 0
+                     ? fmt::format("relaxing: step {}, worst gap missing {:.3g} {}", iteration, missing, unit)
+                     : fmt::format("relaxing: step {}", iteration));
+    return true;
+  };
+  return options;
+}
+
+// Which yarn changed most, and by how much; `of` gives one of the change's values.
+struct Largest {
+  double value = 0;
+  std::string yarn;
+};
+template <class Of>
+Largest largest(const Relaxation& relaxation, const std::vector<yarn::Body>& bodies, Of of) {
+  Largest most;
+  for (std::size_t i = 0; i < relaxation.changes.size() && i < bodies.size(); ++i)
+    if (const double value = std::abs(of(relaxation.changes[i])); value > most.value)
+      most = {value, bodies[i].name};
+  return most;
+}
+
+RelaxReport report_of(const Relaxation& relaxation, const std::vector<yarn::Body>& bodies, Unit units) {
+  const double mm = millimetres_per(units);
+  const auto state = [&](const contact::RelaxState& from) {
+    RelaxReport::State to{from.overlaps, from.depth * mm, {}};
+    if (from.min_gap) to.min_gap = *from.min_gap * mm;
+    return to;
+  };
+  RelaxReport report;
+  report.solved = relaxation.solved;
+  report.iterations = relaxation.iterations;
+  report.before = state(relaxation.before);
+  report.after = state(relaxation.after);
+  const auto most = [&](auto of) { return largest(relaxation, bodies, of); };
+  const Largest move = most([](const contact::YarnChange& change) { return change.move; });
+  report.largest_move = move.value * mm;
+  report.moved_most = move.yarn;
+  report.area_change = most([](const contact::YarnChange& change) { return change.area; }).value;
+  report.length_change = most([](const contact::YarnChange& change) { return change.length; }).value;
+  report.volume_change = most([](const contact::YarnChange& change) { return change.volume; }).value;
+  report.reason = relaxation.reason;
+  for (const contact::Jam& jam : relaxation.jams)
+    report.jams.push_back({bodies[jam.a].name, bodies[jam.b].name, jam.gap * mm, jam.at * mm});
+  return report;
+}
+
+std::string percent(double share) {
+  return fmt::format("{:.3g} %", 100.0 * share);
+}
+
+// Before and after, as a table for people.
+std::string table_of(const Job& job, const RelaxReport& report, Unit file) {
+  const Unit shown = job.options.units.value_or(file);
+  const auto length = [&](double mm) { return cell(mm / millimetres_per(shown)); };
+  const auto gap = [&](const RelaxReport::State& state) {
+    return state.min_gap ? length(*state.min_gap) : std::string("-");
+  };
+  const auto depth = [&](const RelaxReport::State& state) {
+    return state.overlaps > 0 ? length(state.depth) : std::string("-");
+  };
+  const auto count = [](std::size_t value) { return std::to_string(value); };
+  const RelaxReport::State &before = report.before, &after = report.after;
+  std::string text = fmt::format("{}: lengths in {}\n", job.input.path, name_of(shown));
+  Table table({"", "overlaps", "deepest", "least gap"});
+  table.add({"before", count(before.overlaps), depth(before), gap(before)});
+  table.add({report.solved ? "after" : "as far as it went", count(after.overlaps), depth(after), gap(after)});
+  text += table.text();
+  if (report.solved && !report.is_moved()) return text + "  nothing had to move\n";
+  text += fmt::format("  largest move {}{}\n", length(report.largest_move),
+                      report.moved_most.empty() ? "" : fmt::format(", of '{}'", report.moved_most));
+  text +=
+      fmt::format("  largest changes: of a section's area {}, of a yarn's length {}, of its volume {}\n",
+                  percent(report.area_change), percent(report.length_change), percent(report.volume_change));
+  return text + fmt::format("  {} after {} step{}\n", report.solved ? "solved" : "not solved",
+                            report.iterations, report.iterations == 1 ? "" : "s");
+}
+
+void tell(Job& job, const std::string& text) {
+  if (job.options.quiet) return;
+  const bool to_standard_output = std::any_of(job.outputs.begin(), job.outputs.end(),
+                                              [](const PlannedOutput& o) { return o.to_standard_output; });
+  if (!to_standard_output)
+    job.print(text);
+  else  // standard output has the fabric
+    job.channel().send(packet::message, text.substr(0, text.size() - 1));
+}
+
+Message jam_message(const contact::Jam& jam, const std::vector<yarn::Body>& bodies, Unit units) {
+  const std::string &a = bodies[jam.a].name, &b = bodies[jam.b].name;
+  const std::string who = jam.a == jam.b ? fmt::format("yarn '{}' jams with itself", a)
+                                         : fmt::format("yarns '{}' and '{}' jam", a, b);
+  Message message = error(
+      Kind::geometry, jam.gap < 0 ? fmt::format("{}: the smallest overlap that was reached is {:.4g} {}", who,
+                                                -jam.gap, name_of(units))
+                                  : fmt::format("{}: the largest gap that was reached is {:.4g} {}", who,
+                                                jam.gap, name_of(units)));
+  message.at = jam.at;
+  return message;
+}
+
+void tell_jams(Job& job, const Relaxation& relaxation, const std::vector<yarn::Body>& bodies, Unit units) {
+  for (std::size_t k = 0; k < std::min(relaxation.jams.size(), most_told); ++k)
+    job.say_defect(jam_message(relaxation.jams[k], bodies, units));
+  std::string text = "the yarns cannot be moved apart";
+  if (!relaxation.reason.empty()) text += ": " + relaxation.reason;
+  if (relaxation.jams.size() > most_told)
+    text += fmt::format(" ({} more places jam)", relaxation.jams.size() - most_told);
+  job.say_defect(error(Kind::geometry, text + "; nothing was written"));
+}
+
+// A yarn that went through another one is another fabric.
+bool keeps_interlacing(Job& job, const std::vector<yarn::Body>& before,
+                       const std::vector<yarn::Body>& after) {
+  const Result<std::vector<contact::Passage>> passages = contact::find_passages(before, after);
+  if (!passages) {
+    job.say(passages.error());
+    return false;
+  }
+  for (std::size_t k = 0; k < std::min(passages->size(), most_told); ++k) {
+    const contact::Passage& passage = (*passages)[k];
+    Message message = error(
+        Kind::geometry, passage.a == passage.b
+                            ? fmt::format("yarn '{}' would have to go through itself", before[passage.a].name)
+                            : fmt::format("yarns '{}' and '{}' would have to go through each other",
+                                          before[passage.a].name, before[passage.b].name));
+    message.at = passage.at;
+    job.say_defect(std::move(message));
+  }
+  if (!passages->empty())
+    job.say_defect(error(Kind::geometry,
+                         "the yarns cannot be moved apart without changing how they are interlaced; nothing "
+                         "was written"));
+  return passages->empty();
+}
+
+// The fabric with these yarns in the places of those that it had.
+fabric::Fabric with_yarns(fabric::Fabric fabric, Built built, std::vector<yarn::Body> bodies,
+                          double tolerance) {
+  std::vector<fabric::Item> items;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    yarn::Body& body = bodies[i];
+    // What follows from the surface is found again, and there is no exact tube any more.
+    body.tight_bends.clear();
+    body.messages.clear();
+    body.tube_error = body.path_miss = 0;
+    built.yarns[i].shape = std::make_shared<const yarn::Body>(std::move(body));
+    items.emplace_back(std::move(built.yarns[i]));
+  }
+  for (fabric::Item& item : fabric.items)
+    if (std::holds_alternative<fabric::Piece>(item)) items.push_back(std::move(item));
+  fabric.items = std::move(items);
+  fabric.item_ends.clear();
+  fabric.edits.clear();
+  if (tolerance > 0) fabric.tolerance = tolerance;
+  return fabric;
+}
+
+}  // namespace
+
+std::optional<fabric::Fabric> relaxed(Job& job, fabric::Fabric fabric) {
+  job.says_once = true;  // the yarns are built again from what comes out
+  const std::optional<fabric::YarnBuilder> builder = job.builder(fabric);
+  if (!builder) return std::nullopt;
+  if (builder->count() == 0) return fabric;
+  std::optional<Built> built = build(job, fabric, *builder);
+  if (!built || job.has_failed()) return std::nullopt;
+  const contact::RelaxOptions options = relax_options(job, fabric, *builder);
+  Result<Relaxation> relaxation = contact::relax(built->bodies, options);
+  if (!relaxation) {
+    // No room is an answer; everything else is a failure.
+    job.unsolved = relaxation.error().kind == Kind::geometry;
+    if (job.unsolved)
+      job.say_defect(relaxation.error());
+    else
+      job.say(relaxation.error());
+    return std::nullopt;
+  }
+  job.report.relax = report_of(*relaxation, built->bodies, fabric.units);
+  bool keeps = true;
+  if (relaxation->solved) keeps = keeps_interlacing(job, built->bodies, relaxation->bodies);
+  job.report.relax->solved = relaxation->solved && keeps;
+  tell(job, table_of(job, *job.report.relax, fabric.units));
+  if (!relaxation->solved) tell_jams(job, *relaxation, built->bodies, fabric.units);
+  if (job.has_failed()) return std::nullopt;
+  if (!job.report.relax->solved) {
+    job.unsolved = true;
+    return std::nullopt;
+  }
+  const bool is_moved = job.report.relax->is_moved();
+  const double tolerance = fabric::tolerance_of(fabric, job.build_options());
+  if (is_moved) {  // a CAD file's own; it is another one now
+    fabric.date.clear();
+    fabric.file_name.clear();
+  }
+  std::vector<yarn::Body> bodies =
+      is_moved ? std::move(relaxation->bodies) : std::vector<yarn::Body>(built->bodies);
+  return with_yarns(std::move(fabric), std::move(*built), std::move(bodies), tolerance);
+}
+
+}  // namespace selvage::pipeline
