@@ -231,15 +231,12 @@ std::vector<Facing> NearSkins::find(double reach, int threads) {
   return all;
 }
 
-Facing settled(std::span<const Strand> strands, const Facing& facing) {
+std::optional<Facing> settled(std::span<const Strand> strands, const Facing& facing) {
   const yarn::Body &a = strands[facing.a].body(), &b = strands[facing.b].body();
-  Facing best = facing;
   Vec2 site_a = facing.site_a, site_b = facing.site_b;
   const double limit = 0.5 * strands[facing.a].thickness();
   for (int step = 0; step < 12; ++step) {
     const SurfacePoint p = point_at(a, site_a), q = point_at(b, site_b);
-    // Both surfaces as osculating paraboloids would need curvatures; each point goes instead toward the other
-    // one's foot, with the curvature of the gap from differences of the normals.
     Facing now = facing;
     now.site_a = site_a;
     now.site_b = site_b;
@@ -275,7 +272,7 @@ Facing settled(std::span<const Strand> strands, const Facing& facing) {
     site_b = inside(b, site_b + move.tail<2>());
     if ((point_at(a, site_a).jet.position - facing.on_a).norm() > 2.0 * limit) break;
   }
-  return best;
+  return std::nullopt;
 }
 
 }  // namespace selvage::contact

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct Facing {
   Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  // unit, from a to b: the mean of a's outward normal and b's inward one
   double gap = 0;              // (on_b - on_a) . normal; < 0: overlap
+  bool is_pulled = false;      // the gap is to be reached from both sides
 };
 
 class NearSkins {
@@ -59,7 +61,7 @@ class NearSkins {
 };
 
 // The facing at the place where the two surfaces are nearest (or deepest in each other) that belongs to this
-// one: both normals on one line. Steps of Newton's method; where it does not converge, the facing as it was.
-Facing settled(std::span<const Strand> strands, const Facing& facing);
+// one: both normals on one line. Steps of Newton's method; nothing where it does not converge, as at edges.
+std::optional<Facing> settled(std::span<const Strand> strands, const Facing& facing);
 
 }  // namespace selvage::contact

@@ -4,13 +4,17 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 
+#include "contact/contact.h"
 #include "contact/displacement_system.h"
 #include "contact/near_skins.h"
+#include "contact/section_shape.h"
 #include "contact/strand.h"
+#include "core/parallel.h"
 #include "nurbs/measure.h"
 #include "yarn/finish.h"
 #include "yarn/grid.h"
@@ -19,15 +23,25 @@ namespace selvage::contact {
 
 namespace {
 
-// The size of a yarn's sections, before it becomes a strand.
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Of the smaller thickness: the gap that is made where none is asked for.
+constexpr double default_gap = 0.01;
+// Of the thinner yarn's thickness. Deeper in each other, two yarns do not tell which side is theirs.
+constexpr double deepest = 0.55;
+// Of the thickness: how far apart surfaces may be to be kept apart, and the longest step.
+constexpr double reach_share = 0.08, step_share = 0.1;
+// Steps without progress after which a cloth counts as jammed, and rounds of exact checks.
+constexpr int patience = 20, most_verdicts = 12;
+
+// Least and largest width of the sections' control polygons in their principal directions.
 struct Extents {
-  double least = std::numeric_limits<double>::infinity(), most = 0;
+  double least = infinity, most = 0;
 };
 
 Extents extents_of(const nurbs::Surface& s) {
   Extents extents;
   for (int j = 0; j < s.count_v; ++j) {
-    // Widths of the control polygon in its principal directions.
     Vec3 centre = Vec3::Zero();
     for (int i = 0; i + 1 < s.count_u; ++i) centre += s.point(i, j) / (s.count_u - 1);
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -45,16 +59,25 @@ Extents extents_of(const nurbs::Surface& s) {
   return extents;
 }
 
-double section_area(const nurbs::Surface& s, double v) {
-  std::vector<double> us;
-  const std::vector<double> breaks = nurbs::breakpoints(s.knots_u, s.degree_u);
-  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
-    for (int i = 0; i < 4; ++i) us.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / 4.0);
-  const std::vector<Vec3> points = nurbs::evaluate_grid(s, us, {v});
-  Vec3 area = Vec3::Zero();
-  for (std::size_t i = 0; i < points.size(); ++i)
-    area += 0.5 * (points[i] - points[0]).cross(points[(i + 1) % points.size()] - points[0]);
-  return area.norm();
+// Convex, but so flat somewhere that bending it makes it concave.
+bool has_flat_sides(const nurbs::Surface& s) {
+  constexpr double flat = 2e-3;  // radians between neighbouring samples
+  bool is_flat = false;
+  for (const SectionShape& shape : section_shapes(s, section_places(s, 0)))
+    is_flat = is_flat || (shape.least_turning > -turning_noise && shape.least_turning < flat);
+  return is_flat;
+}
+
+// What the contacts say, as the state of a fabric.
+RelaxState state_of(const Contacts& contacts) {
+  RelaxState state;
+  for (const Contact& contact : contacts.list) {
+    if (!contact.is_overlap()) continue;
+    ++state.overlaps;
+    state.depth = std::max(state.depth, contact.depth());
+  }
+  state.min_gap = contacts.min_gap;
+  return state;
 }
 
 class Relaxer {
@@ -63,137 +86,356 @@ class Relaxer {
       : options_(options),
         originals_(std::move(bodies)),
         modes_(options.stiff_section ? translation_modes : all_modes) {
-    for (const yarn::Body& body : originals_) {
-      const Extents extents = extents_of(body.surface);
-      strands_.emplace_back(body, 0.6 * std::sqrt(extents.least * extents.most));
-      thickness_ = std::min(thickness_, strands_.back().thickness());
-    }
+    for (const yarn::Body& body : originals_) extents_.push_back(extents_of(body.surface));
+    for (const yarn::Body& body : originals_) is_affine_.push_back(has_flat_sides(body.surface) ? 1 : 0);
+    for (const Extents& extents : extents_) thinnest_ = std::min(thinnest_, extents.least);
   }
 
   Result<Relaxation> run() {
-    NearSkins skins(strands_);
-    DisplacementSystem system(strands_, Stiffness{}, modes_);
-    for (const FixedPoint& point : options_.fixed)
-      system.hold(point.yarn, strands_[point.yarn].arc_of(point.parameter));
-    Relaxation out;
-    double aim = 0.0;  // beyond the wanted gap
-    for (int step = 0;; ++step) {
-      const std::vector<Facing> facings = find(skins, step);
-      double missing = -std::numeric_limits<double>::infinity();
-      for (const Facing& f : facings) missing = std::max(missing, wanted(f) - f.gap);
-      out.iterations = step;
-      if (options_.progress && !options_.progress(step, missing)) {
-        out.reason = "interrupted";
-        break;
-      }
-      if (missing <= 0.0) {
-        out.solved = true;
-        break;
-      }
-      if (step == options_.max_iterations) {
-        out.reason = fmt::format("{} iterations were not enough", step);
-        break;
-      }
-      aim = std::min(0.2, 0.05 + 0.01 * step);
-      system.update(options_.threads);
-      const std::vector<Demand> demands = demands_of(facings, aim);
-      const Eigen::VectorXd x = system.solve(demands, options_.threads);
-      double largest = 0.0;
-      for (std::size_t y = 0; y < strands_.size(); ++y)
-        largest = std::max(largest,
-                           strands_[y].largest_move(x.segment(system.offset(y), system.length(y)), modes_) /
-                               strands_[y].thickness());
-      const double factor = largest > 0.1 ? 0.1 / largest : 1.0;
-      for (std::size_t y = 0; y < strands_.size(); ++y)
-        strands_[y].move(x.segment(system.offset(y), system.length(y)), modes_, factor);
+    Result<Contacts> contacts = survey(originals_);
+    if (!contacts) return contacts.error();
+    out_.before = state_of(*contacts);
+    if (is_hopeless(*contacts)) return give_up(*contacts);
+    if (!options_.make_contact && !has_narrow_gap(*contacts)) return unchanged();
+    Stiffness stiffness;
+    // A bound that was passed is held more stiffly in another run.
+    for (int attempt = 0;; ++attempt) {
+      if (Status moved = move_apart(stiffness); !moved) return moved.error();
+      if (!out_.solved) return std::move(out_);
+      const std::string broken = broken_bound();
+      if (broken.empty()) return std::move(out_);
+      out_.solved = false;
+      out_.reason = broken;
+      if (attempt == 2) return std::move(out_);
+      for (std::size_t y = 0; y < originals_.size(); ++y)
+        if (out_.changes[y].turning < 0.0) is_affine_[y] = 1;
+      stiffness.stretch *= 5.0;
+      stiffness.bend *= 3.0;
+      stiffness.shape_bend *= 3.0;
     }
-    return finish(std::move(out));
   }
 
  private:
-  [[nodiscard]] double wanted(const Facing& f) const {
+  [[nodiscard]] double wanted(std::size_t a, std::size_t b) const {
+    return options_.gap.value_or(default_gap * std::min(extents_[a].least, extents_[b].least));
+  }
+  [[nodiscard]] double largest_wanted() const {
     if (options_.gap) return *options_.gap;
-    return 0.01 * std::min(strands_[f.a].thickness(), strands_[f.b].thickness());
+    double most = 0.0;
+    for (const Extents& extents : extents_) most = std::max(most, extents.least);
+    return default_gap * most;
   }
 
-  std::vector<Facing> find(NearSkins& skins, int /*step*/) {
-    const double reach = 0.1 * thickness_ + std::max(0.0, options_.gap.value_or(0.01 * thickness_));
-    std::vector<Facing> facings = skins.find(reach, options_.threads);
-    // The places where two surfaces are nearest lie between samples.
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::size_t>> by_pair;
-    const std::size_t sampled = facings.size();
-    std::vector<Facing> extra;
-    for (std::size_t k = 0; k < sampled; ++k)
-      if (facings[k].gap < 2.0 * wanted(facings[k])) {
-        const Facing better = settled(strands_, facings[k]);
-        if (better.gap < facings[k].gap) extra.push_back(better);
+  [[nodiscard]] Result<Contacts> survey(std::span<const yarn::Body> bodies) const {
+    ContactOptions options;
+    options.reach = std::max(0.0, largest_wanted());
+    options.threads = options_.threads;
+    return find_contacts(bodies, options);
+  }
+
+  // Yarns that no small displacement can part.
+  bool is_hopeless(const Contacts& contacts) {
+    const double gap = options_.gap.value_or(0.0);
+    for (std::size_t y = 0; y < originals_.size(); ++y)
+      if (gap > 0.5 * extents_[y].least) {
+        out_.reason = fmt::format(
+            "a gap of {:.4g} is more than half the thickness of yarn '{}', {:.4g}: its section would vanish",
+            gap, originals_[y].name, extents_[y].least);
+        return true;
       }
-    facings.insert(facings.end(), extra.begin(), extra.end());
+    for (const Contact& contact : contacts.list) {
+      const double least = std::min(extents_[contact.a].least, extents_[contact.b].least);
+      if (contact.depth() <= deepest * least) continue;
+      out_.reason = fmt::format(
+          "yarns '{}' and '{}' run through each other: they overlap {:.4g} deep, more than half of the "
+          "thickness {:.4g}, so that neither side is the nearer one",
+          originals_[contact.a].name, originals_[contact.b].name, contact.depth(), least);
+      return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool has_narrow_gap(const Contacts& contacts) const {
+    return std::any_of(contacts.list.begin(), contacts.list.end(),
+                       [&](const Contact& c) { return c.gap < wanted(c.a, c.b); });
+  }
+
+  Relaxation unchanged() {
+    out_.after = out_.before;
+    out_.bodies = originals_;
+    out_.changes.assign(originals_.size(), {});
+    out_.solved = true;
+    return std::move(out_);
+  }
+
+  Relaxation give_up(const Contacts& contacts) {
+    out_.after = out_.before;
+    out_.bodies = originals_;
+    out_.changes.assign(originals_.size(), {});
+    list_jams(contacts);
+    return std::move(out_);
+  }
+
+  void list_jams(const Contacts& contacts) {
+    out_.jams.clear();
+    std::map<std::pair<std::size_t, std::size_t>, Jam> worst;
+    for (const Contact& contact : contacts.list) {
+      if (contact.gap >= wanted(contact.a, contact.b)) continue;
+      const auto [found, is_new] =
+          worst.try_emplace({contact.a, contact.b}, Jam{contact.a, contact.b, contact.gap, contact.at});
+      if (!is_new && contact.gap < found->second.gap)
+        found->second = {contact.a, contact.b, contact.gap, contact.at};
+    }
+    for (const auto& [pair, jam] : worst) out_.jams.push_back(jam);
+    std::stable_sort(out_.jams.begin(), out_.jams.end(),
+                     [](const Jam& x, const Jam& y) { return x.gap < y.gap; });
+  }
+
+  // Which bound the result does not keep; empty: it keeps them all.
+  [[nodiscard]] std::string broken_bound() const {
+    for (std::size_t y = 0; y < out_.changes.size(); ++y) {
+      const YarnChange& change = out_.changes[y];
+      const auto by = [&](std::string_view what, double value, double bound) {
+        return fmt::format("{} of yarn '{}' would change by {:.3g} %, {:.3g} % are allowed", what,
+                           originals_[y].name, 100.0 * value, 100.0 * bound);
+      };
+      if (std::abs(change.area) > area_bound) return by("a section's area", change.area, area_bound);
+      if (std::abs(change.length) > length_bound) return by("the length", change.length, length_bound);
+      if (std::abs(change.volume) > volume_bound) return by("the volume", change.volume, volume_bound);
+      if (change.turning < 0.0)
+        return fmt::format("a section of yarn '{}' that was convex would become concave", originals_[y].name);
+      if (out_.bodies[y].tight_bends.size() > originals_[y].tight_bends.size())
+        return fmt::format("yarn '{}' would bend tighter than its section allows", originals_[y].name);
+    }
+    return {};
+  }
+
+  // Steps from the originals on until every gap is wide enough, or nothing improves.
+  Status move_apart(const Stiffness& stiffness) {
+    strands_.clear();
+    for (std::size_t y = 0; y < originals_.size(); ++y) {
+      strands_.emplace_back(originals_[y], 0.6 * std::sqrt(extents_[y].least * extents_[y].most));
+      if (is_affine_[y] != 0) strands_.back().allowed_fields = affine_fields;
+    }
+    NearSkins skins(strands_);
+    DisplacementSystem system(strands_, stiffness, modes_);
+    for (const FixedPoint& point : options_.fixed)
+      system.hold(point.yarn, strands_[point.yarn].arc_of(point.parameter));
+    std::vector<Facing> overlooked;  // by samples, as the exact check found
+    double least_missing = infinity;
+    int best = 0, verdicts = 0;
+    for (int step = 0;; ++step, ++out_.iterations) {
+      std::vector<Facing> facings = find(skins);
+      double missing = overlooked.empty() ? -infinity : 0.0;
+      for (const Facing& f : facings) missing = std::max(missing, missing_in(f));
+      facings.insert(facings.end(), overlooked.begin(), overlooked.end());
+      overlooked.clear();
+      for (const Facing& f : facings) missing = std::max(missing, missing_in(f));
+      if (options_.progress && !options_.progress(out_.iterations, missing))
+        return stop("it was interrupted");
+      if (missing <= 0.0) {
+        Result<std::vector<Facing>> left = verdict();
+        if (!left) return left.error();
+        if (left->empty()) return {};
+        if (++verdicts == most_verdicts) return stop("what is left between the yarns does not get wider");
+        overlooked = std::move(*left);
+        facings.insert(facings.end(), overlooked.begin(), overlooked.end());
+      } else if (missing < 0.9 * least_missing) {
+        least_missing = missing;
+        best = step;
+      } else if (step - best > patience) {
+        return stop("the yarns are jammed: no step brings them farther apart");
+      }
+      if (step == options_.max_iterations)
+        return stop(fmt::format("{} steps were not enough", options_.max_iterations));
+      make_step(system, facings, std::min(0.2, 0.05 + 0.01 * step));
+    }
+  }
+
+  void make_step(DisplacementSystem& system, const std::vector<Facing>& facings, double aim) {
+    system.update(options_.threads);
+    const Eigen::VectorXd x = system.solve(demands_of(facings, aim), options_.threads);
+    std::vector<double> moves(strands_.size());
+    const auto part = [&](std::size_t y) { return x.segment(system.offset(y), system.length(y)); };
+    for_each_index(strands_.size(), options_.threads, [&](std::size_t y) {
+      moves[y] = strands_[y].largest_move(part(y), modes_) / strands_[y].thickness();
+    });
+    const double largest = moves.empty() ? 0.0 : *std::max_element(moves.begin(), moves.end());
+    const double factor = largest > step_share ? step_share / largest : 1.0;
+    for_each_index(strands_.size(), options_.threads,
+                   [&](std::size_t y) { strands_[y].move(part(y), modes_, factor); });
+  }
+
+  // How much is missing to the wanted gap; with make_contact also how much the surfaces are too far apart.
+  [[nodiscard]] double missing_in(const Facing& f) const {
+    const double goal = wanted(f.a, f.b);
+    if (f.is_pulled) return std::abs(f.gap - goal) - 0.02 * std::abs(goal);
+    return goal - f.gap;
+  }
+
+  std::vector<Facing> find(NearSkins& skins) const {
+    const double reach = reach_share * thinnest_ + std::max(0.0, largest_wanted());
+    std::vector<Facing> facings = skins.find(reach, options_.threads);
+    // The places where two surfaces are nearest lie between samples: one for each small cube of space.
+    const double cube = 0.25 * thinnest_;
+    std::map<std::array<long long, 5>, std::size_t> places;
+    for (std::size_t k = 0; k < facings.size(); ++k) {
+      const Facing& f = facings[k];
+      if (!options_.make_contact && f.gap > 3.0 * std::max(0.0, wanted(f.a, f.b)) + 0.01 * thinnest_)
+        continue;
+      const Vec3 middle = 0.5 * (f.on_a + f.on_b) / cube;
+      const auto [a, b] = std::minmax(f.a, f.b);
+      const std::array<long long, 5> key = {a, b, std::llround(middle.x()), std::llround(middle.y()),
+                                            std::llround(middle.z())};
+      const auto [found, is_new] = places.try_emplace(key, k);
+      if (!is_new && f.gap < facings[found->second].gap) found->second = k;
+    }
+    std::vector<std::size_t> chosen;
+    for (const auto& [key, k] : places) chosen.push_back(k);
+    std::vector<std::optional<Facing>> nearest(chosen.size());
+    for_each_index(chosen.size(), options_.threads,
+                   [&](std::size_t k) { nearest[k] = settled(strands_, facings[chosen[k]]); });
+    for (std::optional<Facing>& f : nearest) {
+      if (!f) continue;
+      f->is_pulled = options_.make_contact && f->gap < 0.05 * thinnest_;
+      facings.push_back(*f);
+    }
     return facings;
   }
 
-  Demand::Side side(std::uint32_t y, const Vec2& site, const Vec3& point, const Vec3& direction) const {
+  [[nodiscard]] Demand::Side side(std::uint32_t y, const Vec2& site, const Vec3& point,
+                                  const Vec3& direction) const {
     Demand::Side side;
     side.strand = y;
     const Stencil stencil = strands_[y].stencil(strands_[y].arc_of(site.y()));
     side.first = stencil.first;
-    displacement_form(strands_[y].frame_at(site.y()), stencil, point, direction, modes_, side.form);
+    displacement_form(strands_[y].frame_at(site.y()), stencil, point, direction, modes_,
+                      strands_[y].allowed_fields, side.form);
     return side;
   }
 
-  std::vector<Demand> demands_of(const std::vector<Facing>& facings, double aim) const {
-    std::vector<Demand> demands;
-    demands.reserve(facings.size());
-    for (const Facing& f : facings) {
-      Demand demand;
+  [[nodiscard]] std::vector<Demand> demands_of(const std::vector<Facing>& facings, double aim) const {
+    std::vector<Demand> demands(facings.size());
+    for_each_index(facings.size(), options_.threads, [&](std::size_t k) {
+      const Facing& f = facings[k];
+      Demand& demand = demands[k];
       demand.plus = side(f.b, f.site_b, f.on_b, f.normal);
       demand.minus = side(f.a, f.site_a, f.on_a, f.normal);
       demand.has_minus = true;
-      const double goal = wanted(f);
-      demand.missing = goal + aim * std::abs(goal) - f.gap;
-      demands.push_back(demand);
-    }
+      demand.is_equal = f.is_pulled;
+      const double goal = wanted(f.a, f.b);
+      demand.missing = goal + (f.is_pulled ? 0.0 : aim * std::abs(goal)) - f.gap;
+    });
     return demands;
   }
 
-  Result<Relaxation> finish(Relaxation out) {
-    for (std::size_t y = 0; y < strands_.size(); ++y) {
-      yarn::Body body = originals_[y];
-      const yarn::Body before = originals_[y];
-      body.surface = strands_[y].body().surface;
-      body.axis = yarn::section_centres(body.surface);
-      body.tight_bends.clear();
-      body.messages.clear();
-      if (Status done = yarn::finish(body, body.start.style); !done) return done.error();
-      YarnChange change;
-      const nurbs::Curve old = yarn::section_centres(before.surface);
-      const double old_length = nurbs::arc_length(old);
-      change.length = nurbs::arc_length(body.axis) / old_length - 1.0;
-      change.volume = body.volume / before.volume - 1.0;
-      const double first = before.surface.first_v(), last = before.surface.last_v();
-      const int samples = std::max(20, strands_[y].nodes() * 2);
-      for (int i = 0; i <= samples; ++i) {
-        const double v = first + (last - first) * i / samples;
-        change.move = std::max(change.move, (nurbs::evaluate(old, v) - nurbs::evaluate(body.axis, v)).norm());
-        const double area = section_area(body.surface, v) / section_area(before.surface, v) - 1.0;
-        if (std::abs(area) > std::abs(change.area)) change.area = area;
-      }
-      out.changes.push_back(change);
-      out.bodies.push_back(std::move(body));
+  // The place of a contact's point for the equations: one on an end face moves with the end.
+  [[nodiscard]] Vec2 site_of(std::size_t y, const std::optional<Vec2>& site, const Vec3& point) const {
+    if (site) return *site;
+    const nurbs::Surface& s = strands_[y].body().surface;
+    const double to_first = (point - strands_[y].row_frame(0).centre).norm();
+    const double to_last = (point - strands_[y].row_frame(strands_[y].rows() - 1).centre).norm();
+    return {s.first_u(), to_first < to_last ? s.first_v() : s.last_v()};
+  }
+
+  // The finished bodies, their changes, and what the exact search still finds too near.
+  Result<std::vector<Facing>> verdict() {
+    if (Status done = finish_bodies(); !done) return done.error();
+    Result<Contacts> contacts = survey(out_.bodies);
+    if (!contacts) return contacts.error();
+    std::vector<Facing> left;
+    for (const Contact& contact : contacts->list) {
+      if (contact.gap >= (1.0 - 1e-3) * wanted(contact.a, contact.b)) continue;
+      Facing f;
+      f.a = static_cast<std::uint32_t>(contact.a);
+      f.b = static_cast<std::uint32_t>(contact.b);
+      f.on_a = contact.on_a;
+      f.on_b = contact.on_b;
+      f.normal = contact.direction;
+      f.gap = contact.gap;
+      f.site_a = site_of(contact.a, contact.site_a, contact.on_a);
+      f.site_b = site_of(contact.b, contact.site_b, contact.on_b);
+      left.push_back(f);
     }
-    return out;
+    out_.after = state_of(*contacts);
+    out_.solved = left.empty();
+    return left;
+  }
+
+  Status stop(std::string reason) {
+    out_.solved = false;
+    out_.reason = std::move(reason);
+    if (Status done = finish_bodies(); !done) {
+      // The surfaces went so far astray that they are no yarns any more: nothing is said of their gaps.
+      out_.bodies = originals_;
+      out_.changes.assign(originals_.size(), {});
+      out_.after = out_.before;
+      return {};
+    }
+    Result<Contacts> contacts = survey(out_.bodies);
+    if (!contacts) return contacts.error();
+    out_.after = state_of(*contacts);
+    list_jams(*contacts);
+    return {};
+  }
+
+  Status finish_bodies() {
+    out_.bodies.assign(originals_.size(), {});
+    out_.changes.assign(originals_.size(), {});
+    std::vector<std::optional<Message>> faults(originals_.size());
+    for_each_index(originals_.size(), options_.threads, [&](std::size_t y) { faults[y] = finish_body(y); });
+    for (const std::optional<Message>& fault : faults)
+      if (fault) return *fault;
+    return {};
+  }
+
+  std::optional<Message> finish_body(std::size_t y) {
+    const yarn::Body& before = originals_[y];
+    yarn::Body& body = out_.bodies[y];
+    body = before;
+    body.surface = strands_[y].body().surface;
+    body.axis = yarn::section_centres(body.surface);
+    body.tight_bends.clear();
+    if (Status done = yarn::finish(body, yarn::Sealings{{{before.start.style, {}}, {before.end.style, {}}}});
+        !done)
+      return done.error();
+    YarnChange& change = out_.changes[y];
+    const nurbs::Curve old = yarn::section_centres(before.surface);
+    change.length = nurbs::arc_length(body.axis) / nurbs::arc_length(old) - 1.0;
+    change.volume = body.volume / before.volume - 1.0;
+    const std::vector<double> places = section_places(body.surface, 1);
+    const std::vector<SectionShape> shapes = section_shapes(body.surface, places),
+                                    old_shapes = section_shapes(before.surface, places);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      change.move = std::max(
+          change.move, (nurbs::evaluate(old, places[k]) - nurbs::evaluate(body.axis, places[k])).norm());
+      const double area = shapes[k].area / old_shapes[k].area - 1.0;
+      if (std::abs(area) > std::abs(change.area)) change.area = area;
+      if (shapes[k].least_turning < -turning_noise && old_shapes[k].least_turning > -turning_noise)
+        change.turning = std::min(change.turning, shapes[k].least_turning);
+    }
+    return std::nullopt;
   }
 
   RelaxOptions options_;
   std::vector<yarn::Body> originals_;
+  std::vector<Extents> extents_;
+  std::vector<char> is_affine_;  // one a yarn: its sections change by affine fields only
   std::vector<Strand> strands_;
   int modes_;
-  double thickness_ = std::numeric_limits<double>::infinity();
+  double thinnest_ = infinity;
+  Relaxation out_;
 };
 
 }  // namespace
 
 Result<Relaxation> relax(std::vector<yarn::Body> bodies, const RelaxOptions& options) {
+  for (const yarn::Body& body : bodies)
+    if (body.surface.is_empty() || body.surface.count_v < 2) {
+      Message message = error(Kind::geometry, fmt::format("yarn '{}' has no surface to move", body.name));
+      message.yarn = body.name;
+      return message;
+    }
   return Relaxer(std::move(bodies), options).run();
 }
 

@@ -53,6 +53,9 @@ struct YarnChange {
   double length = 0;  // relative changes
   double volume = 0;
   double area = 0;  // of that section which changed most
+  // The least turning of a section's outline that was convex before (section_shape.h), radians: below zero it
+  // became concave.
+  double turning = 0;
 };
 
 // A pair of yarns that could not be parted.
@@ -75,8 +78,9 @@ struct Relaxation {
 // Bounds that hold in a solved relaxation.
 inline constexpr double area_bound = 0.02, length_bound = 0.01, volume_bound = 0.01;
 
-// Errors: geometry (yarns that cannot be moved apart at all: two identical ones, one inside another, one
-// through another's centre line; a body without sections), limit. Bodies keep names, knots round, colours;
+// Yarns that cannot be moved apart at all (two identical ones, one inside another, one through another's
+// centre line, a gap of the size of a section) and jammed ones are not errors: the result is not solved, and
+// says why. Errors: geometry (a body without a surface), limit. Bodies keep names, knots round, colours;
 // knots along may be refined; end faces are made anew in their planes.
 Result<Relaxation> relax(std::vector<yarn::Body> bodies, const RelaxOptions& options);
 

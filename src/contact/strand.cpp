@@ -71,17 +71,17 @@ std::array<Vec2, shape_modes> shape_fields(const Frame& frame, const Vec2& local
 }
 
 void displacement_form(const Frame& frame, const Stencil& stencil, const Vec3& point, const Vec3& direction,
-                       int modes, Form& form) {
+                       int modes, int fields, Form& form) {
   const Vec3 offset = point - frame.centre;
   const double tilt = frame.tilts ? frame.along.dot(direction) : 0.0;
   // An end stays in its plane.
   const Vec3 way = frame.tilts ? direction : Vec3(direction - frame.along.dot(direction) * frame.along);
   std::array<double, shape_modes> shapes{};
-  if (modes == all_modes) {
-    const std::array<Vec2, shape_modes> fields =
+  if (modes == all_modes && fields > 0) {
+    const std::array<Vec2, shape_modes> known =
         shape_fields(frame, {offset.dot(frame.x), offset.dot(frame.y)});
     const Vec2 plane(direction.dot(frame.x), direction.dot(frame.y));
-    for (std::size_t m = 0; m < fields.size(); ++m) shapes[m] = fields[m].dot(plane);
+    for (std::size_t m = 0; m < at(fields); ++m) shapes[m] = known[m].dot(plane);
   }
   for (int k = 0; k < 4; ++k) {
     const Vec3 translation = stencil.value[at(k)] * way - tilt * stencil.slope[at(k)] * offset;

@@ -36,15 +36,20 @@ std::array<Vec2, shape_modes> shape_fields(const Frame& frame, const Vec2& local
 int field_degree(int mode);
 
 // The linear form: component along `direction` of the displacement of a point of the section, by the
-// coefficients of the stencil's nodes.
+// coefficients of the stencil's nodes. `fields`: how many of the plane fields the yarn may use; the first
+// three are affine, so that what was convex stays convex, and flat stays flat.
+inline constexpr int affine_fields = 3;
 using Form = Eigen::Matrix<double, 4 * all_modes, 1>;  // of node k: k * modes .. ; only 4 * modes are used
 void displacement_form(const Frame& frame, const Stencil& stencil, const Vec3& point, const Vec3& direction,
-                       int modes, Form& form);
+                       int modes, int fields, Form& form);
 
 class Strand {
  public:
   // `spacing`: wanted distance of the nodes. Rows are inserted where they stand farther apart.
   Strand(yarn::Body body, double spacing);
+
+  // The plane fields that it may use: all, affine_fields, or none.
+  int allowed_fields = shape_modes;
 
   [[nodiscard]] const yarn::Body& body() const { return body_; }
   [[nodiscard]] double length() const { return length_; }    // of the centre line as it came
