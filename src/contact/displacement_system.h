@@ -51,8 +51,6 @@ class DisplacementSystem {
   // The step: coefficients of all strands. `demands` of the present shape.
   Eigen::VectorXd solve(std::span<const Demand> demands, int threads);
 
-  double value(const Demand& d, const Eigen::VectorXd& x) const { return apply(d, x); }
-
  private:
   struct Station {
     Stencil stencil;
