@@ -245,11 +245,12 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
       warn(roundness_note(fabric, thread, yarn->place));
     }
     if (const auto* weave = std::get_if<Weave>(&item))
-      builder.add_construction(make_weave(fabric, *weave, diagnostics), weave->place, diagnostics);
+      builder.add_construction(make_weave(fabric, *weave, options, diagnostics), weave->place, diagnostics);
     if (const auto* knit = std::get_if<Knit>(&item))
       builder.add_construction(make_knit(fabric, *knit, diagnostics), knit->place, diagnostics);
     if (const auto* warpknit = std::get_if<Warpknit>(&item))
-      builder.add_construction(make_warpknit(fabric, *warpknit, diagnostics), warpknit->place, diagnostics);
+      builder.add_construction(make_warpknit(fabric, *warpknit, diagnostics), warpknit->place,
+                               diagnostics);
     if (const auto* braid = std::get_if<Braid>(&item))
       builder.add_construction(make_braid(fabric, *braid, diagnostics), braid->place, diagnostics);
     for (const std::string& name : threads_of(item))

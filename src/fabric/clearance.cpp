@@ -23,8 +23,8 @@ double signed_distance(const std::vector<Vec2>& polygon, const Vec2& p) {
   return inside ? -std::sqrt(nearest) : std::sqrt(nearest);
 }
 
-std::vector<Vec2> outline_polygon(const yarn::Section& section) {
-  constexpr int pieces = 8, looks = 2;  // in a quarter, in a piece of it
+std::vector<Vec2> outline_polygon(const yarn::Section& section, int looks) {
+  constexpr int pieces = 8;  // in a quarter
   const yarn::Outline outline = yarn::make_outline(section, yarn::nominal_size(section), pieces, false);
   nurbs::Curve curve;
   curve.degree = outline.degree;
@@ -39,24 +39,86 @@ std::vector<Vec2> outline_polygon(const yarn::Section& section) {
   return polygon;
 }
 
+namespace {
+
+// How far the fine outline reaches beyond the other one.
+double coarseness(const SweptYarn& yarn) {
+  double most = 0.0;
+  for (const Vec2& q : yarn.fine) most = std::max(most, signed_distance(yarn.outline, q));
+  return most;
+}
+
+double reach_of(const std::vector<Vec2>& outline) {
+  double reach = 0.0;
+  for (const Vec2& q : outline) reach = std::max(reach, q.norm());
+  return reach;
+}
+
+// Points of a yarn's surface against the section of another in whose plane they lie.
+class GapSearch {
+ public:
+  GapSearch(const SweptYarn& b, double near_b, double reach_b)
+      : b_(b), near_(near_b), reach_(reach_b), t_(near_b) {}
+
+  // Begins anew at the middle; after this, neighbours have their feet near each other.
+  void restart() { t_ = near_; }
+  SweptStation foot_of(const Vec3& p) {
+    SweptStation station = b_.at(t_);
+    for (int step = 0; step < 8; ++step) {
+      const double move = (p - station.position).dot(station.derivative) / station.derivative.squaredNorm();
+      t_ = std::clamp(t_ + move, near_ - reach_, near_ + reach_);
+      station = b_.at(t_);
+      if (std::abs(move) < 1e-6) break;
+    }
+    return station;
+  }
+  double gap_of(const SweptStation& on, const Vec2& q, const std::vector<Vec2>& outline) {
+    const Vec3 p = on.position + q.x() * on.across + q.y() * on.up;
+    const SweptStation foot = foot_of(p);
+    const Vec3 d = p - foot.position;
+    return signed_distance(outline, Vec2(d.dot(foot.across), d.dot(foot.up)));
+  }
+
+ private:
+  const SweptYarn& b_;
+  double near_, reach_, t_;
+};
+
+}  // namespace
+
 double least_gap(const SweptYarn& a, double from, double to, int stations, const SweptYarn& b, double near_b,
                  double reach_b) {
+  struct Near {
+    int station;
+    std::size_t point;
+    double gap;
+  };
+  const bool refines = !a.fine.empty() && !b.fine.empty();
+  const double slack = refines ? coarseness(a) + coarseness(b) : 0.0;
+  const double reaches = reach_of(a.outline) + reach_of(b.outline);
+  std::vector<Near> near;
+  GapSearch search(b, near_b, reach_b);
   double gap = std::numeric_limits<double>::infinity();
+  const auto station_at = [&](int i) { return a.at(from + (to - from) * i / stations); };
   for (int i = 0; i <= stations; ++i) {
-    const SweptStation sa = a.at(from + (to - from) * i / stations);
-    double t = near_b;  // neighbours on the outline have their feet near each other
-    for (const Vec2& q : a.outline) {
-      const Vec3 p = sa.position + q.x() * sa.across + q.y() * sa.up;
-      SweptStation sb = b.at(t);
-      for (int step = 0; step < 8; ++step) {
-        const double move = (p - sb.position).dot(sb.derivative) / sb.derivative.squaredNorm();
-        t = std::clamp(t + move, near_b - reach_b, near_b + reach_b);
-        sb = b.at(t);
-        if (std::abs(move) < 1e-6) break;
-      }
-      const Vec3 d = p - sb.position;
-      gap = std::min(gap, signed_distance(b.outline, Vec2(d.dot(sb.across), d.dot(sb.up))));
+    const SweptStation on = station_at(i);
+    search.restart();
+    if ((search.foot_of(on.position).position - on.position).norm() - reaches > gap + slack) continue;
+    for (std::size_t k = 0; k < a.outline.size(); ++k) {
+      const double here = search.gap_of(on, a.outline[k], b.outline);
+      gap = std::min(gap, here);
+      if (refines && here < gap + slack) near.push_back({i, k, here});
     }
+  }
+  if (!refines) return gap;
+  const std::size_t finer = a.fine.size() / a.outline.size(), count = a.fine.size();
+  const double coarse_gap = gap;
+  for (const Near& place : near) {
+    if (place.gap >= coarse_gap + slack) continue;
+    const SweptStation on = station_at(place.station);
+    search.restart();
+    for (std::size_t i = count + 1 - finer; i < count + finer; ++i)
+      gap = std::min(gap, search.gap_of(on, a.fine[(place.point * finer + i) % count], b.fine));
   }
   return gap;
 }

@@ -19,17 +19,19 @@ struct SweptStation {
 struct SweptYarn {
   std::function<SweptStation(double)> at;
   std::vector<Vec2> outline;  // of the section, a polygon
+  std::vector<Vec2> fine{};   // the same with a whole multiple of its points; may be empty
 };
 
-// Points on the outline of a section of its own size, closest where it bends most.
-std::vector<Vec2> outline_polygon(const yarn::Section& section);
+// Points on the outline of a section of its own size, closest where it bends most: 32 times `looks` of them.
+std::vector<Vec2> outline_polygon(const yarn::Section& section, int looks = 2);
 
 // Distance of a point from a polygon; negative inside.
 double signed_distance(const std::vector<Vec2>& polygon, const Vec2& p);
 
 // The least signed distance (negative: inside) of the surface of `a` between two parameters from the section
 // of `b` in whose plane each of its points lies, searched from parameter `near_b`, at most `reach_b` away
-// from it. Sampled: `stations` along the path.
+// from it. Sampled: `stations` along the path; where both yarns have a fine outline it is looked at there
+// where the gap is least.
 double least_gap(const SweptYarn& a, double from, double to, int stations, const SweptYarn& b, double near_b,
                  double reach_b);
 

@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "fabric/build.h"
 #include "fabric/draft.h"
 #include "fabric/interlacing.h"
+#include "fabric/weave_fit.h"
 #include "fabric/weave_system.h"
 #include "fabric/yarn_spec.h"
 
@@ -24,7 +27,8 @@ Message at_line(Message message, TextPlace place) {
 }
 
 constexpr int most_layers = 100'000;
-constexpr int points_a_wave = 8;  // of a sine, from crossing to crossing
+// Of a thickness, between the surfaces of yarns that cross: less makes poor tetrahedra of what lies between.
+constexpr double clearance_share = 0.01;
 
 // The yarns of one kind and layer, one after the other in the construction's order.
 struct Block {
@@ -64,13 +68,24 @@ Reach reach_over(const System& crossed, bool has_cell, double low, double high) 
   return {static_cast<double>(-before) * pitch, static_cast<double>(last + 1) * pitch, -before, last};
 }
 
+int level_at(const Binder& binder, long long column) {
+  const auto n = static_cast<long long>(binder.levels.size());
+  return binder.levels[static_cast<std::size_t>(((column % n) + n) % n)];
+}
+
 class WeaveConstruction final : public Construction {
  public:
-  WeaveConstruction(const Fabric& fabric, const Weave& weave, System warp, System weft)
-      : fabric_(fabric), weave_(weave), warp_(std::move(warp)), weft_(std::move(weft)) {
+  WeaveConstruction(const Fabric& fabric, const Weave& weave, const BuildOptions& options, System warp,
+                    System weft)
+      : fabric_(fabric),
+        weave_(weave),
+        as_published_(options.as_published),
+        warp_(std::move(warp)),
+        weft_(std::move(weft)) {
     const bool has_cell = fabric.cell.has_value();
-    // Both tubes are modelled within the tolerance: at twice that they do not overlap.
-    clearance_ = 2.0 * tolerance_of(fabric, {});
+    // Both tubes are modelled within the tolerance.
+    clearance_ = 2.0 * std::max(tolerance_of(fabric, {}), options.tolerance);
+    if (!as_published_) clearance_ += clearance_share * std::min(warp_.thickest, weft_.thickest);
     const Cell cell = fabric.cell.value_or(Cell{});
     along_x_ = reach_over(weft_, has_cell, cell.low.x(), cell.high.x());
     along_y_ = reach_over(warp_, has_cell, cell.low.y(), cell.high.y());
@@ -104,15 +119,20 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] bool is_straight() const { return weave_.profile == Weave::Profile::straight; }
   [[nodiscard]] int layers() const { return weave_.layers.value_or(1); }
   void add_block(Block::Kind kind, int layer, std::size_t set, std::size_t count);
-  Status prepare_interlacing();
-  Status prepare_binders();
+  Status prepare_interlacing(Diagnostics& diagnostics);
+  [[nodiscard]] Result<Heights> fit_heights(Diagnostics& diagnostics);
+  Status prepare_binders(Diagnostics& diagnostics);
   [[nodiscard]] Status check_binder(const Block& block) const;
   void warn_of_widths(Diagnostics& diagnostics) const;
+  void warn(TextPlace place, std::string text, Diagnostics& diagnostics) const;
   [[nodiscard]] double straight_z(bool is_weft, int layer) const;
   [[nodiscard]] long long binder_gap(const Binder& binder, long long yarn) const {
     return binder.first + yarn * binder.every;
   }
-  [[nodiscard]] Pass binder_pass(const Binder& binder, const WovenThread& own, long long column) const;
+  [[nodiscard]] Pass binder_pass(std::size_t set, long long column) const;
+  void fit_binder(const Block& block, Diagnostics& diagnostics);
+  [[nodiscard]] double binder_gap_to_wefts(const Block& block) const;
+  [[nodiscard]] long long last_different_column(const Binder& binder) const;
   [[nodiscard]] std::vector<Pass> passes_of(const Place& place) const;
   [[nodiscard]] double layer_shift(int layer) const { return (layer - 0.5 * (layers() - 1)) * layer_pitch_; }
   Status plan_sine(YarnPlan& plan, const std::vector<Pass>& passes, const Reach& reach, bool is_weft,
@@ -120,13 +140,18 @@ class WeaveConstruction final : public Construction {
 
   const Fabric& fabric_;
   const Weave& weave_;
+  bool as_published_ = false;
   System warp_, weft_;
-  std::vector<WovenThread> binders_;  // one a binder line
+  // One a binder line: its thread, and the clearance of its bends from the wefts.
+  std::vector<WovenThread> binders_;
+  std::vector<double> binder_clearances_;
+  double warp_layer_ = 0;  // thickness of a layer of straight warps and what lies between them
   Reach along_x_, along_y_;
   Drawdown drawdown_;
   Heights heights_;
   std::optional<Bend> warp_bend_, weft_bend_;  // none: sine
   double clearance_ = 0;                       // between yarns that cross
+  double thinner_ = 0;                         // by which warps and wefts are less thick than their threads
   double layer_pitch_ = 0;
   std::vector<Block> blocks_;
   std::uint64_t data_points_ = 0;
@@ -154,7 +179,41 @@ std::pair<bool, bool> changes_of(const Drawdown& drawdown) {
   return {warps, wefts};
 }
 
-Status WeaveConstruction::prepare_interlacing() {
+// Heights at which yarns pass each other at the clearance, and how much thinner they become for it.
+Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
+  // A sine has room for any height over any pitch.
+  const auto [warps_change, wefts_change] = changes_of(drawdown_);
+  const SystemPair pair{&warp_,
+                        &weft_,
+                        warp_bend_.value_or(Bend::round),
+                        weft_bend_.value_or(Bend::round),
+                        warps_change && warp_bend_,
+                        wefts_change && weft_bend_};
+  const auto heights_at = [&](double clearance) { return share_crimp(pair, weave_.crimp, clearance); };
+  if (as_published_ || weave_.amplitude) {
+    Result<Heights> apart = heights_at(clearance_);
+    return apart.ok() ? apart : heights_at(0.0);
+  }
+  Result<WeaveFit> fit =
+      fit_weave({&warp_, &weft_, &drawdown_, warp_bend_, weft_bend_}, clearance_, heights_at);
+  if (!fit) return fit.error();
+  thinner_ = fit->thinner;
+  const std::string_view unit = name_of(fabric_.units);
+  if (fit->gap <= 0.0)
+    warn(weave_.place,
+         fmt::format("yarns that cross have no room to pass each other and overlap, by about {:.2g} {}: a "
+                     "larger pitch or narrower sections give it",
+                     -fit->gap, unit),
+         diagnostics);
+  else if (thinner_ > 0.0)
+    warn(weave_.place,
+         fmt::format("the cloth is jammed: its yarns would touch, and are made {:.2g} {} thinner", thinner_,
+                     unit),
+         diagnostics);
+  return fit->heights;
+}
+
+Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   Result<Drawdown> drawdown = drawdown_of(weave_.draft);
   if (!drawdown) return drawdown.error();
   drawdown_ = std::move(*drawdown);
@@ -173,15 +232,7 @@ Status WeaveConstruction::prepare_interlacing() {
   };
   warp_bend_ = bend_over(weft_);
   weft_bend_ = bend_over(warp_);
-  // A sine has room for any height over any pitch.
-  const auto [warps_change, wefts_change] = changes_of(drawdown_);
-  const SystemPair pair{&warp_,
-                        &weft_,
-                        warp_bend_.value_or(Bend::round),
-                        weft_bend_.value_or(Bend::round),
-                        warps_change && warp_bend_,
-                        wefts_change && weft_bend_};
-  Result<Heights> heights = share_crimp(pair, weave_.crimp, clearance_);
+  Result<Heights> heights = fit_heights(diagnostics);
   if (!heights) return heights.error();
   heights_ = *heights;
   double top = 0.0;
@@ -198,7 +249,8 @@ Status WeaveConstruction::prepare_interlacing() {
   return {};
 }
 
-Status WeaveConstruction::prepare_binders() {
+Status WeaveConstruction::prepare_binders(Diagnostics& diagnostics) {
+  warp_layer_ = warp_.thickest;
   for (int layer = 0; layer <= layers(); ++layer) {
     if (layer < layers()) add_block(Block::Kind::warp, layer, 0, static_cast<std::size_t>(warp_.text->count));
     add_block(Block::Kind::weft, layer, 0, static_cast<std::size_t>(weft_.text->count));
@@ -208,7 +260,10 @@ Status WeaveConstruction::prepare_binders() {
     Result<WovenThread> woven = woven_thread(fabric_, binder.thread, binder.place);
     if (!woven) return woven.error();
     binders_.push_back(std::move(*woven));
-    for (int level : binder.levels)
+    binder_clearances_.push_back(clearance_);
+    for (int level : binder.levels) {
+      if (level > 0 && level <= layers() && !as_published_)
+        warp_layer_ = std::max(warp_layer_, binders_.back().size.height);
       if (level > layers() + 1)
         return at_line(
             error(Kind::geometry,
@@ -216,6 +271,7 @@ Status WeaveConstruction::prepare_binders() {
                               "so levels go from 0 to {}",
                               level, layers(), layers() + 1, layers() + 1)),
             binder.place);
+    }
     const int gaps = warp_.text->count - 1;
     if (binder.first > gaps)
       return at_line(
@@ -228,50 +284,118 @@ Status WeaveConstruction::prepare_binders() {
   for (const Block& block : blocks_) {
     if (block.kind != Block::Kind::binder) continue;
     if (Status fits = check_binder(block); !fits) return fits;
+    if (!as_published_) fit_binder(block, diagnostics);
   }
   return {};
 }
 
-// One repeat of a binder's levels over the wefts' threads tells whether it has room everywhere.
-Status WeaveConstruction::check_binder(const Block& block) const {
+// The last of the columns that show all that a binder meets, from along_x_.first on.
+long long WeaveConstruction::last_different_column(const Binder& binder) const {
   constexpr long long most = 1'000'000;  // columns; a longer repeat shows its faults when its yarn is planned
-  const Binder& binder = weave_.binders[block.set];
   const auto levels = static_cast<long long>(binder.levels.size()),
              threads = static_cast<long long>(weft_.threads.size());
   const long long repeat = levels / std::gcd(levels, threads) * threads + 1;
-  const long long last = std::min({along_x_.last, along_x_.first + repeat, along_x_.first + most});
+  return std::min({along_x_.last, along_x_.first + repeat, along_x_.first + most});
+}
+
+// The least gap between a binder and the wefts that it passes.
+double WeaveConstruction::binder_gap_to_wefts(const Block& block) const {
+  constexpr int stations = 320;
+  const double pitch = weft_.text->pitch;
+  using Key = std::array<const void*, 3>;
+  std::set<std::pair<std::array<double, 3>, Key>> seen;
+  double gap = std::numeric_limits<double>::infinity();
+  const long long last = last_different_column(weave_.binders[block.set]);
+  for (long long k = along_x_.first; k <= last; ++k) {
+    std::array<Pass, 3> passes;
+    std::array<double, 3> heights{};
+    Key threads{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const long long column = k + static_cast<long long>(i) - 1;
+      passes[i] = binder_pass(block.set, column);
+      passes[i].s = (static_cast<double>(i) - 1.0) * pitch;
+      heights[i] = passes[i].z;
+      threads[i] = weft_.thread(column).thread;
+    }
+    if (!seen.emplace(heights, threads).second) continue;
+    const SweptYarn binder = swept_in_plane(PlanePath::bent(passes[0], passes[1], passes[2]), false, 0.0,
+                                            binders_[block.set].section);
+    const int own_level = level_at(weave_.binders[block.set], k);
+    // The wefts just below and above; from the others of the column the slopes lead away.
+    for (const int layer : {own_level - 1, own_level}) {
+      if (layer < 0 || layer > layers()) continue;
+      const Pass level{0.0, straight_z(true, layer), {}, {}};
+      Pass before = level, after = level;
+      before.s = -pitch;
+      after.s = pitch;
+      const SweptYarn weft =
+          swept_in_plane(PlanePath::bent(before, level, after), true, 0.0, weft_.thread(k).section);
+      gap = std::min(gap, least_gap(binder, -2.0 * pitch, 2.0 * pitch, stations, weft, 0.0, pitch));
+    }
+  }
+  return gap;
+}
+
+// Wide sections tilt on the slope and come nearer than at the crossing: the bends become wider by that.
+void WeaveConstruction::fit_binder(const Block& block, Diagnostics& diagnostics) {
+  double& clearance = binder_clearances_[block.set];
+  const double thickness = binders_[block.set].size.height;
+  const std::optional<double> least =
+      least_clearance(clearance_, clearance_ + thickness, [&](double value) -> std::optional<double> {
+        clearance = value;
+        if (!check_binder(block)) return std::nullopt;
+        return binder_gap_to_wefts(block);
+      });
+  clearance = least.value_or(clearance_);
+  if (least) return;
+  if (const double gap = binder_gap_to_wefts(block); gap <= 0.0)
+    warn(weave_.binders[block.set].place,
+         fmt::format(
+             "the binder has no room between the wefts and overlaps them, by about {:.2g} {}: a larger "
+             "pitch gives it",
+             -gap, name_of(fabric_.units)),
+         diagnostics);
+}
+
+// One repeat of a binder's levels over the wefts' threads tells whether it has room everywhere.
+Status WeaveConstruction::check_binder(const Block& block) const {
+  const Binder& binder = weave_.binders[block.set];
+  const long long last = last_different_column(binder);
   std::vector<Pass> passes;
-  for (long long k = along_x_.first; k <= last; ++k)
-    passes.push_back(binder_pass(binder, binders_[block.set], k));
+  for (long long k = along_x_.first; k <= last; ++k) passes.push_back(binder_pass(block.set, k));
   Result<yarn::CentreLine> line =
       bridge_passes(passes, along_x_.from, weft_.at(static_cast<double>(last) + 0.5), along_warp, 0.0);
   if (!line) return at_line(line.error(), binder.place);
   return {};
 }
 
+void WeaveConstruction::warn(TextPlace place, std::string text, Diagnostics& diagnostics) const {
+  Message message = warning(Kind::geometry, std::move(text));
+  message.file = fabric_.file;
+  message.place = place;
+  diagnostics.add(std::move(message));
+}
+
 void WeaveConstruction::warn_of_widths(Diagnostics& diagnostics) const {
-  const auto warn = [&](TextPlace place, std::string text) {
-    Message message = warning(Kind::geometry, std::move(text));
-    message.file = fabric_.file;
-    message.place = place;
-    diagnostics.add(std::move(message));
-  };
   for (const System* system : {&warp_, &weft_})
     if (system->widest > system->text->pitch)
-      warn(system->text->place, fmt::format("yarns {:.6g} wide at a pitch of {:.6g} overlap their neighbours",
-                                            system->widest, system->text->pitch));
+      warn(system->text->place,
+           fmt::format("yarns {:.6g} wide at a pitch of {:.6g} overlap their neighbours", system->widest,
+                       system->text->pitch),
+           diagnostics);
   for (std::size_t set = 0; set < binders_.size(); ++set)
     if (const double gap = warp_.text->pitch - warp_.widest; binders_[set].size.width > gap)
       warn(weave_.binders[set].place,
            fmt::format("a binder {:.6g} wide overlaps the warps: between them there is {:.6g}",
-                       binders_[set].size.width, gap));
+                       binders_[set].size.width, gap),
+           diagnostics);
 }
 
 Status WeaveConstruction::prepare(Diagnostics& diagnostics) {
   if (layers() > most_layers)
     return error(Kind::limit,
                  fmt::format("{} layers are more than the {} that a weave may have", layers(), most_layers));
-  Status status = is_straight() ? prepare_binders() : prepare_interlacing();
+  Status status = is_straight() ? prepare_binders(diagnostics) : prepare_interlacing(diagnostics);
   if (status.ok()) warn_of_widths(diagnostics);
   return status;
 }
@@ -304,21 +428,22 @@ const Thread& WeaveConstruction::thread(std::size_t index) const {
 }
 
 double WeaveConstruction::straight_z(bool is_weft, int layer) const {
-  return (layer - 0.5 * layers() + (is_weft ? 0.0 : 0.5)) *
-         (warp_.thickest + weft_.thickest + 2.0 * clearance_);
+  return (layer - 0.5 * layers() + (is_weft ? 0.0 : 0.5)) * (warp_layer_ + weft_.thickest + 2.0 * clearance_);
 }
 
 // Between the layers of weft a binder lies where the warps do; outside it touches the outermost weft.
-Pass WeaveConstruction::binder_pass(const Binder& binder, const WovenThread& own, long long column) const {
-  const auto n = static_cast<long long>(binder.levels.size());
-  const int level = binder.levels[static_cast<std::size_t>(((column % n) + n) % n)];
+Pass WeaveConstruction::binder_pass(std::size_t set, long long column) const {
+  const Binder& binder = weave_.binders[set];
+  const WovenThread& own = binders_[set];
+  const double clearance = binder_clearances_[set];
+  const int level = level_at(binder, column);
   const WovenThread& weft = weft_.thread(column);
   const Bend bend = std::holds_alternative<yarn::Lenticular>(weft.section) ? Bend::lens
                     : std::holds_alternative<yarn::Circle>(weft.section)   ? Bend::round
                                                                            : Bend::racetrack;
-  const Obstacle obstacle = obstacle_of(bend, weft.size, own.size.height, clearance_);
+  const Obstacle obstacle = obstacle_of(bend, weft.size, own.size.height, clearance);
   Pass pass{weft_.at(static_cast<double>(column)), 0.0, obstacle, obstacle};
-  const double outside = 0.5 * (weft.size.height + own.size.height) + clearance_;
+  const double outside = 0.5 * (weft.size.height + own.size.height) + clearance;
   if (level == 0)
     pass.z = straight_z(true, 0) - outside;
   else if (level == layers() + 1)
@@ -335,7 +460,7 @@ std::vector<Pass> WeaveConstruction::passes_of(const Place& place) const {
   std::vector<Pass> passes;
   for (long long k = reach.first; k <= reach.last; ++k) {
     if (block->kind == Block::Kind::binder) {
-      passes.push_back(binder_pass(weave_.binders[block->set], binders_[block->set], k));
+      passes.push_back(binder_pass(block->set, k));
       continue;
     }
     const System &own = is_weft ? weft_ : warp_, &crossed = is_weft ? warp_ : weft_;
@@ -388,6 +513,10 @@ Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
   const TextPlace text = is_binder ? weave_.binders[block->set].place : weave_.place;
   Result<YarnPlan> plan = start_plan(fabric_, thread(index), name(index), role, text);
   if (!plan) return plan;
+  for (yarn::SizeAtParameter& at : plan->spec.sizes) {
+    const double share = 1.0 - (is_binder ? 0.0 : thinner_) / at.size.height;
+    at.size = {share * at.size.width, share * at.size.height};
+  }
   const Reach& reach = is_weft ? along_y_ : along_x_;
   const double across =
       is_binder ? static_cast<double>(binder_gap(weave_.binders[block->set], yarn)) * warp_.text->pitch
@@ -410,12 +539,12 @@ Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
 }  // namespace
 
 Result<std::unique_ptr<Construction>> make_weave(const Fabric& fabric, const Weave& weave,
-                                                 Diagnostics& diagnostics) {
+                                                 const BuildOptions& options, Diagnostics& diagnostics) {
   Result<System> warp = system_of(fabric, weave.warp);
   if (!warp) return warp.error();
   Result<System> weft = system_of(fabric, weave.weft);
   if (!weft) return weft.error();
-  auto made = std::make_unique<WeaveConstruction>(fabric, weave, std::move(*warp), std::move(*weft));
+  auto made = std::make_unique<WeaveConstruction>(fabric, weave, options, std::move(*warp), std::move(*weft));
   if (Status prepared = made->prepare(diagnostics); !prepared) return prepared.error();
   return std::unique_ptr<Construction>(std::move(made));
 }

@@ -99,9 +99,7 @@ double most_height(const System& own, const System& crossed, Bend bend, bool cha
   return largest_height(crossed.text->pitch - flats, spread);
 }
 
-namespace {
-
-Result<Heights> share_at(const SystemPair& pair, const std::optional<double>& wanted, double clearance) {
+Result<Heights> share_crimp(const SystemPair& pair, const std::optional<double>& wanted, double clearance) {
   const System &warp = *pair.warp, &weft = *pair.weft;
   const double both = warp.thickest + weft.thickest + 2.0 * clearance;
   const double warp_most = most_height(warp, weft, pair.warp_bend, pair.warp_changes, clearance),
@@ -138,13 +136,6 @@ Result<Heights> share_at(const SystemPair& pair, const std::optional<double>& wa
   for (const WovenThread& woven : weft.threads)
     shift = std::max(shift, -0.5 * (woven.size.height + clearance));
   return Heights{shift, clearance};
-}
-
-}  // namespace
-
-Result<Heights> share_crimp(const SystemPair& pair, const std::optional<double>& wanted, double clearance) {
-  Result<Heights> apart = share_at(pair, wanted, clearance);
-  return apart.ok() ? apart : share_at(pair, wanted, 0.0);
 }
 
 }  // namespace selvage::fabric

@@ -48,9 +48,8 @@ struct Heights {
 double most_height(const System& own, const System& crossed, Bend bend, bool changes_sides, double clearance);
 
 // Shares the crimp: the warp's height is `wanted` of both (equal where nothing is wanted), or the nearest
-// share that both systems have room for. Yarns keep the clearance where the cloth has room for it, and touch
-// where it is jammed. Error (geometry), at the line of the system whose pitch is too small: with the
-// smallest.
+// share that both systems have room for, so that yarns that cross keep the clearance. Error (geometry), at
+// the line of the system whose pitch is too small for that: with the smallest.
 struct SystemPair {
   const System *warp, *weft;
   Bend warp_bend, weft_bend;  // of the warp over the weft, of the weft over the warp

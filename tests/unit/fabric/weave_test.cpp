@@ -28,7 +28,7 @@ Thread thread_of(std::string name, yarn::Section section) {
 Fabric woven(const yarn::Section& warp, double warp_pitch, const yarn::Section& weft, double weft_pitch) {
   Fabric fabric;
   fabric.file = "test.txt";
-  fabric.tolerance = 1e-15;  // yarns that cross keep twice that free: nothing that these tests see
+  fabric.tolerance = 1e-15;  // as published, yarns that cross keep twice that free: nothing that tests see
   fabric.threads = {thread_of("a", warp), thread_of("b", weft)};
   Weave weave;
   weave.place = {4, 1};
@@ -45,15 +45,21 @@ Weave& weave_of(Fabric& fabric) {
   return std::get<Weave>(fabric.items.front());
 }
 
-YarnBuilder builder_of(const Fabric& fabric) {
+const BuildOptions as_published = [] {
+  BuildOptions options;
+  options.as_published = true;
+  return options;
+}();
+
+YarnBuilder builder_of(const Fabric& fabric, const BuildOptions& options = as_published) {
   Diagnostics diagnostics;
-  std::optional<YarnBuilder> builder = YarnBuilder::create(fabric, {}, diagnostics);
+  std::optional<YarnBuilder> builder = YarnBuilder::create(fabric, options, diagnostics);
   if (!builder) throw std::runtime_error(to_string(*diagnostics.first_error()));
   return std::move(*builder);
 }
 
-YarnPlan plan_of(const Fabric& fabric, const char* name) {
-  const YarnBuilder builder = builder_of(fabric);
+YarnPlan plan_of(const Fabric& fabric, const char* name, const BuildOptions& options = as_published) {
+  const YarnBuilder builder = builder_of(fabric, options);
   Result<YarnPlan> plan = builder.plan(builder.find(name).value());
   if (!plan) throw std::runtime_error(to_string(plan.error()));
   return std::move(*plan);
@@ -264,6 +270,56 @@ TEST(Weave, YarnsThatCrossKeepTwiceTheToleranceFree) {
   jammed.tolerance = 1e-3;
   const double rise = plan_of(jammed, "warp_1").points[0].z() - plan_of(jammed, "warp_1").points[1].z();
   EXPECT_NEAR(std::abs(rise), 0.5, 1e-12);
+}
+
+// How near two centre lines come.
+double least_distance(const YarnPlan& a, const YarnPlan& b) {
+  double least = std::numeric_limits<double>::infinity();
+  const std::vector<Vec3> on_b = samples_of(b.line.curve, 1500);
+  for (const Vec3& p : samples_of(a.line.curve, 1500))
+    for (const Vec3& q : on_b) least = std::min(least, (p - q).norm());
+  return least;
+}
+
+TEST(Weave, YarnsKeepOneHundredthOfTheirThicknessFree) {
+  const Fabric fabric = woven(yarn::Circle{0.2}, 0.9, yarn::Circle{0.5}, 0.8);
+  const YarnPlan warp = plan_of(fabric, "warp_2", {}), weft = plan_of(fabric, "weft_3", {});
+  EXPECT_NEAR(least_distance(warp, weft), 0.35 + 0.002, 1e-6);
+  EXPECT_EQ(warp.spec.sizes.front().size.height, 0.2);
+}
+
+// No room between them: half of that is taken from the yarns, whose centre lines stay as they are.
+TEST(Weave, YarnsOfAJammedClothBecomeThinnerSoThatTheyDoNotTouch) {
+  const Fabric jammed = square(0.5, std::sqrt(0.75));
+  const YarnPlan warp = plan_of(jammed, "warp_2", {}), weft = plan_of(jammed, "weft_3", {});
+  const double thickness = warp.spec.sizes.front().size.height;
+  EXPECT_NEAR(thickness, 0.5 - 0.0025, 1e-5);
+  EXPECT_EQ(warp.spec.sizes.front().size.width, thickness);
+  EXPECT_NEAR(least_distance(warp, weft), 0.5, 1e-4);
+  EXPECT_GE(least_distance(warp, weft), thickness + 0.0024);
+  Diagnostics diagnostics;
+  EXPECT_TRUE(YarnBuilder::create(jammed, {}, diagnostics).has_value());
+  ASSERT_EQ(diagnostics.messages().size(), 1U);
+  EXPECT_EQ(diagnostics.messages().front().place.line, 4);
+  EXPECT_NE(diagnostics.messages().front().text.find("jammed"), std::string::npos);
+}
+
+// Ellipses 0.8 x 0.2 at a pitch of 1 touch at the amplitude 0.1178 (measured on their surfaces, +- 0.0002);
+// from there the gap grows by no more than twice the amplitude, and by about 0.9 of it on the slopes.
+TEST(Weave, TheAmplitudeOfSinesIsTheSmallestThatKeepsTheirFlanksFree) {
+  Fabric fabric = woven(yarn::Ellipse{0.8, 0.2}, 1.0, yarn::Ellipse{0.8, 0.2}, 1.0);
+  weave_of(fabric).profile = Weave::Profile::sine;
+  const auto amplitude = [&](const BuildOptions& options) {
+    double highest = 0.0;
+    for (const Vec3& point : plan_of(fabric, "warp_2", options).points)
+      highest = std::max(highest, point.z());
+    return highest;
+  };
+  EXPECT_NEAR(amplitude(as_published), 0.1, 1e-12);
+  EXPECT_GT(amplitude({}), 0.1178 + 0.001);
+  EXPECT_LT(amplitude({}), 0.1178 + 0.0028);
+  weave_of(fabric).amplitude = 0.09;
+  EXPECT_NEAR(amplitude({}), 0.09, 1e-12);
 }
 
 TEST(Weave, LayersAreATrueThicknessApartAboutTheMiddle) {
