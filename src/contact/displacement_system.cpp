@@ -44,15 +44,21 @@ void solve_band(const Eigen::MatrixXd& band, Eigen::Ref<Eigen::VectorXd> x) {
 
 }  // namespace
 
-DisplacementSystem::DisplacementSystem(std::span<const Strand> strands, const Stiffness& stiffness, int modes)
+DisplacementSystem::DisplacementSystem(std::span<const Strand> strands, std::vector<std::size_t> lattices,
+                                       const Stiffness& stiffness, int modes)
     : strands_(strands),
       stiffness_(stiffness),
       modes_(modes),
+      lattices_(std::move(lattices)),
       stations_(strands.size()),
       held_(strands.size()) {
   for (std::size_t y = 0; y < strands.size(); ++y) {
-    offsets_.push_back(size_);
-    size_ += static_cast<Eigen::Index>(strands[y].nodes()) * modes;
+    if (lattices_[y] == members_.size()) {
+      members_.emplace_back();
+      offsets_.push_back(size_);
+      size_ += static_cast<Eigen::Index>(strands[y].nodes()) * modes;
+    }
+    members_[lattices_[y]].push_back(y);
     const int count =
         2 * std::max(2, static_cast<int>(std::lround(strands[y].length() / strands[y].spacing())));
     for (int i = 0; i < count; ++i) {
@@ -69,6 +75,7 @@ DisplacementSystem::DisplacementSystem(std::span<const Strand> strands, const St
       std::array<double, 4> turn = end.slope;
       for (double& t : turn) t *= strands[y].spacing();
       held_[y].push_back({end.first, end.value, frame.along, hold_stiffness});
+      if (strands[y].has_cyclic_lattice()) continue;
       held_[y].push_back({end.first, turn, frame.x, stiffness.end_turn});
       held_[y].push_back({end.first, turn, frame.y, stiffness.end_turn});
     }
@@ -91,8 +98,16 @@ void DisplacementSystem::hold(std::size_t strand, double arc) {
     held_[strand].push_back({stencil.first, stencil.value, Vec3::Unit(axis), hold_stiffness});
 }
 
+// Strands of one lattice after each other: they write to the same nodes.
+template <class Work>
+void DisplacementSystem::for_each_strand(int threads, const Work& work) const {
+  for_each_index(members_.size(), threads, [&](std::size_t lattice) {
+    for (std::size_t s : members_[lattice]) work(s);
+  });
+}
+
 Eigen::Index DisplacementSystem::column(std::size_t strand, int node) const {
-  return offsets_[strand] + static_cast<Eigen::Index>(node % strands_[strand].nodes()) * modes_;
+  return offsets_[lattices_[strand]] + static_cast<Eigen::Index>(node % strands_[strand].nodes()) * modes_;
 }
 
 // The spans between the ends of the stations' stretches, on the present centre line.
@@ -113,7 +128,7 @@ void DisplacementSystem::update(int threads) {
 }
 
 void DisplacementSystem::apply_energy(const Eigen::VectorXd& x, Eigen::VectorXd& y, int threads) const {
-  for_each_index(strands_.size(), threads, [&](std::size_t s) {
+  for_each_strand(threads, [&](std::size_t s) {
     const double h = strands_[s].spacing();
     for (const Station& station : stations_[s]) {
       const double share = station.length / h;
@@ -188,7 +203,9 @@ void DisplacementSystem::scatter(const Demand& demand, double value, Eigen::Vect
 void DisplacementSystem::factor(std::span<const Demand> demands, const std::vector<char>& active,
                                 int threads) {
   const Eigen::Index width = 4 * modes_;
-  bands_.assign(strands_.size(), {});
+  bands_.resize(members_.size());
+  for (std::size_t lattice = 0; lattice < members_.size(); ++lattice)
+    bands_[lattice] = Band::Zero(width, length(members_[lattice].front()));
   std::vector<std::vector<const Demand::Side*>> sides(strands_.size());
   std::vector<std::vector<double>> weights(strands_.size());
   for (std::size_t k = 0; k < demands.size(); ++k) {
@@ -200,10 +217,9 @@ void DisplacementSystem::factor(std::span<const Demand> demands, const std::vect
     sides[demand.minus.strand].push_back(&demand.minus);
     weights[demand.minus.strand].push_back(demand.weight);
   }
-  for_each_index(strands_.size(), threads, [&](std::size_t s) {
+  for_each_strand(threads, [&](std::size_t s) {
     const Strand& strand = strands_[s];
-    Band& band = bands_[s];
-    band = Band::Zero(width, length(s));
+    Band& band = bands_[lattices_[s]];
     const double h = strand.spacing();
     // Entries of the lower triangle within the band; those that go round a ring's seam are left out.
     const auto entry = [&](int node_i, int mode_i, int node_j, int mode_j, double value) {
@@ -253,14 +269,15 @@ void DisplacementSystem::factor(std::span<const Demand> demands, const std::vect
               entry(side.first + k, m, side.first + l, c, factor * side.form[l * modes_ + c]);
         }
     }
-    factor_band(band);
   });
+  for_each_index(bands_.size(), threads, [&](std::size_t lattice) { factor_band(bands_[lattice]); });
 }
 
 void DisplacementSystem::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z, int threads) const {
   z = r;
-  for_each_index(strands_.size(), threads,
-                 [&](std::size_t s) { solve_band(bands_[s], z.segment(offsets_[s], length(s))); });
+  for_each_index(members_.size(), threads, [&](std::size_t lattice) {
+    solve_band(bands_[lattice], z.segment(offsets_[lattice], length(members_[lattice].front())));
+  });
 }
 
 Eigen::VectorXd DisplacementSystem::solve(std::span<const Demand> demands, int threads) {

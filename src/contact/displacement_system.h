@@ -38,10 +38,12 @@ struct Demand {
 class DisplacementSystem {
  public:
   // Every step starts from the shape that it finds: only lengths are remembered from the beginning.
-  DisplacementSystem(std::span<const Strand> strands, const Stiffness& stiffness, int modes);
+  // `lattices`: of each strand, as tie_strands() numbers them.
+  DisplacementSystem(std::span<const Strand> strands, std::vector<std::size_t> lattices,
+                     const Stiffness& stiffness, int modes);
 
   [[nodiscard]] Eigen::Index size() const { return size_; }
-  [[nodiscard]] Eigen::Index offset(std::size_t strand) const { return offsets_[strand]; }
+  [[nodiscard]] Eigen::Index offset(std::size_t strand) const { return offsets_[lattices_[strand]]; }
   [[nodiscard]] Eigen::Index length(std::size_t strand) const;
   // Holds a place of a strand where it is.
   void hold(std::size_t strand, double arc);
@@ -67,6 +69,8 @@ class DisplacementSystem {
     double stiffness = 0;
   };
   using Band = Eigen::MatrixXd;  // column j: rows j .. j + width - 1 of the lower triangle
+  template <class Work>
+  void for_each_strand(int threads, const Work& work) const;
   void apply_energy(const Eigen::VectorXd& x, Eigen::VectorXd& y, int threads) const;
   void gradient(Eigen::VectorXd& g) const;
   void factor(std::span<const Demand> demands, const std::vector<char>& active, int threads);
@@ -78,7 +82,9 @@ class DisplacementSystem {
   std::span<const Strand> strands_;
   Stiffness stiffness_;
   int modes_;
-  std::vector<Eigen::Index> offsets_;
+  std::vector<std::size_t> lattices_;
+  std::vector<std::vector<std::size_t>> members_;  // strands of each lattice
+  std::vector<Eigen::Index> offsets_;              // of each lattice
   Eigen::Index size_ = 0;
   std::vector<std::vector<Station>> stations_;
   std::vector<std::vector<Hold>> held_;

@@ -14,6 +14,7 @@
 #include "contact/near_skins.h"
 #include "contact/section_shape.h"
 #include "contact/strand.h"
+#include "contact/ties.h"
 #include "core/parallel.h"
 #include "nurbs/measure.h"
 #include "yarn/finish.h"
@@ -217,8 +218,8 @@ class Relaxer {
       strands_.emplace_back(originals_[y], 0.6 * std::sqrt(extents_[y].least * extents_[y].most));
       if (is_affine_[y] != 0) strands_.back().allowed_fields = affine_fields;
     }
+    DisplacementSystem system(strands_, tie_strands(strands_, options_.periods), stiffness, modes_);
     NearSkins skins(strands_);
-    DisplacementSystem system(strands_, stiffness, modes_);
     for (const FixedPoint& point : options_.fixed)
       system.hold(point.yarn, strands_[point.yarn].arc_of(point.parameter));
     std::vector<Facing> overlooked;  // by samples, as the exact check found

@@ -91,6 +91,19 @@ void displacement_form(const Frame& frame, const Stencil& stencil, const Vec3& p
   }
 }
 
+void Strand::set_lattice(double spacing, double origin, int nodes, bool cyclic) {
+  spacing_ = spacing;
+  origin_ = origin;
+  nodes_ = nodes;
+  cyclic_ = cyclic;
+  row_stencils_.clear();
+  for (double arc : row_arcs_) row_stencils_.push_back(stencil(arc));
+}
+
+Vec3 Strand::centre_at(double arc) const {
+  return nurbs::evaluate(centres_, parameter_at(arc));
+}
+
 Strand::Strand(yarn::Body body, double spacing) : body_(std::move(body)), cyclic_(body_.closed_along) {
   const std::vector<double> knots = missing_knots(yarn::section_centres(body_.surface), spacing);
   if (!knots.empty()) body_.surface = nurbs::refined(body_.surface, knots);
@@ -109,12 +122,10 @@ Strand::Strand(yarn::Body body, double spacing) : body_(std::move(body)), cyclic
     }
   length_ = table_arc_.back();
   const int spans = std::max(cyclic_ ? 4 : 1, static_cast<int>(std::lround(length_ / spacing)));
-  spacing_ = length_ / spans;
-  nodes_ = cyclic_ ? spans : spans + 3;
   const std::vector<double> places =
       nurbs::greville(body_.surface.knots_v, body_.surface.degree_v, body_.surface.count_v);
   for (double v : places) row_arcs_.push_back(arc_of(v));
-  for (double arc : row_arcs_) row_stencils_.push_back(stencil(arc));
+  set_lattice(length_ / spans, 0.0, cyclic_ ? spans : spans + 3, cyclic_);
   row_frames_.resize(row_arcs_.size());
   measure();
   for (int j = 0; j < rows(); ++j) row_areas_.push_back(row_area(j));
@@ -127,7 +138,7 @@ Strand::Strand(yarn::Body body, double spacing) : body_(std::move(body)), cyclic
 
 Stencil Strand::stencil(double arc) const {
   Stencil out;
-  double place = arc / spacing_;
+  double place = (arc + origin_) / spacing_;
   const int spans = cyclic_ ? nodes_ : nodes_ - 3;
   if (cyclic_) place -= spans * std::floor(place / spans);
   out.first = std::clamp(static_cast<int>(std::floor(place)), 0, spans - 1);
@@ -166,7 +177,7 @@ Frame Strand::frame_at(double v) const {
   const double share = step > 0.0 ? std::clamp((arc - row_arcs_[k - 1]) / step, 0.0, 1.0) : 0.0;
   frame.half_x = (1.0 - share) * row_frames_[k - 1].half_x + share * row_frames_[k].half_x;
   frame.half_y = (1.0 - share) * row_frames_[k - 1].half_y + share * row_frames_[k].half_y;
-  frame.tilts = cyclic_ || (v > body_.surface.first_v() && v < body_.surface.last_v());
+  frame.tilts = is_cyclic() || (v > body_.surface.first_v() && v < body_.surface.last_v());
   return frame;
 }
 
@@ -177,7 +188,7 @@ void Strand::measure() {
   for (int j = 0; j < s.count_v; ++j) {
     Frame& frame = row_frames_[at(j)];
     frame.centre = centres_.points[at(j)];
-    const bool is_end = !cyclic_ && (j == 0 || j == s.count_v - 1);
+    const bool is_end = !is_cyclic() && (j == 0 || j == s.count_v - 1);
     frame.tilts = !is_end;
     if (is_end) {
       frame.along = Vec3::Zero();
@@ -257,7 +268,7 @@ void Strand::move(const Eigen::Ref<const Eigen::VectorXd>& coefficients, int mod
     }
     s.point(s.count_u - 1, j) = s.point(0, j);
   }
-  if (cyclic_)
+  if (is_cyclic())
     for (int i = 0; i < s.count_u; ++i) s.point(i, s.count_v - 1) = s.point(i, 0);
   measure();
   restore_areas();

@@ -48,20 +48,26 @@ class Strand {
   // `spacing`: wanted distance of the nodes. Rows are inserted where they stand farther apart.
   Strand(yarn::Body body, double spacing);
 
+  // Puts it on a lattice that it shares with others: its first point stands at `origin` (>= 0) of the
+  // lattice. Cyclic: node `nodes` is the first one again.
+  void set_lattice(double spacing, double origin, int nodes, bool cyclic);
+
   // The plane fields that it may use: all, affine_fields, or none.
   int allowed_fields = shape_modes;
 
   [[nodiscard]] const yarn::Body& body() const { return body_; }
   [[nodiscard]] double length() const { return length_; }    // of the centre line as it came
   [[nodiscard]] double spacing() const { return spacing_; }  // of the nodes
-  [[nodiscard]] int nodes() const { return nodes_; }
-  [[nodiscard]] bool is_cyclic() const { return cyclic_; }
+  [[nodiscard]] int nodes() const { return nodes_; }         // of its lattice
+  [[nodiscard]] bool is_cyclic() const { return body_.closed_along; }
+  [[nodiscard]] bool has_cyclic_lattice() const { return cyclic_; }
   [[nodiscard]] double thickness() const { return thickness_; }  // least extent of a section
   [[nodiscard]] double width() const { return width_; }          // largest extent of a section
 
   [[nodiscard]] Stencil stencil(double arc) const;
   [[nodiscard]] double arc_of(double v) const;
   [[nodiscard]] double parameter_at(double arc) const;
+  [[nodiscard]] Vec3 centre_at(double arc) const;
   // A frame from the surface as it is now.
   [[nodiscard]] Frame frame_at(double v) const;
   [[nodiscard]] const Frame& row_frame(int j) const { return row_frames_[static_cast<std::size_t>(j)]; }
@@ -82,9 +88,9 @@ class Strand {
   yarn::Body body_;
   nurbs::Curve centres_;
   std::vector<double> table_v_, table_arc_;
-  double length_ = 0, spacing_ = 0, thickness_ = 0, width_ = 0;
+  double length_ = 0, spacing_ = 0, origin_ = 0, thickness_ = 0, width_ = 0;
   int nodes_ = 0;
-  bool cyclic_ = false;
+  bool cyclic_ = false;  // the lattice
   std::vector<Stencil> row_stencils_;
   std::vector<Frame> row_frames_;
   std::vector<double> row_arcs_, row_areas_;
