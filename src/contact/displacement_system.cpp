@@ -96,6 +96,8 @@ void DisplacementSystem::hold(std::size_t strand, double arc) {
   const Stencil stencil = strands_[strand].stencil(arc);
   for (int axis = 0; axis < 3; ++axis)
     held_[strand].push_back({stencil.first, stencil.value, Vec3::Unit(axis), hold_stiffness});
+  for (int m = translation_modes; m < modes_; ++m)
+    held_[strand].push_back({stencil.first, stencil.value, Vec3::Zero(), hold_stiffness, m});
 }
 
 // Strands of one lattice after each other: they write to the same nodes.
@@ -108,6 +110,22 @@ void DisplacementSystem::for_each_strand(int threads, const Work& work) const {
 
 Eigen::Index DisplacementSystem::column(std::size_t strand, int node) const {
   return offsets_[lattices_[strand]] + static_cast<Eigen::Index>(node % strands_[strand].nodes()) * modes_;
+}
+
+// The unknowns that a hold adds up, with their factors.
+std::vector<std::pair<Eigen::Index, double>> DisplacementSystem::held_nodes(std::size_t strand,
+                                                                            const Hold& held) const {
+  std::vector<std::pair<Eigen::Index, double>> nodes;
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::Index first = column(strand, held.first + k);
+    if (held.mode > 0) {
+      nodes.emplace_back(first + held.mode, held.share[at(k)]);
+    } else {
+      for (int c = 0; c < translation_modes; ++c)
+        nodes.emplace_back(first + c, held.share[at(k)] * held.direction[c]);
+    }
+  }
+  return nodes;
 }
 
 // The spans between the ends of the stations' stretches, on the present centre line.
@@ -157,12 +175,10 @@ void DisplacementSystem::apply_energy(const Eigen::VectorXd& x, Eigen::VectorXd&
             strain * station.stencil.slope[at(k)] * station.along;
     }
     for (const Hold& held : held_[s]) {
+      const auto nodes = held_nodes(s, held);
       double value = 0.0;
-      for (int k = 0; k < 4; ++k)
-        value += held.share[at(k)] * held.direction.dot(x.segment<3>(column(s, held.first + k)));
-      for (int k = 0; k < 4; ++k)
-        y.segment<3>(column(s, held.first + k)) +=
-            held.stiffness * value * held.share[at(k)] * held.direction;
+      for (const auto& [index, share] : nodes) value += share * x[index];
+      for (const auto& [index, share] : nodes) y[index] += held.stiffness * value * share;
     }
   });
 }
@@ -249,14 +265,13 @@ void DisplacementSystem::factor(std::span<const Demand> demands, const std::vect
               entry(node_k, m, node_l, c, strain * station.along[m] * station.along[c]);
         }
     }
-    for (const Hold& held : held_[s])
-      for (int k = 0; k < 4; ++k)
-        for (int l = 0; l < 4; ++l)
-          for (int m = 0; m < 3; ++m)
-            for (int c = 0; c < 3; ++c)
-              entry(held.first + k, m, held.first + l, c,
-                    held.stiffness * held.share[at(k)] * held.share[at(l)] * held.direction[m] *
-                        held.direction[c]);
+    for (const Hold& held : held_[s]) {
+      const auto nodes = held_nodes(s, held);
+      const Eigen::Index first = offset(s);
+      for (const auto& [i, share_i] : nodes)
+        for (const auto& [j, share_j] : nodes)
+          if (i >= j && i - j < width) band(i - j, j - first) += held.stiffness * share_i * share_j;
+    }
     for (std::size_t d = 0; d < sides[s].size(); ++d) {
       const Demand::Side& side = *sides[s][d];
       const double stiff = stiffness_.contact * weights[s][d];

@@ -268,10 +268,10 @@ void Strand::move(const Eigen::Ref<const Eigen::VectorXd>& coefficients, int mod
     }
     s.point(s.count_u - 1, j) = s.point(0, j);
   }
-  if (is_cyclic())
-    for (int i = 0; i < s.count_u; ++i) s.point(i, s.count_v - 1) = s.point(i, 0);
   measure();
   restore_areas();
+  if (is_cyclic())
+    for (int i = 0; i < s.count_u; ++i) s.point(i, s.count_v - 1) = s.point(i, 0);
   measure();
 }
 
