@@ -9,6 +9,8 @@
 #include <tuple>
 
 #include "contact/box_tree.h"
+#include "contact/critical.h"
+#include "contact/deep.h"
 #include "contact/face.h"
 #include "contact/patch.h"
 #include "contact/place.h"
@@ -53,11 +55,14 @@ class Search {
     if (!std::isfinite(thinnest_)) return out;
     const double reach = std::max(options_.reach, near_share * thinnest_);
     std::vector<Contact> found = contacts_within(reach);
+    add_contained(found);
+    sort(found);
+    drop_repeated(found);
+    out.min_gap = least_gap(found, reach);
     for (Contact& contact : found)
-      if (contact.is_overlap() || contact.gap <= options_.reach) out.list.push_back(std::move(contact));
-    sort(out.list);
+      if (contact.is_overlap() || (options_.reach > 0.0 && contact.gap <= options_.reach))
+        out.list.push_back(std::move(contact));
     out.resolution = 1e-6 * thinnest_;
-    out.min_gap = least_gap(found);
     return out;
   }
 
@@ -215,18 +220,179 @@ class Search {
     return all;
   }
 
-  // Of the pairs of yarns that do not overlap. Nothing was near: the reach grows until something is.
-  [[nodiscard]] std::optional<double> least_gap(const std::vector<Contact>& near) const {
-    std::vector<std::pair<std::size_t, std::size_t>> overlapping;
-    for (const Contact& contact : near)
-      if (contact.is_overlap()) overlapping.emplace_back(contact.a, contact.b);
-    std::sort(overlapping.begin(), overlapping.end());
+  // Two clusters can lie on the walls of one piece of space: it is measured from both.
+  static void drop_repeated(std::vector<Contact>& list) {
+    std::vector<Contact> kept;
+    for (Contact& contact : list) {
+      const bool known = std::any_of(kept.rbegin(), kept.rend(), [&](const Contact& k) {
+        return contact.is_overlap() && k.a == contact.a && k.b == contact.b &&
+               contact.depth() > 0.98 * k.depth() && (k.at - contact.at).norm() < 0.5 * contact.depth() &&
+               k.direction.dot(contact.direction) > 0.9;
+      });
+      if (!known) kept.push_back(std::move(contact));
+    }
+    list = std::move(kept);
+  }
+
+  using BodyPair = std::pair<std::size_t, std::size_t>;
+
+  [[nodiscard]] static std::vector<BodyPair> overlapping(const std::vector<Contact>& list) {
+    std::vector<BodyPair> pairs;
+    for (const Contact& contact : list)
+      if (contact.is_overlap()) pairs.emplace_back(contact.a, contact.b);
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+  }
+
+  // Yarns wholly inside another: no surface is near the other one there.
+  void add_contained(std::vector<Contact>& found) const {
+    const std::vector<BodyPair> known = overlapping(found);
+    const std::span<const yarn::Body> bodies = model_.bodies();
+    std::vector<Box3> around(bodies.size());
+    for (const Piece& piece : model_.pieces()) around[piece.body].extend(piece.box);
+    std::vector<std::uint32_t> first_piece(bodies.size(), 0);
+    for (std::uint32_t k = static_cast<std::uint32_t>(model_.pieces().size()); k-- > 0;)
+      first_piece[model_.pieces()[k].body] = k;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> candidates;  // inner, outer
+    BoxTree(around).near_pairs(0.0, [&](std::uint32_t i, std::uint32_t j) {
+      if (around[i].isEmpty() || around[j].isEmpty() ||
+          std::binary_search(known.begin(), known.end(), BodyPair(i, j)))
+        return;
+      if (around[j].contains(around[i])) candidates.emplace_back(i, j);
+      if (around[i].contains(around[j])) candidates.emplace_back(j, i);
+    });
+    std::sort(candidates.begin(), candidates.end());
+    for (const auto& [inner, outer] : candidates) {
+      const std::optional<std::uint32_t> piece = piece_around(first_piece[inner], outer);
+      if (!piece) continue;
+      const auto [a, b] = std::minmax(inner, outer);
+      const auto whole = [&](std::uint32_t k) {
+        return Stretch{bodies[k].surface.first_v(), bodies[k].surface.last_v()};
+      };
+      const Piece& part = model_.pieces()[*piece];
+      Stretch local{model_.cells()[part.first_cell].low.y(),
+                    model_.cells()[part.first_cell + part.count - 1].high.y()};
+      const std::vector<Contact> deep =
+          measure_deep(model_, a, a == outer ? local : whole(a), b, b == outer ? local : whole(b),
+                       around[inner], std::max(model_.touching(a), model_.touching(b)));
+      found.insert(found.end(), deep.begin(), deep.end());
+    }
+  }
+
+  // A piece of the outer body's side that stands round (or beside) the first piece of the inner one; nothing:
+  // that one is outside. By three points on it and the outer surface's passages of the rays from them.
+  [[nodiscard]] std::optional<std::uint32_t> piece_around(std::uint32_t inner, std::uint32_t outer) const {
+    int votes = 0;
+    std::optional<std::uint32_t> nearest;
+    for (const double share : {0.2137, 0.5371, 0.8113}) {
+      const Piece& piece = model_.pieces()[inner];
+      const Cell& cell = model_.cells()[piece.first_cell + static_cast<std::uint32_t>(share * piece.count)];
+      const nurbs::Surface& s = *model_.face_of(cell).surface;
+      const Vec2 site = cell.low + 0.37 * (cell.high - cell.low);
+      const Vec3 point = nurbs::evaluate(s, site.x(), site.y());
+      bool inside = false;
+      tree_.along_ray(point, [&](std::uint32_t k) {
+        if (model_.pieces()[k].body == outer && passages(model_.pieces()[k], point) % 2 == 1)
+          inside = !inside;
+      });
+      votes += inside ? 1 : 0;
+      double least = infinity;
+      for (std::uint32_t k = 0; inside && k < model_.pieces().size(); ++k) {
+        const Piece& other = model_.pieces()[k];
+        if (other.body != outer || !model_.face_of(model_.cells()[other.first_cell]).is_side) continue;
+        const double distance = (other.box.center() - point).squaredNorm();
+        if (distance >= least) continue;
+        least = distance;
+        nearest = k;
+      }
+    }
+    return votes >= 2 ? nearest : std::nullopt;
+  }
+
+  // How often the ray from the point along +x passes through the piece.
+  [[nodiscard]] int passages(const Piece& piece, const Vec3& point) const {
+    constexpr int steps = 6, row = steps + 1;
+    std::vector<Vec3> p;
+    int count = 0;
+    for (std::uint32_t k = piece.first_cell; k < piece.first_cell + piece.count; ++k) {
+      const Cell& cell = model_.cells()[k];
+      if (cell.box.min().y() > point.y() || cell.box.max().y() < point.y() ||
+          cell.box.min().z() > point.z() || cell.box.max().z() < point.z())
+        continue;
+      sample(patch_of(*model_.face_of(cell).surface, cell.low, cell.high), steps, steps, p);
+      for (std::size_t j = 0; j < steps; ++j)
+        for (std::size_t i = 0; i < steps; ++i) {
+          const std::size_t c = j * row + i;
+          count += ray_meets(point, p[c], p[c + 1], p[c + row + 1]) ? 1 : 0;
+          count += ray_meets(point, p[c], p[c + row + 1], p[c + row]) ? 1 : 0;
+        }
+    }
+    return count;
+  }
+
+  // Of the pairs of yarns that do not overlap. Where nothing was near, the reach grows until something is.
+  [[nodiscard]] std::optional<double> least_gap(const std::vector<Contact>& near, double reach) const {
+    const std::vector<BodyPair> parted = overlapping(near);
+    const auto counts = [&](std::size_t a, std::size_t b) {
+      return !std::binary_search(parted.begin(), parted.end(), BodyPair(a, b));
+    };
     double least = infinity;
     for (const Contact& contact : near)
-      if (!std::binary_search(overlapping.begin(), overlapping.end(), std::pair(contact.a, contact.b)))
-        least = std::min(least, std::max(0.0, contact.gap));
+      if (counts(contact.a, contact.b)) least = std::min(least, std::max(0.0, contact.gap));
     if (std::isfinite(least)) return least;
-    return std::nullopt;
+    std::size_t present = 0, pairs = 0;
+    for (std::size_t k = 0; k < model_.bodies().size(); ++k) present += model_.thickness(k) > 0.0 ? 1 : 0;
+    for (const BodyPair& pair : parted) pairs += pair.first != pair.second ? 1 : 0;
+    if (2 * pairs == present * (present - 1)) return std::nullopt;
+    Box3 all;
+    for (const Piece& piece : model_.pieces()) all.extend(piece.box);
+    // No two pieces are farther apart than that.
+    const double farthest = all.diagonal().norm();
+    for (double limit = 4.0 * reach; !std::isfinite(least); limit *= 4.0) {
+      least = nearest_within(std::min(limit, farthest), counts);
+      if (limit >= farthest) break;
+    }
+    if (!std::isfinite(least)) return std::nullopt;
+    return least;
+  }
+
+  // The least distance of two different yarns that count, up to `limit`; infinite: none is so near.
+  template <class Counts>
+  [[nodiscard]] double nearest_within(double limit, const Counts& counts) const {
+    std::vector<PiecePair> pairs;
+    tree_.near_pairs(limit, [&](std::uint32_t i, std::uint32_t j) {
+      const std::size_t a = model_.pieces()[i].body, b = model_.pieces()[j].body;
+      if (a != b && counts(a, b)) pairs.push_back({i, j});
+    });
+    const auto distance = [&](const PiecePair& pair) {
+      return model_.pieces()[pair.a].box.squaredExteriorDistance(model_.pieces()[pair.b].box);
+    };
+    std::sort(pairs.begin(), pairs.end(), [&](const PiecePair& x, const PiecePair& y) {
+      return std::tuple(distance(x), x.a, x.b) < std::tuple(distance(y), y.a, y.b);
+    });
+    double best = limit;
+    bool any = false;
+    std::vector<NearPair> cells;
+    for (const PiecePair& pair : pairs) {
+      if (distance(pair) > best * best) break;
+      cells.clear();
+      cell_pairs(pair, best, cells);
+      std::sort(cells.begin(), cells.end(), [](const NearPair& x, const NearPair& y) {
+        return std::tuple(x.low, x.a, x.b) < std::tuple(y.low, y.a, y.b);
+      });
+      for (const NearPair& near : cells) {
+        if (near.low > best) break;
+        const Cell &a = model_.cells()[near.a], &b = model_.cells()[near.b];
+        const Nearest found = find_nearest(model_.face_of(a), a, 0.5 * (a.low + a.high), model_.face_of(b), b,
+                                           0.5 * (b.low + b.high));
+        const double here = (found.p - found.q).norm();
+        if (here > best) continue;
+        best = here;
+        any = true;
+      }
+    }
+    return any ? best : infinity;
   }
 
   const ContactOptions& options_;

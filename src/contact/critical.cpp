@@ -46,14 +46,15 @@ struct Equations {
   const Face& a;
   const Face& b;
   double scale;
+  Vec3 shift;
 
-  [[nodiscard]] static Vec4 residual(const SurfacePoint& p, const SurfacePoint& q, double scale) {
+  [[nodiscard]] Vec4 residual(const SurfacePoint& p, const SurfacePoint& q) const {
     const Vec3 t1 = p.jet.du.normalized(), t2 = p.normal.cross(t1);
-    const Vec3 way = (p.jet.position - q.jet.position) / scale;
+    const Vec3 way = (p.jet.position - q.jet.position - shift) / scale;
     return {q.normal.dot(t1), q.normal.dot(t2), way.dot(t1), way.dot(t2)};
   }
   [[nodiscard]] Vec4 residual(const Vec4& x) const {
-    return residual(point_at(a, x.head<2>()), point_at(b, x.tail<2>()), scale);
+    return residual(point_at(a, x.head<2>()), point_at(b, x.tail<2>()));
   }
   // Central differences; a step moves one of the two points only.
   [[nodiscard]] Mat4 jacobian(const Vec4& x, const Vec4& unit) const {
@@ -64,10 +65,10 @@ struct Equations {
       Vec4 up = x, down = x;
       up[k] += h * unit[k];
       down[k] -= h * unit[k];
-      const Vec4 high = k < 2 ? residual(point_at(a, up.head<2>()), q, scale)
-                              : residual(p, point_at(b, up.tail<2>()), scale);
-      const Vec4 low = k < 2 ? residual(point_at(a, down.head<2>()), q, scale)
-                             : residual(p, point_at(b, down.tail<2>()), scale);
+      const Vec4 high =
+          k < 2 ? residual(point_at(a, up.head<2>()), q) : residual(p, point_at(b, up.tail<2>()));
+      const Vec4 low =
+          k < 2 ? residual(point_at(a, down.head<2>()), q) : residual(p, point_at(b, down.tail<2>()));
       out.col(k) = (high - low) / (2.0 * h);
     }
     return out;
@@ -76,7 +77,8 @@ struct Equations {
 
 }  // namespace
 
-std::optional<Critical> find_critical(const Face& a, const Vec2& site_a, const Face& b, const Vec2& site_b) {
+std::optional<Critical> find_critical(const Face& a, const Vec2& site_a, const Face& b, const Vec2& site_b,
+                                      const Vec3& shift) {
   Vec4 x;
   x << inside(a, site_a), inside(b, site_b);
   const SurfacePoint p0 = point_at(a, site_a), q0 = point_at(b, site_b);
@@ -87,7 +89,7 @@ std::optional<Critical> find_critical(const Face& a, const Vec2& site_a, const F
   const Vec4 unit = scale * Vec4(1.0 / p0.jet.du.norm(), 1.0 / p0.jet.dv.norm(), 1.0 / q0.jet.du.norm(),
                                  1.0 / q0.jet.dv.norm());
   if (!unit.allFinite()) return std::nullopt;
-  const Equations equations{a, b, scale};
+  const Equations equations{a, b, scale, shift};
   Vec4 r = equations.residual(x);
   constexpr double accuracy = 1e-10;
   for (int step = 0; step < 40 && r.norm() > accuracy; ++step) {
@@ -114,8 +116,9 @@ std::optional<Critical> find_critical(const Face& a, const Vec2& site_a, const F
   const SurfacePoint p = point_at(a, x.head<2>()), q = point_at(b, x.tail<2>());
   if (!(p.normal.dot(q.normal) < -0.5))
     return std::nullopt;  // the same way round: one surface touches the other inside
-  const Vec3 way = p.jet.position - q.jet.position;
-  return Critical{x.head<2>(), x.tail<2>(), p.jet.position, q.jet.position, p.normal, way.dot(p.normal)};
+  const Vec3 moved = q.jet.position + shift;
+  return Critical{x.head<2>(), x.tail<2>(), p.jet.position,
+                  moved,       p.normal,    (p.jet.position - moved).dot(p.normal)};
 }
 
 Nearest find_nearest(const Face& a, const Cell& cell_a, const Vec2& site_a, const Face& b, const Cell& cell_b,

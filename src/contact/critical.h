@@ -19,7 +19,9 @@ struct Critical {
 
 // By damped Newton steps from the sites (u, v); where solutions form a line (parallel yarns), some point of
 // it. Nothing: it does not converge, as at sharp edges or past a face's border.
-std::optional<Critical> find_critical(const Face& a, const Vec2& site_a, const Face& b, const Vec2& site_b);
+// `shift`: the second surface is moved by it first (q is the moved point).
+std::optional<Critical> find_critical(const Face& a, const Vec2& site_a, const Face& b, const Vec2& site_b,
+                                      const Vec3& shift = Vec3::Zero());
 
 // The two nearest points of two cells, by Newton's method within their parameters' bounds from given sites:
 // also on edges and corners. A local solution.

@@ -203,6 +203,7 @@ CellModel::Made CellModel::make(const yarn::Body& body) {
     if (end.style == yarn::EndStyle::none) continue;
     Made::MadeFace face;
     face.face.is_side = false;
+    face.face.is_last = last;
     if (end.style == yarn::EndStyle::planar) {
       face.own = flat_end(body, last);
       face.face.inward = faces_against(*face.own, end.normal);
@@ -239,6 +240,7 @@ CellModel::CellModel(std::span<const yarn::Body> bodies, int threads)
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const auto first_face = static_cast<std::uint32_t>(faces_.size()),
                first_cell = static_cast<std::uint32_t>(cells_.size());
+    sides_.push_back(first_face);
     thickness_[b] = made[b].thickness;
     length_[b] = made[b].length;
     touching_[b] = made[b].touching;
@@ -266,6 +268,12 @@ CellModel::CellModel(std::span<const yarn::Body> bodies, int threads)
     }
     made[b] = {};
   }
+}
+
+std::optional<std::uint32_t> CellModel::end(std::size_t body, bool last) const {
+  for (std::uint32_t k = sides_[body] + 1; k < faces_.size() && faces_[k].body == body; ++k)
+    if (faces_[k].is_last == last) return k;
+  return std::nullopt;
 }
 
 double CellModel::way_along(const Piece& a, const Piece& b) const {

@@ -18,6 +18,7 @@ struct Face {
   std::uint32_t body = 0;
   const nurbs::Surface* surface = nullptr;
   bool is_side = true;
+  bool is_last = false;                   // of an end: the one at the last v
   bool inward = false;                    // S_u x S_v points into the yarn
   bool round_u = false, round_v = false;  // the parameter goes round
   std::uint32_t first_cell = 0;           // cell (i, j) is first_cell + j * count_u + i
@@ -55,6 +56,9 @@ class CellModel {
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
   [[nodiscard]] const Face& face_of(const Cell& cell) const { return faces_[cell.face]; }
   [[nodiscard]] const Piece& piece_of_cell(std::uint32_t cell) const { return pieces_[piece_of_[cell]]; }
+  // The number of the body's side, and of an end face; none where that end is open (or the body a ring).
+  [[nodiscard]] std::uint32_t side(std::size_t body) const { return sides_[body]; }
+  [[nodiscard]] std::optional<std::uint32_t> end(std::size_t body, bool last) const;
   // Length along the yarn between two places of it; on a ring the shorter way.
   [[nodiscard]] double way_along(const Piece& a, const Piece& b) const;
   // The least thickness of the body's sections (but for those that shrink to a point); 0: it has no surface.
@@ -71,7 +75,7 @@ class CellModel {
   std::vector<Face> faces_;
   std::vector<Cell> cells_;
   std::vector<Piece> pieces_;
-  std::vector<std::uint32_t> piece_of_;
+  std::vector<std::uint32_t> piece_of_, sides_;
   std::vector<double> thickness_, length_, touching_;
 };
 

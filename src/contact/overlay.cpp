@@ -208,4 +208,55 @@ std::vector<Part> Overlay::parts_about(std::size_t line, int radius, bool of_a) 
   return parts;
 }
 
+namespace {
+
+constexpr int close_lines = 24, close_steps = 8, close_rounds = 5;
+
+Vec3 outward_normal(const Face& face, const Vec2& site) {
+  const nurbs::SurfaceJet jet = nurbs::evaluate_jet(*face.surface, site.x(), site.y());
+  return (face.inward ? -1.0 : 1.0) * jet.du.cross(jet.dv).normalized();
+}
+
+}  // namespace
+
+bool Overlay::is_smooth_about(std::size_t line, int radius, bool of_a) const {
+  const int i = static_cast<int>(line) % lines_, j = static_cast<int>(line) / lines_;
+  std::optional<Vec3> first;
+  for (int y = j - radius; y <= j + radius; ++y)
+    for (int x = i - radius; x <= i + radius; ++x) {
+      if (x < 0 || y < 0 || x >= lines_ || y >= lines_) continue;
+      const auto k = static_cast<std::size_t>(y * lines_ + x);
+      // Where the sheet ends there is an edge.
+      if ((of_a ? a_ : b_)[k].part < 0) return false;
+      const Place here = of_a ? on_a(k) : on_b(k);
+      const Vec3 normal = outward_normal(model_.face_of(model_.cells()[here.cell]), here.site);
+      if (!first) first = normal;
+      if (!(first->dot(normal) > 0.99)) return false;
+    }
+  return true;
+}
+
+std::optional<Deepest> close_in(const CellModel& model, std::vector<Part> parts_a, std::vector<Part> parts_b,
+                                const Vec3& n, const Vec3& start, double reach) {
+  std::optional<Deepest> best;
+  const Axes axes(n, {start, start + reach * n.unitOrthogonal()});
+  Vec2 centre = axes.seen(start).head<2>(), half = Vec2::Constant(reach);
+  for (int round = 0; round < close_rounds; ++round) {
+    const Sheet a(model, std::move(parts_a), close_steps), b(model, std::move(parts_b), close_steps);
+    const Overlay overlay(model, a, b, axes, Rectangle(Vec2(centre - half), Vec2(centre + half)),
+                          close_lines);
+    std::optional<std::size_t> deepest;
+    for (std::size_t k = 0; k < overlay.size(); ++k)
+      if (overlay.is_met(k) && (!deepest || overlay.depth(k) > overlay.depth(*deepest))) deepest = k;
+    if (!deepest) break;
+    best = Deepest{overlay.on_a(*deepest), overlay.on_b(*deepest), overlay.depth(*deepest),
+                   overlay.is_smooth_about(*deepest, 2, true), overlay.is_smooth_about(*deepest, 2, false)};
+    parts_a = overlay.parts_about(*deepest, 2, true);
+    parts_b = overlay.parts_about(*deepest, 2, false);
+    centre = overlay.centre(*deepest);
+    half = 2.0 * overlay.step();
+  }
+  return best;
+}
+
 }  // namespace selvage::contact

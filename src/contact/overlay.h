@@ -1,6 +1,7 @@
 // Two facing sheets of surface seen along one direction: how deep each line along it lies in both.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "contact/face.h"
@@ -69,6 +70,8 @@ class Overlay {
   [[nodiscard]] std::vector<int> regions(double least_depth, int& count) const;
   // The parts of both sheets that lines within `radius` steps of this one meet, with half a step more.
   [[nodiscard]] std::vector<Part> parts_about(std::size_t line, int radius, bool of_a) const;
+  // One sheet's normals within `radius` steps of a line are nearly one.
+  [[nodiscard]] bool is_smooth_about(std::size_t line, int radius, bool of_a) const;
 
  private:
   struct Hit {
@@ -89,5 +92,17 @@ class Overlay {
   Vec2 low_, step_;
   std::vector<Hit> a_, b_;
 };
+
+// The line along `n` on which two sheets are deepest in each other, by rasters that close in on it: first of
+// the size `reach` about `start`. Nothing: no line meets both.
+struct Deepest {
+  Overlay::Place a, b;
+  double depth = 0;
+  // The outward normals of the cells that the last raster saw next to it: where all are nearly the same, the
+  // surface is smooth there.
+  bool smooth_a = true, smooth_b = true;
+};
+std::optional<Deepest> close_in(const CellModel& model, std::vector<Part> a, std::vector<Part> b,
+                                const Vec3& n, const Vec3& start, double reach);
 
 }  // namespace selvage::contact

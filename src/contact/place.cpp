@@ -4,9 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "contact/critical.h"
+#include "contact/deep.h"
+#include "contact/least_shift.h"
 #include "contact/overlay.h"
 
 namespace selvage::contact {
@@ -38,11 +41,17 @@ std::vector<std::uint32_t> covering_range(const std::set<std::uint32_t>& used, s
   return range;
 }
 
+// Deeper than this share of the thickness two facing sheets do not tell it all.
+constexpr double deep_share = 0.3;
+
 // A local minimum of the gap.
 struct Spot {
+  const Face* face_a = nullptr;
+  const Face* face_b = nullptr;
+  Vec2 site_a = Vec2::Zero(), site_b = Vec2::Zero();
   Vec3 p = Vec3::Zero(), q = Vec3::Zero(), normal = Vec3::Zero();
-  std::optional<Vec2> site_a, site_b;
   double depth = 0;
+  bool is_critical = true;  // else on an edge or a border
 };
 
 class Measurer {
@@ -59,24 +68,39 @@ class Measurer {
   std::vector<Contact> run() {
     const Vec3 n = facing();
     if (n.squaredNorm() > 0.0) look_along(n);
-    if (contacts_.empty()) look_at_nearest();
+    // Where sheets that face each other show no overlap, the surfaces may cross elsewhere.
+    const bool overlaps = std::any_of(contacts_.begin(), contacts_.end(),
+                                      [](const Contact& contact) { return contact.is_overlap(); });
+    if (!is_deep_ && !overlaps) look_at_nearest();
+    if (is_deep_) look_deep();
     return std::move(contacts_);
   }
 
  private:
   [[nodiscard]] const Cell& cell(std::uint32_t k) const { return model_.cells()[k]; }
 
-  // From a to b where they are nearest.
+  // From a to b, where they overlap or are nearest.
   [[nodiscard]] Vec3 facing() const {
     double nearest = infinity;
     for (const NearPair& pair : cluster_) nearest = std::min(nearest, pair.low);
+    nearest = std::max(nearest, 0.0);
     Vec3 sum = Vec3::Zero();
     for (const NearPair& pair : cluster_) {
-      const Vec3 &na = cell(pair.a).normal, &nb = cell(pair.b).normal;
-      const double weight =
-          std::exp((nearest - pair.low) / (0.02 * thickness_)) * (1e-6 + std::max(0.0, -na.dot(nb)));
-      sum += weight * (na - nb);
+      const Cell &a = cell(pair.a), &b = cell(pair.b);
+      const double opposed = std::max(0.0, -a.normal.dot(b.normal)),
+                   farther = std::max(0.0, pair.low - nearest) / (0.02 * thickness_);
+      sum += std::exp(-farther) * (1e-6 + opposed * opposed) * a.box.diagonal().squaredNorm() *
+             b.box.diagonal().squaredNorm() * (a.normal - b.normal);
     }
+    const double size = sum.norm();
+    return size > 0.0 ? Vec3(sum / size) : Vec3::Zero();
+  }
+
+  // The same from the lines on which the two overlap; zero where there are none.
+  [[nodiscard]] Vec3 facing(const Overlay& overlay, const std::vector<int>& region) const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k < region.size(); ++k)
+      if (region[k] >= 0) sum += cell(overlay.on_a(k).cell).normal - cell(overlay.on_b(k).cell).normal;
     const double size = sum.norm();
     return size > 0.0 ? Vec3(sum / size) : Vec3::Zero();
   }
@@ -126,7 +150,7 @@ class Measurer {
     return view(a, near_a).intersection(view(b, near_b));
   }
 
-  void look_along(const Vec3& n) {
+  void look_along(const Vec3& n, int tries = 2) {
     std::size_t widest = 1;
     std::vector<Part> parts_a = window(true, widest), parts_b = window(false, widest);
     const int steps = static_cast<int>(std::clamp<std::size_t>(40 / widest, 2, 10));
@@ -135,14 +159,36 @@ class Measurer {
     const Rectangle view = common_view(a, b, axes);
     if (view.isEmpty() || !(view.sizes().minCoeff() > 0.0)) return;
     const Overlay overlay(model_, a, b, axes, view, raster_lines);
+    int regions = 0;
+    const std::vector<int> region = overlay.regions(0.0, regions);
     const std::vector<std::size_t> peaks = peaks_of(overlay);
+    if ((!peaks.empty() && overlay.depth(peaks.front()) > deep_share * thickness_) ||
+        is_steep(overlay, region)) {
+      // A better direction may show less.
+      const Vec3 better = facing(overlay, region);
+      if (tries > 0 && better.squaredNorm() > 0.0 && better.dot(n) < 0.995)
+        return look_along(better, tries - 1);
+      is_deep_ = true;
+      return;
+    }
     std::vector<std::size_t> unsettled;
     for (const std::size_t line : peaks)
       if (!settle(overlay, line)) unsettled.push_back(line);
-    int regions = 0;
-    const std::vector<int> region = overlay.regions(0.0, regions);
     for (const std::size_t line : unsettled) settle_at_crease(overlay, line, region);
     gather(overlay, region, regions);
+  }
+
+  // Most of what seems to be shared lies between surfaces that run along the lines.
+  [[nodiscard]] bool is_steep(const Overlay& overlay, const std::vector<int>& region) const {
+    std::size_t shared = 0, steep = 0;
+    for (std::size_t k = 0; k < region.size(); ++k) {
+      if (region[k] < 0) continue;
+      ++shared;
+      if (cell(overlay.on_a(k).cell).normal.dot(overlay.axes().n) < 0.25 ||
+          cell(overlay.on_b(k).cell).normal.dot(overlay.axes().n) > -0.25)
+        ++steep;
+    }
+    return steep > 0 && 10 * steep > 3 * shared;
   }
 
   // Lines on which the two are deepest in each other, or nearest, the deepest first.
@@ -169,8 +215,8 @@ class Measurer {
   // The critical pair that belongs to a peak.
   bool settle(const Overlay& overlay, std::size_t line) {
     const Overlay::Place a = overlay.on_a(line), b = overlay.on_b(line);
-    const std::optional<Critical> found =
-        find_critical(model_.face_of(cell(a.cell)), a.site, model_.face_of(cell(b.cell)), b.site);
+    const Face &fa = model_.face_of(cell(a.cell)), &fb = model_.face_of(cell(b.cell));
+    const std::optional<Critical> found = find_critical(fa, a.site, fb, b.site);
     if (!found || found->normal.dot(overlay.axes().n) < 0.5) return false;
     const double start = overlay.depth(line);
     if (found->depth < start - slack() || found->depth > start + 0.1 * thickness_ + 0.3 * std::abs(start))
@@ -179,7 +225,8 @@ class Measurer {
     if ((middle - 0.5 * (a.point + b.point)).norm() > 0.5 * thickness_ + 6.0 * overlay.step().norm())
       return false;
     if (!is_known(found->p, found->q))
-      spots_.push_back({found->p, found->q, found->normal, found->site_a, found->site_b, found->depth});
+      spots_.push_back(
+          {&fa, &fb, found->site_a, found->site_b, found->p, found->q, found->normal, found->depth});
     return true;
   }
 
@@ -194,73 +241,145 @@ class Measurer {
       const bool close = (Vec2(seen.head<2>()) - place).norm() < 4.0 * coarse.step().norm();
       if ((same_region || close) && s.depth > coarse.depth(first) - slack()) return;
     }
-    std::vector<Part> pa = coarse.parts_about(first, 2, true), pb = coarse.parts_about(first, 2, false);
-    Rectangle view(Vec2(place - 2.0 * coarse.step()), Vec2(place + 2.0 * coarse.step()));
-    std::optional<Spot> best;
-    for (int round = 0; round < 5; ++round) {
-      const Sheet a(model_, std::move(pa), 8), b(model_, std::move(pb), 8);
-      const Overlay overlay(model_, a, b, coarse.axes(), view, 24);
-      std::optional<std::size_t> deepest;
-      for (std::size_t k = 0; k < overlay.size(); ++k)
-        if (overlay.is_met(k) && (!deepest || overlay.depth(k) > overlay.depth(*deepest))) deepest = k;
-      if (!deepest) break;
-      const Overlay::Place on_a = overlay.on_a(*deepest), on_b = overlay.on_b(*deepest);
-      best = Spot{on_a.point, on_b.point, coarse.axes().n, site(on_a), site(on_b), overlay.depth(*deepest)};
-      pa = overlay.parts_about(*deepest, 2, true);
-      pb = overlay.parts_about(*deepest, 2, false);
-      view = Rectangle(Vec2(overlay.centre(*deepest) - 2.0 * overlay.step()),
-                       Vec2(overlay.centre(*deepest) + 2.0 * overlay.step()));
+    const std::vector<Part> pa = coarse.parts_about(first, 2, true), pb = coarse.parts_about(first, 2, false);
+    const Vec3 start = 0.5 * (coarse.on_a(first).point + coarse.on_b(first).point);
+    const double reach = 2.0 * coarse.step().maxCoeff();
+    Vec3 n = coarse.axes().n;
+    std::optional<Deepest> found = close_in(model_, pa, pb, n, start, reach);
+    if (found && found->depth > -reach_) {
+      // Against a smooth surface an edge is parted along that surface's normal.
+      const std::optional<Vec3> easier = found->smooth_a   ? normal_at(found->a)
+                                         : found->smooth_b ? normal_at(found->b)
+                                                           : easiest_direction(pa, pb, n, start, reach);
+      if (easier) {
+        const Vec3 turned = easier->dot(n) < 0.0 ? Vec3(-*easier) : *easier;
+        if (const std::optional<Deepest> again = close_in(model_, pa, pb, turned, start, reach)) {
+          found = again;
+          n = turned;
+        }
+      }
     }
-    if (best && best->depth > touching_ && !is_known(best->p, best->q)) spots_.push_back(*best);
+    // A gap there is not along one line: see look_at_nearest().
+    if (!found || !(found->depth > touching_) || is_known(found->a.point, found->b.point)) return;
+    spots_.push_back({&model_.face_of(cell(found->a.cell)), &model_.face_of(cell(found->b.cell)),
+                      found->a.site, found->b.site, found->a.point, found->b.point, n, found->depth, false});
   }
 
-  [[nodiscard]] std::optional<Vec2> site(const Overlay::Place& place) const {
-    if (!model_.face_of(cell(place.cell)).is_side) return std::nullopt;
-    return place.site;
+  [[nodiscard]] std::optional<Vec3> normal_at(const Overlay::Place& place) const {
+    const Face& face = model_.face_of(cell(place.cell));
+    const nurbs::SurfaceJet jet = nurbs::evaluate_jet(*face.surface, place.site.x(), place.site.y());
+    const Vec3 normal = jet.du.cross(jet.dv);
+    const double size = normal.norm();
+    if (!(size > 0.0)) return std::nullopt;
+    return normal / size;
   }
 
-  [[nodiscard]] Contact contact_of(const Spot& spot) const {
+  // Edge across edge: the direction along which the deepest line is the shortest, by compass search.
+  [[nodiscard]] Vec3 easiest_direction(const std::vector<Part>& pa, const std::vector<Part>& pb, Vec3 n,
+                                       const Vec3& start, double reach) const {
+    const auto cost = [&](const Vec3& direction) {
+      const std::optional<Deepest> found = close_in(model_, pa, pb, direction, start, reach);
+      return found && found->depth > 0.0 ? found->depth : infinity;
+    };
+    double best = cost(n);
+    for (double step = 0.3; step > 2e-3; step *= 0.5)
+      for (int k = 0; k < 8; ++k) {
+        const Vec3 x = n.unitOrthogonal(), y = n.cross(x);
+        const double angle = k * std::numbers::pi / 4.0 + 10.0 * step;
+        const Vec3 turned = (n + step * (std::cos(angle) * x + std::sin(angle) * y)).normalized();
+        const double value = cost(turned);
+        if (value >= best) continue;
+        best = value;
+        n = turned;
+      }
+    return n;
+  }
+
+  [[nodiscard]] static Minimum minimum_of(const Spot& spot) {
+    Minimum minimum;
+    if (spot.face_a != nullptr && spot.face_a->is_side) minimum.site_a = spot.site_a;
+    if (spot.face_b != nullptr && spot.face_b->is_side) minimum.site_b = spot.site_b;
+    minimum.on_a = spot.p;
+    minimum.on_b = spot.q;
+    minimum.normal = spot.normal;
+    minimum.gap = -spot.depth;
+    return minimum;
+  }
+
+  // The deepest comes first.
+  [[nodiscard]] Contact contact_of(const std::vector<Spot>& spots) const {
+    const Spot& spot = spots.front();
     Contact contact;
     contact.a = body_a_;
     contact.b = body_b_;
-    contact.site_a = spot.site_a;
-    contact.site_b = spot.site_b;
+    for (const Spot& s : spots) contact.spots.push_back(minimum_of(s));
+    contact.site_a = contact.spots.front().site_a;
+    contact.site_b = contact.spots.front().site_b;
     contact.on_a = spot.p;
     contact.on_b = spot.q;
     contact.at = 0.5 * (spot.p + spot.q);
     contact.direction = spot.normal;
     contact.gap = spot.depth > touching_ ? -spot.depth : std::max(0.0, -spot.depth);
-    contact.spots.push_back(minimum_of(spot));
+    if (contact.is_overlap() && spots.size() > 1) part_all(spots, contact);
     return contact;
   }
 
-  [[nodiscard]] static Minimum minimum_of(const Spot& spot) {
-    return {spot.site_a, spot.site_b, spot.p, spot.q, spot.normal, -spot.depth};
+  // The least translation that ends the overlap at all its spots: each asks for its own depth along its own
+  // normal, and both are taken anew with the second yarn where the translation puts it.
+  void part_all(const std::vector<Spot>& spots, Contact& contact) const {
+    std::vector<Demand> demands;
+    for (const Spot& spot : spots)
+      if (spot.depth > touching_) demands.push_back({spot.normal, spot.depth});
+    std::optional<Vec3> shift = least_shift(demands);
+    for (int round = 0; round < 6 && shift; ++round) {
+      for (std::size_t k = 0; k < demands.size(); ++k) {
+        const Spot& spot = spots[k];
+        if (!spot.is_critical) continue;
+        const std::optional<Critical> found =
+            find_critical(*spot.face_a, spot.site_a, *spot.face_b, spot.site_b, *shift);
+        if (found && found->normal.dot(spot.normal) > 0.7)
+          demands[k] = {found->normal, found->depth + found->normal.dot(*shift)};
+      }
+      const std::optional<Vec3> next = least_shift(demands);
+      const bool settled = next && (*next - *shift).norm() < 1e-5 * shift->norm();
+      shift = next;
+      if (settled) break;
+    }
+    if (!shift || !(shift->norm() > touching_)) return;
+    contact.gap = -shift->norm();
+    contact.direction = shift->normalized();
   }
 
   // Spots of one connected region make one contact.
   void gather(const Overlay& overlay, const std::vector<int>& region, int regions) {
     std::stable_sort(spots_.begin(), spots_.end(),
                      [](const Spot& x, const Spot& y) { return x.depth > y.depth; });
-    std::vector<std::optional<std::size_t>> contact_of_region(static_cast<std::size_t>(regions));
+    struct Group {
+      int region;
+      std::vector<Spot> spots;
+    };
+    std::vector<Group> groups;
+    std::vector<std::optional<std::size_t>> group_of(static_cast<std::size_t>(regions));
     for (const Spot& spot : spots_) {
       if (spot.depth < -reach_) continue;
       const Vec3 seen = overlay.axes().seen(0.5 * (spot.p + spot.q));
       const int line = overlay.line_at(seen.head<2>());
       const int here = line < 0 ? -1 : region[static_cast<std::size_t>(line)];
-      if (here >= 0 && contact_of_region[static_cast<std::size_t>(here)]) {
-        contacts_[*contact_of_region[static_cast<std::size_t>(here)]].spots.push_back(minimum_of(spot));
+      if (here >= 0 && group_of[static_cast<std::size_t>(here)]) {
+        groups[*group_of[static_cast<std::size_t>(here)]].spots.push_back(spot);
         continue;
       }
-      if (here >= 0) contact_of_region[static_cast<std::size_t>(here)] = contacts_.size();
-      contacts_.push_back(contact_of(spot));
-      contacts_.back().area = area(overlay, region, here, spot);
+      if (here >= 0) group_of[static_cast<std::size_t>(here)] = groups.size();
+      groups.push_back({here, {spot}});
+    }
+    for (const Group& group : groups) {
+      contacts_.push_back(contact_of(group.spots));
+      contacts_.back().area = area(overlay, region, group.region);
     }
   }
 
   // Of a's surface on the region's lines.
-  [[nodiscard]] double area(const Overlay& overlay, const std::vector<int>& region, int which,
-                            const Spot& spot) const {
+  [[nodiscard]] double area(const Overlay& overlay, const std::vector<int>& region, int which) const {
     if (which < 0) return 0.0;
     double sum = 0.0;
     for (std::size_t k = 0; k < region.size(); ++k) {
@@ -268,32 +387,73 @@ class Measurer {
       const double tilt = cell(overlay.on_a(k).cell).normal.dot(overlay.axes().n);
       sum += overlay.step().prod() / std::max(tilt, 0.2);
     }
-    (void)spot;
     return sum;
   }
 
   // Where the surfaces do not face each other: the nearest points of any two cells.
   void look_at_nearest() {
     double best = reach_;
+    for (const Contact& contact : contacts_) best = std::min(best, contact.gap);
     std::optional<Spot> nearest;
     Cluster pairs = cluster_;
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const NearPair& x, const NearPair& y) { return x.low < y.low; });
     for (const NearPair& pair : pairs) {
-      if (pair.low > best) break;
+      if (pair.low >= best) break;
       const Cell &ca = cell(pair.a), &cb = cell(pair.b);
       const Face &fa = model_.face_of(ca), &fb = model_.face_of(cb);
       const Nearest found = find_nearest(fa, ca, 0.5 * (ca.low + ca.high), fb, cb, 0.5 * (cb.low + cb.high));
       const double distance = (found.p - found.q).norm();
-      if (distance > best) continue;
-      best = distance;
-      Spot spot{found.p, found.q, Vec3::Zero(), std::nullopt, std::nullopt, -distance};
+      if (distance > best * (1.0 - 1e-6)) continue;
+      Spot spot{&fa, &fb, found.site_a, found.site_b, found.p, found.q, Vec3::Zero(), -distance, false};
       if (distance > 0.0) spot.normal = (found.q - found.p) / distance;
-      if (fa.is_side) spot.site_a = found.site_a;
-      if (fb.is_side) spot.site_b = found.site_b;
+      is_deep_ = is_deep_ || distance <= touching_;
+      if (body_a_ == body_b_ && distance > touching_ && !is_facing(ca, cb, spot.normal)) continue;
+      best = distance;
       nearest = spot;
     }
-    if (nearest) contacts_.push_back(contact_of(*nearest));
+    if (nearest) contacts_.push_back(contact_of({*nearest}));
+  }
+
+  // Both cells look at each other along n: a yarn is near itself in many places that do not.
+  [[nodiscard]] static bool is_facing(const Cell& a, const Cell& b, const Vec3& n) {
+    return a.normal.dot(n) > 0.3 && b.normal.dot(n) < -0.3;
+  }
+
+  void look_deep() {
+    Box3 walls;
+    for (const NearPair& pair : cluster_) walls.extend(cell(pair.a).box.merged(cell(pair.b).box));
+    std::vector<Contact> deep =
+        measure_deep(model_, body_a_, stretch(true), body_b_, stretch(false), walls, touching_);
+    // Nothing is shared: they touch.
+    if (!deep.empty() || contacts_.empty()) contacts_ = std::move(deep);
+  }
+
+  // The cluster's rows of the yarn, and half as much on both sides.
+  [[nodiscard]] Stretch stretch(bool of_a) const {
+    std::set<std::uint32_t> rows;
+    const std::size_t body = of_a ? body_a_ : body_b_;
+    const Face& side = model_.faces()[model_.side(body)];
+    for (const NearPair& pair : cluster_) {
+      const Cell& c = cell(of_a ? pair.a : pair.b);
+      const Face& face = model_.face_of(c);
+      rows.insert(face.is_side ? c.j : face.is_last ? side.count_v - 1 : 0U);
+    }
+    const std::vector<std::uint32_t> range = covering_range(rows, side.count_v, side.round_v);
+    const auto row = [&](std::uint32_t j) -> const Cell& { return cell(side.first_cell + j * side.count_u); };
+    const nurbs::Surface& s = *side.surface;
+    Stretch out{row(range.front()).low.y(), row(range.back()).high.y()};
+    if (out.last <= out.first) out.last += s.last_v() - s.first_v();
+    const double more = 0.5 * (out.last - out.first);
+    out.first -= more;
+    out.last += more;
+    if (!side.round_v) {
+      out.first = std::max(out.first, s.first_v());
+      out.last = std::min(out.last, s.last_v());
+    } else if (out.last - out.first > s.last_v() - s.first_v()) {
+      out.last = out.first + (s.last_v() - s.first_v());
+    }
+    return out;
   }
 
   const CellModel& model_;
@@ -303,6 +463,7 @@ class Measurer {
   double thickness_, touching_;
   std::vector<Spot> spots_;
   std::vector<Contact> contacts_;
+  bool is_deep_ = false;
 };
 
 }  // namespace

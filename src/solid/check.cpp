@@ -1,5 +1,7 @@
 #include "solid/check.h"
 
+#include <algorithm>
+
 #include "core/module.h"
 
 namespace selvage::solid {
@@ -13,7 +15,22 @@ Result<const CgalModule*> cgal_module() {
 Result<SolidCheck> check_solids(std::span<const yarn::Body> bodies, const CheckOptions& options) {
   Result<const CgalModule*> module = cgal_module();
   if (!module) return module.error();
-  return (*module)->check(bodies, options);
+  Result<SolidCheck> result = (*module)->check(bodies, options);
+  if (!result || !options.overlaps) return result;
+  contact::ContactOptions contact_options;
+  contact_options.threads = options.threads;
+  contact_options.progress = options.progress;
+  Result<contact::Contacts> contacts = contact::find_contacts(bodies, contact_options);
+  // What cannot be looked at is a defect of its yarn already.
+  if (!contacts && std::any_of(result->yarns.begin(), result->yarns.end(),
+                               [](const YarnCheck& yarn) { return !yarn.defects.empty(); }))
+    return result;
+  if (!contacts) return contacts.error();
+  for (const contact::Contact& c : contacts->list)
+    if (c.is_overlap())
+      result->overlaps.push_back({c.a, c.b, c.depth(), c.at, c.direction, c.area, c.site_a, c.site_b});
+  result->min_gap = contacts->min_gap;
+  return result;
 }
 
 }  // namespace selvage::solid

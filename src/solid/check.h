@@ -1,5 +1,5 @@
-// Is each yarn a closed, valid solid, and do two yarns share space? Implemented in the module selvage_cgal
-// (the only user of CGAL); call it through check_solids(), which opens the module.
+// Is each yarn a closed, valid solid, and do yarns share space? Closedness by the module selvage_cgal (the
+// only user of CGAL), overlaps by contact/contact.h.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "contact/contact.h"
 #include "core/diagnostics.h"
 #include "yarn/body.h"
 
@@ -34,28 +35,28 @@ struct YarnCheck {
   std::vector<Message> defects;  // errors, each with yarn, place and remedy; empty: a valid solid
 };
 
-// One connected piece of space that two yarns share; a pair of yarns has one of these for each such piece.
+// One connected piece of space that two yarns share, or that a yarn shares with itself (a == b): what is of
+// use of a contact::Contact that is an overlap.
 struct Overlap {
-  std::size_t a = 0, b = 0;  // indices of the yarns, a < b
-  // The least distance by which one yarn has to be moved for this overlap to vanish, along the direction in
-  // which it is least; on the B-spline surfaces (refined from the tessellation), right to 1 %.
-  double depth = 0;
-  Vec3 at = Vec3::Zero();  // in the middle of the shared space
-  Vec3 direction =
-      Vec3::Zero();  // unit: moving yarn b by depth * direction (or yarn a against it) ends this overlap
+  std::size_t a = 0, b = 0;       // indices of the yarns, a <= b
+  double depth = 0;               // as Contact::depth()
+  Vec3 at = Vec3::Zero();         // in the middle of the shared space
+  Vec3 direction = Vec3::Zero();  // unit: moving yarn b by depth * direction (or yarn a against it) ends it
+  double area = 0;                // of a's surface that lies in b
+  std::optional<Vec2> site_a, site_b;  // (u, v) on both; none on an end face
 };
 
 struct SolidCheck {
   std::vector<YarnCheck> yarns;
   std::vector<Overlap> overlaps;  // deepest first
-  // Least distance between two yarns that do not overlap, on the B-spline surfaces, right to 1 %; 0: they
-  // touch (to rounding). None when there are no two such yarns.
+  // As in contact::Contacts; right to 1 %, 0: they touch (to rounding).
   std::optional<double> min_gap;
 };
 
+// Errors: what find_contacts() and the module say.
 Result<SolidCheck> check_solids(std::span<const yarn::Body> bodies, const CheckOptions& options);
 
-// What the module exports.
+// What the module exports: the check of each yarn by itself.
 struct CgalModule {
   const char* version;
   Result<SolidCheck> (*check)(std::span<const yarn::Body> bodies, const CheckOptions& options);

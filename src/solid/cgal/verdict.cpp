@@ -66,12 +66,6 @@ Verdict judge(const Tessellation& skin) {
   return verdict;
 }
 
-bool do_meet(const Triangle& a, const Triangle& b) {
-  const Kernel::Triangle_3 first(to_point(a[0]), to_point(a[1]), to_point(a[2]));
-  const Kernel::Triangle_3 second(to_point(b[0]), to_point(b[1]), to_point(b[2]));
-  return CGAL::do_intersect(first, second);
-}
-
 const char* cgal_version() {
   return CGAL_VERSION_STR;
 }

@@ -2,7 +2,6 @@
 // 2 GB).
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include "core/vec.h"
@@ -21,11 +20,6 @@ struct Verdict {
 
 // Throws what CGAL throws.
 Verdict judge(const Tessellation& skin);
-
-using Triangle = std::array<Vec3, 3>;
-
-// Do two triangles share a point? Exact.
-bool do_meet(const Triangle& a, const Triangle& b);
 
 const char* cgal_version();
 

@@ -95,12 +95,11 @@ void compare_volumes(const yarn::Body& body, const Tessellation& skin, double ch
       std::nullopt);
 }
 
-void judge_skin(const yarn::Body& body, double chord, Checked& out) {
-  YarnCheck& check = out.check;
+void judge_skin(const yarn::Body& body, double chord, const Tessellation& skin, YarnCheck& check) {
   Defects defects(body, check);
   const bool gaps_named = name_gaps(body, check, defects);
-  const Verdict verdict = judge(out.skin);
-  check.volume = volume(out.skin);
+  const Verdict verdict = judge(skin);
+  check.volume = volume(skin);
   check.closed = verdict.closed && !gaps_named;
   check.self_intersecting = verdict.self_intersecting;
   check.bounds_volume = verdict.bounds_volume && check.closed;
@@ -116,7 +115,7 @@ void judge_skin(const yarn::Body& body, double chord, Checked& out) {
         std::nullopt);
   if (verdict.consistent && !verdict.closed && !gaps_named)
     defects.add(Kind::geometry, fmt::format("open: the skin of yarn '{}' has a border", body.name),
-                find_border(out.skin));
+                find_border(skin));
   if (verdict.self_intersecting) {
     std::string text = fmt::format("the surface of yarn '{}' crosses itself", body.name);
     text += body.tight_bends.empty() ? "; move its path or its sections apart there"
@@ -136,7 +135,7 @@ void judge_skin(const yarn::Body& body, double chord, Checked& out) {
   if (verdict.closed && !verdict.self_intersecting && !verdict.bounds_volume)
     defects.add(Kind::geometry, fmt::format("the skin of yarn '{}' does not bound a volume", body.name),
                 std::nullopt);
-  if (verdict.closed && verdict.outward) compare_volumes(body, out.skin, chord, check, defects);
+  if (verdict.closed && verdict.outward) compare_volumes(body, skin, chord, check, defects);
 }
 
 }  // namespace
@@ -145,22 +144,21 @@ double chord_of(const yarn::Body& body, const CheckOptions& options) {
   return options.chord > 0.0 ? options.chord : smallest_extent(body) / 200.0;
 }
 
-Checked check_yarn(const yarn::Body& body, double chord) {
-  Checked out;
-  Result<Tessellation> skin = tessellate(body, chord);
+YarnCheck check_yarn(const yarn::Body& body, double chord) {
+  YarnCheck check;
+  const Result<Tessellation> skin = tessellate(body, chord);
   if (!skin) {
-    out.check.defects.push_back(skin.error());
-    return out;
+    check.defects.push_back(skin.error());
+    return check;
   }
-  out.skin = std::move(*skin);
   try {
-    judge_skin(body, chord, out);
+    judge_skin(body, chord, *skin, check);
   } catch (const std::exception& failure) {
-    Defects(body, out.check)
+    Defects(body, check)
         .add(Kind::internal, fmt::format("CGAL cannot judge yarn '{}': {}", body.name, failure.what()),
              std::nullopt);
   }
-  return out;
+  return check;
 }
 
 }  // namespace selvage::solid

@@ -6,15 +6,10 @@
 
 namespace selvage::solid {
 
-struct Checked {
-  YarnCheck check;
-  Tessellation skin;  // empty when the yarn cannot be tessellated
-};
-
 // The chord error in force for this yarn.
 double chord_of(const yarn::Body& body, const CheckOptions& options);
 
 // Never throws; a refusal of CGAL or of the tessellation is a defect of the yarn.
-Checked check_yarn(const yarn::Body& body, double chord);
+YarnCheck check_yarn(const yarn::Body& body, double chord);
 
 }  // namespace selvage::solid

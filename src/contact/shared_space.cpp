@@ -1,13 +1,14 @@
-#include "solid/cgal/separation.h"
+#include "contact/shared_space.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <span>
 
-namespace selvage::solid {
+namespace selvage::contact {
 
 namespace {
 
@@ -58,7 +59,7 @@ class Raster {
 
   // Every passage of a line through a triangle of the skin, line by line, each going up. `seen`: its vertices
   // in the frame.
-  [[nodiscard]] std::vector<Passage> pass(const Tessellation& skin, const std::vector<Vec3>& seen) const {
+  [[nodiscard]] std::vector<Passage> pass(const Mesh& skin, const std::vector<Vec3>& seen) const {
     std::vector<Passage> all;
     for (std::uint32_t k = 0; k < skin.triangles.size(); ++k) pass(seen, skin.triangles[k], k, all);
     std::sort(all.begin(), all.end(), [](const Passage& x, const Passage& y) {
@@ -124,14 +125,15 @@ class Raster {
   Vec2 low_, step_;
 };
 
-struct Piece {
+// What lies inside a skin on a line.
+struct Chord {
   Passage in, out;
 };
 
 using Passages = std::span<const Passage>;
 
 // The pieces of a line inside a closed skin.
-void find_pieces(Passages passages, std::vector<Piece>& pieces) {
+void find_pieces(Passages passages, std::vector<Chord>& pieces) {
   int depth = 0;
   Passage in;
   for (const Passage& passage : passages) {
@@ -139,15 +141,6 @@ void find_pieces(Passages passages, std::vector<Piece>& pieces) {
     if (passage.leaves && --depth == 0) pieces.push_back({in, passage});
     depth = std::max(depth, 0);
   }
-}
-
-// As sheets: the highest way out of A and the lowest way into B.
-void find_faces(Passages a, Passages b, std::vector<Piece>& pieces_a, std::vector<Piece>& pieces_b) {
-  constexpr double far = std::numeric_limits<double>::infinity();
-  const auto out = std::find_if(a.rbegin(), a.rend(), [](const Passage& p) { return p.leaves; });
-  const auto in = std::find_if(b.begin(), b.end(), [](const Passage& p) { return !p.leaves; });
-  if (out != a.rend()) pieces_a.push_back({{out->line, -far, false, 0}, *out});
-  if (in != b.end()) pieces_b.push_back({*in, {in->line, far, true, 0}});
 }
 
 // The next line's passages, from `begin` on.
@@ -187,6 +180,51 @@ class SharedSpace::View {
     return closer_last.distance > last.distance ? parting(closer, closer_last) : parting(raster, last);
   }
 
+  // Runs of shared space on lines, joined where neighbouring lines' runs overlap.
+  [[nodiscard]] std::vector<std::vector<Vec3>> pieces(int lines) const {
+    const Rectangle whole(Vec2(box_.min().head<2>()), Vec2(box_.max().head<2>()));
+    if (!(whole.sizes().minCoeff() > 0.0)) return {};
+    const Raster raster(whole, lines);
+    struct Run {
+      int line;
+      double low, high;
+      std::size_t group;
+    };
+    std::vector<Run> runs;
+    std::vector<std::size_t> first(static_cast<std::size_t>(lines) * static_cast<std::size_t>(lines) + 1, 0);
+    for_each_shared(raster, [&](const Chord& x, const Chord& y) {
+      runs.push_back(
+          {x.in.line, std::max(x.in.height, y.in.height), std::min(x.out.height, y.out.height), runs.size()});
+    });
+    for (const Run& run : runs) ++first[static_cast<std::size_t>(run.line) + 1];
+    for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
+    const auto root = [&](std::size_t k) {
+      while (runs[k].group != k) k = runs[k].group = runs[runs[k].group].group;
+      return k;
+    };
+    for (std::size_t k = 0; k < runs.size(); ++k)
+      for (const int step : {1, lines}) {
+        const int next = runs[k].line + step;
+        if (next >= lines * lines || (step == 1 && next % lines == 0)) continue;
+        for (std::size_t m = first[static_cast<std::size_t>(next)];
+             m < first[static_cast<std::size_t>(next) + 1]; ++m)
+          if (runs[m].low <= runs[k].high && runs[k].low <= runs[m].high) {
+            const std::size_t x = root(k), y = root(m);
+            runs[std::max(x, y)].group = std::min(x, y);
+          }
+      }
+    std::map<std::size_t, std::vector<Vec3>> walls;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      std::vector<Vec3>& of_piece = walls[root(k)];
+      const Vec2 place = raster.place(runs[k].line);
+      of_piece.push_back(frame_.placed(place, runs[k].low));
+      of_piece.push_back(frame_.placed(place, runs[k].high));
+    }
+    std::vector<std::vector<Vec3>> all;
+    for (auto& [group, points] : walls) all.push_back(std::move(points));
+    return all;
+  }
+
  private:
   struct Last {
     double distance = 0;
@@ -200,10 +238,19 @@ class SharedSpace::View {
   }
 
   [[nodiscard]] Last find_last(const Raster& raster) const {
+    Last last;
+    for_each_shared(raster, [&](const Chord& x, const Chord& y) {
+      if (x.out.height - y.in.height > last.distance) last = {x.out.height - y.in.height, x.out, y.in};
+    });
+    return last;
+  }
+
+  // Calls visit(piece of A, piece of B) for those that overlap, line by line.
+  template <class Visit>
+  void for_each_shared(const Raster& raster, const Visit& visit) const {
     const std::vector<Passage> all_a = raster.pass(space_.a_, seen_a_),
                                all_b = raster.pass(space_.b_, seen_b_);
-    Last last;
-    std::vector<Piece> pieces_a, pieces_b;
+    std::vector<Chord> pieces_a, pieces_b;
     for (std::size_t i = 0, j = 0; i < all_a.size() && j < all_b.size();) {
       const Passages a = next_line(all_a, i), b = next_line(all_b, j);
       if (a.front().line <= b.front().line) i += a.size();
@@ -211,23 +258,17 @@ class SharedSpace::View {
       if (a.front().line != b.front().line) continue;
       pieces_a.clear();
       pieces_b.clear();
-      if (space_.whole_) {
-        find_pieces(a, pieces_a);
-        find_pieces(b, pieces_b);
-      } else {
-        find_faces(a, b, pieces_a, pieces_b);
-      }
-      for (const Piece& x : pieces_a)
-        for (const Piece& y : pieces_b)
-          if (is_shared(x, y) && x.out.height - y.in.height > last.distance)
-            last = {x.out.height - y.in.height, x.out, y.in};
+      find_pieces(a, pieces_a);
+      find_pieces(b, pieces_b);
+      for (const Chord& x : pieces_a)
+        for (const Chord& y : pieces_b)
+          if (is_shared(x, y)) visit(x, y);
     }
-    return last;
   }
 
-  [[nodiscard]] bool is_shared(const Piece& a, const Piece& b) const {
+  [[nodiscard]] bool is_shared(const Chord& a, const Chord& b) const {
     const double top = std::min(a.out.height, b.out.height), bottom = std::max(a.in.height, b.in.height);
-    return top > bottom && (!space_.whole_ || (top >= box_.min().z() && bottom <= box_.max().z()));
+    return top > bottom && top >= box_.min().z() && bottom <= box_.max().z();
   }
 
   const SharedSpace& space_;
@@ -238,6 +279,10 @@ class SharedSpace::View {
 
 Parting SharedSpace::parting(const Vec3& direction) const {
   return View(*this, direction).parting(fine);
+}
+
+std::vector<std::vector<Vec3>> SharedSpace::pieces(const Vec3& direction) const {
+  return View(*this, direction).pieces(2 * coarse);
 }
 
 Vec3 SharedSpace::easiest_direction(const std::vector<Vec3>& starts) const {
@@ -290,4 +335,4 @@ std::vector<Vec3> directions_all_round() {
   return all;
 }
 
-}  // namespace selvage::solid
+}  // namespace selvage::contact
