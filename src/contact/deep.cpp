@@ -52,7 +52,8 @@ class DeepMeasurer {
     common.sizes().minCoeff(&axis);
     // Not along an axis: grids of points often are.
     Vec3 direction = Vec3::Unit(axis) + Vec3(0.0123, 0.0231, 0.0317);
-    for (std::vector<Vec3>& piece : SharedSpace(mesh_a_, mesh_b_, corners).pieces(direction.normalized())) {
+    for (std::vector<Vec3>& piece :
+         SharedSpace(mesh_a_, mesh_b_, corners, grain()).pieces(direction.normalized())) {
       Box3 box;
       for (const Vec3& p : piece) box.extend(p);
       if (box.intersects(walls)) measure(std::move(piece), contacts);
@@ -139,6 +140,11 @@ class DeepMeasurer {
     return false;
   }
 
+  // Triangles tell no less from touching.
+  [[nodiscard]] double grain() const {
+    return std::max(touching_, 0.005 * std::min(model_.thickness(a_), model_.thickness(b_)));
+  }
+
   void measure(std::vector<Vec3> walls, std::vector<Contact>& contacts) const {
     Vec3 middle = Vec3::Zero();
     for (const Vec3& p : walls) middle += p / static_cast<double>(walls.size());
@@ -150,7 +156,7 @@ class DeepMeasurer {
       walls.push_back(
           box.corner(static_cast<Box3::CornerType>(k)) +
           (box.corner(static_cast<Box3::CornerType>(k)) - box.center()).cwiseSign().cwiseProduct(margin));
-    const SharedSpace space(mesh_a_, mesh_b_, std::move(walls));
+    const SharedSpace space(mesh_a_, mesh_b_, std::move(walls), grain());
     const Vec3 n = space.easiest_direction(directions_all_round());
     const Parting parting = space.parting(n);
     if (!(parting.distance > touching_)) return;

@@ -55,8 +55,9 @@ Overlay::Overlay(const CellModel& model, const Sheet& a, const Sheet& b, const A
       step_((rectangle.max() - rectangle.min()) / lines),
       a_(static_cast<std::size_t>(lines) * static_cast<std::size_t>(lines)),
       b_(a_.size()) {
-  pass(a, true, a_);
-  pass(b, false, b_);
+  pass(a, Keep::highest_out, {}, a_);
+  pass(b, Keep::lowest_in, {}, b_);
+  drop_passing();
 }
 
 Vec2 Overlay::centre(std::size_t line) const {
@@ -72,7 +73,19 @@ int Overlay::line_at(const Vec2& p) const {
   return static_cast<int>(j) * lines_ + static_cast<int>(i);
 }
 
-void Overlay::pass(const Sheet& sheet, bool out, std::vector<Hit>& hits) const {
+void Overlay::drop_passing() {
+  // The way into A below, and out of B above.
+  std::vector<Hit> below(a_.size()), above(a_.size());
+  pass(sheet_a_, Keep::highest_in_below, a_, below);
+  pass(sheet_b_, Keep::lowest_out_above, b_, above);
+  for (std::size_t k = 0; k < a_.size(); ++k)
+    if (is_met(k) && depth(k) > 0.0 && below[k].part >= 0 && above[k].part >= 0 &&
+        above[k].height <= below[k].height)
+      a_[k].part = b_[k].part = -1;
+}
+
+void Overlay::pass(const Sheet& sheet, Keep keep, const std::vector<Hit>& bound,
+                   std::vector<Hit>& hits) const {
   const auto steps = static_cast<std::size_t>(sheet.steps), row = steps + 1;
   std::vector<Vec3> seen(sheet.points_a_part());
   for (std::size_t k = 0; k < sheet.parts.size(); ++k) {
@@ -95,21 +108,23 @@ void Overlay::pass(const Sheet& sheet, bool out, std::vector<Hit>& hits) const {
         // Corners counter-clockwise seen from outside.
         if (inward) {
           pass({seen[c], seen[c + row + 1], seen[c + 1]}, {at, at + du + dv, at + du},
-               static_cast<std::int32_t>(k), out, hits);
+               static_cast<std::int32_t>(k), keep, bound, hits);
           pass({seen[c], seen[c + row], seen[c + row + 1]}, {at, at + dv, at + du + dv},
-               static_cast<std::int32_t>(k), out, hits);
+               static_cast<std::int32_t>(k), keep, bound, hits);
         } else {
           pass({seen[c], seen[c + 1], seen[c + row + 1]}, {at, at + du, at + du + dv},
-               static_cast<std::int32_t>(k), out, hits);
+               static_cast<std::int32_t>(k), keep, bound, hits);
           pass({seen[c], seen[c + row + 1], seen[c + row]}, {at, at + du + dv, at + dv},
-               static_cast<std::int32_t>(k), out, hits);
+               static_cast<std::int32_t>(k), keep, bound, hits);
         }
       }
   }
 }
 
 void Overlay::pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& places, std::int32_t part,
-                   bool out, std::vector<Hit>& hits) const {
+                   Keep keep, const std::vector<Hit>& bound, std::vector<Hit>& hits) const {
+  const bool out = keep == Keep::highest_out || keep == Keep::lowest_out_above;
+  const bool highest = keep == Keep::highest_out || keep == Keep::highest_in_below;
   const Vec2 e1 = (seen[1] - seen[0]).head<2>(), e2 = (seen[2] - seen[0]).head<2>();
   const double size = e1.x() * e2.y() - e1.y() * e2.x();
   if (out ? !(size > 0.0) : !(size < 0.0)) return;
@@ -134,7 +149,11 @@ void Overlay::pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& p
       if (w0 < slack || w1 < slack || w2 < slack) continue;
       const double height = w0 * seen[0].z() + w1 * seen[1].z() + w2 * seen[2].z();
       Hit& hit = hits[static_cast<std::size_t>(j * lines_ + i)];
-      if (hit.part >= 0 && (out ? height <= hit.height : height >= hit.height)) continue;
+      if (hit.part >= 0 && (highest ? height <= hit.height : height >= hit.height)) continue;
+      if (!bound.empty()) {
+        const Hit& end = bound[static_cast<std::size_t>(j * lines_ + i)];
+        if (end.part < 0 || (highest ? height >= end.height : height <= end.height)) continue;
+      }
       const Vec2 place = w0 * places[0] + w1 * places[1] + w2 * places[2];
       hit = {height, part, static_cast<float>(place.x()), static_cast<float>(place.y())};
     }

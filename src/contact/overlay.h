@@ -39,7 +39,8 @@ struct Axes {
 using Rectangle = Eigen::AlignedBox2d;
 
 // Lines along `n` on a raster of lines x lines over a rectangle: the highest way out of A and the lowest way
-// into B on each.
+// into B on each. Lines on which all of A lies above all of B (as at the tips of two lenses) count as not
+// met.
 class Overlay {
  public:
   Overlay(const CellModel& model, const Sheet& a, const Sheet& b, const Axes& axes,
@@ -79,9 +80,12 @@ class Overlay {
     std::int32_t part = -1;
     float s = 0, t = 0;  // 0 .. 1 within the part
   };
-  void pass(const Sheet& sheet, bool out, std::vector<Hit>& hits) const;
-  void pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& places, std::int32_t part, bool out,
-            std::vector<Hit>& hits) const;
+  // What a pass through the triangles keeps of each line.
+  enum class Keep { highest_out, lowest_in, highest_in_below, lowest_out_above };
+  void pass(const Sheet& sheet, Keep keep, const std::vector<Hit>& bound, std::vector<Hit>& hits) const;
+  void pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& places, std::int32_t part, Keep keep,
+            const std::vector<Hit>& bound, std::vector<Hit>& hits) const;
+  void drop_passing();
   [[nodiscard]] Place place(const Hit& hit, const Sheet& sheet, std::size_t line) const;
 
   const CellModel& model_;

@@ -73,6 +73,7 @@ class Measurer {
                                       [](const Contact& contact) { return contact.is_overlap(); });
     if (!is_deep_ && !overlaps) look_at_nearest();
     if (is_deep_) look_deep();
+    if (contacts_.empty()) look_at_nearest();
     return std::move(contacts_);
   }
 
@@ -224,14 +225,32 @@ class Measurer {
     const Vec3 middle = 0.5 * (found->p + found->q);
     if ((middle - 0.5 * (a.point + b.point)).norm() > 0.5 * thickness_ + 6.0 * overlay.step().norm())
       return false;
+    // Where it says that they overlap, the lines have to say so too.
+    if (found->depth > slack() && !agrees(overlay, middle, found->depth)) return false;
     if (!is_known(found->p, found->q))
       spots_.push_back(
           {&fa, &fb, found->site_a, found->site_b, found->p, found->q, found->normal, found->depth});
     return true;
   }
 
+  // Some line next to a point is about as deep.
+  [[nodiscard]] bool agrees(const Overlay& overlay, const Vec3& point, double depth) const {
+    const Vec3 seen = overlay.axes().seen(point);
+    for (int dj = -1; dj <= 1; ++dj)
+      for (int di = -1; di <= 1; ++di) {
+        const int line =
+            overlay.line_at(Vec2(seen.head<2>()) + Vec2(di * overlay.step().x(), dj * overlay.step().y()));
+        if (line < 0 || !overlay.is_met(static_cast<std::size_t>(line))) continue;
+        const double there = overlay.depth(static_cast<std::size_t>(line));
+        if (std::abs(there - depth) < 2.0 * slack() + 0.15 * depth) return true;
+      }
+    return false;
+  }
+
   // A peak on an edge, a rim or a border, by rasters that close in on it, along the same direction.
   void settle_at_crease(const Overlay& coarse, std::size_t first, const std::vector<int>& region) {
+    // A gap there is not along one line: see look_at_nearest().
+    if (coarse.depth(first) < -slack() - coarse.step().maxCoeff()) return;
     const Vec2 place = coarse.centre(first);
     for (const Spot& s : spots_) {
       const Vec3 seen = coarse.axes().seen(0.5 * (s.p + s.q));
@@ -246,7 +265,7 @@ class Measurer {
     const double reach = 2.0 * coarse.step().maxCoeff();
     Vec3 n = coarse.axes().n;
     std::optional<Deepest> found = close_in(model_, pa, pb, n, start, reach);
-    if (found && found->depth > -reach_) {
+    if (found && found->depth > touching_) {
       // Against a smooth surface an edge is parted along that surface's normal.
       const std::optional<Vec3> easier = found->smooth_a   ? normal_at(found->a)
                                          : found->smooth_b ? normal_at(found->b)
@@ -259,7 +278,6 @@ class Measurer {
         }
       }
     }
-    // A gap there is not along one line: see look_at_nearest().
     if (!found || !(found->depth > touching_) || is_known(found->a.point, found->b.point)) return;
     spots_.push_back({&model_.face_of(cell(found->a.cell)), &model_.face_of(cell(found->b.cell)),
                       found->a.site, found->b.site, found->a.point, found->b.point, n, found->depth, false});

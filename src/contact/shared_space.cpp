@@ -268,7 +268,7 @@ class SharedSpace::View {
 
   [[nodiscard]] bool is_shared(const Chord& a, const Chord& b) const {
     const double top = std::min(a.out.height, b.out.height), bottom = std::max(a.in.height, b.in.height);
-    return top > bottom && top >= box_.min().z() && bottom <= box_.max().z();
+    return top - bottom > space_.grain_ && top >= box_.min().z() && bottom <= box_.max().z();
   }
 
   const SharedSpace& space_;

@@ -21,8 +21,9 @@ struct Parting {
 class SharedSpace {
  public:
   // `walls`: points whose box holds the shared space; what the skins share elsewhere is not looked at.
-  SharedSpace(const Mesh& a, const Mesh& b, std::vector<Vec3> walls)
-      : a_(a), b_(b), walls_(std::move(walls)) {}
+  // Lines that share no more than `grain` share nothing.
+  SharedSpace(const Mesh& a, const Mesh& b, std::vector<Vec3> walls, double grain)
+      : a_(a), b_(b), walls_(std::move(walls)), grain_(grain) {}
 
   // The walls of each connected piece of the shared space: where lines along the direction enter and leave
   // it.
@@ -40,6 +41,7 @@ class SharedSpace {
   const Mesh& a_;
   const Mesh& b_;
   std::vector<Vec3> walls_;
+  double grain_;
 };
 
 // 26 directions: the faces, edges and corners of a cube.

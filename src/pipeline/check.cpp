@@ -85,10 +85,15 @@ std::string yarn_tables(const Findings& found, Unit file, Unit shown) {
   }
   std::string text = yarns.text();
   if (!found.solids.overlaps.empty()) {
-    Table overlaps({"overlap of", "and", "depth", "x", "y", "z"});
+    const auto square = [&](double value) {
+      return cell(converted(converted(value, file, shown), file, shown));
+    };
+    Table overlaps({"overlap of", "and", "depth", "area", "x", "y", "z"});
     for (const solid::Overlap& overlap : found.solids.overlaps)
-      overlaps.add({found.bodies[overlap.a].name, found.bodies[overlap.b].name, length(overlap.depth),
-                    length(overlap.at.x()), length(overlap.at.y()), length(overlap.at.z())});
+      overlaps.add({found.bodies[overlap.a].name,
+                    overlap.a == overlap.b ? "itself" : found.bodies[overlap.b].name, length(overlap.depth),
+                    overlap.area > 0 ? square(overlap.area) : "-", length(overlap.at.x()),
+                    length(overlap.at.y()), length(overlap.at.z())});
     text += overlaps.text();
   }
   if (found.solids.min_gap)

@@ -10,9 +10,12 @@
 namespace selvage::pipeline {
 
 Message overlap_message(const solid::Overlap& overlap, std::span<const yarn::Body> bodies, Unit units) {
+  const std::string depth = fmt::format("{:.4g} {}", overlap.depth, name_of(units));
+  const std::string &a = bodies[overlap.a].name, &b = bodies[overlap.b].name;
   Message message =
-      error(Kind::geometry, fmt::format("yarns '{}' and '{}' overlap, {:.4g} {} deep", bodies[overlap.a].name,
-                                        bodies[overlap.b].name, overlap.depth, name_of(units)));
+      error(Kind::geometry, overlap.a == overlap.b
+                                ? fmt::format("yarn '{}' meets itself and overlaps, {} deep", a, depth)
+                                : fmt::format("yarns '{}' and '{}' overlap, {} deep", a, b, depth));
   // Rounding is no coordinate: 1e-15 would read like a place.
   message.at = overlap.at.unaryExpr([&](double x) { return std::abs(x) < 1e-6 * overlap.depth ? 0.0 : x; });
   return message;
@@ -28,8 +31,12 @@ void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn
   }
   report.overlaps.emplace();
   for (const solid::Overlap& overlap : check.overlaps)
-    report.overlaps->push_back(
-        {bodies[overlap.a].name, bodies[overlap.b].name, overlap.depth * mm, overlap.at * mm});
+    report.overlaps->push_back({bodies[overlap.a].name, bodies[overlap.b].name, overlap.depth * mm,
+                                overlap.at * mm, overlap.direction, overlap.area * mm * mm, overlap.site_a,
+                                overlap.site_b});
+  for (const solid::Overlap& overlap : check.overlaps)
+    if (overlap.a == overlap.b && overlap.a < report.yarns.size())
+      report.yarns[overlap.a].self_overlap = true;
   std::optional<double> thinnest;
   for (const yarn::Body& body : bodies)
     thinnest = std::min(thinnest.value_or(thinnest_section(body) * mm), thinnest_section(body) * mm);

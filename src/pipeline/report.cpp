@@ -170,7 +170,15 @@ std::string to_json(const InputReport& report) {
   if (!report.pieces.empty()) out["pieces"] = list_json(report.pieces, piece_json);
   if (report.overlaps) {
     out["overlaps"] = list_json(*report.overlaps, [](const OverlapReport& overlap) {
-      return Json{{"a", overlap.a}, {"b", overlap.b}, {"depth", overlap.depth}, {"at", point(overlap.at)}};
+      Json one{{"a", overlap.a},
+               {"b", overlap.b},
+               {"depth", overlap.depth},
+               {"at", point(overlap.at)},
+               {"direction", point(overlap.direction)}};
+      if (overlap.area > 0) one["area"] = overlap.area;
+      if (overlap.site_a) one["site_a"] = Json::array({overlap.site_a->x(), overlap.site_a->y()});
+      if (overlap.site_b) one["site_b"] = Json::array({overlap.site_b->x(), overlap.site_b->y()});
+      return one;
     });
   }
   if (!report.entities.empty()) out["entities"] = report.entities;

@@ -54,9 +54,12 @@ struct PieceReport {
 };
 
 struct OverlapReport {
-  std::string a, b;
+  std::string a, b;  // equal: a yarn meets itself
   double depth = 0;
   Vec3 at = Vec3::Zero();
+  Vec3 direction = Vec3::Zero();       // unit; b has to go `depth` along it
+  double area = 0;                     // of a's surface that lies in b
+  std::optional<Vec2> site_a, site_b;  // (u, v) on their surfaces; none on an end face
 };
 
 struct OutputReport {
