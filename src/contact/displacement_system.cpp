@@ -275,14 +275,20 @@ void DisplacementSystem::factor(std::span<const Demand> demands, const std::vect
     for (std::size_t d = 0; d < sides[s].size(); ++d) {
       const Demand::Side& side = *sides[s][d];
       const double stiff = stiffness_.contact * weights[s][d];
-      for (int k = 0; k < 4; ++k)
-        for (int m = 0; m < modes_; ++m) {
-          const double factor = stiff * side.form[k * modes_ + m];
-          if (factor == 0.0) continue;
-          for (int l = 0; l < 4; ++l)
-            for (int c = 0; c < modes_; ++c)
-              entry(side.first + k, m, side.first + l, c, factor * side.form[l * modes_ + c]);
+      const Eigen::Index first = offset(s);
+      for (int l = 0; l < 4; ++l) {
+        const Eigen::Index left = column(s, side.first + l) - first;
+        for (int k = 0; k < 4; ++k) {
+          const Eigen::Index below = column(s, side.first + k) - first - left;
+          if (below < 0 || below + modes_ > width) continue;
+          for (int c = 0; c < modes_; ++c) {
+            const double factor = stiff * side.form[l * modes_ + c];
+            const int from = below == 0 ? c : 0;  // the lower triangle
+            band.col(left + c).segment(below + from - c, modes_ - from) +=
+                factor * side.form.segment(k * modes_ + from, modes_ - from);
+          }
         }
+      }
     }
   });
   for_each_index(bands_.size(), threads, [&](std::size_t lattice) { factor_band(bands_[lattice]); });

@@ -144,52 +144,64 @@ bool NearSkins::are_neighbours(const Leaf& a, const Leaf& b) const {
   return apart < 1.5 * strand.width();
 }
 
-void NearSkins::cast(const Leaf& from, const Leaf& onto, double reach, std::vector<Facing>& found) const {
-  const Skin &skin_a = skins_[from.strand], &skin_b = skins_[onto.strand];
-  const int na = skin_a.round + 1, nb = skin_b.round + 1;
+void NearSkins::cast(const Leaf& from, const Leaf& onto, const Box3& box, double reach,
+                     std::vector<Facing>& found) const {
+  const Skin& skin = skins_[from.strand];
+  const int n = skin.round + 1;
   const double inward =
       -0.45 * std::min(strands_[from.strand].thickness(), strands_[onto.strand].thickness());
-  const bool flip = strands_[onto.strand].body().inward;
-  const int rows = from.row + 1 == skin_a.along && !skin_a.cyclic ? 2 : 1;
-  for (int i = onto.column; i < onto.column + onto.columns; ++i) {
-    const int j = onto.row;
-    const std::array<int, 4> corner = {j * nb + i, j * nb + i + 1, (j + 1) * nb + i + 1, (j + 1) * nb + i};
+  const int rows = from.row + 1 == skin.along && !skin.cyclic ? 2 : 1;
+  for (int row = from.row; row < from.row + rows; ++row)
+    for (int column = from.column; column < from.column + from.columns; ++column) {
+      const auto k = at(row * n + column);
+      const Ray ray{skin.points[k], skin.normals[k], inward, reach};
+      Box3 way(ray.origin + inward * ray.direction);
+      way.extend(ray.origin + reach * ray.direction);
+      if (!way.intersects(box)) continue;
+      for (const Vec2& hit : hits(onto, ray)) {
+        Facing facing;
+        facing.a = from.strand;
+        facing.b = onto.strand;
+        facing.site_a = {skin.us[at(column)], skin.vs[at(row)]};
+        facing.site_b = hit;
+        fill(facing, point_at(strands_[from.strand].body(), facing.site_a),
+             point_at(strands_[onto.strand].body(), facing.site_b));
+        if (facing.gap <= reach && facing.normal.allFinite()) found.push_back(facing);
+      }
+    }
+}
+
+// The places where the ray meets quads of the leaf that face it.
+std::vector<Vec2> NearSkins::hits(const Leaf& leaf, const Ray& ray) const {
+  const Skin& skin = skins_[leaf.strand];
+  const int n = skin.round + 1, j = leaf.row;
+  const double outward = strands_[leaf.strand].body().inward ? -1.0 : 1.0;
+  std::vector<Vec2> sites;
+  for (int i = leaf.column; i < leaf.column + leaf.columns; ++i) {
+    const std::array<int, 4> corner = {j * n + i, j * n + i + 1, (j + 1) * n + i + 1, (j + 1) * n + i};
     for (int half = 0; half < 2; ++half) {
-      const Vec3& p0 = skin_b.points[at(corner[0])];
-      const Vec3 e1 = skin_b.points[at(corner[at(half + 1)])] - p0,
-                 e2 = skin_b.points[at(corner[at(half + 2)])] - p0;
-      Vec3 face = e1.cross(e2);
-      if (flip) face = -face;
-      for (int row = from.row; row < from.row + rows; ++row)
-        for (int column = from.column; column < from.column + from.columns; ++column) {
-          const auto k = at(row * na + column);
-          const Vec3& n = skin_a.normals[k];
-          const double facing = face.dot(n);
-          if (facing >= 0.0) continue;
-          const Vec3 way = skin_a.points[k] - p0;
-          // p + t n in the triangle's plane.
-          const double t = -face.dot(way) / facing;
-          if (t < inward || t > reach) continue;
-          const Vec3 hit = way + t * n;
-          const double size = e1.cross(e2).squaredNorm();
-          const double s1 = hit.cross(e2).dot(e1.cross(e2)) / size;
-          const double s2 = e1.cross(hit).dot(e1.cross(e2)) / size;
-          constexpr double edge = -1e-3;
-          if (s1 < edge || s2 < edge || s1 + s2 > 1.0 - edge) continue;
-          const double u0 = skin_b.us[at(i)], u1 = skin_b.us[at(i + 1)];
-          const double v0 = skin_b.vs[at(j)], v1 = skin_b.vs[at(j + 1)];
-          Facing facing_pair;
-          facing_pair.a = from.strand;
-          facing_pair.b = onto.strand;
-          facing_pair.site_a = {skin_a.us[at(column)], skin_a.vs[at(row)]};
-          facing_pair.site_b = half == 0 ? Vec2(u0 + (s1 + s2) * (u1 - u0), v0 + s2 * (v1 - v0))
-                                         : Vec2(u0 + s1 * (u1 - u0), v0 + (s1 + s2) * (v1 - v0));
-          fill(facing_pair, point_at(strands_[from.strand].body(), facing_pair.site_a),
-               point_at(strands_[onto.strand].body(), facing_pair.site_b));
-          if (facing_pair.gap <= reach && facing_pair.normal.allFinite()) found.push_back(facing_pair);
-        }
+      const Vec3& p = skin.points[at(corner[0])];
+      const Vec3 e1 = skin.points[at(corner[at(half + 1)])] - p,
+                 e2 = skin.points[at(corner[at(half + 2)])] - p;
+      const Vec3 face = e1.cross(e2);
+      const double facing = face.dot(ray.direction);
+      if (outward * facing >= 0.0) continue;
+      const Vec3 way = ray.origin - p;
+      const double t = -face.dot(way) / facing;
+      if (t < ray.from || t > ray.to) continue;
+      const Vec3 hit = way + t * ray.direction;
+      const double size = face.squaredNorm();
+      const double s1 = hit.cross(e2).dot(face) / size, s2 = e1.cross(hit).dot(face) / size;
+      constexpr double edge = -1e-3;
+      if (s1 < edge || s2 < edge || s1 + s2 > 1.0 - edge) continue;
+      // Of the quad: the first triangle has its corners at (0,0) (1,0) (1,1), the second at (0,0) (1,1)
+      // (0,1).
+      const Vec2 share = half == 0 ? Vec2(s1 + s2, s2) : Vec2(s1, s1 + s2);
+      sites.emplace_back(skin.us[at(i)] + share.x() * (skin.us[at(i + 1)] - skin.us[at(i)]),
+                         skin.vs[at(j)] + share.y() * (skin.vs[at(j + 1)] - skin.vs[at(j)]));
     }
   }
+  return sites;
 }
 
 void NearSkins::look_from(const Leaf& leaf, double reach, std::vector<Facing>& found) const {
@@ -207,7 +219,7 @@ void NearSkins::look_from(const Leaf& leaf, double reach, std::vector<Facing>& f
       stack[depth++] = node.right;
       stack[depth++] = node.left;
     } else if (const Leaf& other = leaves_[node.left]; !are_neighbours(leaf, other)) {
-      cast(leaf, other, reach, found);
+      cast(leaf, other, node.box, reach, found);
     }
   }
 }

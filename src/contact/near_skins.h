@@ -50,7 +50,13 @@ class NearSkins {
   void sample(std::size_t strand);
   [[nodiscard]] Box3 box_of(const Leaf& leaf) const;
   void look_from(const Leaf& leaf, double reach, std::vector<Facing>& found) const;
-  void cast(const Leaf& from, const Leaf& onto, double reach, std::vector<Facing>& found) const;
+  struct Ray {
+    Vec3 origin, direction;
+    double from = 0, to = 0;
+  };
+  void cast(const Leaf& from, const Leaf& onto, const Box3& box, double reach,
+            std::vector<Facing>& found) const;
+  [[nodiscard]] std::vector<Vec2> hits(const Leaf& leaf, const Ray& ray) const;
   [[nodiscard]] bool are_neighbours(const Leaf& a, const Leaf& b) const;
 
   std::span<const Strand> strands_;
