@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "nurbs/basis.h"
 
 namespace selvage::contact {
 
@@ -74,10 +75,18 @@ DisplacementSystem::DisplacementSystem(std::span<const Strand> strands, std::vec
       const Stencil end = strands[y].stencil(arc);
       std::array<double, 4> turn = end.slope;
       for (double& t : turn) t *= strands[y].spacing();
-      held_[y].push_back({end.first, end.value, frame.along, hold_stiffness});
+      const auto hold_along = [&](const std::array<double, 4>& factors, const Vec3& direction, double stiff) {
+        Hold held;
+        held.stiffness = stiff;
+        for (int k = 0; k < 4; ++k)
+          for (int c = 0; c < 3; ++c)
+            held.parts.emplace_back(column(y, end.first + k) + c, factors[at(k)] * direction[c]);
+        held_[y].push_back(std::move(held));
+      };
+      hold_along(end.value, frame.along, hold_stiffness);
       if (strands[y].has_cyclic_lattice()) continue;
-      held_[y].push_back({end.first, turn, frame.x, stiffness.end_turn});
-      held_[y].push_back({end.first, turn, frame.y, stiffness.end_turn});
+      hold_along(turn, frame.x, stiffness.end_turn);
+      hold_along(turn, frame.y, stiffness.end_turn);
     }
   }
   update(1);
@@ -92,12 +101,22 @@ Eigen::Index DisplacementSystem::length(std::size_t strand) const {
   return static_cast<Eigen::Index>(strands_[strand].nodes()) * modes_;
 }
 
-void DisplacementSystem::hold(std::size_t strand, double arc) {
-  const Stencil stencil = strands_[strand].stencil(arc);
-  for (int axis = 0; axis < 3; ++axis)
-    held_[strand].push_back({stencil.first, stencil.value, Vec3::Unit(axis), hold_stiffness});
-  for (int m = translation_modes; m < modes_; ++m)
-    held_[strand].push_back({stencil.first, stencil.value, Vec3::Zero(), hold_stiffness, m});
+void DisplacementSystem::hold(std::size_t strand, double v) {
+  const Strand& one = strands_[strand];
+  const nurbs::Surface& s = one.body().surface;
+  const int span = nurbs::find_span(s.knots_v, s.degree_v, s.count_v, v);
+  nurbs::BasisRow shares;
+  nurbs::basis(s.knots_v, s.degree_v, span, v, shares);
+  for (int m = 0; m < modes_; ++m) {
+    Hold held;
+    held.stiffness = hold_stiffness;
+    for (int r = 0; r <= s.degree_v; ++r) {
+      const Stencil& stencil = one.row_stencil(span - s.degree_v + r);
+      for (int k = 0; k < 4; ++k)
+        held.parts.emplace_back(column(strand, stencil.first + k) + m, shares[at(r)] * stencil.value[at(k)]);
+    }
+    held_[strand].push_back(std::move(held));
+  }
 }
 
 // Strands of one lattice after each other: they write to the same nodes.
@@ -110,22 +129,6 @@ void DisplacementSystem::for_each_strand(int threads, const Work& work) const {
 
 Eigen::Index DisplacementSystem::column(std::size_t strand, int node) const {
   return offsets_[lattices_[strand]] + static_cast<Eigen::Index>(node % strands_[strand].nodes()) * modes_;
-}
-
-// The unknowns that a hold adds up, with their factors.
-std::vector<std::pair<Eigen::Index, double>> DisplacementSystem::held_nodes(std::size_t strand,
-                                                                            const Hold& held) const {
-  std::vector<std::pair<Eigen::Index, double>> nodes;
-  for (int k = 0; k < 4; ++k) {
-    const Eigen::Index first = column(strand, held.first + k);
-    if (held.mode > 0) {
-      nodes.emplace_back(first + held.mode, held.share[at(k)]);
-    } else {
-      for (int c = 0; c < translation_modes; ++c)
-        nodes.emplace_back(first + c, held.share[at(k)] * held.direction[c]);
-    }
-  }
-  return nodes;
 }
 
 // The spans between the ends of the stations' stretches, on the present centre line.
@@ -175,10 +178,9 @@ void DisplacementSystem::apply_energy(const Eigen::VectorXd& x, Eigen::VectorXd&
             strain * station.stencil.slope[at(k)] * station.along;
     }
     for (const Hold& held : held_[s]) {
-      const auto nodes = held_nodes(s, held);
       double value = 0.0;
-      for (const auto& [index, share] : nodes) value += share * x[index];
-      for (const auto& [index, share] : nodes) y[index] += held.stiffness * value * share;
+      for (const auto& [index, share] : held.parts) value += share * x[index];
+      for (const auto& [index, share] : held.parts) y[index] += held.stiffness * value * share;
     }
   });
 }
@@ -265,12 +267,12 @@ void DisplacementSystem::factor(std::span<const Demand> demands, const std::vect
               entry(node_k, m, node_l, c, strain * station.along[m] * station.along[c]);
         }
     }
+    // Holds reach over more nodes than the band: their rows' sums on the diagonal are an upper bound.
     for (const Hold& held : held_[s]) {
-      const auto nodes = held_nodes(s, held);
-      const Eigen::Index first = offset(s);
-      for (const auto& [i, share_i] : nodes)
-        for (const auto& [j, share_j] : nodes)
-          if (i >= j && i - j < width) band(i - j, j - first) += held.stiffness * share_i * share_j;
+      double sum = 0.0;
+      for (const auto& [i, share] : held.parts) sum += std::abs(share);
+      for (const auto& [i, share] : held.parts)
+        band(0, i - offset(s)) += held.stiffness * std::abs(share) * sum;
     }
     for (std::size_t d = 0; d < sides[s].size(); ++d) {
       const Demand::Side& side = *sides[s][d];

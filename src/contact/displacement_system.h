@@ -46,8 +46,8 @@ class DisplacementSystem {
   [[nodiscard]] Eigen::Index size() const { return size_; }
   [[nodiscard]] Eigen::Index offset(std::size_t strand) const { return offsets_[lattices_[strand]]; }
   [[nodiscard]] Eigen::Index length(std::size_t strand) const;
-  // Holds a place of a strand where it is, and its section there as it is.
-  void hold(std::size_t strand, double arc);
+  // Holds the place at the body's parameter v where it is, and its section there as it is.
+  void hold(std::size_t strand, double v);
 
   // Measures the strands' present lengths.
   void update(int threads);
@@ -62,16 +62,11 @@ class DisplacementSystem {
     double strain = 0;  // present, of the span to the next station
     double old_span = 0;
   };
-  // A sum of the nodes' translations that has to stay zero along a direction; with a mode, of that amplitude.
+  // A sum of unknowns that has to stay zero.
   struct Hold {
-    int first = 0;
-    std::array<double, 4> share{};
-    Vec3 direction = Vec3::Zero();
+    std::vector<std::pair<Eigen::Index, double>> parts;  // unknowns with their factors
     double stiffness = 0;
-    int mode = 0;
   };
-  [[nodiscard]] std::vector<std::pair<Eigen::Index, double>> held_nodes(std::size_t strand,
-                                                                        const Hold& held) const;
   using Band = Eigen::MatrixXd;  // column j: rows j .. j + width - 1 of the lower triangle
   template <class Work>
   void for_each_strand(int threads, const Work& work) const;

@@ -214,14 +214,14 @@ class Relaxer {
   // Steps from the originals on until every gap is wide enough, or nothing improves.
   Status move_apart(const Stiffness& stiffness) {
     strands_.clear();
+    best_.clear();
     for (std::size_t y = 0; y < originals_.size(); ++y) {
       strands_.emplace_back(originals_[y], 0.6 * std::sqrt(extents_[y].least * extents_[y].most));
       if (is_affine_[y] != 0) strands_.back().allowed_fields = affine_fields;
     }
     DisplacementSystem system(strands_, tie_strands(strands_, options_.periods), stiffness, modes_);
     NearSkins skins(strands_);
-    for (const FixedPoint& point : options_.fixed)
-      system.hold(point.yarn, strands_[point.yarn].arc_of(point.parameter));
+    for (const FixedPoint& point : options_.fixed) system.hold(point.yarn, point.parameter);
     std::vector<Facing> overlooked;  // by samples, as the exact check found
     double least_missing = infinity;
     int best = 0, verdicts = 0;
@@ -244,6 +244,7 @@ class Relaxer {
       } else if (missing < 0.9 * least_missing) {
         least_missing = missing;
         best = step;
+        best_ = present();
       } else if (step - best > patience) {
         return stop("the yarns are jammed: no step brings them farther apart");
       }
@@ -341,7 +342,7 @@ class Relaxer {
 
   // The finished bodies, their changes, and what the exact search still finds too near.
   Result<std::vector<Facing>> verdict() {
-    if (Status done = finish_bodies(); !done) return done.error();
+    if (Status done = finish_bodies(present()); !done) return done.error();
     Result<Contacts> contacts = survey(out_.bodies);
     if (!contacts) return contacts.error();
     std::vector<Facing> left;
@@ -366,7 +367,8 @@ class Relaxer {
   Status stop(std::string reason) {
     out_.solved = false;
     out_.reason = std::move(reason);
-    if (Status done = finish_bodies(); !done) {
+    if (best_.empty()) best_ = present();
+    if (Status done = finish_bodies(best_); !done) {
       // The surfaces went so far astray that they are no yarns any more: nothing is said of their gaps.
       out_.bodies = originals_;
       out_.changes.assign(originals_.size(), {});
@@ -380,21 +382,28 @@ class Relaxer {
     return {};
   }
 
-  Status finish_bodies() {
+  [[nodiscard]] std::vector<nurbs::Surface> present() const {
+    std::vector<nurbs::Surface> surfaces;
+    for (const Strand& strand : strands_) surfaces.push_back(strand.body().surface);
+    return surfaces;
+  }
+
+  Status finish_bodies(const std::vector<nurbs::Surface>& surfaces) {
     out_.bodies.assign(originals_.size(), {});
     out_.changes.assign(originals_.size(), {});
     std::vector<std::optional<Message>> faults(originals_.size());
-    for_each_index(originals_.size(), options_.threads, [&](std::size_t y) { faults[y] = finish_body(y); });
+    for_each_index(originals_.size(), options_.threads,
+                   [&](std::size_t y) { faults[y] = finish_body(y, surfaces[y]); });
     for (const std::optional<Message>& fault : faults)
       if (fault) return *fault;
     return {};
   }
 
-  std::optional<Message> finish_body(std::size_t y) {
+  std::optional<Message> finish_body(std::size_t y, const nurbs::Surface& surface) {
     const yarn::Body& before = originals_[y];
     yarn::Body& body = out_.bodies[y];
     body = before;
-    body.surface = strands_[y].body().surface;
+    body.surface = surface;
     body.axis = yarn::section_centres(body.surface);
     body.tight_bends.clear();
     if (Status done = yarn::finish(body, yarn::Sealings{{{before.start.style, {}}, {before.end.style, {}}}});
@@ -423,6 +432,7 @@ class Relaxer {
   std::vector<Extents> extents_;
   std::vector<char> is_affine_;  // one a yarn: its sections change by affine fields only
   std::vector<Strand> strands_;
+  std::vector<nurbs::Surface> best_;  // of the step that came nearest to the wanted gaps
   int modes_;
   double thinnest_ = infinity;
   Relaxation out_;

@@ -324,7 +324,9 @@ TEST(Relax, AJammedCloth) {
   const Relaxation relaxed = run(bodies, options);
   EXPECT_FALSE(relaxed.solved);
   ASSERT_FALSE(relaxed.jams.empty());
-  EXPECT_NEAR(relaxed.jams[0].gap, -0.1, 0.01);
+  // Between the places that are held the yarns can give way a little, there they cannot.
+  EXPECT_GT(relaxed.jams[0].gap, -0.101);
+  EXPECT_LT(relaxed.jams[0].gap, -0.07);
   for (const Jam& jam : relaxed.jams) EXPECT_TRUE(jam.a == 1 || jam.b == 1);
 }
 
