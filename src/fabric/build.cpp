@@ -247,7 +247,8 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
     if (const auto* weave = std::get_if<Weave>(&item))
       builder.add_construction(make_weave(fabric, *weave, options, diagnostics), weave->place, diagnostics);
     if (const auto* knit = std::get_if<Knit>(&item))
-      builder.add_construction(make_knit(fabric, *knit, diagnostics), knit->place, diagnostics);
+      builder.add_construction(make_knit(fabric, *knit, options.as_published, diagnostics), knit->place,
+                               diagnostics);
     if (const auto* warpknit = std::get_if<Warpknit>(&item))
       builder.add_construction(make_warpknit(fabric, *warpknit, diagnostics), warpknit->place,
                                diagnostics);

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
+#include "fabric/build.h"
 #include "fabric/knit_chart.h"
 #include "fabric/knit_loop.h"
+#include "fabric/knit_mend.h"
 #include "fabric/yarn_spec.h"
 #include "nurbs/interpolate.h"
 
@@ -14,9 +17,15 @@ namespace selvage::fabric {
 
 namespace {
 
-// With a unit cell the cloth goes on beyond it. The influence of a spline's end falls by 2 + sqrt(3) from
-// data point to data point: four wales of eight points make the loops inside periodic to the last bits.
-constexpr long long margin_wales = 4;
+// With a unit cell the cloth goes on beyond it, inside of the border whose loops move for themselves. The
+// influence of a spline's end falls by 2 + sqrt(3) from data point to data point: four wales of eight points
+// make the loops inside periodic to the last bits.
+constexpr long long margin_wales = 4 + border_wales;
+
+constexpr double least_gap_share = 0.01;  // of the thickness, between two yarns
+
+// Loops whose moves are solved for, at most: larger repeats are left as published.
+constexpr long long most_solved = 10'000;
 
 nurbs::Parameterization parameterization_of(Knit::Method method) {
   switch (method) {
@@ -30,33 +39,16 @@ nurbs::Parameterization parameterization_of(Knit::Method method) {
   return nurbs::Parameterization::chord;
 }
 
-// The derivative at the start of a course that goes on as its own mirror image in the plane x = const. It
-// lies along x, so that the end face lies in that plane; and loops that are mirror images of themselves have
-// the same shape at the ends as in the middle of the cloth.
-Vec3 mirrored_derivative(const std::vector<Vec3>& points, const std::vector<double>& parameters, bool last,
-                         nurbs::Parameterization how) {
-  const std::size_t count = std::min<std::size_t>(points.size() - 1, 28);  // 28: to 1e-16
-  std::vector<Vec3> both(2 * count + 1);
-  for (std::size_t i = 0; i <= count; ++i) {
-    const Vec3& point = points[last ? points.size() - 1 - i : i];
-    const double plane = last ? points.back().x() : points.front().x();
-    const Vec3 image(2 * plane - point.x(), point.y(), point.z());
-    both[count - i] = last ? point : image;
-    both[count + i] = last ? image : point;
-  }
-  const std::vector<double> t = nurbs::parameters(both, how);
-  const nurbs::Curve curve = nurbs::interpolate(both, t, nurbs::end_derivative(both, t, false),
-                                                nurbs::end_derivative(both, t, true));
-  const std::size_t end = parameters.size() - 1;
-  const double step = last ? parameters[end] - parameters[end - 1] : parameters[1] - parameters[0];
-  const double scale = (t[count + 1] - t[count]) / step;
-  return {scale * nurbs::evaluate_jet(curve, t[count]).d1.x(), 0, 0};
-}
-
 class KnitConstruction final : public Construction {
  public:
-  KnitConstruction(const Fabric& fabric, const Knit& knit, const Thread& thread, KnitField field, Vec2 half)
-      : fabric_(fabric), knit_(knit), thread_(thread), field_(std::move(field)), half_(std::move(half)) {}
+  KnitConstruction(const Fabric& fabric, const Knit& knit, const Thread& thread, KnitField field,
+                   KnitMoves moves, Vec2 half)
+      : fabric_(fabric),
+        knit_(knit),
+        thread_(thread),
+        field_(std::move(field)),
+        moves_(std::move(moves)),
+        half_(std::move(half)) {}
 
   [[nodiscard]] std::size_t count() const override {
     return static_cast<std::size_t>(field_.last_course - field_.first_course + 1);
@@ -86,6 +78,7 @@ class KnitConstruction final : public Construction {
   const Knit& knit_;
   const Thread& thread_;
   KnitField field_;
+  KnitMoves moves_;
   Vec2 half_;  // of the section: r across, and r through the thickness
 };
 
@@ -106,23 +99,60 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
   for (long long wale = field_.first_wale; wale <= field_.last_wale; ++wale) {
     const std::size_t first = points.size();
     add_stitch_points(field_, course(index), wale, points);
+    moves_.apply(course(index), wale, points, first);
     place_from(first, wale);
   }
   points.push_back(last_sinker_point(field_, course(index)));
+  moves_.apply(course(index), field_.last_wale + 1, points, points.size() - 1);
   place_from(points.size() - 1, field_.last_wale + 1);
   plan->spec.guide = yarn::FrameGuide::with_up(Vec3::UnitZ());
-  const nurbs::Parameterization how = parameterization_of(knit_.method.value_or(Knit::Method::chord));
-  yarn::CentreLine& line = plan->line;
-  line.parameters = nurbs::parameters(points, how);
-  line.curve =
-      nurbs::interpolate(points, line.parameters, mirrored_derivative(points, line.parameters, false, how),
-                         mirrored_derivative(points, line.parameters, true, how));
+  plan->line = course_line(points, parameterization_of(knit_.method.value_or(Knit::Method::chord)));
   return plan;
+}
+
+// The moves that part the loops. A warning where they cannot.
+KnitMoves moves_of(const Fabric& fabric, const Knit& knit, const yarn::Section& section,
+                   const KnitField& field, Diagnostics& diagnostics) {
+  const auto warn = [&](std::string text) {
+    Message message = warning(Kind::geometry, std::move(text));
+    message.file = fabric.file;
+    message.place = knit.place;
+    diagnostics.add(std::move(message));
+  };
+  const yarn::SectionSize size = yarn::nominal_size(section);
+  if (!(size.width > 0.0) || !(size.height > 0.0)) return {};
+  if (const long long loops = KnitMoves::loops_solved(field); loops > most_solved) {
+    warn(
+        fmt::format("the chart's repeat is too large for its loops to be moved apart ({} loops that differ, "
+                    "at most {}): they are as published, and overlap",
+                    loops, most_solved));
+    return {};
+  }
+  // A hundredth of the thickness is left between two yarns, or twice the tolerance where that is more; each
+  // surface may lie outside of its yarn by the tolerance.
+  const double tolerance = tolerance_of(fabric, {});
+  const double gap = std::max(least_gap_share * std::min(size.width, size.height), 2.0 * tolerance);
+  KnitMoves moves(field, {.how = parameterization_of(knit.method.value_or(Knit::Method::chord)),
+                          .section = section,
+                          .half = Vec2(size.width / 2, size.height / 2),
+                          .turns = section_twist(*fabric.find_thread(knit.thread), fabric.units) != 0.0 &&
+                                   !std::holds_alternative<yarn::Circle>(section),
+                          .gap = gap + 2.0 * tolerance});
+  const Mending& mending = moves.mending();
+  const double missing = 0.5 * mending.missing * size.width;
+  if (missing > 0.5 * gap)
+    warn(
+        fmt::format("its loops could not be moved apart: near ({:.4g} {:.4g} {:.4g}) yarns overlap by about "
+                    "{:.2g} {}",
+                    mending.at.x() * size.width / 2, mending.at.y() * size.width / 2,
+                    mending.at.z() * size.height / 2, missing - gap, name_of(fabric.units)));
+  return moves;
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit& knit, Diagnostics&) {
+Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit& knit, bool as_published,
+                                                Diagnostics& diagnostics) {
   const auto failed = [](Message message, TextPlace place) {
     if (message.place.line == 0) message.place = place;
     return message;
@@ -138,11 +168,13 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
   const yarn::SectionSize size = yarn::nominal_size(*section);
   const long long beside = fabric.cell ? margin_wales : 0;
   // The loops of courses below reach up into the cell as far as they are held, and one course further.
-  const long long beyond = fabric.cell ? chart->longest_hold() + 2 : 0;
-  return std::unique_ptr<Construction>(std::make_unique<KnitConstruction>(
-      fabric, knit, *thread,
-      KnitField{std::move(*chart), -beyond, knit.courses - 1 + beyond, -beside, knit.wales - 1 + beside},
-      Vec2(size.width / 2, size.height / 2)));
+  const long long beyond = fabric.cell ? chart->longest_hold() + 2 + border_courses(*chart) : 0;
+  KnitField field{std::move(*chart), -beyond, knit.courses - 1 + beyond, -beside, knit.wales - 1 + beside};
+  const Vec2 half(size.width / 2, size.height / 2);
+  KnitMoves moves;
+  if (!as_published) moves = moves_of(fabric, knit, *section, field, diagnostics);
+  return std::unique_ptr<Construction>(
+      std::make_unique<KnitConstruction>(fabric, knit, *thread, std::move(field), std::move(moves), half));
 }
 
 }  // namespace selvage::fabric

@@ -43,7 +43,7 @@ Knit charted(std::vector<std::string> rows, int courses, int wales) {
 YarnPlan plan_of(const Fabric& fabric, std::size_t course) {
   Diagnostics diagnostics;
   const Result<std::unique_ptr<Construction>> made =
-      make_knit(fabric, std::get<Knit>(fabric.items.front()), diagnostics);
+      make_knit(fabric, std::get<Knit>(fabric.items.front()), true, diagnostics);
   EXPECT_TRUE(made.ok());
   Result<YarnPlan> plan = (*made)->plan(course);
   EXPECT_TRUE(plan.ok());

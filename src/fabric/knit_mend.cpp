@@ -1,0 +1,190 @@
+#include "fabric/knit_mend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "fabric/clearance.h"
+#include "yarn/outline.h"
+
+namespace selvage::fabric {
+
+namespace {
+
+constexpr int range_wales = 2;
+
+// The derivative at the start of a course that goes on as its own mirror image in the plane x = const. It
+// lies along x, so that the end face lies in that plane; and loops that are mirror images of themselves have
+// the same shape at the ends as in the middle of the cloth.
+Vec3 mirrored_derivative(const std::vector<Vec3>& points, const std::vector<double>& parameters, bool last,
+                         nurbs::Parameterization how) {
+  const std::size_t count = std::min<std::size_t>(points.size() - 1, 28);  // 28: to 1e-16
+  std::vector<Vec3> both(2 * count + 1);
+  for (std::size_t i = 0; i <= count; ++i) {
+    const Vec3& point = points[last ? points.size() - 1 - i : i];
+    const double plane = last ? points.back().x() : points.front().x();
+    const Vec3 image(2 * plane - point.x(), point.y(), point.z());
+    both[count - i] = last ? point : image;
+    both[count + i] = last ? image : point;
+  }
+  const std::vector<double> t = nurbs::parameters(both, how);
+  const nurbs::Curve curve = nurbs::interpolate(both, t, nurbs::end_derivative(both, t, false),
+                                                nurbs::end_derivative(both, t, true));
+  const std::size_t end = parameters.size() - 1;
+  const double step = last ? parameters[end] - parameters[end - 1] : parameters[1] - parameters[0];
+  const double scale = (t[count + 1] - t[count]) / step;
+  return {scale * nurbs::evaluate_jet(curve, t[count]).d1.x(), 0, 0};
+}
+
+// From units of r and half thicknesses to lengths, and back.
+std::vector<Vec3> scaled(std::vector<Vec3> points, const Vec3& by) {
+  for (Vec3& point : points) point = point.cwiseProduct(by);
+  return points;
+}
+
+// How far the yarn reaches in space that is scaled so that its section is as wide as thick: the support of
+// the section, which the cloth's normal holds upright, with half of the gap.
+class Reach {
+ public:
+  explicit Reach(const KnitYarn& yarn)
+      : scale_(yarn.half.x(), yarn.half.x(), yarn.half.y()), gap_(yarn.gap), turns_(yarn.turns) {
+    if (!std::holds_alternative<yarn::Circle>(yarn.section) &&
+        !std::holds_alternative<yarn::Ellipse>(yarn.section))
+      outline_ = outline_polygon(yarn.section);
+    half_ = yarn.half;
+    for (const Vec2& p : outline_) widest_ = std::max(widest_, p.norm());
+    if (outline_.empty()) widest_ = half_.maxCoeff();
+  }
+
+  [[nodiscard]] double operator()(const Vec3& tangent, const Vec3& direction) const {
+    const Vec3 along = tangent.cwiseProduct(scale_).normalized();
+    const Vec3 normal = direction.cwiseQuotient(scale_);
+    return support(along, normal) + 0.5 * gap_ * normal.norm();
+  }
+
+ private:
+  [[nodiscard]] double support(const Vec3& along, const Vec3& normal) const {
+    const Vec3 up = (Vec3::UnitZ() - along.z() * along).normalized();
+    const Vec2 in_section(normal.dot(up.cross(along)), normal.dot(up));
+    if (turns_) return widest_ * in_section.norm();
+    if (outline_.empty()) return in_section.cwiseProduct(half_).norm();
+    // The polygon's corners lie on the outline, whose sides bulge by less than this.
+    constexpr double bulge = 1.002;
+    double most = 0;
+    for (const Vec2& p : outline_) most = std::max(most, p.dot(in_section));
+    return bulge * most;
+  }
+
+  Vec3 scale_;
+  double gap_;
+  bool turns_;
+  std::vector<Vec2> outline_;
+  Vec2 half_;
+  double widest_ = 0;
+};
+
+}  // namespace
+
+yarn::CentreLine course_line(const std::vector<Vec3>& points, nurbs::Parameterization how) {
+  yarn::CentreLine line;
+  line.parameters = nurbs::parameters(points, how);
+  line.curve =
+      nurbs::interpolate(points, line.parameters, mirrored_derivative(points, line.parameters, false, how),
+                         mirrored_derivative(points, line.parameters, true, how));
+  return line;
+}
+
+LoopTies::LoopTies(long long first, long long last, int repeat, int border, int range)
+    : first_(first), count_(last - first + 1), reduced_(count_), repeat_(repeat), border_(border) {
+  const long long inner = count_ - 2LL * border, least = static_cast<long long>(repeat) + range;
+  tied_ = inner >= least;
+  if (tied_) reduced_ = 2LL * border + least + (inner - least) % repeat;
+}
+
+long long LoopTies::of_offset(long long offset, long long count) const {
+  if (!tied_ || offset < border_) return offset;
+  if (offset >= count - border_) return reduced_ - (count - offset);
+  return border_ + (offset - border_) % repeat_;
+}
+
+namespace {
+
+std::vector<LoopTies> ties_of(const KnitField& field) {
+  const int hold = field.chart.longest_hold();
+  return {LoopTies(field.first_course, field.last_course, field.chart.courses(), border_courses(field.chart),
+                   hold + 2),
+          LoopTies(field.first_wale, field.last_wale, field.chart.wales(), border_wales, range_wales)};
+}
+
+}  // namespace
+
+long long KnitMoves::loops_solved(const KnitField& field) {
+  const std::vector<LoopTies> ties = ties_of(field);
+  return ties[0].reduced_count() * ties[1].reduced_count();
+}
+
+KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_of(field)) {
+  KnitField reduced = field;
+  reduced.last_course = field.first_course + ties_[0].reduced_count() - 1;
+  reduced.last_wale = field.first_wale + ties_[1].reduced_count() - 1;
+  const long long courses = ties_[0].reduced_count(), wales = ties_[1].reduced_count();
+  const auto loop = [&](long long c, long long w) { return static_cast<std::size_t>(c * (wales + 1) + w); };
+  constexpr auto none = static_cast<std::size_t>(-1);
+  first_class_.assign(static_cast<std::size_t>(courses * (wales + 1)), none);
+  const Vec3 scale(1, 1, yarn.half.y() / yarn.half.x());
+  const Reach reach(yarn);
+  double radius = 1;  // the farthest that the yarn reaches, about
+  for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitZ())})
+    radius = std::max(radius, reach(Vec3::UnitY(), direction));
+  MendProblem problem;
+  for (long long c = 0; c < courses; ++c) {
+    MendLine line;
+    for (long long w = 0; w <= wales; ++w) {
+      const std::size_t first = line.points.size();
+      const long long course = field.first_course + c, wale = field.first_wale + w;
+      if (w < wales)
+        add_stitch_points(reduced, course, wale, line.points);
+      else
+        line.points.push_back(last_sinker_point(reduced, course));
+      const std::size_t own = loop(c, w);
+      const std::size_t like = loop(ties_[0].of_reduced(c), w < wales ? ties_[1].of_reduced(w) : wales);
+      if (like == own) {
+        first_class_[own] = problem.freedom.size();
+        problem.freedom.resize(problem.freedom.size() + line.points.size() - first, Vec3::Ones());
+        // The ends lie in mirror planes.
+        if (w == 0 || w == wales) problem.freedom[first_class_[own]].x() = 0;
+      }
+      for (std::size_t i = first; i < line.points.size(); ++i) {
+        line.classes.push_back(static_cast<int>(first_class_[like] + i - first));
+        line.points[i] +=
+            Vec3(wale_spacing * static_cast<double>(wale), course_spacing * static_cast<double>(course), 0);
+      }
+    }
+    line.curve = [scale, how = yarn.how](const std::vector<Vec3>& points) {
+      nurbs::Curve curve = course_line(scaled(points, scale), how).curve;
+      curve.points = scaled(std::move(curve.points), scale.cwiseInverse());
+      return curve;
+    };
+    line.shares = [scale, how = yarn.how](const std::vector<Vec3>& points) {
+      return interpolation_shares(nurbs::parameters(scaled(points, scale), how));
+    };
+    line.radius = radius;
+    line.reach = reach;
+    problem.lines.push_back(std::move(line));
+  }
+  mending_ = mend(problem);
+}
+
+std::size_t KnitMoves::loop_index(long long course, long long wale) const {
+  const long long wales = ties_[1].reduced_count();
+  const bool is_end = wale > ties_[1].last();
+  return static_cast<std::size_t>(ties_[0].of(course) * (wales + 1) + (is_end ? wales : ties_[1].of(wale)));
+}
+
+void KnitMoves::apply(long long course, long long wale, std::vector<Vec3>& points, std::size_t first) const {
+  if (mending_.moves.empty()) return;
+  const std::size_t start = first_class_[loop_index(course, wale)];
+  for (std::size_t i = first; i < points.size(); ++i) points[i] += mending_.moves[start + i - first];
+}
+
+}  // namespace selvage::fabric

@@ -1,0 +1,79 @@
+// What moves the loops of a weft knit apart: the published loop is not free of overlap (methods.md, 1), and
+// tucks and floats of our own charts meet their neighbours as well.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/vec.h"
+#include "fabric/knit_loop.h"
+#include "fabric/mend.h"
+#include "nurbs/interpolate.h"
+#include "yarn/path.h"
+#include "yarn/section.h"
+
+namespace selvage::fabric {
+
+// The centre line of a course through its data points. Its ends are mirror planes: it goes on as its own
+// image in the planes x = const through its first and its last point.
+yarn::CentreLine course_line(const std::vector<Vec3>& points, nurbs::Parameterization how);
+
+struct KnitYarn {
+  nurbs::Parameterization how = nurbs::Parameterization::chord;
+  yarn::Section section;
+  Vec2 half = Vec2::Ones();  // of the section: across, and through the thickness; file units
+  bool turns = false;        // the section turns along the path
+  double gap = 0;            // wanted between two surfaces, file units
+};
+
+// Which loops move alike along one direction of the cloth: near its edges every one for itself, inside those
+// that are a whole number of repeats apart. What is solved is a reduced cloth, in which all loops of a class
+// have the neighbours that they have in the whole one.
+class LoopTies {
+ public:
+  // `range`: how many loops further one can touch.
+  LoopTies(long long first, long long last, int repeat, int border, int range);
+  [[nodiscard]] long long last() const { return first_ + count_ - 1; }
+  [[nodiscard]] long long reduced_count() const { return reduced_; }
+  // The loop of the reduced cloth (counted from 0) that this one moves like.
+  [[nodiscard]] long long of(long long loop) const { return of_offset(loop - first_, count_); }
+  // The same for a loop of the reduced cloth.
+  [[nodiscard]] long long of_reduced(long long offset) const { return of_offset(offset, reduced_); }
+
+ private:
+  [[nodiscard]] long long of_offset(long long offset, long long count) const;
+
+  long long first_, count_, reduced_;
+  int repeat_, border_;
+  bool tied_ = false;
+};
+
+// Loops beyond which the influence of an edge is not looked for.
+inline constexpr int border_wales = 2;
+inline int border_courses(const StitchChart& chart) {
+  return chart.longest_hold() + 2;
+}
+
+class KnitMoves {
+ public:
+  // No moves: the loops as published.
+  KnitMoves() = default;
+  // Moves after which nothing overlaps; how far that came is in mending().
+  KnitMoves(const KnitField& field, const KnitYarn& yarn);
+
+  // Adds to the points of one stitch (add_stitch_points), or to the last one of a course (wale = last + 1).
+  void apply(long long course, long long wale, std::vector<Vec3>& points, std::size_t first) const;
+  // In units of r; z in half thicknesses.
+  [[nodiscard]] const Mending& mending() const { return mending_; }
+  // Loops that are solved for.
+  static long long loops_solved(const KnitField& field);
+
+ private:
+  [[nodiscard]] std::size_t loop_index(long long course, long long wale) const;
+
+  std::vector<LoopTies> ties_;            // of courses, of wales
+  std::vector<std::size_t> first_class_;  // of each loop of the reduced cloth
+  Mending mending_;
+};
+
+}  // namespace selvage::fabric

@@ -1,0 +1,477 @@
+#include "fabric/mend.h"
+
+#include <Eigen/LU>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "fabric/mend_touch.h"
+#include "nurbs/basis.h"
+#include "nurbs/interpolate.h"
+
+namespace selvage::fabric {
+
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using Vector = Eigen::VectorXd;
+
+// Stiffnesses, for a radius of 1: of moves, of their bending and stretching along a line; of what keeps yarns
+// apart and bends open. The last two are so large that little is missing in the first balance.
+constexpr double hold = 1, bending = 1, stretching = 1, pressing = 8e2, opening = 1e3;
+constexpr double negligible = 1e-2;  // shares in a place that steps leave out
+// In radii:
+constexpr double longest_step = 0.25, least_ahead = 0.05;
+constexpr int most_halves = 12;   // of a step
+constexpr double settled = 0.02;  // share of the energy that a step gains
+
+// What a class contributes to a residual: a vector along which its move counts.
+struct Pull {
+  int index = 0;  // of the class
+  Vec3 along;
+};
+
+// One penalty: weight / 2 (lack - sum pulls . moves)^2
+struct Residual {
+  double weight = 0, lack = 0;
+  std::vector<Pull> pulls;
+};
+
+struct State {
+  Vector moves;
+  std::vector<std::vector<Vec3>> points;
+  std::vector<nurbs::Curve> curves;
+  std::vector<CubicPath> paths;
+  std::vector<Touch> touches;
+  double energy = 0, missing = 0;
+  Vec3 at = Vec3::Zero();
+};
+
+class Mender {
+ public:
+  explicit Mender(const MendProblem& problem)
+      : problem_(problem), size_(3 * static_cast<Eigen::Index>(problem.freedom.size())) {
+    for (const MendLine& line : problem.lines) radius_ = std::max(radius_, line.radius);
+  }
+  Mending run();
+
+ private:
+  [[nodiscard]] State state_at(Vector moves) const;
+  void look(State& state, double more) const;
+  [[nodiscard]] Vector step(const State& state, double more) const;
+  void make_stiffness();
+  void add_pulls(const MendLine& line, const State& state, std::size_t index, double place, int derivative,
+                 const Vec3& along, const std::vector<std::vector<Share>>& shares,
+                 std::vector<Pull>& pulls) const;
+  [[nodiscard]] std::vector<Residual> residuals(const State& state, double more) const;
+  // Calls each(line, place, jet, curvature, lack) wherever a bend is too tight.
+  template <class Each>
+  void for_tight_bends(const State& state, const Each& each) const;
+  void report(const State& first, const State& last, Mending& mending) const;
+
+  const MendProblem& problem_;
+  Eigen::Index size_;
+  double radius_ = 0;
+  double ahead_ = 0;  // what is nearer than this may be lacking after a step
+  Matrix stiffness_;
+  std::optional<TouchFinder> finder_;
+};
+
+constexpr int looks = 4;  // at the bend of a span
+
+double curvature_of(const CubicPath::Jet& jet) {
+  const double speed = jet.d1.norm();
+  return jet.d1.cross(jet.d2).norm() / (speed * speed * speed);
+}
+
+State Mender::state_at(Vector moves) const {
+  State state;
+  state.moves = std::move(moves);
+  for (const MendLine& line : problem_.lines) {
+    std::vector<Vec3> points = line.points;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (line.classes[i] >= 0) points[i] += state.moves.segment<3>(3 * Eigen::Index{line.classes[i]});
+    state.curves.push_back(line.curve(points));
+    state.paths.emplace_back(state.curves.back());
+    state.points.push_back(std::move(points));
+  }
+  return state;
+}
+
+template <class Each>
+void Mender::for_tight_bends(const State& state, const Each& each) const {
+  for (std::size_t l = 0; l < state.paths.size(); ++l) {
+    const CubicPath& path = state.paths[l];
+    const double radius = problem_.lines[l].radius;
+    for (std::size_t i = 0; i <= path.spans() * looks; ++i) {  // most bends are sharpest at a data point
+      const double place = static_cast<double>(i) / looks;
+      const CubicPath::Jet jet = path.at(place);
+      const double curvature = curvature_of(jet), lack = radius * curvature - 1 / problem_.bend;
+      if (lack > 0) each(l, place, jet, curvature, radius_ * lack);
+    }
+  }
+}
+
+// Finds the touches of a state and its energy when `more` than the needed distance is asked for.
+void Mender::look(State& state, double more) const {
+  state.touches = finder_->find(state.paths, more + ahead_);
+  state.energy = 0.5 * state.moves.dot(stiffness_ * state.moves);
+  state.missing = 0;
+  for (const Touch& touch : state.touches) {
+    const double lack = std::max(more - touch.slack, 0.0);
+    state.energy += 0.5 * pressing * lack * lack;
+    if (-touch.slack <= state.missing) continue;
+    state.missing = -touch.slack;
+    state.at = 0.5 * (touch.on_a + touch.on_b);
+  }
+  for_tight_bends(state, [&](std::size_t, double, const CubicPath::Jet&, double, double lack) {
+    state.energy += 0.5 * opening * lack * lack;
+  });
+}
+
+void Mender::make_stiffness() {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](int a, int b, const Eigen::Matrix3d& block) {
+    if (a < 0 || b < 0) return;
+    const Vec3 &free_a = problem_.freedom[static_cast<std::size_t>(a)],
+               &free_b = problem_.freedom[static_cast<std::size_t>(b)];
+    for (Eigen::Index i = 0; i < 3; ++i)
+      for (Eigen::Index j = 0; j < 3; ++j) {
+        const double value = free_a(i) * block(i, j) * free_b(j) + (a == b && i == j ? 1 - free_a(i) : 0.0);
+        if (value != 0.0) entries.emplace_back(3 * a + i, 3 * b + j, value);
+      }
+  };
+  constexpr double unused = 1e-9;  // of classes that no point has
+  for (std::size_t c = 0; c < problem_.freedom.size(); ++c)
+    add(static_cast<int>(c), static_cast<int>(c), unused * Eigen::Matrix3d::Identity());
+  for (const MendLine& line : problem_.lines) {
+    const std::vector<int>& c = line.classes;
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      add(c[i], c[i], hold * Eigen::Matrix3d::Identity());
+      if (i + 1 < c.size()) {
+        const Vec3 along = (line.points[i + 1] - line.points[i]).normalized();
+        const Eigen::Matrix3d block = stretching * along * along.transpose();
+        add(c[i], c[i], block);
+        add(c[i + 1], c[i + 1], block);
+        add(c[i], c[i + 1], -block);
+        add(c[i + 1], c[i], -block);
+      }
+      if (i + 2 < c.size()) {
+        const std::array<double, 3> weights = {1, -2, 1};
+        for (std::size_t a = 0; a < 3; ++a)
+          for (std::size_t b = 0; b < 3; ++b)
+            add(c[i + a], c[i + b], bending * weights[a] * weights[b] * Eigen::Matrix3d::Identity());
+      }
+    }
+  }
+  stiffness_.resize(size_, size_);
+  stiffness_.setFromTriplets(entries.begin(), entries.end());
+}
+
+// Adds what the moves change in a place of a line (derivative 0) or in one of its derivatives (1, 2).
+void Mender::add_pulls(const MendLine& line, const State& state, std::size_t index, double place,
+                       int derivative, const Vec3& along, const std::vector<std::vector<Share>>& shares,
+                       std::vector<Pull>& pulls) const {
+  const nurbs::Curve& curve = state.curves[index];
+  const CubicPath& path = state.paths[index];
+  const double t = path.parameter(place);
+  const double h = path.step(path.span_of(place));
+  const int span = nurbs::find_span(curve.knots, curve.degree, static_cast<int>(curve.points.size()), t);
+  std::array<nurbs::BasisRow, 3> rows;
+  nurbs::basis_derivatives(curve.knots, curve.degree, span, t, rows);
+  const double scale = derivative == 2 ? h * h : derivative == 1 ? h : 1.0;
+  const std::size_t first = pulls.size();
+  for (int j = 0; j <= curve.degree; ++j) {
+    const double value = scale * rows[static_cast<std::size_t>(derivative)][static_cast<std::size_t>(j)];
+    for (const Share& share : shares[static_cast<std::size_t>(span - curve.degree + j)]) {
+      const int c = line.classes[share.point];
+      if (c < 0) continue;
+      const auto same = std::find_if(pulls.begin() + static_cast<std::ptrdiff_t>(first), pulls.end(),
+                                     [&](const Pull& pull) { return pull.index == c; });
+      const Vec3 pull = value * share.weight * along;
+      if (same == pulls.end())
+        pulls.push_back({c, pull});
+      else
+        same->along += pull;
+    }
+  }
+}
+
+std::vector<Residual> Mender::residuals(const State& state, double more) const {
+  std::vector<std::vector<std::vector<Share>>> shares;
+  for (std::size_t l = 0; l < state.points.size(); ++l)
+    shares.push_back(problem_.lines[l].shares(state.points[l]));
+  std::vector<Residual> found;
+  for (const Touch& touch : state.touches) {
+    Residual residual{pressing, more - touch.slack, {}};
+    add_pulls(problem_.lines[touch.line_a], state, touch.line_a, touch.place_a, 0, touch.normal,
+              shares[touch.line_a], residual.pulls);
+    std::vector<Pull> other;
+    add_pulls(problem_.lines[touch.line_b], state, touch.line_b, touch.place_b, 0, -touch.normal,
+              shares[touch.line_b], other);
+    residual.pulls.insert(residual.pulls.end(), other.begin(), other.end());
+    found.push_back(std::move(residual));
+  }
+  for_tight_bends(
+      state, [&](std::size_t l, double place, const CubicPath::Jet& jet, double curvature, double lack) {
+        // Curvature k n = (c'' - (c'' t) t) / s^2, with speed s: what c'' and what c' change in k.
+        const double speed = jet.d1.norm();
+        const Vec3 tangent = jet.d1 / speed;
+        const double ahead_d2 = jet.d2.dot(tangent);
+        const Vec3 towards = (jet.d2 - ahead_d2 * tangent) / (speed * speed * curvature);
+        const Vec3 by_d1 = 2 * curvature / speed * tangent + ahead_d2 / (speed * speed * speed) * towards;
+        const double scale = radius_ * problem_.lines[l].radius;
+        Residual residual{opening, lack, {}};
+        add_pulls(problem_.lines[l], state, l, place, 2, -scale / (speed * speed) * towards, shares[l],
+                  residual.pulls);
+        add_pulls(problem_.lines[l], state, l, place, 1, scale * by_d1, shares[l], residual.pulls);
+        found.push_back(std::move(residual));
+      });
+  for (Residual& residual : found) {
+    // Classes that stand in it twice (both places are of one class) count once.
+    std::stable_sort(residual.pulls.begin(), residual.pulls.end(),
+                     [](const Pull& a, const Pull& b) { return a.index < b.index; });
+    std::vector<Pull> merged;
+    for (const Pull& pull : residual.pulls) {
+      if (merged.empty() || merged.back().index != pull.index)
+        merged.push_back(pull);
+      else
+        merged.back().along += pull.along;
+    }
+    for (Pull& pull : merged)
+      pull.along = pull.along.cwiseProduct(problem_.freedom[static_cast<std::size_t>(pull.index)]);
+    std::erase_if(merged, [](const Pull& pull) { return pull.along.norm() < negligible; });
+    residual.pulls = std::move(merged);
+  }
+  return found;
+}
+
+// Stiffness and those penalties that count, to the first order at a state.
+class Linear {
+ public:
+  Linear(const Matrix& stiffness, const std::vector<Residual>& residuals)
+      : stiffness_(stiffness), residuals_(residuals) {}
+
+  void count_only(std::vector<std::size_t> rows) { rows_ = std::move(rows); }
+
+  [[nodiscard]] Vector times(const Vector& x) const {
+    Vector image = stiffness_ * x;
+    for (const std::size_t row : rows_) {
+      const Residual& residual = residuals_[row];
+      add(residual, residual.weight * change(residual, x), image);
+    }
+    return image;
+  }
+  // What the penalties pull with at x = 0.
+  [[nodiscard]] Vector force() const {
+    Vector sum = Vector::Zero(stiffness_.rows());
+    for (const std::size_t row : rows_)
+      add(residuals_[row], residuals_[row].weight * residuals_[row].lack, sum);
+    return sum;
+  }
+  // The blocks of 3 x 3 on the diagonal, inverted.
+  [[nodiscard]] std::vector<Eigen::Matrix3d> diagonal_inverses() const {
+    std::vector<Eigen::Matrix3d> blocks(static_cast<std::size_t>(stiffness_.rows() / 3),
+                                        Eigen::Matrix3d::Zero());
+    for (Eigen::Index row = 0; row < stiffness_.rows(); ++row)
+      for (Matrix::InnerIterator entry(stiffness_, row); entry; ++entry)
+        if (entry.col() / 3 == row / 3)
+          blocks[static_cast<std::size_t>(row / 3)](row % 3, entry.col() % 3) += entry.value();
+    for (const std::size_t row : rows_)
+      for (const Pull& pull : residuals_[row].pulls)
+        blocks[static_cast<std::size_t>(pull.index)] +=
+            residuals_[row].weight * pull.along * pull.along.transpose();
+    for (Eigen::Matrix3d& block : blocks) block = block.inverse().eval();
+    return blocks;
+  }
+  static double change(const Residual& residual, const Vector& x) {
+    double sum = 0;
+    for (const Pull& pull : residual.pulls) sum += pull.along.dot(x.segment<3>(3 * Eigen::Index{pull.index}));
+    return sum;
+  }
+
+ private:
+  static void add(const Residual& residual, double factor, Vector& to) {
+    for (const Pull& pull : residual.pulls)
+      to.segment<3>(3 * Eigen::Index{pull.index}) += factor * pull.along;
+  }
+
+  const Matrix& stiffness_;
+  const std::vector<Residual>& residuals_;
+  std::vector<std::size_t> rows_;
+};
+
+// Conjugate gradients from `x` on.
+void solve(const Linear& linear, const Vector& right, Vector& x) {
+  constexpr int most = 300;
+  constexpr double enough = 1e-3;  // of the right side; the next step takes up the rest
+  const std::vector<Eigen::Matrix3d> inverses = linear.diagonal_inverses();
+  const auto precondition = [&](const Vector& r) {
+    Vector z(r.size());
+    for (std::size_t i = 0; i < inverses.size(); ++i)
+      z.segment<3>(3 * static_cast<Eigen::Index>(i)) =
+          inverses[i] * r.segment<3>(3 * static_cast<Eigen::Index>(i));
+    return z;
+  };
+  Vector r = right - linear.times(x), z = precondition(r), direction = z;
+  double product = r.dot(z);
+  const double goal = enough * right.norm();
+  for (int i = 0; i < most && r.norm() > goal; ++i) {
+    const Vector image = linear.times(direction);
+    const double along = product / direction.dot(image);
+    x += along * direction;
+    r -= along * image;
+    z = precondition(r);
+    const double next = r.dot(z);
+    direction = z + next / product * direction;
+    product = next;
+  }
+}
+
+// The Gauss-Newton step: the minimum of the penalties as they are to the first order, in which each counts
+// only where it is lacking after the step. Found by taking in what lacks, until that is (nearly) the same.
+Vector Mender::step(const State& state, double more) const {
+  const std::vector<Residual> found = residuals(state, more);
+  Linear linear(stiffness_, found);
+  Vector step = Vector::Zero(size_);
+  std::vector<bool> counts(found.size());
+  constexpr int most_rounds = 8;
+  for (int round = 0; round < most_rounds; ++round) {
+    std::vector<std::size_t> rows;
+    std::size_t changes = 0;
+    for (std::size_t row = 0; row < found.size(); ++row) {
+      const bool is_lacking = found[row].lack > Linear::change(found[row], step);
+      if (is_lacking) rows.push_back(row);
+      if (is_lacking != counts[row]) ++changes;
+      counts[row] = is_lacking;
+    }
+    if (round > 0 && 200 * changes <= rows.size()) break;
+    linear.count_only(std::move(rows));
+    solve(linear, linear.force() - stiffness_ * state.moves, step);
+  }
+  return step;
+}
+
+double largest_of(const Vector& moves) {
+  double largest = 0;
+  for (Eigen::Index i = 0; i + 2 < moves.size(); i += 3)
+    largest = std::max(largest, moves.segment<3>(i).norm());
+  return largest;
+}
+
+double length_of(const CubicPath& path) {
+  constexpr int steps = 16;
+  double length = 0;
+  for (std::size_t i = 0; i < path.spans() * steps; ++i)
+    length += path.at((static_cast<double>(i) + 0.5) / steps).d1.norm() / steps;
+  return length;
+}
+
+void Mender::report(const State& first, const State& last, Mending& mending) const {
+  mending.missing_before = first.missing;
+  mending.missing = last.missing;
+  mending.at = last.at;
+  mending.largest_move = largest_of(last.moves);
+  for (std::size_t c = 0; c < problem_.freedom.size(); ++c)
+    mending.moves.emplace_back(last.moves.segment<3>(3 * static_cast<Eigen::Index>(c)));
+  double sharpest = 0;
+  for (std::size_t l = 0; l < last.paths.size(); ++l) {
+    const double before = length_of(first.paths[l]);
+    mending.largest_stretch =
+        std::max(mending.largest_stretch, std::abs(length_of(last.paths[l]) / before - 1));
+    for (std::size_t i = 0; i <= last.paths[l].spans() * 4 * looks; ++i) {
+      const CubicPath::Jet jet = last.paths[l].at(static_cast<double>(i) / (4 * looks));
+      sharpest = std::max(sharpest, problem_.lines[l].radius * curvature_of(jet));
+    }
+  }
+  mending.tightest_bend = sharpest > 0 ? 1 / sharpest : 0;
+}
+
+// Does no yarn come to the other side of one that it is near to?
+bool keeps_sides(const State& before, const State& after) {
+  constexpr double least_share = 0.3;  // of the distance that has to be left
+  return std::all_of(before.touches.begin(), before.touches.end(), [&](const Touch& touch) {
+    const Vec3 apart = after.paths[touch.line_a].at(touch.place_a).position -
+                       after.paths[touch.line_b].at(touch.place_b).position;
+    return touch.normal.dot(apart) > least_share * (touch.on_a - touch.on_b).norm();
+  });
+}
+
+Mending Mender::run() {
+  Mending mending;
+  make_stiffness();
+  State state = state_at(Vector::Zero(size_));
+  finder_.emplace(problem_, state.paths);
+  // Asked for a little more than is needed: the balance of penalties leaves a little of it missing.
+  const double margin = 2e-3 * radius_;
+  double more = margin;
+  ahead_ = 2 * longest_step * radius_;
+  look(state, more);
+  const State first = state;
+  State best = state;
+  for (; mending.steps < problem_.max_steps && first.missing > 0; ++mending.steps) {
+    Vector step = this->step(state, more);
+    const double longest = largest_of(step);
+    if (longest > longest_step * radius_) step *= longest_step * radius_ / longest;
+    State next = state_at(state.moves + step);
+    for (int half = 0; half < most_halves && !keeps_sides(state, next); ++half) {
+      step *= 0.5;
+      next = state_at(state.moves + step);
+    }
+    look(next, more);
+    for (int half = 0; half < 4 && next.energy > state.energy; ++half) {
+      step *= 0.5;
+      next = state_at(state.moves + step);
+      look(next, more);
+    }
+    const double gain = state.energy - next.energy;
+    ahead_ = std::clamp(2 * largest_of(step), least_ahead * radius_, 2 * longest_step * radius_);
+    state = std::move(next);
+    // What is left to gain is the slow sliding of yarns along each other, which parts nothing.
+    const bool is_settled = gain < settled * state.energy;
+    if (state.missing < best.missing) best = state;
+    if (!is_settled) continue;
+    if (state.missing == 0) {
+      best = std::move(state);
+      break;
+    }
+    more += 1.1 * state.missing + 0.1 * margin;
+    if (more > 0.5 * radius_) break;
+    look(state, more);
+  }
+  report(first, best, mending);
+  return mending;
+}
+
+}  // namespace
+
+Mending mend(const MendProblem& problem) {
+  return Mender(problem).run();
+}
+
+std::vector<std::vector<Share>> interpolation_shares(const std::vector<double>& parameters) {
+  // The share falls by 2 + sqrt(3) from point to point: to 1e-4 in seven.
+  constexpr std::size_t near = 7;
+  const std::size_t count = parameters.size();
+  std::vector<std::vector<Share>> shares(count + 2);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t first = i > near ? i - near : 0, last = std::min(count - 1, i + near);
+    const std::vector<double> t(parameters.begin() + static_cast<std::ptrdiff_t>(first),
+                                parameters.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+    Eigen::MatrixXd data = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(t.size()), 1);
+    data(static_cast<Eigen::Index>(i - first), 0) = 1;
+    const Eigen::MatrixXd control =
+        nurbs::interpolate_clamped(t, data, Eigen::RowVectorXd::Zero(1), Eigen::RowVectorXd::Zero(1));
+    // Control points of the window that are none of the whole curve: the second and the last but one.
+    for (Eigen::Index j = 0; j < control.rows(); ++j) {
+      const bool is_first_pair = j < 2, is_last_pair = j + 2 >= control.rows();
+      if ((is_first_pair && first > 0) || (is_last_pair && last + 1 < count)) continue;
+      if (std::abs(control(j, 0)) > 1e-3)
+        shares[first + static_cast<std::size_t>(j)].push_back({i, control(j, 0)});
+    }
+  }
+  return shares;
+}
+
+}  // namespace selvage::fabric

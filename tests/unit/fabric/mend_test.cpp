@@ -1,0 +1,207 @@
+// Centre lines that are moved apart: on lines whose answer is known, and what the solver itself is built of
+// against what it stands for.
+#include "fabric/mend.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fabric/mend_touch.h"
+#include "nurbs/interpolate.h"
+
+namespace selvage::fabric {
+namespace {
+
+constexpr auto uniform = nurbs::Parameterization::uniform;
+
+nurbs::Curve through(const std::vector<Vec3>& points, nurbs::Parameterization how) {
+  const std::vector<double> t = nurbs::parameters(points, how);
+  return nurbs::interpolate(points, t, nurbs::end_derivative(points, t, false),
+                            nurbs::end_derivative(points, t, true));
+}
+
+// A line whose points are classes of their own from `first` on.
+MendLine line_through(const std::vector<Vec3>& points, int first) {
+  MendLine line;
+  line.points = points;
+  for (std::size_t i = 0; i < points.size(); ++i) line.classes.push_back(first + static_cast<int>(i));
+  line.curve = [](const std::vector<Vec3>& p) { return through(p, uniform); };
+  line.shares = [](const std::vector<Vec3>& p) {
+    return interpolation_shares(nurbs::parameters(p, uniform));
+  };
+  return line;
+}
+
+std::vector<Vec3> straight(const Vec3& from, const Vec3& to, int count) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < count; ++i) points.emplace_back(from + (to - from) * i / (count - 1));
+  return points;
+}
+
+// The least distance of two lines after their moves, by dense sampling.
+double least_distance(const MendLine& a, const MendLine& b, const Mending& mending) {
+  const auto moved = [&](const MendLine& line) {
+    std::vector<Vec3> points = line.points;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (line.classes[i] >= 0) points[i] += mending.moves[static_cast<std::size_t>(line.classes[i])];
+    return line.curve(points);
+  };
+  const nurbs::Curve first = moved(a), second = moved(b);
+  constexpr int looks = 1500;
+  std::vector<Vec3> others;
+  for (int i = 0; i <= looks; ++i) others.push_back(nurbs::evaluate(second, static_cast<double>(i) / looks));
+  double least = 1e9;
+  for (int i = 0; i <= looks; ++i) {
+    const Vec3 p = nurbs::evaluate(first, static_cast<double>(i) / looks);
+    for (const Vec3& q : others) least = std::min(least, (p - q).norm());
+  }
+  return least;
+}
+
+TEST(Mend, TwoCrossingLinesPartByHalfOfTheLackEach) {
+  MendProblem problem;
+  problem.lines = {line_through(straight({-10, 0, 0.8}, {10, 0, 0.8}, 9), 0),
+                   line_through(straight({0, -10, -0.8}, {0, 10, -0.8}, 9), 9)};
+  problem.freedom.assign(18, Vec3::Ones());
+  const Mending mending = mend(problem);
+  EXPECT_TRUE(mending.is_solved());
+  EXPECT_NEAR(mending.missing_before, 0.4, 1e-9);
+  EXPECT_GE(least_distance(problem.lines[0], problem.lines[1], mending), 2.0);
+  EXPECT_LT(least_distance(problem.lines[0], problem.lines[1], mending), 2.02);
+  EXPECT_NEAR(mending.moves[4].z(), 0.2, 0.02);
+  EXPECT_NEAR(mending.moves[4].z(), -mending.moves[13].z(), 1e-9);
+  for (std::size_t i = 0; i < 9; ++i) {
+    EXPECT_NEAR(mending.moves[i].y(), 0, 1e-9);
+    EXPECT_NEAR(mending.moves[i].z(), mending.moves[8 - i].z(), 1e-9);  // symmetric as the lines are
+  }
+}
+
+TEST(Mend, WhatIsApartStaysToTheLastBit) {
+  MendProblem problem;
+  problem.lines = {line_through(straight({-10, 0, 1.01}, {10, 0, 1.01}, 5), 0),
+                   line_through(straight({0, -10, -1.01}, {0, 10, -1.01}, 5), 5)};
+  problem.freedom.assign(10, Vec3::Ones());
+  const Mending mending = mend(problem);
+  EXPECT_TRUE(mending.is_solved());
+  EXPECT_EQ(mending.missing_before, 0);
+  for (const Vec3& move : mending.moves) EXPECT_EQ(move, Vec3(0, 0, 0));
+}
+
+TEST(Mend, PointsAndCoordinatesThatAreHeldStay) {
+  MendProblem problem;
+  problem.lines = {line_through(straight({-10, 0, 0.8}, {10, 0, 0.8}, 9), 0),
+                   line_through(straight({0, -10, -0.8}, {0, 10, -0.8}, 9), 9)};
+  problem.lines[0].classes.assign(9, -1);
+  problem.freedom.assign(18, Vec3(1, 0, 1));
+  const Mending mending = mend(problem);
+  EXPECT_TRUE(mending.is_solved());
+  EXPECT_GE(least_distance(problem.lines[0], problem.lines[1], mending), 2.0);
+  EXPECT_NEAR(mending.moves[13].z(), -0.4, 0.02);
+  for (const Vec3& move : mending.moves) EXPECT_EQ(move.y(), 0);
+}
+
+TEST(Mend, WhatCannotMoveIsReportedWithWhatIsMissing) {
+  MendProblem problem;
+  problem.lines = {line_through(straight({-10, 0, 0.8}, {10, 0, 0.8}, 9), 0),
+                   line_through(straight({0, -10, -0.8}, {0, 10, -0.8}, 9), 9)};
+  for (MendLine& line : problem.lines) line.classes.assign(9, -1);
+  const Mending mending = mend(problem);
+  EXPECT_FALSE(mending.is_solved());
+  EXPECT_NEAR(mending.missing, 0.4, 1e-9);
+  EXPECT_LT(mending.at.norm(), 1e-6);
+}
+
+// A line that comes back to itself.
+TEST(Mend, ALineIsPartedFromItself) {
+  std::vector<Vec3> points;
+  for (int i = 0; i <= 16; ++i) {  // a loop of a helix that is flatter than the yarn is thick
+    const double a = 2 * 3.14159265358979 * i / 8;
+    points.emplace_back(4 * std::cos(a), 4 * std::sin(a), 1.6 * i / 8);
+  }
+  MendProblem problem;
+  problem.lines = {line_through(points, 0)};
+  problem.freedom.assign(17, Vec3::Ones());
+  const Mending mending = mend(problem);
+  EXPECT_NEAR(mending.missing_before, 0.4, 0.05);
+  EXPECT_TRUE(mending.is_solved());
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] += mending.moves[i];
+  const nurbs::Curve curve = through(points, uniform);
+  double least = 1e9;
+  for (int i = 0; i <= 2000; ++i)
+    for (int j = i + 500; j <= 2000; ++j)  // half a turn away
+      least =
+          std::min(least, (nurbs::evaluate(curve, i / 2000.0) - nurbs::evaluate(curve, j / 2000.0)).norm());
+  EXPECT_GE(least, 2.0);
+}
+
+TEST(Mend, SharesAreTheDerivativesOfTheControlPoints) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 30; ++i)
+    points.emplace_back(i + 0.3 * std::sin(i), std::cos(1.7 * i), std::sin(0.9 * i));
+  const std::vector<double> t = nurbs::parameters(points, nurbs::Parameterization::chord);
+  const auto control = [&](const std::vector<Vec3>& p) {
+    return nurbs::interpolate(p, t, Vec3::UnitX(), Vec3::UnitY()).points;
+  };
+  const std::vector<Vec3> base = control(points);
+  const std::vector<std::vector<Share>> shares = interpolation_shares(t);
+  ASSERT_EQ(shares.size(), base.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::vector<Vec3> moved = points;
+    moved[i].z() += 1;
+    const std::vector<Vec3> now = control(moved);
+    for (std::size_t j = 0; j < now.size(); ++j) {
+      double share = 0;
+      for (const Share& s : shares[j])
+        if (s.point == i) share = s.weight;
+      EXPECT_NEAR(now[j].z() - base[j].z(), share, 2e-3) << i << " " << j;
+    }
+  }
+}
+
+TEST(Mend, PiecesAreTheCurve) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 12; ++i)
+    points.emplace_back(i + 0.3 * std::sin(i), std::cos(1.7 * i), std::sin(0.9 * i));
+  const nurbs::Curve curve = through(points, nurbs::Parameterization::centripetal);
+  const CubicPath path(curve);
+  ASSERT_EQ(path.spans(), points.size() - 1);
+  for (int i = 0; i <= 110; ++i) {
+    const double place = i / 10.0;
+    const double t = path.parameter(place), h = path.step(path.span_of(place));
+    const nurbs::CurveJet jet = nurbs::evaluate_jet(curve, t);
+    EXPECT_LT((path.at(place).position - jet.position).norm(), 1e-12);
+    EXPECT_LT((path.at(place).d1 - h * jet.d1).norm(), 1e-11);
+    EXPECT_LT((path.at(place).d2 - h * h * jet.d2).norm(), 1e-9);
+  }
+}
+
+// The nearest places of neighbouring cells are found exactly: two circles, linked.
+TEST(Mend, TouchesAreNearestPlaces) {
+  std::vector<Vec3> first, second;
+  for (int i = 0; i <= 16; ++i) {
+    const double a = 2 * 3.14159265358979 * i / 16;
+    first.emplace_back(5 * std::cos(a), 5 * std::sin(a), 0);
+    second.emplace_back(6.8 + 5 * std::cos(a), 0, 5 * std::sin(a));
+  }
+  MendProblem problem;
+  problem.lines = {line_through(first, 0), line_through(second, 17)};
+  const std::vector<CubicPath> paths = {CubicPath(through(first, uniform)),
+                                        CubicPath(through(second, uniform))};
+  const std::vector<Touch> touches = TouchFinder(problem, paths).find(paths, 1.5);
+  ASSERT_FALSE(touches.empty());
+  double least = 1e9;
+  for (const Touch& touch : touches) {
+    if (touch.line_a == touch.line_b) continue;  // where a ring's ends meet
+    least = std::min(least, touch.slack + 2);
+  }
+  double sampled = 1e9;
+  for (int i = 0; i <= 3200; ++i)
+    for (int j = -40; j <= 40; ++j)
+      sampled = std::min(sampled,
+                         (paths[0].at(16.0 * i / 3200).position - paths[1].at(8 + 0.02 * j).position).norm());
+  EXPECT_NEAR(least, sampled, 1e-4);
+  EXPECT_LE(least, sampled + 1e-12);
+}
+
+}  // namespace
+}  // namespace selvage::fabric
