@@ -127,6 +127,19 @@ def compare(bin_folder, folder, quick):
                    f"{row['microseconds_a_yarn'] / first[row['pair']]:.2f}"] for row in rows])
 
 
+def relax(bin_folder, folder, quick):
+    command = [f"{bin_folder}/relax"] + (["--sizes", "4,6,8,12"] if quick else [])
+    rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
+    first = rows[0]["milliseconds_a_loop"]
+    percent = lambda value: f"{100 * value:.2g} %"
+    return table(["jersey", "overlaps", "deepest, mm", "s", "ms a loop", "to the first", "steps", "area", "length", "volume",
+                  "peak memory, MiB"],
+                 [[f"{row['size']} x {row['size']}", str(row["overlaps"]), f"{row['depth']:.4f}", f"{row['seconds']:.2f}",
+                   f"{row['milliseconds_a_loop']:.1f}", f"{row['milliseconds_a_loop'] / first:.2f}", str(row["steps"]),
+                   percent(row["area"]), percent(row["length"]), percent(row["volume"]), f"{row['peak_rss_mib']:.0f}"]
+                  for row in rows])
+
+
 def machine():
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown")
     return f"{model}, {os.cpu_count()} cores"
@@ -157,7 +170,10 @@ def main():
             "published time is a constant from another machine, drawing included. Tubes and file are those of as many "
             "whole courses as have 5,000 loops.\n\n" + knit_build(given.bin, folder, given.quick) +
             "\n## Comparing two cloths in memory, two threads: the time a yarn stays the same\n\n" +
-            compare(given.bin, folder, given.quick))
+            compare(given.bin, folder, given.quick) +
+            "\n## Moving the loops of the published jersey apart, two threads: the time a loop stays the same\n\n"
+            "Yarn of 0.2 mm, to gaps of 1 % of that; with the exact search for overlaps before and after. Area, length and volume: the "
+            "largest changes.\n\n" + relax(given.bin, folder, given.quick))
     pathlib.Path(given.out).write_text(text)
     print(text)
 

@@ -31,7 +31,7 @@ constexpr double default_gap = 0.01;
 // Of the thinner yarn's thickness. Deeper in each other, two yarns do not tell which side is theirs.
 constexpr double deepest = 0.55;
 // Of the thickness: how far apart surfaces may be to be kept apart, and the longest step.
-constexpr double reach_share = 0.08, step_share = 0.1;
+constexpr double reach_share = 0.04, step_share = 0.1;
 // Steps without progress after which a cloth counts as jammed, and rounds of exact checks.
 constexpr int patience = 20, most_verdicts = 12;
 

@@ -1,0 +1,99 @@
+// How long it takes to move the loops of the published jersey apart, and whether the cost of a loop stays the
+// same with the size of the cloth. Moved apart means: the exact search finds no overlap afterwards, and all
+// bounds hold; anything else is an error. One JSON object.
+//
+//   relax [--sizes N,N,...] [--threads N]
+#include "contact/relax.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "fabric/build.h"
+
+namespace {
+
+using namespace selvage;
+
+[[noreturn]] void fail(const std::string& text) {
+  fmt::print(stderr, "error: {}\n", text);
+  std::exit(1);
+}
+
+std::vector<yarn::Body> published_jersey(int size) {
+  fabric::Fabric cloth;
+  fabric::Thread thread;
+  thread.name = "cotton30";
+  thread.diameter = 0.2;
+  cloth.threads = {thread};
+  fabric::Knit knit;
+  knit.thread = thread.name;
+  knit.courses = knit.wales = size;
+  cloth.items = {knit};
+  fabric::BuildOptions options;
+  options.as_published = true;
+  Diagnostics diagnostics;
+  const std::optional<fabric::YarnBuilder> builder = fabric::YarnBuilder::create(cloth, options, diagnostics);
+  if (!builder) fail(to_string(*diagnostics.first_error()));
+  std::vector<yarn::Body> bodies;
+  for (std::size_t i = 0; i < builder->count(); ++i) {
+    Result<yarn::Body> body = builder->build(i);
+    if (!body) fail(to_string(body.error()));
+    bodies.push_back(std::move(*body));
+  }
+  return bodies;
+}
+
+double largest(const std::vector<contact::YarnChange>& changes, double contact::YarnChange::*value) {
+  double most = 0.0;
+  for (const contact::YarnChange& change : changes) most = std::max(most, std::abs(change.*value));
+  return most;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  int threads = 2;
+  std::vector<int> sizes = {6, 12, 25, 50};
+  for (int i = 1; i + 1 < count; i += 2) {
+    const std::string word = words[i];
+    if (word == "--threads") threads = std::max(1, std::atoi(words[i + 1]));
+    if (word != "--sizes") continue;
+    sizes.clear();
+    for (char* part = std::strtok(words[i + 1], ","); part != nullptr; part = std::strtok(nullptr, ","))
+      sizes.push_back(std::max(1, std::atoi(part)));
+  }
+  std::string rows;
+  for (const int size : sizes) {
+    std::vector<yarn::Body> bodies = published_jersey(size);
+    contact::RelaxOptions options;
+    options.threads = threads;
+    const auto begin = std::chrono::steady_clock::now();
+    const Result<contact::Relaxation> relaxed = contact::relax(std::move(bodies), options);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (!relaxed) fail(to_string(relaxed.error()));
+    if (!relaxed->solved || relaxed->after.overlaps > 0) fail("not solved: " + relaxed->reason);
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    rows += fmt::format(
+        "{}  {{\"size\": {}, \"seconds\": {:.4g}, \"milliseconds_a_loop\": {:.4g}, \"steps\": {}, "
+        "\"overlaps\": {}, "
+        "\"depth\": {:.4g}, \"area\": {:.3g}, \"length\": {:.3g}, \"volume\": {:.3g}, \"peak_rss_mib\": "
+        "{:.0f}}}",
+        rows.empty() ? "" : ",\n", size, seconds, 1e3 * seconds / size / size, relaxed->iterations,
+        relaxed->before.overlaps, relaxed->before.depth,
+        largest(relaxed->changes, &contact::YarnChange::area),
+        largest(relaxed->changes, &contact::YarnChange::length),
+        largest(relaxed->changes, &contact::YarnChange::volume),
+        static_cast<double>(usage.ru_maxrss) / 1024.0);
+  }
+  fmt::print("{{\"benchmark\": \"relax\", \"threads\": {}, \"rows\": [\n{}\n]}}\n", threads, rows);
+  return 0;
+}
