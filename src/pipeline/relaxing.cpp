@@ -181,6 +181,10 @@ RelaxReport report_of(const Relaxation& relaxation, const std::vector<yarn::Body
   report.iterations = relaxation.iterations;
   report.before = state(relaxation.before);
   report.after = state(relaxation.after);
+  report.reason = relaxation.reason;
+  for (const contact::Jam& jam : relaxation.jams)
+    report.jams.push_back({bodies[jam.a].name, bodies[jam.b].name, jam.gap * mm, jam.at * mm});
+  if (!report.is_moved()) return report;  // what differs is rounding
   const auto most = [&](auto of) { return largest(relaxation, bodies, of); };
   const Largest move = most([](const contact::YarnChange& change) { return change.move; });
   report.largest_move = move.value * mm;
@@ -188,9 +192,6 @@ RelaxReport report_of(const Relaxation& relaxation, const std::vector<yarn::Body
   report.area_change = most([](const contact::YarnChange& change) { return change.area; }).value;
   report.length_change = most([](const contact::YarnChange& change) { return change.length; }).value;
   report.volume_change = most([](const contact::YarnChange& change) { return change.volume; }).value;
-  report.reason = relaxation.reason;
-  for (const contact::Jam& jam : relaxation.jams)
-    report.jams.push_back({bodies[jam.a].name, bodies[jam.b].name, jam.gap * mm, jam.at * mm});
   return report;
 }
 
@@ -258,6 +259,33 @@ void tell_jams(Job& job, const Relaxation& relaxation, const std::vector<yarn::B
   job.say_defect(error(Kind::geometry, text + "; nothing was written"));
 }
 
+// Lines that meet leave no side to which either could go; false when there are such, each pair told once.
+bool have_sides(Job& job, const std::vector<yarn::Body>& bodies) {
+  const Result<std::vector<contact::Passage>> meetings = contact::find_passages(bodies, bodies);
+  if (!meetings) {
+    job.say(meetings.error());
+    return false;
+  }
+  std::size_t told = 0;
+  for (std::size_t k = 0; k < meetings->size() && told < most_told; ++k) {
+    const contact::Passage& meeting = (*meetings)[k];
+    if (k > 0 && meeting.a == (*meetings)[k - 1].a && meeting.b == (*meetings)[k - 1].b) continue;
+    const yarn::Body &a = bodies[meeting.a], &b = bodies[meeting.b];
+    std::string text = fmt::format(
+        "yarns '{}' and '{}' cannot be moved apart, for neither of them is above: ", a.name, b.name);
+    if (meeting.a == meeting.b)
+      text = fmt::format("yarn '{}' cannot be moved out of itself: it runs through its own middle", a.name);
+    else
+      text += a.axis.points == b.axis.points ? "they have the same centre line"
+                                             : "they run through each other's middle";
+    Message message = error(Kind::geometry, text);
+    message.at = meeting.at;
+    job.say_defect(std::move(message));
+    ++told;
+  }
+  return meetings->empty();
+}
+
 // A yarn that went through another one is another fabric.
 bool keeps_interlacing(Job& job, const std::vector<yarn::Body>& before,
                        const std::vector<yarn::Body>& after) {
@@ -314,6 +342,10 @@ std::optional<fabric::Fabric> relaxed(Job& job, fabric::Fabric fabric) {
   if (builder->count() == 0) return fabric;
   std::optional<Built> built = build(job, fabric, *builder);
   if (!built || job.has_failed()) return std::nullopt;
+  if (!have_sides(job, built->bodies)) {
+    job.unsolved = true;
+    return std::nullopt;
+  }
   const contact::RelaxOptions options = relax_options(job, fabric, *builder);
   Result<Relaxation> relaxation = contact::relax(built->bodies, options);
   if (!relaxation) {

@@ -95,7 +95,7 @@ struct RelaxReport {
   std::string reason;                                            // where not solved
   std::vector<Jam> jams;
 
-  [[nodiscard]] bool is_moved() const { return iterations > 0 || !moved_most.empty(); }
+  [[nodiscard]] bool is_moved() const { return iterations > 0; }
 };
 
 struct MeshReport {
