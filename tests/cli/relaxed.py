@@ -204,6 +204,8 @@ def interlacing_changes(before, after, tube=False):
         radius = np.mean([line[:, 2].mean() for line in lines.values()])
         for line in [*lines.values(), *moved.values()]:
             line[:, 0] *= radius
+    for line in [*lines.values(), *moved.values()]:
+        line[:, :2] += line[:, 2:] * [0.11, 0.07]  # seen a little from the side: yarns lie straight above each other
     names, changed, count = sorted(lines), [], 0
     for i, a in enumerate(names):
         for b in names[i:]:
