@@ -83,6 +83,12 @@ std::optional<Grid> closed_form(const yarn::Body& body, yarn::Body& built) {
 
 }  // namespace
 
+nurbs::Curve grid_axis(const yarn::Body& body) {
+  yarn::Body built;
+  if (!closed_form(body, built)) open_form(body, built);
+  return built.axis;
+}
+
 GridYarn as_grid(const yarn::Body& body) {
   GridYarn result;
   Yarn& yarn = result.yarn;

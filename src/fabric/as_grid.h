@@ -18,4 +18,8 @@ GridYarn as_grid(const yarn::Body& body);
 // has in the fabric.
 GridYarn as_grid(const Fabric& fabric, const Yarn& yarn);
 
+// The centre line that the grid's yarn has: the middles of its rows. Where a body was not swept along a path
+// it is as good as any, and with it a yarn measures the same before and after it is written.
+nurbs::Curve grid_axis(const yarn::Body& body);
+
 }  // namespace selvage::fabric

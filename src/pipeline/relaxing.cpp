@@ -9,6 +9,7 @@
 #include "contact/interlacing.h"
 #include "contact/relax.h"
 #include "core/parallel.h"
+#include "fabric/as_grid.h"
 #include "pipeline/table.h"
 
 namespace selvage::pipeline {
@@ -312,7 +313,7 @@ bool keeps_interlacing(Job& job, const std::vector<yarn::Body>& before,
 }
 
 // The fabric with these yarns in the places of those that it had.
-fabric::Fabric with_yarns(fabric::Fabric fabric, Built built, std::vector<yarn::Body> bodies,
+fabric::Fabric with_yarns(fabric::Fabric fabric, Built built, std::vector<yarn::Body> bodies, bool is_moved,
                           double tolerance) {
   std::vector<fabric::Item> items;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -321,6 +322,7 @@ fabric::Fabric with_yarns(fabric::Fabric fabric, Built built, std::vector<yarn::
     body.tight_bends.clear();
     body.messages.clear();
     body.tube_error = body.path_miss = 0;
+    if (is_moved) body.axis = fabric::grid_axis(body);  // that of the path is no more
     built.yarns[i].shape = std::make_shared<const yarn::Body>(std::move(body));
     items.emplace_back(std::move(built.yarns[i]));
   }
@@ -376,7 +378,7 @@ std::optional<fabric::Fabric> relaxed(Job& job, fabric::Fabric fabric) {
   }
   std::vector<yarn::Body> bodies =
       is_moved ? std::move(relaxation->bodies) : std::vector<yarn::Body>(built->bodies);
-  return with_yarns(std::move(fabric), std::move(*built), std::move(bodies), tolerance);
+  return with_yarns(std::move(fabric), std::move(*built), std::move(bodies), is_moved, tolerance);
 }
 
 }  // namespace selvage::pipeline

@@ -29,7 +29,8 @@ FABRICS = {
     "satin": (SAMPLES / "warpknit_satin.txt").read_text(),
     "queens_cord": (SAMPLES / "warpknit_queens-cord.txt").read_text(),
     "twill": weave("section circle 0.4", 0.9 * FREE_TWILL_PITCH, "twill 2/2", "profile sine 0.205"),
-    "braid": (SAMPLES / "braid_regular.txt").read_text(),
+    # The sample's tolerance asks for more than 1 % of room, so that nothing would have to move.
+    "braid": (SAMPLES / "braid_regular.txt").read_text().replace("tolerance 0.005\n", ""),
     "orthogonal": (SAMPLES / "weave_orthogonal.txt").read_text(),
     "plies": weave("diameter 0.4\n  plies 3 300 S", 1.0, "plain", "profile sine 0.18", 2),
     "sine": weave("section ellipse 0.8 0.2", 1.0, "plain", "profile sine 0.09"),
@@ -72,6 +73,7 @@ class Zoo(Case):
                 self.assertLess(change.out_of_plane, 1e-9 * change.size)
                 self.assertEqual(change.dents, 0)
                 largest = max(largest, change.move)
+        self.assertGreater(largest, 0)
         self.assertAlmostEqual(relax["largest_move"] / largest, 1, delta=0.1)
         tube = name in TUBES
         changed, crossings = relaxed.interlacing_changes(before, after, tube)
