@@ -139,13 +139,16 @@ KnitMoves moves_of(const Fabric& fabric, const Knit& knit, const yarn::Section& 
                                    !std::holds_alternative<yarn::Circle>(section),
                           .gap = gap + 2.0 * tolerance});
   const Mending& mending = moves.mending();
-  const double missing = 0.5 * mending.missing * size.width;
-  if (missing > 0.5 * gap)
-    warn(
-        fmt::format("its loops could not be moved apart: near ({:.4g} {:.4g} {:.4g}) yarns overlap by about "
-                    "{:.2g} {}",
-                    mending.at.x() * size.width / 2, mending.at.y() * size.width / 2,
-                    mending.at.z() * size.height / 2, missing - gap, name_of(fabric.units)));
+  if (mending.is_solved()) return moves;
+  const double left = gap + 2.0 * tolerance - 0.5 * mending.missing * size.width;
+  const std::string near = fmt::format("near ({:.4g}, {:.4g}, {:.4g})", mending.at.x() * size.width / 2,
+                                       mending.at.y() * size.width / 2, mending.at.z() * size.height / 2);
+  warn(left > 0.0 ? fmt::format("the loops of this knit come nearer to each other than is wanted: {} about "
+                                "{:.2g} {} of {:.2g} are left between them",
+                                near, left, name_of(fabric.units), gap)
+                  : fmt::format("the loops of this knit could not be moved apart: {} they overlap, by about "
+                                "{:.2g} {}",
+                                near, -left, name_of(fabric.units)));
   return moves;
 }
 

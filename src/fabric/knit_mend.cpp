@@ -50,8 +50,10 @@ class Reach {
       : scale_(yarn.half.x(), yarn.half.x(), yarn.half.y()), gap_(yarn.gap), turns_(yarn.turns) {
     if (!std::holds_alternative<yarn::Circle>(yarn.section) &&
         !std::holds_alternative<yarn::Ellipse>(yarn.section))
-      outline_ = outline_polygon(yarn.section);
+      outline_ = outline_polygon(yarn.section, looks);
     half_ = yarn.half;
+    const bool is_round = half_.x() == half_.y() && std::holds_alternative<yarn::Circle>(yarn.section);
+    if (!is_round) gap_ += flat_share * half_.minCoeff();
     for (const Vec2& p : outline_) widest_ = std::max(widest_, p.norm());
     if (outline_.empty()) widest_ = half_.maxCoeff();
   }
@@ -63,16 +65,21 @@ class Reach {
   }
 
  private:
+  static constexpr int looks = 16;  // in a piece of the outline
+  // Surfaces of flat yarns are nearest beside the places where the centre lines are.
+  static constexpr double flat_share = 0.03;  // of half the thickness, added to the gap
+
   [[nodiscard]] double support(const Vec3& along, const Vec3& normal) const {
     const Vec3 up = (Vec3::UnitZ() - along.z() * along).normalized();
     const Vec2 in_section(normal.dot(up.cross(along)), normal.dot(up));
     if (turns_) return widest_ * in_section.norm();
-    if (outline_.empty()) return in_section.cwiseProduct(half_).norm();
+    // At least the ellipse of its size: the sharp tips of a bent yarn reach beyond the plane that parts the
+    // two where their centre lines are nearest.
+    double most = in_section.cwiseProduct(half_).norm();
     // The polygon's corners lie on the outline, whose sides bulge by less than this.
     constexpr double bulge = 1.002;
-    double most = 0;
-    for (const Vec2& p : outline_) most = std::max(most, p.dot(in_section));
-    return bulge * most;
+    for (const Vec2& p : outline_) most = std::max(most, bulge * p.dot(in_section));
+    return most;
   }
 
   Vec3 scale_;
