@@ -10,8 +10,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <random>
 
+#include "fabric/yarn_spec.h"
 #include "nurbs/spline.h"
 #include "property/zoo.h"
 
@@ -130,9 +134,20 @@ std::vector<std::string> faults_of(const Knit& knit, const std::vector<nurbs::Cu
   return faults;
 }
 
-std::vector<nurbs::Curve> courses_of(const fabric::Fabric& fabric) {
+std::vector<nurbs::Curve> courses_of(const fabric::Fabric& fabric, bool as_published = false) {
   std::vector<nurbs::Curve> curves;
-  for (const fabric::YarnPlan& plan : plans_of(fabric)) curves.push_back(plan.line.curve);
+  fabric::BuildOptions options;
+  options.as_published = as_published;
+  Diagnostics diagnostics;
+  const std::optional<fabric::YarnBuilder> builder =
+      fabric::YarnBuilder::create(fabric, options, diagnostics);
+  for (const Message& message : diagnostics.messages()) ADD_FAILURE() << to_string(message);
+  if (!builder) return curves;
+  for (std::size_t i = 0; i < builder->count(); ++i) {
+    const Result<fabric::YarnPlan> plan = builder->plan(i);
+    EXPECT_TRUE(plan.ok());
+    if (plan.ok()) curves.push_back(plan->line.curve);
+  }
   return curves;
 }
 
@@ -146,11 +161,66 @@ std::string text_of(const std::vector<std::string>& faults) {
   return text;
 }
 
-fabric::Fabric charted(const std::string& rows, int courses, int wales) {
+fabric::Fabric charted(const std::string& rows, int courses, int wales, const std::string& method = "chord") {
   return fabric_of(
       fmt::format("fabric 1\nthread t\n diameter 1\nend\nknit\n thread t\n courses {}\n wales {}\n"
-                  " chart\n{}\n end\nend\n",
-                  courses, wales, rows));
+                  " method {}\n chart\n{}\n end\nend\n",
+                  courses, wales, method, rows));
+}
+
+// The least distance of two places on the centre lines of a cloth that are on different courses, or farther
+// apart along one of them than `apart`. By points at equal shares of every span, compared cube by cube:
+// nothing of what moves the loops apart is used.
+double least_distance(const std::vector<nurbs::Curve>& courses, double apart, double reach) {
+  constexpr int looks = 48;  // in a span; between them a curve hides less than 2e-3 of its radius
+  struct Place {
+    Vec3 point;
+    std::size_t course = 0;
+    double along = 0;
+  };
+  std::map<std::array<long, 3>, std::vector<Place>> cubes;
+  std::vector<Place> places;
+  for (std::size_t c = 0; c < courses.size(); ++c) {
+    const std::vector<double> breaks = nurbs::breakpoints(courses[c].knots, courses[c].degree);
+    double along = 0;
+    Vec3 last = courses[c].points.front();
+    for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+      for (int i = 0; i <= looks; ++i) {
+        const Vec3 point = nurbs::evaluate(courses[c], breaks[k] + (breaks[k + 1] - breaks[k]) * i / looks);
+        along += (point - last).norm();
+        last = point;
+        places.push_back({point, c, along});
+      }
+  }
+  const auto cube_of = [&](const Vec3& p) {
+    return std::array<long, 3>{std::lround(p.x() / reach), std::lround(p.y() / reach),
+                               std::lround(p.z() / reach)};
+  };
+  for (const Place& place : places) cubes[cube_of(place.point)].push_back(place);
+  double least = reach;
+  for (const Place& place : places) {
+    const std::array<long, 3> middle = cube_of(place.point);
+    for (long n = 0; n < 27; ++n) {
+      const auto cube = cubes.find({middle[0] + n % 3 - 1, middle[1] + n / 3 % 3 - 1, middle[2] + n / 9 - 1});
+      if (cube == cubes.end()) continue;
+      for (const Place& other : cube->second)
+        if (other.course != place.course || std::abs(other.along - place.along) > apart)
+          least = std::min(least, (other.point - place.point).norm());
+    }
+  }
+  return least;
+}
+
+// A chart of random stitches whose first course knits on every needle.
+std::string random_chart(std::mt19937& random, int rows, int columns) {
+  std::vector<std::string> chart(static_cast<std::size_t>(rows));
+  const std::string signs = "KKKPPTM";
+  for (std::string& row : chart)
+    for (int column = 0; column < columns; ++column) row += signs[random() % signs.size()];
+  for (char& sign : chart.back()) sign = is_loop(sign) ? sign : 'K';
+  std::string text;
+  for (const std::string& row : chart) text += (text.empty() ? "" : "\n") + row;
+  return text;
 }
 
 TEST(KnitTopology, EveryLoopOfTheZooPassesThroughTheOneBelow) {
@@ -181,6 +251,75 @@ TEST(KnitTopology, EveryChartThatCanBeDrawn) {
     const fabric::Fabric fabric = charted(rows, 9, 6);
     const std::vector<std::string> faults = faults_of(knit_of(fabric), courses_of(fabric));
     EXPECT_TRUE(faults.empty()) << rows << "\n" << text_of(faults);
+  }
+}
+
+// Default: thicknesses of 1 with a hundredth between them.
+TEST(KnitClearance, NoTwoLoopsOfTheZooTouch) {
+  std::size_t knits = 0;
+  for (const ZooFabric* zoo : with<Knit>()) {
+    if (zoo->fabric.items.size() != 1) continue;
+    ++knits;
+    const double thickness = *fabric::smallest_size(zoo->fabric, zoo->fabric.threads.front());
+    const double distance = least_distance(courses_of(zoo->fabric), 1.6 * thickness, 1.5 * thickness);
+    EXPECT_GE(distance, 1.01 * thickness) << zoo->name;
+    EXPECT_LT(distance, 1.03 * thickness) << zoo->name;
+    // As published none of them is free of overlap: the oracle sees it.
+    EXPECT_LT(least_distance(courses_of(zoo->fabric, true), 1.6 * thickness, 1.5 * thickness),
+              0.999 * thickness)
+        << zoo->name;
+  }
+  EXPECT_GE(knits, 11U);
+}
+
+TEST(KnitClearance, RandomChartsComeOutFreeAndPassThroughEachOtherAsPublished) {
+  std::mt19937 random(20);
+  const std::array<std::string, 3> methods = {"chord", "centripetal", "uniform"};
+  for (int trial = 0; trial < 18; ++trial) {
+    const int rows = 1 + static_cast<int>(random() % 4), columns = 1 + static_cast<int>(random() % 3);
+    const std::string chart = random_chart(random, rows, columns);
+    const int courses = rows + 1 + static_cast<int>(random() % 5), wales = 2 + static_cast<int>(random() % 4);
+    const std::string& method = methods[static_cast<std::size_t>(trial) % 3];
+    const fabric::Fabric fabric = charted(chart, courses, wales, method);
+    const std::vector<nurbs::Curve> moved = courses_of(fabric);
+    EXPECT_GE(least_distance(moved, 1.6, 1.5), 1.01) << chart << "\n"
+                                                     << courses << " x " << wales << " " << method;
+    const std::vector<std::string> before = faults_of(knit_of(fabric), courses_of(fabric, true));
+    EXPECT_EQ(faults_of(knit_of(fabric), moved), before) << chart << " " << method;
+  }
+}
+
+// Inside a cloth of any size the loops are those of the same small piece, moved; and that piece has what it
+// needs on all sides.
+TEST(KnitClearance, LargeClothsAreFreeAndPeriodic) {
+  for (const std::string rows : {"K", "KT\nKP", "KMM\nMKM\nMMK"}) {
+    const auto columns = static_cast<std::size_t>(rows.find('\n') == std::string::npos ? 1 : rows.find('\n'));
+    const auto repeat = static_cast<std::size_t>(std::count(rows.begin(), rows.end(), '\n')) + 1;
+    const fabric::Fabric fabric = charted(rows, 19, 20);
+    const std::vector<nurbs::Curve> courses = courses_of(fabric);
+    EXPECT_GE(least_distance(courses, 1.6, 1.5), 1.01) << rows;
+    const std::vector<fabric::YarnPlan> plans = plans_of(fabric);
+    const double step = 3.5 * static_cast<double>(repeat);
+    for (std::size_t c = 6; c + 6 + repeat < plans.size(); ++c) {
+      const std::vector<Vec3>&low = plans[c].points, &high = plans[c + repeat].points;
+      ASSERT_EQ(low.size(), high.size());
+      for (std::size_t i = 0; i < low.size(); ++i) {
+        EXPECT_EQ(low[i].x(), high[i].x());
+        EXPECT_EQ(low[i].z(), high[i].z());
+        EXPECT_NEAR(high[i].y() - low[i].y(), step, 1e-13);
+      }
+      // Along a course: the points of a repeat of wales, found by their places in it.
+      std::vector<std::size_t> starts;  // of wales
+      for (std::size_t i = 0; i < low.size(); ++i)
+        if (starts.size() < 21 && std::abs(low[i].x() - 4.0 * static_cast<double>(starts.size())) < 1.0 &&
+            (starts.empty() || i > starts.back() + 1))
+          starts.push_back(i);
+      for (std::size_t w = 4; w + 4 + columns < starts.size(); ++w) {
+        const Vec3 &a = low[starts[w]], &b = low[starts[w + columns]];
+        EXPECT_NEAR(b.x() - a.x(), 4.0 * static_cast<double>(columns), 1e-13);
+        EXPECT_EQ(a.z(), b.z());
+      }
+    }
   }
 }
 

@@ -40,10 +40,11 @@ Knit charted(std::vector<std::string> rows, int courses, int wales) {
   return knit;
 }
 
-YarnPlan plan_of(const Fabric& fabric, std::size_t course) {
+// As published, unless said otherwise.
+YarnPlan plan_of(const Fabric& fabric, std::size_t course, bool as_published = true) {
   Diagnostics diagnostics;
   const Result<std::unique_ptr<Construction>> made =
-      make_knit(fabric, std::get<Knit>(fabric.items.front()), true, diagnostics);
+      make_knit(fabric, std::get<Knit>(fabric.items.front()), as_published, diagnostics);
   EXPECT_TRUE(made.ok());
   Result<YarnPlan> plan = (*made)->plan(course);
   EXPECT_TRUE(plan.ok());
@@ -152,6 +153,54 @@ TEST(Knit, RepeatsAreTheSameToTheLastBit) {
   for (std::size_t i = 0; i + 8 < far.points.size(); ++i)
     EXPECT_EQ(far.points[i + 8], far.points[i] + Vec3(8, 0, 0)) << i;
   EXPECT_EQ(far.points.front(), Vec3(0, 999 * 7 - 3, -1.5));
+}
+
+// What the moves make of a loop of the plain stitch: the same in a cloth of a million loops at once.
+TEST(Knit, LoopsThatAreMovedApartRepeatToTheLastBit) {
+  const Fabric fabric = knitted(jersey(1000, 1000));
+  const YarnPlan low = plan_of(fabric, 10, false), high = plan_of(fabric, 990, false);
+  const YarnPlan small = plan_of(knitted(jersey(40, 30)), 10, false);
+  ASSERT_EQ(low.points.size(), 8001U);
+  for (std::size_t i = 0; i < low.points.size(); ++i) {
+    EXPECT_EQ(low.points[i].x(), high.points[i].x());
+    EXPECT_EQ(low.points[i].z(), high.points[i].z());
+    EXPECT_NEAR(high.points[i].y() - low.points[i].y(), 980 * 7 * r, 1e-12);
+    if (i < 120) {
+      EXPECT_EQ(low.points[i], small.points[i]);
+    }
+    if (i < 24 || i + 32 > low.points.size()) continue;
+    EXPECT_EQ(low.points[i].z(), low.points[i + 8].z());
+    EXPECT_EQ(low.points[i].y(), low.points[i + 8].y());
+    EXPECT_NEAR(low.points[i + 8].x() - low.points[i].x(), 8 * r, 1e-12);
+  }
+}
+
+// A loop is changed by little.
+TEST(Knit, LoopsThatAreMovedApartStayLoops) {
+  for (const Knit::Method method : methods) {
+    const YarnPlan raw = plan_of(knitted(jersey(30, 30, method)), 15);
+    const YarnPlan moved = plan_of(knitted(jersey(30, 30, method)), 15, false);
+    for (std::size_t i = 0; i < raw.points.size(); ++i)
+      EXPECT_LT((moved.points[i] - raw.points[i]).norm(), 0.9 * r);
+    EXPECT_EQ(moved.points.front().x(), raw.points.front().x());
+    EXPECT_EQ(moved.points.back().x(), raw.points.back().x());
+    EXPECT_NEAR(nurbs::arc_length(moved.line.curve) / nurbs::arc_length(raw.line.curve), 1, 0.03);
+  }
+}
+
+TEST(Knit, ARepeatThatIsTooLargeToBeMovedApartSaysSo) {
+  std::vector<std::string> rows(120, std::string(120, 'K'));
+  rows[5][7] = 'P';
+  const Fabric fabric = knitted(charted(rows, 300, 300));
+  Diagnostics diagnostics;
+  EXPECT_TRUE(YarnBuilder::create(fabric, {}, diagnostics));
+  ASSERT_EQ(diagnostics.messages().size(), 1U);
+  EXPECT_NE(diagnostics.messages().front().text.find("as published"), std::string::npos);
+  BuildOptions raw;
+  raw.as_published = true;
+  Diagnostics none;
+  EXPECT_TRUE(YarnBuilder::create(fabric, raw, none));
+  EXPECT_TRUE(none.messages().empty());
 }
 
 // Width and thickness scale the loop each in its own direction.
