@@ -250,7 +250,7 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
       builder.add_construction(make_knit(fabric, *knit, options.as_published, diagnostics), knit->place,
                                diagnostics);
     if (const auto* warpknit = std::get_if<Warpknit>(&item))
-      builder.add_construction(make_warpknit(fabric, *warpknit, diagnostics), warpknit->place,
+      builder.add_construction(make_warpknit(fabric, *warpknit, options, diagnostics), warpknit->place,
                                diagnostics);
     if (const auto* braid = std::get_if<Braid>(&item))
       builder.add_construction(make_braid(fabric, *braid, diagnostics), braid->place, diagnostics);

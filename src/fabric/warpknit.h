@@ -24,10 +24,12 @@
 
 namespace selvage::fabric {
 
+struct BuildOptions;
+
 // Errors: at their lines, a lapping's in its text: malformed, an overlap across more than one needle, a bar
 // that knits nowhere, pitches too small for the yarns (the smallest one is named). `fabric` and `warpknit`
 // outlive the construction; warnings go to `diagnostics`.
 Result<std::unique_ptr<Construction>> make_warpknit(const Fabric& fabric, const Warpknit& warpknit,
-                                                    Diagnostics& diagnostics);
+                                                    const BuildOptions& options, Diagnostics& diagnostics);
 
 }  // namespace selvage::fabric

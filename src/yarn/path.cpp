@@ -97,30 +97,18 @@ double nearest_between(const nurbs::Curve& curve, const Vec3& point, double low,
 CentreLine from_loop(const PathRows& rows) {
   const std::vector<Vec3>& p = rows.points;
   const std::size_t n = p.size();
-  std::vector<Vec3> control;
-  std::vector<std::size_t> first_control(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    first_control[i] = control.size();
-    const bool is_end = !rows.closed && (i == 0 || i + 1 == n);
-    if (is_end) {
-      control.push_back(p[i]);
-      continue;
-    }
-    const Vec3& before = p[(i + n - 1) % n];
-    const Vec3& after = p[(i + 1) % n];
-    const Vec3 d = (after - before).normalized();
-    control.emplace_back(p[i] - d * ((p[i] - before).norm() / 4.0));
-    control.emplace_back(p[i] + d * ((after - p[i]).norm() / 4.0));
-  }
   PathRows as_control = rows;
-  as_control.points = control;
+  as_control.points = loop_control_points(p, rows.closed);
   CentreLine line = from_control(as_control);
+  const std::size_t controls = as_control.points.size();
+  // Two a row, but for the ends of an open path.
+  const auto first_control = [&](std::size_t i) { return rows.closed || i == 0 ? 2 * i : 2 * i - 1; };
   // Between the control points of a row and those of its neighbours the curve passes by the row.
   std::vector<double> parameters;
   for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t first = first_control[i], next = i + 1 < n ? first_control[i + 1] : control.size();
+    const std::size_t first = first_control(i), next = i + 1 < n ? first_control(i + 1) : controls;
     const double before = first > 0 ? line.parameters[first - 1] : 0.0,
-                 after = next < control.size() ? line.parameters[next] : 1.0;
+                 after = next < controls ? line.parameters[next] : 1.0;
     const double low = 0.5 * (before + line.parameters[first]),
                  high = 0.5 * (line.parameters[next - 1] + after);
     const bool is_end = !rows.closed && (i == 0 || i + 1 == n);
@@ -194,6 +182,23 @@ Result<CentreLine> from_polyline(const PathRows& rows) {
 }
 
 }  // namespace
+
+std::vector<Vec3> loop_control_points(const std::vector<Vec3>& rows, bool closed) {
+  const std::size_t n = rows.size();
+  std::vector<Vec3> control;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!closed && (i == 0 || i + 1 == n)) {
+      control.push_back(rows[i]);
+      continue;
+    }
+    const Vec3& before = rows[(i + n - 1) % n];
+    const Vec3& after = rows[(i + 1) % n];
+    const Vec3 d = (after - before).normalized();
+    control.emplace_back(rows[i] - d * ((rows[i] - before).norm() / 4.0));
+    control.emplace_back(rows[i] + d * ((after - rows[i]).norm() / 4.0));
+  }
+  return control;
+}
 
 Result<CentreLine> make_centre_line(const PathRows& rows) {
   const std::size_t n = rows.points.size();

@@ -40,4 +40,8 @@ struct CentreLine {
 // (from 1) of the row concerned.
 Result<CentreLine> make_centre_line(const PathRows& rows);
 
+// The control points of a loop path: two for every row, on the line through it parallel to the chord of its
+// neighbours; the ends of an open path are rows themselves. At least two rows; neighbours of a row differ.
+std::vector<Vec3> loop_control_points(const std::vector<Vec3>& rows, bool closed);
+
 }  // namespace selvage::yarn

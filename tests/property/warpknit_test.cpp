@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <random>
 #include <sstream>
 
 #include "nurbs/measure.h"
@@ -431,6 +432,110 @@ TEST(WarpknitTopology, MutationsAreSeen) {
   std::vector<YarnPlan> swapped = sound.plans;
   std::swap(swapped[0].name, swapped[1].name);
   EXPECT_FALSE(Judge(sound.knit(), swapped).faults().empty()) << "two yarns under each other's name";
+}
+
+// How near the surfaces of round yarns come, by dense samples of their centre lines (6e-4 of a thickness is
+// the most that these miss): of two yarns, or of two places of one that are farther apart along it than one
+// and a half of its thickness, and a sample. In thicknesses of the thinner yarn.
+double least_gap(const std::vector<YarnPlan>& plans) {
+  struct Sample {
+    Vec3 position;
+    double along = 0, diameter = 0;
+    std::size_t yarn = 0;
+  };
+  double thickest = 0.0;
+  for (const YarnPlan& plan : plans)
+    thickest = std::max(thickest, yarn::nominal_size(plan.spec.section).width);
+  std::map<std::array<long, 3>, std::vector<Sample>> cells;
+  const auto cell_of = [&](const Vec3& p) {
+    std::array<long, 3> cell{};
+    for (int axis = 0; axis < 3; ++axis)
+      cell[static_cast<std::size_t>(axis)] = std::lround(std::floor(p[axis] / (1.2 * thickest)));
+    return cell;
+  };
+  double gap = std::numeric_limits<double>::infinity();
+  for (std::size_t yarn = 0; yarn < plans.size(); ++yarn) {
+    const nurbs::Curve& curve = plans[yarn].line.curve;
+    const double diameter = yarn::nominal_size(plans[yarn].spec.section).width;
+    const auto count = static_cast<long>(nurbs::arc_length(curve) / (0.05 * diameter));
+    Sample sample{nurbs::evaluate(curve, 0.0), 0.0, diameter, yarn};
+    for (long i = 0; i <= count; ++i) {
+      const Vec3 position = nurbs::evaluate(curve, static_cast<double>(i) / static_cast<double>(count));
+      sample.along += (position - sample.position).norm();
+      sample.position = position;
+      const std::array<long, 3> cell = cell_of(position);
+      for (long n = 0; n < 27; ++n) {
+        const auto near = cells.find({cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1});
+        if (near == cells.end()) continue;
+        for (const Sample& other : near->second) {
+          if (other.yarn == yarn && sample.along - other.along < 1.6 * diameter) continue;
+          const double least = std::min(diameter, other.diameter);
+          gap =
+              std::min(gap, ((position - other.position).norm() - 0.5 * (diameter + other.diameter)) / least);
+        }
+      }
+      cells[cell].push_back(sample);
+    }
+  }
+  return gap;
+}
+
+std::vector<YarnPlan> plans_as_published(const fabric::Fabric& fabric) {
+  fabric::BuildOptions options;
+  options.as_published = true;
+  Diagnostics diagnostics;
+  const auto builder = fabric::YarnBuilder::create(fabric, options, diagnostics);
+  std::vector<YarnPlan> plans;
+  for (std::size_t i = 0; i < builder->count(); ++i) plans.push_back(*builder->plan(i));
+  return plans;
+}
+
+TEST(WarpknitClearance, TheZooKeepsOneHundredthOfAThicknessFree) {
+  std::size_t overlapping = 0;
+  for (const zoo::ZooFabric* fabric : zoo::with<Warpknit>()) {
+    EXPECT_GE(least_gap(zoo::plans_of(*fabric)), 0.01) << fabric->name;
+    overlapping += least_gap(plans_as_published(fabric->fabric)) < 0.0 ? 1 : 0;
+  }
+  EXPECT_GE(overlapping, 3U);  // what is looked for is there without the moves
+}
+
+TEST(WarpknitClearance, TheClassicsAtTheirSmallestPitchesAndAtTwiceThese) {
+  for (const std::string name : {"tricot", "cord", "satin", "velvet", "locknit", "queens-cord", "atlas"})
+    for (const std::string stitch : {"open", "closed"})
+      for (const double scale : {1.0, 2.0}) {
+        const bool two_bars = name == "locknit" || name == "queens-cord";
+        const Built built(fmt::format(
+            "fabric 1\nthread t\n  diameter 0.1\nend\nwarpknit {}\n  thread t\n  wales 6 pitch {}\n"
+            "  courses 5 pitch {}\n  stitch {}\nend\n",
+            name, scale * (two_bars ? 0.601 : 0.401), scale * (two_bars ? 0.641 : 0.441), stitch));
+        EXPECT_GE(least_gap(built.plans), 0.01) << name << ' ' << stitch << ' ' << scale;
+        Judge judge(built.knit(), built.plans);
+        EXPECT_EQ(joined(judge.faults()), "") << name << ' ' << stitch << ' ' << scale;
+      }
+}
+
+// Any lapping that is accepted: what moves keeps its interlacing, too.
+TEST(WarpknitClearance, SeededLappings) {
+  std::mt19937 random(20261121);
+  const auto below = [&](unsigned count) { return static_cast<int>(random() % count); };
+  for (int round = 0; round < 12; ++round) {
+    const int bars = 1 + below(3), length = 1 + below(4);
+    std::string text;
+    for (int bar = 0; bar < bars; ++bar) {
+      const bool wraps = bar == 0 || below(3) > 0;
+      text += fmt::format("  bar t ");
+      for (int course = 0; course < length; ++course) {
+        const int at = below(4), rises = below(2);
+        text += fmt::format("{}{}-{}", course > 0 ? "/" : "", at + (wraps ? 1 - rises : 0),
+                            at + (wraps ? rises : 0));
+      }
+      text += "\n";
+    }
+    const Built built(text_of(text));
+    EXPECT_GE(least_gap(built.plans), 0.01) << text;
+    Judge judge(built.knit(), built.plans);
+    EXPECT_EQ(joined(judge.faults()), "") << text;
+  }
 }
 
 // A laid-in yarn that is lifted to the face goes through the loops, or lies before them.
