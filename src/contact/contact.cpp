@@ -54,7 +54,8 @@ class Search {
     Contacts out;
     if (!std::isfinite(thinnest_)) return out;
     const double reach = std::max(options_.reach, near_share * thinnest_);
-    std::vector<Contact> found = contacts_within(reach);
+    double unsettled = 0.0;
+    std::vector<Contact> found = contacts_within(reach, unsettled);
     add_contained(found);
     sort(found);
     drop_repeated(found);
@@ -62,7 +63,7 @@ class Search {
     for (Contact& contact : found)
       if (contact.is_overlap() || (options_.reach > 0.0 && contact.gap <= options_.reach))
         out.list.push_back(std::move(contact));
-    out.resolution = 1e-6 * thinnest_;
+    out.resolution = std::max(resolution(), unsettled);
     return out;
   }
 
@@ -72,6 +73,9 @@ class Search {
     for (const Piece& piece : model_.pieces()) all.push_back(piece.box);
     return all;
   }
+
+  // What is proved: a millionth of the thinnest yarn.
+  [[nodiscard]] double resolution() const { return 1e-6 * thinnest_; }
 
   static void sort(std::vector<Contact>& list) {
     std::stable_sort(list.begin(), list.end(), [](const Contact& x, const Contact& y) {
@@ -203,20 +207,22 @@ class Search {
     return all;
   }
 
-  [[nodiscard]] std::vector<Contact> contacts_within(double reach) const {
+  [[nodiscard]] std::vector<Contact> contacts_within(double reach, double& unsettled) const {
     const std::vector<Cluster> places = clusters(reach);
-    std::vector<std::vector<Contact>> found(places.size());
+    std::vector<Measured> found(places.size());
     std::size_t done = 0;
     std::mutex guard;
     for_each_index(places.size(), options_.threads, [&](std::size_t k) {
-      found[k] = measure(model_, places[k], reach);
+      found[k] = measure(model_, places[k], reach, resolution());
       if (!options_.progress) return;
       const std::lock_guard lock(guard);
       options_.progress(++done, places.size());
     });
     std::vector<Contact> all;
-    for (std::vector<Contact>& part : found)
-      for (Contact& contact : part) all.push_back(std::move(contact));
+    for (Measured& part : found) {
+      unsettled = std::max(unsettled, part.unsettled);
+      for (Contact& contact : part.contacts) all.push_back(std::move(contact));
+    }
     return all;
   }
 

@@ -123,10 +123,7 @@ void add_cells(const nurbs::Surface& s, bool inward, const std::vector<double>& 
       cell.high = {us[i + 1], vs[j + 1]};
       const Patch patch = patch_of(s, cell.low, cell.high);
       for (const Vec3& p : patch.points) cell.box.extend(p);
-      const Vec3 across = patch.points.back() - patch.points.front(),
-                 other = patch.point(0, patch.count_v - 1) - patch.point(patch.count_u - 1, 0);
-      const Vec3 normal = across.cross(other) * (inward ? -1.0 : 1.0);
-      if (const double size = normal.norm(); size > 0.0) cell.normal = normal / size;
+      cell.normal = middle_normal(patch, inward);
       cells.push_back(cell);
     }
 }

@@ -108,6 +108,29 @@ Patch patch_of(const nurbs::Surface& s, const Vec2& low, const Vec2& high) {
   return out;
 }
 
+Patch half_of(const Patch& patch, int axis, bool upper) {
+  Patch out = patch;
+  const int count = axis == 0 ? patch.count_u : patch.count_v,
+            lines = axis == 0 ? patch.count_v : patch.count_u;
+  const int step = axis == 0 ? 1 : patch.count_u, next = axis == 0 ? patch.count_u : 1;
+  for (int l = 0; l < lines; ++l) {
+    const auto index = [&](int k) { return at(l * next + k * step); };
+    // Round by round the end that is kept comes to rest.
+    for (int r = 1; r < count; ++r)
+      for (int k = 0; k < count - r; ++k) {
+        const std::size_t to = index(upper ? k : count - 1 - k), from = index(upper ? k + 1 : count - 2 - k);
+        if (out.weights.empty()) {
+          out.points[to] = 0.5 * (out.points[to] + out.points[from]);
+          continue;
+        }
+        const double sum = out.weights[to] + out.weights[from];
+        out.points[to] = (out.weights[to] * out.points[to] + out.weights[from] * out.points[from]) / sum;
+        out.weights[to] = 0.5 * sum;
+      }
+  }
+  return out;
+}
+
 void sample(const Patch& patch, int cells_u, int cells_v, std::vector<Vec3>& out) {
   thread_local std::vector<double> table_u, table_v;
   thread_local std::vector<Vec3> line;
@@ -143,6 +166,14 @@ void sample(const Patch& patch, int cells_u, int cells_v, std::vector<Vec3>& out
       out.push_back(rational ? Vec3(sum / total) : sum);
     }
   }
+}
+
+Vec3 middle_normal(const Patch& patch, bool inward) {
+  const Vec3 across = patch.points.back() - patch.points.front(),
+             other = patch.point(0, patch.count_v - 1) - patch.point(patch.count_u - 1, 0);
+  const Vec3 normal = across.cross(other) * (inward ? -1.0 : 1.0);
+  const double size = normal.norm();
+  return size > 0.0 ? Vec3(normal / size) : Vec3::Zero();
 }
 
 double lowest(const Patch& patch, const Vec3& direction) {

@@ -24,8 +24,14 @@ struct Patch {
 // points are values of the polar form).
 Patch patch_of(const nurbs::Surface& surface, const Vec2& low, const Vec2& high);
 
+// One half of the patch along an axis (0: u, 1: v), by de Casteljau's scheme.
+Patch half_of(const Patch& patch, int axis, bool upper);
+
 // (cells_u + 1) x (cells_v + 1) points at even steps of the patch's own parameters, u fastest.
 void sample(const Patch& patch, int cells_u, int cells_v, std::vector<Vec3>& out);
+
+// Unit, by the patch's diagonals; outward when `inward` says how S_u x S_v runs; zero where it has none.
+Vec3 middle_normal(const Patch& patch, bool inward);
 
 // The least of p . direction over the control points; the greatest.
 double lowest(const Patch& patch, const Vec3& direction);

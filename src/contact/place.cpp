@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "contact/certify.h"
 #include "contact/critical.h"
 #include "contact/deep.h"
 #include "contact/least_shift.h"
@@ -56,25 +57,24 @@ struct Spot {
 
 class Measurer {
  public:
-  Measurer(const CellModel& model, const Cluster& cluster, double reach)
+  Measurer(const CellModel& model, const Cluster& cluster, double reach, double resolution)
       : model_(model),
         cluster_(cluster),
         reach_(reach),
+        resolution_(resolution),
         body_a_(model.face_of(cell(cluster.front().a)).body),
         body_b_(model.face_of(cell(cluster.front().b)).body),
         thickness_(std::min(model.thickness(body_a_), model.thickness(body_b_))),
         touching_(std::max(model.touching(body_a_), model.touching(body_b_))) {}
 
-  std::vector<Contact> run() {
+  Measured run() {
     const Vec3 n = facing();
     if (n.squaredNorm() > 0.0) look_along(n);
-    // Where sheets that face each other show no overlap, the surfaces may cross elsewhere.
-    const bool overlaps = std::any_of(contacts_.begin(), contacts_.end(),
-                                      [](const Contact& contact) { return contact.is_overlap(); });
-    if (!is_deep_ && !overlaps) look_at_nearest();
+    if (!is_deep_ && (contacts_.empty() || !unsettled_pairs_.empty())) look_at_nearest(unsettled_pairs_);
+    if (!is_deep_) prove();
     if (is_deep_) look_deep();
-    if (contacts_.empty()) look_at_nearest();
-    return std::move(contacts_);
+    if (contacts_.empty()) look_at_nearest({});
+    return {std::move(contacts_), unsettled_};
   }
 
  private:
@@ -177,6 +177,96 @@ class Measurer {
       if (!settle(overlay, line)) unsettled.push_back(line);
     for (const std::size_t line : unsettled) settle_at_crease(overlay, line, region);
     gather(overlay, region, regions);
+    note_unsettled(overlay, unsettled);
+    known_.emplace(overlay, region);
+  }
+
+  // Where the lines say that the two overlap: what lies there is known.
+  class Known {
+   public:
+    Known(const Overlay& overlay, const std::vector<int>& region)
+        : axes_(overlay.axes()), step_(overlay.step()), shared_(region.size()) {
+      lines_ = overlay.lines();
+      low_ = overlay.centre(0);
+      for (std::size_t k = 0; k < region.size(); ++k) shared_[k] = region[k] >= 0;
+    }
+    void add(const Vec3& point) { points_.push_back(axes_.seen(point).head<2>()); }
+
+    // The boxes' common view is next to a line that overlaps, or to a spot.
+    [[nodiscard]] bool holds(const Box3& a, const Box3& b) const {
+      const Rectangle view = seen(a).intersection(seen(b));
+      if (view.isEmpty()) return false;
+      const Rectangle wide(Vec2(view.min() - 1.5 * step_), Vec2(view.max() + 1.5 * step_));
+      for (const Vec2& p : points_)
+        if (wide.contains(p)) return true;
+      const auto index = [&](double x, Eigen::Index axis) {
+        return static_cast<int>(std::clamp(std::round((x - low_[axis]) / step_[axis]), -1.0, lines_ + 0.0));
+      };
+      for (int j = std::max(0, index(wide.min().y(), 1)); j <= std::min(lines_ - 1, index(wide.max().y(), 1));
+           ++j)
+        for (int i = std::max(0, index(wide.min().x(), 0));
+             i <= std::min(lines_ - 1, index(wide.max().x(), 0)); ++i)
+          if (shared_[static_cast<std::size_t>(j * lines_ + i)]) return true;
+      return false;
+    }
+
+   private:
+    [[nodiscard]] Rectangle seen(const Box3& box) const {
+      const Vec3 centre = axes_.seen(box.center()), half = 0.5 * box.sizes();
+      const Vec2 reach(half.dot(axes_.x.cwiseAbs()), half.dot(axes_.y.cwiseAbs()));
+      return {Vec2(centre.head<2>() - reach), Vec2(centre.head<2>() + reach)};
+    }
+
+    Axes axes_;
+    Vec2 step_, low_;
+    int lines_ = 0;
+    std::vector<bool> shared_;
+    std::vector<Vec2> points_;
+  };
+
+  // What the lines have not shown is excluded, or looked at more closely.
+  void prove() {
+    if (known_)
+      for (const Spot& spot : spots_)
+        if (spot.depth > touching_) known_->add(0.5 * (spot.p + spot.q));
+    constexpr int work = 20000;
+    const Certificate certificate =
+        certify(model_, cluster_, std::max(resolution_, touching_), 2e-3 * thickness_, work,
+                [&](const Box3& a, const Box3& b) { return known_ && known_->holds(a, b); });
+    unsettled_ = certificate.unsettled;
+    std::size_t looked_at = 0;
+    for (const OpenPair& pair : certificate.open) {
+      // Next to one that was found there is no need to look again.
+      if (++looked_at > 200) {
+        unsettled_ = std::max(unsettled_, -pair.low);
+        continue;
+      }
+      if (!look_at(pair)) is_deep_ = true;
+      if (is_deep_) return;
+    }
+  }
+
+  // An overlap that no line has met: a critical pair. False: there is none, and yet the surfaces meet.
+  bool look_at(const OpenPair& pair) {
+    const Face &fa = model_.face_of(cell(pair.a.cell)), &fb = model_.face_of(cell(pair.b.cell));
+    const Vec2 site_a = 0.5 * (pair.a.low + pair.a.high), site_b = 0.5 * (pair.b.low + pair.b.high);
+    const Vec3 start = nurbs::evaluate(*fa.surface, site_a.x(), site_a.y());
+    const std::optional<Critical> found = find_critical(fa, site_a, fb, site_b);
+    if (found && found->depth > touching_ && found->depth < 0.01 * thickness_ &&
+        (found->p - start).norm() < 0.1 * thickness_) {
+      if (is_known(found->p, found->q)) return true;
+      spots_.push_back(
+          {&fa, &fb, found->site_a, found->site_b, found->p, found->q, found->normal, found->depth});
+      contacts_.push_back(contact_of({spots_.back()}));
+      return true;
+    }
+    Cell ca = cell(pair.a.cell), cb = cell(pair.b.cell);
+    ca.low = pair.a.low;
+    ca.high = pair.a.high;
+    cb.low = pair.b.low;
+    cb.high = pair.b.high;
+    const Nearest nearest = find_nearest(fa, ca, site_a, fb, cb, site_b);
+    return (nearest.p - nearest.q).norm() > touching_;
   }
 
   // Most of what seems to be shared lies between surfaces that run along the lines.
@@ -408,12 +498,26 @@ class Measurer {
     return sum;
   }
 
-  // Where the surfaces do not face each other: the nearest points of any two cells.
-  void look_at_nearest() {
+  // Near pairs with a cell of a peak that is no spot, and may be nearer than what was found.
+  void note_unsettled(const Overlay& overlay, const std::vector<std::size_t>& lines) {
+    double deepest = -infinity;
+    for (const Spot& spot : spots_) deepest = std::max(deepest, spot.depth);
+    if (deepest > touching_) return;
+    for (const std::size_t line : lines) {
+      if (overlay.depth(line) < deepest - slack()) continue;
+      const std::uint32_t a = overlay.on_a(line).cell, b = overlay.on_b(line).cell;
+      for (const NearPair& pair : cluster_)
+        if (pair.a == a && pair.b == b) unsettled_pairs_.push_back(pair);
+    }
+  }
+
+  // Where the surfaces do not face each other: the nearest points of two cells. All pairs where none are
+  // given.
+  void look_at_nearest(const Cluster& some) {
     double best = reach_;
     for (const Contact& contact : contacts_) best = std::min(best, contact.gap);
     std::optional<Spot> nearest;
-    Cluster pairs = cluster_;
+    Cluster pairs = some.empty() ? cluster_ : some;
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const NearPair& x, const NearPair& y) { return x.low < y.low; });
     for (const NearPair& pair : pairs) {
@@ -476,18 +580,21 @@ class Measurer {
 
   const CellModel& model_;
   const Cluster& cluster_;
-  double reach_;
+  double reach_, resolution_;
   std::uint32_t body_a_, body_b_;
   double thickness_, touching_;
   std::vector<Spot> spots_;
   std::vector<Contact> contacts_;
   bool is_deep_ = false;
+  Cluster unsettled_pairs_;
+  std::optional<Known> known_;
+  double unsettled_ = 0;
 };
 
 }  // namespace
 
-std::vector<Contact> measure(const CellModel& model, const Cluster& cluster, double reach) {
-  return Measurer(model, cluster, reach).run();
+Measured measure(const CellModel& model, const Cluster& cluster, double reach, double resolution) {
+  return Measurer(model, cluster, reach, resolution).run();
 }
 
 }  // namespace selvage::contact

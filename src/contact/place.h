@@ -17,7 +17,13 @@ struct NearPair {
 // Near pairs of one pair of yarns (or of one yarn with itself: `a` comes first along it) that hang together.
 using Cluster = std::vector<NearPair>;
 
-// Every contact in the cluster: overlaps, and gaps up to `reach`.
-std::vector<Contact> measure(const CellModel& model, const Cluster& cluster, double reach);
+struct Measured {
+  std::vector<Contact> contacts;
+  double unsettled = 0;  // an overlap up to this depth may have been missed
+};
+
+// Every contact in the cluster: overlaps, and gaps up to `reach`. Overlaps deeper than `resolution` are not
+// missed, but where it says so.
+Measured measure(const CellModel& model, const Cluster& cluster, double reach, double resolution);
 
 }  // namespace selvage::contact
