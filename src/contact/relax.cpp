@@ -250,7 +250,7 @@ class Relaxer {
       }
       if (step == options_.max_iterations)
         return stop(fmt::format("{} steps were not enough", options_.max_iterations));
-      make_step(system, facings, std::min(0.2, 0.05 + 0.01 * step));
+      make_step(system, facings, std::min(0.5, 0.15 + 0.03 * step));
     }
   }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 
 #include "contact/interlacing.h"
 #include "solid/check.h"
@@ -290,6 +291,50 @@ TEST(Relax, TheSameWithAnyNumberOfThreads) {
   ASSERT_EQ(first.bodies.size(), second.bodies.size());
   for (std::size_t y = 0; y < first.bodies.size(); ++y)
     EXPECT_EQ(first.bodies[y].surface.points, second.bodies[y].surface.points);
+}
+
+// Four yarns on random waves through each other's neighbourhood, elliptic, two each way.
+std::vector<yarn::Body> random_bundle(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / static_cast<double>(std::mt19937::max());
+  };
+  std::vector<yarn::Body> bodies;
+  for (int y = 0; y < 4; ++y) {
+    const bool crosses = y % 2 == 1;
+    const double half_width = between(0.2, 0.5), half_height = between(0.12, 0.2), place = between(-0.2, 0.2),
+                 height = (crosses ? 1.0 : -1.0) * between(0.11, 0.2), wave = between(0.0, 0.15),
+                 phase = between(0.0, 2.0 * pi), sway = between(0.0, 0.2);
+    const auto way = [=](double s) -> Vec3 {
+      const double t = 6.0 * s - 3.0, z = height + wave * std::sin(1.5 * t + phase),
+                   across = place + 1.1 * (y / 2) + sway * std::cos(t + phase);
+      return crosses ? Vec3(across, t, z) : Vec3(t, across, z);
+    };
+    bodies.push_back(test::tube("yarn" + std::to_string(y), {half_width, half_height, 24, 25},
+                                [=](double s, double u, double v) -> Vec3 {
+                                  const Vec3 along = (way(s + 1e-5) - way(s - 1e-5)).normalized(),
+                                             side = Vec3::UnitZ().cross(along).normalized();
+                                  return way(s) + u * side + v * along.cross(side);
+                                }));
+  }
+  return bodies;
+}
+
+TEST(Relax, RandomBundles) {
+  int solved = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    const std::vector<yarn::Body> bodies = random_bundle(seed);
+    const Relaxation relaxed = run(bodies);
+    if (relaxed.solved) {
+      ++solved;
+      expect_sound(bodies, relaxed, 0.0024);
+    } else {
+      // Two of them overlap by more than half their thickness: nothing else is too hard.
+      EXPECT_NE(relaxed.reason.find("run through each other"), std::string::npos) << relaxed.reason;
+    }
+  }
+  EXPECT_GE(solved, 15);
 }
 
 void expect_refused(const std::vector<yarn::Body>& bodies, const RelaxOptions& options,
