@@ -25,7 +25,8 @@ FREE_TWILL_PITCH = 0.7887
 FABRICS = {
     "jersey": (SAMPLES / "jersey.txt").read_text(),  # 6 courses by 4 wales
     "rib": (SAMPLES / "knit_rib_1x1.txt").read_text(),
-    "tricot": (SAMPLES / "warpknit_tricot.txt").read_text(),
+    # The sample is free; with less room its loops overlap.
+    "tricot": (SAMPLES / "warpknit_tricot.txt").read_text().replace("pitch 0.9", "pitch 0.5").replace("pitch 0.6", "pitch 0.45"),
     "satin": (SAMPLES / "warpknit_satin.txt").read_text(),
     "queens_cord": (SAMPLES / "warpknit_queens-cord.txt").read_text(),
     "twill": weave("section circle 0.4", 0.9 * FREE_TWILL_PITCH, "twill 2/2", "profile sine 0.205"),
@@ -36,6 +37,7 @@ FABRICS = {
     "sine": weave("section ellipse 0.8 0.2", 1.0, "plain", "profile sine 0.09"),
 }
 TUBES = ("braid",)
+FREE = ("satin",)  # as they are
 PART, PARTS = map(int, os.environ.get("SELVAGE_PART", "0/1").split("/"))
 
 
@@ -73,8 +75,10 @@ class Zoo(Case):
                 self.assertLess(change.out_of_plane, 1e-9 * change.size)
                 self.assertEqual(change.dents, 0)
                 largest = max(largest, change.move)
-        self.assertGreater(largest, 0)
-        self.assertAlmostEqual(relax["largest_move"] / largest, 1, delta=0.1)
+        if name in FREE:
+            self.assertEqual((relax["before"]["overlaps"], relax["iterations"], largest), (0, 0, 0))
+        else:
+            self.assertAlmostEqual(relax["largest_move"] / largest, 1, delta=0.1)
         tube = name in TUBES
         changed, crossings = relaxed.interlacing_changes(before, after, tube)
         self.assertEqual(changed, [])
