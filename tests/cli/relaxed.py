@@ -74,9 +74,9 @@ class Yarn:
         low, high = self.domain(self.knots_u, self.degree_u)
         u = np.linspace(low, high, around, endpoint=False)
         along, round_ = basis(self.knots_v, self.degree_v, parameters), basis(self.knots_u, self.degree_u, u)
-        weights = np.einsum("vj,jk,uk->vu", along, self.weights, round_)
-        points = np.einsum("vj,jkd,jk,uk->vud", along, self.points, self.weights, round_, optimize=True)
-        return points / weights[:, :, None]
+        weights = along @ self.weights @ round_.T
+        points = [along @ (self.points[:, :, d] * self.weights) @ round_.T / weights for d in range(3)]
+        return np.stack(points, axis=2)
 
 
 def grids_of(path):
@@ -86,7 +86,7 @@ def grids_of(path):
     return {yarn.name: yarn for yarn in map(Yarn, blocks)}
 
 
-def samples(yarn, other, fine=6):
+def samples(yarn, other, fine=3):
     """Parameters along, the same for both: in every span of either."""
     low, high = yarn.domain(yarn.knots_v, yarn.degree_v)
     breaks = np.unique(np.concatenate([yarn.knots_v, other.knots_v]))
@@ -149,19 +149,38 @@ class Change:
 def crossings(p, q, same=False, apart=0.0):
     """The crossings of two lines seen along z, one a row: x, y, the sign, and 1 where p is above (-1: q). `same`: of one
     line with itself, places nearer along it than `apart` left out."""
-    p0, p1, q0, q1 = p[:-1, None], p[1:, None], q[None, :-1], q[None, 1:]
-    d, e, r = p1 - p0, q1 - q0, q0 - p0
-    turn = d[..., 0] * e[..., 1] - d[..., 1] * e[..., 0]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        s = (r[..., 0] * e[..., 1] - r[..., 1] * e[..., 0]) / turn
-        u = (r[..., 0] * d[..., 1] - r[..., 1] * d[..., 0]) / turn
-    hit = (s >= 0) & (s < 1) & (u >= 0) & (u < 1)
-    if same:
-        along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1))])[:-1]
-        hit &= along[None, :] - along[:, None] > apart
-    i, k = np.nonzero(hit)
-    on_p, on_q = p[i] + s[i, k][:, None] * (p[i + 1] - p[i]), q[k] + u[i, k][:, None] * (q[k + 1] - q[k])
-    return np.column_stack([on_p[:, :2], np.sign(turn[i, k]), np.sign(on_p[:, 2] - on_q[:, 2])])
+    along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1))])
+    found = []
+    for i, k in near_blocks(p, q):
+        p0, p1, q0, q1 = p[i:i + BLOCK, None], p[i + 1:i + BLOCK + 1, None], q[None, k:k + BLOCK], q[None, k + 1:k + BLOCK + 1]
+        p0, q0 = p0[:p1.shape[0]], q0[:, :q1.shape[1]]
+        d, e, r = p1 - p0, q1 - q0, q0 - p0
+        turn = d[..., 0] * e[..., 1] - d[..., 1] * e[..., 0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            s = (r[..., 0] * e[..., 1] - r[..., 1] * e[..., 0]) / turn
+            u = (r[..., 0] * d[..., 1] - r[..., 1] * d[..., 0]) / turn
+        hit = (s >= 0) & (s < 1) & (u >= 0) & (u < 1)
+        if same:
+            hit &= along[None, k:k + hit.shape[1]] - along[i:i + hit.shape[0], None] > apart
+        for m, n in np.argwhere(hit):
+            on_p, on_q = p0[m, 0] + s[m, n] * d[m, 0], q0[0, n] + u[m, n] * e[0, n]
+            found.append((on_p[0], on_p[1], np.sign(turn[m, n]), np.sign(on_p[2] - on_q[2])))
+    return np.array(found).reshape(-1, 4)
+
+
+BLOCK = 32
+
+
+def near_blocks(p, q):
+    """The starts of runs of BLOCK sides of two lines whose boxes meet seen along z."""
+    boxes = []
+    for line in (p, q):
+        starts = range(0, len(line) - 1, BLOCK)
+        boxes.append((np.array([line[k:k + BLOCK + 1, :2].min(axis=0) for k in starts]),
+                      np.array([line[k:k + BLOCK + 1, :2].max(axis=0) for k in starts])))
+    (low_p, high_p), (low_q, high_q) = boxes
+    meet = ((low_p[:, None] <= high_q[None]) & (low_q[None] <= high_p[:, None])).all(axis=2)
+    return np.argwhere(meet) * BLOCK
 
 
 def same_crossings(before, after, near):
@@ -187,7 +206,7 @@ def as_lines(yarns, others, tube):
     """Their middles, at the parameters of both states. `tube`: unrolled about z, the outside above."""
     lines = {}
     for name, yarn in yarns.items():
-        line = yarn.sections_at(samples(yarn, others[name], 4), 24).mean(axis=1)
+        line = yarn.sections_at(samples(yarn, others[name], 2), 24).mean(axis=1)
         if tube:
             angle, radius = np.unwrap(np.arctan2(line[:, 1], line[:, 0])), np.hypot(line[:, 0], line[:, 1])
             line = np.stack([angle, line[:, 2], radius], axis=1)

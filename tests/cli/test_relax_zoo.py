@@ -26,7 +26,7 @@ FABRICS = {
     "jersey": (SAMPLES / "jersey.txt").read_text(),  # 6 courses by 4 wales
     "rib": (SAMPLES / "knit_rib_1x1.txt").read_text(),
     # The sample is free; with less room its loops overlap.
-    "tricot": (SAMPLES / "warpknit_tricot.txt").read_text().replace("pitch 0.9", "pitch 0.5").replace("pitch 0.6", "pitch 0.45"),
+    "tricot": (SAMPLES / "warpknit_tricot.txt").read_text().replace("pitch 0.9", "pitch 0.55").replace("pitch 0.6", "pitch 0.47"),
     "satin": (SAMPLES / "warpknit_satin.txt").read_text(),
     "queens_cord": (SAMPLES / "warpknit_queens-cord.txt").read_text(),
     "twill": weave("section circle 0.4", 0.9 * FREE_TWILL_PITCH, "twill 2/2", "profile sine 0.205"),
