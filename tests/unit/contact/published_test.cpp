@@ -1,0 +1,138 @@
+// Overlaps that papers state, and the smallest amplitude at which a sine weave is free.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "contact/contact.h"
+#include "fabric/build.h"
+#include "formats/txt/txt.h"
+#include "unit/contact/oracle.h"
+
+namespace selvage::contact {
+namespace {
+
+std::vector<yarn::Body> bodies_of(const std::string& text, bool as_published) {
+  std::vector<yarn::Body> bodies;
+  Diagnostics diagnostics;
+  const std::optional<fabric::Fabric> fabric =
+      formats::txt::descriptor().read_fabric(Source::from_memory(text, "cloth.txt"), diagnostics);
+  if (!fabric) {
+    ADD_FAILURE() << to_string(*diagnostics.first_error());
+    return bodies;
+  }
+  fabric::BuildOptions options;
+  options.as_published = as_published;
+  const std::optional<fabric::YarnBuilder> builder =
+      fabric::YarnBuilder::create(*fabric, options, diagnostics);
+  for (std::size_t i = 0; builder && i < builder->count(); ++i) {
+    Result<yarn::Body> body = builder->build(i);
+    EXPECT_TRUE(body.ok());
+    if (body) bodies.push_back(std::move(*body));
+  }
+  return bodies;
+}
+
+Contacts contacts_of(const std::vector<yarn::Body>& bodies, int threads = 1) {
+  ContactOptions options;
+  options.threads = threads;
+  Result<Contacts> found = find_contacts(bodies, options);
+  EXPECT_TRUE(found.ok());
+  return found ? std::move(*found) : Contacts{};
+}
+
+// The published jersey: by how many r neighbouring loops of a course overlap (a yarn with itself), and loops
+// of neighbouring courses.
+TEST(Published, JerseyOverlapsAsStated) {
+  struct Case {
+    const char* method;
+    double itself, neighbour;
+  };
+  for (const Case& c :
+       {Case{"chord", 0.099, 0.0499}, Case{"centripetal", 0.135, 0.0644}, Case{"uniform", 0.177, 0.0805}}) {
+    SCOPED_TRACE(c.method);
+    const std::vector<yarn::Body> bodies =
+        bodies_of(fmt::format("fabric 1\nunits mm\nthread t\n  section circle 2\nend\n"
+                              "knit jersey\n  thread t\n  courses 4\n  wales 5\n  method {}\nend\n",
+                              c.method),
+                  true);
+    ASSERT_EQ(bodies.size(), 4U);
+    const Contacts found = contacts_of(bodies);
+    double itself = 0.0, neighbour = 0.0;
+    int selves = 0, neighbours = 0;
+    for (const Contact& contact : found.list) {
+      ASSERT_TRUE(contact.is_overlap());
+      if (contact.a == contact.b) {
+        ++selves;
+        itself = std::max(itself, contact.depth());
+      } else {
+        EXPECT_EQ(contact.b, contact.a + 1);
+        ++neighbours;
+        neighbour = std::max(neighbour, -contact.spots.front().gap);
+      }
+    }
+    EXPECT_NEAR(itself, c.itself, 0.002);
+    EXPECT_NEAR(neighbour, c.neighbour, 0.002);
+    // Heads and feet of neighbouring loops touch in turn; two legs a loop stand in each head above.
+    EXPECT_EQ(selves, 4 * 9);
+    EXPECT_EQ(neighbours, 3 * 5 * 2);
+  }
+}
+
+// 4 x 4 yarns with sections of 0.8 x 0.2, pitch 1: the waves are whole between the outermost crossings.
+std::vector<yarn::Body> sine_weave(double amplitude) {
+  return bodies_of(
+      fmt::format("fabric 1\nunits mm\ntolerance 0.00002\nthread t\n  section ellipse 0.8 0.2\nend\n"
+                  "weave\n  warp t 4 pitch 1\n  weft t 4 pitch 1\n  draft plain\n"
+                  "  profile sine {}\nend\n",
+                  amplitude),
+      true);
+}
+
+std::vector<Contact> at_middle_crossing(const Contacts& found) {
+  std::vector<Contact> here;
+  for (const Contact& contact : found.list)
+    if (std::abs(contact.at.x() - 1.5) < 0.5 && std::abs(contact.at.y() - 1.5) < 0.5) here.push_back(contact);
+  return here;
+}
+
+TEST(Published, SineWeaveOverlapsInFourPlacesACrossing) {
+  const std::vector<yarn::Body> bodies = sine_weave(0.1125);
+  ASSERT_EQ(bodies.size(), 8U);
+  const std::vector<Contact> here = at_middle_crossing(contacts_of(bodies));
+  ASSERT_EQ(here.size(), 4U);
+  const std::optional<test::FacingPair> sampled = test::sampled_deepest(bodies[1], bodies[5], 0.1, 60, 160);
+  ASSERT_TRUE(sampled.has_value());
+  for (const Contact& contact : here) {
+    ASSERT_TRUE(contact.is_overlap());
+    EXPECT_NEAR(contact.depth(), sampled->depth, 0.01 * sampled->depth);
+    EXPECT_NEAR(std::abs(contact.at.x() - 1.5), 0.3, 0.02);
+    EXPECT_NEAR(std::abs(contact.at.y() - 1.5), 0.3, 0.02);
+  }
+}
+
+TEST(Published, SineWeaveIsFreeFromAnAmplitudeOn) {
+  EXPECT_FALSE(at_middle_crossing(contacts_of(sine_weave(0.1176))).empty());
+  EXPECT_TRUE(contacts_of(sine_weave(0.1180)).list.empty());
+  EXPECT_TRUE(contacts_of(sine_weave(0.1200)).list.empty());
+}
+
+TEST(Published, TheSameWithAnyNumberOfThreads) {
+  const std::vector<yarn::Body> bodies = bodies_of(
+      "fabric 1\nunits mm\nthread t\n  section circle 2\nend\n"
+      "knit jersey\n  thread t\n  courses 4\n  wales 5\nend\n",
+      true);
+  const Contacts one = contacts_of(bodies, 1), three = contacts_of(bodies, 3);
+  ASSERT_EQ(one.list.size(), three.list.size());
+  ASSERT_FALSE(one.list.empty());
+  for (std::size_t k = 0; k < one.list.size(); ++k) {
+    EXPECT_EQ(one.list[k].a, three.list[k].a);
+    EXPECT_EQ(one.list[k].b, three.list[k].b);
+    EXPECT_EQ(one.list[k].gap, three.list[k].gap);
+    EXPECT_EQ(one.list[k].at, three.list[k].at);
+    EXPECT_EQ(one.list[k].area, three.list[k].area);
+  }
+  EXPECT_EQ(one.min_gap, three.min_gap);
+}
+
+}  // namespace
+}  // namespace selvage::contact
