@@ -123,6 +123,23 @@ std::vector<LoopTies> ties_of(const KnitField& field) {
           LoopTies(field.first_wale, field.last_wale, field.chart.wales(), border_wales, range_wales)};
 }
 
+// The class that each one is the mirror image of, if every course is its own image; else nothing.
+std::vector<int> images_of(const MendProblem& problem) {
+  constexpr double same = 1e-9;
+  std::vector<int> images(problem.freedom.size(), -1);
+  for (const MendLine& line : problem.lines) {
+    const double both = line.points.front().x() + line.points.back().x();
+    for (std::size_t i = 0; i < line.points.size(); ++i) {
+      const std::size_t j = line.points.size() - 1 - i;
+      const Vec3 image(both - line.points[j].x(), line.points[j].y(), line.points[j].z());
+      int& known = images[static_cast<std::size_t>(line.classes[i])];
+      if ((image - line.points[i]).norm() > same || (known >= 0 && known != line.classes[j])) return {};
+      known = line.classes[j];
+    }
+  }
+  return images;
+}
+
 }  // namespace
 
 long long KnitMoves::loops_solved(const KnitField& field) {
@@ -179,6 +196,7 @@ KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_
     line.reach = reach;
     problem.lines.push_back(std::move(line));
   }
+  problem.images = images_of(problem);
   mending_ = mend(problem);
 }
 

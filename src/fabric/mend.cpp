@@ -60,6 +60,7 @@ class Mender {
   [[nodiscard]] State state_at(Vector moves) const;
   void look(State& state, double more) const;
   [[nodiscard]] Vector step(const State& state, double more) const;
+  [[nodiscard]] Vector mirrored_mean(const Vector& moves) const;
   void make_stiffness();
   void add_pulls(const MendLine& line, const State& state, std::size_t index, double place, int derivative,
                  const Vec3& along, const std::vector<std::vector<Share>>& shares,
@@ -350,7 +351,19 @@ Vector Mender::step(const State& state, double more) const {
     linear.count_only(std::move(rows));
     solve(linear, linear.force() - stiffness_ * state.moves, step);
   }
-  return step;
+  return mirrored_mean(step);
+}
+
+// The mean of moves and their mirror image. Loops under pressure would give way to one side as well.
+Vector Mender::mirrored_mean(const Vector& moves) const {
+  if (problem_.images.empty()) return moves;
+  const Vec3 mirror(-1, 1, 1);
+  Vector mean(moves.size());
+  for (std::size_t c = 0; c < problem_.images.size(); ++c)
+    mean.segment<3>(3 * static_cast<Eigen::Index>(c)) =
+        0.5 * (moves.segment<3>(3 * static_cast<Eigen::Index>(c)) +
+               mirror.cwiseProduct(moves.segment<3>(3 * Eigen::Index{problem_.images[c]})));
+  return mean;
 }
 
 double largest_of(const Vector& moves) {

@@ -48,6 +48,9 @@ struct MendProblem {
   std::vector<MendLine> lines;
   // One a class: 1 for a coordinate that is free, 0 for one that is held.
   std::vector<Vec3> freedom;
+  // Where the lines are their own mirror image in a plane x = const: the class that each is the image of, one
+  // a class. The moves then keep to it. Else empty.
+  std::vector<int> images;
   // Two places of one line count when they are farther apart along it than this, in radii.
   double apart = 3;
   // Bends tighter than this, in radii, are opened to about it.

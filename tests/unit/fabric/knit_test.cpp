@@ -175,7 +175,7 @@ TEST(Knit, LoopsThatAreMovedApartRepeatToTheLastBit) {
   }
 }
 
-// A loop is changed by little.
+// A loop is changed by little, and is its own mirror image as before.
 TEST(Knit, LoopsThatAreMovedApartStayLoops) {
   for (const Knit::Method method : methods) {
     const YarnPlan raw = plan_of(knitted(jersey(30, 30, method)), 15);
@@ -185,6 +185,14 @@ TEST(Knit, LoopsThatAreMovedApartStayLoops) {
     EXPECT_EQ(moved.points.front().x(), raw.points.front().x());
     EXPECT_EQ(moved.points.back().x(), raw.points.back().x());
     EXPECT_NEAR(nurbs::arc_length(moved.line.curve) / nurbs::arc_length(raw.line.curve), 1, 0.04);
+    const std::size_t first = 8 * 15;
+    const double middle = moved.points[first + 4].x();
+    for (std::size_t i = 0; i <= 4; ++i) {
+      const Vec3 &left = moved.points[first + 4 - i], &right = moved.points[first + 4 + i];
+      EXPECT_NEAR(left.x() - middle, middle - right.x(), 1e-9 * r) << i;
+      EXPECT_NEAR(left.y(), right.y(), 1e-9 * r) << i;
+      EXPECT_NEAR(left.z(), right.z(), 1e-9 * r) << i;
+    }
   }
 }
 
