@@ -175,7 +175,7 @@ TEST(Knit, LoopsThatAreMovedApartRepeatToTheLastBit) {
   }
 }
 
-// A loop is changed by little, and is its own mirror image as before.
+// A loop is changed by little.
 TEST(Knit, LoopsThatAreMovedApartStayLoops) {
   for (const Knit::Method method : methods) {
     const YarnPlan raw = plan_of(knitted(jersey(30, 30, method)), 15);
@@ -185,13 +185,18 @@ TEST(Knit, LoopsThatAreMovedApartStayLoops) {
     EXPECT_EQ(moved.points.front().x(), raw.points.front().x());
     EXPECT_EQ(moved.points.back().x(), raw.points.back().x());
     EXPECT_NEAR(nurbs::arc_length(moved.line.curve) / nurbs::arc_length(raw.line.curve), 1, 0.04);
-    const std::size_t first = 8 * 15;
-    const double middle = moved.points[first + 4].x();
-    for (std::size_t i = 0; i <= 4; ++i) {
-      const Vec3 &left = moved.points[first + 4 - i], &right = moved.points[first + 4 + i];
-      EXPECT_NEAR(left.x() - middle, middle - right.x(), 1e-9 * r) << i;
-      EXPECT_NEAR(left.y(), right.y(), 1e-9 * r) << i;
-      EXPECT_NEAR(left.z(), right.z(), 1e-9 * r) << i;
+  }
+}
+
+// A small cloth is its own mirror image as before. (In a large one loops that all are alike and symmetric
+// have no room: each leans to one side, all to the same.)
+TEST(Knit, SmallClothsStaySymmetric) {
+  for (const Knit::Method method : methods) {
+    const std::vector<Vec3> points = plan_of(knitted(jersey(6, 6, method)), 2, false).points;
+    const double both = points.front().x() + points.back().x();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3& other = points[points.size() - 1 - i];
+      EXPECT_LT((points[i] - Vec3(both - other.x(), other.y(), other.z())).norm(), 1e-9 * r) << i;
     }
   }
 }
