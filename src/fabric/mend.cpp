@@ -23,7 +23,9 @@ constexpr double hold = 1, bending = 1, stretching = 1, pressing = 8e2, opening 
 constexpr double negligible = 1e-2;  // shares in a place that steps leave out
 // In radii:
 constexpr double longest_step = 0.25, least_ahead = 0.05;
-constexpr int most_halves = 12;   // of a step
+constexpr double stalled = 1e-3;
+constexpr int most_halves = 12;  // of a step
+constexpr int most_stalls = 4;
 constexpr double settled = 0.02;  // share of the energy that a step gains
 
 // What a class contributes to a residual: a vector along which its move counts.
@@ -421,6 +423,7 @@ Mending Mender::run() {
   double more = margin;
   ahead_ = 2 * longest_step * radius_;
   look(state, more);
+  int stalls = 0;
   const State first = state;
   State best = state;
   for (; mending.steps < problem_.max_steps && first.missing > 0; ++mending.steps) {
@@ -438,12 +441,15 @@ Mending Mender::run() {
       next = state_at(state.moves + step);
       look(next, more);
     }
+    // Where every step would bring yarns to each other's other side there is no way.
+    stalls = largest_of(step) < stalled * radius_ ? stalls + 1 : 0;
     const double gain = state.energy - next.energy;
     ahead_ = std::clamp(2 * largest_of(step), least_ahead * radius_, 2 * longest_step * radius_);
     state = std::move(next);
     // What is left to gain is the slow sliding of yarns along each other, which parts nothing.
     const bool is_settled = gain < settled * state.energy;
     if (state.missing < best.missing) best = state;
+    if (stalls > most_stalls) break;
     if (!is_settled) continue;
     if (state.missing == 0) {
       best = std::move(state);

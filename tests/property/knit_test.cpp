@@ -134,14 +134,17 @@ std::vector<std::string> faults_of(const Knit& knit, const std::vector<nurbs::Cu
   return faults;
 }
 
-std::vector<nurbs::Curve> courses_of(const fabric::Fabric& fabric, bool as_published = false) {
+// A warning says that loops could not be parted.
+std::vector<nurbs::Curve> courses_of(const fabric::Fabric& fabric, bool as_published = false,
+                                     bool may_warn = false) {
   std::vector<nurbs::Curve> curves;
   fabric::BuildOptions options;
   options.as_published = as_published;
   Diagnostics diagnostics;
   const std::optional<fabric::YarnBuilder> builder =
       fabric::YarnBuilder::create(fabric, options, diagnostics);
-  for (const Message& message : diagnostics.messages()) ADD_FAILURE() << to_string(message);
+  for (const Message& message : diagnostics.messages())
+    if (message.severity == Severity::error || !may_warn) ADD_FAILURE() << to_string(message);
   if (!builder) return curves;
   for (std::size_t i = 0; i < builder->count(); ++i) {
     const Result<fabric::YarnPlan> plan = builder->plan(i);
@@ -249,7 +252,9 @@ TEST(KnitTopology, EveryChartThatCanBeDrawn) {
   };
   for (const std::string& rows : charts) {
     const fabric::Fabric fabric = charted(rows, 9, 6);
-    const std::vector<std::string> faults = faults_of(knit_of(fabric), courses_of(fabric));
+    // Six tucks on one loop lie in one another as drawn: there is no way to part them.
+    const bool may_warn = &rows == &charts.front();
+    const std::vector<std::string> faults = faults_of(knit_of(fabric), courses_of(fabric, false, may_warn));
     EXPECT_TRUE(faults.empty()) << rows << "\n" << text_of(faults);
   }
 }
