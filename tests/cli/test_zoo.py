@@ -1,7 +1,7 @@
 """Every sample of samples/ goes the whole way: IGES and STEP, `check`, and gmsh's reader of STEP.
 
-Only overlaps of yarns may be found by `check`: every yarn is a closed, valid solid. SELVAGE_ZOO=I/N takes the I-th of N
-parts of the samples.
+`check` finds nothing: every yarn is a closed, valid solid, and none overlaps another one or itself. SELVAGE_ZOO=I/N takes
+the I-th of N parts of the samples.
 """
 
 import json
@@ -50,14 +50,8 @@ class Zoo(Case):
         yarns = checked.get("yarns", [])
         for yarn in yarns:
             self.assertTrue(yarn["closed"], yarn)
-            self.assertFalse(yarn["self_overlap"] and done.returncode == 0, yarn)
-        defects = [line for line in done.stderr.splitlines() if ": error: " in line]
-        expected = ["overlap"]
-        if re.search(r"^knit\b", sample.read_text(), re.MULTILINE):
-            expected.append("crosses itself")  # neighbouring loops of a course are one yarn: their overlap is this
-        unexpected = [line for line in defects if not any(words in line for words in expected)]
-        self.assertEqual(unexpected, [])
-        self.assertEqual(done.returncode, 3 if defects else 0, done.stderr)
+            self.assertFalse(yarn["self_overlap"], yarn)
+        self.assertEqual(done.returncode, 0, done.stderr)
         volumes, faces = self.in_gmsh(self.folder / (sample.stem + ".stp"))
         self.assertEqual(len(volumes), converted.get("yarn_count", 0))
         self.assertGreater(faces, 0)
