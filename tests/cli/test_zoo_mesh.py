@@ -1,0 +1,64 @@
+"""Every sample with yarns passes `mesh` as it comes, and meshio finds every yarn whole in what was written.
+
+Exit code 0 of `mesh` says that no two yarns overlap. SELVAGE_ZOO=I/N takes the I-th of N parts of the samples. Edges are as
+long as gives every yarn its volume to 1 %, with middle nodes on the surfaces.
+"""
+
+import json
+import os
+import subprocess
+import unittest
+
+from program import Case, SAMPLES, ROOT, run
+
+PYTHON = os.environ.get("SELVAGE_MESHIO_PYTHON", "/usr/bin/python3")  # with meshio
+READER = ROOT / "tests" / "formats" / "mesh" / "yarn_volumes.py"
+ZOO = sorted(path for path in SAMPLES.iterdir() if path.suffix in (".txt", ".wif"))
+PART, PARTS = map(int, os.environ.get("SELVAGE_ZOO", "0/1").split("/"))
+
+
+def has_yarns(sample):
+    return sample.suffix == ".wif" or not any(line.startswith("piece") for line in sample.read_text().splitlines())
+
+
+class ZooMesh(Case):
+    def size_for(self, sample):
+        """Seven tenths of the side of a square as large as the smallest section."""
+        report = self.folder / "info.json"
+        self.succeeds("info", sample, "--report", report, "--quiet")
+        yarns = json.loads(report.read_text())["inputs"][0]["yarns"]
+        return 0.7 * min((yarn["volume"] / yarn["length"]) ** 0.5 for yarn in yarns)
+
+    def mesh(self, sample, size):
+        """The volume and the smallest tetrahedron of every yarn, and what the program says of the yarns."""
+        report, out = self.folder / "mesh.json", self.folder / (sample.stem + ".vtu")
+        done = run("mesh", sample, "-o", out, "--size", f"{size:.4g}", "--order", "2", "--report", report, "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        read = subprocess.run([PYTHON, READER, out], capture_output=True, text=True)
+        self.assertEqual(read.returncode, 0, read.stderr)
+        found = [tuple(map(float, line.split())) for line in read.stdout.splitlines()]
+        yarns = json.loads(report.read_text())["inputs"][0]["yarns"]
+        self.assertEqual(len(found), len(yarns))
+        return [(volume / yarn["volume"], smallest) for (volume, smallest), yarn in zip(found, yarns)]
+
+    def judge(self, sample):
+        size = self.size_for(sample)
+        for _ in range(3):  # flat sections need finer ones
+            found = self.mesh(sample, size)
+            self.assertGreater(min(smallest for _, smallest in found), 0.0)
+            error = max(abs(share - 1) for share, _ in found)
+            if error < 0.01:
+                return
+            size /= 2
+        self.assertLess(error, 0.01)
+
+    def test_every_sample(self):
+        for sample in ZOO[PART::PARTS]:
+            if not has_yarns(sample):
+                continue
+            with self.subTest(sample=sample.name):
+                self.judge(sample)
+
+
+if __name__ == "__main__":
+    unittest.main()
