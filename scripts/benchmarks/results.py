@@ -140,6 +140,23 @@ def relax(bin_folder, folder, quick):
                   for row in rows])
 
 
+def contact(bin_folder, folder, quick):
+    command = [f"{bin_folder}/contact"]
+    command += ["--jersey", "4,6,8,12", "--weave", "4,6,8,12", "--peer-limit", "10"] if quick else []
+    rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
+    first = {row["cloth"]: row["milliseconds_a_unit"] for row in reversed(rows)}
+    # Figures of a peer that was stopped are marked.
+    about = lambda row: "" if row["peer_share"] == 1 else "~"
+    share = lambda row: "" if row["peer_share"] == 1 else f" ({100 * row['peer_share']:.2g} % of {row['peer_candidates']} pairs)"
+    return table(["cloth", "loops or crossings", "overlaps found", "ours, s", "ms a loop or crossing", "to the first", "CGAL, s",
+                  "of that tessellation, s", "triangles", "pairs CGAL found", "times CGAL's speed"],
+                 [[f"{row['cloth']} {row['size']} x {row['size']}", str(row["size"] ** 2), str(row["contacts"]),
+                   f"{row['seconds']:.2f}", f"{row['milliseconds_a_unit']:.2f}",
+                   f"{row['milliseconds_a_unit'] / first[row['cloth']]:.2f}", f"{about(row)}{row['peer_seconds']:.3g}{share(row)}",
+                   f"{row['peer_tessellation_seconds']:.2f}", str(row["triangles"]), str(row["peer_pairs"]),
+                   f"{about(row)}{row['times_peer']:.1f}"] for row in rows])
+
+
 def machine():
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown")
     return f"{model}, {os.cpu_count()} cores"
@@ -173,7 +190,14 @@ def main():
             compare(given.bin, folder, given.quick) +
             "\n## Moving the loops of the published jersey apart, two threads: the time a loop stays the same\n\n"
             "Yarn of 0.2 mm, to gaps of 1 % of that; with the exact search for overlaps before and after. Area, length and volume: the "
-            "largest changes.\n\n" + relax(given.bin, folder, given.quick))
+            "largest changes.\n\n" + relax(given.bin, folder, given.quick) +
+            "\n## Finding the overlaps of a cloth, two threads: the time a loop or a crossing stays the same\n\n"
+            "Published jerseys, whose loops overlap, and plain weaves that are free of overlap; round yarns. CGAL: `do_intersect` of "
+            "all pairs of yarns whose boxes meet, on two threads too, of the triangles that `check` makes (chord 1/200 of the thinnest "
+            "section); the time of making them is part of its time. It says only that two yarns meet: nothing of the loops of one "
+            "yarn, of depths or places. Every pair that it finds is among ours (or nearer than the chords' error). Marked ~: it was "
+            "stopped after a minute (quick: 10 s), and its time is extrapolated from the share of the pairs that it did.\n\n" +
+            contact(given.bin, folder, given.quick))
     pathlib.Path(given.out).write_text(text)
     print(text)
 
