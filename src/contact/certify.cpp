@@ -1,6 +1,8 @@
 #include "contact/certify.h"
 
 #include <algorithm>
+#include <memory>
+#include <unordered_map>
 
 #include "contact/patch.h"
 
@@ -32,8 +34,10 @@ Region region_of(const CellModel& model, const Part& part, Patch patch) {
   return out;
 }
 
+using RegionPtr = std::shared_ptr<const Region>;
+
 struct Task {
-  Region a, b;
+  RegionPtr a, b;
   double low;
 };
 
@@ -43,14 +47,18 @@ Certificate certify(const CellModel& model, const Cluster& cluster, double depth
                     const std::function<bool(const Box3& a, const Box3& b)>& is_known) {
   Certificate out;
   std::vector<Task> tasks;
-  const auto consider = [&](Region a, Region b) {
-    const double low = slab_gap(a.patch, a.normal, b.patch, b.normal);
-    if (low < -depth && !is_known(a.box, b.box)) tasks.push_back({std::move(a), std::move(b), low});
+  const auto consider = [&](RegionPtr a, RegionPtr b) {
+    const double low = slab_gap(a->patch, a->normal, b->patch, b->normal);
+    if (low < -depth && !is_known(a->box, b->box)) tasks.push_back({std::move(a), std::move(b), low});
   };
+  std::unordered_map<std::uint32_t, RegionPtr> cells;  // a cell is in many pairs
   const auto region = [&](std::uint32_t k) {
+    RegionPtr& made = cells[k];
     const Cell& cell = model.cells()[k];
-    return region_of(model, {k, cell.low, cell.high},
-                     patch_of(*model.face_of(cell).surface, cell.low, cell.high));
+    if (!made)
+      made = std::make_shared<const Region>(region_of(
+          model, {k, cell.low, cell.high}, patch_of(*model.face_of(cell).surface, cell.low, cell.high)));
+    return made;
   };
   for (const NearPair& pair : cluster)
     if (pair.low < -depth) consider(region(pair.a), region(pair.b));
@@ -61,19 +69,20 @@ Certificate certify(const CellModel& model, const Cluster& cluster, double depth
       out.unsettled = std::max(out.unsettled, -task.low);
       continue;
     }
-    const double size_a = std::max(task.a.size_u, task.a.size_v),
-                 size_b = std::max(task.b.size_u, task.b.size_v);
+    const double size_a = std::max(task.a->size_u, task.a->size_v),
+                 size_b = std::max(task.b->size_u, task.b->size_v);
     if (std::max(size_a, size_b) < size) {
-      out.open.push_back({task.a.part, task.b.part, task.low});
+      out.open.push_back({task.a->part, task.b->part, task.low});
       continue;
     }
     const bool split_a = size_a >= size_b;
-    const Region& whole = split_a ? task.a : task.b;
+    const Region& whole = split_a ? *task.a : *task.b;
     const Eigen::Index axis = whole.size_u >= whole.size_v ? 0 : 1;
     for (const bool upper : {false, true}) {
       Part half = whole.part;
       (upper ? half.low : half.high)[axis] = 0.5 * (whole.part.low[axis] + whole.part.high[axis]);
-      Region part = region_of(model, half, half_of(whole.patch, static_cast<int>(axis), upper));
+      auto part = std::make_shared<const Region>(
+          region_of(model, half, half_of(whole.patch, static_cast<int>(axis), upper)));
       if (split_a) {
         consider(std::move(part), task.b);
       } else {

@@ -74,6 +74,9 @@ int Overlay::line_at(const Vec2& p) const {
 }
 
 void Overlay::drop_passing() {
+  bool overlap = false;
+  for (std::size_t k = 0; k < a_.size() && !overlap; ++k) overlap = is_met(k) && depth(k) > 0.0;
+  if (!overlap) return;
   // The way into A below, and out of B above.
   std::vector<Hit> below(a_.size()), above(a_.size());
   pass(sheet_a_, Keep::highest_in_below, a_, below);
@@ -256,11 +259,12 @@ bool Overlay::is_smooth_about(std::size_t line, int radius, bool of_a) const {
 }
 
 std::optional<Deepest> close_in(const CellModel& model, std::vector<Part> parts_a, std::vector<Part> parts_b,
-                                const Vec3& n, const Vec3& start, double reach) {
+                                const Vec3& n, const Vec3& start, double reach, double slack) {
   std::optional<Deepest> best;
   const Axes axes(n, {start, start + reach * n.unitOrthogonal()});
   Vec2 centre = axes.seen(start).head<2>(), half = Vec2::Constant(reach);
-  for (int round = 0; round < close_rounds; ++round) {
+  double error = slack;  // of these quads; they are at most half as long in the next round
+  for (int round = 0; round < close_rounds; ++round, error *= 0.25) {
     const Sheet a(model, std::move(parts_a), close_steps), b(model, std::move(parts_b), close_steps);
     const Overlay overlay(model, a, b, axes, Rectangle(Vec2(centre - half), Vec2(centre + half)),
                           close_lines);
@@ -268,8 +272,10 @@ std::optional<Deepest> close_in(const CellModel& model, std::vector<Part> parts_
     for (std::size_t k = 0; k < overlay.size(); ++k)
       if (overlay.is_met(k) && (!deepest || overlay.depth(k) > overlay.depth(*deepest))) deepest = k;
     if (!deepest) break;
-    best = Deepest{overlay.on_a(*deepest), overlay.on_b(*deepest), overlay.depth(*deepest),
-                   overlay.is_smooth_about(*deepest, 2, true), overlay.is_smooth_about(*deepest, 2, false)};
+    best = Deepest{overlay.on_a(*deepest), overlay.on_b(*deepest), overlay.depth(*deepest)};
+    if (best->depth < -error - overlay.step().maxCoeff()) break;
+    best->smooth_a = overlay.is_smooth_about(*deepest, 2, true);
+    best->smooth_b = overlay.is_smooth_about(*deepest, 2, false);
     parts_a = overlay.parts_about(*deepest, 2, true);
     parts_b = overlay.parts_about(*deepest, 2, false);
     centre = overlay.centre(*deepest);

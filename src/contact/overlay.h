@@ -1,6 +1,7 @@
 // Two facing sheets of surface seen along one direction: how deep each line along it lies in both.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -98,7 +99,8 @@ class Overlay {
 };
 
 // The line along `n` on which two sheets are deepest in each other, by rasters that close in on it: first of
-// the size `reach` about `start`. Nothing: no line meets both.
+// the size `reach` about `start`. Nothing: no line meets both. `slack`: what the quads of the first raster
+// can change a depth by; where no finer raster can show an overlap this ends early, with a depth below 0.
 struct Deepest {
   Overlay::Place a, b;
   double depth = 0;
@@ -107,6 +109,7 @@ struct Deepest {
   bool smooth_a = true, smooth_b = true;
 };
 std::optional<Deepest> close_in(const CellModel& model, std::vector<Part> a, std::vector<Part> b,
-                                const Vec3& n, const Vec3& start, double reach);
+                                const Vec3& n, const Vec3& start, double reach,
+                                double slack = std::numeric_limits<double>::infinity());
 
 }  // namespace selvage::contact

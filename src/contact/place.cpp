@@ -354,7 +354,7 @@ class Measurer {
     const Vec3 start = 0.5 * (coarse.on_a(first).point + coarse.on_b(first).point);
     const double reach = 2.0 * coarse.step().maxCoeff();
     Vec3 n = coarse.axes().n;
-    std::optional<Deepest> found = close_in(model_, pa, pb, n, start, reach);
+    std::optional<Deepest> found = close_in(model_, pa, pb, n, start, reach, 0.5 * slack());
     if (found && found->depth > touching_) {
       // Against a smooth surface an edge is parted along that surface's normal.
       const std::optional<Vec3> easier = found->smooth_a   ? normal_at(found->a)
