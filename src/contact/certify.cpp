@@ -61,7 +61,8 @@ Certificate certify(const CellModel& model, const Cluster& cluster, double depth
     return made;
   };
   for (const NearPair& pair : cluster)
-    if (pair.low < -depth) consider(region(pair.a), region(pair.b));
+    if (pair.low < -depth && !is_known(model.cells()[pair.a].box, model.cells()[pair.b].box))
+      tasks.push_back({region(pair.a), region(pair.b), pair.low});
   for (; !tasks.empty(); --work) {
     Task task = std::move(tasks.back());
     tasks.pop_back();

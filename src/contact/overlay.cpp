@@ -131,15 +131,18 @@ void Overlay::pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& p
   const Vec2 e1 = (seen[1] - seen[0]).head<2>(), e2 = (seen[2] - seen[0]).head<2>();
   const double size = e1.x() * e2.y() - e1.y() * e2.x();
   if (out ? !(size > 0.0) : !(size < 0.0)) return;
+  // The first line at or above a place, the last one at or below. What is cast is >= 0: no call of ceil().
   const auto first = [&](Eigen::Index axis) {
-    const double low = std::min({seen[0][axis], seen[1][axis], seen[2][axis]});
-    return static_cast<int>(
-        std::clamp(std::ceil((low - low_[axis]) / step_[axis] - offset), 0.0, static_cast<double>(lines_)));
+    const double low = std::min({seen[0][axis], seen[1][axis], seen[2][axis]}),
+                 at = std::clamp((low - low_[axis]) / step_[axis] - offset, 0.0, static_cast<double>(lines_));
+    const int below = static_cast<int>(at);
+    return below < at ? below + 1 : below;
   };
   const auto last = [&](Eigen::Index axis) {
     const double high = std::max({seen[0][axis], seen[1][axis], seen[2][axis]});
-    return static_cast<int>(
-        std::clamp(std::floor((high - low_[axis]) / step_[axis] - offset), -1.0, lines_ - 1.0));
+    return static_cast<int>(std::clamp((high - low_[axis]) / step_[axis] - offset + 1.0, 0.0,
+                                       static_cast<double>(lines_))) -
+           1;
   };
   const int i0 = first(0), i1 = last(0), j0 = first(1), j1 = last(1);
   // A little beyond the edges, so that no line slips between two triangles.
