@@ -26,21 +26,6 @@ Vec2 inside(const Face& face, Vec2 site) {
   return site;
 }
 
-struct SurfacePoint {
-  nurbs::SurfaceJet jet;
-  Vec3 normal = Vec3::Zero();  // outward; zero where there is none
-};
-
-SurfacePoint point_at(const Face& face, const Vec2& site) {
-  const Vec2 s = inside(face, site);
-  SurfacePoint out;
-  out.jet = nurbs::evaluate_jet(*face.surface, s.x(), s.y());
-  const Vec3 cross = out.jet.du.cross(out.jet.dv);
-  const double size = cross.norm();
-  if (size > 0.0) out.normal = (face.inward ? -1.0 : 1.0) / size * cross;
-  return out;
-}
-
 // The four equations of a critical pair, in lengths of `scale`.
 struct Equations {
   const Face& a;
@@ -76,6 +61,16 @@ struct Equations {
 };
 
 }  // namespace
+
+SurfacePoint point_at(const Face& face, const Vec2& site) {
+  const Vec2 s = inside(face, site);
+  SurfacePoint out;
+  out.jet = nurbs::evaluate_jet(*face.surface, s.x(), s.y());
+  const Vec3 cross = out.jet.du.cross(out.jet.dv);
+  const double size = cross.norm();
+  if (size > 0.0) out.normal = (face.inward ? -1.0 : 1.0) / size * cross;
+  return out;
+}
 
 std::optional<Critical> find_critical(const Face& a, const Vec2& site_a, const Face& b, const Vec2& site_b,
                                       const Vec3& shift) {

@@ -7,6 +7,14 @@
 
 namespace selvage::contact {
 
+struct SurfacePoint {
+  nurbs::SurfaceJet jet;
+  Vec3 normal = Vec3::Zero();  // outward; zero where there is none
+};
+
+// A point of the face; parameters beyond its range go round, or stop at its border.
+SurfacePoint point_at(const Face& face, const Vec2& site);
+
 // p on the first surface, q on the second, the outward normal at p opposite to that at q and both along p -
 // q: a critical point of the distance. depth = (p - q) . normal: above 0 the yarns share space there, below 0
 // it is minus their gap.

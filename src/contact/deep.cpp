@@ -46,6 +46,7 @@ class DeepMeasurer {
     std::vector<Contact> contacts;
     if (common.isEmpty()) return contacts;
     std::vector<Vec3> corners;
+    corners.reserve(8);
     for (int k = 0; k < 8; ++k) corners.push_back(common.corner(static_cast<Box3::CornerType>(k)));
     // Along the common box's shortest side the lines are the most useful.
     Eigen::Index axis = 0;

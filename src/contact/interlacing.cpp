@@ -34,20 +34,6 @@ struct Chord {
   std::uint32_t line = 0, index = 0;
 };
 
-// The largest extent of a section.
-double width_of(const yarn::Body& body) {
-  double widest = 0.0;
-  for (int j = 0; j < body.surface.count_v; ++j) {
-    Vec3 low = body.surface.point(0, j), high = low;
-    for (int i = 1; i < body.surface.count_u; ++i) {
-      low = low.cwiseMin(body.surface.point(i, j));
-      high = high.cwiseMax(body.surface.point(i, j));
-    }
-    widest = std::max(widest, (high - low).norm());
-  }
-  return widest;
-}
-
 // Of the second derivative over a span; the one of a polynomial cubic is largest at an end.
 double largest_second_derivative(const nurbs::Curve& curve, double from, double to) {
   const int looks = curve.is_rational() ? 8 : 2;
@@ -79,7 +65,7 @@ void add_point(Line& line, const nurbs::Curve& before, const nurbs::Curve& after
 Line line_of(const yarn::Body& old_body, const yarn::Body& new_body) {
   const nurbs::Curve &before = old_body.axis, &after = new_body.axis;
   Line line;
-  line.width = width_of(old_body);
+  line.width = yarn::widest_section(old_body);
   line.closed = old_body.closed_along;
   std::vector<double> breaks = nurbs::breakpoints(before.knots, before.degree);
   const std::vector<double> further = nurbs::breakpoints(after.knots, after.degree);
@@ -303,7 +289,7 @@ Status check_pair(const yarn::Body& before, const yarn::Body& after) {
   if (before.axis.first_parameter() != after.axis.first_parameter() ||
       before.axis.last_parameter() != after.axis.last_parameter())
     return fail("has other parameters after than before");
-  if (!(width_of(before) > 0.0)) return fail("has sections without a size");
+  if (!(yarn::widest_section(before) > 0.0)) return fail("has sections without a size");
   return {};
 }
 

@@ -1,10 +1,10 @@
 #include "contact/near_skins.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "contact/critical.h"
 #include "core/parallel.h"
 #include "nurbs/spline.h"
 
@@ -18,30 +18,14 @@ std::size_t at(int i) {
 
 constexpr int least_round = 24, leaf_columns = 4;
 
-struct SurfacePoint {
-  nurbs::SurfaceJet jet;
-  Vec3 normal = Vec3::Zero();  // outward
-};
-
-SurfacePoint point_at(const yarn::Body& body, const Vec2& site) {
-  SurfacePoint out;
-  out.jet = nurbs::evaluate_jet(body.surface, site.x(), site.y());
-  const Vec3 cross = out.jet.du.cross(out.jet.dv);
-  const double size = cross.norm();
-  if (size > 0.0) out.normal = (body.inward ? -1.0 : 1.0) / size * cross;
-  return out;
-}
-
-double wrapped(double t, double first, double last) {
-  return t - (last - first) * std::floor((t - first) / (last - first));
-}
-
-Vec2 inside(const yarn::Body& body, Vec2 site) {
-  const nurbs::Surface& s = body.surface;
-  site.x() = wrapped(site.x(), s.first_u(), s.last_u());
-  site.y() = body.closed_along ? wrapped(site.y(), s.first_v(), s.last_v())
-                               : std::clamp(site.y(), s.first_v(), s.last_v());
-  return site;
+// The body's side, for what is asked of single points of it.
+Face side_of(const yarn::Body& body) {
+  Face face;
+  face.surface = &body.surface;
+  face.inward = body.inward;
+  face.round_u = true;
+  face.round_v = body.closed_along;
+  return face;
 }
 
 void fill(Facing& facing, const SurfacePoint& p, const SurfacePoint& q) {
@@ -164,8 +148,8 @@ void NearSkins::cast(const Leaf& from, const Leaf& onto, const Box3& box, double
         facing.b = onto.strand;
         facing.site_a = {skin.us[at(column)], skin.vs[at(row)]};
         facing.site_b = hit;
-        fill(facing, point_at(strands_[from.strand].body(), facing.site_a),
-             point_at(strands_[onto.strand].body(), facing.site_b));
+        fill(facing, point_at(side_of(strands_[from.strand].body()), facing.site_a),
+             point_at(side_of(strands_[onto.strand].body()), facing.site_b));
         if (facing.gap <= reach && facing.normal.allFinite()) found.push_back(facing);
       }
     }
@@ -244,47 +228,17 @@ std::vector<Facing> NearSkins::find(double reach, int threads) {
 }
 
 std::optional<Facing> settled(std::span<const Strand> strands, const Facing& facing) {
-  const yarn::Body &a = strands[facing.a].body(), &b = strands[facing.b].body();
-  Vec2 site_a = facing.site_a, site_b = facing.site_b;
-  const double limit = 0.5 * strands[facing.a].thickness();
-  for (int step = 0; step < 12; ++step) {
-    const SurfacePoint p = point_at(a, site_a), q = point_at(b, site_b);
-    Facing now = facing;
-    now.site_a = site_a;
-    now.site_b = site_b;
-    fill(now, p, q);
-    if (!now.normal.allFinite()) break;
-    const Vec3 n = now.normal;
-    const Vec3 t1 = (p.jet.du - p.jet.du.dot(n) * n).normalized(), t2 = n.cross(t1);
-    const auto residual = [&](const Vec2& sa, const Vec2& sb) {
-      const SurfacePoint x = point_at(a, inside(a, sa)), y = point_at(b, inside(b, sb));
-      const Vec3 way = (y.jet.position - x.jet.position) / limit, turn = x.normal + y.normal;
-      return Eigen::Vector4d(way.dot(t1), way.dot(t2), turn.dot(t1), turn.dot(t2));
-    };
-    const Eigen::Vector4d r = residual(site_a, site_b);
-    if (r.norm() < 1e-7) return now;
-    Eigen::Matrix4d jacobian;
-    const Eigen::Vector4d unit = limit * Eigen::Vector4d(1.0 / p.jet.du.norm(), 1.0 / p.jet.dv.norm(),
-                                                         1.0 / q.jet.du.norm(), 1.0 / q.jet.dv.norm());
-    constexpr double h = 1e-5;
-    for (int k = 0; k < 4; ++k) {
-      Eigen::Vector4d x;
-      x << site_a, site_b;
-      x[k] += h * unit[k];
-      jacobian.col(k) = (residual(x.head<2>(), x.tail<2>()) - r) / h;
-    }
-    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix4d> solver;
-    solver.setThreshold(1e-4);
-    solver.compute(jacobian);
-    Eigen::Vector4d move = solver.solve(-r);
-    if (!move.allFinite()) break;
-    if (const double size = move.norm(); size > 0.3) move *= 0.3 / size;
-    move = move.cwiseProduct(unit);
-    site_a = inside(a, site_a + move.head<2>());
-    site_b = inside(b, site_b + move.tail<2>());
-    if ((point_at(a, site_a).jet.position - facing.on_a).norm() > 2.0 * limit) break;
-  }
-  return std::nullopt;
+  const Face a = side_of(strands[facing.a].body()), b = side_of(strands[facing.b].body());
+  const std::optional<Critical> found = find_critical(a, facing.site_a, b, facing.site_b, Vec3::Zero());
+  if (!found || (found->p - facing.on_a).norm() > strands[facing.a].thickness()) return std::nullopt;
+  Facing now = facing;
+  now.site_a = found->site_a;
+  now.site_b = found->site_b;
+  now.on_a = found->p;
+  now.on_b = found->q;
+  now.normal = found->normal;
+  now.gap = -found->depth;
+  return now;
 }
 
 }  // namespace selvage::contact

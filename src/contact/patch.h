@@ -16,7 +16,8 @@ struct Patch {
   std::vector<double> weights;  // empty: polynomial
 
   [[nodiscard]] const Vec3& point(int i, int j) const {
-    return points[static_cast<std::size_t>(j * count_u + i)];
+    return points[static_cast<std::size_t>(j) * static_cast<std::size_t>(count_u) +
+                  static_cast<std::size_t>(i)];
   }
 };
 

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <span>
 
+#include "contact/overlay.h"
+
 namespace selvage::contact {
 
 namespace {
@@ -17,30 +19,6 @@ constexpr int coarse = 24, fine = 40;  // lines along a side of the raster: whil
 // purpose.
 constexpr double offset = 0.5 + 0.01234567;
 
-struct Frame {
-  Vec3 x, y, n;
-
-  // Its x axis along the points' longest way as seen along the direction: a raster's cells shall fit a long,
-  // thin space.
-  Frame(const Vec3& direction, const std::vector<Vec3>& points)
-      : x(direction.unitOrthogonal()), y(direction.cross(x)), n(direction) {
-    Vec3 middle = Vec3::Zero();
-    for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
-    double xx = 0.0, xy = 0.0, yy = 0.0;
-    for (const Vec3& p : points) {
-      const Vec3 way = seen(p - middle);
-      xx += way.x() * way.x();
-      xy += way.x() * way.y();
-      yy += way.y() * way.y();
-    }
-    const double turn = 0.5 * std::atan2(2.0 * xy, xx - yy);
-    x = std::cos(turn) * x + std::sin(turn) * y;
-    y = n.cross(x);
-  }
-  [[nodiscard]] Vec3 seen(const Vec3& p) const { return {p.dot(x), p.dot(y), p.dot(n)}; }
-  [[nodiscard]] Vec3 placed(const Vec2& p, double height) const { return p.x() * x + p.y() * y + height * n; }
-};
-
 // Where a line passes through a triangle, going along the direction.
 struct Passage {
   int line = 0;
@@ -48,8 +26,6 @@ struct Passage {
   bool leaves = false;  // out of the yarn
   std::uint32_t triangle = 0;
 };
-
-using Rectangle = Eigen::AlignedBox2d;
 
 // Lines along the frame's direction.
 class Raster {
@@ -272,7 +248,7 @@ class SharedSpace::View {
   }
 
   const SharedSpace& space_;
-  Frame frame_;
+  Axes frame_;
   std::vector<Vec3> seen_a_, seen_b_;
   Box3 box_;  // of the walls
 };

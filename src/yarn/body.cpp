@@ -98,6 +98,16 @@ double end_gap(const Body& body, bool last) {
   return 0.0;
 }
 
+double widest_section(const Body& body) {
+  double widest = 0.0;
+  for (int j = 0; j < body.surface.count_v; ++j) {
+    Box3 box;
+    for (int i = 0; i < body.surface.count_u; ++i) box.extend(body.surface.point(i, j));
+    widest = std::max(widest, box.diagonal().norm());
+  }
+  return widest;
+}
+
 Box3 bounds(const Body& body) {
   Box3 box;
   for (const Vec3& p : body.surface.points) box.extend(p);

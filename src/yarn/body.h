@@ -100,6 +100,9 @@ std::array<nurbs::Curve, 4> end_quarters(const Body& body, bool last);
 // that were built here): what a receiving system has to sew.
 double end_gap(const Body& body, bool last);
 
+// The largest diagonal of a box round one row of control points: no section is wider.
+double widest_section(const Body& body);
+
 // The body's box (of its control points).
 Box3 bounds(const Body& body);
 

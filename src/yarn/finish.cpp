@@ -47,15 +47,7 @@ double reach(const Body& body, const Vec3& centre, const Vec3& toward, double v)
 void find_bends(Body& body) {
   body.min_bend_radius = std::numeric_limits<double>::infinity();
   // No section reaches farther than the control net does from the axis: most places need no closer look.
-  double widest = 0.0;
-  for (int j = 0; j < body.surface.count_v; ++j) {
-    Vec3 low = body.surface.point(0, j), high = low;
-    for (int i = 1; i < body.surface.count_u; ++i) {
-      low = low.cwiseMin(body.surface.point(i, j));
-      high = high.cwiseMax(body.surface.point(i, j));
-    }
-    widest = std::max(widest, (high - low).norm());
-  }
+  const double widest = widest_section(body);
   const std::vector<double> breaks = nurbs::breakpoints(body.axis.knots, body.axis.degree);
   constexpr int samples = 8;
   struct Found {
