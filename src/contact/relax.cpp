@@ -107,7 +107,10 @@ class Relaxer {
       if (broken.empty()) return std::move(out_);
       out_.solved = false;
       out_.reason = broken;
-      if (attempt == 2) return std::move(out_);
+      if (attempt == 2) {
+        if (Status back = retreat(); !back) return back.error();
+        return std::move(out_);
+      }
       for (std::size_t y = 0; y < originals_.size(); ++y)
         if (out_.changes[y].turning < 0.0) is_affine_[y] = 1;
       stiffness.stretch *= 5.0;
@@ -211,6 +214,30 @@ class Relaxer {
     return {};
   }
 
+  // Goes back toward the originals as far as the bounds ask for, and tells what is too near there.
+  Status retreat() {
+    const std::vector<nurbs::Surface> far = present();
+    const auto between = [&](double share) {
+      std::vector<nurbs::Surface> surfaces = first_;
+      for (std::size_t y = 0; y < far.size(); ++y)
+        for (std::size_t k = 0; k < far[y].points.size(); ++k)
+          surfaces[y].points[k] += share * (far[y].points[k] - first_[y].points[k]);
+      return surfaces;
+    };
+    double kept = 0.0, broken = 1.0;
+    for (int k = 0; k < 6; ++k) {
+      const double middle = 0.5 * (kept + broken);
+      if (Status done = finish_bodies(between(middle)); !done) return done;
+      (broken_bound().empty() ? kept : broken) = middle;
+    }
+    if (Status done = finish_bodies(between(kept)); !done) return done;
+    Result<Contacts> contacts = survey(out_.bodies);
+    if (!contacts) return contacts.error();
+    out_.after = state_of(*contacts);
+    list_jams(*contacts);
+    return {};
+  }
+
   // Steps from the originals on until every gap is wide enough, or nothing improves.
   Status move_apart(const Stiffness& stiffness) {
     strands_.clear();
@@ -219,6 +246,7 @@ class Relaxer {
       strands_.emplace_back(originals_[y], 0.6 * std::sqrt(extents_[y].least * extents_[y].most));
       if (is_affine_[y] != 0) strands_.back().allowed_fields = affine_fields;
     }
+    first_ = present();
     DisplacementSystem system(strands_, tie_strands(strands_, options_.periods), stiffness, modes_);
     NearSkins skins(strands_);
     for (const FixedPoint& point : options_.fixed) system.hold(point.yarn, point.parameter);
@@ -432,7 +460,8 @@ class Relaxer {
   std::vector<Extents> extents_;
   std::vector<char> is_affine_;  // one a yarn: its sections change by affine fields only
   std::vector<Strand> strands_;
-  std::vector<nurbs::Surface> best_;  // of the step that came nearest to the wanted gaps
+  std::vector<nurbs::Surface> first_;  // of the strands before they moved
+  std::vector<nurbs::Surface> best_;   // of the step that came nearest to the wanted gaps
   int modes_;
   double thinnest_ = infinity;
   Relaxation out_;

@@ -375,5 +375,25 @@ TEST(Relax, AJammedCloth) {
   for (const Jam& jam : relaxed.jams) EXPECT_TRUE(jam.a == 1 || jam.b == 1);
 }
 
+TEST(Relax, ABoundInTheWay) {
+  // Two short yarns 0.28 in each other, their ends fixed: a bow that parts them is more than 1 % longer.
+  std::vector<yarn::Body> bodies = {straight("a", round(0.3), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 1.8),
+                                    straight("b", round(0.3), {0, 0, 0.32}, {0, 1, 0}, {0, 0, 1}, 1.8)};
+  RelaxOptions options;
+  options.stiff_section = true;
+  for (std::size_t y = 0; y < 2; ++y)
+    options.fixed.insert(options.fixed.end(),
+                         {{y, bodies[y].surface.first_v()}, {y, bodies[y].surface.last_v()}});
+  const Relaxation relaxed = run(bodies, options);
+  EXPECT_FALSE(relaxed.solved);
+  EXPECT_FALSE(relaxed.reason.empty());
+  // Something was gained, within the bounds, and what is left is told.
+  ASSERT_EQ(relaxed.jams.size(), 1U);
+  EXPECT_LT(relaxed.jams[0].gap, 0.0);
+  EXPECT_GT(relaxed.jams[0].gap, -0.27);
+  for (std::size_t y = 0; y < 2; ++y)
+    EXPECT_LE(length(relaxed.bodies[y]) / length(bodies[y]), 1.0 + length_bound);
+}
+
 }  // namespace
 }  // namespace selvage::contact
