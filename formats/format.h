@@ -21,6 +21,7 @@
 #include "fabric/model.h"
 #include "fabric/piece.h"
 #include "fem/mesh.h"
+#include "solid/gap_map.h"
 #include "yarn/body.h"
 #include "yarn/congruence.h"
 
@@ -129,6 +130,8 @@ struct Descriptor {
   bool carries_surfaces = true;
   bool carries_curves = false;
   Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output) = nullptr;
+  // Lengths in mm.
+  Result<WriteFacts> (*write_gap_map)(const solid::GapMap& map, OutputFile& output) = nullptr;
 };
 
 // Every format of the program, in the order in which `selvage formats` lists them.

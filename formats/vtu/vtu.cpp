@@ -36,18 +36,32 @@ std::vector<double> flat(const std::vector<Vec3>& vectors) {
   return result;
 }
 
-Status write_cells(TextBuffer& text, const fem::Mesh& mesh) {
-  const auto nodes = static_cast<std::size_t>(mesh.nodes_per_element());
-  std::vector<std::int64_t> connectivity, offsets;
-  for (const auto& element : mesh.elements) {
-    for (std::size_t k = 0; k < nodes; ++k) connectivity.push_back(static_cast<std::int64_t>(element[k]));
-    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
-  }
-  // VTK's 10 and 24: tetrahedra of 4 and 10 nodes, in the order of ours.
-  const std::vector<std::uint8_t> types(mesh.elements.size(), mesh.order == 1 ? 10 : 24);
-  if (Status done = write_array(text, "connectivity", connectivity); !done) return done;
+// Cells of one type. Types are VTK's.
+struct Cells {
+  std::uint8_t type = 0;
+  std::size_t count = 0;
+  std::vector<std::int64_t> connectivity;  // point indices, as many a cell
+};
+
+Status write_cells(TextBuffer& text, const Cells& cells) {
+  std::vector<std::int64_t> offsets;
+  offsets.reserve(cells.count);
+  for (std::size_t k = 1; k <= cells.count; ++k)
+    offsets.push_back(static_cast<std::int64_t>(k * (cells.connectivity.size() / cells.count)));
+  const std::vector<std::uint8_t> types(cells.count, cells.type);
+  if (Status done = write_array(text, "connectivity", cells.connectivity); !done) return done;
   if (Status done = write_array(text, "offsets", offsets); !done) return done;
   return write_array(text, "types", types);
+}
+
+Cells cells_of(const fem::Mesh& mesh) {
+  // Tetrahedra of 4 and 10 nodes, in the order of ours.
+  Cells cells{static_cast<std::uint8_t>(mesh.order == 1 ? 10 : 24), mesh.elements.size(), {}};
+  const auto nodes = static_cast<std::size_t>(mesh.nodes_per_element());
+  for (const auto& element : mesh.elements)
+    for (std::size_t k = 0; k < nodes; ++k)
+      cells.connectivity.push_back(static_cast<std::int64_t>(element[k]));
+  return cells;
 }
 
 Status write_cell_data(TextBuffer& text, const fem::Mesh& mesh) {
@@ -78,26 +92,67 @@ std::string comment_text(std::string name) {
   return name;
 }
 
-Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
-  TextBuffer text(output);
+// The file up to its data; `names`: of the yarns.
+Status write_grid(TextBuffer& text, const std::vector<std::string>& names, const std::vector<Vec3>& points,
+                  const Cells& cells) {
   text << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
-    text << "<!-- yarn " << i << ": " << comment_text(mesh.regions[i].name) << " -->\n";
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text << "<!-- yarn " << i << ": " << comment_text(names[i]) << " -->\n";
   text << "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\""
        << (std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian")
        << "\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
-       << "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" << mesh.nodes.size() << "\" NumberOfCells=\""
-       << mesh.elements.size() << "\">\n      <Points>\n";
-  if (Status done = write_array(text, "Points", flat(mesh.nodes), 3); !done) return done.error();
+       << "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" << points.size() << "\" NumberOfCells=\""
+       << cells.count << "\">\n      <Points>\n";
+  if (Status done = write_array(text, "Points", flat(points), 3); !done) return done;
   text << "      </Points>\n      <Cells>\n";
-  if (Status done = write_cells(text, mesh); !done) return done.error();
-  text << "      </Cells>\n      <CellData Scalars=\"yarn\">\n";
-  if (Status done = write_cell_data(text, mesh); !done) return done.error();
-  text << "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
+  if (Status done = write_cells(text, cells); !done) return done;
+  text << "      </Cells>\n";
+  return {};
+}
+
+Result<WriteFacts> finish(TextBuffer& text, std::size_t points, std::size_t cells) {
+  text << "    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
   if (Status done = text.finish(); !done) return done.error();
   WriteFacts facts;
-  facts.entities = {{"points", mesh.nodes.size()}, {"cells", mesh.elements.size()}};
+  facts.entities = {{"points", points}, {"cells", cells}};
   return facts;
+}
+
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
+  TextBuffer text(output);
+  std::vector<std::string> names;
+  for (const fem::Region& region : mesh.regions) names.push_back(region.name);
+  if (Status done = write_grid(text, names, mesh.nodes, cells_of(mesh)); !done) return done.error();
+  text << "      <CellData Scalars=\"yarn\">\n";
+  if (Status done = write_cell_data(text, mesh); !done) return done.error();
+  text << "      </CellData>\n";
+  return finish(text, mesh.nodes.size(), mesh.elements.size());
+}
+
+Result<WriteFacts> write_gaps(const solid::GapMap& map, OutputFile& output) {
+  constexpr std::uint8_t triangle = 5;
+  std::vector<Vec3> points;
+  std::vector<double> gaps;
+  std::vector<std::int32_t> yarns;
+  Cells cells{triangle, 0, {}};
+  for (std::size_t k = 0; k < map.skins.size(); ++k) {
+    const contact::SkinMesh& skin = map.skins[k];
+    const auto first = static_cast<std::int64_t>(points.size());
+    points.insert(points.end(), skin.vertices.begin(), skin.vertices.end());
+    gaps.insert(gaps.end(), map.gaps[k].begin(), map.gaps[k].end());
+    yarns.insert(yarns.end(), skin.triangles.size(), static_cast<std::int32_t>(k));
+    for (const auto& t : skin.triangles)
+      for (const std::uint32_t vertex : t) cells.connectivity.push_back(first + vertex);
+    cells.count += skin.triangles.size();
+  }
+  TextBuffer text(output);
+  if (Status done = write_grid(text, map.names, points, cells); !done) return done.error();
+  text << "      <PointData Scalars=\"gap\">\n";
+  if (Status done = write_array(text, "gap", gaps); !done) return done.error();
+  text << "      </PointData>\n      <CellData>\n";
+  if (Status done = write_array(text, "yarn", yarns); !done) return done.error();
+  text << "      </CellData>\n";
+  return finish(text, points.size(), cells.count);
 }
 
 bool is_a_vtk_grid(std::string_view head) {
@@ -112,7 +167,8 @@ const Descriptor& descriptor() {
                                   .title = "VTK unstructured grid",
                                   .extensions = {".vtu"},
                                   .sniff = is_a_vtk_grid,
-                                  .write_mesh = write};
+                                  .write_mesh = write,
+                                  .write_gap_map = write_gaps};
   return self;
 }
 

@@ -1,6 +1,7 @@
 // A tree of boxes: which of them are near each other.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -21,6 +22,11 @@ class BoxTree {
   // Calls visit(i) for each box that holds `point`, and for each that the ray from it along +x meets.
   template <class Visit>
   void along_ray(const Vec3& point, const Visit& visit) const;
+
+  // Calls visit(i) for each box no farther from `point` than `reach`, about the nearest first; what it gives
+  // is the reach from there on.
+  template <class Visit>
+  void near_point(const Vec3& point, double reach, const Visit& visit) const;
 
  private:
   struct Node {
@@ -88,6 +94,34 @@ void BoxTree::along_ray(const Vec3& point, const Visit& visit) const {
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
       if (meets(boxes_[order_[i]])) visit(order_[i]);
+  }
+}
+
+template <class Visit>
+void BoxTree::near_point(const Vec3& point, double reach, const Visit& visit) const {
+  if (nodes_.empty()) return;
+  struct Entry {
+    double distance;  // squared
+    std::uint32_t node;
+  };
+  // Halves of halves: no deeper than the number of boxes has bits.
+  std::array<Entry, 72> stack{};
+  std::size_t depth = 0;
+  stack[depth++] = {nodes_[0].box.squaredExteriorDistance(point), 0U};
+  while (depth > 0) {
+    const Entry entry = stack[--depth];
+    if (entry.distance > reach * reach) continue;
+    const Node& node = nodes_[entry.node];
+    if (node.count == 0) {
+      Entry near{nodes_[node.first].box.squaredExteriorDistance(point), node.first},
+          far{nodes_[node.first + 1].box.squaredExteriorDistance(point), node.first + 1};
+      if (far.distance < near.distance) std::swap(near, far);
+      stack[depth++] = far;
+      stack[depth++] = near;
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+      if (boxes_[order_[i]].squaredExteriorDistance(point) <= reach * reach) reach = visit(order_[i]);
   }
 }
 

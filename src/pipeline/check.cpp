@@ -12,7 +12,9 @@
 #include "pipeline/pieces.h"
 #include "pipeline/scaling.h"
 #include "pipeline/table.h"
+#include "pipeline/writing.h"
 #include "solid/brep.h"
+#include "solid/gap_map.h"
 
 namespace selvage::pipeline {
 
@@ -96,6 +98,14 @@ std::string yarn_tables(const Findings& found, Unit file, Unit shown) {
                     length(overlap.at.y()), length(overlap.at.z())});
     text += overlaps.text();
   }
+  if (!found.solids.near_contacts.empty()) {
+    Table near({"near contacts of", "and", "gap", "x", "y", "z"});
+    for (const solid::NearContact& contact : found.solids.near_contacts)
+      near.add({found.bodies[contact.a].name,
+                contact.a == contact.b ? "itself" : found.bodies[contact.b].name, length(contact.gap),
+                length(contact.at.x()), length(contact.at.y()), length(contact.at.z())});
+    text += near.text();
+  }
   if (found.solids.min_gap)
     text += fmt::format("  smallest gap between yarns: {}\n", length(*found.solids.min_gap));
   return text;
@@ -135,6 +145,7 @@ std::optional<Findings> examine(Job& job, const fabric::Fabric& fabric) {
   found.tolerance = fabric::tolerance_of(fabric, job.build_options());
   solid::CheckOptions options;
   options.threads = static_cast<int>(job.threads);
+  options.reach = job.options.reach;
   options.progress = [&job](std::size_t done, std::size_t total) {
     job.progress("checking yarn", done, total);
   };
@@ -153,6 +164,26 @@ std::optional<Findings> examine(Job& job, const fabric::Fabric& fabric) {
   return found;
 }
 
+// The yarns coloured by gap, in mm.
+Result<formats::WriteFacts> write_gap_map(Job& job, const std::vector<yarn::Body>& bodies,
+                                          OpenOutput& output) {
+  if (bodies.empty()) return error(Kind::unsupported, "there is no yarn whose gaps could be shown");
+  solid::GapMapOptions options;
+  options.reach = job.options.reach;
+  options.threads = static_cast<int>(job.threads);
+  options.progress = [&job](std::size_t done, std::size_t total) {
+    job.progress("mapping gaps, block", done, total);
+  };
+  Result<solid::GapMap> map = solid::gap_map(bodies, options);
+  if (!map) return map.error();
+  const double mm = millimetres_per(job.file_units());
+  for (contact::SkinMesh& skin : map->skins)
+    for (Vec3& p : skin.vertices) p *= mm;
+  for (std::vector<double>& gaps : map->gaps)
+    for (double& gap : gaps) gap *= mm;
+  return output.plan->format->write_gap_map(*map, output.file);
+}
+
 }  // namespace
 
 bool check(Job& job) {
@@ -160,8 +191,12 @@ bool check(Job& job) {
   const std::optional<fabric::Fabric> fabric = job.read(cad.look());
   cad.say(job);
   if (!fabric) return false;
+  std::optional<OpenOutputs> outputs = open_outputs(job);
+  if (!outputs) return false;
   const std::optional<Findings> found = examine(job, *fabric);
   if (!found) return false;
+  // Without it, it has failed, and what was found is told all the same.
+  for (OpenOutput& output : *outputs) take_facts(job, output, write_gap_map(job, found->bodies, output));
   if (!found->bodies.empty()) report_check(job, found->solids, found->bodies);
   if (cad.has_model() && found->bodies.empty())
     if (const std::optional<double> accuracy = cad::absolute_accuracy(*cad.measures()))
@@ -176,6 +211,7 @@ bool check(Job& job) {
   for (const solid::Overlap& overlap : found->solids.overlaps)
     job.say_defect(overlap_message(overlap, found->bodies, fabric->units));
   print_tables(job, *found, cad, defects);
+  commit_all(job, *outputs);
   return defects > 0;
 }
 

@@ -54,6 +54,8 @@ std::string settings_of(const Options& options) {
                         options.background.green, options.background.blue, options.flat ? " flat" : "");
   else
     text += fmt::format(" step-schema={}", options.step_schema);
+  if (options.reach > 0) text += fmt::format(" reach={}", options.reach);
+  if (!options.gap_map.empty()) text += " gap-map";
   return text;
 }
 

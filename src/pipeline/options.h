@@ -59,6 +59,10 @@ struct Options {
 
   RelaxSettings relaxing;
 
+  // check
+  double reach = 0;     // input's unit: near contacts with a gap up to this are listed too. 0: none
+  std::string gap_map;  // a VTU of the yarns coloured by gap goes to this file; empty: nowhere
+
   // view
   view::From from = view::From::top;
   int picture_width = 1200, picture_height = 900;  // pixels

@@ -188,12 +188,30 @@ Status check_names(const Options& options, const InputList& list,
   return {};
 }
 
+// `check --gap-map` writes one file, of one input.
+Status plan_gap_map(const Options& options, const InputList& list,
+                    std::vector<std::vector<PlannedOutput>>& plan) {
+  if (options.gap_map.empty()) return {};
+  const Descriptor* format = format_with_extension(fs::path(options.gap_map).extension().string());
+  if (format == nullptr || format->write_gap_map == nullptr)
+    return error(Kind::usage, fmt::format("--gap-map writes a VTK file, and '{}' is no name for one; name a "
+                                          ".vtu file",
+                                          options.gap_map));
+  if (!list.one_file)
+    return error(Kind::usage, fmt::format("'--gap-map {}' names one file, but there may be several inputs; "
+                                          "name one input",
+                                          options.gap_map));
+  for (std::vector<PlannedOutput>& outputs : plan) outputs.push_back({format, options.gap_map, false, {}});
+  return {};
+}
+
 }  // namespace
 
 Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list) {
   std::vector<std::vector<PlannedOutput>> plan(list.inputs.size());
   if (options.command == Command::check || options.command == Command::info ||
       options.command == Command::roundtrip) {
+    if (Status status = plan_gap_map(options, list, plan); !status.ok()) return status.error();
     if (Status status = check_names(options, list, plan); !status.ok()) return status.error();
     return plan;
   }

@@ -22,7 +22,8 @@ struct PlannedOutput {
   std::vector<std::filesystem::path> taken{};
 };
 
-// The outputs of each input, in the order of `list.inputs`; empty lists for commands that write no files.
+// The outputs of each input, in the order of `list.inputs`; empty lists for commands that write no files
+// (check: its gap map).
 // Errors (usage): an unknown or unfitting format, several outputs where one file was named, two outputs of
 // one name, an output that is an input.
 Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list);

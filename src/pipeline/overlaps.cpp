@@ -34,6 +34,12 @@ void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn
     report.overlaps->push_back({bodies[overlap.a].name, bodies[overlap.b].name, overlap.depth * mm,
                                 overlap.at * mm, overlap.direction, overlap.area * mm * mm, overlap.site_a,
                                 overlap.site_b});
+  if (job.options.reach > 0.0) {
+    report.contacts.emplace();
+    for (const solid::NearContact& contact : check.near_contacts)
+      report.contacts->push_back({bodies[contact.a].name, bodies[contact.b].name, contact.gap * mm,
+                                  contact.at * mm, contact.site_a, contact.site_b});
+  }
   for (const solid::Overlap& overlap : check.overlaps)
     if (overlap.a == overlap.b && overlap.a < report.yarns.size())
       report.yarns[overlap.a].self_overlap = true;

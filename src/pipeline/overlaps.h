@@ -12,7 +12,8 @@ namespace selvage::pipeline {
 // "yarns 'warp1' and 'weft2' overlap 0.013 mm deep", with the place; lengths in the input's unit.
 Message overlap_message(const solid::Overlap& overlap, std::span<const yarn::Body> bodies, Unit units);
 
-// Closedness, self-crossing, overlaps, the smallest gap and Creo's accuracy, as the check found them.
+// Closedness, self-crossing, overlaps, near contacts where asked for, the smallest gap and Creo's accuracy,
+// as the check found them.
 void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn::Body> bodies);
 
 }  // namespace selvage::pipeline

@@ -86,6 +86,13 @@ Json list_json(const std::vector<T>& list, Make make) {
   return out;
 }
 
+// Where both surfaces are met, of an overlap or a near contact.
+template <class Place>
+void add_sites(Json& to, const Place& place) {
+  if (place.site_a) to["site_a"] = Json::array({place.site_a->x(), place.site_a->y()});
+  if (place.site_b) to["site_b"] = Json::array({place.site_b->x(), place.site_b->y()});
+}
+
 Json relax_json(const RelaxReport& relax) {
   const auto state = [](const RelaxReport::State& from) {
     Json to = {{"overlaps", from.overlaps}};
@@ -176,8 +183,14 @@ std::string to_json(const InputReport& report) {
                {"at", point(overlap.at)},
                {"direction", point(overlap.direction)}};
       if (overlap.area > 0) one["area"] = overlap.area;
-      if (overlap.site_a) one["site_a"] = Json::array({overlap.site_a->x(), overlap.site_a->y()});
-      if (overlap.site_b) one["site_b"] = Json::array({overlap.site_b->x(), overlap.site_b->y()});
+      add_sites(one, overlap);
+      return one;
+    });
+  }
+  if (report.contacts) {
+    out["contacts"] = list_json(*report.contacts, [](const ContactReport& contact) {
+      Json one{{"a", contact.a}, {"b", contact.b}, {"gap", contact.gap}, {"at", point(contact.at)}};
+      add_sites(one, contact);
       return one;
     });
   }

@@ -62,6 +62,14 @@ struct OverlapReport {
   std::optional<Vec2> site_a, site_b;  // (u, v) on their surfaces; none on an end face
 };
 
+// Yarns that are near each other without an overlap.
+struct ContactReport {
+  std::string a, b;  // equal: a yarn meets itself
+  double gap = 0;
+  Vec3 at = Vec3::Zero();
+  std::optional<Vec2> site_a, site_b;  // as in OverlapReport
+};
+
 struct OutputReport {
   std::string path, format, sha256;
   std::uint64_t bytes = 0;
@@ -135,6 +143,7 @@ struct InputReport {
   std::vector<YarnReport> yarns;
   std::vector<PieceReport> pieces;
   std::optional<std::vector<OverlapReport>> overlaps;  // none: not looked for
+  std::optional<std::vector<ContactReport>> contacts;  // none: not asked for
   std::optional<double> min_gap;
   std::optional<double> creo_absolute_accuracy;
   std::vector<OutputReport> outputs;

@@ -31,6 +31,7 @@ Result<SolidCheck> check_solids(std::span<const yarn::Body> bodies, const CheckO
   if (!result) return result;
   contact::ContactOptions contact_options;
   contact_options.threads = options.threads;
+  contact_options.reach = options.reach;
   contact_options.progress = [&](std::size_t place, std::size_t places) {
     step_to(count + count * place / places);
   };
@@ -44,6 +45,8 @@ Result<SolidCheck> check_solids(std::span<const yarn::Body> bodies, const CheckO
   for (const contact::Contact& c : contacts->list)
     if (c.is_overlap())
       result->overlaps.push_back({c.a, c.b, c.depth(), c.at, c.direction, c.area, c.site_a, c.site_b});
+    else
+      result->near_contacts.push_back({c.a, c.b, c.gap, c.at, c.site_a, c.site_b});
   result->min_gap = contacts->min_gap;
   return result;
 }

@@ -17,6 +17,7 @@ namespace selvage::solid {
 struct CheckOptions {
   double chord = 0;  // tessellation, file units; 0: 1/200 of each yarn's smallest section extent
   bool overlaps = true;
+  double reach = 0;  // file units; near contacts with a gap up to this are listed too. 0: none
   int threads = 1;
   std::function<void(std::size_t done, std::size_t total)> progress;  // may be empty
 };
@@ -46,9 +47,18 @@ struct Overlap {
   std::optional<Vec2> site_a, site_b;  // (u, v) on both; none on an end face
 };
 
+// A place where two yarns, or two places of one, are near each other: a local minimum of the gap.
+struct NearContact {
+  std::size_t a = 0, b = 0;  // indices of the yarns, a <= b
+  double gap = 0;
+  Vec3 at = Vec3::Zero();              // in the middle of the gap
+  std::optional<Vec2> site_a, site_b;  // (u, v) on both; none on an end face
+};
+
 struct SolidCheck {
   std::vector<YarnCheck> yarns;
-  std::vector<Overlap> overlaps;  // deepest first
+  std::vector<Overlap> overlaps;           // deepest first
+  std::vector<NearContact> near_contacts;  // within CheckOptions::reach, the smallest gap first
   // As in contact::Contacts; right to 1 %, 0: they touch (to rounding).
   std::optional<double> min_gap;
 };

@@ -98,6 +98,16 @@ class Samples {
     }
     return longest;
   }
+  // The same along u.
+  [[nodiscard]] double reach_u(std::size_t k) const {
+    double longest = 0.0;
+    for (std::size_t j = 0; j < count_v_; ++j) {
+      double way = 0.0;
+      for (std::size_t i = 4 * k; i < 4 * k + 4; ++i) way += (at(i + 1, j) - at(i, j)).norm();
+      longest = std::max(longest, way);
+    }
+    return longest;
+  }
 
   // The diagonal of the largest section's box, and the smallest extent of any section (but for those that
   // shrink to a point) across its thinner direction.
@@ -393,7 +403,7 @@ double smallest_extent(const yarn::Body& body) {
   return Samples(body.surface).smallest_extent();
 }
 
-Result<Tessellation> tessellate(const yarn::Body& body, double chord) {
+Result<Tessellation> tessellate(const yarn::Body& body, double chord, double longest) {
   if (body.surface.is_empty())
     return refusal(body, Kind::geometry, fmt::format("yarn '{}' has no surface", body.name));
   if (!is_finite(body.surface) || !is_finite(body.start.surface) || !is_finite(body.end.surface))
@@ -405,9 +415,12 @@ Result<Tessellation> tessellate(const yarn::Body& body, double chord) {
   Cuts cuts_u, cuts_v;
   samples.cut(chord, cuts_u, cuts_v);
   // Rows no farther apart than the section is wide: slivers along a straight yarn would help nobody.
-  const double widest = samples.largest_section();
+  const double widest = std::min(samples.largest_section(), longest);
   for (std::size_t l = 0; l < cuts_v.parts.size(); ++l)
     if (widest > 0.0) cuts_v.parts[l] = std::max(cuts_v.parts[l], std::ceil(samples.reach_v(l) / widest));
+  if (std::isfinite(longest))
+    for (std::size_t k = 0; k < cuts_u.parts.size(); ++k)
+      cuts_u.parts[k] = std::max(cuts_u.parts[k], std::ceil(samples.reach_u(k) / longest));
   double cells_u = 0.0, cells_v = 0.0;
   for (double n : cuts_u.parts) cells_u += n;
   for (double n : cuts_v.parts) cells_v += n;

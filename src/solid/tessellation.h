@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/diagnostics.h"
@@ -35,8 +36,10 @@ double smallest_extent(const yarn::Body& body);
 // |S_uu| + 2 du dv |S_uv| + dv^2 |S_vv|) by Filip, Magedson and Markot (1986), with the second derivatives
 // from differences of surface points at four places a knot span. Every knot line is an edge line. Errors:
 // geometry (an empty or a non-finite surface, an end whose outline crosses itself), limit (more than 100
-// million triangles). A yarn without ends (style none) that is not closed is tessellated open.
-Result<Tessellation> tessellate(const yarn::Body& body, double chord);
+// million triangles). A yarn without ends (style none) that is not closed is tessellated open. No edge on the
+// side, but for diagonals, is longer than `longest`, to a few percent.
+Result<Tessellation> tessellate(const yarn::Body& body, double chord,
+                                double longest = std::numeric_limits<double>::infinity());
 
 // Enclosed volume of outward triangles (divergence theorem).
 double volume(const Tessellation& skin);
