@@ -197,6 +197,7 @@ class SharedSpace::View {
       of_piece.push_back(frame_.placed(place, runs[k].high));
     }
     std::vector<std::vector<Vec3>> all;
+    all.reserve(walls.size());
     for (auto& [group, points] : walls) all.push_back(std::move(points));
     return all;
   }
@@ -272,6 +273,7 @@ Vec3 SharedSpace::easiest_direction(const std::vector<Vec3>& starts) const {
     double cost;
   };
   std::vector<Start> list;
+  list.reserve(starts.size());
   for (const Vec3& n : starts) list.push_back({n, cost(n)});
   std::stable_sort(list.begin(), list.end(), [](const Start& x, const Start& y) { return x.cost < y.cost; });
   list.resize(std::min<std::size_t>(list.size(), 3));
