@@ -250,15 +250,11 @@ class Relaxer {
     DisplacementSystem system(strands_, tie_strands(strands_, options_.periods), stiffness, modes_);
     NearSkins skins(strands_);
     for (const FixedPoint& point : options_.fixed) system.hold(point.yarn, point.parameter);
-    std::vector<Facing> overlooked;  // by samples, as the exact check found
     double least_missing = infinity;
     int best = 0, verdicts = 0;
     for (int step = 0;; ++step, ++out_.iterations) {
       std::vector<Facing> facings = find(skins);
-      double missing = overlooked.empty() ? -infinity : 0.0;
-      for (const Facing& f : facings) missing = std::max(missing, missing_in(f));
-      facings.insert(facings.end(), overlooked.begin(), overlooked.end());
-      overlooked.clear();
+      double missing = -infinity;
       for (const Facing& f : facings) missing = std::max(missing, missing_in(f));
       if (options_.progress && !options_.progress(out_.iterations, missing))
         return stop("it was interrupted");
@@ -267,8 +263,8 @@ class Relaxer {
         if (!left) return left.error();
         if (left->empty()) return {};
         if (++verdicts == most_verdicts) return stop("what is left between the yarns does not get wider");
-        overlooked = std::move(*left);
-        facings.insert(facings.end(), overlooked.begin(), overlooked.end());
+        // What the samples overlooked joins this step; the next one finds it as it is then.
+        facings.insert(facings.end(), left->begin(), left->end());
       } else if (missing < 0.9 * least_missing) {
         least_missing = missing;
         best = step;
