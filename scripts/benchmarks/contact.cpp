@@ -28,7 +28,7 @@
 
 #include "contact/box_tree.h"
 #include "core/parallel.h"
-#include "fabric/build.h"
+#include "scripts/benchmarks/built.h"
 #include "solid/tessellation.h"
 
 namespace {
@@ -45,10 +45,7 @@ struct Settings {
   double peer_limit = 60;  // s, for the pairs of one cloth
 };
 
-[[noreturn]] void fail(const std::string& text) {
-  fmt::print(stderr, "error: {}\n", text);
-  std::exit(1);
-}
+using benchmarks::fail;
 
 double since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
@@ -76,16 +73,7 @@ std::vector<yarn::Body> cloth_of(bool weave, int size) {
   cloth.threads = {thread};
   fabric::BuildOptions options;
   options.as_published = !weave;
-  Diagnostics diagnostics;
-  const std::optional<fabric::YarnBuilder> builder = fabric::YarnBuilder::create(cloth, options, diagnostics);
-  if (!builder) fail(to_string(*diagnostics.first_error()));
-  std::vector<yarn::Body> bodies;
-  for (std::size_t i = 0; i < builder->count(); ++i) {
-    Result<yarn::Body> body = builder->build(i);
-    if (!body) fail(to_string(body.error()));
-    bodies.push_back(std::move(*body));
-  }
-  return bodies;
+  return benchmarks::built(cloth, options);
 }
 
 contact::Contacts contacts_of(const std::vector<yarn::Body>& bodies, int threads, double reach) {

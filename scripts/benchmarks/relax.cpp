@@ -16,16 +16,13 @@
 #include <string>
 #include <vector>
 
-#include "fabric/build.h"
+#include "scripts/benchmarks/built.h"
 
 namespace {
 
 using namespace selvage;
 
-[[noreturn]] void fail(const std::string& text) {
-  fmt::print(stderr, "error: {}\n", text);
-  std::exit(1);
-}
+using benchmarks::fail;
 
 std::vector<yarn::Body> published_jersey(int size) {
   fabric::Fabric cloth;
@@ -39,16 +36,7 @@ std::vector<yarn::Body> published_jersey(int size) {
   cloth.items = {knit};
   fabric::BuildOptions options;
   options.as_published = true;
-  Diagnostics diagnostics;
-  const std::optional<fabric::YarnBuilder> builder = fabric::YarnBuilder::create(cloth, options, diagnostics);
-  if (!builder) fail(to_string(*diagnostics.first_error()));
-  std::vector<yarn::Body> bodies;
-  for (std::size_t i = 0; i < builder->count(); ++i) {
-    Result<yarn::Body> body = builder->build(i);
-    if (!body) fail(to_string(body.error()));
-    bodies.push_back(std::move(*body));
-  }
-  return bodies;
+  return benchmarks::built(cloth, options);
 }
 
 double largest(const std::vector<contact::YarnChange>& changes, double contact::YarnChange::*value) {

@@ -27,6 +27,8 @@
 #include <cmath>
 #include <gp_Pln.hxx>
 
+#include "nurbs/turn.h"
+
 namespace selvage::solid::occt {
 
 namespace {
@@ -143,19 +145,6 @@ struct Outline {
   std::vector<double> parameters;  // of the body's u: one more than edges
 };
 
-// Row v = first or last of the surface, or column u = first or last, as a curve.
-Curve column(const Surface& surface, bool last) {
-  Curve curve;
-  curve.degree = surface.degree_v;
-  curve.knots = surface.knots_v;
-  const int i = last ? surface.count_u - 1 : 0;
-  for (int j = 0; j < surface.count_v; ++j) {
-    curve.points.push_back(surface.point(i, j));
-    if (surface.is_rational()) curve.weights.push_back(surface.weight(i, j));
-  }
-  return curve;
-}
-
 class ShapeBuilder {
  public:
   ShapeBuilder(const yarn::Body& body, double scale) : body_(body), scale_(scale) {}
@@ -248,7 +237,7 @@ class ShapeBuilder {
     const Surface& s = body_.surface;
     const double u0 = s.first_u(), u1 = s.last_u(), v0 = s.first_v(), v1 = s.last_v();
     TopoDS_Face face = make_face(spatial_surface(s, scale_));
-    const TopoDS_Edge seam = make_edge(column(s, false), start.corners[0], end.corners[0]);
+    const TopoDS_Edge seam = make_edge(nurbs::boundary_column(s, false), start.corners[0], end.corners[0]);
     set_seam(seam, straight(v0, v1, {u1, v0}, {u1, v1}), straight(v0, v1, {u0, v0}, {u0, v1}), face);
     const auto set_row = [&](const Outline& outline, double v) {
       for (std::size_t i = 0; i < outline.edges.size(); ++i) {
@@ -271,7 +260,7 @@ class ShapeBuilder {
     TopoDS_Face face = make_face(spatial_surface(s, scale_));
     const TopoDS_Vertex vertex = make_vertex(point(s.point(0, 0), scale_));
     const TopoDS_Edge round = make_edge(yarn::end_curve(body_, false), vertex, vertex);
-    const TopoDS_Edge along = make_edge(column(s, false), vertex, vertex);
+    const TopoDS_Edge along = make_edge(nurbs::boundary_column(s, false), vertex, vertex);
     set_seam(round, straight(u0, u1, {u0, v0}, {u1, v0}), straight(u0, u1, {u0, v1}, {u1, v1}), face);
     set_seam(along, straight(v0, v1, {u1, v0}, {u1, v1}), straight(v0, v1, {u0, v0}, {u0, v1}), face);
     finish_face(face, {round, along, round.Reversed(), along.Reversed()}, body_.inward);
@@ -309,8 +298,9 @@ class ShapeBuilder {
     std::vector<Curve> sides;
     const Surface& s = end.surface;
     if (end.style == yarn::EndStyle::patch) {
-      sides = {nurbs::boundary_row(s, false), column(s, true), nurbs::reversed(nurbs::boundary_row(s, true)),
-               nurbs::reversed(column(s, false))};
+      sides = {nurbs::boundary_row(s, false), nurbs::boundary_column(s, true),
+               nurbs::reversed(nurbs::boundary_row(s, true)),
+               nurbs::reversed(nurbs::boundary_column(s, false))};
     } else if (end.style == yarn::EndStyle::fan) {
       sides = {nurbs::boundary_row(s, false)};
     } else {
@@ -351,7 +341,7 @@ class ShapeBuilder {
     const double u0 = s.first_u(), u1 = s.last_u(), v0 = s.first_v(), v1 = s.last_v();
     TopoDS_Face face = make_face(spatial_surface(s, scale_));
     const TopoDS_Vertex centre = make_vertex(point(s.point(0, s.count_v - 1), scale_));
-    const TopoDS_Edge seam = make_edge(column(s, false), outline.corners[0], centre);
+    const TopoDS_Edge seam = make_edge(nurbs::boundary_column(s, false), outline.corners[0], centre);
     set_seam(seam, straight(v0, v1, {u1, v0}, {u1, v1}), straight(v0, v1, {u0, v0}, {u0, v1}), face);
     set_pcurve(outline.edges[0], straight(u0, u1, {u0, v0}, {u1, v0}), face);
     // The pole: an edge in parameter space only.

@@ -1,0 +1,34 @@
+// All yarns of a fabric, or the end of the program with what went wrong.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fabric/build.h"
+
+namespace selvage::benchmarks {
+
+[[noreturn]] inline void fail(const std::string& text) {
+  fmt::print(stderr, "error: {}\n", text);
+  std::exit(1);
+}
+
+inline std::vector<yarn::Body> built(const fabric::Fabric& cloth, const fabric::BuildOptions& options) {
+  Diagnostics diagnostics;
+  const std::optional<fabric::YarnBuilder> builder = fabric::YarnBuilder::create(cloth, options, diagnostics);
+  if (!builder) fail(to_string(*diagnostics.first_error()));
+  std::vector<yarn::Body> bodies;
+  for (std::size_t i = 0; i < builder->count(); ++i) {
+    Result<yarn::Body> body = builder->build(i);
+    if (!body) fail(to_string(body.error()));
+    bodies.push_back(std::move(*body));
+  }
+  return bodies;
+}
+
+}  // namespace selvage::benchmarks
