@@ -1,8 +1,9 @@
-// Tetrahedra with what a solver needs to know of them. Lengths in mm, moduli in MPa, densities in tonne/mm3
+// Elements with what a solver needs to know of them. Lengths in mm, moduli in MPa, densities in tonne/mm3
 // (Abaqus's consistent set mm, N, s, tonne), angles in degrees.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,36 +29,103 @@ struct BadElement {
   Vec3 at = Vec3::Zero();
 };
 
-// One yarn's part of the mesh: elements [first_element, last_element) of Mesh::elements, nodes alike (yarns
-// of a dry fabric share no nodes).
+// One yarn's part of the mesh, or the matrix: elements [first_element, last_element) of Mesh::elements. Yarns
+// of a dry fabric share no nodes, and theirs are [first_node, last_node); regions of a unit cell share those
+// between them, and these two are 0.
 struct Region {
-  std::string name;      // the yarn's
+  enum class Kind { yarn, matrix };
+  Kind kind = Kind::yarn;
+  std::string name;      // the yarn's, or "matrix"
   std::string material;  // key of Mesh::materials, may be empty
   std::size_t first_element = 0, last_element = 0;
   std::size_t first_node = 0, last_node = 0;
   std::vector<std::size_t> start_nodes, end_nodes;  // on the end faces; empty for a ring
-  // Boundary triangles (corner nodes only, outward): body, then start and end face.
+  // Boundary triangles (corner nodes only, outward of the yarn): body, then start and end face. Of the
+  // matrix, and of what the faces of a unit cell cut, there are none here.
   std::vector<std::array<std::size_t, 3>> side_faces, start_faces, end_faces;
   double volume = 0;        // of the elements
   double exact_volume = 0;  // of the B-spline yarn
   Quality quality;
 };
 
+// A node of the yarns' surfaces: where it stands.
+struct SurfacePlace {
+  std::size_t body = 0;
+  Vec2 parameters = Vec2::Zero();  // (u, v)
+};
+
+// The box that a mesh fills: a unit cell. Nodes stand on its faces exactly.
+struct UnitCell {
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // mm
+  std::array<bool, 3> periodic{};                // x, y, z
+  // Faces in the order A..F: x high, x low, y high, y low, z high, z low. Nodes without those on edges and
+  // corners; where an axis is periodic, the k-th of its high face is opposite the k-th of its low one. With
+  // order 2 midside nodes too.
+  std::array<std::vector<std::size_t>, 6> face_nodes;
+  // Without corners; number 4 a + k as in cell/cut.h. Where an axis across is periodic, the edges that face
+  // each other over it have equally many, in the same order (increasing coordinate).
+  std::array<std::vector<std::size_t>, 12> edge_nodes;
+  std::array<std::size_t, 8> corners{};  // bit 0, 1, 2 of the number: high in x, y, z
+  // The element sides on the faces, same order A..F, corner nodes only, seen from outside counter-clockwise
+  // (three of a tetrahedron; four of a hexahedron); where an axis is periodic, the k-th opposite the k-th.
+  std::array<std::vector<std::array<std::size_t, 4>>, 6>
+      face_sides;  // of a triangle the last entry repeats the third
+};
+
+// One condition: sum of factor times displacement = 0. The first term's is the one that is eliminated.
+struct Term {
+  std::size_t node = 0;  // of Mesh::nodes; from Mesh::nodes.size() on: Mesh::drivers
+  int direction = 0;     // 0, 1, 2: x, y, z
+  double factor = 0;
+};
+using Equation = std::vector<Term>;
+
+// A node without a place in the mesh whose displacement along x is a strain (or a curvature, 1/mm) of the
+// whole cell; the force on it is the stress times the cell's volume (plate: force, moment a length times its
+// area).
+struct Driver {
+  std::string name;  // ConstraintsDriver0 .. 5: strains xx, yy, zz, xy, xz, yz (shear: engineering, gamma);
+                     // of a plate 0, 1, 3, and CurvatureDriver0 .. 2: curvatures xx, yy, xy (twice)
+  Vec3 at = Vec3::Zero();  // anywhere
+};
+
+// What is prescribed in one step: of each driver its value (none: free), and the temperature over the
+// unstressed one.
+struct LoadCase {
+  std::string name;
+  std::vector<std::optional<double>> drivers;
+  double temperature = 0;  // K
+};
+
 struct Mesh {
-  int order = 1;  // 1: four nodes; 2: ten
+  enum class Shape { tetrahedron, hexahedron };
+  Shape shape = Shape::tetrahedron;
+  int order = 1;  // 1: corners; 2: ten nodes a tetrahedron
   std::vector<Vec3> nodes;
   // Node indices from 0. Order of a ten-node tetrahedron: corners 0-3 with positive volume
   // ((p1-p0) x (p2-p0)) . (p3-p0) > 0, then the midpoints of the edges 01 12 20 03 13 23 (Abaqus C3D10, VTK).
-  std::vector<std::array<std::size_t, 10>> elements;  // entries 4-9 unused with order 1
-  // Unit tangent of the yarn, and a unit vector across the section, in each element.
+  // Of a hexahedron: four counter-clockwise seen from the other four, which stand over them (Abaqus C3D8,
+  // VTK).
+  std::vector<std::array<std::size_t, 10>> elements;  // the rest unused
+  // Unit tangent of the yarn, and a unit vector across the section, in each element; x and y in the matrix.
   std::vector<Vec3> along, across;
+  // Share of the section that is fibre, in each element: 0 in the matrix, NaN where nothing is known of a
+  // yarn. Empty: not computed.
+  std::vector<double> fibre_fraction;
   std::vector<Region> regions;
   std::vector<fabric::Material> materials;
+  // Index into `materials` for each element; empty: by Region::material.
+  std::vector<std::uint32_t> element_material;
+  std::optional<UnitCell> cell;
+  std::vector<Driver> drivers;
+  std::vector<Equation> equations;
+  std::vector<LoadCase> load_cases;
   std::string title;
   Quality quality;
   std::vector<BadElement> worst;  // at most ten, worst first
 
-  [[nodiscard]] int nodes_per_element() const { return order == 1 ? 4 : 10; }
+  [[nodiscard]] int corners_per_element() const { return shape == Shape::tetrahedron ? 4 : 8; }
+  [[nodiscard]] int nodes_per_element() const { return shape == Shape::hexahedron ? 8 : order == 1 ? 4 : 10; }
 };
 
 }  // namespace selvage::fem
