@@ -1,0 +1,56 @@
+// Tetrahedra of several regions made better: their smallest dihedral angle is raised to a target, while every
+// triangle of the surface and between regions stays exactly as it is.
+//
+// Local operations that each raise the smallest angle of what they touch (hill climbing): removal of inner
+// edges by the best triangulation of the ring round them (Klincsek, Canadian J. Math. 32, 1980; with it the
+// flips 3-2, 4-4 and all others of one edge), its open form at edges of the surface and part of a ring (with
+// it the flip 2-3), smoothing of inner points by the smallest angle of their star (after Freitag and
+// Ollivier-Gooch, Int. J. Numer. Meth. Engng 40, 1997), contraction of inner edges, and a new point in a
+// cavity that grows from a bad tetrahedron (after Klingner and Shewchuk, 16th Int. Meshing Roundtable, 2007).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace selvage::fem {
+
+// A tetrahedron that is still below the target.
+struct BelowTarget {
+  // geometry: two triangles of the surface meet in the edge under a wedge that is sharper than the target:
+  // no mesh of this surface can be better. surface: all its corners are on the surface, whose triangles are
+  // too long for the gap. inner: nothing helped.
+  enum class Cause { geometry, surface, inner } cause = Cause::inner;
+  std::size_t cell = 0;
+  double angle = 0;  // its smallest dihedral angle, degrees
+  double wedge = 0;  // of the geometry: degrees
+  Vec3 at = Vec3::Zero();
+  // Cause::surface: the longest edge of the surface that the gap here asks for, three times its width.
+  double edge_needed = 0;
+};
+
+struct Improvement {
+  double angle_before = 180, angle_after = 180;  // smallest dihedral angle, degrees
+  std::size_t below_before = 0;                  // tetrahedra below the target
+  std::vector<BelowTarget> below;                // after, worst first
+  std::size_t points_added = 0, points_removed = 0;
+};
+
+struct ImproveOptions {
+  double target = 10;  // degrees, 0..30
+  int passes = 8;      // over the tetrahedra below it; work is linear in their number
+};
+
+// `cells`: corners with positive volume; `regions`: of each cell. The first `fixed_points` points and every
+// other one on the surface or between regions stay where they are, inner ones move, come and go, so that
+// points are numbered anew behind the fixed ones, and the cells change in number and order. The smallest
+// angle is never less afterwards. The same input gives the same result, to the bit.
+Improvement improve(std::vector<Vec3>& points, std::vector<std::array<std::uint32_t, 4>>& cells,
+                    std::vector<std::uint32_t>& regions, std::size_t fixed_points,
+                    const ImproveOptions& options);
+
+}  // namespace selvage::fem
