@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,11 +35,13 @@ int edge_between(int face_a, int face_b);  // of faces of different axes
 std::array<int, 2> faces_of_edge(int edge);
 Vec3 edge_point(const Box3& box, int edge, double along);  // along: the coordinate of its own axis
 
-// A stretch of the border of what lies inside: in one face of the box, or along the yarn's own end. Where
-// the end lies in a face of the box (within the tolerance), it is that face's.
+// A stretch of the border of what lies inside: where the yarn's surface goes through a face of the box, or
+// where it ends. An end that lies in a face of the box (within the tolerance) is that face's.
 struct Arc {
   static constexpr int own_start = 6, own_end = 7;
-  int face = 0;  // 0..5, own_start, own_end
+  int face = 0;  // 0..5; own_start, own_end: an end inside the box
+  enum class Along { through, start, end };
+  Along along = Along::through;  // start, end: along the first or last v of the surface
   // Consecutive points of the curve, as parameters; the surface is inside on the left of the way (u to the
   // right, v up). u goes on past the ends of the domain where the curve crosses the seam, v likewise on a
   // ring. First and last: corners, where the next arc of the border goes on, or, of an arc that is a border
@@ -63,8 +64,8 @@ struct Piece {
 };
 
 struct CutOptions {
-  // File units. An end face this near a face of the box lies in it; what reaches less far through a face, or
-  // into the box, is left as it is, with a note.
+  // File units, > 0. An end face this near a face of the box lies in it; a part of a yarn that reaches less
+  // far into the box is left out, with a note.
   double tolerance = 0;
 };
 
@@ -78,7 +79,8 @@ Vec3 position(const yarn::Body& body, Vec2 parameters);
 nurbs::SurfaceJet jet(const yarn::Body& body, Vec2 parameters);
 
 // Errors (geometry), each with the yarn and the place: an end face that is partly inside the box (askew to
-// the face that it ends near), no yarn that enters the box.
+// the face that it ends near); a yarn that reaches through a face of the box by less than the tolerance; a
+// box thinner than what the yarns are sampled by; no yarn that enters the box.
 Result<Cut> cut(std::span<const yarn::Body> bodies, const Box3& box, const CutOptions& options);
 
 // An arc as a curve with a length: exact points between those that are kept.
@@ -98,7 +100,9 @@ class ArcCurve {
  private:
   const yarn::Body* body_;
   const Arc* arc_;
-  std::optional<double> plane_;  // none: along an own end
+  int axis_ = -1;  // of the face; -1: an end inside the box
+  double plane_ = 0;
+  std::vector<Vec3> points_;
   std::vector<double> lengths_;
 };
 
