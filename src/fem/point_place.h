@@ -1,0 +1,37 @@
+// The best place for one inner point.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace selvage::fem {
+
+using StarSide = std::array<Vec3, 3>;  // (point, side) is positive
+
+// The smallest tet_quality of the point over the sides, or any value at most `enough` when it falls below
+// that.
+double star_quality(const Vec3& at, std::span<const StarSide> sides, double enough);
+
+// Moves a point within the sides of its star such that the smallest dihedral angle of all its tetrahedra
+// grows: steepest ascent of a minimum of smooth functions, along the shortest vector in the hull of the
+// gradients of those that are smallest. Stops when `goal` (a quality) is reached. Returns the quality there.
+class PointPlace {
+ public:
+  double improve(Vec3& at, std::span<const StarSide> sides, double goal);
+
+ private:
+  struct Angle {
+    double value = 0;  // radians
+    Vec3 slope = Vec3::Zero();
+  };
+  void measure(const Vec3& at, std::span<const StarSide> sides, double below);
+
+  std::vector<double> qualities_;
+  std::vector<Angle> angles_;
+  std::vector<Vec3> active_;
+};
+
+}  // namespace selvage::fem

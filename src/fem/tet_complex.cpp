@@ -1,0 +1,216 @@
+#include "fem/tet_complex.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace selvage::fem {
+
+double tet_quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Vec3 ab = b - a, ac = c - a, ad = d - a;
+  std::array<Vec3, 4> normals;  // outward, of the side opposite each corner
+  normals[3] = ac.cross(ab);
+  normals[2] = ab.cross(ad);
+  normals[1] = ad.cross(ac);
+  if (!(normals[3].dot(ad) < 0)) return inverted_quality;
+  normals[0] = -(normals[1] + normals[2] + normals[3]);
+  std::array<double, 4> squares{};
+  for (std::size_t i = 0; i < 4; ++i) squares[i] = normals[i].squaredNorm();
+  double least = 1;  // of signed squares of cosines
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      const double dot = normals[i].dot(normals[j]);
+      least = std::min(least, dot * std::abs(dot) / (squares[i] * squares[j]));
+    }
+  if (!(least <= 1)) return inverted_quality;
+  return least < 0 ? -std::sqrt(-least) : std::sqrt(least);
+}
+
+double angle_of_quality(double quality) {
+  return quality <= -1 ? 0 : std::acos(std::clamp(-quality, -1.0, 1.0)) * 180 / std::numbers::pi;
+}
+
+double quality_of_angle(double degrees) {
+  return -std::cos(degrees * std::numbers::pi / 180);
+}
+
+TetFace TetComplex::sorted_side(const Tetrahedron& t, std::size_t slot) {
+  const auto& side = opposite_sides[slot];
+  TetFace result = {t[side[0]], t[side[1]], t[side[2]]};
+  if (result[0] > result[1]) std::swap(result[0], result[1]);
+  if (result[1] > result[2]) std::swap(result[1], result[2]);
+  if (result[0] > result[1]) std::swap(result[0], result[1]);
+  return result;
+}
+
+TetComplex::TetComplex(std::vector<Vec3> all_points, std::span<const Tetrahedron> cells,
+                       std::span<const std::uint32_t> regions, std::size_t fixed_points)
+    : points(std::move(all_points)) {
+  cells_.resize(cells.size());
+  cell_at_.assign(points.size(), none);
+  fixed_.assign(points.size(), 0);
+  std::fill_n(fixed_.begin(), std::min(fixed_points, points.size()), std::uint8_t{1});
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    cells_[c] = {.corners = cells[c],
+                 .beside = {none, none, none, none},
+                 .region = regions[c],
+                 .quality = quality(cells[c])};
+    for (const std::uint32_t corner : cells[c]) cell_at_[corner] = static_cast<std::uint32_t>(c);
+  }
+  seen_.assign(cells_.size(), 0);
+  connect_all();
+  mark_walls();
+}
+
+// Sides are sorted into buckets by their smallest corner, and matched within each.
+void TetComplex::connect_all() {
+  std::vector<std::uint32_t> begin(points.size() + 1, 0);
+  for (const Cell& cell : cells_)
+    for (std::size_t slot = 0; slot < 4; ++slot) ++begin[sorted_side(cell.corners, slot)[0] + 1];
+  for (std::size_t p = 0; p < points.size(); ++p) begin[p + 1] += begin[p];
+  std::vector<OpenSide> sides(4 * cells_.size());
+  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+  for (std::uint32_t c = 0; c < cells_.size(); ++c)
+    for (std::uint32_t slot = 0; slot < 4; ++slot) {
+      const TetFace side = sorted_side(cells_[c].corners, slot);
+      sides[next[side[0]]++] = {side, c, slot};
+    }
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const auto first = sides.begin() + begin[p], last = sides.begin() + begin[p + 1];
+    std::sort(first, last, [](const OpenSide& a, const OpenSide& b) {
+      return a.corners != b.corners ? a.corners < b.corners : a.cell < b.cell;
+    });
+    for (auto side = first; side != last && side + 1 != last; ++side) {
+      const OpenSide &a = *side, &b = *(side + 1);
+      if (a.corners != b.corners || cells_[a.cell].region != cells_[b.cell].region) continue;
+      cells_[a.cell].beside[a.slot] = b.cell;
+      cells_[b.cell].beside[b.slot] = a.cell;
+    }
+  }
+}
+
+void TetComplex::mark_walls() {
+  for (const Cell& cell : cells_)
+    for (std::size_t slot = 0; slot < 4; ++slot) {
+      if (cell.beside[slot] != none) continue;
+      for (const std::size_t k : opposite_sides[slot]) fixed_[cell.corners[k]] = 1;
+    }
+}
+
+void TetComplex::star(std::uint32_t point, std::vector<std::uint32_t>& found) const {
+  found.clear();
+  if (cell_at_[point] == none) return;
+  ++walk_;
+  found.push_back(cell_at_[point]);
+  seen_[found.front()] = walk_;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const Cell& cell = cells_[found[k]];
+    for (std::size_t slot = 0; slot < 4; ++slot) {
+      const std::uint32_t next = cell.beside[slot];
+      if (cell.corners[slot] == point || next == none || seen_[next] == walk_) continue;
+      seen_[next] = walk_;
+      found.push_back(next);
+    }
+  }
+}
+
+bool TetComplex::ring(std::uint32_t first, std::size_t edge, std::size_t most, Ring& ring) const {
+  const auto slot_of = [this](std::uint32_t c, std::uint32_t corner) {
+    const Tetrahedron& t = cells_[c].corners;
+    return static_cast<std::size_t>(std::find(t.begin(), t.end(), corner) - t.begin());
+  };
+  const auto& order = edge_corners[edge];
+  const Tetrahedron& t = cells_[first].corners;
+  ring.from = t[order[0]];
+  ring.to = t[order[1]];
+  ring.around = {t[order[2]], t[order[3]]};
+  ring.cells = {first};
+  ring.closed = false;
+  // The corner of a cell that is neither on the edge nor `known`.
+  const auto other = [&](std::uint32_t c, std::uint32_t known) {
+    for (const std::uint32_t corner : cells_[c].corners)
+      if (corner != ring.from && corner != ring.to && corner != known) return corner;
+    return none;
+  };
+  for (;;) {
+    const std::uint32_t behind = ring.around[ring.around.size() - 2];
+    const std::uint32_t next = cells_[ring.cells.back()].beside[slot_of(ring.cells.back(), behind)];
+    if (next == none) break;
+    if (next == first) {
+      ring.around.pop_back();
+      ring.closed = true;
+      return true;
+    }
+    ring.around.push_back(other(next, ring.around.back()));
+    ring.cells.push_back(next);
+    if (ring.cells.size() > most) return false;
+  }
+  // A wall: the other way round from the first cell.
+  for (;;) {
+    const std::uint32_t next = cells_[ring.cells.front()].beside[slot_of(ring.cells.front(), ring.around[1])];
+    if (next == none) return true;
+    ring.around.insert(ring.around.begin(), other(next, ring.around.front()));
+    ring.cells.insert(ring.cells.begin(), next);
+    if (ring.cells.size() > most) return false;
+  }
+}
+
+std::uint32_t TetComplex::add_point(const Vec3& at) {
+  points.push_back(at);
+  cell_at_.push_back(none);
+  fixed_.push_back(0);
+  return static_cast<std::uint32_t>(points.size() - 1);
+}
+
+void TetComplex::replace(std::span<const std::uint32_t> old_cells, std::span<const Tetrahedron> new_cells,
+                         std::vector<std::uint32_t>& added) {
+  const std::uint32_t region = cells_[old_cells.front()].region;
+  open_.clear();
+  ++walk_;
+  for (const std::uint32_t c : old_cells) seen_[c] = walk_;
+  // What is left open outside, named by the neighbour's side.
+  for (const std::uint32_t c : old_cells)
+    for (std::size_t slot = 0; slot < 4; ++slot) {
+      const std::uint32_t out = cells_[c].beside[slot];
+      if (out == none || seen_[out] == walk_) continue;
+      const auto& back = cells_[out].beside;
+      const auto there = static_cast<std::uint32_t>(std::find(back.begin(), back.end(), c) - back.begin());
+      open_.push_back({sorted_side(cells_[c].corners, slot), out, there});
+    }
+  for (const std::uint32_t c : old_cells) {
+    for (const std::uint32_t corner : cells_[c].corners) cell_at_[corner] = none;
+    cells_[c].corners[0] = none;
+    free_.push_back(c);
+  }
+  added.clear();
+  for (const Tetrahedron& t : new_cells) {
+    if (free_.empty()) {
+      free_.push_back(static_cast<std::uint32_t>(cells_.size()));
+      cells_.emplace_back();
+      seen_.push_back(0);
+    }
+    const std::uint32_t c = free_.back();
+    free_.pop_back();
+    cells_[c] = {.corners = t, .beside = {none, none, none, none}, .region = region, .quality = quality(t)};
+    added.push_back(c);
+    for (std::uint32_t slot = 0; slot < 4; ++slot) open_.push_back({sorted_side(t, slot), c, slot});
+    for (const std::uint32_t corner : t) cell_at_[corner] = c;
+  }
+  std::sort(open_.begin(), open_.end(), [](const OpenSide& a, const OpenSide& b) {
+    return a.corners != b.corners ? a.corners < b.corners : a.cell < b.cell;
+  });
+  for (std::size_t k = 0; k + 1 < open_.size(); ++k) {
+    const OpenSide &a = open_[k], &b = open_[k + 1];
+    if (a.corners != b.corners) continue;
+    cells_[a.cell].beside[a.slot] = b.cell;
+    cells_[b.cell].beside[b.slot] = a.cell;
+  }
+}
+
+void TetComplex::measure_star(std::uint32_t point) {
+  std::vector<std::uint32_t> cells;
+  star(point, cells);
+  for (const std::uint32_t c : cells) cells_[c].quality = quality(cells_[c].corners);
+}
+
+}  // namespace selvage::fem

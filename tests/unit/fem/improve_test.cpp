@@ -1,0 +1,256 @@
+#include "fem/improve.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "core/module.h"
+#include "fem/quality.h"
+#include "fem/surface_mesh.h"
+#include "fem/worker.h"
+#include "unit/fem/bodies.h"
+#include "unit/fem/plates.h"
+
+namespace selvage::fem {
+namespace {
+
+using Cell = std::array<std::uint32_t, 4>;
+
+struct Tets {
+  std::vector<Vec3> points;
+  std::vector<Cell> cells;
+  std::vector<std::uint32_t> regions;
+  std::size_t fixed = 0;
+};
+
+ElementShape shape(const Tets& tets, const Cell& cell) {
+  return shape_of({tets.points[cell[0]], tets.points[cell[1]], tets.points[cell[2]], tets.points[cell[3]]});
+}
+
+double least_angle(const Tets& tets) {
+  double least = 180;
+  for (const Cell& cell : tets.cells) least = std::min(least, shape(tets, cell).min_dihedral);
+  return least;
+}
+
+// Triangles that only one cell of their region has, with the region, increasing.
+std::vector<std::array<std::uint32_t, 4>> walls(const Tets& tets) {
+  std::map<std::array<std::uint32_t, 4>, int> count;
+  for (std::size_t c = 0; c < tets.cells.size(); ++c)
+    for (std::size_t k = 0; k < 4; ++k) {
+      std::array<std::uint32_t, 4> side{};
+      for (std::size_t j = 0, n = 0; j < 4; ++j)
+        if (j != k) side[n++] = tets.cells[c][j];
+      std::sort(side.begin(), side.begin() + 3);
+      side[3] = tets.regions[c];
+      ++count[side];
+    }
+  std::vector<std::array<std::uint32_t, 4>> result;
+  for (const auto& [side, times] : count) {
+    EXPECT_LE(times, 2);
+    if (times == 1) result.push_back(side);
+  }
+  return result;
+}
+
+std::map<std::uint32_t, double> volumes(const Tets& tets) {
+  std::map<std::uint32_t, double> result;
+  for (std::size_t c = 0; c < tets.cells.size(); ++c) {
+    const Cell& t = tets.cells[c];
+    const Vec3& o = tets.points[t[0]];
+    const double six = (tets.points[t[1]] - o).cross(tets.points[t[2]] - o).dot(tets.points[t[3]] - o);
+    EXPECT_GT(six, 0);
+    result[tets.regions[c]] += six / 6;
+  }
+  return result;
+}
+
+// Improves it and checks what must hold whatever the mesh.
+Improvement improved(Tets& tets, double target) {
+  const Tets before = tets;
+  Improvement result = improve(tets.points, tets.cells, tets.regions, tets.fixed, {.target = target});
+  EXPECT_NEAR(result.angle_before, least_angle(before), 1e-6);
+  EXPECT_NEAR(result.angle_after, least_angle(tets), 1e-6);
+  EXPECT_GE(result.angle_after, result.angle_before - 1e-9);
+  EXPECT_GE(tets.points.size(), tets.fixed);
+  for (std::size_t p = 0; p < std::min(tets.fixed, tets.points.size()); ++p)
+    EXPECT_EQ(tets.points[p], before.points[p]);
+  EXPECT_EQ(walls(tets), walls(before));
+  const auto old_volumes = volumes(before), new_volumes = volumes(tets);
+  EXPECT_EQ(old_volumes.size(), new_volumes.size());
+  for (const auto& [region, volume] : old_volumes)
+    EXPECT_NEAR(new_volumes.at(region), volume, 1e-11 * volume) << region;
+  const auto below = std::count_if(tets.cells.begin(), tets.cells.end(), [&](const Cell& cell) {
+    return shape(tets, cell).min_dihedral < target - 1e-9;
+  });
+  EXPECT_EQ(static_cast<std::size_t>(below), result.below.size());
+  Tets again = before;
+  improve(again.points, again.cells, again.regions, again.fixed, {.target = target});
+  EXPECT_EQ(again.cells, tets.cells);
+  EXPECT_EQ(again.points, tets.points);
+  return result;
+}
+
+// n^3 cubes of six tetrahedra each (Kuhn), two regions: x below and above the middle. Inner points are moved
+// by up to `shake` of an edge along each axis, where every cell at them stays positive.
+Tets shaken_cubes(std::uint32_t n, double shake) {
+  Tets tets;
+  const auto number = [n](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return x + (n + 1) * (y + (n + 1) * z);
+  };
+  for (std::uint32_t z = 0; z <= n; ++z)
+    for (std::uint32_t y = 0; y <= n; ++y)
+      for (std::uint32_t x = 0; x <= n; ++x) tets.points.emplace_back(x, y, z);
+  std::vector<std::vector<std::size_t>> at(tets.points.size());
+  for (std::uint32_t z = 0; z < n; ++z)
+    for (std::uint32_t y = 0; y < n; ++y)
+      for (std::uint32_t x = 0; x < n; ++x) {
+        std::array<int, 3> axes = {0, 1, 2};
+        do {
+          std::array<std::uint32_t, 3> corner = {x, y, z};
+          Cell cell{};
+          for (std::size_t k = 0; k < 4; ++k) {
+            cell[k] = number(corner[0], corner[1], corner[2]);
+            if (k < 3) ++corner[static_cast<std::size_t>(axes[k])];
+          }
+          const bool odd =
+              axes == std::array{0, 2, 1} || axes == std::array{1, 0, 2} || axes == std::array{2, 1, 0};
+          if (odd) std::swap(cell[2], cell[3]);
+          for (const std::uint32_t corner_number : cell) at[corner_number].push_back(tets.cells.size());
+          tets.cells.push_back(cell);
+          tets.regions.push_back(2 * x < n ? 7 : 3);
+        } while (std::next_permutation(axes.begin(), axes.end()));
+      }
+  std::mt19937 random(1);
+  const auto step = [&] { return shake * (2 * (static_cast<double>(random()) / 4294967296.0) - 1); };
+  for (std::uint32_t z = 1; z < n; ++z)
+    for (std::uint32_t y = 1; y < n; ++y)
+      for (std::uint32_t x = 1; x < n; ++x) {
+        if (2 * x == n) continue;
+        const std::uint32_t p = number(x, y, z);
+        const Vec3 old = tets.points[p];
+        tets.points[p] += Vec3(step(), step(), step());
+        const bool sound = std::all_of(at[p].begin(), at[p].end(), [&](std::size_t c) {
+          return shape(tets, tets.cells[c]).scaled_jacobian > 0;
+        });
+        if (!sound) tets.points[p] = old;
+      }
+  return tets;
+}
+
+Tets tetgen_mesh(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles, double volume) {
+  TetgenJob job{.points = points, .triangles = triangles};
+  job.max_volume = volume;
+  Result<TetMesh> mesh = run_tetgen(find_worker("selvage-tetgen").value(), job, {});
+  if (!mesh) {
+    ADD_FAILURE() << mesh.error().text;
+    return {};
+  }
+  return {mesh->points, mesh->cells, std::vector<std::uint32_t>(mesh->cells.size(), 0), points.size()};
+}
+
+TEST(Improve, CubesWithShakenPoints) {
+  Tets tets = shaken_cubes(8, 0.7);
+  const Improvement result = improved(tets, 20);
+  EXPECT_LT(result.angle_before, 2);
+  EXPECT_GT(result.below_before, 300U);
+  EXPECT_GE(result.angle_after, 20);
+  EXPECT_TRUE(result.below.empty());
+}
+
+TEST(Improve, WhatIsGoodEnoughIsLeftAlone) {
+  Tets tets = shaken_cubes(4, 0);
+  const Tets before = tets;
+  const Improvement result = improved(tets, 30);
+  EXPECT_EQ(tets.cells, before.cells);
+  EXPECT_EQ(tets.points, before.points);
+  EXPECT_NEAR(result.angle_after, 45, 1e-9);  // of Kuhn's tetrahedra
+}
+
+// Four points near a circle's plane, a quarter turn apart: TetGen's usual sliver. Above and below it the
+// octahedron's two tips.
+TEST(Improve, SliverInAnOctahedron) {
+  Tets tets;
+  tets.points = {{1, 0, 0.01}, {0, 1, -0.01}, {-1, 0, 0.01}, {0, -1, -0.01}, {0, 0, 1}, {0, 0, -1}};
+  // The sliver's upper two sides and its lower two, each with a tip, and the sliver between them.
+  tets.cells = {{0, 1, 2, 4}, {0, 2, 3, 4}, {0, 3, 1, 5}, {1, 3, 2, 5}, {0, 1, 2, 3}};
+  tets.regions.assign(5, 0);
+  tets.fixed = 6;
+  for (Cell& cell : tets.cells)
+    if (shape(tets, cell).scaled_jacobian < 0) std::swap(cell[2], cell[3]);
+  const Improvement result = improved(tets, 10);
+  EXPECT_LT(result.angle_before, 2.5);
+  EXPECT_GT(result.angle_after, 40);
+}
+
+// Near contact: with edges of up to four gaps TetGen's mesh comes to the target.
+TEST(Improve, GapsBetweenPlates) {
+  for (const double edge : {1.0, 2.0, 3.0, 4.0}) {
+    const test::ClosedSurface surface = test::two_plates(12, 1, edge);
+    Tets tets = tetgen_mesh(surface.points, surface.triangles, 0);
+    const Improvement result = improved(tets, 10);
+    EXPECT_GE(result.angle_after, 10) << edge;
+  }
+}
+
+// Where the surface is too coarse for its gap, the account says what it would have to be.
+TEST(Improve, SurfaceTooCoarseForItsGap) {
+  const test::ClosedSurface surface = test::two_plates(120, 1, 20);
+  Tets tets = tetgen_mesh(surface.points, surface.triangles, 0);
+  const Improvement result = improved(tets, 10);
+  ASSERT_FALSE(result.below.empty());
+  for (const BelowTarget& below : result.below) {
+    EXPECT_LT(below.angle, 10);
+    if (below.cause != BelowTarget::Cause::surface) continue;
+    EXPECT_GT(below.edge_needed, 0.5);
+    EXPECT_LT(below.edge_needed, 3.01);  // three gaps
+  }
+  EXPECT_EQ(result.below.front().angle, result.angle_after);
+}
+
+TEST(Improve, WedgeOfTheGeometryIsNamed) {
+  const double wedge = 4 * std::numbers::pi / 180;
+  Tets tets;
+  tets.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {std::cos(wedge), std::sin(wedge), 0.5}};
+  tets.cells = {{0, 1, 2, 3}};
+  tets.regions = {0};
+  tets.fixed = 4;
+  const Improvement result = improved(tets, 10);
+  ASSERT_EQ(result.below.size(), 1U);
+  EXPECT_EQ(result.below[0].cause, BelowTarget::Cause::geometry);
+  EXPECT_NEAR(result.below[0].wedge, 4, 1e-9);
+  EXPECT_NEAR(result.below[0].at.x(), 0, 1e-12);
+}
+
+// An edge of the surface with more cells in it than its angle bears: it loses some.
+TEST(Improve, EdgeOfTheSurfaceLosesCells) {
+  Tets tets;
+  tets.points = {{0, 0, 0}, {0, 0, 1}};
+  for (int k = 0; k < 4; ++k) {
+    const double angle = 7 * k * std::numbers::pi / 180;
+    const double radius = k == 0 || k == 3 ? 1.0 : 0.8;
+    tets.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.5);
+  }
+  for (std::uint32_t k = 0; k < 3; ++k) tets.cells.push_back({0, 1, 2 + k, 3 + k});
+  tets.regions.assign(3, 0);
+  tets.fixed = 2;
+  const Improvement result = improved(tets, 12);
+  EXPECT_LT(result.angle_before, 7.1);
+  EXPECT_GT(result.angle_after, result.angle_before);
+}
+
+TEST(Improve, YarnFromTetgen) {
+  const Result<SurfaceMesh> surface = mesh_surface(test::straight_tube(1, 0.5, 3), 0.1);
+  ASSERT_TRUE(surface.ok());
+  Tets tets = tetgen_mesh(surface->points, surface->triangles, 0.00013);
+  const Improvement result = improved(tets, 18);
+  EXPECT_LT(result.angle_before, 18);
+  EXPECT_GE(result.angle_after, 18);
+}
+
+}  // namespace
+}  // namespace selvage::fem
