@@ -8,7 +8,9 @@ namespace {
 
 // Chords stay within this share of the tolerance, round the section and along it.
 constexpr double chord_share = 0.125;
-constexpr int fewest = 2, most = 16;  // pieces of a span
+// Sides are at most this share of the box's smallest size, and of the section's where it is larger.
+constexpr double side_share = 0.25;
+constexpr double fewest = 2, most = 4096;  // pieces of a span
 
 // The span's ends and middles.
 std::vector<double> with_middles(const std::vector<double>& ends) {
@@ -20,8 +22,10 @@ std::vector<double> with_middles(const std::vector<double>& ends) {
   return all;
 }
 
-int pieces_for(double rise, double wanted) {
-  return std::clamp(static_cast<int>(std::ceil(std::sqrt(rise / wanted))), fewest, most);
+// Of a span of this length whose chord is this far from it.
+int pieces_for(double length, double rise, double longest, double wanted) {
+  return static_cast<int>(
+      std::clamp(std::ceil(std::max(length / longest, std::sqrt(rise / wanted))), fewest, most));
 }
 
 void divide(std::vector<double>& values, double from, double to, int pieces) {
@@ -55,22 +59,27 @@ void Sampling::choose_parameters(const yarn::Body& body, const Box3& box, double
   const std::vector<Vec3> points = nurbs::evaluate_grid(surface, all_u, all_v);
   const auto at = [&](std::size_t i, std::size_t j) -> const Vec3& { return points[j * all_u.size() + i]; };
   const double wanted = chord_share * tolerance;
+  const double longest = side_share * std::min(box.sizes().minCoeff(), yarn::widest_section(body));
   for (std::size_t i = 0; i + 1 < ends_u.size(); ++i) {
-    double rise = 0;
-    for (std::size_t j = 0; j < all_v.size(); ++j)
+    double rise = 0, length = 0;
+    for (std::size_t j = 0; j < all_v.size(); ++j) {
       rise = std::max(rise, (at(2 * i + 1, j) - (at(2 * i, j) + at(2 * i + 2, j)) / 2).norm());
-    divide(us_, ends_u[i], ends_u[i + 1], pieces_for(rise, wanted));
+      length = std::max(length, (at(2 * i + 2, j) - at(2 * i, j)).norm());
+    }
+    divide(us_, ends_u[i], ends_u[i + 1], pieces_for(length, rise, longest, wanted));
   }
   for (std::size_t j = 0; j + 1 < ends_v.size(); ++j) {
     // The last control row of a span is that of the last knot at its start.
     const auto knot = std::upper_bound(surface.knots_v.begin(), surface.knots_v.end(), ends_v[j]);
     const int last = std::clamp(static_cast<int>(knot - surface.knots_v.begin()) - 1, surface.degree_v,
                                 surface.count_v - 1);
-    double rise = 0;
-    for (std::size_t i = 0; i < all_u.size(); ++i)
+    double rise = 0, length = 0;
+    for (std::size_t i = 0; i < all_u.size(); ++i) {
       rise = std::max(rise, (at(i, 2 * j + 1) - (at(i, 2 * j) + at(i, 2 * j + 2)) / 2).norm());
+      length = std::max(length, (at(i, 2 * j + 2) - at(i, 2 * j)).norm());
+    }
     const bool near = may_enter(surface, last - surface.degree_v, last, box);
-    divide(vs_, ends_v[j], ends_v[j + 1], near ? pieces_for(rise, wanted) : 1);
+    divide(vs_, ends_v[j], ends_v[j + 1], near ? pieces_for(length, rise, longest, wanted) : 1);
   }
   if (!is_ring_) vs_.push_back(ends_v.back());
 }

@@ -211,6 +211,17 @@ void Trimmer::add_border(std::size_t triangle, const Name& from, int from_face, 
     return;
   }
   const Name corner{Name::Kind::corner, triangle, 0, from_face, to_face};
+  // Near a corner of the box, a third face may lie between the two.
+  const Vec2 there = place(corner);
+  for (int face = 0; face < face_count; ++face) {
+    const int axis = axis_of(face);
+    if (axis == axis_of(from_face) || axis == axis_of(to_face) || depth_at(there, face) >= 0) continue;
+    const Name before{Name::Kind::corner, triangle, 0, from_face, face},
+        after{Name::Kind::corner, triangle, 0, face, to_face};
+    add_step(from, before, from_face, triangle);
+    add_step(before, after, face, triangle);
+    return add_step(after, to, to_face, triangle);
+  }
   add_step(from, corner, from_face, triangle);
   add_step(corner, to, to_face, triangle);
 }

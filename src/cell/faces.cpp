@@ -1,0 +1,372 @@
+#include "cell/faces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace selvage::cell {
+namespace {
+
+// Coordinates in a face, counter-clockwise seen from outside of the box.
+Vec2 flat(const Vec3& point, int face) {
+  const int axis = axis_of(face);
+  const Vec2 result(point[(axis + 1) % 3], point[(axis + 2) % 3]);
+  return is_high(face) ? result : Vec2(result.y(), result.x());
+}
+
+double twice_area(const std::vector<Vec2>& polygon) {
+  double twice = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2 &p = polygon[i] - polygon[0], q = polygon[(i + 1) % polygon.size()] - polygon[0];
+    twice += p.x() * q.y() - p.y() * q.x();
+  }
+  return twice;
+}
+
+bool contains(const std::vector<Vec2>& polygon, const Vec2& p) {
+  bool inside = false;
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+    const Vec2 &a = polygon[i], &b = polygon[j];
+    if ((a.y() > p.y()) != (b.y() > p.y()) &&
+        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
+      inside = !inside;
+  }
+  return inside;
+}
+
+// Where two closed polygons cross.
+std::optional<Vec2> crossing(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+  Eigen::AlignedBox2d box_a, box_b;
+  for (const Vec2& p : a) box_a.extend(p);
+  for (const Vec2& p : b) box_b.extend(p);
+  const Eigen::AlignedBox2d both = box_a.intersection(box_b);
+  if (both.isEmpty()) return std::nullopt;
+  const auto sides_in = [&](const std::vector<Vec2>& polygon) {
+    std::vector<std::array<Vec2, 2>> sides;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec2 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+      if (both.intersects(Eigen::AlignedBox2d(p.cwiseMin(q), p.cwiseMax(q)))) sides.push_back({p, q});
+    }
+    return sides;
+  };
+  const auto turn = [](const Vec2& p, const Vec2& q, const Vec2& r) {
+    return (q - p).x() * (r - p).y() - (q - p).y() * (r - p).x();
+  };
+  const auto sides_b = sides_in(b);
+  for (const auto& [p, q] : sides_in(a))
+    for (const auto& [r, s] : sides_b)
+      if (turn(p, q, r) * turn(p, q, s) < 0 && turn(r, s, p) * turn(r, s, q) < 0)
+        return p + (q - p) * turn(r, s, p) / (turn(r, s, p) - turn(r, s, q));
+  return std::nullopt;
+}
+
+class Divider {
+ public:
+  Divider(std::span<const yarn::Body> bodies, const Box3& box, const Cut& cut)
+      : bodies_(bodies), box_(box), cut_(cut) {}
+
+  Result<Division> run();
+
+ private:
+  struct OnEdge {  // a corner on an edge of the box
+    std::size_t corner = 0, body = FaceRegion::matrix;
+    double along = 0;
+    bool leaves = false;  // the yarn, in the direction of the axis
+  };
+  struct Step {
+    Side side;
+    std::size_t from = 0, to = 0;  // corners
+  };
+  void find_corners();
+  Status divide_edges();
+  Status own(std::size_t segment, std::size_t body);
+  void spread_owners();
+  Status trace_face(int face);
+  Status chain(int face, std::size_t body, const std::vector<Step>& steps,
+               std::vector<Outline>& outlines) const;
+  void nest(int face, std::size_t body, std::vector<Outline> outlines);
+  Status check_apart() const;
+  [[nodiscard]] bool body_is_left(const Side& side) const;
+  [[nodiscard]] std::vector<Vec2> polygon(int face, const Outline& outline) const;
+  [[nodiscard]] const Piece& piece_of(const ArcPlace& place) const { return cut_.pieces[place.piece]; }
+  [[nodiscard]] const Arc& arc_at(const ArcPlace& place) const {
+    return piece_of(place).borders[place.border].arcs[place.arc];
+  }
+  [[nodiscard]] Message overlap(std::size_t a, std::size_t b, const Vec3& at) const;
+
+  std::span<const yarn::Body> bodies_;
+  const Box3& box_;
+  const Cut& cut_;
+  Division division_;
+  std::array<std::vector<OnEdge>, edge_count> on_edges_;
+  std::vector<std::size_t> owners_;  // of segments
+  std::vector<bool> is_owned_;
+};
+
+Message Divider::overlap(std::size_t a, std::size_t b, const Vec3& at) const {
+  Message message =
+      error(Kind::geometry,
+            fmt::format("yarns '{}' and '{}' overlap where a face of the cell cuts them; --relax moves "
+                        "yarns apart",
+                        bodies_[a].name, bodies_[b].name));
+  message.yarn = bodies_[a].name;
+  message.at = at;
+  return message;
+}
+
+void Divider::find_corners() {
+  for (int number = 0; number < 8; ++number) {
+    Vec3 at;
+    for (int axis = 0; axis < 3; ++axis) at[axis] = plane_of(box_, 2 * axis + (number >> axis & 1));
+    division_.corners.push_back({at});
+  }
+  for (const Piece& piece : cut_.pieces) {
+    auto& borders = division_.ends.emplace_back();
+    const yarn::Body& body = bodies_[piece.body];
+    for (const Border& border : piece.borders) {
+      const std::size_t count = border.arcs.size();
+      auto& ends = borders.emplace_back(count);
+      for (std::size_t k = 0; count > 1 && k < count; ++k) {
+        const Arc &arc = border.arcs[k], &next = border.arcs[(k + 1) % count];
+        const int edge = edge_between(arc.face, next.face);
+        const nurbs::SurfaceJet s = jet(body, arc.parameters.back());
+        const double outward = s.du.cross(s.dv)[edge / 4] * (body.inward ? -1 : 1);
+        ends[k].last = ends[(k + 1) % count].first = division_.corners.size();
+        on_edges_[static_cast<std::size_t>(edge)].push_back(
+            {division_.corners.size(), piece.body, s.position[edge / 4], outward > 0});
+        division_.corners.push_back({edge_point(box_, edge, s.position[edge / 4])});
+      }
+    }
+  }
+}
+
+Status Divider::own(std::size_t segment, std::size_t body) {
+  if (is_owned_[segment] && owners_[segment] != body) {
+    const std::size_t other = owners_[segment];
+    const Vec3 at = division_.corners[division_.segments[segment].from].at;
+    if (body != FaceRegion::matrix && other != FaceRegion::matrix) return overlap(body, other, at);
+    // One yarn's end is another's inside.
+    for (const auto& edge : on_edges_)
+      for (const OnEdge& a : edge)
+        for (const OnEdge& b : edge)
+          if (a.body != b.body && (a.corner == division_.segments[segment].from) &&
+              (b.corner == division_.segments[segment].to))
+            return overlap(a.body, b.body, at);
+    Message message = error(Kind::geometry, "yarns overlap, or fold, where an edge of the cell cuts them");
+    message.yarn = bodies_[body == FaceRegion::matrix ? other : body].name;
+    message.at = at;
+    return message;
+  }
+  is_owned_[segment] = true;
+  owners_[segment] = body;
+  return {};
+}
+
+Status Divider::divide_edges() {
+  for (int edge = 0; edge < edge_count; ++edge) {
+    auto& list = on_edges_[static_cast<std::size_t>(edge)];
+    std::stable_sort(list.begin(), list.end(),
+                     [](const OnEdge& a, const OnEdge& b) { return a.along < b.along; });
+    const std::array<int, 2> faces = faces_of_edge(edge);
+    const int low =
+        (is_high(faces[0]) ? 1 << axis_of(faces[0]) : 0) | (is_high(faces[1]) ? 1 << axis_of(faces[1]) : 0);
+    std::size_t from = static_cast<std::size_t>(low);
+    for (std::size_t k = 0; k <= list.size(); ++k) {
+      const std::size_t to =
+          k < list.size() ? list[k].corner : static_cast<std::size_t>(low | 1 << (edge / 4));
+      division_.segments.push_back({edge, from, to});
+      from = to;
+    }
+    owners_.resize(division_.segments.size(), FaceRegion::matrix);
+    is_owned_.resize(division_.segments.size(), false);
+    const std::size_t first = division_.segments.size() - list.size() - 1;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      if (Status s = own(first + k, list[k].leaves ? list[k].body : FaceRegion::matrix); !s) return s;
+      if (Status s = own(first + k + 1, list[k].leaves ? FaceRegion::matrix : list[k].body); !s) return s;
+    }
+  }
+  return {};
+}
+
+// A segment that ends at a corner of the box belongs to what the others there belong to.
+void Divider::spread_owners() {
+  for (int pass = 0; pass < 8; ++pass)
+    for (std::size_t a = 0; a < owners_.size(); ++a)
+      for (std::size_t b = 0; b < owners_.size(); ++b) {
+        if (!is_owned_[a] || is_owned_[b]) continue;
+        const Segment &s = division_.segments[a], &t = division_.segments[b];
+        for (const std::size_t corner : {s.from, s.to})
+          if (corner < 8 && (corner == t.from || corner == t.to)) {
+            owners_[b] = owners_[a];
+            is_owned_[b] = true;
+          }
+      }
+}
+
+bool Divider::body_is_left(const Side& side) const {
+  return side.backward != bodies_[piece_of(side.arc).body].inward;
+}
+
+// The points of an outline, in the face's coordinates.
+std::vector<Vec2> Divider::polygon(int face, const Outline& outline) const {
+  std::vector<Vec2> points;
+  for (const Side& side : outline) {
+    if (side.kind == Side::Kind::segment) {
+      const Segment& segment = division_.segments[side.segment];
+      points.push_back(flat(division_.corners[side.backward ? segment.to : segment.from].at, face));
+      continue;
+    }
+    const Arc& arc = arc_at(side.arc);
+    const yarn::Body& body = bodies_[piece_of(side.arc).body];
+    std::vector<Vec2> run;
+    for (const Vec2& q : arc.parameters) run.push_back(flat(position(body, q), face));
+    if (side.backward) std::reverse(run.begin(), run.end());
+    points.insert(points.end(), run.begin(), run.end() - 1);
+  }
+  return points;
+}
+
+Status Divider::chain(int face, std::size_t body, const std::vector<Step>& steps,
+                      std::vector<Outline>& outlines) const {
+  std::map<std::size_t, std::size_t> from;
+  for (std::size_t i = 0; i < steps.size(); ++i) from[steps[i].from] = i;
+  std::vector<bool> used(steps.size(), false);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (used[i]) continue;
+    Outline outline;
+    std::size_t k = i;
+    while (!used[k]) {
+      used[k] = true;
+      outline.push_back(steps[k].side);
+      const auto next = from.find(steps[k].to);
+      if (next == from.end()) break;
+      k = next->second;
+    }
+    if (k != i) {
+      Message message =
+          error(Kind::geometry, fmt::format("what is cut by the cell's face {} is not closed: yarns overlap "
+                                            "there, or one folds",
+                                            name_of_face(face)));
+      if (body != FaceRegion::matrix) message.yarn = bodies_[body].name;
+      message.at = division_.corners[steps[i].from].at;
+      return message;
+    }
+    outlines.push_back(std::move(outline));
+  }
+  return {};
+}
+
+// Outlines that run clockwise are holes in the smallest one that holds them.
+void Divider::nest(int face, std::size_t body, std::vector<Outline> outlines) {
+  struct Flat {
+    std::vector<Vec2> points;
+    double area = 0;
+    std::size_t region = 0;
+  };
+  std::vector<Flat> flats;
+  for (const Outline& outline : outlines) {
+    flats.push_back({polygon(face, outline), 0, 0});
+    flats.back().area = twice_area(flats.back().points) / 2;
+  }
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    if (flats[i].area <= 0) continue;
+    flats[i].region = division_.regions.size();
+    division_.regions.push_back({face, body, {std::move(outlines[i])}});
+  }
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    if (flats[i].area > 0) continue;
+    const Flat* around = nullptr;
+    for (const Flat& other : flats)
+      if (other.area > 0 && contains(other.points, flats[i].points.front()) &&
+          (around == nullptr || other.area < around->area))
+        around = &other;
+    if (around != nullptr) division_.regions[around->region].outlines.push_back(std::move(outlines[i]));
+  }
+}
+
+Status Divider::trace_face(int face) {
+  std::map<std::size_t, std::vector<Step>> steps;        // by owner
+  std::map<std::size_t, std::vector<Outline>> outlines;  // those of one arc
+  for (std::size_t p = 0; p < cut_.pieces.size(); ++p)
+    for (std::size_t b = 0; b < cut_.pieces[p].borders.size(); ++b)
+      for (std::size_t a = 0; a < cut_.pieces[p].borders[b].arcs.size(); ++a) {
+        if (cut_.pieces[p].borders[b].arcs[a].face != face) continue;
+        const Division::ArcEnds ends = division_.ends[p][b][a];
+        for (const bool backward : {false, true}) {
+          Side side{Side::Kind::arc, {p, b, a}, 0, backward};
+          const std::size_t owner = body_is_left(side) ? cut_.pieces[p].body : FaceRegion::matrix;
+          if (ends.first == Division::none) {
+            outlines[owner].push_back({side});
+          } else {
+            steps[owner].push_back(
+                {side, backward ? ends.last : ends.first, backward ? ends.first : ends.last});
+          }
+        }
+      }
+  for (std::size_t i = 0; i < division_.segments.size(); ++i) {
+    const Segment& segment = division_.segments[i];
+    const std::array<int, 2> faces = faces_of_edge(segment.edge);
+    if (faces[0] != face && faces[1] != face) continue;
+    // Counter-clockwise: the inside of the face lies to the left.
+    const Vec2 from = flat(division_.corners[segment.from].at, face),
+               to = flat(division_.corners[segment.to].at, face);
+    const Vec2 middle = flat(box_.center(), face);
+    const bool backward = (to - from).x() * (middle - from).y() - (to - from).y() * (middle - from).x() < 0;
+    const Side side{Side::Kind::segment, {}, i, backward};
+    steps[owners_[i]].push_back(
+        {side, backward ? segment.to : segment.from, backward ? segment.from : segment.to});
+  }
+  for (const auto& [owner, list] : steps)
+    if (Status chained = chain(face, owner, list, outlines[owner]); !chained) return chained;
+  for (auto& [owner, list] : outlines) nest(face, owner, std::move(list));
+  return {};
+}
+
+// No two yarns' regions of a face may share any of it.
+Status Divider::check_apart() const {
+  struct Flat {
+    const FaceRegion* region;
+    std::vector<Vec2> points;
+  };
+  std::vector<Flat> flats;
+  for (const FaceRegion& region : division_.regions)
+    if (region.body != FaceRegion::matrix)
+      flats.push_back({&region, polygon(region.face, region.outlines.front())});
+  for (std::size_t i = 0; i < flats.size(); ++i)
+    for (std::size_t j = i + 1; j < flats.size() && flats[j].region->face == flats[i].region->face; ++j) {
+      if (flats[i].region->body == flats[j].region->body) continue;
+      std::optional<Vec2> at = crossing(flats[i].points, flats[j].points);
+      if (!at && flats[i].region->outlines.size() == 1 && contains(flats[i].points, flats[j].points.front()))
+        at = flats[j].points.front();
+      if (!at && flats[j].region->outlines.size() == 1 && contains(flats[j].points, flats[i].points.front()))
+        at = flats[i].points.front();
+      if (!at) continue;
+      const int face = flats[i].region->face, axis = axis_of(face);
+      Vec3 place;
+      place[axis] = plane_of(box_, face);
+      place[(axis + 1) % 3] = is_high(face) ? at->x() : at->y();
+      place[(axis + 2) % 3] = is_high(face) ? at->y() : at->x();
+      return overlap(flats[i].region->body, flats[j].region->body, place);
+    }
+  return {};
+}
+
+Result<Division> Divider::run() {
+  find_corners();
+  if (Status divided = divide_edges(); !divided) return divided.error();
+  spread_owners();
+  for (int face = 0; face < face_count; ++face)
+    if (Status traced = trace_face(face); !traced) return traced.error();
+  if (Status apart = check_apart(); !apart) return apart.error();
+  return std::move(division_);
+}
+
+}  // namespace
+
+Result<Division> divide_faces(std::span<const yarn::Body> bodies, const Box3& box, const Cut& cut) {
+  return Divider(bodies, box, cut).run();
+}
+
+}  // namespace selvage::cell
