@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 namespace selvage::fem {
 namespace {
@@ -33,6 +34,11 @@ Face make_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t 
 
 // Of a positive cell: each face seen from outside, counter-clockwise.
 constexpr std::array<std::array<int, 3>, 4> outward_faces = {{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+
+double six_volumes(const TetMesh& mesh, const std::array<std::uint32_t, 4>& cell) {
+  const Vec3& p = mesh.points[cell[0]];
+  return (mesh.points[cell[1]] - p).cross(mesh.points[cell[2]] - p).dot(mesh.points[cell[3]] - p);
+}
 
 Message wrong(const std::string& text) {
   return error(Kind::internal, text + "; try another --size");
@@ -76,21 +82,69 @@ std::optional<std::vector<Face>> boundary(const std::vector<Face>& faces) {
   return result;
 }
 
-}  // namespace
-
-Status check_surface(std::span<const Vec3> points, std::span<const Triangle> triangles) {
+Status check_input(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   if (points.size() > 500'000'000 || triangles.size() > 500'000'000)
     return error(Kind::limit, "the surface has more than 5e8 points or triangles; choose a coarser --size");
   for (const Vec3& point : points)
     if (!point.allFinite())
       return error(Kind::geometry, "a coordinate of the surface is not a finite number");
+  for (const Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (t[k] >= points.size() || t[k] == t[(k + 1) % 3])
+        return error(Kind::internal, "a triangle of the surface has no three different points");
+  return {};
+}
+
+// The faces of all cells, sorted; cells are turned round where they are inverted.
+Result<std::vector<Face>> sorted_faces(TetMesh& mesh, std::span<const Vec3> points) {
+  if (mesh.cells.empty()) return wrong("TetGen made no tetrahedra");
+  if (mesh.points.size() < points.size() || !std::equal(points.begin(), points.end(), mesh.points.begin()))
+    return wrong("TetGen did not keep the points of the surface");
+  std::vector<Face> faces;
+  faces.reserve(4 * mesh.cells.size());
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    auto& cell = mesh.cells[c];
+    for (const std::uint32_t corner : cell)
+      if (corner >= mesh.points.size()) return wrong("a tetrahedron has a point that is not there");
+    if (six_volumes(mesh, cell) < 0) std::swap(cell[2], cell[3]);
+    for (const auto& f : outward_faces)
+      faces.push_back(make_face(cell[static_cast<std::size_t>(f[0])], cell[static_cast<std::size_t>(f[1])],
+                                cell[static_cast<std::size_t>(f[2])], static_cast<std::uint32_t>(c)));
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+std::size_t count_regions(std::span<const Sides> sides) {
+  std::size_t count = 0;
+  for (const Sides& s : sides)
+    for (const std::uint32_t region : {s.behind, s.front})
+      if (region != Sides::outside) count = std::max<std::size_t>(count, region + std::size_t{1});
+  return count;
+}
+
+std::vector<double> enclosed_volumes(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                                     std::span<const Sides> sides) {
+  std::vector<double> result(count_regions(sides), 0.0);
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    const Triangle& t = triangles[k];
+    const Vec3 &o = points.front(), a = points[t[0]] - o, b = points[t[1]] - o, c = points[t[2]] - o;
+    const double part = a.dot(b.cross(c)) / 6;
+    if (sides[k].behind != Sides::outside) result[sides[k].behind] += part;
+    if (sides[k].front != Sides::outside) result[sides[k].front] -= part;
+  }
+  return result;
+}
+
+}  // namespace
+
+Status check_surface(std::span<const Vec3> points, std::span<const Triangle> triangles) {
+  if (Status sound = check_input(points, triangles); !sound) return sound;
   std::vector<std::pair<std::uint64_t, bool>> edges;  // both ends in one number; forward?
   edges.reserve(3 * triangles.size());
   for (const Triangle& t : triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      if (a >= points.size() || b >= points.size() || a == b)
-        return error(Kind::internal, "a triangle of the surface has no three different points");
       edges.emplace_back(std::uint64_t{std::min(a, b)} << 32U | std::max(a, b), a < b);
     }
   std::sort(edges.begin(), edges.end());
@@ -108,26 +162,115 @@ Status check_surface(std::span<const Vec3> points, std::span<const Triangle> tri
   return {};
 }
 
-Status check_mesh(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles) {
-  if (mesh.cells.empty()) return wrong("TetGen made no tetrahedra");
-  if (mesh.points.size() < points.size() || !std::equal(points.begin(), points.end(), mesh.points.begin()))
-    return wrong("TetGen did not keep the points of the surface");
-  double volume = 0;
-  std::vector<Face> faces;
-  faces.reserve(4 * mesh.cells.size());
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-    auto& cell = mesh.cells[c];
-    for (const std::uint32_t corner : cell)
-      if (corner >= mesh.points.size()) return wrong("a tetrahedron has a point that is not there");
-    const Vec3& p = mesh.points[cell[0]];
-    double six = (mesh.points[cell[1]] - p).cross(mesh.points[cell[2]] - p).dot(mesh.points[cell[3]] - p);
-    if (six < 0) std::swap(cell[2], cell[3]);
-    volume += std::abs(six) / 6;
-    for (const auto& f : outward_faces)
-      faces.push_back(make_face(cell[static_cast<std::size_t>(f[0])], cell[static_cast<std::size_t>(f[1])],
-                                cell[static_cast<std::size_t>(f[2])], static_cast<std::uint32_t>(c)));
+Status check_complex(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                     std::span<const Sides> sides) {
+  if (Status sound = check_input(points, triangles); !sound) return sound;
+  // Of each region, an edge is used as often one way as the other.
+  struct Use {
+    std::uint32_t region;
+    std::uint64_t edge;
+    int sense;
+  };
+  std::vector<Use> uses;
+  uses.reserve(6 * triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangles[i][k], b = triangles[i][(k + 1) % 3];
+      const std::uint64_t edge = std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+      const int sense = a < b ? 1 : -1;
+      if (sides[i].behind != Sides::outside) uses.push_back({sides[i].behind, edge, sense});
+      if (sides[i].front != Sides::outside) uses.push_back({sides[i].front, edge, -sense});
+    }
+  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
+    return std::tie(a.region, a.edge) < std::tie(b.region, b.edge);
+  });
+  for (std::size_t i = 0; i < uses.size();) {
+    int sum = 0;
+    const Use& first = uses[i];
+    for (; i < uses.size() && uses[i].region == first.region && uses[i].edge == first.edge; ++i)
+      sum += uses[i].sense;
+    if (sum != 0)
+      return at(error(Kind::internal, fmt::format("the surface of region {} is not closed here; try another "
+                                                  "--size",
+                                                  first.region)),
+                points[first.edge >> 32U]);
   }
-  std::sort(faces.begin(), faces.end());
+  const std::vector<double> volumes = enclosed_volumes(points, triangles, sides);
+  for (std::size_t r = 0; r < volumes.size(); ++r)
+    if (!(volumes[r] > 0))
+      return error(Kind::geometry, fmt::format("region {} encloses no volume; try a finer --size", r));
+  return {};
+}
+
+Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles,
+                    std::span<const Sides> sides) {
+  Result<std::vector<Face>> faces = sorted_faces(mesh, points);
+  if (!faces) return faces.error();
+  std::vector<Face> wanted;  // `cell`: the triangle's number
+  for (std::uint32_t k = 0; k < triangles.size(); ++k)
+    wanted.push_back(make_face(triangles[k][0], triangles[k][1], triangles[k][2], k));
+  std::sort(wanted.begin(), wanted.end());
+
+  constexpr std::uint32_t unknown = Sides::outside - 1;
+  mesh.regions.assign(mesh.cells.size(), unknown);
+  std::vector<std::uint32_t> parent(mesh.cells.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t cell) {
+    while (parent[cell] != cell) cell = parent[cell] = parent[parent[cell]];
+    return cell;
+  };
+  // Joins cells over faces; then triangles say what is on their sides.
+  std::size_t next = 0;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> told;  // cell, region
+  for (std::size_t i = 0; i < faces->size();) {
+    std::size_t last = i + 1;
+    while (last < faces->size() && (*faces)[last].corners == (*faces)[i].corners) ++last;
+    if (last - i > 2) return wrong("TetGen's mesh has a face with more than two tetrahedra");
+    if (next < wanted.size() && wanted[next].corners < (*faces)[i].corners)
+      return wrong("TetGen did not keep a triangle of the surface");
+    if (next < wanted.size() && wanted[next].corners == (*faces)[i].corners) {
+      const Sides& s = sides[wanted[next].cell];
+      const bool open = s.behind == Sides::outside || s.front == Sides::outside;
+      if ((last - i == 1) != open) return wrong("a triangle of the surface has not the tetrahedra beside it");
+      for (std::size_t k = i; k < last; ++k)
+        told.emplace_back((*faces)[k].cell, (*faces)[k].even == wanted[next].even ? s.behind : s.front);
+      ++next;
+    } else if (last - i == 2) {
+      parent[root((*faces)[i].cell)] = root((*faces)[i + 1].cell);
+    } else {
+      return wrong("the boundary of TetGen's mesh is not the yarns' surface");
+    }
+    i = last;
+  }
+  if (next < wanted.size()) return wrong("TetGen did not keep a triangle of the surface");
+  for (const auto& [cell, region] : told) {
+    std::uint32_t& known = mesh.regions[root(cell)];
+    if (region == Sides::outside || (known != unknown && known != region))
+      return wrong("TetGen's mesh joins two regions");
+    known = region;
+  }
+  std::vector<double> volumes(count_regions(sides), 0.0);
+  for (std::uint32_t c = 0; c < mesh.cells.size(); ++c) {
+    const std::uint32_t region = mesh.regions[root(c)];
+    if (region == unknown) return wrong("a tetrahedron is in no region");
+    mesh.regions[c] = region;
+    volumes[region] += six_volumes(mesh, mesh.cells[c]) / 6;
+  }
+  const std::vector<double> enclosed = enclosed_volumes(points, triangles, sides);
+  for (std::size_t r = 0; r < volumes.size(); ++r)
+    if (!(std::abs(volumes[r] - enclosed[r]) <= 1e-9 * enclosed[r]))
+      return wrong(
+          fmt::format("region {} of TetGen's mesh has the volume {:.12g}, its surface encloses {:.12g}", r,
+                      volumes[r], enclosed[r]));
+  return {};
+}
+
+Status check_mesh(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles) {
+  Result<std::vector<Face>> found = sorted_faces(mesh, points);
+  if (!found) return found.error();
+  const std::vector<Face>& faces = *found;
+  double volume = 0;
+  for (const auto& cell : mesh.cells) volume += six_volumes(mesh, cell) / 6;
   const auto outside = boundary(faces);
   if (!outside) return wrong("TetGen's mesh has a face with more than two tetrahedra");
   std::vector<Face> wanted;

@@ -17,4 +17,16 @@ Status check_surface(std::span<const Vec3> points, std::span<const Triangle> tri
 // 1e-9. Errors (internal).
 Status check_mesh(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles);
 
+// The same of triangles between several regions: those of each region, seen from it, close it. Every region
+// from 0 to the largest number is there.
+Status check_complex(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                     std::span<const Sides> sides);
+
+// Turns inverted cells round and fills TetMesh::regions: cells that share a face which is none of the
+// triangles are of one region, and triangles say of which. Then: the first points are the job's to the bit,
+// every triangle is a face of cells of its two regions, nothing else is outside, and the volume of each
+// region is the enclosed one to 1e-9. Errors (internal).
+Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles,
+                    std::span<const Sides> sides);
+
 }  // namespace selvage::fem

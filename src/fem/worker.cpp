@@ -293,7 +293,10 @@ double enclosed_volume(std::span<const Vec3> points, std::span<const Triangle> t
 
 Result<TetMesh> run_tetgen(const std::filesystem::path& program, const TetgenJob& job,
                            const TetgenLimits& limits) {
-  if (Status sound = check_surface(job.points, job.triangles); !sound) return sound.error();
+  if (Status sound = job.sides.empty() ? check_surface(job.points, job.triangles)
+                                       : check_complex(job.points, job.triangles, job.sides);
+      !sound)
+    return sound.error();
   Result<Descriptor> request = write_request(job, limits);
   if (!request) return request.error();
   Result<Running> running = start(program, *request);
@@ -302,7 +305,10 @@ Result<TetMesh> run_tetgen(const std::filesystem::path& program, const TetgenJob
   if (ended.timed_out) return judge_end(ended, limits);
   Result<TetMesh> mesh = read_answer(job, ended, limits);
   if (!mesh) return mesh;
-  if (Status right = check_mesh(*mesh, job.points, job.triangles); !right) return right.error();
+  if (Status right = job.sides.empty() ? check_mesh(*mesh, job.points, job.triangles)
+                                       : find_regions(*mesh, job.points, job.triangles, job.sides);
+      !right)
+    return right.error();
   return mesh;
 }
 

@@ -14,12 +14,21 @@ namespace selvage::fem {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
+// The regions on both sides of a triangle.
+struct Sides {
+  static constexpr std::uint32_t outside = static_cast<std::uint32_t>(-1);
+  std::uint32_t behind = 0, front = outside;  // front: where it is seen counter-clockwise from
+};
+
 struct TetgenJob {
   std::span<const Vec3> points;
   std::span<const Triangle> triangles;  // closed, counter-clockwise seen from outside
-  double max_volume = 0;                // of one tetrahedron; 0: no bound
-  double radius_edge = 1.4;             // largest ratio of circumradius to shortest edge wanted
-  double min_dihedral = 0;              // degrees; 0: TetGen's default
+  // One a triangle, where they part several regions (numbered from 0) from each other and from the outside.
+  // Empty: one region, behind all of them.
+  std::span<const Sides> sides{};
+  double max_volume = 0;        // of one tetrahedron; 0: no bound
+  double radius_edge = 1.4;     // largest ratio of circumradius to shortest edge wanted
+  double min_dihedral = 0;      // degrees; 0: TetGen's default
   double smallest_feature = 0;  // lengths far below this one mean nothing; 0: TetGen's default tolerance
 };
 
@@ -32,10 +41,13 @@ struct TetMesh {
   std::vector<Vec3> points;  // the job's own first, to the bit
   // Corners with positive volume, ((p1-p0) x (p2-p0)) . (p3-p0) > 0.
   std::vector<std::array<std::uint32_t, 4>> cells;
+  std::vector<std::uint32_t> regions;  // of each cell; empty without TetgenJob::sides
 };
 
 // Runs `program` (selvage-tetgen) once. The result's boundary is exactly the job's triangles, it is one
-// piece, and its volume is the surface's to 1e-9: anything else is an error. Errors, each with a remedy and
+// piece, and its volume is the surface's to 1e-9; of several regions, every triangle is a side of cells of
+// just the regions that it parts, and the volume of each is that of its own triangles to 1e-9: anything else
+// is an error. Errors, each with a remedy and
 // where known the place (in the job's coordinates), none naming a yarn: geometry (a coordinate that is not
 // finite, an open surface, facets that cross or nearly touch), limit (time, memory), internal (a crash, a bad
 // answer, no program).

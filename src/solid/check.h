@@ -10,6 +10,7 @@
 
 #include "contact/contact.h"
 #include "core/diagnostics.h"
+#include "solid/planar.h"
 #include "yarn/body.h"
 
 namespace selvage::solid {
@@ -66,10 +67,12 @@ struct SolidCheck {
 // Errors: what find_contacts() and the module say.
 Result<SolidCheck> check_solids(std::span<const yarn::Body> bodies, const CheckOptions& options);
 
-// What the module exports: the check of each yarn by itself.
+// What the module exports: the check of each yarn by itself, and planar triangulations.
 struct CgalModule {
   const char* version;
   Result<SolidCheck> (*check)(std::span<const yarn::Body> bodies, const CheckOptions& options);
+  Result<PlanarTriangles> (*triangulate)(std::span<const Vec2> points,
+                                         std::span<const PlanarSegment> segments);
 };
 Result<const CgalModule*> cgal_module();
 

@@ -2,6 +2,7 @@
 #include <mutex>
 
 #include "core/parallel.h"
+#include "solid/cgal/triangulate.h"
 #include "solid/cgal/verdict.h"
 #include "solid/cgal/yarn_check.h"
 #include "solid/check.h"
@@ -27,11 +28,19 @@ Result<SolidCheck> check(std::span<const yarn::Body> bodies, const CheckOptions&
   return error(Kind::internal, std::string("the check of the solids failed: ") + failure.what());
 }
 
+Result<PlanarTriangles> triangulate_safely(std::span<const Vec2> points,
+                                           std::span<const PlanarSegment> segments) try {
+  return triangulate_with_cgal(points, segments);
+} catch (const std::exception& failure) {
+  return error(Kind::internal, std::string("the triangulation failed: ") + failure.what());
+}
+
 }  // namespace
 
 }  // namespace selvage::solid
 
 extern "C" __attribute__((visibility("default"))) const void* selvage_cgal() {
-  static const selvage::solid::CgalModule table = {selvage::solid::cgal_version(), &selvage::solid::check};
+  static const selvage::solid::CgalModule table = {selvage::solid::cgal_version(), &selvage::solid::check,
+                                                   &selvage::solid::triangulate_safely};
   return &table;
 }

@@ -1,0 +1,40 @@
+// The conformal tetrahedral mesh of a unit cell: the parts of the yarns inside a box, and the matrix between
+// them, which share the triangles where they meet.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+
+#include "core/diagnostics.h"
+#include "fabric/model.h"
+#include "fem/mesh.h"
+#include "yarn/body.h"
+
+namespace selvage::fem {
+
+struct CellMeshOptions {
+  double size = 0;                 // largest edge, file units; 0: a quarter of the smallest section extent
+  int order = 1;                   // 1 | 2
+  bool matrix = true;              // false: only the yarns, cut flush
+  std::array<bool, 3> periodic{};  // opposite faces get the same triangles
+  double min_dihedral = 10;        // degrees wanted, 0..30
+  double tolerance = 0;            // file units; 0: 1e-3 of the smallest section extent
+  double timeout = 300;            // seconds, of TetGen
+  double memory = 4096;            // MiB, of TetGen
+  int threads = 1;
+  // What is being done, in words, and how much of it. May be empty.
+  std::function<void(const char* step, std::size_t done, std::size_t total)> progress{};
+};
+
+// The mesh of `fabric.cell`, in mm. Regions: the yarns that have elements, in their order (all parts of a
+// yarn are one), then the matrix. Bodies reach beyond the cell wherever the yarn goes on there. Nodes stand
+// on the box's faces to the bit, opposite ones (periodic axes) at equal places to the bit but for the axis
+// itself. Exact volumes are those of the B-spline yarns inside the box. Notes and warnings (what was snapped,
+// elements below the wanted angle and why) go to `diagnostics`. Errors, with yarn, place and remedy: geometry
+// (what cell::cut and cell::divide_faces say; yarns that do not go on periodically, or touch), limit (time,
+// memory), usage (options out of range, no cell), internal.
+Result<Mesh> mesh_cell(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                       const CellMeshOptions& options, Diagnostics& diagnostics);
+
+}  // namespace selvage::fem

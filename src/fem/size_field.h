@@ -1,0 +1,56 @@
+// How long edges may be at each place of a unit cell.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/vec.h"
+#include "yarn/body.h"
+
+namespace selvage::fem {
+
+// The smallest of the bounds that are set at places, each growing by a share of the distance from its place.
+class SizeField {
+ public:
+  struct Bound {
+    Vec3 at;
+    double size;
+  };
+  SizeField(double largest, double growth, std::vector<Bound> bounds);
+  [[nodiscard]] double at(const Vec3& place) const;
+  [[nodiscard]] double largest() const { return largest_; }
+
+ private:
+  struct Node {
+    Box3 box;
+    double least = 0;         // of its bounds
+    std::uint32_t first = 0;  // leaf: into bounds_; else the left child, the right one follows it
+    std::uint32_t count = 0;  // 0: not a leaf
+  };
+  void split(std::uint32_t node, std::uint32_t first, std::uint32_t last);
+
+  double largest_, growth_;
+  std::vector<Bound> bounds_;
+  std::vector<Node> nodes_;
+};
+
+struct SizeRules {
+  double largest = 0;         // file units, > 0
+  double smallest = 0;        // never finer, >= 0
+  double gap_factor = 3;      // edges over the width of a gap
+  double growth = 0.3;        // of the size, per length
+  double turn = 0.7;          // of the surface along an edge, radians
+  double turn_finest = 0.35;  // curvature alone asks for no less than this share of the largest
+};
+
+// Bounds on the yarns' surfaces in the box and a little beyond it: the gap to other yarns and to other parts
+// of the same one, the gap to faces of the box that run alongside, curvature. The same for any number of
+// threads.
+SizeField size_field(std::span<const yarn::Body> bodies, const Box3& box, const SizeRules& rules,
+                     int threads);
+
+// Values of u at which the surface has a sharp crest all along, increasing, first u <= value < last u.
+std::vector<double> crests_of(const nurbs::Surface& surface);
+
+}  // namespace selvage::fem
