@@ -1,4 +1,4 @@
-// The two halves of the writer and what they share. All Abaqus keywords of the program are written in this
+// The parts of the writer and what they share. All Abaqus keywords of the program are written in this
 // folder.
 #pragma once
 
@@ -7,15 +7,13 @@
 
 #include "core/text_buffer.h"
 #include "fem/mesh.h"
+#include "fem/sections.h"
 
 namespace selvage::formats::inp {
 
 // A number in at most 20 characters, all that CalculiX reads of one (Fortran's f20.0): the shortest exact
 // form where it is that short, else rounded to the digits that fit, at least 13.
 std::string real(double value);
-
-// "Yarn0", "Yarn1", ..: element sets, and beginnings of node sets.
-std::string yarn_name(std::size_t region);
 
 // Sixteen entries a row, as Abaqus allows.
 void write_set(TextBuffer& text, const std::vector<std::size_t>& nodes);
@@ -35,8 +33,17 @@ struct Load {
 // extent.
 std::vector<Load> plan_loads(const fem::Mesh& mesh);
 
+std::vector<fem::NodeSet> sets_of(const std::vector<Load>& loads);
+
 // *TRANSFORM cards, for end faces that look along no coordinate axis. They belong before the step.
 void write_transforms(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>& loads);
 void write_step(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>& loads);
+
+// Of a unit cell: driver nodes, numbered on after the mesh's, each a node set of its name.
+void write_drivers(TextBuffer& text, const fem::Mesh& mesh);
+// *EQUATION cards and what else belongs before the first step.
+void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh);
+// A step for each load case.
+void write_cell_steps(TextBuffer& text, const fem::Mesh& mesh);
 
 }  // namespace selvage::formats::inp

@@ -1,8 +1,9 @@
 #include "formats/inp/inp.h"
 
-#include <algorithm>
-#include <cctype>
+#include <charconv>
 
+#include "fem/materials.h"
+#include "fem/sections.h"
 #include "formats/inp/deck.h"
 
 namespace selvage::formats::inp {
@@ -16,10 +17,6 @@ std::string real(double value) {
   return {buffer, end};
 }
 
-std::string yarn_name(std::size_t region) {
-  return "Yarn" + std::to_string(region);
-}
-
 void write_set(TextBuffer& text, const std::vector<std::size_t>& nodes) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     text << nodes[i] + 1 << (i % 16 == 15 || i + 1 == nodes.size() ? "\n" : ", ");
@@ -27,28 +24,13 @@ void write_set(TextBuffer& text, const std::vector<std::size_t>& nodes) {
 
 namespace {
 
-bool same_letters(const std::string& a, const std::string& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
-
-// Names that every solver takes: letters, digits and underscores after a letter, at most 70, each only once
-// (case does not count).
-std::vector<std::string> material_names(const std::vector<fabric::Material>& materials) {
-  std::vector<std::string> names;
-  for (const fabric::Material& material : materials) {
-    std::string name = material.name.substr(0, 70);
-    for (char& letter : name)
-      if (std::isalnum(static_cast<unsigned char>(letter)) == 0 || (letter & 0x80) != 0) letter = '_';
-    if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) name.insert(0, "M_");
-    const std::string stem = name;
-    for (int i = 2; std::any_of(names.begin(), names.end(),
-                                [&](const std::string& other) { return same_letters(other, name); });
-         ++i)
-      name = stem + "_" + std::to_string(i);
-    names.push_back(name);
-  }
-  return names;
+// Abaqus demands a *DISTRIBUTION TABLE before the distribution, of which CalculiX knows nothing and warns. A
+// keyword line of Abaqus begins with a star that may stand after blanks, but in CalculiX's heading only a
+// star in the first column ends it: so the one reads the table, and the other takes it for words of the
+// heading.
+void write_heading(TextBuffer& text, const fem::Mesh& mesh) {
+  text << "*HEADING\nSelvage: " << std::string_view(mesh.title).substr(0, 70)
+       << "\n *DISTRIBUTION TABLE, NAME=YARNTABLE\nCOORD3D, COORD3D\n";
 }
 
 void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
@@ -59,11 +41,17 @@ void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   }
 }
 
+std::string_view element_type(const fem::Mesh& mesh) {
+  if (mesh.shape == fem::Mesh::Shape::hexahedron) return "C3D8";
+  return mesh.order == 1 ? "C3D4" : "C3D10";
+}
+
 void write_elements(TextBuffer& text, const fem::Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
     const fem::Region& region = mesh.regions[i];
-    text << "** " << yarn_name(i) << " is yarn '" << region.name << "'\n";
-    text << "*ELEMENT, TYPE=" << (mesh.order == 1 ? "C3D4" : "C3D10") << ", ELSET=" << yarn_name(i) << '\n';
+    const std::string name = fem::set_name(mesh, i);
+    if (region.kind == fem::Region::Kind::yarn) text << "** " << name << " is yarn '" << region.name << "'\n";
+    text << "*ELEMENT, TYPE=" << element_type(mesh) << ", ELSET=" << name << '\n';
     for (std::size_t e = region.first_element; e < region.last_element; ++e) {
       text << e + 1;
       for (int k = 0; k < mesh.nodes_per_element(); ++k)
@@ -73,15 +61,21 @@ void write_elements(TextBuffer& text, const fem::Mesh& mesh) {
   }
 }
 
-void write_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>& loads) {
+void write_element_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
   text << "*ELSET, ELSET=All\n";
   for (std::size_t i = 0; i < mesh.regions.size(); ++i)
-    text << yarn_name(i) << (i % 16 == 15 || i + 1 == mesh.regions.size() ? "\n" : ", ");
-  for (const Load& load : loads) {
-    text << "*NSET, NSET=" << load.start_set << '\n';
-    write_set(text, load.start);
-    text << "*NSET, NSET=" << load.end_set << '\n';
-    write_set(text, load.end);
+    text << fem::set_name(mesh, i) << (i % 16 == 15 || i + 1 == mesh.regions.size() ? "\n" : ", ");
+  for (const fem::Section& section : sections) {
+    if (section.name == fem::set_name(mesh, section.region)) continue;
+    text << "*ELSET, ELSET=" << section.name << '\n';
+    write_set(text, section.elements);
+  }
+}
+
+void write_node_sets(TextBuffer& text, const std::vector<fem::NodeSet>& sets) {
+  for (const fem::NodeSet& set : sets) {
+    text << "*NSET, NSET=" << set.name << '\n';
+    write_set(text, set.nodes);
   }
 }
 
@@ -91,87 +85,93 @@ void write_vectors(TextBuffer& text, const Vec3& along, const Vec3& across) {
   text << real(across.z()) << '\n';
 }
 
+// Yarns have an orientation in any case, for the material that somebody may give them later.
+bool is_oriented(const fem::Mesh& mesh, const fem::Section& section) {
+  return mesh.regions[section.region].kind == fem::Region::Kind::yarn ||
+         !fem::orthotropic(mesh.materials[section.material]).isotropic;
+}
+
 // Local axes 1 along the yarn, 2 across it, element by element. The distribution's name must not look like a
 // Fortran real (CalculiX takes D1 for a number).
-void write_orientation(TextBuffer& text, const fem::Mesh& mesh) {
-  text << "** 1: along the yarn, 2: across it. (CalculiX warns that it does not know the table, and goes "
-          "on.)\n"
-          "*DISTRIBUTION TABLE, NAME=YARNTABLE\nCOORD3D, COORD3D\n"
-          "*DISTRIBUTION, NAME=YARNDIST1, LOCATION=ELEMENT, TABLE=YARNTABLE\n, ";
+void write_orientation(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
+  text << "** 1: along the yarn, 2: across it\n*DISTRIBUTION, NAME=YARNDIST1, LOCATION=ELEMENT, "
+          "TABLE=YARNTABLE\n, ";
   write_vectors(text, Vec3::UnitX(), Vec3::UnitY());
-  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
-    text << e + 1 << ", ";
-    write_vectors(text, mesh.along[e], mesh.across[e]);
+  for (const fem::Section& section : sections) {
+    if (!is_oriented(mesh, section)) continue;
+    for (const std::size_t e : section.elements) {
+      text << e + 1 << ", ";
+      write_vectors(text, mesh.along[e], mesh.across[e]);
+    }
   }
   text << "*ORIENTATION, NAME=YARNORI, SYSTEM=RECTANGULAR\nYARNDIST1\n";
 }
 
 void write_elastic(TextBuffer& text, const fabric::Material& material) {
-  if (const auto* same = std::get_if<fabric::IsotropicElastic>(&material.elastic)) {
-    text << "*ELASTIC\n" << real(same->modulus) << ", " << real(same->poisson) << '\n';
+  const fem::Orthotropic c = fem::orthotropic(material);
+  if (std::holds_alternative<fabric::IsotropicElastic>(material.elastic)) {
+    text << "*ELASTIC\n" << real(c.e1) << ", " << real(c.nu12) << '\n';
     return;
   }
-  if (const auto* two = std::get_if<fabric::TransverseElastic>(&material.elastic)) {
-    const double g23 = two->e2 / (2 * (1 + two->nu23));
-    text << "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n"
-         << real(two->e1) << ", " << real(two->e2) << ", " << real(two->e2) << ", " << real(two->nu12) << ", "
-         << real(two->nu12) << ", " << real(two->nu23) << ", " << real(two->g12) << ", " << real(two->g12)
-         << ",\n"
-         << real(g23) << '\n';
-  }
+  text << "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n";
+  for (const double constant : {c.e1, c.e2, c.e3, c.nu12, c.nu13, c.nu23, c.g12, c.g13})
+    text << real(constant) << ", ";
+  text << '\n' << real(c.g23) << '\n';
 }
 
 void write_materials(TextBuffer& text, const fem::Mesh& mesh, const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
     const fabric::Material& material = mesh.materials[i];
     text << "*MATERIAL, NAME=" << names[i] << '\n';
-    write_elastic(text, material);
-    if (material.density) text << "*DENSITY\n" << real(*material.density * 1e-9) << '\n';
-    if (material.expansion)
-      text << "*EXPANSION, TYPE=ORTHO\n"
-           << real(material.expansion->along) << ", " << real(material.expansion->across) << ", "
-           << real(material.expansion->across) << '\n';
+    if (!std::holds_alternative<std::monostate>(material.elastic)) write_elastic(text, material);
+    const fem::Orthotropic constants = fem::orthotropic(material);
+    if (constants.density) text << "*DENSITY\n" << real(*constants.density) << '\n';
+    if (constants.expansion) {
+      const auto& [one, two, three] = *constants.expansion;
+      text << "*EXPANSION, TYPE=ORTHO\n" << real(one) << ", " << real(two) << ", " << real(three) << '\n';
+    }
   }
 }
 
-Status write_sections(TextBuffer& text, const fem::Mesh& mesh, const std::vector<std::string>& names) {
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
-    const std::string& wanted = mesh.regions[i].material;
-    const auto found =
-        std::find_if(mesh.materials.begin(), mesh.materials.end(),
-                     [&](const fabric::Material& material) { return material.name == wanted; });
-    if (found == mesh.materials.end() || std::holds_alternative<std::monostate>(found->elastic)) {
-      Message message = error(Kind::internal, "the yarn's material has no elastic constants");
-      message.yarn = mesh.regions[i].name;
-      return message;
-    }
-    text << "*SOLID SECTION, ELSET=" << yarn_name(i)
-         << ", MATERIAL=" << names[static_cast<std::size_t>(found - mesh.materials.begin())]
-         << ", ORIENTATION=YARNORI\n";
-  }
-  return {};
+void write_sections(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
+                    const std::vector<std::string>& names) {
+  for (const fem::Section& section : sections)
+    text << "*SOLID SECTION, ELSET=" << section.name << ", MATERIAL=" << names[section.material]
+         << (is_oriented(mesh, section) ? ", ORIENTATION=YARNORI\n" : "\n");
 }
 
 Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
+  const Result<std::vector<fem::Section>> sections = fem::sections(mesh);
+  if (!sections) return sections.error();
   TextBuffer text(output);
-  const std::vector<std::string> names = material_names(mesh.materials);
-  const std::vector<Load> loads = plan_loads(mesh);
-  text << "*HEADING\nSelvage: " << std::string_view(mesh.title).substr(0, 70)
-       << "\n** Units: mm, N, MPa, tonne, s\n";
+  const std::vector<std::string> names = fem::solver_names(mesh.materials);
+  const std::vector<Load> loads = mesh.cell ? std::vector<Load>() : plan_loads(mesh);
+  std::vector<fem::NodeSet> sets = mesh.cell ? fem::node_sets(mesh) : sets_of(loads);
+  write_heading(text, mesh);
+  text << "** Units: mm, N, MPa, tonne, s\n";
   write_nodes(text, mesh);
+  write_drivers(text, mesh);
   write_elements(text, mesh);
-  write_sets(text, mesh, loads);
+  write_element_sets(text, mesh, *sections);
+  write_node_sets(text, sets);
   write_materials(text, mesh, names);
-  write_orientation(text, mesh);
-  if (Status written = write_sections(text, mesh, names); !written) return written.error();
-  write_transforms(text, mesh, loads);
-  write_step(text, mesh, loads);
+  write_orientation(text, mesh, *sections);
+  write_sections(text, mesh, *sections, names);
+  if (mesh.cell) {
+    write_cell_conditions(text, mesh);
+    write_cell_steps(text, mesh);
+  } else {
+    write_transforms(text, mesh, loads);
+    write_step(text, mesh, loads);
+  }
   if (Status done = text.finish(); !done) return done.error();
   WriteFacts facts;
   facts.entities = {{"nodes", mesh.nodes.size()},
-                    {mesh.order == 1 ? "C3D4" : "C3D10", mesh.elements.size()},
+                    {std::string(element_type(mesh)), mesh.elements.size()},
                     {"element sets", mesh.regions.size() + 1},
-                    {"node sets", 2 * loads.size() + 1}};
+                    {"node sets", sets.size() + 1 + mesh.drivers.size()}};
+  if (!mesh.equations.empty()) facts.entities["equations"] = mesh.equations.size();
+  if (!mesh.load_cases.empty()) facts.entities["steps"] = mesh.load_cases.size();
   return facts;
 }
 

@@ -102,12 +102,21 @@ std::vector<Load> plan_loads(const fem::Mesh& mesh) {
     const fem::Region& region = mesh.regions[i];
     const bool ring = region.start_nodes.empty();
     Load load = ring ? grip_ring(mesh, region) : grip_ends(mesh, region);
-    load.start_set = yarn_name(i) + (ring ? "_Low" : "_Start");
-    load.end_set = yarn_name(i) + (ring ? "_High" : "_End");
+    load.start_set = fem::set_name(mesh, i) + (ring ? "_Low" : "_Start");
+    load.end_set = fem::set_name(mesh, i) + (ring ? "_High" : "_End");
     choose_anchors(mesh, load);
     loads.push_back(std::move(load));
   }
   return loads;
+}
+
+std::vector<fem::NodeSet> sets_of(const std::vector<Load>& loads) {
+  std::vector<fem::NodeSet> sets;
+  for (const Load& load : loads) {
+    sets.push_back({load.start_set, load.start});
+    sets.push_back({load.end_set, load.end});
+  }
+  return sets;
 }
 
 void write_transforms(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>& loads) {

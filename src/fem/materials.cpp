@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace selvage::fem {
 
@@ -12,6 +13,63 @@ fabric::Material generic_material() {
   material.density = 1.5;
   material.elastic = fabric::IsotropicElastic{.modulus = 10'000, .poisson = 0.3};
   return material;
+}
+
+Orthotropic orthotropic(const fabric::Material& material) {
+  Orthotropic result;
+  if (const auto* same = std::get_if<fabric::IsotropicElastic>(&material.elastic)) {
+    const double shear = same->modulus / (2 * (1 + same->poisson));
+    result = {true,
+              same->modulus,
+              same->modulus,
+              same->modulus,
+              same->poisson,
+              same->poisson,
+              same->poisson,
+              shear,
+              shear,
+              shear,
+              {},
+              {}};
+  } else if (const auto* two = std::get_if<fabric::TransverseElastic>(&material.elastic)) {
+    const double g23 = two->e2 / (2 * (1 + two->nu23));
+    result = {false,     two->e1,  two->e2,  two->e2, two->nu12, two->nu12,
+              two->nu23, two->g12, two->g12, g23,     {},        {}};
+  }
+  if (material.expansion) {
+    const auto [along, across] = *material.expansion;
+    result.expansion = {along, across, across};
+    result.isotropic = result.isotropic && along == across;
+  }
+  if (material.density) result.density = *material.density * 1e-9;
+  return result;
+}
+
+namespace {
+
+bool same_letters(const std::string& a, const std::string& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+}  // namespace
+
+std::vector<std::string> solver_names(const std::vector<fabric::Material>& materials) {
+  constexpr std::size_t longest = 30;
+  std::vector<std::string> names;
+  for (const fabric::Material& material : materials) {
+    std::string name = material.name.substr(0, longest - 6);
+    for (char& letter : name)
+      if (std::isalnum(static_cast<unsigned char>(letter)) == 0 || (letter & 0x80) != 0) letter = '_';
+    if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) name.insert(0, "M_");
+    const std::string stem = name;
+    for (int i = 2; std::any_of(names.begin(), names.end(),
+                                [&](const std::string& other) { return same_letters(other, name); });
+         ++i)
+      name = stem + "_" + std::to_string(i);
+    names.push_back(name);
+  }
+  return names;
 }
 
 MaterialChoice choose_materials(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,

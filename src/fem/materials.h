@@ -1,6 +1,8 @@
 // What the yarns are made of, for a solver: every yarn has a material with elastic constants in the end.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +16,24 @@ namespace selvage::fem {
 // The stand-in for a yarn without elastic constants: isotropic, E = 10 000 MPa, nu = 0.3, 1.5 g/cm3. It lets
 // a deck run; it is nobody's fibre, and a warning says so.
 fabric::Material generic_material();
+
+// Nine elastic constants (Voigt's engineering constants, axes 1 along the yarn, 2 and 3 across it), expansion
+// and density, in the units of Mesh. nu12: contraction along 2 under tension along 1. A transversely
+// isotropic material has g23 = e2 / (2 (1 + nu23)).
+struct Orthotropic {
+  bool isotropic = false;         // elasticity and expansion: the axes mean nothing
+  double e1 = 0, e2 = 0, e3 = 0;  // MPa
+  double nu12 = 0, nu13 = 0, nu23 = 0;
+  double g12 = 0, g13 = 0, g23 = 0;
+  std::optional<std::array<double, 3>> expansion;  // 1/K
+  std::optional<double> density;                   // tonne/mm3
+};
+// All zero of a material without elastic constants.
+Orthotropic orthotropic(const fabric::Material& material);
+
+// Names that every solver takes: letters, digits and underscores after a letter, at most 30, each only once
+// (case does not count).
+std::vector<std::string> solver_names(const std::vector<fabric::Material>& materials);
 
 struct MaterialChoice {
   std::vector<fabric::Material> materials;  // those in use, in order of first use

@@ -5,6 +5,7 @@
 
 #include "fabric/build.h"
 #include "formats/inp/deck.h"
+#include "formats/mesh/cell_mesh.h"
 #include "formats/mesh/programs.h"
 #include "formats/txt/txt.h"
 
@@ -16,6 +17,7 @@ using test::grid_body;
 using test::mesh_of;
 using test::save;
 using test::solve;
+using test::solve_without_warning;
 using test::total_force;
 
 fabric::Fabric fabric_with(const decltype(fabric::Material::elastic)& elastic) {
@@ -176,6 +178,50 @@ TEST(InpDeck, PlainWeaveOfFourYarnsRuns) {
         EXPECT_LT(end.norm(), 10000 * 0.001 * region.volume / bodies[static_cast<std::size_t>(yarn)].length);
       }
     }
+}
+
+// A homogeneous cell under each unit strain, and heated with all strains zero, has one stress everywhere:
+// that of its material.
+TEST(InpDeck, UnitCellHasTheStressOfItsMaterial) {
+  const double modulus = 3400, nu = 0.35, expansion = 6e-5;
+  const double lambda = modulus * nu / ((1 + nu) * (1 - 2 * nu)), mu = modulus / (2 * (1 + nu));
+  for (fem::Mesh mesh : {test::brick_cell(), test::tetrahedra_cell(1), test::tetrahedra_cell(2)}) {
+    mesh.regions[0].material = "resin";
+    // Stresses are printed in the local axes.
+    mesh.along.assign(mesh.elements.size(), Vec3::UnitX());
+    mesh.across.assign(mesh.elements.size(), Vec3::UnitY());
+    const Folder folder;
+    save(mesh, formats::inp::descriptor(), folder / "cell.inp");
+    test::ask_for_stresses(folder / "cell.inp");
+    const auto stresses = test::stresses_by_step(solve_without_warning(folder, "cell"));
+    ASSERT_EQ(stresses.size(), 7U);
+    for (std::size_t load = 0; load < 7; ++load) {
+      ASSERT_GE(stresses[load].size(), mesh.elements.size());
+      for (const auto& stress : stresses[load])
+        for (std::size_t k = 0; k < 6; ++k) {
+          double expected = 0;
+          if (load == 6) expected = k < 3 ? -(3 * lambda + 2 * mu) * expansion : 0;
+          if (load < 6 && load == k) expected = k < 3 ? (lambda + 2 * mu) * 1e-3 : mu * 1e-3;
+          if (load < 3 && k < 3 && load != k) expected = lambda * 1e-3;
+          EXPECT_NEAR(stress[k], expected, 2e-6) << "load " << load << ", " << k;
+        }
+    }
+  }
+}
+
+// Two bins of material in one region, orientations and expansion of a yarn: the deck runs without a warning.
+TEST(InpDeck, UnitCellOfSeveralMaterialsRuns) {
+  const fem::Mesh mesh = test::tetrahedra_cell(2, true);
+  const Folder folder;
+  save(mesh, formats::inp::descriptor(), folder / "cell.inp");
+  test::ask_for_stresses(folder / "cell.inp");
+  const auto stresses = test::stresses_by_step(solve_without_warning(folder, "cell"));
+  ASSERT_EQ(stresses.size(), 7U);
+  // In the yarn's first elements, along x as the strain: nearly E1 times it.
+  const auto [low, high] = std::minmax_element(stresses[0].begin(), stresses[0].end());
+  EXPECT_GT((*high)[0], 0.98 * 57.5);
+  EXPECT_LT((*high)[0], 1.1 * 57.5 / 0.99);
+  EXPECT_GT((*low)[0], 3.4);
 }
 
 // CalculiX reads twenty characters of a number.

@@ -78,12 +78,51 @@ inline fem::Mesh mesh_of(const fabric::Fabric& fabric, const std::vector<yarn::B
 }
 
 // CalculiX on a deck NAME.inp in the folder; its .dat. It exits with 0 whatever happens: its words tell.
-inline std::string solve(const Folder& folder, const std::string& name) {
+inline std::string solve(const Folder& folder, const std::string& name, bool may_warn = true) {
   const std::string words = run(folder, std::string(CCX) + " " + name);
+  if (!may_warn) {
+    EXPECT_EQ(words.find("*WARNING"), std::string::npos) << words;
+  }
   EXPECT_NE(words.find("Job finished"), std::string::npos) << words;
   EXPECT_EQ(words.find("*ERROR"), std::string::npos) << words;
   EXPECT_EQ(words.find("nonpositive jacobian"), std::string::npos) << words;
   return text_of(folder / (name + ".dat"));
+}
+
+inline std::string solve_without_warning(const Folder& folder, const std::string& name) {
+  return solve(folder, name, false);
+}
+
+// Adds the stresses of all elements to what each step of a deck prints.
+inline void ask_for_stresses(const fs::path& deck) {
+  std::string text = text_of(deck);
+  const std::string end = "*END STEP", wish = "*EL PRINT, ELSET=All\nS\n";
+  for (std::size_t at = text.find(end); at != std::string::npos; at = text.find(end, at + wish.size() + 1))
+    text.insert(at, wish);
+  std::ofstream(deck) << text;
+}
+
+// Stresses xx, yy, zz, xy, xz, yz at all integration points, step by step, from a .dat.
+inline std::vector<std::vector<std::array<double, 6>>> stresses_by_step(const std::string& dat) {
+  std::vector<std::vector<std::array<double, 6>>> steps;
+  std::istringstream lines(dat);
+  bool is_inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("stresses (elem") != std::string::npos) {
+      steps.emplace_back();
+      is_inside = true;
+      continue;
+    }
+    if (!is_inside || line.empty()) continue;
+    std::istringstream row(line);
+    std::size_t element = 0, point = 0;
+    std::array<double, 6> s{};
+    if (row >> element >> point >> s[0] >> s[1] >> s[2] >> s[3] >> s[4] >> s[5])
+      steps.back().push_back(s);
+    else
+      is_inside = false;
+  }
+  return steps;
 }
 
 // "total force (fx,fy,fz) for set NAME": the three numbers under it.

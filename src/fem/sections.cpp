@@ -1,0 +1,111 @@
+#include "fem/sections.h"
+
+#include <algorithm>
+#include <map>
+
+#include "fem/materials.h"
+
+namespace selvage::fem {
+
+std::string set_name(const Mesh& mesh, std::size_t region) {
+  if (mesh.regions[region].kind == Region::Kind::matrix) return "Matrix";
+  const auto is_yarn = [](const Region& other) { return other.kind == Region::Kind::yarn; };
+  const auto number = std::count_if(mesh.regions.begin(),
+                                    mesh.regions.begin() + static_cast<std::ptrdiff_t>(region), is_yarn);
+  return "Yarn" + std::to_string(number);
+}
+
+std::vector<NodeSet> node_sets(const Mesh& mesh) {
+  std::vector<NodeSet> sets;
+  const auto add = [&](std::string name, const std::vector<std::size_t>& nodes) {
+    if (!nodes.empty()) sets.push_back({std::move(name), nodes});
+  };
+  if (!mesh.cell) {
+    for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+      add(set_name(mesh, i) + "_Start", mesh.regions[i].start_nodes);
+      add(set_name(mesh, i) + "_End", mesh.regions[i].end_nodes);
+    }
+    return sets;
+  }
+  for (std::size_t i = 0; i < mesh.cell->face_nodes.size(); ++i)
+    add(std::string("Face") + static_cast<char>('A' + i), mesh.cell->face_nodes[i]);
+  for (std::size_t i = 0; i < mesh.cell->edge_nodes.size(); ++i)
+    add("Edge" + std::to_string(i + 1), mesh.cell->edge_nodes[i]);
+  // In the corners of a cell of dry yarns there need not be a node.
+  for (std::size_t i = 0; i < mesh.cell->corners.size(); ++i)
+    if (mesh.cell->corners[i] < mesh.nodes.size())
+      add("Corner" + std::to_string(i + 1), {mesh.cell->corners[i]});
+  return sets;
+}
+
+namespace {
+
+Result<std::size_t> material_of(const Mesh& mesh, const Region& region) {
+  const auto found =
+      std::find_if(mesh.materials.begin(), mesh.materials.end(),
+                   [&](const fabric::Material& material) { return material.name == region.material; });
+  if (found != mesh.materials.end()) return static_cast<std::size_t>(found - mesh.materials.begin());
+  Message message = error(Kind::internal, "the yarn's material has no elastic constants");
+  message.yarn = region.name;
+  return message;
+}
+
+}  // namespace
+
+Result<std::vector<Section>> sections(const Mesh& mesh) {
+  std::vector<Section> list;
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+    const Region& region = mesh.regions[i];
+    std::map<std::size_t, std::vector<std::size_t>> by_material;
+    if (mesh.element_material.empty()) {
+      const Result<std::size_t> material = material_of(mesh, region);
+      if (!material) return material.error();
+      std::vector<std::size_t>& elements = by_material[*material];
+      for (std::size_t e = region.first_element; e < region.last_element; ++e) elements.push_back(e);
+    } else {
+      for (std::size_t e = region.first_element; e < region.last_element; ++e)
+        by_material[mesh.element_material[e]].push_back(e);
+    }
+    for (auto& [material, elements] : by_material) {
+      if (material >= mesh.materials.size() ||
+          std::holds_alternative<std::monostate>(mesh.materials[material].elastic)) {
+        Message message = error(Kind::internal, "the yarn's material has no elastic constants");
+        message.yarn = region.name;
+        return message;
+      }
+      const std::string name = set_name(mesh, i);
+      const bool is_alone = by_material.size() == 1;
+      const std::size_t number = static_cast<std::size_t>(std::count_if(
+          list.begin(), list.end(), [&](const Section& section) { return section.region == i; }));
+      list.push_back({is_alone ? name : name + "_Section" + std::to_string(number + 1), i, material,
+                      std::move(elements)});
+    }
+  }
+  return list;
+}
+
+Frames frames(const Mesh& mesh, const std::vector<Section>& sections) {
+  Frames result;
+  result.of_element.assign(mesh.elements.size(), Frames::none);
+  std::map<std::array<double, 6>, std::uint32_t> known;
+  // In the order of the elements, whatever the order of the sections.
+  std::vector<bool> is_oriented(mesh.elements.size(), false);
+  for (const Section& section : sections)
+    if (!orthotropic(mesh.materials[section.material]).isotropic)
+      for (const std::size_t e : section.elements) is_oriented[e] = true;
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+    if (!is_oriented[e]) continue;
+    const Vec3 &along = mesh.along[e], &across = mesh.across[e];
+    const std::array<double, 6> key = {along.x(), along.y(), along.z(), across.x(), across.y(), across.z()};
+    const auto [at, is_new] = known.emplace(key, static_cast<std::uint32_t>(result.axes.size() + 1));
+    if (is_new) {
+      const Vec3 first = along.normalized();
+      const Vec3 third = first.cross(across).normalized();
+      result.axes.push_back({first, third.cross(first), third});
+    }
+    result.of_element[e] = at->second;
+  }
+  return result;
+}
+
+}  // namespace selvage::fem

@@ -1,0 +1,45 @@
+// The names and groups by which decks speak of a mesh's parts: the same in every format.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "fem/mesh.h"
+
+namespace selvage::fem {
+
+// "Yarn0", "Yarn1", .. in the order of the yarns; "Matrix".
+std::string set_name(const Mesh& mesh, std::size_t region);
+
+struct NodeSet {
+  std::string name;
+  std::vector<std::size_t> nodes;  // indices into Mesh::nodes
+};
+
+// Of a unit cell: FaceA .. FaceF (without edges), Edge1 .. Edge12 (without corners), Corner1 .. Corner8,
+// those that have nodes. Without a cell: the yarns' ends, Yarn0_Start, Yarn0_End, .. , of those that have
+// ends.
+std::vector<NodeSet> node_sets(const Mesh& mesh);
+
+// The elements of one region that have one material.
+struct Section {
+  std::string name;  // the region's where it is of one material, else Yarn0_Section1, ..
+  std::size_t region = 0;
+  std::size_t material = 0;           // index into Mesh::materials
+  std::vector<std::size_t> elements;  // increasing
+};
+
+// Every element is in exactly one. Error (internal): a region without a material that has elastic constants.
+Result<std::vector<Section>> sections(const Mesh& mesh);
+
+// Orientations that are in use: of each section whose material is not isotropic, its elements' (along,
+// across) made a right-handed orthonormal frame; frames that are equal to the bit are one.
+struct Frames {
+  static constexpr std::uint32_t none = 0;
+  std::vector<std::array<Vec3, 3>> axes;  // unit: along, across, along x across; in order of first use
+  std::vector<std::uint32_t> of_element;  // none, or 1 + index into `axes`
+};
+Frames frames(const Mesh& mesh, const std::vector<Section>& sections);
+
+}  // namespace selvage::fem

@@ -1,0 +1,76 @@
+#include "fem/sides.h"
+
+#include <algorithm>
+
+namespace selvage::fem {
+namespace {
+
+struct Key {
+  std::array<std::size_t, 4> nodes{};  // increasing; the repeated one of a triangle counts
+  std::size_t element = 0, side = 0, region = 0;
+  [[nodiscard]] bool is_same_place(const Key& other) const { return nodes == other.nodes; }
+  bool operator<(const Key& other) const {
+    if (nodes != other.nodes) return nodes < other.nodes;
+    return element != other.element ? element < other.element : side < other.side;
+  }
+};
+
+std::array<std::size_t, 4> corners_of(const Mesh& mesh, std::size_t element, std::size_t side) {
+  const auto& local =
+      mesh.shape == Mesh::Shape::tetrahedron ? tetrahedron_sides[side] : hexahedron_sides[side];
+  std::array<std::size_t, 4> nodes{};
+  for (std::size_t k = 0; k < 4; ++k) nodes[k] = mesh.elements[element][local[k]];
+  return nodes;
+}
+
+// The face of the cell in which all corners stand: coordinates there are the face's own to the bit.
+int face_of(const Mesh& mesh, const std::array<std::size_t, 4>& nodes) {
+  if (!mesh.cell) return -1;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool high : {true, false}) {
+      const double plane = high ? mesh.cell->high[axis] : mesh.cell->low[axis];
+      if (std::all_of(nodes.begin(), nodes.end(),
+                      [&](std::size_t node) { return mesh.nodes[node][axis] == plane; }))
+        return 2 * axis + (high ? 0 : 1);
+    }
+  return -1;
+}
+
+}  // namespace
+
+std::vector<OuterSide> outer_sides(const Mesh& mesh) {
+  const std::size_t count = mesh.shape == Mesh::Shape::tetrahedron ? 4 : 6;
+  std::vector<Key> keys;
+  keys.reserve(count * mesh.elements.size());
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
+    for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
+      for (std::size_t s = 0; s < count; ++s) {
+        Key key{corners_of(mesh, e, s), e, s, i};
+        std::sort(key.nodes.begin(), key.nodes.end());
+        keys.push_back(key);
+      }
+  std::sort(keys.begin(), keys.end());
+  std::vector<OuterSide> sides;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const Key& key = keys[k];
+    std::size_t behind = OuterSide::outside;
+    if (k > 0 && keys[k - 1].is_same_place(key)) behind = keys[k - 1].region;
+    if (k + 1 < keys.size() && keys[k + 1].is_same_place(key)) behind = keys[k + 1].region;
+    if (behind == key.region) continue;
+    OuterSide side{key.element, key.side, key.region, behind, -1, corners_of(mesh, key.element, key.side)};
+    if (behind == OuterSide::outside) side.face = face_of(mesh, side.nodes);
+    sides.push_back(side);
+  }
+  std::sort(sides.begin(), sides.end(), [](const OuterSide& a, const OuterSide& b) {
+    return a.element != b.element ? a.element < b.element : a.side < b.side;
+  });
+  return sides;
+}
+
+Vec3 area_vector(const Mesh& mesh, const OuterSide& side) {
+  // Of a quadrilateral, and of a triangle whose last corner is repeated: half the product of the diagonals.
+  const auto& n = side.nodes;
+  return (mesh.nodes[n[2]] - mesh.nodes[n[0]]).cross(mesh.nodes[n[3]] - mesh.nodes[n[1]]) / 2;
+}
+
+}  // namespace selvage::fem
