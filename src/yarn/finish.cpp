@@ -20,20 +20,6 @@ double open_flux(const Body& body, bool last, const Vec3& origin) {
   return sign * area_vector(outline).dot(outline.points.front() - origin) / 3.0;
 }
 
-// The volume flux of one end. Planar and open ends are what their outline says; a patch or fan is integrated.
-double end_flux(const Body& body, bool last, const Vec3& origin) {
-  const EndFace& end = last ? body.end : body.start;
-  if (end.style == EndStyle::patch || end.style == EndStyle::fan) {
-    const double flux = nurbs::volume_flux(end.surface, origin);
-    return end.inward ? -flux : flux;
-  }
-  const nurbs::Curve outline = end_curve(body, last);
-  const Vec3 area = area_vector(outline);
-  const double sign = (last != body.inward) ? 1.0 : -1.0;
-  const Vec3 foot = end.style == EndStyle::none ? outline.points.front() : end.origin;
-  return sign * area.dot(foot - origin) / 3.0;
-}
-
 // How far the section at v reaches from the axis in the unit direction `toward`.
 double reach(const Body& body, const Vec3& centre, const Vec3& toward, double v) {
   const nurbs::Surface& s = body.surface;
@@ -121,6 +107,19 @@ void measure(Body& body, double side) {
 }
 
 }  // namespace
+
+double end_flux(const Body& body, bool last, const Vec3& origin) {
+  const EndFace& end = last ? body.end : body.start;
+  if (end.style == EndStyle::patch || end.style == EndStyle::fan) {
+    const double flux = nurbs::volume_flux(end.surface, origin);
+    return end.inward ? -flux : flux;
+  }
+  const nurbs::Curve outline = end_curve(body, last);
+  const Vec3 area = area_vector(outline);
+  const double sign = (last != body.inward) ? 1.0 : -1.0;
+  const Vec3 foot = end.style == EndStyle::none ? outline.points.front() : end.origin;
+  return sign * area.dot(foot - origin) / 3.0;
+}
 
 Status finish(Body& body, const Sealings& ends) {
   const Result<double> side = orient(body);

@@ -15,4 +15,8 @@ Status finish(Body& body, EndStyle ends);
 // The same for a body that has its end faces (style and surface) already, and keeps them.
 Status finish_as_sealed(Body& body);
 
+// One third of the flux of (position - origin) out of the yarn through one of its ends. Planar and open ends
+// are what their outline says.
+double end_flux(const Body& body, bool last, const Vec3& origin);
+
 }  // namespace selvage::yarn
