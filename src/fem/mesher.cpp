@@ -95,12 +95,12 @@ Result<YarnMesh> mesh_yarn(const yarn::Body& body, double scale, const MeshOptio
   Mesh& mesh = result.mesh;
   add_orientations(mesh, *surface, body);
   if (options.order == 2) {
-    const std::size_t held = add_midside_nodes(mesh, *surface, body);
-    if (held > 0) {
+    const MidsideNodes nodes = add_midside_nodes(mesh, *surface, body);
+    if (nodes.held > 0) {
       Message note =
-          warning(Kind::geometry, fmt::format("{} midside nodes were held back from the yarn's surface so "
-                                              "that no element folds",
-                                              held));
+          warning(Kind::geometry, fmt::format("{} midside nodes were held back from the yarn's surface, by "
+                                              "up to {:.2g} mm, so that no element folds",
+                                              nodes.held, nodes.farthest * scale));
       note.severity = Severity::note;
       result.notes.push_back(std::move(note));
     }

@@ -24,7 +24,7 @@ struct CellSurface {
   // surface; `body` no_body: on none.
   std::span<const SurfacePlace> places;
   double scale = 1;  // mm per file unit
-  Box3 box;          // the cell, mm
+  Box3 box{};        // the cell, mm
   std::array<bool, 3> periodic{};
 };
 
@@ -35,10 +35,8 @@ struct CellSurface {
 // chord where a scaled Jacobian would fall below 0.1 (or 0.9 of the straight one where that is lower).
 MidsideNodes add_midside_nodes(Mesh& mesh, const CellSurface& surface);
 
-// Gives the corner-only elements of `mesh` (one region, file units; its first nodes are the surface's points)
-// their six midside nodes, appended to the nodes, and sets order 2. Those on the boundary lie on the yarn's
-// B-spline surface, or as far on the way there as every element's scaled Jacobian stays above 0.1 (or above
-// 0.9 of its straight one where that is lower). Returns how many were held back.
-std::size_t add_midside_nodes(Mesh& mesh, const SurfaceMesh& surface, const yarn::Body& body);
+// The same for a yarn of a dry fabric: `mesh` has one region, in file units, whose first nodes are the
+// surface's points.
+MidsideNodes add_midside_nodes(Mesh& mesh, const SurfaceMesh& surface, const yarn::Body& body);
 
 }  // namespace selvage::fem

@@ -1,0 +1,246 @@
+#include "fem/curved_edges.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fem/faces.h"
+#include "fem/quality.h"
+
+namespace selvage::fem {
+namespace {
+
+// `b` on the same side of a closed line's joint as `a`: past its end, or before its start.
+double beside(double a, double b, double range) {
+  return std::abs(b - a) > range / 2 ? b + (b < a ? range : -range) : b;
+}
+
+// Parameters of an edge's ends without a jump over the seam, and points of the surface between them.
+class EdgeLine {
+ public:
+  EdgeLine(const yarn::Body& body, Vec2 from, Vec2 to)
+      : surface_(body.surface),
+        range_u_(surface_.last_u() - surface_.first_u()),
+        range_v_(surface_.last_v() - surface_.first_v()),
+        closed_along_(body.closed_along),
+        from_(from),
+        to_(to) {
+    to_.x() = beside(from_.x(), to_.x(), range_u_);
+    if (closed_along_) to_.y() = beside(from_.y(), to_.y(), range_v_);
+  }
+  [[nodiscard]] Vec2 at(double share) const { return from_ + share * (to_ - from_); }
+  [[nodiscard]] nurbs::SurfaceJet jet(const Vec2& parameters) const {
+    const Vec2 p = in_domain(parameters);
+    return nurbs::evaluate_jet(surface_, p.x(), p.y());
+  }
+  [[nodiscard]] Vec3 point(double share) const {
+    const Vec2 p = in_domain(at(share));
+    return nurbs::evaluate(surface_, p.x(), p.y());
+  }
+
+ private:
+  [[nodiscard]] Vec2 in_domain(Vec2 p) const {
+    const auto wrapped = [](double x, double first, double last) {
+      const double range = last - first;
+      return x < first || x > last ? x - range * std::floor((x - first) / range) : x;
+    };
+    p.x() = wrapped(p.x(), surface_.first_u(), surface_.last_u());
+    p.y() = closed_along_ ? wrapped(p.y(), surface_.first_v(), surface_.last_v())
+                          : std::clamp(p.y(), surface_.first_v(), surface_.last_v());
+    return p;
+  }
+
+  const nurbs::Surface& surface_;
+  double range_u_, range_v_;
+  bool closed_along_;
+  Vec2 from_, to_;
+};
+
+// Numbers the edges in increasing order of their ends, appends straight middles, and returns the ends by
+// number.
+std::vector<std::uint64_t> add_straight(Mesh& mesh) {
+  struct Use {
+    std::uint64_t key;
+    std::size_t element, slot;
+  };
+  std::vector<Use> uses;
+  uses.reserve(6 * mesh.elements.size());
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
+    for (std::size_t k = 0; k < 6; ++k)
+      uses.push_back(
+          {edge_key(mesh.elements[e][edge_ends[k][0]], mesh.elements[e][edge_ends[k][1]]), e, 4 + k});
+  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) { return a.key < b.key; });
+  std::vector<std::uint64_t> keys;
+  for (const Use& use : uses) {
+    if (keys.empty() || keys.back() != use.key) {
+      keys.push_back(use.key);
+      mesh.nodes.push_back((mesh.nodes[use.key >> 32U] + mesh.nodes[use.key & 0xffffffffU]) / 2);
+    }
+    mesh.elements[use.element][use.slot] = mesh.nodes.size() - 1;
+  }
+  mesh.order = 2;
+  return keys;
+}
+
+bool is_sound(const Mesh& mesh, std::size_t element) {
+  std::array<Vec3, 10> nodes;
+  for (std::size_t k = 0; k < 10; ++k) nodes[k] = mesh.nodes[mesh.elements[element][k]];
+  const double straight = shape_of({nodes[0], nodes[1], nodes[2], nodes[3]}).scaled_jacobian;
+  return straight * least_jacobian_share(nodes) >= std::min(0.1, 0.9 * straight);
+}
+
+// Halves the steps of every bad element until none is left; after three halvings edges are straight, and
+// elements sound.
+class Steps {
+ public:
+  Steps(Mesh& mesh, std::size_t corners, std::size_t count)
+      : mesh_(mesh),
+        corners_(corners),
+        steps_(count, Vec3::Zero()),
+        shares_(count, 1.0F),
+        partner_(count, none) {}
+
+  void move(std::size_t k, const Vec3& to) {
+    Vec3& node = mesh_.nodes[corners_ + k];
+    steps_[k] = to - node;
+    node = to;
+    moved_.push_back(k);
+  }
+  void tie(std::size_t a, std::size_t b) {
+    partner_[a] = b;
+    partner_[b] = a;
+  }
+  void hold() {
+    chords_.resize(steps_.size());
+    for (const std::size_t k : moved_) chords_[k] = mesh_.nodes[corners_ + k] - steps_[k];
+    std::vector<std::size_t> watched;  // elements with a curved edge
+    for (std::size_t e = 0; e < mesh_.elements.size(); ++e)
+      if (std::any_of(mesh_.elements[e].begin() + 4, mesh_.elements[e].end(),
+                      [this](std::size_t node) { return !steps_[node - corners_].isZero(0); }))
+        watched.push_back(e);
+    for (bool changed = true; changed;) {
+      changed = false;
+      std::vector<std::size_t> bad;
+      for (const std::size_t e : watched)
+        if (!is_sound(mesh_, e)) bad.push_back(e);
+      for (const std::size_t e : bad)
+        for (std::size_t slot = 4; slot < 10; ++slot) {
+          const std::size_t k = mesh_.elements[e][slot] - corners_;
+          if (!halve(k)) continue;
+          changed = true;
+          if (partner_[k] != none) halve(partner_[k]);
+        }
+    }
+  }
+  [[nodiscard]] MidsideNodes result() const {
+    MidsideNodes result;
+    for (const std::size_t k : moved_) {
+      if (shares_[k] == 1.0F) continue;
+      ++result.held;
+      result.farthest = std::max(result.farthest, (1 - shares_[k]) * steps_[k].norm());
+    }
+    return result;
+  }
+
+ private:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  bool halve(std::size_t k) {
+    if (shares_[k] == 0 || steps_[k].isZero(0)) return false;
+    shares_[k] = shares_[k] > 0.2F ? shares_[k] / 2 : 0.0F;
+    mesh_.nodes[corners_ + k] = chords_[k] + steps_[k] * shares_[k];
+    return true;
+  }
+
+  Mesh& mesh_;
+  std::size_t corners_;
+  std::vector<Vec3> steps_, chords_;  // where each node wants to be, as a step from the chord
+  std::vector<float> shares_;         // of the step that is taken
+  std::vector<std::size_t> partner_, moved_;
+};
+
+}  // namespace
+
+std::uint64_t edge_key(std::uint64_t a, std::uint64_t b) {
+  return std::min(a, b) << 32U | std::max(a, b);
+}
+
+// Regula falsi, Illinois form.
+Vec3 middle_on_surface(const yarn::Body& body, const SurfaceEnd& from, const SurfaceEnd& to) {
+  const EdgeLine line(body, from.parameters, to.parameters);
+  const Vec3 chord = to.at - from.at, middle = (from.at + to.at) / 2;
+  const double length = chord.squaredNorm();
+  double low = 0, high = 1, low_miss = -0.5, high_miss = 0.5;
+  Vec3 found = middle;
+  for (int step = 0, side = 0; step < 40; ++step) {
+    const double share = (low * high_miss - high * low_miss) / (high_miss - low_miss);
+    found = line.point(share);
+    const double miss = (found - middle).dot(chord) / length;
+    if (std::abs(miss) < 1e-6) break;
+    if (miss > 0) {
+      high = share;
+      high_miss = miss;
+      if (side == 1) low_miss /= 2;
+      side = 1;
+    } else {
+      low = share;
+      low_miss = miss;
+      if (side == -1) high_miss /= 2;
+      side = -1;
+    }
+  }
+  return found;
+}
+
+std::optional<Vec3> middle_in_plane(const yarn::Body& body, const SurfaceEnd& from, const SurfaceEnd& to,
+                                    int axis) {
+  const EdgeLine line(body, from.parameters, to.parameters);
+  const Vec3 chord = to.at - from.at, middle = (from.at + to.at) / 2;
+  const double length = chord.norm(), plane = from.at[axis];
+  if (!(length > 0)) return std::nullopt;
+  const Vec3 along = chord / length;
+  Vec2 at = line.at(0.5);
+  for (int step = 0; step < 20; ++step) {
+    const nurbs::SurfaceJet jet = line.jet(at);
+    Vec3 found = jet.position;
+    const Vec2 miss(found[axis] - plane, (found - middle).dot(along));
+    if (miss.cwiseAbs().maxCoeff() < 1e-12 * length || (step == 19 && miss.norm() < 1e-8 * length)) {
+      if ((found - middle).norm() > length / 2) return std::nullopt;
+      found[axis] = plane;
+      return found;
+    }
+    Eigen::Matrix2d slope;
+    slope << jet.du[axis], jet.dv[axis], jet.du.dot(along), jet.dv.dot(along);
+    const Vec2 way = slope.partialPivLu().solve(miss);
+    if (!way.allFinite()) return std::nullopt;
+    at -= way;
+  }
+  return std::nullopt;
+}
+
+void sort_edges(std::vector<CurvedEdge>& edges) {
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const CurvedEdge& a, const CurvedEdge& b) { return a.key < b.key; });
+  edges.erase(std::unique(edges.begin(), edges.end(),
+                          [](const CurvedEdge& a, const CurvedEdge& b) { return a.key == b.key; }),
+              edges.end());
+}
+
+MidsideNodes add_midside_nodes(Mesh& mesh, std::span<const CurvedEdge> curved,
+                               std::span<const TiedEdges> tied) {
+  const std::size_t corners = mesh.nodes.size();
+  const std::vector<std::uint64_t> keys = add_straight(mesh);
+  const auto number = [&keys](std::uint64_t key) {
+    const auto at = std::lower_bound(keys.begin(), keys.end(), key);
+    return at == keys.end() || *at != key ? keys.size() : static_cast<std::size_t>(at - keys.begin());
+  };
+  Steps steps(mesh, corners, keys.size());
+  for (const CurvedEdge& edge : curved)
+    if (const std::size_t k = number(edge.key); k < keys.size()) steps.move(k, edge.middle);
+  for (const TiedEdges& pair : tied) {
+    const std::size_t a = number(pair.a), b = number(pair.b);
+    if (a < keys.size() && b < keys.size()) steps.tie(a, b);
+  }
+  steps.hold();
+  return steps.result();
+}
+
+}  // namespace selvage::fem

@@ -1,0 +1,54 @@
+// Midside nodes that follow a yarn's surface: for midside.h.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "fem/mesh.h"
+#include "fem/midside.h"
+#include "yarn/body.h"
+
+namespace selvage::fem {
+
+// Of an edge between two nodes, whichever comes first.
+std::uint64_t edge_key(std::uint64_t a, std::uint64_t b);
+
+// An edge of the boundary and where its middle is wanted.
+struct CurvedEdge {
+  std::uint64_t key = 0;
+  Vec3 middle = Vec3::Zero();
+};
+
+// An edge's end on a yarn's surface, in file units.
+struct SurfaceEnd {
+  Vec2 parameters = Vec2::Zero();
+  Vec3 at = Vec3::Zero();
+};
+
+// The point of the surface above the chord's middle, on the straight line of parameters between an edge's
+// ends: where it is as far along the chord as the middle.
+Vec3 middle_on_surface(const yarn::Body& body, const SurfaceEnd& from, const SurfaceEnd& to);
+
+// The point of the surface in the plane across the chord's middle and in the plane of a face of a cell, on
+// which both ends are: their coordinate `axis` is its own, to the bit. Nothing where it is not found near the
+// chord.
+std::optional<Vec3> middle_in_plane(const yarn::Body& body, const SurfaceEnd& from, const SurfaceEnd& to,
+                                    int axis);
+
+// Two edges whose middles are moved back alike.
+struct TiedEdges {
+  std::uint64_t a = 0, b = 0;  // keys
+};
+
+// Gives the corner-only elements of a mesh six midside nodes, in increasing order of their edges' keys, on
+// the chords or where `curved` (increasing keys, each once) has them, and takes these back toward the chord
+// where an element would fold; see midside.h.
+MidsideNodes add_midside_nodes(Mesh& mesh, std::span<const CurvedEdge> curved,
+                               std::span<const TiedEdges> tied);
+
+// Increasing keys; the first of equal ones stays.
+void sort_edges(std::vector<CurvedEdge>& edges);
+
+}  // namespace selvage::fem

@@ -1,0 +1,200 @@
+#include "fem/midside.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/module.h"
+#include "fem/curved_edges.h"
+#include "fem/faces.h"
+#include "fem/improve.h"
+#include "fem/quality.h"
+#include "fem/surface_mesh.h"
+#include "fem/worker.h"
+#include "unit/fem/bodies.h"
+
+namespace selvage::fem {
+namespace {
+
+// A wave along x of one period, flat at both ends.
+yarn::Body wave() {
+  return test::grid_body("wave", 24, 16, [](double angle, double share) {
+    return Vec3(2 * share, 0.4 * std::cos(angle),
+                0.2 * std::sin(angle) + 0.15 * std::cos(2 * std::numbers::pi * share));
+  });
+}
+
+// A yarn whose sections lean.
+yarn::Body leaning() {
+  return test::grid_body("leaning", 24, 8, [](double angle, double share) {
+    const double z = 0.3 * std::sin(angle);
+    return Vec3(2 * share + 0.4 * z + 0.1 * std::cos(angle), 0.4 * std::cos(angle), z);
+  });
+}
+
+double distance_to(const yarn::Body& body, const Vec3& point) {
+  const nurbs::Surface& s = body.surface;
+  Vec2 best = Vec2::Zero();
+  double least = 1e9;
+  for (int i = 0; i < 200; ++i)
+    for (int j = 0; j <= 200; ++j) {
+      const Vec2 at(s.first_u() + (s.last_u() - s.first_u()) * i / 200,
+                    s.first_v() + (s.last_v() - s.first_v()) * j / 200);
+      const double far = (nurbs::evaluate(s, at.x(), at.y()) - point).norm();
+      if (far < least) {
+        least = far;
+        best = at;
+      }
+    }
+  double step = (s.last_u() - s.first_u()) / 200, step_v = (s.last_v() - s.first_v()) / 200;
+  for (int round = 0; round < 60; ++round, step /= 1.6, step_v /= 1.6)
+    for (int i = -2; i <= 2; ++i)
+      for (int j = -2; j <= 2; ++j) {
+        const Vec2 at = best + Vec2(i * step, j * step_v);
+        const double far = (nurbs::evaluate(s, at.x(), at.y()) - point).norm();
+        if (far >= least) continue;
+        least = far;
+        best = at;
+      }
+  return least;
+}
+
+// The one yarn of a cell without a matrix, its ends in the faces x low and x high.
+struct CellOfYarn {
+  yarn::Body body = wave();
+  Mesh mesh;
+  std::vector<SurfacePlace> places;
+  CellSurface surface;
+};
+
+void fill(CellOfYarn& cell, double size) {
+  const Result<SurfaceMesh> skin = mesh_surface(cell.body, size);
+  ASSERT_TRUE(skin.ok());
+  std::vector<Vec3> points = skin->points;
+  const double low = 0, high = 2;
+  for (const std::uint32_t p : skin->start_points) points[p].x() = low;
+  // The high rim is a copy of the low one.
+  ASSERT_EQ(skin->start_points.size(), skin->end_points.size());
+  for (const std::uint32_t p : skin->end_points) {
+    const Vec3* nearest = &points[skin->start_points.front()];
+    for (const std::uint32_t q : skin->start_points)
+      if ((points[q] - points[p]).tail<2>().norm() < (*nearest - points[p]).tail<2>().norm())
+        nearest = &points[q];
+    ASSERT_LT((*nearest - points[p]).tail<2>().norm(), 1e-9);
+    points[p] = Vec3(high, nearest->y(), nearest->z());
+  }
+  TetgenJob job{.points = points, .triangles = skin->triangles};
+  job.max_volume = 0.13 * size * size * size;
+  Result<TetMesh> tets = run_tetgen(find_worker("selvage-tetgen").value(), job, {});
+  ASSERT_TRUE(tets.ok());
+  std::vector<std::uint32_t> regions(tets->cells.size(), 0);
+  improve(tets->points, tets->cells, regions, points.size(), {.target = 18});
+  const double mm = 25.4;
+  for (const Vec3& p : tets->points) cell.mesh.nodes.push_back(mm * p);
+  for (const auto& t : tets->cells) cell.mesh.elements.push_back({t[0], t[1], t[2], t[3]});
+  Region region;
+  region.last_element = cell.mesh.elements.size();
+  for (const Triangle& t : skin->side()) region.side_faces.push_back({t[0], t[1], t[2]});
+  cell.mesh.regions.push_back(region);
+  cell.places.assign(cell.mesh.nodes.size(), {.body = CellSurface::no_body});
+  for (std::size_t p = 0; p < skin->parameters.size(); ++p) cell.places[p] = {0, skin->parameters[p]};
+  cell.surface = {.bodies = {&cell.body, 1}, .places = cell.places, .scale = mm};
+  cell.surface.box.extend(Vec3(mm * Vec3(low, -1, -1)));
+  cell.surface.box.extend(Vec3(mm * Vec3(high, 1, 1)));
+  cell.surface.periodic = {true, true, false};
+}
+
+TEST(CellMidside, OnTheSurfaceInTheFacesAndOppositeOnesAlike) {
+  CellOfYarn cell;
+  fill(cell, 0.07);
+  measure(cell.mesh);
+  const double mm = cell.surface.scale, exact = cell.body.volume * mm * mm * mm;
+  const double straight = std::abs(cell.mesh.regions[0].volume - exact);
+  const std::size_t corners = cell.mesh.nodes.size();
+  const MidsideNodes nodes = add_midside_nodes(cell.mesh, cell.surface);
+  EXPECT_EQ(nodes.held, 0U);
+  EXPECT_EQ(nodes.farthest, 0);
+  measure(cell.mesh);
+  EXPECT_LT(std::abs(cell.mesh.regions[0].volume - exact), straight / 20);
+  EXPECT_GT(cell.mesh.quality.min_scaled_jacobian, 0.1);
+
+  std::vector<Vec2> low, high;
+  std::size_t looked_at = 0;
+  for (const auto& element : cell.mesh.elements)
+    for (std::size_t k = 4; k < 10; ++k) ASSERT_GE(element[k], corners);
+  for (std::size_t p = corners; p < cell.mesh.nodes.size(); ++p) {
+    const Vec3& at = cell.mesh.nodes[p];
+    if (at.x() == cell.surface.box.min().x()) low.emplace_back(at.y(), at.z());
+    if (at.x() == cell.surface.box.max().x()) high.emplace_back(at.y(), at.z());
+  }
+  const auto before = [](const Vec2& a, const Vec2& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  };
+  std::sort(low.begin(), low.end(), before);
+  std::sort(high.begin(), high.end(), before);
+  EXPECT_GT(low.size(), 20U);
+  // The caps' own triangulations are the same; so are the middles of all their edges.
+  EXPECT_EQ(low, high);
+  // Every tenth edge of the surface: its middle is on it, and further from the chord than nothing.
+  const auto& sides = cell.mesh.regions[0].side_faces;
+  for (const SixNodes& six : six_node_faces(cell.mesh, cell.mesh.regions[0], sides)) {
+    if (++looked_at % 20 != 0) continue;
+    EXPECT_LT(distance_to(cell.body, cell.mesh.nodes[six[3]] / mm), 1e-7);
+  }
+}
+
+// The middle of an edge in a face of the cell that cuts the yarn askew.
+TEST(CellMidside, MiddleOfAnEdgeInAPlane) {
+  const yarn::Body body = leaning();
+  const nurbs::Surface& s = body.surface;
+  const double plane = 1.03125;
+  const auto end = [&](double u) {
+    double low = s.first_v(), high = s.last_v();
+    for (int k = 0; k < 100; ++k) {
+      const double v = (low + high) / 2;
+      (nurbs::evaluate(s, u, v).x() < plane ? low : high) = v;
+    }
+    SurfaceEnd result{{u, low}, nurbs::evaluate(s, u, low)};
+    result.at.x() = plane;
+    return result;
+  };
+  const double range = s.last_u() - s.first_u();
+  for (int k = 0; k < 40; ++k) {
+    // The last edge crosses the seam.
+    const SurfaceEnd from = end(s.first_u() + range * k / 40),
+                     to = end(s.first_u() + range * ((k + 1) % 40) / 40);
+    const std::optional<Vec3> middle = middle_in_plane(body, from, to, 0);
+    ASSERT_TRUE(middle.has_value()) << k;
+    EXPECT_EQ(middle->x(), plane);
+    EXPECT_LT(distance_to(body, *middle), 1e-7) << k;
+    const Vec3 chord = to.at - from.at;
+    EXPECT_NEAR((*middle - (from.at + to.at) / 2).dot(chord), 0, 1e-10 * chord.squaredNorm());
+    EXPECT_EQ(*middle_in_plane(body, to, from, 0), *middle) << k;
+  }
+}
+
+// A step that would fold an element is taken back, and its tied opposite with it.
+TEST(CellMidside, TakenBackTogether) {
+  Mesh mesh;
+  mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.1}, {0, 0, 5}, {1, 0, 5}, {0, 1, 5}, {0, 0, 6}};
+  mesh.elements = {{0, 1, 2, 3}, {4, 5, 6, 7}};
+  mesh.regions.emplace_back();
+  const Vec3 far(0, 0, 0.2);
+  const std::array<CurvedEdge, 2> curved = {CurvedEdge{edge_key(0, 1), Vec3(0.5, 0, 0) + far},
+                                            CurvedEdge{edge_key(4, 5), Vec3(0.5, 0, 5) + far}};
+  const std::array<TiedEdges, 1> tied = {TiedEdges{curved[0].key, curved[1].key}};
+  Mesh alone = mesh;
+  EXPECT_EQ(add_midside_nodes(alone, curved, {}).held, 1U);
+  const MidsideNodes together = add_midside_nodes(mesh, curved, tied);
+  EXPECT_EQ(together.held, 2U);
+  EXPECT_GT(together.farthest, 0.05);
+  EXPECT_LE(together.farthest, 0.2 + 1e-12);
+  const Vec3 step = mesh.nodes[mesh.elements[0][4]] - Vec3(0.5, 0, 0);
+  EXPECT_EQ(mesh.nodes[mesh.elements[1][4]] - Vec3(0.5, 0, 5), step);
+  for (std::size_t e = 0; e < 2; ++e) EXPECT_GT(shape_of(mesh, e).scaled_jacobian, 0);
+}
+
+}  // namespace
+}  // namespace selvage::fem
