@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -66,6 +67,7 @@ class Trimmer {
   void join(std::size_t a, std::size_t b) { parents_[root(a)] = root(b); }
   Border trace(std::size_t start, std::vector<bool>& seen) const;
   [[nodiscard]] Arc arc_along(int along) const;
+  [[nodiscard]] Status check_grazing() const;
   Result<Trimmed> collect();
   [[nodiscard]] Message at(Message message, const Vec3& place) const {
     message.at = place;
@@ -321,7 +323,46 @@ Border Trimmer::trace(std::size_t start, std::vector<bool>& seen) const {
   return border;
 }
 
+// What lies beyond a face has to reach farther through it than the tolerance.
+Status Trimmer::check_grazing() const {
+  for (int face = 0; face < face_count; ++face) {
+    std::map<Vertex, Vertex> parent;  // of vertices beyond
+    const std::function<Vertex(Vertex)> root_of = [&](Vertex v) {
+      while (parent.at(v) != v) v = parent.at(v);
+      return v;
+    };
+    for (std::size_t t = 0; t < sampling_.triangle_count(); ++t) {
+      const auto corners = sampling_.triangle(t);
+      std::optional<Vertex> last;
+      for (const Vertex vertex : corners) {
+        if (sampling_.depth(vertex, face) >= 0) continue;
+        parent.try_emplace(vertex, vertex);
+        if (last) {
+          const Vertex a = root_of(*last), b = root_of(vertex);
+          parent[std::max(a, b)] = std::min(a, b);
+        }
+        last = vertex;
+      }
+    }
+    std::map<Vertex, Vertex> deepest;
+    for (const auto& [vertex, unused] : parent) {
+      const auto [entry, is_new] = deepest.try_emplace(root_of(vertex), vertex);
+      if (sampling_.depth(vertex, face) < sampling_.depth(entry->second, face)) entry->second = vertex;
+    }
+    for (const auto& [unused, vertex] : deepest)
+      if (sampling_.depth(vertex, face) > -tolerance_)
+        return at(
+            error(Kind::geometry,
+                  fmt::format("grazes the cell's face {}: it reaches only {:.2g} through it; move that face "
+                              "by more than {:.2g}",
+                              name_of_face(face), -sampling_.depth(vertex, face), tolerance_)),
+            sampling_.point(vertex));
+  }
+  return {};
+}
+
 Result<Trimmed> Trimmer::run() {
+  if (Status free = check_grazing(); !free) return free.error();
   parents_.resize(sampling_.triangle_count());
   std::iota(parents_.begin(), parents_.end(), std::size_t{0});
   for (std::size_t t = 0; t < sampling_.triangle_count() && !failure_; ++t) visit(t);

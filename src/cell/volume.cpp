@@ -19,21 +19,16 @@ double integral(const std::array<double, 3>& f, const std::array<double, 3>& g) 
          6;
 }
 
-// Calls take(parameters of start, middle, end) for every interval of an arc.
+// Calls take(parameters of start, middle, end) for every interval between an arc's points.
 template <class Take>
 void along(const ArcCurve& curve, const Take& take) {
-  constexpr int parts = 2;  // of each kept interval
   const std::vector<double>& lengths = curve.lengths();
   Vec2 start = curve.at(0);
-  for (std::size_t k = 1; k < lengths.size(); ++k)
-    for (int i = 0; i < parts; ++i) {
-      const double from = lengths[k - 1] + (lengths[k] - lengths[k - 1]) * i / parts,
-                   to = i + 1 == parts ? lengths[k]
-                                       : lengths[k - 1] + (lengths[k] - lengths[k - 1]) * (i + 1) / parts;
-      const Vec2 middle = curve.at((from + to) / 2), end = curve.at(to);
-      take(start, middle, end);
-      start = end;
-    }
+  for (std::size_t k = 1; k < lengths.size(); ++k) {
+    const Vec2 middle = curve.at((lengths[k - 1] + lengths[k]) / 2), end = curve.at(lengths[k]);
+    take(start, middle, end);
+    start = end;
+  }
 }
 
 // One third of the flux through a piece of a surface.
@@ -92,7 +87,7 @@ class PieceFlux {
 
   // The integral over v from the base to the point.
   [[nodiscard]] double up_to(const Vec2& q) const {
-    const nurbs::GaussRule& rule = nurbs::gauss_rule(6);
+    const nurbs::GaussRule& rule = nurbs::gauss_rule(5);
     double sum = 0;
     for (std::size_t k = base_; k + 1 < breaks_.size() && breaks_[k] < q.y(); ++k) {
       const double to = std::min(breaks_[k + 1], q.y()), half = (to - breaks_[k]) / 2,

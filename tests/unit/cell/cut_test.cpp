@@ -198,6 +198,17 @@ TEST(Cut, WhatOnlyGrazesTheBoxIsLeftOut) {
   EXPECT_EQ(result->notes[0].yarn, "a");
 }
 
+TEST(Cut, WhatReachesOutByAHairIsRefused) {
+  const yarn::Body body = along_x();
+  for (const double hair : {1e-9, 5e-4}) {
+    const Result<Cut> result =
+        cut({&body, 1}, Box3(Vec3(-1, -1, -1), Vec3(1, 0.5 - hair, 1)), {.tolerance = 0.001});
+    ASSERT_FALSE(result.ok());
+    EXPECT_NE(result.error().text.find("grazes the cell's face y high"), std::string::npos);
+  }
+  EXPECT_TRUE(cut({&body, 1}, Box3(Vec3(-1, -1, -1), Vec3(1, 0.498, 1)), {.tolerance = 0.001}).ok());
+}
+
 TEST(Box, EdgesAndFacesKnowEachOther) {
   const Box3 box(Vec3(0, 0, 0), Vec3(1, 2, 3));
   std::set<int> seen;
