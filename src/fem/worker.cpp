@@ -71,7 +71,7 @@ double relative_epsilon(const TetgenJob& job) {
 }
 
 // The request in an anonymous file: it need not be fed while the worker runs.
-Result<Descriptor> write_request(const TetgenJob& job, const TetgenLimits& limits) {
+Result<Descriptor> write_request(const TetgenJob& job, const TetgenLimits& limits, bool look) {
   Descriptor file(::memfd_create("selvage-tetgen request", MFD_CLOEXEC));
   if (!file.is_open()) return system_error("make a request");
   RequestHead head;
@@ -84,6 +84,7 @@ Result<Descriptor> write_request(const TetgenJob& job, const TetgenLimits& limit
   head.memory = limits.memory * 1024 * 1024;
   head.cpu_seconds = std::ceil(limits.timeout) + 1;
   head.parent = ::getpid();
+  head.look = look ? 1 : 0;
   static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Triangle) == 3 * sizeof(std::int32_t));
   if (!write_all(file.number(), &head, sizeof head) ||
       !write_all(file.number(), job.points.data(), job.points.size_bytes()) ||
@@ -280,6 +281,42 @@ Result<TetMesh> read_answer(const TetgenJob& job, const Ended& ended, const Tetg
   return mesh;
 }
 
+// A request and the worker that has it: for a mesh that nobody has checked yet, or (`look`) for nothing but
+// the message that names crossing facets.
+class Run {
+ public:
+  Run(const std::filesystem::path& program, const TetgenJob& job, const TetgenLimits& limits, bool look)
+      : job_(job), limits_(limits) {
+    Result<Descriptor> request = write_request(job, limits, look);
+    if (!request) {
+      failure_ = request.error();
+      return;
+    }
+    Result<Running> running = start(program, *request);
+    if (!running)
+      failure_ = running.error();
+    else
+      running_ = std::move(*running);
+  }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+  ~Run() {
+    if (running_) wait_for(*running_, 0);
+  }
+  Result<TetMesh> answer(Clock::time_point deadline) {
+    if (failure_) return *failure_;
+    const Ended ended = wait_for(*running_, std::chrono::duration<double>(deadline - Clock::now()).count());
+    running_.reset();
+    return ended.timed_out ? judge_end(ended, limits_) : read_answer(job_, ended, limits_);
+  }
+
+ private:
+  const TetgenJob& job_;
+  const TetgenLimits& limits_;
+  std::optional<Message> failure_;
+  std::optional<Running> running_;
+};
+
 }  // namespace
 
 double enclosed_volume(std::span<const Vec3> points, std::span<const Triangle> triangles) {
@@ -297,13 +334,12 @@ Result<TetMesh> run_tetgen(const std::filesystem::path& program, const TetgenJob
                                        : check_complex(job.points, job.triangles, job.sides);
       !sound)
     return sound.error();
-  Result<Descriptor> request = write_request(job, limits);
-  if (!request) return request.error();
-  Result<Running> running = start(program, *request);
-  if (!running) return running.error();
-  const Ended ended = wait_for(*running, limits.timeout);
-  if (ended.timed_out) return judge_end(ended, limits);
-  Result<TetMesh> mesh = read_answer(job, ended, limits);
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                           std::chrono::duration<double>(std::min(limits.timeout, 1e8)));
+  // Where facets cross, the mesher may run without end: someone else looks for them meanwhile.
+  Run look(program, job, limits, true), meshing(program, job, limits, false);
+  if (const Result<TetMesh> seen = look.answer(deadline); !seen && seen.error().at) return seen.error();
+  Result<TetMesh> mesh = meshing.answer(deadline);
   if (!mesh) return mesh;
   if (Status right = job.sides.empty() ? check_mesh(*mesh, job.points, job.triangles)
                                        : find_regions(*mesh, job.points, job.triangles, job.sides);

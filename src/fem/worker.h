@@ -44,13 +44,13 @@ struct TetMesh {
   std::vector<std::uint32_t> regions;  // of each cell; empty without TetgenJob::sides
 };
 
-// Runs `program` (selvage-tetgen) once. The result's boundary is exactly the job's triangles, it is one
-// piece, and its volume is the surface's to 1e-9; of several regions, every triangle is a side of cells of
-// just the regions that it parts, and the volume of each is that of its own triangles to 1e-9: anything else
-// is an error. Errors, each with a remedy and
-// where known the place (in the job's coordinates), none naming a yarn: geometry (a coordinate that is not
-// finite, an open surface, facets that cross or nearly touch), limit (time, memory), internal (a crash, a bad
-// answer, no program).
+// Runs `program` (selvage-tetgen), twice at once: the other one only looks for facets that cross. The
+// result's boundary is exactly the job's triangles, it is one piece, and its volume is the surface's to 1e-9;
+// of several regions, every triangle is a side of cells of just the regions that it parts, and the volume of
+// each is that of its own triangles to 1e-9: anything else is an error. Errors, each with a remedy and where
+// known the place (in the job's coordinates), none naming a yarn: geometry (a coordinate that is not finite,
+// an open surface, facets that cross or nearly touch), limit (time, memory), internal (a crash, a bad answer,
+// no program).
 Result<TetMesh> run_tetgen(const std::filesystem::path& program, const TetgenJob& job,
                            const TetgenLimits& limits);
 

@@ -1,4 +1,4 @@
-// TetGen's two passes over one closed surface. Neither returns when TetGen gives up: leave() answers then.
+// TetGen over one closed surface. Neither of the two returns when TetGen gives up: leave() answers then.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,8 @@
 // selvage-tetgen: one job of TetGen in a process of its own, with limits. See protocol.h for what goes in and
 // out.
 //
-// TetGen 1.5.0 may end in a segmentation fault, run for hours or eat all memory; all of that stays here. Two
-// passes: the first only looks for crossing facets (TetGen's -d, which does not crash on them), the second
-// meshes.
+// TetGen 1.5.0 may end in a segmentation fault, run for hours or eat all memory; all of that stays here. It
+// meshes, or only looks for crossing facets (TetGen's -d, which does not crash on them).
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -85,10 +84,10 @@ int run() {
   Job job;
   job.settings = head;
   if (!read_job(head, job)) leave(Outcome::bad_request, 0);
-  const std::vector<std::int32_t> crossing = find_crossings(job);
   AnswerHead answer;
-  if (!crossing.empty()) {
-    answer.outcome = Outcome::crossing;
+  if (head.look != 0) {
+    const std::vector<std::int32_t> crossing = find_crossings(job);
+    answer.outcome = crossing.empty() ? Outcome::mesh : Outcome::crossing;
     answer.cells = crossing.size() / 3;
     write_all(&answer, sizeof answer);
     write_all(crossing.data(), crossing.size() * sizeof(std::int32_t));

@@ -4,7 +4,7 @@
 //   Request: a RequestHead, points (3 doubles each), triangles (3 int32 each, indices from 0, a closed
 //   surface). Answer:  an AnswerHead, then
 //     mesh      points (3 doubles each; the request's own first, unchanged), tetrahedra (4 int32 each)
-//     crossing  the crossing triangles (3 int32 each, into the request's points)
+//     crossing  the crossing triangles (3 int32 each, into the request's points); where they were asked for
 //     any other nothing
 #pragma once
 
@@ -26,6 +26,7 @@ struct RequestHead {
   double memory = 0;        // bytes of address space; 0: no limit
   double cpu_seconds = 0;   // 0: no limit
   std::int64_t parent = 0;  // process id of the program; 0: not watched
+  std::uint64_t look = 0;   // 1: no mesh is wanted, but the facets that cross; none: a mesh without anything
 };
 
 enum class Outcome : std::int32_t {
