@@ -114,6 +114,9 @@ void describe(yarn::Body& body, const std::string& name, const std::string& thre
   body.role = role;
   body.color = thread.color.value_or(Color{});
   body.twist = fibre_twist(thread, units);
+  if (thread.linear_density && thread.density)
+    body.fibre_area =
+        thread.linear_density->tex() / (1000 * *thread.density) / std::pow(millimetres_per(units), 2);
   body.place = place;
 }
 

@@ -52,6 +52,26 @@ bool same_letters(const std::string& a, const std::string& b) {
                     [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
+// Adds a material to those in use, with elastic constants, unless it is there.
+void use(const fabric::Fabric& fabric, fabric::Material material, MaterialChoice& choice,
+         Diagnostics& diagnostics) {
+  if (std::any_of(choice.materials.begin(), choice.materials.end(),
+                  [&](const fabric::Material& other) { return other.name == material.name; }))
+    return;
+  if (std::holds_alternative<std::monostate>(material.elastic)) {
+    material.elastic = generic_material().elastic;
+    Message message =
+        warning(Kind::unsupported,
+                fmt::format("material '{}' has no elastic constants; the mesh carries E = 10000 MPa, "
+                            "nu = 0.3 for it: give it an 'elastic' line",
+                            material.name));
+    message.file = fabric.file;
+    message.place = material.place;
+    diagnostics.add(std::move(message));
+  }
+  choice.materials.push_back(std::move(material));
+}
+
 }  // namespace
 
 std::vector<std::string> solver_names(const std::vector<fabric::Material>& materials) {
@@ -84,22 +104,7 @@ MaterialChoice choose_materials(const fabric::Fabric& fabric, std::span<const ya
     while (found == nullptr && fabric.find_material(material.name) != nullptr) material.name += "_";
     if (found == nullptr) without.push_back(body.name);
     choice.of_body.push_back(material.name);
-    const bool known =
-        std::any_of(choice.materials.begin(), choice.materials.end(),
-                    [&](const fabric::Material& other) { return other.name == material.name; });
-    if (known) continue;
-    if (std::holds_alternative<std::monostate>(material.elastic)) {
-      material.elastic = generic.elastic;
-      Message message =
-          warning(Kind::unsupported,
-                  fmt::format("material '{}' has no elastic constants; the mesh carries E = 10000 MPa, "
-                              "nu = 0.3 for it: give it an 'elastic' line",
-                              material.name));
-      message.file = fabric.file;
-      message.place = material.place;
-      diagnostics.add(std::move(message));
-    }
-    choice.materials.push_back(std::move(material));
+    use(fabric, std::move(material), choice, diagnostics);
   }
   if (!without.empty()) {
     Message message = warning(
@@ -113,6 +118,24 @@ MaterialChoice choose_materials(const fabric::Fabric& fabric, std::span<const ya
     diagnostics.add(std::move(message));
   }
   return choice;
+}
+
+Status add_matrix_material(const fabric::Fabric& fabric, MaterialChoice& choice, Diagnostics& diagnostics) {
+  auto failed = [&](std::string text, TextPlace place) {
+    Message message = error(Kind::geometry, std::move(text));
+    message.file = fabric.file;
+    message.place = place;
+    return message;
+  };
+  if (!fabric.cell) return failed("a matrix fills a `cell`, and the file says none", {});
+  const fabric::Cell& cell = *fabric.cell;
+  if (cell.matrix.empty())
+    return failed("the cell names no matrix: add `matrix NAME`, with a material of that name", cell.place);
+  const fabric::Material* found = fabric.find_material(cell.matrix);
+  if (found == nullptr)
+    return failed(fmt::format("the cell's matrix '{}' is no material of the file", cell.matrix), cell.place);
+  use(fabric, *found, choice, diagnostics);
+  return {};
 }
 
 }  // namespace selvage::fem

@@ -45,4 +45,8 @@ struct MaterialChoice {
 MaterialChoice choose_materials(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
                                 Diagnostics& diagnostics);
 
+// Adds the material of the cell's matrix to those in use. Error (geometry): there is no cell, it names no
+// matrix, or no such material is in the file. Warning: a material without elastic constants.
+Status add_matrix_material(const fabric::Fabric& fabric, MaterialChoice& choice, Diagnostics& diagnostics);
+
 }  // namespace selvage::fem

@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <numeric>
 #include <thread>
 
 #include "core/module.h"
 #include "fem/faces.h"
+#include "fem/fibre.h"
 #include "fem/materials.h"
 #include "fem/midside.h"
-#include "fem/orientation.h"
 #include "fem/quality.h"
 #include "fem/surface_mesh.h"
 #include "fem/worker.h"
@@ -93,7 +94,9 @@ Result<YarnMesh> mesh_yarn(const yarn::Body& body, double scale, const MeshOptio
   YarnMesh result;
   result.mesh = assemble(*tets, *surface, body);
   Mesh& mesh = result.mesh;
-  add_orientations(mesh, *surface, body);
+  std::vector<double> known(mesh.nodes.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < surface->parameters.size(); ++i) known[i] = surface->parameters[i].y();
+  add_fibres(mesh, mesh.regions.front(), body, parameters_along(mesh, mesh.regions.front(), body, known, 1));
   if (options.order == 2) {
     const MidsideNodes nodes = add_midside_nodes(mesh, *surface, body);
     if (nodes.held > 0) {
@@ -124,6 +127,8 @@ void append(Mesh& mesh, Mesh&& part) {
   }
   mesh.along.insert(mesh.along.end(), part.along.begin(), part.along.end());
   mesh.across.insert(mesh.across.end(), part.across.begin(), part.across.end());
+  mesh.fibre_fraction.insert(mesh.fibre_fraction.end(), part.fibre_fraction.begin(),
+                             part.fibre_fraction.end());
   Region region = std::move(part.regions.front());
   region.first_element += elements;
   region.last_element += elements;

@@ -1,0 +1,160 @@
+#include "fem/periodicity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "fem/unit_cell.h"
+
+namespace selvage::fem {
+namespace {
+
+constexpr double unit_strain = 0.001;  // and 1/mm
+
+// The displacement of a place (from the cell's middle) that each driver makes: column d is driver d's.
+using Modes = Eigen::Matrix<double, 3, 6>;
+
+Modes block_modes(const Vec3& p) {
+  Modes modes = Modes::Zero();
+  modes.col(0) = Vec3(p.x(), 0, 0);
+  modes.col(1) = Vec3(0, p.y(), 0);
+  modes.col(2) = Vec3(0, 0, p.z());
+  modes.col(3) = Vec3(p.y(), p.x(), 0) / 2;
+  modes.col(4) = Vec3(p.z(), 0, p.x()) / 2;
+  modes.col(5) = Vec3(0, p.z(), p.y()) / 2;
+  return modes;
+}
+
+Modes plate_modes(const Vec3& p) {
+  Modes modes = Modes::Zero();
+  modes.col(0) = Vec3(p.x(), 0, 0);
+  modes.col(1) = Vec3(0, p.y(), 0);
+  modes.col(2) = Vec3(p.y(), p.x(), 0) / 2;
+  modes.col(3) = Vec3(p.z() * p.x(), 0, -p.x() * p.x() / 2);
+  modes.col(4) = Vec3(0, p.z() * p.y(), -p.y() * p.y() / 2);
+  modes.col(5) = Vec3(p.z() * p.y(), p.z() * p.x(), -p.x() * p.y()) / 2;
+  return modes;
+}
+
+// A place from the middle of the cell; on its faces half its sides to the bit.
+Vec3 from_middle(const UnitCell& cell, const Vec3& at) {
+  const Vec3 half = (cell.high - cell.low) / 2;
+  Vec3 p = at - (cell.high + cell.low) / 2;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (at[axis] == cell.low[axis]) p[axis] = -half[axis];
+    if (at[axis] == cell.high[axis]) p[axis] = half[axis];
+  }
+  return p;
+}
+
+void add_drivers(Mesh& mesh, bool plate) {
+  std::vector<std::string> names;
+  if (plate)
+    names = {"ConstraintsDriver0", "ConstraintsDriver1", "ConstraintsDriver3",
+             "CurvatureDriver0",   "CurvatureDriver1",   "CurvatureDriver2"};
+  else
+    for (int d = 0; d < 6; ++d) names.push_back(fmt::format("ConstraintsDriver{}", d));
+  const Vec3 sides = mesh.cell->high - mesh.cell->low;
+  for (std::size_t d = 0; d < names.size(); ++d)
+    mesh.drivers.push_back(
+        {.name = names[d],
+         .at = mesh.cell->high + sides.x() * (0.1 + 0.05 * static_cast<double>(d)) * Vec3::UnitX()});
+}
+
+// u of `node` (less that of `lowest`, where it is another one) = what the drivers make of the way between.
+void add_equations(Mesh& mesh, std::size_t node, std::size_t lowest, const Modes& modes) {
+  for (int direction = 0; direction < 3; ++direction) {
+    Equation equation = {{.node = node, .direction = direction, .factor = 1}};
+    if (lowest != node) equation.push_back({.node = lowest, .direction = direction, .factor = -1});
+    for (std::size_t d = 0; d < mesh.drivers.size(); ++d) {
+      const double factor = modes(direction, static_cast<Eigen::Index>(d));
+      if (factor != 0) equation.push_back({.node = mesh.nodes.size() + d, .direction = 0, .factor = -factor});
+    }
+    mesh.equations.push_back(std::move(equation));
+  }
+}
+
+bool is_on_box(const UnitCell& cell, const Vec3& p) {
+  return (p.array() == cell.low.array()).any() || (p.array() == cell.high.array()).any();
+}
+
+// The number of parts that elements and conditions do not connect.
+std::size_t count_parts(const Mesh& mesh, const std::vector<std::size_t>& lowest) {
+  std::vector<std::size_t> parent(mesh.nodes.size());
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  auto root = [&](std::size_t n) {
+    while (parent[n] != n) n = parent[n] = parent[parent[n]];
+    return n;
+  };
+  std::size_t parts = mesh.nodes.size();
+  auto join = [&](std::size_t a, std::size_t b) {
+    a = root(a);
+    b = root(b);
+    if (a == b) return;
+    parent[std::max(a, b)] = std::min(a, b);
+    --parts;
+  };
+  const auto count = static_cast<std::size_t>(mesh.nodes_per_element());
+  for (const auto& element : mesh.elements)
+    for (std::size_t k = 1; k < count; ++k) join(element[0], element[k]);
+  for (std::size_t n = 0; n < lowest.size(); ++n) join(n, lowest[n]);
+  return parts;
+}
+
+void add_load_cases(Mesh& mesh, bool plate) {
+  static constexpr std::array<const char*, 6> of_block = {"strain xx", "strain yy", "strain zz",
+                                                          "strain xy", "strain xz", "strain yz"};
+  static constexpr std::array<const char*, 6> of_plate = {"strain xx",    "strain yy",    "strain xy",
+                                                          "curvature xx", "curvature yy", "curvature xy"};
+  for (std::size_t d = 0; d < mesh.drivers.size(); ++d) {
+    LoadCase load;
+    load.name = plate ? of_plate[d] : of_block[d];
+    load.drivers.assign(mesh.drivers.size(), 0.0);
+    load.drivers[d] = unit_strain;
+    mesh.load_cases.push_back(std::move(load));
+  }
+  mesh.load_cases.push_back({.name = "thermal",
+                             .drivers = std::vector<std::optional<double>>(mesh.drivers.size(), 0.0),
+                             .temperature = 1});
+}
+
+}  // namespace
+
+Status add_conditions(Mesh& mesh, const std::vector<std::size_t>& lowest) {
+  mesh.drivers.clear();
+  mesh.equations.clear();
+  mesh.load_cases.clear();
+  const UnitCell& cell = *mesh.cell;
+  const auto [x, y, z] = cell.periodic;
+  const bool plate = x && y && !z, all_round = !x && !y && !z;
+  if (!plate && !all_round && !(x && y && z))
+    return error(Kind::unsupported,
+                 "a cell is periodic along x and y (a plate), along x, y and z (a block), or not at all");
+  add_drivers(mesh, plate);
+  auto modes_at = [&](const Vec3& p) { return plate ? plate_modes(p) : block_modes(p); };
+  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+    if (all_round && is_on_box(cell, mesh.nodes[n]))
+      add_equations(mesh, n, n, modes_at(from_middle(cell, mesh.nodes[n])));
+    if (lowest[n] == n) continue;
+    // The way between the two is along periodic axes only, however their other coordinates were rounded.
+    Vec3 p = from_middle(cell, mesh.nodes[lowest[n]]);
+    const Vec3 here = from_middle(cell, mesh.nodes[n]);
+    const Modes before = modes_at(p);
+    for (int axis = 0; axis < 3; ++axis)
+      if (cell.periodic[static_cast<std::size_t>(axis)] && mesh.nodes[n][axis] == cell.high[axis])
+        p[axis] = here[axis];
+    add_equations(mesh, n, lowest[n], modes_at(p) - before);
+  }
+  const bool with_matrix = std::any_of(mesh.regions.begin(), mesh.regions.end(), [](const Region& region) {
+    return region.kind == Region::Kind::matrix;
+  });
+  const std::size_t parts = count_parts(mesh, lowest);
+  if (parts > 1 && with_matrix)
+    return error(Kind::geometry, fmt::format("the cell falls into {} parts that nothing connects", parts));
+  if (parts == 1) add_load_cases(mesh, plate);
+  return {};
+}
+
+}  // namespace selvage::fem

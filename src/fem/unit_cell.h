@@ -1,0 +1,39 @@
+// What makes a mesh of a box a unit cell: which nodes and element sides lie on its faces, edges and corners,
+// the conditions that tie opposite ones, and the load cases that give its stiffness and thermal expansion.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "core/diagnostics.h"
+#include "core/vec.h"
+#include "fem/mesh.h"
+
+namespace selvage::fem {
+
+// Fills Mesh::cell, drivers, equations and load_cases of a finished mesh (midside nodes and regions too), of
+// either shape. `box` in mm; every node on a face has the face's coordinate to the bit.
+//
+// Periodic x, y, z (a block): the displacement is E x + what repeats, E the symmetric strain; periodic x, y
+//   (a plate; z faces free): Kirchhoff's, u = (E + z K) (x, y), w = -(x, y) K (x, y) / 2 about the middle of
+//   the cell, + what repeats. Each node on a high side depends on the one on the low side (of edges and
+//   corners: on the lowest) and on the drivers, and on nothing else; no node depends on one that depends.
+//   Corner 0 is to be held (see held_node()).
+// No periodic axis: every node of the faces is displaced by E x about the middle: an upper bound of the
+//   stiffness. Nothing needs to be held.
+// Load cases: each driver's strain (curvature) 0.001 (1/mm) with the others zero, and 1 K with all of them
+//   zero. None where parts of the mesh do not hang together (yarns without a matrix): they would fly apart.
+//
+// Errors: internal (a node beside a face's plane), geometry (opposite faces do not match to 1e-12 of the
+// size; a matrix whose parts do not hang together), unsupported (periodic along other axes than these).
+Status complete_cell(Mesh& mesh, const Box3& box, std::array<bool, 3> periodic);
+
+// The node whose three displacements are to be zero in every load case; none where nothing has to be held, or
+// there is no node at the cell's corner.
+std::optional<std::size_t> held_node(const Mesh& mesh);
+
+// No node there (UnitCell::corners).
+inline constexpr std::size_t no_node = static_cast<std::size_t>(-1);
+
+}  // namespace selvage::fem

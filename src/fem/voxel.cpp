@@ -1,0 +1,260 @@
+#include "fem/voxel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "core/units.h"
+#include "fem/fibre.h"
+#include "fem/materials.h"
+#include "fem/unit_cell.h"
+#include "fem/yarn_columns.h"
+
+namespace selvage::fem {
+namespace {
+
+constexpr int largest_count = 10'000;
+constexpr double most_hexahedra = 2e7;
+constexpr std::int32_t no_yarn = -1;
+
+// The grid: coordinates of its planes along each axis, file units; first and last are the box's own.
+struct Grid {
+  std::array<std::vector<double>, 3> planes;
+
+  [[nodiscard]] std::size_t count(std::size_t axis) const { return planes[axis].size() - 1; }
+  [[nodiscard]] std::size_t voxels() const { return count(0) * count(1) * count(2); }
+  [[nodiscard]] std::vector<double> middles(std::size_t axis) const {
+    std::vector<double> result;
+    for (std::size_t i = 0; i < count(axis); ++i)
+      result.push_back((planes[axis][i] + planes[axis][i + 1]) / 2);
+    return result;
+  }
+};
+
+Result<Grid> make_grid(const Box3& box, int count) {
+  if (count < 1 || count > largest_count)
+    return error(Kind::usage, fmt::format("the number of hexahedra along the longest side is 1 to {}, not {}",
+                                          largest_count, count));
+  const double size = box.sizes().maxCoeff() / count;
+  std::array<double, 3> numbers{};
+  for (int axis = 0; axis < 3; ++axis)
+    numbers[static_cast<std::size_t>(axis)] = std::max(1.0, std::round(box.sizes()[axis] / size));
+  if (numbers[0] * numbers[1] * numbers[2] > most_hexahedra)
+    return error(Kind::limit,
+                 fmt::format("{:.1e} hexahedra would be needed, more than {:.0e}; choose a smaller --voxel",
+                             numbers[0] * numbers[1] * numbers[2], most_hexahedra));
+  Grid grid;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto n = static_cast<int>(numbers[static_cast<std::size_t>(axis)]);
+    std::vector<double>& planes = grid.planes[static_cast<std::size_t>(axis)];
+    for (int i = 0; i < n; ++i) planes.push_back(box.min()[axis] + box.sizes()[axis] * i / n);
+    planes.push_back(box.max()[axis]);
+  }
+  return grid;
+}
+
+// Whose each voxel is, and where along that yarn about.
+struct Owners {
+  std::vector<std::int32_t> yarn;
+  std::vector<double> v;
+  std::size_t in_two = 0;
+};
+
+double distance_from_axis(const yarn::Body& body, const Vec3& point, double v) {
+  return (nurbs::evaluate(body.axis, v) - point).norm();
+}
+
+Owners find_owners(const Grid& grid, std::span<const yarn::Body> bodies) {
+  Owners owners;
+  owners.yarn.assign(grid.voxels(), no_yarn);
+  owners.v.assign(grid.voxels(), std::numeric_limits<double>::quiet_NaN());
+  const std::vector<double> xs = grid.middles(0), ys = grid.middles(1), zs = grid.middles(2);
+  const double edge = (grid.planes[0][1] - grid.planes[0][0]) / 2;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const yarn::Body& body = bodies[b];
+    const Box3 box = yarn::bounds(body);
+    if (box.max().x() < xs.front() || box.min().x() > xs.back() || box.max().y() < ys.front() ||
+        box.min().y() > ys.back() || box.max().z() < zs.front() || box.min().z() > zs.back())
+      continue;
+    const auto columns = cross_yarn(body, xs, ys, edge);
+    const double range = body.surface.last_v() - body.surface.first_v();
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      for (std::size_t k = 0; k + 1 < columns[c].size(); k += 2) {
+        const Crossing &in = columns[c][k], &out = columns[c][k + 1];
+        const auto first = std::lower_bound(zs.begin(), zs.end(), in.z);
+        for (auto z = first; z != zs.end() && *z < out.z; ++z) {
+          const double share = (*z - in.z) / (out.z - in.z);
+          double v = in.v + share * (out.v - in.v);
+          if (body.closed_along && std::abs(out.v - in.v) > range / 2) v = share < 0.5 ? in.v : out.v;
+          const std::size_t voxel = static_cast<std::size_t>(z - zs.begin()) * columns.size() + c;
+          const std::int32_t before = owners.yarn[voxel];
+          if (before != no_yarn) {
+            ++owners.in_two;
+            const Vec3 point(xs[c % xs.size()], ys[c / xs.size()], *z);
+            if (distance_from_axis(bodies[static_cast<std::size_t>(before)], point, owners.v[voxel]) <=
+                distance_from_axis(body, point, v))
+              continue;
+          }
+          owners.yarn[voxel] = static_cast<std::int32_t>(b);
+          owners.v[voxel] = v;
+        }
+      }
+  }
+  return owners;
+}
+
+// Nodes are made in the order of the grid, those that a hexahedron needs.
+class Builder {
+ public:
+  Builder(const Grid& grid, double unit, Mesh& mesh)
+      : grid_(grid),
+        unit_(unit),
+        mesh_(mesh),
+        nodes_((grid.count(0) + 1) * (grid.count(1) + 1) * (grid.count(2) + 1), no_node) {}
+
+  void need(std::size_t voxel) {
+    for (const std::size_t place : corners(voxel)) nodes_[place] = 0;
+  }
+  void number_nodes() {
+    std::size_t place = 0;
+    for (const double z : grid_.planes[2])
+      for (const double y : grid_.planes[1])
+        for (const double x : grid_.planes[0]) {
+          if (nodes_[place] != no_node) {
+            nodes_[place] = mesh_.nodes.size();
+            mesh_.nodes.emplace_back(x * unit_, y * unit_, z * unit_);
+          }
+          ++place;
+        }
+  }
+  void add(std::size_t voxel) {
+    std::array<std::size_t, 10> element{};
+    const auto places = corners(voxel);
+    for (std::size_t k = 0; k < 8; ++k) element[k] = nodes_[places[k]];
+    mesh_.elements.push_back(element);
+  }
+
+ private:
+  [[nodiscard]] std::array<std::size_t, 8> corners(std::size_t voxel) const {
+    const std::size_t nx = grid_.count(0), ny = grid_.count(1);
+    const std::size_t i = voxel % nx, j = voxel / nx % ny, k = voxel / (nx * ny);
+    const std::size_t row = nx + 1, layer = row * (ny + 1);
+    const std::size_t first = k * layer + j * row + i;
+    return {first,         first + 1,         first + row + 1,         first + row,
+            first + layer, first + layer + 1, first + layer + row + 1, first + layer + row};
+  }
+
+  const Grid& grid_;
+  double unit_;
+  Mesh& mesh_;
+  std::vector<std::size_t> nodes_;
+};
+
+// The hexahedra of one region one after the other.
+void add_region(Mesh& mesh, Builder& builder, Region region, const std::vector<std::size_t>& voxels) {
+  region.first_element = mesh.elements.size();
+  for (const std::size_t voxel : voxels) builder.add(voxel);
+  region.last_element = mesh.elements.size();
+  mesh.regions.push_back(std::move(region));
+}
+
+void fill_regions(Mesh& mesh, const Grid& grid, const Owners& owners, std::span<const yarn::Body> bodies,
+                  const MaterialChoice& choice, const std::string& matrix, double unit) {
+  std::vector<std::vector<std::size_t>> of_yarn(bodies.size());
+  std::vector<std::size_t> of_matrix;
+  Builder builder(grid, unit, mesh);
+  for (std::size_t voxel = 0; voxel < owners.yarn.size(); ++voxel) {
+    const std::int32_t owner = owners.yarn[voxel];
+    if (owner == no_yarn && matrix.empty()) continue;
+    (owner == no_yarn ? of_matrix : of_yarn[static_cast<std::size_t>(owner)]).push_back(voxel);
+    builder.need(voxel);
+  }
+  builder.number_nodes();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (of_yarn[b].empty()) continue;
+    Region region;
+    region.name = bodies[b].name;
+    region.material = choice.of_body[b];
+    add_region(mesh, builder, std::move(region), of_yarn[b]);
+  }
+  if (!matrix.empty() && !of_matrix.empty()) {
+    Region region;
+    region.kind = Region::Kind::matrix;
+    region.name = "matrix";
+    region.material = matrix;
+    add_region(mesh, builder, std::move(region), of_matrix);
+  }
+  std::size_t next = 0;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (of_yarn[b].empty()) continue;
+    const Region& region = mesh.regions[next++];
+    std::vector<double> parameters;
+    for (const std::size_t voxel : of_yarn[b]) parameters.push_back(owners.v[voxel]);
+    settle_parameters(mesh, region, bodies[b], parameters, unit);
+    add_fibres(mesh, region, bodies[b], parameters);
+  }
+}
+
+// Every hexahedron is the same box: all figures of quality are known.
+void fill_quality(Mesh& mesh, const Grid& grid, double unit) {
+  const Vec3 sides(grid.planes[0][1] - grid.planes[0][0], grid.planes[1][1] - grid.planes[1][0],
+                   grid.planes[2][1] - grid.planes[2][0]);
+  mesh.quality = {.min_dihedral = 90,
+                  .max_dihedral = 90,
+                  .max_aspect = sides.maxCoeff() / sides.minCoeff(),
+                  .min_scaled_jacobian = 1,
+                  .mean_scaled_jacobian = 1};
+  for (Region& region : mesh.regions) {
+    region.quality = mesh.quality;
+    region.volume = static_cast<double>(region.last_element - region.first_element) * (unit * sides).prod();
+  }
+}
+
+void say_what_is_rough(const Owners& owners, Diagnostics& diagnostics) {
+  if (owners.in_two == 0) return;
+  Message note =
+      warning(Kind::geometry, fmt::format("{} hexahedra lie in two yarns that overlap; each went to "
+                                          "the nearer centre line",
+                                          owners.in_two));
+  note.severity = Severity::note;
+  diagnostics.add(std::move(note));
+}
+
+}  // namespace
+
+Result<Mesh> mesh_voxels(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                         const VoxelOptions& options, Diagnostics& diagnostics) {
+  if (!fabric.cell) return error(Kind::geometry, "the file says no `cell` to mesh");
+  const fabric::Cell& cell = *fabric.cell;
+  const Box3 box(cell.low.cwiseMin(cell.high), cell.low.cwiseMax(cell.high));
+  auto at_cell = [&](Message message) {
+    message.file = fabric.file;
+    message.place = cell.place;
+    return message;
+  };
+  const Result<Grid> grid = make_grid(box, options.count);
+  if (!grid) return grid.error();
+  MaterialChoice choice = choose_materials(fabric, bodies, diagnostics);
+  if (options.matrix)
+    if (Status added = add_matrix_material(fabric, choice, diagnostics); !added) return added.error();
+  const Owners owners = find_owners(*grid, bodies);
+  if (std::all_of(owners.yarn.begin(), owners.yarn.end(), [](std::int32_t yarn) { return yarn == no_yarn; }))
+    return at_cell(error(Kind::geometry, "no yarn enters the cell, or none is as thick as a hexahedron"));
+  say_what_is_rough(owners, diagnostics);
+
+  const double unit = millimetres_per(fabric.units);
+  Mesh mesh;
+  mesh.shape = Mesh::Shape::hexahedron;
+  mesh.title = fabric.title.value_or("");
+  fill_regions(mesh, *grid, owners, bodies, choice, options.matrix ? cell.matrix : "", unit);
+  mesh.materials = std::move(choice.materials);
+  fill_quality(mesh, *grid, unit);
+  if (Status done = complete_cell(mesh, Box3(box.min() * unit, box.max() * unit), options.periodic); !done)
+    return at_cell(done.error());
+  return mesh;
+}
+
+}  // namespace selvage::fem

@@ -1,0 +1,126 @@
+#include "fem/yarn_columns.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace selvage::fem {
+namespace {
+
+struct Vertex {
+  Vec3 at = Vec3::Zero();
+  double v = 0;
+};
+
+// The x at which the edge between two vertices passes a line of constant y. The result does not depend on
+// their order, so that the triangles on both sides of the edge agree on which side of it a line is.
+double crossing_x(const Vec3& a, const Vec3& b, double y) {
+  const bool ordered = a.y() < b.y();
+  const Vec3 &low = ordered ? a : b, &high = ordered ? b : a;
+  return low.x() + (y - low.y()) / (high.y() - low.y()) * (high.x() - low.x());
+}
+
+class Columns {
+ public:
+  Columns(std::span<const double> xs, std::span<const double> ys)
+      : xs_(xs), ys_(ys), crossings_(xs.size() * ys.size()) {}
+
+  void add(const Vertex& a, const Vertex& b, const Vertex& c) {
+    const std::array<const Vertex*, 3> corners = {&a, &b, &c};
+    const auto [low, high] = std::minmax({a.at.y(), b.at.y(), c.at.y()});
+    const auto first = std::lower_bound(ys_.begin(), ys_.end(), low);
+    const auto last = std::lower_bound(first, ys_.end(), high);  // y of the upper end does not count
+    for (auto y = first; y != last; ++y) {
+      // The line y cuts exactly two of the three edges (those that reach from below it to it or above).
+      std::array<double, 2> ends{};
+      int count = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 &p = corners[k]->at, &q = corners[(k + 1) % 3]->at;
+        if ((p.y() > *y) != (q.y() > *y) && count < 2)
+          ends[static_cast<std::size_t>(count++)] = crossing_x(p, q, *y);
+      }
+      if (count < 2) continue;
+      const auto [from, to] = std::minmax(ends[0], ends[1]);
+      for (auto x = std::lower_bound(xs_.begin(), xs_.end(), from); x != xs_.end() && *x < to; ++x)
+        meet(corners, static_cast<std::size_t>(x - xs_.begin()), static_cast<std::size_t>(y - ys_.begin()));
+    }
+  }
+
+  std::vector<std::vector<Crossing>> finish() {
+    for (auto& list : crossings_)
+      std::sort(list.begin(), list.end(), [](const Crossing& a, const Crossing& b) { return a.z < b.z; });
+    return std::move(crossings_);
+  }
+
+ private:
+  void meet(const std::array<const Vertex*, 3>& corners, std::size_t i, std::size_t j) {
+    const Vec3 &a = corners[0]->at, &b = corners[1]->at, &c = corners[2]->at;
+    auto area = [](const Vec2& p, const Vec2& q) { return p.x() * q.y() - p.y() * q.x(); };
+    const Vec2 ab = (b - a).head<2>(), ac = (c - a).head<2>(), ap = Vec2(xs_[i], ys_[j]) - a.head<2>();
+    const double whole = area(ab, ac);
+    double of_b = 1.0 / 3, of_c = 1.0 / 3;
+    if (whole != 0) {
+      of_b = std::clamp(area(ap, ac) / whole, 0.0, 1.0);
+      of_c = std::clamp(area(ab, ap) / whole, 0.0, 1.0 - of_b);
+    }
+    const double of_a = 1 - of_b - of_c;
+    crossings_[j * xs_.size() + i].push_back(
+        {of_a * a.z() + of_b * b.z() + of_c * c.z(),
+         of_a * corners[0]->v + of_b * corners[1]->v + of_c * corners[2]->v});
+  }
+
+  std::span<const double> xs_, ys_;
+  std::vector<std::vector<Crossing>> crossings_;
+};
+
+// The spans of a knot vector cut into steps; `length` says how long the span between two parameters is.
+template <class Length>
+std::vector<double> steps(const std::vector<double>& breaks, double edge, const Length& length) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+    const double wanted = std::ceil(length(breaks[i], breaks[i + 1]) / edge);
+    const int parts = static_cast<int>(std::clamp(wanted, 2.0, 1000.0));
+    for (int k = 0; k < parts; ++k) result.push_back(breaks[i] + (breaks[i + 1] - breaks[i]) * k / parts);
+  }
+  result.push_back(breaks.back());
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::vector<Crossing>> cross_yarn(const yarn::Body& body, std::span<const double> xs,
+                                              std::span<const double> ys, double edge) {
+  const nurbs::Surface& surface = body.surface;
+  const std::vector<double> breaks_v = nurbs::breakpoints(surface.knots_v, surface.degree_v);
+  const double middle_v = (surface.first_v() + surface.last_v()) / 2;
+  const auto chord_u = [&](double from, double to) {
+    return (nurbs::evaluate(surface, to, middle_v) - nurbs::evaluate(surface, from, middle_v)).norm();
+  };
+  const auto chord_v = [&](double from, double to) {
+    return (nurbs::evaluate(body.axis, to) - nurbs::evaluate(body.axis, from)).norm();
+  };
+  const std::vector<double> us = steps(nurbs::breakpoints(surface.knots_u, surface.degree_u), edge, chord_u);
+  const std::vector<double> vs = steps(breaks_v, edge, chord_v);
+  std::vector<Vec3> points = nurbs::evaluate_grid(surface, us, vs);
+  const std::size_t columns = us.size(), rows = vs.size();
+  auto vertex = [&](std::size_t i, std::size_t j) {
+    return Vertex{points[j * columns + (i + 1 == columns ? 0 : i)], vs[j]};
+  };
+  if (body.closed_along)  // the last row is the first one, to the bit
+    std::copy_n(points.begin(), columns, points.end() - static_cast<std::ptrdiff_t>(columns));
+
+  Columns result(xs, ys);
+  for (std::size_t j = 0; j + 1 < rows; ++j)
+    for (std::size_t i = 0; i + 1 < columns; ++i) {
+      result.add(vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1));
+      result.add(vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1));
+    }
+  if (!body.closed_along)
+    for (const std::size_t j : {std::size_t{0}, rows - 1}) {
+      const Vertex centre{nurbs::evaluate(body.axis, vs[j]), vs[j]};
+      for (std::size_t i = 0; i + 1 < columns; ++i) result.add(centre, vertex(i, j), vertex(i + 1, j));
+    }
+  return result.finish();
+}
+
+}  // namespace selvage::fem
