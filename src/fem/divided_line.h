@@ -1,0 +1,36 @@
+// A line divided by a wanted spacing that changes along it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace selvage::fem {
+
+// Places that divide a line of this length, 0 and the length included, into parts about `wanted(along)` long,
+// at least `least` of them.
+template <class Wanted>
+std::vector<double> divided_line(double length, const Wanted& wanted, int least) {
+  std::vector<double> at = {0}, steps = {0};  // steps of the wanted spacing up to each place
+  double before = wanted(0.0);
+  while (at.back() < length) {
+    const double next = std::min(length, at.back() + std::min(0.25 * before, length / 16));
+    const double after = wanted(next);
+    steps.push_back(steps.back() + 2 * (next - at.back()) / (before + after));
+    at.push_back(next);
+    before = after;
+  }
+  const int count = std::max(least, static_cast<int>(std::ceil(steps.back() - 0.2)));
+  std::vector<double> result = {0};
+  std::size_t k = 1;
+  for (int i = 1; i < count; ++i) {
+    const double target = steps.back() * i / count;
+    while (k + 1 < steps.size() && steps[k] < target) ++k;
+    const double share = (target - steps[k - 1]) / (steps[k] - steps[k - 1]);
+    result.push_back(at[k - 1] + share * (at[k] - at[k - 1]));
+  }
+  result.push_back(length);
+  return result;
+}
+
+}  // namespace selvage::fem
