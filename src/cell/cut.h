@@ -77,6 +77,8 @@ struct Cut {
 // Where parameters lie on a surface that goes on periodically round u (and along v on a ring).
 Vec3 position(const yarn::Body& body, Vec2 parameters);
 nurbs::SurfaceJet jet(const yarn::Body& body, Vec2 parameters);
+// The same place with parameters inside the surface's domain.
+Vec2 in_domain(const yarn::Body& body, Vec2 parameters);
 
 // Errors (geometry), each with the yarn and the place: an end face that is partly inside the box (askew to
 // the face that it ends near); a yarn that reaches through a face of the box by less than the tolerance; a

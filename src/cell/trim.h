@@ -18,7 +18,4 @@ struct Trimmed {
 // bisection along the grid's edges; at corners by Newton's method). Errors and notes: cut().
 Result<Trimmed> trim(const yarn::Body& body, const Box3& box, double tolerance);
 
-// The same place with parameters inside the surface's domain.
-Vec2 in_domain(const yarn::Body& body, Vec2 parameters);
-
 }  // namespace selvage::cell

@@ -167,8 +167,7 @@ Status Divider::find_copies() {
     }
     if (!(best <= miss_)) return does_not_go_on(high, best, worst_at);
     const ArcEntry& low = arcs_[high.low];
-    if (++used[high.low] > 1 || low.is_border != high.is_border)
-      return does_not_go_on(high, best, worst_at);
+    if (++used[high.low] > 1 || low.is_border != high.is_border) return does_not_go_on(high, best, worst_at);
   }
   for (std::size_t k = 0; k < arcs_.size(); ++k) {
     const int face = arcs_[k].arc->face;
@@ -205,7 +204,8 @@ Status Divider::make_corners() {
     for (int bit = 0; bit < 2; ++bit)
       if ((edge >> bit & 1) != 0 && shape_.periodic[static_cast<std::size_t>((edge / 4 + 1 + bit) % 3)])
         master -= 1 << bit;
-    const auto &here = on_edge[static_cast<std::size_t>(edge)], &there = on_edge[static_cast<std::size_t>(master)];
+    const auto &here = on_edge[static_cast<std::size_t>(edge)],
+               &there = on_edge[static_cast<std::size_t>(master)];
     for (std::size_t k = 0; k < here.size(); ++k) {
       const Vec3& at = division.corners[here[k]].at;
       const double along = here.size() == there.size() ? division.corners[there[k]].at[edge / 4] : 0;
@@ -254,8 +254,8 @@ Status Divider::make_segments() {
       if (master == edge) {
         const double length = nodes_.points[to][a] - start;
         const auto at = [&](double along) { return cell::edge_point(shape_.box, edge, start + along); };
-        const std::vector<double> parts =
-            divided_line(length, [&](double along) { return field_.at(at(along)); }, 1);
+        const std::vector<double> parts = divided_line(
+            length, [&](double along) { return field_.at(at(along)); }, 1);
         for (std::size_t k = 1; k + 1 < parts.size(); ++k)
           chain.push_back(nodes_.add(at(parts[k]), {no_body, Vec2::Zero()}));
       } else {
@@ -272,8 +272,7 @@ Status Divider::make_segments() {
     for (int bit = 0; bit < 2; ++bit) {
       const auto across = static_cast<std::size_t>((a + 1 + bit) % 3);
       if ((edge >> bit & 1) == 0 || !shape_.periodic[across]) continue;
-      const std::size_t low =
-          find(edge - (1 << bit), nodes_.points[curves_.segments[s].front()][a]);
+      const std::size_t low = find(edge - (1 << bit), nodes_.points[curves_.segments[s].front()][a]);
       for (std::size_t k = 0; k < curves_.segments[s].size(); ++k)
         curves_.opposite[across][curves_.segments[low][k]] = curves_.segments[s][k];
     }
@@ -363,7 +362,8 @@ void Divider::divide(ArcEntry& entry) {
     made.parameters.push_back(q);
     made.on_crest.push_back(parts[k].crest.has_value());
   }
-  if (entry.is_border) made.on_crest.back() = made.on_crest.front() = made.on_crest.front() || made.on_crest.back();
+  if (entry.is_border)
+    made.on_crest.back() = made.on_crest.front() = made.on_crest.front() || made.on_crest.back();
 }
 
 // The nodes of the low arc, moved; each with the parameters of the place nearest to it on the high arc.
@@ -432,9 +432,9 @@ Status Divider::copy(ArcEntry& entry) {
   if (entry.is_border) {
     const cell::Border& border = shape_.cut.pieces[entry.place.piece].borders[entry.place.border];
     made.nodes.push_back(made.nodes.front());
-    made.parameters.push_back(made.parameters.front() +
-                              Vec2(border.turns_u * period,
-                                   border.turns_v * (body.surface.last_v() - body.surface.first_v())));
+    made.parameters.push_back(
+        made.parameters.front() +
+        Vec2(border.turns_u * period, border.turns_v * (body.surface.last_v() - body.surface.first_v())));
     made.on_crest.push_back(made.on_crest.front());
   }
   return {};

@@ -1,0 +1,292 @@
+#include "fem/cell_mesher.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "cell/volume.h"
+#include "core/module.h"
+#include "fem/cell_surfaces.h"
+#include "fem/improve.h"
+#include "fem/materials.h"
+#include "fem/midside.h"
+#include "fem/quality.h"
+#include "fem/surface_mesh.h"
+
+namespace selvage::fem {
+
+namespace {
+
+// The largest tetrahedron is this share of the cube over the wanted edge; a regular one is 0.118 of it.
+constexpr double largest_share = 0.13;
+constexpr double default_edges_per_extent = 4;
+// Of the smallest section extent: no edge is shorter for a gap's sake, no two yarns may be nearer.
+constexpr double least_size = 0.01;
+
+class CellMesher {
+ public:
+  CellMesher(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies, const CellMeshOptions& options,
+             Diagnostics& diagnostics)
+      : fabric_(fabric), bodies_(bodies), options_(options), diagnostics_(diagnostics) {}
+
+  Result<Mesh> run();
+
+ private:
+  Status prepare();
+  Status make_surfaces();
+  Status fill_regions();
+  void number_regions();
+  [[nodiscard]] Mesh assemble() const;
+  Status finish(Mesh& mesh);
+  [[nodiscard]] Message located(Message message) const;
+  [[nodiscard]] std::string yarns_near(const Vec3& at) const;
+  void report(const Improvement& improvement);
+  void step(const char* name, std::size_t done) const {
+    if (options_.progress) options_.progress(name, done, 5);
+  }
+
+  const fabric::Fabric& fabric_;
+  std::span<const yarn::Body> bodies_;
+  const CellMeshOptions& options_;
+  Diagnostics& diagnostics_;
+  double extent_ = 0, size_ = 0, tolerance_ = 0;
+  Box3 box_;
+  std::vector<double> volumes_;  // of each body, inside the box
+  CellNodes nodes_;
+  CellTriangles surface_;
+  std::vector<std::uint32_t> bodies_of_regions_;  // CellTriangles::matrix: the matrix
+  TetMesh tets_;
+};
+
+Message CellMesher::located(Message message) const {
+  if (message.file.empty()) message.file = fabric_.file;
+  return message;
+}
+
+// The two yarns whose surfaces have corners nearest to a place, in words.
+std::string CellMesher::yarns_near(const Vec3& at) const {
+  std::vector<double> distances(bodies_.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; k < nodes_.points.size(); ++k)
+    if (const std::size_t body = nodes_.places[k].body; body != no_body)
+      distances[body] = std::min(distances[body], (nodes_.points[k] - at).norm());
+  std::vector<std::size_t> order(bodies_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return distances[a] < distances[b]; });
+  if (order.empty() || !std::isfinite(distances[order[0]])) return "";
+  if (order.size() < 2 || distances[order[1]] > 4 * size_)
+    return fmt::format(" (yarn '{}')", bodies_[order[0]].name);
+  return fmt::format(" (yarns '{}' and '{}')", bodies_[order[0]].name, bodies_[order[1]].name);
+}
+
+Status CellMesher::prepare() {
+  if (!fabric_.cell)
+    return located(error(Kind::usage, "the file has no cell; say one with 'cell X Y Z  X Y Z'"));
+  if (options_.order != 1 && options_.order != 2) return error(Kind::usage, "the order of a mesh is 1 or 2");
+  if (!(options_.size >= 0) || !std::isfinite(options_.size))
+    return error(Kind::usage, "the mesh size must be a positive number");
+  if (!(options_.min_dihedral >= 0 && options_.min_dihedral <= 30))
+    return error(Kind::usage, "the smallest dihedral angle wanted must be from 0 to 30 degrees");
+  box_ = Box3(fabric_.cell->low, fabric_.cell->high);
+  extent_ = std::numeric_limits<double>::infinity();
+  for (const yarn::Body& body : bodies_) {
+    if (yarn::bounds(body).intersects(box_)) extent_ = std::min(extent_, smallest_section_extent(body));
+  }
+  if (!std::isfinite(extent_)) return located(error(Kind::geometry, "no yarn enters the cell"));
+  size_ = options_.size > 0 ? options_.size : extent_ / default_edges_per_extent;
+  tolerance_ = options_.tolerance > 0 ? options_.tolerance : 1e-3 * extent_;
+  return {};
+}
+
+Status CellMesher::make_surfaces() {
+  step("cutting", 0);
+  Result<cell::Cut> cut = cell::cut(bodies_, box_, {.tolerance = tolerance_});
+  if (!cut) return located(cut.error());
+  for (Message& note : cut->notes) diagnostics_.add(located(std::move(note)));
+  Result<cell::Division> division = cell::divide_faces(bodies_, box_, *cut);
+  if (!division) return located(division.error());
+  volumes_ = cell::volumes_inside(bodies_, box_, *cut, *division);
+
+  step("meshing surfaces", 1);
+  SizeRules rules;
+  rules.largest = size_;
+  rules.smallest = least_size * extent_;
+  rules.turn *= std::min(1.0, size_ * default_edges_per_extent / extent_);
+  const SizeField field = size_field(bodies_, box_, rules, options_.threads);
+  const CellShape shape{bodies_, box_, options_.periodic, *cut, *division};
+  Result<CellCurves> curves = divide_curves(shape, field, std::max(tolerance_, least_size * extent_), nodes_);
+  if (!curves) return located(curves.error());
+  SurfaceOptions options;
+  options.matrix = options_.matrix;
+  if (Status made = add_yarn_surfaces(shape, *curves, field, options, options_.threads, nodes_, surface_);
+      !made)
+    return located(made.error());
+  if (Status made = add_box_faces(shape, *curves, field, options, nodes_, surface_); !made)
+    return located(made.error());
+  return {};
+}
+
+// Regions are the bodies that are there, in their order, then the matrix; nodes of nothing are dropped.
+void CellMesher::number_regions() {
+  std::vector<std::uint32_t> there;
+  for (const Sides& sides : surface_.sides)
+    for (const std::uint32_t body : {sides.behind, sides.front})
+      if (body != Sides::outside) there.push_back(body);
+  std::sort(there.begin(), there.end());
+  there.erase(std::unique(there.begin(), there.end()), there.end());
+  bodies_of_regions_ = there;
+  const auto region_of = [&](std::uint32_t body) {
+    if (body == Sides::outside) return body;
+    return static_cast<std::uint32_t>(std::lower_bound(there.begin(), there.end(), body) - there.begin());
+  };
+  for (Sides& sides : surface_.sides) sides = {region_of(sides.behind), region_of(sides.front)};
+
+  constexpr std::uint32_t unused = static_cast<std::uint32_t>(-1);
+  std::vector<std::uint32_t> number(nodes_.points.size(), unused);
+  for (const Triangle& t : surface_.triangles)
+    for (const std::uint32_t node : t) number[node] = 0;
+  std::uint32_t count = 0;
+  for (std::size_t k = 0; k < number.size(); ++k) {
+    if (number[k] == unused) continue;
+    nodes_.points[count] = nodes_.points[k];
+    nodes_.places[count] = nodes_.places[k];
+    number[k] = count++;
+  }
+  nodes_.points.resize(count);
+  nodes_.places.resize(count);
+  for (Triangle& t : surface_.triangles)
+    for (std::uint32_t& node : t) node = number[node];
+}
+
+Status CellMesher::fill_regions() {
+  const Result<std::filesystem::path> program = find_worker("selvage-tetgen");
+  if (!program) return program.error();
+  step("filling with tetrahedra", 2);
+  TetgenJob job{.points = nodes_.points, .triangles = surface_.triangles, .sides = surface_.sides};
+  job.max_volume = largest_share * size_ * size_ * size_;
+  job.smallest_feature = size_;
+  Result<TetMesh> tets = run_tetgen(*program, job, {.timeout = options_.timeout, .memory = options_.memory});
+  if (!tets) {
+    Message message = located(tets.error());
+    if (message.at) message.text += yarns_near(*message.at);
+    return message;
+  }
+  tets_ = std::move(*tets);
+  step("improving tetrahedra", 3);
+  ImproveOptions options;
+  options.target = options_.min_dihedral;
+  report(improve(tets_.points, tets_.cells, tets_.regions, nodes_.points.size(), options));
+  return {};
+}
+
+void CellMesher::report(const Improvement& improvement) {
+  if (improvement.below.empty()) return;
+  std::array<std::size_t, 3> counts{};
+  for (const BelowTarget& below : improvement.below) ++counts[static_cast<std::size_t>(below.cause)];
+  const BelowTarget& worst = improvement.below.front();
+  Message message = warning(
+      Kind::geometry,
+      fmt::format(
+          "{} tetrahedra have a dihedral angle below {:g} degrees, the smallest {:.2f}{}: {} at edges of "
+          "the yarns that are that sharp themselves, {} between surfaces whose triangles are too long "
+          "for the gap, {} others",
+          improvement.below.size(), options_.min_dihedral, worst.angle, yarns_near(worst.at), counts[0],
+          counts[1], counts[2]));
+  message.at = worst.at;
+  diagnostics_.add(located(std::move(message)));
+}
+
+// Corner nodes in mm, elements region by region.
+Mesh CellMesher::assemble() const {
+  Mesh mesh;
+  const double scale = millimetres_per(fabric_.units);
+  mesh.title = fabric_.title.value_or("");
+  mesh.nodes.reserve(tets_.points.size());
+  for (const Vec3& point : tets_.points) mesh.nodes.emplace_back(point * scale);
+  std::vector<std::size_t> order(tets_.cells.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return tets_.regions[a] < tets_.regions[b]; });
+  mesh.regions.resize(bodies_of_regions_.size());
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+    Region& region = mesh.regions[r];
+    const std::uint32_t body = bodies_of_regions_[r];
+    region.kind = body == CellTriangles::matrix ? Region::Kind::matrix : Region::Kind::yarn;
+    region.name = region.kind == Region::Kind::matrix ? "matrix" : bodies_[body].name;
+    region.first_element = mesh.elements.size();
+    for (; mesh.elements.size() < order.size() && tets_.regions[order[mesh.elements.size()]] == r;) {
+      const auto& cell = tets_.cells[order[mesh.elements.size()]];
+      mesh.elements.push_back({cell[0], cell[1], cell[2], cell[3]});
+    }
+    region.last_element = mesh.elements.size();
+  }
+  return mesh;
+}
+
+Status CellMesher::finish(Mesh& mesh) {
+  const double scale = millimetres_per(fabric_.units), cube = scale * scale * scale;
+  double rest = box_.volume();
+  for (const double volume : volumes_) rest -= volume;
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+    const std::uint32_t body = bodies_of_regions_[r];
+    mesh.regions[r].exact_volume = cube * (body == CellTriangles::matrix ? rest : volumes_[body]);
+  }
+  MaterialChoice choice = choose_materials(fabric_, bodies_, diagnostics_);
+  mesh.materials = std::move(choice.materials);
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+    const std::uint32_t body = bodies_of_regions_[r];
+    mesh.regions[r].material = body == CellTriangles::matrix ? fabric_.cell->matrix : choice.of_body[body];
+  }
+  const fabric::Material* matrix = fabric_.find_material(fabric_.cell->matrix);
+  if (options_.matrix && matrix != nullptr &&
+      std::none_of(mesh.materials.begin(), mesh.materials.end(),
+                   [&](const fabric::Material& m) { return m.name == matrix->name; }))
+    mesh.materials.push_back(*matrix);
+
+  step("finishing", 4);
+  const Box3 box_mm(box_.min() * scale, box_.max() * scale);
+  if (options_.order == 2) {
+    const MidsideNodes midside =
+        add_midside_nodes(mesh, CellSurface{bodies_, nodes_.places, scale, box_mm, options_.periodic});
+    if (midside.held > 0) {
+      Message note = warning(
+          Kind::geometry, fmt::format("{} midside nodes were held back from the yarns' surfaces so that no "
+                                      "element folds, the farthest by {:.3g} mm",
+                                      midside.held, midside.farthest));
+      note.severity = Severity::note;
+      diagnostics_.add(located(std::move(note)));
+    }
+  }
+  measure(mesh);
+  if (!(mesh.quality.min_scaled_jacobian > 0)) {
+    Message message =
+        error(Kind::geometry, "the mesh has an element with a negative Jacobian; try another --size");
+    if (!mesh.worst.empty()) message.at = mesh.worst.front().at / scale;
+    return located(std::move(message));
+  }
+  return {};
+}
+
+Result<Mesh> CellMesher::run() {
+  if (Status ready = prepare(); !ready) return ready.error();
+  if (Status made = make_surfaces(); !made) return made.error();
+  number_regions();
+  if (Status filled = fill_regions(); !filled) return filled.error();
+  Mesh mesh = assemble();
+  if (Status finished = finish(mesh); !finished) return finished.error();
+  step("finishing", 5);
+  return mesh;
+}
+
+}  // namespace
+
+Result<Mesh> mesh_cell(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                       const CellMeshOptions& options, Diagnostics& diagnostics) {
+  return CellMesher(fabric, bodies, options, diagnostics).run();
+}
+
+}  // namespace selvage::fem
