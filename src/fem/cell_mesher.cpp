@@ -11,11 +11,13 @@
 #include "cell/volume.h"
 #include "core/module.h"
 #include "fem/cell_surfaces.h"
+#include "fem/fibre.h"
 #include "fem/improve.h"
 #include "fem/materials.h"
 #include "fem/midside.h"
 #include "fem/quality.h"
 #include "fem/surface_mesh.h"
+#include "fem/unit_cell.h"
 
 namespace selvage::fem {
 
@@ -41,6 +43,7 @@ class CellMesher {
   Status fill_regions();
   void number_regions();
   [[nodiscard]] Mesh assemble() const;
+  void add_directions(Mesh& mesh) const;
   Status finish(Mesh& mesh);
   [[nodiscard]] Message located(Message message) const;
   [[nodiscard]] std::string yarns_near(const Vec3& at) const;
@@ -227,6 +230,21 @@ Mesh CellMesher::assemble() const {
   return mesh;
 }
 
+// Fibres of the yarns' elements, by where the nodes on their surfaces stand.
+void CellMesher::add_directions(Mesh& mesh) const {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double unit = millimetres_per(fabric_.units);
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+    const std::uint32_t body = bodies_of_regions_[r];
+    if (body == CellTriangles::matrix) continue;
+    std::vector<double> known(mesh.nodes.size(), nan);
+    for (std::size_t k = 0; k < nodes_.places.size(); ++k)
+      if (nodes_.places[k].body == body) known[k] = nodes_.places[k].parameters.y();
+    const std::vector<double> along = parameters_along(mesh, mesh.regions[r], bodies_[body], known, unit);
+    add_fibres(mesh, mesh.regions[r], bodies_[body], along);
+  }
+}
+
 Status CellMesher::finish(Mesh& mesh) {
   const double scale = millimetres_per(fabric_.units), cube = scale * scale * scale;
   double rest = box_.volume();
@@ -248,6 +266,7 @@ Status CellMesher::finish(Mesh& mesh) {
     mesh.materials.push_back(*matrix);
 
   step("finishing", 4);
+  add_directions(mesh);
   const Box3 box_mm(box_.min() * scale, box_.max() * scale);
   if (options_.order == 2) {
     const MidsideNodes midside =
@@ -261,6 +280,8 @@ Status CellMesher::finish(Mesh& mesh) {
       diagnostics_.add(located(std::move(note)));
     }
   }
+  if (Status complete = complete_cell(mesh, box_mm, options_.periodic); !complete)
+    return located(complete.error());
   measure(mesh);
   if (!(mesh.quality.min_scaled_jacobian > 0)) {
     Message message =
