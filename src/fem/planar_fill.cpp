@@ -13,6 +13,7 @@ namespace {
 constexpr int most_rounds = 60;
 constexpr double too_long = 1.45;  // an edge, over the wanted length
 constexpr double too_near = 0.65;  // new points to each other, likewise
+constexpr double beside_fixed = 0.8;
 
 std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
@@ -67,9 +68,13 @@ class Filler {
     mesh_.fixed_points = region.points.size();
     for (const Vec2& p : region.parameters) chart_.push_back(p.cwiseProduct(region.scale));
     for (const Vec3& p : region.points) wanted_.push_back(field.at(p));
+    fixed_lengths_.assign(region.points.size(), 0);
     for (const solid::PlanarSegment& s : region.segments) {
       mesh_.fixed_edges.push_back({s.from, s.to});
       segments_.push_back(key_of(s.from, s.to));
+      const double length = (region.points[s.from] - region.points[s.to]).norm();
+      for (const std::uint32_t end : {s.from, s.to})
+        fixed_lengths_[end] = std::max(fixed_lengths_[end], length);
     }
     std::sort(segments_.begin(), segments_.end());
   }
@@ -105,9 +110,11 @@ class Filler {
     for (const std::uint64_t key : keys) {
       if (std::binary_search(segments_.begin(), segments_.end(), key)) continue;
       const auto a = static_cast<std::uint32_t>(key >> 32U), b = static_cast<std::uint32_t>(key);
-      const double length =
-          std::max((mesh_.points[a] - mesh_.points[b]).norm(), (chart_[a] - chart_[b]).norm() / 2);
-      if (length < too_long * std::min(wanted_[a], wanted_[b])) continue;
+      const double length = (mesh_.points[a] - mesh_.points[b]).norm();
+      // Beside a fixed edge that is too long itself there is no end to it.
+      if (length < too_long * std::min(wanted_[a], wanted_[b]) ||
+          length < beside_fixed * std::max(fixed_length(a), fixed_length(b)))
+        continue;
       const Vec2 middle = (mesh_.parameters[a] + mesh_.parameters[b]) / 2;
       const double wanted = field_.at(support_.point(middle));
       if (length > too_long * wanted) result.push_back({length / wanted, wanted, a, b});
@@ -115,6 +122,11 @@ class Filler {
     std::stable_sort(result.begin(), result.end(),
                      [](const LongEdge& x, const LongEdge& y) { return x.excess > y.excess; });
     return result;
+  }
+
+  // Of the longest fixed edge at a point.
+  [[nodiscard]] double fixed_length(std::uint32_t k) const {
+    return k < fixed_lengths_.size() ? fixed_lengths_[k] : 0;
   }
 
   bool add_points() {
@@ -139,7 +151,7 @@ class Filler {
   const SizeField& field_;
   TriangleMesh mesh_;
   std::vector<Vec2> chart_;
-  std::vector<double> wanted_;
+  std::vector<double> wanted_, fixed_lengths_;
   std::vector<std::uint64_t> segments_;
 };
 
