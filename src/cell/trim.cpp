@@ -24,7 +24,10 @@ struct Name {
   enum class Kind { vertex, edge, corner } kind = Kind::vertex;
   std::size_t a = 0, b = 0;               // the vertex; the edge, a < b; the triangle
   int first = nothing, second = nothing;  // the faces
-  auto operator<=>(const Name&) const = default;
+  bool operator<(const Name& other) const {
+    return std::tie(kind, a, b, first, second) <
+           std::tie(other.kind, other.a, other.b, other.first, other.second);
+  }
 };
 
 // The part of the side from a to b that is inside: from and to as shares of its length, and by which faces
@@ -121,7 +124,7 @@ double Trimmer::depth_at(const Vec2& parameters, int face) const {
 
 // Where the side of a triangle goes through a face: bisection, whose bracket is never lost.
 Vec2 Trimmer::crossing(Vertex a, Vertex b, int face) const {
-  const Vec2 from = sampling_.parameters(a), to = sampling_.parameters_near(b, from);
+  Vec2 from = sampling_.parameters(a), to = sampling_.parameters_near(b, from);
   double low = 0, high = 1, low_depth = sampling_.depth(a, face), high_depth = sampling_.depth(b, face);
   if (low_depth == 0) return from;
   if (high_depth == 0) return to;

@@ -1,0 +1,74 @@
+"""Cells of the samples as `mesh --matrix --periodic` writes them: measured from the deck alone.
+
+SELVAGE_CELL names one sample (without .txt); SELVAGE_SIZES gives several edge lengths to go through.
+"""
+
+import json
+import os
+import unittest
+
+import numpy as np
+
+import unit_cell as cell
+from program import Case, SAMPLES
+
+NAMES = os.environ.get("SELVAGE_CELL", "cell_plain cell_twill cell_satin5 cell_orthogonal cell_jersey cell_tricot").split()
+SIZES = os.environ.get("SELVAGE_SIZES", "").split()
+ORDER = os.environ.get("SELVAGE_ORDER", "1")
+TARGET = 10.0
+
+
+class UnitCell(Case):
+    def mesh(self, name, *more):
+        sample, deck, report = SAMPLES / (name + ".txt"), self.folder / (name + ".inp"), self.folder / "report.json"
+        self.succeeds("mesh", sample, "--matrix", "--periodic", "--order", ORDER, *more, "-o", deck, "--report", report,
+                      "--quiet")
+        return sample, cell.Deck(deck), json.loads(report.read_text())["inputs"][0]["mesh"]
+
+    def judge(self, name, *more):
+        sample, deck, report = self.mesh(name, *more)
+        low, high = cell.box_of(sample)
+        size = (high - low).max()
+        points, cells = deck.points, deck.all_elements()
+
+        # Conformal: inner faces have two elements, and the outer ones are the box.
+        used = points[deck.used()]
+        np.testing.assert_array_equal(used.min(axis=0), low)
+        np.testing.assert_array_equal(used.max(axis=0), high)
+        faces = cell.outer_faces(cells)
+        sides = [(axis, value) for axis in range(3) for value in (low[axis], high[axis])]
+        in_face = np.array([np.all(points[faces][:, :, axis] == value, axis=1) for axis, value in sides])
+        self.assertTrue(in_face.any(axis=0).all(), "an outer face lies in no face of the box")
+        for (axis, _), chosen in zip(sides, in_face):
+            area = np.prod(np.delete(high - low, axis))
+            self.assertAlmostEqual(cell.face_areas(points, faces[chosen]).sum() / area, 1, delta=1e-12)
+
+        # Positive and well shaped.
+        self.assertGreater(cell.smallest_jacobian(points, cells), 0)
+        angle = cell.dihedral_angles(points, cells).min()
+        self.assertGreaterEqual(angle, TARGET)
+        self.assertAlmostEqual(angle, report["min_dihedral"], delta=1e-6)
+
+        # Periodic.
+        miss = max(cell.opposite_miss(used, low, high, axis) for axis in (0, 1))
+        self.assertLessEqual(miss, 1e-12 * size)
+
+        # Regions and their volumes.
+        regions = {region["name"]: region for region in report["regions"]}
+        self.assertEqual(len(deck.sets), len(regions))
+        found = {name: cell.volumes(points, rows).sum() for name, rows in deck.sets.items()}
+        self.assertAlmostEqual(sum(found.values()) / np.prod(high - low), 1, delta=1e-12)
+        errors = [abs(volume / region["exact_volume"] - 1)
+                  for volume, region in zip(found.values(), report["regions"])]
+        return max(errors), angle, len(cells)
+
+    def test_cells(self):
+        for name in NAMES:
+            for more in [("--size", size) for size in SIZES] or [()]:
+                with self.subTest(cell=name, more=more):
+                    error, angle, count = self.judge(name, *more)
+                    print(f"{name} {' '.join(more)}: {count} tetrahedra, volumes to {100 * error:.3f} %, {angle:.2f} degrees")
+
+
+if __name__ == "__main__":
+    unittest.main()
