@@ -42,19 +42,19 @@ double into_domain(double value, double first, double last) {
 
 }  // namespace
 
-Vec2 in_domain(const yarn::Body& body, Vec2 parameters) {
+Vec2 in_domain(const yarn::Body& body, const Vec2& parameters) {
   const nurbs::Surface& surface = body.surface;
   Vec2 result(into_domain(parameters.x(), surface.first_u(), surface.last_u()), parameters.y());
   if (body.closed_along) result.y() = into_domain(result.y(), surface.first_v(), surface.last_v());
   return result;
 }
 
-Vec3 position(const yarn::Body& body, Vec2 parameters) {
+Vec3 position(const yarn::Body& body, const Vec2& parameters) {
   const Vec2 q = in_domain(body, parameters);
   return nurbs::evaluate(body.surface, q.x(), q.y());
 }
 
-nurbs::SurfaceJet jet(const yarn::Body& body, Vec2 parameters) {
+nurbs::SurfaceJet jet(const yarn::Body& body, const Vec2& parameters) {
   const Vec2 q = in_domain(body, parameters);
   return nurbs::evaluate_jet(body.surface, q.x(), q.y());
 }
@@ -95,7 +95,7 @@ ArcCurve::ArcCurve(const yarn::Body& body, const Box3& box, const Arc& arc) : bo
     lengths_.push_back(lengths_.back() + (points_[i] - points_[i - 1]).norm());
 }
 
-Vec3 ArcCurve::position(Vec2 parameters) const {
+Vec3 ArcCurve::position(const Vec2& parameters) const {
   Vec3 point = cell::position(*body_, parameters);
   if (axis_ >= 0) point[axis_] = plane_;
   return point;

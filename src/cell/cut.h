@@ -75,10 +75,10 @@ struct Cut {
 };
 
 // Where parameters lie on a surface that goes on periodically round u (and along v on a ring).
-Vec3 position(const yarn::Body& body, Vec2 parameters);
-nurbs::SurfaceJet jet(const yarn::Body& body, Vec2 parameters);
+Vec3 position(const yarn::Body& body, const Vec2& parameters);
+nurbs::SurfaceJet jet(const yarn::Body& body, const Vec2& parameters);
 // The same place with parameters inside the surface's domain.
-Vec2 in_domain(const yarn::Body& body, Vec2 parameters);
+Vec2 in_domain(const yarn::Body& body, const Vec2& parameters);
 
 // Errors (geometry), each with the yarn and the place: an end face that is partly inside the box (askew to
 // the face that it ends near); a yarn that reaches through a face of the box by less than the tolerance; a
@@ -96,7 +96,7 @@ class ArcCurve {
   // The point of the curve in the plane across the polygon at this length from its start (0..length()), on
   // the surface and in the face to rounding; the kept points at theirs.
   [[nodiscard]] Vec2 at(double along) const;
-  [[nodiscard]] Vec3 position(Vec2 parameters) const;  // with the face's own coordinate to the bit
+  [[nodiscard]] Vec3 position(const Vec2& parameters) const;  // with the face's own coordinate to the bit
   [[nodiscard]] const std::vector<double>& lengths() const { return lengths_; }  // one a kept point
 
  private:
