@@ -119,7 +119,8 @@ Status add_box_faces(const CellShape& shape, const CellCurves& curves, const Siz
   const auto& regions = shape.division.regions;
   const auto add = [&](const Triangle& t, const cell::FaceRegion& region) {
     const std::uint32_t behind = body_of(region);
-    if (behind != CellTriangles::matrix || options.matrix) result.add(t, {behind, Sides::outside});
+    if (behind != CellTriangles::matrix || options.matrix)
+      result.add(t, {behind, Sides::outside}, CellTriangles::Part::box);
   };
   for (int face = 0; face < cell::face_count; ++face) {
     const int a = cell::axis_of(face);

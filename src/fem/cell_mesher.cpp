@@ -227,6 +227,15 @@ Mesh CellMesher::assemble() const {
     }
     region.last_element = mesh.elements.size();
   }
+  for (std::size_t k = 0; k < surface_.triangles.size(); ++k) {
+    const Triangle& t = surface_.triangles[k];
+    if (surface_.parts[k] == CellTriangles::Part::box) continue;
+    Region& region = mesh.regions[surface_.sides[k].behind];
+    auto& faces = surface_.parts[k] == CellTriangles::Part::side    ? region.side_faces
+                  : surface_.parts[k] == CellTriangles::Part::start ? region.start_faces
+                                                                    : region.end_faces;
+    faces.push_back({t[0], t[1], t[2]});
+  }
   return mesh;
 }
 
@@ -254,16 +263,13 @@ Status CellMesher::finish(Mesh& mesh) {
     mesh.regions[r].exact_volume = cube * (body == CellTriangles::matrix ? rest : volumes_[body]);
   }
   MaterialChoice choice = choose_materials(fabric_, bodies_, diagnostics_);
-  mesh.materials = std::move(choice.materials);
+  if (options_.matrix)
+    if (Status added = add_matrix_material(fabric_, choice, diagnostics_); !added) return added;
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
     const std::uint32_t body = bodies_of_regions_[r];
     mesh.regions[r].material = body == CellTriangles::matrix ? fabric_.cell->matrix : choice.of_body[body];
   }
-  const fabric::Material* matrix = fabric_.find_material(fabric_.cell->matrix);
-  if (options_.matrix && matrix != nullptr &&
-      std::none_of(mesh.materials.begin(), mesh.materials.end(),
-                   [&](const fabric::Material& m) { return m.name == matrix->name; }))
-    mesh.materials.push_back(*matrix);
+  mesh.materials = std::move(choice.materials);
 
   step("finishing", 4);
   add_directions(mesh);

@@ -13,10 +13,13 @@ struct CellTriangles {
   // The bodies on both sides, or `matrix`, or Sides::outside; by index of the body.
   static constexpr std::uint32_t matrix = Sides::outside - 1;
   std::vector<Sides> sides;
+  enum class Part : std::uint8_t { side, start, end, box };  // of a yarn, or a face of the box
+  std::vector<Part> parts;
 
-  void add(const Triangle& triangle, const Sides& both) {
+  void add(const Triangle& triangle, const Sides& both, Part part) {
     triangles.push_back(triangle);
     sides.push_back(both);
+    parts.push_back(part);
   }
 };
 

@@ -146,7 +146,8 @@ Status add_end(const CellShape& shape, const cell::Piece& piece, const cell::Bor
   std::vector<Vec3> points;
   PlanarRegion region;
   for (const std::uint32_t node : rim) points.push_back(nodes.points[node]);
-  const EndCap cap(points, border.arcs.front().face == cell::Arc::own_end ? body.end : body.start);
+  const bool is_end = border.arcs.front().face == cell::Arc::own_end;
+  const EndCap cap(points, is_end ? body.end : body.start);
   region.parameters = cap.rim();
   region.points = points;
   const auto count = static_cast<std::uint32_t>(points.size());
@@ -158,10 +159,11 @@ Status add_end(const CellShape& shape, const cell::Piece& piece, const cell::Bor
   std::vector<std::uint32_t> number = rim;
   for (std::size_t k = rim.size(); k < mesh->points.size(); ++k)
     number.push_back(nodes.add(mesh->points[k], {no_body, Vec2::Zero()}));
+  const Sides sides{static_cast<std::uint32_t>(piece.body),
+                    options.matrix ? CellTriangles::matrix : Sides::outside};
   for (const auto& t : mesh->triangles)
-    result.add(
-        {number[t[0]], number[t[1]], number[t[2]]},
-        {static_cast<std::uint32_t>(piece.body), options.matrix ? CellTriangles::matrix : Sides::outside});
+    result.add({number[t[0]], number[t[1]], number[t[2]]}, sides,
+               is_end ? CellTriangles::Part::end : CellTriangles::Part::start);
   return {};
 }
 
@@ -190,7 +192,7 @@ Status add_yarn_surfaces(const CellShape& shape, const CellCurves& curves, const
                       options.matrix ? CellTriangles::matrix : Sides::outside};
     for (auto t : part.mesh.triangles) {
       if (body.inward) std::swap(t[1], t[2]);
-      result.add({number[t[0]], number[t[1]], number[t[2]]}, sides);
+      result.add({number[t[0]], number[t[1]], number[t[2]]}, sides, CellTriangles::Part::side);
     }
     made[p].reset();
     for (std::size_t b = 0; b < piece.borders.size(); ++b)
