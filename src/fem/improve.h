@@ -12,10 +12,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <string_view>
 #include <vector>
 
+#include "core/diagnostics.h"
 #include "core/vec.h"
+#include "fem/mesh.h"
 
 namespace selvage::fem {
 
@@ -52,5 +54,13 @@ struct ImproveOptions {
 Improvement improve(std::vector<Vec3>& points, std::vector<std::array<std::uint32_t, 4>>& cells,
                     std::vector<std::uint32_t>& regions, std::size_t fixed_points,
                     const ImproveOptions& options);
+
+// What is left below the target, for a message each: a note of wedges of the geometry, warnings of the rest,
+// with the worst place (in the points' unit, whose name is `unit`) and the remedy. None where nothing is
+// left.
+std::vector<Message> describe(const Improvement& improvement, double target, std::string_view unit);
+
+// The same as counts.
+AngleTarget count(const Improvement& improvement, double target);
 
 }  // namespace selvage::fem

@@ -29,6 +29,13 @@ struct BadElement {
   Vec3 at = Vec3::Zero();
 };
 
+// How far the smallest dihedral angle that was wanted has been reached.
+struct AngleTarget {
+  double wanted = 0;          // degrees
+  std::size_t below = 0;      // elements below it
+  std::size_t in_wedges = 0;  // of these, where two triangles of the surface meet under a sharper angle
+};
+
 // One yarn's part of the mesh, or the matrix: elements [first_element, last_element) of Mesh::elements. Yarns
 // of a dry fabric share no nodes, and theirs are [first_node, last_node); regions of a unit cell share those
 // between them, and these two are 0.
@@ -123,6 +130,7 @@ struct Mesh {
   std::string title;
   Quality quality;
   std::vector<BadElement> worst;  // at most ten, worst first
+  std::optional<AngleTarget> angles;
 
   [[nodiscard]] int corners_per_element() const { return shape == Shape::tetrahedron ? 4 : 8; }
   [[nodiscard]] int nodes_per_element() const { return shape == Shape::hexahedron ? 8 : order == 1 ? 4 : 10; }

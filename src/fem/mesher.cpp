@@ -13,6 +13,7 @@
 #include "core/module.h"
 #include "fem/faces.h"
 #include "fem/fibre.h"
+#include "fem/improve.h"
 #include "fem/materials.h"
 #include "fem/midside.h"
 #include "fem/quality.h"
@@ -28,12 +29,10 @@ constexpr double largest_share = 0.13;
 // What TetGen makes on average of that bound, for the estimate (measured: 0.075 to 0.09 of the cube).
 constexpr double mean_share = 0.075;
 
-// TetGen is asked for no more than this smallest dihedral angle, degrees: beyond it, it refines without end.
-constexpr double largest_target = 18;
-
 // One yarn meshed: a Mesh of one region, in mm.
 struct YarnMesh {
   Mesh mesh;
+  AngleTarget angles;
   std::vector<Message> notes;
 };
 
@@ -79,19 +78,25 @@ std::vector<std::size_t> nodes_on(const Mesh& mesh, const std::vector<std::array
   return result;
 }
 
-Result<YarnMesh> mesh_yarn(const yarn::Body& body, double scale, const MeshOptions& options,
+Result<YarnMesh> mesh_yarn(const yarn::Body& body, Unit units, const MeshOptions& options,
                            const std::filesystem::path& program) {
   Result<SurfaceMesh> surface = mesh_surface(body, size_for(body, options));
   if (!surface) return surface.error();
-  const double size = std::min(size_for(body, options), surface->coarsest);
+  const double size = std::min(size_for(body, options), surface->coarsest), scale = millimetres_per(units);
   TetgenJob job{.points = surface->points, .triangles = surface->triangles};
   job.max_volume = largest_share * size * size * size;
-  job.min_dihedral = std::min(options.min_dihedral, largest_target);
   job.smallest_feature = size;
   Result<TetMesh> tets = run_tetgen(program, job, {.timeout = options.timeout, .memory = options.memory});
   if (!tets) return tets.error();
 
   YarnMesh result;
+  if (options.min_dihedral > 0) {
+    tets->regions.assign(tets->cells.size(), 0);
+    const Improvement improvement = improve(tets->points, tets->cells, tets->regions, surface->points.size(),
+                                            {.target = options.min_dihedral});
+    result.angles = count(improvement, options.min_dihedral);
+    result.notes = describe(improvement, options.min_dihedral, name_of(units));
+  }
   result.mesh = assemble(*tets, *surface, body);
   Mesh& mesh = result.mesh;
   std::vector<double> known(mesh.nodes.size(), std::numeric_limits<double>::quiet_NaN());
@@ -164,7 +169,7 @@ Status check_options(std::span<const yarn::Body> bodies, const MeshOptions& opti
 
 // Meshes every yarn, several at once. After a failure the yarns behind it are left out, those before it are
 // not: the failure that is reported does not depend on the number of threads.
-std::vector<std::optional<Result<YarnMesh>>> mesh_all(std::span<const yarn::Body> bodies, double scale,
+std::vector<std::optional<Result<YarnMesh>>> mesh_all(std::span<const yarn::Body> bodies, Unit units,
                                                       const MeshOptions& options,
                                                       const std::filesystem::path& program) {
   std::vector<std::optional<Result<YarnMesh>>> parts(bodies.size());
@@ -173,7 +178,7 @@ std::vector<std::optional<Result<YarnMesh>>> mesh_all(std::span<const yarn::Body
   std::size_t done = 0;
   auto work = [&] {
     for (std::size_t i = next++; i < bodies.size() && i < first_failed; i = next++) {
-      parts[i] = mesh_yarn(bodies[i], scale, options, program);
+      parts[i] = mesh_yarn(bodies[i], units, options, program);
       const std::scoped_lock lock(one_at_a_time);
       if (!parts[i]->ok()) first_failed = std::min<std::size_t>(first_failed, i);
       if (options.progress) options.progress(++done, bodies.size());
@@ -188,9 +193,8 @@ std::vector<std::optional<Result<YarnMesh>>> mesh_all(std::span<const yarn::Body
   return parts;
 }
 
-// What is wrong with the finished mesh, or worth saying.
-Status judge(const Mesh& mesh, std::span<const yarn::Body> bodies, const fabric::Fabric& fabric,
-             const MeshOptions& options, double scale, Diagnostics& diagnostics) {
+// What is wrong with the finished mesh.
+Status judge(const Mesh& mesh, const fabric::Fabric& fabric, double scale) {
   for (const BadElement& bad : mesh.worst) {
     if (mesh.quality.min_scaled_jacobian > 0) break;
     Message message =
@@ -198,16 +202,6 @@ Status judge(const Mesh& mesh, std::span<const yarn::Body> bodies, const fabric:
     message.file = fabric.file;
     message.at = bad.at / scale;
     return message;
-  }
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Region& region = mesh.regions[i];
-    if (region.quality.min_dihedral < options.min_dihedral)
-      diagnostics.add(about(
-          warning(Kind::geometry,
-                  fmt::format("the smallest dihedral angle is {:.1f} degrees, {:.1f} were wanted; a finer "
-                              "--size may help",
-                              region.quality.min_dihedral, options.min_dihedral)),
-          bodies[i], fabric));
   }
   return {};
 }
@@ -220,7 +214,7 @@ Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body
   const Result<std::filesystem::path> program = find_worker("selvage-tetgen");
   if (!program) return program.error();
   const double scale = millimetres_per(units);
-  auto parts = mesh_all(bodies, scale, options, *program);
+  auto parts = mesh_all(bodies, units, options, *program);
 
   Mesh mesh;
   mesh.order = options.order;
@@ -228,6 +222,12 @@ Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (!parts[i]->ok()) return about(parts[i]->error(), bodies[i], fabric);
     for (Message& note : (*parts[i])->notes) diagnostics.add(about(std::move(note), bodies[i], fabric));
+    if (options.min_dihedral > 0) {
+      if (!mesh.angles) mesh.angles.emplace();
+      mesh.angles->wanted = options.min_dihedral;
+      mesh.angles->below += (*parts[i])->angles.below;
+      mesh.angles->in_wedges += (*parts[i])->angles.in_wedges;
+    }
     append(mesh, std::move((*parts[i])->mesh));
     parts[i].reset();
   }
@@ -235,7 +235,7 @@ Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body
   mesh.materials = std::move(choice.materials);
   for (std::size_t i = 0; i < bodies.size(); ++i) mesh.regions[i].material = choice.of_body[i];
   measure(mesh);
-  if (Status sound = judge(mesh, bodies, fabric, options, scale, diagnostics); !sound) return sound.error();
+  if (Status sound = judge(mesh, fabric, scale); !sound) return sound.error();
   return mesh;
 }
 

@@ -62,16 +62,37 @@ fem::MeshOptions mesh_options(Job& job) {
 
 MeshReport facts_of(const fem::Mesh& mesh) {
   MeshReport facts;
+  facts.hexahedra = mesh.shape == fem::Mesh::Shape::hexahedron;
   facts.nodes = mesh.nodes.size();
-  facts.tets = mesh.elements.size();
+  facts.elements = mesh.elements.size();
   facts.min_dihedral = mesh.quality.min_dihedral;
   facts.max_aspect = mesh.quality.max_aspect;
-  double exact = 0;
+  double exact = 0, compared = 0;
   for (const fem::Region& region : mesh.regions) {
     facts.volume += region.volume;
+    MeshReport::Region one;
+    one.name = region.name;
+    one.kind = region.kind == fem::Region::Kind::yarn ? "yarn" : "matrix";
+    one.elements = region.last_element - region.first_element;
+    one.volume = region.volume;
+    one.min_dihedral = region.quality.min_dihedral;
+    if (region.exact_volume > 0) one.exact_volume = region.exact_volume;
+    facts.regions.push_back(std::move(one));
+    if (region.kind != fem::Region::Kind::yarn) continue;
     exact += region.exact_volume;
+    compared += region.volume;
   }
-  facts.volume_error = exact > 0 ? std::abs(facts.volume - exact) / exact : 0;
+  facts.volume_error = exact > 0 ? std::abs(compared - exact) / exact : 0;
+  if (mesh.angles) {
+    facts.below_target = mesh.angles->below;
+    facts.in_wedges = mesh.angles->in_wedges;
+  }
+  for (const fem::BadElement& bad : mesh.worst) {
+    const auto region = std::find_if(mesh.regions.begin(), mesh.regions.end(),
+                                     [&](const fem::Region& r) { return bad.element < r.last_element; });
+    facts.worst.push_back(
+        {bad.min_dihedral, region == mesh.regions.end() ? std::string() : region->name, bad.at});
+  }
   return facts;
 }
 

@@ -75,8 +75,31 @@ Json output_json(const OutputReport& output) {
 }
 
 Json mesh_json(const MeshReport& mesh) {
-  return {{"nodes", mesh.nodes},           {"tets", mesh.tets},     {"min_dihedral", mesh.min_dihedral},
-          {"max_aspect", mesh.max_aspect}, {"volume", mesh.volume}, {"volume_error", mesh.volume_error}};
+  Json out = {{"nodes", mesh.nodes},
+              {mesh.hexahedra ? "hexahedra" : "tets", mesh.elements},
+              {"volume", mesh.volume},
+              {"volume_error", mesh.volume_error}};
+  if (!mesh.hexahedra) {
+    out["min_dihedral"] = mesh.min_dihedral;
+    out["max_aspect"] = mesh.max_aspect;
+  }
+  if (mesh.below_target) out["below_target"] = *mesh.below_target;
+  if (mesh.in_wedges) out["in_wedges"] = *mesh.in_wedges;
+  Json regions = Json::array(), worst = Json::array();
+  for (const MeshReport::Region& region : mesh.regions) {
+    Json one = {{"name", region.name},
+                {"kind", region.kind},
+                {mesh.hexahedra ? "hexahedra" : "tets", region.elements},
+                {"volume", region.volume}};
+    if (region.exact_volume) one["exact_volume"] = *region.exact_volume;
+    if (!mesh.hexahedra) one["min_dihedral"] = region.min_dihedral;
+    regions.push_back(std::move(one));
+  }
+  out["regions"] = std::move(regions);
+  for (const MeshReport::Worst& bad : mesh.worst)
+    worst.push_back({{"min_dihedral", bad.min_dihedral}, {"region", bad.region}, {"at", point(bad.at)}});
+  if (!mesh.worst.empty()) out["worst"] = std::move(worst);
+  return out;
 }
 
 template <class T, class Make>

@@ -107,10 +107,28 @@ struct RelaxReport {
 };
 
 struct MeshReport {
-  std::size_t nodes = 0, tets = 0;
-  double min_dihedral = 0, max_aspect = 0;
+  struct Region {
+    std::string name, kind;  // kind: "yarn" or "matrix"
+    std::size_t elements = 0;
+    double volume = 0;
+    std::optional<double> exact_volume;  // of the B-spline solid; none: not known
+    double min_dihedral = 0;
+  };
+  struct Worst {
+    double min_dihedral = 0;
+    std::string region;
+    Vec3 at = Vec3::Zero();
+  };
+  bool hexahedra = false;
+  std::size_t nodes = 0, elements = 0;
+  double min_dihedral = 0, max_aspect = 0;  // of tetrahedra
   double volume = 0;
   double volume_error = 0;  // relative to the B-spline yarns, >= 0
+  // Elements below the angle that was wanted, and how many of them stand in wedges of the geometry; none: no
+  // angle was wanted.
+  std::optional<std::size_t> below_target, in_wedges;
+  std::vector<Region> regions;
+  std::vector<Worst> worst;  // at most ten, worst first
 };
 
 // Through one format and back. Lengths in mm, volumes in mm3.

@@ -77,11 +77,28 @@ class Report(Case):
     def test_mesh(self):
         self.succeeds("mesh", PATH, "-o", self.folder / "x.inp", "--report", self.path)
         entry = self.report()["inputs"][0]
-        self.assertEqual(sorted(entry["mesh"]), ["max_aspect", "min_dihedral", "nodes", "tets", "volume", "volume_error"])
+        self.assertEqual(sorted(entry["mesh"]), ["max_aspect", "min_dihedral", "nodes", "regions", "tets", "volume", "volume_error", "worst"])
         self.assertGreater(entry["mesh"]["tets"], 100)
         exact = sum(yarn["volume"] for yarn in entry["yarns"])
         self.assertAlmostEqual(entry["mesh"]["volume_error"], abs(entry["mesh"]["volume"] - exact) / exact, places=6)
         self.assertLess(entry["mesh"]["volume_error"], 0.1)
+        regions, worst = entry["mesh"]["regions"], entry["mesh"]["worst"]
+        self.assertEqual([region["name"] for region in regions], [yarn["name"] for yarn in entry["yarns"]])
+        self.assertEqual({region["kind"] for region in regions}, {"yarn"})
+        self.assertEqual(sum(region["tets"] for region in regions), entry["mesh"]["tets"])
+        self.assertAlmostEqual(sum(region["volume"] for region in regions), entry["mesh"]["volume"], places=12)
+        for region, yarn in zip(regions, entry["yarns"]):
+            self.assertAlmostEqual(region["exact_volume"], yarn["volume"], places=9)
+        self.assertEqual(min(region["min_dihedral"] for region in regions), entry["mesh"]["min_dihedral"])
+        self.assertEqual(len(worst), 10)
+        self.assertEqual([bad["min_dihedral"] for bad in worst], sorted(bad["min_dihedral"] for bad in worst))
+        self.assertEqual(worst[0]["min_dihedral"], entry["mesh"]["min_dihedral"])
+
+    def test_mesh_with_a_target(self):
+        self.succeeds("mesh", PATH, "-o", self.folder / "x.inp", "--min-dihedral", "15", "--report", self.path)
+        mesh = self.report()["inputs"][0]["mesh"]
+        self.assertGreaterEqual(mesh["min_dihedral"], 15)
+        self.assertEqual((mesh["below_target"], mesh["in_wedges"]), (0, 0))
 
     def test_info_as_json(self):
         report = json.loads(self.succeeds("info", RING, "--json").stdout)
