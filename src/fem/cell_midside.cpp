@@ -4,6 +4,7 @@
 
 #include "fem/curved_edges.h"
 #include "fem/midside.h"
+#include "fem/sides.h"
 
 namespace selvage::fem {
 namespace {
@@ -26,6 +27,8 @@ class CellEdges {
     const double plane = high ? surface_.box.max()[axis] : surface_.box.min()[axis];
     return std::abs(mesh_.nodes[node][axis] - plane) <= snug_;
   }
+  // In a face of the box, or (all on one yarn's surface) at the yarn's own end.
+  [[nodiscard]] bool is_flat(const std::array<std::size_t, 3>& triangle) const;
   [[nodiscard]] std::optional<Vec3> middle(std::size_t a, std::size_t b) const;
   void tie_over(int axis, std::vector<CurvedEdge>& edges, std::vector<TiedEdges>& tied) const;
 
@@ -57,11 +60,37 @@ std::optional<Vec3> CellEdges::middle(std::size_t a, std::size_t b) const {
   return result;
 }
 
+bool CellEdges::is_flat(const std::array<std::size_t, 3>& t) const {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool high : {false, true})
+      if (is_on(t[0], axis, high) && is_on(t[1], axis, high) && is_on(t[2], axis, high)) return true;
+  // The yarn's own end: all three on the rim.
+  const SurfacePlace& first = surface_.places[t[0]];
+  const yarn::Body& body = surface_.bodies[first.body];
+  if (body.closed_along) return false;
+  for (const double end : {body.surface.first_v(), body.surface.last_v()}) {
+    const double snug = 1e-9 * (body.surface.last_v() - body.surface.first_v());
+    if (std::all_of(t.begin(), t.end(), [&](std::size_t node) {
+          return std::abs(surface_.places[node].parameters.y() - end) <= snug;
+        }))
+      return true;
+  }
+  return false;
+}
+
 std::vector<CurvedEdge> CellEdges::curved() const {
   std::vector<std::uint64_t> keys;
-  for (const Region& region : mesh_.regions)
-    for (const auto& t : region.side_faces)
-      for (std::size_t k = 0; k < 3; ++k) keys.push_back(edge_key(t[k], t[(k + 1) % 3]));
+  for (const OuterSide& side : outer_sides(mesh_)) {
+    const std::array<std::size_t, 3> t = {side.nodes[0], side.nodes[1], side.nodes[2]};
+    // Between a yarn and the rest, all of it on one yarn's surface.
+    const std::size_t last = *std::max_element(t.begin(), t.end());
+    if (last >= surface_.places.size()) continue;
+    const std::size_t body = surface_.places[t[0]].body;
+    if (body == CellSurface::no_body || surface_.places[t[1]].body != body ||
+        surface_.places[t[2]].body != body || is_flat(t))
+      continue;
+    for (std::size_t k = 0; k < 3; ++k) keys.push_back(edge_key(t[k], t[(k + 1) % 3]));
+  }
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   std::vector<CurvedEdge> result;

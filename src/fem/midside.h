@@ -29,7 +29,7 @@ struct CellSurface {
 };
 
 // Gives the corner-only elements of a unit cell (mm, regions filled) their six midside nodes, appended to the
-// nodes, and sets order 2. Edges between regions, or on the outside, whose two ends stand on one yarn's
+// nodes, and sets order 2. Edges of sides between regions, or outside, whose corners stand on one yarn's
 // surface are curved: their middles lie on it, those of edges in a face of the box exactly in that face, and
 // those of opposite faces where the cell is periodic are the same to the bit. They are taken back toward the
 // chord where a scaled Jacobian would fall below 0.1 (or 0.9 of the straight one where that is lower).

@@ -96,7 +96,7 @@ void fill(CellOfYarn& cell, double size) {
   for (const auto& t : tets->cells) cell.mesh.elements.push_back({t[0], t[1], t[2], t[3]});
   Region region;
   region.last_element = cell.mesh.elements.size();
-  for (const Triangle& t : skin->side()) region.side_faces.push_back({t[0], t[1], t[2]});
+  for (const Triangle& t : skin->side()) region.side_faces.push_back({t[0], t[1], t[2]});  // for the test
   cell.mesh.regions.push_back(region);
   cell.places.assign(cell.mesh.nodes.size(), {.body = CellSurface::no_body});
   for (std::size_t p = 0; p < skin->parameters.size(); ++p) cell.places[p] = {0, skin->parameters[p]};
