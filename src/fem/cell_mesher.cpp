@@ -63,6 +63,7 @@ class CellMesher {
   CellTriangles surface_;
   std::vector<std::uint32_t> bodies_of_regions_;  // CellTriangles::matrix: the matrix
   TetMesh tets_;
+  AngleTarget angles_;
 };
 
 Message CellMesher::located(Message message) const {
@@ -187,20 +188,11 @@ Status CellMesher::fill_regions() {
 }
 
 void CellMesher::report(const Improvement& improvement) {
-  if (improvement.below.empty()) return;
-  std::array<std::size_t, 3> counts{};
-  for (const BelowTarget& below : improvement.below) ++counts[static_cast<std::size_t>(below.cause)];
-  const BelowTarget& worst = improvement.below.front();
-  Message message = warning(
-      Kind::geometry,
-      fmt::format(
-          "{} tetrahedra have a dihedral angle below {:g} degrees, the smallest {:.2f}{}: {} at edges of "
-          "the yarns that are that sharp themselves, {} between surfaces whose triangles are too long "
-          "for the gap, {} others",
-          improvement.below.size(), options_.min_dihedral, worst.angle, yarns_near(worst.at), counts[0],
-          counts[1], counts[2]));
-  message.at = worst.at;
-  diagnostics_.add(located(std::move(message)));
+  angles_ = count(improvement, options_.min_dihedral);
+  for (Message& message : describe(improvement, options_.min_dihedral, name_of(fabric_.units))) {
+    message.text += yarns_near(*message.at);
+    diagnostics_.add(located(std::move(message)));
+  }
 }
 
 // Corner nodes in mm, elements region by region.
@@ -289,6 +281,7 @@ Status CellMesher::finish(Mesh& mesh) {
   if (Status complete = complete_cell(mesh, box_mm, options_.periodic); !complete)
     return located(complete.error());
   measure(mesh);
+  mesh.angles = angles_;
   if (!(mesh.quality.min_scaled_jacobian > 0)) {
     Message message =
         error(Kind::geometry, "the mesh has an element with a negative Jacobian; try another --size");

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fem/mesher.h"
+#include "pipeline/mesh_facts.h"
 #include "pipeline/overlaps.h"
 #include "pipeline/relaxing.h"
 #include "pipeline/writing.h"
@@ -60,42 +61,6 @@ fem::MeshOptions mesh_options(Job& job) {
   return options;
 }
 
-MeshReport facts_of(const fem::Mesh& mesh) {
-  MeshReport facts;
-  facts.hexahedra = mesh.shape == fem::Mesh::Shape::hexahedron;
-  facts.nodes = mesh.nodes.size();
-  facts.elements = mesh.elements.size();
-  facts.min_dihedral = mesh.quality.min_dihedral;
-  facts.max_aspect = mesh.quality.max_aspect;
-  double exact = 0, compared = 0;
-  for (const fem::Region& region : mesh.regions) {
-    facts.volume += region.volume;
-    MeshReport::Region one;
-    one.name = region.name;
-    one.kind = region.kind == fem::Region::Kind::yarn ? "yarn" : "matrix";
-    one.elements = region.last_element - region.first_element;
-    one.volume = region.volume;
-    one.min_dihedral = region.quality.min_dihedral;
-    if (region.exact_volume > 0) one.exact_volume = region.exact_volume;
-    facts.regions.push_back(std::move(one));
-    if (region.kind != fem::Region::Kind::yarn) continue;
-    exact += region.exact_volume;
-    compared += region.volume;
-  }
-  facts.volume_error = exact > 0 ? std::abs(compared - exact) / exact : 0;
-  if (mesh.angles) {
-    facts.below_target = mesh.angles->below;
-    facts.in_wedges = mesh.angles->in_wedges;
-  }
-  for (const fem::BadElement& bad : mesh.worst) {
-    const auto region = std::find_if(mesh.regions.begin(), mesh.regions.end(),
-                                     [&](const fem::Region& r) { return bad.element < r.last_element; });
-    facts.worst.push_back(
-        {bad.min_dihedral, region == mesh.regions.end() ? std::string() : region->name, bad.at});
-  }
-  return facts;
-}
-
 // Tetrahedra fill yarns; a garment piece is flat.
 bool has_only_yarns(Job& job, const fabric::Fabric& fabric) {
   const std::vector<const fabric::Piece*> pieces = fabric::pieces_of(fabric);
@@ -128,7 +93,7 @@ void mesh(Job& job) {
   Result<fem::Mesh> mesh = fem::mesh_yarns(*fabric, *bodies, fabric->units, mesh_options(job), diagnostics);
   job.say_all(diagnostics.messages());
   if (!mesh) return job.say(mesh.error());
-  job.report.mesh = facts_of(*mesh);
+  job.report.mesh = mesh_facts(*mesh);
   for (OpenOutput& output : *outputs)
     if (!take_facts(job, output, output.plan->format->write_mesh(*mesh, output.file))) return;
   commit_all(job, *outputs);

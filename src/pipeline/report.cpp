@@ -74,38 +74,42 @@ Json output_json(const OutputReport& output) {
   return out;
 }
 
-Json mesh_json(const MeshReport& mesh) {
-  Json out = {{"nodes", mesh.nodes},
-              {mesh.hexahedra ? "hexahedra" : "tets", mesh.elements},
-              {"volume", mesh.volume},
-              {"volume_error", mesh.volume_error}};
-  if (!mesh.hexahedra) {
-    out["min_dihedral"] = mesh.min_dihedral;
-    out["max_aspect"] = mesh.max_aspect;
-  }
-  if (mesh.below_target) out["below_target"] = *mesh.below_target;
-  if (mesh.in_wedges) out["in_wedges"] = *mesh.in_wedges;
-  Json regions = Json::array(), worst = Json::array();
-  for (const MeshReport::Region& region : mesh.regions) {
-    Json one = {{"name", region.name},
-                {"kind", region.kind},
-                {mesh.hexahedra ? "hexahedra" : "tets", region.elements},
-                {"volume", region.volume}};
-    if (region.exact_volume) one["exact_volume"] = *region.exact_volume;
-    if (!mesh.hexahedra) one["min_dihedral"] = region.min_dihedral;
-    regions.push_back(std::move(one));
-  }
-  out["regions"] = std::move(regions);
-  for (const MeshReport::Worst& bad : mesh.worst)
-    worst.push_back({{"min_dihedral", bad.min_dihedral}, {"region", bad.region}, {"at", point(bad.at)}});
-  if (!mesh.worst.empty()) out["worst"] = std::move(worst);
-  return out;
-}
-
 template <class T, class Make>
 Json list_json(const std::vector<T>& list, Make make) {
   Json out = Json::array();
   for (const T& item : list) out.push_back(make(item));
+  return out;
+}
+
+Json mesh_json(const MeshReport& mesh) {
+  const char* elements = mesh.hexahedra ? "hexahedra" : "tets";
+  Json out = {{"nodes", mesh.nodes}, {"tets", mesh.tets}, {"volume", mesh.volume}};
+  if (mesh.hexahedra) {
+    out["hexahedra"] = *mesh.hexahedra;
+  } else {
+    out["min_dihedral"] = mesh.min_dihedral;
+    out["max_aspect"] = mesh.max_aspect;
+    out["volume_error"] = mesh.volume_error;
+  }
+  if (mesh.below_target) out["below_target"] = *mesh.below_target;
+  if (mesh.in_wedges) out["in_wedges"] = *mesh.in_wedges;
+  out["regions"] = list_json(mesh.regions, [&](const MeshReport::Region& region) {
+    Json one = {
+        {"name", region.name}, {"kind", region.kind}, {elements, region.elements}, {"volume", region.volume}};
+    if (region.exact_volume) one["exact_volume"] = *region.exact_volume;
+    if (!mesh.hexahedra) one["min_dihedral"] = region.min_dihedral;
+    return one;
+  });
+  if (!mesh.worst.empty())
+    out["worst"] = list_json(mesh.worst, [](const MeshReport::Worst& bad) {
+      return Json{{"min_dihedral", bad.min_dihedral}, {"region", bad.region}, {"at", point(bad.at)}};
+    });
+  if (mesh.estimate) out["estimate"] = *mesh.estimate;
+  if (!mesh.yarn_share) return out;
+  out["yarn_share"] = *mesh.yarn_share;
+  out["periodic"] = mesh.periodic;
+  out["equations"] = mesh.equations;
+  out["load_cases"] = mesh.load_cases;
   return out;
 }
 

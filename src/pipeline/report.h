@@ -119,14 +119,19 @@ struct MeshReport {
     std::string region;
     Vec3 at = Vec3::Zero();
   };
-  bool hexahedra = false;
-  std::size_t nodes = 0, elements = 0;
+  std::size_t nodes = 0, tets = 0;
+  std::optional<std::size_t> hexahedra;     // of voxels, instead of tets
   double min_dihedral = 0, max_aspect = 0;  // of tetrahedra
   double volume = 0;
   double volume_error = 0;  // relative to the B-spline yarns, >= 0
   // Elements below the angle that was wanted, and how many of them stand in wedges of the geometry; none: no
   // angle was wanted.
   std::optional<std::size_t> below_target, in_wedges;
+  // Of a unit cell.
+  std::optional<double> estimate;    // tetrahedra, before it was meshed
+  std::optional<double> yarn_share;  // of the cell's volume
+  std::string periodic;              // "x y"
+  std::size_t equations = 0, load_cases = 0;
   std::vector<Region> regions;
   std::vector<Worst> worst;  // at most ten, worst first
 };
