@@ -88,7 +88,7 @@ void row(const fabric::Fabric& cloth, const std::vector<yarn::Body>& bodies, dou
   auto since = Clock::now();
   fem::CellMeshOptions options;
   options.size = size;
-  options.periodic = cloth.cell->periodic;
+  options.periodic = {cloth.cell->periodic_x, cloth.cell->periodic_y, cloth.cell->periodic_z};
   options.timeout = 3600;
   options.memory = 16384;
   options.progress = [&](const char* name, std::size_t, std::size_t) {

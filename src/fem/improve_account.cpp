@@ -17,23 +17,23 @@ std::size_t how_many(const Improvement& improvement, BelowTarget::Cause cause) {
 std::string text_of(const BelowTarget& worst, std::size_t count, double target, double least_edge,
                     std::string_view unit) {
   const std::string start =
-      fmt::format("{} tetrahedr{} below {:.3g} degrees", count, count == 1 ? "on is" : "a are", target);
+      fmt::format("{} dihedral angle below {:.3g} degrees",
+                  count == 1 ? "1 tetrahedron has a" : fmt::format("{} tetrahedra have a", count), target);
   switch (worst.cause) {
     case BelowTarget::Cause::geometry:
       return fmt::format(
-          "{} in wedges of the geometry, where faces meet under less than that: no mesh of "
-          "them is better; the sharpest has {:.3g} degrees",
+          "{}: they stand in wedges of the geometry, where faces meet under less than that, and "
+          "no mesh of them is better; the sharpest wedge has {:.3g} degrees",
           start, worst.wedge);
     case BelowTarget::Cause::surface:
       return fmt::format(
-          "{} in gaps that are thin for the triangles beside them, the smallest {:.3g} "
-          "degrees; edges of {:.3g} {} would do in the narrowest: choose a finer --size, or a "
-          "wider --gap",
+          "{}, the smallest {:.3g}, in gaps that are thin for the triangles beside them; edges of "
+          "{:.3g} {} would do in the narrowest: choose a finer --size",
           start, worst.angle, least_edge, unit);
     case BelowTarget::Cause::inner:
       break;
   }
-  return fmt::format("{}, the smallest {:.3g} degrees; another --size may help", start, worst.angle);
+  return fmt::format("{}, the smallest {:.3g}; another --size may help", start, worst.angle);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace selvage::fem {
 namespace {
 
 struct Key {
-  std::array<std::size_t, 4> nodes{};  // increasing; the repeated one of a triangle counts
+  std::array<std::size_t, 4> nodes{};  // increasing; of a triangle the largest twice
   std::size_t element = 0, side = 0, region = 0;
   [[nodiscard]] bool is_same_place(const Key& other) const { return nodes == other.nodes; }
   bool operator<(const Key& other) const {
@@ -46,6 +46,9 @@ std::vector<OuterSide> outer_sides(const Mesh& mesh) {
     for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
       for (std::size_t s = 0; s < count; ++s) {
         Key key{corners_of(mesh, e, s), e, s, i};
+        // Which corner of a triangle is repeated depends on the tetrahedron from which it is seen.
+        if (mesh.shape == Mesh::Shape::tetrahedron)
+          key.nodes[3] = *std::max_element(key.nodes.begin(), key.nodes.end());
         std::sort(key.nodes.begin(), key.nodes.end());
         keys.push_back(key);
       }
