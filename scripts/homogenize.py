@@ -1,9 +1,14 @@
 """Stiffness and thermal expansion of a unit cell: see scripts/homogenize, which calls this.
 
-The deck of `selvage mesh` has a step for each strain of the cell and one for its temperature. CalculiX runs it; the
-force on each driver follows from the reactions of the nodes that depend on it (virtual work: CalculiX prints none at a
-node that no element has), and is the stress times the cell's volume (of a plate: force and moment a length times its
-area).
+The deck of `selvage mesh` has a step for each strain of the cell and one for its temperature. CalculiX runs it.
+
+direct:    the deck as it is, by factorization. The force on each driver follows from the reactions of the nodes that
+           depend on it (virtual work: CalculiX prints none at a node that no element has), and is the stress times the
+           cell's volume (of a plate: force and moment a length times its area).
+iterative: the same steps by conjugate gradients, which CalculiX ends at a residual of 1e-4: too early for reactions. But
+           the work of one case's displacements against another one's forces errs only by the product of both errors,
+           upward by 1e-4 of the stiffness or less. (Only with its diagonal scaling; with its incomplete Cholesky
+           factors it stops at errors of per cents.)
 """
 
 import argparse
@@ -133,20 +138,28 @@ class Deck:
         names = [name for name in self.sets if re.fullmatch(r"(Constraints|Curvature)Driver\d", name)]
         return {name: self.sets[name][0] for name in names}
 
-    def volumes_and_stiffness(self):
-        """Of each element: volume (corners only) and its stiffness matrix (6 x 6, order xx yy zz xy xz yz) in space."""
-        result = {}
+    def pieces(self, chunk=50_000):
+        """Of all elements, some at a time: section, volumes, first and second moments of their heights about the middle
+        of the cell (over straight edges), stiffness matrices in space (order xx yy zz xy xz yz)."""
+        middle = self.cell[:, 2].mean()
         for name, material, oriented in self.sections:
             local = self.materials[material]["stiffness"]
-            for number in self.element_sets[name]:
-                p = numpy.array([self.nodes[n] for n in self.elements[number][:8]])
-                if len(self.elements[number]) == 8:
-                    volume = numpy.prod(p[6] - p[0])
+            numbers = self.element_sets[name]
+            for k in range(0, len(numbers), chunk):
+                part = numbers[k : k + chunk]
+                corners = 8 if len(self.elements[part[0]]) == 8 else 4
+                p = numpy.array([[self.nodes[n] for n in self.elements[e][:corners]] for e in part])
+                z = p[:, :, 2] - middle
+                if corners == 8:
+                    volume = numpy.prod(p[:, 6] - p[:, 0], axis=1)
+                    second = z.mean(axis=1) ** 2 + (z[:, 6] - z[:, 0]) ** 2 / 12
                 else:
-                    volume = numpy.dot(numpy.cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) / 6
-                axes = self.axes.get(number) if oriented else None
-                result[number] = (volume, rotated(local, axes) if axes else local)
-        return result
+                    volume = numpy.einsum("ni,ni->n", numpy.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), p[:, 3] - p[:, 0]) / 6
+                    second = ((z**2).sum(axis=1) + z.sum(axis=1) ** 2) / 20
+                stiffness = numpy.broadcast_to(local, (len(part), 6, 6))
+                if oriented:
+                    stiffness = rotated(local, numpy.array([self.axes[e] for e in part]))
+                yield name, volume, volume * z.mean(axis=1), volume * second, stiffness
 
 
 def stiffness_of(values):
@@ -169,18 +182,17 @@ PAIRS = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
 
 
 def rotated(local, axes):
-    """The stiffness in space of a material whose axis 1 is the first three numbers, 2 across it."""
-    first = numpy.array(axes[:3]) / numpy.linalg.norm(axes[:3])
-    second = numpy.array(axes[3:])
-    second = second - first * first.dot(second)
-    second /= numpy.linalg.norm(second)
-    r = numpy.array([first, second, numpy.cross(first, second)])
-    strain = numpy.zeros((6, 6))  # engineering strains in the material's axes from those in space
+    """The stiffness in space of a material along axes: rows of axis 1 and of a second one across it."""
+    first = axes[:, :3] / numpy.linalg.norm(axes[:, :3], axis=1)[:, None]
+    second = axes[:, 3:] - first * (first * axes[:, 3:]).sum(axis=1)[:, None]
+    second /= numpy.linalg.norm(second, axis=1)[:, None]
+    r = numpy.stack([first, second, numpy.cross(first, second)], axis=1)
+    strain = numpy.zeros((len(axes), 6, 6))  # engineering strains in the material's axes from those in space
     for a, (i, j) in enumerate(PAIRS):
         for b, (k, l) in enumerate(PAIRS):
-            value = r[i, k] * r[j, l] + (r[i, l] * r[j, k] if k != l else 0)
-            strain[a, b] = value * (1 if i == j else 2) * (1 if k == l else 0.5)
-    return strain.T @ local @ strain
+            value = r[:, i, k] * r[:, j, l] + (r[:, i, l] * r[:, j, k] if k != l else 0)
+            strain[:, a, b] = value * (1 if i == j else 2) * (1 if k == l else 0.5)
+    return numpy.einsum("nai,ab,nbj->nij", strain, local, strain)
 
 
 def run_ccx(program, folder, name):
@@ -217,6 +229,55 @@ def reactions(path, count):
     if len(steps) != count:
         raise Failure(f"CalculiX printed the forces of {len(steps)} steps, not of {count}")
     return steps
+
+
+def iterative_deck(deck, path):
+    """The same steps by conjugate gradients, each with all displacements and forces in print and nothing else."""
+    lines, skipped = [], False
+    for line in deck.lines:
+        if line.startswith("*"):
+            skipped = line.startswith(("*NODE PRINT", "*NODE FILE", "*EL FILE"))
+            if line.startswith("*END STEP"):
+                lines.append("*NODE PRINT, NSET=AllNodes\nU, RF")
+            if line == "*STATIC":
+                line = "*STATIC, SOLVER=ITERATIVE SCALING"
+        if not skipped:
+            lines.append(line)
+    path.write_text("\n".join(lines) + "\n")
+
+
+def fields(path, count):
+    """Displacements and forces of all nodes, step by step: two lists of arrays (nodes x 3)."""
+    moved, forces = [], []
+    blocks = path.read_text().split(" set ALLNODES ")[1:]
+    if len(blocks) != 2 * count:
+        raise Failure(f"CalculiX printed {len(blocks)} tables, not {2 * count}")
+    for k, block in enumerate(blocks):
+        table = block[block.index("\n") :].strip().split("\n\n")[0]
+        values = numpy.array(table.split(), dtype=float).reshape(-1, 4)[:, 1:]
+        (moved if k % 2 == 0 else forces).append(values)
+    return moved, forces
+
+
+def stiffness_from_fields(deck, drivers, moved, forces, measure):
+    """The work of each case's displacements against every case's forces."""
+    names = list(drivers)
+    cases = {}
+    thermal = None
+    for number, step in enumerate(deck.steps):
+        pulled = [name for name in names if step["drivers"].get(name)]
+        if len(pulled) == 1:
+            cases[pulled[0]] = (number, step["drivers"][pulled[0]])
+        elif not pulled and step["temperature"]:
+            thermal = (number, step["temperature"])
+    if len(cases) != len(names):
+        raise Failure("the deck has no step for each driver")
+    works = [(moved[number] / size, forces[number] / size) for number, size in (cases[name] for name in names)]
+    matrix = numpy.array([[(u * f).sum() for _, f in works] for u, _ in works]) / measure
+    free = numpy.zeros(len(names))
+    if thermal:
+        free = numpy.array([(u * forces[thermal[0]]).sum() for u, _ in works]) / measure / thermal[1]
+    return matrix, free
 
 
 def driver_forces(deck, drivers, forces):
@@ -281,25 +342,43 @@ def engineering_plate(matrix, thermal, height):
     return constants, expansion
 
 
-def bounds(deck, measure):
-    """Voigt's and Reuss's matrices of a block, and the volume of each section, all over the cell's volume."""
-    voigt, reuss, shares = numpy.zeros((6, 6)), numpy.zeros((6, 6)), {}
-    inverses = {}
-    table = deck.volumes_and_stiffness()
-    for name, _, _ in deck.sections:
-        for number in deck.element_sets[name]:
-            volume, stiffness = table[number]
-            key = stiffness.tobytes()
-            if key not in inverses:
-                inverses[key] = numpy.linalg.inv(stiffness)
-            voigt += volume * stiffness
-            reuss += volume * inverses[key]
-            shares[name] = shares.get(name, 0) + volume / measure
-    total = sum(volume for volume, _ in table.values())
-    return voigt / total, numpy.linalg.inv(reuss / total), shares
+def bounds(deck, plate):
+    """Voigt's and Reuss's matrices, and the volume of each section over the cell's.
+
+    Of a plate: the energies of the strains that are linear in z (those across the thickness as they cost least), and of
+    the stresses that are linear in z and leave its faces free.
+    """
+    sides = deck.cell[1] - deck.cell[0]
+    shares = {}
+    strain, stress = numpy.zeros((3, 6, 6)), numpy.zeros((3, 6, 6))  # by power of z
+    for name, volume, first, second, stiffness in deck.pieces():
+        shares[name] = shares.get(name, 0) + volume.sum() / numpy.prod(sides)
+        compliance = numpy.linalg.inv(stiffness)
+        for power, weight in enumerate((volume, first, second)):
+            strain[power] += numpy.einsum("n,nij->ij", weight, stiffness)
+            stress[power] += numpy.einsum("n,nij->ij", weight, compliance)
+    if not plate:
+        return strain[0] / numpy.prod(sides), numpy.linalg.inv(stress[0] / numpy.prod(sides)), shares
+    area, h = sides[0] * sides[1], sides[2]
+    both = numpy.block([[strain[0], strain[1]], [strain[1], strain[2]]]) / area
+    level, across = [0, 1, 3, 6, 7, 9], [2, 4, 5, 8, 10, 11]
+    mixed = both[numpy.ix_(level, across)]
+    voigt = both[numpy.ix_(level, level)] - mixed @ numpy.linalg.solve(both[numpy.ix_(across, across)], mixed.T)
+    flat = [matrix[numpy.ix_([0, 1, 3], [0, 1, 3])] / area for matrix in stress]
+    soft = numpy.block([[flat[0] / h**2, 12 * flat[1] / h**4], [12 * flat[1] / h**4, 144 * flat[2] / h**6]])
+    return voigt, numpy.linalg.inv(soft), shares
 
 
-def homogenize(path, ccx, folder, with_bounds=False):
+def is_not_below(upper, lower):
+    """Is the difference positive semidefinite, but for rounding? Entries of different units are scaled first."""
+    scale = 1 / numpy.sqrt(numpy.diag(upper))
+    return bool(numpy.linalg.eigvalsh((upper - lower) * numpy.outer(scale, scale)).min() > -1e-6)
+
+
+LARGEST_DIRECT = 20_000  # nodes; beyond, a factorization takes minutes and gigabytes
+
+
+def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
     deck = Deck(path)
     drivers = deck.drivers()
     if not drivers or not deck.steps:
@@ -309,12 +388,22 @@ def homogenize(path, ccx, folder, with_bounds=False):
     sides = deck.cell[1] - deck.cell[0]
     plate = any(name.startswith("Curvature") for name in drivers)
     measure = sides[0] * sides[1] if plate else numpy.prod(sides)
-    shutil.copy(path, folder / "cell.inp")
+    if solver == "auto":
+        solver = "direct" if len(deck.nodes) <= LARGEST_DIRECT else "iterative"
+    name = "homogenize_" + solver  # not the name of a deck that is kept beside it
+    if solver == "direct":
+        shutil.copy(path, folder / f"{name}.inp")
+    else:
+        iterative_deck(deck, folder / f"{name}.inp")
     started = time.monotonic()
-    warnings = run_ccx(ccx, folder, "cell")
+    warnings = run_ccx(ccx, folder, name)
     seconds = time.monotonic() - started
-    forces = reactions(folder / "cell.dat", len(deck.steps))
-    matrix, thermal = stiffness_from_steps(deck, drivers, forces, measure)
+    if solver == "direct":
+        forces = reactions(folder / f"{name}.dat", len(deck.steps))
+        matrix, thermal = stiffness_from_steps(deck, drivers, forces, measure)
+    else:
+        moved, forces = fields(folder / f"{name}.dat", len(deck.steps))
+        matrix, thermal = stiffness_from_fields(deck, drivers, moved, forces, measure)
     asymmetry = abs(matrix - matrix.T).max() / abs(matrix).max()
     matrix = (matrix + matrix.T) / 2
     constants, expansion = (
@@ -323,6 +412,7 @@ def homogenize(path, ccx, folder, with_bounds=False):
     result = {
         "file": str(path),
         "kind": "plate" if plate else "block",
+        "solver": solver,
         "cell": sides.tolist(),
         "nodes": len(deck.nodes),
         "elements": len(deck.elements),
@@ -336,19 +426,15 @@ def homogenize(path, ccx, folder, with_bounds=False):
         "seconds": seconds,
     }
     if with_bounds:
-        voigt, reuss, shares = bounds(deck, measure)
-        result["volume_fractions"] = shares
-        if not plate:
-            result |= {"voigt": voigt.tolist(), "reuss": reuss.tolist()}
-            # Positive definite differences, but for rounding.
-            least = [numpy.linalg.eigvalsh(a - b).min() / abs(matrix).max() for a, b in ((voigt, matrix), (matrix, reuss))]
-            result["inside_bounds"] = bool(min(least) > -1e-6)
+        voigt, reuss, shares = bounds(deck, plate)
+        result |= {"volume_fractions": shares, "voigt": voigt.tolist(), "reuss": reuss.tolist()}
+        result["inside_bounds"] = is_not_below(voigt, matrix) and is_not_below(matrix, reuss)
     return result
 
 
 def show(result):
     plate = result["kind"] == "plate"
-    print(f"{result['file']}: {result['kind']}, {result['elements']} elements, {result['seconds']:.1f} s")
+    print(f"{result['file']}: {result['kind']}, {result['elements']} elements, {result['solver']} solver {result['seconds']:.1f} s")
     print("ABD matrix (N/mm, N, N mm)" if plate else "stiffness C (MPa)", "-", " ".join(result["order"]))
     for row in result["stiffness"]:
         print("  " + " ".join(f"{value:13.6g}" for value in row))
@@ -377,6 +463,12 @@ def main():
     parser.add_argument("--json", metavar="FILE", help="write the results there too ('-': standard output, alone)")
     parser.add_argument("--bounds", action="store_true", help="with volume fractions and the bounds of Voigt and Reuss")
     parser.add_argument("--keep", metavar="DIR", help="keep the deck and what CalculiX wrote")
+    parser.add_argument(
+        "--solver",
+        choices=["auto", "direct", "iterative"],
+        default="auto",
+        help=f"of CalculiX: exact, or fast (default: direct up to {LARGEST_DIRECT} nodes)",
+    )
     parser.add_argument("--ccx", default="ccx", help="the program (default: ccx)")
     parser.add_argument("--selvage", default="selvage", help=argparse.SUPPRESS)
     given, others = parser.parse_known_args()
@@ -395,7 +487,7 @@ def main():
                 path = deck
             elif others:
                 raise Failure(f"unknown options: {' '.join(others)}")
-            result = homogenize(path, given.ccx, folder, given.bounds)
+            result = homogenize(path, given.ccx, folder, given.bounds, given.solver)
         except Failure as failure:
             print(f"homogenize: {failure}", file=sys.stderr)
             return 1
