@@ -82,6 +82,14 @@ class Divider {
   Status make_segments();
   void divide(ArcEntry& entry);
   Status copy(ArcEntry& entry);
+  // What the parameters gain along an arc that is a border by itself.
+  [[nodiscard]] Vec2 turn_of(const ArcEntry& entry) const {
+    const cell::Border& border = shape_.cut.pieces[entry.place.piece].borders[entry.place.border];
+    const nurbs::Surface& surface = shape_.bodies[entry.body].surface;
+    return {border.turns_u * (surface.last_u() - surface.first_u()),
+            border.turns_v * (surface.last_v() - surface.first_v())};
+  }
+  [[nodiscard]] Vec2 place_at(const ArcEntry& entry, double along) const;
   [[nodiscard]] std::vector<OnArc> places(const ArcEntry& entry) const;
   [[nodiscard]] std::vector<OnArc> crest_places(const ArcEntry& entry) const;
   [[nodiscard]] Message does_not_go_on(const ArcEntry& entry, double by, const Vec3& at) const;
@@ -308,30 +316,34 @@ std::vector<OnArc> Divider::crest_places(const ArcEntry& entry) const {
   return result;
 }
 
+// An arc that is a border by itself begins at its first crest, and goes on past its end.
 std::vector<OnArc> Divider::places(const ArcEntry& entry) const {
-  std::vector<OnArc> breaks = crest_places(entry);
+  const std::vector<OnArc> breaks = crest_places(entry);
   const double length = entry.curve.length();
   // Not nearer to an end, or to each other, than nothing.
   const double least = 1e-7 * length;
-  std::vector<OnArc> kept = {{0, {}}};
+  std::vector<OnArc> kept;
+  if (!entry.is_border || breaks.empty()) kept.push_back({0, {}});
   for (const OnArc& place : breaks) {
-    if (place.along - kept.back().along > least)
+    if (kept.empty() || place.along - kept.back().along > least)
       kept.push_back(place);
     else if (!kept.back().crest)
       kept.back().crest = place.crest;
   }
-  if (length - kept.back().along > least)
-    kept.push_back({length, {}});
+  const double end = entry.is_border ? kept.front().along + length : length;
+  if (end - kept.back().along > least)
+    kept.push_back({end, {}});
   else
-    kept.back().along = length;
+    kept.back().along = end;
   std::vector<OnArc> result;
   const int spans = static_cast<int>(kept.size()) - 1;
   for (std::size_t k = 0; k + 1 < kept.size(); ++k) {
     const double from = kept[k].along;
-    const std::vector<double> parts = divided_line(
-        kept[k + 1].along - from,
-        [&](double along) { return field_.at(entry.curve.position(entry.curve.at(from + along))); },
-        entry.is_border ? (8 + spans - 1) / spans : 1);
+    const auto wanted = [&](double along) {
+      return field_.at(entry.curve.position(place_at(entry, from + along)));
+    };
+    const std::vector<double> parts =
+        divided_line(kept[k + 1].along - from, wanted, entry.is_border ? (8 + spans - 1) / spans : 1);
     for (std::size_t i = 0; i + 1 < parts.size(); ++i)
       result.push_back({from + parts[i], i == 0 ? kept[k].crest : std::nullopt});
   }
@@ -339,13 +351,21 @@ std::vector<OnArc> Divider::places(const ArcEntry& entry) const {
   return result;
 }
 
+// Past the end of an arc that is a border by itself it goes on at its start.
+Vec2 Divider::place_at(const ArcEntry& entry, double along) const {
+  const double length = entry.curve.length();
+  if (!entry.is_border || along <= length) return entry.curve.at(along);
+  return entry.curve.at(std::min(along - length, length)) + turn_of(entry);
+}
+
 void Divider::divide(ArcEntry& entry) {
   Chain& made = chain(entry.place);
   const std::vector<OnArc> parts = places(entry);
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    Vec2 q = entry.curve.at(parts[k].along);
-    if (parts[k].crest) q.x() = *parts[k].crest;
     const bool first = k == 0, last = k + 1 == parts.size();
+    Vec2 q = place_at(entry, parts[k].along);
+    if (parts[k].crest) q.x() = *parts[k].crest;
+    if (entry.is_border && last) q = made.parameters.front() + turn_of(entry);
     const SurfacePlace place{entry.body, cell::in_domain(shape_.bodies[entry.body], q)};
     std::uint32_t node = 0;
     if (entry.is_border) {
@@ -430,11 +450,8 @@ Status Divider::copy(ArcEntry& entry) {
     made.on_crest.push_back(order[k].on_crest);
   }
   if (entry.is_border) {
-    const cell::Border& border = shape_.cut.pieces[entry.place.piece].borders[entry.place.border];
     made.nodes.push_back(made.nodes.front());
-    made.parameters.push_back(
-        made.parameters.front() +
-        Vec2(border.turns_u * period, border.turns_v * (body.surface.last_v() - body.surface.first_v())));
+    made.parameters.push_back(made.parameters.front() + turn_of(entry));
     made.on_crest.push_back(made.on_crest.front());
   }
   return {};

@@ -242,7 +242,7 @@ class Rule {
       if (own && facet.normal.dot(normal) > opposed) return least;
       const Vec3 way = nearest_on(facet.corners, p) - p;
       const double distance = way.norm();
-      if (distance >= least || (own && way.dot(normal) < in_front * distance)) return least;
+      if (distance >= least || (own && !(way.dot(normal) > in_front * distance))) return least;
       return least = distance;
     });
     return rules_.gap_factor * least;
