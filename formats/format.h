@@ -130,6 +130,9 @@ struct Descriptor {
   bool carries_surfaces = true;
   bool carries_curves = false;
   Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output) = nullptr;
+  // The format of a second file of the same stem that goes with each file of this one, of meshes that have
+  // load cases.
+  const Descriptor& (*companion)() = nullptr;
   // Lengths in mm.
   Result<WriteFacts> (*write_gap_map)(const solid::GapMap& map, OutputFile& output) = nullptr;
 };

@@ -25,19 +25,6 @@ void write_dependent_nodes(TextBuffer& text, const fem::Mesh& mesh) {
 
 }  // namespace
 
-void write_drivers(TextBuffer& text, const fem::Mesh& mesh) {
-  for (std::size_t k = 0; k < mesh.drivers.size(); ++k) {
-    const Vec3& p = mesh.drivers[k].at;
-    text << "*NODE, NSET=" << mesh.drivers[k].name << '\n'
-         << mesh.nodes.size() + k + 1 << ", " << real(p.x()) << ", " << real(p.y()) << ", " << real(p.z())
-         << '\n';
-  }
-  if (mesh.drivers.empty()) return;
-  text << "*NSET, NSET=Drivers\n";
-  for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
-    text << mesh.drivers[k].name << (k + 1 < mesh.drivers.size() ? ", " : "\n");
-}
-
 void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh) {
   constexpr std::size_t per_row = 4;
   const auto corner = [&](const Vec3& p) { text << real(p.x()) << ' ' << real(p.y()) << ' ' << real(p.z()); };

@@ -39,9 +39,7 @@ std::vector<fem::NodeSet> sets_of(const std::vector<Load>& loads);
 void write_transforms(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>& loads);
 void write_step(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>& loads);
 
-// Of a unit cell: driver nodes, numbered on after the mesh's, each a node set of its name.
-void write_drivers(TextBuffer& text, const fem::Mesh& mesh);
-// *EQUATION cards and what else belongs before the first step.
+// Of a unit cell: *EQUATION cards and what else belongs before the first step.
 void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh);
 // A step for each load case.
 void write_cell_steps(TextBuffer& text, const fem::Mesh& mesh);

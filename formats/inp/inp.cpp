@@ -1,7 +1,6 @@
 #include "formats/inp/inp.h"
 
-#include <charconv>
-
+#include "core/columns.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
 #include "formats/inp/deck.h"
@@ -9,12 +8,7 @@
 namespace selvage::formats::inp {
 
 std::string real(double value) {
-  constexpr std::size_t most = 20;
-  char buffer[64];
-  char* end = write_number(buffer, value);
-  for (int digits = 16; end - buffer > static_cast<std::ptrdiff_t>(most); --digits)
-    end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits).ptr;
-  return {buffer, end};
+  return number_text(value, 20);
 }
 
 void write_set(TextBuffer& text, const std::vector<std::size_t>& nodes) {
@@ -33,12 +27,20 @@ void write_heading(TextBuffer& text, const fem::Mesh& mesh) {
        << "\n *DISTRIBUTION TABLE, NAME=YARNTABLE\nCOORD3D, COORD3D\n";
 }
 
+void write_node(TextBuffer& text, std::size_t number, const Vec3& p) {
+  text << number << ", " << real(p.x()) << ", " << real(p.y()) << ", " << real(p.z()) << '\n';
+}
+
+// One block, for meshio knows no second one: drivers, which are no part of AllNodes, stand at its end.
 void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
-  text << "*NODE, NSET=AllNodes\n";
-  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
-    const Vec3& p = mesh.nodes[i];
-    text << i + 1 << ", " << real(p.x()) << ", " << real(p.y()) << ", " << real(p.z()) << '\n';
-  }
+  text << (mesh.drivers.empty() ? "*NODE, NSET=AllNodes\n" : "*NODE\n");
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) write_node(text, i + 1, mesh.nodes[i]);
+  if (mesh.drivers.empty()) return;
+  for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
+    write_node(text, mesh.nodes.size() + k + 1, mesh.drivers[k].at);
+  text << "*NSET, NSET=AllNodes, GENERATE\n1, " << mesh.nodes.size() << ", 1\n";
+  for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
+    text << "*NSET, NSET=" << mesh.drivers[k].name << '\n' << mesh.nodes.size() + k + 1 << '\n';
 }
 
 std::string_view element_type(const fem::Mesh& mesh) {
@@ -150,7 +152,6 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   write_heading(text, mesh);
   text << "** Units: mm, N, MPa, tonne, s\n";
   write_nodes(text, mesh);
-  write_drivers(text, mesh);
   write_elements(text, mesh);
   write_element_sets(text, mesh, *sections);
   write_node_sets(text, sets);

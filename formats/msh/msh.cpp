@@ -4,8 +4,20 @@
 
 #include "core/text_buffer.h"
 #include "fem/faces.h"
+#include "formats/msh/cell.h"
 
 namespace selvage::formats::msh {
+
+std::string quoted(std::string name) {
+  std::replace(name.begin(), name.end(), '"', '\'');
+  return '"' + name + '"';
+}
+
+void write_box(TextBuffer& text, const Box3& box) {
+  for (const Vec3& corner : {Vec3(box.min()), Vec3(box.max())})
+    for (int k = 0; k < 3; ++k) text << corner[k] << ' ';
+}
+
 namespace {
 
 using Faces = std::vector<std::array<std::size_t, 3>>;
@@ -34,22 +46,12 @@ std::vector<Skin> skins_of(const fem::Mesh& mesh) {
   return skins;
 }
 
-std::string quoted(std::string name) {
-  std::replace(name.begin(), name.end(), '"', '\'');
-  return '"' + name + '"';
-}
-
 void write_names(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Skin>& skins) {
   text << "$PhysicalNames\n" << skins.size() + mesh.regions.size() << '\n';
   for (const Skin& skin : skins) text << "2 " << skin.tag << ' ' << quoted(skin.name) << '\n';
   for (std::size_t i = 0; i < mesh.regions.size(); ++i)
     text << "3 " << i + 1 << ' ' << quoted(mesh.regions[i].name) << '\n';
   text << "$EndPhysicalNames\n";
-}
-
-void write_box(TextBuffer& text, const Box3& box) {
-  for (const Vec3& corner : {Vec3(box.min()), Vec3(box.max())})
-    for (int k = 0; k < 3; ++k) text << corner[k] << ' ';
 }
 
 void write_entities(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Skin>& skins) {
@@ -95,9 +97,7 @@ void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
 }
 
 void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Skin>& skins) {
-  // Gmsh's element types: 2 and 9 are triangles of 3 and 6 nodes, 4 and 11 tetrahedra of 4 and 10. Its
-  // ten-node tetrahedron has the midpoints of the edges 01 12 20 03 23 13: ours with the last two swapped.
-  constexpr std::array<std::size_t, 10> order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
+  // Gmsh's element types: 2 and 9 are triangles of 3 and 6 nodes, 4 and 11 tetrahedra of 4 and 10.
   const auto corners = static_cast<std::size_t>(mesh.nodes_per_element());
   std::size_t count = mesh.elements.size();
   for (const Skin& skin : skins) count += skin.faces->size();
@@ -117,7 +117,7 @@ void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<S
          << '\n';
     for (std::size_t e = region.first_element; e < region.last_element; ++e) {
       text << ++number;
-      for (std::size_t k = 0; k < corners; ++k) text << ' ' << mesh.elements[e][order[k]] + 1;
+      for (std::size_t k = 0; k < corners; ++k) text << ' ' << mesh.elements[e][node_order[k]] + 1;
       text << '\n';
     }
   }
@@ -125,6 +125,7 @@ void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<S
 }
 
 Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
+  if (mesh.cell) return write_cell(mesh, output);
   const std::vector<Skin> skins = skins_of(mesh);
   TextBuffer text(output);
   text << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";

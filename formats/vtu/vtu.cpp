@@ -55,8 +55,9 @@ Status write_cells(TextBuffer& text, const Cells& cells) {
 }
 
 Cells cells_of(const fem::Mesh& mesh) {
-  // Tetrahedra of 4 and 10 nodes, in the order of ours.
-  Cells cells{static_cast<std::uint8_t>(mesh.order == 1 ? 10 : 24), mesh.elements.size(), {}};
+  // Hexahedra, tetrahedra of 4 and 10 nodes, in the order of ours.
+  const int type = mesh.shape == fem::Mesh::Shape::hexahedron ? 12 : mesh.order == 1 ? 10 : 24;
+  Cells cells{static_cast<std::uint8_t>(type), mesh.elements.size(), {}};
   const auto nodes = static_cast<std::size_t>(mesh.nodes_per_element());
   for (const auto& element : mesh.elements)
     for (std::size_t k = 0; k < nodes; ++k)
@@ -64,11 +65,9 @@ Cells cells_of(const fem::Mesh& mesh) {
   return cells;
 }
 
-Status write_cell_data(TextBuffer& text, const fem::Mesh& mesh) {
-  std::vector<std::int32_t> yarns(mesh.elements.size(), 0);
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
-    for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
-      yarns[e] = static_cast<std::int32_t>(i);
+// Quality of tetrahedra; a box has none to speak of.
+Status write_quality(TextBuffer& text, const fem::Mesh& mesh) {
+  if (mesh.shape != fem::Mesh::Shape::tetrahedron) return {};
   std::vector<float> jacobians, angles, aspects;
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const fem::ElementShape shape = fem::shape_of(mesh, e);
@@ -76,12 +75,26 @@ Status write_cell_data(TextBuffer& text, const fem::Mesh& mesh) {
     angles.push_back(static_cast<float>(shape.min_dihedral));
     aspects.push_back(static_cast<float>(shape.aspect));
   }
-  if (Status done = write_array(text, "yarn", yarns); !done) return done;
-  if (Status done = write_array(text, "along", flat(mesh.along), 3); !done) return done;
-  if (Status done = write_array(text, "across", flat(mesh.across), 3); !done) return done;
   if (Status done = write_array(text, "scaled_jacobian", jacobians); !done) return done;
   if (Status done = write_array(text, "min_dihedral", angles); !done) return done;
   return write_array(text, "aspect", aspects);
+}
+
+Status write_cell_data(TextBuffer& text, const fem::Mesh& mesh) {
+  std::vector<std::int32_t> yarns(mesh.elements.size(), -1), materials;
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
+    if (mesh.regions[i].kind == fem::Region::Kind::yarn)
+      for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
+        yarns[e] = static_cast<std::int32_t>(i);
+  materials.assign(mesh.element_material.begin(), mesh.element_material.end());
+  if (Status done = write_array(text, "yarn", yarns); !done) return done;
+  if (Status done = write_array(text, "along", flat(mesh.along), 3); !done) return done;
+  if (Status done = write_array(text, "across", flat(mesh.across), 3); !done) return done;
+  if (!mesh.fibre_fraction.empty())
+    if (Status done = write_array(text, "fibre_fraction", mesh.fibre_fraction); !done) return done;
+  if (!materials.empty())
+    if (Status done = write_array(text, "material", materials); !done) return done;
+  return write_quality(text, mesh);
 }
 
 // Two hyphens would end a comment.
@@ -121,7 +134,8 @@ Result<WriteFacts> finish(TextBuffer& text, std::size_t points, std::size_t cell
 Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   TextBuffer text(output);
   std::vector<std::string> names;
-  for (const fem::Region& region : mesh.regions) names.push_back(region.name);
+  for (const fem::Region& region : mesh.regions)
+    if (region.kind == fem::Region::Kind::yarn) names.push_back(region.name);
   if (Status done = write_grid(text, names, mesh.nodes, cells_of(mesh)); !done) return done.error();
   text << "      <CellData Scalars=\"yarn\">\n";
   if (Status done = write_cell_data(text, mesh); !done) return done.error();

@@ -265,9 +265,13 @@ bool may_be_skipped(Job& job, const std::string& earlier) {
   if (earlier.empty() || job.input.path == "-") return false;
   const Result<std::string> now = digest_of(job.input.path);
   if (!now.ok()) return false;
-  std::vector<std::string> paths;
-  for (const PlannedOutput& output : job.outputs) paths.push_back(output.path.string());
-  return is_still_valid(earlier, *now, job.report.settings, paths);
+  std::vector<std::string> paths, without_companions;
+  for (const PlannedOutput& output : job.outputs) {
+    paths.push_back(output.path.string());
+    if (!output.is_companion) without_companions.push_back(output.path.string());
+  }
+  return is_still_valid(earlier, *now, job.report.settings, paths) ||
+         is_still_valid(earlier, *now, job.report.settings, without_companions);
 }
 
 Verdict work(Job& job, const std::string& earlier) {

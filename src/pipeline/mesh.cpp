@@ -94,6 +94,7 @@ void mesh(Job& job) {
   job.say_all(diagnostics.messages());
   if (!mesh) return job.say(mesh.error());
   job.report.mesh = mesh_facts(*mesh);
+  if (mesh->load_cases.empty()) drop_companions(*outputs);
   for (OpenOutput& output : *outputs)
     if (!take_facts(job, output, output.plan->format->write_mesh(*mesh, output.file))) return;
   commit_all(job, *outputs);

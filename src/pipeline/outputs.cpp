@@ -227,11 +227,17 @@ Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& opti
     if (input.path == "-" && options.output.empty())
       return error(Kind::usage, "standard input has no folder for its outputs; name one with -o");
     for (const Descriptor* format : *wanted) {
-      if (options.output == "-")
+      if (options.output == "-") {
         plan[i].push_back({format, "<stdout>", true, {}});
-      else
+        continue;
+      }
+      const fs::path path = as_file ? fs::path(options.output) : output_path(options, input, *format);
+      plan[i].push_back({format, path, false, {}});
+      if (format->companion == nullptr) continue;
+      const Descriptor& second = format->companion();
+      if (std::find(wanted->begin(), wanted->end(), &second) == wanted->end())
         plan[i].push_back(
-            {format, as_file ? fs::path(options.output) : output_path(options, input, *format), false, {}});
+            {&second, fs::path(path).replace_extension(second.extensions.front()), false, {}, true});
     }
   }
   if (Status status = check_names(options, list, plan); !status.ok()) return status.error();

@@ -20,6 +20,7 @@ struct PlannedOutput {
   bool to_standard_output = false;
   // Names that inputs and other outputs have, of those that this one may need where it takes several files.
   std::vector<std::filesystem::path> taken{};
+  bool is_companion = false;  // formats::Descriptor::companion of another one: of meshes with load cases only
 };
 
 // The outputs of each input, in the order of `list.inputs`; empty lists for commands that write no files

@@ -23,6 +23,10 @@ std::optional<OpenOutputs> open_outputs(Job& job) {
   return outputs;
 }
 
+void drop_companions(OpenOutputs& outputs) {
+  std::erase_if(outputs, [](const OpenOutput& output) { return output.plan->is_companion; });
+}
+
 Result<OutputFile*> open_part(OpenOutput& output, int number) {
   for (const int part : {1, number}) {
     const std::filesystem::path path = part_path(output.plan->path, part);

@@ -25,6 +25,9 @@ using OpenOutputs = std::deque<OpenOutput>;
 // Nothing when one cannot be opened (it was said why).
 std::optional<OpenOutputs> open_outputs(Job& job);
 
+// Gives up the second files of formats: they belong to meshes with load cases, and this one has none.
+void drop_companions(OpenOutputs& outputs);
+
 // Opens the next file of an output, for its writer. Errors: io; usage: an input or another output has the
 // name.
 Result<OutputFile*> open_part(OpenOutput& output, int number);

@@ -1,0 +1,255 @@
+#include "formats/k/k.h"
+
+#include <algorithm>
+
+#include "core/columns.h"
+#include "fem/materials.h"
+#include "fem/sections.h"
+
+namespace selvage::formats::k {
+namespace {
+
+// A real number for a column: as many digits as go in, one blank before it. A shorter exponent leaves room
+// for a digit more.
+std::string real(double value, std::size_t width) {
+  std::string text = number_text(value, width - 1);
+  if (const std::size_t cut = text.find("e-0"); cut != std::string::npos) {
+    text = number_text(value, width);
+    if (const std::size_t again = text.find("e-0"); again != std::string::npos) text.erase(again + 2, 1);
+    if (text.size() > width - 1) text = number_text(value, width - 1);
+  }
+  return text;
+}
+
+void put_reals(TextBuffer& text, std::initializer_list<double> values, std::size_t width = 10) {
+  for (const double value : values) put_right(text, real(value, width), width);
+  text << '\n';
+}
+
+void put_integers(TextBuffer& text, std::initializer_list<std::size_t> values, std::size_t width = 10) {
+  for (const std::size_t value : values) put_right(text, value, width);
+  text << '\n';
+}
+
+void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
+  text << "*NODE\n$    nid               x               y               z\n";
+  for (std::size_t n = 0; n < mesh.nodes.size() + mesh.drivers.size(); ++n) {
+    const Vec3& p = n < mesh.nodes.size() ? mesh.nodes[n] : mesh.drivers[n - mesh.nodes.size()].at;
+    put_right(text, n + 1, 8);
+    put_reals(text, {p.x(), p.y(), p.z()}, 16);
+  }
+}
+
+// Parts are sections of one material: 1, 2, ..
+void write_parts(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
+  // 10: tetrahedron of 4 nodes, 16: of 10 nodes, 2: brick, fully integrated.
+  const std::size_t form = mesh.shape == fem::Mesh::Shape::hexahedron ? 2 : mesh.order == 1 ? 10 : 16;
+  text << "*SECTION_SOLID\n";
+  put_integers(text, {1, form});
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const fem::Region& region = mesh.regions[sections[i].region];
+    text << "*PART\n" << sections[i].name;
+    if (region.kind == fem::Region::Kind::yarn)
+      text << ": yarn '" << std::string_view(region.name).substr(0, 40) << '\'';
+    text << '\n';
+    put_integers(text, {i + 1, 1, sections[i].material + 1});
+  }
+}
+
+void write_materials(TextBuffer& text, const fem::Mesh& mesh) {
+  const std::vector<std::string> names = fem::solver_names(mesh.materials);
+  for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
+    const fem::Orthotropic c = fem::orthotropic(mesh.materials[i]);
+    if (c.e1 == 0) continue;  // not in use
+    // LS-DYNA wants a density; without a wave it means nothing.
+    const double density = c.density.value_or(1e-9);
+    const bool is_elastic = std::holds_alternative<fabric::IsotropicElastic>(mesh.materials[i].elastic);
+    text << (is_elastic ? "*MAT_ELASTIC_TITLE\n" : "*MAT_ORTHOTROPIC_ELASTIC_TITLE\n") << names[i] << '\n';
+    put_right(text, i + 1, 10);
+    if (is_elastic) {
+      put_reals(text, {density, c.e1, c.nu12});
+      continue;
+    }
+    // Poisson's ratios ba, ca, cb: those of the compliance's lower half. Axes by two vectors (AOPT 2), which
+    // the elements have each for themselves.
+    put_reals(text,
+              {density, c.e1, c.e2, c.e3, c.nu12 * c.e2 / c.e1, c.nu13 * c.e3 / c.e1, c.nu23 * c.e3 / c.e2});
+    put_reals(text, {c.g12, c.g23, c.g13, 2});
+    put_reals(text, {0, 0, 0, 1, 0, 0});
+    put_reals(text, {0, 0, 0, 0, 1, 0});
+  }
+}
+
+void write_expansions(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const fem::Orthotropic c = fem::orthotropic(mesh.materials[sections[i].material]);
+    if (!c.expansion) continue;
+    const auto& [one, two, three] = *c.expansion;
+    text << "*MAT_ADD_THERMAL_EXPANSION\n";
+    put_right(text, i + 1, 10);
+    for (const double value : {one, two, three}) {
+      put_right(text, std::size_t{0}, 10);
+      put_right(text, real(value, 10), 10);
+    }
+    text << '\n';
+  }
+}
+
+void write_element(TextBuffer& text, const fem::Mesh& mesh, std::size_t e, std::size_t part) {
+  const auto& nodes = mesh.elements[e];
+  put_right(text, e + 1, 8);
+  put_right(text, part, 8);
+  if (mesh.nodes_per_element() == 10) {
+    text << '\n';
+    for (const std::size_t node : nodes) put_right(text, node + 1, 8);
+  } else {
+    // A tetrahedron repeats its last node.
+    const std::size_t count = mesh.shape == fem::Mesh::Shape::hexahedron ? 8 : 4;
+    for (std::size_t n = 0; n < 8; ++n) put_right(text, nodes[std::min(n, count - 1)] + 1, 8);
+  }
+  text << '\n';
+}
+
+void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const bool has_axes = !fem::orthotropic(mesh.materials[sections[i].material]).isotropic;
+    text << (has_axes ? "*ELEMENT_SOLID_ORTHO\n" : "*ELEMENT_SOLID\n");
+    for (const std::size_t e : sections[i].elements) {
+      write_element(text, mesh, e, i + 1);
+      if (!has_axes) continue;
+      for (const Vec3* axis : {&mesh.along[e], &mesh.across[e]})
+        put_reals(text, {axis->x(), axis->y(), axis->z()}, 16);
+    }
+  }
+}
+
+void write_list(TextBuffer& text, std::string_view keyword, std::size_t number, std::string_view name,
+                const std::vector<std::size_t>& members) {
+  text << '*' << keyword << "_TITLE\n" << name << '\n';
+  put_integers(text, {number});
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    put_right(text, members[k] + 1, 10);
+    if (k % 8 == 7 || k + 1 == members.size()) text << '\n';
+  }
+}
+
+void write_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+    std::vector<std::size_t> parts;
+    for (std::size_t s = 0; s < sections.size(); ++s)
+      if (sections[s].region == i) parts.push_back(s);
+    all.insert(all.end(), parts.begin(), parts.end());
+    write_list(text, "SET_PART_LIST", i + 1, fem::set_name(mesh, i), parts);
+  }
+  write_list(text, "SET_PART_LIST", mesh.regions.size() + 1, "All", all);
+  std::size_t number = 0;
+  for (const fem::NodeSet& set : fem::node_sets(mesh))
+    write_list(text, "SET_NODE_LIST", ++number, set.name, set.nodes);
+  for (std::size_t d = 0; d < mesh.drivers.size(); ++d)
+    write_list(text, "SET_NODE_LIST", ++number, mesh.drivers[d].name, {mesh.nodes.size() + d});
+}
+
+void write_equations(TextBuffer& text, const fem::Mesh& mesh) {
+  if (mesh.equations.empty()) return;
+  text << "*CONSTRAINED_MULTIPLE_GLOBAL\n";
+  put_integers(text, {1});
+  for (const fem::Equation& equation : mesh.equations) {
+    put_integers(text, {equation.size()});
+    for (const fem::Term& term : equation) {
+      put_right(text, term.node + 1, 10);
+      put_right(text, static_cast<std::size_t>(term.direction) + 1, 10);
+      put_reals(text, {term.factor});
+    }
+  }
+}
+
+// One linear step in which the drivers go to what the parameters say: the first load case.
+void write_loading(TextBuffer& text, const fem::Mesh& mesh) {
+  if (mesh.load_cases.empty()) return;
+  text << "$ The drivers' values are those of the load case '" << mesh.load_cases.front().name
+       << "'. Others:\n";
+  for (const fem::LoadCase& load : mesh.load_cases) {
+    text << "$   " << load.name << ':';
+    for (const std::optional<double>& value : load.drivers) {
+      if (value)
+        text << ' ' << *value;
+      else
+        text << " free";
+    }
+    text << '\n';
+  }
+  text << "*PARAMETER\n";
+  for (std::size_t d = 0; d < mesh.drivers.size(); ++d) {
+    put_left(text, "R   VALUE" + std::to_string(d), 10);
+    put_reals(text, {mesh.load_cases.front().drivers[d].value_or(0)});
+  }
+  text << "*CONTROL_IMPLICIT_GENERAL\n";
+  put_reals(text, {1, 1});
+  text << "*CONTROL_IMPLICIT_SOLUTION\n";
+  put_integers(text, {1});
+  text << "*CONTROL_TERMINATION\n";
+  put_reals(text, {1});
+  text << "*DEFINE_CURVE\n";
+  put_integers(text, {1});
+  put_reals(text, {0, 0}, 20);
+  put_reals(text, {1, 1}, 20);
+  text << "*BOUNDARY_SPC_NODE\n";
+  if (mesh.cell->corners[0] < mesh.nodes.size())
+    put_integers(text, {mesh.cell->corners[0] + 1, 0, 1, 1, 1, 0, 0, 0});
+  for (std::size_t d = 0; d < mesh.drivers.size(); ++d)
+    put_integers(text, {mesh.nodes.size() + d + 1, 0, 0, 1, 1, 0, 0, 0});
+  text << "*BOUNDARY_PRESCRIBED_MOTION_NODE\n";
+  for (std::size_t d = 0; d < mesh.drivers.size(); ++d) {
+    if (!mesh.load_cases.front().drivers[d]) continue;
+    for (const std::size_t value :
+         {mesh.nodes.size() + d + 1, std::size_t{1}, std::size_t{2}, std::size_t{1}})
+      put_right(text, value, 10);
+    put_right(text, "&VALUE" + std::to_string(d), 10);
+    text << '\n';
+  }
+}
+
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
+  constexpr std::size_t most = 99'999'999;  // columns of eight
+  if (mesh.nodes.size() + mesh.drivers.size() > most || mesh.elements.size() > most)
+    return error(Kind::limit,
+                 "an LS-DYNA file in standard format numbers at most 99 999 999 nodes and elements");
+  const Result<std::vector<fem::Section>> sections = fem::sections(mesh);
+  if (!sections) return sections.error();
+  TextBuffer text(output);
+  text << "*KEYWORD\n*TITLE\nSelvage: " << std::string_view(mesh.title).substr(0, 70)
+       << "\n$ Units: mm, N, MPa, tonne, s\n";
+  write_nodes(text, mesh);
+  write_parts(text, mesh, *sections);
+  write_materials(text, mesh);
+  write_expansions(text, mesh, *sections);
+  write_elements(text, mesh, *sections);
+  write_sets(text, mesh, *sections);
+  write_equations(text, mesh);
+  write_loading(text, mesh);
+  text << "*END\n";
+  if (Status done = text.finish(); !done) return done.error();
+  WriteFacts facts;
+  facts.entities = {
+      {"nodes", mesh.nodes.size()}, {"solids", mesh.elements.size()}, {"parts", sections->size()}};
+  if (!mesh.equations.empty()) facts.entities["constraints"] = mesh.equations.size();
+  return facts;
+}
+
+bool is_a_keyword_file(std::string_view head) {
+  return head.starts_with("*KEYWORD");
+}
+
+}  // namespace
+
+const Descriptor& descriptor() {
+  static const Descriptor self = {.name = "k",
+                                  .title = "LS-DYNA keyword file",
+                                  .extensions = {".k"},
+                                  .sniff = is_a_keyword_file,
+                                  .write_mesh = write};
+  return self;
+}
+
+}  // namespace selvage::formats::k

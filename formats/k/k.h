@@ -1,0 +1,10 @@
+// LS-DYNA keyword file
+#pragma once
+
+#include "formats/format.h"
+
+namespace selvage::formats::k {
+
+const Descriptor& descriptor();
+
+}  // namespace selvage::formats::k

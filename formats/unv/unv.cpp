@@ -1,0 +1,123 @@
+#include "formats/unv/unv.h"
+
+#include <algorithm>
+
+#include "core/columns.h"
+#include "fem/sections.h"
+
+namespace selvage::formats::unv {
+namespace {
+
+constexpr std::string_view mark = "    -1\n";
+constexpr std::size_t width = 10;
+
+void open_dataset(TextBuffer& text, std::size_t number) {
+  text << mark;
+  put_right(text, number, 6);
+  text << '\n';
+}
+
+// Dataset 2411: number, two coordinate systems, colour; then the coordinates, 3D25.16.
+void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
+  open_dataset(text, 2411);
+  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+    for (const std::size_t value : {n + 1, std::size_t{1}, std::size_t{1}, std::size_t{11}})
+      put_right(text, value, width);
+    text << '\n';
+    // The exponent has two digits here unless it needs three.
+    for (int k = 0; k < 3; ++k) {
+      std::string number = scientific_text(mesh.nodes[n][k], 16, 'D');
+      if (const std::size_t cut = number.find('D') + 2; number[cut] == '0') number.erase(cut, 1);
+      put_right(text, number, 25);
+    }
+    text << '\n';
+  }
+  text << mark;
+}
+
+// Dataset 2412: 111 and 118 are tetrahedra of 4 and 10 nodes, 115 the brick of 8. Ten nodes go round the
+// base, corners and middles in turn, then up the three edges, then the tip.
+void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
+  const bool is_brick = mesh.shape == fem::Mesh::Shape::hexahedron;
+  const std::size_t descriptor = is_brick ? 115 : mesh.order == 1 ? 111 : 118;
+  constexpr std::array<std::size_t, 10> plain = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9},
+                                        round = {0, 4, 1, 5, 2, 6, 7, 8, 9, 3};
+  const auto& order = mesh.nodes_per_element() == 10 ? round : plain;
+  const auto count = static_cast<std::size_t>(mesh.nodes_per_element());
+  std::vector<std::size_t> material(mesh.elements.size(), 1);
+  for (const fem::Section& section : sections)
+    for (const std::size_t e : section.elements) material[e] = section.material + 1;
+  open_dataset(text, 2412);
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
+    for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e) {
+      for (const std::size_t value : {e + 1, descriptor, i + 1, material[e], std::size_t{7}, count})
+        put_right(text, value, width);
+      text << '\n';
+      for (std::size_t k = 0; k < count; ++k) {
+        put_right(text, mesh.elements[e][order[k]] + 1, width);
+        if (k % 8 == 7 || k + 1 == count) text << '\n';
+      }
+    }
+  text << mark;
+}
+
+// Of dataset 2467; the entity type is 7 for nodes, 8 for elements.
+void write_group(TextBuffer& text, std::size_t number, std::string_view name, std::size_t type,
+                 const std::vector<std::size_t>& members) {
+  put_right(text, number, width);
+  for (int k = 0; k < 6; ++k) put_right(text, std::size_t{0}, width);
+  put_right(text, members.size(), width);
+  text << '\n' << name << '\n';
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    for (const std::size_t value : {type, members[k] + 1, std::size_t{0}, std::size_t{0}})
+      put_right(text, value, width);
+    if (k % 2 == 1 || k + 1 == members.size()) text << '\n';
+  }
+}
+
+std::size_t write_groups(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
+  open_dataset(text, 2467);
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+    std::vector<std::size_t> members;
+    for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
+      members.push_back(e);
+    write_group(text, ++number, fem::set_name(mesh, i), 8, members);
+  }
+  for (const fem::Section& section : sections)
+    if (section.name != fem::set_name(mesh, section.region))
+      write_group(text, ++number, section.name, 8, section.elements);
+  for (const fem::NodeSet& set : fem::node_sets(mesh)) write_group(text, ++number, set.name, 7, set.nodes);
+  text << mark;
+  return number;
+}
+
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
+  const Result<std::vector<fem::Section>> sections = fem::sections(mesh);
+  if (!sections) return sections.error();
+  TextBuffer text(output);
+  write_nodes(text, mesh);
+  write_elements(text, mesh, *sections);
+  const std::size_t groups = write_groups(text, mesh, *sections);
+  if (Status done = text.finish(); !done) return done.error();
+  WriteFacts facts;
+  facts.entities = {{"nodes", mesh.nodes.size()}, {"elements", mesh.elements.size()}, {"groups", groups}};
+  return facts;
+}
+
+bool begins_with_a_dataset(std::string_view head) {
+  return head.starts_with("    -1\n") || head.starts_with("    -1\r\n");
+}
+
+}  // namespace
+
+const Descriptor& descriptor() {
+  static const Descriptor self = {.name = "unv",
+                                  .title = "I-DEAS universal file (Salome, Code_Aster)",
+                                  .extensions = {".unv"},
+                                  .sniff = begins_with_a_dataset,
+                                  .write_mesh = write};
+  return self;
+}
+
+}  // namespace selvage::formats::unv

@@ -1,0 +1,84 @@
+"""LS-DYNA keyword file in standard format: columns of 8, 10 and 16."""
+
+from model import Model, constants, isotropic, right_handed
+
+
+def columns(line, *widths):
+    fields, at = [], 0
+    for width in widths:
+        fields.append(line[at:at + width].strip())
+        at += width
+    assert not line[at:].strip(), line
+    return fields
+
+
+def read(path):
+    model = Model()
+    blocks = []
+    for line in open(path):
+        line = line.rstrip("\n")
+        if line.startswith("$"):
+            continue
+        if line.startswith("*"):
+            blocks.append((line.strip(), []))
+        else:
+            blocks[-1][1].append(line)
+    materials, parts, expansions, part_of = {}, {}, {}, {}
+    part_sets = {}
+    for keyword, rows in blocks:
+        if keyword == "*NODE":
+            for row in rows:
+                number, *at = columns(row, 8, 16, 16, 16)
+                model.nodes[int(number)] = tuple(map(float, at))
+        elif keyword == "*PART":
+            part, _, material = map(int, columns(rows[1], 10, 10, 10))
+            parts[part] = material
+        elif keyword == "*MAT_ELASTIC_TITLE":
+            number, density, e, nu = columns(rows[1], 10, 10, 10, 10)
+            materials[int(number)] = ("isotropic", float(density), float(e), float(nu))
+        elif keyword == "*MAT_ORTHOTROPIC_ELASTIC_TITLE":
+            number, density, ea, eb, ec, ba, ca, cb = columns(rows[1], *[10] * 8)
+            ab, bc, ca_shear, choice = map(float, columns(rows[2], *[10] * 4))
+            assert choice == 2
+            ea, eb, ec, ba, ca, cb = map(float, (ea, eb, ec, ba, ca, cb))
+            materials[int(number)] = ("orthotropic", float(density), ea, eb, ec, ba * ea / eb, ca * ea / ec, cb * eb / ec, ab,
+                                      ca_shear, bc)
+        elif keyword == "*MAT_ADD_THERMAL_EXPANSION":
+            fields = columns(rows[0], *[10] * 7)
+            expansions[int(fields[0])] = tuple(float(fields[k]) for k in (2, 4, 6))
+        elif keyword in ("*ELEMENT_SOLID", "*ELEMENT_SOLID_ORTHO"):
+            at = 0
+            while at < len(rows):
+                head = [int(field) for field in columns(rows[at], *[8] * 10) if field]
+                at += 1
+                if len(head) == 2:  # two lines: the nodes on their own
+                    nodes = [int(field) for field in columns(rows[at], *[8] * 10)]
+                    at += 1
+                else:
+                    nodes = head[2:]
+                    if nodes[3] == nodes[7]:
+                        assert len(set(nodes[3:])) == 1
+                        nodes = nodes[:4]
+                model.elements[head[0]] = tuple(nodes)
+                part_of[head[0]] = head[1]
+                if keyword.endswith("ORTHO"):
+                    a, d = ([float(field) for field in columns(rows[at + k], 16, 16, 16)] for k in (0, 1))
+                    model.axes[head[0]] = right_handed(a, d)
+                    at += 2
+        elif keyword in ("*SET_NODE_LIST_TITLE", "*SET_PART_LIST_TITLE"):
+            members = [int(field) for row in rows[2:] for field in columns(row, *[10] * 8) if field]
+            (part_sets if "PART" in keyword else model.node_sets)[rows[0].strip().upper()] = sorted(members)
+        elif keyword == "*CONSTRAINED_MULTIPLE_GLOBAL":
+            at = 1
+            while at < len(rows):
+                count = int(rows[at])
+                model.equations.append([(int(n), int(d), float(f)) for n, d, f in
+                                        (columns(row, 10, 10, 10) for row in rows[at + 1:at + 1 + count])])
+                at += 1 + count
+    for name, members in part_sets.items():
+        model.element_sets[name] = sorted(e for e, part in part_of.items() if part in members)
+    for element, part in part_of.items():
+        kind, density, *rest = materials[parts[part]]
+        make = isotropic if kind == "isotropic" else constants
+        model.material[element] = make(*rest, density if density != 1e-9 else None, expansions.get(part))
+    return model

@@ -1,0 +1,125 @@
+// The formats of a unit cell's mesh, read by other programs and by parsers of the documented layouts.
+#include <map>
+
+#include "formats/bdf/bdf.h"
+#include "formats/cdb/cdb.h"
+#include "formats/inp/inp.h"
+#include "formats/k/k.h"
+#include "formats/mesh/cell_mesh.h"
+#include "formats/mesh/programs.h"
+#include "formats/msh/msh.h"
+#include "formats/unv/unv.h"
+#include "formats/vtu/vtu.h"
+
+namespace selvage {
+namespace {
+
+using test::Folder;
+using test::run;
+using test::save;
+
+std::vector<fem::Mesh> cells() {
+  return {test::brick_cell(), test::tetrahedra_cell(1), test::tetrahedra_cell(2),
+          test::tetrahedra_cell(2, true)};
+}
+
+// The lines "name number" that a script prints.
+std::map<std::string, double> facts_in(const std::string& words) {
+  std::map<std::string, double> facts;
+  std::istringstream lines(words);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t cut = line.rfind(' ');
+    if (cut != std::string::npos) facts[line.substr(0, cut)] = std::strtod(line.c_str() + cut + 1, nullptr);
+  }
+  return facts;
+}
+
+std::string script(const Folder& folder, const std::string& command) {
+  return run(folder, std::string(SYSTEM_PYTHON) + " " + SELVAGE_TESTS + "/formats/" + command);
+}
+
+void save_all(const fem::Mesh& mesh, const Folder& folder) {
+  for (const formats::Descriptor* format :
+       {&formats::inp::descriptor(), &formats::cdb::descriptor(), &formats::cdb::macro_descriptor(),
+        &formats::k::descriptor(), &formats::bdf::descriptor(), &formats::msh::descriptor(),
+        &formats::vtu::descriptor(), &formats::unv::descriptor()})
+    save(mesh, *format, folder / ("cell" + std::string(format->extensions.front())));
+}
+
+// Every number of the other decks is that of the Abaqus deck, to the digits that the columns have room for.
+TEST(CellDecks, EveryNumberIsTheAbaqusDecks) {
+  for (const fem::Mesh& mesh : cells()) {
+    const Folder folder;
+    save_all(mesh, folder);
+    for (const std::string& other : {"cell.cdb 12", "cell.bdf 12", "cell.k 4.5"}) {
+      const std::string words = script(folder, "decks/compare.py cell.inp " + other);
+      EXPECT_NE(words.find("\nequal"), std::string::npos) << other << "\n" << words;
+      const std::map<std::string, double> facts = facts_in(words);
+      if (!facts.contains("loads")) continue;
+      EXPECT_EQ(facts.at("nodes"), static_cast<double>(mesh.nodes.size() + mesh.drivers.size())) << other;
+      EXPECT_EQ(facts.at("elements"), static_cast<double>(mesh.elements.size())) << other;
+      EXPECT_EQ(facts.at("axes"), static_cast<double>(mesh.regions[0].last_element)) << other;
+      EXPECT_EQ(facts.at("equations"), static_cast<double>(mesh.equations.size())) << other;
+      EXPECT_EQ(facts.at("loads"), other == "cell.k 4.5" ? 0 : 7) << other;
+      EXPECT_GE(facts.at("sets"), 6 + 8 + 2) << other;
+    }
+  }
+}
+
+// The same nodes, elements and sets from every format that meshio knows, and the nodes and elements of the
+// UNV by gmsh.
+TEST(CellDecks, MeshioAndGmshReadTheSameMesh) {
+  for (const fem::Mesh& mesh : cells()) {
+    const Folder folder;
+    save_all(mesh, folder);
+    const std::string words = script(folder, "decks/read_all.py cell");
+    EXPECT_NE(words.find("\nequal"), std::string::npos) << words;
+  }
+}
+
+// Gmsh lists the periodic points, curves and surfaces, with nodes that are each other's image.
+TEST(CellDecks, GmshListsPeriodicEntities) {
+  for (const fem::Mesh& mesh : cells()) {
+    const Folder folder;
+    save(mesh, formats::msh::descriptor(), folder / "cell.msh");
+    const std::string words = script(folder, "decks/periodic.py cell.msh");
+    const std::map<std::string, double> facts = facts_in(words);
+    ASSERT_TRUE(facts.contains("periodic surfaces")) << words;
+    // Three high faces: the one across the yarn in two parts, and these are bounded by its square.
+    EXPECT_EQ(facts.at("periodic surfaces"), 4) << words;
+    EXPECT_EQ(facts.at("periodic curves"), 10) << words;  // nine edges of the box, the yarn's outline
+    EXPECT_EQ(facts.at("periodic points"), 8) << words;   // seven corners, one on the outline
+    EXPECT_LT(facts.at("largest miss"), 1e-12) << words;
+    EXPECT_EQ(facts.at("nodes on high faces"), facts.at("nodes with an image")) << words;
+    EXPECT_EQ(facts.at("volumes"), 2) << words;
+  }
+}
+
+TEST(CellDecks, SameMeshSameBytes) {
+  const fem::Mesh one = test::tetrahedra_cell(2, true), two = test::tetrahedra_cell(2, true);
+  for (const formats::Descriptor* format :
+       {&formats::inp::descriptor(), &formats::cdb::descriptor(), &formats::cdb::macro_descriptor(),
+        &formats::k::descriptor(), &formats::bdf::descriptor(), &formats::msh::descriptor(),
+        &formats::vtu::descriptor(), &formats::unv::descriptor()}) {
+    Result<OutputFile> a = OutputFile::in_memory(), b = OutputFile::in_memory();
+    ASSERT_TRUE(format->write_mesh(one, *a).ok());
+    ASSERT_TRUE(format->write_mesh(two, *b).ok());
+    EXPECT_EQ(*a->contents(), *b->contents()) << format->name;
+    if (format->sniff != nullptr) {
+      EXPECT_TRUE(format->sniff(a->contents()->substr(0, 4096))) << format->name;
+    }
+  }
+}
+
+// Without load cases there is nothing for the macro to solve.
+TEST(CellDecks, MacroNeedsLoadCases) {
+  fem::Mesh mesh = test::brick_cell();
+  mesh.load_cases.clear();
+  Result<OutputFile> output = OutputFile::in_memory();
+  const auto facts = formats::cdb::macro_descriptor().write_mesh(mesh, *output);
+  ASSERT_FALSE(facts.ok());
+  EXPECT_EQ(facts.error().kind, Kind::unsupported);
+}
+
+}  // namespace
+}  // namespace selvage
