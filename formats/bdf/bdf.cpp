@@ -7,6 +7,7 @@
 #include "core/columns.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
+#include "fem/unit_cell.h"
 
 namespace selvage::formats::bdf {
 namespace {
@@ -32,13 +33,17 @@ void put_card(TextBuffer& text, std::string_view name, const std::vector<std::st
   }
 }
 
-// A card of integers in small fields, eight a line.
+// A card of integers in small fields, eight a line. Lines that go on say so in their last field too: meshio
+// wants that.
 void put_small(TextBuffer& text, std::string_view name, const std::vector<std::size_t>& fields) {
   constexpr std::size_t per_line = 8;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    if (i % per_line == 0) put_left(text, i == 0 ? name : "", narrow);
+    if (i % per_line == 0) put_left(text, i == 0 ? name : "+", narrow);
     put_right(text, fields[i], narrow);
-    if (i % per_line == per_line - 1 || i + 1 == fields.size()) text << '\n';
+    if (i + 1 == fields.size())
+      text << '\n';
+    else if (i % per_line == per_line - 1)
+      text << "+\n";
   }
 }
 
@@ -99,8 +104,7 @@ void write_case_control(TextBuffer& text, const fem::Mesh& mesh, const std::vect
     return;
   }
   const std::size_t drivers = sets.size() + 1;
-  text << "$ SET " << drivers
-       << " is the drivers: the forces of constraint on them are the stresses times the volume\n"
+  text << "$ SET " << drivers << " is the drivers\n"
        << "SET " << drivers << " = " << mesh.nodes.size() + 1 << " THRU "
        << mesh.nodes.size() + mesh.drivers.size()
        << "\nMPC = 1\nTEMPERATURE(INITIAL) = 999\nDISPLACEMENT = " << drivers << "\nSPCFORCES = " << drivers
@@ -229,8 +233,7 @@ void write_loads(TextBuffer& text, const fem::Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.load_cases.size(); ++i) {
     const fem::LoadCase& load = mesh.load_cases[i];
     text << "$ " << load.name << '\n';
-    if (mesh.cell->corners[0] < mesh.nodes.size())
-      put_card(text, "SPC1", {word(i + 1), "123", word(mesh.cell->corners[0] + 1)});
+    if (const auto held = fem::held_node(mesh)) put_card(text, "SPC1", {word(i + 1), "123", word(*held + 1)});
     for (std::size_t d = 0; d < mesh.drivers.size(); ++d) {
       const std::string node = word(mesh.nodes.size() + d + 1);
       put_card(text, "SPC1", {word(i + 1), "23", node});

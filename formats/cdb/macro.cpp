@@ -1,5 +1,6 @@
 // The macro that ANSYS runs on the archive of a unit cell: every load case, and the stresses of the whole.
 #include "core/text_buffer.h"
+#include "fem/unit_cell.h"
 #include "formats/cdb/cdb.h"
 
 namespace selvage::formats::cdb {
@@ -20,8 +21,7 @@ void write_opening(TextBuffer& text, const fem::Mesh& mesh, const std::string& s
 
 void write_solution(TextBuffer& text, const fem::Mesh& mesh) {
   text << "/SOLU\nANTYPE,STATIC\nTREF,0\nOUTRES,ALL,ALL\n";
-  if (mesh.cell->corners[0] < mesh.nodes.size())
-    text << "D," << mesh.cell->corners[0] + 1 << ",UX,0,,,,UY,UZ\n";
+  if (const auto held = fem::held_node(mesh)) text << "D," << *held + 1 << ",UX,0,,,,UY,UZ\n";
   for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
     text << "D," << mesh.nodes.size() + k + 1 << ",UY,0,,,,UZ   ! " << mesh.drivers[k].name << '\n';
   for (std::size_t i = 0; i < mesh.load_cases.size(); ++i) {

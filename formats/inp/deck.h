@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/text_buffer.h"
+#include "fem/contact_surfaces.h"
 #include "fem/mesh.h"
 #include "fem/sections.h"
 
@@ -38,6 +39,11 @@ std::vector<fem::NodeSet> sets_of(const std::vector<Load>& loads);
 // *TRANSFORM cards, for end faces that look along no coordinate axis. They belong before the step.
 void write_transforms(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>& loads);
 void write_step(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>& loads);
+
+// Of dry yarns: Yarn0_Surface, Yarn0_Upper, Yarn0_Lower, ..; the pairs of whole surfaces that are near each
+// other, with the interaction YarnContact.
+void write_contact_surfaces(TextBuffer& text, const fem::Mesh& mesh, const fem::ContactSurfaces& contact);
+void write_contact_pairs(TextBuffer& text, const fem::Mesh& mesh, const fem::ContactSurfaces& contact);
 
 // Of a unit cell: *EQUATION cards and what else belongs before the first step.
 void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh);

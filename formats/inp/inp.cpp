@@ -147,6 +147,7 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   if (!sections) return sections.error();
   TextBuffer text(output);
   const std::vector<std::string> names = fem::solver_names(mesh.materials);
+  const fem::ContactSurfaces contact = fem::contact_surfaces(mesh);
   const std::vector<Load> loads = mesh.cell ? std::vector<Load>() : plan_loads(mesh);
   std::vector<fem::NodeSet> sets = mesh.cell ? fem::node_sets(mesh) : sets_of(loads);
   write_heading(text, mesh);
@@ -155,9 +156,11 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   write_elements(text, mesh);
   write_element_sets(text, mesh, *sections);
   write_node_sets(text, sets);
+  write_contact_surfaces(text, mesh, contact);
   write_materials(text, mesh, names);
   write_orientation(text, mesh, *sections);
   write_sections(text, mesh, *sections, names);
+  write_contact_pairs(text, mesh, contact);
   if (mesh.cell) {
     write_cell_conditions(text, mesh);
     write_cell_steps(text, mesh);
@@ -172,6 +175,7 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
                     {"element sets", mesh.regions.size() + 1},
                     {"node sets", sets.size() + 1 + mesh.drivers.size()}};
   if (!mesh.equations.empty()) facts.entities["equations"] = mesh.equations.size();
+  if (!contact.pairs.empty()) facts.entities["contact pairs"] = contact.pairs.size();
   if (!mesh.load_cases.empty()) facts.entities["steps"] = mesh.load_cases.size();
   return facts;
 }

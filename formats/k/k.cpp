@@ -5,6 +5,7 @@
 #include "core/columns.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
+#include "fem/unit_cell.h"
 
 namespace selvage::formats::k {
 namespace {
@@ -195,8 +196,7 @@ void write_loading(TextBuffer& text, const fem::Mesh& mesh) {
   put_reals(text, {0, 0}, 20);
   put_reals(text, {1, 1}, 20);
   text << "*BOUNDARY_SPC_NODE\n";
-  if (mesh.cell->corners[0] < mesh.nodes.size())
-    put_integers(text, {mesh.cell->corners[0] + 1, 0, 1, 1, 1, 0, 0, 0});
+  if (const auto held = fem::held_node(mesh)) put_integers(text, {*held + 1, 0, 1, 1, 1, 0, 0, 0});
   for (std::size_t d = 0; d < mesh.drivers.size(); ++d)
     put_integers(text, {mesh.nodes.size() + d + 1, 0, 0, 1, 1, 0, 0, 0});
   text << "*BOUNDARY_PRESCRIBED_MOTION_NODE\n";

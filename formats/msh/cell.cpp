@@ -40,7 +40,7 @@ class CellFile {
     return {{"nodes", mesh_.nodes.size()},
             {mesh_.shape == fem::Mesh::Shape::hexahedron ? "quadrangles" : "triangles", sides},
             {mesh_.shape == fem::Mesh::Shape::hexahedron ? "hexahedra" : "tetrahedra", mesh_.elements.size()},
-            {"physical groups", groups_.size() + mesh_.regions.size()},
+            {"physical groups", groups_.size() + mesh_.regions.size() + 2},
             {"periodic entities", copies_.size()}};
   }
 
@@ -113,7 +113,8 @@ class CellFile {
   }
 
   void write_names() {
-    text_ << "$PhysicalNames\n" << groups_.size() + mesh_.regions.size() << '\n';
+    text_ << "$PhysicalNames\n"
+          << groups_.size() + mesh_.regions.size() + 2 << "\n0 1 \"points\"\n1 1 \"curves\"\n";
     for (std::size_t g = 0; g < groups_.size(); ++g)
       text_ << "2 " << g + 1 << ' ' << quoted(groups_[g]) << '\n';
     for (std::size_t i = 0; i < mesh_.regions.size(); ++i)
@@ -127,7 +128,7 @@ class CellFile {
           << ' ' << mesh_.regions.size() << '\n';
     for (std::size_t i = 0; i < topology_.points.size(); ++i) {
       const Vec3& p = mesh_.nodes[topology_.points[i]];
-      text_ << i + 1 << ' ' << p.x() << ' ' << p.y() << ' ' << p.z() << " 0\n";
+      text_ << i + 1 << ' ' << p.x() << ' ' << p.y() << ' ' << p.z() << " 1 1\n";
     }
     for (std::size_t i = 0; i < topology_.curves.size(); ++i) {
       const Curve& curve = topology_.curves[i];
@@ -136,7 +137,7 @@ class CellFile {
         for (const std::size_t node : edge) box.extend(mesh_.nodes[node]);
       text_ << i + 1 << ' ';
       write_box(text_, box);
-      text_ << "0 2 " << curve.first + 1 << " -" << curve.last + 1 << '\n';
+      text_ << "1 1 2 " << curve.first + 1 << " -" << curve.last + 1 << '\n';
     }
     for (std::size_t i = 0; i < topology_.surfaces.size(); ++i) write_surface(i);
     for (std::size_t i = 0; i < mesh_.regions.size(); ++i) write_volume(i);

@@ -5,6 +5,8 @@
 #include <set>
 #include <tuple>
 
+#include "fem/unit_cell.h"
+
 namespace selvage::formats::msh {
 namespace {
 
@@ -132,7 +134,7 @@ std::vector<std::size_t> images(const std::vector<std::size_t>& nodes, const fem
                                 const std::array<std::vector<std::size_t>, 3>& opposite, Vec3& shift) {
   std::vector<std::size_t> result = nodes;
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto has_image = [&](std::size_t node) { return opposite[a][node] != no_node; };
+    const auto has_image = [&](std::size_t node) { return opposite[a][node] != fem::no_node; };
     if (!std::all_of(result.begin(), result.end(), has_image)) continue;
     for (std::size_t& node : result) node = opposite[a][node];
     const auto axis = static_cast<Eigen::Index>(a);
@@ -174,7 +176,7 @@ std::array<std::vector<std::size_t>, 3> opposite_nodes(const fem::Mesh& mesh) {
   std::array<std::vector<std::size_t>, 3> opposite;
   const fem::UnitCell& cell = *mesh.cell;
   for (std::size_t a = 0; a < 3; ++a) {
-    opposite[a].assign(mesh.nodes.size(), no_node);
+    opposite[a].assign(mesh.nodes.size(), fem::no_node);
     if (!cell.periodic[a]) continue;
     const auto pair = [&](const std::vector<std::size_t>& high, const std::vector<std::size_t>& low) {
       for (std::size_t k = 0; k < std::min(high.size(), low.size()); ++k) opposite[a][high[k]] = low[k];

@@ -40,9 +40,8 @@ struct Copy {
   Vec3 shift = Vec3::Zero();  // from the original
 };
 
-// For each node and axis: the node opposite on the low side; none: it is not on the high side of the axis, or
-// the axis is not periodic.
-inline constexpr std::size_t no_node = static_cast<std::size_t>(-1);
+// For each node and axis: the node opposite on the low side; fem::no_node: it is not on the high side of the
+// axis, or the axis is not periodic.
 std::array<std::vector<std::size_t>, 3> opposite_nodes(const fem::Mesh& mesh);
 
 // By dimension, then by entity. What has no complete copy on the other side is left out.

@@ -13,7 +13,7 @@ def cards_of(lines):
         name = line[:8].strip()
         wide = name.endswith("*")
         width, count = (16, 4) if wide else (8, 8)
-        assert len(line) <= 8 + width * count, line
+        assert line[8 + width * count:].strip() in ("", "+"), line
         fields = [line[8 + k * width:8 + (k + 1) * width].strip() for k in range(count)]
         if name in ("", "*", "+"):
             cards[-1][1].extend(fields)

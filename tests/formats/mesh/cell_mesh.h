@@ -1,6 +1,8 @@
 // Small unit cells made by hand: a box of 4 x 3 x 3 bricks, or of six tetrahedra in each of them (so that
-// opposite faces match), with a yarn along x in its middle. Sets, equations and load cases of a block.
+// opposite faces match), with a yarn along x in its middle. A block: periodic along all axes.
 #pragma once
+
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +10,7 @@
 
 #include "fem/mesh.h"
 #include "fem/quality.h"
+#include "fem/unit_cell.h"
 
 namespace selvage::test {
 
@@ -21,8 +24,8 @@ class CellMaker {
     for (const bool is_yarn : {true, false}) add_region(is_yarn);
     if (order == 2) add_midside_nodes();
     add_materials(has_two_materials);
-    find_sets();
-    tie();
+    const Status completed = fem::complete_cell(mesh_, Box3(low_, high_), {true, true, true});
+    EXPECT_TRUE(completed.ok());
     if (shape == fem::Mesh::Shape::tetrahedron) fem::measure(mesh_);
     return std::move(mesh_);
   }
@@ -117,85 +120,6 @@ class CellMaker {
     mesh_.element_material.assign(mesh_.elements.size(), 1);
     for (std::size_t e = 0; e < mesh_.regions[0].last_element; ++e)
       mesh_.element_material[e] = mesh_.along[e].y() == 0 ? 0 : 2;
-  }
-
-  // By how many axes, and on which side of each: 0 low, 1 high, 2 between.
-  [[nodiscard]] std::array<int, 3> sides_of(const Vec3& p) const {
-    std::array<int, 3> sides{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto axis = static_cast<Eigen::Index>(a);
-      sides[a] = p[axis] == low_[axis] ? 0 : p[axis] == high_[axis] ? 1 : 2;
-    }
-    return sides;
-  }
-
-  void find_sets() {
-    fem::UnitCell cell;
-    cell.low = low_;
-    cell.high = high_;
-    cell.periodic = {true, true, true};
-    std::vector<std::size_t> order(mesh_.nodes.size());
-    for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
-    // By coordinates, so that opposite lists run alike.
-    const auto key = [&](std::size_t n) {
-      const Vec3& p = mesh_.nodes[n];
-      return std::array<long, 3>{std::lround(p.x() * 1e6), std::lround(p.y() * 1e6),
-                                 std::lround(p.z() * 1e6)};
-    };
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
-    for (const std::size_t n : order) {
-      const std::array<int, 3> sides = sides_of(mesh_.nodes[n]);
-      const auto free = static_cast<std::size_t>(std::count(sides.begin(), sides.end(), 2));
-      if (free == 0) cell.corners[static_cast<std::size_t>(sides[0] + 2 * sides[1] + 4 * sides[2])] = n;
-      for (std::size_t a = 0; a < 3; ++a) {
-        if (free == 2 && sides[a] != 2) cell.face_nodes[2 * a + (sides[a] == 1 ? 0 : 1)].push_back(n);
-        if (free == 1 && sides[a] == 2)
-          cell.edge_nodes[4 * a + static_cast<std::size_t>(sides[(a + 1) % 3] + 2 * sides[(a + 2) % 3])]
-              .push_back(n);
-      }
-    }
-    mesh_.cell = cell;
-  }
-
-  // Every node on a high side moves as its image on the low sides does, and by the strains.
-  void tie() {
-    static const std::array<const char*, 6> names = {"xx", "yy", "zz", "xy", "xz", "yz"};
-    for (int k = 0; k < 6; ++k)
-      mesh_.drivers.push_back(
-          {"ConstraintsDriver" + std::to_string(k), Vec3(high_ + Vec3::Constant(0.1 * k))});
-    std::map<std::array<long, 3>, std::size_t> at;
-    const auto key = [&](const Vec3& p) {
-      return std::array<long, 3>{std::lround(p.x() * 1e6), std::lround(p.y() * 1e6),
-                                 std::lround(p.z() * 1e6)};
-    };
-    for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) at[key(mesh_.nodes[n])] = n;
-    constexpr std::array<std::array<std::size_t, 3>, 3> driver = {{{0, 3, 4}, {3, 1, 5}, {4, 5, 2}}};
-    for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
-      Vec3 image = mesh_.nodes[n], step = Vec3::Zero();
-      for (int a = 0; a < 3; ++a)
-        if (image[a] == high_[a]) {
-          image[a] = low_[a];
-          step[a] = high_[a] - low_[a];
-        }
-      if (step.isZero(0)) continue;
-      for (int i = 0; i < 3; ++i) {
-        fem::Equation equation = {{n, i, 1}, {at.at(key(image)), i, -1}};
-        for (int j = 0; j < 3; ++j)
-          if (step[j] != 0)
-            equation.push_back(
-                {mesh_.nodes.size() + driver[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)], 0,
-                 -(i == j ? 1 : 0.5) * step[j]});
-        mesh_.equations.push_back(equation);
-      }
-    }
-    for (std::size_t k = 0; k < 7; ++k) {
-      fem::LoadCase load;
-      load.name = k < 6 ? std::string("strain ") + names[k] : "thermal";
-      load.drivers.assign(6, 0.0);
-      if (k < 6) load.drivers[k] = 0.001;
-      load.temperature = k == 6 ? 1 : 0;
-      mesh_.load_cases.push_back(load);
-    }
   }
 
   Vec3 low_ = Vec3(0.1, -0.2, 0.3), high_ = Vec3(2.1, 1.3, 1.5);

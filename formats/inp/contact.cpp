@@ -1,0 +1,35 @@
+// Surfaces of dry yarns, and the pairs of them that may touch.
+#include "fem/contact_surfaces.h"
+#include "formats/inp/deck.h"
+
+namespace selvage::formats::inp {
+namespace {
+
+void write_surface(TextBuffer& text, const std::string& name, const std::vector<fem::OuterSide>& sides) {
+  if (sides.empty()) return;
+  text << "*SURFACE, NAME=" << name << ", TYPE=ELEMENT\n";
+  for (const fem::OuterSide& side : sides) text << side.element + 1 << ", S" << side.side + 1 << '\n';
+}
+
+}  // namespace
+
+void write_contact_surfaces(TextBuffer& text, const fem::Mesh& mesh, const fem::ContactSurfaces& contact) {
+  for (const fem::ContactSurface& surface : contact.surfaces) {
+    const std::string name = fem::set_name(mesh, surface.region);
+    write_surface(text, name + "_Surface", surface.whole);
+    write_surface(text, name + "_Upper", surface.upper);
+    write_surface(text, name + "_Lower", surface.lower);
+  }
+}
+
+void write_contact_pairs(TextBuffer& text, const fem::Mesh& mesh, const fem::ContactSurfaces& contact) {
+  if (contact.pairs.empty()) return;
+  text << "*SURFACE INTERACTION, NAME=YarnContact\n*SURFACE BEHAVIOR, "
+          "PRESSURE-OVERCLOSURE=HARD\n*FRICTION\n0.3\n";
+  for (const auto& [first, second] : contact.pairs)
+    text << "*CONTACT PAIR, INTERACTION=YarnContact, TYPE=SURFACE TO SURFACE\n"
+         << fem::set_name(mesh, contact.surfaces[first].region) << "_Surface, "
+         << fem::set_name(mesh, contact.surfaces[second].region) << "_Surface\n";
+}
+
+}  // namespace selvage::formats::inp
