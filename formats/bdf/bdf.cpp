@@ -14,12 +14,24 @@ namespace {
 
 constexpr std::size_t narrow = 8, wide = 16;
 
-// At most sixteen characters, with the point that Nastran tells a real number by.
+// A number as Nastran's manual spells it: with a point, the exponent without a letter ("1.5-6").
+std::string compact(const std::string& text) {
+  const std::size_t cut = std::min(text.find('e'), text.size());
+  std::string number = text.substr(0, cut);
+  if (number.find('.') == std::string::npos) number += '.';
+  if (cut == text.size()) return number;
+  number += text[cut + 1];
+  return number + text.substr(std::min(text.find_first_not_of('0', cut + 2), text.size() - 1));
+}
+
+// As many digits as sixteen characters hold.
 std::string real(double value) {
-  std::string text = number_text(value, wide - 1);
-  if (text.find('.') != std::string::npos) return text;
-  const std::size_t exponent = std::min(text.find('e'), text.size());
-  text.insert(exponent, ".");
+  std::string text = compact(number_text(value));
+  for (int digits = 16; text.size() > wide; --digits) {
+    char buffer[max_number_length];
+    char* end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits).ptr;
+    text = compact(std::string(buffer, end));
+  }
   return text;
 }
 

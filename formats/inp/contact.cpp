@@ -22,12 +22,17 @@ void write_contact_surfaces(TextBuffer& text, const fem::Mesh& mesh, const fem::
   }
 }
 
+// As comments: contact makes a step nonlinear, and CalculiX 2.20 crashed on it (Segmentation fault) where
+// yarns are held as they are here.
 void write_contact_pairs(TextBuffer& text, const fem::Mesh& mesh, const fem::ContactSurfaces& contact) {
   if (contact.pairs.empty()) return;
-  text << "*SURFACE INTERACTION, NAME=YarnContact\n*SURFACE BEHAVIOR, "
-          "PRESSURE-OVERCLOSURE=HARD\n*FRICTION\n0.3\n";
+  text << "** Yarns that are near each other. Contact makes the step nonlinear: take one star of each line "
+          "away to "
+          "have it.\n"
+          "**SURFACE INTERACTION, NAME=YarnContact\n**SURFACE BEHAVIOR, "
+          "PRESSURE-OVERCLOSURE=HARD\n**FRICTION\n**0.3\n";
   for (const auto& [first, second] : contact.pairs)
-    text << "*CONTACT PAIR, INTERACTION=YarnContact, TYPE=SURFACE TO SURFACE\n"
+    text << "**CONTACT PAIR, INTERACTION=YarnContact, TYPE=SURFACE TO SURFACE\n**"
          << fem::set_name(mesh, contact.surfaces[first].region) << "_Surface, "
          << fem::set_name(mesh, contact.surfaces[second].region) << "_Surface\n";
 }

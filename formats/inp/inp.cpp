@@ -41,6 +41,8 @@ void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   text << "*NSET, NSET=AllNodes, GENERATE\n1, " << mesh.nodes.size() << ", 1\n";
   for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
     text << "*NSET, NSET=" << mesh.drivers[k].name << '\n' << mesh.nodes.size() + k + 1 << '\n';
+  text << "*NSET, NSET=Drivers, GENERATE\n"
+       << mesh.nodes.size() + 1 << ", " << mesh.nodes.size() + mesh.drivers.size() << ", 1\n";
 }
 
 std::string_view element_type(const fem::Mesh& mesh) {

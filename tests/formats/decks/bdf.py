@@ -1,8 +1,16 @@
 """Nastran bulk data: small fields of 8 columns, large ones of 16, and the sets and subcases of the case control."""
 
+import re
+
 import numpy as np
 
 from model import Model, isotropic
+
+
+def real(field):
+    """A point is there, a letter before the exponent need not be."""
+    assert "." in field, field
+    return float(re.sub(r"(?<=[0-9.])([+-])", r"e\1", field))
 
 
 def cards_of(lines):
@@ -54,43 +62,42 @@ def read(path):
     spcs, temperatures = {}, {}
     for name, fields in cards_of(lines[bulk + 1:]):
         if name == "GRID":
-            model.nodes[int(fields[0])] = tuple(map(float, fields[2:5]))
-            assert all("." in field for field in fields[2:5])
+            model.nodes[int(fields[0])] = tuple(map(real, fields[2:5]))
         elif name in ("CTETRA", "CHEXA"):
             model.elements[int(fields[0])] = tuple(int(field) for field in fields[2:] if field)
             prop_of[int(fields[0])] = int(fields[1])
         elif name == "PSOLID":
             properties[int(fields[0])] = (int(fields[1]), int(fields[2]))
         elif name == "CORD2R":
-            origin, on_z, in_xz = (np.array(list(map(float, fields[k:k + 3]))) for k in (2, 5, 8))
+            origin, on_z, in_xz = (np.array(list(map(real, fields[k:k + 3]))) for k in (2, 5, 8))
             z = (on_z - origin) / np.linalg.norm(on_z - origin)
             y = np.cross(z, in_xz - origin)
             y /= np.linalg.norm(y)
             systems[int(fields[0])] = np.array([np.cross(y, z), y, z])
         elif name == "MAT1":
             fields += [""] * 8
-            expansion = (float(fields[5]),) * 3 if fields[5] else None
-            materials[int(fields[0])] = isotropic(float(fields[1]), float(fields[3]),
-                                                  float(fields[4]) if fields[4] else None, expansion)
+            expansion = (real(fields[5]),) * 3 if fields[5] else None
+            materials[int(fields[0])] = isotropic(real(fields[1]), real(fields[3]),
+                                                  real(fields[4]) if fields[4] else None, expansion)
         elif name == "MAT9":
             g = np.zeros((6, 6))
-            g[np.triu_indices(6)] = list(map(float, fields[1:22]))
+            g[np.triu_indices(6)] = list(map(real, fields[1:22]))
             g = g + g.T - np.diag(np.diag(g))
             order = [0, 1, 2, 3, 5, 4]  # from xx yy zz xy yz zx
-            expansion = tuple(map(float, fields[23:26]))
-            materials[int(fields[0])] = (np.linalg.inv(g)[np.ix_(order, order)], float(fields[22]) if fields[22] else None, expansion)
+            expansion = tuple(map(real, fields[23:26]))
+            materials[int(fields[0])] = (np.linalg.inv(g)[np.ix_(order, order)], real(fields[22]) if fields[22] else None, expansion)
         elif name == "MPC":
             terms, at = [], 1
             while at < len(fields):
                 for k in (at, at + 3):
                     if k < len(fields) and fields[k]:
-                        terms.append((int(fields[k]), int(fields[k + 1]), float(fields[k + 2])))
+                        terms.append((int(fields[k]), int(fields[k + 1]), real(fields[k + 2])))
                 at += 8
             model.equations.append(terms)
         elif name == "SPC":
-            spcs.setdefault(int(fields[0]), {})[int(fields[1])] = float(fields[3])
+            spcs.setdefault(int(fields[0]), {})[int(fields[1])] = real(fields[3])
         elif name == "TEMPD":
-            temperatures[int(fields[0])] = float(fields[1])
+            temperatures[int(fields[0])] = real(fields[1])
     for element, prop in prop_of.items():
         material, system = properties[prop]
         model.material[element] = materials[material]
