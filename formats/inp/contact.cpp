@@ -22,17 +22,16 @@ void write_contact_surfaces(TextBuffer& text, const fem::Mesh& mesh, const fem::
   }
 }
 
-// As comments: contact makes a step nonlinear, and CalculiX 2.20 crashed on it (Segmentation fault) where
-// yarns are held as they are here.
+// As comments: contact makes a step nonlinear. Frictionless, for the second number of *FRICTION is not the
+// same in Abaqus and in CalculiX; pressure over overclosure in MPa/mm.
 void write_contact_pairs(TextBuffer& text, const fem::Mesh& mesh, const fem::ContactSurfaces& contact) {
   if (contact.pairs.empty()) return;
-  text << "** Yarns that are near each other. Contact makes the step nonlinear: take one star of each line "
-          "away to "
+  text << "** Yarns that are near each other. Contact makes the step nonlinear: take the marks **~ away to "
           "have it.\n"
-          "**SURFACE INTERACTION, NAME=YarnContact\n**SURFACE BEHAVIOR, "
-          "PRESSURE-OVERCLOSURE=HARD\n**FRICTION\n**0.3\n";
+          "**~*SURFACE INTERACTION, NAME=YarnContact\n**~*SURFACE BEHAVIOR, "
+          "PRESSURE-OVERCLOSURE=LINEAR\n**~1e6\n";
   for (const auto& [first, second] : contact.pairs)
-    text << "**CONTACT PAIR, INTERACTION=YarnContact, TYPE=SURFACE TO SURFACE\n**"
+    text << "**~*CONTACT PAIR, INTERACTION=YarnContact, TYPE=SURFACE TO SURFACE\n**~"
          << fem::set_name(mesh, contact.surfaces[first].region) << "_Surface, "
          << fem::set_name(mesh, contact.surfaces[second].region) << "_Surface\n";
 }

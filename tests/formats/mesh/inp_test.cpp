@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fabric/build.h"
+#include "fem/contact_surfaces.h"
 #include "formats/inp/deck.h"
 #include "formats/mesh/cell_mesh.h"
 #include "formats/mesh/programs.h"
@@ -15,6 +16,7 @@ namespace {
 using test::Folder;
 using test::grid_body;
 using test::mesh_of;
+using test::run;
 using test::save;
 using test::solve;
 using test::solve_without_warning;
@@ -222,6 +224,41 @@ TEST(InpDeck, UnitCellOfSeveralMaterialsRuns) {
   EXPECT_GT((*high)[0], 0.98 * 57.5);
   EXPECT_LT((*high)[0], 1.1 * 57.5 / 0.99);
   EXPECT_GT((*low)[0], 3.4);
+}
+
+// Two straight yarns one over the other, a twentieth of their diameter apart, and a third one far away:
+// surfaces of all, one pair. The areas are those of the sides that look up, down and anywhere; with the marks
+// taken away CalculiX runs the deck with contact, and the upper yarn does not change what it carries.
+TEST(InpDeck, ContactSurfacesAndPairs) {
+  const fem::Mesh mesh = test::mesh_of(fabric_with(fabric::IsotropicElastic{1000, 0.3}),
+                                       {test::straight_tube(1, 1, 3, 24, Vec3::Zero(), "low"),
+                                        test::straight_tube(1, 1, 3, 24, Vec3(0, 0, 1.05), "high"),
+                                        test::straight_tube(1, 1, 3, 24, Vec3(0, 2, 0), "far")},
+                                       {.size = 0.25, .order = 1});
+  const fem::ContactSurfaces contact = fem::contact_surfaces(mesh);
+  ASSERT_EQ(contact.surfaces.size(), 3U);
+  EXPECT_EQ(contact.pairs, (std::vector<std::array<std::size_t, 2>>{{0, 1}}));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const fem::ContactSurface& surface = contact.surfaces[i];
+    EXPECT_EQ(surface.whole.size(), mesh.regions[i].side_faces.size());
+    Vec3 whole = Vec3::Zero(), upper = Vec3::Zero(), lower = Vec3::Zero();
+    for (const fem::OuterSide& side : surface.whole) whole += fem::area_vector(mesh, side);
+    for (const fem::OuterSide& side : surface.upper) upper += fem::area_vector(mesh, side);
+    for (const fem::OuterSide& side : surface.lower) lower += fem::area_vector(mesh, side);
+    EXPECT_LT(whole.norm(), 1e-12);
+    // The shadow of the yarn: its diameter times its length.
+    EXPECT_NEAR(upper.z(), 3.0, 0.1);
+    EXPECT_NEAR(lower.z(), -3.0, 0.1);
+  }
+  const Folder folder;
+  save(mesh, formats::inp::descriptor(), folder / "far.inp");
+  run(folder, "sed 's/^\\*\\*~//' far.inp > contact.inp");
+  const std::string alone = solve_without_warning(folder, "far"), touching = solve(folder, "contact");
+  // Newton's iterations are in the .cvg, under the same head.
+  EXPECT_GT(test::text_of(folder / "contact.cvg").size(), test::text_of(folder / "far.cvg").size());
+  for (const char* set : {"YARN1_END", "YARN2_END"})
+    EXPECT_LT((total_force(alone, set) - total_force(touching, set)).norm(),
+              1e-3 * total_force(alone, set).norm());
 }
 
 // CalculiX reads twenty characters of a number.
