@@ -69,7 +69,7 @@ std::size_t write_surfaces(const fem::Mesh& mesh, const std::string& path) {
       if (region != fem::OuterSide::outside)
         loops[region] += fmt::format("{}{}", loops[region].empty() ? "" : ",", surface);
     for (const auto& t : triangles)
-      fmt::print(file, "{} 2 2 {} {} {} {} {}\n", ++element, surface, surface, numbers[t[0]], numbers[t[1]],
+      fmt::print(file, "{} 2 2 0 {} {} {} {}\n", ++element, surface, numbers[t[0]], numbers[t[1]],
                  numbers[t[2]]);
   }
   fmt::print(file, "$EndElements\n");

@@ -170,8 +170,36 @@ double width(const std::array<Vec3, 4>& p) {
   return six / largest;
 }
 
+// Of each point the smallest angle of the surface's triangles at it whose angles are not all at least
+// `target`, degrees; of others 180.
+std::vector<float> needle_angles(const TetComplex& complex, double target) {
+  std::vector<float> result(complex.points.size(), 180.0F);
+  for (std::uint32_t c = 0; c < complex.cells().size(); ++c) {
+    if (!complex.is_alive(c)) continue;
+    const TetComplex::Cell& cell = complex.cell(c);
+    for (std::size_t slot = 0; slot < 4; ++slot) {
+      if (cell.beside[slot] != TetComplex::none) continue;
+      double least = 180;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto corner = [&](std::size_t j) {
+          return complex.points[cell.corners[opposite_sides[slot][j % 3]]];
+        };
+        const Vec3 a = corner(k + 1) - corner(k), b = corner(k + 2) - corner(k);
+        least = std::min(least, std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi);
+      }
+      if (least >= target) continue;
+      for (const std::size_t k : opposite_sides[slot]) {
+        float& at = result[cell.corners[k]];
+        at = std::min(at, static_cast<float>(least));
+      }
+    }
+  }
+  return result;
+}
+
 // Why a cell is still below the target.
-BelowTarget account(const TetComplex& complex, std::uint32_t c, double target) {
+BelowTarget account(const TetComplex& complex, std::uint32_t c, double target,
+                    const std::vector<float>& needles) {
   BelowTarget result;
   const TetComplex::Cell& cell = complex.cell(c);
   std::array<Vec3, 4> p;
@@ -194,7 +222,13 @@ BelowTarget account(const TetComplex& complex, std::uint32_t c, double target) {
     result.wedge = wedge;
     result.at = (from + to) / 2;
   }
-  if (result.cause != BelowTarget::Cause::geometry && all_fixed) {
+  if (result.cause == BelowTarget::Cause::geometry) return result;
+  float needle = 180;
+  for (const std::uint32_t corner : cell.corners) needle = std::min(needle, needles[corner]);
+  if (needle < 180) {
+    result.cause = BelowTarget::Cause::needle;
+    result.wedge = needle;
+  } else if (all_fixed) {
     result.cause = BelowTarget::Cause::surface;
     result.edge_needed = 3 * width(p);
   }
@@ -228,13 +262,14 @@ class Writer {
     cells.clear();
     regions.clear();
     const double goal = quality_of_angle(target_);
+    const std::vector<float> needles = needle_angles(complex_, target_);
     double least = 1;
     for (std::uint32_t c = 0; c < complex_.cells().size(); ++c) {
       if (!complex_.is_alive(c)) continue;
       const TetComplex::Cell& cell = complex_.cell(c);
       least = std::min(least, cell.quality);
       if (cell.quality < goal) {
-        result_.below.push_back(account(complex_, c, target_));
+        result_.below.push_back(account(complex_, c, target_, needles));
         result_.below.back().cell = cells.size();
       }
       Tetrahedron t = cell.corners;

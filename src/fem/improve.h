@@ -24,12 +24,13 @@ namespace selvage::fem {
 // A tetrahedron that is still below the target.
 struct BelowTarget {
   // geometry: two triangles of the surface meet in the edge under a wedge that is sharper than the target:
-  // no mesh of this surface can be better. surface: all its corners are on the surface, whose triangles are
-  // too long for the gap. inner: nothing helped.
-  enum class Cause { geometry, surface, inner } cause = Cause::inner;
+  // no mesh of this surface can be better. needle: it stands at a triangle of the surface with an angle below
+  // the target. surface: all its corners are on the surface, whose triangles are too long for the gap. inner:
+  // nothing helped.
+  enum class Cause { geometry, needle, surface, inner } cause = Cause::inner;
   std::size_t cell = 0;
   double angle = 0;  // its smallest dihedral angle, degrees
-  double wedge = 0;  // of the geometry: degrees
+  double wedge = 0;  // of the geometry, or of the needle: degrees
   Vec3 at = Vec3::Zero();
   // Cause::surface: the longest edge of the surface that the gap here asks for, three times its width.
   double edge_needed = 0;

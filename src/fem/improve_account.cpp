@@ -25,6 +25,11 @@ std::string text_of(const BelowTarget& worst, std::size_t count, double target, 
           "{}: they stand in wedges of the geometry, where faces meet under less than that, and "
           "no mesh of them is better; the sharpest wedge has {:.3g} degrees",
           start, worst.wedge);
+    case BelowTarget::Cause::needle:
+      return fmt::format(
+          "{}, the smallest {:.3g}: they stand at triangles of the surface that are needles "
+          "themselves, the sharpest with {:.3g} degrees; another --size may help",
+          start, worst.angle, worst.wedge);
     case BelowTarget::Cause::surface:
       return fmt::format(
           "{}, the smallest {:.3g}, in gaps that are thin for the triangles beside them; edges of "
@@ -41,7 +46,7 @@ std::string text_of(const BelowTarget& worst, std::size_t count, double target, 
 std::vector<Message> describe(const Improvement& improvement, double target, std::string_view unit) {
   using Cause = BelowTarget::Cause;
   std::vector<Message> result;
-  for (const Cause cause : {Cause::geometry, Cause::surface, Cause::inner}) {
+  for (const Cause cause : {Cause::geometry, Cause::needle, Cause::surface, Cause::inner}) {
     const BelowTarget* worst = nullptr;
     double least_edge = 0;
     for (const BelowTarget& below : improvement.below) {

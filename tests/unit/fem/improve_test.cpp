@@ -226,6 +226,44 @@ TEST(Improve, WedgeOfTheGeometryIsNamed) {
   EXPECT_NEAR(result.below[0].at.x(), 0, 1e-12);
 }
 
+TEST(Improve, WedgesAreToldInANote) {
+  const double half = 2 * std::numbers::pi / 180;
+  Tets tets;
+  tets.points = {
+      {0, 0, 0}, {std::cos(half), -std::sin(half), 0}, {std::cos(half), std::sin(half), 0}, {0.5, 0, 0.7}};
+  tets.cells = {{0, 1, 2, 3}};
+  tets.regions = {0};
+  tets.fixed = 4;
+  const Improvement result = improved(tets, 10);
+  // Its edge to the top stands over a wedge of the geometry, 0-3 between the sides at the needle's tip.
+  ASSERT_EQ(result.below.size(), 1U);
+  EXPECT_EQ(result.below[0].cause, BelowTarget::Cause::geometry);
+  const std::vector<Message> messages = describe(result, 10, "mm");
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0].severity, Severity::note);
+  EXPECT_EQ(count(result, 10).in_wedges, 1U);
+}
+
+// A cube with an edge that has a piece of a hundredth, and triangles on that.
+TEST(Improve, NeedlesOfTheSurfaceAreNamed) {
+  const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},   {0, 0, 1},
+                                    {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0.5, 0, 1}, {0.51, 0, 1}};
+  const std::vector<Triangle> triangles = {{0, 2, 1}, {0, 3, 2}, {7, 4, 8}, {7, 8, 9}, {7, 9, 5}, {7, 5, 6},
+                                           {0, 1, 5}, {0, 5, 9}, {0, 9, 8}, {0, 8, 4}, {1, 2, 6}, {1, 6, 5},
+                                           {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
+  Tets tets = tetgen_mesh(points, triangles, 0.02);
+  const Improvement result = improved(tets, 10);
+  ASSERT_FALSE(result.below.empty());
+  for (const BelowTarget& below : result.below) {
+    EXPECT_EQ(below.cause, BelowTarget::Cause::needle) << below.angle;
+    EXPECT_NEAR(below.wedge, 0.4, 0.15);  // a hundredth over the square root of two
+  }
+  const std::vector<Message> messages = describe(result, 10, "mm");
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0].severity, Severity::warning);
+  EXPECT_NE(messages[0].text.find("needles"), std::string::npos);
+}
+
 // An edge of the surface with more cells in it than its angle bears: it loses some.
 TEST(Improve, EdgeOfTheSurfaceLosesCells) {
   Tets tets;
