@@ -7,6 +7,7 @@
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Geom2d_BSplineCurve.hxx>
+#include <Geom_Plane.hxx>
 #include <Precision.hxx>
 #include <ShapeFix_Face.hxx>
 #include <TColStd_Array1OfInteger.hxx>
@@ -20,8 +21,11 @@
 #include <TopoDS_Solid.hxx>
 #include <TopoDS_Vertex.hxx>
 #include <TopoDS_Wire.hxx>
+#include <algorithm>
 #include <cmath>
+#include <gp_Ax3.hxx>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 #include "solid/occt/shape.h"
@@ -88,12 +92,122 @@ class PartBuilder {
       : part_(part), tolerance_(tolerance), vertices_(tolerance) {}
 
   PartShape build() {
+    if (is_stated(part_)) return stated();
     std::vector<TopoDS_Face> faces;
     for (const cad::Face& face : part_.faces) faces.push_back(build_face(face));
     return part_.kind == cad::Part::Kind::surfaces ? loose(faces) : joined(faces);
   }
 
  private:
+  // Nothing has to be found: every edge has both its curves, and an id that two faces share.
+  static bool is_stated(const cad::Part& part) {
+    if (part.kind != cad::Part::Kind::solid) return false;
+    std::map<int, int> uses;
+    for (const cad::Face& face : part.faces) {
+      if (face.loops.empty()) return false;
+      for (const cad::Loop& loop : face.loops)
+        for (const cad::Edge& edge : loop.edges) {
+          if (edge.id < 0 || edge.curve.points.empty() || edge.flat.points.empty() ||
+              edge.curve.first_parameter() != edge.flat.first_parameter() ||
+              edge.curve.last_parameter() != edge.flat.last_parameter())
+            return false;
+          ++uses[edge.id];
+        }
+    }
+    return std::all_of(uses.begin(), uses.end(), [](const auto& use) { return use.second == 2; });
+  }
+
+  // One shell for all faces that hang together, in the order of their first ones.
+  PartShape stated() {
+    PartShape result;
+    std::vector<TopoDS_Face> faces;
+    for (const cad::Face& face : part_.faces) faces.push_back(stated_face(face));
+    TopoDS_Solid solid;
+    builder_.MakeSolid(solid);
+    for (const std::vector<std::size_t>& group : joined_faces()) {
+      TopoDS_Shell shell;
+      builder_.MakeShell(shell);
+      for (const std::size_t i : group) builder_.Add(shell, faces[i]);
+      shell.Closed(true);
+      builder_.Add(solid, shell);
+    }
+    for (const auto& [id, edge] : shared_) BRepLib::SameParameter(edge, Precision::Confusion());
+    BRepLib::UpdateTolerances(solid);
+    result.shape = solid;
+    result.closed = true;
+    result.faces.assign(faces.begin(), faces.end());
+    return result;
+  }
+
+  TopoDS_Face stated_face(const cad::Face& face) {
+    TopoDS_Face built;
+    builder_.MakeFace(built, surface_of(face.surface), Precision::Confusion());
+    for (const cad::Loop& loop : face.loops) {
+      TopoDS_Wire wire;
+      builder_.MakeWire(wire);
+      for (const cad::Edge& edge : loop.edges) {
+        auto known = shared_.find(edge.id);
+        if (known == shared_.end()) {
+          TopoDS_Edge made;
+          builder_.MakeEdge(made, solid::occt::spatial_curve(edge.curve, 1.0), Precision::Confusion());
+          finish_edge(made, edge.curve.points.front(), edge.curve.points.back(), edge.curve);
+          known = shared_.emplace(edge.id, made).first;
+        }
+        const TopoDS_Edge use = turned(known->second, edge);
+        const bool forward = use.Orientation() == TopAbs_FORWARD;
+        builder_.UpdateEdge(known->second, flat_curve(forward ? edge.flat : nurbs::reversed(edge.flat)),
+                            built, Precision::Confusion());
+        builder_.Add(wire, use);
+      }
+      wire.Closed(true);
+      builder_.Add(built, wire);
+    }
+    if (face.reversed) built.Reverse();
+    return built;
+  }
+
+  // A rectangle whose parameters are lengths is a plane with the same parameters.
+  static Handle(Geom_Surface) surface_of(const nurbs::Surface& surface) {
+    if (surface.degree_u == 1 && surface.degree_v == 1 && surface.count_u == 2 && surface.count_v == 2 &&
+        !surface.is_rational()) {
+      const Vec3 &a = surface.points[0], &b = surface.points[1], &c = surface.points[2],
+                 &d = surface.points[3];
+      const double length_u = surface.last_u() - surface.first_u(),
+                   length_v = surface.last_v() - surface.first_v();
+      const Vec3 x = (b - a) / length_u, y = (c - a) / length_v;
+      const double size = length_u + length_v;
+      if (((b - a) - (d - c)).norm() < 1e-12 * size && std::abs(x.norm() - 1) < 1e-12 &&
+          std::abs(y.norm() - 1) < 1e-12 && std::abs(x.dot(y)) < 1e-12) {
+        const Vec3 origin = a - surface.first_u() * x - surface.first_v() * y, normal = x.cross(y);
+        return new Geom_Plane(gp_Ax3(gp_Pnt(origin.x(), origin.y(), origin.z()),
+                                     gp_Dir(normal.x(), normal.y(), normal.z()),
+                                     gp_Dir(x.x(), x.y(), x.z())));
+      }
+    }
+    return solid::occt::spatial_surface(surface, 1.0);
+  }
+
+  [[nodiscard]] std::vector<std::vector<std::size_t>> joined_faces() const {
+    std::vector<std::size_t> group(part_.faces.size());
+    std::iota(group.begin(), group.end(), 0);
+    const auto root = [&](std::size_t i) {
+      while (group[i] != i) i = group[i];
+      return i;
+    };
+    std::map<int, std::size_t> first;
+    for (std::size_t i = 0; i < group.size(); ++i)
+      for (const cad::Loop& loop : part_.faces[i].loops)
+        for (const cad::Edge& edge : loop.edges) {
+          const std::size_t a = root(first.try_emplace(edge.id, i).first->second), b = root(i);
+          group[std::max(a, b)] = std::min(a, b);
+        }
+    std::map<std::size_t, std::vector<std::size_t>> members;
+    for (std::size_t i = 0; i < group.size(); ++i) members[root(i)].push_back(i);
+    std::vector<std::vector<std::size_t>> result;
+    for (auto& [first_face, faces] : members) result.push_back(std::move(faces));
+    return result;
+  }
+
   TopoDS_Face build_face(const cad::Face& face) {
     const Handle(Geom_BSplineSurface) surface = solid::occt::spatial_surface(face.surface, 1.0);
     TopoDS_Face built;

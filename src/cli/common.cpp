@@ -51,6 +51,7 @@ Status complete(const Parsed& parsed, pipeline::Options& options) {
        {yarn::EndStyle::patch, yarn::EndStyle::fan, yarn::EndStyle::planar, yarn::EndStyle::none})
     if (parsed.ends == yarn::name_of(style)) options.ends = style;
   if (options.command == pipeline::Command::relax) options.relaxing.wanted = true;
+  if (options.matrix) options.cut = true;
   if (Status status = check_relaxing(options.relaxing); !status.ok()) return status.error();
   if (options.resume && (options.report.empty() || options.report == "-"))
     return error(Kind::usage, "--resume goes by the report of the run before: name it with --report FILE");

@@ -28,6 +28,12 @@ void add_convert(CLI::App& program, Parsed& parsed) {
   add_units(command, parsed,
             "write surfaces in this unit: m, cm, mm, um, inch (default: the input's, which costs no bits)");
   add_surfaces(command, parsed);
+  command.add_flag("--cut", parsed.options.cut,
+                   "IGES, STEP: the yarns cut flush by the cell's faces, as solids");
+  command.add_flag(
+      "--matrix", parsed.options.matrix,
+      "IGES, STEP: with them what they leave of the cell, as one solid that shares its faces with "
+      "theirs (implies --cut)");
   add_relaxing(command, parsed, true);
   run_pipeline(command, parsed, pipeline::Command::convert);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
+#include "pipeline/cell_cad.h"
 #include "pipeline/facts.h"
 #include "pipeline/instances.h"
 #include "pipeline/relaxing.h"
@@ -129,6 +130,35 @@ void write_others(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) 
   }
 }
 
+// What a surface format is given of a unit cell: solids.
+void write_cell(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
+  const std::optional<fabric::YarnBuilder> builder = job.builder(fabric);
+  if (!builder) return;
+  std::optional<std::vector<cad::Part>> parts = cell_solids(job, fabric, *builder);
+  if (!parts || !open_writers(job, fabric, parts->size(), outputs)) return;
+  const Unit units = job.options.units.value_or(fabric.units);
+  for (std::size_t i = 0; i < parts->size(); ++i) {
+    cad::Part& part = (*parts)[i];
+    job.progress("writing solid", i + 1, parts->size());
+    convert_lengths(part, fabric.units, units);
+    for (OpenOutput& output : outputs)
+      if (Status status = output.writer->add_part(part); !status.ok()) return job.say(status.error());
+  }
+  for (OpenOutput& output : outputs)
+    if (!take_facts(job, output, output.writer->finish())) return;
+}
+
+// Solids are what is cut: a format holds them, or is refused before anything is built.
+bool holds_solids(Job& job, const OpenOutputs& outputs) {
+  for (const OpenOutput& output : outputs) {
+    const formats::Descriptor& format = *output.plan->format;
+    if (format.write_fabric == nullptr && format.open_bodies != nullptr && format.carries_surfaces) continue;
+    job.say(error(Kind::usage, fmt::format("{} holds no solids, which {} makes: write iges or step",
+                                           format.name, job.options.matrix ? "--matrix" : "--cut")));
+  }
+  return !job.has_failed();
+}
+
 // The first of two passes; what fails here is told in the second one.
 std::optional<InstanceFinder> find_instances(Job& job, const fabric::Fabric& fabric,
                                              const fabric::YarnBuilder& builder) {
@@ -194,6 +224,10 @@ void convert(Job& job) {
   if (!fabric) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);
   if (!outputs) return;
+  if (job.options.cut) {
+    if (holds_solids(job, *outputs)) write_cell(job, *fabric, *outputs);
+    return commit_all(job, *outputs);
+  }
   bool has_surfaces = false;
   for (OpenOutput& output : *outputs) {
     if (output.plan->format->write_fabric == nullptr)

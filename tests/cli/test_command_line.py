@@ -34,8 +34,6 @@ class Usage(Case):
 
     def test_words_of_later_versions(self):
         self.refused("'selvage report' is not in this version", "report", GRID)
-        for word in ("--cut", "--matrix"):
-            self.refused(f"'{word}' is not in this version", "convert", GRID, word, "-o", self.out)
         for word in ("--matrix", "--periodic"):
             self.refused("is not in this version", "mesh", GRID, word, "-o", self.out)
 

@@ -1,0 +1,388 @@
+#include "cell/cad_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <string>
+
+#include "cell/faces.h"
+#include "cell/tube_faces.h"
+#include "nurbs/bezier.h"  // Box2
+#include "nurbs/restrict.h"
+#include "yarn/end_plane.h"
+
+namespace selvage::cell {
+
+namespace {
+
+using nurbs::Box2;
+
+constexpr int matrix_level = 9;  // after those of the yarns' roles
+
+// Ends that lie in a face of the box within the tolerance of the cut, brought into it.
+std::vector<yarn::Body> flush(std::span<const yarn::Body> bodies, const Box3& box, const Cut& cut) {
+  std::vector<yarn::Body> result(bodies.begin(), bodies.end());
+  for (const Piece& piece : cut.pieces)
+    for (const Border& border : piece.borders)
+      for (const Arc& arc : border.arcs) {
+        if (arc.face >= face_count || arc.along == Arc::Along::through) continue;
+        nurbs::Surface& surface = result[piece.body].surface;
+        const int row = arc.along == Arc::Along::end ? surface.count_v - 1 : 0;
+        for (int i = 0; i < surface.count_u; ++i)
+          surface.point(i, row)[axis_of(arc.face)] = plane_of(box, arc.face);
+      }
+  return result;
+}
+
+// The parameters of a face of the box, of which the first cross the second points outward.
+std::array<int, 2> plane_axes(int face) {
+  const int b = (axis_of(face) + 1) % 3, c = (axis_of(face) + 2) % 3;
+  return is_high(face) ? std::array{b, c} : std::array{c, b};
+}
+
+nurbs::Curve in_plane(const nurbs::Curve& curve, const std::array<int, 2>& axes) {
+  nurbs::Curve flat = curve;
+  for (Vec3& p : flat.points) p = Vec3(p[axes[0]], p[axes[1]], 0);
+  return flat;
+}
+
+nurbs::Surface rectangle(const Box3& box, int face, const Box2& range) {
+  const std::array<int, 2> axes = plane_axes(face);
+  nurbs::Surface surface;
+  surface.degree_u = surface.degree_v = 1;
+  surface.count_u = surface.count_v = 2;
+  surface.knots_u = {range.min().x(), range.min().x(), range.max().x(), range.max().x()};
+  surface.knots_v = {range.min().y(), range.min().y(), range.max().y(), range.max().y()};
+  for (const double v : {range.min().y(), range.max().y()})
+    for (const double u : {range.min().x(), range.max().x()}) {
+      Vec3 p;
+      p[axis_of(face)] = plane_of(box, face);
+      p[axes[0]] = u;
+      p[axes[1]] = v;
+      surface.points.push_back(p);
+    }
+  return surface;
+}
+
+class Groups {
+ public:
+  explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  std::size_t of(std::size_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::size_t a, std::size_t b) {
+    a = of(a);
+    b = of(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+// A shell: faces that hang together by their edges.
+struct Shell {
+  std::vector<cad::Face> faces;
+  bool in_box_faces = false;
+  Box3 box;
+};
+
+// In the order of their first faces; `planar[i]`: the face lies in one of the box's.
+std::vector<Shell> shells_of(std::vector<cad::Face> faces, const std::vector<bool>& planar) {
+  Groups groups(faces.size());
+  std::map<int, std::size_t> first;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (const cad::Loop& loop : faces[i].loops)
+      for (const cad::Edge& edge : loop.edges) groups.join(first.try_emplace(edge.id, i).first->second, i);
+  std::vector<Shell> shells;
+  std::map<std::size_t, std::size_t> index;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const auto [at, is_new] = index.try_emplace(groups.of(i), shells.size());
+    if (is_new) shells.emplace_back();
+    Shell& shell = shells[at->second];
+    shell.in_box_faces = shell.in_box_faces || planar[i];
+    for (const cad::Loop& loop : faces[i].loops)
+      for (const cad::Edge& edge : loop.edges)
+        for (const Vec3& p : edge.curve.points) shell.box.extend(p);
+    shell.faces.push_back(std::move(faces[i]));
+  }
+  return shells;
+}
+
+class CellBuilder {
+ public:
+  CellBuilder(std::span<const yarn::Body> bodies, const Box3& box, const Cut& cut, Division division,
+              TubeFaces tubes)
+      : bodies_(bodies), box_(box), cut_(cut), division_(std::move(division)), tubes_(std::move(tubes)) {}
+
+  Result<std::vector<cad::Part>> run(bool with_matrix) {
+    set_corners();
+    for (const Segment& segment : division_.segments) {
+      segment_edges_.push_back(tubes_.edges.size());
+      const Vec3 &a = division_.corners[segment.from].at, &b = division_.corners[segment.to].at;
+      const double length = (b - a).norm();
+      tubes_.edges.push_back(
+          {{.degree = 1, .knots = {0, 0, length, length}, .points = {a, b}, .weights = {}}, {}});
+    }
+    std::vector<cad::Part> parts;
+    std::vector<cad::Face> around;  // of the matrix
+    std::vector<bool> planar;
+    for (std::size_t body = 0; body < bodies_.size(); ++body) {
+      Result<std::vector<cad::Face>> sides = sides_of(body);
+      if (!sides) return sides.error();
+      if (sides->empty()) continue;
+      if (with_matrix)
+        for (const cad::Face& face : *sides) around.push_back(of_matrix(face));
+      add_yarn(body, std::move(*sides), parts);
+    }
+    if (!with_matrix) return parts;
+    planar.assign(around.size(), false);
+    for (const FaceRegion& region : division_.regions)
+      if (region.body == FaceRegion::matrix) around.push_back(of_matrix(region_face(region)));
+    planar.resize(around.size(), true);
+    add_matrix(shells_of(std::move(around), planar), parts);
+    return parts;
+  }
+
+ private:
+  // Where yarns cross the edges of the box: the corners' own numbers.
+  void set_corners() {
+    for (std::size_t p = 0; p < cut_.pieces.size(); ++p)
+      for (std::size_t b = 0; b < cut_.pieces[p].borders.size(); ++b)
+        for (std::size_t a = 0; a < cut_.pieces[p].borders[b].arcs.size(); ++a) {
+          const Division::ArcEnds ends = division_.ends[p][b][a];
+          const std::vector<std::size_t>& edges = tubes_.of_arc[p][b][a];
+          if (ends.first != Division::none)
+            tubes_.edges[edges.front()].space.points.front() = division_.corners[ends.first].at;
+          if (ends.last != Division::none)
+            tubes_.edges[edges.back()].space.points.back() = division_.corners[ends.last].at;
+        }
+  }
+
+  [[nodiscard]] cad::Edge edge_of(std::size_t id, bool backward) const {
+    cad::Edge edge;
+    edge.curve = backward ? nurbs::reversed(tubes_.edges[id].space) : tubes_.edges[id].space;
+    edge.id = static_cast<int>(id);
+    return edge;
+  }
+
+  [[nodiscard]] cad::Face tube_face(const TubeFace& given) const {
+    const yarn::Body& body = bodies_[given.body];
+    cad::Face face;
+    face.surface = nurbs::restricted(body.surface, given.low_u, given.high_u, given.low_v, given.high_v);
+    face.reversed = body.inward;
+    for (const EdgeLoop& uses : given.loops) {
+      cad::Loop loop;
+      for (const EdgeUse& use : uses) {
+        cad::Edge edge = edge_of(use.edge, use.backward);
+        edge.flat = use.backward ? nurbs::reversed(tubes_.edges[use.edge].flat) : tubes_.edges[use.edge].flat;
+        for (Vec3& p : edge.flat.points)
+          p = Vec3(std::clamp(p.x() + use.shift_u, given.low_u, given.high_u),
+                   std::clamp(p.y(), given.low_v, given.high_v), 0);
+        loop.edges.push_back(std::move(edge));
+      }
+      face.loops.push_back(std::move(loop));
+    }
+    return face;
+  }
+
+  // The arc's edges, one after the other in the direction that is asked for.
+  template <typename Take>
+  void for_each_edge(const ArcPlace& arc, bool backward, const Take& take) const {
+    const std::vector<std::size_t>& edges = tubes_.of_arc[arc.piece][arc.border][arc.arc];
+    for (std::size_t i = 0; i < edges.size(); ++i)
+      take(backward ? edges[edges.size() - 1 - i] : edges[i], backward);
+  }
+
+  [[nodiscard]] cad::Face region_face(const FaceRegion& region) const {
+    const std::array<int, 2> axes = plane_axes(region.face);
+    cad::Face face;
+    Box2 range;
+    for (const Outline& outline : region.outlines) {
+      cad::Loop loop;
+      const auto add = [&](std::size_t id, bool backward) {
+        cad::Edge edge = edge_of(id, backward);
+        edge.flat = in_plane(edge.curve, axes);
+        for (const Vec3& p : edge.flat.points) range.extend(p.head<2>());
+        loop.edges.push_back(std::move(edge));
+      };
+      for (const Side& side : outline) {
+        if (side.kind == Side::Kind::segment)
+          add(segment_edges_[side.segment], side.backward);
+        else
+          for_each_edge(side.arc, side.backward, add);
+      }
+      face.loops.push_back(std::move(loop));
+    }
+    if (region.body != FaceRegion::matrix) {
+      const Vec2 margin = Vec2::Constant(0.1 * range.sizes().maxCoeff());
+      range = Box2(range.min() - margin, range.max() + margin);
+    }
+    face.surface = rectangle(box_, region.face, range);
+    return face;
+  }
+
+  // What seals a yarn that ends inside the box.
+  Result<cad::Face> end_face(const yarn::Body& body, const ArcPlace& place, const Arc& arc) const {
+    const bool last = arc.along == Arc::Along::end;
+    const yarn::EndFace& end = last ? body.end : body.start;
+    if (end.style == yarn::EndStyle::fan || end.style == yarn::EndStyle::none)
+      return end_fault(body, end.style, last);
+    cad::Face face;
+    cad::Loop loop;
+    std::optional<yarn::EndPlane> plane;
+    if (end.style == yarn::EndStyle::planar) {
+      plane = yarn::end_plane(body, yarn::end_curve(body, last), last);
+      face.surface = plane->surface;
+      face.reversed = plane->inward;
+    } else {
+      face.surface = end.surface;
+      face.reversed = end.inward;
+    }
+    // Along growing u.
+    for_each_edge(place, last, [&](std::size_t id, bool backward) {
+      cad::Edge edge = edge_of(id, backward);
+      edge.flat = plane ? plane->in_parameters(edge.curve) : on_patch(body, edge.curve);
+      loop.edges.push_back(std::move(edge));
+    });
+    face.loops.push_back(std::move(loop));
+    return face;
+  }
+
+  Message end_fault(const yarn::Body& body, yarn::EndStyle style, bool last) const {
+    const nurbs::Curve outline = yarn::end_curve(body, last);
+    Message message =
+        error(style == yarn::EndStyle::fan ? Kind::unsupported : Kind::geometry,
+              fmt::format("yarn '{}' ends inside the cell {}; --ends patch or planar closes it", body.name,
+                          style == yarn::EndStyle::fan ? "in a fan of triangles, which is not cut"
+                                                       : "without an end face"));
+    message.yarn = body.name;
+    message.place = body.place;
+    message.at = outline.points.front();
+    return message;
+  }
+
+  // Along a side of the unit square, in proportion to its share of the quarter.
+  static nurbs::Curve on_patch(const yarn::Body& body, const nurbs::Curve& edge) {
+    const double t0 = edge.first_parameter(), t1 = edge.last_parameter(), middle = 0.5 * (t0 + t1);
+    std::size_t k = 3;
+    while (k > 0 && body.quarters[k] > middle) --k;
+    const double from = body.quarters[k], to = k < 3 ? body.quarters[k + 1] : body.surface.last_u();
+    const auto at = [&](double t) {
+      const double share = std::clamp((t - from) / (to - from), 0.0, 1.0);
+      switch (k) {
+        case 0:
+          return Vec3(share, 0, 0);
+        case 1:
+          return Vec3(1, share, 0);
+        case 2:
+          return Vec3(1 - share, 1, 0);
+        default:
+          return Vec3(0, 1 - share, 0);
+      }
+    };
+    return {.degree = 1, .knots = {t0, t0, t1, t1}, .points = {at(t0), at(t1)}, .weights = {}};
+  }
+
+  // The faces that a yarn has in common with the matrix.
+  Result<std::vector<cad::Face>> sides_of(std::size_t body) const {
+    std::vector<cad::Face> faces;
+    for (const TubeFace& face : tubes_.faces)
+      if (face.body == body) faces.push_back(tube_face(face));
+    for (std::size_t p = 0; p < cut_.pieces.size(); ++p) {
+      if (cut_.pieces[p].body != body) continue;
+      for (std::size_t b = 0; b < cut_.pieces[p].borders.size(); ++b) {
+        const Border& border = cut_.pieces[p].borders[b];
+        for (std::size_t a = 0; a < border.arcs.size(); ++a) {
+          if (border.arcs[a].face < face_count) continue;
+          Result<cad::Face> face = end_face(bodies_[body], {p, b, a}, border.arcs[a]);
+          if (!face) return face.error();
+          faces.push_back(std::move(*face));
+        }
+      }
+    }
+    return faces;
+  }
+
+  void add_yarn(std::size_t index, std::vector<cad::Face> faces, std::vector<cad::Part>& parts) const {
+    const yarn::Body& body = bodies_[index];
+    for (const FaceRegion& region : division_.regions)
+      if (region.body == index) faces.push_back(region_face(region));
+    const std::vector<bool> planar(faces.size(), true);
+    std::vector<Shell> shells = shells_of(std::move(faces), planar);
+    for (std::size_t i = 0; i < shells.size(); ++i) {
+      cad::Part part;
+      part.kind = cad::Part::Kind::solid;
+      part.name = shells.size() == 1 ? body.name : fmt::format("{}.part{}", body.name, i + 1);
+      part.group = shells.size() == 1 || !body.group.empty() ? body.group : body.name;
+      part.color = body.color;
+      part.level = static_cast<int>(body.role) + 1;
+      part.origin.place = body.place;
+      part.faces = std::move(shells[i].faces);
+      name_faces(part);
+      parts.push_back(std::move(part));
+    }
+  }
+
+  static cad::Face of_matrix(cad::Face face) {
+    face.reversed = !face.reversed;
+    return face;
+  }
+
+  // Shells that lie in no face of the box are round yarns that stand free in the matrix.
+  static void add_matrix(std::vector<Shell> shells, std::vector<cad::Part>& parts) {
+    std::vector<Shell> outer, voids;
+    for (Shell& shell : shells) (shell.in_box_faces ? outer : voids).push_back(std::move(shell));
+    for (Shell& inner : voids) {
+      auto home = std::find_if(outer.begin(), outer.end(),
+                               [&](const Shell& shell) { return shell.box.contains(inner.box); });
+      if (home == outer.end()) home = outer.begin();
+      std::move(inner.faces.begin(), inner.faces.end(), std::back_inserter(home->faces));
+    }
+    for (std::size_t i = 0; i < outer.size(); ++i) {
+      cad::Part part;
+      part.kind = cad::Part::Kind::solid;
+      part.name = outer.size() == 1 ? std::string(matrix_name) : fmt::format("{}.part{}", matrix_name, i + 1);
+      if (outer.size() > 1) part.group = matrix_name;
+      part.color = yarn::Color{};
+      part.level = matrix_level;
+      part.faces = std::move(outer[i].faces);
+      name_faces(part);
+      parts.push_back(std::move(part));
+    }
+  }
+
+  static void name_faces(cad::Part& part) {
+    for (cad::Face& face : part.faces) {
+      face.name = part.name;
+      face.color = part.color;
+      face.level = part.level;
+      face.origin.place = part.origin.place;
+    }
+  }
+
+  std::span<const yarn::Body> bodies_;
+  Box3 box_;
+  const Cut& cut_;
+  Division division_;
+  TubeFaces tubes_;
+  std::vector<std::size_t> segment_edges_;
+};
+
+}  // namespace
+
+Result<std::vector<cad::Part>> cad_parts(std::span<const yarn::Body> given, const Box3& box, const Cut& cut,
+                                         const CadOptions& options) {
+  const std::vector<yarn::Body> bodies = flush(given, box, cut);
+  Result<Division> division = divide_faces(bodies, box, cut);
+  if (!division) return division.error();
+  Result<TubeFaces> tubes = tube_faces(bodies, box, cut, options.tolerance);
+  if (!tubes) return tubes.error();
+  return CellBuilder(bodies, box, cut, std::move(*division), std::move(*tubes)).run(options.matrix);
+}
+
+}  // namespace selvage::cell
