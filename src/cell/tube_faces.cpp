@@ -17,7 +17,8 @@ namespace {
 
 using nurbs::Box2;
 
-constexpr double on_line = 1e-9;  // of the period
+constexpr double on_line = 1e-9;        // of the period
+constexpr double pieces_per_round = 4;  // of a line along the yarn, as long as the yarn is round
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
 // A place of a border where edges end: a corner between two arcs, or a node.
@@ -242,7 +243,7 @@ class PieceDivider {
       for (std::size_t i = 0; i < nodes.size(); i += 2) {
         if (i + 1 == nodes.size() || !stop(nodes[i]).is_up || stop(nodes[i + 1]).is_up)
           return fault("is cut too near to its seam to be divided there", parameters_of(nodes[i]));
-        pairs_.push_back({nodes[i], nodes[i + 1], none});
+        pairs_.push_back({nodes[i], nodes[i + 1]});
       }
     }
     return {};
@@ -270,16 +271,45 @@ class PieceDivider {
     }
     for (Pair& pair : pairs_) {
       const double u = lines_[stop(pair.from).line];
-      pair.edge = out_.edges.size();
-      out_.edges.push_back(
-          line_of_constant_u(body_.surface, u, parameters_of(pair.from).y(), parameters_of(pair.to).y()));
+      const double low = parameters_of(pair.from).y(), high = parameters_of(pair.to).y();
+      pair.first_edge = out_.edges.size();
+      const std::vector<double> stations = stations_of(u, low, high);
+      for (std::size_t i = 1; i < stations.size(); ++i)
+        out_.edges.push_back(line_of_constant_u(body_.surface, u, stations[i - 1], stations[i]));
+      pair.last_edge = out_.edges.size();
     }
   }
 
   struct Pair {
     StopPlace from, to;
-    std::size_t edge = none;  // from `from` up to `to`
+    std::size_t first_edge = none, last_edge = none;  // from `from` up to `to`
   };
+
+  // Pieces about as long as the yarn is thick, for meshers put points on each; uneven, since where a face is
+  // its own mirror image such points lie on circles by fours, and it is left to rounding how they are joined:
+  // by gmsh in two solids in two ways.
+  [[nodiscard]] std::vector<double> stations_of(double u, double low, double high) const {
+    constexpr int samples = 64;
+    double length = 0;
+    for (int i = 1; i <= samples; ++i)
+      length += (position(body_, {u, std::lerp(low, high, static_cast<double>(i) / samples)}) -
+                 position(body_, {u, std::lerp(low, high, static_cast<double>(i - 1) / samples)}))
+                    .norm();
+    double round = 0;
+    const double middle = 0.5 * (low + high);
+    for (int i = 1; i <= samples; ++i)
+      round += (position(body_, {first_u_ + period_ * i / samples, middle}) -
+                position(body_, {first_u_ + period_ * (i - 1) / samples, middle}))
+                   .norm();
+    const int count = std::clamp(static_cast<int>(std::ceil(pieces_per_round * length / round)), 2, 64);
+    std::vector<double> stations;
+    for (int i = 0; i <= count; ++i) {
+      const double share = static_cast<double>(i) / count;
+      const double uneven = share * (1 - share) * (u == first_u_ ? 0.13 : -0.17);
+      stations.push_back(std::lerp(low, high, share + uneven));
+    }
+    return stations;
+  }
 
   // The use of a line that goes on from this node, and the node at its other end.
   [[nodiscard]] const Pair* pair_at(const StopPlace& place) const {
@@ -315,7 +345,8 @@ class PieceDivider {
       if (!stop(place).is_node) continue;
       const Pair& pair = *pair_at(place);
       const bool up = pair.from.border == place.border && pair.from.stop == place.stop;
-      append(traced, pair.edge, !up);
+      for (std::size_t e = pair.first_edge; e < pair.last_edge; ++e)
+        append(traced, up ? e : pair.first_edge + pair.last_edge - 1 - e, !up);
       place = up ? pair.to : pair.from;
     } while (place.border != start.border || place.stop != start.stop);
     const double miss = std::abs(traced.outline.back().x() - traced.outline.front().x());
