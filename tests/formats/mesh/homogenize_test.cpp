@@ -59,11 +59,14 @@ fem::Mesh cell_mesh(const std::string& text, const Wanted& wanted) {
   return mesh.ok() ? std::move(*mesh) : fem::Mesh{};
 }
 
-Json homogenized(const fem::Mesh& mesh) {
+std::string run_script(const test::Folder& folder, const std::string& arguments) {
+  return test::run(folder, std::string(SYSTEM_PYTHON) + " " + HOMOGENIZE + " " + arguments);
+}
+
+Json homogenized(const fem::Mesh& mesh, const std::string& solver = "direct") {
   const test::Folder folder;
   test::save(mesh, formats::inp::descriptor(), folder / "cell.inp");
-  const std::string words =
-      test::run(folder, std::string(SYSTEM_PYTHON) + " " + HOMOGENIZE + " cell.inp --bounds --json -");
+  const std::string words = run_script(folder, "cell.inp --bounds --json - --solver " + solver);
   Json result = Json::parse(words, nullptr, false);
   EXPECT_FALSE(result.is_discarded()) << words;
   if (result.is_discarded()) return Json::object();
@@ -151,6 +154,29 @@ TEST(Homogenize, AStraightYarnFollowsTheRuleOfMixtures) {
     EXPECT_NEAR(number(result, "engineering", "E1"), mixed, 0.005 * mixed);
     EXPECT_TRUE(result["inside_bounds"].get<bool>());
   }
+}
+
+TEST(Homogenize, ConjugateGradientsComeNear) {
+  const fem::Mesh mesh = cell_mesh(cell_text("transverse 51500 17500 0.26 5800 0.31", "x y"), {.size = 0.2});
+  const Json exact = homogenized(mesh), near = homogenized(mesh, "iterative");
+  EXPECT_LT((stiffness(exact) - stiffness(near)).cwiseAbs().maxCoeff(), 1e-3 * stiffness(exact).maxCoeff());
+  for (const char* name : {"alpha_xx", "alpha_yy"})
+    EXPECT_NEAR(number(near, "expansion", name), number(exact, "expansion", name),
+                1e-3 * number(exact, "expansion", name));
+}
+
+TEST(Homogenize, SaysWhatIsWrong) {
+  const test::Folder folder;
+  EXPECT_EQ(run_script(folder, "nothing.inp"), "homogenize: nothing.inp: no such file\n");
+  std::ofstream(folder / "other.inp") << "*HEADING\nanother deck\n*NODE\n1, 0, 0, 0\n";
+  EXPECT_NE(run_script(folder, "other.inp").find("no unit cell with load cases"), std::string::npos);
+  fem::Mesh mesh = cell_mesh(cell_text("isotropic 3400 0.35", "x y z"), {.voxels = 4});
+  test::save(mesh, formats::inp::descriptor(), folder / "cell.inp");
+  EXPECT_NE(run_script(folder, "cell.inp --ccx no-such-program").find("no-such-program is not installed"),
+            std::string::npos);
+  mesh.nodes[mesh.elements[0][6]] = mesh.nodes[mesh.elements[0][0]];  // an element turned inside out
+  test::save(mesh, formats::inp::descriptor(), folder / "cell.inp");
+  EXPECT_NE(run_script(folder, "cell.inp").find("CalculiX stopped: "), std::string::npos);
 }
 
 // Boron in aluminium, 47 % in squares. Published: E2 = 144 GPa, G23 = 45.9 (C. T. Sun, R. S. Vaidya,
