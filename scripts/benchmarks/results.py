@@ -255,7 +255,7 @@ def main():
             contact(given.bin, folder, given.quick) +
             "\n## Tetrahedra of a unit cell: the plain weave of samples/cell_plain.txt with its matrix\n\n"
             "The surfaces are the same for all three: those that selvage made. Its time is that of TetGen in its worker, of the checks "
-            "of what came back, and of the improvement to 10 degrees; gmsh's is what it says of its own meshing and optimizing of "
+            "of what came back, and of the improvement to 15 degrees; gmsh's is what it says of its own meshing and optimizing of "
             "the volumes, as it does both by itself, on two threads.\n\n" + tetrahedra(given.bin, folder, given.quick))
     pathlib.Path(given.out).write_text(text)
     print(text)

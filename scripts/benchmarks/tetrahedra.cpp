@@ -89,6 +89,7 @@ void row(const fabric::Fabric& cloth, const std::vector<yarn::Body>& bodies, dou
   fem::CellMeshOptions options;
   options.size = size;
   options.periodic = {cloth.cell->periodic_x, cloth.cell->periodic_y, cloth.cell->periodic_z};
+  options.min_dihedral = 15;
   options.timeout = 3600;
   options.memory = 16384;
   options.progress = [&](const char* name, std::size_t, std::size_t) {

@@ -142,11 +142,8 @@ struct Ended {
   std::string words;  // the last of what TetGen printed
 };
 
-// Reads to the end of the answer, or kills at the deadline; the process is gone afterwards.
-Ended wait_for(const Running& running, double seconds) {
-  Ended result;
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                           std::chrono::duration<double>(std::min(seconds, 1e8)));
+// Adds to the answer what comes until its end (true) or the deadline.
+bool read_until(const Running& running, Clock::time_point deadline, std::string& answer) {
   std::vector<char> block(1 << 20);
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
@@ -155,15 +152,19 @@ Ended wait_for(const Running& running, double seconds) {
         left <= 0 ? 0 : ::poll(&watched, 1, static_cast<int>(std::min<long long>(left, 60'000)));
     if (ready < 0 && errno == EINTR) continue;
     if (ready == 0 && Clock::now() < deadline) continue;
-    if (ready <= 0) {
-      result.timed_out = true;
-      break;
-    }
+    if (ready <= 0) return false;
     const ssize_t got = ::read(running.answers.number(), block.data(), block.size());
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) break;
-    result.answer.append(block.data(), static_cast<std::size_t>(got));
+    if (got <= 0) return true;
+    answer.append(block.data(), static_cast<std::size_t>(got));
   }
+}
+
+// Its answer has ended, or it is killed; the process is gone afterwards.
+Ended finish(const Running& running, bool has_ended, std::string answer) {
+  Ended result;
+  result.answer = std::move(answer);
+  result.timed_out = !has_ended;
   // A worker that closed its output is done or dying; one that hangs there is not waited for.
   for (int tries = 0; !result.timed_out && tries < 2000; ++tries) {
     const pid_t gone = ::waitpid(running.process, &result.status, WNOHANG);
@@ -301,11 +302,18 @@ class Run {
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
   ~Run() {
-    if (running_) wait_for(*running_, 0);
+    if (running_) finish(*running_, false, {});
   }
+  // True when the answer is whole, or there will be none.
+  bool wait(Clock::time_point deadline) {
+    if (running_ && !has_ended_) has_ended_ = read_until(*running_, deadline, answer_);
+    return !running_ || has_ended_;
+  }
+  // Once.
   Result<TetMesh> answer(Clock::time_point deadline) {
     if (failure_) return *failure_;
-    const Ended ended = wait_for(*running_, std::chrono::duration<double>(deadline - Clock::now()).count());
+    wait(deadline);
+    const Ended ended = finish(*running_, has_ended_, std::move(answer_));
     running_.reset();
     return ended.timed_out ? judge_end(ended, limits_) : read_answer(job_, ended, limits_);
   }
@@ -315,6 +323,8 @@ class Run {
   const TetgenLimits& limits_;
   std::optional<Message> failure_;
   std::optional<Running> running_;
+  std::string answer_;
+  bool has_ended_ = false;
 };
 
 }  // namespace
@@ -334,18 +344,31 @@ Result<TetMesh> run_tetgen(const std::filesystem::path& program, const TetgenJob
                                        : check_complex(job.points, job.triangles, job.sides);
       !sound)
     return sound.error();
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                           std::chrono::duration<double>(std::min(limits.timeout, 1e8)));
-  // Where facets cross, the mesher may run without end: someone else looks for them meanwhile.
-  Run look(program, job, limits, true), meshing(program, job, limits, false);
-  if (const Result<TetMesh> seen = look.answer(deadline); !seen && seen.error().at) return seen.error();
+  const auto after = [start = Clock::now()](double seconds) {
+    return start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  };
+  const auto deadline = after(std::min(limits.timeout, 1e8));
+  // Facets that cross, with their place: looked for where no mesh came out, and beside a mesher that takes
+  // long: there it may run without end. (Before every mesh it would double the work.)
+  const auto crossing = [&]() -> std::optional<Message> {
+    const Result<TetMesh> seen = Run(program, job, limits, true).answer(deadline);
+    if (!seen && seen.error().at) return seen.error();
+    return std::nullopt;
+  };
+  Run meshing(program, job, limits, false);
+  const double patience = 0.5 + 5e-5 * static_cast<double>(job.triangles.size());
+  const bool takes_long = !meshing.wait(std::min(deadline, after(patience)));
+  if (takes_long)
+    if (std::optional<Message> found = crossing()) return *found;
   Result<TetMesh> mesh = meshing.answer(deadline);
-  if (!mesh) return mesh;
-  if (Status right = job.sides.empty() ? check_mesh(*mesh, job.points, job.triangles)
-                                       : find_regions(*mesh, job.points, job.triangles, job.sides);
-      !right)
-    return right.error();
-  return mesh;
+  Status right = mesh ? Status() : Status(mesh.error());
+  if (mesh)
+    right = job.sides.empty() ? check_mesh(*mesh, job.points, job.triangles)
+                              : find_regions(*mesh, job.points, job.triangles, job.sides);
+  if (right) return mesh;
+  if (!takes_long)
+    if (std::optional<Message> found = crossing()) return *found;
+  return right.error();
 }
 
 }  // namespace selvage::fem

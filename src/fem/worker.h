@@ -44,7 +44,7 @@ struct TetMesh {
   std::vector<std::uint32_t> regions;  // of each cell; empty without TetgenJob::sides
 };
 
-// Runs `program` (selvage-tetgen), twice at once: the other one only looks for facets that cross. The
+// Runs `program` (selvage-tetgen), again to look for facets that cross where no mesh comes out soon. The
 // result's boundary is exactly the job's triangles, it is one piece, and its volume is the surface's to 1e-9;
 // of several regions, every triangle is a side of cells of just the regions that it parts, and the volume of
 // each is that of its own triangles to 1e-9: anything else is an error. Errors, each with a remedy and where
