@@ -205,7 +205,7 @@ def tetrahedra(bin_folder, folder, quick):
         for name, algorithm in (("gmsh, Delaunay", "del3d"), ("gmsh, HXT", "hxt")):
             out = f"{folder}/gmsh.msh"
             pathlib.Path(out).unlink(missing_ok=True)
-            words = subprocess.run(["gmsh", row["geo"], "-3", "-algo", algorithm, "-nt", "2", "-format", "msh22", "-o", out],
+            words = subprocess.run(["gmsh", row["geo"], "-3", "-algo", algorithm, "-nt", "1", "-format", "msh22", "-o", out],
                                    capture_output=True, text=True, timeout=3600).stdout
             tets, angle = least_angle(out) if os.path.exists(out) else (0, 0.0)
             add(row, name, tets, sum(float(x) for x in GMSH_TIME.findall(words)), angle)
@@ -256,7 +256,7 @@ def main():
             "\n## Tetrahedra of a unit cell: the plain weave of samples/cell_plain.txt with its matrix\n\n"
             "The surfaces are the same for all three: those that selvage made. Its time is that of TetGen in its worker, of the checks "
             "of what came back, and of the improvement to 15 degrees; gmsh's is what it says of its own meshing and optimizing of "
-            "the volumes, as it does both by itself, on two threads.\n\n" + tetrahedra(given.bin, folder, given.quick))
+            "the volumes, as it does both by itself; all on one thread.\n\n" + tetrahedra(given.bin, folder, given.quick))
     pathlib.Path(given.out).write_text(text)
     print(text)
 
