@@ -199,7 +199,7 @@ TEST(Improve, GapsBetweenPlates) {
 
 // Where the surface is too coarse for its gap, the account says what it would have to be.
 TEST(Improve, SurfaceTooCoarseForItsGap) {
-  const test::ClosedSurface surface = test::two_plates(120, 1, 20);
+  const test::ClosedSurface surface = test::two_plates(70, 1, 20);
   Tets tets = tetgen_mesh(surface.points, surface.triangles, 0);
   const Improvement result = improved(tets, 10);
   ASSERT_FALSE(result.below.empty());
