@@ -123,7 +123,7 @@ class Remesher {
   void collapse_short();
   bool collapse(std::uint32_t gone, std::uint32_t kept);
   bool turn_all();
-  bool turn(std::uint32_t a, std::uint32_t b);
+  bool turn(std::uint32_t a, std::uint32_t b, const std::vector<std::uint32_t>& sides);
   void smooth_all();
   bool raise_worst();
   [[nodiscard]] double star_angle(std::uint32_t vertex, const Support::Place& place) const;
@@ -257,22 +257,29 @@ bool Remesher::collapse(std::uint32_t gone, std::uint32_t kept) {
 
 bool Remesher::turn_all() {
   bool any = false;
-  for (int pass = 0; pass < 8; ++pass) {
-    bool turned = false;
-    for (const std::uint64_t key : edges())
-      if (!fixed_.contains(key) &&
-          turn(static_cast<std::uint32_t>(key >> 32U), static_cast<std::uint32_t>(key)))
-        turned = true;
-    if (!turned) break;
-    any = true;
+  std::vector<std::uint64_t> open = edges();
+  for (int pass = 0; pass < 8 && !open.empty(); ++pass) {
+    // An edge may want to be turned later on where one beside it was.
+    std::vector<std::uint64_t> next;
+    for (const std::uint64_t key : open) {
+      const auto a = static_cast<std::uint32_t>(key >> 32U), b = static_cast<std::uint32_t>(key);
+      if (fixed_.contains(key)) continue;
+      const std::vector<std::uint32_t> sides = at_edge(a, b);
+      if (sides.size() != 2 || !turn(a, b, sides)) continue;
+      any = true;
+      for (const std::uint32_t t : sides)
+        for (std::size_t k = 0; k < 3; ++k)
+          next.push_back(key_of(mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3]));
+    }
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    open = std::move(next);
   }
   return any;
 }
 
 // The other diagonal of the two triangles at an edge, where that makes the smallest angle larger.
-bool Remesher::turn(std::uint32_t a, std::uint32_t b) {
-  const std::vector<std::uint32_t> sides = at_edge(a, b);
-  if (sides.size() != 2) return false;
+bool Remesher::turn(std::uint32_t a, std::uint32_t b, const std::vector<std::uint32_t>& sides) {
   std::uint32_t left = sides[0], right = sides[1];
   const auto runs = [&](std::uint32_t t) {
     const Triangle& c = mesh_.triangles[t];

@@ -321,28 +321,40 @@ bool Unroller::is_clear(const Vec2& from, const Vec2& to) const {
 }
 
 std::optional<Unroller::CutPath> Unroller::straight_path(const Loop& low, const Loop& high) const {
-  std::optional<CutPath> best;
-  const std::size_t stride = std::max<std::size_t>(1, low.points.size() / 48);
-  for (std::size_t i = 0; i < low.points.size(); i += stride) {
-    CutPath path;
-    path.low = i;
-    for (std::size_t j = 0; j < high.points.size(); ++j) {
-      const Vec2 way = high.points[j].q - low.points[i].q;
-      Vec2 shift(-period_.x() * std::round(way.x() / period_.x()),
-                 body_.closed_along ? -period_.y() * std::round(way.y() / period_.y()) : 0.0);
-      // Only along the way in which they turn: across it, it would be another place.
-      if (low.turn.x() == 0) shift.x() = 0;
-      if (low.turn.y() == 0) shift.y() = 0;
-      const double length = chart(way + shift).norm();
-      if (length >= path.length) continue;
-      path.high = j;
-      path.shift = shift;
-      path.length = length;
-    }
-    if (best && best->length <= path.length) continue;
-    if (is_clear(low.points[i].q, high.points[path.high].q + path.shift)) best = path;
+  const auto path_between = [&](std::size_t i, std::size_t j) {
+    const Vec2 way = high.points[j].q - low.points[i].q;
+    Vec2 shift(-period_.x() * std::round(way.x() / period_.x()),
+               body_.closed_along ? -period_.y() * std::round(way.y() / period_.y()) : 0.0);
+    // Only along the way in which they turn: across it, it would be another place.
+    if (low.turn.x() == 0) shift.x() = 0;
+    if (low.turn.y() == 0) shift.y() = 0;
+    return CutPath{i, j, shift, nullptr, chart(way + shift).norm()};
+  };
+  const auto is_free = [&](const CutPath& path) {
+    return is_clear(low.points[path.low].q, high.points[path.high].q + path.shift);
+  };
+  // The shortest from some points of the low border to their nearest on the high one, or else from any to
+  // any.
+  std::vector<CutPath> paths;
+  for (std::size_t i = 0; i < low.points.size(); ++i) {
+    CutPath nearest = path_between(i, 0);
+    for (std::size_t j = 1; j < high.points.size(); ++j)
+      if (const CutPath path = path_between(i, j); path.length < nearest.length) nearest = path;
+    paths.push_back(nearest);
   }
-  return best;
+  const auto shorter = [](const CutPath& a, const CutPath& b) { return a.length < b.length; };
+  std::stable_sort(paths.begin(), paths.end(), shorter);
+  for (const CutPath& path : paths)
+    if (is_free(path)) return path;
+  paths.clear();
+  constexpr std::size_t most = 4'000'000;
+  const std::size_t stride = 1 + low.points.size() * high.points.size() / most;
+  for (std::size_t i = 0; i < low.points.size(); i += stride)
+    for (std::size_t j = 0; j < high.points.size(); ++j) paths.push_back(path_between(i, j));
+  std::stable_sort(paths.begin(), paths.end(), shorter);
+  for (const CutPath& path : paths)
+    if (is_free(path)) return path;
+  return std::nullopt;
 }
 
 std::vector<std::uint32_t> Unroller::straight_nodes(const Vec2& from, const Vec2& to) {
