@@ -1,6 +1,8 @@
 // The formats of a unit cell's mesh, read by other programs and by parsers of the documented layouts.
 #include <map>
 
+#include "fabric/build.h"
+#include "fem/cell_mesher.h"
 #include "formats/bdf/bdf.h"
 #include "formats/cdb/cdb.h"
 #include "formats/inp/inp.h"
@@ -8,6 +10,7 @@
 #include "formats/mesh/cell_mesh.h"
 #include "formats/mesh/programs.h"
 #include "formats/msh/msh.h"
+#include "formats/txt/txt.h"
 #include "formats/unv/unv.h"
 #include "formats/vtu/vtu.h"
 
@@ -93,6 +96,44 @@ TEST(CellDecks, GmshListsPeriodicEntities) {
     EXPECT_EQ(facts.at("nodes on high faces"), facts.at("nodes with an image")) << words;
     EXPECT_EQ(facts.at("volumes"), 2) << words;
   }
+}
+
+// A plate of a plain weave as the mesher makes it: thousands of directions, five regions, curvatures.
+TEST(CellDecks, EveryNumberOfAPlainWeave) {
+  const Result<Source> source = Source::open(SELVAGE_SAMPLES "/cell_plain.txt");
+  ASSERT_TRUE(source.ok());
+  Diagnostics diagnostics;
+  const auto fabric = formats::txt::descriptor().read_fabric(*source, diagnostics);
+  ASSERT_TRUE(fabric);
+  const auto builder = fabric::YarnBuilder::create(*fabric, {}, diagnostics);
+  ASSERT_TRUE(builder);
+  std::vector<yarn::Body> bodies;
+  for (std::size_t i = 0; i < builder->count(); ++i) {
+    Result<yarn::Body> body = builder->build(i);
+    ASSERT_TRUE(body.ok());
+    bodies.push_back(std::move(*body));
+  }
+  fem::CellMeshOptions options;
+  options.size = 0.3;
+  options.periodic = {true, true, false};
+  const Result<fem::Mesh> mesh = fem::mesh_cell(*fabric, bodies, options, diagnostics);
+  ASSERT_TRUE(mesh.ok()) << to_string(mesh.error());
+  ASSERT_EQ(mesh->load_cases.size(), 7U);
+  const Folder folder;
+  save_all(*mesh, folder);
+  std::string words = script(folder, "decks/compare.py cell.inp cell.cdb 12");
+  EXPECT_NE(words.find("\nequal"), std::string::npos) << words;
+  std::map<std::string, double> facts = facts_in(words);
+  ASSERT_TRUE(facts.contains("axes")) << words;
+  EXPECT_EQ(facts.at("elements"), static_cast<double>(mesh->elements.size()));
+  EXPECT_GT(facts.at("axes"), 1000);
+  words = script(folder, "decks/periodic.py cell.msh");
+  facts = facts_in(words);
+  ASSERT_TRUE(facts.contains("periodic surfaces")) << words;
+  // Two high faces, each with two yarns' ends and the matrix; their outlines, and edges of the box.
+  EXPECT_EQ(facts.at("periodic surfaces"), 6) << words;
+  EXPECT_GE(facts.at("periodic curves"), 4 + 5) << words;
+  EXPECT_LT(facts.at("largest miss"), 1e-12) << words;
 }
 
 TEST(CellDecks, SameMeshSameBytes) {
