@@ -26,6 +26,18 @@ class Places(Case):
         self.succeeds("convert", GRID, "-o", self.out)
         self.assertEqual(self.names(), ["out/plain4_grid.igs", "out/plain4_grid.stp"])
 
+    def test_a_macro_belongs_to_load_cases(self):
+        """Dry yarns have none: no second file, also for --resume."""
+        report = self.folder / "report.json"
+        self.succeeds("mesh", GRID, "--size", "0.4", "--to", "cdb", "-o", self.out / "x.cdb", "--report", report)
+        self.assertEqual(list(files_below(self.out)), ["x.cdb"])
+        again = self.succeeds("mesh", GRID, "--size", "0.4", "--to", "cdb", "-o", self.out / "x.cdb", "--report", report,
+                              "--resume")
+        self.assertIn("1 were up to date", again.stderr)
+        refused = run("mesh", GRID, "--size", "0.4", "--to", "mac", "-o", self.out / "y.mac")
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("--matrix --periodic", refused.stderr)
+
     def test_a_folder_that_exists(self):
         self.out.mkdir()
         self.succeeds("convert", GRID, "--to", "iges", "-o", self.out)
