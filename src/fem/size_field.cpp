@@ -249,7 +249,7 @@ class Rule {
   }
 
   [[nodiscard]] double from_faces(const Raster& raster, std::size_t k) const {
-    constexpr double finest = 0.2;  // of the largest: a yarn that crosses a face at a grazing angle
+    constexpr double finest = 5;  // over the smallest: a yarn that crosses a face at a grazing angle
     double least = rules_.largest;
     for (int face = 0; face < 6; ++face) {
       const double plane = face % 2 == 1 ? box_.max()[face / 2] : box_.min()[face / 2];
@@ -260,7 +260,7 @@ class Rule {
       const double distance = std::abs(raster.points[k][face / 2] - plane);
       least = std::min(least, rules_.gap_factor * distance / share);
     }
-    return std::max(least, finest * rules_.largest);
+    return std::max(least, finest * rules_.smallest);
   }
 
   [[nodiscard]] double from_curvature(const Raster& raster, std::size_t i, std::size_t j) const {

@@ -249,13 +249,16 @@ Message crossing(const TetgenJob& job, const std::vector<Triangle>& triangles) {
     for (const std::uint32_t corner : triangle)
       if (corner >= job.points.size()) return error(Kind::internal, "the mesh worker's answer is damaged");
   const Vec3 at = centre(job, triangles.front());
-  return with_place(
-      error(Kind::geometry,
-            fmt::format("{} facets cross each other, the first at ({:.6g}, {:.6g}, {:.6g}): the surface "
-                        "intersects itself there; widen the bend or make the section smaller, or try a "
-                        "finer --size",
-                        triangles.size(), at.x(), at.y(), at.z())),
-      at);
+  const std::string_view why =
+      job.sides.empty()
+          ? "the surface intersects itself there; widen the bend or make the section smaller, or try "
+            "a finer --size"
+          : "yarns overlap there, or are too near to each other for triangles of this size; move "
+            "them apart with --relax, or try a finer --size";
+  return with_place(error(Kind::geometry,
+                          fmt::format("{} facets cross each other, the first at ({:.6g}, {:.6g}, {:.6g}): {}",
+                                      triangles.size(), at.x(), at.y(), at.z(), why)),
+                    at);
 }
 
 Result<TetMesh> read_answer(const TetgenJob& job, const Ended& ended, const TetgenLimits& limits) {
