@@ -88,8 +88,8 @@ bool is_sound(const Mesh& mesh, std::size_t element) {
   return straight * least_jacobian_share(nodes) >= std::min(0.1, 0.9 * straight);
 }
 
-// Halves the steps of every bad element until none is left; after three halvings edges are straight, and
-// elements sound.
+// Halves one step of every bad element, that which helps it most, until none is left; after three halvings
+// edges are straight, and with all its edges straight an element is sound.
 class Steps {
  public:
   Steps(Mesh& mesh, std::size_t corners, std::size_t count)
@@ -112,23 +112,26 @@ class Steps {
   void hold() {
     chords_.resize(steps_.size());
     for (const std::size_t k : moved_) chords_[k] = mesh_.nodes[corners_ + k] - steps_[k];
-    std::vector<std::size_t> watched;  // elements with a curved edge
     for (std::size_t e = 0; e < mesh_.elements.size(); ++e)
       if (std::any_of(mesh_.elements[e].begin() + 4, mesh_.elements[e].end(),
                       [this](std::size_t node) { return !steps_[node - corners_].isZero(0); }))
-        watched.push_back(e);
-    for (bool changed = true; changed;) {
-      changed = false;
-      std::vector<std::size_t> bad;
-      for (const std::size_t e : watched)
-        if (!is_sound(mesh_, e)) bad.push_back(e);
-      for (const std::size_t e : bad)
-        for (std::size_t slot = 4; slot < 10; ++slot) {
-          const std::size_t k = mesh_.elements[e][slot] - corners_;
-          if (!halve(k)) continue;
-          changed = true;
-          if (partner_[k] != none) halve(partner_[k]);
-        }
+        curved_elements_.push_back(e);
+    std::vector<std::size_t> watched = curved_elements_;
+    while (!watched.empty()) {
+      std::erase_if(watched, [this](std::size_t e) { return is_sound(mesh_, e); });
+      std::vector<std::size_t> touched;
+      for (const std::size_t e : watched) {
+        if (is_sound(mesh_, e)) continue;  // through another one's step
+        const std::size_t k = best_to_halve(e);
+        if (k == none) continue;
+        halve(k);
+        touched.push_back(k);
+        if (partner_[k] == none) continue;
+        halve(partner_[k]);
+        touched.push_back(partner_[k]);
+      }
+      if (touched.empty()) break;
+      watched = elements_at(touched);
     }
   }
   [[nodiscard]] MidsideNodes result() const {
@@ -143,11 +146,39 @@ class Steps {
 
  private:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
-  bool halve(std::size_t k) {
-    if (shares_[k] == 0 || steps_[k].isZero(0)) return false;
-    shares_[k] = shares_[k] > 0.2F ? shares_[k] / 2 : 0.0F;
+  static float halved(float share) { return share > 0.2F ? share / 2 : 0.0F; }
+  void halve(std::size_t k) {
+    shares_[k] = halved(shares_[k]);
     mesh_.nodes[corners_ + k] = chords_[k] + steps_[k] * shares_[k];
-    return true;
+  }
+  // The midside node of an element whose half step leaves it soundest.
+  [[nodiscard]] std::size_t best_to_halve(std::size_t e) const {
+    std::array<Vec3, 10> nodes;
+    for (std::size_t slot = 0; slot < 10; ++slot) nodes[slot] = mesh_.nodes[mesh_.elements[e][slot]];
+    std::size_t best = none;
+    double most = 0;
+    for (std::size_t slot = 4; slot < 10; ++slot) {
+      const std::size_t k = mesh_.elements[e][slot] - corners_;
+      if (shares_[k] == 0 || steps_[k].isZero(0)) continue;
+      const Vec3 full = nodes[slot];
+      nodes[slot] = chords_[k] + steps_[k] * halved(shares_[k]);
+      const double share = least_jacobian_share(nodes);
+      nodes[slot] = full;
+      if (best != none && share <= most) continue;
+      best = k;
+      most = share;
+    }
+    return best;
+  }
+  [[nodiscard]] std::vector<std::size_t> elements_at(const std::vector<std::size_t>& edges) const {
+    std::vector<std::uint8_t> is_one(steps_.size(), 0);
+    for (const std::size_t k : edges) is_one[k] = 1;
+    std::vector<std::size_t> result;
+    for (const std::size_t e : curved_elements_)
+      if (std::any_of(mesh_.elements[e].begin() + 4, mesh_.elements[e].end(),
+                      [&](std::size_t node) { return is_one[node - corners_] != 0; }))
+        result.push_back(e);
+    return result;
   }
 
   Mesh& mesh_;
@@ -155,6 +186,7 @@ class Steps {
   std::vector<Vec3> steps_, chords_;  // where each node wants to be, as a step from the chord
   std::vector<float> shares_;         // of the step that is taken
   std::vector<std::size_t> partner_, moved_;
+  std::vector<std::size_t> curved_elements_;  // with such an edge
 };
 
 }  // namespace
