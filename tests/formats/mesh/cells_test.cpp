@@ -3,6 +3,7 @@
 
 #include "fabric/build.h"
 #include "fem/cell_mesher.h"
+#include "fem/contact_surfaces.h"
 #include "formats/bdf/bdf.h"
 #include "formats/cdb/cdb.h"
 #include "formats/inp/inp.h"
@@ -150,6 +151,27 @@ TEST(CellDecks, SameMeshSameBytes) {
       EXPECT_TRUE(format->sniff(a->contents()->substr(0, 4096))) << format->name;
     }
   }
+}
+
+// Cut yarns without a matrix: their sides are surfaces of contact, what the cell's faces cut is not, and
+// there is no step.
+TEST(CellDecks, CutYarnsHaveContactSurfaces) {
+  fem::Mesh mesh = test::brick_cell();
+  mesh.regions.pop_back();
+  mesh.elements.resize(mesh.regions[0].last_element);
+  mesh.load_cases.clear();
+  const fem::ContactSurfaces contact = fem::contact_surfaces(mesh);
+  ASSERT_EQ(contact.surfaces.size(), 1U);
+  EXPECT_EQ(contact.surfaces[0].whole.size(), 16U);  // four bricks in a row
+  EXPECT_EQ(contact.surfaces[0].upper.size(), 4U);
+  EXPECT_EQ(contact.surfaces[0].lower.size(), 4U);
+  EXPECT_TRUE(contact.pairs.empty());
+  Result<OutputFile> output = OutputFile::in_memory();
+  ASSERT_TRUE(formats::inp::descriptor().write_mesh(mesh, *output).ok());
+  const std::string deck = *output->contents();
+  EXPECT_NE(deck.find("*SURFACE, NAME=Yarn0_Upper, TYPE=ELEMENT\n1, S2\n2, S2\n3, S2\n4, S2\n"),
+            std::string::npos);
+  EXPECT_EQ(deck.find("\n*STEP"), std::string::npos);
 }
 
 // Without load cases there is nothing for the macro to solve.
