@@ -13,7 +13,7 @@ namespace selvage::cli {
 // Where the parsed values go: `action` is what the chosen subcommand does; its value is the exit code.
 struct Parsed {
   pipeline::Options options;
-  std::string shard, units, ends, detail = "filaments";
+  std::string shard, units, ends, detail = "filaments", yarn_stiffness = "given";
   pipeline::EditRequest edit;
   pipeline::DiffRequest diff;
   std::function<int()> action;

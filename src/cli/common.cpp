@@ -11,18 +11,18 @@ namespace selvage::cli {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> later_options = {"--cut", "--matrix", "--periodic"};
+constexpr std::array<std::string_view, 2> later_options = {"--cut", "--matrix"};  // of convert
 constexpr std::array<std::string_view, 1> later_commands = {"report"};
 
 // What goes with --relax, without it.
-Status check_relaxing(const pipeline::RelaxSettings& relaxing) {
+Status check_relaxing(const pipeline::RelaxSettings& relaxing, bool wants_cell) {
   const auto refused = [](std::string_view option) {
     return error(Kind::usage, fmt::format("{} says how yarns are moved apart: it goes with --relax", option));
   };
   if (relaxing.gap && relaxing.overlap)
     return error(Kind::usage, "--gap keeps yarns apart, --overlap lets them overlap: name one of the two");
   if (relaxing.wanted) return {};
-  if (relaxing.gap) return refused("--gap");
+  if (relaxing.gap && !wants_cell) return refused("--gap");
   if (relaxing.overlap) return refused("--overlap");
   if (relaxing.stiff_section) return refused("--stiff-section");
   if (relaxing.max_iterations > 0) return refused("--max-iterations");
@@ -50,9 +50,11 @@ Status complete(const Parsed& parsed, pipeline::Options& options) {
   for (yarn::EndStyle style :
        {yarn::EndStyle::patch, yarn::EndStyle::fan, yarn::EndStyle::planar, yarn::EndStyle::none})
     if (parsed.ends == yarn::name_of(style)) options.ends = style;
+  options.chamis = parsed.yarn_stiffness == "chamis";
   if (options.command == pipeline::Command::relax) options.relaxing.wanted = true;
   if (options.matrix) options.cut = true;
-  if (Status status = check_relaxing(options.relaxing); !status.ok()) return status.error();
+  if (Status status = check_relaxing(options.relaxing, options.wants_cell()); !status.ok())
+    return status.error();
   if (options.resume && (options.report.empty() || options.report == "-"))
     return error(Kind::usage, "--resume goes by the report of the run before: name it with --report FILE");
   return {};

@@ -3,7 +3,8 @@
 namespace selvage::cli {
 
 void add_mesh(CLI::App& program, Parsed& parsed) {
-  CLI::App& command = *program.add_subcommand("mesh", "tetrahedra in every yarn, as a solver's input deck");
+  CLI::App& command = *program.add_subcommand(
+      "mesh", "tetrahedra in every yarn, or in a unit cell with its matrix, as a solver's input deck");
   pipeline::Options& o = parsed.options;
   add_common(command, parsed);
   add_output(command, parsed);
@@ -18,6 +19,23 @@ void add_mesh(CLI::App& program, Parsed& parsed) {
       ->check(CLI::Range(0.1, 70.0));
   command.add_flag("--allow-overlap", o.allow_overlap, "mesh overlapping yarns as they are, with a warning");
   add_relaxing(command, parsed, true);
+  command.add_flag("--cut", o.cut, "cut yarns flush by the faces of the input's cell");
+  command.add_flag("--matrix", o.matrix, "mesh the cell: its yarns, and the matrix between them");
+  command.add_flag("--periodic", o.periodic,
+                   "opposite faces of the cell get the same nodes, and equations between them (as its "
+                   "`periodic` says; without that word along every axis that can be)");
+  command
+      .add_option("--voxel", o.voxels,
+                  "mesh the cell with so many hexahedra along its longest side instead (always works; yarns "
+                  "have stairs)")
+      ->check(CLI::Range(1, 10'000));
+  command
+      .add_option("--yarn-stiffness", parsed.yarn_stiffness,
+                  "given: a yarn's material is the yarn's; chamis: it is its fibres', and the yarn's follows "
+                  "from the local fibre fraction by Chamis's formulas (default: given)")
+      ->check(CLI::IsMember({"given", "chamis"}));
+  command.add_flag("--force", o.force,
+                   "go on where the estimate says more than 10^8 tetrahedra, or yarns nearly touch");
   run_pipeline(command, parsed, pipeline::Command::mesh);
 }
 

@@ -9,9 +9,12 @@ void add_relaxing(CLI::App& command, Parsed& parsed, bool with_flag) {
                      "first move and reshape yarns until none overlap (exit code 3: no solution)");
   const std::string with = with_flag ? "with --relax: " : "";
   command
-      .add_option(
-          "--gap", relaxing.gap,
-          with + "the least gap between yarns, in the input's unit (default: 1 % of the smaller thickness)")
+      .add_option("--gap", relaxing.gap,
+                  with_flag
+                      ? "with --relax, and in a unit cell: the least gap between yarns, in the input's unit "
+                        "(default: 1 % of the smaller thickness; in a cell that is meshed 5 %)"
+                      : "the least gap between yarns, in the input's unit (default: 1 % of the smaller "
+                        "thickness)")
       ->check(CLI::NonNegativeNumber);
   command
       .add_option("--overlap", relaxing.overlap,

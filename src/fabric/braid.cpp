@@ -9,6 +9,7 @@
 
 #include "fabric/braid_fit.h"
 #include "fabric/braid_shape.h"
+#include "fabric/build.h"
 #include "fabric/clearance.h"
 #include "fabric/yarn_spec.h"
 #include "nurbs/interpolate.h"
@@ -88,6 +89,14 @@ class BraidConstruction : public Construction {
     if (Status made = place_axial(*plan, static_cast<std::int64_t>(index - braiders())); !made)
       return made.error();
     return plan;
+  }
+
+  // Braiders are two columns apart, and who is on top at a crossing depends on its column alone: after two
+  // steps each has taken the place of the next one. (A single-thread braid: all have the same.)
+  [[nodiscard]] Repeat repeat() const override {
+    const double along = 2.0 * shape_.step;
+    if (shape_.flat) return {along, std::nullopt, std::nullopt};
+    return {std::nullopt, std::nullopt, along};
   }
 
  private:
@@ -274,7 +283,7 @@ int points_of(const BraidShape& shape) {
 }  // namespace
 
 Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Braid& braid,
-                                                 Diagnostics& diagnostics) {
+                                                 const BuildOptions& options, Diagnostics& diagnostics) {
   const Thread& thread = *fabric.find_thread(braid.thread);
   const Thread* axial = braid.axial_count > 0 ? fabric.find_thread(braid.axial_thread) : nullptr;
   const std::string_view unit = name_of(fabric.units);
@@ -302,16 +311,18 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
   if (Status fits = check_counts(braid, shape); !fits) return fits.error();
   if (Status fits = check_radius(braid, least + 0.5 * size.height, unit); !fits) return fits.error();
   if (Status fits = check_widths(braid, shape, size.width, unit); !fits) return fits.error();
-  const double wanted = std::max(clearance * size.height, 2.0 * fabric.tolerance.value_or(0.0));
+  const double wanted = std::max(options.gap > 0.0 ? options.gap : clearance * size.height,
+                                 2.0 * fabric.tolerance.value_or(0.0));
   const double gap = fit_amplitude(shape, least, wanted, *outline, *axial_outline);
   if (Status fits = check_radius(braid, shape.amplitude + 0.5 * size.height, unit); !fits)
     return fits.error();
   if (gap < 0.5 * wanted) {
-    Message message =
-        warning(Kind::geometry,
-                fmt::format("crossing yarns have too little room and overlap, by about {:.2g} {}: fewer "
-                            "carriers, narrower yarns or a larger {} give it",
-                            -gap, unit, braid.flat ? "width" : "radius"));
+    const std::string found = gap > 0.0 ? fmt::format("come as near as about {:.2g} {}", gap, unit)
+                                        : fmt::format("overlap, by about {:.2g} {}", -gap, unit);
+    Message message = warning(
+        Kind::geometry, fmt::format("crossing yarns have too little room and {}: fewer carriers, narrower "
+                                    "yarns or a larger {} give it",
+                                    found, braid.flat ? "width" : "radius"));
     message.file = fabric.file;
     message.place = braid.place;
     diagnostics.add(std::move(message));

@@ -7,8 +7,10 @@
 
 namespace selvage::fabric {
 
+struct BuildOptions;
+
 // Errors: at their lines. `fabric` and `braid` outlive the construction; warnings go to `diagnostics`.
 Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Braid& braid,
-                                                 Diagnostics& diagnostics);
+                                                 const BuildOptions& options, Diagnostics& diagnostics);
 
 }  // namespace selvage::fabric

@@ -122,9 +122,7 @@ void describe(yarn::Body& body, const std::string& name, const std::string& thre
 
 }  // namespace
 
-double tolerance_of(const Fabric& fabric, const BuildOptions& options) {
-  if (options.tolerance > 0.0) return options.tolerance;
-  if (fabric.tolerance) return *fabric.tolerance;
+std::optional<double> smallest_section(const Fabric& fabric) {
   double smallest = std::numeric_limits<double>::infinity();
   const auto look = [&](const std::optional<double>& size) {
     if (size) smallest = std::min(smallest, *size);
@@ -134,7 +132,13 @@ double tolerance_of(const Fabric& fabric, const BuildOptions& options) {
     for (const std::string& name : threads_of(item))
       if (const Thread* thread = fabric.find_thread(name)) look(smallest_size(fabric, *thread));
   }
-  return std::isfinite(smallest) ? smallest / 1000.0 : 0.0;
+  return std::isfinite(smallest) ? std::optional(smallest) : std::nullopt;
+}
+
+double tolerance_of(const Fabric& fabric, const BuildOptions& options) {
+  if (options.tolerance > 0.0) return options.tolerance;
+  if (fabric.tolerance) return *fabric.tolerance;
+  return smallest_section(fabric).value_or(0.0) / 1000.0;
 }
 
 bool YarnBuilder::add_entries(Entry entry, const Thread& thread, std::size_t yarns, TextPlace place,
@@ -189,6 +193,15 @@ void YarnBuilder::add_construction(Result<std::unique_ptr<Construction>> made, T
 
 std::string YarnBuilder::name_of(const Entry& entry) const {
   return entry.yarn != nullptr ? entry.yarn->name : entry.construction->name(entry.index);
+}
+
+std::optional<Repeat> YarnBuilder::repeat() const {
+  if (constructions_.empty()) return std::nullopt;
+  for (const Entry& entry : entries_)
+    if (entry.yarn != nullptr) return std::nullopt;
+  Repeat all = constructions_.front()->repeat();
+  for (const auto& construction : constructions_) all = common_repeat(all, construction->repeat());
+  return all;
 }
 
 YarnBuilder::Origin YarnBuilder::origin(std::size_t index) const {
@@ -250,13 +263,12 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
     if (const auto* weave = std::get_if<Weave>(&item))
       builder.add_construction(make_weave(fabric, *weave, options, diagnostics), weave->place, diagnostics);
     if (const auto* knit = std::get_if<Knit>(&item))
-      builder.add_construction(make_knit(fabric, *knit, options.as_published, diagnostics), knit->place,
-                               diagnostics);
+      builder.add_construction(make_knit(fabric, *knit, options, diagnostics), knit->place, diagnostics);
     if (const auto* warpknit = std::get_if<Warpknit>(&item))
       builder.add_construction(make_warpknit(fabric, *warpknit, options, diagnostics), warpknit->place,
                                diagnostics);
     if (const auto* braid = std::get_if<Braid>(&item))
-      builder.add_construction(make_braid(fabric, *braid, diagnostics), braid->place, diagnostics);
+      builder.add_construction(make_braid(fabric, *braid, options, diagnostics), braid->place, diagnostics);
     for (const std::string& name : threads_of(item))
       if (const Thread* thread = fabric.find_thread(name)) {
         warn(fibre_share_warning(fabric, *thread, thread->place));

@@ -23,11 +23,18 @@ struct BuildOptions {
   Detail detail = Detail::filaments;  // yarns are taken apart into plies and filaments as their threads say
   // Constructions exactly as their paper gives them, overlaps and all; else mended so that no yarns overlap.
   bool as_published = false;
+  // Between the yarns of a construction, at least, file units; 0: its own share of their thickness (1 %,
+  // braids 0.5 %). What has no room for it comes as near as it can.
+  double gap = 0;
   std::size_t max_control_points = 50'000'000;  // a yarn: a limit error instead of an exhausted memory
   // Data points of a construction: 500 million loops would be a file of more than a terabyte.
   std::uint64_t max_data_points = 1'000'000'000;
   std::uint64_t max_parts = 10'000'000;  // yarns, plies and filaments of one statement together
 };
+
+// The smallest section size (width or thickness) of the yarns of the text, or of its constructions' threads;
+// file units, none where there is no size.
+std::optional<double> smallest_section(const Fabric& fabric);
 
 // The tolerance in force, file units.
 double tolerance_of(const Fabric& fabric, const BuildOptions& options);
@@ -52,6 +59,8 @@ class YarnBuilder {
   [[nodiscard]] Origin origin(std::size_t index) const;
   // The first yarn (or part of a yarn) of this name; none where there is no such yarn.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
+  // Of all constructions together; none where yarns stand in the text, or there are no constructions.
+  [[nodiscard]] std::optional<Repeat> repeat() const;
   // The yarn's plan, edits applied; a part's own where the yarn has parts. Error (unsupported): a grid has
   // none.
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const;

@@ -4,6 +4,8 @@
 
 #include <numeric>
 
+#include "fabric/repeat.h"
+
 namespace selvage::fabric {
 
 namespace {
@@ -58,6 +60,24 @@ Result<Drawdown> satin(long long n, long long step) {
 bool Drawdown::warp_on_top(long long pick, long long end) const {
   return bits[static_cast<std::size_t>(wrapped(pick, picks)) * static_cast<std::size_t>(ends) +
               static_cast<std::size_t>(wrapped(end, ends))];
+}
+
+long long Drawdown::repeat_of_picks() const {
+  return smallest_shift(picks, [this](long long shift) {
+    for (int pick = 0; pick < picks; ++pick)
+      for (int end = 0; end < ends; ++end)
+        if (warp_on_top(pick + shift, end) != warp_on_top(pick, end)) return false;
+    return true;
+  });
+}
+
+long long Drawdown::repeat_of_ends() const {
+  return smallest_shift(ends, [this](long long shift) {
+    for (int pick = 0; pick < picks; ++pick)
+      for (int end = 0; end < ends; ++end)
+        if (warp_on_top(pick, end + shift) != warp_on_top(pick, end)) return false;
+    return true;
+  });
 }
 
 std::vector<std::string> rows_of(const Drawdown& drawdown) {

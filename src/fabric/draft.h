@@ -25,6 +25,9 @@ struct Drawdown {
 
   // Any whole numbers, from 0 (pick 0 is weft 1): the draft repeats both ways.
   [[nodiscard]] bool warp_on_top(long long pick, long long end) const;
+  // The smallest repeat, which may be a part of it: so many picks, so many ends.
+  [[nodiscard]] long long repeat_of_picks() const;
+  [[nodiscard]] long long repeat_of_ends() const;
   bool operator==(const Drawdown&) const = default;
 };
 

@@ -65,6 +65,11 @@ class KnitConstruction final : public Construction {
     return points_a_loop * wales() + 1;
   }
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
+  [[nodiscard]] Repeat repeat() const override {
+    const StitchChart& chart = field_.chart;
+    return {static_cast<double>(chart.repeat_of_wales()) * wale_spacing * half_.x(),
+            static_cast<double>(chart.repeat_of_courses()) * course_spacing * half_.x(), std::nullopt};
+  }
 
  private:
   [[nodiscard]] long long course(std::size_t index) const {
@@ -112,7 +117,7 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
 
 // The moves that part the loops. A warning where they cannot.
 KnitMoves moves_of(const Fabric& fabric, const Knit& knit, const yarn::Section& section,
-                   const KnitField& field, Diagnostics& diagnostics) {
+                   const KnitField& field, const BuildOptions& options, Diagnostics& diagnostics) {
   const auto warn = [&](std::string text) {
     Message message = warning(Kind::geometry, std::move(text));
     message.file = fabric.file;
@@ -128,10 +133,11 @@ KnitMoves moves_of(const Fabric& fabric, const Knit& knit, const yarn::Section& 
                     loops, most_solved));
     return {};
   }
-  // A hundredth of the thickness is left between two yarns, or twice the tolerance where that is more; each
-  // surface may lie outside of its yarn by the tolerance.
+  // A hundredth of the thickness (or the wanted gap) is left between two yarns, or twice the tolerance where
+  // that is more; each surface may lie outside of its yarn by the tolerance.
   const double tolerance = tolerance_of(fabric, {});
-  const double gap = std::max(least_gap_share * std::min(size.width, size.height), 2.0 * tolerance);
+  const double share = options.gap > 0.0 ? options.gap : least_gap_share * std::min(size.width, size.height);
+  const double gap = std::max(share, 2.0 * tolerance);
   KnitMoves moves(field, {.how = parameterization_of(knit.method.value_or(Knit::Method::chord)),
                           .section = section,
                           .half = Vec2(size.width / 2, size.height / 2),
@@ -154,8 +160,8 @@ KnitMoves moves_of(const Fabric& fabric, const Knit& knit, const yarn::Section& 
 
 }  // namespace
 
-Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit& knit, bool as_published,
-                                                Diagnostics& diagnostics) {
+Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit& knit,
+                                                const BuildOptions& options, Diagnostics& diagnostics) {
   const auto failed = [](Message message, TextPlace place) {
     if (message.place.line == 0) message.place = place;
     return message;
@@ -175,7 +181,7 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
   KnitField field{std::move(*chart), -beyond, knit.courses - 1 + beyond, -beside, knit.wales - 1 + beside};
   const Vec2 half(size.width / 2, size.height / 2);
   KnitMoves moves;
-  if (!as_published) moves = moves_of(fabric, knit, *section, field, diagnostics);
+  if (!options.as_published) moves = moves_of(fabric, knit, *section, field, options, diagnostics);
   return std::unique_ptr<Construction>(
       std::make_unique<KnitConstruction>(fabric, knit, *thread, std::move(field), std::move(moves), half));
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "fabric/repeat.h"
+
 namespace selvage::fabric {
 
 namespace {
@@ -83,6 +85,24 @@ Status StitchChart::measure_holding(const Knit& knit, int wale) {
 Stitch StitchChart::at(long long course, long long wale) const {
   return stitches_[static_cast<std::size_t>(wrapped(course, courses_)) * static_cast<std::size_t>(wales_) +
                    static_cast<std::size_t>(wrapped(wale, wales_))];
+}
+
+long long StitchChart::repeat_of_courses() const {
+  return smallest_shift(courses_, [&](long long shift) {
+    for (int course = 0; course < courses_; ++course)
+      for (int wale = 0; wale < wales_; ++wale)
+        if (at(course + shift, wale) != at(course, wale)) return false;
+    return true;
+  });
+}
+
+long long StitchChart::repeat_of_wales() const {
+  return smallest_shift(wales_, [&](long long shift) {
+    for (int course = 0; course < courses_; ++course)
+      for (int wale = 0; wale < wales_; ++wale)
+        if (at(course, wale + shift) != at(course, wale)) return false;
+    return true;
+  });
 }
 
 }  // namespace selvage::fabric

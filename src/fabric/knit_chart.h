@@ -33,6 +33,9 @@ class StitchChart {
   [[nodiscard]] Stitch at(long long course, long long wale) const;
   [[nodiscard]] int courses() const { return courses_; }  // of one repeat
   [[nodiscard]] int wales() const { return wales_; }
+  // The smallest repeat of the stitches, which may be a part of the chart's.
+  [[nodiscard]] long long repeat_of_courses() const;
+  [[nodiscard]] long long repeat_of_wales() const;
   // Tucks and misses one above the other, the most that there are in a wale.
   [[nodiscard]] int longest_hold() const { return longest_hold_; }
 

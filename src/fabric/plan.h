@@ -10,6 +10,7 @@
 
 #include "core/diagnostics.h"
 #include "fabric/model.h"
+#include "fabric/repeat.h"
 #include "yarn/path.h"
 #include "yarn/tube.h"
 
@@ -45,6 +46,8 @@ class Construction {
   [[nodiscard]] virtual std::uint64_t longest() const = 0;
   // Errors: geometry (the place and the yarn are filled in by the builder where they are missing).
   [[nodiscard]] virtual Result<YarnPlan> plan(std::size_t index) const = 0;
+  // Of the endless cloth, exact.
+  [[nodiscard]] virtual Repeat repeat() const = 0;
 };
 
 // The start of a plan: names, thread, its section with its size, and its twist. Errors: as section_of.

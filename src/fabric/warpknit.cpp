@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "fabric/build.h"
 #include "fabric/lapping.h"
@@ -56,6 +57,7 @@ class WarpknitConstruction final : public Construction {
     return points_of_a_course * static_cast<std::uint64_t>(piece_.last_course - piece_.first_course) + 6;
   }
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
+  [[nodiscard]] Repeat repeat() const override;
 
  private:
   [[nodiscard]] std::size_t bar_of(std::size_t index) const {
@@ -84,6 +86,23 @@ Result<YarnPlan> WarpknitConstruction::plan(std::size_t index) const {
   plan->spec.guide =
       bar.has_feet ? yarn::FrameGuide::free_from(Vec3::UnitZ()) : yarn::FrameGuide::with_up(Vec3::UnitZ());
   return plan;
+}
+
+// Guides of a bar all do the same. Lappings that are longer together than any cell have no repeat.
+Repeat WarpknitConstruction::repeat() const {
+  constexpr long long longest = 1'000'000;
+  long long courses = 1;
+  for (const Bar& bar : piece_.bars) {
+    const auto length = static_cast<long long>(bar.lapping.size());
+    const long long own = smallest_shift(length, [&](long long shift) {
+      for (long long k = 0; k < length; ++k)
+        if (overlap_at(bar.lapping, k + shift) != overlap_at(bar.lapping, k)) return false;
+      return true;
+    });
+    courses = std::lcm(courses, own);
+    if (courses > longest) return {warpknit_.wale_pitch, std::nullopt, std::nullopt};
+  }
+  return {warpknit_.wale_pitch, static_cast<double>(courses) * warpknit_.course_pitch, std::nullopt};
 }
 
 Message at(Message message, TextPlace place) {
@@ -187,7 +206,8 @@ LoopMoves moves_apart(const Fabric& fabric, const Warpknit& warpknit, const Warp
   };
   double thickest = 0.0;
   for (const Bar& bar : piece.bars) thickest = std::max(thickest, bar.thickness);
-  const double gap = gap_share * thickest + 2.0 * std::max(tolerance_of(fabric, {}), options.tolerance);
+  const double gap = (options.gap > 0.0 ? options.gap : gap_share * thickest) +
+                     2.0 * std::max(tolerance_of(fabric, {}), options.tolerance);
   Result<std::optional<LoopMending>> mended = mend_loops(piece, gap);
   if (!mended) return {};
   if (!*mended) {

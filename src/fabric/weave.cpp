@@ -52,14 +52,19 @@ struct Reach {
   long long first = 0, last = 0;
 };
 
-// 0 .. count x pitch; with a cell, at least one pitch beyond both it and the cloth.
+// With a unit cell the cloth goes on beyond it by so many pitches. What is different at a spline's end falls
+// by 2 + sqrt(3) from section to section: faces of the cell that are a repeat apart cut yarns that agree to
+// 1e-10 of it.
+constexpr long long continued_pitches = 4;
+
+// 0 .. count x pitch; with a cell, beyond both it and the cloth.
 Reach reach_over(const System& crossed, bool has_cell, double low, double high) {
   constexpr double most = 1e15;  // pitches: past what any limit lets through, and exact in both number types
   const double pitch = crossed.text->pitch;
   long long before = 0, after = 0;
   if (has_cell) {
     const auto pitches = [&](double beyond) {
-      return 1 + static_cast<long long>(std::clamp(std::ceil(beyond), 0.0, most));
+      return continued_pitches + static_cast<long long>(std::clamp(std::ceil(beyond), 0.0, most));
     };
     before = pitches(-low / pitch);
     after = pitches(high / pitch - crossed.text->count);
@@ -85,7 +90,9 @@ class WeaveConstruction final : public Construction {
     const bool has_cell = fabric.cell.has_value();
     // Both tubes are modelled within the tolerance.
     clearance_ = 2.0 * std::max(tolerance_of(fabric, {}), options.tolerance);
-    if (!as_published_) clearance_ += clearance_share * std::min(warp_.thickest, weft_.thickest);
+    if (!as_published_)
+      clearance_ +=
+          options.gap > 0.0 ? options.gap : clearance_share * std::min(warp_.thickest, weft_.thickest);
     const Cell cell = fabric.cell.value_or(Cell{});
     along_x_ = reach_over(weft_, has_cell, cell.low.x(), cell.high.x());
     along_y_ = reach_over(warp_, has_cell, cell.low.y(), cell.high.y());
@@ -100,6 +107,7 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] std::uint64_t data_points() const override { return data_points_; }
   [[nodiscard]] std::uint64_t longest() const override { return std::max(points_of(false), points_of(true)); }
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
+  [[nodiscard]] Repeat repeat() const override;
 
  private:
   struct Place {
@@ -133,6 +141,7 @@ class WeaveConstruction final : public Construction {
   void fit_binder(const Block& block, Diagnostics& diagnostics);
   [[nodiscard]] double binder_gap_to_wefts(const Block& block) const;
   [[nodiscard]] long long last_different_column(const Binder& binder) const;
+  [[nodiscard]] long long repeat_of_binders() const;
   [[nodiscard]] std::vector<Pass> passes_of(const Place& place) const;
   [[nodiscard]] double layer_shift(int layer) const { return (layer - 0.5 * (layers() - 1)) * layer_pitch_; }
   Status plan_sine(YarnPlan& plan, const std::vector<Pass>& passes, const Reach& reach, bool is_weft,
@@ -534,6 +543,59 @@ Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
   for (const Pass& pass : passes)
     plan->points.push_back((is_weft ? along_weft : along_warp)(pass.s, pass.z, across));
   return plan;
+}
+
+// Shifts of a sequence of levels along the warp.
+long long repeat_of_levels(const Binder& binder) {
+  const auto count = static_cast<long long>(binder.levels.size());
+  return smallest_shift(count, [&](long long shift) {
+    for (long long k = 0; k < count; ++k)
+      if (level_at(binder, k + shift) != level_at(binder, k)) return false;
+    return true;
+  });
+}
+
+constexpr long long longest_repeat = 1'000'000;  // yarns; more is no repeat of any cell
+
+// Gaps between warps after which the same binders lie in them.
+long long WeaveConstruction::repeat_of_binders() const {
+  long long all = 1;
+  for (const Binder& binder : weave_.binders) {
+    all = std::lcm(all, static_cast<long long>(binder.every));
+    if (all > longest_repeat) return all;
+  }
+  // What lies in a gap: threads and levels.
+  const auto in_gap = [&](long long gap) {
+    std::multiset<std::pair<std::string, std::vector<int>>> binders;
+    for (const Binder& binder : weave_.binders)
+      if (((gap - binder.first) % binder.every + binder.every) % binder.every == 0)
+        binders.emplace(binder.thread, binder.levels);
+    return binders;
+  };
+  return smallest_shift(all, [&](long long shift) {
+    for (long long gap = 0; gap < all; ++gap)
+      if (in_gap(gap + shift) != in_gap(gap)) return false;
+    return true;
+  });
+}
+
+Repeat WeaveConstruction::repeat() const {
+  long long wefts = 1, warps = 1;
+  if (is_straight()) {
+    warps = repeat_of_binders();
+    for (const Binder& binder : weave_.binders) {
+      wefts = std::lcm(wefts, repeat_of_levels(binder));
+      if (wefts > longest_repeat) break;
+    }
+  } else {
+    wefts = drawdown_.repeat_of_picks();
+    warps = drawdown_.repeat_of_ends();
+  }
+  if (wefts > longest_repeat || warps > longest_repeat) return {};
+  wefts = std::lcm(wefts, weft_.repeat_of_threads());
+  warps = std::lcm(warps, warp_.repeat_of_threads());
+  return {static_cast<double>(wefts) * weft_.text->pitch, static_cast<double>(warps) * warp_.text->pitch,
+          std::nullopt};
 }
 
 }  // namespace

@@ -6,9 +6,19 @@
 #include <limits>
 #include <set>
 
+#include "fabric/repeat.h"
 #include "fabric/yarn_spec.h"
 
 namespace selvage::fabric {
+
+long long System::repeat_of_threads() const {
+  const auto count = static_cast<long long>(threads.size());
+  return smallest_shift(count, [&](long long shift) {
+    for (long long k = 0; k < count; ++k)
+      if (thread(k + shift).thread != thread(k).thread) return false;
+    return true;
+  });
+}
 
 const WovenThread& System::thread(long long yarn) const {
   const auto n = static_cast<long long>(threads.size());

@@ -22,6 +22,8 @@ struct System {
 
   // Yarns are numbered from 0 and go on in both directions.
   [[nodiscard]] const WovenThread& thread(long long yarn) const;
+  // Yarns after which the threads come again.
+  [[nodiscard]] long long repeat_of_threads() const;
   // Where a yarn lies, one rounding: (yarn + 1/2) pitch.
   [[nodiscard]] double at(double yarn) const { return (yarn + 0.5) * text->pitch; }
 };

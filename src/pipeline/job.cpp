@@ -54,6 +54,11 @@ std::string settings_of(const Options& options) {
                         options.background.green, options.background.blue, options.flat ? " flat" : "");
   else
     text += fmt::format(" step-schema={}", options.step_schema);
+  if (options.wants_cell())
+    text +=
+        fmt::format("{}{}{}{} voxels={} gap={}", options.chamis ? " chamis" : "", options.cut ? " cut" : "",
+                    options.matrix ? " matrix" : "", options.periodic ? " periodic" : "", options.voxels,
+                    options.relaxing.gap.value_or(-1.0));
   if (options.reach > 0) text += fmt::format(" reach={}", options.reach);
   if (!options.gap_map.empty()) text += " gap-map";
   return text;
@@ -150,6 +155,7 @@ fabric::BuildOptions Job::build_options() const {
   build.tolerance = options.tolerance;
   build.detail = options.detail;
   build.as_published = options.as_published;
+  build.gap = gap;
   return build;
 }
 

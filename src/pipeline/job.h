@@ -55,6 +55,7 @@ class Job {
   std::size_t number = 0;       // of the input in this run
   bool keeps_messages = false;  // in its report, whether or not that is written
   bool says_once = false;       // warnings and notes that were said are not said again
+  double gap = 0;               // of constructions (fabric::BuildOptions::gap), file units
   bool unsolved = false;        // the yarns cannot be moved apart (it was said why): nothing is written
   InputReport report;
 
@@ -119,6 +120,7 @@ Verdict run_job(Job& job, const std::string& earlier, const Channel& channel);
 // Job::has_failed().
 void convert(Job& job);
 void mesh(Job& job);
+void mesh_cell(Job& job);  // of `mesh`, where the options ask for the unit cell
 void info(Job& job);
 void view(Job& job);
 // True when a defect was found.

@@ -78,6 +78,7 @@ bool has_only_yarns(Job& job, const fabric::Fabric& fabric) {
 }  // namespace
 
 void mesh(Job& job) {
+  if (job.options.wants_cell()) return mesh_cell(job);
   std::optional<fabric::Fabric> fabric = job.read();
   if (!fabric || !has_only_yarns(job, *fabric)) return;
   if (job.options.relaxing.wanted) fabric = relaxed(job, std::move(*fabric));

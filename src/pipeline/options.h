@@ -58,6 +58,16 @@ struct Options {
   double min_dihedral = 0;  // degrees; 0: the mesher's choice
   bool allow_overlap = false;
 
+  // The unit cell: of `mesh` and `convert`.
+  bool cut = false;       // by the cell's faces
+  bool matrix = false;    // with the rest of the cell
+  bool periodic = false;  // opposite faces alike, and equations between them
+  int voxels = 0;         // hexahedra along the longest side instead of tetrahedra; 0: tetrahedra
+  bool chamis = false;    // stiffness of yarns from that of their fibres (Chamis), not as their material says
+  bool force = false;     // go on where the estimate, or a gap, says that it is not worth it
+
+  [[nodiscard]] bool wants_cell() const { return cut || matrix || periodic || voxels > 0; }
+
   RelaxSettings relaxing;
 
   // check

@@ -43,8 +43,10 @@ Knit charted(std::vector<std::string> rows, int courses, int wales) {
 // As published, unless said otherwise.
 YarnPlan plan_of(const Fabric& fabric, std::size_t course, bool as_published = true) {
   Diagnostics diagnostics;
+  BuildOptions options;
+  options.as_published = as_published;
   const Result<std::unique_ptr<Construction>> made =
-      make_knit(fabric, std::get<Knit>(fabric.items.front()), as_published, diagnostics);
+      make_knit(fabric, std::get<Knit>(fabric.items.front()), options, diagnostics);
   EXPECT_TRUE(made.ok());
   Result<YarnPlan> plan = (*made)->plan(course);
   EXPECT_TRUE(plan.ok());

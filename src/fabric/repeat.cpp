@@ -1,0 +1,217 @@
+#include "fabric/repeat.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "nurbs/spline.h"
+
+namespace selvage::fabric {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Vec3 across_axis(Vec3 v, int axis) {
+  v[axis] = 0.0;
+  return v;
+}
+
+// Parameters that follow a curve: so many in each of its spans.
+std::vector<double> parameters_of(const nurbs::Curve& curve, int a_span) {
+  const std::vector<double> breaks = nurbs::breakpoints(curve.knots, curve.degree);
+  std::vector<double> parameters;
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+    for (int i = 0; i < a_span; ++i)
+      parameters.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / a_span);
+  parameters.push_back(breaks.back());
+  return parameters;
+}
+
+// Where a curve crosses a plane; touching it is no crossing.
+std::vector<Vec3> crossings(const nurbs::Curve& curve, int axis, double plane) {
+  constexpr int a_span = 8, halvings = 60;
+  const std::vector<double> parameters = parameters_of(curve, a_span);
+  std::vector<Vec3> found;
+  const auto height = [&](double t) { return nurbs::evaluate(curve, t)[axis] - plane; };
+  for (std::size_t k = 0; k + 1 < parameters.size(); ++k) {
+    double from = parameters[k], to = parameters[k + 1];
+    const bool rises = height(from) < 0.0;
+    if (rises == (height(to) < 0.0)) continue;
+    for (int i = 0; i < halvings; ++i) {
+      const double middle = 0.5 * (from + to);
+      ((height(middle) < 0.0) == rises ? from : to) = middle;
+    }
+    found.push_back(nurbs::evaluate(curve, 0.5 * (from + to)));
+  }
+  return found;
+}
+
+struct Crossing {
+  std::size_t body = 0;
+  Vec3 at = Vec3::Zero();
+};
+
+std::vector<Crossing> crossings_in(std::span<const yarn::Body> bodies, const Box3& box, int axis, bool high) {
+  const double plane = high ? box.max()[axis] : box.min()[axis];
+  std::vector<Crossing> found;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (const Vec3& at : crossings(bodies[i].axis, axis, plane)) found.push_back({i, at});
+  return found;
+}
+
+bool is_in_face(const Vec3& at, const Box3& box, int axis) {
+  for (int k = 0; k < 3; ++k)
+    if (k != axis && (at[k] <= box.min()[k] || at[k] >= box.max()[k])) return false;
+  return true;
+}
+
+// The first of these that lies inside the face and has none of the others opposite.
+std::optional<LooseEnd> first_without(const std::vector<Crossing>& crossings,
+                                      const std::vector<Crossing>& others, const Box3& box, int axis,
+                                      bool high, double tolerance) {
+  for (const Crossing& crossing : crossings) {
+    if (!is_in_face(crossing.at, box, axis)) continue;
+    const bool has_partner = std::any_of(others.begin(), others.end(), [&](const Crossing& other) {
+      return across_axis(other.at - crossing.at, axis).norm() <= tolerance;
+    });
+    if (!has_partner) return LooseEnd{crossing.body, crossing.at, high};
+  }
+  return std::nullopt;
+}
+
+// All centre lines as polygons.
+class Lines {
+ public:
+  explicit Lines(std::span<const yarn::Body> bodies) {
+    constexpr int a_span = 16;
+    for (const yarn::Body& body : bodies) {
+      std::vector<Vec3> line;
+      for (const double t : parameters_of(body.axis, a_span)) line.push_back(nurbs::evaluate(body.axis, t));
+      for (const Vec3& p : line) box_.extend(p);
+      lines_.push_back(std::move(line));
+    }
+  }
+  [[nodiscard]] const Box3& box() const { return box_; }
+  [[nodiscard]] const std::vector<std::vector<Vec3>>& list() const { return lines_; }
+
+  // Nearest distance of a point from all of them, no farther than `most` is looked for.
+  [[nodiscard]] double distance(const Vec3& p, double most) const {
+    double least = most;
+    for (const std::vector<Vec3>& line : lines_)
+      for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+        const Vec3 way = line[k + 1] - line[k];
+        if ((line[k] - p).norm() > least + way.norm()) continue;
+        const double length = way.squaredNorm();
+        const double s = length > 0.0 ? std::clamp((p - line[k]).dot(way) / length, 0.0, 1.0) : 0.0;
+        least = std::min(least, (line[k] + s * way - p).norm());
+      }
+    return least;
+  }
+
+  // Does a translation take every line to lines, as far as they go?
+  [[nodiscard]] bool repeats_after(double shift, int axis, double tolerance) const {
+    for (const std::vector<Vec3>& line : lines_)
+      for (Vec3 p : line) {
+        p[axis] += shift;
+        if (p[axis] <= box_.max()[axis] && distance(p, 2.0 * tolerance) > tolerance) return false;
+      }
+    return true;
+  }
+
+  // Shifts by which a point of a line comes to one: those of a point of the line that goes most across the
+  // axis, for there they are fewest.
+  [[nodiscard]] std::vector<double> candidates(int axis, double tolerance) const {
+    const std::vector<Vec3>* most = nullptr;
+    double widest = -1.0;
+    for (const std::vector<Vec3>& line : lines_) {
+      Box3 box;
+      for (const Vec3& p : line) box.extend(across_axis(p, axis));
+      if (const double width = box.diagonal().norm(); width > widest) {
+        widest = width;
+        most = &line;
+      }
+    }
+    std::vector<double> shifts;
+    if (most == nullptr) return shifts;
+    const Vec3 from = *std::min_element(most->begin(), most->end(),
+                                        [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+    for (const std::vector<Vec3>& line : lines_)
+      for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+        const Vec3 a = across_axis(line[k] - from, axis), way = across_axis(line[k + 1] - line[k], axis);
+        const double length = way.squaredNorm();
+        const double s = length > 0.0 ? std::clamp(-a.dot(way) / length, 0.0, 1.0) : 0.0;
+        if ((a + s * way).norm() > tolerance) continue;
+        const double shift = (line[k] + s * (line[k + 1] - line[k]) - from)[axis];
+        if (shift > tolerance) shifts.push_back(shift);
+      }
+    std::sort(shifts.begin(), shifts.end());
+    return shifts;
+  }
+
+ private:
+  std::vector<std::vector<Vec3>> lines_;
+  Box3 box_;
+};
+
+}  // namespace
+
+long long smallest_shift(long long count, const std::function<bool(long long shift)>& is_same_after) {
+  for (long long shift = 1; shift < count; ++shift)
+    if (count % shift == 0 && is_same_after(shift)) return shift;
+  return count;
+}
+
+Repeat common_repeat(const Repeat& a, const Repeat& b) {
+  constexpr int most = 1000;
+  constexpr double near = 1e-9;
+  Repeat both;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!a[k] || !b[k]) continue;
+    if (*a[k] == 0.0 || *b[k] == 0.0) {
+      both[k] = std::max(*a[k], *b[k]);
+      continue;
+    }
+    for (int n = 1; n <= most && !both[k]; ++n) {
+      const double multiple = n * *a[k], share = multiple / *b[k];
+      if (std::abs(share - std::round(share)) <= near * share && share >= 0.5 && share <= most)
+        both[k] = multiple;
+    }
+  }
+  return both;
+}
+
+std::optional<LooseEnd> find_loose_end(std::span<const yarn::Body> bodies, const Box3& box, int axis,
+                                       double tolerance) {
+  const std::vector<Crossing> low = crossings_in(bodies, box, axis, false),
+                              high = crossings_in(bodies, box, axis, true);
+  if (const auto loose = first_without(low, high, box, axis, false, tolerance)) return loose;
+  return first_without(high, low, box, axis, true, tolerance);
+}
+
+bool runs_through(std::span<const yarn::Body> bodies, const Box3& box, int axis, bool high) {
+  const std::vector<Crossing> all = crossings_in(bodies, box, axis, high);
+  return std::any_of(all.begin(), all.end(),
+                     [&](const Crossing& crossing) { return is_in_face(crossing.at, box, axis); });
+}
+
+std::optional<double> repeat_of_lines(std::span<const yarn::Body> bodies, int axis, double tolerance) {
+  const Lines lines(bodies);
+  const double most = 0.5 * lines.box().diagonal()[axis];
+  double last = -infinity;
+  bool moves_freely = lines.list().empty();
+  for (const double shift : lines.candidates(axis, tolerance)) {
+    if (shift > most) break;
+    if (shift - last < tolerance) continue;  // a line that runs along the axis gives one after the other
+    last = shift;
+    if (!lines.repeats_after(shift, axis, tolerance)) continue;
+    moves_freely = lines.repeats_after(0.5 * shift, axis, tolerance) &&
+                   lines.repeats_after(0.375 * shift, axis, tolerance);
+    if (!moves_freely) return shift;
+    break;
+  }
+  return moves_freely ? std::optional(0.0) : std::nullopt;
+}
+
+}  // namespace selvage::fabric

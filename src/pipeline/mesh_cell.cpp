@@ -1,0 +1,102 @@
+// `selvage mesh` of the unit cell: its yarns, cut flush, and the matrix between them.
+#include <fmt/format.h>
+
+#include "fem/cell_mesher.h"
+#include "fem/fibre.h"
+#include "fem/voxel.h"
+#include "pipeline/mesh_facts.h"
+#include "pipeline/relaxing.h"
+#include "pipeline/unit_cell.h"
+#include "pipeline/writing.h"
+
+namespace selvage::pipeline {
+
+namespace {
+
+// The mesher's own limits end a little before the input's, so that its message can name the yarn.
+constexpr double worker_share = 0.9;
+
+// What is ready to be meshed.
+struct ReadyCell {
+  std::vector<yarn::Body> bodies;
+  std::array<bool, 3> periodic{};
+  CellSize size;
+};
+
+// Yarns built and looked at; nothing when something is wrong with them or the cell (it was said).
+std::optional<ReadyCell> prepare(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilder& builder) {
+  const Options& options = job.options;
+  std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
+  if (!bodies) return std::nullopt;
+  ReadyCell ready;
+  ready.bodies = yarns_in_cell(job, fabric, std::move(*bodies));
+  if (job.has_failed()) return std::nullopt;
+  if (options.periodic) {
+    const std::optional<std::array<bool, 3>> axes = periodic_axes(job, fabric, builder, ready.bodies);
+    if (!axes) return std::nullopt;
+    ready.periodic = *axes;
+  }
+  if (!check_top_and_bottom(job, fabric, ready.bodies, ready.periodic)) return std::nullopt;
+  if (options.voxels > 0) return ready;
+  const std::optional<CellSize> size = check_cell_size(job, fabric, ready.bodies, options.matrix);
+  if (!size || !check_cell_gaps(job, fabric, ready.bodies, job.gap)) return std::nullopt;
+  ready.size = *size;
+  return ready;
+}
+
+Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready,
+                          Diagnostics& diagnostics) {
+  const Options& given = job.options;
+  if (given.voxels > 0)
+    return fem::mesh_voxels(fabric, ready.bodies,
+                            {.count = given.voxels,
+                             .periodic = ready.periodic,
+                             .matrix = given.matrix,
+                             .threads = static_cast<int>(job.threads)},
+                            diagnostics);
+  fem::CellMeshOptions options;
+  options.size = ready.size.size;
+  options.order = given.order;
+  options.matrix = given.matrix;
+  options.periodic = ready.periodic;
+  if (given.min_dihedral > 0) options.min_dihedral = given.min_dihedral;
+  options.tolerance = given.tolerance;
+  if (given.timeout > 0) options.timeout = worker_share * given.timeout;
+  if (given.memory > 0) options.memory = given.memory;
+  options.threads = static_cast<int>(job.threads);
+  options.progress = [&job](const char* step, std::size_t done, std::size_t total) {
+    total > 0 ? job.progress(step, done, total) : job.progress(step);
+  };
+  return fem::mesh_cell(fabric, ready.bodies, options, diagnostics);
+}
+
+}  // namespace
+
+void mesh_cell(Job& job) {
+  std::optional<fabric::Fabric> fabric = job.read();
+  if (!fabric || !check_cell_text(job, *fabric, job.options.matrix)) return;
+  // Voxels need no gap: they take the cloth as it comes.
+  if (job.options.voxels == 0 || job.options.relaxing.gap) job.gap = cell_gap(job.options, *fabric);
+  if (job.options.relaxing.wanted) fabric = relaxed(job, std::move(*fabric));
+  if (!fabric) return;
+  std::optional<OpenOutputs> outputs = open_outputs(job);
+  if (!outputs) return;
+  const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
+  if (!builder) return;
+  const std::optional<ReadyCell> ready = prepare(job, *fabric, *builder);
+  if (!ready) return;
+
+  Diagnostics diagnostics;
+  Result<fem::Mesh> mesh = mesh_of(job, *fabric, *ready, diagnostics);
+  if (mesh && job.options.chamis)
+    if (Status derived = fem::derive_yarn_stiffness(*mesh, diagnostics); !derived) mesh = derived.error();
+  job.say_all(diagnostics.messages());
+  if (!mesh) return job.say(mesh.error());
+  job.report.mesh = mesh_facts(*mesh);
+  if (job.options.voxels == 0) job.report.mesh->estimate = ready->size.tetrahedra;
+  for (OpenOutput& output : *outputs)
+    if (!take_facts(job, output, output.plan->format->write_mesh(*mesh, output.file))) return;
+  commit_all(job, *outputs);
+}
+
+}  // namespace selvage::pipeline

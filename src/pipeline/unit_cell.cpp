@@ -1,0 +1,360 @@
+#include "pipeline/unit_cell.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "contact/contact.h"
+#include "fabric/repeat.h"
+#include "fem/surface_mesh.h"
+#include "pipeline/facts.h"
+#include "pipeline/overlaps.h"
+
+namespace selvage::pipeline {
+
+namespace {
+
+constexpr double default_gap_share = 0.05;  // of the thinnest section
+// Of a yarn's thickness: nearer than that, tetrahedra between two yarns become as flat as the gap.
+constexpr double least_gap_share = 0.01;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Box3 box_of(const fabric::Fabric& fabric) {
+  return {fabric.cell->low, fabric.cell->high};
+}
+
+std::string_view name_of_axis(int axis) {
+  constexpr std::array<std::string_view, 3> names = {"x", "y", "z"};
+  return names[static_cast<std::size_t>(axis)];
+}
+
+Message at_cell(const fabric::Fabric& fabric, Message message) {
+  message.file = fabric.file;
+  message.place = fabric.cell->place;
+  return message;
+}
+
+Message cell_error(const fabric::Fabric& fabric, std::string text) {
+  return at_cell(fabric, error(Kind::geometry, std::move(text)));
+}
+
+// Points of a surface, dense enough to see where it reaches to within a thousandth of its thickness.
+std::vector<Vec3> points_of(const nurbs::Surface& surface) {
+  constexpr int round_a_span = 4, along_a_span = 8;
+  const auto stations = [](const std::vector<double>& breaks, int a_span) {
+    std::vector<double> all;
+    for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+      for (int i = 0; i < a_span; ++i) all.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / a_span);
+    all.push_back(breaks.back());
+    return all;
+  };
+  return nurbs::evaluate_grid(surface,
+                              stations(nurbs::breakpoints(surface.knots_u, surface.degree_u), round_a_span),
+                              stations(nurbs::breakpoints(surface.knots_v, surface.degree_v), along_a_span));
+}
+
+// A translation that may be written down: six digits.
+std::string length_text(double value, Unit units) {
+  return fmt::format("{:.6g} {}", value, name_of(units));
+}
+
+}  // namespace
+
+double cell_gap(const Options& options, const fabric::Fabric& fabric) {
+  if (options.relaxing.gap) return *options.relaxing.gap;
+  return default_gap_share * fabric::smallest_section(fabric).value_or(0.0);
+}
+
+bool check_cell_text(Job& job, const fabric::Fabric& fabric, bool with_matrix) {
+  if (!fabric.cell) {
+    job.say(error(Kind::usage,
+                  "there is no unit cell in this input: `cell X Y Z  X Y Z ... end` says its opposite "
+                  "corners"));
+    return false;
+  }
+  if (with_matrix && fabric.cell->matrix.empty()) {
+    job.say(cell_error(
+        fabric,
+        fmt::format("this cell names no matrix: add the line `matrix NAME` with one "
+                    "of the file's materials{}, or mesh the yarns alone, without "
+                    "--matrix",
+                    fabric.materials.empty() ? std::string(" (there is none yet)")
+                                             : fmt::format(", such as '{}'", fabric.materials.back().name))));
+    return false;
+  }
+  return true;
+}
+
+std::vector<yarn::Body> yarns_in_cell(Job& job, const fabric::Fabric& fabric,
+                                      std::vector<yarn::Body> bodies) {
+  const Box3 box = box_of(fabric);
+  Box3 all;
+  std::erase_if(bodies, [&](const yarn::Body& body) {
+    Box3 own;
+    for (const Vec3& p : body.surface.points) own.extend(p);  // holds the surface
+    all.extend(own);
+    return !box.intersects(own);
+  });
+  if (bodies.empty())
+    job.say(cell_error(
+        fabric, fmt::format("no yarn enters this cell: the yarns lie within ({:.6g}, {:.6g}, {:.6g}) and "
+                            "({:.6g}, {:.6g}, {:.6g})",
+                            all.min().x(), all.min().y(), all.min().z(), all.max().x(), all.max().y(),
+                            all.max().z())));
+  return bodies;
+}
+
+namespace {
+
+// Is this length a whole number of repeats?
+bool is_whole(double length, double repeat) {
+  constexpr double near = 1e-6;  // what a text rounds to
+  if (repeat == 0.0) return true;
+  const double share = length / repeat;
+  return std::round(share) >= 1.0 && std::abs(share - std::round(share)) <= near * share;
+}
+
+Message not_whole(const fabric::Fabric& fabric, int axis, double length, double repeat) {
+  const double times = std::max(1.0, std::round(length / repeat));
+  return cell_error(
+      fabric,
+      fmt::format("this cell is {} long along {}, which is no whole number of repeats: its yarns "
+                  "repeat after {}; a periodic cell is {} long, or `periodic` goes without {}",
+                  length_text(length, fabric.units), name_of_axis(axis), length_text(repeat, fabric.units),
+                  length_text(times * repeat, fabric.units), name_of_axis(axis)));
+}
+
+// Weaves have the warps and wefts that the text counts, no others.
+bool is_within_cloth(Job& job, const fabric::Fabric& fabric, int axis) {
+  const Box3 box = box_of(fabric);
+  for (const fabric::Item& item : fabric.items) {
+    const auto* weave = std::get_if<fabric::Weave>(&item);
+    if (weave == nullptr || axis > 1) continue;
+    const fabric::WeaveSystem& across = axis == 0 ? weave->weft : weave->warp;
+    const double end = across.count * across.pitch, slack = 1e-9 * end;
+    if (box.min()[axis] >= -slack && box.max()[axis] <= end + slack) continue;
+    job.say(
+        cell_error(fabric, fmt::format("this cell reaches beyond the cloth, whose {} {}s lie within {} = "
+                                       "0 .. {:.6g}: more of them, or a cell inside, make it periodic",
+                                       across.count, axis == 0 ? "weft" : "warp", name_of_axis(axis), end)));
+    return false;
+  }
+  return true;
+}
+
+Message loose_end_message(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                          const fabric::LooseEnd& loose, int axis, double tolerance) {
+  const yarn::Body& body = bodies[loose.body];
+  std::string text = fmt::format(
+      "this cell is not periodic along {}: yarn '{}' runs through its {} face, and none comes in opposite",
+      name_of_axis(axis), body.name, loose.high ? "high" : "low");
+  const std::optional<double> repeat = fabric::repeat_of_lines(bodies, axis, tolerance);
+  if (repeat && *repeat > 0.0)
+    text += fmt::format("; its yarns repeat after {}", length_text(*repeat, fabric.units));
+  else
+    text += fmt::format("; no repeat was found along {}: the fabric ends there", name_of_axis(axis));
+  Message message = cell_error(fabric, std::move(text));
+  message.at = loose.at;
+  return message;
+}
+
+}  // namespace
+
+std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric& fabric,
+                                                 const fabric::YarnBuilder& builder,
+                                                 std::span<const yarn::Body> bodies) {
+  constexpr double tolerance_share = 0.02;  // of the thinnest yarn, for yarns by hand
+  const fabric::Cell& cell = *fabric.cell;
+  const std::array<bool, 3> named = {cell.periodic_x, cell.periodic_y, cell.periodic_z};
+  const bool names_any = named[0] || named[1] || named[2];
+  const std::optional<fabric::Repeat> repeat = builder.repeat();
+  const Box3 box = box_of(fabric);
+  double thinnest = infinity;
+  for (const yarn::Body& body : bodies) thinnest = std::min(thinnest, thinnest_section(body));
+  const double tolerance = tolerance_share * thinnest;
+  std::array<bool, 3> periodic{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    if (names_any && !named[k]) continue;
+    const std::optional<double> own = repeat ? (*repeat)[k] : std::nullopt;
+    if (!names_any && repeat && !own) continue;  // a cloth has no repeat through its thickness
+    if (own && !is_whole(box.sizes()[axis], *own)) {
+      job.say(not_whole(fabric, axis, box.sizes()[axis], *own));
+      return std::nullopt;
+    }
+    if (own && !is_within_cloth(job, fabric, axis)) return std::nullopt;
+    if (const auto loose = fabric::find_loose_end(bodies, box, axis, tolerance)) {
+      job.say(loose_end_message(fabric, bodies, *loose, axis, tolerance));
+      return std::nullopt;
+    }
+    periodic[k] = true;
+  }
+  return periodic;
+}
+
+bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                          const std::array<bool, 3>& periodic) {
+  if (periodic[2]) return true;
+  const Box3 box = box_of(fabric);
+  bool fits = true;
+  for (const yarn::Body& body : bodies) {
+    const double room = least_gap_share * thinnest_section(body);
+    const std::span<const yarn::Body> alone(&body, 1);
+    double lowest = infinity, highest = -infinity;
+    for (const Vec3& p : points_of(body.surface)) {
+      if (p.x() < box.min().x() || p.x() > box.max().x() || p.y() < box.min().y() || p.y() > box.max().y())
+        continue;
+      lowest = std::min(lowest, p.z());
+      highest = std::max(highest, p.z());
+    }
+    // What runs through is cut; what only touches would leave a sliver of itself, or of the matrix.
+    for (const bool top : {true, false}) {
+      const double reach = top ? highest : lowest, face = top ? box.max().z() : box.min().z();
+      const bool touches = top ? reach > face - room : reach < face + room;
+      if (!touches || std::abs(reach) == infinity || !fits) continue;
+      // A plate has free faces; without periodic sides the cell is a piece that was cut out.
+      const bool runs_through = fabric::runs_through(alone, box, 2, top);
+      if (runs_through && !periodic[0] && !periodic[1]) continue;
+      Message message = cell_error(
+          fabric,
+          fmt::format("yarn '{}' {} the {} of this cell, z = {:.6g}: it reaches to z = {:.6g}; a cell "
+                      "that holds it, with a tenth of its thickness beyond, ends at z = {:.4g}",
+                      body.name, runs_through ? "runs through" : "touches", top ? "top" : "bottom", face,
+                      reach, reach + (top ? 0.1 : -0.1) * thinnest_section(body)));
+      message.yarn = body.name;
+      job.say(std::move(message));
+      fits = false;
+    }
+  }
+  return fits;
+}
+
+namespace {
+
+// Is a place of a contact in the cell, or just beside it?
+bool is_near(const contact::Contact& contact, const Box3& box, double margin) {
+  const Box3 wide(box.min().array() - margin, box.max().array() + margin);
+  return wide.contains(contact.at) ||
+         std::any_of(contact.spots.begin(), contact.spots.end(),
+                     [&](const contact::Minimum& spot) { return wide.contains(spot.on_a); });
+}
+
+}  // namespace
+
+bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                     double wanted) {
+  const Box3 box = box_of(fabric);
+  double thickest = 0.0;
+  for (const yarn::Body& body : bodies) thickest = std::max(thickest, thinnest_section(body));
+  contact::ContactOptions options;
+  options.reach = std::max(wanted, least_gap_share * thickest);
+  options.threads = static_cast<int>(job.threads);
+  options.progress = [&job](std::size_t done, std::size_t total) {
+    job.progress("looking for overlaps", done, total);
+  };
+  const Result<contact::Contacts> contacts = contact::find_contacts(bodies, options);
+  if (!contacts) {
+    job.say(contacts.error());
+    return false;
+  }
+  const contact::Contact* nearest = nullptr;
+  for (const contact::Contact& contact : contacts->list) {
+    if (!is_near(contact, box, options.reach)) continue;
+    if (!contact.is_overlap()) {
+      nearest = &contact;  // the list goes on with larger gaps
+      break;
+    }
+    solid::Overlap overlap;
+    overlap.a = contact.a;
+    overlap.b = contact.b;
+    overlap.depth = contact.depth();
+    overlap.at = contact.at;
+    Message message = overlap_message(overlap, bodies, fabric.units);
+    message.text += job.options.relaxing.wanted ? "; thin one of them" : "; --relax moves them apart";
+    job.say(std::move(message));
+  }
+  if (job.has_failed() || nearest == nullptr) return !job.has_failed();
+  job.report.min_gap = nearest->gap * millimetres_per(fabric.units);
+  const std::string &a = bodies[nearest->a].name, &b = bodies[nearest->b].name;
+  const std::string who = nearest->a == nearest->b ? fmt::format(
+                                                         "yarn '{}' comes as near as {:.3g} {} to "
+                                                         "itself",
+                                                         a, nearest->gap, name_of(fabric.units))
+                                                   : fmt::format("yarns '{}' and '{}' are {:.3g} {} apart", a,
+                                                                 b, nearest->gap, name_of(fabric.units));
+  const double thin = std::min(thinnest_section(bodies[nearest->a]), thinnest_section(bodies[nearest->b]));
+  if (nearest->gap < least_gap_share * thin && !job.options.force) {
+    Message message =
+        error(Kind::geometry,
+              fmt::format(
+                  "{}, less than 1 % of their thickness: what lies between would be meshed as flat as that; "
+                  "--relax --gap {:.2g} moves them apart, --force meshes them as they are",
+                  who, default_gap_share * thin));
+    message.at = nearest->at;
+    job.say(std::move(message));
+    return false;
+  }
+  constexpr double rounding = 1e-3;
+  if (nearest->gap < (1.0 - rounding) * wanted) {
+    Message message =
+        warning(Kind::geometry, fmt::format("{}, nearer than the gap of {:.3g} {} that is wanted", who,
+                                            wanted, name_of(fabric.units)));
+    message.at = nearest->at;
+    job.say(std::move(message));
+  }
+  return !job.has_failed();
+}
+
+std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
+                                        std::span<const yarn::Body> bodies, bool with_matrix) {
+  constexpr double most = 1e8;
+  // Of the cube of the edge length, a tetrahedron on average; the same as for yarns alone (fem/mesher.cpp).
+  constexpr double mean_share = 0.083;
+  const yarn::Body* thinnest = nullptr;
+  double thickness = infinity, extent = infinity;
+  for (const yarn::Body& body : bodies) {
+    extent = std::min(extent, fem::smallest_section_extent(body));
+    if (const double own = thinnest_section(body); own < thickness) {
+      thickness = own;
+      thinnest = &body;
+    }
+  }
+  CellSize chosen{job.options.size > 0.0 ? job.options.size : extent / 4.0, 0.0};
+  if (chosen.size > thickness) {
+    job.say(
+        error(Kind::usage,
+              fmt::format("--size {:.6g} is coarser than yarn '{}', which is {:.3g} {} thick: edges of a "
+                          "quarter of that, {:.3g}, follow its section",
+                          chosen.size, thinnest->name, thickness, name_of(fabric.units), thickness / 4.0)));
+    return std::nullopt;
+  }
+  const Box3 box = box_of(fabric);
+  double volume = box.volume();
+  if (!with_matrix) {
+    volume = 0.0;
+    for (const yarn::Body& body : bodies) volume += body.volume;
+    volume = std::min(volume, box.volume());
+  }
+  chosen.tetrahedra = volume / (mean_share * chosen.size * chosen.size * chosen.size);
+  const std::string estimate = fmt::format("a size of {:.4g} {} makes about {:.2g} tetrahedra in this cell",
+                                           chosen.size, name_of(fabric.units), chosen.tetrahedra);
+  if (chosen.tetrahedra > most && !job.options.force) {
+    job.say(at_cell(fabric,
+                    error(Kind::limit, fmt::format("{}, more than {:.0g}: --size {:.3g} makes ten "
+                                                   "million, --force goes on all the same",
+                                                   estimate, most, std::cbrt(volume / (mean_share * 1e7))))));
+    return std::nullopt;
+  }
+  Message note = at_cell(fabric, error(Kind::limit, estimate + ", more where yarns are near each other"));
+  note.severity = Severity::note;
+  job.say(std::move(note));
+  job.progress(estimate);
+  return chosen;
+}
+
+}  // namespace selvage::pipeline

@@ -1,0 +1,50 @@
+// What a unit cell has to be before it is meshed or cut: everything that can be wrong with it is said here,
+// with its place in the text, the yarn and the remedy.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "fabric/build.h"
+#include "fabric/model.h"
+#include "pipeline/job.h"
+#include "yarn/body.h"
+
+namespace selvage::pipeline {
+
+// The gap that constructions keep between their yarns where a cell is meshed: --gap, or 5 % of the thinnest
+// section; file units.
+double cell_gap(const Options& options, const fabric::Fabric& fabric);
+
+// Is there a cell, with a matrix where one is wanted? False: it was said what is missing.
+bool check_cell_text(Job& job, const fabric::Fabric& fabric, bool with_matrix);
+
+// Those that reach into the cell, in their order, the others dropped. Empty: it was said that there are none.
+std::vector<yarn::Body> yarns_in_cell(Job& job, const fabric::Fabric& fabric, std::vector<yarn::Body> bodies);
+
+// The axes along which the cell is periodic: those that its text names; where it names none, all along which
+// its yarns repeat. None: the cell is no whole number of repeats, or the yarns end (it was said).
+std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric& fabric,
+                                                 const fabric::YarnBuilder& builder,
+                                                 std::span<const yarn::Body> bodies);
+
+// No yarn touches the top or the bottom of a cell that is not periodic through the thickness.
+bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                          const std::array<bool, 3>& periodic);
+
+// No two yarns overlap in the cell, or come nearer than 1 % of the thinner one; a warning where they come
+// nearer than `wanted` (file units).
+bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                     double wanted);
+
+// The edge length in force, and about how many tetrahedra it makes; both are said.
+struct CellSize {
+  double size = 0;  // file units
+  double tetrahedra = 0;
+};
+// None: too coarse for a yarn, or too fine for any memory (without --force).
+std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
+                                        std::span<const yarn::Body> bodies, bool with_matrix);
+
+}  // namespace selvage::pipeline
