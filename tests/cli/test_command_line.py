@@ -34,8 +34,6 @@ class Usage(Case):
 
     def test_words_of_later_versions(self):
         self.refused("'selvage report' is not in this version", "report", GRID)
-        for word in ("--matrix", "--periodic"):
-            self.refused("is not in this version", "mesh", GRID, word, "-o", self.out)
 
     def test_values(self):
         for option, value in (("-j", "0"), ("-j", "x"), ("--timeout", "-1"), ("--memory", "0"), ("--ends", "round"),

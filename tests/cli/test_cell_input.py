@@ -1,0 +1,172 @@
+"""What can be wrong with a unit cell: each is refused at its place, with the remedy, before anything is meshed."""
+
+import json
+import re
+import unittest
+
+from program import Case, SAMPLES, run
+
+MATERIALS = """fabric 1
+material fibre
+  elastic isotropic 70000 0.2
+end
+material resin
+  elastic isotropic 3000 0.35
+end
+thread T
+  diameter 0.3
+  material fibre
+end
+"""
+PLAIN = MATERIALS + "weave\n  warp T 2 pitch 1.5\n  weft T 2 pitch 1.5\n  draft plain\nend\n"
+CELL_LINE = 1 + PLAIN.count("\n")
+
+
+def straight(*ways):
+    return MATERIALS + "".join(f"yarn y{k} T\n  path\n    {a}\n    {b}\n  end\nend\n" for k, (a, b) in enumerate(ways, 1))
+
+
+def cell(corners, rest="  matrix resin\n  periodic x y\n"):
+    return f"cell {corners}\n{rest}end\n"
+
+
+class CellInput(Case):
+    def refuses(self, text, *options, code=1):
+        """The message of `mesh --matrix --periodic`; nothing is written."""
+        source = self.folder / "cell.txt"
+        source.write_text(text)
+        message = self.fails(code, "mesh", source, "--matrix", "--periodic", "-o", self.folder / "out.inp", "--no-progress", *options)
+        self.assertFalse((self.folder / "out.inp").exists())
+        return message
+
+    def at_cell(self, message, text):
+        """It stands at the cell's statement."""
+        line = 1 + text[:text.index("\ncell ") + 1].count("\n")
+        self.assertRegex(message, rf"cell\.txt:{line}:1: error: ")
+
+    def test_a_cell_is_needed(self):
+        self.assertIn("there is no unit cell in this input", self.refuses(PLAIN))
+
+    def test_a_matrix_is_needed(self):
+        text = PLAIN + cell("0 0 -0.35 3 3 0.35", "  periodic x y\n")
+        message = self.refuses(text)
+        self.at_cell(message, text)
+        self.assertIn("names no matrix: add the line `matrix NAME`", message)
+        self.assertIn("'resin'", message)
+
+    def test_no_yarn_enters(self):
+        text = PLAIN + cell("0 0 5 3 3 6")
+        message = self.refuses(text)
+        self.at_cell(message, text)
+        self.assertIn("no yarn enters this cell: the yarns lie within", message)
+
+    def test_a_cell_smaller_than_a_repeat(self):
+        text = PLAIN + cell("0 0 -0.35 3 1.5 0.35")
+        message = self.refuses(text)
+        self.at_cell(message, text)
+        self.assertIn("1.5 mm long along y, which is no whole number of repeats", message)
+        self.assertIn("its yarns repeat after 3 mm", message)
+        # Along x alone it is one; a whole repeat is fine (it fails only where its size is looked at).
+        self.assertNotIn("along x", message)
+        whole = PLAIN.replace("T 2", "T 4") + cell("0 3 -0.35 6 6 0.35")
+        self.assertIn("coarser than yarn", self.refuses(whole, "--size", "1"))
+
+    def test_the_repeat_of_every_construction(self):
+        for statement, wrong, repeats in (
+                ("weave\n  warp T 5 pitch 1\n  weft T 5 pitch 1\n  draft satin 5/2\nend\n", "0 0 -0.4 4 5 0.4", "x.* repeat after 5 mm"),
+                ("knit jersey\n  thread T\n  courses 2\n  wales 2\nend\n", "0 0 -1 1.2 1.5 1", "y.* repeat after 1.05 mm"),
+                ("warpknit tricot\n  thread T\n  wales 4 pitch 2\n  courses 4 pitch 2\nend\n", "2 0 -1 4 2 1", "y.* repeat after 4 mm"),
+        ):
+            with self.subTest(statement=statement):
+                text = MATERIALS + statement + cell(wrong)
+                message = self.refuses(text)
+                self.at_cell(message, text)
+                self.assertRegex(message, repeats)
+
+    def test_beyond_the_cloth(self):
+        text = PLAIN + cell("3 0 -0.35 6 3 0.35")
+        message = self.refuses(text)
+        self.at_cell(message, text)
+        self.assertIn("reaches beyond the cloth, whose 2 wefts lie within x = 0 .. 3", message)
+
+    def test_yarns_by_hand_tell_their_repeat(self):
+        wave = "".join(f"    {k / 8} 0.5 {0.2 * (k % 16 < 8) - 0.1}\n" for k in range(0, 97, 8))
+        text = MATERIALS + f"yarn wave T\n  path\n{wave}  end\nend\n" + cell("4.5 0 -0.4 5.5 1 0.4", "  matrix resin\n  periodic x\n")
+        message = self.refuses(text)
+        self.at_cell(message, text)
+        self.assertIn("yarn 'wave' runs through its low face, and none comes in opposite", message)
+        self.assertRegex(message, r"its yarns repeat after (2|1\.99\d+|2\.00\d+) mm")
+
+    def test_the_fabric_ends_along_z(self):
+        text = straight(("0.5 0.5 0.5", "0.5 0.5 2")) + cell("0 0 0 1 1 1", "  matrix resin\n  periodic x y z\n")
+        message = self.refuses(text)
+        self.at_cell(message, text)
+        self.assertIn("not periodic along z: yarn 'y1' runs through its high face", message)
+        self.assertIn("the fabric ends there", message)
+
+    def test_top_and_bottom(self):
+        for corners, side in (("0 0 -0.35 3 3 0.3", "top"), ("0 0 -0.3 3 3 0.35", "bottom")):
+            text = PLAIN + cell(corners)
+            message = self.refuses(text)
+            self.at_cell(message, text)
+            self.assertRegex(message, f"yarn 'w..._1' touches the {side} of this cell")
+            self.assertRegex(message, r"a cell that holds it, with a tenth of its thickness beyond, ends at z = -?0\.3[34]")
+        text = straight(("-1 0.5 0.5", "2 0.5 0.5"), ("0.2 0.15 -1", "0.2 0.15 2")) + cell("0 0 0 1 1 1")
+        self.assertIn("yarn 'y2' runs through the top of this cell", self.refuses(text))
+
+    def test_overlapping_yarns(self):
+        text = straight(("-1 0.5 0.5", "2 0.5 0.5"), ("0.5 -1 0.7", "0.5 2 0.7")) + cell("0 0 0 1 1 1.2")
+        message = self.refuses(text)
+        self.assertRegex(message, r"yarns 'y1' and 'y2' overlap, 0\.1\d* mm deep; --relax moves them apart")
+        # Outside of the cell it is nobody's business.
+        apart = text.replace("0.5 -1 0.7", "1.4 -1 0.7").replace("0.5 2 0.7", "1.4 2 0.7")
+        self.assertIn("coarser than yarn 'y1'", self.refuses(apart, "--size", "0.4"))
+
+    def test_yarns_that_nearly_touch(self):
+        text = straight(("-1 0.5 0.5", "2 0.5 0.5"), ("0.5 -1 0.801", "0.5 2 0.801")) + cell("0 0 0 1 1 1.2")
+        message = self.refuses(text)
+        self.assertRegex(message, r"yarns 'y1' and 'y2' are 0\.001\d* mm apart, less than 1 % of their thickness")
+        self.assertIn("--relax --gap 0.015 moves them apart", message)
+
+    def test_a_size_coarser_than_a_yarn(self):
+        text = PLAIN + cell("0 0 -0.35 3 3 0.35")
+        message = self.refuses(text, "--size", "0.31")
+        self.assertRegex(message, r"--size 0\.31 is coarser than yarn 'w..._\d', which is 0\.3 mm thick: edges of a quarter of that, 0\.075")
+
+    def test_a_size_of_a_thousand_million_tetrahedra(self):
+        text = PLAIN + cell("0 0 -0.35 3 3 0.35")
+        message = self.refuses(text, "--size", "0.0042")
+        found = re.search(r"a size of 0\.0042 mm makes about (\S+) tetrahedra in this cell, more than 1e\+08: --size (\S+) makes ten million, --force goes on", message)
+        self.assertIsNotNone(found, message)
+        self.assertLess(abs(float(found[1]) - 1e9), 0.1e9)
+        self.assertLess(abs((0.0042 / float(found[2])) ** 3 - 1e7 / float(found[1])), 0.2e-2)
+        self.at_cell(message, text)
+
+    def test_a_gap_asks_for_a_cell_or_relaxation(self):
+        self.assertIn("--gap says how yarns are moved apart", self.fails(2, "mesh", SAMPLES / "ring.txt", "--gap", "0.1", "-o", self.out))
+
+
+class CellMesh(Case):
+    def test_voxels_and_their_report(self):
+        report = self.folder / "report.json"
+        self.succeeds("mesh", SAMPLES / "cell_plain.txt", "--matrix", "--periodic", "--voxel", "20", "-o", self.folder / "plain.inp", "--report", report, "--quiet")
+        mesh = json.loads(report.read_text())["inputs"][0]["mesh"]
+        self.assertEqual(mesh["hexahedra"], 20 * 20 * 5)
+        self.assertEqual(mesh["nodes"], 21 * 21 * 6)
+        self.assertEqual(mesh["tets"], 0)
+        self.assertEqual(mesh["periodic"], "x y")
+        self.assertEqual(mesh["load_cases"], 7)
+        self.assertLess(abs(mesh["volume"] - 3 * 3 * 0.72), 1e-9)
+        # Four elliptic tows of 1.1 x 0.3, a little longer than the cell.
+        self.assertLess(abs(mesh["yarn_share"] - 4 * 3.06 * 0.25 * 3.14159 * 1.1 * 0.3 / (9 * 0.72)), 0.03)
+        self.assertGreater(mesh["equations"], 0)
+
+    def test_gaps_of_constructions(self):
+        # --voxel with --gap: the yarns are that far apart; the report tells what was found where tetrahedra are made.
+        source = SAMPLES / "cell_plain.txt"
+        message = run("mesh", source, "--matrix", "--periodic", "--gap", "0.05", "--size", "0.5", "-o", self.out).stderr
+        self.assertRegex(message, "touches the top|coarser than yarn")
+
+
+if __name__ == "__main__":
+    unittest.main()
