@@ -190,6 +190,21 @@ std::optional<LooseEnd> find_loose_end(std::span<const yarn::Body> bodies, const
   return first_without(high, low, box, axis, true, tolerance);
 }
 
+std::optional<LooseEnd> find_missing_copy(std::span<const yarn::Body> bodies, const Box3& box, int axis,
+                                          double repeat, double tolerance) {
+  const Lines lines(bodies);
+  const Box3 inside(box.min().array() + tolerance, box.max().array() - tolerance);
+  for (std::size_t i = 0; i < lines.list().size(); ++i)
+    for (const Vec3& p : lines.list()[i])
+      for (const double way : {-repeat, repeat}) {
+        Vec3 copy = p;
+        copy[axis] += way;
+        if (inside.contains(copy) && lines.distance(copy, 2.0 * tolerance) > tolerance)
+          return LooseEnd{i, copy, way > 0.0};
+      }
+  return std::nullopt;
+}
+
 bool runs_through(std::span<const yarn::Body> bodies, const Box3& box, int axis, bool high) {
   const std::vector<Crossing> all = crossings_in(bodies, box, axis, high);
   return std::any_of(all.begin(), all.end(),

@@ -35,6 +35,12 @@ struct LooseEnd {
 std::optional<LooseEnd> find_loose_end(std::span<const yarn::Body> bodies, const Box3& box, int axis,
                                        double tolerance);
 
+// Do the centre lines near the box come to centre lines when they are moved by `repeat` along `axis`,
+// forwards and back, as far as that brings them into the box? None: they do. Else a yarn and where its copy
+// is missing.
+std::optional<LooseEnd> find_missing_copy(std::span<const yarn::Body> bodies, const Box3& box, int axis,
+                                          double repeat, double tolerance);
+
 // Does a centre line cross the low or the high face of the box across `axis`?
 bool runs_through(std::span<const yarn::Body> bodies, const Box3& box, int axis, bool high);
 

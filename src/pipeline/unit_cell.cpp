@@ -129,19 +129,26 @@ Message not_whole(const fabric::Fabric& fabric, int axis, double length, double 
                   length_text(times * repeat, fabric.units), name_of_axis(axis)));
 }
 
-// Weaves have the warps and wefts that the text counts, no others.
-bool is_within_cloth(Job& job, const fabric::Fabric& fabric, int axis) {
+// Weaves have the warps and wefts that the text counts, warp knits the guides; no others.
+bool is_within_cloth(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies, int axis,
+                     double repeat, double tolerance) {
   const Box3 box = box_of(fabric);
   for (const fabric::Item& item : fabric.items) {
-    const auto* weave = std::get_if<fabric::Weave>(&item);
-    if (weave == nullptr || axis > 1) continue;
-    const fabric::WeaveSystem& across = axis == 0 ? weave->weft : weave->warp;
-    const double end = across.count * across.pitch, slack = 1e-9 * end;
-    if (box.min()[axis] >= -slack && box.max()[axis] <= end + slack) continue;
-    job.say(
-        cell_error(fabric, fmt::format("this cell reaches beyond the cloth, whose {} {}s lie within {} = "
-                                       "0 .. {:.6g}: more of them, or a cell inside, make it periodic",
-                                       across.count, axis == 0 ? "weft" : "warp", name_of_axis(axis), end)));
+    std::string counted;
+    if (const auto* weave = std::get_if<fabric::Weave>(&item); weave != nullptr && axis < 2) {
+      const fabric::WeaveSystem& across = axis == 0 ? weave->weft : weave->warp;
+      const double end = across.count * across.pitch, slack = 1e-9 * end;
+      if (box.min()[axis] < -slack || box.max()[axis] > end + slack)
+        counted = fmt::format("{} {}s lie within {} = 0 .. {:.6g}", across.count, axis == 0 ? "weft" : "warp",
+                              name_of_axis(axis), end);
+    }
+    if (const auto* knit = std::get_if<fabric::Warpknit>(&item); knit != nullptr && axis == 0)
+      if (fabric::find_missing_copy(bodies, box, axis, repeat, tolerance))
+        counted = fmt::format("{} guides a bar do not reach all needles in it", knit->wales);
+    if (counted.empty()) continue;
+    job.say(cell_error(fabric, fmt::format("this cell reaches beyond the cloth, whose {}: more of them, or a "
+                                           "cell inside, make it periodic",
+                                           counted)));
     return false;
   }
   return true;
@@ -187,14 +194,19 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
       job.say(not_whole(fabric, axis, box.sizes()[axis], *own));
       return std::nullopt;
     }
-    if (own && !is_within_cloth(job, fabric, axis)) return std::nullopt;
+    if (own && !is_within_cloth(job, fabric, bodies, axis, *own, tolerance)) return std::nullopt;
     if (const auto loose = fabric::find_loose_end(bodies, box, axis, tolerance)) {
+      if (!names_any && !repeat) continue;
       job.say(loose_end_message(fabric, bodies, *loose, axis, tolerance));
       return std::nullopt;
     }
     periodic[k] = true;
   }
-  return periodic;
+  if (periodic[0] || periodic[1] || periodic[2]) return periodic;
+  job.say(cell_error(fabric,
+                     "this cell is not periodic along any axis: its yarns run through faces opposite "
+                     "of which none comes in"));
+  return std::nullopt;
 }
 
 bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,

@@ -89,6 +89,11 @@ class CellInput(Case):
         self.at_cell(message, text)
         self.assertIn("reaches beyond the cloth, whose 2 wefts lie within x = 0 .. 3", message)
 
+        text = MATERIALS + "warpknit tricot\n  thread T\n  wales 4 pitch 2\n  courses 4 pitch 2\nend\n" + cell("8 0 -1 10 4 1")
+        message = self.refuses(text)
+        self.at_cell(message, text)
+        self.assertIn("reaches beyond the cloth, whose 4 guides a bar do not reach all needles in it", message)
+
     def test_yarns_by_hand_tell_their_repeat(self):
         wave = "".join(f"    {k / 8} 0.5 {0.2 * (k % 16 < 8) - 0.1}\n" for k in range(0, 97, 8))
         text = MATERIALS + f"yarn wave T\n  path\n{wave}  end\nend\n" + cell("4.5 0 -0.4 5.5 1 0.4", "  matrix resin\n  periodic x\n")
