@@ -29,11 +29,16 @@ std::vector<double> parameters_of(const nurbs::Curve& curve, int a_span) {
   return parameters;
 }
 
+struct Crossing {
+  std::size_t body = 0;
+  Vec3 at = Vec3::Zero(), direction = Vec3::Zero();  // unit
+};
+
 // Where a curve crosses a plane; touching it is no crossing.
-std::vector<Vec3> crossings(const nurbs::Curve& curve, int axis, double plane) {
+std::vector<Crossing> crossings(const nurbs::Curve& curve, int axis, double plane) {
   constexpr int a_span = 8, halvings = 60;
   const std::vector<double> parameters = parameters_of(curve, a_span);
-  std::vector<Vec3> found;
+  std::vector<Crossing> found;
   const auto height = [&](double t) { return nurbs::evaluate(curve, t)[axis] - plane; };
   for (std::size_t k = 0; k + 1 < parameters.size(); ++k) {
     double from = parameters[k], to = parameters[k + 1];
@@ -43,21 +48,18 @@ std::vector<Vec3> crossings(const nurbs::Curve& curve, int axis, double plane) {
       const double middle = 0.5 * (from + to);
       ((height(middle) < 0.0) == rises ? from : to) = middle;
     }
-    found.push_back(nurbs::evaluate(curve, 0.5 * (from + to)));
+    const nurbs::CurveJet jet = nurbs::evaluate_jet(curve, 0.5 * (from + to));
+    found.push_back({0, jet.position, jet.d1.normalized()});
   }
   return found;
 }
-
-struct Crossing {
-  std::size_t body = 0;
-  Vec3 at = Vec3::Zero();
-};
 
 std::vector<Crossing> crossings_in(std::span<const yarn::Body> bodies, const Box3& box, int axis, bool high) {
   const double plane = high ? box.max()[axis] : box.min()[axis];
   std::vector<Crossing> found;
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    for (const Vec3& at : crossings(bodies[i].axis, axis, plane)) found.push_back({i, at});
+    for (const Crossing& crossing : crossings(bodies[i].axis, axis, plane))
+      found.push_back({i, crossing.at, crossing.direction});
   return found;
 }
 
@@ -67,6 +69,9 @@ bool is_in_face(const Vec3& at, const Box3& box, int axis) {
   return true;
 }
 
+// Of two crossings that are one yarn's a repeat apart, the sine of the angle between them: 1 degree.
+constexpr double most_turned = 0.0175;
+
 // The first of these that lies inside the face and has none of the others opposite.
 std::optional<LooseEnd> first_without(const std::vector<Crossing>& crossings,
                                       const std::vector<Crossing>& others, const Box3& box, int axis,
@@ -74,7 +79,9 @@ std::optional<LooseEnd> first_without(const std::vector<Crossing>& crossings,
   for (const Crossing& crossing : crossings) {
     if (!is_in_face(crossing.at, box, axis)) continue;
     const bool has_partner = std::any_of(others.begin(), others.end(), [&](const Crossing& other) {
-      return across_axis(other.at - crossing.at, axis).norm() <= tolerance;
+      // A yarn may be given from its other end.
+      return across_axis(other.at - crossing.at, axis).norm() <= tolerance &&
+             other.direction.cross(crossing.direction).norm() <= most_turned;
     });
     if (!has_partner) return LooseEnd{crossing.body, crossing.at, high};
   }
@@ -110,19 +117,25 @@ class Lines {
     return least;
   }
 
-  // Does a translation take every line to lines, as far as they go?
+  // Does a translation take every line to lines, as far as they go? Near their ends, where splines swing,
+  // they are not looked at.
   [[nodiscard]] bool repeats_after(double shift, int axis, double tolerance) const {
+    const double margin = margin_share * box_.diagonal()[axis];
     for (const std::vector<Vec3>& line : lines_)
       for (Vec3 p : line) {
+        if (p[axis] < box_.min()[axis] + margin) continue;
         p[axis] += shift;
-        if (p[axis] <= box_.max()[axis] && distance(p, 2.0 * tolerance) > tolerance) return false;
+        if (p[axis] <= box_.max()[axis] - margin && distance(p, 2.0 * tolerance) > tolerance) return false;
       }
     return true;
   }
 
   // Shifts by which a point of a line comes to one: those of a point of the line that goes most across the
   // axis, for there they are fewest.
-  [[nodiscard]] std::vector<double> candidates(int axis, double tolerance) const {
+  struct Candidate {
+    double shift = 0, distance = 0;
+  };
+  [[nodiscard]] std::vector<Candidate> candidates(int axis, double tolerance) const {
     const std::vector<Vec3>* most = nullptr;
     double widest = -1.0;
     for (const std::vector<Vec3>& line : lines_) {
@@ -133,24 +146,42 @@ class Lines {
         most = &line;
       }
     }
-    std::vector<double> shifts;
+    std::vector<Candidate> shifts;
     if (most == nullptr) return shifts;
-    const Vec3 from = *std::min_element(most->begin(), most->end(),
-                                        [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+    const double start = box_.min()[axis] + margin_share * box_.diagonal()[axis];
+    const Vec3 from =
+        *std::min_element(most->begin(), most->end(), [axis, start](const Vec3& a, const Vec3& b) {
+          return std::abs(a[axis] - start) < std::abs(b[axis] - start);
+        });
     for (const std::vector<Vec3>& line : lines_)
       for (std::size_t k = 0; k + 1 < line.size(); ++k) {
         const Vec3 a = across_axis(line[k] - from, axis), way = across_axis(line[k + 1] - line[k], axis);
         const double length = way.squaredNorm();
         const double s = length > 0.0 ? std::clamp(-a.dot(way) / length, 0.0, 1.0) : 0.0;
-        if ((a + s * way).norm() > tolerance) continue;
+        const double distance = (a + s * way).norm();
+        if (distance > tolerance) continue;
         const double shift = (line[k] + s * (line[k + 1] - line[k]) - from)[axis];
-        if (shift > tolerance) shifts.push_back(shift);
+        if (shift > tolerance) shifts.push_back({shift, distance});
       }
-    std::sort(shifts.begin(), shifts.end());
-    return shifts;
+    std::sort(shifts.begin(), shifts.end(),
+              [](const Candidate& a, const Candidate& b) { return a.shift < b.shift; });
+    // Of those that lie together, the nearest pass; a line along the axis gives one after the other.
+    std::vector<Candidate> best;
+    double group = -infinity;
+    for (const Candidate& candidate : shifts) {
+      if (candidate.shift - group > 4.0 * tolerance) {
+        group = candidate.shift;
+        best.push_back(candidate);
+      } else if (candidate.distance < best.back().distance) {
+        best.back() = candidate;
+      }
+    }
+    return best;
   }
 
  private:
+  static constexpr double margin_share = 0.25;  // of what the lines fill, at each side
+
   std::vector<std::vector<Vec3>> lines_;
   Box3 box_;
 };
@@ -214,12 +245,9 @@ bool runs_through(std::span<const yarn::Body> bodies, const Box3& box, int axis,
 std::optional<double> repeat_of_lines(std::span<const yarn::Body> bodies, int axis, double tolerance) {
   const Lines lines(bodies);
   const double most = 0.5 * lines.box().diagonal()[axis];
-  double last = -infinity;
   bool moves_freely = lines.list().empty();
-  for (const double shift : lines.candidates(axis, tolerance)) {
+  for (const auto& [shift, distance] : lines.candidates(axis, tolerance)) {
     if (shift > most) break;
-    if (shift - last < tolerance) continue;  // a line that runs along the axis gives one after the other
-    last = shift;
     if (!lines.repeats_after(shift, axis, tolerance)) continue;
     moves_freely = lines.repeats_after(0.5 * shift, axis, tolerance) &&
                    lines.repeats_after(0.375 * shift, axis, tolerance);

@@ -12,7 +12,6 @@
 #include "contact/contact.h"
 #include "fabric/repeat.h"
 #include "fem/surface_mesh.h"
-#include "pipeline/facts.h"
 #include "pipeline/overlaps.h"
 
 namespace selvage::pipeline {
@@ -182,7 +181,7 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
   const std::optional<fabric::Repeat> repeat = builder.repeat();
   const Box3 box = box_of(fabric);
   double thinnest = infinity;
-  for (const yarn::Body& body : bodies) thinnest = std::min(thinnest, thinnest_section(body));
+  for (const yarn::Body& body : bodies) thinnest = std::min(thinnest, fem::smallest_section_extent(body));
   const double tolerance = tolerance_share * thinnest;
   std::array<bool, 3> periodic{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -202,10 +201,15 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
     }
     periodic[k] = true;
   }
-  if (periodic[0] || periodic[1] || periodic[2]) return periodic;
-  job.say(cell_error(fabric,
-                     "this cell is not periodic along any axis: its yarns run through faces opposite "
-                     "of which none comes in"));
+  if (periodic[0] && periodic[1]) return periodic;
+  job.say(cell_error(
+      fabric,
+      fmt::format("this cell is periodic {}: it has to be along x and y (a plate), or along x, y and z "
+                  "(a block)",
+                  periodic[0]   ? periodic[2] ? "along x and z only" : "along x only"
+                  : periodic[1] ? periodic[2] ? "along y and z only" : "along y only"
+                  : periodic[2] ? "along z only"
+                                : "along no axis")));
   return std::nullopt;
 }
 
@@ -215,7 +219,7 @@ bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<cons
   const Box3 box = box_of(fabric);
   bool fits = true;
   for (const yarn::Body& body : bodies) {
-    const double room = least_gap_share * thinnest_section(body);
+    const double room = least_gap_share * fem::smallest_section_extent(body);
     const std::span<const yarn::Body> alone(&body, 1);
     double lowest = infinity, highest = -infinity;
     for (const Vec3& p : points_of(body.surface)) {
@@ -237,7 +241,7 @@ bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<cons
           fmt::format("yarn '{}' {} the {} of this cell, z = {:.6g}: it reaches to z = {:.6g}; a cell "
                       "that holds it, with a tenth of its thickness beyond, ends at z = {:.4g}",
                       body.name, runs_through ? "runs through" : "touches", top ? "top" : "bottom", face,
-                      reach, reach + (top ? 0.1 : -0.1) * thinnest_section(body)));
+                      reach, reach + (top ? 0.1 : -0.1) * fem::smallest_section_extent(body)));
       message.yarn = body.name;
       job.say(std::move(message));
       fits = false;
@@ -262,7 +266,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
                      double wanted) {
   const Box3 box = box_of(fabric);
   double thickest = 0.0;
-  for (const yarn::Body& body : bodies) thickest = std::max(thickest, thinnest_section(body));
+  for (const yarn::Body& body : bodies) thickest = std::max(thickest, fem::smallest_section_extent(body));
   contact::ContactOptions options;
   options.reach = std::max(wanted, least_gap_share * thickest);
   options.threads = static_cast<int>(job.threads);
@@ -299,7 +303,8 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
                                                          a, nearest->gap, name_of(fabric.units))
                                                    : fmt::format("yarns '{}' and '{}' are {:.3g} {} apart", a,
                                                                  b, nearest->gap, name_of(fabric.units));
-  const double thin = std::min(thinnest_section(bodies[nearest->a]), thinnest_section(bodies[nearest->b]));
+  const double thin = std::min(fem::smallest_section_extent(bodies[nearest->a]),
+                               fem::smallest_section_extent(bodies[nearest->b]));
   if (nearest->gap < least_gap_share * thin && !job.options.force) {
     Message message =
         error(Kind::geometry,
@@ -328,15 +333,13 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
   // Of the cube of the edge length, a tetrahedron on average; the same as for yarns alone (fem/mesher.cpp).
   constexpr double mean_share = 0.083;
   const yarn::Body* thinnest = nullptr;
-  double thickness = infinity, extent = infinity;
-  for (const yarn::Body& body : bodies) {
-    extent = std::min(extent, fem::smallest_section_extent(body));
-    if (const double own = thinnest_section(body); own < thickness) {
+  double thickness = infinity;
+  for (const yarn::Body& body : bodies)
+    if (const double own = fem::smallest_section_extent(body); own < thickness) {
       thickness = own;
       thinnest = &body;
     }
-  }
-  CellSize chosen{job.options.size > 0.0 ? job.options.size : extent / 4.0, 0.0};
+  CellSize chosen{job.options.size > 0.0 ? job.options.size : thickness / 4.0, 0.0};
   if (chosen.size > thickness) {
     job.say(
         error(Kind::usage,

@@ -48,7 +48,7 @@ Built sample(const std::string& name, double gap = 0) {
 
 Built text(const std::string& statements) {
   return build(Source::from_memory(
-      "test.txt", "fabric 1\nthread T\ndiameter 0.2\nend\nthread U\ndiameter 0.2\nend\n" + statements));
+      "fabric 1\nthread T\ndiameter 0.2\nend\nthread U\ndiameter 0.2\nend\n" + statements, "test.txt"));
 }
 
 std::string weave(const std::string& warp, const std::string& weft, const std::string& rest) {
@@ -98,7 +98,7 @@ double distance_to(const std::vector<yarn::Body>& bodies, const Vec3& p) {
   double least = std::numeric_limits<double>::infinity();
   for (const yarn::Body& body : bodies) {
     const nurbs::Surface& s = body.surface;
-    constexpr int stations = 2000;
+    constexpr int stations = 700;
     double u = 0.3, v = 0, nearest = std::numeric_limits<double>::infinity();
     for (int k = 0; k <= stations; ++k) {
       const double at = s.first_v() + (s.last_v() - s.first_v()) * k / stations;

@@ -213,17 +213,17 @@ TEST(Weave, YarnsEndInThePlanesOfTheClothsEdges) {
   EXPECT_NEAR(low - high, 1.2, 0.01);
 }
 
-TEST(Weave, WithACellYarnsGoOnByAtLeastAPitch) {
+TEST(Weave, WithACellYarnsGoOnByFourPitches) {
   Fabric fabric = square(0.3, 0.7);
   fabric.cell = Cell{};
   fabric.cell->low = {0, -0.8, -1};
   fabric.cell->high = {2.8, 2.8, 1};
   const std::vector<Vec3> warp = samples_of(plan_of(fabric, "warp_1").line.curve, 1);
-  EXPECT_NEAR(warp.front().x(), -0.7, 1e-12);
-  EXPECT_NEAR(warp.back().x(), 3.5, 1e-12);
+  EXPECT_NEAR(warp.front().x(), -4 * 0.7, 1e-12);
+  EXPECT_NEAR(warp.back().x(), 2.8 + 4 * 0.7, 1e-12);
   const std::vector<Vec3> weft = samples_of(plan_of(fabric, "weft_2").line.curve, 1);
-  EXPECT_NEAR(weft.front().y(), -3 * 0.7, 1e-12);
-  EXPECT_NEAR(weft.back().y(), 3.5, 1e-12);
+  EXPECT_NEAR(weft.front().y(), -6 * 0.7, 1e-12);
+  EXPECT_NEAR(weft.back().y(), 2.8 + 4 * 0.7, 1e-12);
 }
 
 // To the last bit: a yarn a repeat further on has the same points, moved by one product.
