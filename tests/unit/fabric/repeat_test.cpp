@@ -169,7 +169,7 @@ TEST(Repeat, CellsOfTheSamplesAreOneRepeat) {
 
 TEST(Repeat, OfYarnsByHandIsFoundOnTheirCentreLines) {
   std::string waves;
-  for (int yarn = 0; yarn < 4; ++yarn) {
+  for (int yarn = 0; yarn < 8; ++yarn) {
     waves += "yarn wave" + std::to_string(yarn) + " T\npath\n";
     for (int k = 0; k <= 96; ++k)
       waves += std::to_string(0.125 * k) + " " + std::to_string(yarn * 0.75) + " " +
