@@ -52,7 +52,6 @@ Status complete(const Parsed& parsed, pipeline::Options& options);
 void run_pipeline(CLI::App& command, Parsed& parsed, pipeline::Command what);
 
 // Words of the contract that come with later versions: "" when `word` is none, else what to tell.
-std::string later_option(const std::string& word);
 std::string later_command(const std::string& word);
 
 }  // namespace selvage::cli

@@ -11,7 +11,6 @@ namespace selvage::cli {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> later_options = {"--cut", "--matrix"};  // of convert
 constexpr std::array<std::string_view, 1> later_commands = {"report"};
 
 // What goes with --relax, without it.
@@ -58,12 +57,6 @@ Status complete(const Parsed& parsed, pipeline::Options& options) {
   if (options.resume && (options.report.empty() || options.report == "-"))
     return error(Kind::usage, "--resume goes by the report of the run before: name it with --report FILE");
   return {};
-}
-
-std::string later_option(const std::string& word) {
-  const std::string name = word.substr(0, word.find('='));
-  if (std::find(later_options.begin(), later_options.end(), name) == later_options.end()) return {};
-  return fmt::format("'{}' is not in this version of selvage", name);
 }
 
 std::string later_command(const std::string& word) {

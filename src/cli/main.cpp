@@ -23,14 +23,13 @@ Message no_command(const CLI::App& program, const std::string& word) {
                                         did_you_mean(word, names)));
 }
 
-// Why the command line was refused, with a word for what a later version will have.
+// Why the command line was refused.
 Message refusal(const CLI::App& program, const CLI::ParseError& failure, int count, char** words) {
   const CLI::App* command = program.get_subcommands().empty() ? &program : program.get_subcommands().front();
   if (command == &program && count > 1) return no_command(program, words[1]);
   std::string text = failure.what();
   for (int i = 1; i < count; ++i) {
     const std::string word = words[i];
-    if (const std::string later = later_option(word); !later.empty()) return error(Kind::usage, later);
     if (failure.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) continue;
     if (!word.starts_with("--") || text.find(word) == std::string::npos) continue;
     std::vector<std::string> names;

@@ -220,6 +220,7 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
 
 void convert(Job& job) {
   std::optional<fabric::Fabric> fabric = job.read();
+  if (job.options.cut) job.gap = job.options.relaxing.gap.value_or(0.0);
   if (fabric && job.options.relaxing.wanted) fabric = relaxed(job, std::move(*fabric));
   if (!fabric) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);

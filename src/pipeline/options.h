@@ -51,7 +51,6 @@ struct Options {
   bool instances = false;       // repeat equal yarns by reference
   bool split_yarns = false;     // cut those that are too long for one file
   std::string step_schema = "AP242";
-  bool cut = false, matrix = false;  // convert: yarns cut by the cell, and what they leave of it
 
   double size = 0;  // wanted edge length, input's unit; 0: the mesher's choice
   int order = 1;
