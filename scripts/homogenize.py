@@ -7,7 +7,7 @@ direct:    the deck as it is, by factorization. The force on each driver follows
            cell's volume (of a plate: force and moment a length times its area).
 iterative: the same steps by conjugate gradients, which CalculiX ends at a residual of 1e-4: too early for reactions. But
            the work of one case's displacements against another one's forces errs only by the product of both errors,
-           upward by 1e-4 of the stiffness or less. (Only with its diagonal scaling; with its incomplete Cholesky
+           upward by 2e-4 of the stiffness or less where it was tried. (Only with its diagonal scaling; with its incomplete Cholesky
            factors it stops at errors of per cents.)
 """
 
