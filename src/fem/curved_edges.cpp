@@ -17,7 +17,7 @@ double beside(double a, double b, double range) {
 // Parameters of an edge's ends without a jump over the seam, and points of the surface between them.
 class EdgeLine {
  public:
-  EdgeLine(const yarn::Body& body, Vec2 from, Vec2 to)
+  EdgeLine(const yarn::Body& body, const Vec2& from, const Vec2& to)
       : surface_(body.surface),
         range_u_(surface_.last_u() - surface_.first_u()),
         range_v_(surface_.last_v() - surface_.first_v()),
