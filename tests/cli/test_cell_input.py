@@ -147,6 +147,11 @@ class CellInput(Case):
         self.assertLess(abs((0.0042 / float(found[2])) ** 3 - 1e7 / float(found[1])), 0.2e-2)
         self.at_cell(message, text)
 
+        # --force goes on, into the limits.
+        forced = self.refuses(text, "--size", "0.0042", "--force", "--memory", "1000", "--timeout", "60")
+        self.assertNotIn("--force", forced)
+        self.assertRegex(forced, "memory|seconds")
+
     def test_a_gap_asks_for_a_cell_or_relaxation(self):
         self.assertIn("--gap says how yarns are moved apart", self.fails(2, "mesh", SAMPLES / "ring.txt", "--gap", "0.1", "-o", self.out))
 
