@@ -97,6 +97,8 @@ class Unroller {
   [[nodiscard]] std::vector<std::uint32_t> straight_nodes(const Vec2& from, const Vec2& to);
   void add_holes(const std::vector<std::size_t>& used);
   void add_crests(const CrestLine* cut);
+  void add_rows_beside_crests();
+  void add_beside(double u, double v, double distance, double side);
   [[nodiscard]] Vec2 chart(const Vec2& q) const { return q.cwiseProduct(result_.region.scale); }
 
   std::uint32_t node_of(std::uint32_t known, const Vec2& q) {
@@ -289,6 +291,50 @@ void Unroller::add_crests(const CrestLine* cut) {
   }
 }
 
+// The two sides of a sharp crest get the same triangles next to it, mirrored: tetrahedra in so thin a wedge
+// are well shaped only where the points of both sides stand opposite each other.
+void Unroller::add_rows_beside_crests() {
+  for (const CrestLine& line : crests_) {
+    std::vector<double> vs = {line.low_v};
+    for (const std::uint32_t node : line.inner) vs.push_back(result_.nodes[node].parameters.y());
+    vs.push_back(line.high_v);
+    for (std::size_t k = 0; k + 1 < vs.size(); ++k) {
+      const double height = std::sqrt(0.75);  // of a triangle of equal edges
+      const double edge =
+          (cell::position(body_, {line.u, vs[k + 1]}) - cell::position(body_, {line.u, vs[k]})).norm();
+      for (const double side : {-1.0, 1.0}) add_beside(line.u, (vs[k] + vs[k + 1]) / 2, height * edge, side);
+    }
+  }
+}
+
+// A fixed point at this distance from a crest, unless something else of the outline is near.
+void Unroller::add_beside(double u, double v, double distance, double side) {
+  constexpr double widest = 0.2;  // of the way round
+  const Vec3 from = cell::position(body_, {u, v});
+  double step = distance / result_.region.scale.x();
+  for (int k = 0; k < 4; ++k) {
+    const double reached = (cell::position(body_, {u + side * step, v}) - from).norm();
+    if (!(reached > 0)) return;
+    step *= distance / reached;
+    if (!(step < widest * period_.x())) return;
+  }
+  for (int m = -3; m <= 3; ++m) {
+    const Vec2 q(u + side * step + m * period_.x(), v);
+    if (!is_inside(outline_, q)) continue;
+    const Vec3 point = cell::position(body_, q);
+    const double room = 0.6 * distance;
+    // Near in space alone is the other side of the crest.
+    for (std::size_t k = 0; k < result_.region.points.size(); ++k)
+      if ((result_.region.points[k] - point).norm() < room &&
+          chart(result_.region.parameters[k] - q).norm() < 2 * room)
+        return;
+    const auto node = static_cast<std::uint32_t>(result_.nodes.size());
+    result_.nodes.push_back({point, q, Unrolled::none, true});
+    add_point(node, q);
+    return;
+  }
+}
+
 std::optional<Unroller::CutPath> Unroller::crest_path(const Loop& low, const Loop& high) const {
   const auto find = [](const Loop& loop, std::uint32_t node) {
     const auto at = std::find_if(loop.points.begin(), loop.points.end(),
@@ -446,6 +492,7 @@ Result<Unrolled> Unroller::run() {
     done = unroll_tube(ahead[0], back[0]);
   else
     done = error(Kind::geometry, "a part of the yarn's surface inside the cell is no tube, disc or ring");
+  if (done) add_rows_beside_crests();
   if (!done) {
     Message message = done.error();
     message.at = cell::position(body_, piece_.inside);
