@@ -347,6 +347,37 @@ std::string fault_of(const cad::Part& part) {
   return {};
 }
 
+namespace {
+
+// Do all faces hang together by edges of one id?
+bool is_one_shell(const cad::Part& part) {
+  std::map<int, std::vector<std::size_t>> faces_of;
+  for (std::size_t i = 0; i < part.faces.size(); ++i)
+    for (const cad::Loop& loop : part.faces[i].loops)
+      for (const cad::Edge& edge : loop.edges) faces_of[edge.id].push_back(i);
+  std::vector<bool> reached(part.faces.size(), false);
+  std::vector<std::size_t> open = {0};
+  reached[0] = true;
+  std::size_t count = 0;
+  while (!open.empty()) {
+    const cad::Face& face = part.faces[open.back()];
+    open.pop_back();
+    ++count;
+    for (const cad::Loop& loop : face.loops)
+      for (const cad::Edge& edge : loop.edges) {
+        if (is_pole(edge)) continue;
+        for (const std::size_t next : faces_of[edge.id]) {
+          if (reached[next]) continue;
+          reached[next] = true;
+          open.push_back(next);
+        }
+      }
+  }
+  return count == part.faces.size();
+}
+
+}  // namespace
+
 bool is_written_as_solid(const cad::Part& part) {
   if (part.kind != cad::Part::Kind::solid) return false;
   std::map<int, int> uses;
@@ -360,7 +391,8 @@ bool is_written_as_solid(const cad::Part& part) {
         ++uses[edge.id];
       }
   }
-  return std::all_of(uses.begin(), uses.end(), [](const auto& use) { return use.second == 2; });
+  return std::all_of(uses.begin(), uses.end(), [](const auto& use) { return use.second == 2; }) &&
+         is_one_shell(part);
 }
 
 std::int64_t most_values_of_part(const cad::Part& part) {

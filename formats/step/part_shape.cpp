@@ -3,6 +3,7 @@
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepCheck_Analyzer.hxx>
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
@@ -92,7 +93,11 @@ class PartBuilder {
       : part_(part), tolerance_(tolerance), vertices_(tolerance) {}
 
   PartShape build() {
-    if (is_stated(part_)) return stated();
+    if (is_stated(part_)) {
+      PartShape result = stated();
+      if (BRepCheck_Analyzer(result.shape).IsValid()) return result;
+      shared_.clear();
+    }
     std::vector<TopoDS_Face> faces;
     for (const cad::Face& face : part_.faces) faces.push_back(build_face(face));
     return part_.kind == cad::Part::Kind::surfaces ? loose(faces) : joined(faces);

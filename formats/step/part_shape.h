@@ -19,7 +19,8 @@ struct PartShape {
 // Faces share an edge where the part says so by its id; where they do not, edges that lie on each other
 // within `tolerance` (the part's unit) become one. An untrimmed face has its surface's natural border.
 // Surfaces keep every number. A solid of which every edge has both its curves, and an id that two uses have,
-// is built as it is stated, rectangles whose parameters are lengths as planes. Exceptions: Standard_Failure.
+// is built as it is stated where OpenCASCADE finds that valid, rectangles whose parameters are lengths as
+// planes. Exceptions: Standard_Failure.
 PartShape build_part(const cad::Part& part, double tolerance);
 
 TopoDS_Edge build_edge(const nurbs::Curve& curve);

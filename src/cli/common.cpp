@@ -52,6 +52,10 @@ Status complete(const Parsed& parsed, pipeline::Options& options) {
   options.chamis = parsed.yarn_stiffness == "chamis";
   if (options.command == pipeline::Command::relax) options.relaxing.wanted = true;
   if (options.matrix) options.cut = true;
+  if (options.cut && (options.instances || options.split_yarns))
+    return error(Kind::usage, fmt::format("{} writes yarns whole: it does not go with {}",
+                                          options.instances ? "--instances" : "--split-yarns",
+                                          options.matrix ? "--matrix" : "--cut"));
   if (Status status = check_relaxing(options.relaxing, options.wants_cell()); !status.ok())
     return status.error();
   if (options.resume && (options.report.empty() || options.report == "-"))

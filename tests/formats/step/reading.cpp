@@ -73,7 +73,7 @@ ReadPart examine(const TopoDS_Shape& shape) {
 
 }  // namespace
 
-ReadFile read_step(const std::string& path) {
+ReadFile read_step(const std::string& path, bool into_groups) {
   ReadFile file;
   Message::DefaultMessenger()->ChangePrinters().Clear();
   STEPCAFControl_Controller::Init();
@@ -98,6 +98,11 @@ ReadFile read_step(const std::string& path) {
   for (int i = 1; i <= components.Length(); ++i) {
     TDF_Label label;
     if (!XCAFDoc_ShapeTool::GetReferredShape(components(i), label)) return file;
+    TDF_LabelSequence inner;
+    if (into_groups && XCAFDoc_ShapeTool::GetComponents(label, inner)) {
+      for (int k = 1; k <= inner.Length(); ++k) components.Append(inner(k));
+      continue;
+    }
     const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
     ReadPart part = examine(XCAFDoc_ShapeTool::GetShape(components(i)));  // where it was placed
     part.name = name_of(components(i));

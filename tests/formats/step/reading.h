@@ -28,6 +28,7 @@ struct ReadFile {
   std::vector<ReadPart> parts;
 };
 
-ReadFile read_step(const std::string& path);
+// Of the root assembly's components; `into_groups`: those of the assemblies among them instead.
+ReadFile read_step(const std::string& path, bool into_groups = false);
 
 }  // namespace selvage::tests
