@@ -41,7 +41,6 @@ std::string settings_of(const Options& options) {
   if (options.iges_lines > 0) text += fmt::format(" iges-lines={}", options.iges_lines);
   if (options.split_yarns) text += " split-yarns";
   if (options.instances) text += " instances";
-  if (options.command != Command::mesh && options.cut) text += options.matrix ? " matrix" : " cut";
   if (options.detail != fabric::Detail::filaments)
     text += options.detail == fabric::Detail::yarn ? " detail=yarn" : " detail=plies";
   if (options.as_published) text += " as-published";
