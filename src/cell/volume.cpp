@@ -1,7 +1,6 @@
 #include "cell/volume.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "nurbs/basis.h"
@@ -11,24 +10,26 @@
 namespace selvage::cell {
 namespace {
 
-// The integral of f dg over an interval whose start, middle and end are given, both quadratic in the same
-// parameter: Simpson's rule, exact for these.
-double integral(const std::array<double, 3>& f, const std::array<double, 3>& g) {
-  return (f[0] * (-3 * g[0] + 4 * g[1] - g[2]) + 4 * f[1] * (g[2] - g[0]) +
-          f[2] * (g[0] - 4 * g[1] + 3 * g[2])) /
-         6;
-}
-
-// Calls take(parameters of start, middle, end) for every interval between an arc's points.
-template <class Take>
-void along(const ArcCurve& curve, const Take& take) {
+// The integral of f d(of) along an arc; both are functions of the parameters. Gauss's rule of two points
+// between each two of the arc's, which never looks at a crest, where the surface has two normals; `of` is
+// taken as quadratic there.
+template <class Of, class F>
+double along(const ArcCurve& curve, const Of& of, const F& f) {
   const std::vector<double>& lengths = curve.lengths();
-  Vec2 start = curve.at(0);
+  const double offset = std::sqrt(3.0) / 6;
+  double sum = 0, start = of(curve.at(0));
   for (std::size_t k = 1; k < lengths.size(); ++k) {
-    const Vec2 middle = curve.at((lengths[k - 1] + lengths[k]) / 2), end = curve.at(lengths[k]);
-    take(start, middle, end);
+    const auto at = [&](double share) {
+      return curve.at(lengths[k - 1] + share * (lengths[k] - lengths[k - 1]));
+    };
+    const double middle = of(at(0.5)), end = of(at(1));
+    for (const double share : {0.5 - offset, 0.5 + offset}) {
+      const double slope = (4 * share - 3) * start + (4 - 8 * share) * middle + (4 * share - 1) * end;
+      sum += f(at(share)) * slope / 2;
+    }
     start = end;
   }
+  return sum;
 }
 
 // One third of the flux through a piece of a surface.
@@ -53,11 +54,10 @@ class PieceFlux {
     double flux = 0, area = 0, around = 0;
     for (const Border& border : piece_.borders) {
       for (const Arc& arc : border.arcs) {
-        along(ArcCurve(body_, box_, arc), [&](const Vec2& a, const Vec2& b, const Vec2& c) {
-          const std::array<double, 3> us{a.x(), b.x(), c.x()};
-          flux -= integral({up_to(a), up_to(b), up_to(c)}, us);
-          area -= integral({a.y(), b.y(), c.y()}, us);
-        });
+        const ArcCurve curve(body_, box_, arc);
+        const auto u = [](const Vec2& q) { return q.x(); };
+        flux -= along(curve, u, [this](const Vec2& q) { return up_to(q); });
+        area -= along(curve, u, [](const Vec2& q) { return q.y(); });
       }
       around += std::abs(border.turns_u);
     }
@@ -120,12 +120,10 @@ double area_of(std::span<const yarn::Body> bodies, const Box3& box, const Cut& c
       }
       const Piece& piece = cut.pieces[side.arc.piece];
       const ArcCurve curve(bodies[piece.body], box, piece.borders[side.arc.border].arcs[side.arc.arc]);
-      double along_arc = 0;
-      along(curve, [&](const Vec2& a, const Vec2& b, const Vec2& c) {
-        const Vec3 p = curve.position(a) - box.min(), q = curve.position(b) - box.min(),
-                   r = curve.position(c) - box.min();
-        along_arc += integral({p[x], q[x], r[x]}, {p[y], q[y], r[y]});
-      });
+      const auto coordinate = [&](int which) {
+        return [&curve, &box, which](const Vec2& q) { return curve.position(q)[which] - box.min()[which]; };
+      };
+      const double along_arc = along(curve, coordinate(y), coordinate(x));
       area += side.backward ? -along_arc : along_arc;
     }
   return is_high(region.face) ? area : -area;

@@ -58,6 +58,10 @@ Status complete(const Parsed& parsed, pipeline::Options& options) {
                                           options.matrix ? "--matrix" : "--cut"));
   if (Status status = check_relaxing(options.relaxing, options.wants_cell()); !status.ok())
     return status.error();
+  if (options.bond && (!options.matrix || options.voxels > 0))
+    return error(Kind::usage,
+                 "--bond joins yarns in a mesh of tetrahedra with its matrix: it goes with --matrix, and "
+                 "not with --voxel");
   if (options.resume && (options.report.empty() || options.report == "-"))
     return error(Kind::usage, "--resume goes by the report of the run before: name it with --report FILE");
   return {};

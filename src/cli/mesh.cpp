@@ -34,6 +34,10 @@ void add_mesh(CLI::App& program, Parsed& parsed) {
                   "given: a yarn's material is the yarn's; chamis: it is its fibres', and the yarn's follows "
                   "from the local fibre fraction by Chamis's formulas (default: given)")
       ->check(CLI::IsMember({"given", "chamis"}));
+  command.add_flag(
+      "--bond", o.bond,
+      "with --matrix: yarns in contact share faces (what lies between yarns nearer than 1.5 times the "
+      "gap becomes part of them), instead of a gap filled with matrix");
   command.add_flag("--force", o.force,
                    "go on where the estimate says more than 10^8 tetrahedra, or yarns nearly touch");
   run_pipeline(command, parsed, pipeline::Command::mesh);

@@ -10,12 +10,14 @@
 
 #include "cell/volume.h"
 #include "core/module.h"
+#include "fem/bond.h"
 #include "fem/cell_surfaces.h"
 #include "fem/fibre.h"
 #include "fem/improve.h"
 #include "fem/materials.h"
 #include "fem/midside.h"
 #include "fem/quality.h"
+#include "fem/sides.h"
 #include "fem/surface_mesh.h"
 #include "fem/unit_cell.h"
 
@@ -48,6 +50,8 @@ class CellMesher {
   [[nodiscard]] Message located(Message message) const;
   [[nodiscard]] std::string yarns_near(const Vec3& at) const;
   void report(const Improvement& improvement);
+  void bond();
+  static void renew_side_faces(Mesh& mesh);
   void step(const char* name, std::size_t done) const {
     if (options_.progress) options_.progress(name, done, 5);
   }
@@ -195,6 +199,42 @@ void CellMesher::report(const Improvement& improvement) {
   }
 }
 
+// What lies in narrow gaps goes over to the yarns; exact volumes follow.
+void CellMesher::bond() {
+  const auto matrix = static_cast<std::uint32_t>(bodies_of_regions_.size() - 1);
+  if (!(options_.bond > 0) || bodies_of_regions_[matrix] != CellTriangles::matrix) return;
+  std::vector<std::uint32_t> yarns(tets_.points.size(), no_yarn);
+  for (std::size_t k = 0; k < nodes_.places.size(); ++k)
+    for (std::uint32_t r = 0; r < matrix; ++r)
+      if (nodes_.places[k].body == bodies_of_regions_[r]) yarns[k] = r;
+  const std::vector<std::uint32_t> before = tets_.regions;
+  const Bonding bonding =
+      bond_contacts(tets_.points, tets_.cells, yarns, matrix, options_.bond, tets_.regions);
+  for (std::size_t c = 0; c < before.size(); ++c) {
+    if (before[c] == tets_.regions[c]) continue;
+    const auto& cell = tets_.cells[c];
+    const Vec3& p = tets_.points[cell[0]];
+    volumes_[bodies_of_regions_[tets_.regions[c]]] +=
+        (tets_.points[cell[1]] - p).cross(tets_.points[cell[2]] - p).dot(tets_.points[cell[3]] - p) / 6;
+  }
+  const std::string_view unit = name_of(fabric_.units);
+  Message note =
+      warning(Kind::geometry,
+              fmt::format("yarns within {:.3g} {} of each other are bonded: {} tetrahedra between them "
+                          "({:.3g} {}3) became theirs, and they share {:.3g} {}2",
+                          options_.bond, unit, bonding.cells, bonding.volume, unit, bonding.area, unit));
+  note.severity = Severity::note;
+  diagnostics_.add(located(std::move(note)));
+}
+
+// Where bonded yarns meet, their faces are no longer those of their surfaces.
+void CellMesher::renew_side_faces(Mesh& mesh) {
+  for (Region& region : mesh.regions) region.side_faces.clear();
+  for (const OuterSide& side : outer_sides(mesh))
+    if (side.behind != OuterSide::outside && mesh.regions[side.region].kind == Region::Kind::yarn)
+      mesh.regions[side.region].side_faces.push_back({side.nodes[0], side.nodes[1], side.nodes[2]});
+}
+
 // Corner nodes in mm, elements region by region.
 Mesh CellMesher::assemble() const {
   Mesh mesh;
@@ -296,7 +336,9 @@ Result<Mesh> CellMesher::run() {
   if (Status made = make_surfaces(); !made) return made.error();
   number_regions();
   if (Status filled = fill_regions(); !filled) return filled.error();
+  bond();
   Mesh mesh = assemble();
+  if (options_.bond > 0) renew_side_faces(mesh);
   if (Status finished = finish(mesh); !finished) return finished.error();
   step("finishing", 5);
   return mesh;

@@ -14,9 +14,11 @@
 namespace selvage::fem {
 
 struct CellMeshOptions {
-  double size = 0;                 // largest edge, file units; 0: a quarter of the smallest section extent
-  int order = 1;                   // 1 | 2
-  bool matrix = true;              // false: only the yarns, cut flush
+  double size = 0;     // largest edge, file units; 0: a quarter of the smallest section extent
+  int order = 1;       // 1 | 2
+  bool matrix = true;  // false: only the yarns, cut flush
+  double bond =
+      0;  // file units: matrix between yarns that are this near becomes part of them (fem/bond.h); 0: none
   std::array<bool, 3> periodic{};  // opposite faces get the same triangles
   double min_dihedral = 10;        // degrees wanted, 0..30
   double tolerance = 0;            // file units; 0: 1e-3 of the smallest section extent

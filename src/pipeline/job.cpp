@@ -56,9 +56,9 @@ std::string settings_of(const Options& options) {
     text += fmt::format(" step-schema={}", options.step_schema);
   if (options.wants_cell())
     text +=
-        fmt::format("{}{}{}{} voxels={} gap={}", options.chamis ? " chamis" : "", options.cut ? " cut" : "",
+        fmt::format("{}{}{}{} voxels={}{} gap={}", options.chamis ? " chamis" : "", options.cut ? " cut" : "",
                     options.matrix ? " matrix" : "", options.periodic ? " periodic" : "", options.voxels,
-                    options.relaxing.gap.value_or(-1.0));
+                    options.bond ? " bond" : "", options.relaxing.gap.value_or(-1.0));
   if (options.reach > 0) text += fmt::format(" reach={}", options.reach);
   if (!options.gap_map.empty()) text += " gap-map";
   return text;

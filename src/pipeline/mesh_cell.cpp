@@ -15,6 +15,8 @@ namespace {
 
 // The mesher's own limits end a little before the input's, so that its message can name the yarn.
 constexpr double worker_share = 0.9;
+// Yarns are bonded where they are within this many times the gap that they keep.
+constexpr double bond_reach = 1.5;
 
 // What is ready to be meshed.
 struct ReadyCell {
@@ -58,6 +60,7 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
   options.size = ready.size.size;
   options.order = given.order;
   options.matrix = given.matrix;
+  if (given.bond) options.bond = bond_reach * job.gap;
   options.periodic = ready.periodic;
   if (given.min_dihedral > 0) options.min_dihedral = given.min_dihedral;
   options.tolerance = given.tolerance;

@@ -333,19 +333,22 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
   // Of the cube of the edge length, a tetrahedron on average; the same as for yarns alone (fem/mesher.cpp).
   constexpr double mean_share = 0.083;
   const yarn::Body* thinnest = nullptr;
-  double thickness = infinity;
-  for (const yarn::Body& body : bodies)
+  double thickness = infinity, side = infinity;  // of the square that is as large as the smallest section
+  for (const yarn::Body& body : bodies) {
+    side = std::min(side, std::sqrt(body.volume / body.length));
     if (const double own = fem::smallest_section_extent(body); own < thickness) {
       thickness = own;
       thinnest = &body;
     }
-  CellSize chosen{job.options.size > 0.0 ? job.options.size : thickness / 4.0, 0.0};
+  }
+  // Of a flat tow a quarter of its thickness would be millions of tetrahedra.
+  const double usual = std::min(side / 4.0, thickness);
+  CellSize chosen{job.options.size > 0.0 ? job.options.size : usual, 0.0};
   if (chosen.size > thickness) {
-    job.say(
-        error(Kind::usage,
-              fmt::format("--size {:.6g} is coarser than yarn '{}', which is {:.3g} {} thick: edges of a "
-                          "quarter of that, {:.3g}, follow its section",
-                          chosen.size, thinnest->name, thickness, name_of(fabric.units), thickness / 4.0)));
+    job.say(error(Kind::usage,
+                  fmt::format("--size {:.6g} is coarser than yarn '{}', which is {:.3g} {} thick; edges of "
+                              "{:.3g} are usual",
+                              chosen.size, thinnest->name, thickness, name_of(fabric.units), usual)));
     return std::nullopt;
   }
   const Box3 box = box_of(fabric);

@@ -69,6 +69,24 @@ class UnitCell(Case):
                     error, angle, count = self.judge(name, *more)
                     print(f"{name} {' '.join(more)}: {count} tetrahedra, volumes to {100 * error:.3f} %, {angle:.2f} degrees")
 
+    def test_bonded_yarns_share_faces(self):
+        """`--bond`: only then do yarns have faces in common, and what they gain is what the matrix loses."""
+        shared, volumes = [], []
+        for more in ((), ("--bond",)):
+            _, deck, report = self.mesh("cell_plain", "--size", "0.15", *more)
+            yarns = {name: cells for name, cells in deck.sets.items() if name.startswith("Yarn")}
+            faces = np.concatenate([cell.outer_faces(cells) for cells in yarns.values()])
+            unique, counts = np.unique(faces, axis=0, return_counts=True)
+            shared.append(cell.face_areas(deck.points, unique[counts == 2]).sum())
+            volumes.append({name: cell.volumes(deck.points, cells).sum() for name, cells in deck.sets.items()})
+            for region, volume in zip(report["regions"], volumes[-1].values()):
+                self.assertAlmostEqual(region["volume"] / volume, 1, delta=1e-9)
+        self.assertEqual(shared[0], 0)
+        self.assertGreater(shared[1], 0.1)  # mm2: four crossings of tows 1.1 mm wide
+        self.assertAlmostEqual(sum(volumes[0].values()), sum(volumes[1].values()), delta=1e-12)
+        for name in volumes[0]:
+            (self.assertLess if name == "Matrix" else self.assertGreater)(volumes[1][name], volumes[0][name])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -39,9 +39,9 @@ BuiltCell build(const std::filesystem::path& path) {
   return built;
 }
 
-class Samples : public testing::TestWithParam<std::string> {};
+class CellSamples : public testing::TestWithParam<std::string> {};
 
-TEST_P(Samples, CutAndDivide) {
+TEST_P(CellSamples, CutAndDivide) {
   const BuiltCell cell = build(std::filesystem::path(SELVAGE_SAMPLES) / (GetParam() + ".txt"));
   const Result<Cut> cut_up = cut(cell.bodies, cell.box, {.tolerance = cell.tolerance});
   ASSERT_TRUE(cut_up.ok()) << to_string(cut_up.error());
@@ -60,7 +60,19 @@ TEST_P(Samples, CutAndDivide) {
   EXPECT_LT(yarns, 0.9 * cell.box.volume());
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Samples,
+// A cell of one repeat holds as much of each warp, wherever the faces cut it.
+TEST(Samples, WarpsOfATwillAreEqual) {
+  const BuiltCell cell = build(std::filesystem::path(SELVAGE_SAMPLES) / "twill_cell.txt");
+  const Result<Cut> cut_up = cut(cell.bodies, cell.box, {.tolerance = cell.tolerance});
+  ASSERT_TRUE(cut_up.ok());
+  const Result<Division> division = divide_faces(cell.bodies, cell.box, *cut_up);
+  ASSERT_TRUE(division.ok());
+  const std::vector<double> volumes = volumes_inside(cell.bodies, cell.box, *cut_up, *division);
+  ASSERT_EQ(volumes.size(), 8U);
+  for (const double volume : volumes) EXPECT_NEAR(volume, volumes[0], 1e-7 * volumes[0]);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CellSamples,
                          testing::Values("cell_plain", "twill_cell", "cell_satin5", "cell_orthogonal",
                                          "cell_jersey", "cell_tricot", "cell_straight", "cell_fibre",
                                          "cell_glass"));
