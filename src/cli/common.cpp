@@ -58,6 +58,8 @@ Status complete(const Parsed& parsed, pipeline::Options& options) {
                                           options.matrix ? "--matrix" : "--cut"));
   if (Status status = check_relaxing(options.relaxing, options.wants_cell()); !status.ok())
     return status.error();
+  if (options.matrix_size > 0 && !options.matrix)
+    return error(Kind::usage, "--matrix-size is of the matrix: it goes with --matrix");
   if (options.bond && (!options.matrix || options.voxels > 0))
     return error(Kind::usage,
                  "--bond joins yarns in a mesh of tetrahedra with its matrix: it goes with --matrix, and "

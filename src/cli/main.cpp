@@ -31,7 +31,8 @@ Message refusal(const CLI::App& program, const CLI::ParseError& failure, int cou
   for (int i = 1; i < count; ++i) {
     const std::string word = words[i];
     if (failure.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) continue;
-    if (!word.starts_with("--") || text.find(word) == std::string::npos) continue;
+    // Not as the beginning of a longer one.
+    if (!word.starts_with("--") || (text + ' ').find(word + ' ') == std::string::npos) continue;
     std::vector<std::string> names;
     for (const CLI::Option* option : command->get_options())
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);

@@ -34,6 +34,11 @@ void add_mesh(CLI::App& program, Parsed& parsed) {
                   "given: a yarn's material is the yarn's; chamis: it is its fibres', and the yarn's follows "
                   "from the local fibre fraction by Chamis's formulas (default: given)")
       ->check(CLI::IsMember({"given", "chamis"}));
+  command
+      .add_option("--matrix-size", o.matrix_size,
+                  "with --matrix: to which edges may grow away from the yarns, in the input's unit (default: "
+                  "--size)")
+      ->check(CLI::PositiveNumber);
   command.add_flag(
       "--bond", o.bond,
       "with --matrix: yarns in contact share faces (what lies between yarns nearer than 1.5 times the "

@@ -49,6 +49,7 @@ class CellMesher {
   Status finish(Mesh& mesh);
   [[nodiscard]] Message located(Message message) const;
   [[nodiscard]] std::string yarns_near(const Vec3& at) const;
+  [[nodiscard]] double coarsest() const { return std::max(size_, options_.coarsest); }
   void report(const Improvement& improvement);
   void bond();
   static void renew_side_faces(Mesh& mesh);
@@ -122,6 +123,7 @@ Status CellMesher::make_surfaces() {
   step("meshing surfaces", 1);
   SizeRules rules;
   rules.largest = size_;
+  rules.coarsest = coarsest();
   rules.smallest = least_size * extent_;
   rules.turn *= std::min(1.0, size_ * default_edges_per_extent / extent_);
   const SizeField field = size_field(bodies_, box_, rules, options_.threads);
@@ -175,7 +177,7 @@ Status CellMesher::fill_regions() {
   if (!program) return program.error();
   step("filling with tetrahedra", 2);
   TetgenJob job{.points = nodes_.points, .triangles = surface_.triangles, .sides = surface_.sides};
-  job.max_volume = largest_share * size_ * size_ * size_;
+  job.max_volume = largest_share * coarsest() * coarsest() * coarsest();
   job.smallest_feature = size_;
   Result<TetMesh> tets = run_tetgen(*program, job, {.timeout = options_.timeout, .memory = options_.memory});
   if (!tets) {

@@ -14,9 +14,10 @@
 namespace selvage::fem {
 
 struct CellMeshOptions {
-  double size = 0;     // largest edge, file units; 0: a quarter of the smallest section extent
-  int order = 1;       // 1 | 2
-  bool matrix = true;  // false: only the yarns, cut flush
+  double size = 0;      // largest edge, file units; 0: a quarter of the smallest section extent
+  double coarsest = 0;  // file units: to which edges may grow away from the yarns; 0: `size`
+  int order = 1;        // 1 | 2
+  bool matrix = true;   // false: only the yarns, cut flush
   double bond =
       0;  // file units: matrix between yarns that are this near becomes part of them (fem/bond.h); 0: none
   std::array<bool, 3> periodic{};  // opposite faces get the same triangles

@@ -294,7 +294,8 @@ Box3 widened(const Box3& box, double by) {
 
 SizeField size_field(std::span<const yarn::Body> bodies, const Box3& box, const SizeRules& rules,
                      int threads) {
-  const Box3 near = widened(box, 1.5 * rules.largest), nearest = widened(box, rules.largest);
+  const double coarsest = std::max(rules.largest, rules.coarsest);
+  const Box3 near = widened(box, 1.5 * coarsest), nearest = widened(box, coarsest);
   std::vector<Raster> rasters(bodies.size());
   for_each_index(bodies.size(), threads, [&](std::size_t b) {
     rasters[b] = raster_of(bodies[b], static_cast<std::uint32_t>(b), near, 0.4 * rules.largest);
@@ -321,7 +322,7 @@ SizeField size_field(std::span<const yarn::Body> bodies, const Box3& box, const 
   });
   std::vector<SizeField::Bound> all;
   for (const auto& some : bounds) all.insert(all.end(), some.begin(), some.end());
-  return {rules.largest, rules.growth, std::move(all)};
+  return {coarsest, rules.growth, std::move(all)};
 }
 
 std::vector<double> crests_of(const nurbs::Surface& surface) {

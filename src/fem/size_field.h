@@ -36,7 +36,8 @@ class SizeField {
 };
 
 struct SizeRules {
-  double largest = 0;         // file units, > 0
+  double largest = 0;         // on the yarns, file units, > 0
+  double coarsest = 0;        // away from them; at least `largest`
   double smallest = 0;        // never finer, >= 0
   double gap_factor = 3;      // edges over the width of a gap
   double growth = 0.3;        // of the size, per length

@@ -58,6 +58,7 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
                             diagnostics);
   fem::CellMeshOptions options;
   options.size = ready.size.size;
+  options.coarsest = given.matrix_size;
   options.order = given.order;
   options.matrix = given.matrix;
   if (given.bond) options.bond = bond_reach * job.gap;

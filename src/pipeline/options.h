@@ -58,13 +58,14 @@ struct Options {
   bool allow_overlap = false;
 
   // The unit cell: of `mesh` and `convert`.
-  bool cut = false;       // by the cell's faces
-  bool matrix = false;    // with the rest of the cell
-  bool periodic = false;  // opposite faces alike, and equations between them
-  bool bond = false;      // yarns in contact share faces, instead of a gap filled with matrix
-  int voxels = 0;         // hexahedra along the longest side instead of tetrahedra; 0: tetrahedra
-  bool chamis = false;    // stiffness of yarns from that of their fibres (Chamis), not as their material says
-  bool force = false;     // go on where the estimate, or a gap, says that it is not worth it
+  bool cut = false;        // by the cell's faces
+  bool matrix = false;     // with the rest of the cell
+  bool periodic = false;   // opposite faces alike, and equations between them
+  double matrix_size = 0;  // to which edges may grow away from the yarns, input's unit; 0: size
+  bool bond = false;       // yarns in contact share faces, instead of a gap filled with matrix
+  int voxels = 0;          // hexahedra along the longest side instead of tetrahedra; 0: tetrahedra
+  bool chamis = false;  // stiffness of yarns from that of their fibres (Chamis), not as their material says
+  bool force = false;   // go on where the estimate, or a gap, says that it is not worth it
 
   [[nodiscard]] bool wants_cell() const { return cut || matrix || periodic || voxels > 0; }
 

@@ -358,7 +358,16 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
     for (const yarn::Body& body : bodies) volume += body.volume;
     volume = std::min(volume, box.volume());
   }
-  chosen.tetrahedra = volume / (mean_share * chosen.size * chosen.size * chosen.size);
+  // Edges that may grow do so in about half of the matrix.
+  const double growth = std::max(1.0, job.options.matrix_size / chosen.size);
+  double grown = 0.0;
+  if (growth > 1.0 && with_matrix) {
+    double yarns = 0.0;
+    for (const yarn::Body& body : bodies) yarns += body.volume;
+    grown = 0.5 * std::max(volume - yarns, 0.0);
+  }
+  chosen.tetrahedra = (volume - grown * (1.0 - 1.0 / (growth * growth * growth))) /
+                      (mean_share * chosen.size * chosen.size * chosen.size);
   const std::string estimate = fmt::format("a size of {:.4g} {} makes about {:.2g} tetrahedra in this cell",
                                            chosen.size, name_of(fabric.units), chosen.tetrahedra);
   if (chosen.tetrahedra > most && !job.options.force) {

@@ -28,6 +28,10 @@ class Usage(Case):
         self.refused("subcommand is required")
         self.refused("did you mean 'convert'", "convrt", GRID)
         self.refused("unknown option '--repot'; did you mean '--report'", "convert", "--repot", "x", GRID, "-o", self.out)
+        self.refused("unknown option '--matrix-siz'; did you mean '--matrix-size'", "mesh", GRID, "--matrix", "--matrix-siz",
+                     "1", "-o", self.out)
+        self.refused("it goes with --matrix", "mesh", GRID, "--matrix-size", "1", "-o", self.out)
+        self.refused("it goes with --matrix", "mesh", GRID, "--bond", "-o", self.out)
         self.refused("INPUT is required", "convert")
         self.refused("unknown format 'igs'; did you mean 'iges'|unknown format 'igs'", "convert", GRID, "--to", "igs", "-o",
                      self.out)

@@ -12,7 +12,7 @@ import numpy as np
 import unit_cell as cell
 from program import Case, SAMPLES
 
-NAMES = os.environ.get("SELVAGE_CELL", "cell_plain cell_twill cell_satin5 cell_orthogonal cell_jersey cell_tricot").split()
+NAMES = os.environ.get("SELVAGE_CELL", "cell_plain twill_cell cell_satin5 cell_orthogonal cell_jersey cell_tricot").split()
 SIZES = os.environ.get("SELVAGE_SIZES", "").split()
 ORDER = os.environ.get("SELVAGE_ORDER", "1")
 TARGET = 10.0
