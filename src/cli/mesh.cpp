@@ -34,6 +34,8 @@ void add_mesh(CLI::App& program, Parsed& parsed) {
                   "given: a yarn's material is the yarn's; chamis: it is its fibres', and the yarn's follows "
                   "from the local fibre fraction by Chamis's formulas (default: given)")
       ->check(CLI::IsMember({"given", "chamis"}));
+  command.add_option("--segments", o.segments, "of a cell: so many edges go round each yarn, thin or thick")
+      ->check(CLI::Range(6, 10'000));
   command
       .add_option("--matrix-size", o.matrix_size,
                   "with --matrix: to which edges may grow away from the yarns, in the input's unit (default: "

@@ -49,7 +49,9 @@ class CellMesher {
   Status finish(Mesh& mesh);
   [[nodiscard]] Message located(Message message) const;
   [[nodiscard]] std::string yarns_near(const Vec3& at) const;
-  [[nodiscard]] double coarsest() const { return std::max(size_, options_.coarsest); }
+  [[nodiscard]] double coarsest() const {
+    return std::max(*std::max_element(sizes_.begin(), sizes_.end()), options_.coarsest);
+  }
   void report(const Improvement& improvement);
   void bond();
   static void renew_side_faces(Mesh& mesh);
@@ -61,7 +63,8 @@ class CellMesher {
   std::span<const yarn::Body> bodies_;
   const CellMeshOptions& options_;
   Diagnostics& diagnostics_;
-  double extent_ = 0, size_ = 0, tolerance_ = 0;
+  double extent_ = 0, tolerance_ = 0;
+  std::vector<double> sizes_;  // of each body
   Box3 box_;
   std::vector<double> volumes_;  // of each body, inside the box
   CellNodes nodes_;
@@ -87,7 +90,7 @@ std::string CellMesher::yarns_near(const Vec3& at) const {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return distances[a] < distances[b]; });
   if (order.empty() || !std::isfinite(distances[order[0]])) return "";
-  if (order.size() < 2 || distances[order[1]] > 4 * size_)
+  if (order.size() < 2 || distances[order[1]] > 4 * sizes_[order[1]])
     return fmt::format(" (yarn '{}')", bodies_[order[0]].name);
   return fmt::format(" (yarns '{}' and '{}')", bodies_[order[0]].name, bodies_[order[1]].name);
 }
@@ -96,6 +99,9 @@ Status CellMesher::prepare() {
   if (!fabric_.cell)
     return located(error(Kind::usage, "the file has no cell; say one with 'cell X Y Z  X Y Z'"));
   if (options_.order != 1 && options_.order != 2) return error(Kind::usage, "the order of a mesh is 1 or 2");
+  for (const double size : options_.sizes)
+    if (!(size > 0) || !std::isfinite(size))
+      return error(Kind::usage, "the mesh size must be a positive number");
   if (!(options_.size >= 0) || !std::isfinite(options_.size))
     return error(Kind::usage, "the mesh size must be a positive number");
   if (!(options_.min_dihedral >= 0 && options_.min_dihedral <= 30))
@@ -106,7 +112,8 @@ Status CellMesher::prepare() {
     if (yarn::bounds(body).intersects(box_)) extent_ = std::min(extent_, smallest_section_extent(body));
   }
   if (!std::isfinite(extent_)) return located(error(Kind::geometry, "no yarn enters the cell"));
-  size_ = options_.size > 0 ? options_.size : extent_ / default_edges_per_extent;
+  sizes_ = options_.sizes;
+  sizes_.resize(bodies_.size(), options_.size > 0 ? options_.size : extent_ / default_edges_per_extent);
   tolerance_ = options_.tolerance > 0 ? options_.tolerance : 1e-3 * extent_;
   return {};
 }
@@ -122,10 +129,14 @@ Status CellMesher::make_surfaces() {
 
   step("meshing surfaces", 1);
   SizeRules rules;
-  rules.largest = size_;
   rules.coarsest = coarsest();
   rules.smallest = least_size * extent_;
-  rules.turn *= std::min(1.0, size_ * default_edges_per_extent / extent_);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    SizeRules::Yarn yarn;
+    yarn.largest = sizes_[b];
+    yarn.turn *= std::min(1.0, sizes_[b] * default_edges_per_extent / smallest_section_extent(bodies_[b]));
+    rules.yarns.push_back(yarn);
+  }
   const SizeField field = size_field(bodies_, box_, rules, options_.threads);
   const CellShape shape{bodies_, box_, options_.periodic, *cut, *division};
   Result<CellCurves> curves = divide_curves(shape, field, std::max(tolerance_, least_size * extent_), nodes_);
@@ -178,7 +189,7 @@ Status CellMesher::fill_regions() {
   step("filling with tetrahedra", 2);
   TetgenJob job{.points = nodes_.points, .triangles = surface_.triangles, .sides = surface_.sides};
   job.max_volume = largest_share * coarsest() * coarsest() * coarsest();
-  job.smallest_feature = size_;
+  job.smallest_feature = *std::min_element(sizes_.begin(), sizes_.end());
   Result<TetMesh> tets = run_tetgen(*program, job, {.timeout = options_.timeout, .memory = options_.memory});
   if (!tets) {
     Message message = located(tets.error());

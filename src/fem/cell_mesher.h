@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "core/diagnostics.h"
 #include "fabric/model.h"
@@ -14,10 +15,11 @@
 namespace selvage::fem {
 
 struct CellMeshOptions {
-  double size = 0;      // largest edge, file units; 0: a quarter of the smallest section extent
-  double coarsest = 0;  // file units: to which edges may grow away from the yarns; 0: `size`
-  int order = 1;        // 1 | 2
-  bool matrix = true;   // false: only the yarns, cut flush
+  double size = 0;              // largest edge, file units; 0: a quarter of the smallest section extent
+  std::vector<double> sizes{};  // one a body: the largest edge on its surface; empty: `size`
+  double coarsest = 0;          // file units: to which edges may grow away from the yarns; 0: as on the yarns
+  int order = 1;                // 1 | 2
+  bool matrix = true;           // false: only the yarns, cut flush
   double bond =
       0;  // file units: matrix between yarns that are this near becomes part of them (fem/bond.h); 0: none
   std::array<bool, 3> periodic{};  // opposite faces get the same triangles

@@ -186,4 +186,17 @@ double section_area(const yarn::Body& body, double v) {
   return std::abs(area.dot(centre.d1.normalized()));
 }
 
+double section_perimeter(const yarn::Body& body, double v) {
+  constexpr int parts = 16;  // of a span
+  const std::vector<double> breaks = nurbs::breakpoints(body.surface.knots_u, body.surface.degree_u);
+  std::vector<double> us;
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
+    for (int k = 0; k < parts; ++k) us.push_back(breaks[i] + (breaks[i + 1] - breaks[i]) * k / parts);
+  us.push_back(breaks.back());
+  const std::vector<Vec3> points = nurbs::evaluate_grid(body.surface, us, {v});
+  double length = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  return length;
+}
+
 }  // namespace selvage::fem

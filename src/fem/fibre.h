@@ -31,6 +31,9 @@ void add_fibres(Mesh& mesh, const Region& region, const yarn::Body& body, std::s
 // Area across the centre line of the B-spline section at v, file units squared.
 double section_area(const yarn::Body& body, double v);
 
+// Length of the outline of the B-spline section at v, file units, to about 1e-4 of it.
+double section_perimeter(const yarn::Body& body, double v);
+
 // Constants of a yarn (transverse isotropic) of a share `fraction` of fibres in a matrix: C. C. Chamis,
 // Simplified composite micromechanics equations for hygral, thermal and mechanical properties, NASA TM-83320
 // (1983); nu23 follows from E2 and G23. Precondition: both have elastic constants, the matrix isotropic ones;

@@ -228,21 +228,23 @@ class Rule {
   [[nodiscard]] double at(const Raster& raster, std::size_t i, std::size_t j) const {
     const std::size_t k = raster.index(i, j);
     const double bound = std::min({from_gap(raster, k), from_faces(raster, k), from_curvature(raster, i, j)});
-    return std::clamp(bound, rules_.smallest, rules_.largest);
+    return std::max(std::min(bound, own(raster).largest), rules_.smallest);
   }
 
  private:
+  [[nodiscard]] const SizeRules::Yarn& own(const Raster& raster) const { return rules_.yarns[raster.body]; }
+
   [[nodiscard]] double from_gap(const Raster& raster, std::size_t k) const {
     constexpr double opposed = -0.2, in_front = 0.5;
     const Vec3 &p = raster.points[k], &normal = raster.normals[k];
-    double least = rules_.largest / rules_.gap_factor;
+    double least = own(raster).largest / rules_.gap_factor;
     tree_.near_point(p, least, [&](std::uint32_t f) {
       const Facet& facet = facets_[f];
-      const bool own = facet.body == raster.body;
-      if (own && facet.normal.dot(normal) > opposed) return least;
+      const bool is_own = facet.body == raster.body;
+      if (is_own && facet.normal.dot(normal) > opposed) return least;
       const Vec3 way = nearest_on(facet.corners, p) - p;
       const double distance = way.norm();
-      if (distance >= least || (own && !(way.dot(normal) > in_front * distance))) return least;
+      if (distance >= least || (is_own && !(way.dot(normal) > in_front * distance))) return least;
       return least = distance;
     });
     return rules_.gap_factor * least;
@@ -250,7 +252,7 @@ class Rule {
 
   [[nodiscard]] double from_faces(const Raster& raster, std::size_t k) const {
     constexpr double finest = 5;  // over the smallest: a yarn that crosses a face at a grazing angle
-    double least = rules_.largest;
+    double least = own(raster).largest;
     for (int face = 0; face < 6; ++face) {
       const double plane = face % 2 == 1 ? box_.max()[face / 2] : box_.min()[face / 2];
       const double aligned = std::abs(raster.normals[k][face / 2]);
@@ -265,11 +267,11 @@ class Rule {
 
   [[nodiscard]] double from_curvature(const Raster& raster, std::size_t i, std::size_t j) const {
     const std::size_t n = raster.us.size(), here = raster.index(i, j);
-    double least = rules_.largest;
+    double least = own(raster).largest;
     const auto compare = [&](std::size_t other) {
       const double angle = std::acos(std::clamp(raster.normals[here].dot(raster.normals[other]), -1.0, 1.0));
       const double length = (raster.points[here] - raster.points[other]).norm();
-      if (angle > 0) least = std::min(least, rules_.turn * length / angle);
+      if (angle > 0) least = std::min(least, own(raster).turn * length / angle);
     };
     if (!raster.is_crest[i]) {
       if (!raster.is_crest[(i + 1) % n]) compare(raster.index(i + 1, j));
@@ -277,7 +279,7 @@ class Rule {
     }
     if (raster.joined[j]) compare(raster.index(i, j + 1));
     if (j > 0 && raster.joined[j - 1]) compare(raster.index(i, j - 1));
-    return std::max(least, rules_.turn_finest * rules_.largest);
+    return std::max(least, rules_.turn_finest * own(raster).largest);
   }
 
   const std::vector<Facet>& facets_;
@@ -294,11 +296,10 @@ Box3 widened(const Box3& box, double by) {
 
 SizeField size_field(std::span<const yarn::Body> bodies, const Box3& box, const SizeRules& rules,
                      int threads) {
-  const double coarsest = std::max(rules.largest, rules.coarsest);
-  const Box3 near = widened(box, 1.5 * coarsest), nearest = widened(box, coarsest);
+  const Box3 near = widened(box, 1.5 * rules.coarsest), nearest = widened(box, rules.coarsest);
   std::vector<Raster> rasters(bodies.size());
   for_each_index(bodies.size(), threads, [&](std::size_t b) {
-    rasters[b] = raster_of(bodies[b], static_cast<std::uint32_t>(b), near, 0.4 * rules.largest);
+    rasters[b] = raster_of(bodies[b], static_cast<std::uint32_t>(b), near, 0.4 * rules.yarns[b].largest);
   });
   std::vector<Facet> facets;
   for (const Raster& raster : rasters) add_facets(raster, near, facets);
@@ -322,7 +323,7 @@ SizeField size_field(std::span<const yarn::Body> bodies, const Box3& box, const 
   });
   std::vector<SizeField::Bound> all;
   for (const auto& some : bounds) all.insert(all.end(), some.begin(), some.end());
-  return {coarsest, rules.growth, std::move(all)};
+  return {rules.coarsest, rules.growth, std::move(all)};
 }
 
 std::vector<double> crests_of(const nurbs::Surface& surface) {

@@ -36,13 +36,16 @@ class SizeField {
 };
 
 struct SizeRules {
-  double largest = 0;         // on the yarns, file units, > 0
-  double coarsest = 0;        // away from them; at least `largest`
+  struct Yarn {
+    double largest = 0;  // on its surface, file units, > 0
+    double turn = 0.7;   // of its surface along an edge, radians
+  };
+  std::vector<Yarn> yarns;    // one a body
+  double coarsest = 0;        // away from them; at least their largest
   double smallest = 0;        // never finer, >= 0
   double gap_factor = 3;      // edges over the width of a gap
   double growth = 0.3;        // of the size, per length
-  double turn = 0.7;          // of the surface along an edge, radians
-  double turn_finest = 0.35;  // curvature alone asks for no less than this share of the largest
+  double turn_finest = 0.35;  // curvature alone asks for no less than this share of the yarn's largest
 };
 
 // Bounds on the yarns' surfaces in the box and a little beyond it: the gap to other yarns and to other parts

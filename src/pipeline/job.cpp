@@ -55,10 +55,11 @@ std::string settings_of(const Options& options) {
   else
     text += fmt::format(" step-schema={}", options.step_schema);
   if (options.wants_cell())
-    text += fmt::format("{}{}{}{} voxels={}{} matrix-size={} gap={}", options.chamis ? " chamis" : "",
-                        options.cut ? " cut" : "", options.matrix ? " matrix" : "",
-                        options.periodic ? " periodic" : "", options.voxels, options.bond ? " bond" : "",
-                        options.matrix_size, options.relaxing.gap.value_or(-1.0));
+    text +=
+        fmt::format("{}{}{}{} voxels={}{} segments={} matrix-size={} gap={}", options.chamis ? " chamis" : "",
+                    options.cut ? " cut" : "", options.matrix ? " matrix" : "",
+                    options.periodic ? " periodic" : "", options.voxels, options.bond ? " bond" : "",
+                    options.segments, options.matrix_size, options.relaxing.gap.value_or(-1.0));
   if (options.reach > 0) text += fmt::format(" reach={}", options.reach);
   if (!options.gap_map.empty()) text += " gap-map";
   return text;

@@ -57,7 +57,7 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
                              .threads = static_cast<int>(job.threads)},
                             diagnostics);
   fem::CellMeshOptions options;
-  options.size = ready.size.size;
+  options.sizes = ready.size.sizes;
   options.coarsest = given.matrix_size;
   options.order = given.order;
   options.matrix = given.matrix;

@@ -61,6 +61,7 @@ struct Options {
   bool cut = false;        // by the cell's faces
   bool matrix = false;     // with the rest of the cell
   bool periodic = false;   // opposite faces alike, and equations between them
+  int segments = 0;        // edges round each yarn; 0: by size
   double matrix_size = 0;  // to which edges may grow away from the yarns, input's unit; 0: size
   bool bond = false;       // yarns in contact share faces, instead of a gap filled with matrix
   int voxels = 0;          // hexahedra along the longest side instead of tetrahedra; 0: tetrahedra

@@ -11,6 +11,7 @@
 
 #include "contact/contact.h"
 #include "fabric/repeat.h"
+#include "fem/fibre.h"
 #include "fem/surface_mesh.h"
 #include "pipeline/overlaps.h"
 
@@ -327,57 +328,87 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
   return !job.has_failed();
 }
 
+namespace {
+
+// The yarn's volume in the box, by how much of its centre line is there.
+double volume_inside(const yarn::Body& body, const Box3& box) {
+  constexpr int samples = 500;
+  const double first = body.axis.first_parameter(), last = body.axis.last_parameter();
+  int inside = 0;
+  for (int k = 0; k < samples; ++k)
+    inside += box.contains(nurbs::evaluate(body.axis, first + (last - first) * (k + 0.5) / samples)) ? 1 : 0;
+  return body.volume * inside / samples;
+}
+
+// Edges on each yarn: of --size, or so long that --segments of them go round it, the shorter of both; without
+// these a quarter of the side of the square that is as large as its section (of a flat tow a quarter of its
+// thickness would be millions of tetrahedra), at most its thickness.
+std::vector<double> sizes_of(const Options& options, std::span<const yarn::Body> bodies) {
+  std::vector<double> sizes;
+  for (const yarn::Body& body : bodies) {
+    double size = options.size > 0.0 ? options.size : infinity;
+    if (options.segments > 0) {
+      const double middle = (body.surface.first_v() + body.surface.last_v()) / 2.0;
+      size = std::min(size, fem::section_perimeter(body, middle) / options.segments);
+    }
+    if (size == infinity)
+      size = std::min(std::sqrt(body.volume / body.length) / 4.0, fem::smallest_section_extent(body));
+    sizes.push_back(size);
+  }
+  return sizes;
+}
+
+// About as many tetrahedra as edges of these lengths make: the matrix is divided as the yarns are, but where
+// edges may grow away from them, which they do in about half of it.
+double estimate_of(const Options& options, std::span<const yarn::Body> bodies, const Box3& box,
+                   const std::vector<double>& sizes, bool with_matrix) {
+  // Of the cube of the edge length, a tetrahedron on average; the same as for yarns alone (fem/mesher.cpp).
+  constexpr double mean_share = 0.083;
+  double yarns = 0.0, of_yarns = 0.0;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const double inside = std::max(volume_inside(bodies[b], box), 1e-3 * bodies[b].volume);
+    yarns += inside;
+    of_yarns += inside / (mean_share * sizes[b] * sizes[b] * sizes[b]);
+  }
+  if (!with_matrix) return of_yarns;
+  const double matrix = std::max(box.volume() - yarns, 0.0) / yarns;  // over the yarns
+  const double growth = std::max(1.0, options.matrix_size / *std::min_element(sizes.begin(), sizes.end()));
+  return of_yarns * (1.0 + 0.5 * matrix * (1.0 + 1.0 / (growth * growth * growth)));
+}
+
+}  // namespace
+
 std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
                                         std::span<const yarn::Body> bodies, bool with_matrix) {
   constexpr double most = 1e8;
-  // Of the cube of the edge length, a tetrahedron on average; the same as for yarns alone (fem/mesher.cpp).
-  constexpr double mean_share = 0.083;
-  const yarn::Body* thinnest = nullptr;
-  double thickness = infinity, side = infinity;  // of the square that is as large as the smallest section
-  for (const yarn::Body& body : bodies) {
-    side = std::min(side, std::sqrt(body.volume / body.length));
-    if (const double own = fem::smallest_section_extent(body); own < thickness) {
-      thickness = own;
-      thinnest = &body;
-    }
-  }
-  // Of a flat tow a quarter of its thickness would be millions of tetrahedra.
-  const double usual = std::min(side / 4.0, thickness);
-  CellSize chosen{job.options.size > 0.0 ? job.options.size : usual, 0.0};
-  if (chosen.size > thickness) {
-    job.say(error(Kind::usage,
-                  fmt::format("--size {:.6g} is coarser than yarn '{}', which is {:.3g} {} thick; edges of "
-                              "{:.3g} are usual",
-                              chosen.size, thinnest->name, thickness, name_of(fabric.units), usual)));
+  CellSize chosen{sizes_of(job.options, bodies), 0.0};
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const double thickness = fem::smallest_section_extent(bodies[b]);
+    if (chosen.sizes[b] <= thickness) continue;
+    job.say(error(
+        Kind::usage,
+        fmt::format("--{} makes edges of {:.6g}, coarser than yarn '{}', which is {:.3g} {} thick; edges of "
+                    "{:.3g} are usual",
+                    job.options.segments > 0 ? "segments" : "size", chosen.sizes[b], bodies[b].name,
+                    thickness, name_of(fabric.units), sizes_of({}, bodies.subspan(b, 1)).front())));
     return std::nullopt;
   }
-  const Box3 box = box_of(fabric);
-  double volume = box.volume();
-  if (!with_matrix) {
-    volume = 0.0;
-    for (const yarn::Body& body : bodies) volume += body.volume;
-    volume = std::min(volume, box.volume());
-  }
-  // Edges that may grow do so in about half of the matrix.
-  const double growth = std::max(1.0, job.options.matrix_size / chosen.size);
-  double grown = 0.0;
-  if (growth > 1.0 && with_matrix) {
-    double yarns = 0.0;
-    for (const yarn::Body& body : bodies) yarns += body.volume;
-    grown = 0.5 * std::max(volume - yarns, 0.0);
-  }
-  chosen.tetrahedra = (volume - grown * (1.0 - 1.0 / (growth * growth * growth))) /
-                      (mean_share * chosen.size * chosen.size * chosen.size);
-  const std::string estimate = fmt::format("a size of {:.4g} {} makes about {:.2g} tetrahedra in this cell",
-                                           chosen.size, name_of(fabric.units), chosen.tetrahedra);
+  const auto [finest, coarsest] = std::minmax_element(chosen.sizes.begin(), chosen.sizes.end());
+  chosen.tetrahedra = estimate_of(job.options, bodies, box_of(fabric), chosen.sizes, with_matrix);
+  const std::string lengths = *coarsest - *finest < 1e-3 * *coarsest ? fmt::format("{:.4g}", *finest)
+                                                   : fmt::format("{:.4g} to {:.4g}", *finest, *coarsest);
+  const std::string estimate =
+      fmt::format("edges of {} {} on the yarns make about {:.2g} tetrahedra in this cell", lengths,
+                  name_of(fabric.units), chosen.tetrahedra);
   if (chosen.tetrahedra > most && !job.options.force) {
-    job.say(at_cell(fabric,
-                    error(Kind::limit, fmt::format("{}, more than {:.0g}: --size {:.3g} makes ten "
-                                                   "million, --force goes on all the same",
-                                                   estimate, most, std::cbrt(volume / (mean_share * 1e7))))));
+    job.say(at_cell(
+        fabric,
+        error(Kind::limit, fmt::format("{}, more than {:.0g}: --size {:.3g} makes ten million, "
+                                       "--force goes on all the same",
+                                       estimate, most, *finest * std::cbrt(chosen.tetrahedra / 1e7)))));
     return std::nullopt;
   }
-  Message note = at_cell(fabric, error(Kind::limit, estimate + ", more where yarns are near each other"));
+  Message note = at_cell(fabric, error(Kind::limit, estimate + ", more where they are near each other"));
   note.severity = Severity::note;
   job.say(std::move(note));
   job.progress(estimate);

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "fabric/build.h"
 #include "fabric/model.h"
@@ -38,9 +39,9 @@ bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<cons
 bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
                      double wanted);
 
-// The edge length in force, and about how many tetrahedra it makes; both are said.
+// The edge lengths in force, and about how many tetrahedra they make; both are said.
 struct CellSize {
-  double size = 0;  // file units
+  std::vector<double> sizes;  // of each yarn, file units
   double tetrahedra = 0;
 };
 // None: too coarse for a yarn, or too fine for any memory (without --force).
