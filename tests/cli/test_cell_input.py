@@ -136,12 +136,12 @@ class CellInput(Case):
     def test_a_size_coarser_than_a_yarn(self):
         text = PLAIN + cell("0 0 -0.35 3 3 0.35")
         message = self.refuses(text, "--size", "0.31")
-        self.assertRegex(message, r"--size 0\.31 is coarser than yarn 'w..._\d', which is 0\.(3|299) mm thick: edges of a quarter of that, 0\.07[45]")
+        self.assertRegex(message, r"--size makes edges of 0\.31, coarser than yarn 'w..._\d', which is 0\.(3|299) mm thick; edges of 0\.0\d+ are usual")
 
     def test_a_size_of_a_thousand_million_tetrahedra(self):
         text = PLAIN + cell("0 0 -0.35 3 3 0.35")
         message = self.refuses(text, "--size", "0.0042")
-        found = re.search(r"a size of 0\.0042 mm makes about (\S+) tetrahedra in this cell, more than 1e\+08: --size (\S+) makes ten million, --force goes on", message)
+        found = re.search(r"edges of 0\.0042 mm on the yarns make about (\S+) tetrahedra in this cell, more than 1e\+08: --size (\S+) makes ten million, --force goes on", message)
         self.assertIsNotNone(found, message)
         self.assertLess(abs(float(found[1]) - 1e9), 0.1e9)
         self.assertLess(abs((0.0042 / float(found[2])) ** 3 - 1e7 / float(found[1])), 0.2e-2)

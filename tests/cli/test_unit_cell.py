@@ -1,6 +1,7 @@
 """Cells of the samples as `mesh --matrix --periodic` writes them: measured from the deck alone.
 
-SELVAGE_CELL names one sample (without .txt); SELVAGE_SIZES gives several edge lengths to go through.
+SELVAGE_CELL names samples (without .txt), SELVAGE_SEGMENTS the numbers of edges round their yarns to go through,
+SELVAGE_ORDER the order: for studies by hand.
 """
 
 import json
@@ -13,7 +14,9 @@ import unit_cell as cell
 from program import Case, SAMPLES
 
 NAMES = os.environ.get("SELVAGE_CELL", "cell_plain twill_cell cell_satin5 cell_orthogonal cell_jersey cell_tricot").split()
-SIZES = os.environ.get("SELVAGE_SIZES", "").split()
+SEGMENTS = os.environ.get("SELVAGE_SEGMENTS", "").split()
+USUAL = {"twill_cell": "40"}  # edges may not be longer than a yarn is thick; of the others 20
+COARSEST = {"cell_jersey": "0.1", "cell_tricot": "0.05"}  # mm, away from the yarns; of the others 0.2
 ORDER = os.environ.get("SELVAGE_ORDER", "1")
 TARGET = 10.0
 
@@ -21,6 +24,7 @@ TARGET = 10.0
 class UnitCell(Case):
     def mesh(self, name, *more):
         sample, deck, report = SAMPLES / (name + ".txt"), self.folder / (name + ".inp"), self.folder / "report.json"
+        more = ("--matrix-size", COARSEST.get(name, "0.2"), *more)
         self.succeeds("mesh", sample, "--matrix", "--periodic", "--order", ORDER, *more, "-o", deck, "--report", report,
                       "--quiet")
         return sample, cell.Deck(deck), json.loads(report.read_text())["inputs"][0]["mesh"]
@@ -64,10 +68,20 @@ class UnitCell(Case):
 
     def test_cells(self):
         for name in NAMES:
-            for more in [("--size", size) for size in SIZES] or [()]:
-                with self.subTest(cell=name, more=more):
-                    error, angle, count = self.judge(name, *more)
-                    print(f"{name} {' '.join(more)}: {count} tetrahedra, volumes to {100 * error:.3f} %, {angle:.2f} degrees")
+            for segments in SEGMENTS or [USUAL.get(name, "20")]:
+                with self.subTest(cell=name, segments=segments):
+                    error, angle, count = self.judge(name, "--segments", segments)
+                    print(f"{name} {segments}: {count} tetrahedra, volumes to {100 * error:.3f} %, {angle:.2f} degrees")
+                    # Chords round a section of P and A miss (P / segments)^2 pi / 6 of A; P^2 / A is below 30.
+                    self.assertLess(error, 16 / int(segments) ** 2)
+
+    def test_volumes_converge(self):
+        """With the square of the edges, to below half a per cent at 40 of them round a yarn."""
+        for name in ("cell_plain", "cell_jersey"):
+            with self.subTest(cell=name):
+                coarse, fine = (self.judge(name, "--segments", segments)[0] for segments in ("20", "40"))
+                self.assertLess(fine, 0.005)
+                self.assertLess(fine, coarse / 2)
 
     def test_bonded_yarns_share_faces(self):
         """`--bond`: only then do yarns have faces in common, and what they gain is what the matrix loses."""
