@@ -395,8 +395,9 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
   }
   const auto [finest, coarsest] = std::minmax_element(chosen.sizes.begin(), chosen.sizes.end());
   chosen.tetrahedra = estimate_of(job.options, bodies, box_of(fabric), chosen.sizes, with_matrix);
-  const std::string lengths = *coarsest - *finest < 1e-3 * *coarsest ? fmt::format("{:.4g}", *finest)
-                                                   : fmt::format("{:.4g} to {:.4g}", *finest, *coarsest);
+  const std::string lengths = *coarsest - *finest < 1e-3 * *coarsest
+                                  ? fmt::format("{:.4g}", *finest)
+                                  : fmt::format("{:.4g} to {:.4g}", *finest, *coarsest);
   const std::string estimate =
       fmt::format("edges of {} {} on the yarns make about {:.2g} tetrahedra in this cell", lengths,
                   name_of(fabric.units), chosen.tetrahedra);
