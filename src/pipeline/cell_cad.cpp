@@ -6,7 +6,7 @@
 
 #include "cell/cad_parts.h"
 #include "pipeline/overlaps.h"
-#include "solid/check.h"
+#include "pipeline/unit_cell.h"
 
 namespace selvage::pipeline {
 
@@ -14,32 +14,6 @@ namespace {
 
 // How far edges may be from what meets in them, of the cell's size: below what CAD systems resolve.
 constexpr double edge_tolerance = 2e-8;
-
-Message at_cell(const fabric::Fabric& fabric, Message message) {
-  if (message.place.line == 0 && fabric.cell) message.place = fabric.cell->place;
-  return message;
-}
-
-// Where yarns overlap, the space in both belongs to none.
-bool are_apart(Job& job, const std::vector<yarn::Body>& bodies) {
-  solid::CheckOptions options;
-  options.threads = static_cast<int>(job.threads);
-  options.progress = [&job](std::size_t done, std::size_t total) {
-    job.progress("checking yarn", done, total);
-  };
-  Result<solid::SolidCheck> check = solid::check_solids(bodies, options);
-  if (!check) {
-    job.say(check.error());
-    return false;
-  }
-  for (const solid::YarnCheck& yarn : check->yarns) job.say_all(yarn.defects);
-  for (const solid::Overlap& overlap : check->overlaps) {
-    Message message = overlap_message(overlap, bodies, job.file_units());
-    message.text += "; the matrix is what yarns leave free: --relax moves them apart";
-    job.say(std::move(message));
-  }
-  return !job.has_failed();
-}
 
 // Yarn by yarn: without the matrix it does not matter where they overlap.
 Result<std::vector<cad::Part>> yarns_alone(const std::vector<yarn::Body>& bodies, const Box3& box,
@@ -67,16 +41,17 @@ std::optional<std::vector<cad::Part>> cell_solids(Job& job, const fabric::Fabric
     job.say(std::move(message));
     return std::nullopt;
   };
-  if (!fabric.cell)
-    return refuse(error(Kind::geometry, fmt::format("{} needs the cell that cuts the yarns: a line "
-                                                    "`cell X0 Y0 Z0  X1 Y1 Z1` in the text",
-                                                    option)));
+  if (!check_cell_text(job, fabric, false)) return std::nullopt;  // the CAD of a matrix needs no material
   if (!fabric::pieces_of(fabric).empty() || !fabric.parts.empty() || !fabric.curves.empty())
     return refuse(at_cell(fabric, error(Kind::unsupported, fmt::format("{} cuts yarns only; this input has "
                                                                        "other geometry as well",
                                                                        option))));
   const std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
-  if (!bodies || (job.options.matrix && !are_apart(job, *bodies))) return std::nullopt;
+  // Where yarns overlap, the space in both belongs to none.
+  const auto finish = [](Message& message) {
+    message.text += "; the matrix is what yarns leave free: --relax moves them apart";
+  };
+  if (!bodies || (job.options.matrix && !check_overlaps(job, *bodies, finish))) return std::nullopt;
   const Box3 box(fabric.cell->low, fabric.cell->high);
   const Result<cell::Cut> cut =
       cell::cut(*bodies, box, {.tolerance = fabric::tolerance_of(fabric, job.build_options())});

@@ -18,32 +18,15 @@ namespace {
 // The mesher's own limits end a little before the input's, so that its message can name the yarn.
 constexpr double worker_share = 0.9;
 
-// Overlapping yarns cannot be meshed as what they are; false when that stops the input.
-bool check_overlaps(Job& job, const std::vector<yarn::Body>& bodies) {
-  solid::CheckOptions options;
-  options.threads = static_cast<int>(job.threads);
-  options.progress = [&job](std::size_t done, std::size_t total) {
-    job.progress("checking yarn", done, total);
-  };
-  Result<solid::SolidCheck> check = solid::check_solids(bodies, options);
-  if (!check) {
-    job.say(check.error());
-    return false;
+// Overlapping yarns cannot be meshed as what they are.
+void add_remedy(const Options& options, Message& message) {
+  if (options.allow_overlap) {
+    message.severity = Severity::warning;
+  } else {
+    message.text += options.relaxing.wanted
+                        ? "; thin one of them, or mesh them as they are with --allow-overlap"
+                        : "; --relax moves them apart, --allow-overlap meshes them as they are";
   }
-  report_check(job, *check, bodies);
-  for (const solid::YarnCheck& yarn : check->yarns) job.say_all(yarn.defects);
-  for (const solid::Overlap& overlap : check->overlaps) {
-    Message message = overlap_message(overlap, bodies, job.file_units());
-    if (job.options.allow_overlap) {
-      message.severity = Severity::warning;
-    } else {
-      message.text += job.options.relaxing.wanted
-                          ? "; thin one of them, or mesh them as they are with --allow-overlap"
-                          : "; --relax moves them apart, --allow-overlap meshes them as they are";
-    }
-    job.say(std::move(message));
-  }
-  return !job.has_failed();
 }
 
 fem::MeshOptions mesh_options(Job& job) {
@@ -88,17 +71,15 @@ void mesh(Job& job) {
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
   if (!builder) return;
   const std::optional<std::vector<yarn::Body>> bodies = job.build_all(*builder);
-  if (!bodies || !check_overlaps(job, *bodies)) return;
+  const auto finish = [&job](Message& message) { add_remedy(job.options, message); };
+  if (!bodies || !check_overlaps(job, *bodies, finish)) return;
 
   Diagnostics diagnostics;
   Result<fem::Mesh> mesh = fem::mesh_yarns(*fabric, *bodies, fabric->units, mesh_options(job), diagnostics);
   job.say_all(diagnostics.messages());
   if (!mesh) return job.say(mesh.error());
   job.report.mesh = mesh_facts(*mesh);
-  if (mesh->load_cases.empty()) drop_companions(*outputs);
-  for (OpenOutput& output : *outputs)
-    if (!take_facts(job, output, output.plan->format->write_mesh(*mesh, output.file))) return;
-  commit_all(job, *outputs);
+  write_mesh(job, *outputs, *mesh);
 }
 
 }  // namespace selvage::pipeline

@@ -98,10 +98,7 @@ void mesh_cell(Job& job) {
   if (!mesh) return job.say(mesh.error());
   job.report.mesh = mesh_facts(*mesh);
   if (job.options.voxels == 0) job.report.mesh->estimate = ready->size.tetrahedra;
-  if (mesh->load_cases.empty()) drop_companions(*outputs);
-  for (OpenOutput& output : *outputs)
-    if (!take_facts(job, output, output.plan->format->write_mesh(*mesh, output.file))) return;
-  commit_all(job, *outputs);
+  write_mesh(job, *outputs, *mesh);
 }
 
 }  // namespace selvage::pipeline

@@ -50,4 +50,26 @@ void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn
   report.creo_absolute_accuracy = creo_accuracy(thinnest, report.min_gap);
 }
 
+bool check_overlaps(Job& job, std::span<const yarn::Body> bodies,
+                    const std::function<void(Message&)>& finish) {
+  solid::CheckOptions options;
+  options.threads = static_cast<int>(job.threads);
+  options.progress = [&job](std::size_t done, std::size_t total) {
+    job.progress("checking yarn", done, total);
+  };
+  Result<solid::SolidCheck> check = solid::check_solids(bodies, options);
+  if (!check) {
+    job.say(check.error());
+    return false;
+  }
+  report_check(job, *check, bodies);
+  for (const solid::YarnCheck& yarn : check->yarns) job.say_all(yarn.defects);
+  for (const solid::Overlap& overlap : check->overlaps) {
+    Message message = overlap_message(overlap, bodies, job.file_units());
+    finish(message);
+    job.say(std::move(message));
+  }
+  return !job.has_failed();
+}
+
 }  // namespace selvage::pipeline

@@ -1,6 +1,7 @@
-// Overlapping yarns in the report and in messages: the same for `check` and `mesh`.
+// Overlapping yarns in the report and in messages: the same for `check`, `mesh` and `convert --matrix`.
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "pipeline/job.h"
@@ -15,5 +16,11 @@ Message overlap_message(const solid::Overlap& overlap, std::span<const yarn::Bod
 // Closedness, self-crossing, overlaps, near contacts where asked for, the smallest gap and Creo's accuracy,
 // as the check found them.
 void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn::Body> bodies);
+
+// Are the yarns sound, and does none overlap another? What is found goes into the report and is said,
+// overlaps as errors after `finish` has added the remedy (it may make them warnings). False when that fails
+// the input.
+bool check_overlaps(Job& job, std::span<const yarn::Body> bodies,
+                    const std::function<void(Message&)>& finish);
 
 }  // namespace selvage::pipeline

@@ -17,6 +17,12 @@
 
 namespace selvage::pipeline {
 
+Message at_cell(const fabric::Fabric& fabric, Message message) {
+  message.file = fabric.file;
+  if (message.place.line == 0) message.place = fabric.cell->place;
+  return message;
+}
+
 namespace {
 
 constexpr double default_gap_share = 0.05;  // of the thinnest section
@@ -31,12 +37,6 @@ Box3 box_of(const fabric::Fabric& fabric) {
 std::string_view name_of_axis(int axis) {
   constexpr std::array<std::string_view, 3> names = {"x", "y", "z"};
   return names[static_cast<std::size_t>(axis)];
-}
-
-Message at_cell(const fabric::Fabric& fabric, Message message) {
-  message.file = fabric.file;
-  message.place = fabric.cell->place;
-  return message;
 }
 
 Message cell_error(const fabric::Fabric& fabric, std::string text) {

@@ -18,6 +18,9 @@ namespace selvage::pipeline {
 // section; file units.
 double cell_gap(const Options& options, const fabric::Fabric& fabric);
 
+// The message, said of the `cell` statement where it has no place in the text of its own.
+Message at_cell(const fabric::Fabric& fabric, Message message);
+
 // Is there a cell, with a matrix where one is wanted? False: it was said what is missing.
 bool check_cell_text(Job& job, const fabric::Fabric& fabric, bool with_matrix);
 

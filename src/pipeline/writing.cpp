@@ -127,4 +127,11 @@ void commit_all(Job& job, OpenOutputs& outputs) {
   job.report.outputs = std::move(written);
 }
 
+void write_mesh(Job& job, OpenOutputs& outputs, const fem::Mesh& mesh) {
+  if (mesh.load_cases.empty()) drop_companions(outputs);
+  for (OpenOutput& output : outputs)
+    if (!take_facts(job, output, output.plan->format->write_mesh(mesh, output.file))) return;
+  commit_all(job, outputs);
+}
+
 }  // namespace selvage::pipeline

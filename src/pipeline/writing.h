@@ -28,6 +28,9 @@ std::optional<OpenOutputs> open_outputs(Job& job);
 // Gives up the second files of formats: they belong to meshes with load cases, and this one has none.
 void drop_companions(OpenOutputs& outputs);
 
+// Writes a mesh to every output and commits them; what goes wrong is said.
+void write_mesh(Job& job, OpenOutputs& outputs, const fem::Mesh& mesh);
+
 // Opens the next file of an output, for its writer. Errors: io; usage: an input or another output has the
 // name.
 Result<OutputFile*> open_part(OpenOutput& output, int number);
