@@ -188,7 +188,7 @@ Status CellMesher::fill_regions() {
   if (!program) return program.error();
   step("filling with tetrahedra", 2);
   TetgenJob job{.points = nodes_.points, .triangles = surface_.triangles, .sides = surface_.sides};
-  job.max_volume = largest_share * coarsest() * coarsest() * coarsest();
+  job.radius_edge = 0;  // the surface's points only
   job.smallest_feature = *std::min_element(sizes_.begin(), sizes_.end());
   Result<TetMesh> tets = run_tetgen(*program, job, {.timeout = options_.timeout, .memory = options_.memory});
   if (!tets) {
@@ -200,6 +200,8 @@ Status CellMesher::fill_regions() {
   step("improving tetrahedra", 3);
   ImproveOptions options;
   options.target = options_.min_dihedral;
+  options.refine = {.max_volume = largest_share * coarsest() * coarsest() * coarsest()};
+  options.threads = options_.threads;
   report(improve(tets_.points, tets_.cells, tets_.regions, nodes_.points.size(), options));
   return {};
 }

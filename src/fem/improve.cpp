@@ -1,10 +1,12 @@
 #include "fem/improve.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <atomic>
+#include <numeric>
+#include <thread>
 
 #include "fem/cavity.h"
+#include "fem/improve_account.h"
 #include "fem/point_place.h"
 #include "fem/ring_exchange.h"
 #include "fem/tet_complex.h"
@@ -151,143 +153,127 @@ std::size_t Improver::pass(bool with_points) {
   return gains;
 }
 
-double dihedral(const Vec3& from, const Vec3& to, const Vec3& a, const Vec3& b) {
-  const Vec3 along = (to - from).normalized();
-  const Vec3 x = (a - from) - along * along.dot(a - from), y = (b - from) - along * along.dot(b - from);
-  return std::atan2(x.cross(y).norm(), x.dot(y)) * 180 / std::numbers::pi;
-}
-
-// The smallest distance of two parallel planes with the tetrahedron between them.
-double width(const std::array<Vec3, 4>& p) {
-  const double six = std::abs((p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]));
-  double largest = 0;  // over this comes the distance of a corner from its side, or of opposite edges
-  for (const auto& side : opposite_sides)
-    largest = std::max(largest, (p[side[1]] - p[side[0]]).cross(p[side[2]] - p[side[0]]).norm());
-  for (std::size_t edge = 0; edge < 3; ++edge) {
-    const auto& k = edge_corners[edge];
-    largest = std::max(largest, (p[k[1]] - p[k[0]]).cross(p[k[3]] - p[k[2]]).norm());
-  }
-  return six / largest;
-}
-
-// Of each point the smallest angle of the surface's triangles at it whose angles are not all at least
-// `target`, degrees; of others 180.
-std::vector<float> needle_angles(const TetComplex& complex, double target) {
-  std::vector<float> result(complex.points.size(), 180.0F);
-  for (std::uint32_t c = 0; c < complex.cells().size(); ++c) {
-    if (!complex.is_alive(c)) continue;
-    const TetComplex::Cell& cell = complex.cell(c);
-    for (std::size_t slot = 0; slot < 4; ++slot) {
-      if (cell.beside[slot] != TetComplex::none) continue;
-      double least = 180;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto corner = [&](std::size_t j) {
-          return complex.points[cell.corners[opposite_sides[slot][j % 3]]];
-        };
-        const Vec3 a = corner(k + 1) - corner(k), b = corner(k + 2) - corner(k);
-        least = std::min(least, std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi);
-      }
-      if (least >= target) continue;
-      for (const std::size_t k : opposite_sides[slot]) {
-        float& at = result[cell.corners[k]];
-        at = std::min(at, static_cast<float>(least));
-      }
-    }
-  }
-  return result;
-}
-
-// Why a cell is still below the target.
-BelowTarget account(const TetComplex& complex, std::uint32_t c, double target,
-                    const std::vector<float>& needles) {
-  BelowTarget result;
-  const TetComplex::Cell& cell = complex.cell(c);
-  std::array<Vec3, 4> p;
-  bool all_fixed = true;
-  for (std::size_t k = 0; k < 4; ++k) {
-    p[k] = complex.points[cell.corners[k]];
-    result.at += p[k] / 4;
-    all_fixed = all_fixed && complex.is_fixed(cell.corners[k]);
-  }
-  result.angle = angle_of_quality(cell.quality);
-  TetComplex::Ring ring;
-  for (std::size_t edge = 0; edge < 6; ++edge) {
-    if (!complex.ring(c, edge, 100, ring) || ring.closed) continue;
-    const Vec3 &from = complex.points[ring.from], &to = complex.points[ring.to];
-    double wedge = 0;
-    for (std::size_t k = 0; k + 1 < ring.around.size(); ++k)
-      wedge += dihedral(from, to, complex.points[ring.around[k]], complex.points[ring.around[k + 1]]);
-    if (wedge >= target || (result.cause == BelowTarget::Cause::geometry && wedge >= result.wedge)) continue;
-    result.cause = BelowTarget::Cause::geometry;
-    result.wedge = wedge;
-    result.at = (from + to) / 2;
-  }
-  if (result.cause == BelowTarget::Cause::geometry) return result;
-  float needle = 180;
-  for (const std::uint32_t corner : cell.corners) needle = std::min(needle, needles[corner]);
-  if (needle < 180) {
-    result.cause = BelowTarget::Cause::needle;
-    result.wedge = needle;
-  } else if (all_fixed) {
-    result.cause = BelowTarget::Cause::surface;
-    result.edge_needed = 3 * width(p);
-  }
-  return result;
-}
-
-// Puts what is left into the caller's arrays, and says what is below the target.
-class Writer {
- public:
-  Writer(const TetComplex& complex, double target, Improvement& result)
-      : complex_(complex), target_(target), result_(result) {}
-
-  void write(std::size_t fixed_points, std::vector<Vec3>& points) {
-    number_.assign(complex_.points.size(), TetComplex::none);
-    std::vector<std::uint8_t> used(complex_.points.size(), 0);
-    for (const TetComplex::Cell& cell : complex_.cells())
-      if (cell.corners[0] != TetComplex::none)
-        for (const std::uint32_t corner : cell.corners) used[corner] = 1;
-    const std::size_t before = points.size();
-    points.resize(fixed_points);
-    for (std::uint32_t p = 0; p < complex_.points.size(); ++p) {
-      number_[p] = p < fixed_points ? p : static_cast<std::uint32_t>(points.size());
-      if (p < fixed_points) continue;
-      if (used[p] != 0) points.push_back(complex_.points[p]);
-      result_.points_removed += p < before && used[p] == 0 ? 1 : 0;
-      result_.points_added += p >= before && used[p] != 0 ? 1 : 0;
-    }
-  }
-
-  void write(std::vector<Tetrahedron>& cells, std::vector<std::uint32_t>& regions) {
-    cells.clear();
-    regions.clear();
-    const double goal = quality_of_angle(target_);
-    const std::vector<float> needles = needle_angles(complex_, target_);
-    double least = 1;
-    for (std::uint32_t c = 0; c < complex_.cells().size(); ++c) {
-      if (!complex_.is_alive(c)) continue;
-      const TetComplex::Cell& cell = complex_.cell(c);
-      least = std::min(least, cell.quality);
-      if (cell.quality < goal) {
-        result_.below.push_back(account(complex_, c, target_, needles));
-        result_.below.back().cell = cells.size();
-      }
-      Tetrahedron t = cell.corners;
-      for (std::uint32_t& corner : t) corner = number_[corner];
-      cells.push_back(t);
-      regions.push_back(cell.region);
-    }
-    std::stable_sort(result_.below.begin(), result_.below.end(),
-                     [](const BelowTarget& a, const BelowTarget& b) { return a.angle < b.angle; });
-    result_.angle_after = angle_of_quality(least);
-  }
-
- private:
-  const TetComplex& complex_;
-  double target_;
-  Improvement& result_;
-  std::vector<std::uint32_t> number_;
+// One region: its points in their order among all, those that stay first, and its cells.
+struct Part {
+  std::vector<std::uint32_t> numbers;  // of its points among all
+  std::size_t fixed_points = 0;
+  std::vector<Vec3> points;
+  std::vector<Tetrahedron> cells;
+  std::vector<BelowTarget> below;
+  double least = 1;                // quality
+  std::vector<std::uint8_t> used;  // of each point: a cell has it
 };
+
+std::vector<Part> divide(const std::vector<Vec3>& points, const std::vector<Tetrahedron>& cells,
+                         const std::vector<std::uint32_t>& regions, std::size_t fixed_points) {
+  std::vector<std::uint32_t> order(regions);
+  std::sort(order.begin(), order.end());
+  order.erase(std::unique(order.begin(), order.end()), order.end());
+  std::vector<Part> parts(order.size());
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const auto at = std::lower_bound(order.begin(), order.end(), regions[c]) - order.begin();
+    parts[static_cast<std::size_t>(at)].cells.push_back(cells[c]);
+  }
+  std::vector<std::uint32_t> own(points.size(), TetComplex::none);
+  for (Part& part : parts) {
+    for (const Tetrahedron& cell : part.cells)
+      for (const std::uint32_t corner : cell) own[corner] = 0;
+    for (std::uint32_t p = 0; p < points.size(); ++p) {
+      if (own[p] == TetComplex::none) continue;
+      own[p] = static_cast<std::uint32_t>(part.points.size());
+      part.fixed_points += p < fixed_points ? 1 : 0;
+      part.numbers.push_back(p);
+      part.points.push_back(points[p]);
+    }
+    for (Tetrahedron& cell : part.cells)
+      for (std::uint32_t& corner : cell) corner = own[corner];
+    for (const std::uint32_t p : part.numbers) own[p] = TetComplex::none;
+  }
+  return parts;
+}
+
+void improve(Part& part, const ImproveOptions& options) {
+  TetComplex complex(std::move(part.points), part.cells, part.fixed_points);
+  if (options.refine) Refiner(complex, *options.refine).run();
+  // A little more is asked for, so that no other way of computing the angle finds it missed.
+  Improver improver(complex, quality_of_angle(options.target + 1e-6));
+  for (int pass = 0; pass < options.passes; ++pass)
+    if (improver.pass(pass > 0) == 0 && pass > 0) break;
+  part.below = below_target(complex, options.target);
+  part.cells.clear();
+  part.used.assign(complex.points.size(), 0);
+  for (const TetComplex::Cell& cell : complex.cells()) {
+    if (cell.corners[0] == TetComplex::none) continue;
+    part.least = std::min(part.least, cell.quality);
+    part.cells.push_back(cell.corners);
+    for (const std::uint32_t corner : cell.corners) part.used[corner] = 1;
+  }
+  part.points = std::move(complex.points);
+}
+
+// The largest first, so that the others fill the time beside it.
+void improve_all(std::vector<Part>& parts, const ImproveOptions& options) {
+  std::vector<std::size_t> order(parts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return parts[a].cells.size() > parts[b].cells.size();
+  });
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t k = next++; k < order.size(); k = next++) improve(parts[order[k]], options);
+  };
+  const auto count = std::min(static_cast<std::size_t>(std::max(options.threads, 1)), parts.size());
+  std::vector<std::thread> others;
+  for (std::size_t k = 1; k < count; ++k) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+}
+
+// Puts the parts into the caller's arrays: first the points that were there, then the new ones of each part.
+void join(std::vector<Part>& parts, std::vector<Vec3>& points, std::vector<Tetrahedron>& cells,
+          std::vector<std::uint32_t>& regions, std::size_t fixed_points, Improvement& result) {
+  const std::size_t before = points.size();
+  std::vector<std::uint8_t> used(before, 0);
+  for (const Part& part : parts)
+    for (std::size_t p = 0; p < part.numbers.size(); ++p) {
+      if (part.used[p] == 0) continue;
+      used[part.numbers[p]] = 1;
+      points[part.numbers[p]] = part.points[p];
+    }
+  std::vector<std::uint32_t> number(before, TetComplex::none);
+  std::size_t count = 0;
+  for (std::size_t p = 0; p < before; ++p) {
+    if (p >= fixed_points && used[p] == 0) continue;
+    points[count] = points[p];
+    number[p] = static_cast<std::uint32_t>(count++);
+  }
+  result.points_removed = before - count;
+  points.resize(count);
+  std::vector<std::uint32_t> names(regions);
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  cells.clear();
+  regions.clear();
+  for (std::size_t r = 0; r < parts.size(); ++r) {
+    Part& part = parts[r];
+    for (std::uint32_t& p : part.numbers) p = number[p];
+    for (std::size_t p = part.numbers.size(); p < part.points.size(); ++p) {
+      part.numbers.push_back(static_cast<std::uint32_t>(points.size()));
+      if (part.used[p] != 0) points.push_back(part.points[p]);
+    }
+    for (BelowTarget& below : part.below) {
+      below.cell += cells.size();
+      result.below.push_back(below);
+    }
+    for (Tetrahedron cell : part.cells) {
+      for (std::uint32_t& corner : cell) corner = part.numbers[corner];
+      cells.push_back(cell);
+    }
+    regions.resize(cells.size(), names[r]);
+    part = {};
+  }
+  result.points_added = points.size() - count;
+}
 
 }  // namespace
 
@@ -295,22 +281,23 @@ Improvement improve(std::vector<Vec3>& points, std::vector<Tetrahedron>& cells,
                     std::vector<std::uint32_t>& regions, std::size_t fixed_points,
                     const ImproveOptions& options) {
   Improvement result;
-  fixed_points = std::min(fixed_points, points.size());
-  TetComplex complex(points, cells, regions, fixed_points);
   const double wanted = quality_of_angle(options.target);
   double least = 1;
-  for (const TetComplex::Cell& cell : complex.cells()) {
-    least = std::min(least, cell.quality);
-    result.below_before += cell.quality < wanted ? 1 : 0;
+  for (const Tetrahedron& t : cells) {
+    const double quality = tet_quality(points[t[0]], points[t[1]], points[t[2]], points[t[3]]);
+    least = std::min(least, quality);
+    result.below_before += quality < wanted ? 1 : 0;
   }
-  result.angle_before = angle_of_quality(least);
-  // A little more is asked for, so that no other way of computing the angle finds it missed.
-  Improver improver(complex, quality_of_angle(options.target + 1e-6));
-  for (int pass = 0; pass < options.passes; ++pass)
-    if (improver.pass(pass > 0) == 0 && pass > 0) break;
-  Writer writer(complex, options.target, result);
-  writer.write(fixed_points, points);
-  writer.write(cells, regions);
+  result.angle_before = result.angle_after = angle_of_quality(least);
+  if (result.below_before == 0 && !options.refine) return result;
+  std::vector<Part> parts = divide(points, cells, regions, fixed_points);
+  improve_all(parts, options);
+  least = 1;
+  for (const Part& part : parts) least = std::min(least, part.least);
+  result.angle_after = angle_of_quality(least);
+  join(parts, points, cells, regions, std::min(fixed_points, points.size()), result);
+  std::stable_sort(result.below.begin(), result.below.end(),
+                   [](const BelowTarget& a, const BelowTarget& b) { return a.angle < b.angle; });
   return result;
 }
 

@@ -12,12 +12,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "core/diagnostics.h"
 #include "core/vec.h"
 #include "fem/mesh.h"
+#include "fem/refine.h"
 
 namespace selvage::fem {
 
@@ -44,14 +46,17 @@ struct Improvement {
 };
 
 struct ImproveOptions {
-  double target = 10;  // degrees, 0..30
-  int passes = 8;      // over the tetrahedra below it; work is linear in their number
+  double target = 10;                     // degrees, 0..30
+  int passes = 8;                         // over the tetrahedra below it; work is linear in their number
+  std::optional<RefineOptions> refine{};  // points are put in first
+  int threads = 1;                        // each works on regions of its own
 };
 
 // `cells`: corners with positive volume; `regions`: of each cell. The first `fixed_points` points and every
 // other one on the surface or between regions stay where they are, inner ones move, come and go, so that
 // points are numbered anew behind the fixed ones, and the cells change in number and order. The smallest
-// angle is never less afterwards. The same input gives the same result, to the bit.
+// angle is never less afterwards, where no points were put in first. The same input gives the same result, to
+// the bit, with any number of threads.
 Improvement improve(std::vector<Vec3>& points, std::vector<std::array<std::uint32_t, 4>>& cells,
                     std::vector<std::uint32_t>& regions, std::size_t fixed_points,
                     const ImproveOptions& options);

@@ -44,17 +44,14 @@ TetFace TetComplex::sorted_side(const Tetrahedron& t, std::size_t slot) {
 }
 
 TetComplex::TetComplex(std::vector<Vec3> all_points, std::span<const Tetrahedron> cells,
-                       std::span<const std::uint32_t> regions, std::size_t fixed_points)
+                       std::size_t fixed_points)
     : points(std::move(all_points)) {
   cells_.resize(cells.size());
   cell_at_.assign(points.size(), none);
   fixed_.assign(points.size(), 0);
   std::fill_n(fixed_.begin(), std::min(fixed_points, points.size()), std::uint8_t{1});
   for (std::size_t c = 0; c < cells.size(); ++c) {
-    cells_[c] = {.corners = cells[c],
-                 .beside = {none, none, none, none},
-                 .region = regions[c],
-                 .quality = quality(cells[c])};
+    cells_[c] = {.corners = cells[c], .beside = {none, none, none, none}, .quality = quality(cells[c])};
     for (const std::uint32_t corner : cells[c]) cell_at_[corner] = static_cast<std::uint32_t>(c);
   }
   seen_.assign(cells_.size(), 0);
@@ -82,7 +79,7 @@ void TetComplex::connect_all() {
     });
     for (auto side = first; side != last && side + 1 != last; ++side) {
       const OpenSide &a = *side, &b = *(side + 1);
-      if (a.corners != b.corners || cells_[a.cell].region != cells_[b.cell].region) continue;
+      if (a.corners != b.corners) continue;
       cells_[a.cell].beside[a.slot] = b.cell;
       cells_[b.cell].beside[b.slot] = a.cell;
     }
@@ -162,9 +159,77 @@ std::uint32_t TetComplex::add_point(const Vec3& at) {
   return static_cast<std::uint32_t>(points.size() - 1);
 }
 
+void TetComplex::take_out(std::span<const std::uint32_t> cells) {
+  for (const std::uint32_t c : cells) {
+    for (const std::uint32_t corner : cells_[c].corners) cell_at_[corner] = none;
+    cells_[c].corners[0] = none;
+    free_.push_back(c);
+  }
+}
+
+std::uint32_t TetComplex::new_cell() {
+  if (free_.empty()) {
+    cells_.emplace_back();
+    seen_.push_back(0);
+    return static_cast<std::uint32_t>(cells_.size() - 1);
+  }
+  const std::uint32_t c = free_.back();
+  free_.pop_back();
+  return c;
+}
+
+// Of a point round a cavity, in the order in which they are met.
+std::size_t TetComplex::local_number(std::uint32_t point) {
+  if (local_.size() < points.size()) local_.resize(std::max(points.size(), 2 * local_.size()), 0);
+  const std::uint32_t known = local_[point];
+  if (known < locals_.size() && locals_[known] == point) return known;
+  local_[point] = static_cast<std::uint32_t>(locals_.size());
+  locals_.push_back(point);
+  return locals_.size() - 1;
+}
+
+void TetComplex::replace_by_star(std::span<const std::uint32_t> old_cells, std::span<const Side> sides,
+                                 std::uint32_t point, std::vector<std::uint32_t>& added) {
+  beyond_.clear();
+  for (const Side& side : sides) {
+    const Cell& cell = cells_[side.cell];
+    const auto& k = opposite_sides[side.slot];
+    const std::uint32_t out = cell.beside[side.slot];
+    std::uint32_t there = 0;
+    while (out != none && cells_[out].beside[there] != side.cell) ++there;
+    beyond_.push_back({{cell.corners[k[0]], cell.corners[k[1]], cell.corners[k[2]]}, {out, there}});
+  }
+  take_out(old_cells);
+  added.clear();
+  locals_.clear();
+  const std::size_t most = sides.size() + 2;  // points: half as many as sides, and two, where it is one ball
+  half_edges_.resize(most * most);
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    const auto& [corners, side] = beyond_[k];
+    const std::uint32_t c = new_cell();
+    cells_[c] = {.corners = {point, corners[0], corners[1], corners[2]},
+                 .beside = {side.cell, none, none, none},
+                 .quality = 0};
+    if (side.cell != none) cells_[side.cell].beside[side.slot] = c;
+    added.push_back(c);
+    for (const std::uint32_t corner : corners) cell_at_[corner] = c;
+    // Two of the new cells share the side over each edge, through which they run opposite ways.
+    std::array<std::size_t, 3> local{};
+    for (std::size_t j = 0; j < 3; ++j) local[j] = local_number(corners[j]);
+    for (std::size_t j = 0; j < 3; ++j)
+      half_edges_[local[(j + 1) % 3] * most + local[(j + 2) % 3]] = static_cast<std::uint32_t>(3 * k + j);
+  }
+  cell_at_[point] = added.front();
+  for (std::size_t k = 0; k < sides.size(); ++k)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const TetFace& corners = beyond_[k].corners;
+      const std::size_t from = local_[corners[(j + 1) % 3]], to = local_[corners[(j + 2) % 3]];
+      cells_[added[k]].beside[j + 1] = added[half_edges_[to * most + from] / 3];
+    }
+}
+
 void TetComplex::replace(std::span<const std::uint32_t> old_cells, std::span<const Tetrahedron> new_cells,
                          std::vector<std::uint32_t>& added) {
-  const std::uint32_t region = cells_[old_cells.front()].region;
   open_.clear();
   ++walk_;
   for (const std::uint32_t c : old_cells) seen_[c] = walk_;
@@ -177,21 +242,11 @@ void TetComplex::replace(std::span<const std::uint32_t> old_cells, std::span<con
       const auto there = static_cast<std::uint32_t>(std::find(back.begin(), back.end(), c) - back.begin());
       open_.push_back({sorted_side(cells_[c].corners, slot), out, there});
     }
-  for (const std::uint32_t c : old_cells) {
-    for (const std::uint32_t corner : cells_[c].corners) cell_at_[corner] = none;
-    cells_[c].corners[0] = none;
-    free_.push_back(c);
-  }
+  take_out(old_cells);
   added.clear();
   for (const Tetrahedron& t : new_cells) {
-    if (free_.empty()) {
-      free_.push_back(static_cast<std::uint32_t>(cells_.size()));
-      cells_.emplace_back();
-      seen_.push_back(0);
-    }
-    const std::uint32_t c = free_.back();
-    free_.pop_back();
-    cells_[c] = {.corners = t, .beside = {none, none, none, none}, .region = region, .quality = quality(t)};
+    const std::uint32_t c = new_cell();
+    cells_[c] = {.corners = t, .beside = {none, none, none, none}, .quality = quality(t)};
     added.push_back(c);
     for (std::uint32_t slot = 0; slot < 4; ++slot) open_.push_back({sorted_side(t, slot), c, slot});
     for (const std::uint32_t corner : t) cell_at_[corner] = c;
@@ -205,6 +260,11 @@ void TetComplex::replace(std::span<const std::uint32_t> old_cells, std::span<con
     cells_[a.cell].beside[a.slot] = b.cell;
     cells_[b.cell].beside[b.slot] = a.cell;
   }
+}
+
+void TetComplex::measure_all() {
+  for (Cell& cell : cells_)
+    if (cell.corners[0] != none) cell.quality = quality(cell.corners);
 }
 
 void TetComplex::measure_star(std::uint32_t point) {

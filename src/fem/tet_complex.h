@@ -35,13 +35,11 @@ class TetComplex {
   struct Cell {
     Tetrahedron corners;                  // corners[0] == none: taken out
     std::array<std::uint32_t, 4> beside;  // the cell over the side opposite each corner; none: a wall
-    std::uint32_t region = 0;
     double quality = 0;
   };
 
-  // A wall is a side that only one cell of its region has: on the surface, or between regions.
-  TetComplex(std::vector<Vec3> points, std::span<const Tetrahedron> cells,
-             std::span<const std::uint32_t> regions, std::size_t fixed_points);
+  // Of one region: a wall is a side that only one cell has.
+  TetComplex(std::vector<Vec3> points, std::span<const Tetrahedron> cells, std::size_t fixed_points);
 
   std::vector<Vec3> points;
   [[nodiscard]] const std::vector<Cell>& cells() const { return cells_; }
@@ -52,10 +50,10 @@ class TetComplex {
     return tet_quality(points[t[0]], points[t[1]], points[t[2]], points[t[3]]);
   }
 
-  // All cells at an inner point (of one region, none of whose sides at it is a wall).
+  // All cells at an inner point (none of whose sides at it is a wall).
   void star(std::uint32_t point, std::vector<std::uint32_t>& cells) const;
 
-  // The cells round an edge within their region: cell k has the corners from, to, around[k], around[k + 1]
+  // The cells round an edge: cell k has the corners from, to, around[k], around[k + 1]
   // (positive). Closed: after the last comes around[0] again; else it begins and ends at walls.
   struct Ring {
     std::uint32_t from = 0, to = 0;
@@ -66,9 +64,18 @@ class TetComplex {
   bool ring(std::uint32_t cell, std::size_t edge, std::size_t most, Ring& ring) const;
 
   std::uint32_t add_point(const Vec3& at);
-  // Takes cells of one region out and puts others into the same space. `added` receives their numbers.
+  // Takes cells out and puts others into the same space. `added` receives their numbers.
   void replace(std::span<const std::uint32_t> old_cells, std::span<const Tetrahedron> new_cells,
                std::vector<std::uint32_t>& added);
+  // A side of a cell, opposite the corner in `slot`.
+  struct Side {
+    std::uint32_t cell, slot;
+  };
+  // Takes cells out whose outer sides are `sides`, and joins these to a point inside: `added`
+  // receives as many cells, in their order, which are not measured.
+  void replace_by_star(std::span<const std::uint32_t> old_cells, std::span<const Side> sides,
+                       std::uint32_t point, std::vector<std::uint32_t>& added);
+  void measure_all();
   // The point has been moved: measures its star again.
   void measure_star(std::uint32_t point);
 
@@ -77,8 +84,16 @@ class TetComplex {
     TetFace corners;  // increasing
     std::uint32_t cell, slot;
   };
+  // What is on the other side of a cavity's side: `slot` is its own there; no cell: a wall.
+  struct Beyond {
+    TetFace corners;  // counter-clockwise seen from outside of the cavity
+    Side side;
+  };
   void connect_all();
   void mark_walls();
+  void take_out(std::span<const std::uint32_t> cells);
+  std::uint32_t new_cell();
+  std::size_t local_number(std::uint32_t point);
   static TetFace sorted_side(const Tetrahedron& t, std::size_t slot);
 
   std::vector<Cell> cells_;
@@ -88,6 +103,10 @@ class TetComplex {
   mutable std::vector<std::uint32_t> seen_;  // of each cell: the last walk that met it
   mutable std::uint32_t walk_ = 0;
   std::vector<OpenSide> open_;
+  std::vector<Beyond> beyond_;
+  std::vector<std::uint32_t> local_, locals_;  // numbers of the points round a cavity, and those points
+  std::vector<std::uint32_t>
+      half_edges_;  // of two such points: the side that has the edge from one to the other
 };
 
 }  // namespace selvage::fem

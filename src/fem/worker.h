@@ -26,9 +26,9 @@ struct TetgenJob {
   // One a triangle, where they part several regions (numbered from 0) from each other and from the outside.
   // Empty: one region, behind all of them.
   std::span<const Sides> sides{};
-  double max_volume = 0;        // of one tetrahedron; 0: no bound
-  double radius_edge = 1.4;     // largest ratio of circumradius to shortest edge wanted
-  double min_dihedral = 0;      // degrees; 0: TetGen's default
+  double max_volume = 0;     // of one tetrahedron; 0: no bound
+  double radius_edge = 1.4;  // largest ratio of circumradius to shortest edge wanted; 0: no points are put in
+  double min_dihedral = 0;   // degrees; 0: TetGen's default
   double smallest_feature = 0;  // lengths far below this one mean nothing; 0: TetGen's default tolerance
 };
 

@@ -49,8 +49,11 @@ std::vector<std::int32_t> find_crossings(const Job& job) {
 // of one.
 Tetrahedra tetrahedralize(const Job& job) {
   const RequestHead& wanted = job.settings;
-  tetgenbehavior settings = behavior(job, wanted.max_volume > 0 ? "pYMQq1.4a1" : "pYMQq1.4");
-  settings.minratio = wanted.radius_edge;
+  const bool refined = wanted.radius_edge > 0;
+  tetgenbehavior settings = behavior(job, !refined                ? "pYMQO0"
+                                          : wanted.max_volume > 0 ? "pYMQq1.4a1"
+                                                                  : "pYMQq1.4");
+  if (refined) settings.minratio = wanted.radius_edge;
   settings.optmaxdihedral = 155;  // flat elements above it are improved; its own 165 leaves many
   if (wanted.min_dihedral > 0) settings.mindihedral = wanted.min_dihedral;
   if (wanted.max_volume > 0) settings.maxvolume = wanted.max_volume;
