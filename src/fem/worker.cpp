@@ -359,7 +359,7 @@ Result<TetMesh> run_tetgen(const std::filesystem::path& program, const TetgenJob
     return std::nullopt;
   };
   Run meshing(program, job, limits, false);
-  const double patience = 0.5 + 5e-5 * static_cast<double>(job.triangles.size());
+  const double patience = 0.5 + 1e-4 * static_cast<double>(job.triangles.size());
   const bool takes_long = !meshing.wait(std::min(deadline, after(patience)));
   if (takes_long)
     if (std::optional<Message> found = crossing()) return *found;

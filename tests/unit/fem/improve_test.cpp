@@ -171,6 +171,53 @@ TEST(Improve, WhatIsGoodEnoughIsLeftAlone) {
   EXPECT_NEAR(result.angle_after, 45, 1e-9);  // of Kuhn's tetrahedra
 }
 
+// Points come in until the cells away from the walls are small; walls and volumes stay, and threads change
+// nothing.
+TEST(Improve, RegionsAreRefined) {
+  const Tets before = shaken_cubes(6, 0.5);
+  const double bound = 1.0 / 20;
+  ImproveOptions options{.target = 12, .refine = RefineOptions{.max_volume = bound}};
+  Tets tets = before;
+  const Improvement result = improve(tets.points, tets.cells, tets.regions, tets.fixed, options);
+  EXPECT_GE(least_angle(tets), 12);
+  EXPECT_NEAR(result.angle_after, least_angle(tets), 1e-6);
+  EXPECT_EQ(result.points_added, tets.points.size() - before.points.size() + result.points_removed);
+  EXPECT_EQ(walls(tets), walls(before));
+  const auto old_volumes = volumes(before), new_volumes = volumes(tets);
+  std::size_t inner = 0, large = 0;
+  double slenderness = 0;  // mean square of the radius over the shortest edge; of a regular one 3/8
+  for (const Cell& cell : tets.cells) {
+    const Vec3& a = tets.points[cell[0]];
+    Eigen::Matrix3d edges;
+    for (int k = 0; k < 3; ++k) edges.row(k) = tets.points[cell[static_cast<std::size_t>(k) + 1]] - a;
+    const bool at_wall = std::any_of(cell.begin(), cell.end(), [&](std::uint32_t corner) {
+      const Vec3& p = tets.points[corner];
+      return (p.array() == 0 || p.array() == 6).any() || p.x() == 3;
+    });
+    inner += at_wall ? 0 : 1;
+    large += !at_wall && edges.determinant() > 6 * bound ? 1 : 0;
+    const Vec3 centre = edges.fullPivLu().solve(0.5 * edges.rowwise().squaredNorm());
+    double shortest = edges.rowwise().squaredNorm().minCoeff();
+    for (int k = 0; k < 3; ++k)
+      shortest = std::min(shortest, (edges.row(k) - edges.row((k + 1) % 3)).squaredNorm());
+    slenderness += centre.squaredNorm() / shortest / static_cast<double>(tets.cells.size());
+  }
+  for (const auto& [region, volume] : old_volumes)
+    EXPECT_NEAR(new_volumes.at(region), volume, 1e-11 * volume) << region;
+  EXPECT_GT(inner, 1000U);
+  EXPECT_LT(large, inner / 100);
+  EXPECT_LT(static_cast<double>(tets.cells.size()), 5 * 216 / bound);
+  EXPECT_LT(slenderness, 1.4 * 1.4);
+  for (const int threads : {2, 5}) {
+    Tets again = before;
+    options.threads = threads;
+    improve(again.points, again.cells, again.regions, again.fixed, options);
+    EXPECT_EQ(again.points, tets.points);
+    EXPECT_EQ(again.cells, tets.cells);
+    EXPECT_EQ(again.regions, tets.regions);
+  }
+}
+
 // Four points near a circle's plane, a quarter turn apart: TetGen's usual sliver. Above and below it the
 // octahedron's two tips.
 TEST(Improve, SliverInAnOctahedron) {
