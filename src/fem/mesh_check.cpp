@@ -7,33 +7,18 @@
 #include <numeric>
 #include <tuple>
 
+#include "fem/cell_sides.h"
+
 namespace selvage::fem {
 namespace {
 
-// A face of a cell: its corners in increasing order, with the cell and the sense in which it runs.
-struct Face {
-  std::array<std::uint32_t, 3> corners;
-  std::uint32_t cell;
-  bool even;  // an even permutation brought the corners into order
-
-  bool operator<(const Face& other) const { return corners < other.corners; }
-};
-
-Face make_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t cell) {
-  Face face{{a, b, c}, cell, true};
-  auto order = [&](std::size_t i, std::size_t j) {
-    if (face.corners[i] < face.corners[j]) return;
-    std::swap(face.corners[i], face.corners[j]);
-    face.even = !face.even;
-  };
-  order(0, 1);
-  order(1, 2);
-  order(0, 1);
-  return face;
+CellSide side_of(const Triangle& t, std::uint32_t number) {
+  return fem::side_of({number, t[0], t[1], t[2]}, number, 0);
 }
 
-// Of a positive cell: each face seen from outside, counter-clockwise.
-constexpr std::array<std::array<int, 3>, 4> outward_faces = {{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+bool is_before(const CellSide& a, const CellSide& b) {
+  return a.corners < b.corners;
+}
 
 double six_volumes(const TetMesh& mesh, const std::array<std::uint32_t, 4>& cell) {
   const Vec3& p = mesh.points[cell[0]];
@@ -50,7 +35,7 @@ Message at(Message message, const Vec3& place) {
 }
 
 // Joins cells over shared faces; true when one piece remains.
-bool is_one_piece(const std::vector<Face>& faces, std::size_t cells) {
+bool is_one_piece(const std::vector<CellSide>& faces, std::size_t cells) {
   std::vector<std::uint32_t> parent(cells);
   std::iota(parent.begin(), parent.end(), 0U);
   auto root = [&](std::uint32_t cell) {
@@ -70,8 +55,8 @@ bool is_one_piece(const std::vector<Face>& faces, std::size_t cells) {
 
 // The faces that only one cell has, as they are seen from outside; nothing when a face has more than two
 // cells.
-std::optional<std::vector<Face>> boundary(const std::vector<Face>& faces) {
-  std::vector<Face> result;
+std::optional<std::vector<CellSide>> boundary(const std::vector<CellSide>& faces) {
+  std::vector<CellSide> result;
   for (std::size_t i = 0; i < faces.size();) {
     std::size_t next = i + 1;
     while (next < faces.size() && faces[next].corners == faces[i].corners) ++next;
@@ -96,23 +81,16 @@ Status check_input(std::span<const Vec3> points, std::span<const Triangle> trian
 }
 
 // The faces of all cells, sorted; cells are turned round where they are inverted.
-Result<std::vector<Face>> sorted_faces(TetMesh& mesh, std::span<const Vec3> points) {
+Result<std::vector<CellSide>> sorted_faces(TetMesh& mesh, std::span<const Vec3> points) {
   if (mesh.cells.empty()) return wrong("TetGen made no tetrahedra");
   if (mesh.points.size() < points.size() || !std::equal(points.begin(), points.end(), mesh.points.begin()))
     return wrong("TetGen did not keep the points of the surface");
-  std::vector<Face> faces;
-  faces.reserve(4 * mesh.cells.size());
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-    auto& cell = mesh.cells[c];
+  for (auto& cell : mesh.cells) {
     for (const std::uint32_t corner : cell)
       if (corner >= mesh.points.size()) return wrong("a tetrahedron has a point that is not there");
     if (six_volumes(mesh, cell) < 0) std::swap(cell[2], cell[3]);
-    for (const auto& f : outward_faces)
-      faces.push_back(make_face(cell[static_cast<std::size_t>(f[0])], cell[static_cast<std::size_t>(f[1])],
-                                cell[static_cast<std::size_t>(f[2])], static_cast<std::uint32_t>(c)));
   }
-  std::sort(faces.begin(), faces.end());
-  return faces;
+  return sorted_sides(mesh.cells, mesh.points.size());
 }
 
 std::size_t count_regions(std::span<const Sides> sides) {
@@ -204,12 +182,11 @@ Status check_complex(std::span<const Vec3> points, std::span<const Triangle> tri
 
 Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles,
                     std::span<const Sides> sides) {
-  Result<std::vector<Face>> faces = sorted_faces(mesh, points);
+  Result<std::vector<CellSide>> faces = sorted_faces(mesh, points);
   if (!faces) return faces.error();
-  std::vector<Face> wanted;  // `cell`: the triangle's number
-  for (std::uint32_t k = 0; k < triangles.size(); ++k)
-    wanted.push_back(make_face(triangles[k][0], triangles[k][1], triangles[k][2], k));
-  std::sort(wanted.begin(), wanted.end());
+  std::vector<CellSide> wanted;  // `cell`: the triangle's number
+  for (std::uint32_t k = 0; k < triangles.size(); ++k) wanted.push_back(side_of(triangles[k], k));
+  std::sort(wanted.begin(), wanted.end(), is_before);
 
   constexpr std::uint32_t unknown = Sides::outside - 1;
   mesh.regions.assign(mesh.cells.size(), unknown);
@@ -266,20 +243,20 @@ Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const
 }
 
 Status check_mesh(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles) {
-  Result<std::vector<Face>> found = sorted_faces(mesh, points);
+  Result<std::vector<CellSide>> found = sorted_faces(mesh, points);
   if (!found) return found.error();
-  const std::vector<Face>& faces = *found;
+  const std::vector<CellSide>& faces = *found;
   double volume = 0;
   for (const auto& cell : mesh.cells) volume += six_volumes(mesh, cell) / 6;
   const auto outside = boundary(faces);
   if (!outside) return wrong("TetGen's mesh has a face with more than two tetrahedra");
-  std::vector<Face> wanted;
+  std::vector<CellSide> wanted;
   wanted.reserve(triangles.size());
-  for (const Triangle& t : triangles) wanted.push_back(make_face(t[0], t[1], t[2], 0));
-  std::sort(wanted.begin(), wanted.end());
-  const bool same =
-      std::equal(wanted.begin(), wanted.end(), outside->begin(), outside->end(),
-                 [](const Face& a, const Face& b) { return a.corners == b.corners && a.even == b.even; });
+  for (const Triangle& t : triangles) wanted.push_back(side_of(t, 0));
+  std::sort(wanted.begin(), wanted.end(), is_before);
+  const bool same = std::equal(
+      wanted.begin(), wanted.end(), outside->begin(), outside->end(),
+      [](const CellSide& a, const CellSide& b) { return a.corners == b.corners && a.even == b.even; });
   if (!same) return wrong("the boundary of TetGen's mesh is not the yarn's surface");
   if (!is_one_piece(faces, mesh.cells.size())) return wrong("TetGen's mesh falls into several pieces");
   const double enclosed = enclosed_volume(points, triangles);

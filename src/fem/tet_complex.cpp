@@ -55,34 +55,17 @@ TetComplex::TetComplex(std::vector<Vec3> all_points, std::span<const Tetrahedron
     for (const std::uint32_t corner : cells[c]) cell_at_[corner] = static_cast<std::uint32_t>(c);
   }
   seen_.assign(cells_.size(), 0);
-  connect_all();
+  connect_all(cells);
   mark_walls();
 }
 
-// Sides are sorted into buckets by their smallest corner, and matched within each.
-void TetComplex::connect_all() {
-  std::vector<std::uint32_t> begin(points.size() + 1, 0);
-  for (const Cell& cell : cells_)
-    for (std::size_t slot = 0; slot < 4; ++slot) ++begin[sorted_side(cell.corners, slot)[0] + 1];
-  for (std::size_t p = 0; p < points.size(); ++p) begin[p + 1] += begin[p];
-  std::vector<OpenSide> sides(4 * cells_.size());
-  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-  for (std::uint32_t c = 0; c < cells_.size(); ++c)
-    for (std::uint32_t slot = 0; slot < 4; ++slot) {
-      const TetFace side = sorted_side(cells_[c].corners, slot);
-      sides[next[side[0]]++] = {side, c, slot};
-    }
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    const auto first = sides.begin() + begin[p], last = sides.begin() + begin[p + 1];
-    std::sort(first, last, [](const OpenSide& a, const OpenSide& b) {
-      return a.corners != b.corners ? a.corners < b.corners : a.cell < b.cell;
-    });
-    for (auto side = first; side != last && side + 1 != last; ++side) {
-      const OpenSide &a = *side, &b = *(side + 1);
-      if (a.corners != b.corners) continue;
-      cells_[a.cell].beside[a.slot] = b.cell;
-      cells_[b.cell].beside[b.slot] = a.cell;
-    }
+void TetComplex::connect_all(std::span<const Tetrahedron> cells) {
+  const std::vector<CellSide> sides = sorted_sides(cells, points.size());
+  for (std::size_t k = 0; k + 1 < sides.size(); ++k) {
+    const CellSide &a = sides[k], &b = sides[k + 1];
+    if (a.corners != b.corners) continue;
+    cells_[a.cell].beside[a.slot] = b.cell;
+    cells_[b.cell].beside[b.slot] = a.cell;
   }
 }
 

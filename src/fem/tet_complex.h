@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "fem/cell_sides.h"
 
 namespace selvage::fem {
 
@@ -21,9 +22,6 @@ double tet_quality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 double angle_of_quality(double quality);  // degrees
 double quality_of_angle(double degrees);
 
-// The corners of the side opposite each corner, counter-clockwise seen from outside of a positive one.
-inline constexpr std::array<std::array<std::size_t, 3>, 4> opposite_sides = {
-    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 // The corners of each edge, and the other two: (first, second, third, fourth) is an even permutation.
 inline constexpr std::array<std::array<std::size_t, 4>, 6> edge_corners = {
     {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
@@ -89,7 +87,7 @@ class TetComplex {
     TetFace corners;  // counter-clockwise seen from outside of the cavity
     Side side;
   };
-  void connect_all();
+  void connect_all(std::span<const Tetrahedron> cells);
   void mark_walls();
   void take_out(std::span<const std::uint32_t> cells);
   std::uint32_t new_cell();
