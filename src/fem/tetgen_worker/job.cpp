@@ -45,12 +45,32 @@ std::vector<std::int32_t> find_crossings(const Job& job) {
   return {out.trifacelist, out.trifacelist + 3 * static_cast<std::ptrdiff_t>(out.numberoftrifaces)};
 }
 
+// What ::tetrahedralize does with -pYM in TetGen 1.5, without its last steps, which restore the Delaunay
+// property and optimize: points are put in by others.
+void fill_surface(tetgenbehavior& settings, tetgenio& in, tetgenio& out) {
+  tetgenmesh mesh;
+  mesh.b = &settings;
+  mesh.in = &in;
+  clock_t time = 0;
+  mesh.initializepools();
+  mesh.transfernodes();
+  exactinit(settings.verbose, settings.noexact, settings.nostaticfilter, mesh.xmax - mesh.xmin,
+            mesh.ymax - mesh.ymin, mesh.zmax - mesh.zmin);
+  mesh.incrementaldelaunay(time);
+  mesh.meshsurface();
+  mesh.recoverboundary(time);
+  mesh.carveholes();
+  mesh.suppresssteinerpoints();
+  mesh.outnodes(&out);
+  mesh.outelements(&out);
+}
+
 // Y: the surface stays as it is. The numbers are set past the switches, whose parser does not take every form
 // of one.
 Tetrahedra tetrahedralize(const Job& job) {
   const RequestHead& wanted = job.settings;
   const bool refined = wanted.radius_edge > 0;
-  tetgenbehavior settings = behavior(job, !refined                ? "pYMQO0"
+  tetgenbehavior settings = behavior(job, !refined                ? "pYMQ"
                                           : wanted.max_volume > 0 ? "pYMQq1.4a1"
                                                                   : "pYMQq1.4");
   if (refined) settings.minratio = wanted.radius_edge;
@@ -59,7 +79,10 @@ Tetrahedra tetrahedralize(const Job& job) {
   if (wanted.max_volume > 0) settings.maxvolume = wanted.max_volume;
   tetgenio in, out;
   fill(job, in);
-  ::tetrahedralize(&settings, &in, &out);
+  if (refined)
+    ::tetrahedralize(&settings, &in, &out);
+  else
+    fill_surface(settings, in, out);
   Tetrahedra mesh;
   mesh.points.assign(out.pointlist, out.pointlist + 3 * static_cast<std::ptrdiff_t>(out.numberofpoints));
   mesh.cells.assign(out.tetrahedronlist,
