@@ -1,9 +1,11 @@
-// What a unit cell's tetrahedra cost: the mesh of samples/cell_plain.txt, and how much of the time TetGen and
-// the improvement take. For other programs the same surfaces are written (Gmsh 2.2: one discrete surface for
-// each pair of regions), with a .geo beside each that makes volumes of them. One JSON object.
+// What a unit cell's tetrahedra cost: the mesh of samples/cell_plain.txt, to each of several smallest angles;
+// the time from its surface on, and the processor time, TetGen's worker included. For other programs the same
+// surfaces are written (Gmsh 2.2: one discrete surface for each pair of regions), with a .geo beside each
+// that makes volumes of them. One JSON object.
 //
-//   tetrahedra --sample FILE --folder DIR [--sizes H,H,...]
+//   tetrahedra --sample FILE --folder DIR [--sizes H,H,...] [--targets DEGREES,...] [--threads N,...]
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <cstdio>
@@ -27,6 +29,18 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_between(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
+}
+
+// Of this process and of those that it waited for.
+double processor_seconds() {
+  double sum = 0;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage used{};
+    ::getrusage(who, &used);
+    for (const timeval& time : {used.ru_utime, used.ru_stime})
+      sum += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  }
+  return sum;
 }
 
 fabric::Fabric read(const std::string& path) {
@@ -81,56 +95,78 @@ std::size_t write_surfaces(const fem::Mesh& mesh, const std::string& path) {
   return count;
 }
 
-void row(const fabric::Fabric& cloth, const std::vector<yarn::Body>& bodies, double size, std::size_t number,
-         const std::string& folder) {
-  std::map<std::string, double> seconds;
-  std::string step = "starting";
+struct Case {
+  double size = 0, target = 0;
+  int threads = 1;
+};
+
+void row(const fabric::Fabric& cloth, const std::vector<yarn::Body>& bodies, const Case& one, bool is_first,
+         const std::string& path) {
+  double seconds = 0, processor = 0;
   auto since = Clock::now();
+  bool is_filling = false;
   fem::CellMeshOptions options;
-  options.size = size;
+  options.size = one.size;
   options.periodic = {cloth.cell->periodic_x, cloth.cell->periodic_y, cloth.cell->periodic_z};
-  options.min_dihedral = 15;
+  options.min_dihedral = one.target;
   options.timeout = 3600;
   options.memory = 16384;
-  options.progress = [&](const char* name, std::size_t, std::size_t) {
-    const auto now = Clock::now();
-    seconds[step] += seconds_between(since, now);
-    step = name;
-    since = now;
+  options.threads = one.threads;
+  options.progress = [&](const std::string_view name, std::size_t, std::size_t) {
+    const bool fills = name == "filling with tetrahedra" || name == "improving tetrahedra";
+    if (fills == is_filling) return;
+    is_filling = fills;
+    if (fills) {
+      since = Clock::now();
+      processor -= processor_seconds();
+    } else {
+      seconds += seconds_between(since, Clock::now());
+      processor += processor_seconds();
+    }
   };
   Diagnostics diagnostics;
-  const auto begin = Clock::now();
   const Result<fem::Mesh> mesh = fem::mesh_cell(cloth, bodies, options, diagnostics);
   if (!mesh) benchmarks::fail(to_string(mesh.error()));
-  const double all = seconds_between(begin, Clock::now());
-  const std::string path = fmt::format("{}/cell{}", folder, number);
   const std::size_t triangles = write_surfaces(*mesh, path);
   fmt::print(
-      "{}  {{\"size\": {}, \"triangles\": {}, \"nodes\": {}, \"tets\": {}, \"tetgen_seconds\": {:.4f}, "
-      "\"improve_seconds\": {:.4f}, \"seconds\": {:.4f}, \"min_dihedral\": {:.4f}, \"geo\": \"{}.geo\"}}",
-      number == 0 ? "" : ",\n", size, triangles, mesh->nodes.size(), mesh->elements.size(),
-      seconds["filling with tetrahedra"], seconds["improving tetrahedra"], all, mesh->quality.min_dihedral,
-      path);
+      "{}  {{\"size\": {}, \"target\": {}, \"threads\": {}, \"triangles\": {}, \"nodes\": {}, \"tets\": {}, "
+      "\"seconds\": {:.4f}, \"processor_seconds\": {:.4f}, \"min_dihedral\": {:.4f}, \"geo\": \"{}.geo\"}}",
+      is_first ? "" : ",\n", one.size, one.target, one.threads, triangles, mesh->nodes.size(),
+      mesh->elements.size(), seconds, processor, mesh->quality.min_dihedral, path);
   std::fflush(stdout);
+}
+
+std::vector<double> numbers(const char* at) {
+  std::vector<double> result;
+  for (char* end = nullptr; *at != '\0'; at = *end == ',' ? end + 1 : end) {
+    result.push_back(std::strtod(at, &end));
+    if (end == at) benchmarks::fail(fmt::format("not numbers: '{}'", at));
+  }
+  return result;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   std::string sample, folder;
-  std::vector<double> sizes = {0.1, 0.05, 0.03};
+  std::vector<double> sizes = {0.1, 0.05, 0.03}, targets = {15}, threads = {1};
   for (int i = 1; i + 1 < argc; i += 2) {
     if (std::strcmp(argv[i], "--sample") == 0) sample = argv[i + 1];
     if (std::strcmp(argv[i], "--folder") == 0) folder = argv[i + 1];
-    if (std::strcmp(argv[i], "--sizes") == 0) {
-      sizes.clear();
-      for (char* at = argv[i + 1]; *at != '\0'; at += *at == ',' ? 1 : 0)
-        sizes.push_back(std::strtod(at, &at));
-    }
+    if (std::strcmp(argv[i], "--sizes") == 0) sizes = numbers(argv[i + 1]);
+    if (std::strcmp(argv[i], "--targets") == 0) targets = numbers(argv[i + 1]);
+    if (std::strcmp(argv[i], "--threads") == 0) threads = numbers(argv[i + 1]);
   }
   fmt::print("{{\"rows\": [\n");
   const fabric::Fabric cloth = read(sample);
   const std::vector<yarn::Body> bodies = benchmarks::built(cloth, {});
-  for (std::size_t k = 0; k < sizes.size(); ++k) row(cloth, bodies, sizes[k], k, folder);
+  bool is_first = true;
+  for (std::size_t k = 0; k < sizes.size(); ++k)
+    for (const double target : targets)
+      for (const double count : threads) {
+        row(cloth, bodies, {sizes[k], target, static_cast<int>(count)}, is_first,
+            fmt::format("{}/cell{}", folder, k));
+        is_first = false;
+      }
   fmt::print("\n]}}\n");
 }

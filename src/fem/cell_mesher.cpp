@@ -25,8 +25,6 @@ namespace selvage::fem {
 
 namespace {
 
-// The largest tetrahedron is this share of the cube over the wanted edge; a regular one is 0.118 of it.
-constexpr double largest_share = 0.13;
 constexpr double default_edges_per_extent = 4;
 // Of the smallest section extent: no edge is shorter for a gap's sake, no two yarns may be nearer.
 constexpr double least_size = 0.01;
@@ -200,7 +198,7 @@ Status CellMesher::fill_regions() {
   step("improving tetrahedra", 3);
   ImproveOptions options;
   options.target = options_.min_dihedral;
-  options.refine = {.max_volume = largest_share * coarsest() * coarsest() * coarsest()};
+  options.refine = {.max_volume = largest_volume(coarsest())};
   options.threads = options_.threads;
   report(improve(tets_.points, tets_.cells, tets_.regions, nodes_.points.size(), options));
   return {};

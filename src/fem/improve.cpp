@@ -1,10 +1,9 @@
 #include "fem/improve.h"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
-#include <thread>
 
+#include "core/parallel.h"
 #include "fem/cavity.h"
 #include "fem/improve_account.h"
 #include "fem/point_place.h"
@@ -160,7 +159,8 @@ struct Part {
   std::vector<Vec3> points;
   std::vector<Tetrahedron> cells;
   std::vector<BelowTarget> below;
-  double least = 1;                // quality
+  double least_before = 1, least = 1;  // quality
+  std::size_t below_before = 0;
   std::vector<std::uint8_t> used;  // of each point: a cell has it
 };
 
@@ -195,6 +195,13 @@ std::vector<Part> divide(const std::vector<Vec3>& points, const std::vector<Tetr
 void improve(Part& part, const ImproveOptions& options) {
   TetComplex complex(std::move(part.points), part.cells, part.fixed_points);
   if (options.refine) Refiner(complex, *options.refine).run();
+  complex.measure_all();
+  const double wanted = quality_of_angle(options.target);
+  for (const TetComplex::Cell& cell : complex.cells()) {
+    if (cell.corners[0] == TetComplex::none) continue;
+    part.least_before = std::min(part.least_before, cell.quality);
+    part.below_before += cell.quality < wanted ? 1 : 0;
+  }
   // A little more is asked for, so that no other way of computing the angle finds it missed.
   Improver improver(complex, quality_of_angle(options.target + 1e-6));
   for (int pass = 0; pass < options.passes; ++pass)
@@ -218,15 +225,7 @@ void improve_all(std::vector<Part>& parts, const ImproveOptions& options) {
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return parts[a].cells.size() > parts[b].cells.size();
   });
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t k = next++; k < order.size(); k = next++) improve(parts[order[k]], options);
-  };
-  const auto count = std::min(static_cast<std::size_t>(std::max(options.threads, 1)), parts.size());
-  std::vector<std::thread> others;
-  for (std::size_t k = 1; k < count; ++k) others.emplace_back(work);
-  work();
-  for (std::thread& other : others) other.join();
+  for_each_index(order.size(), options.threads, [&](std::size_t k) { improve(parts[order[k]], options); });
 }
 
 // Puts the parts into the caller's arrays: first the points that were there, then the new ones of each part.
@@ -281,20 +280,17 @@ Improvement improve(std::vector<Vec3>& points, std::vector<Tetrahedron>& cells,
                     std::vector<std::uint32_t>& regions, std::size_t fixed_points,
                     const ImproveOptions& options) {
   Improvement result;
-  const double wanted = quality_of_angle(options.target);
-  double least = 1;
-  for (const Tetrahedron& t : cells) {
-    const double quality = tet_quality(points[t[0]], points[t[1]], points[t[2]], points[t[3]]);
-    least = std::min(least, quality);
-    result.below_before += quality < wanted ? 1 : 0;
-  }
-  result.angle_before = result.angle_after = angle_of_quality(least);
-  if (result.below_before == 0 && !options.refine) return result;
   std::vector<Part> parts = divide(points, cells, regions, fixed_points);
   improve_all(parts, options);
-  least = 1;
-  for (const Part& part : parts) least = std::min(least, part.least);
+  double least_before = 1, least = 1;
+  for (const Part& part : parts) {
+    least_before = std::min(least_before, part.least_before);
+    least = std::min(least, part.least);
+    result.below_before += part.below_before;
+  }
+  result.angle_before = angle_of_quality(least_before);
   result.angle_after = angle_of_quality(least);
+  if (result.below_before == 0 && !options.refine) return result;
   join(parts, points, cells, regions, std::min(fixed_points, points.size()), result);
   std::stable_sort(result.below.begin(), result.below.end(),
                    [](const BelowTarget& a, const BelowTarget& b) { return a.angle < b.angle; });

@@ -24,8 +24,6 @@ namespace selvage::fem {
 namespace {
 
 constexpr double most_tetrahedra = 1e8;
-// The largest tetrahedron is this share of the cube over the wanted edge; a regular one is 0.118 of it.
-constexpr double largest_share = 0.13;
 // What TetGen makes on average of that bound, for the estimate (measured: 0.075 to 0.09 of the cube).
 constexpr double mean_share = 0.075;
 
@@ -84,7 +82,7 @@ Result<YarnMesh> mesh_yarn(const yarn::Body& body, Unit units, const MeshOptions
   if (!surface) return surface.error();
   const double size = std::min(size_for(body, options), surface->coarsest), scale = millimetres_per(units);
   TetgenJob job{.points = surface->points, .triangles = surface->triangles};
-  job.max_volume = largest_share * size * size * size;
+  job.max_volume = largest_volume(size);
   job.smallest_feature = size;
   Result<TetMesh> tets = run_tetgen(program, job, {.timeout = options.timeout, .memory = options.memory});
   if (!tets) return tets.error();

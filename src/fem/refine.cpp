@@ -10,8 +10,8 @@ namespace {
 constexpr int most_steps = 200;  // of a walk to a centre
 // A point sees a side of its cavity when it is over it by at least this square of a sine.
 constexpr double least_square_sine = 1e-4;
-// Of the shorter one of the radius and the shortest edge of what is split: how near to a corner a point may
-// be.
+// How near to others a point in a cell that is only too large may be: of the shorter one of its radius and
+// its shortest edge.
 constexpr double nearest = 0.6;
 
 }  // namespace
@@ -30,9 +30,9 @@ void Refiner::measure(std::uint32_t c) {
   ball.centre = a + to;
   ball.square = to.squaredNorm();
   ball.mark = 0;
-  ball.is_bad = ball.square > options_.radius_edge * options_.radius_edge * shortest ||
-                (options_.max_volume > 0 && six > 6 * options_.max_volume);
-  ball.clearance = nearest * nearest * std::min(ball.square, shortest);
+  const bool is_slender = ball.square > options_.radius_edge * options_.radius_edge * shortest;
+  ball.is_bad = is_slender || (options_.max_volume > 0 && six > 6 * options_.max_volume);
+  ball.clearance = is_slender ? shortest : nearest * nearest * std::min(ball.square, shortest);
 }
 
 // The cell that holds a place; none: a wall is between, or the way is too long.
@@ -80,7 +80,19 @@ bool Refiner::sees(const Vec3& at, std::uint32_t c, std::size_t slot) const {
   return height > 0 && height * height > least_square_sine * normal.squaredNorm() * to.squaredNorm();
 }
 
-// Takes cells out whose outer sides the point does not see; false: it does not see the cell that it is in.
+// No point is inside the cavity, off its sides: it would be lost.
+bool Refiner::keeps_points() {
+  outer_.resize(complex_.points.size(), 0);
+  for (const TetComplex::Side& side : sides_)
+    for (const std::size_t k : opposite_sides[side.slot]) outer_[complex_.cell(side.cell).corners[k]] = walk_;
+  return std::all_of(cavity_.begin(), cavity_.end(), [this](std::uint32_t c) {
+    const Tetrahedron& t = complex_.cell(c).corners;
+    return std::all_of(t.begin(), t.end(), [this](std::uint32_t corner) { return outer_[corner] == walk_; });
+  });
+}
+
+// Takes cells out whose outer sides the point does not see; false: it does not see the cell that it
+// is in, or a point would be lost.
 bool Refiner::cut_back(std::uint32_t start, const Vec3& at) {
   for (bool again = true; again;) {
     again = false;
@@ -102,33 +114,34 @@ bool Refiner::cut_back(std::uint32_t start, const Vec3& at) {
     }
   }
   std::erase_if(cavity_, [this](std::uint32_t c) { return !is_inside(c); });
-  return true;
+  return keeps_points();
 }
 
-// No corner of the cavity is nearer than `least`, and the place is in no ball over an edge of a wall.
-bool Refiner::is_free(const Vec3& at, double least_square) const {
-  for (const TetComplex::Side& s : sides_) {
-    const TetComplex::Cell& cell = complex_.cell(s.cell);
-    const auto& side = opposite_sides[s.slot];
-    std::array<Vec3, 3> to;
-    for (std::size_t k = 0; k < 3; ++k) {
-      to[k] = complex_.points[cell.corners[side[k]]] - at;
-      if (to[k].squaredNorm() < least_square) return false;
-    }
-    if (cell.beside[s.slot] != TetComplex::none) continue;
-    for (std::size_t k = 0; k < 3; ++k)
-      if (to[k].dot(to[(k + 1) % 3]) < 0) return false;
+// No corner of a side is nearer than asked for, and if it is a wall, the place is in no ball over its edges.
+bool Refiner::is_clear(const Vec3& at, std::uint32_t c, std::size_t slot, double square) const {
+  const TetComplex::Cell& cell = complex_.cell(c);
+  std::array<Vec3, 3> to;
+  for (std::size_t k = 0; k < 3; ++k) {
+    to[k] = complex_.points[cell.corners[opposite_sides[slot][k]]] - at;
+    if (to[k].squaredNorm() < square) return false;
   }
-  return true;
+  if (cell.beside[slot] != TetComplex::none) return true;
+  return to[0].dot(to[1]) >= 0 && to[1].dot(to[2]) >= 0 && to[2].dot(to[0]) >= 0;
 }
 
 bool Refiner::split(std::uint32_t c) {
   const Vec3 at = balls_[c].centre;
+  const double clearance = balls_[c].clearance;
   if (!at.allFinite()) return false;
   const std::uint32_t start = locate(c, at);
   if (start == TetComplex::none) return false;
+  // What it is in says most often already that there is no room.
+  for (std::size_t slot = 0; slot < 4; ++slot)
+    if (!is_clear(at, start, slot, clearance)) return false;
   grow(start, at);
-  if (!cut_back(start, at) || !is_free(at, balls_[c].clearance)) return false;
+  if (!cut_back(start, at)) return false;
+  for (const TetComplex::Side& side : sides_)
+    if (!is_clear(at, side.cell, side.slot, clearance)) return false;
   complex_.replace_by_star(cavity_, sides_, complex_.add_point(at), added_);
   balls_.resize(complex_.cells().size());
   for (const std::uint32_t cell : added_) {
@@ -159,7 +172,6 @@ std::size_t Refiner::run() {
       points += split(c) ? 1 : 0;
     }
   }
-  complex_.measure_all();
   return points;
 }
 

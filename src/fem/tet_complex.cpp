@@ -51,7 +51,7 @@ TetComplex::TetComplex(std::vector<Vec3> all_points, std::span<const Tetrahedron
   fixed_.assign(points.size(), 0);
   std::fill_n(fixed_.begin(), std::min(fixed_points, points.size()), std::uint8_t{1});
   for (std::size_t c = 0; c < cells.size(); ++c) {
-    cells_[c] = {.corners = cells[c], .beside = {none, none, none, none}, .quality = quality(cells[c])};
+    cells_[c] = {.corners = cells[c], .beside = {none, none, none, none}};
     for (const std::uint32_t corner : cells[c]) cell_at_[corner] = static_cast<std::uint32_t>(c);
   }
   seen_.assign(cells_.size(), 0);

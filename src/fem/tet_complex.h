@@ -33,10 +33,10 @@ class TetComplex {
   struct Cell {
     Tetrahedron corners;                  // corners[0] == none: taken out
     std::array<std::uint32_t, 4> beside;  // the cell over the side opposite each corner; none: a wall
-    double quality = 0;
+    double quality = 0;                   // tet_quality, where it was measured
   };
 
-  // Of one region: a wall is a side that only one cell has.
+  // Of one region: a wall is a side that only one cell has. Cells are not measured yet (measure_all).
   TetComplex(std::vector<Vec3> points, std::span<const Tetrahedron> cells, std::size_t fixed_points);
 
   std::vector<Vec3> points;

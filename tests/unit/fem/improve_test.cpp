@@ -218,6 +218,35 @@ TEST(Improve, RegionsAreRefined) {
   }
 }
 
+// Cells that are anything but Delaunay, slender all, and a ratio that no refinement reaches: it ends, loses
+// no point, and makes no edge shorter than the shortest one.
+TEST(Improve, RefinementEnds) {
+  const auto shortest = [](const Tets& tets) {
+    double least = 1e9;
+    for (const Cell& cell : tets.cells)
+      for (std::size_t i = 1; i < 4; ++i)
+        for (std::size_t j = 0; j < i; ++j)
+          least = std::min(least, (tets.points[cell[i]] - tets.points[cell[j]]).norm());
+    return least;
+  };
+  for (const double flat : {1.0, 0.3, 0.1}) {
+    Tets before = shaken_cubes(8, 0.7);
+    for (Vec3& point : before.points) point.z() *= flat;
+    Tets tets = before;
+    const Improvement result = improve(tets.points, tets.cells, tets.regions, tets.fixed,
+                                       {.passes = 0, .refine = RefineOptions{.radius_edge = 1}});
+    EXPECT_GT(result.points_added, 100U) << flat;
+    EXPECT_EQ(result.points_removed, 0U);
+    EXPECT_GE(shortest(tets), shortest(before) * (1 - 1e-12));
+    EXPECT_LT(tets.cells.size(), 50 * before.cells.size());
+    EXPECT_EQ(walls(tets), walls(before));
+    const auto old_volumes = volumes(before), new_volumes = volumes(tets);
+    for (const auto& [region, volume] : old_volumes)
+      EXPECT_NEAR(new_volumes.at(region), volume, 1e-11 * volume) << region;
+    for (const Cell& cell : tets.cells) ASSERT_GT(shape(tets, cell).scaled_jacobian, 0);
+  }
+}
+
 // Four points near a circle's plane, a quarter turn apart: TetGen's usual sliver. Above and below it the
 // octahedron's two tips.
 TEST(Improve, SliverInAnOctahedron) {
