@@ -11,6 +11,8 @@ import xml.etree.ElementTree as xml
 
 from PIL import Image, ImageDraw, ImageFont
 
+import mesh_picture
+
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 SAMPLES = ROOT / "samples"
 
@@ -26,6 +28,12 @@ PICTURES = [
     ("braid", "braid_triaxial.txt", "iso"),
     ("plait", "braid_flat3.txt", "top"),
     ("plies", "cabled.txt", "iso"),
+]
+# Those of meshes: name, sample with a cell.
+MESH_PICTURES = [
+    ("cell_plain", "cell_plain.txt"),
+    ("cell_jersey", "cell_jersey.txt"),
+    ("cell_orthogonal", "cell_orthogonal.txt"),
 ]
 PICTURE_SIZE = (480, 360)
 COLORS = 128  # of a committed picture
@@ -56,7 +64,18 @@ def make_pictures(selvage, folder):
         shrink(path)
         total += path.stat().st_size
         print(f"{path}: {path.stat().st_size} bytes")
-    print(f"{len(PICTURES)} pictures, {total} bytes")
+    for name, sample in MESH_PICTURES:
+        path = folder / f"{name}.png"
+        with tempfile.TemporaryDirectory() as scratch:
+            vtu = pathlib.Path(scratch) / "cell.vtu"
+            done = run(selvage, "mesh", SAMPLES / sample, "--matrix", "--periodic", "-o", vtu)
+            if done.returncode != 0:
+                sys.exit(f"pictures: {sample} has no mesh:\n{done.stderr}")
+            mesh_picture.draw(vtu, path, PICTURE_SIZE)
+        shrink(path)
+        total += path.stat().st_size
+        print(f"{path}: {path.stat().st_size} bytes")
+    print(f"{len(PICTURES) + len(MESH_PICTURES)} pictures, {total} bytes")
 
 
 def title_of(path):

@@ -379,20 +379,12 @@ bool is_one_shell(const cad::Part& part) {
 }  // namespace
 
 bool is_written_as_solid(const cad::Part& part) {
-  if (part.kind != cad::Part::Kind::solid) return false;
-  std::map<int, int> uses;
-  for (const cad::Face& face : part.faces) {
-    if (face.loops.empty()) return false;
+  if (part.kind != cad::Part::Kind::solid || !cad::has_shared_edges(part)) return false;
+  for (const cad::Face& face : part.faces)
     for (const cad::Loop& loop : face.loops)
-      for (const cad::Edge& edge : loop.edges) {
+      for (const cad::Edge& edge : loop.edges)
         if (lacks_curve(edge, face.surface)) return false;
-        if (is_pole(edge)) continue;
-        if (edge.id < 0) return false;
-        ++uses[edge.id];
-      }
-  }
-  return std::all_of(uses.begin(), uses.end(), [](const auto& use) { return use.second == 2; }) &&
-         is_one_shell(part);
+  return is_one_shell(part);
 }
 
 std::int64_t most_values_of_part(const cad::Part& part) {

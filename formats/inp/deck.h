@@ -31,7 +31,7 @@ struct Load {
 };
 
 // A thousandth of each yarn's length, on its end faces; a ring is pulled between the two ends of its longest
-// extent.
+// extent. None for a region that has no nodes of its own.
 std::vector<Load> plan_loads(const fem::Mesh& mesh);
 
 std::vector<fem::NodeSet> sets_of(const std::vector<Load>& loads);

@@ -48,7 +48,7 @@ Load grip_ring(const fem::Mesh& mesh, const fem::Region& region) {
       if (mesh.nodes[n][axis] <= box.min()[axis] + depth) load.start.push_back(n);
       if (mesh.nodes[n][axis] >= box.max()[axis] - depth) load.end.push_back(n);
     }
-    if (depth > extent) break;  // fewer nodes than that in all
+    if (depth >= extent) break;  // fewer nodes than that in all
   }
   load.normal_end = Vec3::Unit(axis);
   load.normal_start = -load.normal_end;
@@ -101,6 +101,7 @@ std::vector<Load> plan_loads(const fem::Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
     const fem::Region& region = mesh.regions[i];
     const bool ring = region.start_nodes.empty();
+    if (ring && region.first_node == region.last_node) continue;
     Load load = ring ? grip_ring(mesh, region) : grip_ends(mesh, region);
     load.start_set = fem::set_name(mesh, i) + (ring ? "_Low" : "_Start");
     load.end_set = fem::set_name(mesh, i) + (ring ? "_High" : "_End");

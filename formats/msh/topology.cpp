@@ -31,6 +31,7 @@ std::vector<Surface> surfaces_of(const fem::Mesh& mesh) {
     surface.sides.push_back(side.nodes);
   }
   std::vector<Surface> surfaces;
+  surfaces.reserve(found.size());
   for (auto& [key, surface] : found) surfaces.push_back(std::move(surface));
   return surfaces;
 }

@@ -106,20 +106,15 @@ class PartBuilder {
  private:
   // Nothing has to be found: every edge has both its curves, and an id that two faces share.
   static bool is_stated(const cad::Part& part) {
-    if (part.kind != cad::Part::Kind::solid) return false;
-    std::map<int, int> uses;
-    for (const cad::Face& face : part.faces) {
-      if (face.loops.empty()) return false;
+    if (part.kind != cad::Part::Kind::solid || !cad::has_shared_edges(part)) return false;
+    for (const cad::Face& face : part.faces)
       for (const cad::Loop& loop : face.loops)
-        for (const cad::Edge& edge : loop.edges) {
-          if (edge.id < 0 || edge.curve.points.empty() || edge.flat.points.empty() ||
+        for (const cad::Edge& edge : loop.edges)
+          if (edge.curve.points.empty() || edge.flat.points.empty() ||
               edge.curve.first_parameter() != edge.flat.first_parameter() ||
               edge.curve.last_parameter() != edge.flat.last_parameter())
             return false;
-          ++uses[edge.id];
-        }
-    }
-    return std::all_of(uses.begin(), uses.end(), [](const auto& use) { return use.second == 2; });
+    return true;
   }
 
   // One shell for all faces that hang together, in the order of their first ones.

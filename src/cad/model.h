@@ -64,6 +64,10 @@ struct Part {
   Origin origin;
 };
 
+// Are all edges of all faces shared by name, each by two of them (poles, which have no curve in space, need
+// not be)? Not when a face has no loops.
+bool has_shared_edges(const Part& part);
+
 struct NamedCurve {
   nurbs::Curve curve;
   std::string name;

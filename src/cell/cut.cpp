@@ -79,7 +79,9 @@ Result<Cut> cut(std::span<const yarn::Body> bodies, const Box3& box, const CutOp
       result.pieces.push_back(std::move(piece));
     }
   }
-  if (result.pieces.empty()) return error(Kind::geometry, "no yarn enters the cell");
+  if (result.pieces.empty())
+    return error(Kind::geometry,
+                 "no yarn's surface goes through the cell: it lies beside all of them, or whole inside one");
   return result;
 }
 

@@ -97,7 +97,7 @@ class PieceDivider {
   }
 
  private:
-  Status fault(const std::string& what, std::optional<Vec2> at) const {
+  Status fault(const std::string& what, const std::optional<Vec2>& at) const {
     Message message = error(Kind::geometry, fmt::format("yarn '{}' {}", body_.name, what));
     message.yarn = body_.name;
     message.place = body_.place;
@@ -383,6 +383,7 @@ class PieceDivider {
 
   Status add_faces(std::vector<Traced>& outer, std::vector<Traced>& holes) {
     std::vector<TubeFace> faces;
+    faces.reserve(outer.size());
     for (Traced& traced : outer) faces.push_back(face_of(traced));
     for (Traced& hole : holes) {
       std::size_t best = none;

@@ -11,7 +11,7 @@ void add_check(CLI::App& program, Parsed& parsed) {
   command
       .add_option("--reach", parsed.options.reach,
                   "list near contacts, too: gaps between yarns up to this, in the input's unit")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command.add_option("--gap-map", parsed.options.gap_map,
                      "write the yarns coloured by the gap to the next one to this file (.vtu)");
   run_pipeline(command, parsed, pipeline::Command::check);

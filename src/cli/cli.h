@@ -30,6 +30,11 @@ void add_edit(CLI::App& program, Parsed& parsed);
 void add_view(CLI::App& program, Parsed& parsed);
 void add_formats(CLI::App& program, Parsed& parsed);
 
+// What a number has to be, for ->check(): finite, and in range. CLI11's own let nan pass.
+CLI::Validator positive_number();
+CLI::Validator non_negative_number();
+CLI::Validator number_between(double low, double high);
+
 // Options that several subcommands have (common.cpp).
 void add_common(CLI::App& command, Parsed& parsed);
 // Of these, the inputs and what every batch has, without --tolerance.

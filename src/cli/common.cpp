@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <limits>
 
 #include "cli/cli.h"
 #include "pipeline/batch.h"
@@ -12,6 +14,18 @@ namespace selvage::cli {
 namespace {
 
 constexpr std::array<std::string_view, 1> later_commands = {"report"};
+
+// The words of the message say what the option wants.
+CLI::Validator finite_number(const std::string& name, const std::string& wanted,
+                             const std::function<bool(double)>& fits) {
+  return {[wanted, fits](std::string& text) {
+            double value = 0;
+            if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && fits(value))
+              return std::string();
+            return fmt::format("'{}' is not {}", text, wanted);
+          },
+          name};
+}
 
 // What goes with --relax, without it.
 Status check_relaxing(const pipeline::RelaxSettings& relaxing, bool wants_cell) {
@@ -39,7 +53,46 @@ Status parse_shard(const std::string& text, pipeline::Options& options) {
   return error(Kind::usage, fmt::format("--shard {}: it is I/N with 0 <= I < N, for example 0/4", text));
 }
 
+// Options that would do nothing are mistakes.
+Status check_cell_options(const pipeline::Options& options) {
+  if (options.matrix_size > 0 && !options.matrix)
+    return error(Kind::usage, "--matrix-size is of the matrix: it goes with --matrix");
+  if (options.bond && (!options.matrix || options.voxels > 0))
+    return error(Kind::usage,
+                 "--bond joins yarns in a mesh of tetrahedra with its matrix: it goes with --matrix, and "
+                 "not with --voxel");
+  if (!options.wants_cell() && (options.segments > 0 || options.chamis))
+    return error(Kind::usage,
+                 fmt::format("{} is of a unit cell: it goes with --matrix, --periodic, --cut or --voxel",
+                             options.segments > 0 ? "--segments" : "--yarn-stiffness"));
+  if (options.voxels > 0)
+    for (const auto& [given, option] :
+         {std::pair(options.size > 0, "--size"), std::pair(options.segments > 0, "--segments"),
+          std::pair(options.matrix_size > 0, "--matrix-size"), std::pair(options.order == 2, "--order 2"),
+          std::pair(options.min_dihedral > 0, "--min-dihedral")})
+      if (given)
+        return error(Kind::usage,
+                     fmt::format("{} is of tetrahedra: it does not go with --voxel, which makes equal "
+                                 "hexahedra of eight nodes",
+                                 option));
+  return {};
+}
+
 }  // namespace
+
+CLI::Validator positive_number() {
+  return finite_number("POSITIVE", "a positive number",
+                       [](double value) { return value >= std::numeric_limits<double>::min(); });
+}
+
+CLI::Validator non_negative_number() {
+  return finite_number("NONNEGATIVE", "zero or a positive number", [](double value) { return value >= 0; });
+}
+
+CLI::Validator number_between(double low, double high) {
+  return finite_number(fmt::format("in [{} - {}]", low, high), fmt::format("from {} to {}", low, high),
+                       [low, high](double value) { return value >= low && value <= high; });
+}
 
 Status complete(const Parsed& parsed, pipeline::Options& options) {
   if (Status status = parse_shard(parsed.shard, options); !status.ok()) return status;
@@ -58,12 +111,7 @@ Status complete(const Parsed& parsed, pipeline::Options& options) {
                                           options.matrix ? "--matrix" : "--cut"));
   if (Status status = check_relaxing(options.relaxing, options.wants_cell()); !status.ok())
     return status.error();
-  if (options.matrix_size > 0 && !options.matrix)
-    return error(Kind::usage, "--matrix-size is of the matrix: it goes with --matrix");
-  if (options.bond && (!options.matrix || options.voxels > 0))
-    return error(Kind::usage,
-                 "--bond joins yarns in a mesh of tetrahedra with its matrix: it goes with --matrix, and "
-                 "not with --voxel");
+  if (Status status = check_cell_options(options); !status.ok()) return status.error();
   if (options.resume && (options.report.empty() || options.report == "-"))
     return error(Kind::usage, "--resume goes by the report of the run before: name it with --report FILE");
   return {};
@@ -78,7 +126,7 @@ void add_common(CLI::App& command, Parsed& parsed) {
   pipeline::Options& o = parsed.options;
   add_batch(command, parsed);
   command.add_option("--tolerance", o.tolerance, "of tubes, in the input's unit, instead of the input's own")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
 }
 
 void add_batch(CLI::App& command, Parsed& parsed) {
@@ -96,8 +144,8 @@ void add_running(CLI::App& command, Parsed& parsed, pipeline::Options& o) {
   command.add_flag("--quiet", o.quiet, "errors only");
   command.add_flag("-v,--verbose", o.verbose, "say more");
   command.add_flag("--no-progress", o.no_progress, "no progress bar or lines");
-  command.add_option("--timeout", o.timeout, "seconds an input may take")->check(CLI::PositiveNumber);
-  command.add_option("--memory", o.memory, "MB of memory an input may take")->check(CLI::PositiveNumber);
+  command.add_option("--timeout", o.timeout, "seconds an input may take")->check(positive_number());
+  command.add_option("--memory", o.memory, "MB of memory an input may take")->check(positive_number());
   command.add_flag("--strict", o.strict, "a warning fails its input");
   command
       .add_option("--detail", parsed.detail,

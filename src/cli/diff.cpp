@@ -12,7 +12,7 @@ void add_diff(CLI::App& program, Parsed& parsed) {
   command
       .add_option("--tolerance", request.tolerance,
                   "distances up to this, in A's unit, are no difference (default: 0, every bit counts)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   command.add_flag("--json", request.json, "one JSON object instead of lines");
   command.add_flag("--all", request.all, "every difference (default: the first 20 and a count)");
   add_running(command, parsed, request.options);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 
 #include "cli/cli.h"
@@ -73,5 +74,6 @@ int run(int count, char** words) {
 }  // namespace selvage::cli
 
 int main(int count, char** words) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is then an error of writing, with its name
   return selvage::cli::run(count, words);
 }

@@ -12,11 +12,13 @@ void add_mesh(CLI::App& program, Parsed& parsed) {
   command
       .add_option("--size", o.size,
                   "wanted edge length, in the input's unit (default: a quarter of the thinnest section)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command.add_option("--order", o.order, "1: four nodes, 2: ten nodes a tetrahedron (default: 1)")
       ->check(CLI::IsMember({1, 2}));
-  command.add_option("--min-dihedral", o.min_dihedral, "wanted smallest angle between faces, degrees")
-      ->check(CLI::Range(0.1, 70.0));
+  command
+      .add_option("--min-dihedral", o.min_dihedral,
+                  "wanted smallest angle between faces, degrees, at most 30")
+      ->check(number_between(0.1, 30.0));
   command.add_flag("--allow-overlap", o.allow_overlap, "mesh overlapping yarns as they are, with a warning");
   add_relaxing(command, parsed, true);
   command.add_flag("--cut", o.cut, "cut yarns flush by the faces of the input's cell");
@@ -40,13 +42,14 @@ void add_mesh(CLI::App& program, Parsed& parsed) {
       .add_option("--matrix-size", o.matrix_size,
                   "with --matrix: to which edges may grow away from the yarns, in the input's unit (default: "
                   "--size)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command.add_flag(
       "--bond", o.bond,
       "with --matrix: yarns in contact share faces (what lies between yarns nearer than 1.5 times the "
       "gap becomes part of them), instead of a gap filled with matrix");
-  command.add_flag("--force", o.force,
-                   "go on where the estimate says more than 10^8 tetrahedra, or yarns nearly touch");
+  command.add_flag(
+      "--force", o.force,
+      "go on where the estimate says more than 10^8 tetrahedra, or yarns nearly touch each other or a face");
   run_pipeline(command, parsed, pipeline::Command::mesh);
 }
 

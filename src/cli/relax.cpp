@@ -15,11 +15,11 @@ void add_relaxing(CLI::App& command, Parsed& parsed, bool with_flag) {
                         "(default: 1 % of the smaller thickness; in a cell that is meshed 5 %)"
                       : "the least gap between yarns, in the input's unit (default: 1 % of the smaller "
                         "thickness)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   command
       .add_option("--overlap", relaxing.overlap,
                   with + "let yarns that meet overlap to this depth, and bring them to it, instead of a gap")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command.add_flag("--stiff-section", relaxing.stiff_section,
                    with + "sections keep their shape, only centre lines move");
   command.add_option("--max-iterations", relaxing.max_iterations, with + "give up after so many steps")

@@ -16,7 +16,7 @@ void add_roundtrip(CLI::App& program, Parsed& parsed) {
       .add_option(
           "--tolerance", options.difference_tolerance,
           "distances up to this, in the input's unit, are no difference (default: 0, every bit counts)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   command.add_option("--junit", options.junit, "write the results as JUnit XML to this file");
   run_pipeline(command, parsed, pipeline::Command::roundtrip);
 }

@@ -25,6 +25,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double near_share = 0.02;
 // Places of one yarn that are nearer along it than this many widths are no contact.
 constexpr double self_distance = 1.5;
+// And by how much the way along it is longer than the straight one: where a yarn turned less (an arc of 130
+// degrees), it does not face itself, however far one looks.
+constexpr double turned = 1.25;
 
 std::optional<Message> find_fault(std::span<const yarn::Body> bodies) {
   for (const yarn::Body& body : bodies) {
@@ -87,7 +90,9 @@ class Search {
   [[nodiscard]] bool is_wanted(const Piece& a, const Piece& b) const {
     if (a.body != b.body) return true;
     if (!options_.with_itself) return false;
-    return model_.way_along(a, b) > self_distance * std::max(a.width, b.width);
+    const double way = model_.way_along(a, b);
+    return way > self_distance * std::max(a.width, b.width) &&
+           way > turned * (a.box.center() - b.box.center()).norm();
   }
 
   struct PiecePair {

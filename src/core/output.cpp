@@ -24,14 +24,26 @@ Message OutputFile::io_error(std::string_view what) const {
   return message;
 }
 
+// A folder cannot be replaced, and a device or a pipe must not be: /dev/null would be a file from then on.
+Status OutputFile::check_target() const {
+  std::error_code failure;
+  const fs::file_status there = fs::status(target_, failure);
+  if (fs::is_directory(there)) {
+    errno = EISDIR;
+    return io_error("cannot write");
+  }
+  if (!fs::is_other(there)) return {};
+  Message message = error(
+      Kind::io, "cannot write: this is a device or a pipe, which a file would replace; - is standard output");
+  message.file = target_.string();
+  return message;
+}
+
 Result<OutputFile> OutputFile::create(const fs::path& target) {
   OutputFile file;
   file.target_ = target;
+  if (Status fits = file.check_target(); !fits) return fits.error();
   std::error_code failure;
-  if (fs::is_directory(target, failure)) {
-    errno = EISDIR;
-    return file.io_error("cannot write");
-  }
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   fs::create_directories(folder, failure);
   if (failure) {
@@ -133,11 +145,7 @@ Status OutputFile::resize(std::uint64_t size) {
 Status OutputFile::set_target(const fs::path& target) {
   const fs::path hidden = hidden_name(target_);
   target_ = target;
-  std::error_code failure;
-  if (fs::is_directory(target, failure)) {
-    errno = EISDIR;
-    return io_error("cannot write");
-  }
+  if (Status fits = check_target(); !fits) return fits;
   if (has_hidden_name_ && ::rename(hidden.c_str(), hidden_name(target_).c_str()) != 0)
     return io_error("cannot write");
   return {};

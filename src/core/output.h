@@ -16,7 +16,8 @@ namespace selvage {
 
 class OutputFile {
  public:
-  // Creates missing folders above `target`. Errors (io): no permission, the target is a directory, full.
+  // Creates missing folders above `target`. Errors (io): no permission, full, the target is a directory,
+  // or a device or a pipe, which must not be replaced by a file.
   static Result<OutputFile> create(const std::filesystem::path& target);
   // Spooled, and copied to standard output by commit().
   static Result<OutputFile> standard_output();
@@ -44,7 +45,7 @@ class OutputFile {
   [[nodiscard]] std::uint64_t size() const;
   [[nodiscard]] Result<std::string> contents() const;
   [[nodiscard]] const std::filesystem::path& target() const { return target_; }
-  // Another name for commit() to give, in the same folder. Error (io): it is a directory.
+  // Another name for commit() to give, in the same folder. Error (io): it is a directory, a device or a pipe.
   Status set_target(const std::filesystem::path& target);
   // The hidden name used where there are no unnamed files: removed before and after each run.
   static std::filesystem::path hidden_name(const std::filesystem::path& target);
@@ -55,6 +56,7 @@ class OutputFile {
   OutputFile() = default;
   void discard();
   [[nodiscard]] Message io_error(std::string_view what) const;
+  [[nodiscard]] Status check_target() const;
   Status copy_to_standard_output();
 
   Form form_ = Form::file;

@@ -298,7 +298,10 @@ std::vector<OnArc> Divider::crest_places(const ArcEntry& entry) const {
   for (std::size_t k = 0; k + 1 < q.size(); ++k)
     for (const double crest : crests_[entry.body]) {
       const double low = std::min(q[k].x(), q[k + 1].x()), high = std::max(q[k].x(), q[k + 1].x());
-      for (double u = crest + period * std::ceil((low - crest) / period); u <= high; u += period) {
+      const auto first_turn = static_cast<long>(std::ceil((low - crest) / period)),
+                 last_turn = static_cast<long>(std::floor((high - crest) / period));
+      for (long turn = first_turn; turn <= last_turn; ++turn) {
+        const double u = crest + period * static_cast<double>(turn);
         // Each kept point belongs to the step behind it, the last to the one before it.
         if (u == q[k + 1].x() && k + 2 < q.size()) continue;
         double from = lengths[k], to = lengths[k + 1];

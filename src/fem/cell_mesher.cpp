@@ -119,7 +119,11 @@ Status CellMesher::prepare() {
 Status CellMesher::make_surfaces() {
   step("cutting", 0);
   Result<cell::Cut> cut = cell::cut(bodies_, box_, {.tolerance = tolerance_});
-  if (!cut) return located(cut.error());
+  if (!cut) {
+    Message message = located(cut.error());
+    if (message.place.line == 0) message.place = fabric_.cell->place;
+    return message;
+  }
   for (Message& note : cut->notes) diagnostics_.add(located(std::move(note)));
   Result<cell::Division> division = cell::divide_faces(bodies_, box_, *cut);
   if (!division) return located(division.error());

@@ -150,8 +150,8 @@ Status check_options(std::span<const yarn::Body> bodies, const MeshOptions& opti
   if (options.order != 1 && options.order != 2) return error(Kind::usage, "the order of a mesh is 1 or 2");
   if (!(options.size >= 0) || !std::isfinite(options.size))
     return error(Kind::usage, "the mesh size must be a positive number");
-  if (!(options.min_dihedral >= 0 && options.min_dihedral < 60))
-    return error(Kind::usage, "the smallest dihedral angle wanted must be at least 0 and below 60 degrees");
+  if (!(options.min_dihedral >= 0 && options.min_dihedral <= 30))
+    return error(Kind::usage, "the smallest dihedral angle wanted must be from 0 to 30 degrees");
   double estimate = 0;
   for (const yarn::Body& body : bodies) {
     const double size = size_for(body, options);

@@ -16,7 +16,7 @@ namespace selvage::fem {
 struct MeshOptions {
   double size = 0;  // wanted edge length, in the bodies' unit; 0: a quarter of the smallest section extent
   int order = 1;    // 1 | 2
-  double min_dihedral = 0;  // degrees wanted (improve.h); 0: as TetGen leaves it
+  double min_dihedral = 0;  // degrees wanted, 0..30 (improve.h); 0: as TetGen leaves it
   double timeout = 300;     // seconds a yarn
   double memory = 4096;     // MiB a yarn
   int threads = 1;          // workers at once

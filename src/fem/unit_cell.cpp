@@ -59,7 +59,9 @@ void sort_into_sets(UnitCell& cell, const std::vector<Sides>& sides) {
         on = axis;
         ++count;
       }
-    const auto is_high = [&](int axis) { return side[static_cast<std::size_t>(axis % 3)] > 0 ? 1U : 0U; };
+    const auto is_high = [&](int axis) -> std::size_t {
+      return side[static_cast<std::size_t>(axis % 3)] > 0 ? 1 : 0;
+    };
     if (count == 1) cell.face_nodes[face_number(on, is_high(on) > 0)].push_back(n);
     if (count == 2)
       cell.edge_nodes[4 * static_cast<std::size_t>(between) + is_high(between + 1) + 2 * is_high(between + 2)]

@@ -24,7 +24,8 @@ struct Loop {
   std::vector<LoopPoint> points;  // the first is not repeated
   Vec2 turn = Vec2::Zero();       // what the parameters gain in one round
   [[nodiscard]] Vec2 at(std::size_t k) const {
-    return points[k % points.size()].q + turn * static_cast<double>(k / points.size());
+    const std::size_t round = k / points.size();
+    return points[k % points.size()].q + turn * static_cast<double>(round);
   }
 };
 

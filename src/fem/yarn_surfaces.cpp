@@ -145,6 +145,7 @@ Status add_end(const CellShape& shape, const cell::Piece& piece, const cell::Bor
   if (!body.inward) std::reverse(rim.begin(), rim.end());
   std::vector<Vec3> points;
   PlanarRegion region;
+  points.reserve(rim.size());
   for (const std::uint32_t node : rim) points.push_back(nodes.points[node]);
   const bool is_end = border.arcs.front().face == cell::Arc::own_end;
   const EndCap cap(points, is_end ? body.end : body.start);

@@ -6,6 +6,7 @@
 
 #include "fem/mesher.h"
 #include "pipeline/mesh_facts.h"
+#include "pipeline/meshing.h"
 #include "pipeline/overlaps.h"
 #include "pipeline/relaxing.h"
 #include "pipeline/writing.h"
@@ -14,9 +15,6 @@
 namespace selvage::pipeline {
 
 namespace {
-
-// The mesher's own limits end a little before the input's, so that its message can name the yarn.
-constexpr double worker_share = 0.9;
 
 // Overlapping yarns cannot be meshed as what they are.
 void add_remedy(const Options& options, Message& message) {
@@ -35,8 +33,7 @@ fem::MeshOptions mesh_options(Job& job) {
   options.size = given.size;
   options.order = given.order;
   options.min_dihedral = given.min_dihedral;
-  if (given.timeout > 0) options.timeout = worker_share * given.timeout;
-  if (given.memory > 0) options.memory = given.memory;
+  set_mesher_limits(given, options);
   options.threads = static_cast<int>(job.threads);
   options.progress = [&job](std::size_t done, std::size_t total) {
     job.progress("meshing yarn", done, total);
@@ -44,7 +41,8 @@ fem::MeshOptions mesh_options(Job& job) {
   return options;
 }
 
-// Tetrahedra fill yarns; a garment piece is flat.
+}  // namespace
+
 bool has_only_yarns(Job& job, const fabric::Fabric& fabric) {
   const std::vector<const fabric::Piece*> pieces = fabric::pieces_of(fabric);
   if (pieces.empty()) return true;
@@ -57,8 +55,6 @@ bool has_only_yarns(Job& job, const fabric::Fabric& fabric) {
   job.say(std::move(message));
   return false;
 }
-
-}  // namespace
 
 void mesh(Job& job) {
   if (job.options.wants_cell()) return mesh_cell(job);

@@ -5,6 +5,7 @@
 #include "fem/fibre.h"
 #include "fem/voxel.h"
 #include "pipeline/mesh_facts.h"
+#include "pipeline/meshing.h"
 #include "pipeline/relaxing.h"
 #include "pipeline/unit_cell.h"
 #include "pipeline/writing.h"
@@ -13,8 +14,6 @@ namespace selvage::pipeline {
 
 namespace {
 
-// The mesher's own limits end a little before the input's, so that its message can name the yarn.
-constexpr double worker_share = 0.9;
 // Yarns are bonded where they are within this many times the gap that they keep.
 constexpr double bond_reach = 1.5;
 
@@ -41,7 +40,9 @@ std::optional<ReadyCell> prepare(Job& job, const fabric::Fabric& fabric, const f
   if (!check_top_and_bottom(job, fabric, ready.bodies, ready.periodic)) return std::nullopt;
   if (options.voxels > 0) return ready;
   const std::optional<CellSize> size = check_cell_size(job, fabric, ready.bodies, options.matrix);
-  if (!size || !check_cell_gaps(job, fabric, ready.bodies, job.gap)) return std::nullopt;
+  if (!size || !check_grazed_faces(job, fabric, ready.bodies) ||
+      !check_cell_gaps(job, fabric, ready.bodies, job.gap))
+    return std::nullopt;
   ready.size = *size;
   return ready;
 }
@@ -65,8 +66,7 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
   options.periodic = ready.periodic;
   if (given.min_dihedral > 0) options.min_dihedral = given.min_dihedral;
   options.tolerance = given.tolerance;
-  if (given.timeout > 0) options.timeout = worker_share * given.timeout;
-  if (given.memory > 0) options.memory = given.memory;
+  set_mesher_limits(given, options);
   options.threads = static_cast<int>(job.threads);
   options.progress = [&job](const char* step, std::size_t done, std::size_t total) {
     total > 0 ? job.progress(step, done, total) : job.progress(step);
@@ -78,7 +78,7 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
 
 void mesh_cell(Job& job) {
   std::optional<fabric::Fabric> fabric = job.read();
-  if (!fabric || !check_cell_text(job, *fabric, job.options.matrix)) return;
+  if (!fabric || !has_only_yarns(job, *fabric) || !check_cell_text(job, *fabric, job.options.matrix)) return;
   // Voxels need no gap: they take the cloth as it comes.
   if (job.options.voxels == 0 || job.options.relaxing.gap) job.gap = cell_gap(job.options, *fabric);
   if (job.options.relaxing.wanted) fabric = relaxed(job, std::move(*fabric));

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "cell/cut.h"
 #include "contact/contact.h"
 #include "fabric/repeat.h"
 #include "fem/fibre.h"
@@ -43,8 +44,15 @@ Message cell_error(const fabric::Fabric& fabric, std::string text) {
   return at_cell(fabric, error(Kind::geometry, std::move(text)));
 }
 
-// Points of a surface, dense enough to see where it reaches to within a thousandth of its thickness.
-std::vector<Vec3> points_of(const nurbs::Surface& surface) {
+// Points of a surface, dense enough to see where it reaches to within a thousandth of its thickness: rows
+// round the section, one a station along.
+struct Grid {
+  std::vector<Vec3> points;
+  std::size_t round = 0, along = 0;
+  [[nodiscard]] const Vec3& at(std::size_t u, std::size_t v) const { return points[v * round + u]; }
+};
+
+Grid grid_of(const nurbs::Surface& surface) {
   constexpr int round_a_span = 4, along_a_span = 8;
   const auto stations = [](const std::vector<double>& breaks, int a_span) {
     std::vector<double> all;
@@ -53,9 +61,9 @@ std::vector<Vec3> points_of(const nurbs::Surface& surface) {
     all.push_back(breaks.back());
     return all;
   };
-  return nurbs::evaluate_grid(surface,
-                              stations(nurbs::breakpoints(surface.knots_u, surface.degree_u), round_a_span),
-                              stations(nurbs::breakpoints(surface.knots_v, surface.degree_v), along_a_span));
+  const std::vector<double> u = stations(nurbs::breakpoints(surface.knots_u, surface.degree_u), round_a_span);
+  const std::vector<double> v = stations(nurbs::breakpoints(surface.knots_v, surface.degree_v), along_a_span);
+  return {nurbs::evaluate_grid(surface, u, v), u.size(), v.size()};
 }
 
 // A translation that may be written down: six digits.
@@ -223,7 +231,7 @@ bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<cons
     const double room = least_gap_share * fem::smallest_section_extent(body);
     const std::span<const yarn::Body> alone(&body, 1);
     double lowest = infinity, highest = -infinity;
-    for (const Vec3& p : points_of(body.surface)) {
+    for (const Vec3& p : grid_of(body.surface).points) {
       if (p.x() < box.min().x() || p.x() > box.max().x() || p.y() < box.min().y() || p.y() > box.max().y())
         continue;
       lowest = std::min(lowest, p.z());
@@ -241,14 +249,73 @@ bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<cons
           fabric,
           fmt::format("yarn '{}' {} the {} of this cell, z = {:.6g}: it reaches to z = {:.6g}; a cell "
                       "that holds it, with a tenth of its thickness beyond, ends at z = {:.4g}",
-                      body.name, runs_through ? "runs through" : "touches", top ? "top" : "bottom", face,
-                      reach, reach + (top ? 0.1 : -0.1) * fem::smallest_section_extent(body)));
+                      body.name,
+                      runs_through                     ? "runs through"
+                      : std::abs(reach - face) <= room ? "touches"
+                                                       : "goes beyond",
+                      top ? "top" : "bottom", face, reach,
+                      reach + (top ? 0.1 : -0.1) * fem::smallest_section_extent(body)));
       message.yarn = body.name;
       job.say(std::move(message));
       fits = false;
     }
   }
   return fits;
+}
+
+namespace {
+
+// Where a yarn's surface turns round beside the plane of a face (a summit, a hollow or a saddle of its
+// distance from it), inside the rest of the box.
+std::optional<Vec3> grazed_at(const Grid& grid, const Box3& box, int axis, double plane, double room) {
+  const double flat = 1e-6 * room;  // rounding along what is parallel to the face
+  const auto turns = [flat](double before, double here, double after) {
+    const double left = here - before, right = after - here;
+    return std::abs(left) <= flat || std::abs(right) <= flat || (left > 0) != (right > 0);
+  };
+  Box3 near(box.min().array() - room, box.max().array() + room);
+  near.min()[axis] = plane - room;
+  near.max()[axis] = plane + room;
+  const std::size_t round = grid.round - 1;  // the last one is the first
+  for (std::size_t v = 1; v + 1 < grid.along; ++v)
+    for (std::size_t u = 0; u < round; ++u) {
+      const Vec3& here = grid.at(u, v);
+      if (!near.contains(here)) continue;
+      if (turns(grid.at((u + round - 1) % round, v)[axis], here[axis], grid.at(u + 1, v)[axis]) &&
+          turns(grid.at(u, v - 1)[axis], here[axis], grid.at(u, v + 1)[axis]))
+        return here;
+    }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool check_grazed_faces(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies) {
+  if (job.options.force) return true;
+  const Box3 box = box_of(fabric);
+  for (const yarn::Body& body : bodies) {
+    // Two yarns as near as they may be have a face between them.
+    const double room = least_gap_share / 2.0 * fem::smallest_section_extent(body);
+    const Grid grid = grid_of(body.surface);
+    for (int face = 0; face < cell::face_count; ++face) {
+      const int axis = cell::axis_of(face);
+      const double plane = cell::plane_of(box, face);
+      const std::optional<Vec3> at = grazed_at(grid, box, axis, plane, room);
+      if (!at) continue;
+      Message message = cell_error(
+          fabric,
+          fmt::format("yarn '{}' grazes the {} face of this cell, {} = {:.6g}: its surface runs along it, "
+                      "{:.2g} {} away, and what lies between would be meshed as flat as that; move the "
+                      "cell, or --force meshes it as it is",
+                      body.name, cell::name_of_face(face), name_of_axis(axis), plane,
+                      std::abs((*at)[axis] - plane), name_of(fabric.units)));
+      message.yarn = body.name;
+      message.at = at;
+      job.say(std::move(message));
+      return false;
+    }
+  }
+  return true;
 }
 
 namespace {
@@ -394,6 +461,14 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
     return std::nullopt;
   }
   const auto [finest, coarsest] = std::minmax_element(chosen.sizes.begin(), chosen.sizes.end());
+  if (job.options.matrix_size > 0 && job.options.matrix_size < *finest) {
+    job.say(
+        error(Kind::usage,
+              fmt::format("--matrix-size is {:.6g}, to which edges grow from those on the yarns, but these "
+                          "are {:.6g} {} long: --size makes them finer",
+                          job.options.matrix_size, *finest, name_of(fabric.units))));
+    return std::nullopt;
+  }
   chosen.tetrahedra = estimate_of(job.options, bodies, box_of(fabric), chosen.sizes, with_matrix);
   const std::string lengths = *coarsest - *finest < 1e-3 * *coarsest
                                   ? fmt::format("{:.4g}", *finest)

@@ -37,6 +37,10 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
 bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
                           const std::array<bool, 3>& periodic);
 
+// No yarn's surface runs along a face of the cell nearer than half a per cent of its thickness (without
+// --force).
+bool check_grazed_faces(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies);
+
 // No two yarns overlap in the cell, or come nearer than 1 % of the thinner one; a warning where they come
 // nearer than `wanted` (file units).
 bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
@@ -47,7 +51,8 @@ struct CellSize {
   std::vector<double> sizes;  // of each yarn, file units
   double tetrahedra = 0;
 };
-// None: too coarse for a yarn, or too fine for any memory (without --force).
+// None: too coarse for a yarn, too fine for any memory (without --force), or in the matrix finer than on the
+// yarns.
 std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
                                         std::span<const yarn::Body> bodies, bool with_matrix);
 

@@ -1,10 +1,13 @@
 """What can be wrong with a unit cell: each is refused at its place, with the remedy, before anything is meshed."""
 
 import json
+import pathlib
 import re
+import signal
+import time
 import unittest
 
-from program import Case, SAMPLES, run
+from program import Case, SAMPLES, children_of, environment, files_below, run, start
 
 MATERIALS = """fabric 1
 material fibre
@@ -33,11 +36,14 @@ def cell(corners, rest="  matrix resin\n  periodic x y\n"):
 class CellInput(Case):
     def refuses(self, text, *options, code=1):
         """The message of `mesh --matrix --periodic`; nothing is written."""
-        source = self.folder / "cell.txt"
-        source.write_text(text)
-        message = self.fails(code, "mesh", source, "--matrix", "--periodic", "-o", self.folder / "out.inp", "--no-progress", *options)
+        message = self.fails(code, "mesh", self.written(text), "--matrix", "--periodic", "-o", self.folder / "out.inp", "--no-progress", *options)
         self.assertFalse((self.folder / "out.inp").exists())
         return message
+
+    def written(self, text):
+        source = self.folder / "cell.txt"
+        source.write_text(text)
+        return source
 
     def at_cell(self, message, text):
         """It stands at the cell's statement."""
@@ -114,8 +120,10 @@ class CellInput(Case):
             text = PLAIN + cell(corners)
             message = self.refuses(text)
             self.at_cell(message, text)
-            self.assertRegex(message, f"yarn 'w..._1' touches the {side} of this cell")
+            self.assertRegex(message, f"yarn 'w..._1' goes beyond the {side} of this cell")
             self.assertRegex(message, r"a cell that holds it, with a tenth of its thickness beyond, ends at z = -?0\.3[34]")
+        text = straight(("-1 0.5 0.15", "2 0.5 0.15")) + cell("0 0 0 1 1 1")
+        self.assertIn("yarn 'y1' touches the bottom of this cell", self.refuses(text))
         text = straight(("-1 0.5 0.5", "2 0.5 0.5"), ("0.2 0.15 -1", "0.2 0.15 2")) + cell("0 0 0 1 1 1")
         self.assertIn("yarn 'y2' runs through the top of this cell", self.refuses(text))
 
@@ -152,8 +160,73 @@ class CellInput(Case):
         self.assertNotIn("--force", forced)
         self.assertRegex(forced, "memory|seconds")
 
+    def test_a_face_along_a_yarn(self):
+        # Tangent to the yarn from inside, and a hair beyond its surface: nothing but slivers would fit between.
+        for y in ("0.15", "0.1502"):
+            text = straight((f"-1 {y} 0.5", f"2 {y} 0.5")) + cell("0 0 0 1 1 1")
+            message = self.refuses(text)
+            self.at_cell(message, text)
+            self.assertIn("yarn 'y1' grazes the y low face of this cell, y = 0: its surface runs along it", message)
+        # The next yarn of the repeat at the distance that yarns may have, the face in the middle: no matter.
+        text = straight(("-1 0.16 0.5", "2 0.16 0.5")) + cell("0 0 0 1 1 1")
+        self.assertIn("coarser than yarn 'y1'", self.refuses(text, "--size", "0.4"))
+        # What is cut askew is no wedge either.
+        text = straight(("-1 -1 0.5", "2 2 0.5"), ("-1 0 0.5", "1 2 0.5"), ("0 -1 0.5", "2 1 0.5")) + cell("0 0 0 1 1 1")
+        self.succeeds("mesh", self.written(text), "--matrix", "-o", self.folder / "askew.inp", "--size", "0.1", "--quiet")
+
+    def test_a_cell_inside_a_yarn(self):
+        text = straight(("-5 0.5 0.5", "6 0.5 0.5")).replace("diameter 0.3", "diameter 4") + cell(
+            "0 0 0 1 1 1", "  matrix resin\n  periodic x y z\n")
+        message = self.refuses(text)
+        self.at_cell(message, text)
+        self.assertIn("no yarn's surface goes through the cell: it lies beside all of them, or whole inside one", message)
+
+    def test_edges_of_the_matrix_finer_than_on_the_yarns(self):
+        message = self.refuses(PLAIN + cell("0 0 -0.35 3 3 0.35"), "--matrix-size", "0.01")
+        self.assertRegex(message, r"--matrix-size is 0\.01, .* but these are 0\.0\d+ mm long: --size makes them finer")
+
+    def test_a_garment_piece_beside_the_yarns(self):
+        text = PLAIN + "piece back\n  line a 0 0 1 0\n  line b 1 0 0 1\n  line c 0 1 0 0\nend\n" + cell("0 0 -0.35 3 3 0.35")
+        self.assertIn("piece 'back' is a flat face", self.refuses(text))
+
     def test_a_gap_asks_for_a_cell_or_relaxation(self):
         self.assertIn("--gap says how yarns are moved apart", self.fails(2, "mesh", SAMPLES / "ring.txt", "--gap", "0.1", "-o", self.out))
+
+
+class Interrupted(Case):
+    def below(self, pid):
+        """All processes that `pid` has started, and theirs."""
+        found = children_of(pid)
+        return found + [each for child in found for each in self.below(child)]
+
+    def test_nothing_is_left(self):
+        scratch, out = self.folder / "scratch", self.folder / "out"
+        for folder in (scratch, out):
+            folder.mkdir()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(number.name):
+                process = start("mesh", SAMPLES / "cell_plain.txt", "--matrix", "--periodic", "--size", "0.05", "--to", "inp,vtu", "-o", out,
+                                "--no-progress", env={**environment(), "TMPDIR": str(scratch)})
+                while len(started := self.below(process.pid)) < 2:  # the job, and TetGen's worker
+                    self.assertIsNone(process.poll(), "it ended before its worker was seen")
+                    time.sleep(0.002)
+                process.send_signal(number)
+                _, message = process.communicate()
+                self.assertEqual(process.returncode, 130, message)
+                self.assertIn("interrupted", message)
+                self.assertEqual([*files_below(out), *files_below(scratch)], [])
+                self.gone(started)
+
+    def gone(self, processes):
+        """They end; what nobody has buried yet does not count."""
+        for pid in processes:
+            while True:
+                try:
+                    if pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] == "Z":
+                        break
+                except (FileNotFoundError, ProcessLookupError):
+                    break
+                time.sleep(0.002)
 
 
 class CellMesh(Case):
@@ -175,7 +248,7 @@ class CellMesh(Case):
         # --voxel with --gap: the yarns are that far apart; the report tells what was found where tetrahedra are made.
         source = SAMPLES / "cell_plain.txt"
         message = run("mesh", source, "--matrix", "--periodic", "--gap", "0.05", "--size", "0.5", "-o", self.out).stderr
-        self.assertRegex(message, "touches the top|coarser than yarn")
+        self.assertRegex(message, "goes beyond the top|coarser than yarn")
 
 
 if __name__ == "__main__":

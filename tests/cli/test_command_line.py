@@ -32,6 +32,11 @@ class Usage(Case):
                      "1", "-o", self.out)
         self.refused("it goes with --matrix", "mesh", GRID, "--matrix-size", "1", "-o", self.out)
         self.refused("it goes with --matrix", "mesh", GRID, "--bond", "-o", self.out)
+        self.refused("it goes with --matrix", "mesh", GRID, "--segments", "20", "-o", self.out)
+        self.refused("--yarn-stiffness is of a unit cell", "mesh", GRID, "--yarn-stiffness", "chamis", "-o", self.out)
+        self.refused("--size is of tetrahedra", "mesh", GRID, "--voxel", "9", "--size", "1", "-o", self.out)
+        self.refused("--order 2 is of tetrahedra", "mesh", GRID, "--voxel", "9", "--order", "2", "-o", self.out)
+        self.refused("'nan' is not a positive number", "mesh", GRID, "--size", "nan", "-o", self.out)
         self.refused("INPUT is required", "convert")
         self.refused("unknown format 'igs'; did you mean 'iges'|unknown format 'igs'", "convert", GRID, "--to", "igs", "-o",
                      self.out)
@@ -45,7 +50,9 @@ class Usage(Case):
                               ("--shard", "1"), ("--shard", "-1/2"), ("--shard", "0/0"), ("--iges-lines", "99"),
                               ("--iges-lines", "10000000")):
             self.refused(re.escape(option), "convert", GRID, "-o", self.out, option, value)
-        for option, value in (("--order", "3"), ("--size", "0"), ("--min-dihedral", "90")):
+        for option, value in (("--order", "3"), ("--size", "0"), ("--size", "nan"), ("--size", "inf"), ("--matrix-size", "nan"),
+                              ("--gap", "nan"), ("--tolerance", "nan"), ("--timeout", "nan"), ("--min-dihedral", "nan"),
+                              ("--min-dihedral", "45")):
             self.refused(re.escape(option), "mesh", GRID, "-o", self.out, option, value)
         for option, value in (("--size", "0x9"), ("--size", "12"), ("--size", "9x9x9"), ("--size", "99999x9"),
                               ("--size", "ax9"), ("--size", "-4x9"), ("--from", "below"), ("--background", "white"),

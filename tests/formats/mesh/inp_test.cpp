@@ -156,6 +156,24 @@ std::vector<yarn::Body> bodies_of(const fabric::Fabric& fabric) {
   return bodies;
 }
 
+// Those of a cell share their nodes: nothing of one can be held alone. Nor is a ring of one point stretched
+// for ever.
+TEST(InpDeck, RegionsWithoutNodesOfTheirOwnGetNoLoad) {
+  fem::Mesh mesh;
+  mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 2, 2}, {2, 2, 2}};
+  mesh.elements = {{0, 1, 2, 3}};
+  mesh.regions.resize(2);
+  mesh.regions[0].last_element = 1;
+  EXPECT_TRUE(formats::inp::plan_loads(mesh).empty());
+  mesh.regions[1].first_node = 4;
+  mesh.regions[1].last_node = 6;
+  const std::vector<formats::inp::Load> loads = formats::inp::plan_loads(mesh);
+  ASSERT_EQ(loads.size(), 1U);
+  EXPECT_EQ(loads[0].start_set, "Yarn1_Low");
+  EXPECT_EQ(loads[0].start, (std::vector<std::size_t>{4, 5}));
+  EXPECT_EQ(loads[0].pull, 0.0);
+}
+
 TEST(InpDeck, PlainWeaveOfFourYarnsRuns) {
   for (const std::string name : {"plain4_grid", "plain4_path"})
     for (const int order : {1, 2}) {

@@ -255,6 +255,22 @@ TEST(Gaps, TheLeastOfManyAndNoneOfOne) {
   EXPECT_FALSE(check({bodies[0]}).min_gap.has_value());
 }
 
+// Along itself a yarn is near itself everywhere, but it does not face itself unless it turned round.
+TEST(Gaps, OfAYarnWithItselfHoweverFarOneLooks) {
+  const auto near_itself = [](const yarn::Body& body, double reach) {
+    ContactOptions options;
+    options.reach = reach;
+    const Result<Contacts> result = find_contacts({&body, 1}, options);
+    EXPECT_TRUE(result.ok());
+    return result.ok() ? result->list : std::vector<Contact>();
+  };
+  const yarn::Body line = straight("line", round(0.5), Vec3::Zero(), {1, 0, 0}, {0, 1, 0}, 12.0);
+  for (const double reach : {1.0, 3.0, 20.0}) EXPECT_TRUE(near_itself(line, reach).empty()) << reach;
+  const std::vector<Contact> across = near_itself(test::ring("ring", 2.0, 0.5), 3.5);
+  ASSERT_FALSE(across.empty());
+  EXPECT_NEAR(across.front().gap, 3.0, 0.03);
+}
+
 TEST(Gaps, ARingAroundAYarn) {
   const yarn::Body outer = test::ring("ring", 2.0, 0.5);
   const yarn::Body inner = straight("axis", round(0.8), Vec3::Zero(), {0, 0, 1}, {1, 0, 0}, 4.0);

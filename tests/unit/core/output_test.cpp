@@ -101,6 +101,23 @@ TEST(OutputFile, RefusesADirectory) {
   EXPECT_NE(file.error().text.find("directory"), std::string::npos);
 }
 
+// A rename would put a file in the place of /dev/null, for everybody.
+TEST(OutputFile, RefusesADeviceAndAPipe) {
+  const test::ScratchFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  std::filesystem::create_symlink("/dev/null", folder / "null");
+  for (const std::string name : {"pipe", "null"}) {
+    const Result<OutputFile> file = OutputFile::create(folder / name);
+    ASSERT_FALSE(file.ok()) << name;
+    EXPECT_EQ(file.error().kind, Kind::io);
+    EXPECT_EQ(file.error().file, (folder / name).string());
+    EXPECT_NE(file.error().text.find("device or a pipe"), std::string::npos);
+  }
+  EXPECT_EQ(folder.names().size(), 2U);
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "null"));
+}
+
 TEST(OutputFile, RefusesAFileInPlaceOfAFolder) {
   const test::ScratchFolder folder;
   test::put_bytes(folder / "a", "x");
