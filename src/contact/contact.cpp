@@ -59,6 +59,7 @@ class Search {
     const double reach = std::max(options_.reach, near_share * thinnest_);
     double unsettled = 0.0;
     std::vector<Contact> found = contacts_within(reach, unsettled);
+    if (reach > near_share * thinnest_) find_own_overlaps(found);
     add_contained(found);
     sort(found);
     drop_repeated(found);
@@ -75,6 +76,18 @@ class Search {
     std::vector<Box3> all;
     for (const Piece& piece : model_.pieces()) all.push_back(piece.box);
     return all;
+  }
+
+  // Of yarns with themselves, as they are found by looking no farther: from farther away stretches of one
+  // yarn hang together that are no contact.
+  void find_own_overlaps(std::vector<Contact>& found) const {
+    const auto is_own_overlap = [](const Contact& contact) {
+      return contact.a == contact.b && contact.is_overlap();
+    };
+    if (std::erase_if(found, is_own_overlap) == 0) return;
+    double unsettled = 0.0;
+    for (Contact& contact : contacts_within(near_share * thinnest_, unsettled))
+      if (is_own_overlap(contact)) found.push_back(std::move(contact));
   }
 
   // What is proved: a millionth of the thinnest yarn.

@@ -542,7 +542,19 @@ class Measurer {
     return a.normal.dot(n) > 0.3 && b.normal.dot(n) < -0.3;
   }
 
+  // Looking farther than a yarn is thick, all of one that turns round hangs together, and what stands for
+  // both sides shares all its space with itself.
+  [[nodiscard]] bool is_itself() const {
+    if (body_a_ != body_b_ || reach_ < thickness_) return false;
+    std::set<std::uint32_t> rows;
+    const auto row = [&](std::uint32_t k) { return cell(k).j; };
+    for (const NearPair& pair : cluster_) rows.insert(row(pair.a));
+    return std::any_of(cluster_.begin(), cluster_.end(),
+                       [&](const NearPair& pair) { return rows.contains(row(pair.b)); });
+  }
+
   void look_deep() {
+    if (is_itself()) return;
     Box3 walls;
     for (const NearPair& pair : cluster_) walls.extend(cell(pair.a).box.merged(cell(pair.b).box));
     std::vector<Contact> deep =
