@@ -5,6 +5,25 @@
 #include <algorithm>
 #include <string>
 
+namespace {
+
+// While the surface is recovered, its segments and facets are taken in their order instead of a random one:
+// their tetrahedra are near to each other in memory then, which saves a third of the time.
+bool in_order = false;
+constexpr unsigned most_ways = 64;  // of a walk, whose turns stay random: without that it may not end
+
+}  // namespace
+
+// In place of the definition in TetGen's shared library (as in terminate.cpp), with its generator.
+unsigned long tetgenmesh::randomnation(unsigned int choices) {
+  if (in_order && choices > most_ways) return choices - 1;
+  randomseed = (randomseed * 1366UL + 150889UL) % 714025UL;
+  const unsigned long low = randomseed;
+  if (choices < 714025U) return low % choices;
+  randomseed = (randomseed * 1366UL + 150889UL) % 714025UL;
+  return (low * (choices / 714025U) + randomseed) % choices;
+}
+
 namespace selvage::fem {
 namespace {
 
@@ -58,7 +77,9 @@ void fill_surface(tetgenbehavior& settings, tetgenio& in, tetgenio& out) {
             mesh.ymax - mesh.ymin, mesh.zmax - mesh.zmin);
   mesh.incrementaldelaunay(time);
   mesh.meshsurface();
+  in_order = true;
   mesh.recoverboundary(time);
+  in_order = false;
   mesh.carveholes();
   mesh.suppresssteinerpoints();
   mesh.outnodes(&out);
