@@ -279,6 +279,81 @@ EdgeCurves line_of_constant_u(const nurbs::Surface& surface, double u, double v0
   return edge;
 }
 
+namespace {
+
+// The surface along a parabola of its parameters, piece by piece between its knots.
+class Parabola {
+ public:
+  Parabola(double u, double v0, double v1, const Beside& beside) : u_(u), v0_(v0), v1_(v1), beside_(beside) {}
+
+  void between(const nurbs::Surface& surface, double from, double to) {
+    const double most = std::max({beside_.first, beside_.middle, beside_.last});
+    patch_ = nurbs::restricted(surface, u_, u_ + most, from, to);
+  }
+  struct Point {
+    Vec3 at, slope;
+  };
+  [[nodiscard]] Point point(double v) const {
+    const double s = (v - v0_) / (v1_ - v0_), r = 1 - s;
+    const double in = beside_.middle - beside_.first, out = beside_.last - beside_.middle;
+    const double more = r * r * beside_.first + 2 * r * s * beside_.middle + s * s * beside_.last;
+    const nurbs::SurfaceJet jet = nurbs::evaluate_jet(patch_, u_ + more, v);
+    return {jet.position, jet.dv + 2 * (r * in + s * out) / (v1_ - v0_) * jet.du};
+  }
+  [[nodiscard]] std::array<Vec3, 4> cubic(double from, double to) const {
+    const Point a = point(from), b = point(to);
+    return hermite(a.at, a.slope, b.at, b.slope, to - from);
+  }
+  [[nodiscard]] bool is_near(double from, double to, double tolerance) const {
+    const std::array<Vec3, 4> made = cubic(from, to);
+    for (const double t : {0.25, 0.5, 0.75})
+      if ((bezier_at(made, t) - point(std::lerp(from, to, t)).at).norm() > tolerance) return false;
+    return true;
+  }
+
+ private:
+  double u_, v0_, v1_;
+  Beside beside_;
+  nurbs::Surface patch_;
+};
+
+}  // namespace
+
+EdgeCurves line_beside_u(const nurbs::Surface& surface, double u, double v0, double v1, const Beside& beside,
+                         double tolerance) {
+  v0 = at_knot(v0, surface.knots_v);
+  v1 = at_knot(v1, surface.knots_v);
+  std::vector<double> stops = {v0};
+  for (const double knot : nurbs::breakpoints(surface.knots_v, surface.degree_v))
+    if (knot > v0 && knot < v1) stops.push_back(knot);
+  stops.push_back(v1);
+  Parabola parabola(u, v0, v1, beside);
+  Chain space;
+  Vec3 slope = Vec3::Zero();
+  for (std::size_t i = 1; i < stops.size(); ++i) {
+    const double from = stops[i - 1], to = stops[i];
+    parabola.between(surface, from, to);
+    int count = 1;
+    while (count < 64 && !parabola.is_near(from, std::lerp(from, to, 1.0 / count), tolerance)) count *= 2;
+    for (int k = 0; k < count; ++k) {
+      const double a = std::lerp(from, to, static_cast<double>(k) / count),
+                   b = std::lerp(from, to, static_cast<double>(k + 1) / count);
+      const Vec3 out = parabola.point(a).slope;
+      space.add(parabola.cubic(a, b), b - a, (out - slope).norm() <= 1e-9 * out.norm());
+      slope = parabola.point(b).slope;
+    }
+  }
+  EdgeCurves edge;
+  edge.space = space.finish();
+  const double length = edge.space.last_parameter();
+  edge.flat = {.degree = 2,
+               .knots = {0, 0, 0, length, length, length},
+               .points = {Vec3(u + beside.first, v0, 0), Vec3(u + beside.middle, 0.5 * (v0 + v1), 0),
+                          Vec3(u + beside.last, v1, 0)},
+               .weights = {}};
+  return edge;
+}
+
 EdgeCurves reversed(const EdgeCurves& edge) {
   return {nurbs::reversed(edge.space), nurbs::reversed(edge.flat)};
 }

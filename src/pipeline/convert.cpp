@@ -9,6 +9,7 @@
 #include "pipeline/facts.h"
 #include "pipeline/instances.h"
 #include "pipeline/relaxing.h"
+#include "pipeline/unit_cell.h"
 #include "pipeline/scaling.h"
 #include "pipeline/writing.h"
 
@@ -220,7 +221,7 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
 
 void convert(Job& job) {
   std::optional<fabric::Fabric> fabric = job.read();
-  if (job.options.cut) job.gap = job.options.relaxing.gap.value_or(0.0);
+  if (fabric && job.options.cut) job.gap = cell_gap(job.options, *fabric);
   if (fabric && job.options.relaxing.wanted) fabric = relaxed(job, std::move(*fabric));
   if (!fabric) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);
