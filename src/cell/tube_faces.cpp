@@ -23,7 +23,7 @@ constexpr double on_line = 1e-9;  // of the period
 // Of a curve as long as the yarn is round: along the yarn, and across it where a face of the box cuts it.
 constexpr double pieces_along = 4, pieces_across = 8;
 constexpr double unevenness = 0.13;
-constexpr double most_sag = 0.02;  // of the thickness: half a piece along the yarn off its chord
+constexpr double most_sag = 0.005;  // of the thickness: half a piece along the yarn off its chord
 // How far lines along the yarn are bowed, of the period: below what is seen, above what meshers take for
 // rounding.
 constexpr double bow_share = 2e-5;
