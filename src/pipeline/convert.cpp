@@ -9,8 +9,8 @@
 #include "pipeline/facts.h"
 #include "pipeline/instances.h"
 #include "pipeline/relaxing.h"
-#include "pipeline/unit_cell.h"
 #include "pipeline/scaling.h"
+#include "pipeline/unit_cell.h"
 #include "pipeline/writing.h"
 
 namespace selvage::pipeline {
