@@ -206,7 +206,9 @@ class Measurer {
            ++j)
         for (int i = std::max(0, index(wide.min().x(), 0));
              i <= std::min(lines_ - 1, index(wide.max().x(), 0)); ++i)
-          if (shared_[static_cast<std::size_t>(j * lines_ + i)]) return true;
+          if (shared_[static_cast<std::size_t>(j) * static_cast<std::size_t>(lines_) +
+                      static_cast<std::size_t>(i)])
+            return true;
       return false;
     }
 
@@ -390,7 +392,8 @@ class Measurer {
       return found && found->depth > 0.0 ? found->depth : infinity;
     };
     double best = cost(n);
-    for (double step = 0.3; step > 2e-3; step *= 0.5)
+    double step = 0.3;
+    for (int round = 0; round < 8; ++round, step *= 0.5)
       for (int k = 0; k < 8; ++k) {
         const Vec3 x = n.unitOrthogonal(), y = n.cross(x);
         const double angle = k * std::numbers::pi / 4.0 + 10.0 * step;
