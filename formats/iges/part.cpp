@@ -96,6 +96,7 @@ int PartWriter::chain(const Common& common, const std::vector<const nurbs::Curve
   const Vec3 up = Vec3::UnitZ();
   const Vec3* const normal = status == dependent_in_2d ? &up : nullptr;
   std::vector<int> parts;
+  parts.reserve(curves.size());
   for (const nurbs::Curve* const curve : curves)
     parts.push_back(write_curve(records_, common.entity(126, 0, status), *curve, normal));
   if (parts.size() == 1) return parts.front();

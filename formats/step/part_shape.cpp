@@ -204,6 +204,7 @@ class PartBuilder {
     std::map<std::size_t, std::vector<std::size_t>> members;
     for (std::size_t i = 0; i < group.size(); ++i) members[root(i)].push_back(i);
     std::vector<std::vector<std::size_t>> result;
+    result.reserve(members.size());
     for (auto& [first_face, faces] : members) result.push_back(std::move(faces));
     return result;
   }
