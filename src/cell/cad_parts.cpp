@@ -143,7 +143,7 @@ class CellBuilder {
     if (!with_matrix) return parts;
     planar.assign(around.size(), false);
     for (const FaceRegion& region : division_.regions)
-      if (region.body == FaceRegion::matrix) around.push_back(of_matrix(region_face(region)));
+      if (region.body == FaceRegion::matrix) around.push_back(region_face(region));
     planar.resize(around.size(), true);
     add_matrix(shells_of(std::move(around), planar), parts);
     return parts;

@@ -87,16 +87,32 @@ void CavityInsertion::attempt(const std::vector<std::uint32_t>& seed, const Vec3
   if (gain > 1e-6 && cavity.quality > best.quality) best = std::move(cavity);
 }
 
+Vec3 CavityInsertion::middle_of(std::uint32_t c) const {
+  Vec3 middle = Vec3::Zero();
+  for (const std::uint32_t corner : complex_.cell(c).corners) middle += complex_.points[corner] / 4;
+  return middle;
+}
+
 bool CavityInsertion::improve(std::uint32_t c, double goal, std::vector<std::uint32_t>& added) {
   Cavity best;
-  const Tetrahedron corners = complex_.cell(c).corners;
-  Vec3 middle = Vec3::Zero();
-  for (const std::uint32_t corner : corners) middle += complex_.points[corner] / 4;
-  attempt({c}, middle, goal, best);
+  attempt({c}, middle_of(c), goal, best);
   TetComplex::Ring ring;
   for (std::size_t edge = 0; edge < 6 && best.quality < goal; ++edge)
     if (complex_.ring(c, edge, 20, ring) && ring.closed)
       attempt(ring.cells, (complex_.points[ring.from] + complex_.points[ring.to]) / 2, goal, best);
+  // A flat one on a wall leaves no room by itself, and no way over the wall: with what is beside it.
+  std::vector<std::uint32_t> seed = {c};
+  for (std::size_t slot = 0; slot < 4 && best.quality < goal; ++slot) {
+    const std::uint32_t beside = complex_.cell(c).beside[slot];
+    if (beside == TetComplex::none) continue;
+    attempt({c, beside}, middle_of(beside), goal, best);
+    seed.push_back(beside);
+  }
+  if (best.quality < goal && seed.size() > 2) {
+    Vec3 centre = Vec3::Zero();
+    for (const std::uint32_t cell : seed) centre += middle_of(cell) / static_cast<double>(seed.size());
+    attempt(seed, centre, goal, best);
+  }
   if (best.cells.empty()) return false;
   const std::uint32_t point = complex_.add_point(best.at);
   new_cells_.clear();

@@ -36,6 +36,7 @@ class CavityInsertion {
   bool start(const std::vector<std::uint32_t>& seed, const Vec3& at, Cavity& cavity) const;
   void add_sides(Cavity& cavity, std::uint32_t cell) const;
   bool add_cell(Cavity& cavity, std::uint32_t cell) const;
+  [[nodiscard]] Vec3 middle_of(std::uint32_t cell) const;
   void grow(Cavity& cavity) const;
   void place(Cavity& cavity, double goal);
   void attempt(const std::vector<std::uint32_t>& seed, const Vec3& at, double goal, Cavity& best);

@@ -15,7 +15,7 @@ from program import Case, SAMPLES
 
 NAMES = os.environ.get("SELVAGE_CELL", "cell_plain twill_cell cell_satin5 cell_orthogonal cell_jersey cell_tricot").split()
 SEGMENTS = os.environ.get("SELVAGE_SEGMENTS", "").split()
-USUAL = {"twill_cell": "40"}  # edges may not be longer than a yarn is thick; of the others 20
+USUAL = {"twill_cell": "28"}  # edges may not be longer than a yarn is thick; of the others 20
 COARSEST = {"cell_jersey": "0.1", "cell_tricot": "0.05"}  # mm, away from the yarns; of the others 0.2
 ORDER = os.environ.get("SELVAGE_ORDER", "1")
 TARGET = 10.0

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "cell/cad_parts.h"
@@ -17,6 +18,7 @@
 #include "fabric/build.h"
 #include "formats/step/step.h"
 #include "formats/txt/txt.h"
+#include "nurbs/spline.h"
 #include "reading.h"
 
 namespace selvage {
@@ -31,11 +33,14 @@ struct BuiltCell {
   std::vector<double> inside;  // of each body
 };
 
-// With yarns so far apart, as a share of the thinnest section: the program's own default is 0.05.
+// A sample, or a text at an absolute path. With yarns so far apart, as a share of the thinnest section: the
+// program's own default is 0.05.
 BuiltCell build(const std::string& name, double gap = 0) {
   BuiltCell built;
   Diagnostics diagnostics;
-  Result<Source> source = Source::open(fs::path(SELVAGE_SAMPLES) / (name + ".txt"));
+  const fs::path path(name);
+  Result<Source> source =
+      Source::open(path.is_absolute() ? path : fs::path(SELVAGE_SAMPLES) / (name + ".txt"));
   EXPECT_TRUE(source.ok());
   const std::optional<fabric::Fabric> fabric = formats::txt::descriptor().read_fabric(*source, diagnostics);
   EXPECT_TRUE(fabric && fabric->cell) << name;
@@ -59,7 +64,7 @@ BuiltCell build(const std::string& name, double gap = 0) {
   return built;
 }
 
-class StepCell : public testing::TestWithParam<std::string> {
+class StepFolder : public testing::Test {
  protected:
   void SetUp() override {
     std::string pattern = (fs::temp_directory_path() / "selvage-cell-XXXXXX").string();
@@ -88,6 +93,8 @@ class StepCell : public testing::TestWithParam<std::string> {
 
   fs::path folder_;
 };
+
+class StepCell : public StepFolder, public testing::WithParamInterface<std::string> {};
 
 class ValidSolids : public StepCell {};
 
@@ -120,6 +127,43 @@ INSTANTIATE_TEST_SUITE_P(, ValidSolids,
                          testing::Values("cell_plain", "twill_cell", "cell_satin5", "cell_orthogonal",
                                          "cell_jersey", "cell_tricot", "cell_straight", "cell_fibre",
                                          "cell_glass"));
+
+// A yarn that touches no face of the box is a void of the matrix.
+TEST_F(StepFolder, YarnInsideIsAVoidOfTheMatrix) {
+  const fs::path text = folder_ / "within.txt";
+  std::ofstream(text) << "fabric 1\ntolerance 0.00001\nthread r\n section circle 0.4\nend\nyarn y r\n path\n "
+                         " 0.3 0.5 0.5\n  0.7 "
+                         "0.5 0.5\n end\nend\ncell 0 0 0 1 1 1\nend\n";
+  write(build(text.string()));
+  const tests::ReadFile file = tests::read_step((folder_ / "cell.stp").string(), true);
+  ASSERT_TRUE(file.ok);
+  ASSERT_EQ(file.parts.size(), 2U);
+  const double yarn = std::numbers::pi * 0.2 * 0.2 * 0.4;
+  for (const auto& part : file.parts) {
+    EXPECT_TRUE(part.valid) << part.name;
+    EXPECT_NEAR(part.volume, part.name == "matrix" ? 1 - yarn : yarn, 1e-3 * yarn) << part.name;
+  }
+}
+
+// Planes of all parts face out of the box.
+class BoxFaces : public StepCell {};
+
+TEST_P(BoxFaces, FaceOutwards) {
+  const BuiltCell built = build(GetParam());
+  std::size_t planes = 0;
+  for (const cad::Part& part : write(built))
+    for (const cad::Face& face : part.faces) {
+      if (face.surface.degree_u != 1 || face.surface.degree_v != 1) continue;
+      const nurbs::SurfaceJet jet =
+          nurbs::evaluate_jet(face.surface, face.surface.first_u(), face.surface.first_v());
+      const double out = jet.du.cross(jet.dv).dot(jet.position - built.box.center());
+      EXPECT_GT(face.reversed ? -out : out, 0) << part.name;
+      ++planes;
+    }
+  EXPECT_GE(planes, 8U);
+}
+
+INSTANTIATE_TEST_SUITE_P(, BoxFaces, testing::Values("cell_plain", "cell_straight"));
 
 // The faces of the matrix on yarns are theirs, reversed.
 class SharedFaces : public StepCell {};
