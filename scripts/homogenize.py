@@ -140,26 +140,71 @@ class Deck:
 
     def pieces(self, chunk=50_000):
         """Of all elements, some at a time: section, volumes, first and second moments of their heights about the middle
-        of the cell (over straight edges), stiffness matrices in space (order xx yy zz xy xz yz)."""
+        of the cell, stiffness matrices in space (order xx yy zz xy xz yz)."""
         middle = self.cell[:, 2].mean()
         for name, material, oriented in self.sections:
             local = self.materials[material]["stiffness"]
             numbers = self.element_sets[name]
             for k in range(0, len(numbers), chunk):
                 part = numbers[k : k + chunk]
-                corners = 8 if len(self.elements[part[0]]) == 8 else 4
-                p = numpy.array([[self.nodes[n] for n in self.elements[e][:corners]] for e in part])
-                z = p[:, :, 2] - middle
-                if corners == 8:
-                    volume = numpy.prod(p[:, 6] - p[:, 0], axis=1)
-                    second = z.mean(axis=1) ** 2 + (z[:, 6] - z[:, 0]) ** 2 / 12
-                else:
-                    volume = numpy.einsum("ni,ni->n", numpy.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), p[:, 3] - p[:, 0]) / 6
-                    second = ((z**2).sum(axis=1) + z.sum(axis=1) ** 2) / 20
+                p = numpy.array([[self.nodes[n] for n in self.elements[e]] for e in part])
+                p[:, :, 2] -= middle
+                moments = moments_of_boxes(p) if p.shape[1] == 8 else moments_of_tetrahedra(p)
                 stiffness = numpy.broadcast_to(local, (len(part), 6, 6))
                 if oriented:
                     stiffness = rotated(local, numpy.array([self.axes[e] for e in part]))
-                yield name, volume, volume * z.mean(axis=1), volume * second, stiffness
+                yield name, *moments, stiffness
+
+
+def moments_of_boxes(p):
+    """Volumes and the integrals of z and z^2 of bricks along the axes (n x 8 x 3 nodes)."""
+    z = p[:, :, 2]
+    volume = numpy.prod(p[:, 6] - p[:, 0], axis=1)
+    return volume, volume * z.mean(axis=1), volume * (z.mean(axis=1) ** 2 + (z[:, 6] - z[:, 0]) ** 2 / 12)
+
+
+EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]  # of which the fifth to the tenth node is the middle
+
+
+def moments_of_tetrahedra(p):
+    """The same of tetrahedra of four or ten nodes (n x 4 or 10 x 3); curved ones by quadrature."""
+    z = p[:, :4, 2]
+    volume = numpy.einsum("ni,ni->n", numpy.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), p[:, 3] - p[:, 0]) / 6
+    moments = [volume, volume * z.mean(axis=1), volume * ((z**2).sum(axis=1) + z.sum(axis=1) ** 2) / 20]
+    if p.shape[1] == 4:
+        return moments
+    chords = numpy.stack([(p[:, a] + p[:, b]) / 2 for a, b in EDGES], axis=1)
+    size = numpy.abs(p[:, 1:4] - p[:, :1]).max(axis=(1, 2))
+    curved = numpy.flatnonzero(numpy.abs(p[:, 4:] - chords).max(axis=(1, 2)) > 1e-9 * size)
+    values, slopes, weights = tetrahedron_rule()
+    for rows in numpy.array_split(curved, len(curved) // 5000 + 1):
+        frames = numpy.einsum("qai,nac->nqic", slopes, p[rows])
+        parts = weights * numpy.linalg.det(frames)
+        height = numpy.einsum("qa,na->nq", values, p[rows][:, :, 2])
+        for power in range(3):
+            moments[power][rows] = (parts * height**power).sum(axis=1)
+    return moments
+
+
+def tetrahedron_rule(count=5):
+    """Values and slopes of the ten shape functions at the points of a rule for tetrahedra, and its weights: Gauss's of a
+    cube that is drawn together to a tetrahedron, exact to degree 2 count - 3."""
+    at, weight = numpy.polynomial.legendre.leggauss(count)
+    at, weight = (at + 1) / 2, weight / 2
+    a, b, c = (grid.ravel() for grid in numpy.meshgrid(at, at, at, indexing="ij"))
+    weights = numpy.einsum("i,j,k->ijk", weight, weight, weight).ravel() * (1 - a) ** 2 * (1 - b)
+    r, s, t = a, b * (1 - a), c * (1 - a) * (1 - b)
+    shares = numpy.stack([1 - r - s - t, r, s, t], axis=1)
+    slope = numpy.array([[-1.0, -1.0, -1.0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    values = numpy.empty((len(a), 10))
+    slopes = numpy.empty((len(a), 10, 3))
+    for i in range(4):
+        values[:, i] = shares[:, i] * (2 * shares[:, i] - 1)
+        slopes[:, i] = (4 * shares[:, i, None] - 1) * slope[i]
+    for k, (i, j) in enumerate(EDGES):
+        values[:, 4 + k] = 4 * shares[:, i] * shares[:, j]
+        slopes[:, 4 + k] = 4 * (shares[:, i, None] * slope[j] + shares[:, j, None] * slope[i])
+    return values, slopes, weights
 
 
 def stiffness_of(values):
