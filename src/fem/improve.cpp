@@ -1,9 +1,7 @@
 #include "fem/improve.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
-#include <optional>
 
 #include "core/parallel.h"
 #include "fem/cavity.h"
@@ -194,7 +192,7 @@ std::vector<Part> divide(const std::vector<Vec3>& points, const std::vector<Tetr
   return parts;
 }
 
-void improve_once(Part& part, const ImproveOptions& options) {
+void improve(Part& part, const ImproveOptions& options) {
   TetComplex complex(std::move(part.points), part.cells, part.fixed_points);
   if (options.refine) Refiner(complex, *options.refine).run();
   complex.measure_all();
@@ -218,28 +216,6 @@ void improve_once(Part& part, const ImproveOptions& options) {
     for (const std::uint32_t corner : cell.corners) part.used[corner] = 1;
   }
   part.points = std::move(complex.points);
-}
-
-// How many are below the target although their surface allows for better.
-std::ptrdiff_t failures(const Part& part) {
-  return std::count_if(part.below.begin(), part.below.end(), [](const BelowTarget& below) {
-    return below.cause == BelowTarget::Cause::surface || below.cause == BelowTarget::Cause::inner;
-  });
-}
-
-// Where a way does not lead to the target, one that begins with other points inside often does.
-void improve(Part& part, const ImproveOptions& options) {
-  constexpr std::array slenderness = {1.0, 0.93, 1.07, 0.86};
-  std::optional<Part> best;
-  for (const double factor : slenderness) {
-    ImproveOptions with = options;
-    if (with.refine) with.refine->radius_edge *= factor;
-    Part tried = part;
-    improve_once(tried, with);
-    if (!best || failures(tried) < failures(*best)) best = std::move(tried);
-    if (!options.refine || failures(*best) == 0) break;
-  }
-  part = std::move(*best);
 }
 
 // The largest first, so that the others fill the time beside it.
