@@ -23,3 +23,24 @@ configure() {
   fi
   rm -f "$log"
 }
+
+# compile [TARGET...]: builds in $build. Its progress is told on standard error: by ninja on a terminal, elsewhere by a line
+# every ten seconds; what compilers said follows where it fails.
+compile() {
+  if [ -t 2 ]; then
+    ninja -C "$build" -j "$jobs" "$@" >&2
+    return
+  fi
+  log=$(mktemp)
+  # The sleep holds nothing open that a reader of our output might wait for.
+  while sleep 10 < /dev/null > /dev/null 2>&1; do
+    echo "building: $(grep -oE '^\[[0-9]+/[0-9]+\]' "$log" | tail -n 1)" >&2
+  done &
+  teller=$!
+  status=0
+  ninja -C "$build" -j "$jobs" "$@" > "$log" 2>&1 || status=$?
+  kill "$teller"
+  [ "$status" -eq 0 ] || grep -vE '^\[[0-9]+/[0-9]+\]' "$log" >&2
+  rm -f "$log"
+  return "$status"
+}
