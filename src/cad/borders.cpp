@@ -98,9 +98,9 @@ std::vector<Border> borders_of(const Face& face) {
   return borders;
 }
 
-Nearest nearest_on(const nurbs::Surface& surface, const Vec3& p, std::optional<Vec2> start) {
+NearestOnSurface nearest_on(const nurbs::Surface& surface, const Vec3& p, std::optional<Vec2> start) {
   const double u0 = surface.first_u(), u1 = surface.last_u(), v0 = surface.first_v(), v1 = surface.last_v();
-  Nearest best{std::numeric_limits<double>::infinity(), u0, v0};
+  NearestOnSurface best{std::numeric_limits<double>::infinity(), u0, v0};
   if (start) {
     best = {0, std::clamp(start->x(), u0, u1), std::clamp(start->y(), v0, v1)};
     best.distance = (nurbs::evaluate(surface, best.u, best.v) - p).norm();

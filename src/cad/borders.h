@@ -47,9 +47,10 @@ std::vector<Border> borders_of(const Face& face);
 
 // The nearest point of a surface: distance and parameters, by Newton's method from the best of a grid, or
 // from `start` where that is given.
-struct Nearest {
+struct NearestOnSurface {
   double distance = 0, u = 0, v = 0;
 };
-Nearest nearest_on(const nurbs::Surface& surface, const Vec3& p, std::optional<Vec2> start = std::nullopt);
+NearestOnSurface nearest_on(const nurbs::Surface& surface, const Vec3& p,
+                            std::optional<Vec2> start = std::nullopt);
 
 }  // namespace selvage::cad

@@ -9,7 +9,7 @@ namespace selvage::contact {
 namespace {
 
 // The shortest t that meets `count` demands exactly; nothing: they are dependent, or one of them pulls.
-std::optional<Vec3> exact_shift(const std::array<const Demand*, 3>& active, int count) {
+std::optional<Vec3> exact_shift(const std::array<const ShiftDemand*, 3>& active, int count) {
   Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> rows(count, 3);
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> right(count);
   for (int k = 0; k < count; ++k) {
@@ -25,16 +25,16 @@ std::optional<Vec3> exact_shift(const std::array<const Demand*, 3>& active, int 
 
 }  // namespace
 
-std::optional<Vec3> least_shift(const std::vector<Demand>& demands) {
+std::optional<Vec3> least_shift(const std::vector<ShiftDemand>& demands) {
   if (demands.empty()) return Vec3(Vec3::Zero());
   double largest = 0.0;
-  for (const Demand& demand : demands) largest = std::max(largest, demand.distance);
+  for (const ShiftDemand& demand : demands) largest = std::max(largest, demand.distance);
   const auto meets_all = [&](const Vec3& t) {
     return std::all_of(demands.begin(), demands.end(),
-                       [&](const Demand& d) { return d.normal.dot(t) >= d.distance - 1e-7 * largest; });
+                       [&](const ShiftDemand& d) { return d.normal.dot(t) >= d.distance - 1e-7 * largest; });
   };
   std::optional<Vec3> best;
-  const auto consider = [&](const std::array<const Demand*, 3>& active, int count) {
+  const auto consider = [&](const std::array<const ShiftDemand*, 3>& active, int count) {
     const std::optional<Vec3> t = exact_shift(active, count);
     if (t && (!best || t->squaredNorm() < best->squaredNorm()) && meets_all(*t)) best = t;
   };

@@ -438,7 +438,7 @@ class Measurer {
   // The least translation that ends the overlap at all its spots: each asks for its own depth along its own
   // normal, and both are taken anew with the second yarn where the translation puts it.
   void part_all(const std::vector<Spot>& spots, Contact& contact) const {
-    std::vector<Demand> demands;
+    std::vector<ShiftDemand> demands;
     for (const Spot& spot : spots)
       if (spot.depth > touching_) demands.push_back({spot.normal, spot.depth});
     std::optional<Vec3> shift = least_shift(demands);
