@@ -40,8 +40,9 @@
 
 #include "cad/natural_border.h"
 #include "formats/step/faces.h"
-#include "formats/step/part21.h"
+#include "formats/step/inspect.h"
 #include "formats/step/session.h"
+#include "formats/step/strings.h"
 #include "solid/occt/guard.h"
 
 namespace selvage::formats::step {
@@ -153,7 +154,7 @@ class ModelReader {
 
   [[nodiscard]] int line_of(int id) const {
     const Statement* statement = file_.find(id);
-    return statement == nullptr ? 0 : statement->line;
+    return statement == nullptr ? 0 : statement->spot.line;
   }
   [[nodiscard]] Spot spot_of(int id) const { return spot_at(source_, {line_of(id), 1}); }
 
@@ -484,7 +485,7 @@ class ModelReader {
 std::optional<cad::Model> read_model(const Source& source, Diagnostics& diagnostics) {
   TextReport report(source);
   std::optional<cad::Model> model;
-  if (const std::optional<Part21> file = read_part21(source, report)) {
+  if (const std::optional<Part21> file = inspect(source, report)) {
     Result<cad::Model> read =
         solid::occt::guarded("the STEP file", [&] { return ModelReader(source, *file, report).read(); });
     if (read)

@@ -1,0 +1,194 @@
+#include "formats/step/attributes.h"
+
+#include <fmt/format.h>
+
+#include "formats/step/entities.h"
+#include "formats/step/lexer.h"
+
+namespace selvage::formats::step {
+
+namespace {
+
+// What is known of a type of Part21::types.
+struct TypeFacts {
+  EntitySet kinds;       // of a complex entity those of all its parts
+  bool is_known = true;  // each of them is in the table
+};
+
+TypeFacts facts_of(std::string_view type) {
+  TypeFacts facts;
+  while (!type.empty()) {
+    const std::size_t length = std::min(type.find(' '), type.size());
+    const Entity* const entity = find_entity(type.substr(0, length));
+    facts.is_known = facts.is_known && entity != nullptr;
+    if (entity != nullptr) facts.kinds |= entity->kinds;
+    type.remove_prefix(std::min(length + 1, type.size()));
+  }
+  return facts;
+}
+
+// The attributes of one statement after the other. The grammar has been checked: what is a list here ends.
+class Checker {
+ public:
+  Checker(const Part21& file, const char* end, TextReport& report) : file_(file), end_(end), report_(report) {
+    for (const std::string& type : file.types) facts_.push_back(facts_of(type));
+  }
+
+  void check_all() {
+    for (std::size_t i = 0; i < file_.statements.size() && !report_.is_full(); ++i)
+      if (facts_[file_.statements[i].type].kinds.any()) check(file_.statements[i]);
+  }
+
+ private:
+  void check(const Statement& statement) {
+    const char* const at = statement.spot.at;
+    lexer_ = Lexer({at, static_cast<std::size_t>(end_ - at)}, statement.spot);
+    statement_ = &statement;
+    next_reference_ = statement.first_ref;
+    try {
+      for (int token = 0; token < 3; ++token) lexer_.next();  // past '#1', '='
+      if (lexer_.token() == Token::word) return check_entity(true);
+      lexer_.next();
+      while (lexer_.token() == Token::word) check_entity(false);
+    } catch (const Failure& failure) {
+      report_.error(failure.spot, failure.text);
+    }
+  }
+
+  // NAME(...): by itself, or as a part of a complex entity with its own attributes only.
+  void check_entity(bool by_itself) {
+    name_ = lexer_.text();
+    const Entity* const entity = find_entity(name_);
+    lexer_.next();
+    if (entity == nullptr || entity->is_open) {
+      skip_value();
+      return;
+    }
+    const std::vector<Attribute>& attributes = by_itself ? entity->whole : entity->own;
+    const Spot open = lexer_.spot();
+    lexer_.next();
+    std::size_t count = 0;
+    for (; lexer_.token() != Token::close; ++count) {
+      number_ = count + 1;
+      if (count < attributes.size())
+        check_value(attributes[count]);
+      else
+        skip_value();
+      skip_comma();
+    }
+    lexer_.next();
+    if (count != attributes.size())
+      fail(open, fmt::format("{} has {} attributes here, not {}", name_, count, attributes.size()));
+  }
+
+  void check_value(const Attribute& attribute) {
+    if (attribute.takes_anything) return skip_value();
+    switch (lexer_.token()) {
+      case Token::omitted:
+        return take_if(attribute.is_omissible || attribute.is_derived, attribute);
+      case Token::derived:
+        return take_if(attribute.is_derived, attribute);
+      case Token::string:
+        return take_if(attribute.takes_string, attribute);
+      case Token::number:
+        return take_if(attribute.takes_number, attribute);
+      case Token::enumeration:
+        return take_if(attribute.takes_enumeration, attribute);
+      case Token::word:
+        if (!attribute.takes_typed) refuse(attribute);
+        return skip_value();
+      case Token::reference:
+        return check_reference(attribute);
+      case Token::open:
+        if (attribute.element.empty()) refuse(attribute);
+        return check_list(attribute);
+      default:
+        refuse(attribute);
+    }
+  }
+
+  void take_if(bool fits, const Attribute& attribute) {
+    if (!fits) refuse(attribute);
+    lexer_.next();
+  }
+
+  void check_list(const Attribute& attribute) {
+    const Spot open = lexer_.spot();
+    lexer_.next();
+    std::size_t count = 0;
+    for (; lexer_.token() != Token::close; ++count) {
+      check_value(attribute.element.front());
+      skip_comma();
+    }
+    lexer_.next();
+    if (count < attribute.least)
+      fail(open, fmt::format("attribute {} of {} is a list of {}, fewer than {}", number_, name_, count,
+                             attribute.least));
+    if (count > attribute.most)
+      fail(open, fmt::format("attribute {} of {} is a list of {}, more than {}", number_, name_, count,
+                             attribute.most));
+  }
+
+  void check_reference(const Attribute& attribute) {
+    if (attribute.references.none()) refuse(attribute);
+    const int place = file_.targets[next_reference_];
+    if (place >= 0) {
+      const Statement& target = file_.statements[static_cast<std::size_t>(place)];
+      const TypeFacts& facts = facts_[target.type];
+      if (facts.is_known && (facts.kinds & attribute.references).none())
+        fail(lexer_.spot(), fmt::format("attribute {} of {} is #{}, a {}, not {}", number_, name_, target.id,
+                                        file_.type_of(target), names_of(attribute.references)));
+    }
+    skip_value();
+  }
+
+  [[noreturn]] void refuse(const Attribute& attribute) const {
+    fail(lexer_.spot(), fmt::format("attribute {} of {} is {}, not {}", number_, name_,
+                                    in_quotes(lexer_.text()), wanted(attribute)));
+  }
+
+  static std::string wanted(const Attribute& attribute) {
+    if (!attribute.element.empty()) return "a list";
+    if (attribute.takes_string) return "a string";
+    if (attribute.references.any()) return fmt::format("a reference to {}", names_of(attribute.references));
+    return attribute.takes_enumeration ? "a value between dots" : "a number";
+  }
+
+  [[noreturn]] void fail(const Spot& spot, const std::string& text) const {
+    throw Failure{spot, fmt::format("#{}: {}", statement_->id, text)};
+  }
+
+  void skip_comma() {
+    if (lexer_.token() == Token::comma) lexer_.next();
+  }
+
+  // One value of any kind: a list, or with its type, too.
+  void skip_value() {
+    if (lexer_.token() == Token::word) lexer_.next();
+    int depth = 0;
+    do {
+      if (lexer_.token() == Token::reference) ++next_reference_;
+      if (lexer_.token() == Token::open) ++depth;
+      if (lexer_.token() == Token::close) --depth;
+      lexer_.next();
+    } while (depth > 0);
+  }
+
+  const Part21& file_;
+  const char* end_;
+  TextReport& report_;
+  std::vector<TypeFacts> facts_;  // one a type of the file
+  Lexer lexer_{{}};
+  const Statement* statement_ = nullptr;
+  std::size_t next_reference_ = 0;  // in Part21::refs
+  std::string_view name_;           // of the entity that is being checked
+  std::size_t number_ = 0;          // of its attribute, from 1
+};
+
+}  // namespace
+
+void check_attributes(const Part21& file, std::string_view text, TextReport& report) {
+  Checker(file, text.data() + text.size(), report).check_all();
+}
+
+}  // namespace selvage::formats::step

@@ -1,0 +1,13 @@
+// Do the attributes of a STEP file's entities have the number, the kinds and the types that the entities say
+// (entities.h)?
+#pragma once
+
+#include "formats/step/part21.h"
+
+namespace selvage::formats::step {
+
+// `text` is what the file was read from. Errors, each with line and column. Entities that are not in the
+// table are passed by, and so are references to them.
+void check_attributes(const Part21& file, std::string_view text, TextReport& report);
+
+}  // namespace selvage::formats::step

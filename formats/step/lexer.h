@@ -1,0 +1,74 @@
+// The tokens of a Part 21 text (ISO 10303-21) with their places.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/text_report.h"
+
+namespace selvage::formats::step {
+
+// What is wrong with a text, thrown by those who read it and caught where they are called.
+struct Failure {
+  Spot spot;
+  std::string text;
+};
+
+enum class Token {
+  end,
+  word,
+  reference,
+  string,
+  number,
+  omitted,
+  derived,
+  enumeration,
+  other,
+  open,
+  close,
+  comma,
+  semicolon,
+  equals
+};
+
+// Exceptions of next(): Failure.
+class Lexer {
+ public:
+  // `bytes` begin at `start`.
+  explicit Lexer(std::string_view bytes, Spot start = {})
+      : at_(bytes.data()),
+        end_(bytes.data() + bytes.size()),
+        line_start_(at_ - (start.column - 1)),
+        line_(start.line) {}
+
+  [[nodiscard]] Token token() const { return token_; }
+  [[nodiscard]] std::string_view text() const { return text_; }
+  [[nodiscard]] int reference() const { return reference_; }
+  [[nodiscard]] const Spot& spot() const { return spot_; }
+
+  void next();
+  // Up to the statement's end, whatever stands there.
+  void skip_statement();
+
+ private:
+  [[nodiscard]] Spot here() const { return {at_, line_, static_cast<int>(at_ - line_start_) + 1}; }
+  void new_line();
+  void skip_blanks();
+  void skip_comment();
+  Token take();
+  void check_size(std::string_view number) const;
+  Token take_reference();
+  Token take_string();
+  Token take_enclosed(char last, std::string_view kind);
+
+  const char* at_;
+  const char* end_;
+  const char* line_start_;
+  int line_;
+  Token token_ = Token::end;
+  std::string_view text_;
+  int reference_ = 0;
+  Spot spot_;
+};
+
+}  // namespace selvage::formats::step
