@@ -1,6 +1,7 @@
 #include "nurbs/measure.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include "nurbs/basis.h"
@@ -9,22 +10,58 @@ namespace selvage::nurbs {
 
 namespace {
 
-double gauss_length(const Curve& curve, double t0, double t1) {
-  const GaussRule& rule = gauss_rule(8);
-  const double half = 0.5 * (t1 - t0), middle = 0.5 * (t1 + t0);
-  double sum = 0.0;
-  for (std::size_t g = 0; g < rule.nodes.size(); ++g)
-    sum += rule.weights[g] * evaluate_jet(curve, middle + half * rule.nodes[g]).d1.norm();
-  return half * sum;
-}
+class AdaptiveIntegral {
+ public:
+  AdaptiveIntegral(const std::function<double(double)>& f, double rounding) : f_(f), rounding_(rounding) {}
 
-double adaptive_length(const Curve& curve, double t0, double t1, double whole, int depth) {
-  const double middle = 0.5 * (t0 + t1);
-  const double left = gauss_length(curve, t0, middle), right = gauss_length(curve, middle, t1);
-  // So put that what is no number ends it, too.
-  if (depth == 0 || !(std::abs(left + right - whole) > 1e-13 * (left + right))) return left + right;
-  return adaptive_length(curve, t0, middle, left, depth - 1) +
-         adaptive_length(curve, middle, t1, right, depth - 1);
+  double over(double t0, double t1) {
+    const double whole = by_gauss(t0, t1);
+    rounding_ = std::max(rounding_, agreement * whole);
+    return halved(t0, t1, whole, most_halvings);
+  }
+
+ private:
+  static constexpr double agreement = 1e-13;
+  static constexpr int most_halvings = 52, few_pieces = 256, most_pieces = 4096;
+
+  [[nodiscard]] double by_gauss(double t0, double t1) const {
+    const GaussRule& rule = gauss_rule(8);
+    const double half = 0.5 * (t1 - t0), middle = 0.5 * (t1 + t0);
+    double sum = 0.0;
+    for (std::size_t g = 0; g < rule.nodes.size(); ++g)
+      sum += rule.weights[g] * f_(middle + half * rule.nodes[g]);
+    return half * sum;
+  }
+
+  double halved(double t0, double t1, double whole, int halvings) {
+    const double middle = 0.5 * (t0 + t1);
+    const double left = by_gauss(t0, middle), right = by_gauss(middle, t1), both = left + right;
+    // A piece is measured by its own value while there are few. Where a curve all but stands still, under a
+    // weight of 1e9, no piece ever is as exact as that, nor need be.
+    const double enough = std::max(agreement * both, ++pieces_ > few_pieces ? rounding_ : 0.0);
+    // So put that what is no number ends it, too.
+    if (halvings == 0 || !(middle > t0 && middle < t1) || pieces_ > most_pieces ||
+        !(std::abs(both - whole) > enough))
+      return both;
+    return halved(t0, middle, left, halvings - 1) + halved(middle, t1, right, halvings - 1);
+  }
+
+  const std::function<double(double)>& f_;
+  double rounding_;
+  int pieces_ = 0;
+};
+
+// What the rounding of coordinates leaves open of the length about this parameter: no piece can be as exact
+// as 32 units in the last place of the span's points, or 1e-13 of their polygon.
+double length_rounding(const Curve& curve, double t) {
+  const int count = static_cast<int>(curve.points.size());
+  const auto last = static_cast<std::size_t>(find_span(curve.knots, curve.degree, count, t));
+  double largest = 0, polygon = 0;
+  for (std::size_t i = last - static_cast<std::size_t>(curve.degree); i <= last; ++i) {
+    largest = std::max(largest, curve.points[i].cwiseAbs().maxCoeff());
+    if (i < last) polygon += (curve.points[i + 1] - curve.points[i]).norm();
+  }
+  return std::max(1e-13 * polygon, 32 * DBL_EPSILON * largest);
 }
 
 // The basis functions' values and first derivatives at the Gauss nodes of every span.
@@ -60,14 +97,19 @@ std::vector<Node> gauss_nodes(const std::vector<double>& knots, int degree, int 
 
 }  // namespace
 
+double adaptive_integral(const std::function<double(double)>& f, double t0, double t1, double rounding) {
+  return AdaptiveIntegral(f, rounding).over(t0, t1);
+}
+
 double arc_length(const Curve& curve, double t0, double t1) {
   // Knot by knot from the one after t0: a short piece of a long curve costs no more than its own spans.
   auto knot = std::upper_bound(curve.knots.begin(), curve.knots.end(), t0);
+  const std::function<double(double)> speed = [&](double t) { return evaluate_jet(curve, t).d1.norm(); };
   double sum = 0.0, from = t0;
   while (from < t1) {
     while (knot != curve.knots.end() && *knot <= from) ++knot;
     const double to = knot == curve.knots.end() ? t1 : std::min(*knot, t1);
-    sum += adaptive_length(curve, from, to, gauss_length(curve, from, to), 20);
+    sum += adaptive_integral(speed, from, to, length_rounding(curve, 0.5 * (from + to)));
     from = to;
   }
   return sum;

@@ -2,9 +2,16 @@
 // surfaces.
 #pragma once
 
+#include <functional>
+
 #include "nurbs/spline.h"
 
 namespace selvage::nurbs {
+
+// The integral of a function that is not negative, to about 1e-13 of it: Gauss-Legendre with eight nodes, and
+// halves of halves until they agree with the whole. `rounding` is the absolute error of one piece that is
+// enough once there are many; `f` is called at most 70 000 times, whatever it does.
+double adaptive_integral(const std::function<double(double)>& f, double t0, double t1, double rounding);
 
 // Arc length between two parameters, to about 1e-12 of the length (adaptive Gauss-Legendre).
 double arc_length(const Curve& curve, double t0, double t1);
