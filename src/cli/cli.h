@@ -56,6 +56,9 @@ Status complete(const Parsed& parsed, pipeline::Options& options);
 // Runs the pipeline with the parsed options when the subcommand was named.
 void run_pipeline(CLI::App& command, Parsed& parsed, pipeline::Command what);
 
+// Prints what was asked for: the exit code, 1 (with a message) where standard output cannot be written.
+int tell(std::string_view text);
+
 // Words of the contract that come with later versions: "" when `word` is none, else what to tell.
 std::string later_command(const std::string& word);
 

@@ -4,9 +4,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "cli/cli.h"
+#include "core/standard_output.h"
 #include "pipeline/batch.h"
 
 namespace selvage::cli {
@@ -117,6 +119,13 @@ Status complete(const Parsed& parsed, pipeline::Options& options) {
   return {};
 }
 
+int tell(std::string_view text) {
+  const Status printed = write_to_standard_output(text);
+  if (printed) return 0;
+  std::fprintf(stderr, "%s\n", to_string(printed.error()).c_str());
+  return 1;
+}
+
 std::string later_command(const std::string& word) {
   if (std::find(later_commands.begin(), later_commands.end(), word) == later_commands.end()) return {};
   return fmt::format("'selvage {}' is not in this version of selvage", word);
@@ -163,7 +172,8 @@ void add_output(CLI::App& command, Parsed& parsed) {
 }
 
 void add_place(CLI::App& command, Parsed& parsed) {
-  command.add_option("-o,--output", parsed.options.output, "a file, a folder, or - for standard output");
+  command.add_option("-o,--output", parsed.options.output,
+                     "a file (by its extension), a folder, or - for standard output");
   command.add_flag("--resume", parsed.options.resume,
                    "skip inputs that --report says are done, if their outputs are whole");
 }

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include "cli/cli.h"
 #include "formats/format.h"
 #include "pipeline/table.h"
@@ -30,8 +28,7 @@ int print_formats() {
     table.add({std::string(format->name), extensions, read_word(*format), write.empty() ? "-" : write,
                std::string(format->title)});
   }
-  std::fputs(table.text().c_str(), stdout);
-  return std::fflush(stdout) == 0 ? 0 : 1;
+  return tell(table.text());
 }
 
 }  // namespace

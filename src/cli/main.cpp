@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
 #include <csignal>
-#include <cstdio>
+#include <sstream>
 
 #include "cli/cli.h"
+#include "core/standard_output.h"
 #include "pipeline/batch.h"
 #include "pipeline/versions.h"
 
@@ -63,7 +64,11 @@ int run(int count, char** words) {
   try {
     program.parse(count, words);
   } catch (const CLI::ParseError& failure) {
-    if (failure.get_exit_code() == 0) return program.exit(failure);  // help, version
+    if (failure.get_exit_code() == 0) {  // help, version
+      std::ostringstream text;
+      program.exit(failure, text, text);
+      return tell(text.str());
+    }
     return pipeline::refuse(refusal(program, failure, count, words));
   }
   return parsed.action();
@@ -75,5 +80,7 @@ int run(int count, char** words) {
 
 int main(int count, char** words) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is then an error of writing, with its name
+  if (const selvage::Status opened = selvage::open_standard_streams(); !opened)
+    return selvage::pipeline::refuse(opened.error());
   return selvage::cli::run(count, words);
 }

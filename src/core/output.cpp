@@ -6,22 +6,68 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
+#include <optional>
+#include <set>
 #include <utility>
+
+#include "core/standard_output.h"
+#include "core/temporary.h"
 
 namespace selvage {
 
 namespace fs = std::filesystem;
 
-fs::path OutputFile::hidden_name(const fs::path& target) {
-  return target.parent_path() / ("." + target.filename().string() + ".selvage-partial");
+namespace {
+
+constexpr std::uint64_t copied_at_once = 1U << 20;
+constexpr std::string_view hidden_begin = ".selvage-", hidden_end = ".partial";
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
+
+// Where the links of `target` lead, also where nothing is there yet. Error: they go in a circle.
+std::optional<fs::path> followed(const fs::path& target) {
+  constexpr int most_links = 40;  // as Linux has it
+  fs::path place = target;
+  for (int i = 0; i < most_links; ++i) {
+    std::error_code failure;
+    const fs::path next = fs::read_symlink(place, failure);
+    if (failure) return place;
+    place = folder_of(place) / next;  // an absolute one replaces the folder
+  }
+  errno = ELOOP;
+  return std::nullopt;
+}
+
+Status sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  // EINVAL: a file system that has nothing to do here.
+  const bool is_done = descriptor >= 0 && (::fsync(descriptor) == 0 || errno == EINVAL);
+  const int reason = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (is_done) return {};
+  Message message =
+      error(Kind::io, fmt::format("cannot make the names of new files durable: {}", std::strerror(reason)));
+  message.file = folder.string();
+  return message;
+}
+
+}  // namespace
 
 Message OutputFile::io_error(std::string_view what) const {
   Message message = error(Kind::io, fmt::format("{}: {}", what, std::strerror(errno)));
   message.file = form_ == Form::standard_output ? "<stdout>" : target_.string();
   return message;
+}
+
+std::string OutputFile::unnamed() const {
+  return fmt::format("/proc/self/fd/{}", descriptor_);
 }
 
 // A folder cannot be replaced, and a device or a pipe must not be: /dev/null would be a file from then on.
@@ -39,25 +85,55 @@ Status OutputFile::check_target() const {
   return message;
 }
 
-Result<OutputFile> OutputFile::create(const fs::path& target) {
-  OutputFile file;
-  file.target_ = target;
-  if (Status fits = file.check_target(); !fits) return fits.error();
+// Every folder that is made needs its own name made durable, too: from where they begin is kept.
+Status OutputFile::make_folder() {
+  const fs::path folder = folder_of(place_);
+  fs::path there = folder;
   std::error_code failure;
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  while (!fs::exists(there, failure) && there != folder_of(there)) there = folder_of(there);
   fs::create_directories(folder, failure);
   if (failure) {
     errno = failure.value();
-    return file.io_error("cannot create the folder");
+    return io_error("cannot create the folder");
   }
-  file.descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
-  if (file.descriptor_ < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL)) {
-    const fs::path hidden = hidden_name(target);
-    ::unlink(hidden.c_str());
-    file.descriptor_ = ::open(hidden.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
-    file.has_hidden_name_ = file.descriptor_ >= 0;
+  if (there != folder) made_below_ = there;
+  return {};
+}
+
+Status OutputFile::open_hidden() {
+  for (;;) {
+    hidden_ = folder_of(place_) / temporary_name(hidden_begin, hidden_end);
+    descriptor_ = ::open(hidden_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
+    if (descriptor_ >= 0 && hold(descriptor_)) return {};
+    const int reason = errno;
+    if (descriptor_ >= 0)
+      ::close(std::exchange(descriptor_, -1));
+    else if (errno != EEXIST) {
+      hidden_.clear();
+      errno = reason;
+      return io_error("cannot write");
+    }
   }
-  if (file.descriptor_ < 0) return file.io_error("cannot write");
+}
+
+Result<OutputFile> OutputFile::create(const fs::path& target) {
+  OutputFile file;
+  file.target_ = target;
+  const std::optional<fs::path> place = followed(target);
+  if (!place) return file.io_error("cannot write");
+  file.place_ = *place;
+  if (Status fits = file.check_target(); !fits) return fits.error();
+  if (Status made = file.make_folder(); !made) return made.error();
+  file.descriptor_ = ::open(folder_of(file.place_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+  const bool has_none = file.descriptor_ < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL);
+  if (file.descriptor_ < 0 && !has_none) return file.io_error("cannot write");
+  // An unnamed file gets its name through /proc, which may not be there.
+  if (!has_none && ::access(file.unnamed().c_str(), F_OK) != 0) ::close(std::exchange(file.descriptor_, -1));
+  if (file.descriptor_ >= 0) {
+    hold(file.descriptor_);
+    return file;
+  }
+  if (Status opened = file.open_hidden(); !opened) return opened.error();
   return file;
 }
 
@@ -85,9 +161,13 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
     discard();
     form_ = other.form_;
     target_ = std::move(other.target_);
+    place_ = std::move(other.place_);
+    made_below_ = std::move(other.made_below_);
+    hidden_ = std::exchange(other.hidden_, {});
     descriptor_ = std::exchange(other.descriptor_, -1);
-    has_hidden_name_ = std::exchange(other.has_hidden_name_, false);
     position_ = other.position_;
+    size_ = other.size_;
+    named_ = other.named_;
   }
   return *this;
 }
@@ -99,8 +179,8 @@ OutputFile::~OutputFile() {
 void OutputFile::discard() {
   if (descriptor_ >= 0) ::close(descriptor_);
   descriptor_ = -1;
-  if (has_hidden_name_) ::unlink(hidden_name(target_).c_str());
-  has_hidden_name_ = false;
+  if (!hidden_.empty()) ::unlink(hidden_.c_str());  // what cannot be removed is a leftover
+  hidden_.clear();
 }
 
 Status OutputFile::write(std::string_view bytes) {
@@ -117,6 +197,7 @@ Status OutputFile::write_at(std::uint64_t offset, std::string_view bytes) {
       return io_error("cannot write");
     }
     offset += static_cast<std::uint64_t>(put);
+    size_ = std::max(size_, offset);
     bytes.remove_prefix(static_cast<std::size_t>(put));
   }
   return {};
@@ -138,22 +219,27 @@ Result<std::string> OutputFile::read_at(std::uint64_t offset, std::size_t size) 
 
 Status OutputFile::resize(std::uint64_t size) {
   if (::ftruncate(descriptor_, static_cast<off_t>(size)) != 0) return io_error("cannot write");
-  position_ = size;
+  position_ = size_ = size;
   return {};
 }
 
 Status OutputFile::set_target(const fs::path& target) {
-  const fs::path hidden = hidden_name(target_);
-  target_ = target;
-  if (Status fits = check_target(); !fits) return fits;
-  if (has_hidden_name_ && ::rename(hidden.c_str(), hidden_name(target_).c_str()) != 0)
-    return io_error("cannot write");
+  const std::optional<fs::path> place = followed(target);
+  if (place && folder_of(*place) == folder_of(place_)) {
+    target_ = target;
+    place_ = *place;
+    return check_target();
+  }
+  Result<OutputFile> there = create(target);
+  if (!there) return there.error();
+  for (std::uint64_t offset = 0; offset < size_; offset += copied_at_once) {
+    const Result<std::string> bytes =
+        read_at(offset, static_cast<std::size_t>(std::min(copied_at_once, size_ - offset)));
+    if (!bytes) return bytes.error();
+    if (Status written = there->write(*bytes); !written) return written;
+  }
+  *this = std::move(*there);
   return {};
-}
-
-std::uint64_t OutputFile::size() const {
-  struct stat facts {};
-  return ::fstat(descriptor_, &facts) == 0 ? static_cast<std::uint64_t>(facts.st_size) : 0;
 }
 
 Result<std::string> OutputFile::contents() const {
@@ -161,44 +247,111 @@ Result<std::string> OutputFile::contents() const {
 }
 
 Status OutputFile::copy_to_standard_output() {
-  const std::uint64_t total = size();
-  constexpr std::uint64_t block = 1U << 20;
-  for (std::uint64_t offset = 0; offset < total; offset += block) {
-    Result<std::string> bytes = read_at(offset, static_cast<std::size_t>(std::min(block, total - offset)));
+  for (std::uint64_t offset = 0; offset < size_; offset += copied_at_once) {
+    const Result<std::string> bytes =
+        read_at(offset, static_cast<std::size_t>(std::min(copied_at_once, size_ - offset)));
     if (!bytes) return bytes.error();
-    std::string_view rest = *bytes;
-    while (!rest.empty()) {
-      const ssize_t put = ::write(STDOUT_FILENO, rest.data(), rest.size());
-      if (put < 0 && errno == EINTR) continue;
-      if (put < 0) return io_error("cannot write");
-      rest.remove_prefix(static_cast<std::size_t>(put));
-    }
+    if (Status printed = write_to_standard_output(*bytes); !printed) return printed;
   }
   return {};
 }
 
-Status OutputFile::commit() {
-  if (form_ == Form::memory) return {};
-  if (form_ == Form::standard_output) return copy_to_standard_output();
+Status OutputFile::hide() {
+  for (;;) {
+    hidden_ = folder_of(place_) / temporary_name(hidden_begin, hidden_end);
+    if (::linkat(AT_FDCWD, unnamed().c_str(), AT_FDCWD, hidden_.c_str(), AT_SYMLINK_FOLLOW) == 0) return {};
+    hidden_.clear();
+    if (errno != EEXIST) return io_error("cannot write");
+  }
+}
+
+// Everything that needs room on the disk, before the first name is taken.
+Status OutputFile::stage() {
+  if (form_ != Form::file) return {};
+  if (Status fits = check_target(); !fits) return fits;
+  struct stat old {};
+  const bool replaces = ::stat(place_.c_str(), &old) == 0;
+  if (!replaces && errno != ENOENT) return io_error("cannot write");
+  if (replaces && ::fchmod(descriptor_, old.st_mode & 0777) != 0)
+    return io_error("cannot keep the permissions");
   if (::fsync(descriptor_) != 0) return io_error("cannot write");
-  const fs::path hidden = hidden_name(target_);
-  if (!has_hidden_name_) {
-    const std::string unnamed = fmt::format("/proc/self/fd/{}", descriptor_);
-    // A new target gets its name at once; an existing one is replaced by a rename.
-    if (::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, target_.c_str(), AT_SYMLINK_FOLLOW) == 0) {
-      discard();
+  return replaces && hidden_.empty() ? hide() : Status();
+}
+
+Status OutputFile::take_name(bool may_be_taken_back) {
+  if (form_ == Form::standard_output) return copy_to_standard_output();
+  if (form_ == Form::memory) return {};
+  if (hidden_.empty()) {
+    if (::linkat(AT_FDCWD, unnamed().c_str(), AT_FDCWD, place_.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+      named_ = Named::anew;
       return {};
     }
     if (errno != EEXIST) return io_error("cannot write");
-    ::unlink(hidden.c_str());
-    if (::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, hidden.c_str(), AT_SYMLINK_FOLLOW) != 0)
-      return io_error("cannot write");
-    has_hidden_name_ = true;
+    if (Status hidden = hide(); !hidden) return hidden;  // another program was faster
   }
-  if (::rename(hidden.c_str(), target_.c_str()) != 0) return io_error("cannot write");
-  has_hidden_name_ = false;
-  discard();
+  if (may_be_taken_back &&
+      ::renameat2(AT_FDCWD, hidden_.c_str(), AT_FDCWD, place_.c_str(), RENAME_EXCHANGE) == 0) {
+    named_ = Named::exchanged;
+    return {};
+  }
+  // ENOENT: there is nothing to exchange with; else the file system cannot, or the rename says what is wrong.
+  const bool is_new = may_be_taken_back && errno == ENOENT;
+  if (::rename(hidden_.c_str(), place_.c_str()) != 0) return io_error("cannot write");
+  hidden_.clear();
+  named_ = is_new ? Named::anew : Named::replaced;
   return {};
+}
+
+// The reason for which it is given back is told; what fails here leaves the new file.
+void OutputFile::give_back_name() {
+  if (named_ == Named::anew) ::unlink(place_.c_str());
+  if (named_ == Named::exchanged && ::rename(hidden_.c_str(), place_.c_str()) == 0) hidden_.clear();
+}
+
+Status OutputFile::make_name_durable() const {
+  if (form_ != Form::file) return {};
+  for (fs::path folder = folder_of(place_);; folder = folder_of(folder)) {
+    if (Status synced = sync_folder(folder); !synced) return synced;
+    if (made_below_.empty() || folder == made_below_) return {};
+  }
+}
+
+Status OutputFile::commit() {
+  const std::array<OutputFile*, 1> alone = {this};
+  return commit(alone);
+}
+
+Status OutputFile::commit(std::span<OutputFile* const> files) {
+  for (OutputFile* file : files)
+    if (Status staged = file->stage(); !staged) return staged;
+  for (OutputFile* file : files) {
+    Status named = file->take_name(files.size() > 1);
+    if (named) continue;
+    for (OutputFile* other : files) other->give_back_name();
+    return named;
+  }
+  std::set<fs::path> synced;
+  for (OutputFile* file : files) {
+    if (file->made_below_.empty() && !synced.insert(folder_of(file->place_)).second) continue;
+    if (Status durable = file->make_name_durable(); !durable) return durable;
+  }
+  for (OutputFile* file : files)
+    if (file->form_ == Form::file) file->discard();  // the old one where two were exchanged
+  return {};
+}
+
+void OutputFile::remove_leftovers(const std::vector<fs::path>& targets) {
+  std::set<fs::path> folders;
+  for (const fs::path& target : targets)
+    if (const std::optional<fs::path> place = followed(target)) folders.insert(folder_of(*place));
+  for (const fs::path& folder : folders) {
+    std::error_code failure;
+    for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
+         entry.increment(failure))
+      if (is_temporary_name(entry->path().filename().string(), hidden_begin, hidden_end) &&
+          is_abandoned(entry->path()))
+        ::unlink(entry->path().c_str());
+  }
 }
 
 }  // namespace selvage

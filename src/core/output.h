@@ -1,14 +1,22 @@
 // Output files that are whole or not there.
 //
-// Bytes go to an unnamed file in the target's folder (or, where the file system has none, to a hidden one
-// that is removed when the run fails); commit() makes them durable and gives them the target's name in one
-// step. A process that is killed at any moment leaves the old file, or the new one, and nothing else.
+// Bytes go to an unnamed file in the target's folder (or, where the file system has none, to a hidden one of
+// a name that nothing else has). commit() makes them durable, then gives them the target's name in one step,
+// then makes the name durable. A process that is killed at any moment leaves the old file or the new one;
+// where it was about to replace one, or there are no unnamed files, also a hidden one, which
+// remove_leftovers() removes.
+//
+// What is replaced is the file, not its content: other hard links to it keep the old content, and its owner
+// is who runs the program. Its permissions stay. Of a symbolic link the file that it leads to is replaced (or
+// made).
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/diagnostics.h"
 
@@ -39,31 +47,53 @@ class OutputFile {
   // Cuts or extends the file, and puts the position of write() there.
   Status resize(std::uint64_t size);
 
-  // fsync, then the name. Nothing may be written afterwards. Errors (io) leave an existing target untouched.
+  // Nothing may be written afterwards. An error (io) leaves an existing target untouched, unless only making
+  // the new name durable failed.
   Status commit();
+  // Several files that belong together: all are durable before the first one gets its name, and an error
+  // leaves all targets as they were (but for those already replaced where the file system cannot exchange two
+  // names: NFS, FAT). A process that is killed between two names leaves some of them new.
+  static Status commit(std::span<OutputFile* const> files);
 
-  [[nodiscard]] std::uint64_t size() const;
+  [[nodiscard]] std::uint64_t size() const { return size_; }
   [[nodiscard]] Result<std::string> contents() const;
+  // As it was named; a link is not followed.
   [[nodiscard]] const std::filesystem::path& target() const { return target_; }
-  // Another name for commit() to give, in the same folder. Error (io): it is a directory, a device or a pipe.
+  // Another name for commit() to give. Error (io): as create().
   Status set_target(const std::filesystem::path& target);
-  // The hidden name used where there are no unnamed files: removed before and after each run.
-  static std::filesystem::path hidden_name(const std::filesystem::path& target);
+
+  // Removes the hidden files that killed processes left in the folders of these targets; those of running
+  // ones stay. Folders that cannot be read are left alone.
+  static void remove_leftovers(const std::vector<std::filesystem::path>& targets);
 
  private:
   enum class Form { file, standard_output, memory };
+  enum class Named { no, anew, exchanged, replaced };
 
   OutputFile() = default;
   void discard();
   [[nodiscard]] Message io_error(std::string_view what) const;
+  [[nodiscard]] std::string unnamed() const;  // what leads to a file without a name
   [[nodiscard]] Status check_target() const;
+  Status make_folder();
+  Status open_hidden();
   Status copy_to_standard_output();
+  // The steps of commit().
+  Status stage();
+  Status hide();
+  Status take_name(bool may_be_taken_back);
+  void give_back_name();
+  Status make_name_durable() const;
 
   Form form_ = Form::file;
   std::filesystem::path target_;
+  std::filesystem::path place_;  // where the target's links lead
+  std::filesystem::path
+      made_below_;                // the folder in which the place's folders were made; empty: there were all
+  std::filesystem::path hidden_;  // the file's name until it has its own; empty: none
   int descriptor_ = -1;
-  bool has_hidden_name_ = false;
-  std::uint64_t position_ = 0;
+  std::uint64_t position_ = 0, size_ = 0;
+  Named named_ = Named::no;
 };
 
 }  // namespace selvage

@@ -1,13 +1,32 @@
-// A folder for files that nobody shall see.
+// Files and folders that nobody shall see. Each has a name that nothing else has, and is locked while the
+// process that made it (or one that it forked) lives: what an ended process left is told from what another
+// one works with.
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "core/diagnostics.h"
 
 namespace selvage {
 
+// `begin`, 16 hexadecimal digits drawn at random, `end`.
+std::string temporary_name(std::string_view begin, std::string_view end);
+
+// Whether `name` has that form. No user's own file does by chance.
+bool is_temporary_name(std::string_view name, std::string_view begin, std::string_view end);
+
+// Locks the open file or folder until every copy of `descriptor` is closed; false when it has lost its name
+// before the lock was had (it was taken for abandoned). A file system without locks says true.
+bool hold(int descriptor);
+
+// Whether `path` is a regular file or a folder that no process holds. False where the file system cannot
+// tell.
+bool is_abandoned(const std::filesystem::path& path);
+
 // Removed, with all that is in it, when the object goes: by the process that made it, not by its children.
+// What a killed process left is removed when the next one makes a folder.
 class TemporaryFolder {
  public:
   // In $TMPDIR, or /tmp. Error: io.
@@ -21,8 +40,9 @@ class TemporaryFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
-  explicit TemporaryFolder(std::filesystem::path path);
+  TemporaryFolder(std::filesystem::path path, int lock);
   std::filesystem::path path_;
+  int lock_ = -1;
   int owner_ = 0;
 };
 

@@ -5,20 +5,18 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 
 #include "core/clock.h"
 #include "core/process.h"
 #include "core/progress.h"
+#include "core/standard_output.h"
 #include "core/temporary.h"
 #include "pipeline/inputs.h"
 #include "pipeline/job.h"
 #include "pipeline/junit.h"
 #include "pipeline/outputs.h"
-#include "pipeline/parts.h"
 #include "pipeline/report.h"
 #include "pipeline/roundtrip.h"
 
@@ -64,7 +62,7 @@ class Batch {
   void flush_results();
   void show(std::string& text);
   double tick();
-  void remove_leftovers(std::size_t job) const;
+  void remove_leftovers() const;
 
   [[nodiscard]] bool wants_report() const {
     return !options_.report.empty() || !options_.junit.empty() || options_.json;
@@ -87,7 +85,8 @@ class Batch {
   Counts counts_;
   std::size_t defects_ = 0, files_ = 0;
   std::size_t next_result_ = 0;
-  int output_failure_ = 0;  // errno of a failed write to standard output
+  bool has_lost_workers_ = false;  // that were killed, or crashed
+  Status printed_;                 // of standard output: what could not be written
   std::string started_ = wants_report() ? iso_timestamp() : std::string();
   Clock::time_point start_ = Clock::now();
   Clock::time_point next_report_ = start_ + std::chrono::seconds(static_cast<int>(report_interval));
@@ -145,8 +144,7 @@ void Batch::flush_results() {
     std::string& results = work_[next_result_].results;
     if (results.empty()) continue;
     progress_.clear();
-    if (std::fwrite(results.data(), 1, results.size(), stdout) != results.size() || std::fflush(stdout) != 0)
-      output_failure_ = errno;
+    if (printed_) printed_ = write_to_standard_output(results);
     results = {};
   }
 }
@@ -174,7 +172,7 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
   if (!reason.empty()) {
     const Kind kind = end.how == JobEnd::How::timed_out ? Kind::limit : Kind::internal;
     fail(job, error(kind, "this input " + reason));
-    remove_leftovers(job);
+    has_lost_workers_ = true;
   }
   const auto verdict = reason.empty() ? static_cast<Verdict>(end.status) : Verdict::failed;
   if (verdict == Verdict::skipped) {
@@ -190,14 +188,15 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
   progress_.set(counts_.done + counts_.failed + counts_.skipped, counts_.failed, doing_);
 }
 
-// Hidden files of a run that was killed where there are no unnamed files (core/output.h).
-void Batch::remove_leftovers(std::size_t job) const {
-  for (const PlannedOutput& output : outputs_[job])
-    if (!output.to_standard_output) {
-      ::unlink(OutputFile::hidden_name(output.path).c_str());
-      for (int number = 1; ::unlink(OutputFile::hidden_name(part_path(output.path, number)).c_str()) == 0;)
-        ++number;
-    }
+// Hidden files of workers that were killed, in this run or an earlier one.
+void Batch::remove_leftovers() const {
+  std::vector<std::filesystem::path> targets;
+  for (const std::string* place : {&options_.report, &options_.junit})
+    if (!place->empty() && *place != "-") targets.emplace_back(*place);
+  for (const std::vector<PlannedOutput>& outputs : outputs_)
+    for (const PlannedOutput& output : outputs)
+      if (!output.to_standard_output) targets.push_back(output.path);
+  OutputFile::remove_leftovers(targets);
 }
 
 double Batch::tick() {
@@ -274,7 +273,7 @@ int Batch::run(const std::vector<Message>& missing) {
     report.messages.push_back(message);
     if (wants_report()) missing_reports_.push_back(to_json(report));
   }
-  for (std::size_t job = 0; job < inputs_.size(); ++job) remove_leftovers(job);
+  remove_leftovers();
 
   JobPool pool;
   pool.count = inputs_.size();
@@ -284,25 +283,20 @@ int Batch::run(const std::vector<Message>& missing) {
   pool.run = [this](std::size_t job, const Channel& channel) { return run_one(job, channel); };
   pool.received = [this](std::size_t job, char kind, std::string_view bytes) { receive(job, kind, bytes); };
   pool.finished = [this](std::size_t job, const JobEnd& end) { finish(job, end); };
-  pool.interrupted = [this](std::size_t job) { remove_leftovers(job); };
+  pool.interrupted = [this](std::size_t) { has_lost_workers_ = true; };
   pool.tick = [this] { return tick(); };
   const bool complete = run_jobs(pool);
   progress_.clear();
+  if (has_lost_workers_) remove_leftovers();
 
   int code = complete ? exit_code() : exit_code::interrupted;
   if (!complete)
     std::fputs("selvage: interrupted; the inputs that were not done have no new outputs\n", stderr);
-  if (options_.json) std::fputs(report_text(code == exit_code::well).c_str(), stdout);
-  if (std::fflush(stdout) != 0) output_failure_ = errno;
-  if (output_failure_ != 0) {
-    std::fprintf(stderr, "selvage: error: cannot write to standard output: %s\n",
-                 std::strerror(output_failure_));
-    if (code == exit_code::well) code = exit_code::failed;
-  }
-  for (const Status& status : {write_report(code == exit_code::well), write_junit(missing)}) {
+  if (options_.json && printed_) printed_ = write_to_standard_output(report_text(code == exit_code::well));
+  for (const Status& status : {printed_, write_report(code == exit_code::well), write_junit(missing)}) {
     if (status.ok()) continue;
     std::fprintf(stderr, "%s\n", to_string(status.error()).c_str());
-    if (code == exit_code::well) code = exit_code::failed;
+    if (complete) code = exit_code::failed;
   }
   if (complete) summarize();
   return code;

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <new>
 
 #include "core/process.h"
 #include "core/progress.h"
+#include "core/standard_output.h"
 #include "pipeline/batch.h"
 #include "pipeline/differences.h"
 #include "pipeline/job.h"
@@ -130,8 +129,8 @@ int diff(const DiffRequest& request) {
     std::fputs("selvage: interrupted\n", stderr);
     return 130;
   }
-  if (std::fwrite(results.data(), 1, results.size(), stdout) != results.size() || std::fflush(stdout) != 0) {
-    std::fprintf(stderr, "selvage: error: cannot write to standard output: %s\n", std::strerror(errno));
+  if (Status printed = write_to_standard_output(results); !printed) {
+    std::fprintf(stderr, "%s\n", to_string(printed.error()).c_str());
     return 1;
   }
   return code;

@@ -10,8 +10,10 @@
 #include "core/output.h"
 #include "core/source.h"
 #include "fabric/build.h"
+#include "pipeline/batch.h"
 #include "pipeline/detect.h"
 #include "pipeline/drafts.h"
+#include "pipeline/outputs.h"
 
 namespace selvage::pipeline {
 
@@ -99,7 +101,11 @@ bool work(const EditRequest& request) {
 
 }  // namespace
 
-int edit(const EditRequest& request) {
+int edit(const EditRequest& asked) {
+  const Result<std::filesystem::path> place = output_of_edit(asked.output, asked.input);
+  if (!place) return refuse(place.error());
+  EditRequest request = asked;
+  request.output = place->string();
   try {
     return work(request) ? 0 : 1;
   } catch (const std::bad_alloc&) {

@@ -9,7 +9,7 @@ namespace selvage::pipeline {
 
 struct EditRequest {
   std::string input;   // a path, or "-" for standard input
-  std::string output;  // a path, which may be the input's, or "-" for standard output
+  std::string output;  // -o: a file, which may be the input's, a folder, or "-" for standard output
   formats::NewEdit edit;
   bool quiet = false;
 };

@@ -34,6 +34,16 @@ std::string writable_names(Command command) {
   return names;
 }
 
+std::string writable_extensions(Command command) {
+  if (command == Command::view) return std::string(picture_format().extensions.front());
+  std::string list;
+  for (const Descriptor* format : formats::all_formats())
+    if (can_be_written(*format, command))
+      for (std::string_view extension : format->extensions)
+        list += fmt::format("{}{}", list.empty() ? "" : ", ", extension);
+  return list;
+}
+
 Result<const Descriptor*> fitting(const Descriptor& format, Command command) {
   if (can_be_written(format, command)) return &format;
   std::string text = fmt::format("'selvage {}' cannot write {}; it writes: {}", name_of(command), format.name,
@@ -60,6 +70,22 @@ const Descriptor* told_by_output(const Options& options) {
   return format_with_extension(fs::path(options.output).extension().string());
 }
 
+// A name that tells no format is one of a folder. An extension that no format has is more likely a slip than
+// the end of a folder's name, if there is no such folder.
+Status check_extension(const Options& options) {
+  const fs::path name = options.output;
+  std::error_code failure;
+  if (told_by_output(options) != nullptr || options.output == "-" || !name.has_extension() ||
+      format_with_extension(name.extension().string()) != nullptr || fs::is_directory(name, failure))
+    return {};
+  return error(
+      Kind::usage,
+      fmt::format("'-o {}': no format has the extension '{}'; 'selvage {}' writes {} (for a folder of "
+                  "this name, add a '/')",
+                  options.output, name.extension().string(), name_of(options.command),
+                  writable_extensions(options.command)));
+}
+
 // Pictures are PNG; a name that asks for something else is refused.
 Result<Formats> picture_formats(const Options& options) {
   const std::string extension = fs::path(options.output).extension().string();
@@ -69,11 +95,13 @@ Result<Formats> picture_formats(const Options& options) {
   if (format_with_extension(extension) != nullptr)
     return error(Kind::usage, fmt::format("'selvage view' writes PNG pictures, and '{}' is no name for one",
                                           options.output));
+  if (Status known = check_extension(options); !known) return known.error();
   return Formats{&picture_format()};
 }
 
 Result<Formats> wanted_formats(const Options& options) {
   if (options.command == Command::view) return picture_formats(options);
+  if (Status known = check_extension(options); !known) return known.error();
   Formats wanted;
   std::string_view rest = options.formats;
   while (!rest.empty()) {
@@ -114,15 +142,8 @@ Status check_single_output(const Options& options, const InputList& list, const 
   return {};
 }
 
-// True when -o is the one file to be written, false when it is a folder.
-bool output_is_file(const Options& options, const InputList& list, const Formats& wanted) {
-  if (options.output.empty() || !list.one_file || wanted.size() != 1) return false;
-  if (told_by_output(options) != nullptr) return true;
-  std::error_code failure;
-  return !options.output.ends_with('/') && !fs::is_directory(options.output, failure);
-}
-
 fs::path output_path(const Options& options, const Input& input, const Descriptor& format) {
+  if (told_by_output(options) != nullptr) return options.output;
   fs::path path = options.output.empty() ? fs::path(input.path).replace_extension()
                                          : fs::path(options.output) / input.stem;
   path += format.extensions.front();
@@ -207,6 +228,17 @@ Status plan_gap_map(const Options& options, const InputList& list,
 
 }  // namespace
 
+Result<fs::path> output_of_edit(const std::string& output, const std::string& input) {
+  Options options;
+  options.output = output;
+  options.formats = "txt";
+  const Result<Formats> wanted = wanted_formats(options);
+  if (!wanted) return wanted.error();
+  if (Status fits = check_single_output(options, {{}, {}, true}, *wanted); !fits) return fits.error();
+  if (output == "-" || told_by_output(options) != nullptr) return fs::path(output);
+  return output_path(options, {input, input == "-" ? "stdin" : fs::path(input).stem()}, *wanted->front());
+}
+
 Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list) {
   std::vector<std::vector<PlannedOutput>> plan(list.inputs.size());
   if (options.command == Command::check || options.command == Command::info ||
@@ -221,7 +253,6 @@ Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& opti
   if (options.units && std::any_of(wanted->begin(), wanted->end(),
                                    [](auto* format) { return format->open_bodies == nullptr; }))
     return error(Kind::usage, "--units converts surfaces; text keeps the unit of its input");
-  const bool as_file = output_is_file(options, list, *wanted);
   for (std::size_t i = 0; i < plan.size(); ++i) {
     const Input& input = list.inputs[i];
     if (input.path == "-" && options.output.empty())
@@ -231,7 +262,7 @@ Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& opti
         plan[i].push_back({format, "<stdout>", true, {}});
         continue;
       }
-      const fs::path path = as_file ? fs::path(options.output) : output_path(options, input, *format);
+      const fs::path path = output_path(options, input, *format);
       plan[i].push_back({format, path, false, {}});
       if (format->companion == nullptr) continue;
       const Descriptor& second = format->companion();

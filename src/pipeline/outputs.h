@@ -29,4 +29,8 @@ struct PlannedOutput {
 // one name, an output that is an input.
 Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list);
 
+// Where `selvage edit` writes its text: by the same rule for -o, "-" for standard output. Errors (usage): a
+// name that is of another format, or of none.
+Result<std::filesystem::path> output_of_edit(const std::string& output, const std::string& input);
+
 }  // namespace selvage::pipeline

@@ -85,15 +85,21 @@ bool report_files(Job& job, OpenOutput& output, std::vector<OutputReport>& writt
   return true;
 }
 
-// In order, and what an earlier run left in the same place goes last.
-Status commit(OpenOutput& output) {
-  Status status = output.file.commit();
-  for (OutputFile& part : output.parts)
-    if (status.ok()) status = part.commit();
-  if (!status.ok() || output.plan->to_standard_output || output.plan->format->part_mark == nullptr)
-    return status;
-  const auto count = static_cast<int>(output.parts.size());
-  return remove_stale_parts(output.plan->path, count > 0 ? count + 2 : 1, output.plan->taken);
+// All files together; what an earlier run left in their places goes last.
+Status commit(OpenOutputs& outputs) {
+  std::vector<OutputFile*> files;
+  for (OpenOutput& output : outputs) {
+    files.push_back(&output.file);
+    for (OutputFile& part : output.parts) files.push_back(&part);
+  }
+  if (Status status = OutputFile::commit(files); !status) return status;
+  for (const OpenOutput& output : outputs) {
+    if (output.plan->to_standard_output || output.plan->format->part_mark == nullptr) continue;
+    const auto count = static_cast<int>(output.parts.size());
+    Status removed = remove_stale_parts(output.plan->path, count > 0 ? count + 2 : 1, output.plan->taken);
+    if (!removed) return removed;
+  }
+  return {};
 }
 
 }  // namespace
@@ -114,8 +120,7 @@ void commit_all(Job& job, OpenOutputs& outputs) {
   for (OpenOutput& output : outputs)
     if (!report_files(job, output, written)) return;
   if (job.has_failed()) return;  // --strict
-  for (OpenOutput& output : outputs)
-    if (Status status = commit(output); !status.ok()) return job.say(status.error());
+  if (Status status = commit(outputs); !status) return job.say(status.error());
   job.tell_files(written.size());
   for (const OutputReport& output : written) {
     if (!job.options.verbose) continue;

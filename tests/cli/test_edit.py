@@ -152,8 +152,13 @@ class Refusals(Editing):
         self.assertFalse(self.out.exists())
 
     def test_an_output_that_is_a_folder(self):
+        """The text goes into it, by the input's name; a folder that is called like a file is in the way."""
+        self.input.write_text(TEXT)
         self.out.mkdir()
-        self.refused(1, "cannot write: Is a directory", *MOVE, "-o", self.out)
+        self.succeeds("edit", self.input, *MOVE, "-o", self.out)
+        self.assertEqual(list(files_below(self.out)), ["in.txt"])
+        (self.folder / "x.txt").mkdir()
+        self.refused(1, "cannot write: Is a directory", *MOVE, "-o", self.folder / "x.txt")
 
     def test_what_is_not_fabric_txt(self):
         iges = self.folder / "x.igs"

@@ -18,9 +18,32 @@ class Places(Case):
 
     def test_one_input_one_format_is_a_file(self):
         self.succeeds("convert", GRID, "-o", self.folder / "a" / "x.igs")
+        self.assertEqual(self.names(), ["a/x.igs"])
+
+    def test_a_name_without_an_extension_is_a_folder(self):
+        """With one format and one input, too."""
         self.succeeds("convert", GRID, "--to", "iges", "-o", self.folder / "plain")
-        self.assertEqual(self.names(), ["a/x.igs", "plain"])
-        self.assertEqual((self.folder / "plain").read_bytes()[72:80], b"S      1")
+        self.succeeds("relax", PATH, "-o", self.folder / "relaxed")
+        self.succeeds("mesh", GRID, "--size", "0.4", "-o", self.folder / "meshed")
+        self.succeeds("view", RING, "--size", "8x8", "-o", self.folder / "seen")
+        self.succeeds("edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0.4,0.5,0.2", "-o", self.folder / "edited")
+        self.assertEqual(self.names(), ["edited/plain4_path.txt", "meshed/plain4_grid.inp", "plain/plain4_grid.igs",
+                                        "relaxed/plain4_path.txt", "seen/ring.png"])
+
+    def test_an_extension_that_no_format_has(self):
+        for arguments, listed in ((("convert", GRID), r"\.igs, .*\.stp"), (("convert", GRID, "--to", "iges"), r"\.igs"),
+                                  (("convert", GRID, RING), r"\.igs"), (("relax", PATH), r"\.txt"),
+                                  (("mesh", GRID), r"\.inp"), (("view", GRID), r"\.png"),
+                                  (("edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0,0,0"), r"\.txt")):
+            message = self.fails(2, *arguments, "-o", self.folder / "x.stl")
+            self.assertRegex(message, f"no format has the extension '.stl'.*{listed}")
+            self.assertEqual(self.names(), [])
+        self.assertIn("names a file of iges", self.fails(2, "edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0,0,0",
+                                                         "-o", self.folder / "x.igs"))
+        # A folder may be called so.
+        self.succeeds("convert", GRID, "--to", "iges", "-o", f"{self.folder}/v1.5/")
+        self.succeeds("convert", RING, "--to", "iges", "-o", self.folder / "v1.5")
+        self.assertEqual(self.names(), ["v1.5/plain4_grid.igs", "v1.5/ring.igs"])
 
     def test_without_format_iges_and_step_in_a_folder(self):
         self.succeeds("convert", GRID, "-o", self.out)
@@ -201,17 +224,49 @@ class Trouble(Case):
         self.fails(1, "convert", BAD / "short_grid.txt", "-o", target)
         self.assertEqual(files_below(self.folder), {"x.igs": b"old"})
 
-    def test_full_standard_output(self):
-        with open("/dev/full", "w") as full:
-            done = subprocess.run([PROGRAM, "info", GRID], stdout=full, stderr=subprocess.PIPE, env=environment(), text=True)
-        self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn("No space left on device", done.stderr)
+    def test_standard_output_that_cannot_be_written(self):
+        """Whatever was to be read there: full, or closed, it is an error, and no file gets the closed one's number."""
+        edit = ("edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0.4,0.5,0.2", "-o", "-")
+        report = ("convert", GRID, "-o", self.folder / "x.igs", "--report", "-")
+        for arguments in (("info", GRID), ("info", GRID, "--json"), ("formats",), ("--version",), ("--help",),
+                          ("convert", "--help"), ("check", GRID), ("diff", GRID, GRID), ("diff", GRID, PATH),
+                          ("diff", GRID, GRID, "--json"), ("convert", GRID, "--to", "iges", "-o", "-"), report, edit,
+                          ("roundtrip", GRID, "--to", "iges")):
+            with self.subTest(arguments):
+                with open("/dev/full", "w") as full:
+                    done = subprocess.run([PROGRAM, *map(str, arguments)], stdout=full, stderr=subprocess.PIPE,
+                                          env=environment(), text=True)
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertIn("No space left on device", done.stderr)
+                closed = subprocess.run(["sh", "-c", 'exec "$@" >&-', "sh", PROGRAM, *map(str, arguments)],
+                                        stderr=subprocess.PIPE, env=environment(), text=True)
+                self.assertEqual(closed.returncode, 1, closed.stderr)
+                self.assertIn("Bad file descriptor", closed.stderr)
+        self.succeeds("convert", GRID, "-o", self.folder / "y.igs")
+        self.assertEqual((self.folder / "x.igs").read_bytes().replace(b"x.igs", b"y.igs"),
+                         (self.folder / "y.igs").read_bytes())
 
-    def test_hidden_leftovers_are_removed(self):
+    def test_what_killed_runs_left_is_removed(self):
         self.out.mkdir()
-        (self.out / ".plain4_grid.igs.selvage-partial").write_text("from a run that was killed")
+        (self.out / ".selvage-0123456789abcdef.partial").write_text("from a run that was killed")
+        own = self.out / ".plain4_grid.igs.selvage-partial"
+        own.write_text("the user's own")
         self.succeeds("convert", GRID, "--to", "iges", "-o", self.out)
-        self.assertEqual(list(files_below(self.out)), ["plain4_grid.igs"])
+        self.assertEqual(files_below(self.out).keys(), {"plain4_grid.igs", own.name})
+        self.assertEqual(own.read_text(), "the user's own")
+
+    def test_what_is_replaced(self):
+        """The permissions stay, and the link; what else leads to the old file keeps it."""
+        old = self.folder / "old.igs"
+        old.write_text("old")
+        old.chmod(0o640)
+        os.link(old, self.folder / "kept.igs")
+        os.symlink("old.igs", self.folder / "link.igs")
+        self.succeeds("convert", GRID, "-o", self.folder / "link.igs")
+        self.assertTrue((self.folder / "link.igs").is_symlink())
+        self.assertEqual(old.read_bytes()[72:80], b"S      1")
+        self.assertEqual(old.stat().st_mode & 0o777, 0o640)
+        self.assertEqual((self.folder / "kept.igs").read_text(), "old")
 
 
 if __name__ == "__main__":

@@ -2,13 +2,16 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 
+#include "core/temporary.h"
 #include "unit/core/scratch_folder.h"
 
 namespace selvage {
@@ -28,6 +31,19 @@ void in_killed_process(Part part) {
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFSIGNALED(status));
+}
+
+void put(const std::filesystem::path& path, std::string_view bytes) {
+  Result<OutputFile> file = OutputFile::create(path);
+  ASSERT_TRUE(file.ok());
+  ASSERT_TRUE(file->write(bytes).ok());
+  ASSERT_TRUE(file->commit().ok());
+}
+
+struct stat facts_of(const std::filesystem::path& path) {
+  struct stat facts {};
+  EXPECT_EQ(::stat(path.c_str(), &facts), 0);
+  return facts;
 }
 
 }  // namespace
@@ -124,6 +140,119 @@ TEST(OutputFile, RefusesAFileInPlaceOfAFolder) {
   const Result<OutputFile> file = OutputFile::create(folder / "a/b.igs");
   ASSERT_FALSE(file.ok());
   EXPECT_EQ(file.error().kind, Kind::io);
+}
+
+TEST(OutputFile, KeepsThePermissionsOfWhatItReplaces) {
+  const test::ScratchFolder folder;
+  put(folder / "a.igs", "old");
+  for (const ::mode_t mode : {0640U, 0755U, 0444U}) {
+    ASSERT_EQ(::chmod((folder / "a.igs").c_str(), mode), 0);
+    put(folder / "a.igs", "new");
+    EXPECT_EQ(facts_of(folder / "a.igs").st_mode & 0777U, mode);
+  }
+}
+
+TEST(OutputFile, LeavesTheOldContentToOtherHardLinks) {
+  const test::ScratchFolder folder;
+  put(folder / "a.igs", "old");
+  std::filesystem::create_hard_link(folder / "a.igs", folder / "kept.igs");
+  put(folder / "a.igs", "new");
+  EXPECT_EQ(test::bytes_of(folder / "a.igs"), "new");
+  EXPECT_EQ(test::bytes_of(folder / "kept.igs"), "old");
+}
+
+TEST(OutputFile, ReplacesWhatALinkLeadsToAndNotTheLink) {
+  const test::ScratchFolder folder;
+  std::filesystem::create_directories(folder / "store");
+  put(folder / "store/there.igs", "old");
+  std::filesystem::create_symlink("store/there.igs", folder / "there.igs");
+  std::filesystem::create_symlink("there.igs", folder / "twice.igs");
+  std::filesystem::create_symlink("store/made.igs", folder / "made.igs");
+  put(folder / "twice.igs", "new");
+  put(folder / "made.igs", "made");
+  EXPECT_EQ(test::bytes_of(folder / "store/there.igs"), "new");
+  EXPECT_EQ(test::bytes_of(folder / "store/made.igs"), "made");
+  for (const char* link : {"there.igs", "twice.igs", "made.igs"})
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / link)) << link;
+  std::filesystem::create_symlink("circle.igs", folder / "circle.igs");
+  const Result<OutputFile> circle = OutputFile::create(folder / "circle.igs");
+  ASSERT_FALSE(circle.ok());
+  EXPECT_EQ(circle.error().file, (folder / "circle.igs").string());
+}
+
+TEST(OutputFile, AnotherTargetMayBeInAnotherFolder) {
+  const test::ScratchFolder folder;
+  std::filesystem::create_directories(folder / "store");
+  std::filesystem::create_symlink("store/a.igs", folder / "a.igs");
+  Result<OutputFile> file = OutputFile::create(folder / "a.igs");
+  ASSERT_TRUE(file.ok());
+  const std::string bytes(3'000'000, 'z');
+  ASSERT_TRUE(file->write(bytes).ok());
+  ASSERT_TRUE(file->set_target(folder / "a.1.igs").ok());
+  ASSERT_TRUE(file->commit().ok());
+  EXPECT_EQ(test::bytes_of(folder / "a.1.igs"), bytes);
+  EXPECT_FALSE(std::filesystem::exists(folder / "store/a.igs"));
+}
+
+// The folder of the last one goes when all are written: the others have their names by then.
+TEST(OutputFile, SeveralAppearTogetherOrNotAtAll) {
+  const test::ScratchFolder folder;
+  put(folder / "replaced.igs", "old");
+  for (const bool fails : {true, false}) {
+    std::vector<OutputFile> files;
+    for (const char* name : {"replaced.igs", "new.igs", "below/last.igs"}) {
+      Result<OutputFile> file = OutputFile::create(folder / name);
+      ASSERT_TRUE(file.ok());
+      ASSERT_TRUE(file->write("new").ok());
+      files.push_back(std::move(*file));
+    }
+    const std::vector<OutputFile*> all = {&files[0], &files[1], &files[2]};
+    if (fails) std::filesystem::remove(folder / "below");
+    const Status committed = OutputFile::commit(all);
+    EXPECT_EQ(committed.ok(), !fails);
+    files.clear();
+    EXPECT_EQ(test::bytes_of(folder / "replaced.igs"), fails ? "old" : "new");
+    EXPECT_EQ(folder.names(), fails ? Names{"replaced.igs"} : (Names{"below", "new.igs", "replaced.igs"}));
+    EXPECT_EQ(fails ? committed.error().file : "", fails ? (folder / "below/last.igs").string() : "");
+  }
+  EXPECT_EQ(test::bytes_of(folder / "below/last.igs"), "new");
+}
+
+TEST(OutputFile, RemovesWhatNobodyHoldsAndNothingElse) {
+  const test::ScratchFolder folder;
+  const std::string left = ".selvage-0123456789abcdef.partial", held = ".selvage-fedcba9876543210.partial";
+  const std::string own = ".a.igs.selvage-partial", likewise = ".selvage-mine.partial";
+  for (const std::string& name : {left, held, own, likewise}) test::put_bytes(folder / name, "x");
+  const int holder = ::open((folder / held).c_str(), O_RDWR);
+  ASSERT_EQ(::flock(holder, LOCK_EX), 0);
+  OutputFile::remove_leftovers({folder / "a.igs", folder / "b.igs", folder / "nowhere/c.igs"});
+  EXPECT_EQ(folder.names(), (Names{own, held, likewise}));
+  ::close(holder);
+}
+
+TEST(TemporaryFolder, GoesWithItsMakerOrAtTheNextOne) {
+  const test::ScratchFolder place;
+  const char* const old = std::getenv("TMPDIR");
+  const std::string saved = old != nullptr ? old : "";
+  ::setenv("TMPDIR", place.path().c_str(), 1);
+  std::filesystem::create_directory(place / "selvage-scratch");  // somebody's own
+  in_killed_process([] {
+    if (const Result<TemporaryFolder> folder = TemporaryFolder::create(); folder.ok())
+      ::kill(::getpid(), SIGKILL);
+  });
+  EXPECT_EQ(place.names().size(), 2U);
+  {
+    const Result<TemporaryFolder> first = TemporaryFolder::create();
+    const Result<TemporaryFolder> second = TemporaryFolder::create();
+    ASSERT_TRUE(first.ok() && second.ok());
+    EXPECT_EQ(place.names().size(), 3U);
+    EXPECT_TRUE(std::filesystem::is_directory(first->path()));
+  }
+  EXPECT_EQ(place.names(), Names{"selvage-scratch"});
+  if (old != nullptr)
+    ::setenv("TMPDIR", saved.c_str(), 1);
+  else
+    ::unsetenv("TMPDIR");
 }
 
 // A limit on the size of files stands for the full disk: the same call fails at the same place.

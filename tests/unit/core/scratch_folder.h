@@ -1,6 +1,7 @@
 // An empty folder of a test's own, removed at its end.
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -25,11 +26,14 @@ class ScratchFolder {
 
   [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
-  // Everything in it, hidden files too.
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  // Everything in it, hidden files too, sorted.
   [[nodiscard]] std::vector<std::string> names() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(path_))
       names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
     return names;
   }
 

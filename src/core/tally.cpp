@@ -1,0 +1,78 @@
+#include "core/tally.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace selvage {
+
+namespace {
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+// Without names in quotes, and numbers: "yarns '' and '' overlap, # deep". An apostrophe within a word is
+// none.
+std::string pattern_of(std::string_view text) {
+  std::string pattern;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool opens = text[i] == '\'' && (i == 0 || text[i - 1] == ' ' || text[i - 1] == '(');
+    const std::size_t close = opens ? text.find('\'', i + 1) : std::string_view::npos;
+    if (close != std::string_view::npos) {
+      pattern += "''";
+      i = close;
+    } else if (is_digit(text[i])) {
+      const std::size_t end = std::min(text.find_first_not_of("0123456789.e+-", i), text.size());
+      pattern += '#';
+      i = end - 1;
+    } else if (text[i] != '-') {  // a minus
+      pattern += text[i];
+    }
+  }
+  return pattern;
+}
+
+}  // namespace
+
+Tally::OfKind& Tally::kind_of(const Message& message) {
+  std::string key = fmt::format("{} {}", name_of(message.severity), pattern_of(message.text));
+  if (kinds_.size() >= most_kinds && !index_.contains(key)) key = name_of(message.severity);
+  const auto [found, is_new] = index_.emplace(std::move(key), kinds_.size());
+  if (is_new) kinds_.emplace_back();
+  return kinds_[found->second];
+}
+
+bool Tally::take(const Message& message, double badness) {
+  OfKind& kind = kind_of(message);
+  if (++kind.count == 1 || badness > kind.badness) {
+    kind.badness = badness;
+    kind.worst = message;
+  }
+  if (kind.shown.size() < shown_of_a_kind) {
+    std::string text = to_string(message);
+    if (std::find(kind.shown.begin(), kind.shown.end(), text) == kind.shown.end()) {
+      kind.shown.push_back(std::move(text));
+      return true;
+    }
+  }
+  ++kind.hidden;
+  return false;
+}
+
+std::vector<Message> Tally::rest() const {
+  std::vector<Message> all;
+  for (const OfKind& kind : kinds_) {
+    if (kind.hidden == 0) continue;
+    Message message = kind.worst;
+    message.excerpt.clear();
+    message.text = kind.shown.size() == 1
+                       ? fmt::format("x{}: {}", kind.count, kind.worst.text)
+                       : fmt::format("x{}, of which {} are not shown; {}: {}", kind.count, kind.hidden,
+                                     kind.badness > 0 ? "the worst" : "for example", kind.worst.text);
+    all.push_back(std::move(message));
+  }
+  return all;
+}
+
+}  // namespace selvage
