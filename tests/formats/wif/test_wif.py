@@ -206,13 +206,13 @@ class DraftFile(WifCase):
     def test_resume_sees_that_the_file_changed(self):
         draft = self.folder / "draft.wif"
         draft.write_bytes((SAMPLES / "wif_herringbone.wif").read_bytes())
-        arguments = ("convert", self.cloth("draft file draft.wif"), "--to", "txt", "-o", self.out, "--report",
+        arguments = ("convert", self.cloth("draft file draft.wif"), "--to", "txt", "-o", self.out / "cloth.txt", "--report",
                      self.folder / "report.json")
         self.succeeds(*arguments)
-        first = self.out.read_text()
+        first = (self.out / "cloth.txt").read_text()
         draft.write_bytes((SAMPLES / "wif_satin_liftplan.wif").read_bytes())
         self.succeeds(*arguments, "--resume")
-        self.assertNotEqual(self.out.read_text(), first)
+        self.assertNotEqual((self.out / "cloth.txt").read_text(), first)
 
 
 class BadSamples(Case):
