@@ -42,6 +42,8 @@ void add_batch(CLI::App& command, Parsed& parsed);
 // Of these, what a single job has: -j, --quiet, --timeout, ...
 void add_running(CLI::App& command, Parsed& parsed, pipeline::Options& options);
 void add_output(CLI::App& command, Parsed& parsed);
+// Of these, what bounds a job: --timeout, --memory, --sandbox.
+void add_limits(CLI::App& command, pipeline::Options& options);
 // -o and --resume, without --to.
 void add_place(CLI::App& command, Parsed& parsed);
 void add_ends(CLI::App& command, Parsed& parsed);

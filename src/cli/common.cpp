@@ -10,6 +10,7 @@
 #include "cli/cli.h"
 #include "core/standard_output.h"
 #include "pipeline/batch.h"
+#include "pipeline/limits.h"
 
 namespace selvage::cli {
 
@@ -153,8 +154,7 @@ void add_running(CLI::App& command, Parsed& parsed, pipeline::Options& o) {
   command.add_flag("--quiet", o.quiet, "errors only");
   command.add_flag("-v,--verbose", o.verbose, "say more");
   command.add_flag("--no-progress", o.no_progress, "no progress bar or lines");
-  command.add_option("--timeout", o.timeout, "seconds an input may take")->check(positive_number());
-  command.add_option("--memory", o.memory, "MB of memory an input may take")->check(positive_number());
+  add_limits(command, o);
   command.add_flag("--strict", o.strict, "a warning fails its input");
   command
       .add_option("--detail", parsed.detail,
@@ -163,6 +163,30 @@ void add_running(CLI::App& command, Parsed& parsed, pipeline::Options& o) {
       ->check(CLI::IsMember({"yarn", "plies", "filaments"}));
   command.add_flag("--as-published", o.as_published,
                    "constructions exactly as their paper gives them, overlaps and all");
+}
+
+void add_limits(CLI::App& command, pipeline::Options& o) {
+  command
+      .add_option(
+          "--timeout", o.timeout,
+          fmt::format(
+              "seconds an input may take (default: {:g} for formats of other programs, else no limit)",
+              pipeline::foreign_timeout))
+      ->check(positive_number());
+  command
+      .add_option(
+          "--memory", o.memory,
+          "MB of memory an input may take (default: what the machine, or the container, has free, shared by "
+          "the inputs worked on at once; at least 1024)")
+      ->check(positive_number());
+  CLI::CheckedTransformer sandboxes(std::map<std::string, Sandbox>{
+      {"require", Sandbox::required}, {"auto", Sandbox::automatic}, {"off", Sandbox::off}});
+  sandboxes.description("{require,auto,off}");
+  command
+      .add_option("--sandbox", o.sandbox,
+                  "keep the processes that read files to their inputs and outputs, without network: "
+                  "require (or refuse to run), auto (the default: as far as the kernel can), off")
+      ->transform(sandboxes);
 }
 
 void add_output(CLI::App& command, Parsed& parsed) {

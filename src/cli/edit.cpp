@@ -76,7 +76,8 @@ void add_edit(CLI::App& program, Parsed& parsed) {
   command.add_option("--along", words->along, "X,Y,Z: the direction in which the joint moves for --length");
   command.add_option("-o,--output", request.output, "the new text (may be INPUT), or - for standard output")
       ->required();
-  command.add_flag("--quiet", request.quiet, "errors only");
+  command.add_flag("--quiet", request.options.quiet, "errors only");
+  add_limits(command, request.options);
   command.callback([&parsed, words] {
     parsed.action = [&parsed, words] {
       if (Status status = complete(*words, parsed.edit.edit); !status)

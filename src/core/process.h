@@ -17,7 +17,7 @@ namespace selvage {
 class Channel {
  public:
   explicit Channel(int descriptor) : descriptor_(descriptor) {}
-  // A parent that is gone ends the child (the kernel kills it), so a failed write needs no answer.
+  // A packet that cannot be sent ends the process: the parent then counts the job as failed (How::unheard).
   void send(char kind, std::string_view bytes) const;
 
  private:
@@ -28,16 +28,20 @@ struct JobEnd {
   enum class How {
     exited,       // status: what the job returned
     signalled,    // status: the signal's number
-    timed_out,    // killed at its time limit
+    timed_out,    // killed at its time limit, or that of end_after()
     not_started,  // status: errno of fork or pipe
+    unheard,      // its packets, or its end, did not reach the parent; status: errno
   };
   How how = How::exited;
   int status = 0;
 };
 
-// Why a job ended badly, in words that a user can act on; nothing for How::exited. `seconds` and `mebibytes`
-// are the limits that were in force.
-std::string describe(const JobEnd& end, double seconds, double mebibytes);
+// Why a job ended badly, in words that a user can act on; nothing for How::exited. `seconds` is the limit
+// that was in force, `memory` says how much memory it might take.
+std::string describe(const JobEnd& end, double seconds, std::string_view memory);
+
+// In a job: it has so many seconds from now on, and has ended as `timed_out` when they are over.
+void end_after(double seconds);
 
 struct JobPool {
   std::size_t count = 0;    // jobs 0 .. count-1, started in this order
@@ -56,8 +60,14 @@ struct JobPool {
   std::function<void(std::size_t job)> interrupted;
 };
 
-// Runs all jobs; false when a signal interrupted them (the children are dead then). Children die with the
-// parent, however it ends.
-bool run_jobs(const JobPool& pool);
+enum class PoolEnd {
+  complete,
+  interrupted,  // by a signal; the children are dead
+};
+
+// Runs all jobs. Children die with the parent, however it ends. A job that cannot be started is tried again
+// when another one has ended, and has ended as `not_started` when none is left to wait for. Error (limit):
+// children cannot be watched at all; nothing was started.
+Result<PoolEnd> run_jobs(const JobPool& pool);
 
 }  // namespace selvage

@@ -113,19 +113,21 @@ Result<Running> start(const std::filesystem::path& program, const Descriptor& re
   posix_spawnattr_t attributes;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawnattr_init(&attributes);
-  ::posix_spawn_file_actions_adddup2(&actions, request.number(), STDIN_FILENO);
-  ::posix_spawn_file_actions_adddup2(&actions, output.number(), STDOUT_FILENO);
-  ::posix_spawn_file_actions_adddup2(&actions, result.words.number(), STDERR_FILENO);
-  // A process group of its own, so that Ctrl-C reaches the program only, which decides.
-  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
-  ::posix_spawnattr_setpgroup(&attributes, 0);
   sigset_t none;
   sigemptyset(&none);
-  ::posix_spawnattr_setsigmask(&attributes, &none);
+  int failure = 0;
+  const auto step = [&](int outcome) { failure = failure == 0 ? outcome : failure; };
+  step(::posix_spawn_file_actions_adddup2(&actions, request.number(), STDIN_FILENO));
+  step(::posix_spawn_file_actions_adddup2(&actions, output.number(), STDOUT_FILENO));
+  step(::posix_spawn_file_actions_adddup2(&actions, result.words.number(), STDERR_FILENO));
+  // A process group of its own, so that Ctrl-C reaches the program only, which decides.
+  step(::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK));
+  step(::posix_spawnattr_setpgroup(&attributes, 0));
+  step(::posix_spawnattr_setsigmask(&attributes, &none));
   std::string name = program.string();
   std::array<char*, 2> arguments = {name.data(), nullptr};
-  const int failure =
-      ::posix_spawn(&result.process, name.c_str(), &actions, &attributes, arguments.data(), environ);
+  if (failure == 0)
+    failure = ::posix_spawn(&result.process, name.c_str(), &actions, &attributes, arguments.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   ::posix_spawnattr_destroy(&attributes);
   if (failure != 0) {
@@ -142,8 +144,14 @@ struct Ended {
   std::string words;  // the last of what TetGen printed
 };
 
-// Adds to the answer what comes until its end (true) or the deadline.
-bool read_until(const Running& running, Clock::time_point deadline, std::string& answer) {
+enum class Heard {
+  all,
+  not_yet,
+  nothing,  // it cannot be read: errno says why
+};
+
+// Adds to the answer what comes until its end or the deadline.
+Heard read_until(const Running& running, Clock::time_point deadline, std::string& answer) {
   std::vector<char> block(1 << 20);
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
@@ -152,10 +160,12 @@ bool read_until(const Running& running, Clock::time_point deadline, std::string&
         left <= 0 ? 0 : ::poll(&watched, 1, static_cast<int>(std::min<long long>(left, 60'000)));
     if (ready < 0 && errno == EINTR) continue;
     if (ready == 0 && Clock::now() < deadline) continue;
-    if (ready <= 0) return false;
+    if (ready < 0) return Heard::nothing;
+    if (ready == 0) return Heard::not_yet;
     const ssize_t got = ::read(running.answers.number(), block.data(), block.size());
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return true;
+    if (got < 0) return Heard::nothing;
+    if (got == 0) return Heard::all;
     answer.append(block.data(), static_cast<std::size_t>(got));
   }
 }
@@ -168,8 +178,8 @@ Ended finish(const Running& running, bool has_ended, std::string answer) {
   // A worker that closed its output is done or dying; one that hangs there is not waited for.
   for (int tries = 0; !result.timed_out && tries < 2000; ++tries) {
     const pid_t gone = ::waitpid(running.process, &result.status, WNOHANG);
-    if (gone == running.process) break;
-    if (gone == 0) ::usleep(1000);
+    if (gone == running.process || (gone < 0 && errno != EINTR)) break;
+    ::usleep(1000);
     if (tries == 1999) result.timed_out = true;
   }
   if (result.timed_out) {
@@ -309,13 +319,17 @@ class Run {
   }
   // True when the answer is whole, or there will be none.
   bool wait(Clock::time_point deadline) {
-    if (running_ && !has_ended_) has_ended_ = read_until(*running_, deadline, answer_);
-    return !running_ || has_ended_;
+    if (running_ && !has_ended_) {
+      const Heard heard = read_until(*running_, deadline, answer_);
+      if (heard == Heard::nothing) failure_ = system_error("read an answer");
+      has_ended_ = heard == Heard::all;
+    }
+    return failure_ || has_ended_;
   }
   // Once.
   Result<TetMesh> answer(Clock::time_point deadline) {
-    if (failure_) return *failure_;
     wait(deadline);
+    if (failure_) return *failure_;
     const Ended ended = finish(*running_, has_ended_, std::move(answer_));
     running_.reset();
     return ended.timed_out ? judge_end(ended, limits_) : read_answer(job_, ended, limits_);

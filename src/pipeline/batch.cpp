@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 
@@ -16,11 +18,14 @@
 #include "pipeline/inputs.h"
 #include "pipeline/job.h"
 #include "pipeline/junit.h"
+#include "pipeline/limits.h"
 #include "pipeline/outputs.h"
 #include "pipeline/report.h"
 #include "pipeline/roundtrip.h"
 
 namespace selvage::pipeline {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -107,6 +112,13 @@ int Batch::run_one(std::size_t index, const Channel& channel) const {
   job.number = index;
   const std::size_t workers = available_cores(options_);
   job.threads = std::max<std::size_t>(1, workers / std::min(workers, inputs_.size()));
+  std::vector<fs::path> places;
+  for (const PlannedOutput& output : outputs_[index])
+    if (!output.to_standard_output) places.push_back(output.path);
+  if (const Status contained = contain_job(options_, std::array{inputs_[index].path}, places); !contained) {
+    job.say(contained.error());
+    return static_cast<int>(Verdict::failed);
+  }
   return static_cast<int>(run_job(job, entry_of_earlier(inputs_[index].path), channel));
 }
 
@@ -125,7 +137,9 @@ void Batch::receive(std::size_t job, char kind, std::string_view bytes) {
   } else if (kind == packet::report) {
     work.report = bytes;
   } else if (kind == packet::files) {
-    files_ += std::stoul(std::string(bytes));
+    std::size_t count = 0;
+    std::from_chars(bytes.data(), bytes.data() + bytes.size(), count);
+    files_ += count;
   } else if (kind == packet::progress) {
     doing_ = bytes;
     progress_.set(counts_.done + counts_.failed + counts_.skipped, counts_.failed, doing_);
@@ -162,12 +176,11 @@ void Batch::fail(std::size_t job, Message message) {
 void Batch::finish(std::size_t job, const JobEnd& end) {
   Work& work = work_[job];
   work.ended = true;
-  std::string reason = describe(end, options_.timeout, options_.memory);
+  std::string reason = describe(end, time_limit(options_), memory_limit(options_));
   if (reason.empty() && !is_verdict(end.status)) {
     // A library that ends the process by itself, as the C library does when thread storage cannot be had.
-    reason = fmt::format("ended unexpectedly, with status {}", end.status);
-    if (options_.memory > 0)
-      reason += fmt::format(" (its memory was limited to {:g} MB by --memory)", options_.memory);
+    reason = fmt::format("ended unexpectedly, with status {} (it could not take more memory than {})",
+                         end.status, memory_limit(options_));
   }
   if (!reason.empty()) {
     const Kind kind = end.how == JobEnd::How::timed_out ? Kind::limit : Kind::internal;
@@ -275,6 +288,10 @@ int Batch::run(const std::vector<Message>& missing) {
   }
   remove_leftovers();
 
+  NewFolders folders;
+  for (const std::vector<PlannedOutput>& outputs : outputs_)
+    for (const PlannedOutput& output : outputs)
+      if (!output.to_standard_output) folders.expect(output.path);
   JobPool pool;
   pool.count = inputs_.size();
   pool.at_once = available_cores(options_);
@@ -285,12 +302,14 @@ int Batch::run(const std::vector<Message>& missing) {
   pool.finished = [this](std::size_t job, const JobEnd& end) { finish(job, end); };
   pool.interrupted = [this](std::size_t) { has_lost_workers_ = true; };
   pool.tick = [this] { return tick(); };
-  const bool complete = run_jobs(pool);
+  const Result<PoolEnd> end = run_jobs(pool);
   progress_.clear();
   if (has_lost_workers_) remove_leftovers();
 
-  int code = complete ? exit_code() : exit_code::interrupted;
-  if (!complete)
+  const bool complete = end.ok() && *end == PoolEnd::complete;
+  int code = complete ? exit_code() : end.ok() ? exit_code::interrupted : exit_code::failed;
+  if (!end.ok()) (void)refuse(end.error());
+  if (end.ok() && !complete)
     std::fputs("selvage: interrupted; the inputs that were not done have no new outputs\n", stderr);
   if (options_.json && printed_) printed_ = write_to_standard_output(report_text(code == exit_code::well));
   for (const Status& status : {printed_, write_report(code == exit_code::well), write_junit(missing)}) {
@@ -336,6 +355,7 @@ int refuse(const Message& message) {
 
 int run(const Options& wanted) {
   Options options = wanted;
+  if (Status status = check_sandbox(options.sandbox, this_kernel()); !status) return refuse(status.error());
   std::optional<TemporaryFolder> scratch;
   if (options.command == Command::roundtrip) {
     if (const Result<std::vector<Trip>> trips = wanted_trips(options); !trips) return refuse(trips.error());
@@ -350,6 +370,7 @@ int run(const Options& wanted) {
   Result<std::map<std::string, std::string>> earlier = earlier_entries(options);
   if (!earlier) return refuse(earlier.error());
   if (Status status = check_report_places(options); !status.ok()) return refuse(status.error());
+  share_memory(options, std::min(available_cores(options), list->inputs.size()));
   keep_part(list->inputs, options.part, options.parts);
   keep_part(*plan, options.part, options.parts);
   if (options.part > 0) list->missing.clear();

@@ -3,17 +3,12 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdio>
-#include <exception>
-#include <new>
 
-#include "core/process.h"
-#include "core/progress.h"
-#include "core/standard_output.h"
 #include "pipeline/batch.h"
 #include "pipeline/differences.h"
 #include "pipeline/job.h"
 #include "pipeline/parts.h"
+#include "pipeline/single.h"
 #include "pipeline/subject.h"
 
 namespace selvage::pipeline {
@@ -82,58 +77,14 @@ Verdict work(const DiffRequest& request, const Channel& channel) {
   return found.differences.empty() ? Verdict::done : Verdict::defect;
 }
 
-Verdict guarded_work(const DiffRequest& request, const Channel& channel) {
-  const auto fail = [&](Message message) {
-    message.file = "selvage";
-    channel.send(packet::message, to_string(message));
-    return Verdict::failed;
-  };
-  try {
-    return work(request, channel);
-  } catch (const std::bad_alloc&) {
-    return fail(error(Kind::limit, "the comparison needs more memory than there is"));
-  } catch (const std::exception& failure) {
-    return fail(error(Kind::internal, fmt::format("unexpected failure: {}", failure.what())));
-  }
-}
-
 }  // namespace
 
 int diff(const DiffRequest& request) {
-  ProgressDisplay progress(!request.options.quiet && !request.options.no_progress, 1);
-  std::string results;
-  int code = 1;
-  JobPool pool;
-  pool.count = 1;
-  pool.seconds = request.options.timeout;
-  pool.mebibytes = request.options.memory;
-  pool.run = [&](std::size_t, const Channel& channel) {
-    return static_cast<int>(guarded_work(request, channel));
-  };
-  pool.received = [&](std::size_t, char kind, std::string_view bytes) {
-    if (kind == packet::result) results += bytes;
-    if (kind == packet::progress) progress.set(0, 0, std::string(bytes));
-    if (kind != packet::message) return;
-    progress.clear();
-    std::fprintf(stderr, "%.*s\n", static_cast<int>(bytes.size()), bytes.data());
-  };
-  pool.finished = [&](std::size_t, const JobEnd& end) {
-    progress.clear();
-    code = end.how == JobEnd::How::exited ? end.status : 1;
-    if (const std::string reason = describe(end, request.options.timeout, request.options.memory);
-        !reason.empty())
-      std::fprintf(stderr, "selvage: error: the comparison %s\n", reason.c_str());
-  };
-  pool.tick = [&] { return progress.tick(); };
-  if (!run_jobs(pool)) {
-    std::fputs("selvage: interrupted\n", stderr);
-    return 130;
-  }
-  if (Status printed = write_to_standard_output(results); !printed) {
-    std::fprintf(stderr, "%s\n", to_string(printed.error()).c_str());
-    return 1;
-  }
-  return code;
+  return run_single(request.options,
+                    {.what = "the comparison",
+                     .inputs = {first_file(request.a).string(), first_file(request.b).string()},
+                     .outputs = {},
+                     .work = [&](const Channel& channel) { return work(request, channel); }});
 }
 
 }  // namespace selvage::pipeline

@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <exception>
-#include <new>
 
 #include "core/output.h"
 #include "core/source.h"
@@ -13,21 +10,29 @@
 #include "pipeline/batch.h"
 #include "pipeline/detect.h"
 #include "pipeline/drafts.h"
+#include "pipeline/limits.h"
 #include "pipeline/outputs.h"
+#include "pipeline/single.h"
 
 namespace selvage::pipeline {
 
 namespace {
 
-void say(const EditRequest& request, Message message) {
-  if (message.file.empty()) message.file = request.input == "-" ? "<stdin>" : request.input;
-  if (message.severity == Severity::note || (request.quiet && message.severity != Severity::error)) return;
-  std::fprintf(stderr, "%s\n", to_string(message).c_str());
-}
+// The request, and who is told of it.
+struct Edit {
+  const EditRequest& request;
+  const Channel& channel;
 
-void say_all(const EditRequest& request, const std::vector<Message>& messages) {
-  for (const Message& message : messages) say(request, message);
-}
+  void say(Message message) const {
+    if (message.file.empty()) message.file = request.input == "-" ? "<stdin>" : request.input;
+    if (message.severity == Severity::note) return;
+    if (!request.options.quiet || message.severity == Severity::error)
+      channel.send(packet::message, to_string(message));
+  }
+  void say_all(const std::vector<Message>& messages) const {
+    for (const Message& message : messages) say(message);
+  }
+};
 
 // The line behind which the edit belongs: the end of the item that makes the yarn (of the last one, where its
 // place is not known), or an edit behind it.
@@ -42,26 +47,26 @@ int line_before(const fabric::Fabric& fabric, TextPlace yarn) {
 }
 
 // Where the yarn is made, if the edit is possible; nothing when it is not (it was said why).
-std::optional<TextPlace> try_edit(const EditRequest& request, const fabric::Fabric& before) {
+std::optional<TextPlace> try_edit(const Edit& edit, const fabric::Fabric& before) {
   fabric::Fabric after = before;
-  after.edits.push_back(request.edit.edit);
+  after.edits.push_back(edit.request.edit.edit);
   Diagnostics diagnostics;
   fabric::BuildOptions options;
   options.detail = fabric::Detail::yarn;  // an edit moves the centre line of the whole yarn
   const std::optional<fabric::YarnBuilder> builder = fabric::YarnBuilder::create(after, options, diagnostics);
-  say_all(request, diagnostics.messages());
+  edit.say_all(diagnostics.messages());
   if (!builder) return std::nullopt;
-  const std::optional<std::size_t> index = builder->find(request.edit.edit.yarn);
+  const std::optional<std::size_t> index = builder->find(edit.request.edit.edit.yarn);
   if (!index) {
-    say(request, error(Kind::geometry, fmt::format("there is no yarn '{}'", request.edit.edit.yarn)));
+    edit.say(error(Kind::geometry, fmt::format("there is no yarn '{}'", edit.request.edit.edit.yarn)));
     return std::nullopt;
   }
   const Result<yarn::Body> body = builder->build(*index);
   if (!body) {
-    say(request, body.error());
+    edit.say(body.error());
     return std::nullopt;
   }
-  say_all(request, body->messages);
+  edit.say_all(body->messages);
   return body->place;
 }
 
@@ -73,9 +78,10 @@ Status write(const EditRequest& request, std::string_view text) {
   return file->commit();
 }
 
-bool work(const EditRequest& request) {
+bool work(const Edit& edit) {
+  const EditRequest& request = edit.request;
   const auto fail = [&](const Message& message) {
-    say(request, message);
+    edit.say(message);
     return false;
   };
   const Result<Source> source = Source::open(request.input);
@@ -89,9 +95,9 @@ bool work(const EditRequest& request) {
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
   if (fabric) resolve_drafts(*fabric, *source, diagnostics);
-  say_all(request, diagnostics.messages());
+  edit.say_all(diagnostics.messages());
   if (!fabric || diagnostics.has_errors()) return false;
-  const std::optional<TextPlace> place = try_edit(request, *fabric);
+  const std::optional<TextPlace> place = try_edit(edit, *fabric);
   if (!place) return false;
   const std::string text =
       (*format)->insert_edit(source->bytes(), line_before(*fabric, *place), request.edit);
@@ -106,14 +112,14 @@ int edit(const EditRequest& asked) {
   if (!place) return refuse(place.error());
   EditRequest request = asked;
   request.output = place->string();
-  try {
-    return work(request) ? 0 : 1;
-  } catch (const std::bad_alloc&) {
-    say(request, error(Kind::limit, "needs more memory than there is"));
-  } catch (const std::exception& failure) {
-    say(request, error(Kind::internal, fmt::format("unexpected failure: {}", failure.what())));
-  }
-  return 1;
+  Single single;
+  single.what = "the edit";
+  single.inputs = {request.input};
+  if (request.output != "-") single.outputs = {request.output};
+  single.work = [&](const Channel& channel) {
+    return work({request, channel}) ? Verdict::done : Verdict::failed;
+  };
+  return run_single(request.options, single);
 }
 
 }  // namespace selvage::pipeline

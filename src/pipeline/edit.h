@@ -4,6 +4,7 @@
 #include <string>
 
 #include "formats/format.h"
+#include "pipeline/options.h"
 
 namespace selvage::pipeline {
 
@@ -11,7 +12,7 @@ struct EditRequest {
   std::string input;   // a path, or "-" for standard input
   std::string output;  // -o: a file, which may be the input's, a folder, or "-" for standard output
   formats::NewEdit edit;
-  bool quiet = false;
+  Options options;  // quiet, timeout, memory, sandbox
 };
 
 // Builds the yarn with the edit, and writes the text with the edit's line behind the block that makes the

@@ -13,6 +13,7 @@
 #include "pipeline/detect.h"
 #include "pipeline/drafts.h"
 #include "pipeline/facts.h"
+#include "pipeline/limits.h"
 #include "pipeline/parts.h"
 
 namespace selvage::pipeline {
@@ -176,6 +177,7 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
     say(format.error());
     return std::nullopt;
   }
+  if (!is_own) limit_time(options, **format);
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric;
   if (look.file) {
@@ -314,10 +316,7 @@ Verdict guarded_work(Job& job, const std::string& earlier) {
   try {
     return work(job, earlier);
   } catch (const std::bad_alloc&) {
-    job.say(error(Kind::limit,
-                  job.options.memory > 0
-                      ? fmt::format("needs more memory than the {:g} MB of --memory", job.options.memory)
-                      : std::string("needs more memory than there is")));
+    job.say(error(Kind::limit, fmt::format("needs more memory than {}", memory_limit(job.options))));
   } catch (const std::exception& failure) {
     job.say(error(Kind::internal, fmt::format("unexpected failure: {}", failure.what())));
   }

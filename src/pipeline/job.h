@@ -54,6 +54,7 @@ class Job {
   std::size_t threads = 1;      // that this job may use
   std::size_t number = 0;       // of the input in this run
   bool keeps_messages = false;  // in its report, whether or not that is written
+  bool is_own = false;          // this job wrote its input itself
   bool says_once = false;       // warnings and notes that were said are not said again
   double gap = 0;               // of constructions (fabric::BuildOptions::gap), file units
   bool unsolved = false;        // the yarns cannot be moved apart (it was said why): nothing is written

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/containment.h"
 #include "core/units.h"
 #include "fabric/plies.h"
 #include "formats/format.h"
@@ -32,9 +33,11 @@ struct Options {
   std::string output;               // -o; empty: beside the inputs; "-": standard output
   std::string formats;              // --to, as given
 
-  std::size_t workers = 0;  // 0: one a core
-  double timeout = 0;       // seconds an input; 0: none
-  double memory = 0;        // MiB an input; 0: none
+  std::size_t workers = 0;       // 0: one a core
+  double timeout = 0;            // seconds an input; 0: none, but for formats of other programs
+  double memory = 0;             // MiB an input; 0: its share of the machine
+  bool memory_is_share = false;  // it was not given
+  Sandbox sandbox = Sandbox::automatic;
   std::size_t part = 0, parts = 1;
   bool quiet = false, verbose = false, no_progress = false;
   bool strict = false;

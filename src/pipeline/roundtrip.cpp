@@ -124,6 +124,7 @@ std::optional<Reading> read_back(const Job& job, const std::filesystem::path& pa
   Job again(quiet, input, job.outputs, job.channel());
   again.threads = job.threads;
   again.keeps_messages = true;
+  again.is_own = true;
   Reading reading;
   const std::optional<fabric::Fabric> fabric = again.read();
   if (fabric) {

@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -15,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "core/containment.h"
 #include "fem/tetgen_worker/job.h"
 #include "fem/tetgen_worker/protocol.h"
 
@@ -45,15 +47,15 @@ void write_all(const void* from, std::size_t size) {
   }
 }
 
-void limit(int resource, double value) {
+// A lower limit that is in force already stays.
+void limit(__rlimit_resource_t resource, double value) {
   if (value <= 0) return;
   const auto amount = static_cast<rlim_t>(value);
-  rlimit both{amount, amount + 2};  // processor time: SIGXCPU first
-  // A lower limit that is in force already stays.
-  rlimit now{};
-  if (::getrlimit(static_cast<__rlimit_resource_t>(resource), &now) == 0 && now.rlim_max < amount)
-    both = {now.rlim_max, now.rlim_max};
-  ::setrlimit(static_cast<__rlimit_resource_t>(resource), &both);
+  rlimit both{};
+  if (::getrlimit(resource, &both) != 0) ::_exit(1);
+  both.rlim_max = std::min(both.rlim_max, amount + 2);  // processor time: SIGXCPU first
+  both.rlim_cur = std::min(both.rlim_max, amount);
+  if (::setrlimit(resource, &both) != 0) ::_exit(1);
 }
 
 // The request's arrays; false: they do not make sense.
@@ -79,7 +81,10 @@ int run() {
   limit(RLIMIT_AS, head.memory);
   limit(RLIMIT_CPU, head.cpu_seconds);
   const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
+  if (::setrlimit(RLIMIT_CORE, &no_core) != 0) return 1;
+
+  // It has all that it needs: no file, no network, no program.
+  if (!contain({}, this_kernel())) return 1;
 
   Job job;
   job.settings = head;

@@ -1,0 +1,107 @@
+#include "pipeline/limits.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/containment.h"
+#include "core/machine.h"
+#include "core/module.h"
+#include "core/process.h"
+#include "pipeline/detect.h"
+
+namespace selvage::pipeline {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Address space is what is limited, and libraries take some of it that is no memory.
+constexpr double least_share = 1024;  // MiB
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+// Where it is missing, with a name that lasts. What cannot be made is told when the output is.
+void make_folder(const fs::path& folder) {
+  std::error_code failure;
+  if (folder.empty() || fs::exists(folder, failure)) return;
+  make_folder(folder.parent_path());
+  if (!fs::create_directory(folder, failure)) return;
+  const int above = ::open(folder_of(folder).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (above < 0) return;
+  ::fsync(above);
+  ::close(above);
+}
+
+// Where the file that is written stands, all links followed.
+fs::path place_of(const fs::path& output) {
+  std::error_code failure;
+  const fs::path target = fs::weakly_canonical(output, failure);
+  return folder_of(failure ? output : target);
+}
+
+}  // namespace
+
+void NewFolders::expect(const fs::path& output) {
+  if (!looked_at_.insert(folder_of(output)).second) return;
+  std::error_code failure;
+  for (fs::path folder = place_of(output); !folder.empty() && !fs::exists(folder, failure);
+       folder = folder.parent_path())
+    missing_.insert(folder);
+}
+
+NewFolders::~NewFolders() {
+  // A folder stands behind the one above it.
+  for (auto folder = missing_.rbegin(); folder != missing_.rend(); ++folder) ::rmdir(folder->c_str());
+}
+
+void share_memory(Options& options, std::size_t jobs) {
+  if (options.memory > 0) return;
+  const double available = available_memory();
+  if (available <= 0) return;
+  options.memory =
+      std::floor(std::max(least_share, available / static_cast<double>(std::max<std::size_t>(1, jobs))));
+  options.memory_is_share = true;
+}
+
+void limit_time(const Options& options, const formats::Descriptor& format) {
+  if (options.timeout <= 0 && &format != format_named("txt")) end_after(foreign_timeout);
+}
+
+std::string memory_limit(const Options& options) {
+  if (options.memory <= 0) return "there is";
+  if (!options.memory_is_share) return fmt::format("the {:g} MB of --memory", options.memory);
+  return fmt::format("its share of the machine, {:g} MB; --memory gives it more", options.memory);
+}
+
+double time_limit(const Options& options) {
+  return options.timeout > 0 ? options.timeout : foreign_timeout;
+}
+
+Status contain_job(const Options& options, std::span<const std::string> inputs,
+                   std::span<const fs::path> outputs) {
+  if (options.sandbox == Sandbox::off) return {};
+  Allowed allowed;
+  allowed.libraries = true;
+  for (const std::string& input : inputs) {
+    if (input == "-") continue;
+    allowed.read.emplace_back(input);  // it may be a link to elsewhere
+    allowed.read.push_back(folder_of(input));
+  }
+  for (const fs::path& output : outputs) {
+    const fs::path folder = place_of(output);
+    make_folder(folder);
+    allowed.write.push_back(folder);
+  }
+  if (!options.scratch.empty()) allowed.write.emplace_back(options.scratch);
+  if (options.command == Command::mesh)
+    if (const Result<fs::path> mesher = find_worker("selvage-tetgen")) allowed.run.push_back(*mesher);
+  return contain(allowed, this_kernel());
+}
+
+}  // namespace selvage::pipeline

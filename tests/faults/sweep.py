@@ -1,0 +1,172 @@
+"""Every system call that can fail is made to fail once, and from then on: nothing partial, the right exit code, no hang.
+
+sweep.py [--all] [COMMAND...]: all points instead of a few of each call; only these commands. Prints the table of points
+and what was found. SELVAGE names the program, SELVAGE_FAULTS the library of preload.cpp.
+"""
+
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+
+PROGRAM = os.path.abspath(os.environ["SELVAGE"])
+LIBRARY = os.path.abspath(os.environ["SELVAGE_FAULTS"])
+CALLS = ["write", "pwrite", "read", "pread", "fsync", "ftruncate", "rename", "linkat", "open", "mkdir", "mmap", "memfd_create",
+         "fork", "pipe2", "signalfd", "fstat", "poll", "posix_spawn", "pthread_create", "dlopen"]
+POINTS = 6  # of one call in one command, without --all
+PATIENCE = 120  # seconds; a run takes less than one
+OLD = b"what an earlier run wrote\n"
+
+YARN = """fabric 1
+title "{title}"
+units mm
+thread rod
+  tex 100
+  density 2
+  section circle 0.4
+end
+yarn one rod
+  path chord
+    0 0 0
+    1 0 {height}
+    2 0 0
+  end
+end
+"""
+
+# The outputs, and the rest of the command line; {in} and {out} are folders.
+COMMANDS = {
+    "convert": (["a.igs", "a.stp"], ["convert", "{in}/a.txt", "--to", "iges,step", "-o", "{out}"]),
+    "convert -": ([], ["convert", "{in}/a.txt", "--to", "iges", "-o", "-"]),
+    "mesh": (["a.inp"], ["mesh", "{in}/a.txt", "--size", "0.3", "-o", "{out}"]),
+    "check": ([], ["check", "{in}/a.txt"]),
+    "view": (["a.png"], ["view", "{in}/a.txt", "-o", "{out}/a.png"]),
+    "diff": ([], ["diff", "{in}/a.txt", "{in}/b.txt"]),
+    "roundtrip": ([], ["roundtrip", "{in}/a.txt"]),
+    "edit": (["e.txt"], ["edit", "{in}/a.txt", "--yarn", "one", "--point", "2", "--to", "1,0,0.2", "-o", "{out}/e.txt"]),
+    "relax": (["a.txt"], ["relax", "{in}/a.txt", "-o", "{out}"]),
+}
+
+
+class Run:
+    """One run of a command in folders of its own, with a fault or none."""
+
+    def __init__(self, command, call="", at="0", old=False):
+        outputs, words = COMMANDS[command]
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="selvage-faults-"))
+        try:
+            # In sight of the program only as relative paths, so that all runs say the same.
+            for name in ("in", "out", "tmp"):
+                (folder / name).mkdir()
+            (folder / "in/a.txt").write_text(YARN.format(title="one", height=0.1))
+            (folder / "in/b.txt").write_text(YARN.format(title="other", height=0.15))
+            for name in outputs if old else []:
+                (folder / "out" / name).write_bytes(OLD)
+            self.start(folder, [word.replace("{in}", "in").replace("{out}", "out") for word in words], call, at)
+            self.files = {path.name: path.read_bytes() for path in (folder / "out").iterdir()}
+            self.left = [str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()
+                         and path.parent.name != "out" and path.name not in ("a.txt", "b.txt")]
+            self.left += [str(path.relative_to(folder)) for path in (folder / "tmp").iterdir()]
+        finally:
+            shutil.rmtree(folder)
+
+    def start(self, folder, words, call, at):
+        page = os.memfd_create("faults", 0)
+        try:
+            os.ftruncate(page, 4096)
+            surroundings = {**os.environ, "LD_PRELOAD": LIBRARY, "FAULT_CALL": call, "FAULT_AT": at, "FAULT_PAGE": str(page),
+                            "TMPDIR": str(folder / "tmp"), "SOURCE_DATE_EPOCH": "1700000000", "LC_ALL": "C"}
+            process = subprocess.Popen([PROGRAM, *words, "-j1"] if words[0] != "edit" else [PROGRAM, *words], cwd=folder,
+                                       env=surroundings, pass_fds=[page], start_new_session=True, stdin=subprocess.DEVNULL,
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            try:
+                self.stdout, self.stderr = process.communicate(timeout=PATIENCE)
+                self.hung = False
+            except subprocess.TimeoutExpired:
+                self.hung = True
+                os.killpg(process.pid, signal.SIGKILL)
+                self.stdout, self.stderr = process.communicate()
+            self.code = process.returncode
+            self.calls, self.faults = (int.from_bytes(os.pread(page, 4, offset), sys.byteorder) for offset in (4, 8))
+        finally:
+            os.close(page)
+
+    def violations(self, whole, old):
+        """What is wrong with it, beside the run without a fault."""
+        if self.hung:
+            return ["it hangs"]
+        wrong = []
+        if self.code not in {whole.code, 1}:
+            wrong.append(f"exit code {self.code}")
+        if self.code == whole.code and (self.files != whole.files or self.stdout != whole.stdout):
+            wrong.append(f"exit code {self.code}, and not all of its outputs")
+        if self.code != whole.code and b"error: " not in self.stderr:
+            wrong.append(f"exit code {self.code} without an error message")
+        for name, bytes_ in self.files.items():
+            if name not in whole.files:
+                wrong.append(f"out/{name} is left over")
+            elif bytes_ != whole.files[name] and not (old and bytes_ == OLD):
+                wrong.append(f"out/{name} is partial")
+        if old and len(self.files) < len(whole.files):
+            wrong.append("an old output is gone")
+        return wrong + [f"{name} is left over" for name in self.left]
+
+
+def chosen(total, every):
+    """The calls that are made to fail: the first and last ones, and some between."""
+    if every or total <= POINTS:
+        return list(range(1, total + 1))
+    return sorted({1 + round(k * (total - 1) / (POINTS - 1)) for k in range(POINTS)})
+
+
+def sweep(command, call, every, pool):
+    """The numbers of calls and of faults, and the violations, of this call in this command: once over old outputs, and
+    from then on without any."""
+    whole = Run(command)
+    most, faults, found = 0, 0, []
+    for old, lasting in ((True, ""), (False, "+")):
+        total = Run(command, call, "0", old).calls
+        most = max(most, total)
+        plan = [f"{n}{lasting}" for n in chosen(total, every)]
+        runs = list(pool.map(lambda at: Run(command, call, at, old), plan))
+        # Until one passes without a fault: waiting takes another number of calls every time.
+        while not runs or runs[-1].faults:
+            plan.append(f"{total + 1}{lasting}")
+            total += 1 + total // 4
+            runs.append(Run(command, call, plan[-1], old))
+        faults += sum(run.faults > 0 for run in runs)
+        found += [f"{command}, {call} {at}{' over old outputs' if old else ''}: {wrong}\n"
+                  f"    {run.stderr.decode(errors='replace').strip()}"
+                  for at, run in zip(plan, runs) for wrong in run.violations(whole, old)]
+    return most, faults, found
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--all", action="store_true", help="every point")
+    parser.add_argument("--call", action="append", help="only this call")
+    parser.add_argument("commands", nargs="*", metavar="COMMAND")
+    wanted = parser.parse_args()
+    print(f"{'command':10} {'call':15} {'calls':>6} {'faults':>7} {'violations':>11}")
+    violations, points = [], 0
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        for command in wanted.commands or COMMANDS:
+            for call in wanted.call or CALLS:
+                total, faults, found = sweep(command, call, wanted.all, pool)
+                if total:
+                    print(f"{command:10} {call:15} {total:6} {faults:7} {len(found):11}", flush=True)
+                for text in found:
+                    print(text, flush=True)
+                violations += found
+                points += faults
+    print(f"{points} faults, {len(violations)} violations")
+    return 1 if violations or points == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
