@@ -309,6 +309,15 @@ std::size_t Part21::refs_end(std::size_t place) const {
   return place + 1 < statements.size() ? statements[place + 1].first_ref : refs.size();
 }
 
+std::string first_string(const Source& source, const Statement& statement) {
+  Lexer lexer(source.bytes().substr(static_cast<std::size_t>(statement.spot.at - source.bytes().data())),
+              statement.spot);
+  do lexer.next();
+  while (lexer.token() != Token::string && lexer.token() != Token::semicolon);
+  if (lexer.token() != Token::string) return {};
+  return decoded(lexer.text().substr(1, lexer.text().size() - 2));
+}
+
 std::optional<Part21> read_part21(const Source& source, TextReport& report) {
   return FileReader(source, report).read();
 }

@@ -39,6 +39,10 @@ struct Part21 {
   [[nodiscard]] std::string_view type_of(const Statement& statement) const { return types[statement.type]; }
 };
 
+// The first string of a statement, decoded to UTF-8: the name of every representation item. Empty where there
+// is none. Precondition: `statement` was read from `source`.
+std::string first_string(const Source& source, const Statement& statement);
+
 // Errors, each with its line: another kind of file, a file that ends early, broken statements, an id that is
 // defined twice or not at all, entities that refer to each other in a circle. Nothing comes back then.
 std::optional<Part21> read_part21(const Source& source, TextReport& report);

@@ -1,5 +1,7 @@
 #include "formats/step/part_shape.h"
 
+#include <fmt/format.h>
+
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
@@ -358,6 +360,26 @@ class PartBuilder {
 
 PartShape build_part(const cad::Part& part, double tolerance) {
   return PartBuilder(part, tolerance).build();
+}
+
+std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part) {
+  constexpr std::string_view remedy = "--to iges writes its faces as they are";
+  if (part.kind == cad::Part::Kind::solid && !built.closed)
+    return fmt::format("its faces do not close it, and a solid must stay one; {}", remedy);
+  for (std::size_t i = 0; i < part.faces.size(); ++i) {
+    const cad::Face& face = part.faces[i];
+    const std::string who = face.origin.entity.empty() ? fmt::format("face {}", i + 1) : face.origin.entity;
+    if (i >= built.faces.size() || built.faces[i].IsNull())
+      return fmt::format("OpenCASCADE loses its face {}; {}", who, remedy);
+    std::size_t wires = 0;
+    for (TopExp_Explorer it(built.faces[i], TopAbs_WIRE); it.More(); it.Next()) ++wires;
+    if (!face.loops.empty() && wires != face.loops.size())
+      return fmt::format("of the {} boundaries of its face {} OpenCASCADE makes {}; {}", face.loops.size(),
+                         who, wires, remedy);
+  }
+  if (!BRepCheck_Analyzer(built.shape).IsValid())
+    return fmt::format("OpenCASCADE's check finds the result invalid; {}", remedy);
+  return std::nullopt;
 }
 
 TopoDS_Edge build_edge(const nurbs::Curve& curve) {

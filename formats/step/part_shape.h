@@ -3,6 +3,8 @@
 
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Shape.hxx>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "cad/model.h"
@@ -22,6 +24,11 @@ struct PartShape {
 // is built as it is stated where OpenCASCADE finds that valid, rectangles whose parameters are lengths as
 // planes. Exceptions: Standard_Failure.
 PartShape build_part(const cad::Part& part, double tolerance);
+
+// Why this is not what the part says, with a remedy; nothing where it is. A solid stays one, every face is
+// there with as many boundaries as it had, and OpenCASCADE's check (BRepCheck_Analyzer) finds nothing.
+// Exceptions: Standard_Failure.
+std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part);
 
 TopoDS_Edge build_edge(const nurbs::Curve& curve);
 

@@ -42,7 +42,6 @@
 #include "formats/step/faces.h"
 #include "formats/step/inspect.h"
 #include "formats/step/session.h"
-#include "formats/step/strings.h"
 #include "solid/occt/guard.h"
 
 namespace selvage::formats::step {
@@ -238,8 +237,10 @@ class ModelReader {
     return found == items_.end() ? Handle(StepRepr_RepresentationItem)() : found->second;
   }
 
-  static std::string name_of_item(const Handle(StepRepr_RepresentationItem) & item) {
-    return item.IsNull() || item->Name().IsNull() ? std::string() : decoded(item->Name()->ToCString());
+  // As the file says it: OpenCASCADE's reader takes a doubled backslash for the beginning of a code.
+  [[nodiscard]] std::string name_of_item(const Handle(StepRepr_RepresentationItem) & item) const {
+    const Statement* const statement = item.IsNull() ? nullptr : file_.find(entities_->IdentLabel(item));
+    return statement == nullptr ? std::string() : first_string(source_, *statement);
   }
 
   [[nodiscard]] std::optional<cad::Color> color_of_label(const TDF_Label& label) const {

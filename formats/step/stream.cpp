@@ -124,11 +124,23 @@ void StepStream::convert(std::string_view text) {
   }
 }
 
-// Inside a string a line's end is OpenCASCADE's folding, not content.
+// Inside a string a line's end is OpenCASCADE's folding, not content. It doubles a backslash, as the standard
+// has it, but its reader takes what follows two for a code all the same (\\X2\\0041): a backslash is written
+// as a code itself, which every reader understands.
 void StepStream::convert_string(std::string_view piece) {
   for (const char c : piece) {
     if (c == '\n') continue;
-    if (static_cast<unsigned char>(c) >= 0x80) {
+    if (c == '\\' && !after_backslash_) {
+      after_backslash_ = true;
+      continue;
+    }
+    if (after_backslash_ && c != '\\') {  // a code of OpenCASCADE's own
+      put_encoded();
+      put("\\");
+    }
+    const bool is_doubled = after_backslash_ && c == '\\';
+    after_backslash_ = false;
+    if (is_doubled || static_cast<unsigned char>(c) >= 0x80) {
       encoded_ += c;
       continue;
     }

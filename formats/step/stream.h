@@ -41,9 +41,10 @@ class StepStream : public std::streambuf {
   std::string raw_;  // as OpenCASCADE printed it
   std::string out_;  // ready to be written
   bool in_string_ = false;
-  std::string encoded_;     // bytes of UTF-8 inside a string that are not written yet
-  std::size_t column_ = 0;  // where the next character goes
-  char last_ = '\n';        // the last character written
+  bool after_backslash_ = false;  // inside a string, the first of two
+  std::string encoded_;           // bytes of UTF-8 inside a string that are not written yet
+  std::size_t column_ = 0;        // where the next character goes
+  char last_ = '\n';              // the last character written
   Status status_;
 };
 

@@ -39,6 +39,7 @@
 #include <ostream>
 
 #include "core/clock.h"
+#include "core/text_report.h"
 #include "formats/step/part_shape.h"
 #include "formats/step/session.h"
 #include "formats/step/stream.h"
@@ -192,13 +193,12 @@ class StepBodyWriter : public BodyWriter {
     const double tolerance =
         std::max(1e-6 * box.diagonal().norm(), uncertainty / millimetres_per(options_.units));
     const PartShape built = build_part(part, tolerance);
-    if (part.kind == cad::Part::Kind::solid && !built.closed) {
-      Message open = warning(Kind::geometry,
-                             fmt::format("the faces of '{}' do not close it: it is written as an open shell, "
-                                         "not as a solid",
-                                         part.name));
-      open.place = part.origin.place;
-      facts_.messages.push_back(std::move(open));
+    if (const std::optional<std::string> flaw = flaw_of(built, part)) {
+      Message refused = error(
+          Kind::geometry, fmt::format("{} cannot be written as STEP: {}",
+                                      part.name.empty() ? part.origin.entity : in_quotes(part.name), *flaw));
+      refused.place = part.origin.place;
+      return refused;
     }
     ++facts_.entities[built.closed ? "MANIFOLD_SOLID_BREP" : "SHELL_BASED_SURFACE_MODEL"];
     Part added{built.shape, part.name, part.color, {}};

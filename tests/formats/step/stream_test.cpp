@@ -46,6 +46,14 @@ TEST(StepStream, IntegersNamesAndEnumerationsStay) {
   EXPECT_EQ(rewritten(text), text);
 }
 
+// OpenCASCADE doubles a backslash, and may fold a line between the two.
+TEST(StepStream, BackslashesAreCodes) {
+  EXPECT_EQ(rewritten("#1 = P('a\\\\X2\\\\0041\\\\X0\\\\b');\n"),
+            "#1 = P('a\\X2\\005C\\X0\\X2\\X2\\005C\\X0\\0041\\X2\\005C\\X0\\X0\\X2\\005C\\X0\\b');\n");
+  EXPECT_EQ(rewritten("#1 = P('a\\\n\\b');\n"), "#1 = P('a\\X2\\005C\\X0\\b');\n");
+  EXPECT_EQ(rewritten("#1 = P('a\\X\\09b');\n"), "#1 = P('a\\X\\09b');\n");
+}
+
 TEST(StepStream, StringsAreNotTouchedButUnfolded) {
   EXPECT_EQ(rewritten("#1 = P('0x1p+0 -0x1p-1 it''s .T. #7',0x1p+1);\n"),
             "#1 = P('0x1p+0 -0x1p-1 it''s .T. #7',2.);\n");

@@ -1,0 +1,105 @@
+"""STEP files of our own with one reference that points elsewhere, or one attribute that is another: whatever they say, no
+worker dies of them. STEP_MUTATIONS files (default 100) for each command; the same ones on every run."""
+
+import json
+import os
+import pathlib
+import random
+import re
+import subprocess
+import unittest
+
+from program import GRID, RING, SAMPLES, Case, environment, run
+
+COUNT = int(os.environ.get("STEP_MUTATIONS", "100"))
+COMMANDS = {
+    "info": ["info"],
+    "check": ["check"],
+    "convert": ["convert", "--to", "iges"],
+}
+# Reading sources: one row a kind of file that the program writes.
+BASES = [
+    ("patch", [GRID]),
+    ("fan", [GRID, "--ends", "fan"]),
+    ("planar", [RING, "--ends", "planar"]),
+    ("open", [GRID, "--ends", "none"]),
+    ("plies", [SAMPLES / "ply2_plain.txt", "--step-schema", "AP214"]),
+    ("instances", [SAMPLES / "weave_plain.txt", "--instances"]),
+    ("pieces", [SAMPLES / "pocket_pieces.txt"]),
+    ("cell", [SAMPLES / "cell_straight.txt", "--cut", "--matrix"]),
+]
+REFERENCE = re.compile(r"#(\d+)")
+STATEMENT = re.compile(r"(?m)^#(\d+)\s*=\s*\(?\s*([A-Z0-9_]+)")
+OTHERS = ["$", "*", "()", "''", "0.", "1", ".T.", "LENGTH_MEASURE(1.)", "(#1,#2)"]
+
+
+def split(text):
+    """The text around its DATA section, and that section."""
+    begin, end = text.index("DATA;") + 5, text.rindex("ENDSEC;")
+    return text[:begin], text[begin:end], text[end:]
+
+
+def places_of_references(data):
+    """Where references stand that are no statement's own number."""
+    return [match for match in REFERENCE.finditer(data) if not re.match(r"\s*=", data[match.end():match.end() + 3])]
+
+
+class Base:
+    def __init__(self, text):
+        self.head, self.data, self.tail = split(text)
+        self.references = places_of_references(self.data)
+        self.types = {int(number): kind for number, kind in STATEMENT.findall(self.data)}
+        self.numbers = sorted(self.types)
+        self.of_type = {}
+        for number in self.numbers:
+            self.of_type.setdefault(self.types[number], []).append(number)
+
+    def mutated(self, chance):
+        """One reference that points to another entity (in a third of the cases of the same type), or is no reference."""
+        match = chance.choice(self.references)
+        kind = chance.randrange(6)
+        if kind == 0:
+            new = chance.choice(OTHERS)
+        elif kind < 3:
+            new = f"#{chance.choice(self.of_type[self.types[int(match.group(1))]])}"
+        else:
+            new = f"#{chance.choice(self.numbers)}"
+        return self.head + self.data[:match.start()] + new + self.data[match.end():] + self.tail
+
+
+class Mutations(Case):
+    def bases(self):
+        made = []
+        for name, arguments in BASES:
+            path = self.folder / f"{name}.stp"
+            self.succeeds("convert", *arguments, "-o", path)
+            made.append(Base(path.read_text()))
+        return made
+
+    def test_no_worker_dies(self):
+        bases, chance = self.bases(), random.Random(6)
+        folder = self.folder / "mutated"
+        folder.mkdir()
+        for number in range(COUNT):
+            (folder / f"m{number:05}.stp").write_text(bases[number % len(bases)].mutated(chance))
+        for name, command in COMMANDS.items():
+            report = self.folder / f"{name}.json"
+            more = ["-o", self.folder / f"out_{name}"] if name == "convert" else []
+            done = run(*command, folder, *more, "--report", report, "--quiet", "--timeout", "120", "--memory", "2000")
+            self.assertIn(done.returncode, (0, 1, 3), done.stderr[-2000:])
+            inputs = json.loads(report.read_text())["inputs"]
+            self.assertEqual(len(inputs), COUNT)
+            with self.subTest(command=name):
+                died = [(pathlib.Path(each["path"]).name, message["text"]) for each in inputs
+                        for message in each.get("messages", []) if re.search(r"crashed|was stopped|was killed", message["text"])]
+                self.keep(folder, died)
+                self.assertEqual(died, [])
+
+    def keep(self, folder, died):
+        kept = os.environ.get("STEP_MUTATIONS_KEEP")
+        for name, _ in died if kept else []:
+            (pathlib.Path(kept) / name).write_bytes((folder / name).read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()
