@@ -288,7 +288,7 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
   const Thread* axial = braid.axial_count > 0 ? fabric.find_thread(braid.axial_thread) : nullptr;
   const std::string_view unit = name_of(fabric.units);
   const auto outline_of = [&](const Thread& of, TextPlace place) -> Result<std::vector<Vec2>> {
-    const Result<yarn::Section> section = section_of(of, fabric.units, false);
+    const Result<yarn::Section> section = centred_section_of(of, fabric.units);
     Status checked;
     if (!section)
       checked = section.error();
@@ -303,9 +303,9 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
   if (axial != nullptr) axial_outline = outline_of(*axial, braid.axial_place);
   if (!axial_outline) return axial_outline.error();
 
-  const yarn::SectionSize size = yarn::nominal_size(*section_of(thread, fabric.units, false));
+  const yarn::SectionSize size = yarn::nominal_size(*centred_section_of(thread, fabric.units));
   const double inlay =
-      axial == nullptr ? 0.0 : yarn::nominal_size(*section_of(*axial, fabric.units, false)).height;
+      axial == nullptr ? 0.0 : yarn::nominal_size(*centred_section_of(*axial, fabric.units)).height;
   BraidShape shape = shape_of(braid, size);
   const double least = 0.5 * (size.height + inlay);
   if (Status fits = check_counts(braid, shape); !fits) return fits.error();

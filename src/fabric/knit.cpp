@@ -172,7 +172,7 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
   if (thread == nullptr)
     return failed(error(Kind::geometry, fmt::format("there is no thread '{}'", knit.thread)),
                   knit.thread_place);
-  Result<yarn::Section> section = section_of(*thread, fabric.units, false);
+  Result<yarn::Section> section = centred_section_of(*thread, fabric.units);
   if (!section) return failed(section.error(), knit.thread_place);
   const yarn::SectionSize size = yarn::nominal_size(*section);
   const long long beside = fabric.cell ? margin_wales : 0;

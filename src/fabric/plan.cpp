@@ -12,7 +12,7 @@ Result<YarnPlan> start_plan(const Fabric& fabric, const Thread& thread, std::str
   plan.place = place;
   plan.thread_name = thread.name;
   plan.thread = thread;
-  Result<yarn::Section> section = section_of(thread, fabric.units, false);
+  Result<yarn::Section> section = centred_section_of(thread, fabric.units);
   if (!section) return section.error();
   plan.spec.section = *section;
   plan.spec.sizes = {{0.0, yarn::nominal_size(*section), 0.0}};

@@ -160,7 +160,7 @@ Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, std::ve
   int most_feet_before = 0;
   bool knits = false;
   for (Bar& bar : bars) {
-    const Result<yarn::Section> section = section_of(*bar.thread, fabric.units, false);
+    const Result<yarn::Section> section = centred_section_of(*bar.thread, fabric.units);
     if (!section) return section.error();
     bar.thickness = thickness_of(*section);
     thickest = std::max(thickest, bar.thickness);

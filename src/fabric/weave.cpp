@@ -78,6 +78,17 @@ int level_at(const Binder& binder, long long column) {
   return binder.levels[static_cast<std::size_t>(((column % n) + n) % n)];
 }
 
+// The first gap up to `last` that holds binders of both lines; 0 where none does.
+long long shared_gap(const Binder& a, const Binder& b, long long last) {
+  const auto [rarer, other] = a.every >= b.every ? std::pair(&a, &b) : std::pair(&b, &a);
+  long long gap = rarer->first;
+  // After as many steps as the other line has places in its repeat, all comes again.
+  for (long long step = 0; step <= other->every + other->first / rarer->every && gap <= last;
+       ++step, gap += rarer->every)
+    if (gap >= other->first && (gap - other->first) % other->every == 0) return gap;
+  return 0;
+}
+
 class WeaveConstruction final : public Construction {
  public:
   WeaveConstruction(const Fabric& fabric, const Weave& weave, const BuildOptions& options, System warp,
@@ -132,6 +143,7 @@ class WeaveConstruction final : public Construction {
   Status prepare_binders(Diagnostics& diagnostics);
   [[nodiscard]] Status check_binder(const Block& block) const;
   void warn_of_widths(Diagnostics& diagnostics) const;
+  void warn_of_shared_gaps(Diagnostics& diagnostics) const;
   void warn(TextPlace place, std::string text, Diagnostics& diagnostics) const;
   [[nodiscard]] double straight_z(bool is_weft, int layer) const;
   [[nodiscard]] long long binder_gap(const Binder& binder, long long yarn) const {
@@ -400,12 +412,41 @@ void WeaveConstruction::warn_of_widths(Diagnostics& diagnostics) const {
            diagnostics);
 }
 
+// Two binders in one gap are apart where one stays above the other all the way.
+void WeaveConstruction::warn_of_shared_gaps(Diagnostics& diagnostics) const {
+  const std::vector<Binder>& all = weave_.binders;
+  for (std::size_t b = 1; b < all.size(); ++b)
+    for (std::size_t a = 0; a < b; ++a) {
+      const long long gap = shared_gap(all[a], all[b], warp_.text->count - 1);
+      if (gap == 0) continue;
+      const auto above = [&](long long column) {
+        return level_at(all[b], column) - level_at(all[a], column);
+      };
+      const auto repeat = static_cast<long long>(std::lcm(all[a].levels.size(), all[b].levels.size()));
+      const long long last = std::min(along_x_.last, along_x_.first + repeat);
+      for (long long k = along_x_.first; k <= last; ++k) {
+        const bool crosses = k < last && (above(k) < 0) != (above(k + 1) < 0);
+        if (above(k) != 0 && !crosses) continue;
+        warn(all[b].place,
+             fmt::format("in gap {} lies a binder of line {}, too, and the two overlap: where two share a "
+                         "gap, one has to "
+                         "stay above the other at every weft",
+                         gap, all[a].place.line),
+             diagnostics);
+        break;
+      }
+    }
+}
+
 Status WeaveConstruction::prepare(Diagnostics& diagnostics) {
   if (layers() > most_layers)
     return error(Kind::limit,
                  fmt::format("{} layers are more than the {} that a weave may have", layers(), most_layers));
   Status status = is_straight() ? prepare_binders(diagnostics) : prepare_interlacing(diagnostics);
-  if (status.ok()) warn_of_widths(diagnostics);
+  if (status.ok()) {
+    warn_of_widths(diagnostics);
+    warn_of_shared_gaps(diagnostics);
+  }
   return status;
 }
 

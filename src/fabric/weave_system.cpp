@@ -33,7 +33,7 @@ Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, 
     message.place = place;
     return message;
   }
-  Result<yarn::Section> section = section_of(*woven.thread, fabric.units, false);
+  Result<yarn::Section> section = centred_section_of(*woven.thread, fabric.units);
   if (!section) {
     Message message = error(Kind::geometry, fmt::format("thread '{}': {}", name, section.error().text));
     message.place = woven.thread->place;

@@ -66,6 +66,17 @@ Result<yarn::Section> section_of(const Thread& thread, Unit units, bool rows_giv
   return section;
 }
 
+Result<yarn::Section> centred_section_of(const Thread& thread, Unit units) {
+  Result<yarn::Section> section = section_of(thread, units, false);
+  if (!section) return section;
+  if (auto* polygon = std::get_if<yarn::Polygon>(&*section)) {
+    Eigen::AlignedBox2d box;
+    for (const Vec2& corner : polygon->corners) box.extend(corner);
+    for (Vec2& corner : polygon->corners) corner -= box.center();
+  }
+  return section;
+}
+
 std::vector<yarn::SectionSize> row_sizes(const Path& path, const yarn::Section& section) {
   const yarn::SectionSize own = yarn::nominal_size(section);
   std::vector<yarn::SectionSize> sizes(path.points.size(), own);

@@ -19,6 +19,11 @@ double yarn_diameter(double tex, double density, double packing);
 // thread stands.
 Result<yarn::Section> section_of(const Thread& thread, Unit units, bool rows_give_sizes);
 
+// As section_of, for a yarn of a construction: a polygon is moved so that the middle of its box lies on the
+// centre line, and half of its thickness and width on each side, as constructions take it of every section.
+// Error: as section_of.
+Result<yarn::Section> centred_section_of(const Thread& thread, Unit units);
+
 // How far the fibres turn about the path, turns per file unit (Z is positive: a right-handed helix); 0
 // without twist.
 double fibre_twist(const Thread& thread, Unit units);

@@ -1,6 +1,8 @@
 // Woven centre lines against Peirce's geometry and what follows from it, and what cannot be woven.
 #include "fabric/weave.h"
 
+#include <fmt/format.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -415,6 +417,46 @@ TEST(Weave, BindersThatCannotBeAreRefusedAtTheirLines) {
   EXPECT_EQ(refused({"c", {8, 3}, 1, 1, {0, 4}}).place.line, 8);
   EXPECT_EQ(refused({"c", {9, 3}, 1, 4, {0, 3}}).place.line, 9);
   EXPECT_EQ(refused({"d", {10, 3}, 1, 1, {0, 3}}).place.line, 10);
+}
+
+TEST(Weave, APolygonLiesAboutItsCentreLineWhereverItsOriginIs) {
+  const auto weft = [](const Vec2& origin) {
+    yarn::Polygon triangle{{{0.3, -0.1}, {0.0, 0.25}, {-0.3, -0.1}}};
+    for (Vec2& corner : triangle.corners) corner += origin;
+    Fabric fabric = woven(yarn::Circle{0.3}, 1.0, triangle, 1.2);
+    weave_of(fabric).profile = Weave::Profile::straight;
+    return body_of(fabric, "layer1_weft_1").surface.points;
+  };
+  const std::vector<Vec3> here = weft({0.0, 0.0}), there = weft({0.1, -0.07});
+  ASSERT_EQ(here.size(), there.size());
+  for (std::size_t i = 0; i < here.size(); ++i) EXPECT_LT((here[i] - there[i]).norm(), 1e-9);
+}
+
+TEST(Weave, BindersThatCrossInOneGapAreTold) {
+  const auto told = [](const Binder& first, const Binder& second) {
+    Fabric fabric = woven(yarn::Racetrack{1.2, 0.4}, 2.0, yarn::Racetrack{1.2, 0.4}, 2.4);
+    fabric.threads.push_back(thread_of("c", yarn::Racetrack{0.3, 0.1}));
+    Weave& weave = weave_of(fabric);
+    weave.profile = Weave::Profile::straight;
+    weave.layers = 2;
+    weave.warp.count = weave.weft.count = 6;
+    weave.binders = {first, second};
+    Diagnostics diagnostics;
+    EXPECT_TRUE(YarnBuilder::create(fabric, {}, diagnostics).has_value());
+    std::vector<std::string> texts;
+    for (const Message& message : diagnostics.messages())
+      texts.push_back(fmt::format("{}: {}", message.place.line, message.text));
+    return texts;
+  };
+  const auto crossing = told({"c", {8, 3}, 1, 1, {3, 0}}, {"c", {9, 3}, 2, 2, {0, 3}});
+  ASSERT_EQ(crossing.size(), 1U);
+  EXPECT_NE(crossing.front().find("9: in gap 2 lies a binder of line 8"), std::string::npos)
+      << crossing.front();
+  EXPECT_EQ(told({"c", {8, 3}, 2, 1, {1}}, {"c", {9, 3}, 3, 1, {1}}).size(), 1U) << "one in the other";
+  EXPECT_EQ(told({"c", {8, 3}, 2, 1, {3, 0}}, {"c", {9, 3}, 2, 2, {0, 3}}).size(), 0U) << "other gaps";
+  EXPECT_EQ(told({"c", {8, 3}, 1, 1, {3, 2}}, {"c", {9, 3}, 1, 1, {1, 0}}).size(), 0U)
+      << "one above the other";
+  EXPECT_EQ(told({"c", {8, 3}, 3, 3, {3, 0}}, {"c", {9, 3}, 2, 1, {0, 3}}).size(), 1U) << "gap 3";
 }
 
 }  // namespace
