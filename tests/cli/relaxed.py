@@ -37,11 +37,11 @@ class Yarn:
         sections, count = map(int, body[0].split()[1:3])
         degree = {"along": min(3, sections - 1), "round": 2}
         knots = {}
-        is_open = False
+        is_open = is_ring = False
         rows = []
         for line in body[1:]:
             words = line.split()
-            if not words or words[0] == "corners":
+            if not words or words[0] in ("corners", "centre"):
                 continue
             if words[0] == "end":
                 break
@@ -51,11 +51,17 @@ class Yarn:
                 knots[words[1]] = list(map(float, words[2:]))
             elif words[0] == "open":
                 is_open = True
+            elif words[0] == "closed":
+                is_ring = True
             else:
                 rows.append(list(map(float, words)) + [1.0] * (4 - len(words)))
         rows = np.array(rows).reshape(sections, count, 4)
         self.points, self.weights = rows[:, :, :3], rows[:, :, 3]
         self.degree_v, self.degree_u = degree["along"], degree["round"]
+        if is_ring and "along" not in knots:  # the closed form along: its sections go on
+            self.points = np.concatenate([self.points, self.points[:self.degree_v]])
+            self.weights = np.concatenate([self.weights, self.weights[:self.degree_v]])
+            knots["along"] = list(map(float, range(sections + 2 * self.degree_v + 1)))
         self.knots_v = knots.get("along") or [0.0] * self.degree_v + list(range(sections - self.degree_v + 1)) + [
             float(sections - self.degree_v)] * self.degree_v
         if is_open:
