@@ -8,7 +8,9 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 
 #include "core/clock.h"
 #include "core/process.h"
@@ -58,6 +60,7 @@ class Batch {
   struct Work {
     std::string messages, results, report;
     bool ended = false;
+    std::string reader;  // the format whose library reads the input now; empty: none
   };
 
   int run_one(std::size_t job, const Channel& channel) const;
@@ -140,6 +143,8 @@ void Batch::receive(std::size_t job, char kind, std::string_view bytes) {
     std::size_t count = 0;
     std::from_chars(bytes.data(), bytes.data() + bytes.size(), count);
     files_ += count;
+  } else if (kind == packet::reader) {
+    work.reader = bytes;
   } else if (kind == packet::progress) {
     doing_ = bytes;
     progress_.set(counts_.done + counts_.failed + counts_.skipped, counts_.failed, doing_);
@@ -173,6 +178,11 @@ void Batch::fail(std::size_t job, Message message) {
   work_[job].report = to_json(report);
 }
 
+// The signals of a library that goes astray, not of somebody who ends a process.
+bool is_crash(int signal) {
+  return signal == SIGSEGV || signal == SIGBUS || signal == SIGABRT || signal == SIGFPE || signal == SIGILL;
+}
+
 void Batch::finish(std::size_t job, const JobEnd& end) {
   Work& work = work_[job];
   work.ended = true;
@@ -183,8 +193,17 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
                          end.status, memory_limit(options_));
   }
   if (!reason.empty()) {
-    const Kind kind = end.how == JobEnd::How::timed_out ? Kind::limit : Kind::internal;
-    fail(job, error(kind, "this input " + reason));
+    const bool is_killed = end.how == JobEnd::How::signalled && is_crash(end.status);
+    if (is_killed && !work.reader.empty())
+      fail(job,
+           error(Kind::malformed,
+                 fmt::format(
+                     "what this file says makes the reader of {} fail ({}): it is damaged, or breaks its "
+                     "format in a way that is not told apart; write it anew where it comes from",
+                     work.reader, ::strsignal(end.status))));
+    else
+      fail(job,
+           error(end.how == JobEnd::How::timed_out ? Kind::limit : Kind::internal, "this input " + reason));
     has_lost_workers_ = true;
   }
   const auto verdict = reason.empty() ? static_cast<Verdict>(end.status) : Verdict::failed;

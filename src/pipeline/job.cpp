@@ -185,12 +185,16 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
     for (const std::filesystem::path& file : further_files(input.path))
       if (const Result<Source> further = Source::open(file)) look.file(*further, **format);
   }
+  // OpenCASCADE dies of some files: that is a defect of the file, not of ours.
+  const bool is_foreign_library = *format == format_named("step");
+  if (is_foreign_library) channel_.send(packet::reader, "STEP");
   if ((*format)->read_fabric != nullptr) {
     fabric = (*format)->read_fabric(*source, diagnostics);
   } else if (std::optional<cad::Model> model = read_whole_model(**format, *source, diagnostics)) {
     if (look.model) look.model(*model, **format);
     fabric = fabric::fabric_of(std::move(*model), diagnostics);
   }
+  if (is_foreign_library) channel_.send(packet::reader, "");
   if (fabric) take_drafts(*fabric, *source, diagnostics);
   forward(diagnostics);
   if (!fabric && !diagnostics.has_errors())

@@ -34,6 +34,7 @@ inline constexpr char result = 'r';    // a piece of standard output
 inline constexpr char progress = 'p';  // what is being done right now
 inline constexpr char report = 'j';    // the InputReport as JSON
 inline constexpr char files = 'f';     // how many files were written, as decimal digits
+inline constexpr char reader = 'd';    // the format that another program's library reads now; empty: none
 }  // namespace packet
 
 // What is to look at a CAD file while it is read; either may be empty.

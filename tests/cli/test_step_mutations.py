@@ -6,10 +6,11 @@ import os
 import pathlib
 import random
 import re
-import subprocess
+import signal
+import time
 import unittest
 
-from program import GRID, RING, SAMPLES, Case, environment, run
+from program import GRID, RING, SAMPLES, Case, children_of, run, start
 
 COUNT = int(os.environ.get("STEP_MUTATIONS", "100"))
 COMMANDS = {
@@ -94,6 +95,35 @@ class Mutations(Case):
                         for message in each.get("messages", []) if re.search(r"crashed|was stopped|was killed", message["text"])]
                 self.keep(folder, died)
                 self.assertEqual(died, [])
+
+    def test_what_kills_the_reader_is_a_defect_of_the_file(self):
+        """No such file is known: the signal comes from here, while OpenCASCADE reads."""
+        text = "fabric 1\ntolerance 0.05\n"
+        for number in range(400):
+            text += f'yarn "y{number}"\n diameter 0.4\n path polyline\n {number} 0 0\n {number} 1 0\n end\nend\n'
+        (self.folder / "many.txt").write_text(text)
+        path = self.folder / "many.stp"
+        self.succeeds("convert", self.folder / "many.txt", "-o", path)
+        process = start("info", path, "--quiet")
+        deadline = time.monotonic() + 300
+        while time.monotonic() < deadline and process.poll() is None:
+            worker = next(iter(children_of(process.pid)), None)
+            if worker and self.seconds_of(worker) > 0.3:
+                os.kill(worker, signal.SIGSEGV)
+                break
+            time.sleep(0.01)
+        _, errors = process.communicate(timeout=300)
+        self.assertEqual(process.returncode, 1)
+        self.assertRegex(errors, r"many.stp: error: what this file says makes the reader of STEP fail \(Segmentation fault\)")
+
+    @staticmethod
+    def seconds_of(pid):
+        """Of processor time."""
+        try:
+            fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+        except (FileNotFoundError, ProcessLookupError):
+            return 0
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def keep(self, folder, died):
         kept = os.environ.get("STEP_MUTATIONS_KEEP")
