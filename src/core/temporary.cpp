@@ -80,8 +80,9 @@ TemporaryFolder::TemporaryFolder(TemporaryFolder&& other) noexcept
 
 TemporaryFolder::~TemporaryFolder() {
   if (!path_.empty() && owner_ == ::getpid()) {
-    std::error_code ignored;  // what cannot be removed stays; nothing rests on it
-    fs::remove_all(path_, ignored);
+    std::error_code failure;  // what cannot be removed stays; nothing rests on it
+    // To look into it takes a descriptor, which may not be had; an empty one goes without.
+    if (!fs::remove(path_, failure)) fs::remove_all(path_, failure);
   }
   if (lock_ >= 0) ::close(lock_);
 }
