@@ -77,8 +77,10 @@ int run() {
   RequestHead head;
   if (!read_all(&head, sizeof head) || head.magic != request_magic) leave(Outcome::bad_request, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (head.parent != 0 && ::getppid() != head.parent) return 1;  // it died before the line above
+  if (head.parent != 0 && ::getppid() != head.parent) return 1;      // it died before the line above
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these need terabytes of addresses
   limit(RLIMIT_AS, head.memory);
+#endif
   limit(RLIMIT_CPU, head.cpu_seconds);
   const rlimit no_core{0, 0};
   if (::setrlimit(RLIMIT_CORE, &no_core) != 0) return 1;

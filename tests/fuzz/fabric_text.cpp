@@ -1,0 +1,192 @@
+#include "fuzz/fabric_text.h"
+
+#include <fmt/format.h>
+
+#include <initializer_list>
+
+namespace selvage::fuzz {
+
+namespace {
+
+class Writer {
+ public:
+  explicit Writer(std::string_view bytes) : bytes_(bytes) {}
+
+  std::string text() {
+    line("fabric 1");
+    line("units {}", one_of({"mm", "cm", "um", "inch", "m"}));
+    if (choice(3) == 1) line("tolerance {}", number(0.0005, 0.02));
+    line("material epoxy\n density 1.2\n elastic isotropic {} {}\nend", number(100, 5000),
+         number(-0.3, 0.45));
+    for (const char* name : {"a", "b"}) thread(name);
+    switch (choice(5)) {
+      case 0:
+        weave();
+        break;
+      case 1:
+        knit();
+        break;
+      case 2:
+        warpknit();
+        break;
+      case 3:
+        braid();
+        break;
+      default:
+        yarns();
+        break;
+    }
+    if (choice(2) == 1) cell();
+    return text_;
+  }
+
+ private:
+  template <class... Values>
+  void line(fmt::format_string<Values...> format, Values&&... values) {
+    text_ += fmt::format(format, std::forward<Values>(values)...) + "\n";
+  }
+  // 0 .. count - 1
+  int choice(int count) {
+    if (bytes_.empty()) return 0;
+    const int byte = static_cast<unsigned char>(bytes_.front());
+    bytes_.remove_prefix(1);
+    return byte % count;
+  }
+  std::string one_of(std::initializer_list<const char*> words) {
+    return words.begin()[choice(static_cast<int>(words.size()))];
+  }
+  // One of 256 between both ends.
+  double number(double low, double high) { return low + (high - low) * choice(256) / 255.0; }
+
+  std::string section() {
+    const double width = number(0.1, 1.5), height = width * number(0.1, 1.2);
+    switch (choice(5)) {
+      case 0:
+        return fmt::format("circle {}", height);
+      case 1:
+        return fmt::format("ellipse {} {}", width, height);
+      case 2:
+        return fmt::format("lenticular {} {}", width, height);
+      case 3:
+        return fmt::format("racetrack {} {}", width, std::min(height, width));
+      default:
+        return fmt::format("power {} {} {}", width, height, number(0.2, 3));
+    }
+  }
+  void thread(std::string_view name) {
+    line("thread {}\n section {}\n material epoxy", name, section());
+    if (choice(4) == 1) line(" twist {} {}{}", number(0, 400), one_of({"Z", "S"}), one_of({"", " rotate"}));
+    if (choice(6) == 1) line(" plies {} {} {}", 2 + choice(2), number(0, 300), one_of({"Z", "S"}));
+    if (choice(8) == 1) line(" filaments {}", 2 + choice(3));
+    line("end");
+  }
+  std::string threads() { return one_of({"a", "b", "a,b", "b,a,a"}); }
+
+  void weave() {
+    line("weave\n warp {} {} pitch {}", threads(), 1 + choice(4), number(0.3, 4));
+    line(" weft {} {} pitch {}", threads(), 1 + choice(4), number(0.3, 4));
+    if (choice(4) == 1) {
+      line(" profile straight\n layers {}", 1 + choice(2));
+      line(" binder {} every {} levels {} {}", one_of({"a", "b"}), 1 + choice(2), choice(3), choice(3));
+      line("end");
+      return;
+    }
+    if (choice(3) == 1) {
+      const int width = 1 + choice(4);
+      line(" draft");
+      for (int row = 1 + choice(4); row > 0; --row) {
+        std::string signs;
+        for (int i = 0; i < width; ++i) signs += choice(2) == 1 ? '1' : '0';
+        line("  {}", signs);
+      }
+      line(" end");
+    } else {
+      line(" draft {}", one_of({"plain", "twill 2/1", "twill 1/3", "satin 5/2", "basket 2/2"}));
+    }
+    const int profile = choice(6);
+    if (profile == 5) line(" profile sine {}", number(0.01, 1));
+    if (profile > 0 && profile < 5)
+      line(" profile {}", one_of({"peirce", "sine", "lenticular", "racetrack"}));
+    if (choice(3) == 1) line(" crimp {}", number(0, 1));
+    if (choice(4) == 1) line(" layers 2");
+    line("end");
+  }
+  void knit() {
+    const int form = choice(4);
+    line("knit {}\n thread {}\n courses {}\n wales {}",
+         form == 0   ? "jersey"
+         : form == 1 ? "purl"
+         : form == 2 ? fmt::format("rib {}x{}", 1 + choice(2), 1 + choice(2))
+                     : "",
+         one_of({"a", "b"}), 1 + choice(3), 1 + choice(4));
+    if (choice(3) == 1) line(" method {}", one_of({"uniform", "chord", "centripetal"}));
+    if (form == 3) {
+      const int width = 1 + choice(3);
+      line(" chart");
+      for (int row = 1 + choice(3); row > 0; --row) {
+        std::string signs;
+        for (int i = 0; i < width; ++i) signs += "KPTM"[choice(4)];
+        line("  {}", signs);
+      }
+      line(" end");
+    }
+    line("end");
+  }
+  void warpknit() {
+    const bool classic = choice(2) == 1;
+    line("warpknit {}",
+         classic ? one_of({"tricot", "cord", "satin", "velvet", "locknit", "queens-cord", "atlas"}) : "");
+    if (classic) line(" thread {}", one_of({"a", "b"}));
+    for (int bar = classic ? 0 : 1 + choice(2); bar > 0; --bar) {
+      std::string lapping;
+      for (int course = 1 + choice(3); course > 0; --course)
+        lapping += fmt::format("{}{}-{}", lapping.empty() ? "" : "/", choice(4), choice(4));
+      line(" bar {} {}//{}", one_of({"a", "b"}), lapping, one_of({"", " fall-plate"}));
+    }
+    line(" wales {} pitch {}\n courses {} pitch {}", 1 + choice(3), number(0.3, 6), 1 + choice(4),
+         number(0.3, 6));
+    if (choice(2) == 1) line(" stitch {}", one_of({"closed", "open"}));
+    line("end");
+  }
+  void braid() {
+    const bool flat = choice(2) == 1;
+    line("braid\n thread {}\n carriers {}\n pattern {}/{}", one_of({"a", "b"}),
+         flat ? 2 + choice(5) : 2 * (1 + choice(4)), 1 + choice(2), 1 + choice(2));
+    if (flat)
+      line(" flat{}", choice(2) == 1 ? fmt::format(" {}", number(1, 12)) : "");
+    else
+      line(" radius {}", number(0.3, 6));
+    line(" angle {}\n length {}", number(5, 85), number(0.5, 20));
+    if (choice(3) == 1) line(" axial {} {}", one_of({"a", "b"}), 1 + choice(3));
+    line("end");
+  }
+  void yarns() {
+    const int count = 1 + choice(3);
+    for (int i = 1; i <= count; ++i) {
+      const bool closed = choice(4) == 1;
+      line("yarn y{} {}\n{} path {}", i, one_of({"a", "b"}), closed ? " closed\n" : "",
+           one_of({"chord", "uniform", "centripetal", "polyline", "control", "loop"}));
+      for (int row = 0, rows = 3 + choice(6); row < rows; ++row)
+        line("  {} {} {}", row * 0.7 + number(0, 0.6), number(-2, 2), number(-1, 1));
+      line(" end\n ends {}\nend", one_of({"patch", "fan", "planar", "none"}));
+    }
+    if (choice(4) == 1)
+      line("edit y1 point {} to {} {} {}", 1 + choice(3), number(-1, 3), number(-2, 2), number(-1, 1));
+  }
+  void cell() {
+    const double x = number(-2, 2), y = number(-2, 2), z = number(-2, 0);
+    line("cell {} {} {}  {} {} {}\n matrix epoxy\n periodic x y\nend", x, y, z, x + number(0.3, 8),
+         y + number(0.3, 8), z + number(0.3, 4));
+  }
+
+  std::string_view bytes_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string fabric_text(std::string_view bytes) {
+  return Writer(bytes).text();
+}
+
+}  // namespace selvage::fuzz

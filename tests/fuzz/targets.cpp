@@ -1,0 +1,157 @@
+#include "fuzz/targets.h"
+
+#include "contact/contact.h"
+#include "core/findings.h"
+#include "core/text_report.h"
+#include "fabric/build.h"
+#include "fabric/from_cad.h"
+#include "fem/surface_mesh.h"
+#include "fem/voxel.h"
+#include "formats/format.h"
+#include "formats/step/inspect.h"
+#include "fuzz/fabric_text.h"
+
+namespace selvage::fuzz {
+
+namespace {
+
+using fabric::Fabric;
+using formats::Descriptor;
+
+// What one execution may cost: chance soon finds fabrics of a million loops, and each is only slow.
+constexpr std::size_t most_yarns = 12;
+constexpr std::size_t most_points = 3000;     // control points of a yarn
+constexpr std::size_t most_together = 12000;  // of all yarns
+constexpr std::uint64_t most_data_points = 400;
+
+Source named(std::string_view bytes, const Descriptor& format) {
+  return Source::from_memory(std::string(bytes), "input" + std::string(format.extensions.front()));
+}
+
+std::optional<Fabric> read(const Descriptor& format, const Source& source, Diagnostics& diagnostics) {
+  if (format.read_fabric != nullptr) return format.read_fabric(source, diagnostics);
+  std::optional<cad::Model> model = format.read_model(source, diagnostics);
+  if (!model) return std::nullopt;
+  return fabric::fabric_of(std::move(*model), diagnostics);
+}
+
+void run_reader(const Descriptor& format, std::string_view bytes) {
+  const Source source = named(bytes, format);
+  const std::string_view head = source.bytes().substr(0, 4096);
+  if (format.sniff != nullptr) static_cast<void>(format.sniff(head));
+  if (format.part_mark != nullptr) static_cast<void>(format.part_mark(head));
+  Diagnostics diagnostics;
+  // A rule of every reader: nothing comes back exactly when there was an error.
+  const bool has_read = format.read_fabric != nullptr ? format.read_fabric(source, diagnostics).has_value()
+                                                      : format.read_model(source, diagnostics).has_value();
+  if (has_read == diagnostics.has_errors()) std::abort();
+  for (const Message& message : diagnostics.messages()) static_cast<void>(to_string(message));
+  if (format.check_structure != nullptr) {
+    Findings findings;
+    format.check_structure(source, findings);
+  }
+}
+
+// The fabric's yarns; none where there is something wrong with them or they are too large for a short run.
+std::vector<yarn::Body> bodies_of(const Fabric& fabric, std::string_view bytes) {
+  fabric::BuildOptions options;
+  // Parting loops takes seconds: one input in eight has it done.
+  options.as_published = bytes.size() % 8 != 0;
+  options.max_control_points = most_points;
+  options.max_data_points = most_data_points;
+  options.max_parts = most_yarns;
+  Diagnostics diagnostics;
+  const auto builder = fabric::YarnBuilder::create(fabric, options, diagnostics);
+  std::vector<yarn::Body> bodies;
+  if (!builder || builder->count() > most_yarns) return bodies;
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < builder->count(); ++i) {
+    Result<yarn::Body> body = builder->build(i);
+    if (!body) return {};
+    points +=
+        static_cast<std::size_t>(body->surface.count_u) * static_cast<std::size_t>(body->surface.count_v);
+    if (points > most_together) return {};
+    bodies.push_back(std::move(*body));
+  }
+  return bodies;
+}
+
+void check(const std::vector<yarn::Body>& bodies) {
+  static_cast<void>(
+      contact::find_contacts(bodies, {.reach = 0, .with_itself = true, .threads = 1, .progress = {}}));
+}
+
+// As the program does it: the format that recognises the bytes, the first of the list if none does.
+void run_check(std::string_view bytes) {
+  const Descriptor* chosen = nullptr;
+  for (const Descriptor* format : formats::all_formats())
+    if (format->is_readable() && format->sniff != nullptr && format->sniff(bytes.substr(0, 4096))) {
+      chosen = format;
+      break;
+    }
+  if (chosen == nullptr) chosen = formats::all_formats().front();
+  Diagnostics diagnostics;
+  const std::optional<Fabric> fabric = read(*chosen, named(bytes, *chosen), diagnostics);
+  if (fabric) check(bodies_of(*fabric, bytes));
+}
+
+void run_mesh(std::string_view bytes) {
+  const std::string text = fabric_text(bytes);
+  const Descriptor& format = *formats::all_formats().front();
+  Diagnostics diagnostics;
+  const std::optional<Fabric> fabric = read(format, named(text, format), diagnostics);
+  if (!fabric) std::abort();  // what is written by the grammar can be read
+  const std::vector<yarn::Body> bodies = bodies_of(*fabric, bytes);
+  check(bodies);
+  for (const yarn::Body& body : bodies)
+    static_cast<void>(fem::mesh_surface(body, fem::smallest_section_extent(body)));
+  if (fabric->cell)
+    static_cast<void>(fem::mesh_voxels(
+        *fabric, bodies, {.count = 8, .periodic = {true, true, false}, .matrix = true, .threads = 1},
+        diagnostics));
+}
+
+// The reader in the module is OpenCASCADE's, in a process of its own: what stands before it is ours.
+void run_step(std::string_view bytes) {
+  const Source source = Source::from_memory(std::string(bytes), "input.stp");
+  TextReport report(source);
+  const bool has_read = formats::step::inspect(source, report).has_value();
+  Diagnostics diagnostics;
+  report.hand_over(diagnostics);
+  if (has_read == diagnostics.has_errors()) std::abort();
+}
+
+std::vector<Target> all_targets() {
+  std::vector<Target> list;
+  for (const Descriptor* format : formats::all_formats())
+    if (format->is_readable())
+      list.push_back({std::string(format->name), "reads", std::string(format->extensions.front()), 16384,
+                      [format](std::string_view bytes) { run_reader(*format, bytes); }});
+  for (Target& target : list)
+    if (target.name == "step") {
+      target.does = "reads, up to the hand-over to OpenCASCADE";
+      target.run = run_step;
+    }
+  list.push_back(
+      {"check", "reads any format, builds the yarns, finds where they overlap", ".txt", 2048, run_check});
+  list.push_back(
+      {"mesh",
+       "writes a fabric by the grammar, reads, builds and checks it, and meshes its surfaces and its cell",
+       "", 256, run_mesh});
+  return list;
+}
+
+}  // namespace
+
+const std::vector<Target>& targets() {
+  static const std::vector<Target> list = all_targets();
+  return list;
+}
+
+const Target* target_named(std::string_view name) {
+  for (const Target& target : targets())
+    if (target.name == name) return &target;
+  return nullptr;
+}
+
+}  // namespace selvage::fuzz

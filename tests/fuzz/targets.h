@@ -1,0 +1,27 @@
+// What is run on bytes that chance makes: by libFuzzer (fuzzer.cpp, scripts/fuzz), and by the tests on every
+// input that was kept (replay.cpp). A target may refuse its bytes in any way it likes; it must neither crash,
+// nor break a rule of C++, nor go on without end.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace selvage::fuzz {
+
+struct Target {
+  std::string name;
+  std::string does;      // a few words, for the table
+  std::string seeds;     // extension of the samples that it starts from; empty: any bytes
+  std::size_t most = 0;  // bytes of an input
+  std::function<void(std::string_view bytes)> run;
+};
+
+// A reader of each format that the program reads, then what comes after readers.
+const std::vector<Target>& targets();
+
+// Null: there is none of this name.
+const Target* target_named(std::string_view name);
+
+}  // namespace selvage::fuzz
