@@ -379,7 +379,10 @@ int run(const Options& wanted) {
   if (options.command == Command::roundtrip) {
     if (const Result<std::vector<Trip>> trips = wanted_trips(options); !trips) return refuse(trips.error());
     Result<TemporaryFolder> made = TemporaryFolder::create();
-    if (!made) return refuse(made.error());
+    if (!made) {
+      (void)refuse(made.error());
+      return exit_code::failed;  // the command line is well
+    }
     options.scratch = scratch.emplace(std::move(*made)).path();
   }
   Result<InputList> list = expand_inputs(options.inputs);

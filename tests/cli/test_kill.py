@@ -1,4 +1,4 @@
-"""SIGKILL at 50 random moments of a batch: every file that is there is whole, and the next run completes the rest."""
+"""SIGKILL or SIGTERM at 60 random moments of a batch: every file that is there is whole, and the next run completes the rest."""
 
 import random
 import shutil
@@ -10,7 +10,7 @@ import unittest
 from program import Case, GRID, PATH, children_of, files_below, start
 
 INPUTS = 12
-MOMENTS = 50
+MOMENTS = 60
 
 
 class Killed(Case):
@@ -27,13 +27,13 @@ class Killed(Case):
 
         moment = random.Random(20131104)
         stopped_midway = 0
-        for _ in range(MOMENTS):
+        for number in range(MOMENTS):
             process = start("convert", inside, "--to", "iges,txt", "-o", self.out, "-j", 2, stdout=subprocess.DEVNULL,
                             stderr=subprocess.DEVNULL)
             time.sleep(moment.uniform(0, seconds))
             children = children_of(process.pid)
-            process.send_signal(signal.SIGKILL)
-            process.wait()
+            process.send_signal(signal.SIGTERM if number % 2 else signal.SIGKILL)
+            self.assertIn(process.wait(), (0, 130, -signal.SIGKILL, -signal.SIGTERM))
             self.gone(children)
             found = {name: data for name, data in files_below(self.out).items() if not name.startswith(".")}
             for name, data in found.items():
