@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include "cad/borders.h"
 
@@ -75,12 +76,15 @@ class Judge {
     size_ = box.sizes().maxCoeff();
     tolerance_ = std::max(model_.resolution, least_tolerance * size_);
     std::vector<Owned> borders;
+    std::vector<std::size_t> firsts;  // where the borders of each face begin
     for (const Face& face : part.faces) {
+      firsts.push_back(borders.size());
       for (Border& border : borders_of(face)) borders.push_back({std::move(border), &face});
       judge_loops(part, face);
     }
-    for (const Face& face : part.faces)
-      if (face.loops.empty()) judge_whole(part, face, borders);
+    for (std::size_t i = 0; i < part.faces.size(); ++i)
+      if (part.faces[i].loops.empty())
+        judge_whole(part, part.faces[i], std::span(borders).subspan(firsts[i], 4));
     std::erase_if(borders, [&](const Owned& owned) { return owned.border.length() <= tolerance_; });
     m_.borders += borders.size();
     for (const Owned& owned : borders)
@@ -197,11 +201,10 @@ class Judge {
   }
 
   // An untrimmed face: poles, area, and whether it nearly closes.
-  void judge_whole(const Part& part, const Face& face, const std::vector<Owned>& borders) {
+  // `borders` are its four sides in order.
+  void judge_whole(const Part& part, const Face& face, std::span<const Owned> borders) {
     std::array<const Border*, 4> sides{};
-    for (const Owned& owned : borders)
-      if (owned.face == &face && owned.border.side() >= 0)
-        sides[static_cast<std::size_t>(owned.border.side())] = &owned.border;
+    for (std::size_t i = 0; i < sides.size(); ++i) sides[i] = &borders[i].border;
     const double area = area_of(face.surface);
     if (area <= no_area * size_ * size_) {
       findings_.add("faces without area",
