@@ -148,6 +148,7 @@ void write_material(TextBuffer& text, std::size_t number, const fabric::Material
   if (!c.expansion) return;
   put_constant("REFT", 0);
   put_constant("ALPX", (*c.expansion)[0]);
+  if (c.isotropic) return;  // ANSYS takes ALPX for all three
   put_constant("ALPY", (*c.expansion)[1]);
   put_constant("ALPZ", (*c.expansion)[2]);
 }

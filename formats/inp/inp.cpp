@@ -132,7 +132,10 @@ void write_materials(TextBuffer& text, const fem::Mesh& mesh, const std::vector<
     if (constants.density) text << "*DENSITY\n" << real(*constants.density) << '\n';
     if (constants.expansion) {
       const auto& [one, two, three] = *constants.expansion;
-      text << "*EXPANSION, TYPE=ORTHO\n" << real(one) << ", " << real(two) << ", " << real(three) << '\n';
+      if (constants.isotropic)
+        text << "*EXPANSION\n" << real(one) << '\n';
+      else
+        text << "*EXPANSION, TYPE=ORTHO\n" << real(one) << ", " << real(two) << ", " << real(three) << '\n';
     }
   }
 }

@@ -91,6 +91,7 @@ void write_expansions(TextBuffer& text, const fem::Mesh& mesh, const std::vector
     for (const double value : {one, two, three}) {
       put_right(text, std::size_t{0}, 10);
       put_right(text, real(value, 10), 10);
+      if (c.isotropic) break;  // of all directions
     }
     text << '\n';
   }

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from model import Model, constants, isotropic
+from model import Model, constants, in_space, isotropic
 
 
 def fields_of(line, width, count):
@@ -81,7 +81,7 @@ def read(path):
     model.equations = [equations[number] for number in sorted(equations)]
     known = {}
     for number, m in materials.items():
-        expansion = (m["ALPX"], m["ALPY"], m["ALPZ"]) if "ALPX" in m else None
+        expansion = in_space(tuple(m[name] for name in ("ALPX", "ALPY", "ALPZ") if name in m), "EY" not in m) if "ALPX" in m else None
         if "EY" in m:
             known[number] = constants(m["EX"], m["EY"], m["EZ"], m["PRXY"], m["PRXZ"], m["PRYZ"], m["GXY"], m["GXZ"], m["GYZ"],
                                       m.get("DENS"), expansion)

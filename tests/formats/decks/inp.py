@@ -1,6 +1,6 @@
 """Abaqus input deck, as the keywords manual has it."""
 
-from model import Model, constants, is_isotropic, isotropic, right_handed
+from model import Model, constants, in_space, is_isotropic, isotropic, right_handed
 
 
 def blocks_of(path):
@@ -56,7 +56,9 @@ def read(path):
         elif keyword == "DENSITY":
             material["density"] = float(rows[0][0])
         elif keyword == "EXPANSION":
-            material["expansion"] = tuple(map(float, rows[0][:3]))
+            values = tuple(map(float, rows[0]))
+            assert len(values) == {"ISO": 1, "ORTHO": 3}[parameters.get("TYPE", "ISO").upper()]
+            material["expansion"] = in_space(values, material.get("type") == "ISOTROPIC")
         elif keyword == "DISTRIBUTION":
             distributions[parameters["NAME"].upper()] = rows
         elif keyword == "ORIENTATION":

@@ -1,6 +1,6 @@
 """LS-DYNA keyword file in standard format: columns of 8, 10 and 16."""
 
-from model import Model, constants, isotropic, right_handed
+from model import Model, constants, in_space, isotropic, right_handed
 
 
 def columns(line, *widths):
@@ -45,7 +45,7 @@ def read(path):
                                       ca_shear, bc)
         elif keyword == "*MAT_ADD_THERMAL_EXPANSION":
             fields = columns(rows[0], *[10] * 7)
-            expansions[int(fields[0])] = tuple(float(fields[k]) for k in (2, 4, 6))
+            expansions[int(fields[0])] = tuple(float(fields[k]) for k in (2, 4, 6) if fields[k].strip())
         elif keyword in ("*ELEMENT_SOLID", "*ELEMENT_SOLID_ORTHO"):
             at = 0
             while at < len(rows):
@@ -80,5 +80,6 @@ def read(path):
     for element, part in part_of.items():
         kind, density, *rest = materials[parts[part]]
         make = isotropic if kind == "isotropic" else constants
-        model.material[element] = make(*rest, density if density != 1e-9 else None, expansions.get(part))
+        expansion = in_space(expansions[part], kind == "isotropic") if part in expansions else None
+        model.material[element] = make(*rest, density if density != 1e-9 else None, expansion)
     return model

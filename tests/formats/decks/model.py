@@ -34,6 +34,14 @@ def is_isotropic(material):
     return np.allclose(s, isotropic(1 / s[0, 0], -s[0, 1] / s[0, 0], None, None)[0], rtol=1e-9, atol=0)
 
 
+def in_space(values, isotropic_elasticity):
+    """Three coefficients of expansion from one or three; of what is isotropic a deck has one, so that it needs no axes."""
+    if len(values) == 1:
+        return values * 3
+    assert not isotropic_elasticity or len(set(values)) > 1, "an isotropic material expands by direction"
+    return values
+
+
 def right_handed(first, second):
     first = np.array(first) / np.linalg.norm(first)
     third = np.cross(first, second)
