@@ -87,12 +87,12 @@ bool Improver::smooth(std::uint32_t cell) {
   return gained;
 }
 
-// Pulls an inner point to one of its neighbours, the best of them.
+// Pulls an inner point to one of its neighbours, the best of them, where its star becomes better by that.
 bool Improver::contract_point(std::uint32_t point) {
   take_star(point);
-  double best = -1;
+  double best = 1;
   for (const std::uint32_t c : cells_) best = std::min(best, complex_.cell(c).quality);
-  best = std::max(best, -1.0) + 1e-9;
+  best += 1e-9;
   std::vector<std::uint32_t> around;
   for (const TetFace& side : outer_) around.insert(around.end(), side.begin(), side.end());
   std::sort(around.begin(), around.end());

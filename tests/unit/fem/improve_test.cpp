@@ -162,6 +162,15 @@ TEST(Improve, CubesWithShakenPoints) {
   EXPECT_TRUE(result.below.empty());
 }
 
+// A target that many stars cannot reach: nothing is made worse on the way to it.
+TEST(Improve, NothingBecomesWorse) {
+  Tets tets = shaken_cubes(5, 0.2);
+  for (Vec3& point : tets.points) point.z() *= 0.1;
+  const double before = least_angle(tets);
+  improve(tets.points, tets.cells, tets.regions, tets.fixed, {.target = 30, .passes = 3});
+  EXPECT_GE(least_angle(tets), before - 1e-9);
+}
+
 TEST(Improve, WhatIsGoodEnoughIsLeftAlone) {
   Tets tets = shaken_cubes(4, 0);
   const Tets before = tets;
