@@ -11,6 +11,7 @@
 #include "cell/volume.h"
 #include "core/module.h"
 #include "fem/bond.h"
+#include "fem/cell_size.h"
 #include "fem/cell_surfaces.h"
 #include "fem/fibre.h"
 #include "fem/improve.h"
@@ -26,8 +27,6 @@ namespace selvage::fem {
 namespace {
 
 constexpr double default_edges_per_extent = 4;
-// Of the smallest section extent: no edge is shorter for a gap's sake, no two yarns may be nearer.
-constexpr double least_size = 0.01;
 
 class CellMesher {
  public:
@@ -130,18 +129,11 @@ Status CellMesher::make_surfaces() {
   volumes_ = cell::volumes_inside(bodies_, box_, *cut, *division);
 
   step("meshing surfaces", 1);
-  SizeRules rules;
-  rules.coarsest = coarsest();
-  rules.smallest = least_size * extent_;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    SizeRules::Yarn yarn;
-    yarn.largest = sizes_[b];
-    yarn.turn *= std::min(1.0, sizes_[b] * default_edges_per_extent / smallest_section_extent(bodies_[b]));
-    rules.yarns.push_back(yarn);
-  }
-  const SizeField field = size_field(bodies_, box_, rules, options_.threads);
+  const SizeField field = size_field(
+      bodies_, box_, cell_size_rules(bodies_, sizes_, options_.coarsest, extent_), options_.threads);
   const CellShape shape{bodies_, box_, options_.periodic, *cut, *division};
-  Result<CellCurves> curves = divide_curves(shape, field, std::max(tolerance_, least_size * extent_), nodes_);
+  Result<CellCurves> curves =
+      divide_curves(shape, field, std::max(tolerance_, least_edge_share * extent_), nodes_);
   if (!curves) return located(curves.error());
   SurfaceOptions options;
   options.matrix = options_.matrix;

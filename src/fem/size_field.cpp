@@ -299,7 +299,8 @@ SizeField size_field(std::span<const yarn::Body> bodies, const Box3& box, const 
   const Box3 near = widened(box, 1.5 * rules.coarsest), nearest = widened(box, rules.coarsest);
   std::vector<Raster> rasters(bodies.size());
   for_each_index(bodies.size(), threads, [&](std::size_t b) {
-    rasters[b] = raster_of(bodies[b], static_cast<std::uint32_t>(b), near, 0.4 * rules.yarns[b].largest);
+    rasters[b] = raster_of(bodies[b], static_cast<std::uint32_t>(b), near,
+                           std::max(rules.raster, 0.4 * rules.yarns[b].largest));
   });
   std::vector<Facet> facets;
   for (const Raster& raster : rasters) add_facets(raster, near, facets);

@@ -45,6 +45,7 @@ struct SizeRules {
   double smallest = 0;        // never finer, >= 0
   double gap_factor = 3;      // edges over the width of a gap
   double growth = 0.3;        // of the size, per length
+  double raster = 0;          // places on a yarn are no nearer; they are at 0.4 of its largest
   double turn_finest = 0.35;  // curvature alone asks for no less than this share of the yarn's largest
 };
 

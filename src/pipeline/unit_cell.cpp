@@ -12,6 +12,7 @@
 #include "cell/cut.h"
 #include "contact/contact.h"
 #include "fabric/repeat.h"
+#include "fem/cell_size.h"
 #include "fem/fibre.h"
 #include "fem/surface_mesh.h"
 #include "pipeline/overlaps.h"
@@ -397,16 +398,6 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
 
 namespace {
 
-// The yarn's volume in the box, by how much of its centre line is there.
-double volume_inside(const yarn::Body& body, const Box3& box) {
-  constexpr int samples = 500;
-  const double first = body.axis.first_parameter(), last = body.axis.last_parameter();
-  int inside = 0;
-  for (int k = 0; k < samples; ++k)
-    inside += box.contains(nurbs::evaluate(body.axis, first + (last - first) * (k + 0.5) / samples)) ? 1 : 0;
-  return body.volume * inside / samples;
-}
-
 // Edges on each yarn: of --size, or so long that --segments of them go round it, the shorter of both; without
 // these a quarter of the side of the square that is as large as its section (of a flat tow a quarter of its
 // thickness would be millions of tetrahedra), at most its thickness.
@@ -423,24 +414,6 @@ std::vector<double> sizes_of(const Options& options, std::span<const yarn::Body>
     sizes.push_back(size);
   }
   return sizes;
-}
-
-// About as many tetrahedra as edges of these lengths make: the matrix is divided as the yarns are, but where
-// edges may grow away from them, which they do in about half of it.
-double estimate_of(const Options& options, std::span<const yarn::Body> bodies, const Box3& box,
-                   const std::vector<double>& sizes, bool with_matrix) {
-  // Of the cube of the edge length, a tetrahedron on average; the same as for yarns alone (fem/mesher.cpp).
-  constexpr double mean_share = 0.083;
-  double yarns = 0.0, of_yarns = 0.0;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const double inside = std::max(volume_inside(bodies[b], box), 1e-3 * bodies[b].volume);
-    yarns += inside;
-    of_yarns += inside / (mean_share * sizes[b] * sizes[b] * sizes[b]);
-  }
-  if (!with_matrix) return of_yarns;
-  const double matrix = std::max(box.volume() - yarns, 0.0) / yarns;  // over the yarns
-  const double growth = std::max(1.0, options.matrix_size / *std::min_element(sizes.begin(), sizes.end()));
-  return of_yarns * (1.0 + 0.5 * matrix * (1.0 + 1.0 / (growth * growth * growth)));
 }
 
 }  // namespace
@@ -469,7 +442,8 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
                           job.options.matrix_size, *finest, name_of(fabric.units))));
     return std::nullopt;
   }
-  chosen.tetrahedra = estimate_of(job.options, bodies, box_of(fabric), chosen.sizes, with_matrix);
+  chosen.tetrahedra = fem::estimate_tetrahedra(bodies, box_of(fabric), chosen.sizes, job.options.matrix_size,
+                                               with_matrix, static_cast<int>(job.threads));
   const std::string lengths = *coarsest - *finest < 1e-3 * *coarsest
                                   ? fmt::format("{:.4g}", *finest)
                                   : fmt::format("{:.4g} to {:.4g}", *finest, *coarsest);
@@ -484,7 +458,7 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
                                        estimate, most, *finest * std::cbrt(chosen.tetrahedra / 1e7)))));
     return std::nullopt;
   }
-  Message note = at_cell(fabric, error(Kind::limit, estimate + ", more where they are near each other"));
+  Message note = at_cell(fabric, error(Kind::limit, estimate));
   note.severity = Severity::note;
   job.say(std::move(note));
   job.progress(estimate);

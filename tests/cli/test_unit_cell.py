@@ -35,6 +35,9 @@ class UnitCell(Case):
         size = (high - low).max()
         points, cells = deck.points, deck.all_elements()
 
+        # Memory is planned by the estimate.
+        self.assertLess(abs(np.log2(len(cells) / report["estimate"])), 1, f"{name} {more}: {report['estimate']:.0f}")
+
         # Conformal: inner faces have two elements, and the outer ones are the box.
         used = points[deck.used()]
         np.testing.assert_array_equal(used.min(axis=0), low)
