@@ -5,10 +5,9 @@ The deck of `selvage mesh` has a step for each strain of the cell and one for it
 direct:    the deck as it is, by factorization. The force on each driver follows from the reactions of the nodes that
            depend on it (virtual work: CalculiX prints none at a node that no element has), and is the stress times the
            cell's volume (of a plate: force and moment a length times its area).
-iterative: the same steps by conjugate gradients, which CalculiX ends at a residual of 1e-4: too early for reactions. But
-           the work of one case's displacements against another one's forces errs only by the product of both errors,
-           upward by 2e-4 of the stiffness or less where it was tried. (Only with its diagonal scaling; with its incomplete Cholesky
-           factors it stops at errors of per cents.)
+iterative: the same elements and conditions without CalculiX, by conjugate gradients over all steps at once
+           (scripts/cell_elements.py): in minutes what a factorization in every step does in hours. (Those of CalculiX end
+           at a residual of 1e-4, which left up to 4e-3 of the bending and coupling terms.)
 """
 
 import argparse
@@ -22,6 +21,8 @@ import tempfile
 import time
 
 import numpy
+
+from cell_elements import EDGES, PAIRS, Cell, NotSolved, tetrahedron_shapes
 
 BLOCK = ["xx", "yy", "zz", "xy", "xz", "yz"]
 
@@ -138,22 +139,33 @@ class Deck:
         names = [name for name in self.sets if re.fullmatch(r"(Constraints|Curvature)Driver\d", name)]
         return {name: self.sets[name][0] for name in names}
 
-    def pieces(self, chunk=50_000):
-        """Of all elements, some at a time: section, volumes, first and second moments of their heights about the middle
-        of the cell, stiffness matrices in space (order xx yy zz xy xz yz)."""
-        middle = self.cell[:, 2].mean()
+    def parts(self, chunk=20_000):
+        """Of all elements, some at a time: their numbers, places of their nodes, stiffness matrices and expansion (engineering
+        strains a degree) in space, order xx yy zz xy xz yz."""
         for name, material, oriented in self.sections:
             local = self.materials[material]["stiffness"]
+            expands = numpy.array([*self.materials[material].get("expansion", (0, 0, 0)), 0, 0, 0])
             numbers = self.element_sets[name]
             for k in range(0, len(numbers), chunk):
                 part = numbers[k : k + chunk]
-                p = numpy.array([[self.nodes[n] for n in self.elements[e]] for e in part])
-                p[:, :, 2] -= middle
-                moments = moments_of_boxes(p) if p.shape[1] == 8 else moments_of_tetrahedra(p)
                 stiffness = numpy.broadcast_to(local, (len(part), 6, 6))
+                expansion = numpy.broadcast_to(expands, (len(part), 6))
                 if oriented:
-                    stiffness = rotated(local, numpy.array([self.axes[e] for e in part]))
-                yield name, *moments, stiffness
+                    turn = turned(numpy.array([self.axes[e] for e in part]))
+                    stiffness = numpy.einsum("nai,ab,nbj->nij", turn, local, turn, optimize=True)
+                    # Stresses turn by the transposed matrix, and strains of the material into space as work asks for.
+                    expansion = numpy.linalg.solve(turn, expansion[:, :, None])[:, :, 0]
+                yield part, numpy.array([[self.nodes[n] for n in self.elements[e]] for e in part]), stiffness, expansion
+
+    def pieces(self):
+        """Of all elements, some at a time: section, volumes, first and second moments of their heights about the middle
+        of the cell, stiffness matrices in space (order xx yy zz xy xz yz)."""
+        middle = self.cell[:, 2].mean()
+        name_of = {e: name for name, _, _ in self.sections for e in self.element_sets[name]}
+        for part, p, stiffness, _ in self.parts():
+            p[:, :, 2] -= middle
+            moments = moments_of_boxes(p) if p.shape[1] == 8 else moments_of_tetrahedra(p)
+            yield name_of[part[0]], *moments, stiffness
 
 
 def moments_of_boxes(p):
@@ -161,9 +173,6 @@ def moments_of_boxes(p):
     z = p[:, :, 2]
     volume = numpy.prod(p[:, 6] - p[:, 0], axis=1)
     return volume, volume * z.mean(axis=1), volume * (z.mean(axis=1) ** 2 + (z[:, 6] - z[:, 0]) ** 2 / 12)
-
-
-EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]  # of which the fifth to the tenth node is the middle
 
 
 def moments_of_tetrahedra(p):
@@ -193,18 +202,8 @@ def tetrahedron_rule(count=5):
     at, weight = (at + 1) / 2, weight / 2
     a, b, c = (grid.ravel() for grid in numpy.meshgrid(at, at, at, indexing="ij"))
     weights = numpy.einsum("i,j,k->ijk", weight, weight, weight).ravel() * (1 - a) ** 2 * (1 - b)
-    r, s, t = a, b * (1 - a), c * (1 - a) * (1 - b)
-    shares = numpy.stack([1 - r - s - t, r, s, t], axis=1)
-    slope = numpy.array([[-1.0, -1.0, -1.0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
-    values = numpy.empty((len(a), 10))
-    slopes = numpy.empty((len(a), 10, 3))
-    for i in range(4):
-        values[:, i] = shares[:, i] * (2 * shares[:, i] - 1)
-        slopes[:, i] = (4 * shares[:, i, None] - 1) * slope[i]
-    for k, (i, j) in enumerate(EDGES):
-        values[:, 4 + k] = 4 * shares[:, i] * shares[:, j]
-        slopes[:, 4 + k] = 4 * (shares[:, i, None] * slope[j] + shares[:, j, None] * slope[i])
-    return values, slopes, weights
+    at = numpy.stack([a, b * (1 - a), c * (1 - a) * (1 - b)], axis=1)
+    return *tetrahedron_shapes(at, 10), weights
 
 
 def stiffness_of(values):
@@ -223,21 +222,18 @@ def stiffness_of(values):
     return numpy.linalg.inv(s)
 
 
-PAIRS = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
-
-
-def rotated(local, axes):
-    """The stiffness in space of a material along axes: rows of axis 1 and of a second one across it."""
+def turned(axes):
+    """What makes strains along axes from those in space (n x 6 x 6, engineering): rows of axis 1 and of a second one across it."""
     first = axes[:, :3] / numpy.linalg.norm(axes[:, :3], axis=1)[:, None]
     second = axes[:, 3:] - first * (first * axes[:, 3:]).sum(axis=1)[:, None]
     second /= numpy.linalg.norm(second, axis=1)[:, None]
     r = numpy.stack([first, second, numpy.cross(first, second)], axis=1)
-    strain = numpy.zeros((len(axes), 6, 6))  # engineering strains in the material's axes from those in space
+    strain = numpy.zeros((len(axes), 6, 6))  
     for a, (i, j) in enumerate(PAIRS):
         for b, (k, l) in enumerate(PAIRS):
             value = r[:, i, k] * r[:, j, l] + (r[:, i, l] * r[:, j, k] if k != l else 0)
             strain[:, a, b] = value * (1 if i == j else 2) * (1 if k == l else 0.5)
-    return numpy.einsum("nai,ab,nbj->nij", strain, local, strain)
+    return strain
 
 
 def run_ccx(program, folder, name):
@@ -274,55 +270,6 @@ def reactions(path, count):
     if len(steps) != count:
         raise Failure(f"CalculiX printed the forces of {len(steps)} steps, not of {count}")
     return steps
-
-
-def iterative_deck(deck, path):
-    """The same steps by conjugate gradients, each with all displacements and forces in print and nothing else."""
-    lines, skipped = [], False
-    for line in deck.lines:
-        if line.startswith("*"):
-            skipped = line.startswith(("*NODE PRINT", "*NODE FILE", "*EL FILE"))
-            if line.startswith("*END STEP"):
-                lines.append("*NODE PRINT, NSET=AllNodes\nU, RF")
-            if line == "*STATIC":
-                line = "*STATIC, SOLVER=ITERATIVE SCALING"
-        if not skipped:
-            lines.append(line)
-    path.write_text("\n".join(lines) + "\n")
-
-
-def fields(path, count):
-    """Displacements and forces of all nodes, step by step: two lists of arrays (nodes x 3)."""
-    moved, forces = [], []
-    blocks = path.read_text().split(" set ALLNODES ")[1:]
-    if len(blocks) != 2 * count:
-        raise Failure(f"CalculiX printed {len(blocks)} tables, not {2 * count}")
-    for k, block in enumerate(blocks):
-        table = block[block.index("\n") :].strip().split("\n\n")[0]
-        values = numpy.array(table.split(), dtype=float).reshape(-1, 4)[:, 1:]
-        (moved if k % 2 == 0 else forces).append(values)
-    return moved, forces
-
-
-def stiffness_from_fields(deck, drivers, moved, forces, measure):
-    """The work of each case's displacements against every case's forces."""
-    names = list(drivers)
-    cases = {}
-    thermal = None
-    for number, step in enumerate(deck.steps):
-        pulled = [name for name in names if step["drivers"].get(name)]
-        if len(pulled) == 1:
-            cases[pulled[0]] = (number, step["drivers"][pulled[0]])
-        elif not pulled and step["temperature"]:
-            thermal = (number, step["temperature"])
-    if len(cases) != len(names):
-        raise Failure("the deck has no step for each driver")
-    works = [(moved[number] / size, forces[number] / size) for number, size in (cases[name] for name in names)]
-    matrix = numpy.array([[(u * f).sum() for _, f in works] for u, _ in works]) / measure
-    free = numpy.zeros(len(names))
-    if thermal:
-        free = numpy.array([(u * forces[thermal[0]]).sum() for u, _ in works]) / measure / thermal[1]
-    return matrix, free
 
 
 def driver_forces(deck, drivers, forces):
@@ -414,13 +361,28 @@ def bounds(deck, plate):
     return voigt, numpy.linalg.inv(soft), shares
 
 
+DISCRETISATION = 0.01  # up to which elements are allowed to be too stiff where a bound is exact (a homogeneous plate)
+
+
 def is_not_below(upper, lower):
-    """Is the difference positive semidefinite, but for rounding? Entries of different units are scaled first."""
+    """Is the difference positive semidefinite, but for that? Entries of different units are scaled first."""
     scale = 1 / numpy.sqrt(numpy.diag(upper))
-    return bool(numpy.linalg.eigvalsh((upper - lower) * numpy.outer(scale, scale)).min() > -1e-6)
+    return bool(numpy.linalg.eigvalsh((upper - lower) * numpy.outer(scale, scale)).min() > -DISCRETISATION)
 
 
-LARGEST_DIRECT = 20_000  # nodes; beyond, a factorization takes minutes and gigabytes
+LARGEST_DIRECT = 3_000  # nodes; beyond, seven factorizations take minutes and gigabytes
+
+
+def check_bounds(matrix, voigt, reuss, plate):
+    """Nothing is told of a stiffness that cannot be."""
+    for name, upper, lower in (("Voigt", voigt, matrix), ("Reuss", matrix, reuss)):
+        if is_not_below(upper, lower):
+            continue
+        remedy = "mesh it finer" + (", or with --order 2, the default of plates" if plate else "")
+        raise Failure(
+            f"the stiffness that was found is {'above' if name == 'Voigt' else 'below'} {name}'s bound, which no cell of "
+            f"these materials is: its elements are too coarse{' for bending' if plate else ''}; {remedy}"
+        )
 
 
 def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
@@ -435,25 +397,30 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
     measure = sides[0] * sides[1] if plate else numpy.prod(sides)
     if solver == "auto":
         solver = "direct" if len(deck.nodes) <= LARGEST_DIRECT else "iterative"
-    name = "homogenize_" + solver  # not the name of a deck that is kept beside it
-    if solver == "direct":
-        shutil.copy(path, folder / f"{name}.inp")
-    else:
-        iterative_deck(deck, folder / f"{name}.inp")
     started = time.monotonic()
-    warnings = run_ccx(ccx, folder, name)
-    seconds = time.monotonic() - started
     if solver == "direct":
+        name = "homogenize"  # not the name of a deck that is kept beside it
+        shutil.copy(path, folder / f"{name}.inp")
+        warnings = run_ccx(ccx, folder, name)
         forces = reactions(folder / f"{name}.dat", len(deck.steps))
         matrix, thermal = stiffness_from_steps(deck, drivers, forces, measure)
     else:
-        moved, forces = fields(folder / f"{name}.dat", len(deck.steps))
-        matrix, thermal = stiffness_from_fields(deck, drivers, moved, forces, measure)
+        warnings = []
+        matrix, thermal = (total / measure for total in Cell(deck, drivers, deck.parts()).stiffness())
+    seconds = time.monotonic() - started
     asymmetry = abs(matrix - matrix.T).max() / abs(matrix).max()
     matrix = (matrix + matrix.T) / 2
     constants, expansion = (
         engineering_plate(matrix, thermal, sides[2]) if plate else engineering_block(matrix, thermal)
     )
+    voigt, reuss, shares = bounds(deck, plate)
+    check_bounds(matrix, voigt, reuss, plate)
+    notes = []
+    if plate and any(len(nodes) in (4, 8) for nodes in deck.elements.values()):
+        notes.append(
+            "elements of four or eight nodes are too stiff in bending (tetrahedra of usual sizes by a third): the entries of "
+            "kxx, kyy, kxy are upper bounds; mesh with --order 2"
+        )
     result = {
         "file": str(path),
         "kind": "plate" if plate else "block",
@@ -468,12 +435,11 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
         "thermal_stress": thermal.tolist(),
         "expansion": expansion,
         "warnings": warnings,
+        "notes": notes,
         "seconds": seconds,
     }
     if with_bounds:
-        voigt, reuss, shares = bounds(deck, plate)
         result |= {"volume_fractions": shares, "voigt": voigt.tolist(), "reuss": reuss.tolist()}
-        result["inside_bounds"] = is_not_below(voigt, matrix) and is_not_below(matrix, reuss)
     return result
 
 
@@ -491,9 +457,12 @@ def show(result):
         print(f"  {name:12} {value:12.5g}")
     for name, share in result.get("volume_fractions", {}).items():
         print(f"  share of {name:12} {share:.5f}")
-    if "inside_bounds" in result:
-        print("inside the bounds of Voigt and Reuss:", "yes" if result["inside_bounds"] else "NO")
-    for warning in result["warnings"]:
+    for name in ("voigt", "reuss"):
+        if name in result:
+            print(f"{name.capitalize()}'s bound")
+            for row in result[name]:
+                print("  " + " ".join(f"{value:13.6g}" for value in row))
+    for warning in result["warnings"] + result["notes"]:
         print(warning)
 
 
@@ -501,18 +470,18 @@ def main():
     parser = argparse.ArgumentParser(
         prog="homogenize",
         description="Stiffness (C of a block, ABD of a plate), engineering constants and thermal expansion of a unit "
-        "cell, by CalculiX.",
+        "cell, from its deck: by CalculiX, or by conjugate gradients where it is large.",
         epilog="Options that are not known here are those of `selvage mesh`: --size, --voxel, --order, ...",
     )
     parser.add_argument("file", help="deck of `selvage mesh` (.inp), or any input of it with a cell")
     parser.add_argument("--json", metavar="FILE", help="write the results there too ('-': standard output, alone)")
-    parser.add_argument("--bounds", action="store_true", help="with volume fractions and the bounds of Voigt and Reuss")
+    parser.add_argument("--bounds", action="store_true", help="with volume fractions and the bounds of Voigt and Reuss (which are checked always)")
     parser.add_argument("--keep", metavar="DIR", help="keep the deck and what CalculiX wrote")
     parser.add_argument(
         "--solver",
         choices=["auto", "direct", "iterative"],
         default="auto",
-        help=f"of CalculiX: exact, or fast (default: direct up to {LARGEST_DIRECT} nodes)",
+        help=f"CalculiX's factorization, or conjugate gradients without it (default: direct up to {LARGEST_DIRECT} nodes)",
     )
     parser.add_argument("--ccx", default="ccx", help="the program (default: ccx)")
     parser.add_argument("--selvage", default="selvage", help=argparse.SUPPRESS)
@@ -533,7 +502,7 @@ def main():
             elif others:
                 raise Failure(f"unknown options: {' '.join(others)}")
             result = homogenize(path, given.ccx, folder, given.bounds, given.solver)
-        except Failure as failure:
+        except (Failure, NotSolved) as failure:
             print(f"homogenize: {failure}", file=sys.stderr)
             return 1
     if given.json and given.json != "-":

@@ -13,7 +13,10 @@ void add_mesh(CLI::App& program, Parsed& parsed) {
       .add_option("--size", o.size,
                   "wanted edge length, in the input's unit (default: a quarter of the thinnest section)")
       ->check(positive_number());
-  command.add_option("--order", o.order, "1: four nodes, 2: ten nodes a tetrahedron (default: 1)")
+  command
+      .add_option("--order", o.order,
+                  "1: four nodes, 2: ten nodes a tetrahedron (default: 1; 2 with --matrix of "
+                  "a cell that is periodic along x and y only: a plate bends)")
       ->check(CLI::IsMember({1, 2}));
   command
       .add_option("--min-dihedral", o.min_dihedral,

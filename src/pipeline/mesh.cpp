@@ -31,7 +31,7 @@ fem::MeshOptions mesh_options(Job& job) {
   const Options& given = job.options;
   fem::MeshOptions options;
   options.size = given.size;
-  options.order = given.order;
+  options.order = std::max(given.order, 1);
   options.min_dihedral = given.min_dihedral;
   set_mesher_limits(given, options);
   options.threads = static_cast<int>(job.threads);

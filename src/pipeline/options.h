@@ -55,8 +55,8 @@ struct Options {
   bool split_yarns = false;     // cut those that are too long for one file
   std::string step_schema = "AP242";
 
-  double size = 0;  // wanted edge length, input's unit; 0: the mesher's choice
-  int order = 1;
+  double size = 0;          // wanted edge length, input's unit; 0: the mesher's choice
+  int order = 0;            // 1, 2; 0: 2 of a plate with its matrix, else 1
   double min_dihedral = 0;  // degrees; 0: the mesher's choice
   bool allow_overlap = false;
 

@@ -117,7 +117,6 @@ TEST(Homogenize, OneMaterialEverywhereComesBack) {
     EXPECT_LT((stiffness(result) - resin()).cwiseAbs().maxCoeff(), 1e-6 * resin().maxCoeff());
     for (const char* name : {"alpha_xx", "alpha_yy", "alpha_zz"})
       EXPECT_NEAR(number(result, "expansion", name), 60e-6, 60e-6 * 2e-6);
-    EXPECT_TRUE(result["inside_bounds"].get<bool>());
   }
 }
 
@@ -156,14 +155,14 @@ TEST(Homogenize, AStraightYarnFollowsTheRuleOfMixtures) {
     const Json result = homogenized(mesh);
     const double mixed = share * 51500 + (1 - share) * 3400;
     EXPECT_NEAR(number(result, "engineering", "E1"), mixed, 0.005 * mixed);
-    EXPECT_TRUE(result["inside_bounds"].get<bool>());
   }
 }
 
 TEST(Homogenize, ConjugateGradientsComeNear) {
-  const fem::Mesh mesh = cell_mesh(cell_text("transverse 51500 17500 0.26 5800 0.31", "x y"), {.size = 0.2});
+  const fem::Mesh mesh =
+      cell_mesh(cell_text("transverse 51500 17500 0.26 5800 0.31", "x y"), {.size = 0.4, .order = 2});
   const Json exact = homogenized(mesh), near = homogenized(mesh, "iterative");
-  EXPECT_LT((stiffness(exact) - stiffness(near)).cwiseAbs().maxCoeff(), 1e-3 * stiffness(exact).maxCoeff());
+  EXPECT_LT((stiffness(exact) - stiffness(near)).cwiseAbs().maxCoeff(), 1e-6 * stiffness(exact).maxCoeff());
   for (const char* name : {"alpha_xx", "alpha_yy"})
     EXPECT_NEAR(number(near, "expansion", name), number(exact, "expansion", name),
                 1e-3 * number(exact, "expansion", name));

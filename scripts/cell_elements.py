@@ -1,0 +1,177 @@
+"""The elements of a unit cell's deck, its conditions, and conjugate gradients over all load cases at once: for scripts/homogenize,
+where a factorization would take too long."""
+
+import numpy
+
+EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]  # of which the fifth to the tenth node is the middle
+CORNERS = numpy.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+BRICK = numpy.array([[x, y, z] for z in (-1.0, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+PAIRS = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
+RESIDUAL = 1e-7  # of the right sides; the stiffness errs by the square of what that leaves
+MOST_STEPS = 20_000
+
+
+class NotSolved(Exception):
+    pass
+
+
+def tetrahedron_shapes(at, nodes):
+    """Values and slopes of the four or ten shape functions at places of the unit tetrahedron (n x 3)."""
+    shares = numpy.concatenate([1 - at.sum(axis=1, keepdims=True), at], axis=1)
+    slope = numpy.vstack([-numpy.ones(3), numpy.eye(3)])
+    if nodes == 4:
+        return shares, numpy.broadcast_to(slope, (len(at), 4, 3))
+    values = numpy.empty((len(at), 10))
+    slopes = numpy.empty((len(at), 10, 3))
+    for i in range(4):
+        values[:, i] = shares[:, i] * (2 * shares[:, i] - 1)
+        slopes[:, i] = (4 * shares[:, i, None] - 1) * slope[i]
+    for k, (i, j) in enumerate(EDGES):
+        values[:, 4 + k] = 4 * shares[:, i] * shares[:, j]
+        slopes[:, 4 + k] = 4 * (shares[:, i, None] * slope[j] + shares[:, j, None] * slope[i])
+    return values, slopes
+
+
+def rule(nodes):
+    """Slopes and weights at the points that CalculiX integrates C3D4, C3D10 and C3D8 by."""
+    if nodes == 8:
+        at = BRICK / 3**0.5
+        factors = (1 + at[:, None, :] * BRICK) / 2
+        slopes = numpy.stack(
+            [BRICK[:, k] / 2 * numpy.delete(factors, k, axis=2).prod(axis=2) for k in range(3)], axis=2
+        )
+        return slopes, numpy.ones(8)
+    near = (5 - 5**0.5) / 20
+    at = numpy.full((1, 3), 0.25) if nodes == 4 else near + (1 - 4 * near) * CORNERS
+    return tetrahedron_shapes(at, nodes)[1], numpy.full(len(at), 1 / (6 * len(at)))
+
+
+def matrices(places, stiffness, expansion):
+    """Stiffness of elements (n x 3 nodes x 3 nodes), and the forces of one degree: places n x nodes x 3."""
+    count, nodes, _ = places.shape
+    result = numpy.zeros((count, 3 * nodes, 3 * nodes))
+    forces = numpy.zeros((count, 3 * nodes))
+    stress = numpy.einsum("nij,nj->ni", stiffness, expansion)
+    for slope, weight in zip(*rule(nodes)):
+        frame = numpy.einsum("ai,nac->nic", slope, places)
+        slopes = numpy.einsum("nci,ai->nac", numpy.linalg.inv(frame), slope)
+        b = numpy.zeros((count, 6, nodes, 3))
+        for row, (i, j) in enumerate(PAIRS):
+            b[:, row, :, i] += slopes[:, :, j]
+            if i != j:
+                b[:, row, :, j] += slopes[:, :, i]
+        b = b.reshape(count, 6, 3 * nodes)
+        size = weight * numpy.linalg.det(frame)
+        turned = b.transpose(0, 2, 1)
+        result += turned @ (stiffness @ b * size[:, None, None])
+        forces += (turned @ stress[:, :, None])[:, :, 0] * size[:, None]
+    return result, forces
+
+
+class Conditions:
+    """Which unknown each node's displacement is (-1: none), and what the drivers add to it (nodes x 3 x drivers)."""
+
+    def __init__(self, deck, drivers):
+        count = max(deck.nodes) + 1
+        index = {node: k for k, node in enumerate(drivers.values())}
+        master = numpy.arange(count)
+        self.driven = numpy.zeros((count, 3, len(drivers)))
+        for first, *others in deck.equations:
+            node, direction, factor = first
+            free = [(n, d, f) for n, d, f in others if n not in index]
+            if free and (len(free) > 1 or free[0][1] != direction or free[0][2] != -factor):
+                raise NotSolved("an equation ties more than two nodes")
+            master[node] = free[0][0] if free else -1
+            for n, _, f in others:
+                if n in index:
+                    self.driven[node, direction - 1, index[n]] = -f / factor
+        if deck.held:
+            master[master == int(deck.held[0])] = -1
+        used = numpy.unique(numpy.concatenate([numpy.unique(rows) for rows in element_rows(deck)]))
+        kept = numpy.unique(master[used])
+        kept = kept[kept >= 0]
+        number = numpy.full(count, -1)
+        number[kept] = numpy.arange(len(kept))
+        self.unknown = numpy.where(master >= 0, number[master], -1)
+        self.count = len(kept)
+
+
+def element_rows(deck):
+    for name, _, _ in deck.sections:
+        yield numpy.array([deck.elements[e] for e in deck.element_sets[name]])
+
+
+class Cell:
+    """All elements of a deck as one matrix that is never put together."""
+
+    def __init__(self, deck, drivers, pieces):
+        """`pieces`: of some elements at a time their numbers, places, stiffness and expansion in space."""
+        self.conditions = Conditions(deck, drivers)
+        nodes, of_elements, forces = [], [], []
+        for numbers, places, stiffness, expansion in pieces:
+            some, force = matrices(places, stiffness, expansion)
+            nodes.append(numpy.array([deck.elements[e] for e in numbers]))
+            of_elements.append(some)
+            forces.append(force)
+        self.nodes = numpy.concatenate(nodes)
+        self.matrices = numpy.concatenate(of_elements)
+        self.heated = numpy.concatenate(forces)
+        count = self.conditions.count
+        unknown = self.conditions.unknown[self.nodes]
+        unknown[unknown < 0] = count  # one more, which stays at zero
+        self.unknown = (3 * unknown[:, :, None] + numpy.arange(3)).reshape(len(self.nodes), -1)
+        flat = self.unknown.ravel()
+        self.order = numpy.argsort(flat, kind="stable")
+        ordered = flat[self.order]
+        self.starts = numpy.flatnonzero(numpy.r_[True, ordered[1:] != ordered[:-1]])
+        self.rows = 3 * count + 3
+        self.places = ordered[self.starts]
+        blocks = numpy.zeros((count + 1, 3, 3))
+        for a in range(unknown.shape[1]):
+            numpy.add.at(blocks, unknown[:, a], self.matrices[:, 3 * a : 3 * a + 3, 3 * a : 3 * a + 3])
+        self.inverse = numpy.linalg.inv(blocks[:count])
+
+    def gather(self, rows):
+        """Forces of elements (n x 3 nodes x cases) at the unknowns."""
+        result = numpy.zeros((self.rows, rows.shape[2]))
+        result[self.places] = numpy.add.reduceat(rows.reshape(-1, rows.shape[2])[self.order], self.starts, axis=0)
+        result[-3:] = 0
+        return result
+
+    def precondition(self, x):
+        result = numpy.zeros_like(x)
+        result[:-3] = (self.inverse @ x[:-3].reshape(len(self.inverse), 3, -1)).reshape(len(x) - 3, -1)
+        return result
+
+    def solve(self, right):
+        """Conjugate gradients, each case for itself."""
+        x, rest = numpy.zeros_like(right), right.copy()
+        z = self.precondition(rest)
+        way, old = z.copy(), (rest * z).sum(axis=0)
+        tiny = numpy.finfo(float).tiny
+        wanted = RESIDUAL * numpy.sqrt((right**2).sum(axis=0))
+        for _ in range(MOST_STEPS):
+            if (numpy.sqrt((rest**2).sum(axis=0)) <= wanted).all():
+                return x
+            forces = self.gather(self.matrices @ way[self.unknown])
+            length = old / numpy.maximum((way * forces).sum(axis=0), tiny)
+            x += length * way
+            rest -= length * forces
+            z = self.precondition(rest)
+            new = (rest * z).sum(axis=0)
+            way = z + new / numpy.maximum(old, tiny) * way
+            old = new
+        raise NotSolved(f"conjugate gradients came to no end in {MOST_STEPS} steps")
+
+    def stiffness(self):
+        """Work of each driver's displacements against every driver's forces, and against those of one degree with all
+        drivers held: errs by the product of both errors only."""
+        driven = self.conditions.driven[self.nodes]
+        driven = driven.reshape(len(self.nodes), -1, driven.shape[3])
+        given = numpy.concatenate([self.matrices @ driven, -self.heated[:, :, None]], axis=2)
+        moved = self.solve(-self.gather(given))[self.unknown]
+        moved[:, :, :-1] += driven
+        forces = self.matrices @ moved
+        forces[:, :, -1] -= self.heated
+        work = numpy.einsum("nak,nal->kl", moved[:, :, :-1], forces, optimize=True)
+        return work[:, :-1], work[:, -1]
