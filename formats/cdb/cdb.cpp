@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/columns.h"
+#include "core/text_report.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
 
@@ -191,7 +192,7 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   text << "/COM,ANSYS mesh archive by Selvage: mm, N, MPa, tonne, s. Read it with CDREAD,DB\n";
   for (std::size_t i = 0; i < mesh.regions.size(); ++i)
     if (mesh.regions[i].kind == fem::Region::Kind::yarn)
-      text << "! " << fem::set_name(mesh, i) << " is yarn '" << mesh.regions[i].name << "'\n";
+      text << "! " << fem::set_name(mesh, i) << " is yarn " << in_quotes(mesh.regions[i].name) << '\n';
   text << "/PREP7\n";
   write_types(text, mesh);
   write_nodes(text, mesh);

@@ -1,6 +1,7 @@
 #include "formats/inp/inp.h"
 
 #include "core/columns.h"
+#include "core/text_report.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
 #include "formats/inp/deck.h"
@@ -54,7 +55,8 @@ void write_elements(TextBuffer& text, const fem::Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
     const fem::Region& region = mesh.regions[i];
     const std::string name = fem::set_name(mesh, i);
-    if (region.kind == fem::Region::Kind::yarn) text << "** " << name << " is yarn '" << region.name << "'\n";
+    if (region.kind == fem::Region::Kind::yarn)
+      text << "** " << name << " is yarn " << in_quotes(region.name) << '\n';
     text << "*ELEMENT, TYPE=" << element_type(mesh) << ", ELSET=" << name << '\n';
     for (std::size_t e = region.first_element; e < region.last_element; ++e) {
       text << e + 1;

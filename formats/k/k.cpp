@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/columns.h"
+#include "core/readable.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
 #include "fem/unit_cell.h"
@@ -50,8 +51,7 @@ void write_parts(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem:
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const fem::Region& region = mesh.regions[sections[i].region];
     text << "*PART\n" << sections[i].name;
-    if (region.kind == fem::Region::Kind::yarn)
-      text << ": yarn '" << std::string_view(region.name).substr(0, 40) << '\'';
+    if (region.kind == fem::Region::Kind::yarn) text << ": yarn '" << shortened(region.name, 40) << '\'';
     text << '\n';
     put_integers(text, {i + 1, 1, sections[i].material + 1});
   }

@@ -12,6 +12,7 @@
 #include "cad/basis.h"
 #include "cad/outline.h"
 #include "core/parallel.h"
+#include "core/readable.h"
 
 namespace selvage::cad {
 
@@ -363,7 +364,9 @@ void Comparer::add_notes() {
   if (without_color_ > 0)
     out_.notes.push_back(fmt::format("{} have a colour in one file only", without_color_));
   const std::string &title_a = subject_a_.model.title, &title_b = subject_b_.model.title;
-  if (title_a != title_b) out_.notes.push_back(fmt::format("titles: '{}' and '{}'", title_a, title_b));
+  if (title_a != title_b)
+    out_.notes.push_back(
+        fmt::format("titles: '{}' and '{}'", shortened(title_a, 80), shortened(title_b, 80)));
 }
 
 Comparison Comparer::run() {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/readable.h"
+
 namespace selvage {
 
 std::string_view name_of(Severity severity) {
@@ -46,14 +48,15 @@ std::string_view name_of(Kind kind) {
 std::string to_string(const Message& message) {
   std::string out;
   if (!message.file.empty()) {
-    out += message.file;
+    out += readable(message.file);
     if (message.place.line > 0) out += fmt::format(":{}", message.place.line);
     if (message.place.line > 0 && message.place.column > 0) out += fmt::format(":{}", message.place.column);
     out += ": ";
   }
-  out += fmt::format("{}: {}", name_of(message.severity), message.text);
+  out += fmt::format("{}: {}", name_of(message.severity), readable(message.text));
+  const std::string quoted = fmt::format("'{}'", shortened(message.yarn));
   if (!message.yarn.empty() && message.text.find("'" + message.yarn + "'") == std::string::npos)
-    out += fmt::format(" (yarn '{}')", message.yarn);
+    out += fmt::format(" (yarn {})", quoted);
   if (message.at) {
     // What is rounding beside the other coordinates is shown as 0.
     const double rounding = 1e-9 * message.at->norm();

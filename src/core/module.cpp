@@ -12,13 +12,17 @@ namespace fs = std::filesystem;
 fs::path program_folder() {
   std::error_code failure;
   const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  return failure ? fs::path(".") : program.parent_path();
+  return failure ? fs::path() : program.parent_path();
 }
 
 namespace {
 
 Result<fs::path> find_beside_program(const std::string& file) {
   const fs::path here = program_folder();
+  if (here.empty())  // and certainly not the folder that the user happens to be in
+    return error(Kind::internal, fmt::format("cannot find '{}': where this program stands is told by "
+                                             "/proc/self/exe, which cannot be read",
+                                             file));
   for (const fs::path& folder : std::array{here, here / "../lib/selvage"}) {
     std::error_code failure;
     if (fs::exists(folder / file, failure)) return folder / file;

@@ -10,7 +10,7 @@
 namespace selvage {
 
 // The folder in which the running program, its modules and its worker programs stand. (For tests: the build's
-// bin folder, found the same way.)
+// bin folder, found the same way.) Empty where /proc does not tell.
 std::filesystem::path program_folder();
 
 // Opens `selvage_NAME.so` beside the program (or in ../lib/selvage) once, and returns what its function

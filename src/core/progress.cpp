@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/readable.h"
+
 namespace selvage {
 
 namespace {
@@ -49,7 +51,7 @@ std::string ProgressDisplay::line() const {
   if (done_ > 0 && done_ < total_)
     text += fmt::format(", about {:.0f} s left",
                         seconds / static_cast<double>(done_) * static_cast<double>(total_ - done_));
-  if (!detail_.empty()) text += "; " + detail_;
+  if (!detail_.empty()) text += "; " + readable(detail_);
   return text;
 }
 
@@ -61,9 +63,9 @@ double ProgressDisplay::tick() {
     if (on_terminal_) {
       constexpr std::size_t width = 20;
       const std::size_t filled = total_ == 0 ? 0 : width * std::min(done_, total_) / total_;
-      std::string text = fmt::format("[{:<{}}] {}", std::string(filled, '#'), width, line());
-      text.resize(std::min(text.size(), terminal_columns() - 1));
-      std::fprintf(stderr, "\r\033[K%s", text.c_str());
+      const std::string text = fmt::format("[{:<{}}] {}", std::string(filled, '#'), width, line());
+      std::fprintf(stderr, "\r\033[K%s",
+                   shortened(text, std::max<std::size_t>(terminal_columns(), 8) - 1).c_str());
       std::fflush(stderr);
       drawn_ = true;
     } else {

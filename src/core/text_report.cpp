@@ -15,35 +15,23 @@ bool is_continuation(char c) {
   return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
 }
 
-// The length of the UTF-8 character at the front of `bytes` (RFC 3629), 0 where there is none.
-std::size_t character_length(std::string_view bytes) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first < 0xC2 || first > 0xF4 || bytes.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if (!is_continuation(bytes[i])) return 0;
-  const unsigned char second = byte(1);
-  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool beyond = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
-  return overlong || beyond ? 0 : length;
-}
-
-bool is_control(char c) {
+// What no text file holds.
+bool is_foreign(char c) {
   return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7F;
 }
 
+// In an excerpt a character keeps its column: what cannot be shown is one '?'.
 std::string made_readable(std::string_view bytes) {
   std::string text;
   text.reserve(bytes.size());
   while (!bytes.empty()) {
-    const std::size_t length = is_control(bytes.front()) ? 0 : character_length(bytes);
-    if (length == 0)
+    const std::size_t length = character_length(bytes);
+    const std::string_view character = bytes.substr(0, std::max<std::size_t>(length, 1));
+    if (length == 0 || (character != "\t" && is_control(character)))
       text += '?';
     else
-      text += bytes.substr(0, length);
-    bytes.remove_prefix(std::max<std::size_t>(length, 1));
+      text += character;
+    bytes.remove_prefix(character.size());
   }
   return text;
 }
@@ -94,7 +82,7 @@ Spot spot_at(const Source& source, TextPlace place) {
 
 std::size_t text_prefix(std::string_view bytes) {
   std::size_t done = 0;
-  while (done < bytes.size() && !is_control(bytes[done])) {
+  while (done < bytes.size() && !is_foreign(bytes[done])) {
     const std::size_t length = character_length(bytes.substr(done));
     if (length == 0) break;
     done += length;
@@ -103,14 +91,7 @@ std::size_t text_prefix(std::string_view bytes) {
 }
 
 std::string in_quotes(std::string_view text) {
-  constexpr std::size_t most = 48;
-  std::string_view shown = text;
-  if (text.size() > most) {
-    std::size_t cut = most - 3;
-    while (cut > 0 && is_continuation(text[cut])) --cut;
-    shown = text.substr(0, cut);
-  }
-  return fmt::format("'{}{}'", made_readable(shown), shown.size() < text.size() ? "..." : "");
+  return fmt::format("'{}'", shortened(text));
 }
 
 std::string_view near_word(std::string_view word, const std::vector<std::string_view>& known) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/diagnostics.h"
+#include "core/readable.h"
 #include "core/source.h"
 
 namespace selvage {
@@ -27,7 +28,7 @@ Spot spot_at(const Source& source, TextPlace place);
 // but tab.
 std::size_t text_prefix(std::string_view bytes);
 
-// Foreign text made fit for a message: in single quotes, at most 48 bytes, bytes that are not text as '?'.
+// Foreign text made fit for a message: in single quotes, shortened() to 48 characters.
 std::string in_quotes(std::string_view text);
 
 // The known word that was meant; empty when none is near. For words of one letter no guess is made.

@@ -15,6 +15,7 @@
 #include "core/clock.h"
 #include "core/process.h"
 #include "core/progress.h"
+#include "core/readable.h"
 #include "core/standard_output.h"
 #include "core/temporary.h"
 #include "pipeline/inputs.h"
@@ -42,6 +43,10 @@ constexpr int well = 0, failed = 1, usage = 2, defect = 3, interrupted = 130;
 constexpr double report_interval = 10;  // seconds
 constexpr double report_share = 0.05;
 
+// Bytes of an input's messages. Workers say few (core/tally.h); what is wrong with one shall not eat memory
+// here.
+constexpr std::size_t most_kept = 1U << 20;
+
 class Batch {
  public:
   Batch(const Options& options, std::vector<Input> inputs, std::vector<std::vector<PlannedOutput>> outputs,
@@ -59,6 +64,7 @@ class Batch {
   // What came from one input so far.
   struct Work {
     std::string messages, results, report;
+    std::size_t left_out = 0;  // messages beyond what is kept
     bool ended = false;
     std::string reader;  // the format whose library reads the input now; empty: none
   };
@@ -133,8 +139,12 @@ std::string Batch::entry_of_earlier(const std::string& path) const {
 void Batch::receive(std::size_t job, char kind, std::string_view bytes) {
   Work& work = work_[job];
   if (kind == packet::message) {
-    work.messages += bytes;
-    work.messages += '\n';
+    if (work.messages.size() > most_kept) {
+      ++work.left_out;
+    } else {
+      work.messages += bytes;
+      work.messages += '\n';
+    }
   } else if (kind == packet::result) {
     work.results += bytes;
   } else if (kind == packet::report) {
@@ -215,6 +225,8 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
   } else {
     ++counts_.failed;
   }
+  if (work.left_out > 0)
+    work.messages += fmt::format("{}: and {} further messages\n", readable(inputs_[job].path), work.left_out);
   show(work.messages);
   flush_results();
   progress_.set(counts_.done + counts_.failed + counts_.skipped, counts_.failed, doing_);
@@ -289,7 +301,7 @@ void Batch::summarize() const {
   if (counts_.skipped > 0) text += fmt::format(", {} were up to date", counts_.skipped);
   if (counts_.failed > 0) text += fmt::format(", {} failed", counts_.failed);
   text += fmt::format("; {} file{} written", files_, files_ == 1 ? "" : "s");
-  if (!options_.output.empty()) text += fmt::format(" to '{}'", options_.output);
+  if (!options_.output.empty()) text += fmt::format(" to '{}'", readable(options_.output));
   text += '\n';
   std::fwrite(text.data(), 1, text.size(), stderr);
 }

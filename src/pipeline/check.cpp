@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "core/readable.h"
 #include "pipeline/cad_check.h"
 #include "pipeline/facts.h"
 #include "pipeline/overlaps.h"
@@ -113,7 +114,7 @@ std::string yarn_tables(const Findings& found, Unit file, Unit shown) {
 
 void print_tables(const Job& job, const Findings& found, const CadCheck& cad, std::size_t defects) {
   const Unit file = job.file_units(), shown = job.options.units.value_or(file);
-  std::string text = fmt::format("{}: lengths in {}\n", job.input.path, name_of(shown)), sound;
+  std::string text = fmt::format("{}: lengths in {}\n", readable(job.input.path), name_of(shown)), sound;
   if (cad.has_model()) {
     text += cad.table(file, shown);
     sound = cad.sound();
@@ -209,7 +210,7 @@ bool check(Job& job) {
     }
   }
   for (const solid::Overlap& overlap : found->solids.overlaps)
-    job.say_defect(overlap_message(overlap, found->bodies, fabric->units));
+    job.say_defect(overlap_message(overlap, found->bodies, fabric->units), overlap.depth);
   print_tables(job, *found, cad, defects);
   commit_all(job, *outputs);
   return defects > 0;

@@ -50,6 +50,7 @@ Verdict work(const DiffRequest& request, const Channel& channel) {
     const std::optional<fabric::Fabric> fabric = job.read();
     std::optional<cad::Subject> subject;
     if (fabric) subject = subject_of(job, *fabric);
+    job.say_rest();
     if (subject && !job.has_failed())
       subjects[k] = std::move(*subject);
     else

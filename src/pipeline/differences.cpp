@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/text_report.h"
 namespace selvage::pipeline {
 
 using cad::Difference;
@@ -27,7 +28,7 @@ std::string counted(std::size_t count, std::string_view noun) {
 
 // "yarn 'warp1'", or "part #120" where there is no name.
 std::string thing_text(const Difference& d) {
-  if (!d.name.empty()) return fmt::format("{} '{}'", name_of(d.what), d.name);
+  if (!d.name.empty()) return fmt::format("{} {}", name_of(d.what), in_quotes(d.name));
   return fmt::format("{} {}", name_of(d.what), d.entity.empty() ? "without a name" : d.entity);
 }
 
@@ -143,7 +144,7 @@ std::string line_of(const Difference& d, Unit units) {
     case Difference::Kind::reshaped:
       return text + ", " + shape_text(d, units);
     case Difference::Kind::renamed:
-      return text + fmt::format(" to '{}'", d.other_name);
+      return text + fmt::format(" to {}", in_quotes(d.other_name));
     case Difference::Kind::recoloured:
       return text + fmt::format(" from {} to {}", color_text(d.before), color_text(d.after));
   }
@@ -163,7 +164,7 @@ std::string summary_of(const cad::Comparison& found, double tolerance, Unit unit
   }
   if (found.largest > 0)
     text += fmt::format(", at most {:.6g} {} apart{}", found.largest, name_of(units),
-                        found.largest_of.empty() ? "" : fmt::format(" ('{}')", found.largest_of));
+                        found.largest_of.empty() ? "" : fmt::format(" ({})", in_quotes(found.largest_of)));
   return text + fmt::format(" (tolerance {:g} {})", tolerance, name_of(units));
 }
 

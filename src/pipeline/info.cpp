@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "core/readable.h"
 #include "nurbs/measure.h"
 #include "pipeline/facts.h"
 #include "pipeline/job.h"
@@ -23,8 +24,8 @@ std::string_view kind_of(const fabric::Item& item) {
 }
 
 std::string heading(const Job& job, const fabric::Fabric& fabric) {
-  std::string text = job.input.path + "\n";
-  if (fabric.title) text += fmt::format("  title      {}\n", *fabric.title);
+  std::string text = readable(job.input.path) + "\n";
+  if (fabric.title) text += fmt::format("  title      {}\n", shortened(*fabric.title, 120));
   text +=
       fmt::format("  units      {}{}\n", name_of(fabric.units), fabric.units_given ? "" : " (the default)");
   // Grids are taken as they are and need none.
@@ -32,9 +33,9 @@ std::string heading(const Job& job, const fabric::Fabric& fabric) {
   if (tolerance > 0) text += fmt::format("  tolerance  {:.6g}\n", tolerance);
   const auto names = [&](std::string_view what, const auto& list) {
     if (list.empty()) return;
-    text += fmt::format("  {:<9} ", what);
-    for (const auto& item : list) text += " " + item.name;
-    text += "\n";
+    NameList all;
+    for (const auto& item : list) all.add(item.name);
+    text += fmt::format("  {:<9} {}\n", what, all.text());
   };
   names("threads", fabric.threads);
   names("materials", fabric.materials);
@@ -120,9 +121,10 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
   });
   std::string text = fmt::format("  lengths in {}\n{}", name_of(shown), table.text());
   if (!groups.empty()) {
-    text += "  taken apart";
-    for (const auto& [yarn, parts] : groups) text += fmt::format(" {} ({} parts)", yarn, parts);
-    text += "\n";
+    NameList all;
+    for (const auto& [yarn, parts] : groups)
+      all.add(fmt::format("{} ({} parts)", shortened(yarn, 30), parts));
+    text += fmt::format("  taken apart{}\n", all.text());
   }
   text += fmt::format("  together: length {}, volume {}\n", cell(total_length), cell(total_volume));
   if (largest_miss > 0)

@@ -4,6 +4,8 @@
 #include <glob.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <string_view>
 #include <unordered_set>
 
@@ -94,11 +96,18 @@ class Expansion {
 
   Status add_pattern(const std::string& pattern) {
     glob_t found{};
-    const int outcome = ::glob(pattern.c_str(), 0, nullptr, &found);
+    const int outcome = ::glob(pattern.c_str(), GLOB_ERR, nullptr, &found);
+    const int reason = errno;
     std::vector<std::string> paths;
     if (outcome == 0) paths.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
     ::globfree(&found);
-    if (paths.empty()) list.missing.push_back(about(pattern, Kind::io, "no file matches this pattern"));
+    if (outcome == GLOB_NOSPACE || (outcome == GLOB_ABORTED && reason != ENOENT))
+      list.missing.push_back(
+          about(pattern, Kind::io,
+                fmt::format("cannot search all folders of this pattern: {}",
+                            outcome == GLOB_NOSPACE ? "no memory" : std::strerror(reason))));
+    else if (paths.empty())
+      list.missing.push_back(about(pattern, Kind::io, "no file matches this pattern"));
     for (const std::string& path : paths)
       if (Status status = add(path); !status.ok()) return status;
     return {};

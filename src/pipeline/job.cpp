@@ -15,6 +15,7 @@
 #include "pipeline/facts.h"
 #include "pipeline/limits.h"
 #include "pipeline/parts.h"
+#include "pipeline/versions.h"
 
 namespace selvage::pipeline {
 
@@ -33,10 +34,13 @@ std::string words_of(const RelaxSettings& relaxing) {
   return text;
 }
 
-// Everything on the command line that changes the bytes of an output.
+// Everything beside the input that changes the bytes of an output: the program, its libraries, the command
+// line.
 std::string settings_of(const Options& options) {
-  std::string text = fmt::format("{} ends={} tolerance={}", name_of(options.command),
-                                 options.ends ? name_of(*options.ends) : "input", options.tolerance);
+  std::string text = fmt::format("selvage={} build={}", version(), build_identity());
+  for (const auto& [library, number] : library_versions()) text += fmt::format(" {}={}", library, number);
+  text += fmt::format(" {} ends={} tolerance={}", name_of(options.command),
+                      options.ends ? name_of(*options.ends) : "input", options.tolerance);
   if (options.units) text += fmt::format(" units={}", name_of(*options.units));
   if (options.iges_solid) text += " iges-solid";
   if (options.iges_lines > 0) text += fmt::format(" iges-lines={}", options.iges_lines);
@@ -105,19 +109,27 @@ Job::Job(const Options& options_in, const Input& input_in, const std::vector<Pla
   report.path = input.path;
 }
 
-void Job::say(Message message) {
+void Job::say(Message message, double badness) {
   if (says_once && message.severity != Severity::error && !said_.insert(to_string(message)).second) return;
   if (message.severity == Severity::error) ++errors_;
   if (message.severity == Severity::warning) ++warnings_;
-  show(std::move(message));
+  show(std::move(message), badness);
 }
 
-void Job::say_defect(Message message) {
-  show(std::move(message));
+void Job::say_defect(Message message, double badness) {
+  show(std::move(message), badness);
 }
 
-void Job::show(Message message) {
+void Job::say_rest() {
+  for (Message& message : tally_.rest()) tell(std::move(message));
+}
+
+void Job::show(Message message, double badness) {
   if (message.file.empty()) message.file = input.path == "-" ? "<stdin>" : input.path;
+  if (tally_.take(message, badness)) tell(std::move(message));
+}
+
+void Job::tell(Message message) {
   const bool shown = message.severity == Severity::error ||
                      (message.severity == Severity::warning && !options.quiet) || options.verbose ||
                      (options.command == Command::info && !options.quiet);
@@ -333,6 +345,7 @@ Verdict run_job(Job& job, const std::string& earlier, const Channel& channel) {
   const Clock::time_point start = Clock::now();
   if (job.wants_report()) job.report.settings = settings_of(job.options);
   const Verdict verdict = guarded_work(job, earlier);
+  job.say_rest();
   if (!job.wants_report()) return verdict;
   job.report.ok = verdict == Verdict::done || verdict == Verdict::skipped;
   job.report.seconds = std::chrono::duration<double>(Clock::now() - start).count();

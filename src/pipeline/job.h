@@ -12,6 +12,7 @@
 #include "core/diagnostics.h"
 #include "core/process.h"
 #include "core/source.h"
+#include "core/tally.h"
 #include "core/units.h"
 #include "fabric/build.h"
 #include "fabric/model.h"
@@ -61,10 +62,13 @@ class Job {
   bool unsolved = false;        // the yarns cannot be moved apart (it was said why): nothing is written
   InputReport report;
 
-  // Passes a message on; one without a file gets the input's name.
-  void say(Message message);
+  // Passes a message on; one without a file gets the input's name. Of many alike the first are shown, and at
+  // the end their number and the worst (core/tally.h has `badness`).
+  void say(Message message, double badness = 0);
   // A defect that `check` found: shown like an error, but the input has not failed.
-  void say_defect(Message message);
+  void say_defect(Message message, double badness = 0);
+  // What was not shown, of many alike. To be called when all is said.
+  void say_rest();
   void say_all(const std::vector<Message>& messages);
   void print(std::string_view text) const { channel_.send(packet::result, text); }
   void tell_files(std::size_t count) const { channel_.send(packet::files, std::to_string(count)); }
@@ -103,13 +107,15 @@ class Job {
   [[nodiscard]] Unit file_units() const { return report.units.value_or(Unit::mm); }
 
  private:
-  void show(Message message);
+  void show(Message message, double badness);
+  void tell(Message message);
   void forward(const Diagnostics& diagnostics);
   void take_drafts(fabric::Fabric& fabric, const Source& source, Diagnostics& diagnostics);
 
   const Channel& channel_;
   int errors_ = 0, warnings_ = 0;
   std::set<std::string> said_;  // with says_once
+  Tally tally_;
   std::chrono::steady_clock::time_point last_progress_;
 };
 

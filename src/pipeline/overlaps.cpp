@@ -5,17 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text_report.h"
 #include "pipeline/facts.h"
 
 namespace selvage::pipeline {
 
 Message overlap_message(const solid::Overlap& overlap, std::span<const yarn::Body> bodies, Unit units) {
   const std::string depth = fmt::format("{:.4g} {}", overlap.depth, name_of(units));
-  const std::string &a = bodies[overlap.a].name, &b = bodies[overlap.b].name;
+  const std::string a = in_quotes(bodies[overlap.a].name), b = in_quotes(bodies[overlap.b].name);
   Message message =
       error(Kind::geometry, overlap.a == overlap.b
-                                ? fmt::format("yarn '{}' meets itself and overlaps, {} deep", a, depth)
-                                : fmt::format("yarns '{}' and '{}' overlap, {} deep", a, b, depth));
+                                ? fmt::format("yarn {} meets itself and overlaps, {} deep", a, depth)
+                                : fmt::format("yarns {} and {} overlap, {} deep", a, b, depth));
   // Rounding is no coordinate: 1e-15 would read like a place.
   message.at = overlap.at.unaryExpr([&](double x) { return std::abs(x) < 1e-6 * overlap.depth ? 0.0 : x; });
   return message;
@@ -67,7 +68,7 @@ bool check_overlaps(Job& job, std::span<const yarn::Body> bodies,
   for (const solid::Overlap& overlap : check->overlaps) {
     Message message = overlap_message(overlap, bodies, job.file_units());
     finish(message);
-    job.say(std::move(message));
+    job.say(std::move(message), overlap.depth);
   }
   return !job.has_failed();
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text_report.h"
 #include "pipeline/scaling.h"
 #include "pipeline/table.h"
 
@@ -69,8 +70,8 @@ std::string curve_tables(const PieceShape& piece, Unit file, Unit shown) {
   std::string text;
   for (const PieceEdge& edge : converted_piece.edges) {
     if (!edge.fit) continue;
-    text += fmt::format("\n  curve '{}' of piece '{}': {}, largest error {}, {} steps of descent\n",
-                        edge.name, piece.name, fabric::name_of(edge.fit->shape),
+    text += fmt::format("\n  curve {} of piece {}: {}, largest error {}, {} steps of descent\n",
+                        in_quotes(edge.name), in_quotes(piece.name), fabric::name_of(edge.fit->shape),
                         small(edge.fit->largest_error()), edge.fit->bezier.iterations);
     text += point_table(*edge.fit) + control_table(edge.fit->bezier);
   }

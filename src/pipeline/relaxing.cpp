@@ -9,6 +9,7 @@
 #include "contact/interlacing.h"
 #include "contact/relax.h"
 #include "core/parallel.h"
+#include "core/readable.h"
 #include "fabric/as_grid.h"
 #include "pipeline/table.h"
 
@@ -212,14 +213,15 @@ std::string table_of(const Job& job, const RelaxReport& report, Unit file) {
   };
   const auto count = [](std::size_t value) { return std::to_string(value); };
   const RelaxReport::State &before = report.before, &after = report.after;
-  std::string text = fmt::format("{}: lengths in {}\n", job.input.path, name_of(shown));
+  std::string text = fmt::format("{}: lengths in {}\n", readable(job.input.path), name_of(shown));
   Table table({"", "overlaps", "deepest", "least gap"});
   table.add({"before", count(before.overlaps), depth(before), gap(before)});
   table.add({report.solved ? "after" : "as far as it went", count(after.overlaps), depth(after), gap(after)});
   text += table.text();
   if (report.solved && !report.is_moved()) return text + "  nothing had to move\n";
-  text += fmt::format("  largest move {}{}\n", length(report.largest_move),
-                      report.moved_most.empty() ? "" : fmt::format(", of '{}'", report.moved_most));
+  text +=
+      fmt::format("  largest move {}{}\n", length(report.largest_move),
+                  report.moved_most.empty() ? "" : fmt::format(", of '{}'", shortened(report.moved_most)));
   text +=
       fmt::format("  largest changes: of a section's area {}, of a yarn's length {}, of its volume {}\n",
                   percent(report.area_change), percent(report.length_change), percent(report.volume_change));

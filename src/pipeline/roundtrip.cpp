@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "cad/compare.h"
+#include "core/readable.h"
 #include "pipeline/detect.h"
 #include "pipeline/differences.h"
 #include "pipeline/facts.h"
@@ -298,7 +299,8 @@ bool roundtrip(Job& job) {
     job.progress(trip.name, job.report.roundtrips.size() + 1, trips->size());
     is_different = traveller.travel(trip) || is_different;
   }
-  job.print(fmt::format("{}: deviations in mm, volumes in mm3\n{}", job.input.path, traveller.table()));
+  job.print(
+      fmt::format("{}: deviations in mm, volumes in mm3\n{}", readable(job.input.path), traveller.table()));
   return is_different;
 }
 

@@ -5,12 +5,33 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/readable.h"
+
 namespace selvage::pipeline {
+
+namespace {
+
+constexpr std::size_t most_names = 100;
+
+std::string spaces(std::size_t wanted, std::size_t taken) {
+  return std::string(wanted - std::min(wanted, taken), ' ');
+}
+
+}  // namespace
+
+void Table::add(const std::vector<std::string>& cells) {
+  if (rows_.size() > most_rows) {
+    ++more_;
+    return;
+  }
+  std::vector<std::string>& row = rows_.emplace_back();
+  for (const std::string& cell : cells) row.push_back(shortened(cell));
+}
 
 std::string Table::text() const {
   std::vector<std::size_t> widths(rows_.front().size(), 0);
   for (const auto& row : rows_)
-    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], columns_of(row[k]));
   std::vector<bool> is_number(widths.size());
   for (std::size_t k = 0; k < widths.size(); ++k)
     is_number[k] = std::all_of(rows_.begin() + 1, rows_.end(), [k](const auto& row) {
@@ -19,13 +40,23 @@ std::string Table::text() const {
   std::string out;
   for (const auto& row : rows_) {
     std::string line;
-    for (std::size_t k = 0; k < row.size(); ++k)
-      line += is_number[k] ? fmt::format("  {:>{}}", row[k], widths[k])
-                           : fmt::format("  {:<{}}", row[k], widths[k]);
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const std::string gap = spaces(widths[k], columns_of(row[k]));
+      line += is_number[k] ? "  " + gap + row[k] : "  " + row[k] + gap;
+    }
     line.erase(line.find_last_not_of(' ') + 1);
     out += line + "\n";
   }
+  if (more_ > 0) out += fmt::format("  ... and {} more\n", more_);
   return out;
+}
+
+void NameList::add(std::string_view name) {
+  if (++count_ <= most_names) shown_ += " " + shortened(name);
+}
+
+std::string NameList::text() const {
+  return count_ > most_names ? fmt::format("{} ... and {} more", shown_, count_ - most_names) : shown_;
 }
 
 std::string cell(double value) {

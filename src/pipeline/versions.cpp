@@ -1,9 +1,15 @@
 #include "pipeline/versions.h"
 
+#include "build_identity.h"
+
 namespace selvage::pipeline {
 
 std::string_view version() {
   return SELVAGE_VERSION;
+}
+
+std::string_view build_identity() {
+  return SELVAGE_BUILD_IDENTITY;
 }
 
 std::vector<std::pair<std::string_view, std::string_view>> library_versions() {

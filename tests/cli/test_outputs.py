@@ -9,7 +9,7 @@ import signal
 import subprocess
 import unittest
 
-from program import BAD, Case, GRID, PATH, PROGRAM, RING, environment, files_below, run
+from program import BAD, Case, GRID, PATH, PROGRAM, RING, environment, files_below, run, start
 
 
 class Places(Case):
@@ -254,6 +254,16 @@ class Trouble(Case):
         self.succeeds("convert", GRID, "--to", "iges", "-o", self.out)
         self.assertEqual(files_below(self.out).keys(), {"plain4_grid.igs", own.name})
         self.assertEqual(own.read_text(), "the user's own")
+
+    def test_runs_at_once_into_one_folder(self):
+        inputs = [GRID, PATH, RING]
+        self.succeeds("convert", *inputs, "--to", "iges,txt", "-o", self.folder / "alone")
+        for _ in range(3):
+            runs = [start("convert", *inputs, "--to", "iges,txt", "-o", self.out, "-j", 2) for _ in range(6)]
+            for process in runs:
+                _, message = process.communicate()
+                self.assertEqual(process.returncode, 0, message)
+            self.assertEqual(files_below(self.out), files_below(self.folder / "alone"))
 
     def test_what_is_replaced(self):
         """The permissions stay, and the link; what else leads to the old file keeps it."""
