@@ -6,6 +6,7 @@
 #include <exception>
 #include <new>
 
+#include "core/output.h"
 #include "core/process.h"
 #include "core/progress.h"
 #include "core/standard_output.h"
@@ -43,6 +44,7 @@ int run_single(const Options& wanted, const Single& single) {
   share_memory(options, 1);
   NewFolders folders;
   for (const std::filesystem::path& output : single.outputs) folders.expect(output);
+  OutputFile::remove_leftovers(single.outputs);  // of earlier runs
   ProgressDisplay progress(!options.quiet && !options.no_progress, 1);
   std::string results;
   int code = 1;
@@ -68,6 +70,7 @@ int run_single(const Options& wanted, const Single& single) {
   };
   pool.tick = [&] { return progress.tick(); };
   const Result<PoolEnd> end = run_jobs(pool);
+  OutputFile::remove_leftovers(single.outputs);  // of this one, had it been killed
   if (!end) {
     (void)refuse(end.error());
     return 1;
