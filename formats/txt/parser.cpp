@@ -156,6 +156,11 @@ std::optional<double> Parser::not_negative(std::string_view what) {
   return std::nullopt;
 }
 
+void Parser::check(const fabric::Quantity& quantity, double value) {
+  const std::string odd = fabric::oddity(quantity, value);
+  if (!odd.empty()) error(last(), odd);
+}
+
 std::optional<int> Parser::count(std::string_view what, int least) {
   return integer(what, least, std::numeric_limits<int>::max());
 }

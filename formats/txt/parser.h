@@ -15,6 +15,7 @@
 
 #include "core/text_report.h"
 #include "fabric/model.h"
+#include "fabric/quantities.h"
 #include "formats/txt/cursor.h"
 #include "formats/txt/words.h"
 
@@ -104,6 +105,8 @@ class Parser : public Cursor {
   // -----------------------
   std::optional<double> positive(std::string_view what);
   std::optional<double> not_negative(std::string_view what);
+  // Reports a value, the one read last, that is far outside of what exists.
+  void check(const fabric::Quantity& quantity, double value);
   std::optional<int> count(std::string_view what, int least = 1);
   std::optional<Vec3> point(std::string_view what);
   std::optional<Vec3> direction(std::string_view what);  // not zero

@@ -17,13 +17,17 @@ using fabric::Thread;
 
 void read_linear_density(Parser& p, Thread& thread, std::string_view word) {
   const auto value = p.positive(fmt::format("the linear density ({})", word));
-  if (!value || !p.finish()) return;
+  if (!value) return;
+  fabric::LinearDensity density;
   for (const auto& measure : density_words)
-    if (measure.text == word) thread.linear_density = {*value, measure.value};
+    if (measure.text == word) density = {*value, measure.value};
+  p.check(fabric::linear_density_quantity, density.tex());
+  if (p.finish()) thread.linear_density = density;
 }
 
 void read_density(Parser& p, Thread& thread, std::string_view) {
   const auto value = p.positive("the fibre density");
+  if (value) p.check(fabric::density_quantity, *value);
   if (value && p.finish()) thread.density = *value;
 }
 
@@ -122,6 +126,7 @@ void read_section(Parser& p, Thread& thread, std::string_view) {
 
 void read_twist(Parser& p, Thread& thread, std::string_view) {
   const auto turns = p.not_negative("the twist (its direction is the letter Z or S)");
+  if (turns) p.check(fabric::twist_quantity, *turns);
   const auto hand = turns ? p.choice("twist direction", hand_words) : std::nullopt;
   if (!hand) return;
   const bool rotates = p.more();
@@ -133,6 +138,7 @@ void read_plies(Parser& p, Thread& thread, std::string_view) {
   const auto count = p.count("the number of plies");
   const auto turns =
       count ? p.not_negative("the ply twist (its direction is the letter Z or S)") : std::nullopt;
+  if (turns) p.check(fabric::twist_quantity, *turns);
   const auto hand = turns ? p.choice("twist direction", hand_words) : std::nullopt;
   if (hand && p.finish()) thread.plies = {*count, *turns, *hand};
 }
@@ -162,11 +168,13 @@ void read_material_name(Parser& p, Thread& thread, std::string_view) {
 
 void read_material_density(Parser& p, Material& material, std::string_view) {
   const auto value = p.positive("the density");
+  if (value) p.check(fabric::density_quantity, *value);
   if (value && p.finish()) material.density = *value;
 }
 
 void read_isotropic(Parser& p, Material& material) {
   const auto modulus = p.positive("Young's modulus");
+  if (modulus) p.check(fabric::modulus_quantity, *modulus);
   const auto poisson = modulus ? p.number("Poisson's ratio") : std::nullopt;
   if (!poisson) return;
   if (*poisson <= -1.0 || *poisson >= 0.5)
@@ -186,6 +194,7 @@ void read_transverse(Parser& p, Material& material) {
     const bool is_ratio = i == 2 || i == 4;
     const auto number = is_ratio ? p.number(what[i]) : p.positive(what[i]);
     if (!number) return;
+    if (!is_ratio) p.check(fabric::modulus_quantity, *number);
     value[i] = *number;
     spot[i] = p.last();
   }
@@ -208,7 +217,9 @@ void read_elastic(Parser& p, Material& material, std::string_view) {
 
 void read_expansion(Parser& p, Material& material, std::string_view) {
   const auto along = p.number("the expansion along");
+  if (along) p.check(fabric::expansion_quantity, *along);
   const auto across = along ? p.number("the expansion across") : std::nullopt;
+  if (across) p.check(fabric::expansion_quantity, *across);
   if (across && p.finish()) material.expansion = {*along, *across};
 }
 

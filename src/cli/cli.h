@@ -41,6 +41,7 @@ void add_common(CLI::App& command, Parsed& parsed);
 void add_batch(CLI::App& command, Parsed& parsed);
 // Of these, what a single job has: -j, --quiet, --timeout, ...
 void add_running(CLI::App& command, Parsed& parsed, pipeline::Options& options);
+void add_outside(CLI::App& command, bool& allow_outside);
 void add_output(CLI::App& command, Parsed& parsed);
 // Of these, what bounds a job: --timeout, --memory, --sandbox.
 void add_limits(CLI::App& command, pipeline::Options& options);

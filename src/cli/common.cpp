@@ -163,6 +163,12 @@ void add_running(CLI::App& command, Parsed& parsed, pipeline::Options& o) {
       ->check(CLI::IsMember({"yarn", "plies", "filaments"}));
   command.add_flag("--as-published", o.as_published,
                    "constructions exactly as their paper gives them, overlaps and all");
+  add_outside(command, o.allow_outside);
+}
+
+void add_outside(CLI::App& command, bool& allow_outside) {
+  command.add_flag("--allow-outside", allow_outside,
+                   "files that a text names (`draft file`) may be anywhere, not only in its folder or below");
 }
 
 void add_limits(CLI::App& command, pipeline::Options& o) {

@@ -78,6 +78,7 @@ void add_edit(CLI::App& program, Parsed& parsed) {
       ->required();
   command.add_flag("--quiet", request.options.quiet, "errors only");
   add_limits(command, request.options);
+  add_outside(command, request.options.allow_outside);
   command.callback([&parsed, words] {
     parsed.action = [&parsed, words] {
       if (Status status = complete(*words, parsed.edit.edit); !status)

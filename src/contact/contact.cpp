@@ -1,11 +1,14 @@
 #include "contact/contact.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 #include "contact/box_tree.h"
@@ -14,6 +17,7 @@
 #include "contact/face.h"
 #include "contact/patch.h"
 #include "contact/place.h"
+#include "contact/repeated.h"
 #include "core/parallel.h"
 
 namespace selvage::contact {
@@ -244,20 +248,6 @@ class Search {
     return all;
   }
 
-  // Two clusters can lie on the walls of one piece of space: it is measured from both.
-  static void drop_repeated(std::vector<Contact>& list) {
-    std::vector<Contact> kept;
-    for (Contact& contact : list) {
-      const bool known = std::any_of(kept.rbegin(), kept.rend(), [&](const Contact& k) {
-        return contact.is_overlap() && k.a == contact.a && k.b == contact.b &&
-               contact.depth() > 0.98 * k.depth() && (k.at - contact.at).norm() < 0.5 * contact.depth() &&
-               k.direction.dot(contact.direction) > 0.9;
-      });
-      if (!known) kept.push_back(std::move(contact));
-    }
-    list = std::move(kept);
-  }
-
   using BodyPair = std::pair<std::size_t, std::size_t>;
 
   [[nodiscard]] static std::vector<BodyPair> overlapping(const std::vector<Contact>& list) {
@@ -274,21 +264,23 @@ class Search {
     const std::vector<BodyPair> known = overlapping(found);
     const std::span<const yarn::Body> bodies = model_.bodies();
     std::vector<Box3> around(bodies.size());
-    for (const Piece& piece : model_.pieces()) around[piece.body].extend(piece.box);
-    std::vector<std::uint32_t> first_piece(bodies.size(), 0);
-    for (std::uint32_t k = static_cast<std::uint32_t>(model_.pieces().size()); k-- > 0;)
-      first_piece[model_.pieces()[k].body] = k;
+    std::vector<PieceRange> ranges(bodies.size());
+    for (std::uint32_t k = 0; k < model_.pieces().size(); ++k) {
+      const std::uint32_t body = model_.pieces()[k].body;
+      around[body].extend(model_.pieces()[k].box);
+      if (ranges[body].last == 0) ranges[body].first = k;
+      ranges[body].last = k + 1;
+    }
     std::vector<std::pair<std::uint32_t, std::uint32_t>> candidates;  // inner, outer
-    BoxTree(around).near_pairs(0.0, [&](std::uint32_t i, std::uint32_t j) {
-      if (around[i].isEmpty() || around[j].isEmpty() ||
-          std::binary_search(known.begin(), known.end(), BodyPair(i, j)))
-        return;
-      if (around[j].contains(around[i])) candidates.emplace_back(i, j);
-      if (around[i].contains(around[j])) candidates.emplace_back(j, i);
-    });
-    std::sort(candidates.begin(), candidates.end());
+    for (std::uint32_t inner = 0; inner < bodies.size(); ++inner) {
+      if (around[inner].isEmpty()) continue;
+      for (const std::uint32_t outer : bodies_around(ranges[inner].first))
+        if (outer != inner && around[outer].contains(around[inner]) &&
+            !std::binary_search(known.begin(), known.end(), BodyPair(std::minmax<std::size_t>(inner, outer))))
+          candidates.emplace_back(inner, outer);
+    }
     for (const auto& [inner, outer] : candidates) {
-      const std::optional<std::uint32_t> piece = piece_around(first_piece[inner], outer);
+      const std::optional<std::uint32_t> piece = nearest_side(ranges[outer], ranges[inner].first);
       if (!piece) continue;
       const auto [a, b] = std::minmax(inner, outer);
       const auto whole = [&](std::uint32_t k) {
@@ -304,34 +296,59 @@ class Search {
     }
   }
 
-  // A piece of the outer body's side that stands round (or beside) the first piece of the inner one; nothing:
-  // that one is outside. By three points on it and the outer surface's passages of the rays from them.
-  [[nodiscard]] std::optional<std::uint32_t> piece_around(std::uint32_t inner, std::uint32_t outer) const {
-    int votes = 0;
-    std::optional<std::uint32_t> nearest;
-    for (const double share : {0.2137, 0.5371, 0.8113}) {
-      const Piece& piece = model_.pieces()[inner];
-      const Cell& cell = model_.cells()[piece.first_cell + static_cast<std::uint32_t>(share * piece.count)];
-      const nurbs::Surface& s = *model_.face_of(cell).surface;
+  // The pieces of a body.
+  struct PieceRange {
+    std::uint32_t first = 0, last = 0;
+  };
+
+  // Three points on a piece.
+  [[nodiscard]] std::array<Vec3, 3> sites_of(const Piece& piece) const {
+    constexpr std::array<double, 3> shares = {0.2137, 0.5371, 0.8113};
+    std::array<Vec3, 3> sites;
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      const Cell& cell =
+          model_.cells()[piece.first_cell + static_cast<std::uint32_t>(shares[k] * piece.count)];
       const Vec2 site = cell.low + 0.37 * (cell.high - cell.low);
-      const Vec3 point = nurbs::evaluate(s, site.x(), site.y());
-      bool inside = false;
-      tree_.along_ray(point, [&](std::uint32_t k) {
-        if (model_.pieces()[k].body == outer && passages(model_.pieces()[k], point) % 2 == 1)
-          inside = !inside;
-      });
-      votes += inside ? 1 : 0;
-      double least = infinity;
-      for (std::uint32_t k = 0; inside && k < model_.pieces().size(); ++k) {
-        const Piece& other = model_.pieces()[k];
-        if (other.body != outer || !model_.face_of(model_.cells()[other.first_cell]).is_side) continue;
-        const double distance = (other.box.center() - point).squaredNorm();
-        if (distance >= least) continue;
-        least = distance;
-        nearest = k;
-      }
+      sites[k] = nurbs::evaluate(*model_.face_of(cell).surface, site.x(), site.y());
     }
-    return votes >= 2 ? nearest : std::nullopt;
+    return sites;
+  }
+
+  // The bodies in which a piece lies, or beside whose surface it does: those of whose surface the rays from
+  // two of three points on it pass an odd number of times. One ray asks all bodies at once.
+  [[nodiscard]] std::vector<std::uint32_t> bodies_around(std::uint32_t piece) const {
+    std::map<std::uint32_t, int> votes;
+    for (const Vec3& point : sites_of(model_.pieces()[piece])) {
+      std::set<std::uint32_t> odd;
+      tree_.along_ray(point, [&](std::uint32_t k) {
+        const std::uint32_t body = model_.pieces()[k].body;
+        if (passages(model_.pieces()[k], point) % 2 == 1 && !odd.insert(body).second) odd.erase(body);
+      });
+      for (const std::uint32_t body : odd) ++votes[body];
+    }
+    std::vector<std::uint32_t> around;
+    for (const auto& [body, count] : votes)
+      if (count >= 2) around.push_back(body);
+    return around;
+  }
+
+  // Of a body's side the piece that is nearest to another body's piece.
+  [[nodiscard]] std::optional<std::uint32_t> nearest_side(const PieceRange& range,
+                                                          std::uint32_t piece) const {
+    std::optional<std::uint32_t> nearest;
+    double least = infinity;
+    const Vec3 point = sites_of(model_.pieces()[piece]).back();
+    for (std::uint32_t k = range.first; k < range.last; ++k) {
+      const Piece& other = model_.pieces()[k];
+      if (other.body != model_.pieces()[range.first].body ||
+          !model_.face_of(model_.cells()[other.first_cell]).is_side)
+        continue;
+      const double distance = (other.box.center() - point).squaredNorm();
+      if (distance >= least) continue;
+      least = distance;
+      nearest = k;
+    }
+    return nearest;
   }
 
   // How often the ray from the point along +x passes through the piece.

@@ -11,6 +11,7 @@
 #include "fabric/braid_shape.h"
 #include "fabric/build.h"
 #include "fabric/clearance.h"
+#include "fabric/quantities.h"
 #include "fabric/yarn_spec.h"
 #include "nurbs/interpolate.h"
 
@@ -309,6 +310,12 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
   BraidShape shape = shape_of(braid, size);
   const double least = 0.5 * (size.height + inlay);
   if (Status fits = check_counts(braid, shape); !fits) return fits.error();
+  for (const auto& [what, distance] :
+       {std::pair("a radius", braid.flat ? size.width : braid.radius),
+        std::pair("a width", braid.width > 0.0 ? braid.width : size.width),
+        std::pair("the way from crossing to crossing, by the angle,", shape.step)})
+    if (Status fits = check_proportion(what, distance, size.width, fabric.units, braid.radius_place); !fits)
+      return fits.error();
   if (Status fits = check_radius(braid, least + 0.5 * size.height, unit); !fits) return fits.error();
   if (Status fits = check_widths(braid, shape, size.width, unit); !fits) return fits.error();
   const double wanted = std::max(options.gap > 0.0 ? options.gap : clearance * size.height,

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <set>
+#include <unordered_map>
 #include <unordered_set>
 
 #include "fabric/braid.h"
@@ -14,6 +16,7 @@
 #include "fabric/grid_net.h"
 #include "fabric/knit.h"
 #include "fabric/plies.h"
+#include "fabric/quantities.h"
 #include "fabric/warpknit.h"
 #include "fabric/weave.h"
 #include "fabric/yarn_spec.h"
@@ -141,66 +144,69 @@ double tolerance_of(const Fabric& fabric, const BuildOptions& options) {
   return smallest_section(fabric).value_or(0.0) / 1000.0;
 }
 
-bool YarnBuilder::add_entries(Entry entry, const Thread& thread, std::size_t yarns, TextPlace place,
-                              Diagnostics& diagnostics) {
-  const std::uint64_t parts = part_count(thread, options_.detail);
-  if (parts > options_.max_parts / std::max<std::size_t>(yarns, 1)) {
-    diagnostics.add(
-        in_file(*fabric_, place,
-                error(Kind::limit,
-                      fmt::format("{} yarns of {} plies or filaments are more than the {} that can be built: "
-                                  "`--detail yarn` builds the plain yarns",
-                                  yarns, parts, options_.max_parts))));
-    return false;
-  }
-  entry.parts = static_cast<std::uint32_t>(parts);
-  for (entry.part = 0; entry.part < entry.parts; ++entry.part) entries_.push_back(entry);
-  return true;
+bool YarnBuilder::take_on(const Work& work, TextPlace place, Diagnostics& diagnostics) {
+  work_ += work;
+  WorkLimits limits = options_.work;
+  limits.longest = std::min<std::uint64_t>(limits.longest, most_rows(options_));
+  const Status fits = check_work(work_, limits);
+  if (!fits) diagnostics.add(in_file(*fabric_, place, fits.error()));
+  return fits.ok();
 }
 
-void YarnBuilder::add_construction(Result<std::unique_ptr<Construction>> made, TextPlace place,
-                                   Diagnostics& diagnostics) {
-  if (!made) return diagnostics.add(in_file(*fabric_, place, made.error()));
-  const std::unique_ptr<Construction>& construction = *made;
-  // What a data point of a jersey costs at the default tolerance: some 100 control points, 9 kB of IGES.
-  constexpr double gigabytes_a_point = 9e-6;
-  const auto points = static_cast<double>(construction->data_points());
-  if (construction->data_points() > options_.max_data_points)
-    return diagnostics.add(in_file(
-        *fabric_, place,
-        error(
-            Kind::limit,
-            fmt::format(
-                "this would be {} yarn{} through {:.3g} data points, about {:.2g} GB of IGES; one fabric may "
-                "have {:.3g} data points: build it in parts",
-                construction->count(), construction->count() == 1 ? "" : "s", points,
-                gigabytes_a_point * points, static_cast<double>(options_.max_data_points)))));
-  if (construction->longest() > most_rows(options_))
-    return diagnostics.add(in_file(
-        *fabric_, place,
-        error(Kind::limit,
-              fmt::format("one of its yarns would have {:.3g} data points, more than the {} that one surface "
-                          "can have: build it in parts",
-                          static_cast<double>(construction->longest()), most_rows(options_)))));
+void YarnBuilder::add_entries(Entry entry, std::uint64_t parts) {
+  entry.parts = static_cast<std::uint32_t>(parts);  // checked: fewer than data points
+  for (entry.part = 0; entry.part < entry.parts; ++entry.part) entries_.push_back(entry);
+}
+
+void YarnBuilder::add_yarn(const Yarn& yarn, Diagnostics& diagnostics) {
+  const Thread thread = resolved_thread(*fabric_, yarn);
+  const auto* const path = std::get_if<Path>(&yarn.shape);
+  // A grid is built as it stands, and costs no more than it does in the text.
+  const std::uint64_t parts = path != nullptr ? part_count(thread, options_.detail) : 1;
+  const std::uint64_t points = path != nullptr ? path->points.size() : 0;
+  if (parts > 1 && !take_on(in_parts({1, points, 0}, parts), yarn.place, diagnostics)) return;
   Entry entry;
-  entry.construction = construction.get();
-  for (std::size_t i = 0; i < construction->count(); ++i) {
+  entry.yarn = &yarn;
+  add_entries(entry, parts);
+  if (path == nullptr && part_count(thread, options_.detail) > 1)
+    diagnostics.add(in_file(
+        *fabric_, yarn.place,
+        warning(Kind::unsupported, fmt::format("yarn '{}' is a grid: it is built as it stands, without plies "
+                                               "and filaments",
+                                               yarn.name))));
+}
+
+void YarnBuilder::add_construction(std::string_view kind, Result<std::unique_ptr<Construction>> made,
+                                   TextPlace place, Diagnostics& diagnostics) {
+  if (!made) return diagnostics.add(in_file(*fabric_, place, made.error()));
+  const Construction& construction = **made;
+  const std::size_t count = construction.count();
+  const Work plain{count, construction.data_points(), construction.longest()};
+  if (!take_on(plain, place, diagnostics)) return;
+  Work more;  // than plain yarns
+  for (std::size_t i = 0; i < count; ++i)
+    more += in_parts({1, plain.points / count, 0}, part_count(construction.thread(i), options_.detail) - 1);
+  if (more.yarns > 0 && !take_on(more, place, diagnostics)) return;
+  constructions_.push_back(std::make_unique<Made>(Made{std::move(*made), place, kind, {}}));
+  Entry entry;
+  entry.made = constructions_.back().get();
+  for (std::size_t i = 0; i < count; ++i) {
     entry.index = static_cast<std::uint32_t>(i);
-    if (!add_entries(entry, construction->thread(i), construction->count(), place, diagnostics)) return;
+    add_entries(entry, part_count(construction.thread(i), options_.detail));
   }
-  constructions_.push_back(std::move(*made));
 }
 
 std::string YarnBuilder::name_of(const Entry& entry) const {
-  return entry.yarn != nullptr ? entry.yarn->name : entry.construction->name(entry.index);
+  return entry.yarn != nullptr ? entry.yarn->name
+                               : entry.made->prefix + entry.made->construction->name(entry.index);
 }
 
 std::optional<Repeat> YarnBuilder::repeat() const {
   if (constructions_.empty()) return std::nullopt;
   for (const Entry& entry : entries_)
     if (entry.yarn != nullptr) return std::nullopt;
-  Repeat all = constructions_.front()->repeat();
-  for (const auto& construction : constructions_) all = common_repeat(all, construction->repeat());
+  Repeat all = constructions_.front()->construction->repeat();
+  for (const auto& made : constructions_) all = common_repeat(all, made->construction->repeat());
   return all;
 }
 
@@ -208,21 +214,78 @@ YarnBuilder::Origin YarnBuilder::origin(std::size_t index) const {
   return {entries_[index].yarn, entries_[index].parts > 1};
 }
 
+struct YarnBuilder::NameIndex {
+  std::once_flag once;
+  std::unordered_map<std::string, std::size_t> first;
+};
+
 std::optional<std::size_t> YarnBuilder::find(std::string_view name) const {
-  for (std::size_t i = 0; i < entries_.size(); ++i)
-    if (name_of(entries_[i]) == name) return i;
-  return std::nullopt;
+  std::call_once(names_->once, [this] {
+    for (std::size_t i = 0; i < entries_.size(); ++i)
+      if (entries_[i].part == 0) names_->first.emplace(name_of(entries_[i]), i);
+  });
+  const auto found = names_->first.find(std::string(name));
+  return found == names_->first.end() ? std::nullopt : std::optional(found->second);
+}
+
+// Yarn blocks keep their names. A construction of whose names one is taken begins all of them anew.
+void YarnBuilder::make_names_unique(Diagnostics& diagnostics) {
+  std::unordered_set<std::string> taken;
+  for (const Entry& entry : entries_)
+    if (entry.yarn != nullptr) taken.insert(entry.yarn->name);
+  if (taken.empty() && constructions_.size() < 2) return;
+  std::map<std::string_view, int> numbers;  // of constructions of a kind
+  for (const auto& made : constructions_) {
+    const Construction& construction = *made->construction;
+    const auto name_of_yarn = [&](std::size_t i) { return made->prefix + construction.name(i); };
+    const auto is_taken = [&] {
+      for (std::size_t i = 0; i < construction.count(); ++i)
+        if (taken.contains(name_of_yarn(i))) return true;
+      return false;
+    };
+    for (int number = ++numbers[made->kind]; is_taken(); ++number)
+      made->prefix = fmt::format("{}{}_", made->kind, number);
+    if (!made->prefix.empty())
+      diagnostics.add(in_file(
+          *fabric_, made->place,
+          warning(Kind::geometry, fmt::format("other yarns of this file have names of this {}'s: its own "
+                                              "begin with '{}', as in '{}'",
+                                              made->kind, made->prefix, name_of_yarn(0)))));
+    for (std::size_t i = 0; i < construction.count(); ++i) taken.insert(name_of_yarn(i));
+  }
+}
+
+// A yarn block that is named as a ply or a filament of another yarn.
+void YarnBuilder::check_part_names(Diagnostics& diagnostics) const {
+  for (const Entry& entry : entries_) {
+    if (entry.yarn == nullptr || entry.part != 0) continue;
+    const std::string& name = entry.yarn->name;
+    for (const std::string_view mark : {".ply", ".f"}) {
+      const std::size_t end = name.find(mark);
+      const std::optional<std::size_t> whole =
+          end == name.npos ? std::nullopt : find(std::string_view(name).substr(0, end));
+      if (!whole || entries_[*whole].parts == 1) continue;
+      const Entry& other = entries_[*whole];
+      const Thread thread = other.yarn != nullptr ? resolved_thread(*fabric_, *other.yarn)
+                                                  : other.made->construction->thread(other.index);
+      for (std::size_t part = 0; part < other.parts; ++part)
+        if (part_name(name_of(other), thread, options_.detail, part) == name)
+          diagnostics.add(in_file(
+              *fabric_, entry.yarn->place,
+              error(Kind::geometry, fmt::format("yarn '{}' has the name of a part of yarn '{}': give it "
+                                                "another one",
+                                                name, name_of(other)))));
+    }
+  }
 }
 
 void YarnBuilder::check_edited_names(Diagnostics& diagnostics) const {
-  if (fabric_->edits.empty()) return;
-  std::unordered_set<std::string> names;
-  for (const Entry& entry : entries_)
-    if (entry.part == 0) names.insert(name_of(entry));
   for (const Edit& edit : fabric_->edits) {
-    if (names.contains(edit.yarn)) continue;
-    const std::string_view near =
-        nearest_word(edit.yarn, std::vector<std::string_view>(names.begin(), names.end()));
+    if (find(edit.yarn)) continue;
+    std::vector<std::string_view> names;
+    for (const auto& [name, entry] : names_->first) names.push_back(name);
+    std::sort(names.begin(), names.end());
+    const std::string_view near = nearest_word(edit.yarn, names);
     diagnostics.add(in_file(
         *fabric_, edit.place,
         error(Kind::geometry,
@@ -237,7 +300,11 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
   builder.fabric_ = &fabric;
   builder.options_ = options;
   builder.last_bundle_ = std::make_shared<LastBundle>();
+  builder.names_ = std::make_shared<NameIndex>();
   const int errors_before = diagnostics.error_count();
+  builder.tolerance_ = tolerance_of(fabric, options);
+  check_lengths(fabric, builder.tolerance_, diagnostics);
+  if (diagnostics.error_count() > errors_before) return std::nullopt;
   std::set<std::string> warned;  // a warning about a thread is worth saying once
   const auto warn = [&](std::optional<Message> warning) {
     if (warning && warned.insert(warning->text).second) diagnostics.add(std::move(*warning));
@@ -245,38 +312,33 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
   for (const Item& item : fabric.items) {
     if (const auto* yarn = std::get_if<Yarn>(&item)) {
       const Thread thread = resolved_thread(fabric, *yarn);
-      Entry entry;
-      entry.yarn = yarn;
-      const bool is_grid =
-          std::holds_alternative<Grid>(yarn->shape) || std::holds_alternative<ReadBody>(yarn->shape);
-      builder.add_entries(entry, is_grid ? Thread{} : thread, 1, yarn->place, diagnostics);
-      if (is_grid && part_count(thread, options.detail) > 1)
-        diagnostics.add(
-            in_file(fabric, yarn->place,
-                    warning(Kind::unsupported,
-                            fmt::format("yarn '{}' is a grid: it is built as it stands, without plies "
-                                        "and filaments",
-                                        yarn->name))));
+      builder.add_yarn(*yarn, diagnostics);
       warn(fibre_share_warning(fabric, *yarn, thread));
       warn(roundness_note(fabric, thread, yarn->place));
     }
     if (const auto* weave = std::get_if<Weave>(&item))
-      builder.add_construction(make_weave(fabric, *weave, options, diagnostics), weave->place, diagnostics);
-    if (const auto* knit = std::get_if<Knit>(&item))
-      builder.add_construction(make_knit(fabric, *knit, options, diagnostics), knit->place, diagnostics);
-    if (const auto* warpknit = std::get_if<Warpknit>(&item))
-      builder.add_construction(make_warpknit(fabric, *warpknit, options, diagnostics), warpknit->place,
+      builder.add_construction("weave", make_weave(fabric, *weave, options, diagnostics), weave->place,
                                diagnostics);
+    if (const auto* knit = std::get_if<Knit>(&item))
+      builder.add_construction("knit", make_knit(fabric, *knit, options, diagnostics), knit->place,
+                               diagnostics);
+    if (const auto* warpknit = std::get_if<Warpknit>(&item))
+      builder.add_construction("warpknit", make_warpknit(fabric, *warpknit, options, diagnostics),
+                               warpknit->place, diagnostics);
     if (const auto* braid = std::get_if<Braid>(&item))
-      builder.add_construction(make_braid(fabric, *braid, options, diagnostics), braid->place, diagnostics);
+      builder.add_construction("braid", make_braid(fabric, *braid, options, diagnostics), braid->place,
+                               diagnostics);
     for (const std::string& name : threads_of(item))
       if (const Thread* thread = fabric.find_thread(name)) {
         warn(fibre_share_warning(fabric, *thread, thread->place));
         warn(roundness_note(fabric, *thread, thread->place));
       }
   }
-  if (diagnostics.error_count() == errors_before) builder.check_edited_names(diagnostics);
-  builder.tolerance_ = tolerance_of(fabric, options);
+  if (diagnostics.error_count() == errors_before) {
+    builder.make_names_unique(diagnostics);
+    builder.check_part_names(diagnostics);
+    builder.check_edited_names(diagnostics);
+  }
   if (diagnostics.error_count() > errors_before) return std::nullopt;
   return builder;
 }
@@ -292,8 +354,9 @@ Result<YarnPlan> YarnBuilder::whole_plan(const Entry& entry) const {
   if (entry.yarn != nullptr && !std::holds_alternative<Path>(entry.yarn->shape))
     return error(Kind::geometry, fmt::format("yarn '{}' has neither a path nor a grid", entry.yarn->name));
   Result<YarnPlan> plan = entry.yarn != nullptr ? plan_of_path(*fabric_, *entry.yarn, options_)
-                                                : entry.construction->plan(entry.index);
+                                                : entry.made->construction->plan(entry.index);
   if (!plan) return plan;
+  if (entry.made != nullptr) plan->name = name_of(entry);
   if (!fabric_->edits.empty())
     if (Status edited = apply_edits(*fabric_, plan->name, plan->line); !edited) return edited.error();
   return plan;

@@ -26,10 +26,8 @@ struct BuildOptions {
   // Between the yarns of a construction, at least, file units; 0: its own share of their thickness (1 %,
   // braids 0.5 %). What has no room for it comes as near as it can.
   double gap = 0;
-  std::size_t max_control_points = 50'000'000;  // a yarn: a limit error instead of an exhausted memory
-  // Data points of a construction: 500 million loops would be a file of more than a terabyte.
-  std::uint64_t max_data_points = 1'000'000'000;
-  std::uint64_t max_parts = 10'000'000;  // yarns, plies and filaments of one statement together
+  std::size_t max_control_points = 5'000'000;  // a yarn: a limit error instead of an exhausted memory
+  WorkLimits work;
 };
 
 // The smallest section size (width or thickness) of the yarns of the text, or of its constructions' threads;
@@ -68,17 +66,21 @@ class YarnBuilder {
   [[nodiscard]] Result<yarn::Body> build(std::size_t index) const;
 
  private:
+  struct Made;
   // One yarn to build: a yarn block, or part `part` of yarn `index` of a construction.
   struct Entry {
     const Yarn* yarn = nullptr;
-    const Construction* construction = nullptr;
+    const Made* made = nullptr;
     std::uint32_t index = 0, part = 0, parts = 1;
   };
-  void add_construction(Result<std::unique_ptr<Construction>> made, TextPlace place,
+  void add_construction(std::string_view kind, Result<std::unique_ptr<Construction>> made, TextPlace place,
                         Diagnostics& diagnostics);
-  // False, with the error, when there are too many.
-  bool add_entries(Entry entry, const Thread& thread, std::size_t yarns, TextPlace place,
-                   Diagnostics& diagnostics);
+  // False, with the error, when it is too much together with what there is already.
+  bool take_on(const Work& work, TextPlace place, Diagnostics& diagnostics);
+  void add_entries(Entry entry, std::uint64_t parts);
+  void add_yarn(const Yarn& yarn, Diagnostics& diagnostics);
+  void make_names_unique(Diagnostics& diagnostics);
+  void check_part_names(Diagnostics& diagnostics) const;
   void check_edited_names(Diagnostics& diagnostics) const;
   [[nodiscard]] std::string name_of(const Entry& entry) const;
   [[nodiscard]] Result<YarnPlan> whole_plan(const Entry& entry) const;
@@ -90,8 +92,19 @@ class YarnBuilder {
   const Fabric* fabric_ = nullptr;
   BuildOptions options_;
   double tolerance_ = 0;
-  std::vector<std::unique_ptr<Construction>> constructions_;
+  // A construction, and what its yarns' names begin with so that no other yarn has them; mostly nothing.
+  struct Made {
+    std::unique_ptr<Construction> construction;
+    TextPlace place;
+    std::string_view kind;  // "weave"
+    std::string prefix;
+  };
+  std::vector<std::unique_ptr<Made>> constructions_;  // entries point to them
   std::vector<Entry> entries_;
+  Work work_;
+  // The first entry of each name; made when it is first asked for.
+  struct NameIndex;
+  std::shared_ptr<NameIndex> names_;
   // The yarn taken apart last: its parts are mostly asked for one after the other.
   struct LastBundle;
   std::shared_ptr<LastBundle> last_bundle_;

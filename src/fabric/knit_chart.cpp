@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "fabric/repeat.h"
 
 namespace selvage::fabric {
 
 namespace {
+
+constexpr int most_rib_wales = 100'000;  // more than any machine has needles
 
 int wrapped(long long index, int period) {
   const auto rest = static_cast<int>(index % period);
@@ -32,6 +35,11 @@ Result<StitchChart> StitchChart::of(const Knit& knit) {
       if (knit.rib_a < 1 || knit.rib_b < 1)
         return error(Kind::malformed, fmt::format("a rib {}x{} does not exist: both numbers are 1 or more",
                                                   knit.rib_a, knit.rib_b));
+      if (std::int64_t{knit.rib_a} + knit.rib_b > most_rib_wales)
+        return error(
+            Kind::limit,
+            fmt::format("a rib {}x{} begins anew after {} wales; it may after at most {}", knit.rib_a,
+                        knit.rib_b, std::int64_t{knit.rib_a} + knit.rib_b, most_rib_wales));
       chart.wales_ = knit.rib_a + knit.rib_b;
       chart.stitches_.assign(static_cast<std::size_t>(knit.rib_a), Stitch::knit);
       chart.stitches_.resize(static_cast<std::size_t>(chart.wales_), Stitch::purl);

@@ -1,8 +1,57 @@
 #include "fabric/plan.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
 #include "fabric/yarn_spec.h"
 
 namespace selvage::fabric {
+
+namespace {
+
+constexpr auto most = std::numeric_limits<std::uint64_t>::max();
+
+std::uint64_t sum_of(std::uint64_t a, std::uint64_t b) {
+  return a > most - b ? most : a + b;
+}
+std::uint64_t product_of(std::uint64_t a, std::uint64_t b) {
+  return b != 0 && a > most / b ? most : a * b;
+}
+
+}  // namespace
+
+Work& Work::operator+=(const Work& more) {
+  yarns = sum_of(yarns, more.yarns);
+  points = sum_of(points, more.points);
+  longest = std::max(longest, more.longest);
+  return *this;
+}
+
+Work in_parts(const Work& work, std::uint64_t parts) {
+  return {product_of(work.yarns, parts), product_of(work.points, parts), work.longest};
+}
+
+Status check_work(const Work& work, const WorkLimits& limits) {
+  // What a data point of a jersey costs at the default tolerance: some 100 control points, 9 kB of IGES.
+  constexpr double gigabytes_a_point = 9e-6;
+  const std::uint64_t points = std::max(work.points, product_of(work.yarns, least_points_of_a_yarn));
+  if (points > limits.points)
+    return error(
+        Kind::limit,
+        fmt::format("this would be {} yarn{} through {:.3g} data points, about {:.2g} GB of IGES; "
+                    "one fabric may have {:.3g} data points: build it in parts, and yarns of plies "
+                    "or filaments plain with `--detail yarn`",
+                    work.yarns, work.yarns == 1 ? "" : "s", static_cast<double>(points),
+                    gigabytes_a_point * static_cast<double>(points), static_cast<double>(limits.points)));
+  if (work.longest > limits.longest)
+    return error(Kind::limit,
+                 fmt::format("one of its yarns would have {:.3g} data points, more than the {} that one yarn "
+                             "may have: build it in parts",
+                             static_cast<double>(work.longest), limits.longest));
+  return {};
+}
 
 Result<YarnPlan> start_plan(const Fabric& fabric, const Thread& thread, std::string name, Role role,
                             TextPlace place) {

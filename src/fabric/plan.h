@@ -50,6 +50,29 @@ class Construction {
   [[nodiscard]] virtual Repeat repeat() const = 0;
 };
 
+// What a fabric costs to build, known before any of it is computed. Counts end at the largest that there is
+// instead of beginning anew.
+struct Work {
+  std::uint64_t yarns = 0;    // plies and filaments counted for themselves
+  std::uint64_t points = 0;   // data points of all their centre lines
+  std::uint64_t longest = 0;  // data points of one of them
+  Work& operator+=(const Work& more);
+};
+
+// Twelve million loops are four square metres of a fine jersey, 900 GB of IGES; the longest course of a
+// machine has some 4000 loops of eight data points.
+struct WorkLimits {
+  std::uint64_t points = 100'000'000;  // and for each yarn its share
+  std::uint64_t longest = 250'000;
+};
+inline constexpr std::uint64_t least_points_of_a_yarn = 16;  // what a tube costs whatever its path
+
+// Every yarn as so many parts as `parts` says.
+Work in_parts(const Work& work, std::uint64_t parts);
+
+// Errors (limit): more than any use, with the number and what helps.
+Status check_work(const Work& work, const WorkLimits& limits);
+
 // The start of a plan: names, thread, its section with its size, and its twist. Errors: as section_of.
 Result<YarnPlan> start_plan(const Fabric& fabric, const Thread& thread, std::string name, Role role,
                             TextPlace place);

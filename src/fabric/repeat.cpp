@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 #include <vector>
 
+#include "fabric/cell_faces.h"
 #include "nurbs/spline.h"
 
 namespace selvage::fabric {
@@ -37,6 +39,7 @@ struct Crossing {
 // Where a curve crosses a plane; touching it is no crossing.
 std::vector<Crossing> crossings(const nurbs::Curve& curve, int axis, double plane) {
   constexpr int a_span = 8, halvings = 60;
+  constexpr double along = 1e-9;  // what runs in the plane is on both sides of it by rounding
   const std::vector<double> parameters = parameters_of(curve, a_span);
   std::vector<Crossing> found;
   const auto height = [&](double t) { return nurbs::evaluate(curve, t)[axis] - plane; };
@@ -49,7 +52,8 @@ std::vector<Crossing> crossings(const nurbs::Curve& curve, int axis, double plan
       ((height(middle) < 0.0) == rises ? from : to) = middle;
     }
     const nurbs::CurveJet jet = nurbs::evaluate_jet(curve, 0.5 * (from + to));
-    found.push_back({0, jet.position, jet.d1.normalized()});
+    const Vec3 direction = jet.d1.normalized();
+    if (std::abs(direction[axis]) > along) found.push_back({0, jet.position, direction});
   }
   return found;
 }
@@ -73,12 +77,16 @@ bool is_in_face(const Vec3& at, const Box3& box, int axis) {
 constexpr double most_turned = 0.0175;
 
 // The first of these that lies inside the face and has none of the others opposite.
-std::optional<LooseEnd> first_without(const std::vector<Crossing>& crossings,
-                                      const std::vector<Crossing>& others, const Box3& box, int axis,
-                                      bool high, double tolerance) {
+std::optional<LooseEnd> first_without(const std::vector<Crossing>& crossings, std::vector<Crossing> others,
+                                      const Box3& box, int axis, bool high, double tolerance) {
+  const int across = axis == 0 ? 1 : 0;
+  const auto place = [across](const Crossing& crossing) { return crossing.at[across]; };
+  std::ranges::sort(others, {}, place);
   for (const Crossing& crossing : crossings) {
     if (!is_in_face(crossing.at, box, axis)) continue;
-    const bool has_partner = std::any_of(others.begin(), others.end(), [&](const Crossing& other) {
+    const auto first = std::ranges::lower_bound(others, place(crossing) - tolerance, {}, place);
+    const auto last = std::ranges::upper_bound(others, place(crossing) + tolerance, {}, place);
+    const bool has_partner = std::any_of(first, last, [&](const Crossing& other) {
       // A yarn may be given from its other end.
       return across_axis(other.at - crossing.at, axis).norm() <= tolerance &&
              other.direction.cross(crossing.direction).norm() <= most_turned;
@@ -88,10 +96,87 @@ std::optional<LooseEnd> first_without(const std::vector<Crossing>& crossings,
   return std::nullopt;
 }
 
+double distance_to(const Vec3& p, const Vec3& from, const Vec3& to) {
+  const Vec3 way = to - from;
+  const double length = way.squaredNorm();
+  const double s = length > 0.0 ? std::clamp((p - from).dot(way) / length, 0.0, 1.0) : 0.0;
+  return (from + s * way - p).norm();
+}
+
+// Segments by the cubes of a lattice that they come near: who is near a point stands in the point's cube.
+class NearSegments {
+ public:
+  // Lattice cubes as large as a segment on average, and no smaller than the reach.
+  void fill(const std::vector<std::vector<Vec3>>& lines, double reach) {
+    double length = 0.0;
+    for (const std::vector<Vec3>& line : lines)
+      for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+        segments_.push_back({&line[k], &line[k + 1]});
+        length += (line[k + 1] - line[k]).norm();
+      }
+    if (segments_.empty()) return;
+    reach_ = reach;
+    size_ = std::max(
+        {length / static_cast<double>(segments_.size()), 2.0 * reach, std::numeric_limits<double>::min()});
+    for (std::size_t i = 0; i < segments_.size(); ++i) put(i);
+  }
+
+  // The nearest segment's distance, where it is at most the reach; else the reach or more.
+  [[nodiscard]] double distance(const Vec3& p) const {
+    double least = infinity;
+    const auto found = cubes_.find(cube_of(p));
+    if (found == cubes_.end()) return least;
+    for (const std::size_t i : found->second)
+      least = std::min(least, distance_to(p, *segments_[i].from, *segments_[i].to));
+    return least;
+  }
+
+ private:
+  struct Segment {
+    const Vec3 *from, *to;
+  };
+  using Cube = std::array<long long, 3>;
+  struct Hash {
+    std::size_t operator()(const Cube& cube) const {
+      std::size_t mixed = 0;
+      for (const long long k : cube)
+        mixed = (mixed ^ static_cast<std::size_t>(k)) * std::size_t{0x9E3779B97F4A7C15};
+      return mixed ^ (mixed >> 32);
+    }
+  };
+  [[nodiscard]] Cube cube_of(const Vec3& p) const {
+    Cube cube{};
+    for (std::size_t k = 0; k < 3; ++k)
+      cube[k] = static_cast<long long>(std::floor(p[static_cast<Eigen::Index>(k)] / size_));
+    return cube;
+  }
+  // A long segment piece by piece, so that the cubes that it stands in are those along it.
+  void put(std::size_t i) {
+    const Vec3 from = *segments_[i].from, way = *segments_[i].to - from;
+    const double pieces = std::max(1.0, std::ceil(way.norm() / size_));
+    for (double piece = 0.0; piece < pieces; piece += 1.0) {
+      const Vec3 a = from + way * (piece / pieces), b = from + way * ((piece + 1.0) / pieces);
+      const Cube low = cube_of(Vec3(a.cwiseMin(b).array() - reach_)),
+                 high = cube_of(Vec3(a.cwiseMax(b).array() + reach_));
+      for (long long x = low[0]; x <= high[0]; ++x)
+        for (long long y = low[1]; y <= high[1]; ++y)
+          for (long long z = low[2]; z <= high[2]; ++z) {
+            std::vector<std::size_t>& there = cubes_[{x, y, z}];
+            if (there.empty() || there.back() != i) there.push_back(i);
+          }
+    }
+  }
+
+  double reach_ = 0, size_ = 1;
+  std::vector<Segment> segments_;
+  std::unordered_map<Cube, std::vector<std::size_t>, Hash> cubes_;
+};
+
 // All centre lines as polygons.
 class Lines {
  public:
-  explicit Lines(std::span<const yarn::Body> bodies) {
+  // Distances are looked for up to twice the tolerance.
+  Lines(std::span<const yarn::Body> bodies, double tolerance) {
     constexpr int a_span = 16;
     for (const yarn::Body& body : bodies) {
       std::vector<Vec3> line;
@@ -99,23 +184,12 @@ class Lines {
       for (const Vec3& p : line) box_.extend(p);
       lines_.push_back(std::move(line));
     }
+    near_.fill(lines_, 2.0 * tolerance);
   }
   [[nodiscard]] const Box3& box() const { return box_; }
   [[nodiscard]] const std::vector<std::vector<Vec3>>& list() const { return lines_; }
 
-  // Nearest distance of a point from all of them, no farther than `most` is looked for.
-  [[nodiscard]] double distance(const Vec3& p, double most) const {
-    double least = most;
-    for (const std::vector<Vec3>& line : lines_)
-      for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-        const Vec3 way = line[k + 1] - line[k];
-        if ((line[k] - p).norm() > least + way.norm()) continue;
-        const double length = way.squaredNorm();
-        const double s = length > 0.0 ? std::clamp((p - line[k]).dot(way) / length, 0.0, 1.0) : 0.0;
-        least = std::min(least, (line[k] + s * way - p).norm());
-      }
-    return least;
-  }
+  [[nodiscard]] double distance(const Vec3& p) const { return near_.distance(p); }
 
   // Does a translation take every line to lines, as far as they go? Near their ends, where splines swing,
   // they are not looked at.
@@ -125,7 +199,7 @@ class Lines {
       for (Vec3 p : line) {
         if (p[axis] < box_.min()[axis] + margin) continue;
         p[axis] += shift;
-        if (p[axis] <= box_.max()[axis] - margin && distance(p, 2.0 * tolerance) > tolerance) return false;
+        if (p[axis] <= box_.max()[axis] - margin && distance(p) > tolerance) return false;
       }
     return true;
   }
@@ -183,6 +257,7 @@ class Lines {
   static constexpr double margin_share = 0.25;  // of what the lines fill, at each side
 
   std::vector<std::vector<Vec3>> lines_;
+  NearSegments near_;  // points into lines_
   Box3 box_;
 };
 
@@ -223,16 +298,35 @@ std::optional<LooseEnd> find_loose_end(std::span<const yarn::Body> bodies, const
 
 std::optional<LooseEnd> find_missing_copy(std::span<const yarn::Body> bodies, const Box3& box, int axis,
                                           double repeat, double tolerance) {
-  const Lines lines(bodies);
+  const Lines lines(bodies, tolerance);
   const Box3 inside(box.min().array() + tolerance, box.max().array() - tolerance);
   for (std::size_t i = 0; i < lines.list().size(); ++i)
     for (const Vec3& p : lines.list()[i])
       for (const double way : {-repeat, repeat}) {
         Vec3 copy = p;
         copy[axis] += way;
-        if (inside.contains(copy) && lines.distance(copy, 2.0 * tolerance) > tolerance)
-          return LooseEnd{i, copy, way > 0.0};
+        if (inside.contains(copy) && lines.distance(copy) > tolerance) return LooseEnd{i, copy, way > 0.0};
       }
+  return std::nullopt;
+}
+
+std::optional<LooseEnd> find_missing_in_faces(std::span<const yarn::Body> bodies, const Box3& box, int axis,
+                                              double repeat, double margin, double tolerance) {
+  const Lines lines(bodies, tolerance);
+  const auto is_in_a_face = [&](const Vec3& p) {
+    for (int k = 0; k < 3; ++k)
+      if (k != axis && (p[k] < box.min()[k] || p[k] > box.max()[k])) return false;
+    return std::abs(p[axis] - box.min()[axis]) <= margin || std::abs(p[axis] - box.max()[axis]) <= margin;
+  };
+  for (std::size_t i = 0; i < lines.list().size(); ++i)
+    for (const Vec3& p : lines.list()[i]) {
+      if (!is_in_a_face(p)) continue;
+      for (const double way : {-repeat, repeat}) {
+        Vec3 copy = p;
+        copy[axis] += way;
+        if (is_in_a_face(copy) && lines.distance(copy) > tolerance) return LooseEnd{i, copy, way > 0.0};
+      }
+    }
   return std::nullopt;
 }
 
@@ -243,7 +337,7 @@ bool runs_through(std::span<const yarn::Body> bodies, const Box3& box, int axis,
 }
 
 std::optional<double> repeat_of_lines(std::span<const yarn::Body> bodies, int axis, double tolerance) {
-  const Lines lines(bodies);
+  const Lines lines(bodies, tolerance);
   const double most = 0.5 * lines.box().diagonal()[axis];
   bool moves_freely = lines.list().empty();
   for (const auto& [shift, distance] : lines.candidates(axis, tolerance)) {

@@ -9,6 +9,7 @@
 
 #include "fabric/build.h"
 #include "fabric/lapping.h"
+#include "fabric/quantities.h"
 #include "fabric/warpknit_mend.h"
 #include "fabric/yarn_spec.h"
 #include "yarn/outline.h"
@@ -185,6 +186,10 @@ Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, std::ve
   };
   if (!(warpknit.wale_pitch >= across * thickest)) return too_small("wale", warpknit.wale_pitch, across);
   if (!(warpknit.course_pitch >= along * thickest)) return too_small("course", warpknit.course_pitch, along);
+  for (const auto& [what, pitch] :
+       {std::pair("a wale pitch", warpknit.wale_pitch), std::pair("a course pitch", warpknit.course_pitch)})
+    if (Status fits = check_proportion(what, pitch, thickest, fabric.units, warpknit.place); !fits)
+      return fits.error();
   m.wale_pitch = warpknit.wale_pitch;
   m.course_pitch = warpknit.course_pitch;
   m.across = warpknit.wale_pitch / across;

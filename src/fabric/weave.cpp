@@ -9,6 +9,8 @@
 #include <numbers>
 #include <numeric>
 #include <set>
+#include <span>
+#include <utility>
 
 #include "fabric/build.h"
 #include "fabric/draft.h"
@@ -36,6 +38,15 @@ struct Block {
   int layer = 0;        // from 0; of wefts between straight warps one more than of these
   std::size_t set = 0;  // binder: which line
   std::size_t first = 0, count = 0;
+  long long begin = 0;       // the number of its first yarn: below 0 before the cloth's edge
+  std::size_t in_cloth = 0;  // of them, those that the text counts: 0, 1, ...
+};
+
+// Yarns side by side: how many the text counts, where they lie, and how wide they are.
+struct Row {
+  long long count = 0;
+  double first = 0, step = 0;  // across the yarns
+  double width = 0;
 };
 
 Vec3 along_warp(double s, double z, double y) {
@@ -71,6 +82,18 @@ Reach reach_over(const System& crossed, bool has_cell, double low, double high) 
   }
   const long long last = crossed.text->count - 1 + after;
   return {static_cast<double>(-before) * pitch, static_cast<double>(last + 1) * pitch, -before, last};
+}
+
+// The numbers of a row's yarns: those of the text, and in a cell that is periodic across them those beyond
+// the cloth's edges, too, that reach into it.
+std::pair<long long, long long> numbers_of(const Row& row, bool is_periodic, double low, double high) {
+  if (!is_periodic) return {0, row.count};
+  constexpr double most = 1e9;  // past what any limit lets through
+  const auto number = [&](double place) {
+    return static_cast<long long>(std::clamp(std::floor((place - row.first) / row.step), -most, most));
+  };
+  return {std::min(0LL, number(low - 0.5 * row.width) + 1),
+          std::max(row.count, -number(2.0 * row.first - high - 0.5 * row.width))};
 }
 
 int level_at(const Binder& binder, long long column) {
@@ -123,7 +146,7 @@ class WeaveConstruction final : public Construction {
  private:
   struct Place {
     const Block* block;
-    long long yarn;  // of its block, from 0
+    long long yarn;  // its number: from 0 in the cloth
   };
   [[nodiscard]] Place place_of(std::size_t index) const;
   // Data points of a weft, or of a yarn along the warp.
@@ -137,7 +160,10 @@ class WeaveConstruction final : public Construction {
   }
   [[nodiscard]] bool is_straight() const { return weave_.profile == Weave::Profile::straight; }
   [[nodiscard]] int layers() const { return weave_.layers.value_or(1); }
-  void add_block(Block::Kind kind, int layer, std::size_t set, std::size_t count);
+  void add_block(Block::Kind kind, int layer, std::size_t set, const Row& row);
+  [[nodiscard]] static Row row_of(const System& system) {
+    return {system.text->count, system.at(0.0), system.text->pitch, system.widest};
+  }
   Status prepare_interlacing(Diagnostics& diagnostics);
   [[nodiscard]] Result<Heights> fit_heights(Diagnostics& diagnostics);
   Status prepare_binders(Diagnostics& diagnostics);
@@ -178,11 +204,17 @@ class WeaveConstruction final : public Construction {
   std::uint64_t data_points_ = 0;
 };
 
-void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, std::size_t count) {
-  Block block{kind, layer, set, 0, count};
+void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, const Row& row) {
+  const bool is_weft = kind == Block::Kind::weft;
+  const Cell cell = fabric_.cell.value_or(Cell{});
+  const int axis = is_weft ? 0 : 1;
+  const auto [begin, end] =
+      numbers_of(row, is_weft ? cell.periodic_x : cell.periodic_y, cell.low[axis], cell.high[axis]);
+  const auto count = static_cast<std::size_t>(end - begin);
+  Block block{kind, layer, set, 0, count, begin, static_cast<std::size_t>(row.count)};
   if (!blocks_.empty()) block.first = blocks_.back().first + blocks_.back().count;
   blocks_.push_back(block);
-  const std::uint64_t each = points_of(kind == Block::Kind::weft);
+  const std::uint64_t each = points_of(is_weft);
   constexpr auto most = std::numeric_limits<std::uint64_t>::max();
   const bool fits = count == 0 || each <= (most - data_points_) / count;
   data_points_ = fits ? data_points_ + count * each : most;
@@ -236,7 +268,7 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
 
 Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   Result<Drawdown> drawdown = drawdown_of(weave_.draft);
-  if (!drawdown) return drawdown.error();
+  if (!drawdown) return at_line(drawdown.error(), weave_.draft.place);
   drawdown_ = std::move(*drawdown);
   const auto bend_over = [&](const System& crossed) -> std::optional<Bend> {
     if (!weave_.profile) return natural_bend(crossed);
@@ -264,8 +296,8 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   if (weave_.amplitude) top = *weave_.amplitude + 0.5 * std::max(warp_.thickest, weft_.thickest);
   layer_pitch_ = 2.0 * top + clearance_;
   for (int layer = 0; layer < layers(); ++layer) {
-    add_block(Block::Kind::warp, layer, 0, static_cast<std::size_t>(warp_.text->count));
-    add_block(Block::Kind::weft, layer, 0, static_cast<std::size_t>(weft_.text->count));
+    add_block(Block::Kind::warp, layer, 0, row_of(warp_));
+    add_block(Block::Kind::weft, layer, 0, row_of(weft_));
   }
   return {};
 }
@@ -273,8 +305,8 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
 Status WeaveConstruction::prepare_binders(Diagnostics& diagnostics) {
   warp_layer_ = warp_.thickest;
   for (int layer = 0; layer <= layers(); ++layer) {
-    if (layer < layers()) add_block(Block::Kind::warp, layer, 0, static_cast<std::size_t>(warp_.text->count));
-    add_block(Block::Kind::weft, layer, 0, static_cast<std::size_t>(weft_.text->count));
+    if (layer < layers()) add_block(Block::Kind::warp, layer, 0, row_of(warp_));
+    add_block(Block::Kind::weft, layer, 0, row_of(weft_));
   }
   for (std::size_t set = 0; set < weave_.binders.size(); ++set) {
     const Binder& binder = weave_.binders[set];
@@ -299,8 +331,10 @@ Status WeaveConstruction::prepare_binders(Diagnostics& diagnostics) {
           error(Kind::geometry, fmt::format("there is no gap {}: {} warps have {} gaps between them",
                                             binder.first, warp_.text->count, gaps)),
           binder.place);
-    const int count = (gaps - binder.first) / binder.every + 1;
-    add_block(Block::Kind::binder, 0, set, static_cast<std::size_t>(count));
+    const double pitch = warp_.text->pitch;
+    add_block(Block::Kind::binder, 0, set,
+              {(gaps - binder.first) / binder.every + 1, binder.first * pitch, binder.every * pitch,
+               binders_.back().size.width});
   }
   for (const Block& block : blocks_) {
     if (block.kind != Block::Kind::binder) continue;
@@ -454,16 +488,26 @@ WeaveConstruction::Place WeaveConstruction::place_of(std::size_t index) const {
   const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), index,
                                       [](std::size_t i, const Block& block) { return i < block.first; });
   const Block& block = *std::prev(after);
-  return {&block, static_cast<long long>(index - block.first)};
+  return {&block, block.begin + static_cast<long long>(index - block.first)};
 }
 
 std::string WeaveConstruction::name(std::size_t index) const {
   const auto [block, yarn] = place_of(index);
   if (block->kind == Block::Kind::binder) {
-    std::size_t before = 0;
-    for (const Block& other : blocks_)
-      if (other.kind == Block::Kind::binder && other.first < block->first) before += other.count;
-    return fmt::format("binder_{}", before + static_cast<std::size_t>(yarn) + 1);
+    // Line by line, and then those beyond the cloth's edges.
+    const auto in_cloth = static_cast<long long>(block->in_cloth);
+    const bool is_beyond = yarn < 0 || yarn >= in_cloth;
+    long long number = yarn + 1;
+    if (yarn >= in_cloth)
+      number = yarn - in_cloth - block->begin + 1;
+    else if (yarn < 0)
+      number = yarn - block->begin + 1;
+    for (const Block& other : std::span(blocks_).last(binders_.size())) {
+      if (is_beyond || other.first < block->first) number += static_cast<long long>(other.in_cloth);
+      if (is_beyond && other.first < block->first)
+        number += static_cast<long long>(other.count - other.in_cloth);
+    }
+    return fmt::format("binder_{}", number);
   }
   const std::string_view kind = block->kind == Block::Kind::warp ? "warp" : "weft";
   const std::string layer =

@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "fabric/quantities.h"
 #include "fabric/repeat.h"
 #include "fabric/yarn_spec.h"
 
@@ -59,6 +60,8 @@ Result<System> system_of(const Fabric& fabric, const WeaveSystem& text) {
     system.widest = std::max(system.widest, woven->size.width);
     system.threads.push_back(std::move(*woven));
   }
+  if (Status fits = check_proportion("a pitch", text.pitch, system.widest, fabric.units, text.place); !fits)
+    return fits.error();
   return system;
 }
 

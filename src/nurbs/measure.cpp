@@ -16,12 +16,13 @@ class AdaptiveIntegral {
 
   double over(double t0, double t1) {
     const double whole = by_gauss(t0, t1);
-    rounding_ = std::max(rounding_, agreement * whole);
+    // The span of a long curve is a small part of its parameters, whose rounding is then no small part of it.
+    agreement_ = std::max(agreement_, 2 * DBL_EPSILON * std::max(std::abs(t0), std::abs(t1)) / (t1 - t0));
+    rounding_ = std::max(rounding_, agreement_ * whole);
     return halved(t0, t1, whole, most_halvings);
   }
 
  private:
-  static constexpr double agreement = 1e-13;
   static constexpr int most_halvings = 52, few_pieces = 256, most_pieces = 4096;
 
   [[nodiscard]] double by_gauss(double t0, double t1) const {
@@ -38,7 +39,7 @@ class AdaptiveIntegral {
     const double left = by_gauss(t0, middle), right = by_gauss(middle, t1), both = left + right;
     // A piece is measured by its own value while there are few. Where a curve all but stands still, under a
     // weight of 1e9, no piece ever is as exact as that, nor need be.
-    const double enough = std::max(agreement * both, ++pieces_ > few_pieces ? rounding_ : 0.0);
+    const double enough = std::max(agreement_ * both, ++pieces_ > few_pieces ? rounding_ : 0.0);
     // So put that what is no number ends it, too.
     if (halvings == 0 || !(middle > t0 && middle < t1) || pieces_ > most_pieces ||
         !(std::abs(both - whole) > enough))
@@ -47,7 +48,7 @@ class AdaptiveIntegral {
   }
 
   const std::function<double(double)>& f_;
-  double rounding_;
+  double rounding_, agreement_ = 1e-13;
   int pieces_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "core/sha256.h"
@@ -12,6 +13,7 @@ namespace selvage::pipeline {
 
 namespace {
 
+namespace fs = std::filesystem;
 using fabric::Draft;
 using fabric::Weave;
 
@@ -35,6 +37,9 @@ Result<Draft> only_draft(const fabric::Fabric& fabric) {
 Result<Draft> draft_in(const Source& source, Diagnostics& diagnostics) {
   const Result<const formats::Descriptor*> format = detect_readable(source);
   if (!format) return format.error();
+  if ((*format)->read_fabric == nullptr)
+    return error(Kind::unsupported, fmt::format("it is {} ({}), which holds geometry and no draft",
+                                                (*format)->name, (*format)->title));
   Diagnostics own;
   const std::optional<fabric::Fabric> fabric = (*format)->read_fabric(source, own);
   for (const Message& message : own.messages()) diagnostics.add(message);
@@ -42,9 +47,29 @@ Result<Draft> draft_in(const Source& source, Diagnostics& diagnostics) {
   return only_draft(*fabric);
 }
 
+bool is_below(const fs::path& file, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+}
+
+// The file that `name` is for a text in `folder`, if it may be read; an error says why not in the words that
+// follow its name.
+Result<Source> open_named(const std::string& name, const fs::path& folder, bool allow_outside) {
+  std::error_code failure;
+  const fs::path home = fs::canonical(folder.empty() ? fs::path(".") : folder, failure);
+  if (failure) return error(Kind::io, fmt::format("cannot open its folder: {}", failure.message()));
+  const fs::path file = fs::canonical(home / name, failure);
+  if (failure) return error(Kind::io, fmt::format("cannot open: {}", failure.message()));
+  if (!allow_outside && !is_below(file, home))
+    return error(Kind::usage,
+                 "it is neither in this text's folder nor below it: move it there, or --allow-outside reads "
+                 "it");
+  if (!fs::is_regular_file(file, failure)) return error(Kind::io, "it is not a regular file");
+  return Source::open(folder / name == "-" ? "./-" : folder / name);  // standard input is the input's alone
+}
+
 }  // namespace
 
-std::vector<std::string> resolve_drafts(fabric::Fabric& fabric, const Source& source,
+std::vector<std::string> resolve_drafts(fabric::Fabric& fabric, const Source& source, bool allow_outside,
                                         Diagnostics& diagnostics) {
   std::vector<std::string> read;
   TextReport report(source);
@@ -55,9 +80,8 @@ std::vector<std::string> resolve_drafts(fabric::Fabric& fabric, const Source& so
   for (fabric::Item& item : fabric.items) {
     auto* const weave = std::get_if<Weave>(&item);
     if (weave == nullptr || weave->draft.form != Draft::Form::file) continue;
-    std::filesystem::path path = std::filesystem::path(source.name()).parent_path() / weave->draft.file;
-    if (path == "-") path = "./-";  // a file: standard input is the input's alone
-    const Result<Source> named = Source::open(path);
+    const Result<Source> named =
+        open_named(weave->draft.file, fs::path(source.name()).parent_path(), allow_outside);
     if (!named) {
       refuse(weave->draft, named.error());
       continue;

@@ -94,7 +94,7 @@ bool work(const Edit& edit) {
                                              (*format)->name, (*format)->title)));
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
-  if (fabric) resolve_drafts(*fabric, *source, diagnostics);
+  if (fabric) resolve_drafts(*fabric, *source, request.options.allow_outside, diagnostics);
   edit.say_all(diagnostics.messages());
   if (!fabric || diagnostics.has_errors()) return false;
   const std::optional<TextPlace> place = try_edit(edit, *fabric);

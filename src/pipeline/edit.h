@@ -12,7 +12,7 @@ struct EditRequest {
   std::string input;   // a path, or "-" for standard input
   std::string output;  // -o: a file, which may be the input's, a folder, or "-" for standard output
   formats::NewEdit edit;
-  Options options;  // quiet, timeout, memory, sandbox
+  Options options;  // quiet, timeout, memory, sandbox, allow_outside
 };
 
 // Builds the yarn with the edit, and writes the text with the edit's line behind the block that makes the

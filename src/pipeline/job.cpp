@@ -220,7 +220,7 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
 // The hash of the input says nothing of the files that it names: with them in its settings it is never taken
 // for done by `--resume`.
 void Job::take_drafts(fabric::Fabric& fabric, const Source& source, Diagnostics& diagnostics) {
-  for (const std::string& file : resolve_drafts(fabric, source, diagnostics))
+  for (const std::string& file : resolve_drafts(fabric, source, options.allow_outside, diagnostics))
     if (wants_report()) report.settings += " draft=" + file;
 }
 

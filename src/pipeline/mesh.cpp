@@ -23,7 +23,7 @@ void add_remedy(const Options& options, Message& message) {
   } else {
     message.text += options.relaxing.wanted
                         ? "; thin one of them, or mesh them as they are with --allow-overlap"
-                        : "; --relax moves them apart, --allow-overlap meshes them as they are";
+                        : "; --relax moves them apart where they have room, --allow-overlap meshes them as they are";
   }
 }
 

@@ -105,6 +105,7 @@ void mesh_cell(Job& job) {
   if (!outputs) return;
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
   if (!builder) return;
+  if (job.options.periodic) snap_cell(job, *fabric, *builder);
   const std::optional<ReadyCell> ready = prepare(job, *fabric, *builder);
   if (!ready) return;
   say_what_bending_costs(job, *fabric, *ready);

@@ -44,8 +44,9 @@ struct Options {
   std::string report;
   bool resume = false;
 
-  std::optional<Unit> units;                          // of surfaces and tables; none: the input's
-  double tolerance = 0;                               // input's unit; 0: the input's
+  std::optional<Unit> units;   // of surfaces and tables; none: the input's
+  bool allow_outside = false;  // files that a text names may be anywhere, not only below its folder
+  double tolerance = 0;        // input's unit; 0: the input's
   fabric::Detail detail = fabric::Detail::filaments;  // how far yarns are taken apart
   bool as_published = false;           // constructions as their paper gives them, overlaps and all
   std::optional<yarn::EndStyle> ends;  // none: as the input has them, or patch

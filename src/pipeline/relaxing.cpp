@@ -12,6 +12,7 @@
 #include "core/readable.h"
 #include "fabric/as_grid.h"
 #include "pipeline/table.h"
+#include "pipeline/unit_cell.h"
 
 namespace selvage::pipeline {
 
@@ -344,6 +345,8 @@ std::optional<fabric::Fabric> relaxed(Job& job, fabric::Fabric fabric) {
   const std::optional<fabric::YarnBuilder> builder = job.builder(fabric);
   if (!builder) return std::nullopt;
   if (builder->count() == 0) return fabric;
+  if (fabric.cell && (fabric.cell->periodic_x || fabric.cell->periodic_y || fabric.cell->periodic_z))
+    snap_cell(job, fabric, *builder);
   std::optional<Built> built = build(job, fabric, *builder);
   if (!built || job.has_failed()) return std::nullopt;
   if (!have_sides(job, built->bodies)) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <string_view>
 #include <variant>
@@ -11,6 +12,7 @@
 
 #include "cell/cut.h"
 #include "contact/contact.h"
+#include "fabric/cell_faces.h"
 #include "fabric/repeat.h"
 #include "fem/cell_size.h"
 #include "fem/fibre.h"
@@ -30,6 +32,7 @@ namespace {
 constexpr double default_gap_share = 0.05;  // of the thinnest section
 // Of a yarn's thickness: nearer than that, tetrahedra between two yarns become as flat as the gap.
 constexpr double least_gap_share = 0.01;
+constexpr double tolerance_share = 0.02;  // of the thinnest yarn: how far copies of yarns by hand may be off
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Box3 box_of(const fabric::Fabric& fabric) {
@@ -67,9 +70,16 @@ Grid grid_of(const nurbs::Surface& surface) {
   return {nurbs::evaluate_grid(surface, u, v), u.size(), v.size()};
 }
 
-// A translation that may be written down: six digits.
-std::string length_text(double value, Unit units) {
-  return fmt::format("{:.6g} {}", value, name_of(units));
+// A translation that may be written down: as many digits as a cell needs that is to be a whole number of
+// repeats of this length.
+std::string length_text(double value, double repeat, Unit units) {
+  constexpr double near = 1e-6;  // of a repeat
+  std::string text;
+  for (int digits = 6; digits <= 17; ++digits) {
+    text = fmt::format("{:.{}g}", value, digits);
+    if (std::abs(std::strtod(text.c_str(), nullptr) - value) <= near * repeat) break;
+  }
+  return fmt::format("{} {}", text, name_of(units));
 }
 
 }  // namespace
@@ -131,20 +141,51 @@ bool is_whole(double length, double repeat) {
 Message not_whole(const fabric::Fabric& fabric, int axis, double length, double repeat) {
   const double times = std::max(1.0, std::round(length / repeat));
   return cell_error(
-      fabric,
-      fmt::format("this cell is {} long along {}, which is no whole number of repeats: its yarns "
-                  "repeat after {}; a periodic cell is {} long, or `periodic` goes without {}",
-                  length_text(length, fabric.units), name_of_axis(axis), length_text(repeat, fabric.units),
-                  length_text(times * repeat, fabric.units), name_of_axis(axis)));
+      fabric, fmt::format("this cell is {} long along {}, which is no whole number of repeats: its yarns "
+                          "repeat after {}; a periodic cell is {} long, or `periodic` goes without {}",
+                          length_text(length, repeat, fabric.units), name_of_axis(axis),
+                          length_text(repeat, repeat, fabric.units),
+                          length_text(times * repeat, repeat, fabric.units), name_of_axis(axis)));
 }
+
+}  // namespace
+
+void snap_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder) {
+  constexpr double most = 1e-3;  // of a repeat
+  const std::optional<fabric::Repeat> repeat = builder.repeat();
+  if (!fabric.cell || !repeat) return;
+  fabric::Cell& cell = *fabric.cell;
+  const std::array<bool, 3> named = {cell.periodic_x, cell.periodic_y, cell.periodic_z};
+  const bool names_any = named[0] || named[1] || named[2];
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    const double own = (*repeat)[k].value_or(0.0), length = cell.high[axis] - cell.low[axis];
+    if (own == 0.0 || (names_any && !named[k]) || is_whole(length, own)) continue;
+    const double whole = std::round(length / own) * own;
+    if (whole == 0.0 || std::abs(length - whole) > most * own) continue;
+    cell.high[axis] = cell.low[axis] + whole;
+    job.say(at_cell(
+        fabric,
+        warning(Kind::geometry,
+                fmt::format("this cell is {:.6g} {} long along {}, nearly {} repeat{} of its "
+                            "yarns: it is made {} long, its high face lies at {} = {}",
+                            length, name_of(fabric.units), name_of_axis(axis), std::round(length / own),
+                            whole == own ? "" : "s", length_text(whole, own, fabric.units),
+                            name_of_axis(axis), length_text(cell.high[axis], own, fabric.units)))));
+  }
+}
+
+namespace {
 
 // Weaves have the warps and wefts that the text counts, warp knits the guides; no others.
 bool is_within_cloth(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies, int axis,
-                     double repeat, double tolerance) {
+                     double repeat, double thinnest) {
   const Box3 box = box_of(fabric);
+  const double tolerance = tolerance_share * thinnest;
   for (const fabric::Item& item : fabric.items) {
     std::string counted;
-    if (const auto* weave = std::get_if<fabric::Weave>(&item); weave != nullptr && axis < 2) {
+    const bool goes_on = axis == 0 ? fabric.cell->periodic_x : fabric.cell->periodic_y;  // weaves, beyond
+    if (const auto* weave = std::get_if<fabric::Weave>(&item); weave != nullptr && axis < 2 && !goes_on) {
       const fabric::WeaveSystem& across = axis == 0 ? weave->weft : weave->warp;
       const double end = across.count * across.pitch, slack = 1e-9 * end;
       if (box.min()[axis] < -slack || box.max()[axis] > end + slack)
@@ -160,7 +201,19 @@ bool is_within_cloth(Job& job, const fabric::Fabric& fabric, std::span<const yar
                                            counted)));
     return false;
   }
-  return true;
+  const double length = box.sizes()[axis];  // whole repeats
+  const auto missing =
+      repeat > 0.0 ? fabric::find_missing_in_faces(bodies, box, axis, length, 0.25 * thinnest, tolerance)
+                   : std::nullopt;
+  if (!missing) return true;
+  Message message = cell_error(
+      fabric,
+      fmt::format("this cell is not periodic along {}: yarn '{}' lies in one of its faces, and none in the "
+                  "other: the fabric ends there; more of it, or a cell inside, make it periodic",
+                  name_of_axis(axis), bodies[missing->body].name));
+  message.at = missing->at;
+  job.say(std::move(message));
+  return false;
 }
 
 Message loose_end_message(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
@@ -171,7 +224,7 @@ Message loose_end_message(const fabric::Fabric& fabric, std::span<const yarn::Bo
       name_of_axis(axis), body.name, loose.high ? "high" : "low");
   const std::optional<double> repeat = fabric::repeat_of_lines(bodies, axis, tolerance);
   if (repeat && *repeat > 0.0)
-    text += fmt::format("; its yarns repeat after {}", length_text(*repeat, fabric.units));
+    text += fmt::format("; its yarns repeat after {}", length_text(*repeat, *repeat, fabric.units));
   else
     text += fmt::format("; no repeat was found along {}: the fabric ends there", name_of_axis(axis));
   Message message = cell_error(fabric, std::move(text));
@@ -184,7 +237,6 @@ Message loose_end_message(const fabric::Fabric& fabric, std::span<const yarn::Bo
 std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric& fabric,
                                                  const fabric::YarnBuilder& builder,
                                                  std::span<const yarn::Body> bodies) {
-  constexpr double tolerance_share = 0.02;  // of the thinnest yarn, for yarns by hand
   const fabric::Cell& cell = *fabric.cell;
   const std::array<bool, 3> named = {cell.periodic_x, cell.periodic_y, cell.periodic_z};
   const bool names_any = named[0] || named[1] || named[2];
@@ -203,7 +255,7 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
       job.say(not_whole(fabric, axis, box.sizes()[axis], *own));
       return std::nullopt;
     }
-    if (own && !is_within_cloth(job, fabric, bodies, axis, *own, tolerance)) return std::nullopt;
+    if (own && !is_within_cloth(job, fabric, bodies, axis, *own, thinnest)) return std::nullopt;
     if (const auto loose = fabric::find_loose_end(bodies, box, axis, tolerance)) {
       if (!names_any && !repeat) continue;
       job.say(loose_end_message(fabric, bodies, *loose, axis, tolerance));
@@ -215,7 +267,7 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
   job.say(cell_error(
       fabric,
       fmt::format("this cell is periodic {}: it has to be along x and y (a plate), or along x, y and z "
-                  "(a block)",
+                  "(a block); without --periodic it is meshed as a piece cut out",
                   periodic[0]   ? periodic[2] ? "along x and z only" : "along x only"
                   : periodic[1] ? periodic[2] ? "along y and z only" : "along y only"
                   : periodic[2] ? "along z only"
@@ -360,7 +412,9 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
     overlap.depth = contact.depth();
     overlap.at = contact.at;
     Message message = overlap_message(overlap, bodies, fabric.units);
-    message.text += job.options.relaxing.wanted ? "; thin one of them" : "; --relax moves them apart";
+    message.text += job.options.relaxing.wanted
+                        ? "; thin one of them"
+                        : "; --relax moves them apart where they have room, else make one thinner";
     job.say(std::move(message));
   }
   if (job.has_failed() || nearest == nullptr) return !job.has_failed();

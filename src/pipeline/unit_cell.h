@@ -24,6 +24,10 @@ Message at_cell(const fabric::Fabric& fabric, Message message);
 // Is there a cell, with a matrix where one is wanted? False: it was said what is missing.
 bool check_cell_text(Job& job, const fabric::Fabric& fabric, bool with_matrix);
 
+// Sides of the cell along its periodic axes that are whole repeats of the yarns to a thousandth of one, but
+// not to rounding, become so: the high face moves, and it is said. `fabric` is the builder's.
+void snap_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder);
+
 // Those that reach into the cell, in their order, the others dropped. Empty: it was said that there are none.
 std::vector<yarn::Body> yarns_in_cell(Job& job, const fabric::Fabric& fabric, std::vector<yarn::Body> bodies);
 

@@ -90,7 +90,7 @@ class CellInput(Case):
                 self.assertRegex(message, repeats)
 
     def test_beyond_the_cloth(self):
-        text = PLAIN + cell("3 0 -0.35 6 3 0.35")
+        text = PLAIN + cell("3 0 -0.35 6 3 0.35", "  matrix resin\n")
         message = self.refuses(text)
         self.at_cell(message, text)
         self.assertIn("reaches beyond the cloth, whose 2 wefts lie within x = 0 .. 3", message)
@@ -99,6 +99,58 @@ class CellInput(Case):
         message = self.refuses(text)
         self.at_cell(message, text)
         self.assertIn("reaches beyond the cloth, whose 4 guides a bar do not reach all needles in it", message)
+
+    def voxels(self, text):
+        """How many voxels each part of the cell has, without the parts' names; and the messages."""
+        source, deck = self.written(text), self.folder / "voxels.inp"
+        done = self.succeeds("mesh", source, "--matrix", "--periodic", "--voxel", "24", "-o", deck, "--no-progress")
+        parts, count = {}, None
+        for line in deck.read_text().splitlines():
+            if line.startswith("*"):
+                found = re.match(r"\*ELEMENT, TYPE=\w+, ELSET=(\S+)", line)
+                count = found[1] if found else None
+            elif count:
+                parts[count] = parts.get(count, 0) + 1
+        return parts, done.stderr
+
+    def test_a_weave_goes_on_beyond_its_edges_where_a_cell_is_periodic(self):
+        """The construction repeats without end: a cell anywhere is the cell inside, moved."""
+        inside, _ = self.voxels(PLAIN + cell("0 0 -0.36 3 3 0.36"))
+        for corners in ("3 0 -0.36 6 3 0.36", "-6 3 -0.36 -3 6 0.36"):
+            with self.subTest(corners):
+                beyond, _ = self.voxels(PLAIN + cell(corners))
+                self.assertEqual(sorted(beyond.values()), sorted(inside.values()))
+
+    def test_yarns_in_the_faces_are_there(self):
+        """Four warps have three gaps; the fourth lies in both faces of the cell, half of its binder in each."""
+        bound = MATERIALS + ("thread s\n  section racetrack 1.3 0.35\n  material fibre\nend\nthread b\n  section ellipse 0.45 0.18\n"
+                             "  material fibre\nend\nweave\n  warp s 4 pitch 2.1\n  weft s 6 pitch 2.5\n  profile straight\n  layers 2\n"
+                             "  binder b every 2 levels 0 1 2 3 2 1\n  binder b every 2 first 2 levels 3 2 1 0 1 2\nend\n")
+        def binders(corners):
+            parts, _ = self.voxels(bound + cell(corners))
+            return sum(count for name, count in parts.items() if "binder" in name)
+        at_faces, inside = binders("0 0 -1.2 15 8.4 1.2"), binders("0 1.05 -1.2 15 9.45 1.2")
+        self.assertGreater(inside, 0)
+        self.assertLess(abs(at_faces - inside), 0.15 * inside)  # a quarter of the binders was missing; voxels are coarse
+
+    def test_a_cell_that_is_nearly_a_repeat_becomes_one(self):
+        exact, _ = self.voxels(PLAIN + cell("0 0 -0.36 3 3 0.36"))
+        nearly, messages = self.voxels(PLAIN + cell("0 0 -0.36 2.9983 3.0002 0.36"))
+        self.assertEqual(nearly, exact)
+        self.assertRegex(messages, r"warning: this cell is 2\.9983 mm long along x, nearly 1 repeat of its yarns: it is made 3 mm long, "
+                                   r"its high face lies at x = 3 mm")
+        self.assertIn("this cell is 3.0002 mm long along y", messages)
+        self.assertIn("no whole number of repeats", self.refuses(PLAIN + cell("0 0 -0.36 2.99 3 0.36")))
+
+    def test_advice_on_lengths_works(self):
+        """A cell as long as a message says passes the check that gave the message."""
+        braid = "braid\n  thread T\n  carriers 5\n  pattern 1/1\n  flat 6\n  angle 43.7\n  length 20\nend\n"
+        message = self.refuses(MATERIALS + braid + cell("0 -4 -1 11 4 1", "  matrix resin\n  periodic x\n"))
+        length = re.search(r"a periodic cell is (\S+) mm long", message)[1]
+        followed = self.refuses(MATERIALS + braid + cell(f"0 -4 -1 {length} 4 1", "  matrix resin\n  periodic x\n"))
+        self.assertNotIn("no whole number of repeats", followed)
+        self.assertIn("this cell is periodic along x only", followed)
+        self.assertIn("without --periodic it is meshed as a piece cut out", followed)
 
     def test_yarns_by_hand_tell_their_repeat(self):
         wave = "".join(f"    {k / 8} 0.5 {0.2 * (k % 16 < 8) - 0.1}\n" for k in range(0, 97, 8))

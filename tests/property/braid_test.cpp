@@ -356,7 +356,7 @@ TEST(BraidErrors, SayWhatWouldDo) {
   EXPECT_TRUE(has(first_error(with("9", "1/1", "flat 3")), "at least"));
   EXPECT_TRUE(has(first_error(braid_text("  carriers 5\n  pattern 2/2\n  flat\n  angle 81\n  length 9\n")),
                   "at most 80 degrees"));
-  EXPECT_TRUE(has(first_error(with("1000000000", "1/1", "radius 1e9")), "data points"));
+  EXPECT_TRUE(has(first_error(with("1000000000", "1/1", "radius 1e9")), "out of all proportion"));
   EXPECT_TRUE(has(first_error(with("1000000000", "1/1", "radius 5")), "radius has to be at least"));
 }
 

@@ -10,7 +10,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 from oracle import Wif  # noqa: E402
-from program import BAD, Case, SAMPLES, run  # noqa: E402
+from program import BAD, Case, PATH, SAMPLES, run  # noqa: E402
 
 OWN = pathlib.Path(__file__).resolve().parent / "files"
 # A folder of more files, where somebody has one and says so: those below a folder whose name begins with `bad` are refused.
@@ -197,6 +197,50 @@ class DraftFile(WifCase):
                 self.assertIn(f'  draft file "{name}"\n', messages)
                 for part in parts:
                     self.assertIn(part, messages)
+
+    def refused_everywhere(self, cloth, reason):
+        """By a command that works in a process of its own, and by one that does not."""
+        for arguments in (("info", cloth, "--timeout", "60"),
+                          ("edit", cloth, "--yarn", "warp_1", "--point", "1", "--to", "0,0,0", "-o", self.folder / "edited.txt")):
+            messages = self.fails(1, *arguments, timeout=120)
+            self.assertRegex(messages, r"cloth\.txt:8:3: error: no draft in the file '[^\n]*': " + reason)
+            self.assertNotRegex(messages, "crash|signal|defect of this program")
+
+    def test_geometry_has_no_draft(self):
+        """A format that can be read, but not as a fabric, is an error at the draft's place."""
+        for name in ("yarns.igs", "yarns.stp"):
+            with self.subTest(name):
+                self.succeeds("convert", PATH, "-o", self.folder / name, "--quiet")
+                self.refused_everywhere(self.cloth(f"draft file {name}"), r"it is (iges|step) .* no draft")
+
+    def test_only_regular_files_are_read(self):
+        os.mkfifo(self.folder / "pipe.wif")
+        (self.folder / "zero.wif").symlink_to("/dev/zero")
+        (self.folder / "folder.wif").mkdir()
+        for name, outside in (("pipe.wif", False), ("folder.wif", False), ("zero.wif", True), ("/dev/zero", True)):
+            with self.subTest(name):
+                cloth = self.cloth(f"draft file {name}")
+                self.refused_everywhere(cloth, "it is neither in this text's folder" if outside else "it is not a regular file")
+                if outside:
+                    self.assertIn("it is not a regular file", self.fails(1, "info", cloth, "--allow-outside", timeout=120))
+
+    def test_only_files_below_the_text_are_read(self):
+        sample = SAMPLES / "wif_herringbone.wif"
+        (self.folder / "texts").mkdir()
+        (self.folder / "outside.wif").write_bytes(sample.read_bytes())
+        (self.folder / "texts" / "link.wif").symlink_to("../outside.wif")
+        (self.folder / "texts" / "inside.wif").write_bytes(sample.read_bytes())
+        (self.folder / "texts" / "inner.wif").symlink_to("inside.wif")
+        for name in ("inside.wif", "inner.wif", "../texts/inside.wif", self.folder / "texts" / "inside.wif"):
+            with self.subTest(name):
+                self.as_text(self.cloth(f"draft file {name}", "texts/cloth.txt"))
+        inside = self.as_text(self.cloth("draft file inside.wif", "texts/cloth.txt"))
+        for name in ("../outside.wif", "link.wif", self.folder / "outside.wif"):
+            with self.subTest(name):
+                cloth = self.cloth(f"draft file {name}", "texts/cloth.txt")
+                self.refused_everywhere(cloth, "it is neither in this text's folder nor below it: .*--allow-outside")
+                done = self.succeeds("convert", cloth, "--to", "txt", "-o", "-", "--quiet", "--allow-outside")
+                self.assertEqual(done.stdout, inside)
 
     def test_edit_reads_it_too(self):
         messages = self.fails(1, "edit", self.cloth("draft file missing.wif"), "--yarn", "warp_1", "--point", "1", "--to",

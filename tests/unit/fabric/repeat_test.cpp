@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "contact/contact.h"
 #include "fabric/build.h"
@@ -223,6 +224,80 @@ TEST(Gap, IsKeptByAllConstructionsOfCells) {
           EXPECT_LT(p.z(), high.z()) << name;
         }
   }
+}
+
+// What runs through a face of the cell, or in it, stands by its name at the other face.
+std::array<std::size_t, 2> yarns_at_faces(const Built& built, int axis) {
+  const Box3 box(built.fabric.cell->low, built.fabric.cell->high);
+  std::array<std::size_t, 2> counts{};
+  for (const yarn::Body& body : built.bodies) {
+    Box3 inside;
+    for (const double s : {0.3, 0.4, 0.5, 0.6}) {  // its sections in the middle of the cloth
+      const double t = body.surface.first_v() + s * (body.surface.last_v() - body.surface.first_v());
+      for (int i = 0; i < 64; ++i)
+        inside.extend(nurbs::evaluate(
+            body.surface, body.surface.first_u() + (body.surface.last_u() - body.surface.first_u()) * i / 64,
+            t));
+    }
+    counts[0] += inside.min()[axis] < box.min()[axis] && inside.max()[axis] > box.min()[axis] ? 1 : 0;
+    counts[1] += inside.min()[axis] < box.max()[axis] && inside.max()[axis] > box.max()[axis] ? 1 : 0;
+  }
+  return counts;
+}
+
+std::string binders_in_every_gap(const std::string& cell) {
+  return "thread s\nsection racetrack 1.3 0.35\nend\nthread b\nsection ellipse 0.45 0.18\nend\n"
+         "weave\nwarp s 4 pitch 2.1\nweft s 6 pitch 2.5\nprofile straight\nlayers 2\n"
+         "binder b every 2 levels 0 1 2 3 2 1\nbinder b every 2 first 2 levels 3 2 1 0 1 2\nend\n"
+         "cell " +
+         cell + "\nperiodic x y\nend\n";
+}
+
+// Four warps have three gaps between them, and the fourth is the one at the cell's faces.
+TEST(Repeat, YarnsInTheFacesOfAPeriodicCellAreThere) {
+  const Built edge = text(binders_in_every_gap("0 0 -1.2  15 8.4 1.2"));
+  EXPECT_EQ(yarns_at_faces(edge, 1), (std::array<std::size_t, 2>{1, 1}));
+  const Built inside = text(binders_in_every_gap("0 1.05 -1.2  15 9.45 1.2"));
+  // Faces in the middle of warps (both layers), the wefts running through.
+  EXPECT_EQ(yarns_at_faces(inside, 1)[0], yarns_at_faces(inside, 1)[1]);
+  // The same cloth: a cell's volume of binder is that of a cell shifted by half a pitch.
+  const auto binder_volume = [](const Built& built) {
+    const Box3 box(built.fabric.cell->low, built.fabric.cell->high);
+    double volume = 0.0;
+    for (const yarn::Body& body : built.bodies) {
+      if (body.role != yarn::Role::binder) continue;
+      const double across =
+          nurbs::evaluate(body.axis, 0.5 * (body.axis.first_parameter() + body.axis.last_parameter())).y();
+      const double half = 0.5 * 0.45, low = std::max(across - half, box.min().y()),
+                   high = std::min(across + half, box.max().y());
+      // Share of an ellipse between two lines across its width.
+      const auto below = [&](double y) {
+        const double x = std::clamp((y - across) / half, -1.0, 1.0);
+        return 0.5 + (std::asin(x) + x * std::sqrt(1.0 - x * x)) / 3.14159265358979323846;
+      };
+      if (high > low) volume += (below(high) - below(low)) * body.volume / body.length;
+    }
+    return volume;
+  };
+  EXPECT_NEAR(binder_volume(edge), binder_volume(inside), 1e-9 * binder_volume(inside));
+  // Names are those of one yarn each, and those in the cloth keep theirs.
+  std::set<std::string> names;
+  for (const yarn::Body& body : edge.bodies) EXPECT_TRUE(names.insert(body.name).second) << body.name;
+  EXPECT_TRUE(names.contains("binder_3") && names.contains("binder_5"));
+}
+
+// Copies that are missing in a face itself are missed.
+TEST(Repeat, AMissingCopyInAFaceIsFound) {
+  const Built cloth = text(
+      "yarn a T\npath\n0 1 0\n4 1 0\nend\nend\nyarn b T\npath\n0 2 0\n4 2 0\nend\nend\n"
+      "yarn c T\npath\n0 3 0\n4 3 0\nend\nend\n");
+  const double margin = 0.05;
+  const Box3 box(Vec3(1, 1 - margin, -1), Vec3(2, 4 + margin, 1));
+  const auto missing = find_missing_copy(cloth.bodies, box, 1, 1.0, 0.004);
+  ASSERT_TRUE(missing.has_value());
+  EXPECT_NEAR(missing->at.y(), 4.0, 1e-12);
+  EXPECT_FALSE(
+      find_missing_copy(cloth.bodies, Box3(Vec3(1, 1 - margin, -1), Vec3(2, 3 + margin, 1)), 1, 1.0, 0.004));
 }
 
 }  // namespace
