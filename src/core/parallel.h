@@ -6,13 +6,14 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace selvage {
 
-// Calls work(i) for i = 0 .. count - 1, in any order, on `threads` threads. The first exception is thrown
-// again here.
+// Calls work(i) for i = 0 .. count - 1, in any order, on `threads` threads, or on as many as the machine lets
+// start. The first exception is thrown again here.
 template <class Work>
 void for_each_index(std::size_t count, int threads, const Work& work) {
   std::atomic<std::size_t> next = 0;
@@ -29,7 +30,11 @@ void for_each_index(std::size_t count, int threads, const Work& work) {
   };
   const std::size_t helpers = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
   std::vector<std::thread> pool;
-  for (std::size_t k = 1; k < helpers; ++k) pool.emplace_back(run);
+  pool.reserve(helpers);
+  try {
+    while (pool.size() + 1 < helpers) pool.emplace_back(run);
+  } catch (const std::system_error&) {  // no room for its stack, or a limit: those that there are do it all
+  }
   run();
   for (std::thread& t : pool) t.join();
   if (failure) std::rethrow_exception(failure);

@@ -10,11 +10,13 @@
 
 #include "cell/volume.h"
 #include "core/module.h"
+#include "core/parallel.h"
 #include "fem/bond.h"
 #include "fem/cell_size.h"
 #include "fem/cell_surfaces.h"
 #include "fem/fibre.h"
 #include "fem/improve.h"
+#include "fem/kept_volume.h"
 #include "fem/materials.h"
 #include "fem/midside.h"
 #include "fem/quality.h"
@@ -39,6 +41,7 @@ class CellMesher {
  private:
   Status prepare();
   Status make_surfaces();
+  void keep_volumes(const CellCurves& curves);
   Status fill_regions();
   void number_regions();
   [[nodiscard]] Mesh assemble() const;
@@ -142,7 +145,49 @@ Status CellMesher::make_surfaces() {
     return located(made.error());
   if (Status made = add_box_faces(shape, *curves, field, options, nodes_, surface_); !made)
     return located(made.error());
+  if (options_.order == 1) keep_volumes(*curves);
   return {};
+}
+
+// Of each node the least of those that are opposite each other.
+std::vector<std::uint32_t> leaders_of(const CellCurves& curves, std::size_t nodes) {
+  std::vector<std::uint32_t> leaders(nodes);
+  std::iota(leaders.begin(), leaders.end(), 0U);
+  const auto root = [&](std::uint32_t k) {
+    while (leaders[k] != k) k = leaders[k];
+    return k;
+  };
+  for (const auto& pairs : curves.opposite)
+    for (const auto& [low, high] : pairs) {
+      const std::uint32_t a = root(low), b = root(high);
+      leaders[std::max(a, b)] = std::min(a, b);
+    }
+  for (std::uint32_t k = 0; k < nodes; ++k) leaders[k] = root(k);
+  return leaders;
+}
+
+// Nodes of flat triangles leave the B-spline surfaces for it.
+void CellMesher::keep_volumes(const CellCurves& curves) {
+  std::vector<YarnFacet> facets(surface_.triangles.size());
+  for_each_index(facets.size(), options_.threads, [&](std::size_t k) {
+    const Triangle& t = surface_.triangles[k];
+    YarnFacet& facet = facets[k];
+    facet.corners = t;
+    if (surface_.sides[k].behind != CellTriangles::matrix) facet.yarn = surface_.sides[k].behind;
+    if (surface_.parts[k] == CellTriangles::Part::box) facet.part = YarnFacet::Part::box;
+    if (surface_.parts[k] == CellTriangles::Part::start || surface_.parts[k] == CellTriangles::Part::end)
+      facet.part = YarnFacet::Part::end;
+    if (facet.part != YarnFacet::Part::side) return;
+    std::array<SurfaceEnd, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const SurfacePlace& place = nodes_.places[t[i]];
+      if (place.body != facet.yarn) return;  // on an edge of the box, where yarns meet
+      corners[i] = {place.parameters, nodes_.points[t[i]]};
+    }
+    facet.height = mean_height(bodies_[facet.yarn], corners);
+  });
+  const std::vector<std::uint32_t> leaders = leaders_of(curves, nodes_.points.size());
+  fem::keep_volumes(nodes_.points, {.facets = facets, .volumes = volumes_, .leaders = leaders, .box = box_});
 }
 
 // Regions are the bodies that are there, in their order, then the matrix; nodes of nothing are dropped.

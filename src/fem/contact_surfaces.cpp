@@ -1,10 +1,10 @@
 #include "fem/contact_surfaces.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
-#include "contact/skin_distance.h"
+#include "contact/box_tree.h"
+#include "fem/triangle_distance.h"
 
 namespace selvage::fem {
 namespace {
@@ -35,64 +35,77 @@ std::vector<ContactSurface> surfaces_of(const Mesh& mesh) {
   return surfaces;
 }
 
-// The surface as triangles, and the thickness behind it.
-struct Skin {
-  contact::SkinMesh triangles;
-  double thickness = 0;
-};
-
-Skin skin_of(const Mesh& mesh, const ContactSurface& surface) {
-  Skin skin;
-  std::map<std::size_t, std::uint32_t> vertex;
-  const auto number = [&](std::size_t node) {
-    const auto [at, is_new] = vertex.emplace(node, static_cast<std::uint32_t>(vertex.size()));
-    if (is_new) skin.triangles.vertices.push_back(mesh.nodes[node]);
-    return at->second;
-  };
+// Four volumes over the surface.
+double thickness_of(const Mesh& mesh, const ContactSurface& surface) {
   double area = 0;
-  for (const OuterSide& side : surface.whole) {
-    area += area_vector(mesh, side).norm();
-    const auto& n = side.nodes;
-    skin.triangles.triangles.push_back({number(n[0]), number(n[1]), number(n[2])});
-    if (n[3] != n[2]) skin.triangles.triangles.push_back({number(n[0]), number(n[2]), number(n[3])});
-  }
-  skin.triangles.along.assign(skin.triangles.vertices.size(), 0);
-  if (area > 0) skin.thickness = 4 * mesh.regions[surface.region].volume / area;
-  return skin;
+  for (const OuterSide& side : surface.whole) area += area_vector(mesh, side).norm();
+  return area > 0 ? 4 * mesh.regions[surface.region].volume / area : 0;
 }
 
-bool is_near(const contact::SkinMesh& skin, const contact::SkinDistance& other, double reach) {
-  Box3 box = other.box();
-  box.extend(Vec3(box.min() - Vec3::Constant(reach)));
-  box.extend(Vec3(box.max() + Vec3::Constant(reach)));
-  return std::any_of(skin.vertices.begin(), skin.vertices.end(), [&](const Vec3& vertex) {
-    return box.contains(vertex) && other.at(vertex, reach).has_value();
-  });
+// All surfaces as triangles, each with the index of its own.
+struct Skins {
+  std::vector<Corners> triangles;
+  std::vector<std::size_t> surface;
+};
+
+Skins skins_of(const std::vector<ContactSurface>& surfaces) {
+  Skins skins;
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    for (const OuterSide& side : surfaces[i].whole) {
+      const auto& n = side.nodes;
+      skins.triangles.push_back({n[0], n[1], n[2]});
+      if (n[3] != n[2]) skins.triangles.push_back({n[0], n[2], n[3]});
+      skins.surface.resize(skins.triangles.size(), i);
+    }
+  return skins;
+}
+
+// Each corner looks round itself in a tree of all triangles, so that the work goes with their number.
+void find_pairs(const Mesh& mesh, ContactSurfaces& result) {
+  constexpr double reach_share = 0.25;
+  std::vector<double> reach;
+  for (const ContactSurface& surface : result.surfaces)
+    reach.push_back(reach_share * thickness_of(mesh, surface));
+  const Skins skins = skins_of(result.surfaces);
+  std::vector<Box3> boxes;
+  for (const Corners& triangle : skins.triangles) {
+    Box3 box;
+    for (const std::size_t node : triangle) box.extend(mesh.nodes[node]);
+    boxes.push_back(box);
+  }
+  const contact::BoxTree tree(std::move(boxes));
+  std::set<std::array<std::size_t, 2>> pairs;
+  std::vector<bool> has_looked(mesh.nodes.size(), false);
+  for (std::size_t t = 0; t < skins.triangles.size(); ++t)
+    for (const std::size_t node : skins.triangles[t]) {
+      if (has_looked[node]) continue;
+      has_looked[node] = true;
+      const std::size_t own = skins.surface[t];
+      tree.near_point(mesh.nodes[node], reach[own], [&](std::uint32_t k) {
+        const std::size_t other = skins.surface[k];
+        const std::array<std::size_t, 2> pair = {std::min(own, other), std::max(own, other)};
+        if (other == own || pairs.contains(pair)) return reach[own];
+        const Corners& c = skins.triangles[k];
+        ++result.distances;
+        if (shortest_way(mesh.nodes[node], {mesh.nodes[c[0]], mesh.nodes[c[1]], mesh.nodes[c[2]]}).norm() <
+            std::min(reach[own], reach[other]))
+          pairs.insert(pair);
+        return reach[own];
+      });
+    }
+  result.pairs.assign(pairs.begin(), pairs.end());
 }
 
 }  // namespace
 
 ContactSurfaces contact_surfaces(const Mesh& mesh) {
-  constexpr double reach_share = 0.25;
   ContactSurfaces result;
   const bool has_matrix = std::any_of(mesh.regions.begin(), mesh.regions.end(), [](const Region& region) {
     return region.kind == Region::Kind::matrix;
   });
   if (has_matrix) return result;
   result.surfaces = surfaces_of(mesh);
-  std::vector<Skin> skins;
-  for (const ContactSurface& surface : result.surfaces) skins.push_back(skin_of(mesh, surface));
-  std::vector<contact::SkinDistance> distances;
-  distances.reserve(skins.size());
-  for (const Skin& skin : skins) distances.emplace_back(skin.triangles);
-  for (std::size_t i = 0; i < skins.size(); ++i)
-    for (std::size_t j = i + 1; j < skins.size(); ++j) {
-      if (result.surfaces[i].whole.empty() || result.surfaces[j].whole.empty()) continue;
-      const double reach = reach_share * std::min(skins[i].thickness, skins[j].thickness);
-      if (is_near(skins[i].triangles, distances[j], reach) ||
-          is_near(skins[j].triangles, distances[i], reach))
-        result.pairs.push_back({i, j});
-    }
+  find_pairs(mesh, result);
   return result;
 }
 

@@ -19,6 +19,7 @@ struct ContactSurface {
 struct ContactSurfaces {
   std::vector<ContactSurface> surfaces;           // one a yarn
   std::vector<std::array<std::size_t, 2>> pairs;  // of indices into `surfaces`, the lower first
+  std::size_t distances = 0;                      // that were measured for them: what the work grows with
 };
 
 // Nothing of a mesh that has a matrix. Pairs: yarns of which a corner on one's surface is nearer to the

@@ -8,12 +8,13 @@
 #include <limits>
 #include <mutex>
 #include <numeric>
-#include <thread>
 
 #include "core/module.h"
+#include "core/parallel.h"
 #include "fem/faces.h"
 #include "fem/fibre.h"
 #include "fem/improve.h"
+#include "fem/kept_volume.h"
 #include "fem/materials.h"
 #include "fem/midside.h"
 #include "fem/quality.h"
@@ -76,12 +77,10 @@ std::vector<std::size_t> nodes_on(const Mesh& mesh, const std::vector<std::array
   return result;
 }
 
-Result<YarnMesh> mesh_yarn(const yarn::Body& body, Unit units, const MeshOptions& options,
-                           const std::filesystem::path& program) {
-  Result<SurfaceMesh> surface = mesh_surface(body, size_for(body, options));
-  if (!surface) return surface.error();
-  const double size = std::min(size_for(body, options), surface->coarsest), scale = millimetres_per(units);
-  TetgenJob job{.points = surface->points, .triangles = surface->triangles};
+Result<YarnMesh> mesh_yarn(const yarn::Body& body, const SurfaceMesh& surface, Unit units,
+                           const MeshOptions& options, const std::filesystem::path& program) {
+  const double size = std::min(size_for(body, options), surface.coarsest), scale = millimetres_per(units);
+  TetgenJob job{.points = surface.points, .triangles = surface.triangles};
   job.max_volume = largest_volume(size);
   job.smallest_feature = size;
   Result<TetMesh> tets = run_tetgen(program, job, {.timeout = options.timeout, .memory = options.memory});
@@ -90,18 +89,18 @@ Result<YarnMesh> mesh_yarn(const yarn::Body& body, Unit units, const MeshOptions
   YarnMesh result;
   if (options.min_dihedral > 0) {
     tets->regions.assign(tets->cells.size(), 0);
-    const Improvement improvement = improve(tets->points, tets->cells, tets->regions, surface->points.size(),
+    const Improvement improvement = improve(tets->points, tets->cells, tets->regions, surface.points.size(),
                                             {.target = options.min_dihedral});
     result.angles = count(improvement, options.min_dihedral);
     result.notes = describe(improvement, options.min_dihedral, name_of(units));
   }
-  result.mesh = assemble(*tets, *surface, body);
+  result.mesh = assemble(*tets, surface, body);
   Mesh& mesh = result.mesh;
   std::vector<double> known(mesh.nodes.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < surface->parameters.size(); ++i) known[i] = surface->parameters[i].y();
+  for (std::size_t i = 0; i < surface.parameters.size(); ++i) known[i] = surface.parameters[i].y();
   add_fibres(mesh, mesh.regions.front(), body, parameters_along(mesh, mesh.regions.front(), body, known, 1));
   if (options.order == 2) {
-    const MidsideNodes nodes = add_midside_nodes(mesh, *surface, body);
+    const MidsideNodes nodes = add_midside_nodes(mesh, surface, body);
     if (nodes.held > 0) {
       Message note =
           warning(Kind::geometry, fmt::format("{} midside nodes were held back from the yarn's surface, by "
@@ -165,30 +164,60 @@ Status check_options(std::span<const yarn::Body> bodies, const MeshOptions& opti
   return {};
 }
 
-// Meshes every yarn, several at once. After a failure the yarns behind it are left out, those before it are
-// not: the failure that is reported does not depend on the number of threads.
-std::vector<std::optional<Result<YarnMesh>>> mesh_all(std::span<const yarn::Body> bodies, Unit units,
-                                                      const MeshOptions& options,
-                                                      const std::filesystem::path& program) {
-  std::vector<std::optional<Result<YarnMesh>>> parts(bodies.size());
-  std::atomic<std::size_t> next{0}, first_failed{bodies.size()};
-  std::mutex one_at_a_time;
-  std::size_t done = 0;
-  auto work = [&] {
-    for (std::size_t i = next++; i < bodies.size() && i < first_failed; i = next++) {
-      parts[i] = mesh_yarn(bodies[i], units, options, program);
-      const std::scoped_lock lock(one_at_a_time);
-      if (!parts[i]->ok()) first_failed = std::min<std::size_t>(first_failed, i);
-      if (options.progress) options.progress(++done, bodies.size());
+// Something for every yarn, several at once. After a failure the yarns behind it are left out, those before
+// it are not: the failure that is reported does not depend on the number of threads.
+template <class Part, class Make>
+std::vector<std::optional<Result<Part>>> for_all(std::size_t count, int threads, const Make& make) {
+  std::vector<std::optional<Result<Part>>> parts(count);
+  std::atomic<std::size_t> first_failed{count};
+  for_each_index(count, threads, [&](std::size_t i) {
+    if (i > first_failed) return;
+    parts[i] = make(i);
+    if (parts[i]->ok()) return;
+    for (std::size_t before = first_failed; i < before && !first_failed.compare_exchange_weak(before, i);) {
     }
-  };
-  const auto count =
-      std::min<std::size_t>(static_cast<std::size_t>(std::max(options.threads, 1)), bodies.size());
-  std::vector<std::thread> others;
-  for (std::size_t k = 1; k < count; ++k) others.emplace_back(work);
-  work();
-  for (std::thread& other : others) other.join();
+  });
   return parts;
+}
+
+// The surfaces of all yarns as one: their nodes leave the B-spline surfaces so that no volume is lost.
+void keep_volumes(std::span<const yarn::Body> bodies, std::vector<std::optional<Result<SurfaceMesh>>>& all,
+                  int threads) {
+  std::vector<Vec3> points;
+  std::vector<YarnFacet> facets;
+  std::vector<double> volumes;
+  std::vector<std::size_t> first_facet;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const SurfaceMesh& surface = **all[i];
+    const auto first = static_cast<std::uint32_t>(points.size());
+    first_facet.push_back(facets.size());
+    points.insert(points.end(), surface.points.begin(), surface.points.end());
+    volumes.push_back(bodies[i].volume);
+    for (const Triangle& t : surface.triangles)
+      facets.push_back({.corners = {first + t[0], first + t[1], first + t[2]},
+                        .yarn = static_cast<std::uint32_t>(i),
+                        .part = YarnFacet::Part::end});
+  }
+  for_each_index(bodies.size(), threads, [&](std::size_t i) {
+    const SurfaceMesh& surface = **all[i];
+    for (std::size_t k = 0; k < surface.side_triangles; ++k) {
+      YarnFacet& facet = facets[first_facet[i] + k];
+      facet.part = YarnFacet::Part::side;
+      std::array<SurfaceEnd, 3> corners;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t point = surface.triangles[k][c];
+        corners[c] = {surface.parameters[point], surface.points[point]};
+      }
+      facet.height = mean_height(bodies[i], corners);
+    }
+  });
+  fem::keep_volumes(points, {.facets = facets, .volumes = volumes});
+  auto moved = points.begin();
+  for (auto& part : all) {
+    std::vector<Vec3>& own = (*part)->points;
+    std::copy_n(moved, own.size(), own.begin());
+    moved += static_cast<std::ptrdiff_t>(own.size());
+  }
 }
 
 // What is wrong with the finished mesh.
@@ -212,7 +241,21 @@ Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body
   const Result<std::filesystem::path> program = find_worker("selvage-tetgen");
   if (!program) return program.error();
   const double scale = millimetres_per(units);
-  auto parts = mesh_all(bodies, units, options, *program);
+  auto surfaces = for_all<SurfaceMesh>(bodies.size(), options.threads, [&](std::size_t i) {
+    return mesh_surface(bodies[i], size_for(bodies[i], options));
+  });
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (!surfaces[i]->ok()) return about(surfaces[i]->error(), bodies[i], fabric);
+  if (options.order == 1) keep_volumes(bodies, surfaces, options.threads);
+  std::mutex one_at_a_time;
+  std::size_t done = 0;
+  auto parts = for_all<YarnMesh>(bodies.size(), options.threads, [&](std::size_t i) {
+    Result<YarnMesh> part = mesh_yarn(bodies[i], **surfaces[i], units, options, *program);
+    surfaces[i].reset();
+    const std::scoped_lock lock(one_at_a_time);
+    if (options.progress) options.progress(++done, bodies.size());
+    return part;
+  });
 
   Mesh mesh;
   mesh.order = options.order;

@@ -117,6 +117,16 @@ ElementShape shape_of(const Mesh& mesh, std::size_t element) {
   return shape;
 }
 
+double volume_of(const Mesh& mesh, std::size_t element) {
+  if (mesh.shape == Mesh::Shape::hexahedron) {
+    const auto& e = mesh.elements[element];
+    const Vec3& p = mesh.nodes[e[0]];
+    return std::abs((mesh.nodes[e[1]] - p).cross(mesh.nodes[e[3]] - p).dot(mesh.nodes[e[4]] - p));
+  }
+  const std::array<Vec3, 10> nodes = nodes_of(mesh, element);
+  return mesh.order == 1 ? six_volumes(nodes) / 6 : quadratic_volume(nodes);
+}
+
 void measure(Mesh& mesh) {
   std::vector<BadElement> worst;
   auto worse = [](const BadElement& a, const BadElement& b) { return a.min_dihedral < b.min_dihedral; };
@@ -129,7 +139,7 @@ void measure(Mesh& mesh) {
     for (std::size_t e = region.first_element; e < region.last_element; ++e) {
       const ElementShape shape = shape_of(mesh, e);
       const std::array<Vec3, 10> nodes = nodes_of(mesh, e);
-      region.volume += mesh.order == 1 ? six_volumes(nodes) / 6 : quadratic_volume(nodes);
+      region.volume += volume_of(mesh, e);
       sum += shape.scaled_jacobian;
       add(region.quality, shape);
       const Vec3 middle = (nodes[0] + nodes[1] + nodes[2] + nodes[3]) / 4;

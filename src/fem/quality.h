@@ -29,6 +29,9 @@ double quadratic_volume(const std::array<Vec3, 10>& nodes);
 // Of one element of a mesh: as above, the scaled Jacobian of a ten-node element times its least share.
 ElementShape shape_of(const Mesh& mesh, std::size_t element);
 
+// Of one element; hexahedra are boxes, as voxels are.
+double volume_of(const Mesh& mesh, std::size_t element);
+
 // Fills Quality and volume of every region, the mesh's own, and its worst elements.
 void measure(Mesh& mesh);
 

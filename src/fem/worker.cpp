@@ -222,6 +222,18 @@ Message judge_end(const Ended& ended, const TetgenLimits& limits) {
                                            WEXITSTATUS(ended.status), change_size, quoted(ended.words)));
 }
 
+std::string_view what_failed(Trial trial) {
+  switch (trial) {
+    case Trial::mesh:
+      return "it does not divide a cube as it should";
+    case Trial::random_numbers:
+      return "it does not take its random numbers from the worker";
+    case Trial::giving_up:
+      return "it does not tell the worker when it gives up";
+  }
+  return "an unknown trial";
+}
+
 Message judge_refusal(const AnswerHead& head, const Ended& ended, const TetgenLimits& limits) {
   if (head.outcome == Outcome::memory)
     return error(Kind::limit,
@@ -230,6 +242,11 @@ Message judge_refusal(const AnswerHead& head, const Ended& ended, const TetgenLi
                              limits.memory));
   if (head.outcome == Outcome::bad_request)
     return error(Kind::internal, "the mesh worker did not understand its request");
+  if (head.outcome == Outcome::other_library)
+    return error(Kind::internal,
+                 fmt::format("TetGen's library on this machine is not the one that the mesh worker was built "
+                             "for ({}); build the program anew here, with TetGen 1.5",
+                             what_failed(static_cast<Trial>(head.code))));
   std::string_view why = "TetGen failed";
   Kind kind = Kind::internal;
   if (head.code >= 3 && head.code <= 5) {

@@ -56,6 +56,12 @@ bool has_only_yarns(Job& job, const fabric::Fabric& fabric) {
   return false;
 }
 
+void tell_volumes(Job& job, const fem::Mesh& mesh) {
+  if (const std::string words = volumes_in_words(mesh); !words.empty())
+    tell(job, fmt::format("{}: {}\n", job.input.path, words));
+  if (std::optional<Message> message = wrong_volume(mesh)) job.say(std::move(*message));
+}
+
 void mesh(Job& job) {
   if (job.options.wants_cell()) return mesh_cell(job);
   std::optional<fabric::Fabric> fabric = job.read();
@@ -75,6 +81,7 @@ void mesh(Job& job) {
   job.say_all(diagnostics.messages());
   if (!mesh) return job.say(mesh.error());
   job.report.mesh = mesh_facts(*mesh);
+  tell_volumes(job, *mesh);
   write_mesh(job, *outputs, *mesh);
 }
 

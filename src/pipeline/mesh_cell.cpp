@@ -118,6 +118,7 @@ void mesh_cell(Job& job) {
   if (!mesh) return job.say(mesh.error());
   job.report.mesh = mesh_facts(*mesh);
   if (job.options.voxels == 0) job.report.mesh->estimate = ready->size.tetrahedra;
+  tell_volumes(job, *mesh);
   write_mesh(job, *outputs, *mesh);
 }
 

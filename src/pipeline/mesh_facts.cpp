@@ -1,7 +1,11 @@
 #include "pipeline/mesh_facts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "fem/quality.h"
 
 namespace selvage::pipeline {
 namespace {
@@ -28,7 +32,60 @@ void add_cell(MeshReport& facts, const fem::Mesh& mesh) {
   facts.load_cases = mesh.load_cases.size();
 }
 
+// Relative; of a region whose exact volume is known.
+double volume_error(const fem::Region& region) {
+  return region.volume / region.exact_volume - 1;
+}
+
+const fem::Region* worst_volume(const fem::Mesh& mesh) {
+  const fem::Region* worst = nullptr;
+  for (const fem::Region& region : mesh.regions)
+    if (region.exact_volume > 0 &&
+        (worst == nullptr || std::abs(volume_error(region)) > std::abs(volume_error(*worst))))
+      worst = &region;
+  return worst;
+}
+
+std::string name_of(const fem::Region& region) {
+  return region.kind == fem::Region::Kind::yarn ? fmt::format("yarn '{}'", region.name) : "the matrix";
+}
+
+std::string shares_in_words(const fem::Mesh& mesh) {
+  const double percent = 100 / (mesh.cell->high - mesh.cell->low).prod();
+  double yarns = 0, wanted = 0, fibres = 0;
+  for (const fem::Region& region : mesh.regions) {
+    if (region.kind != fem::Region::Kind::yarn) continue;
+    yarns += region.volume;
+    wanted += region.exact_volume;
+    for (std::size_t e = region.first_element; e < region.last_element && !mesh.fibre_fraction.empty(); ++e)
+      fibres += fem::volume_of(mesh, e) * mesh.fibre_fraction[e];  // NaN: nothing is known of the yarn
+  }
+  std::string text = fmt::format("yarns fill {:.2f} % of the cell", percent * yarns);
+  if (wanted > 0) text += fmt::format(" (wanted: {:.2f} %)", percent * wanted);
+  if (fibres > 0) text += fmt::format(", fibres {:.2f} %", percent * fibres);
+  return text;
+}
+
 }  // namespace
+
+std::string volumes_in_words(const fem::Mesh& mesh) {
+  std::string text;
+  if (mesh.cell) text = shares_in_words(mesh);
+  if (const fem::Region* worst = worst_volume(mesh))
+    text += fmt::format("{}volumes are right to {:.2g} %, the worst is {}", text.empty() ? "" : "; ",
+                        100 * std::abs(volume_error(*worst)), name_of(*worst));
+  return text;
+}
+
+std::optional<Message> wrong_volume(const fem::Mesh& mesh) {
+  constexpr double usual = 0.01;
+  const fem::Region* worst = worst_volume(mesh);
+  if (worst == nullptr || std::abs(volume_error(*worst)) <= usual) return std::nullopt;
+  return warning(
+      Kind::geometry,
+      fmt::format("the volume of {} is {:.2g} % too {}; a smaller --size makes it better", name_of(*worst),
+                  100 * std::abs(volume_error(*worst)), volume_error(*worst) < 0 ? "small" : "large"));
+}
 
 MeshReport mesh_facts(const fem::Mesh& mesh) {
   MeshReport facts;

@@ -1,6 +1,10 @@
 // What the report says of a mesh.
 #pragma once
 
+#include <optional>
+#include <string>
+
+#include "core/diagnostics.h"
 #include "fem/mesh.h"
 #include "pipeline/report.h"
 
@@ -8,5 +12,12 @@ namespace selvage::pipeline {
 
 // Of tetrahedra or hexahedra, of dry yarns or a unit cell (all but MeshReport::estimate).
 MeshReport mesh_facts(const fem::Mesh& mesh);
+
+// How much of a unit cell is yarn and fibre, and how far the volumes of regions are from those of the
+// B-spline yarns, the worst by name. Empty: nothing is known.
+std::string volumes_in_words(const fem::Mesh& mesh);
+
+// A volume that is wrong by more than a mesh of the usual size ever has.
+std::optional<Message> wrong_volume(const fem::Mesh& mesh);
 
 }  // namespace selvage::pipeline

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fabric/model.h"
+#include "fem/mesh.h"
 #include "pipeline/job.h"
 
 namespace selvage::pipeline {
@@ -16,5 +17,8 @@ void set_mesher_limits(const Options& given, MesherOptions& options) {
 
 // Tetrahedra fill yarns; a garment piece is flat. False: it was said which piece is there.
 bool has_only_yarns(Job& job, const fabric::Fabric& fabric);
+
+// On the console: the cell's fractions, the worst volume.
+void tell_volumes(Job& job, const fem::Mesh& mesh);
 
 }  // namespace selvage::pipeline

@@ -13,6 +13,7 @@
 #include "fabric/as_grid.h"
 #include "pipeline/table.h"
 #include "pipeline/unit_cell.h"
+#include "pipeline/writing.h"
 
 namespace selvage::pipeline {
 
@@ -228,16 +229,6 @@ std::string table_of(const Job& job, const RelaxReport& report, Unit file) {
                   percent(report.area_change), percent(report.length_change), percent(report.volume_change));
   return text + fmt::format("  {} after {} step{}\n", report.solved ? "solved" : "not solved",
                             report.iterations, report.iterations == 1 ? "" : "s");
-}
-
-void tell(Job& job, const std::string& text) {
-  if (job.options.quiet) return;
-  const bool to_standard_output = std::any_of(job.outputs.begin(), job.outputs.end(),
-                                              [](const PlannedOutput& o) { return o.to_standard_output; });
-  if (!to_standard_output)
-    job.print(text);
-  else  // standard output has the fabric
-    job.channel().send(packet::message, text.substr(0, text.size() - 1));
 }
 
 Message jam_message(const contact::Jam& jam, const std::vector<yarn::Body>& bodies, Unit units) {

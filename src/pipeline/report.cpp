@@ -96,7 +96,10 @@ Json mesh_json(const MeshReport& mesh) {
   out["regions"] = list_json(mesh.regions, [&](const MeshReport::Region& region) {
     Json one = {
         {"name", region.name}, {"kind", region.kind}, {elements, region.elements}, {"volume", region.volume}};
-    if (region.exact_volume) one["exact_volume"] = *region.exact_volume;
+    if (region.exact_volume) {
+      one["exact_volume"] = *region.exact_volume;
+      one["volume_error"] = region.volume / *region.exact_volume - 1;
+    }
     if (!mesh.hexahedra) one["min_dihedral"] = region.min_dihedral;
     return one;
   });

@@ -470,23 +470,35 @@ std::vector<double> sizes_of(const Options& options, std::span<const yarn::Body>
   return sizes;
 }
 
+// Edges on a yarn are at most as long as it is thick: longer ones would not follow its surface.
+void keep_to_thickness(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                       std::vector<double>& sizes) {
+  constexpr double rounding = 1e-3;
+  std::size_t count = 0, worst = 0;
+  double least = infinity;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const double thickness = fem::smallest_section_extent(bodies[b]);
+    if (sizes[b] > (1.0 + rounding) * thickness) {
+      ++count;
+      if (thickness < least) worst = b;
+      least = std::min(least, thickness);
+    }
+    sizes[b] = std::min(sizes[b], thickness);
+  }
+  if (count == 0) return;
+  job.say(at_cell(fabric, warning(Kind::geometry,
+                                  fmt::format("{} yarns are thinner than these edges are long: on them edges "
+                                              "are as long as they are thick ('{}': {:.3g} {})",
+                                              count, bodies[worst].name, least, name_of(fabric.units)))));
+}
+
 }  // namespace
 
 std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
                                         std::span<const yarn::Body> bodies, bool with_matrix) {
   constexpr double most = 1e8;
   CellSize chosen{sizes_of(job.options, bodies), 0.0};
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const double thickness = fem::smallest_section_extent(bodies[b]);
-    if (chosen.sizes[b] <= thickness) continue;
-    job.say(error(
-        Kind::usage,
-        fmt::format("--{} makes edges of {:.6g}, coarser than yarn '{}', which is {:.3g} {} thick; edges of "
-                    "{:.3g} are usual",
-                    job.options.segments > 0 ? "segments" : "size", chosen.sizes[b], bodies[b].name,
-                    thickness, name_of(fabric.units), sizes_of({}, bodies.subspan(b, 1)).front())));
-    return std::nullopt;
-  }
+  keep_to_thickness(job, fabric, bodies, chosen.sizes);
   const auto [finest, coarsest] = std::minmax_element(chosen.sizes.begin(), chosen.sizes.end());
   if (job.options.matrix_size > 0 && job.options.matrix_size < *finest) {
     job.say(

@@ -132,6 +132,16 @@ void commit_all(Job& job, OpenOutputs& outputs) {
   job.report.outputs = std::move(written);
 }
 
+void tell(Job& job, const std::string& text) {
+  if (job.options.quiet) return;
+  const bool to_standard_output = std::any_of(job.outputs.begin(), job.outputs.end(),
+                                              [](const PlannedOutput& o) { return o.to_standard_output; });
+  if (!to_standard_output)
+    job.print(text);
+  else  // standard output has the file
+    job.channel().send(packet::message, text.substr(0, text.size() - 1));
+}
+
 void write_mesh(Job& job, OpenOutputs& outputs, const fem::Mesh& mesh) {
   if (mesh.load_cases.empty()) drop_companions(outputs);
   for (OpenOutput& output : outputs)

@@ -28,6 +28,10 @@ std::optional<OpenOutputs> open_outputs(Job& job);
 // Gives up the second files of formats: they belong to meshes with load cases, and this one has none.
 void drop_companions(OpenOutputs& outputs);
 
+// On standard output; on standard error where that has a file; nowhere with --quiet. `text` ends its last
+// line.
+void tell(Job& job, const std::string& text);
+
 // Writes a mesh to every output and commits them; what goes wrong is said.
 void write_mesh(Job& job, OpenOutputs& outputs, const fem::Mesh& mesh);
 

@@ -40,6 +40,12 @@ class CellInput(Case):
         self.assertFalse((self.folder / "out.inp").exists())
         return message
 
+    def meshes(self, text, *options):
+        """What it says on standard error, but for the last line."""
+        done = self.succeeds("mesh", self.written(text), "--matrix", "--periodic", "-o", self.folder / "out.inp", "--no-progress", *options)
+        (self.folder / "out.inp").unlink()
+        return "".join(line for line in done.stderr.splitlines() if not line.startswith("selvage: "))
+
     def written(self, text):
         source = self.folder / "cell.txt"
         source.write_text(text)
@@ -75,7 +81,7 @@ class CellInput(Case):
         # Along x alone it is one; a whole repeat is fine (it fails only where its size is looked at).
         self.assertNotIn("along x", message)
         whole = PLAIN.replace("T 2", "T 4") + cell("0 3 -0.35 6 6 0.35")
-        self.assertIn("coarser than yarn", self.refuses(whole, "--size", "1"))
+        self.meshes(whole, "--size", "1")
 
     def test_the_repeat_of_every_construction(self):
         for statement, wrong, repeats in (
@@ -185,7 +191,7 @@ class CellInput(Case):
         self.assertRegex(message, r"yarns 'y1' and 'y2' overlap, 0\.(1|099)\d* mm deep; --relax moves them apart")
         # Outside of the cell it is nobody's business.
         apart = text.replace("0.5 -1 0.7", "1.4 -1 0.7").replace("0.5 2 0.7", "1.4 2 0.7")
-        self.assertIn("coarser than yarn 'y1'", self.refuses(apart, "--size", "0.4"))
+        self.meshes(apart, "--size", "0.4")
 
     def test_yarns_that_nearly_touch(self):
         text = straight(("-1 0.5 0.5", "2 0.5 0.5"), ("0.5 -1 0.801", "0.5 2 0.801")) + cell("0 0 0 1 1 1.2")
@@ -194,9 +200,11 @@ class CellInput(Case):
         self.assertIn("--relax --gap 0.015 moves them apart", message)
 
     def test_a_size_coarser_than_a_yarn(self):
+        """Of as much as the yarn's thickness, and more: edges on yarns are as long as these are thick."""
         text = PLAIN + cell("0 0 -0.35 3 3 0.35")
-        message = self.refuses(text, "--size", "0.31")
-        self.assertRegex(message, r"--size makes edges of 0\.31, coarser than yarn 'w..._\d', which is 0\.(3|299) mm thick; edges of 0\.0\d+ are usual")
+        self.assertEqual(self.meshes(text, "--size", "0.3"), "")
+        self.assertRegex(self.meshes(text, "--size", "0.8"),
+                         r"warning: 4 yarns are thinner than these edges are long: .* \('w..._\d': 0\.(3|299) mm\)")
 
     def test_a_size_of_a_thousand_million_tetrahedra(self):
         text = PLAIN + cell("0 0 -0.35 3 3 0.35")
@@ -221,7 +229,7 @@ class CellInput(Case):
             self.assertIn("yarn 'y1' grazes the y low face of this cell, y = 0: its surface runs along it", message)
         # The next yarn of the repeat at the distance that yarns may have, the face in the middle: no matter.
         text = straight(("-1 0.16 0.5", "2 0.16 0.5")) + cell("0 0 0 1 1 1")
-        self.assertIn("coarser than yarn 'y1'", self.refuses(text, "--size", "0.4"))
+        self.meshes(text, "--size", "0.4")
         # What is cut askew is no wedge either.
         text = straight(("-1 -1 0.5", "2 2 0.5"), ("-1 0 0.5", "1 2 0.5"), ("0 -1 0.5", "2 1 0.5")) + cell("0 0 0 1 1 1")
         self.succeeds("mesh", self.written(text), "--matrix", "-o", self.folder / "askew.inp", "--size", "0.1", "--quiet")
@@ -300,7 +308,7 @@ class CellMesh(Case):
         # --voxel with --gap: the yarns are that far apart; the report tells what was found where tetrahedra are made.
         source = SAMPLES / "cell_plain.txt"
         message = run("mesh", source, "--matrix", "--periodic", "--gap", "0.05", "--size", "0.5", "-o", self.out).stderr
-        self.assertRegex(message, "goes beyond the top|coarser than yarn")
+        self.assertIn("on them edges are as long as they are thick", message)
 
 
 if __name__ == "__main__":

@@ -10,12 +10,14 @@ namespace {
 // While the surface is recovered, its segments and facets are taken in their order instead of a random one:
 // their tetrahedra are near to each other in memory then, which saves a third of the time.
 bool in_order = false;
+unsigned long asked = 0;            // for random numbers
 constexpr unsigned most_ways = 64;  // of a walk, whose turns stay random: without that it may not end
 
 }  // namespace
 
 // In place of the definition in TetGen's shared library (as in terminate.cpp), with its generator.
 unsigned long tetgenmesh::randomnation(unsigned int choices) {
+  ++asked;
   if (in_order && choices > most_ways) return choices - 1;
   randomseed = (randomseed * 1366UL + 150889UL) % 714025UL;
   const unsigned long low = randomseed;
@@ -53,6 +55,10 @@ tetgenbehavior behavior(const Job& job, std::string switches) {
 }
 
 }  // namespace
+
+unsigned long random_numbers() {
+  return asked;
+}
 
 // M: coplanar triangles stay triangles (their edges are wanted in the mesh). Q: quiet.
 std::vector<std::int32_t> find_crossings(const Job& job) {

@@ -85,6 +85,7 @@ int run() {
   const rlimit no_core{0, 0};
   if (::setrlimit(RLIMIT_CORE, &no_core) != 0) return 1;
 
+  test_library();
   // It has all that it needs: no file, no network, no program.
   if (!contain({}, this_kernel())) return 1;
 

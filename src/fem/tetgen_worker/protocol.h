@@ -34,7 +34,15 @@ enum class Outcome : std::int32_t {
   crossing = 1,     // facets cross or touch
   bad_request = 2,  // wrong magic, counts, an index out of range, a number that is not finite
   memory = 3,
-  refused = 4,  // TetGen gave up; `code` is its own number
+  refused = 4,        // TetGen gave up; `code` is its own number
+  other_library = 5,  // TetGen's library does not do what the worker was built for; `code` is a Trial
+};
+
+// What of the library is tried before each job.
+enum class Trial : std::int32_t {
+  mesh = 1,            // a cube becomes the six tetrahedra that it has to
+  random_numbers = 2,  // TetGen asks our generator
+  giving_up = 3,       // TetGen gives up by our function
 };
 
 struct AnswerHead {

@@ -6,8 +6,29 @@
 
 class tetgenmesh;
 
+namespace {
+
+struct GaveUp {};
+bool is_trial = false;
+
+}  // namespace
+
 void terminatetetgen(tetgenmesh* /*mesh*/, int code) {
   using selvage::fem::Outcome;
+  if (is_trial) throw GaveUp();
   // 1: out of memory, 3: crossing facets, 4: a feature that is too small, 5: facets too close, 10: bad input.
   selvage::fem::leave(code == 1 ? Outcome::memory : Outcome::refused, code);
+}
+
+bool selvage::fem::gives_up(void (*work)()) {
+  is_trial = true;
+  bool ours = false;
+  try {
+    work();
+  } catch (const GaveUp&) {
+    ours = true;
+  } catch (int) {  // TetGen's own
+  }
+  is_trial = false;
+  return ours;
 }

@@ -67,6 +67,16 @@ class Stand {
   fs::path path_;
 };
 
+// A library that goes on calling its own functions is found out before it meshes anything.
+TEST(TetgenWorker, LibraryWhoseFunctionsAreNotReplacedIsRefused) {
+  const Surface surface = cube();
+  const Result<TetMesh> mesh = run_tetgen(SELVAGE_TETGEN_UNREPLACED, surface.job(), {});
+  ASSERT_FALSE(mesh.ok());
+  EXPECT_EQ(mesh.error().kind, Kind::internal);
+  EXPECT_NE(mesh.error().text.find("does not take its random numbers from the worker"), std::string::npos)
+      << mesh.error().text;
+}
+
 TEST(TetgenWorker, Cube) {
   const Surface surface = cube();
   Result<TetMesh> mesh = run_tetgen(tetgen(), surface.job(), {});
