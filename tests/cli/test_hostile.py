@@ -57,7 +57,6 @@ REFUSED = {
                      r":5:1: error: one of its yarns would have .* data points"),
     "braid_radius": (THREAD + "braid\n thread a\n carriers 4\n pattern 1/1\n radius 1e300\n angle 40\n length 10\nend\n",
                      r":9:9: error: a radius of 1e\+300 mm is out of all proportion"),
-    "warpknit_space": (THREAD + "warpknit\n bar a 1-0/9999-9998\n wales 3 pitch 3\n courses 4 pitch 5\nend\n", r":6:.*: error: "),
     "plies": (path("  diameter 0.5\n  plies 3000 100 Z\n  filaments 3000\n"),
               r":7:1: error: this would be 9000000 yarns .*`--detail yarn`"),
     "draft_device": (weave(rest=" draft file /dev/zero\n"), r":8:2: error: no draft in the file '/dev/zero': .*--allow-outside"),

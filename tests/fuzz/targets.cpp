@@ -58,8 +58,7 @@ std::vector<yarn::Body> bodies_of(const Fabric& fabric, std::string_view bytes) 
   // Parting loops takes seconds: one input in eight has it done.
   options.as_published = bytes.size() % 8 != 0;
   options.max_control_points = most_points;
-  options.max_data_points = most_data_points;
-  options.max_parts = most_yarns;
+  options.work.points = most_data_points;
   Diagnostics diagnostics;
   const auto builder = fabric::YarnBuilder::create(fabric, options, diagnostics);
   std::vector<yarn::Body> bodies;
