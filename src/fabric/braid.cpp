@@ -310,14 +310,16 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
   BraidShape shape = shape_of(braid, size);
   const double least = 0.5 * (size.height + inlay);
   if (Status fits = check_counts(braid, shape); !fits) return fits.error();
-  for (const auto& [what, distance] :
-       {std::pair("a radius", braid.flat ? size.width : braid.radius),
-        std::pair("a width", braid.width > 0.0 ? braid.width : size.width),
-        std::pair("the way from crossing to crossing, by the angle,", shape.step)})
-    if (Status fits = check_proportion(what, distance, size.width, fabric.units, braid.radius_place); !fits)
-      return fits.error();
+  const auto check = [&](std::string_view what, double distance) {
+    return check_proportion(what, distance, size.width, fabric.units, braid.radius_place);
+  };
+  if (Status fits = check("a radius", braid.flat ? size.width : braid.radius); !fits) return fits.error();
+  if (Status fits = check("a width", braid.width > 0.0 ? braid.width : size.width); !fits)
+    return fits.error();
   if (Status fits = check_radius(braid, least + 0.5 * size.height, unit); !fits) return fits.error();
   if (Status fits = check_widths(braid, shape, size.width, unit); !fits) return fits.error();
+  if (Status fits = check("the way from crossing to crossing, by the angle,", shape.step); !fits)
+    return fits.error();
   const double wanted = std::max(options.gap > 0.0 ? options.gap : clearance * size.height,
                                  2.0 * fabric.tolerance.value_or(0.0));
   const double gap = fit_amplitude(shape, least, wanted, *outline, *axial_outline);

@@ -49,7 +49,9 @@ std::optional<std::vector<cad::Part>> cell_solids(Job& job, const fabric::Fabric
   const std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
   // Where yarns overlap, the space in both belongs to none.
   const auto finish = [](Message& message) {
-    message.text += "; the matrix is what yarns leave free: --relax moves them apart where they have room, else make one thinner";
+    message.text +=
+        "; the matrix is what yarns leave free: --relax moves them apart where they have room, else make one "
+        "thinner";
   };
   if (!bodies || (job.options.matrix && !check_overlaps(job, *bodies, finish))) return std::nullopt;
   const Box3 box(fabric.cell->low, fabric.cell->high);

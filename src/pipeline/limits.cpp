@@ -88,6 +88,7 @@ Status contain_job(const Options& options, std::span<const std::string> inputs,
   if (options.sandbox == Sandbox::off) return {};
   Allowed allowed;
   allowed.libraries = true;
+  if (options.allow_outside) allowed.read.emplace_back("/");
   for (const std::string& input : inputs) {
     if (input == "-") continue;
     allowed.read.emplace_back(input);  // it may be a link to elsewhere

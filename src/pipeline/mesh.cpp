@@ -21,9 +21,10 @@ void add_remedy(const Options& options, Message& message) {
   if (options.allow_overlap) {
     message.severity = Severity::warning;
   } else {
-    message.text += options.relaxing.wanted
-                        ? "; thin one of them, or mesh them as they are with --allow-overlap"
-                        : "; --relax moves them apart where they have room, --allow-overlap meshes them as they are";
+    message.text +=
+        options.relaxing.wanted
+            ? "; thin one of them, or mesh them as they are with --allow-overlap"
+            : "; --relax moves them apart where they have room, --allow-overlap meshes them as they are";
   }
 }
 

@@ -107,14 +107,16 @@ class CellInput(Case):
         self.assertIn("reaches beyond the cloth, whose 4 guides a bar do not reach all needles in it", message)
 
     def voxels(self, text):
-        """How many voxels each part of the cell has, without the parts' names; and the messages."""
+        """How many voxels each part of the cell has, by its yarn's name where that is told; and the messages."""
         source, deck = self.written(text), self.folder / "voxels.inp"
         done = self.succeeds("mesh", source, "--matrix", "--periodic", "--voxel", "24", "-o", deck, "--no-progress")
-        parts, count = {}, None
+        parts, names, count = {}, {}, None
         for line in deck.read_text().splitlines():
-            if line.startswith("*"):
+            if named := re.match(r"\*\* (Yarn\d+) is yarn '(.*)'", line):
+                names[named[1]] = named[2]
+            elif line.startswith("*"):
                 found = re.match(r"\*ELEMENT, TYPE=\w+, ELSET=(\S+)", line)
-                count = found[1] if found else None
+                count = names.get(found[1], found[1]) if found else None
             elif count:
                 parts[count] = parts.get(count, 0) + 1
         return parts, done.stderr

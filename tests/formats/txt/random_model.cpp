@@ -1,9 +1,12 @@
 #include "formats/txt/random_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <random>
+
+#include "fabric/quantities.h"
 
 namespace selvage::test {
 
@@ -69,6 +72,12 @@ class Maker {
   double between(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(engine_);
   }
+  // One that exists, so that readers take it: the orders of magnitude are equally likely.
+  double some(const Quantity& quantity) {
+    if (quantity.least <= 0.0) return between(quantity.least, quantity.most);
+    return std::clamp(quantity.least * std::pow(quantity.most / quantity.least, between(0.0, 1.0)),
+                      quantity.least, quantity.most);
+  }
   Vec3 point() { return {number(), number(), number()}; }
   Vec3 direction() { return {number(), 1.5, number()}; }
   int count() { return 1 + up_to(coin() ? 5 : std::numeric_limits<int>::max() - 1); }
@@ -95,15 +104,15 @@ class Maker {
     Material material;
     material.name = new_name();
     materials_.push_back(material.name);
-    maybe(material.density, [&] { return positive(); });
+    maybe(material.density, [&] { return some(density_quantity); });
     const int law = up_to(2);
-    if (law == 1) material.elastic = IsotropicElastic{positive(), between(-0.99, 0.499)};
+    if (law == 1) material.elastic = IsotropicElastic{some(modulus_quantity), between(-0.99, 0.499)};
     if (law == 2) {
       const double e2 = between(1.0, 10.0);
-      material.elastic =
-          TransverseElastic{e2 * between(1.0, 20.0), e2, between(-0.3, 0.3), positive(), between(-0.5, 0.5)};
+      material.elastic = TransverseElastic{e2 * between(1.0, 20.0), e2, between(-0.3, 0.3),
+                                           some(modulus_quantity), between(-0.5, 0.5)};
     }
-    if (coin()) material.expansion = Expansion{number(), number()};
+    if (coin()) material.expansion = Expansion{some(expansion_quantity), some(expansion_quantity)};
     return material;
   }
   yarn::Section section() {
@@ -132,13 +141,13 @@ class Maker {
     return polygon;
   }
   void fill(Thread& thread) {
-    if (coin()) thread.linear_density = {positive(), static_cast<LinearDensity::Measure>(up_to(2))};
-    maybe(thread.density, [&] { return positive(); });
+    if (coin()) thread.linear_density = {between(1e-3, 1e3), static_cast<LinearDensity::Measure>(up_to(2))};
+    maybe(thread.density, [&] { return some(density_quantity); });
     maybe(thread.packing, [&] { return 1.0 - between(0.0, 0.99); });
     maybe(thread.diameter, [&] { return positive(); });
     maybe(thread.section, [&] { return section(); });
-    maybe(thread.twist, [&] { return Twist{std::abs(number()), coin() ? Hand::z : Hand::s, coin()}; });
-    maybe(thread.plies, [&] { return Plies{count(), std::abs(number()), coin() ? Hand::z : Hand::s}; });
+    maybe(thread.twist, [&] { return Twist{some(twist_quantity), coin() ? Hand::z : Hand::s, coin()}; });
+    maybe(thread.plies, [&] { return Plies{count(), some(twist_quantity), coin() ? Hand::z : Hand::s}; });
     maybe(thread.filaments, [&] { return count(); });
     maybe(thread.color, [&] { return Color{up_to(255), up_to(255), up_to(255)}; });
     if (!materials_.empty()) maybe(thread.material, [&] { return one_of(materials_); });

@@ -15,8 +15,8 @@ namespace {
 std::atomic<std::uint64_t> allocations = 0;
 }
 
-// Counted: what a search costs, without a clock. Not inlined: the compiler warns where it sees free() meet a new that it
-// does not see.
+// Counted: what a search costs, without a clock. Not inlined: the compiler warns where it sees free() meet a
+// new that it does not see.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;

@@ -337,13 +337,13 @@ TEST(Improve, NeedlesOfTheSurfaceAreNamed) {
                                            {0, 1, 5}, {0, 5, 9}, {0, 9, 8}, {0, 8, 4}, {1, 2, 6}, {1, 6, 5},
                                            {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
   Tets tets = tetgen_mesh(points, triangles, 0.02);
-  const Improvement result = improved(tets, 10);
+  const Improvement result = improved(tets, 15);
   ASSERT_FALSE(result.below.empty());
   for (const BelowTarget& below : result.below) {
     EXPECT_EQ(below.cause, BelowTarget::Cause::needle) << below.angle;
     EXPECT_NEAR(below.wedge, 0.4, 0.15);  // a hundredth over the square root of two
   }
-  const std::vector<Message> messages = describe(result, 10, "mm");
+  const std::vector<Message> messages = describe(result, 15, "mm");
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(messages[0].severity, Severity::warning);
   EXPECT_NE(messages[0].text.find("needles"), std::string::npos);
