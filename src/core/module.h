@@ -2,7 +2,9 @@
 // needs them, so that text -> IGES starts in milliseconds.
 #pragma once
 
+#include <exception>
 #include <filesystem>
+#include <new>
 #include <string>
 
 #include "core/diagnostics.h"
@@ -17,6 +19,20 @@ std::filesystem::path program_folder();
 // `extern "C" const void* ENTRY()` gives: a pointer to a table of functions, declared in the header of the
 // part that the module implements. Errors (internal): missing file, missing entry.
 Result<const void*> open_module(const std::string& name, const std::string& entry);
+
+// Runs a module's `work`, which returns a Result or Status: what its library throws becomes an internal error
+// that begins with `what`. Only the end of memory (std::bad_alloc) passes: the job knows its limit, and says
+// so.
+template <class Work>
+auto guarded_by_module(const std::string& what, Work&& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& failure) {
+    return error(Kind::internal, what + ": " + failure.what());
+  }
+}
 
 // A worker program (`selvage-tetgen`) beside the program or in ../lib/selvage. Error (internal): missing.
 Result<std::filesystem::path> find_worker(const std::string& name);

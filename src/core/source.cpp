@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,10 +14,16 @@ namespace selvage {
 
 namespace {
 
-Message io_error(const std::filesystem::path& path, std::string_view what) {
-  Message message = error(Kind::io, fmt::format("{}: {}", what, std::strerror(errno)));
+constexpr int patience = 10;  // seconds that a pipe without a writer is waited for
+
+Message io_message(const std::filesystem::path& path, std::string text) {
+  Message message = error(Kind::io, std::move(text));
   message.file = path.string();
   return message;
+}
+
+Message io_error(const std::filesystem::path& path, std::string_view what) {
+  return io_message(path, fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
 struct Descriptor {
@@ -27,6 +34,34 @@ struct Descriptor {
   }
 };
 
+// Waits for a writer of this pipe, which was opened without waiting; what was read on the way is added to
+// `bytes`. False: nobody came.
+bool await_writer(int pipe, std::string& bytes) {
+  constexpr int times_a_second = 10;
+  for (int i = 0; i < patience * times_a_second; ++i) {
+    char first = 0;
+    const ssize_t got = ::read(pipe, &first, 1);
+    if (got > 0) bytes.push_back(first);
+    if (got != 0) return true;  // with a writer who has written nothing yet: EAGAIN
+    pollfd look = {.fd = pipe, .events = POLLIN, .revents = 0};
+    if (::poll(&look, 1, 1000 / times_a_second) > 0) return true;  // bytes, or a writer who has gone
+  }
+  return false;
+}
+
+// Adds everything up to the end to `bytes`; false: errno says why not.
+bool read_to_end(int descriptor, std::string& bytes) {
+  constexpr std::size_t chunk = std::size_t{1} << 18;
+  for (;;) {
+    const std::size_t old = bytes.size();
+    bytes.resize(old + chunk);
+    const ssize_t got = ::read(descriptor, bytes.data() + old, chunk);
+    bytes.resize(old + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+    if (got == 0) return true;
+    if (got < 0 && errno != EINTR) return false;
+  }
+}
+
 }  // namespace
 
 Result<Source> Source::open(const std::filesystem::path& path) {
@@ -34,7 +69,7 @@ Result<Source> Source::open(const std::filesystem::path& path) {
   if (path == "-") {
     file.fd = STDIN_FILENO;
   } else {
-    file.fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    file.fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe may have no writer
     file.owned = true;
     if (file.fd < 0) return io_error(path, "cannot open");
   }
@@ -44,6 +79,8 @@ Result<Source> Source::open(const std::filesystem::path& path) {
     errno = EISDIR;
     return io_error(path, "cannot read");
   }
+  if (file.owned && (S_ISCHR(facts.st_mode) || S_ISBLK(facts.st_mode)))
+    return io_message(path, "this is a device, not a file; '-' reads standard input");
   Source source;
   source.name_ = path == "-" ? "<stdin>" : path.string();
   if (S_ISREG(facts.st_mode) && facts.st_size > 0 && file.owned) {
@@ -58,15 +95,13 @@ Result<Source> Source::open(const std::filesystem::path& path) {
   }
   source.owned_ = std::make_unique<std::string>();
   std::string& bytes = *source.owned_;
-  constexpr std::size_t chunk = std::size_t{1} << 18;
-  for (;;) {
-    const std::size_t old = bytes.size();
-    bytes.resize(old + chunk);
-    const ssize_t got = ::read(file.fd, bytes.data() + old, chunk);
-    bytes.resize(old + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
-    if (got == 0) break;
-    if (got < 0 && errno != EINTR) return io_error(path, "cannot read");
+  if (file.owned) {
+    if (S_ISFIFO(facts.st_mode) && !await_writer(file.fd, bytes))
+      return io_message(path,
+                        fmt::format("nothing has opened this pipe to write to it within {} s", patience));
+    if (::fcntl(file.fd, F_SETFL, O_RDONLY) != 0) return io_error(path, "cannot read");
   }
+  if (!read_to_end(file.fd, bytes)) return io_error(path, "cannot read");
   source.bytes_ = bytes;
   return source;
 }

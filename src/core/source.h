@@ -14,7 +14,8 @@ namespace selvage {
 class Source {
  public:
   // Maps a regular file, or reads to the end anything else that can be read (a pipe, "-" for standard input).
-  // Errors (io): missing, a directory, no permission, unreadable.
+  // Errors (io): missing, a directory, a device (but for "-"), no permission, unreadable, a pipe that nothing
+  // has opened to write to it within 10 s.
   static Result<Source> open(const std::filesystem::path& path);
   static Source from_memory(std::string bytes, std::string name = "<memory>");
 

@@ -13,9 +13,14 @@ from program import Case, GRID, RING, children_of, environment, files_below, run
 class Isolation(Case):
     def setUp(self):
         super().setUp()
-        # An input that never comes: opening a pipe without a writer waits for one.
-        self.stuck = self.folder / "stuck.txt"
-        os.mkfifo(self.stuck)
+        self.stuck = self.silent_pipe("stuck.txt")
+
+    def silent_pipe(self, name):
+        """An input that never comes: a pipe with a writer, this process, that writes nothing."""
+        pipe = self.folder / name
+        os.mkfifo(pipe)
+        self.addCleanup(os.close, os.open(pipe, os.O_RDWR))
+        return pipe
 
     def wait_for_children(self, process, count):
         while len(children_of(process.pid)) < count:

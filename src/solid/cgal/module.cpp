@@ -1,6 +1,6 @@
-#include <exception>
 #include <mutex>
 
+#include "core/module.h"
 #include "core/parallel.h"
 #include "solid/cgal/triangulate.h"
 #include "solid/cgal/verdict.h"
@@ -11,7 +11,7 @@ namespace selvage::solid {
 
 namespace {
 
-Result<SolidCheck> check(std::span<const yarn::Body> bodies, const CheckOptions& options) try {
+SolidCheck check_all(std::span<const yarn::Body> bodies, const CheckOptions& options) {
   std::size_t done = 0;
   std::mutex guard;
   SolidCheck result;
@@ -24,15 +24,17 @@ Result<SolidCheck> check(std::span<const yarn::Body> bodies, const CheckOptions&
     options.progress(++done, bodies.size());
   });
   return result;
-} catch (const std::exception& failure) {
-  return error(Kind::internal, std::string("the check of the solids failed: ") + failure.what());
+}
+
+Result<SolidCheck> check(std::span<const yarn::Body> bodies, const CheckOptions& options) {
+  return guarded_by_module("the check of the solids failed",
+                           [&]() -> Result<SolidCheck> { return check_all(bodies, options); });
 }
 
 Result<PlanarTriangles> triangulate_safely(std::span<const Vec2> points,
-                                           std::span<const PlanarSegment> segments) try {
-  return triangulate_with_cgal(points, segments);
-} catch (const std::exception& failure) {
-  return error(Kind::internal, std::string("the triangulation failed: ") + failure.what());
+                                           std::span<const PlanarSegment> segments) {
+  return guarded_by_module("the triangulation failed",
+                           [&] { return triangulate_with_cgal(points, segments); });
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <exception>
 #include <map>
 
+#include "core/module.h"
 #include "solid/cgal/verdict.h"
 
 namespace selvage::solid {
@@ -151,13 +151,12 @@ YarnCheck check_yarn(const yarn::Body& body, double chord) {
     check.defects.push_back(skin.error());
     return check;
   }
-  try {
-    judge_skin(body, chord, *skin, check);
-  } catch (const std::exception& failure) {
-    Defects(body, check)
-        .add(Kind::internal, fmt::format("CGAL cannot judge yarn '{}': {}", body.name, failure.what()),
-             std::nullopt);
-  }
+  const Status judged =
+      guarded_by_module(fmt::format("CGAL cannot judge yarn '{}'", body.name), [&]() -> Status {
+        judge_skin(body, chord, *skin, check);
+        return {};
+      });
+  if (!judged) Defects(body, check).add(judged.error().kind, judged.error().text, std::nullopt);
   return check;
 }
 

@@ -4,11 +4,13 @@
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Standard_Failure.hxx>
-#include <exception>
+#include <Standard_OutOfMemory.hxx>
 #include <mutex>
+#include <new>
 #include <string>
 
 #include "core/diagnostics.h"
+#include "core/module.h"
 
 namespace selvage::solid::occt {
 
@@ -23,17 +25,17 @@ inline void silence() {
 template <class Work>
 auto guarded(const std::string& what, Work&& work) -> decltype(work()) {
   silence();
-  try {
-    return work();
-  } catch (const Standard_Failure& failure) {
-    const char* text = failure.GetMessageString();
-    const std::string reason = text != nullptr && *text != '\0' ? text : failure.DynamicType()->Name();
-    return error(Kind::geometry, what + ": OpenCASCADE refuses it: " + reason);
-  } catch (const std::bad_alloc&) {
-    return error(Kind::limit, what + ": not enough memory");
-  } catch (const std::exception& failure) {
-    return error(Kind::internal, what + ": " + failure.what());
-  }
+  return guarded_by_module(what, [&]() -> decltype(work()) {
+    try {
+      return work();
+    } catch (const Standard_OutOfMemory&) {
+      throw std::bad_alloc();
+    } catch (const Standard_Failure& failure) {
+      const char* text = failure.GetMessageString();
+      const std::string reason = text != nullptr && *text != '\0' ? text : failure.DynamicType()->Name();
+      return error(Kind::geometry, what + ": OpenCASCADE refuses it: " + reason);
+    }
+  });
 }
 
 }  // namespace selvage::solid::occt

@@ -1,8 +1,6 @@
 #include <embree3/rtcore.h>
 
-#include <exception>
-#include <new>
-
+#include "core/module.h"
 #include "view/embree/png.h"
 #include "view/embree/render.h"
 #include "view/picture.h"
@@ -11,12 +9,8 @@ namespace selvage::view {
 
 namespace {
 
-Result<Picture> guarded_render(std::span<const yarn::Body> bodies, const PictureOptions& options) try {
-  return embree::render_yarns(bodies, options);
-} catch (const std::bad_alloc&) {
-  return error(Kind::limit, "the picture needs more memory than there is; make it smaller with --size");
-} catch (const std::exception& failure) {
-  return error(Kind::internal, std::string("the picture failed: ") + failure.what());
+Result<Picture> guarded_render(std::span<const yarn::Body> bodies, const PictureOptions& options) {
+  return guarded_by_module("the picture failed", [&] { return embree::render_yarns(bodies, options); });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <new>
 
 namespace selvage::view::embree {
 
@@ -70,8 +71,7 @@ Result<Scene> Scene::make(const std::vector<Skin>& skins) {
   for (const Skin& skin : skins) whole = whole && add_skin(made.device_.get(), made.scene_.get(), skin);
   if (whole) rtcCommitScene(made.scene_.get());
   const RTCError failure = rtcGetDeviceError(made.device_.get());
-  if (failure == RTC_ERROR_OUT_OF_MEMORY)
-    return error(Kind::limit, "the picture needs more memory than there is; make it smaller with --size");
+  if (failure == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (failure != RTC_ERROR_NONE)
     return error(Kind::internal, fmt::format("Embree fails with error {}", static_cast<int>(failure)));
   return made;

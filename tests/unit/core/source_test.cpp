@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <thread>
 
 #include "unit/core/scratch_folder.h"
@@ -57,6 +58,56 @@ TEST(Source, ReadsAPipeToItsEnd) {
   writer.join();
   ASSERT_TRUE(source.ok());
   EXPECT_EQ(source->bytes(), bytes);
+}
+
+TEST(Source, WaitsForAWriterThatIsSlow) {
+  const test::ScratchFolder folder;
+  const std::string path = folder / "pipe";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  std::thread writer([&] {
+    ::usleep(300000);  // later than the first look
+    const int pipe = ::open(path.c_str(), O_WRONLY);
+    ::usleep(300000);  // a writer that has written nothing yet
+    EXPECT_EQ(::write(pipe, "abc", 3), 3);
+    ::usleep(300000);
+    EXPECT_EQ(::write(pipe, "def", 3), 3);
+    ::close(pipe);
+  });
+  const Result<Source> source = Source::open(path);
+  writer.join();
+  ASSERT_TRUE(source.ok());
+  EXPECT_EQ(source->bytes(), "abcdef");
+}
+
+TEST(Source, ReadsADescriptorsPipe) {
+  std::array<int, 2> ends{};
+  for (const std::string_view bytes : {"process substitution", ""}) {
+    ASSERT_EQ(::pipe(ends.data()), 0);
+    EXPECT_EQ(::write(ends[1], bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+    ::close(ends[1]);
+    const Result<Source> source = Source::open("/proc/self/fd/" + std::to_string(ends[0]));
+    ::close(ends[0]);
+    ASSERT_TRUE(source.ok());
+    EXPECT_EQ(source->bytes(), bytes);
+  }
+}
+
+TEST(Source, APipeWithoutAWriterEnds) {
+  const test::ScratchFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const Result<Source> source = Source::open(folder / "pipe");
+  ASSERT_FALSE(source.ok());
+  EXPECT_EQ(source.error().kind, Kind::io);
+  EXPECT_EQ(source.error().text, "nothing has opened this pipe to write to it within 10 s");
+}
+
+TEST(Source, DevicesAreNotRead) {
+  for (const char* device : {"/dev/zero", "/dev/null"}) {
+    const Result<Source> source = Source::open(device);
+    ASSERT_FALSE(source.ok());
+    EXPECT_EQ(source.error().file, device);
+    EXPECT_EQ(source.error().text, "this is a device, not a file; '-' reads standard input");
+  }
 }
 
 TEST(Source, ReadsStandardInput) {
