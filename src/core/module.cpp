@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <array>
 
@@ -33,6 +34,14 @@ Result<fs::path> find_beside_program(const std::string& file) {
 }
 
 }  // namespace
+
+std::string memory_ended() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return "needs more memory than there is";
+  return fmt::format("needs more memory than the {} MB that it may take; --memory gives it more",
+                     limit.rlim_cur >> 20U);
+}
 
 Result<const void*> open_module(const std::string& name, const std::string& entry) {
   Result<fs::path> path = find_beside_program("selvage_" + name + ".so");

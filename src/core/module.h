@@ -20,15 +20,18 @@ std::filesystem::path program_folder();
 // part that the module implements. Errors (internal): missing file, missing entry.
 Result<const void*> open_module(const std::string& name, const std::string& entry);
 
-// Runs a module's `work`, which returns a Result or Status: what its library throws becomes an internal error
-// that begins with `what`. Only the end of memory (std::bad_alloc) passes: the job knows its limit, and says
-// so.
+// "needs more memory than the 2000 MB that it may take; --memory gives it more", of this process.
+std::string memory_ended();
+
+// Runs a module's `work`, which returns a Result or Status: what its library throws becomes an error that
+// begins with `what`; the end of memory one of kind limit. No exception may leave a module: the program has a
+// C++ runtime of its own, and to unwind from the one into the other aborts.
 template <class Work>
 auto guarded_by_module(const std::string& what, Work&& work) -> decltype(work()) {
   try {
     return work();
   } catch (const std::bad_alloc&) {
-    throw;
+    return error(Kind::limit, what + ": " + memory_ended());
   } catch (const std::exception& failure) {
     return error(Kind::internal, what + ": " + failure.what());
   }

@@ -59,6 +59,14 @@ class Isolation(Case):
         message = self.fails(1, "check", GRID, "--memory", "60")
         self.assertRegex(message, f"(?m)^{GRID}: error: ")
 
+    def test_memory_that_ends_in_a_library(self):
+        """The exception of a module cannot pass into the program, which says what helps all the same."""
+        wide = self.folder / "wide.txt"
+        wide.write_text("fabric 1\nthread a\n diameter 0.4\nend\n"
+                        "warpknit\n bar a 1-0/9999-9998\n wales 3 pitch 3\n courses 4 pitch 5\nend\n")
+        message = self.fails(1, "check", wide, "--memory", "2000")
+        self.assertRegex(message, f"(?m)^{wide}: error: .*needs more memory than the 2000 MB .*--memory")
+
     def test_interrupts(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             with self.subTest(number.name):
