@@ -26,7 +26,7 @@
 #include <utility>
 #include <vector>
 
-#include "contact/box_tree.h"
+#include "core/box_tree.h"
 #include "core/parallel.h"
 #include "scripts/benchmarks/built.h"
 #include "solid/tessellation.h"
@@ -131,7 +131,7 @@ std::vector<Pair> candidates_of(const std::vector<Mesh>& meshes) {
       boxes[k].extend(Vec3(p.x(), p.y(), p.z()));
     }
   std::vector<Pair> pairs;
-  contact::BoxTree(std::move(boxes)).near_pairs(0.0, [&](std::uint32_t i, std::uint32_t j) {
+  BoxTree(std::move(boxes)).near_pairs(0.0, [&](std::uint32_t i, std::uint32_t j) {
     pairs.emplace_back(i, j);
   });
   std::sort(pairs.begin(), pairs.end());

@@ -44,10 +44,11 @@ Border::Border(nurbs::Curve curve, int side)
     length_ += step;
     step_ = std::max(step_, step);
   }
+  box_ = Box3(box_.min().array() - step_, box_.max().array() + step_);
 }
 
 double Border::distance(const Vec3& p, double hint, double enough, double most) const {
-  if (box_.exteriorDistance(p) - step_ > most) return std::numeric_limits<double>::infinity();
+  if (box_.exteriorDistance(p) > most) return std::numeric_limits<double>::infinity();
   double best = std::numeric_limits<double>::infinity();
   for (const double share : {hint, 1 - hint}) {
     best = std::min(best, (nurbs::evaluate(curve_, std::lerp(first_, last_, share)) - p).norm());

@@ -21,6 +21,7 @@ class Border {
   [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
   // Where points()[i] is between first and last parameter, 0 to 1.
   [[nodiscard]] double share(std::size_t i) const { return (parameters_[i] - first_) / (last_ - first_); }
+  // Holds the curve, between points() too.
   [[nodiscard]] const Box3& box() const { return box_; }
   [[nodiscard]] int side() const { return side_; }  // -1: an edge of a loop
 

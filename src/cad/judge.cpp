@@ -9,6 +9,7 @@
 #include <span>
 
 #include "cad/borders.h"
+#include "core/box_tree.h"
 
 namespace selvage::cad {
 
@@ -95,7 +96,11 @@ class Judge {
       }
     // A face by itself has a border by rights.
     if (part.kind != Part::Kind::solid && part.faces.size() == 1) return;
-    for (std::size_t i = 0; i < borders.size(); ++i) judge_border(part, borders, i);
+    std::vector<Box3> boxes;
+    boxes.reserve(borders.size());
+    for (const Owned& owned : borders) boxes.push_back(owned.border.box());
+    const BoxTree tree(std::move(boxes));
+    for (std::size_t i = 0; i < borders.size(); ++i) judge_border(part, borders, tree, i);
   }
 
   // Knots and weights; false: it cannot be evaluated.
@@ -270,29 +275,28 @@ class Judge {
     return (near(a0, b0) && near(a1, b1)) || (near(a0, b1) && near(a1, b0));
   }
 
-  // Has this border a neighbour all along, and how far is it?
-  void judge_border(const Part& part, const std::vector<Owned>& borders, std::size_t own) {
+  // Has this border a neighbour all along, and how far is it? `boxes` are those of the borders.
+  void judge_border(const Part& part, const std::vector<Owned>& borders, const BoxTree& boxes,
+                    std::size_t own) {
     const Border& border = borders[own].border;
-    const double far = reach * size_;
-    const Box3 near(border.box().min().array() - far, border.box().max().array() + far);
-    std::vector<const Border*> others;
-    for (std::size_t i = 0; i < borders.size(); ++i)
-      if (i != own && near.intersects(borders[i].border.box()) &&
-          (borders[i].face != borders[own].face || may_be_seam(border, borders[i].border)))
-        others.push_back(&borders[i].border);
+    const double far = reach * size_, enough = rounding * size_;
     double gap = 0;
     Vec3 gap_at = border.points().front();
     const std::size_t count = border.points().size();
     for (std::size_t k = 0; k < count && gap <= far; ++k) {
-      double least = INFINITY;
-      for (const Border* other : others) {
-        least =
-            std::min(least, other->distance(border.points()[k], border.share(k), rounding * size_, least));
-        if (least <= rounding * size_) break;
-      }
+      const Vec3& p = border.points()[k];
+      double least = 2 * far;  // what is farther than `far` is no neighbour
+      boxes.near_point(p, least, [&](std::size_t i) {
+        const Owned& other = borders[i];
+        if (i == own || least <= enough) return least;
+        if (other.face == borders[own].face && !may_be_seam(border, other.border)) return least;
+        ++m_.comparisons;
+        least = std::min(least, other.border.distance(p, border.share(k), enough, least));
+        return least;
+      });
       if (least > gap) {
         gap = least;
-        gap_at = border.points()[k];
+        gap_at = p;
       }
     }
     const Face& face = *borders[own].face;

@@ -11,13 +11,13 @@
 #include <set>
 #include <tuple>
 
-#include "contact/box_tree.h"
 #include "contact/critical.h"
 #include "contact/deep.h"
 #include "contact/face.h"
 #include "contact/patch.h"
 #include "contact/place.h"
 #include "contact/repeated.h"
+#include "core/box_tree.h"
 #include "core/parallel.h"
 
 namespace selvage::contact {

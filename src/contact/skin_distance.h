@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "contact/box_tree.h"
 #include "contact/gap_field.h"
+#include "core/box_tree.h"
 
 namespace selvage::contact {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/box_tree.h"
 #include "contact/face.h"
+#include "core/box_tree.h"
 
 namespace selvage::contact {
 

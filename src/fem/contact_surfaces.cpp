@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "contact/box_tree.h"
+#include "core/box_tree.h"
 #include "fem/triangle_distance.h"
 
 namespace selvage::fem {
@@ -73,7 +73,7 @@ void find_pairs(const Mesh& mesh, ContactSurfaces& result) {
     for (const std::size_t node : triangle) box.extend(mesh.nodes[node]);
     boxes.push_back(box);
   }
-  const contact::BoxTree tree(std::move(boxes));
+  const BoxTree tree(std::move(boxes));
   std::set<std::array<std::size_t, 2>> pairs;
   std::vector<bool> has_looked(mesh.nodes.size(), false);
   for (std::size_t t = 0; t < skins.triangles.size(); ++t)

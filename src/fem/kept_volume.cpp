@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/box_tree.h"
+#include "core/box_tree.h"
 #include "fem/triangle_distance.h"
 
 namespace selvage::fem {
@@ -148,7 +148,7 @@ void Keeper::keep_gaps() {
       if (size > 0) corner.most = std::min(corner.most, gap_share * distance / size);
     }
   };
-  contact::BoxTree(std::move(boxes)).near_pairs(0, [&](std::uint32_t i, std::uint32_t j) {
+  BoxTree(std::move(boxes)).near_pairs(0, [&](std::uint32_t i, std::uint32_t j) {
     const bool is_same = facets[i]->yarn == facets[j]->yarn;
     if (is_same && normals[i].dot(normals[j]) >= 0) return;
     const Vec3 way = shortest_way(corners_of(*facets[i]), corners_of(*facets[j]));

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "contact/box_tree.h"
+#include "core/box_tree.h"
 #include "core/parallel.h"
 
 namespace selvage::fem {
@@ -221,8 +221,7 @@ Vec3 nearest_on(const std::array<Vec3, 3>& t, const Vec3& p) {
 
 class Rule {
  public:
-  Rule(const std::vector<Facet>& facets, const contact::BoxTree& tree, const Box3& box,
-       const SizeRules& rules)
+  Rule(const std::vector<Facet>& facets, const BoxTree& tree, const Box3& box, const SizeRules& rules)
       : facets_(facets), tree_(tree), box_(box), rules_(rules) {}
 
   [[nodiscard]] double at(const Raster& raster, std::size_t i, std::size_t j) const {
@@ -283,7 +282,7 @@ class Rule {
   }
 
   const std::vector<Facet>& facets_;
-  const contact::BoxTree& tree_;
+  const BoxTree& tree_;
   const Box3& box_;
   const SizeRules& rules_;
 };
@@ -311,7 +310,7 @@ SizeField size_field(std::span<const yarn::Body> bodies, const Box3& box, const 
     for (const Vec3& corner : facet.corners) one.extend(corner);
     boxes.push_back(one);
   }
-  const contact::BoxTree tree(std::move(boxes));
+  const BoxTree tree(std::move(boxes));
   const Rule rule(facets, tree, box, rules);
   std::vector<std::vector<SizeField::Bound>> bounds(rasters.size());
   for_each_index(rasters.size(), threads, [&](std::size_t b) {

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 #include "unit/cad/surfaces.h"
 
@@ -128,6 +130,33 @@ TEST(Judge, OpenEdgesAreCounted) {
   EXPECT_EQ(group.findings.defects(), 0) << group.text();
   EXPECT_TRUE(group.says(warning, "the group of surfaces is open", 10)) << group.text();
   EXPECT_TRUE(group.says(warning, "the quilt stays open"));
+}
+
+// A round tube without ends, of flat faces in rows.
+Model ring_of(int rows, int columns) {
+  const auto corner = [&](int i, int j) {
+    const double turn = 2 * std::numbers::pi * (i % columns) / columns;
+    return Vec3(std::cos(turn), std::sin(turn), static_cast<double>(j) / rows);
+  };
+  Part part;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i)
+      part.faces.push_back(face_of(
+          bilinear(corner(i, j), corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1)), j * columns + i));
+  Model model;
+  model.parts = {std::move(part)};
+  return model;
+}
+
+// Four times the faces, about four times the work: a border is compared with those beside it. Sixteen times
+// is each with all.
+TEST(Judge, WorkGrowsWithTheFaces) {
+  const Verdict few = verdict_of(ring_of(16, 48)), many = verdict_of(ring_of(32, 96));
+  EXPECT_EQ(few.measures.open_borders, 96U);
+  EXPECT_EQ(many.measures.open_borders, 192U);
+  EXPECT_EQ(many.measures.borders, 4 * few.measures.borders);
+  EXPECT_GT(few.measures.comparisons, few.measures.borders);
+  EXPECT_LT(many.measures.comparisons, 8 * few.measures.comparisons);
 }
 
 TEST(Judge, OneFaceMayBeOpen) {

@@ -1,6 +1,7 @@
 // A tree of boxes: which of them are near each other.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -8,7 +9,7 @@
 
 #include "core/vec.h"
 
-namespace selvage::contact {
+namespace selvage {
 
 class BoxTree {
  public:
@@ -125,4 +126,4 @@ void BoxTree::near_point(const Vec3& point, double reach, const Visit& visit) co
   }
 }
 
-}  // namespace selvage::contact
+}  // namespace selvage

@@ -1,9 +1,9 @@
-#include "contact/box_tree.h"
+#include "core/box_tree.h"
 
 #include <algorithm>
 #include <numeric>
 
-namespace selvage::contact {
+namespace selvage {
 
 BoxTree::BoxTree(std::vector<Box3> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
   if (boxes_.empty()) return;
@@ -40,4 +40,4 @@ void BoxTree::split(std::uint32_t node) {
   split(left + 1);
 }
 
-}  // namespace selvage::contact
+}  // namespace selvage
