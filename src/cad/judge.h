@@ -19,8 +19,9 @@ struct Measures {
   double largest_gap = 0;        // between edges that are neighbours
   std::optional<Vec3> gap_at;
   std::string gap_entity;
-  std::size_t comparisons = 0;  // of a point of a border with another border: the work that was done
-  double shortest_border = 0;   // that is no pole; 0: there is none
+  // Of a point of a border with another border, and of a face with a face: the work that was done.
+  std::size_t comparisons = 0;
+  double shortest_border = 0;  // that is no pole; 0: there is none
   TextPlace shortest_place;
   std::string shortest_entity;
   std::optional<double> least_area, largest_area;  // of untrimmed faces

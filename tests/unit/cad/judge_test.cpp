@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "unit/cad/surfaces.h"
@@ -132,12 +133,8 @@ TEST(Judge, OpenEdgesAreCounted) {
   EXPECT_TRUE(group.says(warning, "the quilt stays open"));
 }
 
-// A round tube without ends, of flat faces in rows.
-Model ring_of(int rows, int columns) {
-  const auto corner = [&](int i, int j) {
-    const double turn = 2 * std::numbers::pi * (i % columns) / columns;
-    return Vec3(std::cos(turn), std::sin(turn), static_cast<double>(j) / rows);
-  };
+// Flat faces in rows, which have their corners in common.
+Model grid_of(int rows, int columns, const std::function<Vec3(int i, int j)>& corner) {
   Part part;
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i)
@@ -148,8 +145,20 @@ Model ring_of(int rows, int columns) {
   return model;
 }
 
-// Four times the faces, about four times the work: a border is compared with those beside it. Sixteen times
-// is each with all.
+// A round tube without ends.
+Model ring_of(int rows, int columns) {
+  return grid_of(rows, columns, [&](int i, int j) {
+    const double turn = 2 * std::numbers::pi * (i % columns) / columns;
+    return Vec3(std::cos(turn), std::sin(turn), static_cast<double>(j) / rows);
+  });
+}
+
+Model square_across_x(int rows) {
+  return grid_of(rows, rows, [&](int i, int j) -> Vec3 { return Vec3(1, i, j) / rows; });
+}
+
+// Four times the faces, about four times the work: a border is compared with those beside it, a face with
+// those that may be the same. Sixteen times is each with all.
 TEST(Judge, WorkGrowsWithTheFaces) {
   const Verdict few = verdict_of(ring_of(16, 48)), many = verdict_of(ring_of(32, 96));
   EXPECT_EQ(few.measures.open_borders, 96U);
@@ -157,6 +166,25 @@ TEST(Judge, WorkGrowsWithTheFaces) {
   EXPECT_EQ(many.measures.borders, 4 * few.measures.borders);
   EXPECT_GT(few.measures.comparisons, few.measures.borders);
   EXPECT_LT(many.measures.comparisons, 8 * few.measures.comparisons);
+
+  const Verdict plane = verdict_of(square_across_x(28)), larger = verdict_of(square_across_x(56));
+  EXPECT_GT(plane.measures.comparisons, plane.measures.borders);
+  EXPECT_LT(larger.measures.comparisons, 8 * plane.measures.comparisons);
+}
+
+// Each copy once, with the one before it in the file, however many there are.
+TEST(Judge, ManyCopiesAreFoundAtOnce) {
+  const auto copies = [](int count) {
+    Model model;
+    for (int i = 0; i < count; ++i) model.parts.push_back(alone(face_of(sheet(), 10 * (i + 1))));
+    return verdict_of(model);
+  };
+  const Verdict three = copies(3);
+  EXPECT_TRUE(three.says(defect, "the same face as 128 at D10", 20)) << three.text();
+  EXPECT_TRUE(three.says(defect, "the same face as 128 at D20", 30)) << three.text();
+  const Verdict all = copies(1000);
+  EXPECT_EQ(all.findings.defects(), 999);
+  EXPECT_EQ(all.measures.comparisons, 999U);
 }
 
 TEST(Judge, OneFaceMayBeOpen) {
