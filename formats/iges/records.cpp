@@ -181,7 +181,7 @@ void Records::file_entity(std::int64_t first_line, std::int64_t line_count) {
   field(second, 5, entity_.form);
   std::string_view label = entity_.label.substr(0, 8);
   while (!label.empty() && label.back() == ' ') label.remove_suffix(1);
-  std::memcpy(second + 64 - label.size(), label.data(), label.size());
+  label.copy(second + 64 - label.size(), label.size());
   field(second, 9, 0);
   second[72] = 'D';
   right_justified(second + 73, 7, 2 * entities_);

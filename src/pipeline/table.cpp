@@ -25,7 +25,9 @@ void Table::add(const std::vector<std::string>& cells) {
     return;
   }
   std::vector<std::string>& row = rows_.emplace_back();
-  for (const std::string& cell : cells) row.push_back(shortened(cell));
+  // The last column makes no other wider.
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    row.push_back(i + 1 < cells.size() ? shortened(cells[i]) : shortened(cells[i], 120));
 }
 
 std::string Table::text() const {

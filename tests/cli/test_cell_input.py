@@ -106,19 +106,19 @@ class CellInput(Case):
         self.at_cell(message, text)
         self.assertIn("reaches beyond the cloth, whose 4 guides a bar do not reach all needles in it", message)
 
-    def voxels(self, text):
+    def voxels(self, text, count="24"):
         """How many voxels each part of the cell has, by its yarn's name where that is told; and the messages."""
         source, deck = self.written(text), self.folder / "voxels.inp"
-        done = self.succeeds("mesh", source, "--matrix", "--periodic", "--voxel", "24", "-o", deck, "--no-progress")
-        parts, names, count = {}, {}, None
+        done = self.succeeds("mesh", source, "--matrix", "--periodic", "--voxel", count, "-o", deck, "--no-progress")
+        parts, names, part = {}, {}, None
         for line in deck.read_text().splitlines():
             if named := re.match(r"\*\* (Yarn\d+) is yarn '(.*)'", line):
                 names[named[1]] = named[2]
             elif line.startswith("*"):
                 found = re.match(r"\*ELEMENT, TYPE=\w+, ELSET=(\S+)", line)
-                count = names.get(found[1], found[1]) if found else None
-            elif count:
-                parts[count] = parts.get(count, 0) + 1
+                part = names.get(found[1], found[1]) if found else None
+            elif part:
+                parts[part] = parts.get(part, 0) + 1
         return parts, done.stderr
 
     def test_a_weave_goes_on_beyond_its_edges_where_a_cell_is_periodic(self):
@@ -135,11 +135,11 @@ class CellInput(Case):
                              "  material fibre\nend\nweave\n  warp s 4 pitch 2.1\n  weft s 6 pitch 2.5\n  profile straight\n  layers 2\n"
                              "  binder b every 2 levels 0 1 2 3 2 1\n  binder b every 2 first 2 levels 3 2 1 0 1 2\nend\n")
         def binders(corners):
-            parts, _ = self.voxels(bound + cell(corners))
+            parts, _ = self.voxels(bound + cell(corners), "60")
             return sum(count for name, count in parts.items() if "binder" in name)
         at_faces, inside = binders("0 0 -1.2 15 8.4 1.2"), binders("0 1.05 -1.2 15 9.45 1.2")
         self.assertGreater(inside, 0)
-        self.assertLess(abs(at_faces - inside), 0.15 * inside)  # a quarter of the binders was missing; voxels are coarse
+        self.assertLess(abs(at_faces - inside), 0.15 * inside)  # a quarter of the binders was missing
 
     def test_a_cell_that_is_nearly_a_repeat_becomes_one(self):
         exact, _ = self.voxels(PLAIN + cell("0 0 -0.36 3 3 0.36"))

@@ -188,7 +188,7 @@ class Hostile(Case):
         for name in ("base.stp", "base.igs"):
             self.succeeds("convert", GRID, "-o", self.folder / name, "--quiet")
         step, iges = ((self.folder / name).read_text() for name in ("base.stp", "base.igs"))
-        (self.folder / "crossing.txt").write_text(crossing(8))
+        (self.folder / "crossing.txt").write_text(crossing(4))
         self.succeeds("convert", self.folder / "crossing.txt", "-o", self.folder / "crossing.igs", "--quiet")
         for name, text in (("edge_without_vertex.stp", swapped(step, "EDGE_CURVE", "VERTEX_POINT", "CARTESIAN_POINT")),
                            ("loop_of_points.stp", swapped(step, "EDGE_LOOP", "ORIENTED_EDGE", "VERTEX_POINT")),

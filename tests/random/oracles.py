@@ -250,7 +250,7 @@ class Judge:
     def ask_occt(self, names):
         if not names or not OCCT_TOTALS or not self.wants("occt"):
             return
-        done = subprocess.run([OCCT_TOTALS, *[self.at("built", n, "stp") for n in names]], capture_output=True, text=True)
+        done = subprocess.run([OCCT_TOTALS, *[self.at("built step", n, "stp") for n in names]], capture_output=True, text=True)
         lines = done.stdout.splitlines()
         if len(lines) != len(names):
             for name in names:
