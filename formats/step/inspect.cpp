@@ -1,13 +1,39 @@
 #include "formats/step/inspect.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "formats/step/assemblies.h"
 #include "formats/step/attributes.h"
 
 namespace selvage::formats::step {
 
+namespace {
+
+// The application protocols whose geometry OpenCASCADE knows.
+bool is_known_schema(std::string_view schema) {
+  for (const std::string_view known : {"CONFIG_CONTROL_", "CCD_CLA_GVP_AST", "AUTOMOTIVE_DESIGN", "AP203",
+                                       "AP214", "AP242", "AP209", "STRUCTURAL_ANALYSIS_DESIGN"})
+    if (schema.starts_with(known)) return true;
+  return false;
+}
+
+// Types of entities and their attributes are judged by what these protocols have.
+void check_schema(const Part21& file, TextReport& report) {
+  if (std::any_of(file.schemas.begin(), file.schemas.end(), is_known_schema)) return;
+  report.error(file.schema_spot,
+               fmt::format("a STEP file of the schema {}, not of AP203, AP214 or AP242",
+                           file.schemas.empty() ? "''" : in_quotes(file.schemas.front())),
+               Kind::unsupported);
+}
+
+}  // namespace
+
 std::optional<Part21> inspect(const Source& source, TextReport& report) {
   std::optional<Part21> file = read_part21(source, report);
-  if (file) check_attributes(*file, source.bytes(), report);
+  if (file) check_schema(*file, report);
+  if (report.errors() == 0) check_attributes(*file, source.bytes(), report);
   if (report.errors() == 0) check_assemblies(*file, report);
   if (report.errors() > 0) return std::nullopt;
   return file;

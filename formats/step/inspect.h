@@ -8,7 +8,7 @@
 
 namespace selvage::formats::step {
 
-// Reads the statements and judges them: the grammar (part21.h), types and number of attributes
+// Reads the statements and judges them: the grammar (part21.h), the schema, types and number of attributes
 // (attributes.h), the number of instances (assemblies.h). Errors go to `report`, each with line and column;
 // nothing comes back then. Time and memory are linear in the file, at most n log n.
 std::optional<Part21> inspect(const Source& source, TextReport& report);

@@ -81,6 +81,7 @@ class FileReader {
   void read_sections() {
     lexer_.next();
     if (!is_word("ISO-10303-21")) fail("not a STEP file: it does not begin with ISO-10303-21;");
+    file_.schema_spot = lexer_.spot();
     expect_word("ISO-10303-21");
     expect_word("HEADER");
     read_header();
@@ -103,6 +104,7 @@ class FileReader {
     while (!is_word("ENDSEC")) {
       if (lexer_.token() != Token::word) fail_expecting("an entity of the header or 'ENDSEC;'");
       const std::string_view type = lexer_.text();
+      if (type == "FILE_SCHEMA") file_.schema_spot = lexer_.spot();
       lexer_.next();
       strings_.clear();
       read_parameters();

@@ -25,6 +25,7 @@ struct Part21 {
   // Of the header, decoded to UTF-8.
   std::string description, file_name, time_stamp, originating_system;
   std::vector<std::string> schemas;
+  Spot schema_spot;  // of FILE_SCHEMA; without it the file's begin
 
   std::vector<Statement> statements;  // of all DATA sections, by id
   std::vector<int> refs;              // ids that they name, a list a statement, in the order of the text

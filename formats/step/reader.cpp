@@ -69,14 +69,6 @@ std::string date_of(std::string_view stamp) {
   return digits.substr(0, 8) + "." + digits.substr(8);
 }
 
-// The application protocols whose geometry OpenCASCADE knows.
-bool is_known_schema(std::string_view schema) {
-  for (const std::string_view known : {"CONFIG_CONTROL_", "CCD_CLA_GVP_AST", "AUTOMOTIVE_DESIGN", "AP203",
-                                       "AP214", "AP242", "AP209", "STRUCTURAL_ANALYSIS_DESIGN"})
-    if (schema.starts_with(known)) return true;
-  return false;
-}
-
 std::optional<Unit> unit_of(double millimetres) {
   for (const Unit unit : all_units)
     if (std::abs(millimetres / millimetres_per(unit) - 1.0) < 1e-9) return unit;
@@ -108,8 +100,6 @@ class ModelReader {
       : source_(source), file_(file), report_(report), document_(new TDocStd_Document("BinXCAF")) {}
 
   Result<cad::Model> read() {
-    Status known = check_schema();
-    if (!known.ok()) return known.error();
     take_header();
     ByteStream buffer(source_.bytes());
     std::istream stream(&buffer);
@@ -137,13 +127,6 @@ class ModelReader {
   }
 
  private:
-  [[nodiscard]] Status check_schema() const {
-    if (std::any_of(file_.schemas.begin(), file_.schemas.end(), is_known_schema)) return {};
-    return error(Kind::unsupported,
-                 fmt::format("a STEP file of the schema {}, not of AP203, AP214 or AP242",
-                             file_.schemas.empty() ? "''" : in_quotes(file_.schemas.front())));
-  }
-
   void take_header() {
     model_.file = source_.name();
     model_.date = date_of(file_.time_stamp);

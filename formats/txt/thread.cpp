@@ -35,6 +35,8 @@ void read_packing(Parser& p, Thread& thread, std::string_view) {
   const auto value = p.positive("the packing");
   if (value && *value > 1.0)
     p.error(p.last(), "the packing is a share of the section: it cannot be larger than 1");
+  else if (value)
+    p.check(fabric::packing_quantity, *value);
   if (value && p.finish()) thread.packing = *value;
 }
 

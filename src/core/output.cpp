@@ -31,20 +31,6 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-// Where the links of `target` lead, also where nothing is there yet. Error: they go in a circle.
-std::optional<fs::path> followed(const fs::path& target) {
-  constexpr int most_links = 40;  // as Linux has it
-  fs::path place = target;
-  for (int i = 0; i < most_links; ++i) {
-    std::error_code failure;
-    const fs::path next = fs::read_symlink(place, failure);
-    if (failure) return place;
-    place = folder_of(place) / next;  // an absolute one replaces the folder
-  }
-  errno = ELOOP;
-  return std::nullopt;
-}
-
 Status sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   // EINVAL: a file system that has nothing to do here.
@@ -59,6 +45,19 @@ Status sync_folder(const fs::path& folder) {
 }
 
 }  // namespace
+
+std::optional<fs::path> followed(const fs::path& target) {
+  constexpr int most_links = 40;  // as Linux has it
+  fs::path place = target;
+  for (int i = 0; i < most_links; ++i) {
+    std::error_code failure;
+    const fs::path next = fs::read_symlink(place, failure);
+    if (failure) return place;
+    place = folder_of(place) / next;  // an absolute one replaces the folder
+  }
+  errno = ELOOP;
+  return std::nullopt;
+}
 
 Message OutputFile::io_error(std::string_view what) const {
   Message message = error(Kind::io, fmt::format("{}: {}", what, std::strerror(errno)));

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,9 @@
 #include "core/diagnostics.h"
 
 namespace selvage {
+
+// Where the links of `target` lead, also where nothing is there yet. None (errno tells): they go in a circle.
+std::optional<std::filesystem::path> followed(const std::filesystem::path& target);
 
 class OutputFile {
  public:

@@ -10,6 +10,7 @@
 #include "core/containment.h"
 #include "core/machine.h"
 #include "core/module.h"
+#include "core/output.h"
 #include "core/process.h"
 #include "pipeline/detect.h"
 
@@ -41,7 +42,7 @@ void make_folder(const fs::path& folder) {
 // Where the file that is written stands, all links followed.
 fs::path place_of(const fs::path& output) {
   std::error_code failure;
-  const fs::path target = fs::weakly_canonical(output, failure);
+  const fs::path target = fs::weakly_canonical(followed(output).value_or(output), failure);
   return folder_of(failure ? output : target);
 }
 

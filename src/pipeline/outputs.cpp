@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "core/output.h"
 #include "pipeline/detect.h"
 #include "pipeline/parts.h"
 
@@ -153,7 +154,7 @@ fs::path output_path(const Options& options, const Input& input, const Descripto
 // The same file under every name that leads to it.
 std::string identity(const fs::path& path) {
   std::error_code failure;
-  fs::path real = fs::weakly_canonical(path, failure);
+  fs::path real = fs::weakly_canonical(followed(path).value_or(path), failure);
   return failure ? fs::absolute(path, failure).lexically_normal().string() : real.string();
 }
 

@@ -278,6 +278,15 @@ class Trouble(Case):
         self.assertEqual(old.stat().st_mode & 0o777, 0o640)
         self.assertEqual((self.folder / "kept.igs").read_text(), "old")
 
+    def test_a_link_to_what_is_not_there(self):
+        """The file is made where the link leads, in another folder."""
+        (self.folder / "store").mkdir()
+        for name in ("a.igs", "b.igs"):
+            os.symlink("store/new.igs", self.folder / name)
+        self.succeeds("convert", GRID, "-o", self.folder / "a.igs")
+        self.assertTrue((self.folder / "a.igs").is_symlink())
+        self.assertEqual((self.folder / "store/new.igs").read_bytes()[72:80], b"S      1")
+
 
 if __name__ == "__main__":
     unittest.main()

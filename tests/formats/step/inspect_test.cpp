@@ -32,6 +32,20 @@ std::string complaint(std::string_view statements) {
   return fmt::format("{}:{}: {}", first.place.line, first.place.column, first.text);
 }
 
+TEST(StepInspect, AnotherSchemaIsToldAndNothingElse) {
+  std::string text = file_of("#1=LINE('');");
+  text.replace(text.find("AUTOMOTIVE_DESIGN"), 17, "IFC4");
+  const Source source = Source::from_memory(text, "a.stp");
+  TextReport report(source);
+  EXPECT_FALSE(inspect(source, report));
+  Diagnostics diagnostics;
+  report.hand_over(diagnostics);
+  ASSERT_EQ(diagnostics.messages().size(), 1U);
+  const Message& message = diagnostics.messages().front();
+  EXPECT_EQ(message.text, "a STEP file of the schema 'IFC4', not of AP203, AP214 or AP242");
+  EXPECT_EQ(message.place.line, 3);
+}
+
 constexpr std::string_view corner =
     "#1=CARTESIAN_POINT('',(0.,0.,0.));\n#2=DIRECTION('',(1.,0.,0.));\n#3=VECTOR('',#2,1.);\n"
     "#4=LINE('',#1,#3);\n#5=VERTEX_POINT('',#1);\n";

@@ -193,6 +193,7 @@ const std::vector<Case> thread_cases = {
     {"tex_negative", in_thread("tex -3"), {{3, 5, "larger than 0"}}},
     {"packing_above", in_thread("packing 1.01"), {{3, 9, "larger than 1"}}},
     {"packing_zero", in_thread("packing 0"), {{3, 9, "larger than 0"}}},
+    {"packing_tiny", in_thread("packing 1e-30"), {{3, 9, "a packing of 1e-30 of the section"}}},
     {"packing_percent", in_thread("packing 75"), {{3, 9, "larger than 1"}}},
     {"diameter_zero", in_thread("diameter 0"), {{3, 10, "larger than 0"}}},
     {"section_unknown", in_thread("section elipse 1 2"), {{3, 9, "did you mean 'ellipse'"}}},
