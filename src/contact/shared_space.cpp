@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <span>
 
 #include "contact/overlay.h"
@@ -36,13 +37,21 @@ class Raster {
   // Every passage of a line through a triangle of the skin, line by line, each going up. `seen`: its vertices
   // in the frame.
   [[nodiscard]] std::vector<Passage> pass(const Mesh& skin, const std::vector<Vec3>& seen) const {
-    std::vector<Passage> all;
-    for (std::uint32_t k = 0; k < skin.triangles.size(); ++k) pass(seen, skin.triangles[k], k, all);
-    std::sort(all.begin(), all.end(), [](const Passage& x, const Passage& y) {
-      // Coming in before going out where the heights are equal: a piece of no length is no gap.
-      if (x.line != y.line) return x.line < y.line;
-      return x.height != y.height ? x.height < y.height : !x.leaves && y.leaves;
-    });
+    std::vector<Passage> met;
+    for (std::uint32_t k = 0; k < skin.triangles.size(); ++k) pass(seen, skin.triangles[k], k, met);
+    // By lines in one go, as few passages are on each.
+    std::vector<std::size_t> ends(static_cast<std::size_t>(lines_) * static_cast<std::size_t>(lines_) + 1, 0);
+    for (const Passage& passage : met) ++ends[static_cast<std::size_t>(passage.line) + 1];
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    std::vector<Passage> all(met.size());
+    for (const Passage& passage : met) all[ends[static_cast<std::size_t>(passage.line)]++] = passage;
+    for (std::size_t begin = 0, line = 0; begin < all.size(); begin = ends[line++])
+      std::sort(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                all.begin() + static_cast<std::ptrdiff_t>(ends[line]),
+                [](const Passage& x, const Passage& y) {
+                  // Coming in before going out where the heights are equal: a piece of no length is no gap.
+                  return x.height != y.height ? x.height < y.height : !x.leaves && y.leaves;
+                });
     return all;
   }
 
@@ -68,6 +77,23 @@ class Raster {
     return swap ? -area : area;
   }
 
+  struct Interval {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+  };
+  // Where a triangle is at this height of the raster, to rounding; low > high: nowhere.
+  static Interval row(const std::vector<Vec3>& seen, const std::array<std::uint32_t, 3>& t, double y) {
+    Interval x;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3 &s = seen[t[c]], &e = seen[t[(c + 1) % 3]];
+      if (std::min(s.y(), e.y()) > y || std::max(s.y(), e.y()) < y) continue;
+      const double share = s.y() == e.y() ? 0.0 : (y - s.y()) / (e.y() - s.y());
+      const double at = s.x() + share * (e.x() - s.x());
+      x.low = std::min(x.low, at);
+      x.high = std::max(x.high, at);
+    }
+    return x;
+  }
+
   void pass(const std::vector<Vec3>& seen, const std::array<std::uint32_t, 3>& t, std::uint32_t k,
             std::vector<Passage>& all) const {
     Vec2 low = seen[t[0]].head<2>(), high = low;
@@ -75,17 +101,23 @@ class Raster {
       low = low.cwiseMin(seen[t[c]].head<2>());
       high = high.cwiseMax(seen[t[c]].head<2>());
     }
-    const auto first = [&](int axis) {
+    const auto first = [&](int axis, double from) {
       return static_cast<int>(
-          std::clamp(std::ceil((low[axis] - low_[axis]) / step_[axis] - offset), 0.0, lines_ + 0.0));
+          std::clamp(std::ceil((from - low_[axis]) / step_[axis] - offset), 0.0, lines_ + 0.0));
     };
-    const auto last = [&](int axis) {
+    const auto last = [&](int axis, double to) {
       return static_cast<int>(
-          std::clamp(std::floor((high[axis] - low_[axis]) / step_[axis] - offset), -1.0, lines_ - 1.0));
+          std::clamp(std::floor((to - low_[axis]) / step_[axis] - offset), -1.0, lines_ - 1.0));
     };
-    const int i0 = first(0), i1 = last(0), j0 = first(1), j1 = last(1);
-    for (int j = j0; j <= j1; ++j)
-      for (int i = i0; i <= i1; ++i) {
+    const int i0 = first(0, low.x()), i1 = last(0, high.x());
+    if (i0 > i1) return;
+    const int j0 = first(1, low.y()), j1 = last(1, high.y());
+    for (int j = j0; j <= j1; ++j) {
+      // Of long triangles that lie across most lines of the box are outside; a line more on either side
+      // leaves the answer to the signs.
+      const Interval x = row(seen, t, place(0, j).y());
+      const int end = std::min(i1, last(0, x.high) + 1);
+      for (int i = std::max(i0, first(0, x.low) - 1); i <= end; ++i) {
         const Vec2 p = place(i, j);
         const double w0 = side(seen, t[1], t[2], p), w1 = side(seen, t[2], t[0], p),
                      w2 = side(seen, t[0], t[1], p);
@@ -95,6 +127,7 @@ class Raster {
             (w0 * seen[t[0]].z() + w1 * seen[t[1]].z() + w2 * seen[t[2]].z()) / (w0 + w1 + w2);
         all.push_back({j * lines_ + i, height, leaves, k});
       }
+    }
   }
 
   int lines_;
