@@ -1,9 +1,11 @@
 #include "formats/step/faces.h"
 
 #include <BRepAdaptor_Surface.hxx>
+#include <BRepGProp.hxx>
 #include <BRepTools.hxx>
 #include <BRepTools_WireExplorer.hxx>
 #include <BRep_Tool.hxx>
+#include <GProp_GProps.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_Surface.hxx>
 #include <Precision.hxx>
@@ -244,7 +246,9 @@ class FaceMaker {
 
 cad::Face to_face(const TopoDS_Face& face, const Handle(StepShape_FaceSurface) & entity, double scale,
                   EdgeIds& ids) {
-  return FaceMaker(face, entity, scale, ids).make();
+  cad::Face made = FaceMaker(face, entity, scale, ids).make();
+  made.area = area_of(face);
+  return made;
 }
 
 void stretch(nurbs::Curve& curve, double factor) {
@@ -255,6 +259,13 @@ void stretch(cad::Face& face, double factor) {
   for (Vec3& p : face.surface.points) p *= factor;
   for (cad::Loop& loop : face.loops)
     for (cad::Edge& edge : loop.edges) stretch(edge.curve, factor);
+  if (face.area) *face.area *= factor * factor;
+}
+
+double area_of(const TopoDS_Shape& face) {
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(face, properties);
+  return properties.Mass();
 }
 
 nurbs::Curve to_curve(const TopoDS_Edge& edge) {

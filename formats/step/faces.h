@@ -14,12 +14,15 @@ namespace selvage::formats::step {
 // The edges that the faces of a part share have one number each.
 using EdgeIds = std::unordered_map<const TopoDS_TShape*, int>;
 
-// Surface, side and boundary, placed; name, colour and origin are the caller's. `entity`, where it is not
-// null, is the face in the file: of a B-spline surface its own numbers are taken, times `scale`, since
+// Surface, side, boundary and area, placed; name, colour and origin are the caller's. `entity`, where it is
+// not null, is the face in the file: of a B-spline surface its own numbers are taken, times `scale`, since
 // OpenCASCADE makes closed ones periodic. A boundary that runs along the surface's natural border all round
 // is none. Exceptions: Standard_Failure.
 cad::Face to_face(const TopoDS_Face& face, const Handle(StepShape_FaceSurface) & entity, double scale,
                   EdgeIds& ids);
+
+// By OpenCASCADE's own integration, span by span.
+double area_of(const TopoDS_Shape& face);
 
 // All lengths times `factor`.
 void stretch(nurbs::Curve& curve, double factor);

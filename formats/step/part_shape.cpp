@@ -31,6 +31,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "formats/step/faces.h"
 #include "solid/occt/shape.h"
 
 namespace selvage::formats::step {
@@ -362,6 +363,9 @@ PartShape build_part(const cad::Part& part, double tolerance) {
   return PartBuilder(part, tolerance).build();
 }
 
+// What goes wrong loses halves of faces; its quadrature of rational surfaces is good for about a percent.
+constexpr double same_area = 0.05;
+
 std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part) {
   constexpr std::string_view remedy = "--to iges writes its faces as they are";
   if (part.kind == cad::Part::Kind::solid && !built.closed)
@@ -376,6 +380,10 @@ std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part
     if (!face.loops.empty() && wires != face.loops.size())
       return fmt::format("of the {} boundaries of its face {} OpenCASCADE makes {}; {}", face.loops.size(),
                          who, wires, remedy);
+    const double area = face.area ? area_of(built.faces[i]) : 0;
+    if (face.area && !(std::abs(area - *face.area) <= same_area * *face.area))
+      return fmt::format("its face {} has an area of {:.6g}, and OpenCASCADE makes it {:.6g}; {}", who,
+                         *face.area, area, remedy);
   }
   if (!BRepCheck_Analyzer(built.shape).IsValid())
     return fmt::format("OpenCASCADE's check finds the result invalid; {}", remedy);

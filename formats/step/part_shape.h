@@ -26,8 +26,8 @@ struct PartShape {
 PartShape build_part(const cad::Part& part, double tolerance);
 
 // Why this is not what the part says, with a remedy; nothing where it is. A solid stays one, every face is
-// there with as many boundaries as it had, and OpenCASCADE's check (BRepCheck_Analyzer) finds nothing.
-// Exceptions: Standard_Failure.
+// there with as many boundaries and the area as it had, and OpenCASCADE's check (BRepCheck_Analyzer) finds
+// nothing. Exceptions: Standard_Failure.
 std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part);
 
 TopoDS_Edge build_edge(const nurbs::Curve& curve);

@@ -46,6 +46,9 @@ struct Face {
   std::optional<Color> color;
   int level = 0;  // IGES
   Origin origin;
+  // As another program's kernel measured it in the file that it read; none: nobody did. Who makes the face
+  // anew has to find it again.
+  std::optional<double> area;
 };
 
 // What belongs together, by the file's own word.

@@ -109,7 +109,7 @@ Message Divider::overlap(std::size_t a, std::size_t b, const Vec3& at) const {
   Message message =
       error(Kind::geometry,
             fmt::format("yarns '{}' and '{}' overlap where a face of the cell cuts them; --relax moves "
-                        "yarns apart",
+                        "them apart where they have room",
                         bodies_[a].name, bodies_[b].name));
   message.yarn = bodies_[a].name;
   message.at = at;

@@ -280,8 +280,8 @@ Message crossing(const TetgenJob& job, const std::vector<Triangle>& triangles) {
       job.sides.empty()
           ? "the surface intersects itself there; widen the bend or make the section smaller, or try "
             "a finer --size"
-          : "yarns overlap there, or are too near to each other for triangles of this size; move "
-            "them apart with --relax, or try a finer --size";
+          : "yarns overlap there, or are too near to each other for triangles of this size; try "
+            "a finer --size, or move them apart with --relax where they have room";
   return with_place(error(Kind::geometry,
                           fmt::format("{} facets cross each other, the first at ({:.6g}, {:.6g}, {:.6g}): {}",
                                       triangles.size(), at.x(), at.y(), at.z(), why)),

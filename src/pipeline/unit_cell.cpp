@@ -429,12 +429,12 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
   const double thin = std::min(fem::smallest_section_extent(bodies[nearest->a]),
                                fem::smallest_section_extent(bodies[nearest->b]));
   if (nearest->gap < least_gap_share * thin && !job.options.force) {
-    Message message =
-        error(Kind::geometry,
-              fmt::format(
-                  "{}, less than 1 % of their thickness: what lies between would be meshed as flat as that; "
-                  "--relax --gap {:.2g} moves them apart, --force meshes them as they are",
-                  who, default_gap_share * thin));
+    Message message = error(
+        Kind::geometry,
+        fmt::format(
+            "{}, less than 1 % of their thickness: what lies between would be meshed as flat as that; "
+            "--relax --gap {:.2g} moves them apart where they have room, --force meshes them as they are",
+            who, default_gap_share * thin));
     message.at = nearest->at;
     job.say(std::move(message));
     return false;

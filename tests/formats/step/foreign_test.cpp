@@ -214,6 +214,31 @@ TEST(ForeignGmsh, StepOfGmsh) {
   }
 }
 
+// A face that is made anew with another area than the one that was read is not written.
+TEST(ForeignAreas, AreFoundAgain) {
+  const std::string path = std::string(SELVAGE_TESTS) + "/fixtures/freecad/planar.step";
+  const Reading reading = read(formats::step::descriptor(), path);
+  ASSERT_TRUE(reading.model.has_value());
+  cad::Part part = reading.model->parts.front();
+  double sum = 0;
+  for (const cad::Part& one : reading.model->parts)
+    for (const cad::Face& face : one.faces) sum += face.area.value_or(0);
+  GProp_GProps whole;
+  BRepGProp::SurfaceProperties(occt_read(path), whole, 1e-6);  // its adaptive quadrature
+  EXPECT_NEAR(sum, whole.Mass(), 0.01 * whole.Mass());
+  for (const double factor : {1.0, 2.0}) {
+    Result<OutputFile> output = OutputFile::in_memory();
+    ASSERT_TRUE(output.ok());
+    auto writer = formats::step::descriptor().open_bodies(*output, {});
+    ASSERT_TRUE(writer.ok());
+    *part.faces.front().area *= factor;
+    const Status added = (*writer)->add_part(part);
+    EXPECT_EQ(added.ok(), factor == 1.0);
+    const std::string said = added.ok() ? "" : added.error().text;
+    EXPECT_EQ(said.find("has an area of") != std::string::npos, factor == 2.0) << said;
+  }
+}
+
 // What FreeCAD wrote once; tests/fixtures/freecad/PROVENANCE.md.
 class FreeCad : public ::testing::TestWithParam<const char*> {
  protected:
