@@ -81,6 +81,23 @@ RelaxState state_of(const Contacts& contacts) {
   return state;
 }
 
+// The body with another surface, and all that follows from it.
+Result<yarn::Body> with_surface(const yarn::Body& before, const nurbs::Surface& surface) {
+  yarn::Body body = before;
+  body.surface = surface;
+  body.axis = yarn::section_centres(body.surface);
+  body.tight_bends.clear();
+  if (Status done = yarn::finish(body, yarn::Sealings{{{before.start.style, {}}, {before.end.style, {}}}});
+      !done)
+    return done.error();
+  return body;
+}
+
+// How far the section reaches inward in the tightest bend, in radii; 0 where the surface folds nowhere.
+double tightness(const yarn::Body& body) {
+  return body.tight_bends.empty() ? 0.0 : body.tight_bends.front().needed / body.tight_bends.front().radius;
+}
+
 class Relaxer {
  public:
   Relaxer(std::vector<yarn::Body> bodies, const RelaxOptions& options)
@@ -208,7 +225,7 @@ class Relaxer {
       if (std::abs(change.volume) > volume_bound) return by("the volume", change.volume, volume_bound);
       if (change.turning < 0.0)
         return fmt::format("a section of yarn '{}' that was convex would become concave", originals_[y].name);
-      if (out_.bodies[y].tight_bends.size() > originals_[y].tight_bends.size())
+      if (change.folding > folding_bound)
         return fmt::format("yarn '{}' would bend tighter than its section allows", originals_[y].name);
     }
     return {};
@@ -425,14 +442,10 @@ class Relaxer {
 
   std::optional<Message> finish_body(std::size_t y, const nurbs::Surface& surface) {
     const yarn::Body& before = originals_[y];
-    yarn::Body& body = out_.bodies[y];
-    body = before;
-    body.surface = surface;
-    body.axis = yarn::section_centres(body.surface);
-    body.tight_bends.clear();
-    if (Status done = yarn::finish(body, yarn::Sealings{{{before.start.style, {}}, {before.end.style, {}}}});
-        !done)
-      return done.error();
+    Result<yarn::Body> moved = with_surface(before, surface);
+    if (!moved) return moved.error();
+    out_.bodies[y] = std::move(*moved);
+    const yarn::Body& body = out_.bodies[y];
     YarnChange& change = out_.changes[y];
     const nurbs::Curve old = yarn::section_centres(before.surface);
     change.length = nurbs::arc_length(body.axis) / nurbs::arc_length(old) - 1.0;
@@ -448,6 +461,11 @@ class Relaxer {
       if (shapes[k].least_turning < -turning_noise && old_shapes[k].least_turning > -turning_noise)
         change.turning = std::min(change.turning, shapes[k].least_turning);
     }
+    if (body.tight_bends.empty()) return std::nullopt;
+    // Measured like the moved one: bends of the path are not quite those of the line through the sections.
+    const Result<yarn::Body> unmoved = with_surface(before, before.surface);
+    if (!unmoved) return unmoved.error();
+    change.folding = tightness(body) / tightness(*unmoved) - 1.0;
     return std::nullopt;
   }
 

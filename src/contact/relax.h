@@ -56,6 +56,9 @@ struct YarnChange {
   // The least turning of a section's outline that was convex before (section_shape.h), radians: below zero it
   // became concave.
   double turning = 0;
+  // Relative change of how far the section reaches inward in its tightest bend, in radii, where it folds over
+  // itself there; infinity: it did not before.
+  double folding = 0;
 };
 
 // A pair of yarns that could not be parted.
@@ -76,7 +79,7 @@ struct Relaxation {
 };
 
 // Bounds that hold in a solved relaxation.
-inline constexpr double area_bound = 0.02, length_bound = 0.01, volume_bound = 0.01;
+inline constexpr double area_bound = 0.02, length_bound = 0.01, volume_bound = 0.01, folding_bound = 0.01;
 
 // Yarns that cannot be moved apart at all (two identical ones, one inside another, one through another's
 // centre line, a gap of the size of a section) and jammed ones are not errors: the result is not solved, and

@@ -217,6 +217,13 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
     job.report.creo_absolute_accuracy = creo_accuracy(*thinnest * millimetres_per(fabric.units), {});
 }
 
+// A text is written without its yarns being built; what is wrong with those that were moved is said all the
+// same.
+void look_at_yarns(Job& job, const fabric::Fabric& fabric) {
+  if (const std::optional<fabric::YarnBuilder> builder = job.builder(fabric))
+    job.for_each_yarn(*builder, "looking at yarn", [](yarn::Body&& /*body*/) { return true; });
+}
+
 }  // namespace
 
 void convert(Job& job) {
@@ -237,7 +244,10 @@ void convert(Job& job) {
     else if (!take_facts(job, output, output.plan->format->write_fabric(*fabric, output.file)))
       return;
   }
-  if (has_surfaces) write_surfaces(job, *fabric, *outputs);
+  if (has_surfaces)
+    write_surfaces(job, *fabric, *outputs);
+  else if (job.options.relaxing.wanted)
+    look_at_yarns(job, *fabric);
   commit_all(job, *outputs);
 }
 

@@ -115,6 +115,12 @@ class Solved(Relaxing):
         self.succeeds("diff", self.file(FREE), self.folder / "apart.txt")  # tolerance 0
         self.assertIn("grid", text)
 
+    def test_a_bend_that_is_too_tight_is_told(self):
+        """Nothing makes it wider, and it is as it was in the text that comes out."""
+        for text in (FREE, CROSSING):
+            _, done, _ = self.relaxed(text + yarn("bent", "other", ["6 0 0", "9 0 0", "9.3 0.3 0", "9 0.6 0", "6 2 0"]))
+            self.assertEqual(done.stderr.count("yarn 'bent' bends more tightly than its section allows"), 1, done.stderr)
+
     def test_gap(self):
         self.relaxed(CROSSING, "--gap", "0.2")
         self.assertGreater(self.gap_of(self.folder / "apart.txt"), 0.199)
