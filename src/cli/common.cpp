@@ -151,7 +151,7 @@ void add_batch(CLI::App& command, Parsed& parsed) {
 void add_running(CLI::App& command, Parsed& parsed, pipeline::Options& o) {
   command.add_option("-j", o.workers, "inputs worked on at once (default: one a core)")
       ->check(CLI::Range(1, 4096));
-  command.add_flag("--quiet", o.quiet, "errors only");
+  command.add_flag("-q,--quiet", o.quiet, "errors only");
   command.add_flag("-v,--verbose", o.verbose, "say more");
   command.add_flag("--no-progress", o.no_progress, "no progress bar or lines");
   add_limits(command, o);

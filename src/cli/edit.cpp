@@ -76,7 +76,7 @@ void add_edit(CLI::App& program, Parsed& parsed) {
   command.add_option("--along", words->along, "X,Y,Z: the direction in which the joint moves for --length");
   command.add_option("-o,--output", request.output, "the new text (may be INPUT), or - for standard output")
       ->required();
-  command.add_flag("--quiet", request.options.quiet, "errors only");
+  command.add_flag("-q,--quiet", request.options.quiet, "errors only");
   add_limits(command, request.options);
   add_outside(command, request.options.allow_outside);
   command.callback([&parsed, words] {

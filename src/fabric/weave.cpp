@@ -328,8 +328,9 @@ Status WeaveConstruction::prepare_binders(Diagnostics& diagnostics) {
     const int gaps = warp_.text->count - 1;
     if (binder.first > gaps)
       return at_line(
-          error(Kind::geometry, fmt::format("there is no gap {}: {} warps have {} gaps between them",
-                                            binder.first, warp_.text->count, gaps)),
+          error(Kind::geometry,
+                fmt::format("there is no gap {}: {} warp{} {} gap{} between them", binder.first,
+                            warp_.text->count, gaps == 0 ? " has" : "s have", gaps, gaps == 1 ? "" : "s")),
           binder.place);
     const double pitch = warp_.text->pitch;
     add_block(Block::Kind::binder, 0, set,

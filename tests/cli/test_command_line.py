@@ -20,7 +20,7 @@ class Usage(Case):
             self.assertIn(command, everything)
         for command in ("convert", "relax", "check", "mesh", "info", "view"):
             text = self.succeeds(command, "--help").stdout
-            for option in ("INPUT", "-j", "--report", "--quiet", "--verbose", "--no-progress", "--timeout", "--memory",
+            for option in ("INPUT", "-j", "--report", "-q,--quiet", "-v,--verbose", "--no-progress", "--timeout", "--memory",
                            "--strict", "--tolerance", "--shard"):
                 self.assertIn(option, text, command)
 
