@@ -62,6 +62,18 @@ class KeptVolume(Case):
         self.assertGreater(high[:, 2].min() - low[:, 2].max(), 0.85 * 0.006)
         self.assertLess(low[:, 2].min(), -0.3)  # on the other side they are outside of the rod
 
+    def test_what_is_not_kept_is_told(self):
+        """Three coarse filaments that touch, of which the middle one has no room to grow; with nodes on its edges it is right."""
+        text = (HEAD.replace("1e-5", "5e-4").format("ellipse 0.442 0.221") + yarn("y", "0 0 0", "0.122 0 0")).replace(
+            "\nend", "\n  filaments 3\n  packing 0.742\nend", 1)
+        source, report = self.written(text), self.folder / "report.json"
+        for order, is_kept in (("1", False), ("2", True)):
+            done = self.succeeds("mesh", source, "-o", self.folder / "a.inp", "--size", "0.033", "--order", order, "--report", report)
+            mesh = json.loads(report.read_text())["inputs"][0]["mesh"]
+            worst = max(abs(region["volume_error"]) for region in mesh["regions"])
+            self.assertEqual(worst < TOLERANCE, is_kept)
+            self.assertEqual("a smaller --size or --order 2 makes it better" in done.stderr, not is_kept, done.stderr)
+
     def test_nodes_of_order_2_are_on_the_surface(self):
         text = HEAD.format("circle 0.6") + yarn("rod", "0 0 0", "2 0 0")
         read, volumes, _, _ = self.mesh(self.written(text), "--order", "2")
