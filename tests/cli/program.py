@@ -15,6 +15,24 @@ PATH = str(SAMPLES / "plain4_path.txt")
 RING = str(SAMPLES / "ring.txt")
 BAD = SAMPLES / "bad"
 
+# A fabric that is made in a moment.
+ROD = """fabric 1
+title "{title}"
+units mm
+thread rod
+  tex 100
+  density 2
+  section circle 0.4
+end
+yarn one rod
+  path chord
+    0 0 0
+    1 0 {height}
+    2 0 0
+  end
+end
+"""
+
 
 def environment(**more):
     # One moment for all files, so that two runs can be compared byte for byte.

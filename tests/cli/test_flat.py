@@ -6,23 +6,9 @@ import sys
 import time
 import unittest
 
-from program import Case, start
+from program import Case, ROD, start
 
 INPUTS = 500
-YARN = """fabric 1
-units mm
-thread rod
-  tex 100
-  density 2
-  section circle 0.4
-end
-yarn one rod
-  path chord
-    0 0 0
-    1 0 0
-  end
-end
-"""
 
 
 def resident(pid):
@@ -38,7 +24,7 @@ class Flat(Case):
         inside = self.folder / "in"
         inside.mkdir()
         for i in range(INPUTS):
-            (inside / f"{i:06}.txt").write_text(YARN)
+            (inside / f"{i:06}.txt").write_text(ROD.format(title=i, height=0.1))
         process = start("convert", inside, "--to", "iges", "-o", self.out, "-j", 2, "--no-progress")
         begin = last = time.monotonic()
         samples, step, told = [], max(1, INPUTS // 20), 0

@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/signalfd.h>
 #include <sys/stat.h>
@@ -117,9 +118,13 @@ CALL(fsync, -1, EIO, int, (int file), (file))
 CALL(ftruncate, -1, EFBIG, int, (int file, off_t size), (file, size))
 ALIAS(ftruncate64, ftruncate, -1, EFBIG, int, (int file, off64_t size), (file, size))
 CALL(rename, -1, EIO, int, (const char* from, const char* to) noexcept, (from, to))
+CALL(renameat2, -1, EINVAL, int,
+     (int from_folder, const char* from, int to_folder, const char* to, unsigned flags) noexcept,
+     (from_folder, from, to_folder, to, flags))
 CALL(linkat, -1, EIO, int,
      (int from_folder, const char* from, int to_folder, const char* to, int flags) noexcept,
      (from_folder, from, to_folder, to, flags))
+CALL(flock, -1, ENOLCK, int, (int file, int operation) noexcept, (file, operation))
 CALL(mkdir, -1, ENOSPC, int, (const char* path, mode_t mode) noexcept, (path, mode))
 CALL(mmap, no_map, ENOMEM, Bytes,
      (void* at, size_t size, int access, int flags, int file, off_t from) noexcept,

@@ -14,30 +14,15 @@ import subprocess
 import sys
 import tempfile
 
-PROGRAM = os.path.abspath(os.environ["SELVAGE"])
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+from program import PROGRAM, ROD  # noqa: E402
+
 LIBRARY = os.path.abspath(os.environ["SELVAGE_FAULTS"])
-CALLS = ["write", "pwrite", "read", "pread", "fsync", "ftruncate", "rename", "linkat", "open", "mkdir", "mmap", "memfd_create",
-         "fork", "pipe2", "signalfd", "fstat", "poll", "posix_spawn", "pthread_create", "dlopen"]
+CALLS = ["write", "pwrite", "read", "pread", "fsync", "ftruncate", "rename", "renameat2", "linkat", "flock", "open", "mkdir", "mmap",
+         "memfd_create", "fork", "pipe2", "signalfd", "fstat", "poll", "posix_spawn", "pthread_create", "dlopen"]
 POINTS = 4  # of one call in one command, without --all
 PATIENCE = 120  # seconds; a run takes less than one
 OLD = b"what an earlier run wrote\n"
-
-YARN = """fabric 1
-title "{title}"
-units mm
-thread rod
-  tex 100
-  density 2
-  section circle 0.4
-end
-yarn one rod
-  path chord
-    0 0 0
-    1 0 {height}
-    2 0 0
-  end
-end
-"""
 
 # The outputs, and the rest of the command line; {in} and {out} are folders.
 COMMANDS = {
@@ -56,18 +41,18 @@ COMMANDS = {
 class Run:
     """One run of a command in folders of its own, with a fault or none."""
 
-    def __init__(self, command, call="", at="0", old=False):
+    def __init__(self, command, call="", at="0", old=False, within="all"):
         outputs, words = COMMANDS[command]
         folder = pathlib.Path(tempfile.mkdtemp(prefix="selvage-faults-"))
         try:
             # In sight of the program only as relative paths, so that all runs say the same.
             for name in ("in", "out", "tmp"):
                 (folder / name).mkdir()
-            (folder / "in/a.txt").write_text(YARN.format(title="one", height=0.1))
-            (folder / "in/b.txt").write_text(YARN.format(title="other", height=0.15))
+            (folder / "in/a.txt").write_text(ROD.format(title="one", height=0.1))
+            (folder / "in/b.txt").write_text(ROD.format(title="other", height=0.15))
             for name in outputs if old else []:
                 (folder / "out" / name).write_bytes(OLD)
-            self.start(folder, [word.replace("{in}", "in").replace("{out}", "out") for word in words], call, at)
+            self.start(folder, [word.replace("{in}", "in").replace("{out}", "out") for word in words], call, at, within)
             self.files = {path.name: path.read_bytes() for path in (folder / "out").iterdir()}
             self.left = [str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()
                          and path.parent.name != "out" and path.name not in ("a.txt", "b.txt")]
@@ -75,12 +60,12 @@ class Run:
         finally:
             shutil.rmtree(folder)
 
-    def start(self, folder, words, call, at):
+    def start(self, folder, words, call, at, within):
         page = os.memfd_create("faults", 0)
         try:
             os.ftruncate(page, 4096)
-            surroundings = {**os.environ, "LD_PRELOAD": LIBRARY, "FAULT_CALL": call, "FAULT_AT": at, "FAULT_PAGE": str(page),
-                            "TMPDIR": str(folder / "tmp"), "SOURCE_DATE_EPOCH": "1700000000", "LC_ALL": "C"}
+            surroundings = {**os.environ, "LD_PRELOAD": LIBRARY, "FAULT_CALL": call, "FAULT_AT": at, "FAULT_IN": within,
+                            "FAULT_PAGE": str(page), "TMPDIR": str(folder / "tmp"), "SOURCE_DATE_EPOCH": "1700000000", "LC_ALL": "C"}
             process = subprocess.Popen([PROGRAM, *words, "-j1"] if words[0] != "edit" else [PROGRAM, *words], cwd=folder,
                                        env=surroundings, pass_fds=[page], start_new_session=True, stdin=subprocess.DEVNULL,
                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -124,21 +109,21 @@ def chosen(total, every):
     return sorted({1 + round(k * (total - 1) / (POINTS - 1)) for k in range(POINTS)})
 
 
-def sweep(command, call, every, pool):
+def sweep(command, call, every, within, pool):
     """The numbers of calls and of faults, and the violations, of this call in this command: once over old outputs, and
     from then on without any."""
     whole = Run(command)
     most, faults, found = 0, 0, []
     for old, lasting in ((True, ""), (False, "+")):
-        total = Run(command, call, "0", old).calls
+        total = Run(command, call, "0", old, within).calls
         most = max(most, total)
         plan = [f"{n}{lasting}" for n in chosen(total, every)]
-        runs = list(pool.map(lambda at: Run(command, call, at, old), plan))
+        runs = list(pool.map(lambda at: Run(command, call, at, old, within), plan))
         # Until one passes without a fault: waiting takes another number of calls every time.
         while not runs or runs[-1].faults:
             plan.append(f"{total + 1}{lasting}")
             total += 1 + total // 4
-            runs.append(Run(command, call, plan[-1], old))
+            runs.append(Run(command, call, plan[-1], old, within))
         faults += sum(run.faults > 0 for run in runs)
         found += [f"{command}, {call} {at}{' over old outputs' if old else ''}: {wrong}\n"
                   f"    {run.stderr.decode(errors='replace').strip()}"
@@ -149,6 +134,8 @@ def sweep(command, call, every, pool):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--all", action="store_true", help="every point")
+    parser.add_argument("--in", dest="within", choices=["all", "parent"], default="all",
+                        help="calls of all processes, or of the first one alone")
     parser.add_argument("--call", action="append", help="only this call")
     parser.add_argument("commands", nargs="*", metavar="COMMAND")
     wanted = parser.parse_args()
@@ -157,7 +144,7 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         for command in wanted.commands or COMMANDS:
             for call in wanted.call or CALLS:
-                total, faults, found = sweep(command, call, wanted.all, pool)
+                total, faults, found = sweep(command, call, wanted.all, wanted.within, pool)
                 if total:
                     print(f"{command:10} {call:15} {total:6} {faults:7} {len(found):11}", flush=True)
                 for text in found:
