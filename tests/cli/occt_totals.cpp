@@ -57,7 +57,7 @@ void read_iges(const char* path) {
 }
 
 void read_step(const char* path) {
-  const selvage::tests::ReadFile file = selvage::tests::read_step(path);
+  const selvage::tests::ReadFile file = selvage::tests::read_step(path, true);
   double volume = 0;
   int valid = 0, solids = 0;
   std::string parts;

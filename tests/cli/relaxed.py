@@ -15,14 +15,10 @@ def basis(knots, degree, parameters):
     values = np.zeros((len(t), len(knots) - 1))
     values[np.arange(len(t)), at] = 1
     for p in range(1, degree + 1):
-        raised = np.zeros((len(t), len(knots) - 1 - p))
-        for i in range(raised.shape[1]):
-            left, right = knots[i + p] - knots[i], knots[i + p + 1] - knots[i + 1]
-            if left > 0:
-                raised[:, i] += (t - knots[i]) / left * values[:, i]
-            if right > 0:
-                raised[:, i] += (knots[i + p + 1] - t) / right * values[:, i + 1]
-        values = raised
+        width = knots[p:] - knots[:-p]
+        share = np.divide(1, width, out=np.zeros_like(width), where=width > 0)
+        rising, falling = (t[:, None] - knots[:-p]) * share, (knots[p:] - t[:, None]) * share
+        values = rising[:, :-1] * values[:, :-1] + falling[:, 1:] * values[:, 1:]
     return values
 
 

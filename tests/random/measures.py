@@ -11,28 +11,24 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 import relaxed  # noqa: E402  the second evaluator of control grids
 
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "inch": 25.4}
-GAUSS = np.polynomial.legendre.leggauss(5)
+GAUSS = np.polynomial.legendre.leggauss(5)  # exact for the volume where all weights are one
+GAUSS_RATIONAL = np.polynomial.legendre.leggauss(12)
 
 
 def slope_basis(knots, degree, t):
     """Derivatives of the basis functions (columns) at t (rows)."""
     knots = np.asarray(knots, float)
     lower = relaxed.basis(knots, degree - 1, t)
-    count = len(knots) - degree - 1
-    out = np.zeros((len(t), count))
-    for i in range(count):
-        for k, sign in ((i, 1), (i + 1, -1)):
-            width = knots[k + degree] - knots[k]
-            if width > 0:
-                out[:, i] += sign * degree / width * lower[:, k]
-    return out
+    width = knots[degree:] - knots[:-degree]
+    slopes = lower * np.divide(degree, width, out=np.zeros_like(width), where=width > 0)
+    return slopes[:, :-1] - slopes[:, 1:]
 
 
-def gauss_places(knots, low, high):
-    """Parameters and weights of a rule of 5 points in every span."""
+def gauss_places(knots, low, high, rule=GAUSS):
+    """Parameters and weights of the rule in every span."""
     breaks = np.unique([k for k in knots if low <= k <= high])
     middle, half = (breaks[1:] + breaks[:-1]) / 2, (breaks[1:] - breaks[:-1]) / 2
-    return (middle[:, None] + half[:, None] * GAUSS[0]).ravel(), (half[:, None] * GAUSS[1]).ravel()
+    return (middle[:, None] + half[:, None] * rule[0]).ravel(), (half[:, None] * rule[1]).ravel()
 
 
 class Measured:
@@ -41,8 +37,9 @@ class Measured:
     def __init__(self, grid):
         u0, u1 = grid.domain(grid.knots_u, grid.degree_u)
         v0, v1 = grid.domain(grid.knots_v, grid.degree_v)
-        u, wu = gauss_places(grid.knots_u, u0, u1)
-        v, wv = gauss_places(grid.knots_v, v0, v1)
+        rule = GAUSS if np.ptp(grid.weights) == 0 else GAUSS_RATIONAL
+        u, wu = gauss_places(grid.knots_u, u0, u1, rule)
+        v, wv = gauss_places(grid.knots_v, v0, v1, rule)
         point, along_u, along_v = surface(grid, u, v)
         self.origin = point.reshape(-1, 3).mean(axis=0)
         point = point - self.origin
@@ -157,9 +154,8 @@ def deepest_shared(a, b):
     reach = np.linalg.norm(b - middles[:, None], axis=2).max()
     if len(points) == 0:
         return 0.0
-    distance = np.linalg.norm(points[:, None] - middles[None], axis=2)
-    nearest = distance.argmin(axis=1)
-    near = distance[np.arange(len(points)), nearest] < reach + np.linalg.norm(np.diff(middles, axis=0), axis=1).max()
+    nearest = ((middles ** 2).sum(axis=1) - 2 * points @ middles.T).argmin(axis=1)  # by the squares of the distances
+    near = np.linalg.norm(points - middles[nearest], axis=1) < reach + np.linalg.norm(np.diff(middles, axis=0), axis=1).max()
     points, nearest = points[near], nearest[near]
     normals = relaxed.area_vectors(b)
     normals /= np.linalg.norm(normals, axis=1)[:, None]

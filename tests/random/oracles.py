@@ -23,9 +23,10 @@ from program import run  # noqa: E402
 from tetrahedra import volumes_of  # noqa: E402
 
 SECONDS = 600  # of one input and one command; nothing here needs a tenth of it
-MESH_ERROR = 0.06  # of a yarn's volume at the default size
+MESH_ERROR = 0.002  # of a yarn's volume, or a warning
 CHECKED = 12_000  # control points up to which a fabric is looked at for overlaps, and meshed
-MESHED = 120  # yarns up to this length in thicknesses are meshed
+MESHED = 30  # yarns up to this length in thicknesses are meshed, and one in MESHED_SHARE up to four times of it
+MESHED_SHARE = 3
 CELL_ANGLE = 10.0  # degrees, or a warning
 OCCT_TOTALS = os.environ.get("OCCT_TOTALS")
 
@@ -213,7 +214,7 @@ class Judge:
             measured = measures.Measured(self.grids[name][yarn["name"]])
             volume = measured.volume * mm ** 3
             # A patch over an end that is not flat has a shape of its own.
-            bound = 1e-6 if measured.flatness < 1e-9 else 0.05
+            bound = 1e-9 if measured.flatness < 1e-9 else 0.05
             self.expect(name, "volume", abs(volume / yarn["volume"] - 1) < bound, "another volume by quadrature",
                         f"{yarn['name']}: {volume!r}, reported {yarn['volume']!r}")
             area = areas(yarn["name"])
@@ -261,7 +262,8 @@ class Judge:
             self.expect(name, "occt", told["ok"] and told["valid"] == told["solids"] == len(yarns), "OpenCASCADE: not all are valid solids",
                         str({k: told[k] for k in ("ok", "valid", "solids")}) + f" of {len(yarns)}")
             volume = sum(y["volume"] for y in yarns)
-            self.expect(name, "occt", abs(told["volume"] / volume - 1) < 1e-6, "OpenCASCADE: another volume",
+            # Its adaptive rule is right to 3e-6, whatever it is asked for; "volume" is exact.
+            self.expect(name, "occt", abs(told["volume"] / volume - 1) < 1e-5, "OpenCASCADE: another volume",
                         f"{told['volume']!r}, reported {volume!r}")
 
     # ---- overlaps
@@ -329,8 +331,12 @@ class Judge:
         solved = [n for n in solved if self.at("relaxed", n, "txt").exists()]
         checked = self.call("check", [self.at("relaxed", n, "txt") for n in solved], codes=(0, 1, 3), tag="check relaxed")
         for name, entry in checked.items():
-            meets = bool(entry.get("overlaps")) or any(y["self_overlap"] for y in entry["yarns"])
-            self.expect(name, "relax", not meets, "relax: solved, and check finds overlaps", str(entry.get("overlaps"))[:500])
+            # A yarn that bends too tightly from the start folds over itself afterwards, too.
+            folds = {y["name"] for y in entry["yarns"] if y["self_overlap"]}
+            told = [text for tag, text in self.warnings[name] if tag == "relax" and "bends more tightly" in text]
+            untold = [yarn for yarn in folds if not any(f"'{yarn}'" in text for text in told)]
+            self.expect(name, "relax", not entry.get("overlaps") and not untold, "relax: solved, and check finds overlaps",
+                        f"{untold} {entry.get('overlaps')}"[:500])
             after = relaxed.grids_of(self.at("relaxed", name, "txt"))
             if self.wants("relax measured"):
                 self.look_for_overlaps(name, after, "relax measured")
@@ -354,11 +360,12 @@ class Judge:
     # ---- meshes
 
     def judge_meshes(self):
-        def small(name):
+        def is_meshed(name):
             # The length in thicknesses, by which the number of tetrahedra grows.
-            return sum(y["length"] / math.sqrt(y["volume"] / y["length"]) for y in self.built[name]["yarns"]) < MESHED
+            length = sum(y["length"] / math.sqrt(y["volume"] / y["length"]) for y in self.built[name]["yarns"])
+            return length < MESHED or length < 4 * MESHED and self.share(name, MESHED_SHARE)
         with_cell = [n for n in self.built if re.search(r"^cell ", self.texts[n], re.M) and 0 < size_of(self.built[n]) <= CHECKED]
-        dry = [n for n in self.apart if n not in with_cell and small(n)]
+        dry = [n for n in self.apart if n not in with_cell and is_meshed(n)]
         if self.wants("mesh"):
             self.mesh(dry, "mesh")
         if self.wants("order 2"):
@@ -377,11 +384,15 @@ class Judge:
             smallest = min(v.min() for v in volumes.values())
             self.expect(name, oracle, smallest > 0, f"{oracle}: a tetrahedron that is inside out", f"{smallest!r}")
             self.expect(name, oracle, len(volumes) == len(yarns), f"{oracle}: other yarns", f"{len(volumes)} of {len(yarns)}")
-            for own, exact in zip(volumes.values(), yarns.values()):
-                error = abs(own.sum() / exact - 1)
-                self.expect(name, oracle, error < MESH_ERROR, f"{oracle}: volume of a yarn", f"{error:.4f}")
+            self.judge_kept_volumes(name, entry, oracle, [(yarn, own.sum(), yarns[yarn]) for own, yarn in zip(volumes.values(), yarns)])
             told = entry["mesh"]["min_dihedral"]
             self.expect(name, oracle, abs(told - angles) < 1e-3 * max(1, told), f"{oracle}: another smallest angle", f"{told}, {angles}")
+
+    def judge_kept_volumes(self, name, entry, oracle, volumes):
+        """Yarns' volumes are kept, or the worst one is told by a warning. volumes: (yarn, of its elements, exact)."""
+        yarn, error = max(((yarn, abs(own / exact - 1)) for yarn, own, exact in volumes), key=lambda pair: pair[1], default=("", 0))
+        told = any(re.search(r"the volume of .* is .* too (small|large)", m["text"]) for m in entry.get("messages", []))
+        self.expect(name, oracle, error < MESH_ERROR or told, f"{oracle}: volume of a yarn, without a warning", f"{yarn}: {error:.4f}")
 
     def mesh_cells(self, names):
         for axes in sorted({self.periodic_axes(n) for n in names}):
@@ -410,10 +421,12 @@ class Judge:
         self.expect(name, "cell", abs(told - angle) < 1e-3 * max(1, told), "cell: another smallest angle", f"{told}, {angle}")
         warned = [m["text"] for m in entry.get("messages", []) if m["severity"] == "warning"]
         self.expect(name, "cell", angle >= CELL_ANGLE or warned, "cell: flat tetrahedra without a warning", f"{angle:.3g} degrees")
-        for region in entry["mesh"].get("regions", []):
-            if region["kind"] == "yarn" and "exact_volume" in region:
-                error = abs(region["volume"] / region["exact_volume"] - 1)
-                self.expect(name, "cell", error < MESH_ERROR, "cell: volume of a yarn", f"{region['name']}: {error:.4f}")
+        # Sets of elements are the regions, in their order.
+        regions = entry["mesh"]["regions"]
+        self.expect(name, "cell", len(regions) == len(deck.sets), "cell: other regions", f"{len(regions)}, {list(deck.sets)}")
+        yarns = [(region["name"], unit_cell.volumes(deck.points, cells).sum(), region["exact_volume"])
+                 for region, cells in zip(regions, deck.sets.values()) if region["kind"] == "yarn" and "exact_volume" in region]
+        self.judge_kept_volumes(name, entry, "cell", yarns)
         points = deck.points[deck.used()]
         for axis in axes.split():
             miss = unit_cell.opposite_miss(points, low, high, "xyz".index(axis))

@@ -95,16 +95,21 @@ ReadFile read_step(const std::string& path, bool into_groups) {
   file.title = name_of(roots(1));
   TDF_LabelSequence components;
   XCAFDoc_ShapeTool::GetComponents(roots(1), components);
+  std::vector<TopLoc_Location> places(static_cast<std::size_t>(components.Length()));
   for (int i = 1; i <= components.Length(); ++i) {
     TDF_Label label;
     if (!XCAFDoc_ShapeTool::GetReferredShape(components(i), label)) return file;
+    const TopLoc_Location place = places[static_cast<std::size_t>(i - 1)];
     TDF_LabelSequence inner;
     if (into_groups && XCAFDoc_ShapeTool::GetComponents(label, inner)) {
-      for (int k = 1; k <= inner.Length(); ++k) components.Append(inner(k));
+      for (int k = 1; k <= inner.Length(); ++k) {
+        components.Append(inner(k));
+        places.push_back(place * XCAFDoc_ShapeTool::GetLocation(components(i)));
+      }
       continue;
     }
     const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
-    ReadPart part = examine(XCAFDoc_ShapeTool::GetShape(components(i)));  // where it was placed
+    ReadPart part = examine(XCAFDoc_ShapeTool::GetShape(components(i)).Moved(place));
     part.name = name_of(components(i));
     Quantity_Color color;
     if (colors->GetColor(shape, XCAFDoc_ColorSurf, color) ||
