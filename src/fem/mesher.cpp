@@ -19,6 +19,7 @@
 #include "fem/midside.h"
 #include "fem/quality.h"
 #include "fem/surface_mesh.h"
+#include "fem/tet_complex.h"
 #include "fem/worker.h"
 
 namespace selvage::fem {
@@ -77,22 +78,56 @@ std::vector<std::size_t> nodes_on(const Mesh& mesh, const std::vector<std::array
   return result;
 }
 
-Result<YarnMesh> mesh_yarn(const yarn::Body& body, const SurfaceMesh& surface, Unit units,
-                           const MeshOptions& options, const std::filesystem::path& program) {
-  const double size = std::min(size_for(body, options), surface.coarsest), scale = millimetres_per(units);
+double least_quality(const TetMesh& tets) {
+  double least = 1;
+  for (const Tetrahedron& t : tets.cells)
+    least = std::min(least,
+                     tet_quality(tets.points[t[0]], tets.points[t[1]], tets.points[t[2]], tets.points[t[3]]));
+  return least;
+}
+
+// Where the points of a yarn's surface are in the end; empty: where they are.
+using Places = std::vector<Vec3>;
+
+// TetGen's tetrahedra inside the surface as it is, then with the surface's points in their places. They go a
+// short way, and cost a little of the angles; `target`, where it is 0, becomes what the smallest one was
+// before. (For a surface that is moved first TetGen makes other tetrahedra, whose smallest angle may be any.)
+// Where a tetrahedron would turn inside out, the moved surface is filled.
+Result<TetMesh> fill(const SurfaceMesh& surface, const Places& kept, double size, const MeshOptions& options,
+                     const std::filesystem::path& program, double& target) {
   TetgenJob job{.points = surface.points, .triangles = surface.triangles};
   job.max_volume = largest_volume(size);
   job.smallest_feature = size;
-  Result<TetMesh> tets = run_tetgen(program, job, {.timeout = options.timeout, .memory = options.memory});
+  const TetgenLimits limits{.timeout = options.timeout, .memory = options.memory};
+  Result<TetMesh> tets = run_tetgen(program, job, limits);
+  if (!tets || kept.empty()) return tets;
+  const double before = least_quality(*tets);
+  std::copy(kept.begin(), kept.end(), tets->points.begin());
+  const double after = least_quality(*tets);
+  if (after == inverted_quality) {
+    job.points = kept;
+    return run_tetgen(program, job, limits);
+  }
+  if (target == 0 && after < before) target = angle_of_quality(before);
+  return tets;
+}
+
+Result<YarnMesh> mesh_yarn(const yarn::Body& body, const SurfaceMesh& surface, const Places& kept, Unit units,
+                           const MeshOptions& options, const std::filesystem::path& program) {
+  const double size = std::min(size_for(body, options), surface.coarsest), scale = millimetres_per(units);
+  double target = options.min_dihedral;
+  Result<TetMesh> tets = fill(surface, kept, size, options, program, target);
   if (!tets) return tets.error();
 
   YarnMesh result;
-  if (options.min_dihedral > 0) {
+  if (target > 0) {
     tets->regions.assign(tets->cells.size(), 0);
-    const Improvement improvement = improve(tets->points, tets->cells, tets->regions, surface.points.size(),
-                                            {.target = options.min_dihedral});
-    result.angles = count(improvement, options.min_dihedral);
-    result.notes = describe(improvement, options.min_dihedral, name_of(units));
+    const Improvement improvement =
+        improve(tets->points, tets->cells, tets->regions, surface.points.size(), {.target = target});
+    if (options.min_dihedral > 0) {
+      result.angles = count(improvement, target);
+      result.notes = describe(improvement, target, name_of(units));
+    }
   }
   result.mesh = assemble(*tets, surface, body);
   Mesh& mesh = result.mesh;
@@ -181,8 +216,8 @@ std::vector<std::optional<Result<Part>>> for_all(std::size_t count, int threads,
 }
 
 // The surfaces of all yarns as one: their nodes leave the B-spline surfaces so that no volume is lost.
-void keep_volumes(std::span<const yarn::Body> bodies, std::vector<std::optional<Result<SurfaceMesh>>>& all,
-                  int threads) {
+std::vector<Places> keep_volumes(std::span<const yarn::Body> bodies,
+                                 const std::vector<std::optional<Result<SurfaceMesh>>>& all, int threads) {
   std::vector<Vec3> points;
   std::vector<YarnFacet> facets;
   std::vector<double> volumes;
@@ -212,12 +247,14 @@ void keep_volumes(std::span<const yarn::Body> bodies, std::vector<std::optional<
     }
   });
   fem::keep_volumes(points, {.facets = facets, .volumes = volumes});
-  auto moved = points.begin();
-  for (auto& part : all) {
-    std::vector<Vec3>& own = (*part)->points;
-    std::copy_n(moved, own.size(), own.begin());
-    moved += static_cast<std::ptrdiff_t>(own.size());
+  std::vector<Places> kept;
+  auto next = points.begin();
+  for (const auto& surface : all) {
+    const auto first = next;
+    next += static_cast<std::ptrdiff_t>((*surface)->points.size());
+    kept.emplace_back(first, next);
   }
+  return kept;
 }
 
 // What is wrong with the finished mesh.
@@ -246,12 +283,14 @@ Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body
   });
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (!surfaces[i]->ok()) return about(surfaces[i]->error(), bodies[i], fabric);
-  if (options.order == 1) keep_volumes(bodies, surfaces, options.threads);
+  std::vector<Places> kept(bodies.size());
+  if (options.order == 1) kept = keep_volumes(bodies, surfaces, options.threads);
   std::mutex one_at_a_time;
   std::size_t done = 0;
   auto parts = for_all<YarnMesh>(bodies.size(), options.threads, [&](std::size_t i) {
-    Result<YarnMesh> part = mesh_yarn(bodies[i], **surfaces[i], units, options, *program);
+    Result<YarnMesh> part = mesh_yarn(bodies[i], **surfaces[i], kept[i], units, options, *program);
     surfaces[i].reset();
+    kept[i] = {};
     const std::scoped_lock lock(one_at_a_time);
     if (options.progress) options.progress(++done, bodies.size());
     return part;
