@@ -332,6 +332,7 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
       if (const Thread* thread = fabric.find_thread(name)) {
         warn(fibre_share_warning(fabric, *thread, thread->place));
         warn(roundness_note(fabric, *thread, thread->place));
+        warn(turning_warning(fabric, *thread, thread->place));
       }
   }
   if (diagnostics.error_count() == errors_before) {

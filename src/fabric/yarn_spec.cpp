@@ -251,6 +251,23 @@ std::optional<Message> roundness_note(const Fabric& fabric, const Thread& thread
   return message;
 }
 
+std::optional<Message> turning_warning(const Fabric& fabric, const Thread& thread, TextPlace place) {
+  if (section_twist(thread, fabric.units) == 0.0) return std::nullopt;
+  const Result<yarn::Section> section = section_of(thread, fabric.units, false);
+  if (!section || std::holds_alternative<yarn::Circle>(*section) ||
+      std::holds_alternative<yarn::Loop7>(*section))
+    return std::nullopt;
+  Message message = warning(
+      Kind::geometry,
+      fmt::format(
+          "the section of thread '{}' turns along its yarns, which have room as if it did not: 'selvage "
+          "check' tells where they overlap, --relax moves them apart where they have room",
+          thread.name));
+  message.file = fabric.file;
+  message.place = place;
+  return message;
+}
+
 std::optional<double> smallest_size(const Fabric& fabric, const Yarn& yarn) {
   const auto* path = std::get_if<Path>(&yarn.shape);
   if (path == nullptr) return std::nullopt;

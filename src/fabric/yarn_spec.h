@@ -53,6 +53,10 @@ std::optional<Message> fibre_share_warning(const Fabric& fabric, const Thread& t
 // A note on how far the seven-point section of the loop method is from round; none for other sections.
 std::optional<Message> roundness_note(const Fabric& fabric, const Thread& thread, TextPlace place);
 
+// A warning that the section of a construction's thread turns along its yarns and is not round: constructions
+// keep yarns apart by sections that stand as they are.
+std::optional<Message> turning_warning(const Fabric& fabric, const Thread& thread, TextPlace place);
+
 // The smallest section size (width or thickness) of a path yarn or of a thread, file units; none where it has
 // no size.
 std::optional<double> smallest_size(const Fabric& fabric, const Yarn& yarn);

@@ -212,6 +212,26 @@ TEST(BuildTest, LoopPathsTellHowFarTheyMissTheirPoints) {
   EXPECT_NEAR(body->path_miss, largest, 3e-6);
 }
 
+TEST(BuildTest, ASectionThatTurnsInAConstructionIsAWarningUnlessItIsRound) {
+  Weave weave;
+  weave.warp = {{"t"}, {}, 2, 1.0};
+  weave.weft = {{"t"}, {}, 2, 1.0};
+  Fabric fabric;
+  fabric.items = {weave};
+  const std::vector<yarn::Section> sections = {yarn::Ellipse{0.6, 0.2}, yarn::Circle{0.2}};
+  for (const yarn::Section& section : sections)
+    for (const bool rotates : {true, false}) {
+      Thread thread;
+      thread.name = "t";
+      thread.section = section;
+      thread.twist = Twist{300, Hand::z, rotates};
+      fabric.threads = {thread};
+      Diagnostics diagnostics;
+      ASSERT_TRUE(YarnBuilder::create(fabric, {}, diagnostics));
+      EXPECT_EQ(diagnostics.messages().size(), &section == sections.data() && rotates ? 1U : 0U);
+    }
+}
+
 TEST(BuildTest, TheSevenPointSectionSaysHowRoundItIs) {
   Thread thread = cotton();
   thread.section = yarn::Loop7{};
