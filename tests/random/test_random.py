@@ -60,6 +60,18 @@ class Measures(unittest.TestCase):
         self.assertAlmostEqual(measures.section_area(["lenticular", "2", "2"], None)[0], math.pi)
         self.assertAlmostEqual(measures.section_area(["polygon"], [(0, 0), (2, 0), (2, 1), (0, 1)])[0], 2)
 
+    def test_quadrature_of_rational_yarns(self):
+        """Weights that go on round and along: the rule converges to what one with twice the points gives."""
+        grid = cylinder()
+        grid.weights = grid.weights * (1 + 0.8 * np.sin(np.arange(grid.weights.size)).reshape(grid.weights.shape))
+        grid.weights[:, -grid.degree_u:] = grid.weights[:, :grid.degree_u]
+        volume, rule = measures.Measured(grid).volume, measures.GAUSS_RATIONAL
+        measures.GAUSS_RATIONAL = np.polynomial.legendre.leggauss(24)
+        try:
+            self.assertAlmostEqual(volume / measures.Measured(grid).volume, 1, delta=1e-9)
+        finally:
+            measures.GAUSS_RATIONAL = rule
+
     def test_what_lies_inside(self):
         skin = measures.coarse(cylinder())
         self.assertEqual(measures.deepest_shared(skin + [0, 2.1, 0], skin), 0)
@@ -110,9 +122,12 @@ class Oracles(unittest.TestCase):
         moved = cylinder()
         moved.points = moved.points + np.array([0, 1.0, 0])
         judge.look_for_overlaps("a", {"one": skin, "other": moved}, "overlaps seen")
+        told = {"severity": "warning", "text": "the volume of yarn 'y' is 1 % too large; a smaller --size makes it better"}
+        for messages in ([], [told]):
+            judge.judge_kept_volumes("a", {"messages": messages}, "mesh", [("x", 1.0, 1.001), ("y", 1.01, 1.0)])
         self.assertEqual([f.kind for f in judge.findings["a"]],
                          ["convert: failed without a message", "mesh: crashed: Segmentation fault", "info: no number in the report: .volume",
-                          "points of a yarn lie in another one"])
+                          "points of a yarn lie in another one", "mesh: volume of a yarn, without a warning"])
 
 
 if __name__ == "__main__":
