@@ -163,9 +163,10 @@ Parameters File::parameters(const DirectoryEntry& entry) const {
   if (owner != 0 && owner != entry.pointer)
     return failed(fmt::format("line {} of the parameter section, where its parameters begin, belongs to D{}",
                               first, owner));
-  // A line count that is too small is not believed as long as lines say whose they are.
+  // A line count that is wrong is not believed as long as lines say whose they are.
   int last = std::clamp(first + std::max(entry.line_count, 1) - 1, first, there);
-  while (last > first && owner_of(last) != entry.pointer && owner_of(last) != 0) --last;
+  const int last_owner = owner_of(last);
+  if (last_owner != entry.pointer && last_owner != 0) last = first;
   while (last < there && owner_of(last + 1) == entry.pointer) ++last;
   Parameters parameters(lines_, Section::parameter, first, last, global_.delimiters);
   const std::int64_t type = parameters.integer();

@@ -361,8 +361,8 @@ class ParameterCheck {
                          fmt::format("{}: its parameter line points back to {} (columns 66-72)", entry.name(),
                                      in_quotes(line.columns(66, 72))),
                          line.place(66));
-        const bool is_others = back && directory_.at(*back) != nullptr && i > 0;
-        if (is_others) return i;
+        const bool is_others = owner_[first + i] != 0 || (back && directory_.at(*back) != nullptr);
+        if (is_others && i > 0) return i;
       }
       if (owner_[first + i] != 0)
         findings_.defect("parameter lines of two entities",

@@ -254,6 +254,7 @@ void Parser::check_references() {
   for (const Reference& reference : references_) {
     const Names& names = *reference.names;
     if (names.lines.contains(reference.name) || (&names == &yarns && !are_yarns_known)) continue;
+    if (is_stopped()) return;
     std::vector<std::string_view> known;
     for (const auto& [name, line] : names.lines) known.push_back(name);
     std::sort(known.begin(), known.end());

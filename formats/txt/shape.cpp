@@ -221,6 +221,7 @@ void read_grid_words(Parser& p, GridRows& rows, std::string_view word) {
       p.error(p.last(), fmt::format("unknown word {} of the grid; known: degree, knots, open, closed, "
                                     "corners, centre",
                                     in_quotes(word)));
+      break;  // by itself: an error past the twentieth is not counted
     }
   }
   if (p.report.errors() > errors) rows.reading.good = false;

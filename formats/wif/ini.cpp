@@ -31,6 +31,13 @@ std::string_view section_name(std::string_view line) {
   return trimmed(line.substr(1, close - 1));
 }
 
+std::string lowered(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
 Spot spot_of(const char* at, std::string_view line, int number) {
   return {at, number, static_cast<int>(at - line.data()) + 1};
 }
@@ -54,9 +61,8 @@ const Entry* Section::find(std::string_view key) const {
 }
 
 const Section* Ini::find(std::string_view name) const {
-  const auto found = std::find_if(sections_.begin(), sections_.end(),
-                                  [&](const Section& section) { return same_word(section.name, name); });
-  return found == sections_.end() ? nullptr : &*found;
+  const auto found = places_.find(lowered(name));
+  return found == places_.end() ? nullptr : &sections_[found->second];
 }
 
 Ini::Ini(const Source& source, TextReport& report) {
@@ -70,12 +76,13 @@ Ini::Ini(const Source& source, TextReport& report) {
 }
 
 void Ini::open_section(std::string_view name, const Spot& spot, TextReport& report) {
-  for (current_ = 0; current_ < sections_.size(); ++current_) {
-    if (!same_word(sections_[current_].name, name)) continue;
-    return report.warning(
+  const auto [place, is_new] = places_.emplace(lowered(name), sections_.size());
+  current_ = place->second;
+  if (is_new)
+    sections_.push_back({name, spot, {}});
+  else
+    report.warning(
         spot, fmt::format("the section {} stands here once more; its entries are joined", in_quotes(name)));
-  }
-  sections_.push_back({name, spot, {}});
 }
 
 void Ini::read_line(std::string_view line, int number, TextReport& report) {

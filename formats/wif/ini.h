@@ -2,7 +2,9 @@
 // and the errors here point at the value.
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "core/source.h"
@@ -42,7 +44,8 @@ class Ini {
   void open_section(std::string_view name, const Spot& spot, TextReport& report);
 
   std::vector<Section> sections_;
-  std::size_t current_ = 0;  // index into sections_, if there is one
+  std::unordered_map<std::string, std::size_t> places_;  // in sections_, by names in lower case
+  std::size_t current_ = 0;                              // index into sections_, if there is one
   bool warned_of_prelude_ = false;
   Spot end_;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "fabric/draft.h"
 
@@ -104,7 +105,7 @@ Lifts read_treadling(const Section& section, const Section& tieup_section, const
   const std::map<int, Shafts> tieup = read_tieup(tieup_section, loom, report);
   const std::vector<Numbered> lines = numbered(section, loom.weft, report);
   Lifts lifts(static_cast<std::size_t>(reach(section, lines, loom.weft, report)));
-  std::vector<int> loose;  // treadles that were told of already
+  std::set<int> loose;  // treadles that were told of already
   for (const Numbered& line : lines) {
     Shafts& moved = lifts[static_cast<std::size_t>(line.number) - 1];
     for (const int treadle : named(line, loom.treadles, report)) {
@@ -113,8 +114,7 @@ Lifts read_treadling(const Section& section, const Section& tieup_section, const
         moved.insert(moved.end(), tied->second.begin(), tied->second.end());
       } else if (loom.treadles.limit.empty()) {
         report.error(line.entry->value_spot, fmt::format("treadle {} has no tie-up", treadle));
-      } else if (std::find(loose.begin(), loose.end(), treadle) == loose.end()) {
-        loose.push_back(treadle);
+      } else if (loose.insert(treadle).second) {
         report.warning(line.entry->value_spot, fmt::format("treadle {} is tied to no shaft", treadle));
       }
     }

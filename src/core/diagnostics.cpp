@@ -121,6 +121,9 @@ std::string_view nearest_word(std::string_view word, const std::vector<std::stri
   std::string_view best;
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (std::string_view candidate : known) {
+    // Each letter too many is a step.
+    if (word.size() + best_distance <= candidate.size() || candidate.size() + best_distance <= word.size())
+      continue;
     const std::size_t distance = edit_distance(word, candidate);
     if (distance < best_distance) {
       best_distance = distance;

@@ -280,11 +280,14 @@ void YarnBuilder::check_part_names(Diagnostics& diagnostics) const {
 }
 
 void YarnBuilder::check_edited_names(Diagnostics& diagnostics) const {
+  std::vector<std::string_view> names;
   for (const Edit& edit : fabric_->edits) {
+    if (diagnostics.is_full()) return;
     if (find(edit.yarn)) continue;
-    std::vector<std::string_view> names;
-    for (const auto& [name, entry] : names_->first) names.push_back(name);
-    std::sort(names.begin(), names.end());
+    if (names.empty()) {
+      for (const auto& [name, entry] : names_->first) names.push_back(name);
+      std::sort(names.begin(), names.end());
+    }
     const std::string_view near = nearest_word(edit.yarn, names);
     diagnostics.add(in_file(
         *fabric_, edit.place,

@@ -1,4 +1,5 @@
 // libFuzzer's side: --target=NAME chooses what is run (libFuzzer passes options with two dashes by).
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
@@ -28,4 +29,24 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   target->run({reinterpret_cast<const char*>(data), size});
   return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
+                                               unsigned int seed) {
+  if (target->mutated != nullptr && seed % 2 == 0) {
+    const auto mutate = [](std::string& bytes, std::size_t room) {
+      const std::size_t length = bytes.size();
+      bytes.resize(room);
+      bytes.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(bytes.data()), length, room));
+    };
+    const std::optional<std::string> changed =
+        target->mutated({reinterpret_cast<const char*>(data), size}, seed, mutate);
+    if (changed && changed->size() <= most) {
+      std::copy(changed->begin(), changed->end(), data);
+      return changed->size();
+    }
+  }
+  return LLVMFuzzerMutate(data, size, most);
 }

@@ -19,9 +19,9 @@ using fabric::Fabric;
 using formats::Descriptor;
 
 // What one execution may cost: chance soon finds fabrics of a million loops, and each is only slow.
-constexpr std::size_t most_yarns = 12;
-constexpr std::size_t most_points = 3000;     // control points of a yarn
-constexpr std::size_t most_together = 12000;  // of all yarns
+constexpr std::size_t most_yarns = 4;
+constexpr std::size_t most_points = 250;    // control points of a yarn
+constexpr std::size_t most_together = 500;  // of all yarns
 constexpr std::uint64_t most_data_points = 400;
 
 Source named(std::string_view bytes, const Descriptor& format) {
@@ -45,6 +45,8 @@ void run_reader(const Descriptor& format, std::string_view bytes) {
   const bool has_read = format.read_fabric != nullptr ? format.read_fabric(source, diagnostics).has_value()
                                                       : format.read_model(source, diagnostics).has_value();
   if (has_read == diagnostics.has_errors()) std::abort();
+  // What takes as long as reading and is the same for most inputs: one in four has it done.
+  if (bytes.size() % 4 != 0) return;
   for (const Message& message : diagnostics.messages()) static_cast<void>(to_string(message));
   if (format.check_structure != nullptr) {
     Findings findings;
@@ -124,12 +126,16 @@ std::vector<Target> all_targets() {
   std::vector<Target> list;
   for (const Descriptor* format : formats::all_formats())
     if (format->is_readable())
-      list.push_back({std::string(format->name), "reads", std::string(format->extensions.front()), 16384,
+      list.push_back({std::string(format->name), "reads", std::string(format->extensions.front()), 1024,
                       [format](std::string_view bytes) { run_reader(*format, bytes); }});
   for (Target& target : list)
     if (target.name == "step") {
       target.does = "reads, up to the hand-over to OpenCASCADE";
       target.run = run_step;
+      target.most = 12288;
+    } else if (target.name == "iges") {
+      target.mutated = mutated_iges;
+      target.most = 4096;
     }
   list.push_back(
       {"check", "reads any format, builds the yarns, finds where they overlap", ".txt", 2048, run_check});

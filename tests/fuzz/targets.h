@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "fuzz/iges_mutation.h"
+
 namespace selvage::fuzz {
 
 struct Target {
@@ -16,6 +18,9 @@ struct Target {
   std::string seeds;     // extension of the samples that it starts from; empty: any bytes
   std::size_t most = 0;  // bytes of an input
   std::function<void(std::string_view bytes)> run;
+  // Changes that keep to the format's lines, made in every second step; null: bytes alone are changed.
+  std::optional<std::string> (*mutated)(std::string_view bytes, std::uint32_t seed,
+                                        const Mutate& mutate) = nullptr;
 };
 
 // A reader of each format that the program reads, then what comes after readers.

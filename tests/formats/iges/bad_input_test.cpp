@@ -403,6 +403,29 @@ TEST(IgesBadInput, DirectoryFields) {
             "");
 }
 
+// Each entity says that all lines are its own: what is read, and checked, is as much as there is (this took
+// minutes).
+TEST(IgesBadInput, LineCountsThatAreTooLarge) {
+  IgesText text;
+  for (int i = 0; i < 40000; ++i) text.add({110, 0, "0.,0.,0.,1.,2.,3."});
+  const auto counted = [](std::string owner) {
+    return [owner](auto& lines) {
+      for (std::string& line : lines) {
+        if (line[72] == 'D' && line[79] % 2 == 0) line.replace(24, 8, " 9999999");
+        if (line[72] == 'P' && !owner.empty()) line.replace(64, 8, owner);
+      }
+    };
+  };
+  const IgesReading reading = read_iges(with_lines(text.bytes(), counted("")));
+  ASSERT_TRUE(reading.model) << reading.text();
+  EXPECT_EQ(reading.model->curves.size(), 40000U);
+  for (const std::string owner : {"", "       2"}) {
+    Findings findings;
+    formats::iges::check_structure(Source::from_memory(with_lines(text.bytes(), counted(owner))), findings);
+    EXPECT_GE(findings.defects(), 40000);
+  }
+}
+
 }  // namespace
 
 }  // namespace selvage::test

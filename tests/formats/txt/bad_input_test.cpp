@@ -598,6 +598,16 @@ TEST(BadInputReport, VersionIsUnsupportedNotMalformed) {
   EXPECT_EQ(read("fabric 3\n").diagnostics.messages().at(0).kind, Kind::unsupported);
 }
 
+// Names are looked for as long as errors are told, not for every reference (this took minutes).
+TEST(BadInputReport, ThousandsOfUnknownNames) {
+  std::string text = "fabric 1\n";
+  for (int i = 0; i < 20000; ++i) text += "thread t" + std::to_string(i) + "\n diameter 0.1\nend\n";
+  for (int i = 0; i < 20000; ++i)
+    text += "yarn y" + std::to_string(i) + " u" + std::to_string(i) +
+            "\n path polyline\n0 0 0\n1 0 0\nend\nend\n";
+  EXPECT_EQ(read(text).diagnostics.error_count(), 20);
+}
+
 // A word that changes nothing is a warning, and the model is there.
 TEST(Warnings, StatementsWithoutEffect) {
   const Reading reading = read(

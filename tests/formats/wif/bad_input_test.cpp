@@ -160,6 +160,24 @@ TEST(WifBadInput, TwentyErrorsAreEnough) {
   EXPECT_EQ(read(text + "[TREADLING]\n1=1\n").diagnostics.error_count(), 20);
 }
 
+// Each is found by its name, not by going through all (this took minutes).
+TEST(WifBadInput, ManySectionsCanBeRead) {
+  std::string text = whole;
+  for (int i = 0; i < 200000; ++i) text += "[PRIVATE " + std::to_string(i) + "]\n";
+  text += "[private 7]\n";
+  const Reading reading = read(text);
+  EXPECT_TRUE(reading.fabric);
+  EXPECT_EQ(reading.diagnostics.messages().size(), 1U);
+}
+
+TEST(WifBadInput, ManyTreadlesMayBeLoose) {
+  std::string text = replaced(plain, "Treadles=2", "Treadles=300000") + rest + "2=1";
+  for (int i = 3; i <= 300000; ++i) text += "," + std::to_string(i);
+  const Reading reading = read(replaced(text, "[TREADLING]\n1=1\n2=2\n2=", "[TREADLING]\n1=1\n2="));
+  EXPECT_TRUE(reading.fabric);
+  EXPECT_NE(reading.text().find("more warnings"), std::string::npos);
+}
+
 // Cut off anywhere, and with any byte made another one: a fabric or an error.
 TEST(WifBadInput, DamagedFilesAreReadOrRefused) {
   for (const std::string name :
