@@ -11,6 +11,7 @@
 #include "formats/iges/bodies.h"
 #include "formats/iges/files.h"
 #include "formats/iges/reading.h"
+#include "formats/iges/structure.h"
 
 namespace selvage::test {
 
