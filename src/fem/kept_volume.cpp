@@ -11,7 +11,6 @@
 namespace selvage::fem {
 namespace {
 
-constexpr double gap_share = 0.05;   // of a gap that may be taken from each side
 constexpr double edge_share = 0.15;  // of the shortest edge at a corner that it may move
 constexpr double steepest = 0.3;  // cosine between the normal and the way in a face: farther is not made up
 constexpr std::uint32_t nobody = YarnFacet::no_yarn, several = nobody - 1;
@@ -21,7 +20,8 @@ class Keeper {
   Keeper(std::vector<Vec3>& points, const KeptVolume& surface)
       : points_(points), surface_(surface), corners_(points.size()), extra_(surface.volumes.size(), 0.0) {}
 
-  void run();
+  // The largest share of a volume that is wrong.
+  double run();
 
  private:
   // A corner of sides, with all that move with it.
@@ -116,8 +116,8 @@ void Keeper::keep_in_box() {
       if (way == 0) continue;
       const double up = (surface_.box->max()[axis] - points_[k][axis]) / std::abs(way);
       const double down = (points_[k][axis] - surface_.box->min()[axis]) / std::abs(way);
-      corner.most = std::min(corner.most, gap_share * std::max(way > 0 ? up : down, 0.0));
-      corner.least = std::max(corner.least, -gap_share * std::max(way > 0 ? down : up, 0.0));
+      corner.most = std::min(corner.most, surface_.gap_share * std::max(way > 0 ? up : down, 0.0));
+      corner.least = std::max(corner.least, -surface_.gap_share * std::max(way > 0 ? down : up, 0.0));
     }
   }
 }
@@ -136,7 +136,7 @@ void Keeper::keep_gaps() {
       box.extend(points_[k]);
       farthest = std::max(farthest, corner.most * corner.way.norm());
     }
-    const Vec3 reach = Vec3::Constant(farthest / gap_share);
+    const Vec3 reach = Vec3::Constant(farthest / surface_.gap_share);
     facets.push_back(&facet);
     boxes.emplace_back(box.min() - reach, box.max() + reach);
     normals.push_back(area_of(corners_of(facet)).stableNormalized());
@@ -145,7 +145,7 @@ void Keeper::keep_gaps() {
     for (const std::uint32_t k : facet.corners) {
       Corner& corner = corners_[leader(k)];
       const double size = corner.way.norm();
-      if (size > 0) corner.most = std::min(corner.most, gap_share * distance / size);
+      if (size > 0) corner.most = std::min(corner.most, surface_.gap_share * distance / size);
     }
   };
   BoxTree(std::move(boxes)).near_pairs(0, [&](std::uint32_t i, std::uint32_t j) {
@@ -227,7 +227,7 @@ bool Keeper::hold_turned() {
   return any;
 }
 
-void Keeper::run() {
+double Keeper::run() {
   of_yarn_.resize(surface_.volumes.size());
   for (const YarnFacet& facet : surface_.facets) {
     collect(facet);
@@ -242,9 +242,14 @@ void Keeper::run() {
       if (!of_yarn_[yarn].empty()) fit(yarn);
     if (!hold_turned()) break;
   }
+  double worst = 0;
+  for (std::uint32_t yarn = 0; yarn < of_yarn_.size(); ++yarn)
+    if (!of_yarn_[yarn].empty())
+      worst = std::max(worst, std::abs(volume_of(yarn) / surface_.volumes[yarn] - 1));
   std::vector<Vec3> result(points_.size());
   for (std::uint32_t k = 0; k < points_.size(); ++k) result[k] = moved(k);
   points_ = std::move(result);
+  return worst;
 }
 
 }  // namespace
@@ -259,8 +264,8 @@ double mean_height(const yarn::Body& body, const std::array<SurfaceEnd, 3>& corn
   return sum / 3;
 }
 
-void keep_volumes(std::vector<Vec3>& points, const KeptVolume& surface) {
-  Keeper(points, surface).run();
+double keep_volumes(std::vector<Vec3>& points, const KeptVolume& surface) {
+  return Keeper(points, surface).run();
 }
 
 }  // namespace selvage::fem

@@ -246,7 +246,15 @@ std::vector<Places> keep_volumes(std::span<const yarn::Body> bodies,
       facet.height = mean_height(bodies[i], corners);
     }
   });
-  fem::keep_volumes(points, {.facets = facets, .volumes = volumes});
+  // In a cloth that is jammed there is no room beside its gaps: nothing is meshed in them, they need only
+  // stay.
+  constexpr double right = 1e-3;
+  const std::vector<Vec3> on_surface = points;
+  for (const double gap_share : {0.05, 0.4}) {
+    points = on_surface;
+    if (fem::keep_volumes(points, {.facets = facets, .volumes = volumes, .gap_share = gap_share}) < right)
+      break;
+  }
   std::vector<Places> kept;
   auto next = points.begin();
   for (const auto& surface : all) {

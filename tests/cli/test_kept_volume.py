@@ -81,10 +81,16 @@ class KeptVolume(Case):
         self.assertGreater(high[:, 2].min() - low[:, 2].max(), 0.85 * 0.006)
         self.assertLess(low[:, 2].min(), -0.3)  # on the other side they are outside of the rod
 
+    def test_a_jammed_cloth(self):
+        """Its yarns touch all along: 0.006 mm are left, and a twentieth of that from each side is no room for 1.8 % of a volume."""
+        read, volumes, entry, _ = self.mesh(SAMPLES / "weave_jammed.txt")
+        for volume, wanted in zip(volumes, entry["yarns"], strict=True):
+            self.assertLess(abs(volume / wanted["volume"] - 1), TOLERANCE, wanted["name"])
+
     def test_what_is_not_kept_is_told(self):
-        """Three coarse filaments that touch, of which the middle one has no room to grow; with nodes on its edges it is right."""
+        """Seven coarse filaments that touch, of which the middle one has no room to grow; with nodes on its edges it is right."""
         text = (HEAD.replace("1e-5", "5e-4").format("ellipse 0.442 0.221") + yarn("y", "0 0 0", "0.122 0 0")).replace(
-            "\nend", "\n  filaments 3\n  packing 0.742\nend", 1)
+            "\nend", "\n  filaments 7\n  packing 0.7\nend", 1)
         source, report = self.written(text), self.folder / "report.json"
         for order, is_kept in (("1", False), ("2", True)):
             done = self.succeeds("mesh", source, "-o", self.folder / "a.inp", "--size", "0.033", "--order", order, "--report", report)
