@@ -19,7 +19,9 @@ class Fields {
  public:
   Fields(const Line& line, TextReport& report) : line_(line), report_(report) {}
 
-  [[nodiscard]] std::string_view text(int number) const { return {line_.at + 8 * (number - 1), 8}; }
+  [[nodiscard]] std::string_view text(int number) const {
+    return {line_.at + std::ptrdiff_t{8} * (number - 1), 8};
+  }
   int integer(int number, std::string_view what) {
     bool valid = true;
     const int value = column_number(text(number), valid).value_or(0);

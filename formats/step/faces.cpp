@@ -175,6 +175,7 @@ class FaceMaker {
   cad::Face make() {
     const std::vector<Chain> chains = chains_of(face_);
     std::vector<Polygon> polygons;
+    polygons.reserve(chains.size());
     for (const Chain& chain : chains) polygons.push_back(polygon_of(chain, face_));
     const Range2 whole = bounds_of(surface_);
     if (chains.empty()) {
