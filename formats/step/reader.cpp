@@ -435,7 +435,8 @@ class ModelReader {
     report_fails(transferred);
   }
 
-  void report_fails(Interface_CheckIterator checks) {
+  void report_fails(const Interface_CheckIterator& list) {
+    Interface_CheckIterator checks = list;
     for (checks.Start(); checks.More(); checks.Next()) {
       const Handle(Interface_Check)& check = checks.Value();
       if (!check->HasFailed()) continue;
