@@ -334,6 +334,7 @@ class Relaxer {
       if (!is_new && f.gap < facings[found->second].gap) found->second = k;
     }
     std::vector<std::size_t> chosen;
+    chosen.reserve(places.size());
     for (const auto& [key, k] : places) chosen.push_back(k);
     std::vector<std::optional<Facing>> nearest(chosen.size());
     for_each_index(chosen.size(), options_.threads,
