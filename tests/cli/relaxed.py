@@ -187,21 +187,22 @@ def near_blocks(p, q):
 
 def same_crossings(before, after, near):
     """Each crossing before has its like after: at most `near` away, with the same sign, the same line above. What has
-    none came or went in a pair that cancels (Reidemeister's second move): equal above, opposite signs."""
+    none came or went in a pair that cancels (Reidemeister's second move): equal above, opposite signs. Where two lines meet
+    (above: 0) either may become the upper one."""
     left = list(range(len(after)))
-    over = {1: 0, -1: 0}
+    over = {1: 0, -1: 0, 0: 0}
     for x, y, sign, above in before:
         candidates = [k for k in left if after[k][2] == sign and np.hypot(after[k][0] - x, after[k][1] - y) < near]
         if not candidates:
             over[above] += sign
             continue
         best = min(candidates, key=lambda k: np.hypot(after[k][0] - x, after[k][1] - y))
-        if after[best][3] != above:
+        if above != 0 and after[best][3] != above:
             return False
         left.remove(best)
     for k in left:
         over[after[k][3]] -= after[k][2]
-    return over == {1: 0, -1: 0}
+    return over[1] == over[-1] == 0
 
 
 def as_lines(yarns, others, tube):
