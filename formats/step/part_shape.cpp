@@ -363,11 +363,10 @@ PartShape build_part(const cad::Part& part, double tolerance) {
   return PartBuilder(part, tolerance).build();
 }
 
-// What goes wrong loses halves of faces; its quadrature of rational surfaces is good for about a percent.
-constexpr double same_area = 0.05;
-
 std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part) {
   constexpr std::string_view remedy = "--to iges writes its faces as they are";
+  // OpenCASCADE's quadrature of rational surfaces is good for about a percent; what goes wrong loses halves.
+  constexpr double same_area = 0.05;
   if (part.kind == cad::Part::Kind::solid && !built.closed)
     return fmt::format("its faces do not close it, and a solid must stay one; {}", remedy);
   for (std::size_t i = 0; i < part.faces.size(); ++i) {

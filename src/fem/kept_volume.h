@@ -38,7 +38,8 @@ struct KeptVolume {
   // empty: itself.
   std::span<const std::uint32_t> leaders{};
   std::optional<Box3> box{};  // nothing leaves it
-  double gap_share = 0.05;    // of a gap that may be taken from each side, below 0.5
+  // Of a gap that may be taken from each side, below 0.5: little where the gap is meshed.
+  double gap_share = 0.05;
 };
 
 // Moves corners of the yarns' sides along the normal there: each by the mean height of the surface above the
@@ -47,7 +48,7 @@ struct KeptVolume {
 // of the two lengths. Nothing moves farther than `gap_share` of the distance to another yarn, to a part of
 // the same one across from it, or to a face of the box, so that gaps stay open, nor so far that a triangle
 // turns; what is missing there the rest of the yarn makes up for. Where there is not rest enough, a volume
-// stays wrong: by this share of it, the largest of all yarns.
+// stays wrong. Returned: the largest error left, a share of the yarn's volume.
 double keep_volumes(std::vector<Vec3>& points, const KeptVolume& surface);
 
 }  // namespace selvage::fem
