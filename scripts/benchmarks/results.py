@@ -221,6 +221,69 @@ def tetrahedra(bin_folder, folder, quick):
                   "processor s a million", "smallest angle, degrees"], cells)
 
 
+def straight(name, along, place, height, length):
+    """A yarn of Fabric TXT, straight along x (0) or y (1)."""
+    ends = [(-1.0, place, height), (length, place, height)]
+    lines = "".join("    " + " ".join(f"{c:g}" for c in (p if along == 0 else (p[1], p[0], p[2]))) + "\n" for p in ends)
+    return f"yarn {name} t\n  path chord\n{lines}  end\nend\n"
+
+
+def lattice(count, apart):
+    """Straight yarns that cross, half of them `apart` above the others: about `count` crossings."""
+    side = round(count ** 0.5)
+    yarns = "".join(straight(f"{'ab'[along]}{k}", along, k, along * apart, side) for k in range(side) for along in (0, 1))
+    return f"fabric 1\nunits mm\nthread t\n  tex 100\n  density 1.5\n  section circle 0.3\nend\n{yarns}"
+
+
+def rods(count):
+    """Short yarns side by side."""
+    yarns = "".join(straight(f"y{k}", 0, k, 0.0, 1) for k in range(count))
+    return f"fabric 1\nunits mm\nthread t\n  tex 100\n  density 1.5\n  section circle 0.3\nend\n{yarns}"
+
+
+def edited(count):
+    """The same, each one edited by its name."""
+    return rods(count) + "".join(f"edit y{k} point 2 to 1 {k} 0.1\n" for k in reversed(range(count)))
+
+
+# Where work once grew with the square: what is counted, the numbers, the text, the format that it is converted to first, the command.
+GROWING = [
+    ("overlaps, `check`", (16, 64, 256), lambda n: lattice(n, 0.1), None, ["check"]),
+    ("crossings without contact, `check`", (16, 64, 256), lambda n: lattice(n, 1), None, ["check"]),
+    ("yarns edited by name, `convert` to TXT", (1000, 4000, 16000), edited, None, ["convert", "--to", "txt"]),
+    ("yarns of an IGES file, `check`", (64, 256, 1024), rods, "igs", ["check"]),
+    ("yarns of a STEP file, `info`", (64, 256, 1024), rods, "stp", ["info"]),
+    ("dry yarns of a deck with contact, `mesh`", (64, 256, 1024), rods, None, ["mesh", "--to", "inp", "--size", "0.3"]),
+]
+
+
+def processor_seconds(command):
+    """Of a process and those that it waited for; its output thrown away. 3: it found defects."""
+    pid = os.posix_spawn(command[0], command, os.environ, file_actions=[(os.POSIX_SPAWN_OPEN, k, "/dev/null", os.O_WRONLY, 0) for k in (1, 2)])
+    _, status, used = os.wait4(pid, 0)
+    if os.waitstatus_to_exitcode(status) not in (0, 3):
+        sys.exit(f"failed: {command}")
+    return used.ru_utime + used.ru_stime
+
+
+def growth(bin_folder, folder, quick):
+    rows = []
+    for name, counts, text, extension, words in GROWING:
+        first = None
+        for count in counts[:2] if quick else counts:
+            source = pathlib.Path(folder) / f"growth{count}.txt"
+            source.write_text(text(count))
+            if extension:
+                made = source.with_suffix(f".{extension}")
+                processor_seconds([f"{bin_folder}/selvage", "convert", str(source), "-o", str(made), "--quiet"])
+                source = made
+            out = [] if words[0] in ("check", "info") else ["-o", f"{folder}/grown/"]
+            took = processor_seconds([f"{bin_folder}/selvage", *words, str(source), *out, "--quiet"])
+            first = first or took / count
+            rows.append([name, str(count), f"{took:.2f}", f"{1e3 * took / count:.2f}", f"{took / count / first:.2f}"])
+    return table(["what", "number", "processor, s", "ms each", "to the first"], rows)
+
+
 def machine():
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown")
     return f"{model}, {os.cpu_count()} cores"
@@ -250,6 +313,8 @@ def main():
             "SparseLU is Eigen's general sparse solver on the systems of all courses, in the same run and in turns with ours. The "
             "published time is a constant from another machine, drawing included. Tubes and file are those of as many "
             "whole courses as have 5,000 loops.\n\n" + knit_build(given.bin, folder, given.quick) +
+            "\n## Large inputs: the time of one of many stays the same\n\n"
+            "Whole processes, processor time.\n\n" + growth(given.bin, folder, given.quick) +
             "\n## Comparing two cloths in memory, two threads: the time a yarn stays the same\n\n" +
             compare(given.bin, folder, given.quick) +
             "\n## Moving the loops of the published jersey apart, two threads: the time a loop stays the same\n\n"

@@ -61,12 +61,13 @@ std::vector<std::uint32_t> outline_nodes(const CellCurves& curves, const cell::O
   return result;
 }
 
-// The region to the left of each directed edge in a face.
-std::map<Edge, std::size_t> edges_of(const CellShape& shape, const CellCurves& curves, int face) {
+// The region to the left of each directed edge in a face; without those of the matrix where there is none.
+std::map<Edge, std::size_t> edges_of(const CellShape& shape, const CellCurves& curves, int face,
+                                     bool matrix) {
   std::map<Edge, std::size_t> result;
   const auto& regions = shape.division.regions;
   for (std::size_t r = 0; r < regions.size(); ++r) {
-    if (regions[r].face != face) continue;
+    if (regions[r].face != face || (!matrix && body_of(regions[r]) == CellTriangles::matrix)) continue;
     for (const cell::Outline& outline : regions[r].outlines) {
       const std::vector<std::uint32_t> nodes = outline_nodes(curves, outline);
       for (std::size_t k = 0; k < nodes.size(); ++k) result[{nodes[k], nodes[(k + 1) % nodes.size()]}] = r;
@@ -118,18 +119,17 @@ Status add_box_faces(const CellShape& shape, const CellCurves& curves, const Siz
                      const SurfaceOptions& options, CellNodes& nodes, CellTriangles& result) {
   const auto& regions = shape.division.regions;
   const auto add = [&](const Triangle& t, const cell::FaceRegion& region) {
-    const std::uint32_t behind = body_of(region);
-    if (behind != CellTriangles::matrix || options.matrix)
-      result.add(t, {behind, Sides::outside}, CellTriangles::Part::box);
+    result.add(t, {body_of(region), Sides::outside}, CellTriangles::Part::box);
   };
   for (int face = 0; face < cell::face_count; ++face) {
     const int a = cell::axis_of(face);
     const bool is_periodic = shape.periodic[static_cast<std::size_t>(a)];
     if (is_periodic && cell::is_high(face)) continue;
-    Result<FaceMesh> made = mesh_face(shape, edges_of(shape, curves, face), face, field, options, nodes);
+    const std::map<Edge, std::size_t> edges = edges_of(shape, curves, face, options.matrix);
+    if (edges.empty()) continue;
+    Result<FaceMesh> made = mesh_face(shape, edges, face, field, options, nodes);
     if (!made) return made.error();
     const TriangleMesh& mesh = made->mesh;
-    // Inner points that only the matrix has are nodes of nothing where there is no matrix.
     std::vector<std::uint32_t> number = made->known, opposite;
     for (std::size_t k = number.size(); k < mesh.points.size(); ++k)
       number.push_back(nodes.add(mesh.points[k], {no_body, Vec2::Zero()}));
@@ -150,9 +150,9 @@ Status add_box_faces(const CellShape& shape, const CellCurves& curves, const Siz
       opposite.push_back(nodes.add(moved, {no_body, Vec2::Zero()}));
     }
     // What is behind the high face, region by region: by an edge of each.
-    const std::map<Edge, std::size_t> high = edges_of(shape, curves, face + 1);
+    const std::map<Edge, std::size_t> high = edges_of(shape, curves, face + 1, options.matrix);
     std::map<std::int32_t, std::size_t> region_of;
-    for (const auto& [edge, left] : edges_of(shape, curves, face)) {
+    for (const auto& [edge, left] : edges) {
       const auto found = high.find({across.at(edge.second), across.at(edge.first)});
       if (found == high.end() || (body_of(regions[found->second]) == CellTriangles::matrix) !=
                                      (body_of(regions[left]) == CellTriangles::matrix)) {

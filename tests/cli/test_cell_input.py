@@ -223,6 +223,17 @@ class CellInput(Case):
         self.assertNotIn("--force", forced)
         self.assertRegex(forced, "memory|seconds")
 
+    def test_a_cell_a_thousand_times_too_large(self):
+        """The yarns alone are meshed as in any box round them: their mesh does not know the space between."""
+        counts = []
+        for side in (10, 5000):
+            source = self.written(straight(("0 0 0", "3 0 0"), ("0 1 0", "3 1 0.5")) + cell(f"1 {-side} {-side} {side} {side} {side}"))
+            self.succeeds("mesh", source, "--cut", "-o", self.folder / "cut.vtu", "--report", self.folder / "report.json")
+            counts.append(json.loads((self.folder / "report.json").read_text())["inputs"][0]["mesh"]["tets"])
+        self.assertEqual(counts[0], counts[1])
+        message = self.refuses(straight(("0 0 0", "3 0 0")) + cell("1 -5000 -5000 5000 5000 5000"))
+        self.assertRegex(message, r"cell\.txt:\d+:1: error: .*(tetrahedra|repeat)")
+
     def test_a_face_along_a_yarn(self):
         # Tangent to the yarn from inside, and a hair beyond its surface: nothing but slivers would fit between.
         for y in ("0.15", "0.1502"):

@@ -18,31 +18,38 @@ def box_of(sample):
     raise ValueError(f"{sample} has no cell")
 
 
+def rows_of(lines):
+    """Numbers between commas, as many in each line."""
+    return np.fromstring("".join(lines).replace("\n", ","), sep=",").reshape(len(lines), -1)
+
+
 class Deck:
     """Nodes by number and elements by set."""
 
     def __init__(self, path):
-        self.points, self.numbers, self.sets, self.types = [], {}, {}, set()
-        keyword, target = "", None
+        self.sets, self.types = {}, set()
+        blocks, elements, block = [], {}, []  # lines of numbers: of nodes, of elements by set
         with open(path, encoding="utf-8") as deck:
             for line in deck:
-                if line.startswith("**"):
-                    continue
-                if line.startswith("*"):
+                if not line.startswith("*"):
+                    block.append(line)
+                elif not line.startswith("**"):
                     keyword = line.split(",")[0].strip().upper()
                     options = dict(part.strip().upper().split("=", 1) for part in line.split(",")[1:] if "=" in part)
-                    if keyword == "*ELEMENT":
+                    block = []
+                    if keyword == "*NODE":
+                        blocks.append(block)
+                    elif keyword == "*ELEMENT":
                         self.types.add(options["TYPE"])
-                        target = self.sets.setdefault(re.search(r"ELSET=(\w+)", line, re.I).group(1), [])
-                    continue
-                if keyword == "*NODE":
-                    number, *place = line.split(",")
-                    self.numbers[int(number)] = len(self.points)
-                    self.points.append([float(value) for value in place])
-                elif keyword == "*ELEMENT":
-                    target.append([int(value) for value in line.split(",")[1:]])
-        self.points = np.array(self.points)
-        self.sets = {name: np.array([[self.numbers[n] for n in row] for row in rows]) for name, rows in self.sets.items()}
+                        elements.setdefault(re.search(r"ELSET=(\w+)", line, re.I).group(1), []).append(block)
+        nodes = np.concatenate([rows_of(block) for block in blocks])
+        self.points = nodes[:, 1:]
+        numbers = nodes[:, 0].astype(int)
+        index = np.full(numbers.max() + 1, -1)
+        index[numbers] = np.arange(len(numbers))
+        for name, own in elements.items():
+            self.sets[name] = index[np.concatenate([rows_of(block) for block in own])[:, 1:].astype(int)]
+            assert (self.sets[name] >= 0).all(), f"{name}: an element has a node that is not there"
 
     def all_elements(self):
         return np.concatenate(list(self.sets.values()))

@@ -23,6 +23,7 @@ constexpr std::size_t most_yarns = 4;
 constexpr std::size_t most_points = 250;    // control points of a yarn
 constexpr std::size_t most_together = 500;  // of all yarns
 constexpr std::uint64_t most_data_points = 400;
+constexpr double coarse = 0.03;  // tolerance, of the smallest section
 
 Source named(std::string_view bytes, const Descriptor& format) {
   return Source::from_memory(std::string(bytes), "input" + std::string(format.extensions.front()));
@@ -57,8 +58,11 @@ void run_reader(const Descriptor& format, std::string_view bytes) {
 // The fabric's yarns; none where there is something wrong with them or they are too large for a short run.
 std::vector<yarn::Body> bodies_of(const Fabric& fabric, std::string_view bytes) {
   fabric::BuildOptions options;
-  // Parting loops takes seconds: one input in eight has it done.
-  options.as_published = bytes.size() % 8 != 0;
+  // Parting loops and fitting tubes takes seconds: one input in eight has it done as users have it.
+  if (bytes.size() % 8 != 0) {
+    options.as_published = true;
+    options.tolerance = coarse * fabric::smallest_section(fabric).value_or(0.0);
+  }
   options.max_control_points = most_points;
   options.work.points = most_data_points;
   Diagnostics diagnostics;
