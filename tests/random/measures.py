@@ -12,7 +12,7 @@ import relaxed  # noqa: E402  the second evaluator of control grids
 
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "inch": 25.4}
 GAUSS = np.polynomial.legendre.leggauss(5)  # exact for the volume where all weights are one
-GAUSS_RATIONAL = np.polynomial.legendre.leggauss(12)
+GAUSS_RATIONAL = np.polynomial.legendre.leggauss(24)
 
 
 def slope_basis(knots, degree, t):
