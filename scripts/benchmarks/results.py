@@ -250,7 +250,7 @@ def edited(count):
 GROWING = [
     ("overlaps, `check`", (16, 64, 256), lambda n: lattice(n, 0.1), None, ["check"]),
     ("crossings without contact, `check`", (16, 64, 256), lambda n: lattice(n, 1), None, ["check"]),
-    ("yarns edited by name, `convert` to TXT", (1000, 4000, 16000), edited, None, ["convert", "--to", "txt"]),
+    ("yarns edited by name, `convert` to IGES", (256, 1024, 4096), edited, None, ["convert", "--to", "iges"]),
     ("yarns of an IGES file, `check`", (64, 256, 1024), rods, "igs", ["check"]),
     ("yarns of a STEP file, `info`", (64, 256, 1024), rods, "stp", ["info"]),
     ("dry yarns of a deck with contact, `mesh`", (64, 256, 1024), rods, None, ["mesh", "--to", "inp", "--size", "0.3"]),

@@ -20,7 +20,7 @@ void add_mesh(CLI::App& program, Parsed& parsed) {
       ->check(CLI::IsMember({1, 2}));
   command
       .add_option("--min-dihedral", o.min_dihedral,
-                  "wanted smallest angle between faces, degrees, at most 30")
+                  "wanted smallest angle between faces of a tetrahedron, degrees, at most 30 (default: 10)")
       ->check(number_between(0.1, 30.0));
   command.add_flag("--allow-overlap", o.allow_overlap, "mesh overlapping yarns as they are, with a warning");
   add_relaxing(command, parsed, true);

@@ -8,20 +8,16 @@
 #include <numeric>
 #include <optional>
 
-#include "cell/volume.h"
 #include "core/module.h"
-#include "core/parallel.h"
 #include "fem/bond.h"
 #include "fem/cell_size.h"
-#include "fem/cell_surfaces.h"
 #include "fem/fibre.h"
 #include "fem/improve.h"
-#include "fem/kept_volume.h"
 #include "fem/materials.h"
 #include "fem/midside.h"
 #include "fem/quality.h"
 #include "fem/sides.h"
-#include "fem/surface_mesh.h"
+#include "fem/skin.h"
 #include "fem/unit_cell.h"
 
 namespace selvage::fem {
@@ -41,7 +37,6 @@ class CellMesher {
  private:
   Status prepare();
   Status make_surfaces();
-  void keep_volumes(const CellCurves& curves);
   Status fill_regions();
   void number_regions();
   [[nodiscard]] Mesh assemble() const;
@@ -66,9 +61,7 @@ class CellMesher {
   double extent_ = 0, tolerance_ = 0;
   std::vector<double> sizes_;  // of each body
   Box3 box_;
-  std::vector<double> volumes_;  // of each body, inside the box
-  CellNodes nodes_;
-  CellTriangles surface_;
+  Skin skin_;
   std::vector<std::uint32_t> bodies_of_regions_;  // CellTriangles::matrix: the matrix
   TetMesh tets_;
   AngleTarget angles_;
@@ -82,9 +75,9 @@ Message CellMesher::located(Message message) const {
 // The two yarns whose surfaces have corners nearest to a place, in words.
 std::string CellMesher::yarns_near(const Vec3& at) const {
   std::vector<double> distances(bodies_.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t k = 0; k < nodes_.points.size(); ++k)
-    if (const std::size_t body = nodes_.places[k].body; body != no_body)
-      distances[body] = std::min(distances[body], (nodes_.points[k] - at).norm());
+  for (std::size_t k = 0; k < skin_.nodes.points.size(); ++k)
+    if (const std::size_t body = skin_.nodes.places[k].body; body != no_body)
+      distances[body] = std::min(distances[body], (skin_.nodes.points[k] - at).norm());
   std::vector<std::size_t> order(bodies_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -109,7 +102,7 @@ Status CellMesher::prepare() {
   box_ = Box3(fabric_.cell->low, fabric_.cell->high);
   extent_ = std::numeric_limits<double>::infinity();
   for (const yarn::Body& body : bodies_) {
-    if (yarn::bounds(body).intersects(box_)) extent_ = std::min(extent_, smallest_section_extent(body));
+    if (yarn::bounds(body).intersects(box_)) extent_ = std::min(extent_, yarn::narrowest_section(body));
   }
   if (!std::isfinite(extent_)) return located(error(Kind::geometry, "no yarn enters the cell"));
   sizes_ = options_.sizes;
@@ -119,81 +112,34 @@ Status CellMesher::prepare() {
 }
 
 Status CellMesher::make_surfaces() {
-  step("cutting", 0);
-  Result<cell::Cut> cut = cell::cut(bodies_, box_, {.tolerance = tolerance_});
-  if (!cut) {
-    Message message = located(cut.error());
+  SkinOptions options;
+  options.tolerance = tolerance_;
+  options.miss = std::max(tolerance_, least_edge_share * extent_);
+  options.periodic = options_.periodic;
+  options.matrix = options_.matrix;
+  options.threads = options_.threads;
+  options.progress = [&, done = std::size_t{0}](const char* name) mutable { step(name, done++); };
+  Result<Skin> skin =
+      make_skin(bodies_, box_, cell_size_rules(bodies_, sizes_, options_.coarsest, extent_), options);
+  if (!skin) {
+    Message message = located(skin.error());
     if (message.place.line == 0) message.place = fabric_.cell->place;
     return message;
   }
-  for (Message& note : cut->notes) diagnostics_.add(located(std::move(note)));
-  Result<cell::Division> division = cell::divide_faces(bodies_, box_, *cut);
-  if (!division) return located(division.error());
-  volumes_ = cell::volumes_inside(bodies_, box_, *cut, *division);
-
-  step("meshing surfaces", 1);
-  const SizeField field = size_field(
-      bodies_, box_, cell_size_rules(bodies_, sizes_, options_.coarsest, extent_), options_.threads);
-  const CellShape shape{bodies_, box_, options_.periodic, *cut, *division};
-  Result<CellCurves> curves =
-      divide_curves(shape, field, std::max(tolerance_, least_edge_share * extent_), nodes_);
-  if (!curves) return located(curves.error());
-  SurfaceOptions options;
-  options.matrix = options_.matrix;
-  if (Status made = add_yarn_surfaces(shape, *curves, field, options, options_.threads, nodes_, surface_);
-      !made)
-    return located(made.error());
-  if (Status made = add_box_faces(shape, *curves, field, options, nodes_, surface_); !made)
-    return located(made.error());
-  if (options_.order == 1) keep_volumes(*curves);
+  for (Message& note : skin->notes) diagnostics_.add(located(std::move(note)));
+  skin_ = std::move(*skin);
+  if (options_.order == 1)
+    fem::keep_volumes(skin_.nodes.points, {.facets = facets_of(bodies_, skin_, options_.threads),
+                                           .volumes = skin_.volumes,
+                                           .leaders = skin_.leaders,
+                                           .box = box_});
   return {};
 }
 
-// Of each node the least of those that are opposite each other.
-std::vector<std::uint32_t> leaders_of(const CellCurves& curves, std::size_t nodes) {
-  std::vector<std::uint32_t> leaders(nodes);
-  std::iota(leaders.begin(), leaders.end(), 0U);
-  const auto root = [&](std::uint32_t k) {
-    while (leaders[k] != k) k = leaders[k];
-    return k;
-  };
-  for (const auto& pairs : curves.opposite)
-    for (const auto& [low, high] : pairs) {
-      const std::uint32_t a = root(low), b = root(high);
-      leaders[std::max(a, b)] = std::min(a, b);
-    }
-  for (std::uint32_t k = 0; k < nodes; ++k) leaders[k] = root(k);
-  return leaders;
-}
-
-// Nodes of flat triangles leave the B-spline surfaces for it.
-void CellMesher::keep_volumes(const CellCurves& curves) {
-  std::vector<YarnFacet> facets(surface_.triangles.size());
-  for_each_index(facets.size(), options_.threads, [&](std::size_t k) {
-    const Triangle& t = surface_.triangles[k];
-    YarnFacet& facet = facets[k];
-    facet.corners = t;
-    if (surface_.sides[k].behind != CellTriangles::matrix) facet.yarn = surface_.sides[k].behind;
-    if (surface_.parts[k] == CellTriangles::Part::box) facet.part = YarnFacet::Part::box;
-    if (surface_.parts[k] == CellTriangles::Part::start || surface_.parts[k] == CellTriangles::Part::end)
-      facet.part = YarnFacet::Part::end;
-    if (facet.part != YarnFacet::Part::side) return;
-    std::array<SurfaceEnd, 3> corners;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const SurfacePlace& place = nodes_.places[t[i]];
-      if (place.body != facet.yarn) return;  // on an edge of the box, where yarns meet
-      corners[i] = {place.parameters, nodes_.points[t[i]]};
-    }
-    facet.height = mean_height(bodies_[facet.yarn], corners);
-  });
-  const std::vector<std::uint32_t> leaders = leaders_of(curves, nodes_.points.size());
-  fem::keep_volumes(nodes_.points, {.facets = facets, .volumes = volumes_, .leaders = leaders, .box = box_});
-}
-
-// Regions are the bodies that are there, in their order, then the matrix; nodes of nothing are dropped.
+// Regions are the bodies that are there, in their order, then the matrix.
 void CellMesher::number_regions() {
   std::vector<std::uint32_t> there;
-  for (const Sides& sides : surface_.sides)
+  for (const Sides& sides : skin_.surface.sides)
     for (const std::uint32_t body : {sides.behind, sides.front})
       if (body != Sides::outside) there.push_back(body);
   std::sort(there.begin(), there.end());
@@ -203,31 +149,15 @@ void CellMesher::number_regions() {
     if (body == Sides::outside) return body;
     return static_cast<std::uint32_t>(std::lower_bound(there.begin(), there.end(), body) - there.begin());
   };
-  for (Sides& sides : surface_.sides) sides = {region_of(sides.behind), region_of(sides.front)};
-
-  constexpr std::uint32_t unused = static_cast<std::uint32_t>(-1);
-  std::vector<std::uint32_t> number(nodes_.points.size(), unused);
-  for (const Triangle& t : surface_.triangles)
-    for (const std::uint32_t node : t) number[node] = 0;
-  std::uint32_t count = 0;
-  for (std::size_t k = 0; k < number.size(); ++k) {
-    if (number[k] == unused) continue;
-    nodes_.points[count] = nodes_.points[k];
-    nodes_.places[count] = nodes_.places[k];
-    number[k] = count++;
-  }
-  nodes_.points.resize(count);
-  nodes_.places.resize(count);
-  for (Triangle& t : surface_.triangles)
-    for (std::uint32_t& node : t) node = number[node];
+  for (Sides& sides : skin_.surface.sides) sides = {region_of(sides.behind), region_of(sides.front)};
 }
 
 Status CellMesher::fill_regions() {
   const Result<std::filesystem::path> program = find_worker("selvage-tetgen");
   if (!program) return program.error();
   step("filling with tetrahedra", 2);
-  TetgenJob job{.points = nodes_.points, .triangles = surface_.triangles, .sides = surface_.sides};
-  job.radius_edge = 0;  // the surface's points only
+  TetgenJob job{
+      .points = skin_.nodes.points, .triangles = skin_.surface.triangles, .sides = skin_.surface.sides};
   job.smallest_feature = *std::min_element(sizes_.begin(), sizes_.end());
   Result<TetMesh> tets = run_tetgen(*program, job, {.timeout = options_.timeout, .memory = options_.memory});
   if (!tets) {
@@ -241,7 +171,7 @@ Status CellMesher::fill_regions() {
   options.target = options_.min_dihedral;
   options.refine = {.max_volume = largest_volume(coarsest())};
   options.threads = options_.threads;
-  report(improve(tets_.points, tets_.cells, tets_.regions, nodes_.points.size(), options));
+  report(improve(tets_.points, tets_.cells, tets_.regions, skin_.nodes.points.size(), options));
   return {};
 }
 
@@ -258,9 +188,9 @@ void CellMesher::bond() {
   const auto matrix = static_cast<std::uint32_t>(bodies_of_regions_.size() - 1);
   if (!(options_.bond > 0) || bodies_of_regions_[matrix] != CellTriangles::matrix) return;
   std::vector<std::uint32_t> yarns(tets_.points.size(), no_yarn);
-  for (std::size_t k = 0; k < nodes_.places.size(); ++k)
+  for (std::size_t k = 0; k < skin_.nodes.places.size(); ++k)
     for (std::uint32_t r = 0; r < matrix; ++r)
-      if (nodes_.places[k].body == bodies_of_regions_[r]) yarns[k] = r;
+      if (skin_.nodes.places[k].body == bodies_of_regions_[r]) yarns[k] = r;
   const std::vector<std::uint32_t> before = tets_.regions;
   const Bonding bonding =
       bond_contacts(tets_.points, tets_.cells, yarns, matrix, options_.bond, tets_.regions);
@@ -268,7 +198,7 @@ void CellMesher::bond() {
     if (before[c] == tets_.regions[c]) continue;
     const auto& cell = tets_.cells[c];
     const Vec3& p = tets_.points[cell[0]];
-    volumes_[bodies_of_regions_[tets_.regions[c]]] +=
+    skin_.volumes[bodies_of_regions_[tets_.regions[c]]] +=
         (tets_.points[cell[1]] - p).cross(tets_.points[cell[2]] - p).dot(tets_.points[cell[3]] - p) / 6;
   }
   const std::string_view unit = name_of(fabric_.units);
@@ -313,14 +243,11 @@ Mesh CellMesher::assemble() const {
     }
     region.last_element = mesh.elements.size();
   }
-  for (std::size_t k = 0; k < surface_.triangles.size(); ++k) {
-    const Triangle& t = surface_.triangles[k];
-    if (surface_.parts[k] == CellTriangles::Part::box) continue;
-    Region& region = mesh.regions[surface_.sides[k].behind];
-    auto& faces = surface_.parts[k] == CellTriangles::Part::side    ? region.side_faces
-                  : surface_.parts[k] == CellTriangles::Part::start ? region.start_faces
-                                                                    : region.end_faces;
-    faces.push_back({t[0], t[1], t[2]});
+  for (std::size_t k = 0; k < skin_.surface.triangles.size(); ++k) {
+    const Triangle& t = skin_.surface.triangles[k];
+    if (skin_.surface.parts[k] == CellTriangles::Part::box) continue;
+    Region& region = mesh.regions[skin_.surface.sides[k].behind];
+    faces_of(region, skin_.surface.parts[k]).push_back({t[0], t[1], t[2]});
   }
   return mesh;
 }
@@ -333,8 +260,8 @@ void CellMesher::add_directions(Mesh& mesh) const {
     const std::uint32_t body = bodies_of_regions_[r];
     if (body == CellTriangles::matrix) continue;
     std::vector<double> known(mesh.nodes.size(), nan);
-    for (std::size_t k = 0; k < nodes_.places.size(); ++k)
-      if (nodes_.places[k].body == body) known[k] = nodes_.places[k].parameters.y();
+    for (std::size_t k = 0; k < skin_.nodes.places.size(); ++k)
+      if (skin_.nodes.places[k].body == body) known[k] = skin_.nodes.places[k].parameters.y();
     const std::vector<double> along = parameters_along(mesh, mesh.regions[r], bodies_[body], known, unit);
     add_fibres(mesh, mesh.regions[r], bodies_[body], along);
   }
@@ -343,10 +270,10 @@ void CellMesher::add_directions(Mesh& mesh) const {
 Status CellMesher::finish(Mesh& mesh) {
   const double scale = millimetres_per(fabric_.units), cube = scale * scale * scale;
   double rest = box_.volume();
-  for (const double volume : volumes_) rest -= volume;
+  for (const double volume : skin_.volumes) rest -= volume;
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
     const std::uint32_t body = bodies_of_regions_[r];
-    mesh.regions[r].exact_volume = cube * (body == CellTriangles::matrix ? rest : volumes_[body]);
+    mesh.regions[r].exact_volume = cube * (body == CellTriangles::matrix ? rest : skin_.volumes[body]);
   }
   MaterialChoice choice = choose_materials(fabric_, bodies_, diagnostics_);
   if (options_.matrix)
@@ -362,15 +289,9 @@ Status CellMesher::finish(Mesh& mesh) {
   const Box3 box_mm(box_.min() * scale, box_.max() * scale);
   if (options_.order == 2) {
     const MidsideNodes midside =
-        add_midside_nodes(mesh, CellSurface{bodies_, nodes_.places, scale, box_mm, options_.periodic});
-    if (midside.held > 0) {
-      Message note = warning(
-          Kind::geometry, fmt::format("{} midside nodes were held back from the yarns' surfaces so that no "
-                                      "element folds, the farthest by {:.3g} mm",
-                                      midside.held, midside.farthest));
-      note.severity = Severity::note;
-      diagnostics_.add(located(std::move(note)));
-    }
+        add_midside_nodes(mesh, {bodies_, skin_.nodes.places, scale, box_mm, options_.periodic,
+                                 skin_.surface.caps, skin_.surface.triangles});
+    if (midside.held > 0) diagnostics_.add(located(told_of(midside, 1)));
   }
   if (Status complete = complete_cell(mesh, box_mm, options_.periodic); !complete)
     return located(complete.error());

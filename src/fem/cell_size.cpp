@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "fem/fibre.h"
-#include "fem/surface_mesh.h"
 
 namespace selvage::fem {
 
@@ -46,7 +45,7 @@ SizeRules cell_size_rules(std::span<const yarn::Body> bodies, std::span<const do
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     SizeRules::Yarn yarn;
     yarn.largest = sizes[b];
-    yarn.turn *= std::min(1.0, sizes[b] * edges_per_extent / smallest_section_extent(bodies[b]));
+    yarn.turn *= std::min(1.0, sizes[b] * edges_per_extent / yarn::narrowest_section(bodies[b]));
     rules.yarns.push_back(yarn);
   }
   return rules;
@@ -59,7 +58,7 @@ double estimate_tetrahedra(std::span<const yarn::Body> bodies, const Box3& box, 
   constexpr double mean_share = 0.09;
   constexpr int samples = 50'000;
   double extent = std::numeric_limits<double>::infinity();
-  for (const yarn::Body& body : bodies) extent = std::min(extent, smallest_section_extent(body));
+  for (const yarn::Body& body : bodies) extent = std::min(extent, yarn::narrowest_section(body));
   SizeRules rules = cell_size_rules(bodies, sizes, coarsest, extent);
   rules.raster = raster_step(bodies);
   const SizeField field = size_field(bodies, box, rules, threads);

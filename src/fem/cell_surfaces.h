@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fem/cell_curves.h"
+#include "fem/end_cap.h"
 #include "fem/worker.h"
 
 namespace selvage::fem {
@@ -15,6 +16,12 @@ struct CellTriangles {
   std::vector<Sides> sides;
   enum class Part : std::uint8_t { side, start, end, box };  // of a yarn, or a face of the box
   std::vector<Part> parts;
+  // End faces of yarns inside the box: the shape over their own triangles.
+  struct Cap {
+    EndCap shape;
+    std::size_t first = 0, count = 0;  // into `triangles`
+  };
+  std::vector<Cap> caps;
 
   void add(const Triangle& triangle, const Sides& both, Part part) {
     triangles.push_back(triangle);

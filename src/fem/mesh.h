@@ -52,6 +52,7 @@ struct Region {
   std::vector<std::array<std::size_t, 3>> side_faces, start_faces, end_faces;
   double volume = 0;        // of the elements
   double exact_volume = 0;  // of the B-spline yarn
+  double length = 0;        // of a whole yarn's centre line; else 0
   Quality quality;
 };
 

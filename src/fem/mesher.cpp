@@ -14,11 +14,11 @@
 #include "fem/faces.h"
 #include "fem/fibre.h"
 #include "fem/improve.h"
-#include "fem/kept_volume.h"
 #include "fem/materials.h"
+#include "fem/mesh_check.h"
 #include "fem/midside.h"
 #include "fem/quality.h"
-#include "fem/surface_mesh.h"
+#include "fem/skin.h"
 #include "fem/tet_complex.h"
 #include "fem/worker.h"
 
@@ -36,8 +36,20 @@ struct YarnMesh {
   std::vector<Message> notes;
 };
 
+// No edge is longer than the yarn is thin.
 double size_for(const yarn::Body& body, const MeshOptions& options) {
-  return options.size > 0 ? options.size : smallest_section_extent(body) / 4;
+  const double extent = yarn::narrowest_section(body);
+  return options.size > 0 ? std::min(options.size, extent) : extent / 4;
+}
+
+// Finer where the triangles of a thin yarn come out as none.
+Result<Skin> skin_of(const yarn::Body& body, const MeshOptions& options) {
+  constexpr int tries = 3;
+  double size = size_for(body, options);
+  for (int k = 0;; ++k, size /= 2) {
+    Result<Skin> skin = make_skin(body, size);
+    if (!skin || k + 1 == tries || check_surface(skin->nodes.points, skin->surface.triangles)) return skin;
+  }
 }
 
 Message about(Message message, const yarn::Body& body, const fabric::Fabric& fabric) {
@@ -48,7 +60,7 @@ Message about(Message message, const yarn::Body& body, const fabric::Fabric& fab
 }
 
 // The mesh of one region out of the tetrahedra, in the body's units.
-Mesh assemble(const TetMesh& tets, const SurfaceMesh& surface, const yarn::Body& body) {
+Mesh assemble(const TetMesh& tets, const Skin& skin, const yarn::Body& body) {
   Mesh mesh;
   mesh.nodes = tets.points;
   mesh.elements.reserve(tets.cells.size());
@@ -56,14 +68,10 @@ Mesh assemble(const TetMesh& tets, const SurfaceMesh& surface, const yarn::Body&
   Region region;
   region.name = body.name;
   region.last_element = mesh.elements.size();
-  auto faces = [](std::span<const Triangle> triangles) {
-    std::vector<std::array<std::size_t, 3>> result;
-    for (const Triangle& t : triangles) result.push_back({t[0], t[1], t[2]});
-    return result;
-  };
-  region.side_faces = faces(surface.side());
-  region.start_faces = faces(surface.start());
-  region.end_faces = faces(surface.end());
+  for (std::size_t k = 0; k < skin.surface.triangles.size(); ++k) {
+    const Triangle& t = skin.surface.triangles[k];
+    faces_of(region, skin.surface.parts[k]).push_back({t[0], t[1], t[2]});
+  }
   mesh.regions.push_back(std::move(region));
   return mesh;
 }
@@ -78,78 +86,65 @@ std::vector<std::size_t> nodes_on(const Mesh& mesh, const std::vector<std::array
   return result;
 }
 
-double least_quality(const TetMesh& tets) {
-  double least = 1;
-  for (const Tetrahedron& t : tets.cells)
-    least = std::min(least,
-                     tet_quality(tets.points[t[0]], tets.points[t[1]], tets.points[t[2]], tets.points[t[3]]));
-  return least;
-}
-
-// Where the points of a yarn's surface are in the end; empty: where they are.
+// Where the points of a yarn's skin are in the end; empty: where they are.
 using Places = std::vector<Vec3>;
 
-// TetGen's tetrahedra inside the surface as it is, then with the surface's points in their places. They go a
-// short way, and cost a little of the angles; `target`, where it is 0, becomes what the smallest one was
-// before. (For a surface that is moved first TetGen makes other tetrahedra, whose smallest angle may be any.)
-// Where a tetrahedron would turn inside out, the moved surface is filled.
-Result<TetMesh> fill(const SurfaceMesh& surface, const Places& kept, double size, const MeshOptions& options,
-                     const std::filesystem::path& program, double& target) {
-  TetgenJob job{.points = surface.points, .triangles = surface.triangles};
-  job.max_volume = largest_volume(size);
-  job.smallest_feature = size;
+// Tetrahedra inside the skin with its points in their places. Where triangles come into each other's way,
+// which happens when they are longer than the yarn is thin, it is the skin as it is that is filled, and then
+// moved; or left, where a tetrahedron would turn.
+Result<TetMesh> fill(const Skin& skin, const Places& kept, double size, const MeshOptions& options,
+                     const std::filesystem::path& program) {
+  const std::vector<Vec3>& round = skin.nodes.points;
   const TetgenLimits limits{.timeout = options.timeout, .memory = options.memory};
+  TetgenJob job{.points = round, .triangles = skin.surface.triangles, .smallest_feature = size};
+  if (!kept.empty()) job.points = kept;
   Result<TetMesh> tets = run_tetgen(program, job, limits);
-  if (!tets || kept.empty()) return tets;
-  const double before = least_quality(*tets);
-  std::copy(kept.begin(), kept.end(), tets->points.begin());
-  const double after = least_quality(*tets);
-  if (after == inverted_quality) {
-    job.points = kept;
-    return run_tetgen(program, job, limits);
-  }
-  if (target == 0 && after < before) target = angle_of_quality(before);
+  if (tets || kept.empty() || tets.error().kind == Kind::limit) return tets;
+  job.points = round;
+  tets = run_tetgen(program, job, limits);
+  if (!tets) return tets;
+  std::vector<Vec3>& p = tets->points;
+  std::copy(kept.begin(), kept.end(), p.begin());
+  const bool turns = std::any_of(tets->cells.begin(), tets->cells.end(), [&](const Tetrahedron& t) {
+    return tet_quality(p[t[0]], p[t[1]], p[t[2]], p[t[3]]) == inverted_quality;
+  });
+  if (turns) std::copy(round.begin(), round.end(), p.begin());
   return tets;
 }
 
-Result<YarnMesh> mesh_yarn(const yarn::Body& body, const SurfaceMesh& surface, const Places& kept, Unit units,
+Result<YarnMesh> mesh_yarn(const yarn::Body& body, const Skin& skin, const Places& kept, Unit units,
                            const MeshOptions& options, const std::filesystem::path& program) {
-  const double size = std::min(size_for(body, options), surface.coarsest), scale = millimetres_per(units);
-  double target = options.min_dihedral;
-  Result<TetMesh> tets = fill(surface, kept, size, options, program, target);
+  const double size = size_for(body, options), scale = millimetres_per(units);
+  Result<TetMesh> tets = fill(skin, kept, size, options, program);
   if (!tets) return tets.error();
+  tets->regions.assign(tets->cells.size(), 0);
+  ImproveOptions improving;
+  improving.target = options.min_dihedral;
+  improving.refine = {.max_volume = largest_volume(size)};
+  const Improvement improvement =
+      improve(tets->points, tets->cells, tets->regions, skin.nodes.points.size(), improving);
 
   YarnMesh result;
-  if (target > 0) {
-    tets->regions.assign(tets->cells.size(), 0);
-    const Improvement improvement =
-        improve(tets->points, tets->cells, tets->regions, surface.points.size(), {.target = target});
-    if (options.min_dihedral > 0) {
-      result.angles = count(improvement, target);
-      result.notes = describe(improvement, target, name_of(units));
-    }
-  }
-  result.mesh = assemble(*tets, surface, body);
+  result.angles = count(improvement, options.min_dihedral);
+  result.notes = describe(improvement, options.min_dihedral, name_of(units));
+  result.mesh = assemble(*tets, skin, body);
   Mesh& mesh = result.mesh;
   std::vector<double> known(mesh.nodes.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < surface.parameters.size(); ++i) known[i] = surface.parameters[i].y();
+  for (std::size_t k = 0; k < skin.nodes.places.size(); ++k)
+    if (skin.nodes.places[k].body != no_body) known[k] = skin.nodes.places[k].parameters.y();
   add_fibres(mesh, mesh.regions.front(), body, parameters_along(mesh, mesh.regions.front(), body, known, 1));
   if (options.order == 2) {
-    const MidsideNodes nodes = add_midside_nodes(mesh, surface, body);
-    if (nodes.held > 0) {
-      Message note =
-          warning(Kind::geometry, fmt::format("{} midside nodes were held back from the yarn's surface, by "
-                                              "up to {:.2g} mm, so that no element folds",
-                                              nodes.held, nodes.farthest * scale));
-      note.severity = Severity::note;
-      result.notes.push_back(std::move(note));
-    }
+    const MidsideNodes nodes = add_midside_nodes(
+        mesh,
+        {{&body, 1}, skin.nodes.places, 1, box_round(body), {}, skin.surface.caps, skin.surface.triangles});
+    if (nodes.held > 0) result.notes.push_back(told_of(nodes, scale));
   }
   Region& region = mesh.regions.front();
   region.start_nodes = nodes_on(mesh, region.start_faces);
   region.end_nodes = nodes_on(mesh, region.end_faces);
   region.last_node = mesh.nodes.size();
   region.exact_volume = body.volume * scale * scale * scale;
+  region.length = body.length * scale;
   for (Vec3& node : mesh.nodes) node *= scale;
   return result;
 }
@@ -217,35 +212,23 @@ std::vector<std::optional<Result<Part>>> for_all(std::size_t count, int threads,
 
 // The surfaces of all yarns as one: their nodes leave the B-spline surfaces so that no volume is lost.
 std::vector<Places> keep_volumes(std::span<const yarn::Body> bodies,
-                                 const std::vector<std::optional<Result<SurfaceMesh>>>& all, int threads) {
+                                 const std::vector<std::optional<Result<Skin>>>& skins, int threads) {
+  std::vector<std::vector<YarnFacet>> parts(bodies.size());
+  for_each_index(bodies.size(), threads,
+                 [&](std::size_t i) { parts[i] = facets_of(bodies.subspan(i, 1), **skins[i], 1); });
   std::vector<Vec3> points;
   std::vector<YarnFacet> facets;
   std::vector<double> volumes;
-  std::vector<std::size_t> first_facet;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const SurfaceMesh& surface = **all[i];
     const auto first = static_cast<std::uint32_t>(points.size());
-    first_facet.push_back(facets.size());
-    points.insert(points.end(), surface.points.begin(), surface.points.end());
+    points.insert(points.end(), (*skins[i])->nodes.points.begin(), (*skins[i])->nodes.points.end());
     volumes.push_back(bodies[i].volume);
-    for (const Triangle& t : surface.triangles)
-      facets.push_back({.corners = {first + t[0], first + t[1], first + t[2]},
-                        .yarn = static_cast<std::uint32_t>(i),
-                        .part = YarnFacet::Part::end});
-  }
-  for_each_index(bodies.size(), threads, [&](std::size_t i) {
-    const SurfaceMesh& surface = **all[i];
-    for (std::size_t k = 0; k < surface.side_triangles; ++k) {
-      YarnFacet& facet = facets[first_facet[i] + k];
-      facet.part = YarnFacet::Part::side;
-      std::array<SurfaceEnd, 3> corners;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::uint32_t point = surface.triangles[k][c];
-        corners[c] = {surface.parameters[point], surface.points[point]};
-      }
-      facet.height = mean_height(bodies[i], corners);
+    for (YarnFacet& facet : parts[i]) {
+      for (std::uint32_t& corner : facet.corners) corner += first;
+      facet.yarn = static_cast<std::uint32_t>(i);
+      facets.push_back(facet);
     }
-  });
+  }
   // In a cloth that is jammed there is no room beside its gaps: nothing is meshed in them, they need only
   // stay.
   constexpr double right = 1e-3;
@@ -257,9 +240,9 @@ std::vector<Places> keep_volumes(std::span<const yarn::Body> bodies,
   }
   std::vector<Places> kept;
   auto next = points.begin();
-  for (const auto& surface : all) {
+  for (const auto& skin : skins) {
     const auto first = next;
-    next += static_cast<std::ptrdiff_t>((*surface)->points.size());
+    next += static_cast<std::ptrdiff_t>((*skin)->nodes.points.size());
     kept.emplace_back(first, next);
   }
   return kept;
@@ -286,18 +269,17 @@ Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body
   const Result<std::filesystem::path> program = find_worker("selvage-tetgen");
   if (!program) return program.error();
   const double scale = millimetres_per(units);
-  auto surfaces = for_all<SurfaceMesh>(bodies.size(), options.threads, [&](std::size_t i) {
-    return mesh_surface(bodies[i], size_for(bodies[i], options));
-  });
+  auto skins = for_all<Skin>(bodies.size(), options.threads,
+                             [&](std::size_t i) { return skin_of(bodies[i], options); });
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (!surfaces[i]->ok()) return about(surfaces[i]->error(), bodies[i], fabric);
+    if (!skins[i]->ok()) return about(skins[i]->error(), bodies[i], fabric);
   std::vector<Places> kept(bodies.size());
-  if (options.order == 1) kept = keep_volumes(bodies, surfaces, options.threads);
+  if (options.order == 1) kept = keep_volumes(bodies, skins, options.threads);
   std::mutex one_at_a_time;
   std::size_t done = 0;
   auto parts = for_all<YarnMesh>(bodies.size(), options.threads, [&](std::size_t i) {
-    Result<YarnMesh> part = mesh_yarn(bodies[i], **surfaces[i], kept[i], units, options, *program);
-    surfaces[i].reset();
+    Result<YarnMesh> part = mesh_yarn(bodies[i], **skins[i], kept[i], units, options, *program);
+    skins[i].reset();
     kept[i] = {};
     const std::scoped_lock lock(one_at_a_time);
     if (options.progress) options.progress(++done, bodies.size());
@@ -307,15 +289,12 @@ Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body
   Mesh mesh;
   mesh.order = options.order;
   mesh.title = fabric.title.value_or("");
+  mesh.angles.emplace().wanted = options.min_dihedral;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (!parts[i]->ok()) return about(parts[i]->error(), bodies[i], fabric);
     for (Message& note : (*parts[i])->notes) diagnostics.add(about(std::move(note), bodies[i], fabric));
-    if (options.min_dihedral > 0) {
-      if (!mesh.angles) mesh.angles.emplace();
-      mesh.angles->wanted = options.min_dihedral;
-      mesh.angles->below += (*parts[i])->angles.below;
-      mesh.angles->in_wedges += (*parts[i])->angles.in_wedges;
-    }
+    mesh.angles->below += (*parts[i])->angles.below;
+    mesh.angles->in_wedges += (*parts[i])->angles.in_wedges;
     append(mesh, std::move((*parts[i])->mesh));
     parts[i].reset();
   }

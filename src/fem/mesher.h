@@ -14,12 +14,13 @@
 namespace selvage::fem {
 
 struct MeshOptions {
-  double size = 0;  // wanted edge length, in the bodies' unit; 0: a quarter of the smallest section extent
-  int order = 1;    // 1 | 2
-  double min_dihedral = 0;  // degrees wanted, 0..30 (improve.h); 0: as TetGen leaves it
-  double timeout = 300;     // seconds a yarn
-  double memory = 4096;     // MiB a yarn
-  int threads = 1;          // workers at once
+  // Largest edge, in the bodies' unit, at most the yarn's narrowest section; 0: a quarter of that.
+  double size = 0;
+  int order = 1;             // 1 | 2
+  double min_dihedral = 10;  // degrees wanted, 0..30 (improve.h)
+  double timeout = 300;      // seconds a yarn
+  double memory = 4096;      // MiB a yarn
+  int threads = 1;           // workers at once
   std::function<void(std::size_t done, std::size_t total)> progress{};
 };
 

@@ -1,38 +1,184 @@
 #include "fem/midside.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "fem/curved_edges.h"
+#include "fem/sides.h"
 
 namespace selvage::fem {
 namespace {
 
-std::vector<CurvedEdge> curved_edges(const SurfaceMesh& skin, const yarn::Body& body) {
-  std::vector<CurvedEdge> result;
-  auto each_edge = [](std::span<const Triangle> triangles, auto use) {
-    for (const Triangle& t : triangles)
-      for (std::size_t k = 0; k < 3; ++k) use(t[k], t[(k + 1) % 3]);
-  };
-  // Each edge of the side is seen twice, once in each direction, but for those of the rims.
-  each_edge(skin.side(), [&](std::uint32_t a, std::uint32_t b) {
-    result.push_back({edge_key(a, b), middle_on_surface(body, {skin.parameters[a], skin.points[a]},
-                                                        {skin.parameters[b], skin.points[b]})});
-  });
-  auto add_cap = [&](std::span<const Triangle> triangles, const std::optional<EndCap>& cap) {
-    each_edge(triangles, [&](std::uint32_t a, std::uint32_t b) {
-      const Vec3 chord = (skin.points[a] + skin.points[b]) / 2;
-      result.push_back({edge_key(a, b), cap->is_flat() ? chord : cap->lift(cap->project(chord))});
-    });
-  };
-  add_cap(skin.start(), skin.start_cap);
-  add_cap(skin.end(), skin.end_cap);
-  // The side's come first: a rim's middle is the side's.
-  sort_edges(result);
+class CellEdges {
+ public:
+  CellEdges(const Mesh& mesh, const CellSurface& surface)
+      : mesh_(mesh), surface_(surface), snug_(1e-9 * surface.box.diagonal().norm()) {}
+
+  // The edges of the yarns' surfaces, with their middles.
+  [[nodiscard]] std::vector<CurvedEdge> curved() const;
+  // Of the edges in faces that face each other over a periodic axis, those of the high one take the middle of
+  // their opposite.
+  [[nodiscard]] std::vector<TiedEdges> tie(std::vector<CurvedEdge>& edges) const;
+
+ private:
+  // The axis of the face of the box that both nodes are on; none: -1.
+  [[nodiscard]] int face_axis(std::size_t a, std::size_t b) const;
+  [[nodiscard]] bool is_on(std::size_t node, int axis, bool high) const {
+    const double plane = high ? surface_.box.max()[axis] : surface_.box.min()[axis];
+    return std::abs(mesh_.nodes[node][axis] - plane) <= snug_;
+  }
+  // In a face of the box, or (all on one yarn's surface) at the yarn's own end.
+  [[nodiscard]] bool is_flat(const std::array<std::size_t, 3>& triangle) const;
+  [[nodiscard]] std::optional<Vec3> middle(std::size_t a, std::size_t b) const;
+  void tie_over(int axis, std::vector<CurvedEdge>& edges, std::vector<TiedEdges>& tied) const;
+
+  const Mesh& mesh_;
+  const CellSurface& surface_;
+  double snug_;
+};
+
+int CellEdges::face_axis(std::size_t a, std::size_t b) const {
+  for (int axis = 0; axis < 3; ++axis)
+    if (mesh_.nodes[a][axis] == mesh_.nodes[b][axis] && (is_on(a, axis, false) || is_on(a, axis, true)))
+      return axis;
+  return -1;
+}
+
+std::optional<Vec3> CellEdges::middle(std::size_t a, std::size_t b) const {
+  if (std::max(a, b) >= surface_.places.size()) return std::nullopt;
+  const SurfacePlace &from = surface_.places[a], &to = surface_.places[b];
+  if (from.body == CellSurface::no_body || from.body != to.body) return std::nullopt;
+  const yarn::Body& body = surface_.bodies[from.body];
+  const SurfaceEnd start{from.parameters, mesh_.nodes[a] / surface_.scale},
+      end{to.parameters, mesh_.nodes[b] / surface_.scale};
+  const int axis = face_axis(a, b);
+  if (axis < 0) return middle_on_surface(body, start, end) * surface_.scale;
+  std::optional<Vec3> result = middle_in_plane(body, start, end, axis);
+  if (!result) return std::nullopt;
+  *result *= surface_.scale;
+  (*result)[axis] = mesh_.nodes[a][axis];
   return result;
+}
+
+bool CellEdges::is_flat(const std::array<std::size_t, 3>& t) const {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool high : {false, true})
+      if (is_on(t[0], axis, high) && is_on(t[1], axis, high) && is_on(t[2], axis, high)) return true;
+  // The yarn's own end: all three on the rim.
+  const SurfacePlace& first = surface_.places[t[0]];
+  const yarn::Body& body = surface_.bodies[first.body];
+  if (body.closed_along) return false;
+  for (const double end : {body.surface.first_v(), body.surface.last_v()}) {
+    const double snug = 1e-9 * (body.surface.last_v() - body.surface.first_v());
+    if (std::all_of(t.begin(), t.end(), [&](std::size_t node) {
+          return std::abs(surface_.places[node].parameters.y() - end) <= snug;
+        }))
+      return true;
+  }
+  return false;
+}
+
+std::vector<CurvedEdge> CellEdges::curved() const {
+  std::vector<std::uint64_t> keys;
+  for (const OuterSide& side : outer_sides(mesh_)) {
+    const std::array<std::size_t, 3> t = {side.nodes[0], side.nodes[1], side.nodes[2]};
+    // Between a yarn and the rest, all of it on one yarn's surface.
+    const std::size_t last = *std::max_element(t.begin(), t.end());
+    if (last >= surface_.places.size()) continue;
+    const std::size_t body = surface_.places[t[0]].body;
+    if (body == CellSurface::no_body || surface_.places[t[1]].body != body ||
+        surface_.places[t[2]].body != body || is_flat(t))
+      continue;
+    for (std::size_t k = 0; k < 3; ++k) keys.push_back(edge_key(t[k], t[(k + 1) % 3]));
+  }
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  std::vector<CurvedEdge> result;
+  for (const std::uint64_t key : keys)
+    if (const auto at = middle(key >> 32U, key & 0xffffffffU)) result.push_back({key, *at});
+  for (const CellTriangles::Cap& cap : surface_.caps)
+    for (const Triangle& t : surface_.triangles.subspan(cap.first, cap.count))
+      for (std::size_t k = 0; k < 3 && !cap.shape.is_flat(); ++k) {
+        const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+        const Vec3 chord = (mesh_.nodes[a] + mesh_.nodes[b]) / (2 * surface_.scale);
+        result.push_back({edge_key(a, b), cap.shape.lift(cap.shape.project(chord)) * surface_.scale});
+      }
+  sort_edges(result);  // a rim's middle is its side's, which stands first
+  return result;
+}
+
+void CellEdges::tie_over(int axis, std::vector<CurvedEdge>& edges, std::vector<TiedEdges>& tied) const {
+  const int across = (axis + 1) % 3, up = (axis + 2) % 3;
+  struct Place {
+    double across, up;
+    std::size_t node;
+    bool operator<(const Place& other) const {
+      return across != other.across ? across < other.across : up < other.up;
+    }
+  };
+  // The nodes at the ends of curved edges in the low face.
+  std::vector<Place> low;
+  const auto is_in = [&](const CurvedEdge& edge, bool high) {
+    return is_on(edge.key >> 32U, axis, high) && is_on(edge.key & 0xffffffffU, axis, high);
+  };
+  for (const CurvedEdge& edge : edges)
+    if (is_in(edge, false))
+      for (const std::size_t node : {edge.key >> 32U, edge.key & 0xffffffffU})
+        low.push_back({mesh_.nodes[node][across], mesh_.nodes[node][up], node});
+  std::sort(low.begin(), low.end());
+  const auto opposite = [&](std::size_t node) -> std::optional<std::size_t> {
+    const Place wanted{mesh_.nodes[node][across], mesh_.nodes[node][up], 0};
+    const auto at = std::lower_bound(low.begin(), low.end(), wanted);
+    if (at == low.end() || wanted < *at) return std::nullopt;
+    return at->node;
+  };
+  std::vector<std::uint64_t> paired;
+  for (CurvedEdge& edge : edges) {
+    if (!is_in(edge, true)) continue;
+    const auto a = opposite(edge.key >> 32U), b = opposite(edge.key & 0xffffffffU);
+    if (!a || !b) continue;
+    const std::uint64_t key = edge_key(*a, *b);
+    const auto other = std::lower_bound(edges.begin(), edges.end(), key,
+                                        [](const CurvedEdge& e, std::uint64_t k) { return e.key < k; });
+    if (other == edges.end() || other->key != key) continue;
+    edge.middle[across] = other->middle[across];
+    edge.middle[up] = other->middle[up];
+    tied.push_back({edge.key, key});
+    paired.insert(paired.end(), {edge.key, key});
+  }
+  // One that has no curved opposite stays on its chord, as its opposite does.
+  std::sort(paired.begin(), paired.end());
+  std::erase_if(edges, [&](const CurvedEdge& edge) {
+    return (is_in(edge, false) || is_in(edge, true)) &&
+           !std::binary_search(paired.begin(), paired.end(), edge.key);
+  });
+}
+
+std::vector<TiedEdges> CellEdges::tie(std::vector<CurvedEdge>& edges) const {
+  std::vector<TiedEdges> tied;
+  for (int axis = 0; axis < 3; ++axis)
+    if (surface_.periodic[static_cast<std::size_t>(axis)]) tie_over(axis, edges, tied);
+  return tied;
 }
 
 }  // namespace
 
-MidsideNodes add_midside_nodes(Mesh& mesh, const SurfaceMesh& surface, const yarn::Body& body) {
-  return add_midside_nodes(mesh, curved_edges(surface, body), {});
+Message told_of(const MidsideNodes& nodes, double scale) {
+  Message note = warning(Kind::geometry,
+                         fmt::format("{} midside nodes were held back from the yarns' surfaces so that no "
+                                     "element folds, the farthest by {:.3g} mm",
+                                     nodes.held, nodes.farthest * scale));
+  note.severity = Severity::note;
+  return note;
+}
+
+MidsideNodes add_midside_nodes(Mesh& mesh, const CellSurface& surface) {
+  const CellEdges cell(mesh, surface);
+  std::vector<CurvedEdge> edges = cell.curved();
+  const std::vector<TiedEdges> tied = cell.tie(edges);
+  return add_midside_nodes(mesh, edges, tied);
 }
 
 }  // namespace selvage::fem

@@ -5,8 +5,9 @@
 #include <cstddef>
 #include <span>
 
+#include "core/diagnostics.h"
+#include "fem/cell_surfaces.h"
 #include "fem/mesh.h"
-#include "fem/surface_mesh.h"
 #include "yarn/body.h"
 
 namespace selvage::fem {
@@ -15,6 +16,9 @@ struct MidsideNodes {
   std::size_t held = 0;  // taken back toward their chord
   double farthest = 0;   // the longest way that one of them was taken back, in the mesh's unit
 };
+
+// The same as a note; `scale`: mm per unit of the mesh.
+Message told_of(const MidsideNodes& nodes, double scale);
 
 // What the midside nodes of a unit cell follow.
 struct CellSurface {
@@ -26,6 +30,9 @@ struct CellSurface {
   double scale = 1;  // mm per file unit
   Box3 box{};        // the cell, mm
   std::array<bool, 3> periodic{};
+  // End faces that are not flat: edges of their triangles (nodes of the mesh) are lifted to them.
+  std::span<const CellTriangles::Cap> caps{};
+  std::span<const Triangle> triangles{};
 };
 
 // Gives the corner-only elements of a unit cell (mm, regions filled) their six midside nodes, appended to the
@@ -34,9 +41,5 @@ struct CellSurface {
 // those of opposite faces where the cell is periodic are the same to the bit. They are taken back toward the
 // chord where a scaled Jacobian would fall below 0.1 (or 0.9 of the straight one where that is lower).
 MidsideNodes add_midside_nodes(Mesh& mesh, const CellSurface& surface);
-
-// The same for a yarn of a dry fabric: `mesh` has one region, in file units, whose first nodes are the
-// surface's points.
-MidsideNodes add_midside_nodes(Mesh& mesh, const SurfaceMesh& surface, const yarn::Body& body);
 
 }  // namespace selvage::fem

@@ -226,7 +226,8 @@ class Rule {
 
   [[nodiscard]] double at(const Raster& raster, std::size_t i, std::size_t j) const {
     const std::size_t k = raster.index(i, j);
-    const double bound = std::min({from_gap(raster, k), from_faces(raster, k), from_curvature(raster, i, j)});
+    double bound = from_curvature(raster, i, j);
+    if (rules_.gap_factor > 0) bound = std::min({bound, from_gap(raster, k), from_faces(raster, k)});
     return std::max(std::min(bound, own(raster).largest), rules_.smallest);
   }
 

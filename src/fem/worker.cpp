@@ -77,9 +77,6 @@ Result<Descriptor> write_request(const TetgenJob& job, const TetgenLimits& limit
   RequestHead head;
   head.points = job.points.size();
   head.triangles = job.triangles.size();
-  head.max_volume = job.max_volume;
-  head.radius_edge = job.radius_edge;
-  head.min_dihedral = job.min_dihedral;
   head.epsilon = relative_epsilon(job);
   head.memory = limits.memory * 1024 * 1024;
   head.cpu_seconds = std::ceil(limits.timeout) + 1;

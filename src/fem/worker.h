@@ -1,4 +1,5 @@
-// The program's side of selvage-tetgen: hands it one closed surface, watches it, and judges what comes back.
+// The program's side of selvage-tetgen: hands it closed surfaces, watches it, and judges what comes back:
+// tetrahedra of their points only (refine.h puts others in).
 #pragma once
 
 #include <array>
@@ -26,9 +27,6 @@ struct TetgenJob {
   // One a triangle, where they part several regions (numbered from 0) from each other and from the outside.
   // Empty: one region, behind all of them.
   std::span<const Sides> sides{};
-  double max_volume = 0;     // of one tetrahedron; 0: no bound
-  double radius_edge = 1.4;  // largest ratio of circumradius to shortest edge wanted; 0: no points are put in
-  double min_dihedral = 0;   // degrees; 0: TetGen's default
   double smallest_feature = 0;  // lengths far below this one mean nothing; 0: TetGen's default tolerance
 };
 
@@ -39,7 +37,7 @@ struct TetgenLimits {
 
 struct TetMesh {
   std::vector<Vec3> points;  // the job's own first, to the bit
-  // Corners with positive volume, ((p1-p0) x (p2-p0)) . (p3-p0) > 0.
+  // ((p1-p0) x (p2-p0)) . (p3-p0) >= 0: between triangles of one plane there can be flat ones.
   std::vector<std::array<std::uint32_t, 4>> cells;
   std::vector<std::uint32_t> regions;  // of each cell; empty without TetgenJob::sides
 };

@@ -4,7 +4,6 @@
 
 #include "core/parallel.h"
 #include "fem/cell_surfaces.h"
-#include "fem/end_cap.h"
 #include "fem/triangle_mesh.h"
 #include "fem/unrolled.h"
 
@@ -162,6 +161,7 @@ Status add_end(const CellShape& shape, const cell::Piece& piece, const cell::Bor
     number.push_back(nodes.add(mesh->points[k], {no_body, Vec2::Zero()}));
   const Sides sides{static_cast<std::uint32_t>(piece.body),
                     options.matrix ? CellTriangles::matrix : Sides::outside};
+  result.caps.push_back({cap, result.triangles.size(), mesh->triangles.size()});
   for (const auto& t : mesh->triangles)
     result.add({number[t[0]], number[t[1]], number[t[2]]}, sides,
                is_end ? CellTriangles::Part::end : CellTriangles::Part::start);

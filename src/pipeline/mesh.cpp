@@ -33,7 +33,7 @@ fem::MeshOptions mesh_options(Job& job) {
   fem::MeshOptions options;
   options.size = given.size;
   options.order = std::max(given.order, 1);
-  options.min_dihedral = given.min_dihedral;
+  if (given.min_dihedral > 0) options.min_dihedral = given.min_dihedral;
   set_mesher_limits(given, options);
   options.threads = static_cast<int>(job.threads);
   options.progress = [&job](std::size_t done, std::size_t total) {

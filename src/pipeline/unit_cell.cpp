@@ -16,7 +16,6 @@
 #include "fabric/repeat.h"
 #include "fem/cell_size.h"
 #include "fem/fibre.h"
-#include "fem/surface_mesh.h"
 #include "pipeline/overlaps.h"
 
 namespace selvage::pipeline {
@@ -243,7 +242,7 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
   const std::optional<fabric::Repeat> repeat = builder.repeat();
   const Box3 box = box_of(fabric);
   double thinnest = infinity;
-  for (const yarn::Body& body : bodies) thinnest = std::min(thinnest, fem::smallest_section_extent(body));
+  for (const yarn::Body& body : bodies) thinnest = std::min(thinnest, yarn::narrowest_section(body));
   const double tolerance = tolerance_share * thinnest;
   std::array<bool, 3> periodic{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -281,7 +280,7 @@ bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<cons
   const Box3 box = box_of(fabric);
   bool fits = true;
   for (const yarn::Body& body : bodies) {
-    const double room = least_gap_share * fem::smallest_section_extent(body);
+    const double room = least_gap_share * yarn::narrowest_section(body);
     const std::span<const yarn::Body> alone(&body, 1);
     double lowest = infinity, highest = -infinity;
     for (const Vec3& p : grid_of(body.surface).points) {
@@ -307,7 +306,7 @@ bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<cons
                       : std::abs(reach - face) <= room ? "touches"
                                                        : "goes beyond",
                       top ? "top" : "bottom", face, reach,
-                      reach + (top ? 0.1 : -0.1) * fem::smallest_section_extent(body)));
+                      reach + (top ? 0.1 : -0.1) * yarn::narrowest_section(body)));
       message.yarn = body.name;
       job.say(std::move(message));
       fits = false;
@@ -348,7 +347,7 @@ bool check_grazed_faces(Job& job, const fabric::Fabric& fabric, std::span<const 
   const Box3 box = box_of(fabric);
   for (const yarn::Body& body : bodies) {
     // Two yarns as near as they may be have a face between them.
-    const double room = least_gap_share / 2.0 * fem::smallest_section_extent(body);
+    const double room = least_gap_share / 2.0 * yarn::narrowest_section(body);
     const Grid grid = grid_of(body.surface);
     for (int face = 0; face < cell::face_count; ++face) {
       const int axis = cell::axis_of(face);
@@ -387,7 +386,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
                      double wanted) {
   const Box3 box = box_of(fabric);
   double thickest = 0.0;
-  for (const yarn::Body& body : bodies) thickest = std::max(thickest, fem::smallest_section_extent(body));
+  for (const yarn::Body& body : bodies) thickest = std::max(thickest, yarn::narrowest_section(body));
   contact::ContactOptions options;
   options.reach = std::max(wanted, least_gap_share * thickest);
   options.threads = static_cast<int>(job.threads);
@@ -426,8 +425,8 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
                                                          a, nearest->gap, name_of(fabric.units))
                                                    : fmt::format("yarns '{}' and '{}' are {:.3g} {} apart", a,
                                                                  b, nearest->gap, name_of(fabric.units));
-  const double thin = std::min(fem::smallest_section_extent(bodies[nearest->a]),
-                               fem::smallest_section_extent(bodies[nearest->b]));
+  const double thin =
+      std::min(yarn::narrowest_section(bodies[nearest->a]), yarn::narrowest_section(bodies[nearest->b]));
   if (nearest->gap < least_gap_share * thin && !job.options.force) {
     Message message = error(
         Kind::geometry,
@@ -464,7 +463,7 @@ std::vector<double> sizes_of(const Options& options, std::span<const yarn::Body>
       size = std::min(size, fem::section_perimeter(body, middle) / options.segments);
     }
     if (size == infinity)
-      size = std::min(std::sqrt(body.volume / body.length) / 4.0, fem::smallest_section_extent(body));
+      size = std::min(std::sqrt(body.volume / body.length) / 4.0, yarn::narrowest_section(body));
     sizes.push_back(size);
   }
   return sizes;
@@ -477,7 +476,7 @@ void keep_to_thickness(Job& job, const fabric::Fabric& fabric, std::span<const y
   std::size_t count = 0, worst = 0;
   double least = infinity;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const double thickness = fem::smallest_section_extent(bodies[b]);
+    const double thickness = yarn::narrowest_section(bodies[b]);
     if (sizes[b] > (1.0 + rounding) * thickness) {
       ++count;
       if (thickness < least) worst = b;

@@ -108,6 +108,43 @@ double widest_section(const Body& body) {
   return widest;
 }
 
+double narrowest_section(const Body& body) {
+  constexpr int sections = 17, directions = 36, round = 64;
+  const nurbs::Surface& surface = body.surface;
+  std::vector<double> us, vs;
+  for (int i = 0; i < round; ++i)
+    us.push_back(surface.first_u() + (surface.last_u() - surface.first_u()) * i / round);
+  for (int j = 0; j < sections; ++j)
+    vs.push_back(surface.first_v() + (surface.last_v() - surface.first_v()) * j / (sections - 1));
+  const std::vector<Vec3> points = nurbs::evaluate_grid(surface, us, vs);
+  std::vector<double> extents;
+  for (std::size_t j = 0; j < sections; ++j) {
+    const std::span<const Vec3> row = std::span(points).subspan(j * round, round);
+    // The section's own normal, from the area that it encloses.
+    Vec3 normal = Vec3::Zero();
+    for (std::size_t i = 0; i + 2 < row.size(); ++i)
+      normal += (row[i + 1] - row[0]).cross(row[i + 2] - row[0]);
+    const Vec3 x = normal.unitOrthogonal(), y = normal.normalized().cross(x);
+    double extent = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < directions; ++k) {
+      const double angle = std::numbers::pi * k / directions;
+      const Vec3 direction = std::cos(angle) * x + std::sin(angle) * y;
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      for (const Vec3& point : row) {
+        low = std::min(low, direction.dot(point));
+        high = std::max(high, direction.dot(point));
+      }
+      extent = std::min(extent, high - low);
+    }
+    extents.push_back(extent);
+  }
+  const double largest = *std::max_element(extents.begin(), extents.end());
+  double result = largest;
+  for (const double extent : extents)
+    if (extent >= largest / 10) result = std::min(result, extent);
+  return result;
+}
+
 Box3 bounds(const Body& body) {
   Box3 box;
   for (const Vec3& p : body.surface.points) box.extend(p);

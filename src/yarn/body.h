@@ -105,6 +105,10 @@ double end_gap(const Body& body, bool last);
 // The largest diagonal of a box round one row of control points: no section is wider.
 double widest_section(const Body& body);
 
+// The smallest width of the body's sections over all directions across the path; sections smaller than a
+// tenth of the largest one are passed over (a yarn that runs to a point). File units.
+double narrowest_section(const Body& body);
+
 // The body's box (of its control points).
 Box3 bounds(const Body& body);
 

@@ -52,17 +52,13 @@ class KeptVolume(Case):
                 for volume, wanted in zip(volumes, entry["yarns"], strict=True):
                     self.assertLess(abs(volume / wanted["volume"] - 1), TOLERANCE, wanted["name"])
 
-    def test_angles_are_kept(self):
-        """Of each yarn the smallest one is at least that of the same mesh with its corners on the B-spline surface, where order 2
-        leaves them. (TetGen's own for the moved surface was 2.7 degrees instead of 12.4 in plain4_grid.)"""
+    def test_angles(self):
+        """Ten degrees, whether corners have moved for the volume or not."""
         for name in ("plain4_grid", "weave_plain"):
-            with self.subTest(sample=name):
-                angles = {}
-                for order in ("1", "2"):
+            for order in ("1", "2"):
+                with self.subTest(sample=name, order=order):
                     read, *_ = self.mesh(SAMPLES / (name + ".txt"), "--order", order)
-                    angles[order] = {yarn: cell.dihedral_angles(read.points, rows).min() for yarn, rows in read.sets.items()}
-                for yarn, angle in angles["1"].items():
-                    self.assertGreater(angle, angles["2"][yarn] - 1e-3, yarn)
+                    self.assertGreaterEqual(min(cell.dihedral_angles(read.points, rows).min() for rows in read.sets.values()), 10 - 1e-6)
 
     def test_no_tetrahedron_turns(self):
         """Coarse triangles over a sharp crest, whose points go far: as far as the tetrahedra below them are high."""

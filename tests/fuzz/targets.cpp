@@ -5,7 +5,7 @@
 #include "core/text_report.h"
 #include "fabric/build.h"
 #include "fabric/from_cad.h"
-#include "fem/surface_mesh.h"
+#include "fem/skin.h"
 #include "fem/voxel.h"
 #include "formats/format.h"
 #include "formats/step/inspect.h"
@@ -109,7 +109,7 @@ void run_mesh(std::string_view bytes) {
   const std::vector<yarn::Body> bodies = bodies_of(*fabric, bytes);
   check(bodies);
   for (const yarn::Body& body : bodies)
-    static_cast<void>(fem::mesh_surface(body, fem::smallest_section_extent(body)));
+    static_cast<void>(fem::make_skin(body, yarn::narrowest_section(body)));
   if (fabric->cell)
     static_cast<void>(fem::mesh_voxels(
         *fabric, bodies, {.count = 8, .periodic = {true, true, false}, .matrix = true, .threads = 1},

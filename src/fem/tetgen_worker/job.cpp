@@ -92,24 +92,12 @@ void fill_surface(tetgenbehavior& settings, tetgenio& in, tetgenio& out) {
   mesh.outelements(&out);
 }
 
-// Y: the surface stays as it is. The numbers are set past the switches, whose parser does not take every form
-// of one.
+// Y: the surface stays as it is.
 Tetrahedra tetrahedralize(const Job& job) {
-  const RequestHead& wanted = job.settings;
-  const bool refined = wanted.radius_edge > 0;
-  tetgenbehavior settings = behavior(job, !refined                ? "pYMQ"
-                                          : wanted.max_volume > 0 ? "pYMQq1.4a1"
-                                                                  : "pYMQq1.4");
-  if (refined) settings.minratio = wanted.radius_edge;
-  settings.optmaxdihedral = 155;  // flat elements above it are improved; its own 165 leaves many
-  if (wanted.min_dihedral > 0) settings.mindihedral = wanted.min_dihedral;
-  if (wanted.max_volume > 0) settings.maxvolume = wanted.max_volume;
+  tetgenbehavior settings = behavior(job, "pYMQ");
   tetgenio in, out;
   fill(job, in);
-  if (refined)
-    ::tetrahedralize(&settings, &in, &out);
-  else
-    fill_surface(settings, in, out);
+  fill_surface(settings, in, out);
   Tetrahedra mesh;
   mesh.points.assign(out.pointlist, out.pointlist + 3 * static_cast<std::ptrdiff_t>(out.numberofpoints));
   mesh.cells.assign(out.tetrahedronlist,

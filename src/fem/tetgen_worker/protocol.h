@@ -12,16 +12,13 @@
 
 namespace selvage::fem {
 
-inline constexpr std::uint64_t request_magic = 0x31514552'54455453;
-inline constexpr std::uint64_t answer_magic = 0x31534e41'54455453;
+inline constexpr std::uint64_t request_magic = 0x32514552'54455453;
+inline constexpr std::uint64_t answer_magic = 0x32534e41'54455453;
 
 struct RequestHead {
   std::uint64_t magic = request_magic;
   std::uint64_t points = 0;
   std::uint64_t triangles = 0;
-  double max_volume = 0;    // of a tetrahedron; 0: no bound
-  double radius_edge = 0;   // largest ratio of circumradius to shortest edge
-  double min_dihedral = 0;  // degrees; 0: none
   double epsilon = 1e-8;    // TetGen's relative tolerance (of the box's diagonal)
   double memory = 0;        // bytes of address space; 0: no limit
   double cpu_seconds = 0;   // 0: no limit

@@ -10,7 +10,7 @@
 
 #include "core/module.h"
 #include "fem/quality.h"
-#include "fem/surface_mesh.h"
+#include "fem/skin.h"
 #include "fem/worker.h"
 #include "unit/fem/bodies.h"
 #include "unit/fem/plates.h"
@@ -63,7 +63,7 @@ std::map<std::uint32_t, double> volumes(const Tets& tets) {
     const Cell& t = tets.cells[c];
     const Vec3& o = tets.points[t[0]];
     const double six = (tets.points[t[1]] - o).cross(tets.points[t[2]] - o).dot(tets.points[t[3]] - o);
-    EXPECT_GT(six, 0);
+    EXPECT_GE(six, 0);
     result[tets.regions[c]] += six / 6;
   }
   return result;
@@ -76,6 +76,7 @@ Improvement improved(Tets& tets, double target) {
   EXPECT_NEAR(result.angle_before, least_angle(before), 1e-6);
   EXPECT_NEAR(result.angle_after, least_angle(tets), 1e-6);
   EXPECT_GE(result.angle_after, result.angle_before - 1e-9);
+  EXPECT_GT(result.angle_after, 0);
   EXPECT_GE(tets.points.size(), tets.fixed);
   for (std::size_t p = 0; p < std::min(tets.fixed, tets.points.size()); ++p)
     EXPECT_EQ(tets.points[p], before.points[p]);
@@ -142,10 +143,9 @@ Tets shaken_cubes(std::uint32_t n, double shake) {
   return tets;
 }
 
-Tets tetgen_mesh(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles, double volume) {
-  TetgenJob job{.points = points, .triangles = triangles};
-  job.max_volume = volume;
-  Result<TetMesh> mesh = run_tetgen(find_worker("selvage-tetgen").value(), job, {});
+Tets tetgen_mesh(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  Result<TetMesh> mesh =
+      run_tetgen(find_worker("selvage-tetgen").value(), {.points = points, .triangles = triangles}, {});
   if (!mesh) {
     ADD_FAILURE() << mesh.error().text;
     return {};
@@ -276,7 +276,7 @@ TEST(Improve, SliverInAnOctahedron) {
 TEST(Improve, GapsBetweenPlates) {
   for (const double edge : {1.0, 2.0, 3.0, 4.0}) {
     const test::ClosedSurface surface = test::two_plates(12, 1, edge);
-    Tets tets = tetgen_mesh(surface.points, surface.triangles, 0);
+    Tets tets = tetgen_mesh(surface.points, surface.triangles);
     const Improvement result = improved(tets, 10);
     EXPECT_GE(result.angle_after, 10) << edge;
   }
@@ -285,7 +285,7 @@ TEST(Improve, GapsBetweenPlates) {
 // Where the surface is too coarse for its gap, the account says what it would have to be.
 TEST(Improve, SurfaceTooCoarseForItsGap) {
   const test::ClosedSurface surface = test::two_plates(70, 1, 20);
-  Tets tets = tetgen_mesh(surface.points, surface.triangles, 0);
+  Tets tets = tetgen_mesh(surface.points, surface.triangles);
   const Improvement result = improved(tets, 10);
   ASSERT_FALSE(result.below.empty());
   for (const BelowTarget& below : result.below) {
@@ -336,7 +336,7 @@ TEST(Improve, NeedlesOfTheSurfaceAreNamed) {
   const std::vector<Triangle> triangles = {{0, 2, 1}, {0, 3, 2}, {7, 4, 8}, {7, 8, 9}, {7, 9, 5}, {7, 5, 6},
                                            {0, 1, 5}, {0, 5, 9}, {0, 9, 8}, {0, 8, 4}, {1, 2, 6}, {1, 6, 5},
                                            {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
-  Tets tets = tetgen_mesh(points, triangles, 0.02);
+  Tets tets = tetgen_mesh(points, triangles);
   const Improvement result = improved(tets, 15);
   ASSERT_FALSE(result.below.empty());
   for (const BelowTarget& below : result.below) {
@@ -367,12 +367,15 @@ TEST(Improve, EdgeOfTheSurfaceLosesCells) {
 }
 
 TEST(Improve, YarnFromTetgen) {
-  const Result<SurfaceMesh> surface = mesh_surface(test::straight_tube(1, 0.5, 3), 0.1);
-  ASSERT_TRUE(surface.ok());
-  Tets tets = tetgen_mesh(surface->points, surface->triangles, 0.00013);
-  const Improvement result = improved(tets, 18);
+  const yarn::Body body = test::straight_tube(1, 0.5, 3);
+  const Result<Skin> skin = make_skin(body, 0.1);
+  ASSERT_TRUE(skin.ok());
+  Tets tets = tetgen_mesh(skin->nodes.points, skin->surface.triangles);
+  const Improvement result = improve(tets.points, tets.cells, tets.regions, tets.fixed,
+                                     {.target = 18, .refine = RefineOptions{.max_volume = 0.00013}});
   EXPECT_LT(result.angle_before, 18);
   EXPECT_GE(result.angle_after, 18);
+  EXPECT_GE(least_angle(tets), 18 - 1e-6);
 }
 
 }  // namespace

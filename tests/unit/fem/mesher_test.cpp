@@ -41,9 +41,9 @@ double area(const Mesh& mesh, const std::vector<std::array<std::size_t, 3>>& fac
 TEST(Mesher, StraightTubeIsAreaTimesLength) {
   const Mesh mesh = mesh_of({straight_tube(1, 1, 5)}, {.size = 0.2});
   const Region& region = mesh.regions.front();
-  EXPECT_NEAR(region.volume, 5 * area(mesh, region.start_faces), 1e-6 * region.volume);
+  EXPECT_NEAR(region.volume, 5 * area(mesh, region.start_faces), 0.02 * region.volume);
   EXPECT_NEAR(region.volume, region.exact_volume, 1e-9 * region.exact_volume);
-  EXPECT_GT(mesh.quality.min_dihedral, 5);
+  EXPECT_GE(mesh.quality.min_dihedral, 10);
   EXPECT_GT(mesh.quality.min_scaled_jacobian, 0);
   EXPECT_EQ(mesh.worst.size(), 10U);
   EXPECT_EQ(mesh.worst.front().min_dihedral, mesh.quality.min_dihedral);
@@ -78,17 +78,20 @@ TEST(Mesher, MidsideNodesAreOnTheSurfaceAndBetweenTheirCorners) {
       {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
   double highest = 0;
   for (const Vec3& node : mesh.nodes) highest = std::max(highest, std::hypot(node.y(), node.z()));
-  std::size_t curved = 0;
+  std::size_t curved = 0, held = 0;
   for (const auto& element : mesh.elements)
     for (std::size_t k = 0; k < 6; ++k) {
       const Vec3 chord = (mesh.nodes[element[ends[k][0]]] + mesh.nodes[element[ends[k][1]]]) / 2;
       const Vec3& middle = mesh.nodes[element[4 + k]];
       if ((middle - chord).norm() < 1e-12) continue;
       ++curved;
-      EXPECT_NEAR(std::hypot(middle.y(), middle.z()), highest, 1e-3 * highest);
+      const double low = highest - std::hypot(middle.y(), middle.z());
+      EXPECT_LT(low, 0.02 * highest);    // of the chord: 0.06
+      if (low > 1e-3 * highest) ++held;  // so that no element folds
       EXPECT_LT((middle - chord).norm(), 0.1 * (mesh.nodes[element[ends[k][0]]] - chord).norm() + 0.05);
     }
-  EXPECT_GT(curved, 100U);
+  EXPECT_GT(curved, 1000U);
+  EXPECT_LT(held, curved / 50);
 }
 
 TEST(Mesher, OrientationFollowsTheYarn) {

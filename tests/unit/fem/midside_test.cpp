@@ -7,22 +7,23 @@
 #include <numbers>
 
 #include "core/module.h"
+#include "fem/cell_size.h"
 #include "fem/curved_edges.h"
 #include "fem/faces.h"
 #include "fem/improve.h"
 #include "fem/quality.h"
-#include "fem/surface_mesh.h"
+#include "fem/skin.h"
 #include "fem/worker.h"
 #include "unit/fem/bodies.h"
 
 namespace selvage::fem {
 namespace {
 
-// A wave along x of one period, flat at both ends.
+// A wave along x of three periods of 2.
 yarn::Body wave() {
-  return test::grid_body("wave", 24, 16, [](double angle, double share) {
-    return Vec3(2 * share, 0.4 * std::cos(angle),
-                0.2 * std::sin(angle) + 0.15 * std::cos(2 * std::numbers::pi * share));
+  return test::grid_body("wave", 24, 49, [](double angle, double share) {
+    return Vec3(6 * share - 2, 0.4 * std::cos(angle),
+                0.2 * std::sin(angle) + 0.15 * std::cos(6 * std::numbers::pi * share));
   });
 }
 
@@ -61,56 +62,49 @@ double distance_to(const yarn::Body& body, const Vec3& point) {
   return least;
 }
 
-// The one yarn of a cell without a matrix, its ends in the faces x low and x high.
+// The one yarn of a cell without a matrix, which cuts one period out of it.
 struct CellOfYarn {
   yarn::Body body = wave();
   Mesh mesh;
-  std::vector<SurfacePlace> places;
+  Skin skin;
   CellSurface surface;
 };
 
 void fill(CellOfYarn& cell, double size) {
-  const Result<SurfaceMesh> skin = mesh_surface(cell.body, size);
-  ASSERT_TRUE(skin.ok());
-  std::vector<Vec3> points = skin->points;
-  const double low = 0, high = 2;
-  for (const std::uint32_t p : skin->start_points) points[p].x() = low;
-  // The high rim is a copy of the low one.
-  ASSERT_EQ(skin->start_points.size(), skin->end_points.size());
-  for (const std::uint32_t p : skin->end_points) {
-    const Vec3* nearest = &points[skin->start_points.front()];
-    for (const std::uint32_t q : skin->start_points)
-      if ((points[q] - points[p]).tail<2>().norm() < (*nearest - points[p]).tail<2>().norm())
-        nearest = &points[q];
-    ASSERT_LT((*nearest - points[p]).tail<2>().norm(), 1e-9);
-    points[p] = Vec3(high, nearest->y(), nearest->z());
-  }
-  TetgenJob job{.points = points, .triangles = skin->triangles};
-  job.max_volume = 0.13 * size * size * size;
-  Result<TetMesh> tets = run_tetgen(find_worker("selvage-tetgen").value(), job, {});
+  const std::span<const yarn::Body> one(&cell.body, 1);
+  const Box3 box(Vec3(0, -1, -1), Vec3(2, 1, 1));
+  Result<Skin> skin =
+      make_skin(one, box, cell_size_rules(one, std::span(&size, 1), 0, yarn::narrowest_section(cell.body)),
+                {.tolerance = 1e-4, .miss = 1e-3, .periodic = {true, false, false}});
+  ASSERT_TRUE(skin.ok()) << to_string(skin.error());
+  cell.skin = std::move(*skin);
+  const std::vector<Vec3>& points = cell.skin.nodes.points;
+  Result<TetMesh> tets = run_tetgen(find_worker("selvage-tetgen").value(),
+                                    {.points = points, .triangles = cell.skin.surface.triangles}, {});
   ASSERT_TRUE(tets.ok());
   std::vector<std::uint32_t> regions(tets->cells.size(), 0);
-  improve(tets->points, tets->cells, regions, points.size(), {.target = 18});
+  improve(tets->points, tets->cells, regions, points.size(),
+          {.target = 18, .refine = RefineOptions{.max_volume = largest_volume(size)}});
   const double mm = 25.4;
   for (const Vec3& p : tets->points) cell.mesh.nodes.push_back(mm * p);
   for (const auto& t : tets->cells) cell.mesh.elements.push_back({t[0], t[1], t[2], t[3]});
   Region region;
   region.last_element = cell.mesh.elements.size();
-  for (const Triangle& t : skin->side()) region.side_faces.push_back({t[0], t[1], t[2]});  // for the test
+  for (std::size_t k = 0; k < cell.skin.surface.triangles.size(); ++k)
+    if (const Triangle& t = cell.skin.surface.triangles[k];
+        cell.skin.surface.parts[k] == CellTriangles::Part::side)
+      region.side_faces.push_back({t[0], t[1], t[2]});  // for the test
   cell.mesh.regions.push_back(region);
-  cell.places.assign(cell.mesh.nodes.size(), {.body = CellSurface::no_body});
-  for (std::size_t p = 0; p < skin->parameters.size(); ++p) cell.places[p] = {0, skin->parameters[p]};
-  cell.surface = {.bodies = {&cell.body, 1}, .places = cell.places, .scale = mm};
-  cell.surface.box.extend(Vec3(mm * Vec3(low, -1, -1)));
-  cell.surface.box.extend(Vec3(mm * Vec3(high, 1, 1)));
-  cell.surface.periodic = {true, true, false};
+  cell.surface = {.bodies = one, .places = cell.skin.nodes.places, .scale = mm};
+  cell.surface.box = Box3(Vec3(mm * box.min()), Vec3(mm * box.max()));
+  cell.surface.periodic = {true, false, false};
 }
 
 TEST(CellMidside, OnTheSurfaceInTheFacesAndOppositeOnesAlike) {
   CellOfYarn cell;
   fill(cell, 0.07);
   measure(cell.mesh);
-  const double mm = cell.surface.scale, exact = cell.body.volume * mm * mm * mm;
+  const double mm = cell.surface.scale, exact = cell.skin.volumes.front() * mm * mm * mm;
   const double straight = std::abs(cell.mesh.regions[0].volume - exact);
   const std::size_t corners = cell.mesh.nodes.size();
   const MidsideNodes nodes = add_midside_nodes(cell.mesh, cell.surface);

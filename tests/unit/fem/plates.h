@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/vec.h"
-#include "fem/planar_mesh.h"
 #include "fem/worker.h"
+#include "unit/fem/plane.h"
 
 namespace selvage::test {
 
@@ -27,18 +27,28 @@ inline ClosedSurface two_plates(double radius, double gap, double edge) {
     const double angle = 2 * std::numbers::pi * k / round;
     rim.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
   }
-  const auto plate = fem::mesh_polygon(rim, edge);
+  const Plane plane;
+  const fem::SizeField field(edge, 0.3, {});
+  fem::PlanarRegion region;
+  region.parameters = rim;
+  for (std::uint32_t k = 0; k < rim.size(); ++k) {
+    region.points.push_back(plane.point(rim[k]));
+    region.segments.push_back({k, (k + 1) % static_cast<std::uint32_t>(rim.size()), 0, -1});
+  }
+  Result<fem::TriangleMesh> plate = fem::fill(region, plane, field, 1'000'000);
   if (!plate) {
-    ADD_FAILURE() << "no plate";
+    ADD_FAILURE() << plate.error().text;
     return {};
   }
+  fem::remesh(*plate, plane, field);
   // Turned by a number of rim points that is no symmetry of the lattice.
   const int turned = round / 7 + 1;
   const double angle = 2 * std::numbers::pi * turned / round;
-  const auto count = static_cast<std::uint32_t>(plate->points.size()), n = static_cast<std::uint32_t>(round);
+  const auto count = static_cast<std::uint32_t>(plate->parameters.size()),
+             n = static_cast<std::uint32_t>(round);
   ClosedSurface result;
-  for (const Vec2& p : plate->points) result.points.emplace_back(p.x(), p.y(), 0);
-  for (const Vec2& p : plate->points)
+  for (const Vec2& p : plate->parameters) result.points.emplace_back(p.x(), p.y(), 0);
+  for (const Vec2& p : plate->parameters)
     result.points.emplace_back(std::cos(angle) * p.x() - std::sin(angle) * p.y(),
                                std::sin(angle) * p.x() + std::cos(angle) * p.y(), gap);
   for (const auto& t : plate->triangles) {

@@ -6,17 +6,12 @@
 #include <map>
 #include <numbers>
 
+#include "unit/fem/plane.h"
+
 namespace selvage::fem {
 namespace {
 
-class Plane final : public Support {
- public:
-  [[nodiscard]] Vec3 point(const Vec2& p) const override { return {p.x(), p.y(), 0.25}; }
-  [[nodiscard]] Vec3 normal(const Vec2& /*p*/) const override { return Vec3::UnitZ(); }
-  [[nodiscard]] Place nearest(const Vec2& /*start*/, const Vec3& target) const override {
-    return {target.head<2>(), point(target.head<2>())};
-  }
-};
+using test::Plane;
 
 class Sphere final : public Support {
  public:

@@ -1,0 +1,17 @@
+// The plane z = 0.25 for the mesh tests.
+#pragma once
+
+#include "fem/triangle_mesh.h"
+
+namespace selvage::test {
+
+class Plane final : public fem::Support {
+ public:
+  [[nodiscard]] Vec3 point(const Vec2& p) const override { return {p.x(), p.y(), 0.25}; }
+  [[nodiscard]] Vec3 normal(const Vec2& /*p*/) const override { return Vec3::UnitZ(); }
+  [[nodiscard]] Place nearest(const Vec2& /*start*/, const Vec3& target) const override {
+    return {target.head<2>(), point(target.head<2>())};
+  }
+};
+
+}  // namespace selvage::test
