@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <vector>
 
 #include "nurbs/turn.h"
 
