@@ -257,7 +257,10 @@ Status check_mesh(TetMesh& mesh, std::span<const Vec3> points, std::span<const T
   const bool same = std::equal(
       wanted.begin(), wanted.end(), outside->begin(), outside->end(),
       [](const CellSide& a, const CellSide& b) { return a.corners == b.corners && a.even == b.even; });
-  if (!same) return wrong("the boundary of TetGen's mesh is not the yarn's surface");
+  // Triangles of the surface are in each other's way.
+  if (!same)
+    return error(Kind::geometry,
+                 "the boundary of TetGen's mesh is not the yarn's surface; try another --size");
   if (!is_one_piece(faces, mesh.cells.size())) return wrong("TetGen's mesh falls into several pieces");
   const double enclosed = enclosed_volume(points, triangles);
   if (!(std::abs(volume - enclosed) <= 1e-9 * enclosed))

@@ -14,7 +14,7 @@ Status check_surface(std::span<const Vec3> points, std::span<const Triangle> tri
 
 // Turns inverted cells round, then: the first points are the surface's to the bit, the cells' boundary is
 // exactly the surface's triangles, they hang together by their faces, and their volume is the enclosed one to
-// 1e-9. Errors (internal).
+// 1e-9. Errors: internal, and geometry where the boundary is another one.
 Status check_mesh(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles);
 
 // The same of triangles between several regions: those of each region, seen from it, close it. Every region

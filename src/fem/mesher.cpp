@@ -99,7 +99,7 @@ Result<TetMesh> fill(const Skin& skin, const Places& kept, double size, const Me
   TetgenJob job{.points = round, .triangles = skin.surface.triangles, .smallest_feature = size};
   if (!kept.empty()) job.points = kept;
   Result<TetMesh> tets = run_tetgen(program, job, limits);
-  if (tets || kept.empty() || tets.error().kind == Kind::limit) return tets;
+  if (tets || kept.empty() || tets.error().kind != Kind::geometry) return tets;
   job.points = round;
   tets = run_tetgen(program, job, limits);
   if (!tets) return tets;
