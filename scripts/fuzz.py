@@ -93,7 +93,8 @@ def main():
     begin = time.monotonic()
     with log.open("w") as output:
         code = subprocess.run([chosen.fuzzer, f"--target={chosen.target}", f"-artifact_prefix={found}/{chosen.target}-",
-                               f"-dict={dictionary}", f"-max_len={most}", f"-timeout={PATIENCE.get(chosen.target, 20)}", "-rss_limit_mb=2500", "-close_fd_mask=1", "-entropic=0",
+                               f"-dict={dictionary}", f"-max_len={most}", f"-timeout={PATIENCE.get(chosen.target, 20)}",
+                               "-rss_limit_mb=2500", "-close_fd_mask=1", "-entropic=0",
                                "-print_final_stats=1", length, corpus], stderr=output,
                               env={**os.environ, "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", SANITIZER)}).returncode
     text = log.read_text(errors="replace")

@@ -269,20 +269,26 @@ Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body
   const Result<std::filesystem::path> program = find_worker("selvage-tetgen");
   if (!program) return program.error();
   const double scale = millimetres_per(units);
-  auto skins = for_all<Skin>(bodies.size(), options.threads,
-                             [&](std::size_t i) { return skin_of(bodies[i], options); });
+  std::mutex one_at_a_time;
+  const auto count_up = [&](const char* step, std::size_t& done) {
+    const std::scoped_lock lock(one_at_a_time);
+    if (options.progress) options.progress(step, ++done, bodies.size());
+  };
+  std::size_t skinned = 0, filled = 0;
+  auto skins = for_all<Skin>(bodies.size(), options.threads, [&](std::size_t i) {
+    Result<Skin> skin = skin_of(bodies[i], options);
+    count_up("meshing the surface of yarn", skinned);
+    return skin;
+  });
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (!skins[i]->ok()) return about(skins[i]->error(), bodies[i], fabric);
   std::vector<Places> kept(bodies.size());
   if (options.order == 1) kept = keep_volumes(bodies, skins, options.threads);
-  std::mutex one_at_a_time;
-  std::size_t done = 0;
   auto parts = for_all<YarnMesh>(bodies.size(), options.threads, [&](std::size_t i) {
     Result<YarnMesh> part = mesh_yarn(bodies[i], **skins[i], kept[i], units, options, *program);
     skins[i].reset();
     kept[i] = {};
-    const std::scoped_lock lock(one_at_a_time);
-    if (options.progress) options.progress(++done, bodies.size());
+    count_up("filling yarn", filled);
     return part;
   });
 

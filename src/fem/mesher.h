@@ -21,7 +21,8 @@ struct MeshOptions {
   double timeout = 300;      // seconds a yarn
   double memory = 4096;      // MiB a yarn
   int threads = 1;           // workers at once
-  std::function<void(std::size_t done, std::size_t total)> progress{};
+  // What is being done to the yarns, in words, and to how many of them it is done. May be empty.
+  std::function<void(const char* step, std::size_t done, std::size_t total)> progress{};
 };
 
 // The mesh of all bodies, one Region a body in their order; coordinates scaled from `units` to mm. With order

@@ -36,8 +36,8 @@ fem::MeshOptions mesh_options(Job& job) {
   if (given.min_dihedral > 0) options.min_dihedral = given.min_dihedral;
   set_mesher_limits(given, options);
   options.threads = static_cast<int>(job.threads);
-  options.progress = [&job](std::size_t done, std::size_t total) {
-    job.progress("meshing yarn", done, total);
+  options.progress = [&job](const char* step, std::size_t done, std::size_t total) {
+    job.progress(step, done, total);
   };
   return options;
 }

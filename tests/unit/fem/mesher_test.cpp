@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "unit/fem/bodies.h"
 
@@ -94,6 +96,13 @@ TEST(Mesher, MidsideNodesAreOnTheSurfaceAndBetweenTheirCorners) {
   EXPECT_LT(held, curved / 50);
 }
 
+// Edges get no longer than the yarn is thin, whatever is asked for.
+TEST(Mesher, ASizeAboveTheThicknessIsTheThickness) {
+  const Mesh mesh = mesh_of({straight_tube(1, 0.5, 5)}, {.size = 100});
+  EXPECT_NEAR(mesh.regions[0].volume, mesh.regions[0].exact_volume, 2e-3 * mesh.regions[0].exact_volume);
+  EXPECT_EQ(mesh.nodes, mesh_of({straight_tube(1, 0.5, 5)}, {.size = 0.5}).nodes);
+}
+
 TEST(Mesher, OrientationFollowsTheYarn) {
   const Mesh mesh = mesh_of({ring()}, {.size = 0.25});
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
@@ -119,13 +128,16 @@ TEST(Mesher, SeveralYarnsAtOnceGiveTheSameMesh) {
   std::vector<yarn::Body> bodies;
   for (int i = 0; i < 5; ++i)
     bodies.push_back(straight_tube(1, 0.5 + 0.1 * i, 2, 16, Vec3(0, 2 * i, 0), "yarn" + std::to_string(i)));
-  std::size_t calls = 0;
+  std::map<std::string, std::size_t> calls;
   MeshOptions options{.size = 0.2, .order = 2};
   const Mesh one = mesh_of(bodies, options);
   options.threads = 4;
-  options.progress = [&](std::size_t, std::size_t total) { calls += total == 5 ? 1 : 100; };
+  options.progress = [&](const char* step, std::size_t, std::size_t total) {
+    calls[step] += total == 5 ? 1 : 100;
+  };
   const Mesh four = mesh_of(bodies, options);
-  EXPECT_EQ(calls, 5U);
+  EXPECT_EQ(calls,
+            (std::map<std::string, std::size_t>{{"meshing the surface of yarn", 5}, {"filling yarn", 5}}));
   EXPECT_EQ(one.nodes, four.nodes);
   EXPECT_EQ(one.elements, four.elements);
   EXPECT_EQ(one.along, four.along);
