@@ -8,6 +8,7 @@
 #include "core/source.h"
 #include "formats/format.h"
 #include "formats/txt/txt.h"
+#include "places.h"
 
 namespace selvage::zoo {
 
@@ -29,7 +30,7 @@ std::string text_of(const Diagnostics& diagnostics) {
 
 std::vector<ZooFabric> read_all() {
   std::vector<ZooFabric> zoo;
-  for (const auto& entry : std::filesystem::directory_iterator(SELVAGE_SAMPLES)) {
+  for (const auto& entry : std::filesystem::directory_iterator(places::samples())) {
     const formats::Descriptor* format = reader_for(entry.path().extension().string());
     if (!entry.is_regular_file() || format == nullptr) continue;
     Result<Source> source = Source::open(entry.path().string());

@@ -8,13 +8,14 @@
 #include <sstream>
 
 #include "formats/iges/files.h"
+#include "places.h"
 
 namespace selvage::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path fixtures = fs::path(SELVAGE_TESTS) / "fixtures";
+const fs::path fixtures = fs::path(places::tests()) / "fixtures";
 
 std::vector<std::string> files_below(const fs::path& folder, const std::vector<std::string>& extensions) {
   std::vector<std::string> files;
@@ -31,13 +32,13 @@ std::vector<std::string> files_below(const fs::path& folder, const std::vector<s
 fs::path dumped(const fs::path& file) {
   fs::path dump = scratch() / (file.filename().string() + ".json");
   const Output done =
-      run("{ " + std::string(SELVAGE_BIN) + "/dump_cad '" + file.string() + "' > '" + dump.string() + "'; }");
+      run("{ " + places::programs() + "/dump_cad '" + file.string() + "' > '" + dump.string() + "'; }");
   EXPECT_EQ(done.exit_code, 0) << done.text;
   return dump;
 }
 
 Output compared(const fs::path& file, const fs::path& dump) {
-  return run(std::string(SELVAGE_PYTHON) + " -B " + SELVAGE_TESTS + "/formats/iges/iges_agree.py '" +
+  return run(places::python() + " -B " + places::tests() + "/formats/iges/iges_agree.py '" +
              file.string() + "' '" + dump.string() + "'");
 }
 
@@ -62,18 +63,18 @@ INSTANTIATE_TEST_SUITE_P(, Fixtures, testing::ValuesIn(files_below(fixtures, {".
 class Samples : public testing::TestWithParam<std::string> {};
 TEST_P(Samples, Agree) {
   const fs::path file = scratch() / "sample.igs";
-  const Output done = run(std::string(SELVAGE_BIN) + "/selvage convert --quiet '" + SELVAGE_SAMPLES + "/" +
+  const Output done = run(places::programs() + "/selvage convert --quiet '" + places::samples() + "/" +
                           GetParam() + "' -o '" + file.string() + "'");
   ASSERT_EQ(done.exit_code, 0) << done.text;
   expect_agreement(file);
 }
-INSTANTIATE_TEST_SUITE_P(, Samples, testing::ValuesIn(files_below(SELVAGE_SAMPLES, {".txt", ".wif"})), named);
+INSTANTIATE_TEST_SUITE_P(, Samples, testing::ValuesIn(files_below(places::samples(), {".txt", ".wif"})), named);
 
 TEST(Agreement, OfSolids) {
   for (const char* ends : {"patch", "fan", "planar"}) {
     const fs::path file = scratch() / (std::string(ends) + ".igs");
-    const Output done = run(std::string(SELVAGE_BIN) + "/selvage convert --quiet --iges-solid --ends " +
-                            ends + " '" + SELVAGE_SAMPLES + "/plain4_path.txt' -o '" + file.string() + "'");
+    const Output done = run(places::programs() + "/selvage convert --quiet --iges-solid --ends " +
+                            ends + " '" + places::samples() + "/plain4_path.txt' -o '" + file.string() + "'");
     ASSERT_EQ(done.exit_code, 0) << done.text;
     expect_agreement(file);
   }

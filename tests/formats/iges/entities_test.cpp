@@ -11,6 +11,7 @@
 #include "formats/iges/iges.h"
 #include "formats/iges/reading.h"
 #include "nurbs/measure.h"
+#include "places.h"
 
 namespace selvage::test {
 
@@ -230,7 +231,7 @@ class IgesParts : public testing::TestWithParam<const char*> {};
 
 // Every fixture: what was read comes back bit for bit, and once more.
 TEST_P(IgesParts, ThereAndBack) {
-  const auto source = Source::open(std::filesystem::path(SELVAGE_TESTS) / "fixtures/iges" / GetParam());
+  const auto source = Source::open(std::filesystem::path(places::tests()) / "fixtures/iges" / GetParam());
   ASSERT_TRUE(source.ok());
   const IgesReading first = read_iges(std::string(source.value().bytes()));
   ASSERT_TRUE(first.model) << first.text();

@@ -14,6 +14,7 @@
 #include "formats/iges/iges.h"
 #include "formats/iges/writer.h"
 #include "formats/txt/txt.h"
+#include "places.h"
 
 namespace selvage::test {
 
@@ -171,7 +172,7 @@ Output run(const std::string& command) {
 
 Output judge(const fs::path& file, const fs::path& model) {
   std::string command =
-      std::string(SELVAGE_PYTHON) + " -B " + SELVAGE_TESTS + "/formats/iges/iges_oracle.py " + file.string();
+      places::python() + " -B " + places::tests() + "/formats/iges/iges_oracle.py " + file.string();
   if (!model.empty()) command += " " + model.string();
   return run(command);
 }
@@ -179,7 +180,7 @@ Output judge(const fs::path& file, const fs::path& model) {
 std::vector<yarn::Body> sample(const std::string& name, yarn::EndStyle ends, Unit* units) {
   std::vector<yarn::Body> bodies;
   Diagnostics diagnostics;
-  Result<Source> source = Source::open(fs::path(SELVAGE_SAMPLES) / name);
+  Result<Source> source = Source::open(fs::path(places::samples()) / name);
   EXPECT_TRUE(source.ok());
   if (!source.ok()) return bodies;
   const std::optional<fabric::Fabric> fabric = formats::txt::descriptor().read_fabric(*source, diagnostics);

@@ -14,6 +14,7 @@
 #include "formats/iges/bodies.h"
 #include "formats/iges/files.h"
 #include "formats/iges/reading.h"
+#include "places.h"
 
 namespace selvage::test {
 
@@ -69,7 +70,7 @@ std::vector<std::string> whole_files() {
   const std::vector<yarn::Body> bodies = {wave("warp_1", rational, yarn::EndStyle::patch),
                                           wave("warp_2", rational, yarn::EndStyle::planar)};
   std::vector<std::string> files = {iges_bytes(bodies, surfaces()), iges_bytes(bodies, solids())};
-  const std::filesystem::path folder = std::filesystem::path(SELVAGE_TESTS) / "fixtures" / "iges";
+  const std::filesystem::path folder = std::filesystem::path(places::tests()) / "fixtures" / "iges";
   std::vector<std::filesystem::path> paths;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == ".igs") paths.push_back(entry.path());
@@ -154,7 +155,7 @@ TEST(IgesMutation, DamagedFiles) {
 }
 
 TEST(IgesMutation, Crashers) {
-  const std::filesystem::path folder = std::filesystem::path(SELVAGE_TESTS) / "formats" / "iges" / "crashers";
+  const std::filesystem::path folder = std::filesystem::path(places::tests()) / "formats" / "iges" / "crashers";
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".igs") continue;

@@ -10,6 +10,7 @@
 #include "formats/iges/bodies.h"
 #include "formats/iges/files.h"
 #include "formats/iges/occt_reader.h"
+#include "places.h"
 
 namespace selvage::test {
 namespace {
@@ -153,9 +154,8 @@ std::map<int, Meshed> volumes_of(const std::filesystem::path& msh) {
 // yarns: a mesh inside the curved surface, a few percent smaller at this size.
 void expect_meshed(const std::filesystem::path& file, const std::vector<yarn::Body>& bodies, bool sew,
                    double size = 0.12, double scale = 1) {
-  if (std::string(SELVAGE_GMSH).find("NOTFOUND") != std::string::npos) FAIL() << "gmsh is not installed";
   const std::filesystem::path msh = file.string() + ".msh";
-  std::string command = std::string(SELVAGE_GMSH) + " -3 -format msh2 -clmax " + std::to_string(size) + " " +
+  std::string command = places::gmsh() + " -3 -format msh2 -clmax " + std::to_string(size) + " " +
                         file.string() + " -o " + msh.string();
   if (sew) command += " -setnumber Geometry.OCCSewFaces 1 -setnumber Geometry.OCCMakeSolids 1";
   const Output output = run(command);

@@ -9,12 +9,13 @@
 
 #include "formats/iges/bodies.h"
 #include "formats/iges/files.h"
+#include "places.h"
 
 namespace selvage::test {
 namespace {
 
 std::string fixture(const std::string& name) {
-  std::ifstream file(std::string(SELVAGE_TESTS) + "/fixtures/iges/" + name, std::ios::binary);
+  std::ifstream file(places::tests() + "/fixtures/iges/" + name, std::ios::binary);
   EXPECT_TRUE(file.good()) << name;
   std::ostringstream bytes;
   bytes << file.rdbuf();

@@ -14,6 +14,7 @@
 #include "formats/txt/txt.h"
 #include "formats/unv/unv.h"
 #include "formats/vtu/vtu.h"
+#include "places.h"
 
 namespace selvage {
 namespace {
@@ -39,7 +40,7 @@ std::map<std::string, double> facts_in(const std::string& words) {
 }
 
 std::string script(const Folder& folder, const std::string& command) {
-  return run(folder, std::string(SYSTEM_PYTHON) + " " + SELVAGE_TESTS + "/formats/" + command);
+  return run(folder, places::system_python() + " " + places::tests() + "/formats/" + command);
 }
 
 void save_all(const fem::Mesh& mesh, const Folder& folder) {
@@ -101,7 +102,7 @@ TEST(CellDecks, GmshListsPeriodicEntities) {
 
 // A plate of a plain weave as the mesher makes it: thousands of directions, five regions, curvatures.
 TEST(CellDecks, EveryNumberOfAPlainWeave) {
-  const Result<Source> source = Source::open(SELVAGE_SAMPLES "/cell_plain.txt");
+  const Result<Source> source = Source::open(places::samples() + "/cell_plain.txt");
   ASSERT_TRUE(source.ok());
   Diagnostics diagnostics;
   const auto fabric = formats::txt::descriptor().read_fabric(*source, diagnostics);

@@ -13,6 +13,7 @@
 #include "formats/inp/inp.h"
 #include "formats/mesh/programs.h"
 #include "formats/txt/txt.h"
+#include "places.h"
 
 namespace selvage {
 namespace {
@@ -61,7 +62,7 @@ fem::Mesh cell_mesh(const std::string& text, const Wanted& wanted) {
 }
 
 std::string run_script(const test::Folder& folder, const std::string& arguments) {
-  return test::run(folder, std::string(SYSTEM_PYTHON) + " " + HOMOGENIZE + " " + arguments);
+  return test::run(folder, places::system_python() + " " + places::scripts() + "/homogenize.py " + arguments);
 }
 
 Json homogenized(const fem::Mesh& mesh, const std::string& solver = "direct") {

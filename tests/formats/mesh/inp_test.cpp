@@ -9,6 +9,7 @@
 #include "formats/mesh/cell_mesh.h"
 #include "formats/mesh/programs.h"
 #include "formats/txt/txt.h"
+#include "places.h"
 
 namespace selvage {
 namespace {
@@ -168,7 +169,7 @@ TEST(InpDeck, RegionsWithoutNodesOfTheirOwnGetNoLoad) {
 TEST(InpDeck, PlainWeaveOfFourYarnsRuns) {
   for (const std::string name : {"plain4_grid", "plain4_path"})
     for (const int order : {1, 2}) {
-      const Result<Source> source = Source::open(SELVAGE_SAMPLES "/" + name + ".txt");
+      const Result<Source> source = Source::open(places::samples() + "/" + name + ".txt");
       ASSERT_TRUE(source.ok());
       Diagnostics diagnostics;
       const auto fabric = formats::txt::descriptor().read_fabric(*source, diagnostics);

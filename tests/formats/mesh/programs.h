@@ -14,6 +14,7 @@
 
 #include "fem/mesher.h"
 #include "formats/format.h"
+#include "places.h"
 #include "unit/fem/bodies.h"
 
 namespace selvage::test {
@@ -79,7 +80,7 @@ inline fem::Mesh mesh_of(const fabric::Fabric& fabric, const std::vector<yarn::B
 
 // CalculiX on a deck NAME.inp in the folder; its .dat. It exits with 0 whatever happens: its words tell.
 inline std::string solve(const Folder& folder, const std::string& name, bool may_warn = true) {
-  const std::string words = run(folder, std::string(CCX) + " " + name);
+  const std::string words = run(folder, places::ccx() + " " + name);
   if (!may_warn) {
     EXPECT_EQ(words.find("*WARNING"), std::string::npos) << words;
   }

@@ -7,6 +7,7 @@
 #include "formats/mesh/programs.h"
 #include "formats/msh/msh.h"
 #include "formats/vtu/vtu.h"
+#include "places.h"
 
 namespace selvage {
 namespace {
@@ -37,7 +38,7 @@ std::size_t triangles_of(const fem::Mesh& mesh) {
 // "name value" lines of read_mesh.py; further words make part of the name.
 std::map<std::string, double> facts_of(const Folder& folder, const std::string& file) {
   const std::string words =
-      run(folder, std::string(SYSTEM_PYTHON) + " " + SELVAGE_TESTS + "/formats/mesh/read_mesh.py " + file);
+      run(folder, places::system_python() + " " + places::tests() + "/formats/mesh/read_mesh.py " + file);
   std::map<std::string, double> facts;
   std::istringstream lines(words);
   for (std::string line; std::getline(lines, line);) {
@@ -85,7 +86,7 @@ TEST(MeshReaders, MeshioSeesTheSameMeshInEveryFormat) {
 
 // Counts by Gmsh's element types in a file that gmsh itself wrote after reading ours.
 std::map<int, std::size_t> types_after_gmsh(const Folder& folder, const std::string& file) {
-  run(folder, std::string(GMSH) + " " + file + " -save -format msh22 -o again.msh");
+  run(folder, places::gmsh() + " " + file + " -save -format msh22 -o again.msh");
   std::istringstream lines(test::text_of(folder / "again.msh"));
   std::map<int, std::size_t> types;
   std::string line;
@@ -119,7 +120,7 @@ TEST(MeshReaders, GmshReadsBothOrders) {
                                              "Plugin(MeshVolume).Run;\n"
                                              "Plugin(AnalyseMeshQuality).JacobianDeterminant = 1;\n"
                                              "Plugin(AnalyseMeshQuality).Run;\n";
-    const std::string words = run(folder, std::string(GMSH) + " measure.geo - -v 4");
+    const std::string words = run(folder, places::gmsh() + " measure.geo - -v 4");
     // Gmsh's volume is that of the corners.
     double corners = 0;
     for (std::size_t e = mesh.regions[1].first_element; e < mesh.regions[1].last_element; ++e) {
@@ -138,7 +139,7 @@ TEST(MeshReaders, PhysicalGroupsOfGmsh) {
   const fem::Mesh mesh = two_yarns(1);
   const Folder folder;
   save(mesh, formats::msh::descriptor(), folder / "mesh.msh");
-  run(folder, std::string(GMSH) + " mesh.msh -save -format msh22 -o again.msh");
+  run(folder, places::gmsh() + " mesh.msh -save -format msh22 -o again.msh");
   const std::string again = test::text_of(folder / "again.msh");
   for (const char* name : {"2 1 \"warp1_side\"", "2 2 \"warp1_start\"", "2 3 \"warp1_end\"", "3 1 \"warp1\""})
     EXPECT_NE(again.find(name), std::string::npos) << name;

@@ -19,6 +19,7 @@
 #include "formats/step/step.h"
 #include "formats/txt/txt.h"
 #include "nurbs/spline.h"
+#include "places.h"
 #include "reading.h"
 
 namespace selvage {
@@ -40,7 +41,7 @@ BuiltCell build(const std::string& name, double gap = 0) {
   Diagnostics diagnostics;
   const fs::path path(name);
   Result<Source> source =
-      Source::open(path.is_absolute() ? path : fs::path(SELVAGE_SAMPLES) / (name + ".txt"));
+      Source::open(path.is_absolute() ? path : fs::path(places::samples()) / (name + ".txt"));
   EXPECT_TRUE(source.ok());
   const std::optional<fabric::Fabric> fabric = formats::txt::descriptor().read_fabric(*source, diagnostics);
   EXPECT_TRUE(fabric && fabric->cell) << name;
@@ -265,7 +266,7 @@ class GmshCell : public StepCell {
  protected:
   void fill(const std::string& options) const {
     const std::string command = "cd '" + folder_.string() +
-                                "' && timeout 200 '" SELVAGE_GMSH "' -3 cell.stp " + options +
+                                "' && timeout 200 '" + places::gmsh() + "' -3 cell.stp " + options +
                                 " -format msh22 -o cell.msh > log 2>&1";
     ASSERT_EQ(std::system(command.c_str()), 0);
   }

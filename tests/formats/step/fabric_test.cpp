@@ -9,6 +9,7 @@
 #include "fabric/build.h"
 #include "formats/step/step.h"
 #include "formats/txt/txt.h"
+#include "places.h"
 #include "reading.h"
 #include "solid/brep.h"
 
@@ -78,7 +79,7 @@ TEST(StepFabric, Samples) {
   for (const char* name : {"plain4_grid", "plain4_path", "ring"})
     for (EndStyle style : {EndStyle::patch, EndStyle::fan}) {
       SCOPED_TRACE(name);
-      Result<Source> source = Source::open(fs::path(SELVAGE_SAMPLES) / (std::string(name) + ".txt"));
+      Result<Source> source = Source::open(fs::path(places::samples()) / (std::string(name) + ".txt"));
       ASSERT_TRUE(source.ok());
       const std::vector<yarn::Body> bodies = build(*source, style);
       ASSERT_FALSE(bodies.empty());

@@ -29,6 +29,7 @@
 #include "formats/step/step.h"
 #include "formats/txt/txt.h"
 #include "nurbs/measure.h"
+#include "places.h"
 
 namespace selvage {
 namespace {
@@ -81,7 +82,7 @@ std::vector<yarn::Body> bodies_of(const Source& source, std::optional<yarn::EndS
 }
 
 std::vector<yarn::Body> sample(const std::string& name, const std::string& tolerance) {
-  Result<Source> source = Source::open(fs::path(SELVAGE_SAMPLES) / (name + ".txt"));
+  Result<Source> source = Source::open(fs::path(places::samples()) / (name + ".txt"));
   EXPECT_TRUE(source.ok()) << name;
   if (!source) return {};
   // A coarse tolerance makes small files; what is compared is the tube that is written.
@@ -201,7 +202,7 @@ TEST(ForeignGmsh, StepOfGmsh) {
     std::ofstream(folder / "write.geo")
         << "SetFactory(\"OpenCASCADE\");\nMerge \"own.stp\";\nSave \"gmsh.step\";\n";
     const std::string command =
-        "cd '" + (folder / "") + "' && '" SELVAGE_GMSH "' write.geo -parse_and_exit > gmsh.log 2>&1";
+        "cd '" + (folder / "") + "' && '" + places::gmsh() + "' write.geo -parse_and_exit > gmsh.log 2>&1";
     ASSERT_EQ(std::system(command.c_str()), 0);
     const Facts facts = facts_of(occt_read(folder / "gmsh.step"));
     ASSERT_EQ(facts.volumes.size(), bodies.size());
@@ -216,7 +217,7 @@ TEST(ForeignGmsh, StepOfGmsh) {
 
 // A face that is made anew with another area than the one that was read is not written.
 TEST(ForeignAreas, AreFoundAgain) {
-  const std::string path = std::string(SELVAGE_TESTS) + "/fixtures/freecad/planar.step";
+  const std::string path = places::tests() + "/fixtures/freecad/planar.step";
   const Reading reading = read(formats::step::descriptor(), path);
   ASSERT_TRUE(reading.model.has_value());
   cad::Part part = reading.model->parts.front();
@@ -243,9 +244,9 @@ TEST(ForeignAreas, AreFoundAgain) {
 class FreeCad : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    const fs::path folder = fs::path(SELVAGE_TESTS) / "fixtures/freecad";
+    const fs::path folder = fs::path(places::tests()) / "fixtures/freecad";
     const std::string name = GetParam();
-    Result<Source> source = Source::open(name == "plain4_grid" ? fs::path(SELVAGE_SAMPLES) / "plain4_grid.txt"
+    Result<Source> source = Source::open(name == "plain4_grid" ? fs::path(places::samples()) / "plain4_grid.txt"
                                                                : folder / (name + ".txt"));
     ASSERT_TRUE(source.ok());
     // The knit that FreeCAD was given is the published one.

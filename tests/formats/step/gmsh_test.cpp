@@ -12,6 +12,7 @@
 
 #include "bodies.h"
 #include "formats/step/step.h"
+#include "places.h"
 
 namespace selvage {
 namespace {
@@ -53,7 +54,7 @@ class Gmsh : public ::testing::Test {
 
   void run(const std::string& arguments, const std::string& log) const {
     const std::string command =
-        "cd '" + folder_.string() + "' && '" SELVAGE_GMSH "' " + arguments + " > " + log + " 2>&1";
+        "cd '" + folder_.string() + "' && '" + places::gmsh() + "' " + arguments + " > " + log + " 2>&1";
     ASSERT_EQ(std::system(command.c_str()), 0) << arguments;
   }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "formats/txt/reading.h"
+#include "places.h"
 
 namespace selvage::test {
 
@@ -523,7 +524,7 @@ TEST(BadSamples, EachAtItsLineAndColumn) {
       {"zero_length.txt", {8, 5, "equals the one before"}},
   };
   std::set<std::string> seen;
-  for (const auto& entry : std::filesystem::directory_iterator(SELVAGE_SAMPLES "/bad")) {
+  for (const auto& entry : std::filesystem::directory_iterator(places::samples() + "/bad")) {
     const std::string name = entry.path().filename().string();
     const auto found = expected.find(name);
     if (found == expected.end()) continue;  // bad for a later stage than the reader

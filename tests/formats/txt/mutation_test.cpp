@@ -13,6 +13,7 @@
 #include "core/text_report.h"
 #include "formats/txt/model_text.h"
 #include "formats/txt/reading.h"
+#include "places.h"
 
 namespace selvage::test {
 
@@ -20,7 +21,7 @@ namespace {
 
 std::vector<std::string> sample_texts() {
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(SELVAGE_SAMPLES))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(places::samples()))
     if (entry.path().extension() == ".txt") paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   std::vector<std::string> texts;

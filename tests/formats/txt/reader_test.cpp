@@ -6,6 +6,7 @@
 
 #include "formats/txt/model_text.h"
 #include "formats/txt/reading.h"
+#include "places.h"
 
 namespace selvage::test {
 
@@ -21,7 +22,7 @@ Fabric good(const std::string& text) {
 }
 
 Fabric sample(const std::string& name) {
-  Result<Source> source = Source::open(std::string(SELVAGE_SAMPLES "/") + name);
+  Result<Source> source = Source::open(places::samples() + "/" + name);
   EXPECT_TRUE(source.ok());
   Reading reading = read(*source);
   EXPECT_TRUE(reading.fabric) << reading.text();
@@ -492,7 +493,7 @@ TEST(Reader, Samples) {
 
 // The reference page's own example.
 TEST(Reader, ExampleOfTheReferencePage) {
-  Result<Source> page = Source::open(SELVAGE_TESTS "/../formats/txt/README.md");
+  Result<Source> page = Source::open(places::tests() + "/../formats/txt/README.md");
   ASSERT_TRUE(page.ok());
   const std::string_view text = page->bytes();
   const std::size_t begin = text.find("```\nfabric 1") + 4;

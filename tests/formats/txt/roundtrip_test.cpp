@@ -8,6 +8,7 @@
 #include "formats/txt/model_text.h"
 #include "formats/txt/random_model.h"
 #include "formats/txt/reading.h"
+#include "places.h"
 
 namespace selvage::test {
 
@@ -42,7 +43,7 @@ fabric::Fabric one_yarn() {
 
 TEST(RoundTrip, Samples) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(SELVAGE_SAMPLES)) {
+  for (const auto& entry : std::filesystem::directory_iterator(places::samples())) {
     if (entry.path().extension() != ".txt") continue;
     ++count;
     Result<Source> source = Source::open(entry.path());

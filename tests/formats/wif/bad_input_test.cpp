@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "places.h"
 #include "reading.h"
 
 namespace selvage {
@@ -182,7 +183,7 @@ TEST(WifBadInput, ManyTreadlesMayBeLoose) {
 TEST(WifBadInput, DamagedFilesAreReadOrRefused) {
   for (const std::string name :
        {"/two_shafts_an_end.wif", "/arahweave_satin.wif", "/sinking_countermarch.wif"}) {
-    std::ifstream file(SELVAGE_TESTS "/formats/wif/files" + name, std::ios::binary);
+    std::ifstream file(places::tests() + "/formats/wif/files" + name, std::ios::binary);
     const std::string good{std::istreambuf_iterator<char>(file), {}};
     ASSERT_TRUE(read(good).fabric) << name;
     int refused = 0;

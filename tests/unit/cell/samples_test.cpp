@@ -8,6 +8,7 @@
 #include "core/source.h"
 #include "fabric/build.h"
 #include "formats/txt/txt.h"
+#include "places.h"
 
 namespace selvage::cell {
 namespace {
@@ -42,7 +43,7 @@ BuiltCell build(const std::filesystem::path& path) {
 class CellSamples : public testing::TestWithParam<std::string> {};
 
 TEST_P(CellSamples, CutAndDivide) {
-  const BuiltCell cell = build(std::filesystem::path(SELVAGE_SAMPLES) / (GetParam() + ".txt"));
+  const BuiltCell cell = build(std::filesystem::path(places::samples()) / (GetParam() + ".txt"));
   const Result<Cut> cut_up = cut(cell.bodies, cell.box, {.tolerance = cell.tolerance});
   ASSERT_TRUE(cut_up.ok()) << to_string(cut_up.error());
   const Result<Division> division = divide_faces(cell.bodies, cell.box, *cut_up);
@@ -62,7 +63,7 @@ TEST_P(CellSamples, CutAndDivide) {
 
 // A cell of one repeat holds as much of each warp, wherever the faces cut it.
 TEST(Samples, WarpsOfATwillAreEqual) {
-  const BuiltCell cell = build(std::filesystem::path(SELVAGE_SAMPLES) / "twill_cell.txt");
+  const BuiltCell cell = build(std::filesystem::path(places::samples()) / "twill_cell.txt");
   const Result<Cut> cut_up = cut(cell.bodies, cell.box, {.tolerance = cell.tolerance});
   ASSERT_TRUE(cut_up.ok());
   const Result<Division> division = divide_faces(cell.bodies, cell.box, *cut_up);

@@ -34,7 +34,7 @@ TEST(Readable, TheRestStays) {
 
 TEST(Readable, LongTextIsShortened) {
   EXPECT_EQ(shortened(std::string(48, 'a')), std::string(48, 'a'));
-  EXPECT_EQ(shortened(std::string(10000, 'a')), std::string(45, 'a') + "...");
+  EXPECT_EQ(shortened(std::string(10000, 'a')), std::string(45, 'a').append("..."));
   std::string umlauts;
   for (int i = 0; i < 60; ++i) umlauts += "\xC3\xB6";
   EXPECT_EQ(shortened(umlauts.substr(0, 96)), umlauts.substr(0, 96));

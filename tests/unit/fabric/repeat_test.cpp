@@ -10,6 +10,7 @@
 #include "contact/contact.h"
 #include "fabric/build.h"
 #include "formats/txt/txt.h"
+#include "places.h"
 
 namespace selvage::fabric {
 namespace {
@@ -42,7 +43,7 @@ Built build(const Source& source, double gap = 0) {
 }
 
 Built sample(const std::string& name, double gap = 0) {
-  const Result<Source> source = Source::open(std::string(SELVAGE_SAMPLES) + "/" + name);
+  const Result<Source> source = Source::open(places::samples() + "/" + name);
   EXPECT_TRUE(source.ok()) << name;
   return source ? build(*source, gap) : Built{};
 }

@@ -7,6 +7,7 @@
 
 #include "core/module.h"
 #include "fem/skin.h"
+#include "places.h"
 #include "unit/fem/bodies.h"
 
 namespace selvage::fem {
@@ -70,7 +71,7 @@ class Stand {
 // A library that goes on calling its own functions is found out before it meshes anything.
 TEST(TetgenWorker, LibraryWhoseFunctionsAreNotReplacedIsRefused) {
   const Surface surface = cube();
-  const Result<TetMesh> mesh = run_tetgen(SELVAGE_TETGEN_UNREPLACED, surface.job(), {});
+  const Result<TetMesh> mesh = run_tetgen(places::programs() + "/tetgen_unreplaced", surface.job(), {});
   ASSERT_FALSE(mesh.ok());
   EXPECT_EQ(mesh.error().kind, Kind::internal);
   EXPECT_NE(mesh.error().text.find("does not take its random numbers from the worker"), std::string::npos)

@@ -5,6 +5,7 @@
 
 #include "fabric/build.h"
 #include "formats/txt/txt.h"
+#include "places.h"
 #include "solid/check.h"
 #include "solid/tessellation.h"
 
@@ -16,7 +17,7 @@ using yarn::EndStyle;
 std::vector<yarn::Body> bodies_of(const std::string& sample, EndStyle ends = EndStyle::patch) {
   std::vector<yarn::Body> bodies;
   Diagnostics diagnostics;
-  Result<Source> source = Source::open(std::string(SELVAGE_SAMPLES) + "/" + sample);
+  Result<Source> source = Source::open(places::samples() + "/" + sample);
   if (!source) return bodies;
   const std::optional<fabric::Fabric> fabric = formats::txt::descriptor().read_fabric(*source, diagnostics);
   if (!fabric) return bodies;
