@@ -1,5 +1,5 @@
-// Where tests find the samples, their own files and the programs that they run. What differs from machine to machine is
-// compiled into this one file, so that the others are the same in every clone.
+// Where tests find the samples, their own files and the programs that they run. What differs from machine to
+// machine is compiled into this one file, so that the others are the same in every clone.
 #pragma once
 
 #include <string>

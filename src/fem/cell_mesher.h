@@ -3,33 +3,24 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "core/diagnostics.h"
 #include "fabric/model.h"
-#include "fem/mesh.h"
+#include "fem/block.h"
 #include "yarn/body.h"
 
 namespace selvage::fem {
 
-struct CellMeshOptions {
-  double size = 0;              // largest edge, file units; 0: a quarter of the smallest section extent
+struct CellMeshOptions : MeshOptions {
   std::vector<double> sizes{};  // one a body: the largest edge on its surface; empty: `size`
   double coarsest = 0;          // file units: to which edges may grow away from the yarns; 0: as on the yarns
-  int order = 1;                // 1 | 2
   bool matrix = true;           // false: only the yarns, cut flush
-  double bond =
-      0;  // file units: matrix between yarns that are this near becomes part of them (fem/bond.h); 0: none
+  // File units: matrix between yarns that are this near becomes part of them (fem/bond.h); 0: none.
+  double bond = 0;
   std::array<bool, 3> periodic{};  // opposite faces get the same triangles
-  double min_dihedral = 10;        // degrees wanted, 0..30
   double tolerance = 0;            // file units; 0: 1e-3 of the smallest section extent
-  double timeout = 300;            // seconds, of TetGen
-  double memory = 4096;            // MiB, of TetGen
-  int threads = 1;
-  // What is being done, in words, and how much of it. May be empty.
-  std::function<void(const char* step, std::size_t done, std::size_t total)> progress{};
 };
 
 // The mesh of `fabric.cell`, in mm. Regions: the yarns that have elements, in their order (all parts of a

@@ -29,42 +29,14 @@ Message wrong(const std::string& text) {
   return error(Kind::internal, text + "; try another --size");
 }
 
+// Of triangles of the surface that are in each other's way.
+Message in_the_way(const std::string& text) {
+  return error(Kind::geometry, text + "; try another --size");
+}
+
 Message at(Message message, const Vec3& place) {
   message.at = place;
   return message;
-}
-
-// Joins cells over shared faces; true when one piece remains.
-bool is_one_piece(const std::vector<CellSide>& faces, std::size_t cells) {
-  std::vector<std::uint32_t> parent(cells);
-  std::iota(parent.begin(), parent.end(), 0U);
-  auto root = [&](std::uint32_t cell) {
-    while (parent[cell] != cell) cell = parent[cell] = parent[parent[cell]];
-    return cell;
-  };
-  std::size_t pieces = cells;
-  for (std::size_t i = 0; i + 1 < faces.size(); ++i) {
-    if (faces[i].corners != faces[i + 1].corners) continue;
-    const std::uint32_t a = root(faces[i].cell), b = root(faces[i + 1].cell);
-    if (a == b) continue;
-    parent[a] = b;
-    --pieces;
-  }
-  return pieces == 1;
-}
-
-// The faces that only one cell has, as they are seen from outside; nothing when a face has more than two
-// cells.
-std::optional<std::vector<CellSide>> boundary(const std::vector<CellSide>& faces) {
-  std::vector<CellSide> result;
-  for (std::size_t i = 0; i < faces.size();) {
-    std::size_t next = i + 1;
-    while (next < faces.size() && faces[next].corners == faces[i].corners) ++next;
-    if (next - i > 2) return std::nullopt;
-    if (next - i == 1) result.push_back(faces[i]);
-    i = next;
-  }
-  return result;
 }
 
 Status check_input(std::span<const Vec3> points, std::span<const Triangle> triangles) {
@@ -116,31 +88,7 @@ std::vector<double> enclosed_volumes(std::span<const Vec3> points, std::span<con
 
 }  // namespace
 
-Status check_surface(std::span<const Vec3> points, std::span<const Triangle> triangles) {
-  if (Status sound = check_input(points, triangles); !sound) return sound;
-  std::vector<std::pair<std::uint64_t, bool>> edges;  // both ends in one number; forward?
-  edges.reserve(3 * triangles.size());
-  for (const Triangle& t : triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      edges.emplace_back(std::uint64_t{std::min(a, b)} << 32U | std::max(a, b), a < b);
-    }
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i < edges.size(); i += 2) {
-    const bool paired = i + 1 < edges.size() && edges[i].first == edges[i + 1].first &&
-                        edges[i].second != edges[i + 1].second &&
-                        (i + 2 == edges.size() || edges[i + 2].first != edges[i].first);
-    if (!paired)
-      return at(
-          error(Kind::geometry, "the surface is not closed here; look at the yarn with 'selvage check'"),
-          points[edges[i].first >> 32U]);
-  }
-  if (!(enclosed_volume(points, triangles) > 0))
-    return error(Kind::geometry, "the surface encloses no volume; look at the yarn with 'selvage check'");
-  return {};
-}
-
-Status check_complex(std::span<const Vec3> points, std::span<const Triangle> triangles,
+Status check_surface(std::span<const Vec3> points, std::span<const Triangle> triangles,
                      std::span<const Sides> sides) {
   if (Status sound = check_input(points, triangles); !sound) return sound;
   // Of each region, an edge is used as often one way as the other.
@@ -168,15 +116,15 @@ Status check_complex(std::span<const Vec3> points, std::span<const Triangle> tri
     for (; i < uses.size() && uses[i].region == first.region && uses[i].edge == first.edge; ++i)
       sum += uses[i].sense;
     if (sum != 0)
-      return at(error(Kind::internal, fmt::format("the surface of region {} is not closed here; try another "
-                                                  "--size",
-                                                  first.region)),
-                points[first.edge >> 32U]);
+      return at(
+          error(Kind::geometry, "the surface is not closed here; look at the yarn with 'selvage check'"),
+          points[first.edge >> 32U]);
   }
   const std::vector<double> volumes = enclosed_volumes(points, triangles, sides);
-  for (std::size_t r = 0; r < volumes.size(); ++r)
-    if (!(volumes[r] > 0))
-      return error(Kind::geometry, fmt::format("region {} encloses no volume; try a finer --size", r));
+  if (std::any_of(volumes.begin(), volumes.end(), [](double volume) { return !(volume > 0); }))
+    return error(
+        Kind::geometry,
+        "the surface encloses no volume; try a finer --size, or look at the yarn with 'selvage check'");
   return {};
 }
 
@@ -204,22 +152,23 @@ Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const
     while (last < faces->size() && (*faces)[last].corners == (*faces)[i].corners) ++last;
     if (last - i > 2) return wrong("TetGen's mesh has a face with more than two tetrahedra");
     if (next < wanted.size() && wanted[next].corners < (*faces)[i].corners)
-      return wrong("TetGen did not keep a triangle of the surface");
+      return in_the_way("TetGen did not keep a triangle of the surface");
     if (next < wanted.size() && wanted[next].corners == (*faces)[i].corners) {
       const Sides& s = sides[wanted[next].cell];
       const bool open = s.behind == Sides::outside || s.front == Sides::outside;
-      if ((last - i == 1) != open) return wrong("a triangle of the surface has not the tetrahedra beside it");
+      if ((last - i == 1) != open)
+        return in_the_way("a triangle of the surface has not the tetrahedra beside it");
       for (std::size_t k = i; k < last; ++k)
         told.emplace_back((*faces)[k].cell, (*faces)[k].even == wanted[next].even ? s.behind : s.front);
       ++next;
     } else if (last - i == 2) {
       parent[root((*faces)[i].cell)] = root((*faces)[i + 1].cell);
     } else {
-      return wrong("the boundary of TetGen's mesh is not the yarns' surface");
+      return in_the_way("the boundary of TetGen's mesh is not the yarns' surface");
     }
     i = last;
   }
-  if (next < wanted.size()) return wrong("TetGen did not keep a triangle of the surface");
+  if (next < wanted.size()) return in_the_way("TetGen did not keep a triangle of the surface");
   for (const auto& [cell, region] : told) {
     std::uint32_t& known = mesh.regions[root(cell)];
     if (region == Sides::outside || (known != unknown && known != region))
@@ -239,33 +188,6 @@ Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const
       return wrong(
           fmt::format("region {} of TetGen's mesh has the volume {:.12g}, its surface encloses {:.12g}", r,
                       volumes[r], enclosed[r]));
-  return {};
-}
-
-Status check_mesh(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles) {
-  Result<std::vector<CellSide>> found = sorted_faces(mesh, points);
-  if (!found) return found.error();
-  const std::vector<CellSide>& faces = *found;
-  double volume = 0;
-  for (const auto& cell : mesh.cells) volume += six_volumes(mesh, cell) / 6;
-  const auto outside = boundary(faces);
-  if (!outside) return wrong("TetGen's mesh has a face with more than two tetrahedra");
-  std::vector<CellSide> wanted;
-  wanted.reserve(triangles.size());
-  for (const Triangle& t : triangles) wanted.push_back(side_of(t, 0));
-  std::sort(wanted.begin(), wanted.end(), is_before);
-  const bool same = std::equal(
-      wanted.begin(), wanted.end(), outside->begin(), outside->end(),
-      [](const CellSide& a, const CellSide& b) { return a.corners == b.corners && a.even == b.even; });
-  // Triangles of the surface are in each other's way.
-  if (!same)
-    return error(Kind::geometry,
-                 "the boundary of TetGen's mesh is not the yarn's surface; try another --size");
-  if (!is_one_piece(faces, mesh.cells.size())) return wrong("TetGen's mesh falls into several pieces");
-  const double enclosed = enclosed_volume(points, triangles);
-  if (!(std::abs(volume - enclosed) <= 1e-9 * enclosed))
-    return wrong(
-        fmt::format("TetGen's mesh has the volume {:.12g}, its surface encloses {:.12g}", volume, enclosed));
   return {};
 }
 

@@ -8,24 +8,17 @@
 
 namespace selvage::fem {
 
-// Finite coordinates, indices in range, every edge in exactly two triangles that run through it in opposite
-// directions, a positive volume. Errors (geometry), with the place.
-Status check_surface(std::span<const Vec3> points, std::span<const Triangle> triangles);
-
-// Turns inverted cells round, then: the first points are the surface's to the bit, the cells' boundary is
-// exactly the surface's triangles, they hang together by their faces, and their volume is the enclosed one to
-// 1e-9. Errors: internal, and geometry where the boundary is another one.
-Status check_mesh(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles);
-
-// The same of triangles between several regions: those of each region, seen from it, close it. Every region
-// from 0 to the largest number is there.
-Status check_complex(std::span<const Vec3> points, std::span<const Triangle> triangles,
+// Of triangles with a region (or the outside) on each of their sides: finite coordinates, indices in range;
+// those of each region, seen from it, close it round a positive volume. Errors (geometry), with the place
+// where it is known; limit.
+Status check_surface(std::span<const Vec3> points, std::span<const Triangle> triangles,
                      std::span<const Sides> sides);
 
 // Turns inverted cells round and fills TetMesh::regions: cells that share a face which is none of the
 // triangles are of one region, and triangles say of which. Then: the first points are the job's to the bit,
 // every triangle is a face of cells of its two regions, nothing else is outside, and the volume of each
-// region is the enclosed one to 1e-9. Errors (internal).
+// region is the enclosed one to 1e-9. Errors: geometry where the boundary is another one, as where triangles
+// are in each other's way; internal.
 Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const Triangle> triangles,
                     std::span<const Sides> sides);
 

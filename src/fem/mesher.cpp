@@ -5,22 +5,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <mutex>
-#include <numeric>
 
 #include "core/module.h"
 #include "core/parallel.h"
 #include "fem/faces.h"
-#include "fem/fibre.h"
-#include "fem/improve.h"
 #include "fem/materials.h"
 #include "fem/mesh_check.h"
-#include "fem/midside.h"
 #include "fem/quality.h"
-#include "fem/skin.h"
-#include "fem/tet_complex.h"
-#include "fem/worker.h"
 
 namespace selvage::fem {
 namespace {
@@ -36,10 +28,9 @@ struct YarnMesh {
   std::vector<Message> notes;
 };
 
-// No edge is longer than the yarn is thin.
 double size_for(const yarn::Body& body, const MeshOptions& options) {
   const double extent = yarn::narrowest_section(body);
-  return options.size > 0 ? std::min(options.size, extent) : extent / 4;
+  return options.size > 0 ? std::min(options.size, extent) : extent / default_edges_per_extent;
 }
 
 // Finer where the triangles of a thin yarn come out as none.
@@ -48,7 +39,9 @@ Result<Skin> skin_of(const yarn::Body& body, const MeshOptions& options) {
   double size = size_for(body, options);
   for (int k = 0;; ++k, size /= 2) {
     Result<Skin> skin = make_skin(body, size);
-    if (!skin || k + 1 == tries || check_surface(skin->nodes.points, skin->surface.triangles)) return skin;
+    if (!skin || k + 1 == tries ||
+        check_surface(skin->nodes.points, skin->surface.triangles, skin->surface.sides))
+      return skin;
   }
 }
 
@@ -57,23 +50,6 @@ Message about(Message message, const yarn::Body& body, const fabric::Fabric& fab
   message.file = fabric.file;
   message.place = body.place;
   return message;
-}
-
-// The mesh of one region out of the tetrahedra, in the body's units.
-Mesh assemble(const TetMesh& tets, const Skin& skin, const yarn::Body& body) {
-  Mesh mesh;
-  mesh.nodes = tets.points;
-  mesh.elements.reserve(tets.cells.size());
-  for (const auto& cell : tets.cells) mesh.elements.push_back({cell[0], cell[1], cell[2], cell[3]});
-  Region region;
-  region.name = body.name;
-  region.last_element = mesh.elements.size();
-  for (std::size_t k = 0; k < skin.surface.triangles.size(); ++k) {
-    const Triangle& t = skin.surface.triangles[k];
-    faces_of(region, skin.surface.parts[k]).push_back({t[0], t[1], t[2]});
-  }
-  mesh.regions.push_back(std::move(region));
-  return mesh;
 }
 
 // The nodes of a set of boundary triangles, midside ones included, increasing.
@@ -89,63 +65,22 @@ std::vector<std::size_t> nodes_on(const Mesh& mesh, const std::vector<std::array
 // Where the points of a yarn's skin are in the end; empty: where they are.
 using Places = std::vector<Vec3>;
 
-// Tetrahedra inside the skin with its points in their places. Where triangles come into each other's way,
-// which happens when they are longer than the yarn is thin, it is the skin as it is that is filled, and then
-// moved; or left, where a tetrahedron would turn.
-Result<TetMesh> fill(const Skin& skin, const Places& kept, double size, const MeshOptions& options,
-                     const std::filesystem::path& program) {
-  const std::vector<Vec3>& round = skin.nodes.points;
-  const TetgenLimits limits{.timeout = options.timeout, .memory = options.memory};
-  TetgenJob job{.points = round, .triangles = skin.surface.triangles, .smallest_feature = size};
-  if (!kept.empty()) job.points = kept;
-  Result<TetMesh> tets = run_tetgen(program, job, limits);
-  if (tets || kept.empty() || tets.error().kind != Kind::geometry) return tets;
-  job.points = round;
-  tets = run_tetgen(program, job, limits);
-  if (!tets) return tets;
-  std::vector<Vec3>& p = tets->points;
-  std::copy(kept.begin(), kept.end(), p.begin());
-  const bool turns = std::any_of(tets->cells.begin(), tets->cells.end(), [&](const Tetrahedron& t) {
-    return tet_quality(p[t[0]], p[t[1]], p[t[2]], p[t[3]]) == inverted_quality;
-  });
-  if (turns) std::copy(round.begin(), round.end(), p.begin());
-  return tets;
-}
-
-Result<YarnMesh> mesh_yarn(const yarn::Body& body, const Skin& skin, const Places& kept, Unit units,
-                           const MeshOptions& options, const std::filesystem::path& program) {
-  const double size = size_for(body, options), scale = millimetres_per(units);
-  Result<TetMesh> tets = fill(skin, kept, size, options, program);
+Result<YarnMesh> mesh_yarn(const Block& block, const Places& kept, const MeshOptions& options,
+                           const std::filesystem::path& program) {
+  const yarn::Body& body = block.bodies.front();
+  const double size = size_for(body, options), scale = millimetres_per(block.units);
+  Result<TetMesh> tets = fill(block, kept, size, options, program);
   if (!tets) return tets.error();
-  tets->regions.assign(tets->cells.size(), 0);
-  ImproveOptions improving;
-  improving.target = options.min_dihedral;
-  improving.refine = {.max_volume = largest_volume(size)};
-  const Improvement improvement =
-      improve(tets->points, tets->cells, tets->regions, skin.nodes.points.size(), improving);
-
-  YarnMesh result;
-  result.angles = count(improvement, options.min_dihedral);
-  result.notes = describe(improvement, options.min_dihedral, name_of(units));
-  result.mesh = assemble(*tets, skin, body);
+  Improved improved = improve(*tets, block, size, options);
+  YarnMesh result{assemble(block, *tets), improved.angles, std::move(improved.notes)};
   Mesh& mesh = result.mesh;
-  std::vector<double> known(mesh.nodes.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t k = 0; k < skin.nodes.places.size(); ++k)
-    if (skin.nodes.places[k].body != no_body) known[k] = skin.nodes.places[k].parameters.y();
-  add_fibres(mesh, mesh.regions.front(), body, parameters_along(mesh, mesh.regions.front(), body, known, 1));
-  if (options.order == 2) {
-    const MidsideNodes nodes = add_midside_nodes(
-        mesh,
-        {{&body, 1}, skin.nodes.places, 1, box_round(body), {}, skin.surface.caps, skin.surface.triangles});
-    if (nodes.held > 0) result.notes.push_back(told_of(nodes, scale));
-  }
+  for (Message& note : complete(mesh, block, options.order)) result.notes.push_back(std::move(note));
   Region& region = mesh.regions.front();
   region.start_nodes = nodes_on(mesh, region.start_faces);
   region.end_nodes = nodes_on(mesh, region.end_faces);
   region.last_node = mesh.nodes.size();
   region.exact_volume = body.volume * scale * scale * scale;
   region.length = body.length * scale;
-  for (Vec3& node : mesh.nodes) node *= scale;
   return result;
 }
 
@@ -174,13 +109,8 @@ void append(Mesh& mesh, Mesh&& part) {
   mesh.regions.push_back(std::move(region));
 }
 
-Status check_options(std::span<const yarn::Body> bodies, const MeshOptions& options) {
-  if (bodies.empty()) return error(Kind::geometry, "there is no yarn to mesh");
-  if (options.order != 1 && options.order != 2) return error(Kind::usage, "the order of a mesh is 1 or 2");
-  if (!(options.size >= 0) || !std::isfinite(options.size))
-    return error(Kind::usage, "the mesh size must be a positive number");
-  if (!(options.min_dihedral >= 0 && options.min_dihedral <= 30))
-    return error(Kind::usage, "the smallest dihedral angle wanted must be from 0 to 30 degrees");
+// Too many tetrahedra are refused before they are made.
+Status check_count(std::span<const yarn::Body> bodies, const MeshOptions& options) {
   double estimate = 0;
   for (const yarn::Body& body : bodies) {
     const double size = size_for(body, options);
@@ -212,16 +142,17 @@ std::vector<std::optional<Result<Part>>> for_all(std::size_t count, int threads,
 
 // The surfaces of all yarns as one: their nodes leave the B-spline surfaces so that no volume is lost.
 std::vector<Places> keep_volumes(std::span<const yarn::Body> bodies,
-                                 const std::vector<std::optional<Result<Skin>>>& skins, int threads) {
+                                 const std::vector<std::optional<Result<Block>>>& blocks, int threads) {
   std::vector<std::vector<YarnFacet>> parts(bodies.size());
   for_each_index(bodies.size(), threads,
-                 [&](std::size_t i) { parts[i] = facets_of(bodies.subspan(i, 1), **skins[i], 1); });
+                 [&](std::size_t i) { parts[i] = facets_of(bodies.subspan(i, 1), (*blocks[i])->skin, 1); });
   std::vector<Vec3> points;
   std::vector<YarnFacet> facets;
   std::vector<double> volumes;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const auto first = static_cast<std::uint32_t>(points.size());
-    points.insert(points.end(), (*skins[i])->nodes.points.begin(), (*skins[i])->nodes.points.end());
+    const std::vector<Vec3>& own = (*blocks[i])->skin.nodes.points;
+    points.insert(points.end(), own.begin(), own.end());
     volumes.push_back(bodies[i].volume);
     for (YarnFacet& facet : parts[i]) {
       for (std::uint32_t& corner : facet.corners) corner += first;
@@ -240,53 +171,44 @@ std::vector<Places> keep_volumes(std::span<const yarn::Body> bodies,
   }
   std::vector<Places> kept;
   auto next = points.begin();
-  for (const auto& skin : skins) {
+  for (const auto& block : blocks) {
     const auto first = next;
-    next += static_cast<std::ptrdiff_t>((*skin)->nodes.points.size());
+    next += static_cast<std::ptrdiff_t>((*block)->skin.nodes.points.size());
     kept.emplace_back(first, next);
   }
   return kept;
-}
-
-// What is wrong with the finished mesh.
-Status judge(const Mesh& mesh, const fabric::Fabric& fabric, double scale) {
-  for (const BadElement& bad : mesh.worst) {
-    if (mesh.quality.min_scaled_jacobian > 0) break;
-    Message message =
-        error(Kind::geometry, "the mesh has an element with a negative Jacobian; try another --size");
-    message.file = fabric.file;
-    message.at = bad.at / scale;
-    return message;
-  }
-  return {};
 }
 
 }  // namespace
 
 Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies, Unit units,
                         const MeshOptions& options, Diagnostics& diagnostics) {
-  if (Status right = check_options(bodies, options); !right) return right.error();
+  if (bodies.empty()) return error(Kind::geometry, "there is no yarn to mesh");
+  if (Status right = check_options(options); !right) return right.error();
+  if (Status right = check_count(bodies, options); !right) return right.error();
   const Result<std::filesystem::path> program = find_worker("selvage-tetgen");
   if (!program) return program.error();
-  const double scale = millimetres_per(units);
   std::mutex one_at_a_time;
   const auto count_up = [&](const char* step, std::size_t& done) {
     const std::scoped_lock lock(one_at_a_time);
     if (options.progress) options.progress(step, ++done, bodies.size());
   };
   std::size_t skinned = 0, filled = 0;
-  auto skins = for_all<Skin>(bodies.size(), options.threads, [&](std::size_t i) {
+  auto blocks = for_all<Block>(bodies.size(), options.threads, [&](std::size_t i) -> Result<Block> {
     Result<Skin> skin = skin_of(bodies[i], options);
     count_up("meshing the surface of yarn", skinned);
-    return skin;
+    if (!skin) return skin.error();
+    return Block(bodies.subspan(i, 1), units, box_round(bodies[i]), {}, std::move(*skin));
   });
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (!skins[i]->ok()) return about(skins[i]->error(), bodies[i], fabric);
+    if (!blocks[i]->ok()) return about(blocks[i]->error(), bodies[i], fabric);
   std::vector<Places> kept(bodies.size());
-  if (options.order == 1) kept = keep_volumes(bodies, skins, options.threads);
+  if (options.order == 1) kept = keep_volumes(bodies, blocks, options.threads);
+  MeshOptions one_thread = options;  // for each
+  one_thread.threads = 1;
   auto parts = for_all<YarnMesh>(bodies.size(), options.threads, [&](std::size_t i) {
-    Result<YarnMesh> part = mesh_yarn(bodies[i], **skins[i], kept[i], units, options, *program);
-    skins[i].reset();
+    Result<YarnMesh> part = mesh_yarn(**blocks[i], kept[i], one_thread, *program);
+    blocks[i].reset();
     kept[i] = {};
     count_up("filling yarn", filled);
     return part;
@@ -308,7 +230,11 @@ Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body
   mesh.materials = std::move(choice.materials);
   for (std::size_t i = 0; i < bodies.size(); ++i) mesh.regions[i].material = choice.of_body[i];
   measure(mesh);
-  if (Status sound = judge(mesh, fabric, scale); !sound) return sound.error();
+  if (Status sound = check_elements(mesh, units); !sound) {
+    Message message = sound.error();
+    message.file = fabric.file;
+    return message;
+  }
   return mesh;
 }
 

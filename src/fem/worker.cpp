@@ -360,21 +360,11 @@ class Run {
 
 }  // namespace
 
-double enclosed_volume(std::span<const Vec3> points, std::span<const Triangle> triangles) {
-  if (points.empty()) return 0;
-  const Vec3& origin = points.front();
-  double sum = 0;
-  for (const Triangle& t : triangles)
-    sum += (points[t[0]] - origin).dot((points[t[1]] - origin).cross(points[t[2]] - origin));
-  return sum / 6;
-}
-
 Result<TetMesh> run_tetgen(const std::filesystem::path& program, const TetgenJob& job,
                            const TetgenLimits& limits) {
-  if (Status sound = job.sides.empty() ? check_surface(job.points, job.triangles)
-                                       : check_complex(job.points, job.triangles, job.sides);
-      !sound)
-    return sound.error();
+  const std::vector<Sides> one_region(job.sides.empty() ? job.triangles.size() : 0);
+  const std::span<const Sides> sides = job.sides.empty() ? one_region : job.sides;
+  if (Status sound = check_surface(job.points, job.triangles, sides); !sound) return sound.error();
   const auto after = [start = Clock::now()](double seconds) {
     return start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   };
@@ -393,9 +383,7 @@ Result<TetMesh> run_tetgen(const std::filesystem::path& program, const TetgenJob
     if (std::optional<Message> found = crossing()) return *found;
   Result<TetMesh> mesh = meshing.answer(deadline);
   Status right = mesh ? Status() : Status(mesh.error());
-  if (mesh)
-    right = job.sides.empty() ? check_mesh(*mesh, job.points, job.triangles)
-                              : find_regions(*mesh, job.points, job.triangles, job.sides);
+  if (mesh) right = find_regions(*mesh, job.points, job.triangles, sides);
   if (right) return mesh;
   if (!takes_long)
     if (std::optional<Message> found = crossing()) return *found;

@@ -24,8 +24,7 @@ struct Sides {
 struct TetgenJob {
   std::span<const Vec3> points;
   std::span<const Triangle> triangles;  // closed, counter-clockwise seen from outside
-  // One a triangle, where they part several regions (numbered from 0) from each other and from the outside.
-  // Empty: one region, behind all of them.
+  // One a triangle; regions are numbered from 0, without a gap. Empty: one region, behind all of them.
   std::span<const Sides> sides{};
   double smallest_feature = 0;  // lengths far below this one mean nothing; 0: TetGen's default tolerance
 };
@@ -39,20 +38,16 @@ struct TetMesh {
   std::vector<Vec3> points;  // the job's own first, to the bit
   // ((p1-p0) x (p2-p0)) . (p3-p0) >= 0: between triangles of one plane there can be flat ones.
   std::vector<std::array<std::uint32_t, 4>> cells;
-  std::vector<std::uint32_t> regions;  // of each cell; empty without TetgenJob::sides
+  std::vector<std::uint32_t> regions;  // of each cell
 };
 
 // Runs `program` (selvage-tetgen), again to look for facets that cross where no mesh comes out soon. The
-// result's boundary is exactly the job's triangles, it is one piece, and its volume is the surface's to 1e-9;
-// of several regions, every triangle is a side of cells of just the regions that it parts, and the volume of
-// each is that of its own triangles to 1e-9: anything else is an error. Errors, each with a remedy and where
-// known the place (in the job's coordinates), none naming a yarn: geometry (a coordinate that is not finite,
-// an open surface, facets that cross or nearly touch), limit (time, memory), internal (a crash, a bad answer,
-// no program).
+// result's boundary is exactly the job's triangles, each of them is a side of cells of just the regions that
+// it parts, and the volume of each region is that of its own triangles to 1e-9: anything else is an error.
+// Errors, each with a remedy and where known the place (in the job's coordinates), none naming a yarn:
+// geometry (a coordinate that is not finite, an open surface, facets that cross or nearly touch), limit
+// (time, memory), internal (a crash, a bad answer, no program).
 Result<TetMesh> run_tetgen(const std::filesystem::path& program, const TetgenJob& job,
                            const TetgenLimits& limits);
-
-// Enclosed volume of outward triangles (divergence theorem about the first point).
-double enclosed_volume(std::span<const Vec3> points, std::span<const Triangle> triangles);
 
 }  // namespace selvage::fem

@@ -28,21 +28,23 @@ void add_remedy(const Options& options, Message& message) {
   }
 }
 
+}  // namespace
+
 fem::MeshOptions mesh_options(Job& job) {
   const Options& given = job.options;
   fem::MeshOptions options;
   options.size = given.size;
   options.order = std::max(given.order, 1);
   if (given.min_dihedral > 0) options.min_dihedral = given.min_dihedral;
-  set_mesher_limits(given, options);
+  constexpr double worker_share = 0.9;
+  if (given.timeout > 0) options.timeout = worker_share * given.timeout;
+  if (given.memory > 0) options.memory = given.memory;
   options.threads = static_cast<int>(job.threads);
   options.progress = [&job](const char* step, std::size_t done, std::size_t total) {
     job.progress(step, done, total);
   };
   return options;
 }
-
-}  // namespace
 
 bool has_only_yarns(Job& job, const fabric::Fabric& fabric) {
   const std::vector<const fabric::Piece*> pieces = fabric::pieces_of(fabric);

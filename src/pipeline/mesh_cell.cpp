@@ -75,20 +75,14 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
                              .matrix = given.matrix,
                              .threads = static_cast<int>(job.threads)},
                             diagnostics);
-  fem::CellMeshOptions options;
+  fem::CellMeshOptions options{mesh_options(job)};
   options.sizes = ready.size.sizes;
   options.coarsest = given.matrix_size;
   options.order = given.order > 0 ? given.order : is_plate(given, ready) ? 2 : 1;
   options.matrix = given.matrix;
   if (given.bond) options.bond = bond_reach * job.gap;
   options.periodic = ready.periodic;
-  if (given.min_dihedral > 0) options.min_dihedral = given.min_dihedral;
   options.tolerance = given.tolerance;
-  set_mesher_limits(given, options);
-  options.threads = static_cast<int>(job.threads);
-  options.progress = [&job](const char* step, std::size_t done, std::size_t total) {
-    total > 0 ? job.progress(step, done, total) : job.progress(step);
-  };
   return fem::mesh_cell(fabric, ready.bodies, options, diagnostics);
 }
 

@@ -38,8 +38,8 @@ fs::path dumped(const fs::path& file) {
 }
 
 Output compared(const fs::path& file, const fs::path& dump) {
-  return run(places::python() + " -B " + places::tests() + "/formats/iges/iges_agree.py '" +
-             file.string() + "' '" + dump.string() + "'");
+  return run(places::python() + " -B " + places::tests() + "/formats/iges/iges_agree.py '" + file.string() +
+             "' '" + dump.string() + "'");
 }
 
 void expect_agreement(const fs::path& file) {
@@ -68,13 +68,14 @@ TEST_P(Samples, Agree) {
   ASSERT_EQ(done.exit_code, 0) << done.text;
   expect_agreement(file);
 }
-INSTANTIATE_TEST_SUITE_P(, Samples, testing::ValuesIn(files_below(places::samples(), {".txt", ".wif"})), named);
+INSTANTIATE_TEST_SUITE_P(, Samples, testing::ValuesIn(files_below(places::samples(), {".txt", ".wif"})),
+                         named);
 
 TEST(Agreement, OfSolids) {
   for (const char* ends : {"patch", "fan", "planar"}) {
     const fs::path file = scratch() / (std::string(ends) + ".igs");
-    const Output done = run(places::programs() + "/selvage convert --quiet --iges-solid --ends " +
-                            ends + " '" + places::samples() + "/plain4_path.txt' -o '" + file.string() + "'");
+    const Output done = run(places::programs() + "/selvage convert --quiet --iges-solid --ends " + ends +
+                            " '" + places::samples() + "/plain4_path.txt' -o '" + file.string() + "'");
     ASSERT_EQ(done.exit_code, 0) << done.text;
     expect_agreement(file);
   }

@@ -155,7 +155,8 @@ TEST(IgesMutation, DamagedFiles) {
 }
 
 TEST(IgesMutation, Crashers) {
-  const std::filesystem::path folder = std::filesystem::path(places::tests()) / "formats" / "iges" / "crashers";
+  const std::filesystem::path folder =
+      std::filesystem::path(places::tests()) / "formats" / "iges" / "crashers";
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".igs") continue;

@@ -52,11 +52,12 @@ fem::Mesh cell_mesh(const std::string& text, const Wanted& wanted) {
   for (std::size_t i = 0; i < builder->count(); ++i) bodies.push_back(builder->build(i).value());
   const std::array<bool, 3> periodic = {fabric->cell->periodic_x, fabric->cell->periodic_y,
                                         fabric->cell->periodic_z};
+  fem::CellMeshOptions options{{.size = wanted.size, .order = wanted.order}};
+  options.periodic = periodic;
   Result<fem::Mesh> mesh =
       wanted.voxels > 0
           ? fem::mesh_voxels(*fabric, bodies, {.count = wanted.voxels, .periodic = periodic}, diagnostics)
-          : fem::mesh_cell(*fabric, bodies,
-                           {.size = wanted.size, .order = wanted.order, .periodic = periodic}, diagnostics);
+          : fem::mesh_cell(*fabric, bodies, options, diagnostics);
   EXPECT_TRUE(mesh.ok()) << to_string(mesh.error());
   return mesh.ok() ? std::move(*mesh) : fem::Mesh{};
 }

@@ -265,9 +265,8 @@ Tetrahedra read_mesh(const fs::path& path, double reach) {
 class GmshCell : public StepCell {
  protected:
   void fill(const std::string& options) const {
-    const std::string command = "cd '" + folder_.string() +
-                                "' && timeout 200 '" + places::gmsh() + "' -3 cell.stp " + options +
-                                " -format msh22 -o cell.msh > log 2>&1";
+    const std::string command = "cd '" + folder_.string() + "' && timeout 200 '" + places::gmsh() +
+                                "' -3 cell.stp " + options + " -format msh22 -o cell.msh > log 2>&1";
     ASSERT_EQ(std::system(command.c_str()), 0);
   }
 

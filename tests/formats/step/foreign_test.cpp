@@ -246,8 +246,8 @@ class FreeCad : public ::testing::TestWithParam<const char*> {
   void SetUp() override {
     const fs::path folder = fs::path(places::tests()) / "fixtures/freecad";
     const std::string name = GetParam();
-    Result<Source> source = Source::open(name == "plain4_grid" ? fs::path(places::samples()) / "plain4_grid.txt"
-                                                               : folder / (name + ".txt"));
+    Result<Source> source = Source::open(
+        name == "plain4_grid" ? fs::path(places::samples()) / "plain4_grid.txt" : folder / (name + ".txt"));
     ASSERT_TRUE(source.ok());
     // The knit that FreeCAD was given is the published one.
     bodies_ = bodies_of(*source, name == "planar" ? yarn::EndStyle::planar : yarn::EndStyle::patch, true);

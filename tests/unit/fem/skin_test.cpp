@@ -11,6 +11,15 @@ using test::straight_tube;
 
 using Part = CellTriangles::Part;
 
+// Divergence theorem about the first point.
+double enclosed_volume(const Skin& skin) {
+  const std::vector<Vec3>& points = skin.nodes.points;
+  double sum = 0;
+  for (const Triangle& t : skin.surface.triangles)
+    sum += (points[t[0]] - points[0]).dot((points[t[1]] - points[0]).cross(points[t[2]] - points[0]));
+  return sum / 6;
+}
+
 // Closed, and every point of the side where its parameters say.
 Skin expect_sound(const yarn::Body& body, double size) {
   Result<Skin> skin = make_skin(body, size);
@@ -18,9 +27,9 @@ Skin expect_sound(const yarn::Body& body, double size) {
     ADD_FAILURE() << body.name << ": " << to_string(skin.error());
     return {};
   }
-  const Status closed = check_surface(skin->nodes.points, skin->surface.triangles);
+  const Status closed = check_surface(skin->nodes.points, skin->surface.triangles, skin->surface.sides);
   EXPECT_TRUE(closed.ok()) << body.name << ": " << (closed.ok() ? "" : closed.error().text);
-  EXPECT_GT(enclosed_volume(skin->nodes.points, skin->surface.triangles), 0);
+  EXPECT_GT(enclosed_volume(*skin), 0);
   EXPECT_NEAR(skin->volumes.front(), body.volume, 1e-7 * body.volume) << body.name;
   for (std::size_t k = 0; k < skin->nodes.points.size(); ++k) {
     const SurfacePlace& place = skin->nodes.places[k];
@@ -139,7 +148,7 @@ TEST(Skin, SharpCrestsGetVertices) {
   ASSERT_TRUE(yarn::fill_from_grid(body, net).ok());
   ASSERT_TRUE(yarn::finish(body, yarn::EndStyle::planar).ok());
   const Skin skin = expect_sound(body, 0.13);
-  EXPECT_NEAR(enclosed_volume(skin.nodes.points, skin.surface.triangles), 1.5, 1e-12);
+  EXPECT_NEAR(enclosed_volume(skin), 1.5, 1e-12);
 }
 
 }  // namespace
