@@ -15,6 +15,7 @@
 #include "cad/model.h"
 #include "core/diagnostics.h"
 #include "core/findings.h"
+#include "core/option.h"
 #include "core/output.h"
 #include "core/source.h"
 #include "core/units.h"
@@ -52,10 +53,8 @@ struct SurfaceOptions {
   double max_coordinate = 0;          // upper bound of |coordinate| over all bodies, if known; 0: unknown
   std::string date;                   // YYYYMMDD.HHNNSS for headers; empty: now
   double tolerance = 0;               // of the modelled tubes, file units; 0: unknown
-  bool iges_solid = false;            // IGES: 186 solids instead of three 128s a yarn
-  std::int64_t iges_lines = 0;        // IGES: of a section of one file; 0: as many as there are numbers for
-  bool split_yarns = false;           // IGES: a yarn that fits into no file is cut
-  std::string step_schema = "AP242";  // AP242 | AP214
+  bool yarns_are_solids = false;      // in the file of this format that they come from (fabric::Fabric)
+  OptionValues own;                   // of Descriptor::options
   // For formats whose files have a largest size: opens file `number` (2, 3, ...) of the fabric. What it gives
   // outlives the writer. Null: there can be one file only.
   std::function<Result<OutputFile*>(int number)> next_part;
@@ -118,6 +117,10 @@ struct Descriptor {
   void (*check_structure)(const Source& source, Findings& findings) = nullptr;
   // What the beginning of a file (at most 4 KiB) says of the set that it is part of; none: it stands alone.
   std::optional<PartMark> (*part_mark)(std::string_view head) = nullptr;
+  // The library that reads it, for the message when it dies of a file: "STEP". Empty: a reader of our own.
+  std::string_view foreign_reader{};
+  // Some systems ignore a few of its entities (cad/judge.h: judge_for_receivers).
+  bool is_partly_ignored = false;
   [[nodiscard]] bool is_readable() const { return read_fabric != nullptr || read_model != nullptr; }
 
   Result<WriteFacts> (*write_fabric)(const fabric::Fabric& fabric, OutputFile& output) = nullptr;
@@ -133,6 +136,12 @@ struct Descriptor {
   // The format of a second file of the same stem that goes with each file of this one, of meshes that have
   // load cases.
   const Descriptor& (*companion)() = nullptr;
+  // What the command line says of this format alone: of subcommands that can write it.
+  std::vector<const Option*> options{};
+  // A flag of these that makes another form of the format; a round trip goes through both.
+  const Option* other_form = nullptr;
+  bool is_own = false;    // the program's own text: what it reads and writes where it works on the text
+  bool is_usual = false;  // written where no format is named
   // Lengths in mm.
   Result<WriteFacts> (*write_gap_map)(const solid::GapMap& map, OutputFile& output) = nullptr;
 };

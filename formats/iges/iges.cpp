@@ -1,6 +1,7 @@
 #include "formats/iges/iges.h"
 
 #include "formats/iges/header.h"
+#include "formats/iges/options.h"
 #include "formats/iges/reader.h"
 #include "formats/iges/structure.h"
 #include "formats/iges/writer.h"
@@ -28,9 +29,13 @@ const Descriptor& descriptor() {
       .read_model = read_model,
       .check_structure = check_structure,
       .part_mark = part_mark,
+      .is_partly_ignored = true,
       .open_bodies = [](OutputFile& output,
                         const SurfaceOptions& options) { return open_writer(output, options); },
-      .carries_curves = true};
+      .carries_curves = true,
+      .options = option::all(),
+      .other_form = &option::solid,
+      .is_usual = true};
   return self;
 }
 

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "formats/iges/options.h"
 #include "formats/iges/writer.h"
 #include "yarn/cut.h"
 
@@ -110,7 +111,7 @@ Status SetWriter::put_pending() {
 Status SetWriter::put_yarn(const yarn::Body& body) {
   Status status = put([&](FileWriter& file) { return file.add(body); });
   if (status.ok() || status.error().kind != Kind::limit || !file_->is_empty()) return status;
-  if (options_.split_yarns && options_.next_part) return put_in_pieces(body, status.error());
+  if (options_.own.has(option::split_yarns) && options_.next_part) return put_in_pieces(body, status.error());
   status.error().text += ": --split-yarns cuts it into several, and a coarser --tolerance makes it shorter";
   return status;
 }
@@ -192,7 +193,7 @@ Result<WriteFacts> SetWriter::finish() {
 
 Result<std::unique_ptr<BodyWriter>> open_writer(OutputFile& output, const SurfaceOptions& options,
                                                 Records::Limits limits) {
-  if (options.iges_lines > 0) limits.lines = std::min(limits.lines, options.iges_lines);
+  limits.lines = std::min(limits.lines, options.own.whole(option::lines));
   return std::unique_ptr<BodyWriter>(std::make_unique<SetWriter>(output, options, limits));
 }
 

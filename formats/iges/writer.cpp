@@ -16,6 +16,7 @@
 #include "core/clock.h"
 #include "formats/iges/entities.h"
 #include "formats/iges/header.h"
+#include "formats/iges/options.h"
 #include "formats/iges/part.h"
 #include "formats/iges/piece.h"
 #include "formats/iges/solid.h"
@@ -58,6 +59,7 @@ class Writer final : public FileWriter, private ColorSource {
   Writer(OutputFile& output, const SurfaceOptions& options, Header header, Records::Limits limits)
       : output_(&output),
         options_(options),
+        is_solid_(options.own.has(option::solid) || options.yarns_are_solids),
         header_(std::move(header)),
         records_(output, header_text(header_).bytes.size(), limits) {}
 
@@ -114,6 +116,7 @@ class Writer final : public FileWriter, private ColorSource {
 
   OutputFile* output_;
   SurfaceOptions options_;
+  bool is_solid_;
   Header header_;
   Records records_;
   Shared shared_;
@@ -154,7 +157,7 @@ Status Writer::check(const yarn::Body& body) {
   }
   for (const yarn::EndFace* end : {&body.start, &body.end}) {
     if (body.closed_along) break;
-    if (options_.iges_solid && end->style == EndStyle::none)
+    if (is_solid_ && end->style == EndStyle::none)
       return yarn_error(
           Kind::geometry, body,
           fmt::format("yarn {} has open ends and cannot be written as a solid: seal it with --ends "
@@ -295,13 +298,13 @@ int Writer::write(const yarn::Body& body) {
                 .level = level(static_cast<std::size_t>(body.role), yarn::name_of(body.role)),
                 .label = name_};
   int entities = 2;  // the first face and the group
-  if (options_.iges_solid)
+  if (is_solid_)
     entities = entities_of_solid(body);
   else if (!body.closed_along)
     entities += entities_of_end(body.start) + entities_of_end(body.end);
   common.name = records_.next() + 2 * entities;
-  const int pointer = options_.iges_solid ? write_solid(records_, common, body)
-                                          : write_group(records_, common, write_faces(common, body));
+  const int pointer = is_solid_ ? write_solid(records_, common, body)
+                                : write_group(records_, common, write_faces(common, body));
   write_name(records_, common, name_);
   return pointer;
 }
@@ -317,7 +320,7 @@ int Writer::definition_of(const Instance& instance) {
                       .label = {},  // names are the copies'
                       .status = dependent};
   const std::vector<int> members =
-      options_.iges_solid ? std::vector{write_solid(records_, common, body)} : write_faces(common, body);
+      is_solid_ ? std::vector{write_solid(records_, common, body)} : write_faces(common, body);
   const int pointer = write_definition(records_, common, name, members);
   shared_.definitions.emplace(instance.shape, pointer);
   return pointer;

@@ -198,7 +198,8 @@ const Descriptor& descriptor() {
                                   .title = "Abaqus and CalculiX input deck",
                                   .extensions = {".inp"},
                                   .sniff = looks_like_a_deck,
-                                  .write_mesh = write};
+                                  .write_mesh = write,
+                                  .is_usual = true};
   return self;
 }
 

@@ -1,6 +1,7 @@
 #include "formats/step/step.h"
 
 #include "core/module.h"
+#include "formats/step/options.h"
 #include "formats/step/writer.h"
 
 namespace selvage::formats::step {
@@ -35,8 +36,11 @@ const Descriptor& descriptor() {
       .extensions = {".stp", ".step"},
       .sniff = looks_like_step,
       .read_model = read_model,
+      .foreign_reader = "STEP",
       .open_bodies = open_bodies,
-      .carries_curves = true};
+      .carries_curves = true,
+      .options = option::all(),
+      .is_usual = true};
   return self;
 }
 

@@ -40,6 +40,7 @@
 
 #include "core/clock.h"
 #include "core/text_report.h"
+#include "formats/step/options.h"
 #include "formats/step/part_shape.h"
 #include "formats/step/session.h"
 #include "formats/step/stream.h"
@@ -241,7 +242,7 @@ class StepBodyWriter : public BodyWriter {
 
   Result<WriteFacts> write() {
     if (parts_.empty()) return error(Kind::geometry, "there is neither a yarn nor a piece to write");
-    const Session session = Session::to_write(options_.units, options_.step_schema);
+    const Session session = Session::to_write(options_.units, options_.own.text(option::schema));
     shapes_->UpdateAssemblies();
     const std::string title = options_.title.empty() ? "fabric" : options_.title;
     TDataStd_Name::Set(assembly_, TCollection_ExtendedString(title.c_str(), true));
@@ -368,8 +369,9 @@ class StepBodyWriter : public BodyWriter {
 }  // namespace
 
 Result<std::unique_ptr<BodyWriter>> open_writer(OutputFile& output, const SurfaceOptions& options) {
-  if (schema_word(options.step_schema) == nullptr)
-    return error(Kind::usage, fmt::format("unknown STEP schema '{}': AP242 or AP214", options.step_schema));
+  const std::string_view schema = options.own.text(option::schema);
+  if (schema_word(schema) == nullptr)
+    return error(Kind::usage, fmt::format("unknown STEP schema '{}': AP242 or AP214", schema));
   return solid::occt::guarded("the STEP file", [&]() -> Result<std::unique_ptr<BodyWriter>> {
     return std::unique_ptr<BodyWriter>(std::make_unique<StepBodyWriter>(output, options));
   });

@@ -13,7 +13,8 @@ const Descriptor& descriptor() {
                                   .sniff = is_fabric_txt,
                                   .read_fabric = read_fabric,
                                   .write_fabric = write_fabric,
-                                  .insert_edit = insert_edit};
+                                  .insert_edit = insert_edit,
+                                  .is_own = true};
   return self;
 }
 

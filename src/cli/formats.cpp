@@ -1,6 +1,5 @@
-#include <fmt/format.h>
+#include "cli/formats.h"
 
-#include "cli/cli.h"
 #include "formats/format.h"
 #include "pipeline/table.h"
 
@@ -13,7 +12,9 @@ std::string read_word(const formats::Descriptor& format) {
   return format.read_model != nullptr ? "surfaces" : "-";
 }
 
-int print_formats() {
+}  // namespace
+
+std::string table_of_formats() {
   pipeline::Table table({"name", "extensions", "read", "write", "what"});
   for (const formats::Descriptor* format : formats::all_formats()) {
     std::string extensions, write;
@@ -28,14 +29,7 @@ int print_formats() {
     table.add({std::string(format->name), extensions, read_word(*format), write.empty() ? "-" : write,
                std::string(format->title)});
   }
-  return tell(table.text());
-}
-
-}  // namespace
-
-void add_formats(CLI::App& program, Parsed& parsed) {
-  CLI::App& command = *program.add_subcommand("formats", "the formats that can be read and written");
-  command.callback([&parsed] { parsed.action = print_formats; });
+  return table.text();
 }
 
 }  // namespace selvage::cli

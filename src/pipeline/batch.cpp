@@ -78,9 +78,6 @@ class Batch {
   double tick();
   void remove_leftovers() const;
 
-  [[nodiscard]] bool wants_report() const {
-    return !options_.report.empty() || !options_.junit.empty() || options_.json;
-  }
   [[nodiscard]] std::string report_text(bool ok) const;
   Status write_report(bool ok) const;
   Status write_junit(const std::vector<Message>& missing) const;
@@ -101,7 +98,7 @@ class Batch {
   std::size_t next_result_ = 0;
   bool has_lost_workers_ = false;  // that were killed, or crashed
   Status printed_;                 // of standard output: what could not be written
-  std::string started_ = wants_report() ? iso_timestamp() : std::string();
+  std::string started_ = options_.wants_report() ? iso_timestamp() : std::string();
   Clock::time_point start_ = Clock::now();
   Clock::time_point next_report_ = start_ + std::chrono::seconds(static_cast<int>(report_interval));
 };
@@ -181,7 +178,7 @@ void Batch::flush_results() {
 void Batch::fail(std::size_t job, Message message) {
   message.file = inputs_[job].path == "-" ? "<stdin>" : inputs_[job].path;
   work_[job].messages += to_string(message) + "\n";
-  if (!wants_report()) return;
+  if (!options_.wants_report()) return;
   InputReport report;
   report.path = inputs_[job].path;
   report.messages.push_back(std::move(message));
@@ -315,7 +312,7 @@ int Batch::run(const std::vector<Message>& missing) {
     InputReport report;
     report.path = message.file;
     report.messages.push_back(message);
-    if (wants_report()) missing_reports_.push_back(to_json(report));
+    if (options_.wants_report()) missing_reports_.push_back(to_json(report));
   }
   remove_leftovers();
 

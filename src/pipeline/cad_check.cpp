@@ -14,7 +14,7 @@ CadLook CadCheck::look() {
           .model =
               [this](const cad::Model& model, const formats::Descriptor& format) {
                 measures_ = cad::judge(model, geometry_);
-                cad::judge_for_receivers(model, *measures_, format.name == "iges", geometry_);
+                cad::judge_for_receivers(model, *measures_, format.is_partly_ignored, geometry_);
               }};
 }
 

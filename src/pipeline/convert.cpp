@@ -31,10 +31,8 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
   surface.date = fabric.date;
   surface.tolerance =
       converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, surface.units);
-  surface.iges_solid = job.options.iges_solid || fabric.yarns_are_solids;
-  surface.step_schema = job.options.step_schema;
-  surface.iges_lines = job.options.iges_lines;
-  surface.split_yarns = job.options.split_yarns;
+  surface.yarns_are_solids = fabric.yarns_are_solids;
+  surface.own = job.options.of_formats;
   return surface;
 }
 
@@ -56,11 +54,10 @@ bool open_writers(Job& job, const fabric::Fabric& fabric, std::size_t count, Ope
 }
 
 std::string formats_with(bool formats::Descriptor::*what) {
-  std::string names;
+  std::vector<std::string_view> names;
   for (const formats::Descriptor* format : formats::all_formats())
-    if (format->open_bodies != nullptr && format->*what)
-      names += fmt::format("{}{}", names.empty() ? "" : ", ", format->name);
-  return names;
+    if (format->open_bodies != nullptr && format->*what) names.push_back(format->name);
+  return alternatives(names);
 }
 
 bool add_to_all(Job& job, const yarn::Body& body, const std::optional<formats::Instance>& instance,
@@ -154,8 +151,9 @@ bool holds_solids(Job& job, const OpenOutputs& outputs) {
   for (const OpenOutput& output : outputs) {
     const formats::Descriptor& format = *output.plan->format;
     if (format.write_fabric == nullptr && format.open_bodies != nullptr && format.carries_surfaces) continue;
-    job.say(error(Kind::usage, fmt::format("{} holds no solids, which {} makes: write iges or step",
-                                           format.name, job.options.matrix ? "--matrix" : "--cut")));
+    job.say(error(Kind::usage, fmt::format("{} holds no solids, which {} makes: write {}", format.name,
+                                           job.options.matrix ? "--matrix" : "--cut",
+                                           formats_with(&formats::Descriptor::carries_surfaces))));
   }
   return !job.has_failed();
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/number_text.h"
 #include "core/output.h"
 #include "core/source.h"
 #include "fabric/build.h"
@@ -18,15 +19,67 @@ namespace selvage::pipeline {
 
 namespace {
 
-// The request, and who is told of it.
+// Three numbers joined by commas, kept as they are written.
+Status take_vector(const std::string& option, std::string_view text, formats::NewEdit& edit, Vec3& vector) {
+  const auto refused = [&] {
+    return error(
+        Kind::usage,
+        fmt::format("{} {}: three numbers joined by commas are expected, as in 1,0.2,-0.5", option, text));
+  };
+  std::string_view rest = text;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t comma = i < 2 ? rest.find(',') : rest.size();
+    if (comma == rest.npos) return refused();
+    const std::optional<double> value = read_number(rest.substr(0, comma));
+    if (!value) return refused();
+    vector[static_cast<Eigen::Index>(i)] = *value;
+    edit.vector[i] = rest.substr(0, comma);
+    if (i < 2) rest.remove_prefix(comma + 1);
+  }
+  return {};
+}
+
+// The edit that was asked for.
+Result<formats::NewEdit> edit_of(const EditWords& words) {
+  formats::NewEdit added;
+  fabric::Edit& edit = added.edit;
+  edit.yarn = words.yarn;
+  edit.joint = words.point;
+  added.length = words.length;
+  if (words.along.empty() != words.length.empty())
+    return error(Kind::usage, "--length L and --along X,Y,Z go together");
+  if (words.to.empty() == words.along.empty())
+    return error(Kind::usage, "name either --to X,Y,Z, or --length L with --along X,Y,Z");
+  if (!words.to.empty()) {
+    edit.form = words.by == "weight" ? fabric::Edit::Form::weight : fabric::Edit::Form::point;
+    if (Status status = take_vector("--to", words.to, added, edit.target); !status) return status.error();
+    return added;
+  }
+  if (words.by != "control") return error(Kind::usage, "--by weight goes with --to, not with --length");
+  edit.form = fabric::Edit::Form::length;
+  const std::optional<double> length = read_number(words.length);
+  if (!length || *length <= 0.0)
+    return error(Kind::usage, fmt::format("--length {}: a length is a number above 0", words.length));
+  edit.length = *length;
+  if (Status status = take_vector("--along", words.along, added, edit.direction); !status)
+    return status.error();
+  if (edit.direction == Vec3::Zero())
+    return error(Kind::usage, fmt::format("--along {}: this is no direction", words.along));
+  return added;
+}
+
+// What is edited, where to, and who is told of it.
 struct Edit {
-  const EditRequest& request;
+  const Options& options;
+  const std::string& input;
+  const std::string& output;  // a file, or "-" for standard output
+  const formats::NewEdit& added;
   const Channel& channel;
 
   void say(Message message) const {
-    if (message.file.empty()) message.file = request.input == "-" ? "<stdin>" : request.input;
+    if (message.file.empty()) message.file = input == "-" ? "<stdin>" : input;
     if (message.severity == Severity::note) return;
-    if (!request.options.quiet || message.severity == Severity::error)
+    if (!options.quiet || message.severity == Severity::error)
       channel.send(packet::message, to_string(message));
   }
   void say_all(const std::vector<Message>& messages) const {
@@ -49,16 +102,16 @@ int line_before(const fabric::Fabric& fabric, TextPlace yarn) {
 // Where the yarn is made, if the edit is possible; nothing when it is not (it was said why).
 std::optional<TextPlace> try_edit(const Edit& edit, const fabric::Fabric& before) {
   fabric::Fabric after = before;
-  after.edits.push_back(edit.request.edit.edit);
+  after.edits.push_back(edit.added.edit);
   Diagnostics diagnostics;
   fabric::BuildOptions options;
   options.detail = fabric::Detail::yarn;  // an edit moves the centre line of the whole yarn
   const std::optional<fabric::YarnBuilder> builder = fabric::YarnBuilder::create(after, options, diagnostics);
   edit.say_all(diagnostics.messages());
   if (!builder) return std::nullopt;
-  const std::optional<std::size_t> index = builder->find(edit.request.edit.edit.yarn);
+  const std::optional<std::size_t> index = builder->find(edit.added.edit.yarn);
   if (!index) {
-    edit.say(error(Kind::geometry, fmt::format("there is no yarn '{}'", edit.request.edit.edit.yarn)));
+    edit.say(error(Kind::geometry, fmt::format("there is no yarn '{}'", edit.added.edit.yarn)));
     return std::nullopt;
   }
   const Result<yarn::Body> body = builder->build(*index);
@@ -70,56 +123,53 @@ std::optional<TextPlace> try_edit(const Edit& edit, const fabric::Fabric& before
   return body->place;
 }
 
-Status write(const EditRequest& request, std::string_view text) {
-  Result<OutputFile> file =
-      request.output == "-" ? OutputFile::standard_output() : OutputFile::create(request.output);
+Status write(const std::string& output, std::string_view text) {
+  Result<OutputFile> file = output == "-" ? OutputFile::standard_output() : OutputFile::create(output);
   if (!file) return file.error();
   if (Status status = file->write(text); !status) return status;
   return file->commit();
 }
 
 bool work(const Edit& edit) {
-  const EditRequest& request = edit.request;
   const auto fail = [&](const Message& message) {
     edit.say(message);
     return false;
   };
-  const Result<Source> source = Source::open(request.input);
+  const Result<Source> source = Source::open(edit.input);
   if (!source) return fail(source.error());
   const Result<const formats::Descriptor*> format = detect_readable(*source);
   if (!format) return fail(format.error());
   if ((*format)->insert_edit == nullptr)
-    return fail(
-        error(Kind::unsupported, fmt::format("this is {} ({}): an `edit` line belongs in a Fabric TXT file",
-                                             (*format)->name, (*format)->title)));
+    return fail(error(Kind::unsupported, fmt::format("this is {} ({}): an `edit` line belongs in a text",
+                                                     (*format)->name, (*format)->title)));
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
-  if (fabric) resolve_drafts(*fabric, *source, request.options.allow_outside, diagnostics);
+  if (fabric) resolve_drafts(*fabric, *source, edit.options.allow_outside, diagnostics);
   edit.say_all(diagnostics.messages());
   if (!fabric || diagnostics.has_errors()) return false;
   const std::optional<TextPlace> place = try_edit(edit, *fabric);
   if (!place) return false;
-  const std::string text =
-      (*format)->insert_edit(source->bytes(), line_before(*fabric, *place), request.edit);
-  const Status written = write(request, text);
+  const std::string text = (*format)->insert_edit(source->bytes(), line_before(*fabric, *place), edit.added);
+  const Status written = write(edit.output, text);
   return written.ok() || fail(written.error());
 }
 
 }  // namespace
 
-int edit(const EditRequest& asked) {
-  const Result<std::filesystem::path> place = output_of_edit(asked.output, asked.input);
+int edit(const Options& options) {
+  const Result<formats::NewEdit> added = edit_of(options.edit);
+  if (!added) return refuse(added.error());
+  const Result<std::filesystem::path> place = output_of_edit(options);
   if (!place) return refuse(place.error());
-  EditRequest request = asked;
-  request.output = place->string();
+  const std::string &input = options.inputs.front(), output = place->string();
   Single single;
   single.what = "the edit";
-  single.inputs = {request.input};
-  if (request.output != "-") single.outputs = {request.output};
+  single.inputs = {input};
+  if (output != "-") single.outputs = {output};
   single.work = [&](const Channel& channel) {
-    return work({request, channel}) ? Verdict::done : Verdict::failed;
+    return work({options, input, output, *added, channel}) ? Verdict::done : Verdict::failed;
   };
-  return run_single(request.options, single);
+  return run_single(options, single);
 }
 
 }  // namespace selvage::pipeline

@@ -24,49 +24,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto progress_interval = std::chrono::milliseconds(50);
 
-std::string words_of(const RelaxSettings& relaxing) {
-  if (!relaxing.wanted) return {};
-  std::string text = " relax";
-  if (relaxing.gap) text += fmt::format(" gap={}", *relaxing.gap);
-  if (relaxing.overlap) text += fmt::format(" overlap={}", *relaxing.overlap);
-  if (relaxing.stiff_section) text += " stiff-section";
-  if (relaxing.max_iterations > 0) text += fmt::format(" max-iterations={}", relaxing.max_iterations);
-  return text;
-}
-
 // Everything beside the input that changes the bytes of an output: the program, its libraries, the command
 // line.
 std::string settings_of(const Options& options) {
   std::string text = fmt::format("selvage={} build={}", version(), build_identity());
   for (const auto& [library, number] : library_versions()) text += fmt::format(" {}={}", library, number);
-  text += fmt::format(" {} ends={} tolerance={}", name_of(options.command),
-                      options.ends ? name_of(*options.ends) : "input", options.tolerance);
-  if (options.units) text += fmt::format(" units={}", name_of(*options.units));
-  if (options.iges_solid) text += " iges-solid";
-  if (options.iges_lines > 0) text += fmt::format(" iges-lines={}", options.iges_lines);
-  if (options.split_yarns) text += " split-yarns";
-  if (options.instances) text += " instances";
-  if (options.detail != fabric::Detail::filaments)
-    text += options.detail == fabric::Detail::yarn ? " detail=yarn" : " detail=plies";
-  if (options.as_published) text += " as-published";
-  text += words_of(options.relaxing);
-  if (options.command == Command::mesh)
-    text += fmt::format(" size={} order={} min-dihedral={}{}", options.size, options.order,
-                        options.min_dihedral, options.allow_overlap ? " allow-overlap" : "");
-  else if (options.command == Command::view)
-    text += fmt::format(" from={} size={}x{} background={},{},{}{}", name_of(options.from),
-                        options.picture_width, options.picture_height, options.background.red,
-                        options.background.green, options.background.blue, options.flat ? " flat" : "");
-  else
-    text += fmt::format(" step-schema={}", options.step_schema);
-  if (options.wants_cell())
-    text +=
-        fmt::format("{}{}{}{} voxels={}{} segments={} matrix-size={} gap={}", options.chamis ? " chamis" : "",
-                    options.cut ? " cut" : "", options.matrix ? " matrix" : "",
-                    options.periodic ? " periodic" : "", options.voxels, options.bond ? " bond" : "",
-                    options.segments, options.matrix_size, options.relaxing.gap.value_or(-1.0));
-  if (options.reach > 0) text += fmt::format(" reach={}", options.reach);
-  if (!options.gap_map.empty()) text += " gap-map";
+  text += fmt::format(" {}{}", name_of(options.command), options.settings);
   return text;
 }
 
@@ -82,26 +45,6 @@ std::string plural(std::size_t count, std::string_view noun) {
 }
 
 }  // namespace
-
-std::string_view name_of(Command command) {
-  switch (command) {
-    case Command::convert:
-      return "convert";
-    case Command::relax:
-      return "relax";
-    case Command::check:
-      return "check";
-    case Command::mesh:
-      return "mesh";
-    case Command::info:
-      return "info";
-    case Command::view:
-      return "view";
-    case Command::roundtrip:
-      return "roundtrip";
-  }
-  return "convert";
-}
 
 Job::Job(const Options& options_in, const Input& input_in, const std::vector<PlannedOutput>& outputs_in,
          const Channel& channel)
@@ -197,16 +140,16 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
     for (const std::filesystem::path& file : further_files(input.path))
       if (const Result<Source> further = Source::open(file)) look.file(*further, **format);
   }
-  // OpenCASCADE dies of some files: that is a defect of the file, not of ours.
-  const bool is_foreign_library = *format == format_named("step");
-  if (is_foreign_library) channel_.send(packet::reader, "STEP");
+  // Libraries die of some files: that is a defect of the file, not of ours.
+  const std::string_view library = (*format)->foreign_reader;
+  if (!library.empty()) channel_.send(packet::reader, library);
   if ((*format)->read_fabric != nullptr) {
     fabric = (*format)->read_fabric(*source, diagnostics);
   } else if (std::optional<cad::Model> model = read_whole_model(**format, *source, diagnostics)) {
     if (look.model) look.model(*model, **format);
     fabric = fabric::fabric_of(std::move(*model), diagnostics);
   }
-  if (is_foreign_library) channel_.send(packet::reader, "");
+  if (!library.empty()) channel_.send(packet::reader, "");
   if (fabric) take_drafts(*fabric, *source, diagnostics);
   forward(diagnostics);
   if (!fabric && !diagnostics.has_errors())
@@ -322,6 +265,10 @@ Verdict work(Job& job, const std::string& earlier) {
     case Command::roundtrip:
       defective = roundtrip(job);
       break;
+    case Command::diff:
+    case Command::edit:
+    case Command::formats:
+      break;  // no batch
   }
   if (job.has_failed()) return Verdict::failed;
   return defective || job.unsolved ? Verdict::defect : Verdict::done;

@@ -79,9 +79,7 @@ class Job {
 
   // An error, or with --strict a warning, was said.
   [[nodiscard]] bool has_failed() const { return errors_ > 0 || (options.strict && warnings_ > 0); }
-  [[nodiscard]] bool wants_report() const {
-    return !options.report.empty() || !options.junit.empty() || options.json;
-  }
+  [[nodiscard]] bool wants_report() const { return options.wants_report(); }
 
   // Reads the input; nothing when that failed (it was said why). The fabric of an input that cannot be built
   // is fine.

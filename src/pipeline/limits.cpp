@@ -12,7 +12,6 @@
 #include "core/module.h"
 #include "core/output.h"
 #include "core/process.h"
-#include "pipeline/detect.h"
 
 namespace selvage::pipeline {
 
@@ -71,7 +70,7 @@ void share_memory(Options& options, std::size_t jobs) {
 }
 
 void limit_time(const Options& options, const formats::Descriptor& format) {
-  if (options.timeout <= 0 && &format != format_named("txt")) end_after(foreign_timeout);
+  if (options.timeout <= 0 && !format.is_own) end_after(foreign_timeout);
 }
 
 std::string memory_limit(const Options& options) {

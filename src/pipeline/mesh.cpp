@@ -52,7 +52,7 @@ bool has_only_yarns(Job& job, const fabric::Fabric& fabric) {
   Message message =
       error(Kind::unsupported,
             fmt::format("piece '{}' is a flat face, which has no volume to fill with tetrahedra: "
-                        "convert it to STEP or IGES, and mesh the face there",
+                        "convert it to a CAD file, and mesh the face there",
                         pieces.front()->name));
   message.place = pieces.front()->place;
   job.say(std::move(message));

@@ -1,4 +1,5 @@
-// What the command line asks for, after it was understood. The contract is in README.md.
+// What the command line asks for, after it was understood (pipeline/command_line.h, where defaults that are
+// values stand, too). The contract is in README.md.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "core/containment.h"
+#include "core/option.h"
 #include "core/units.h"
 #include "fabric/plies.h"
 #include "formats/format.h"
@@ -15,7 +17,7 @@
 
 namespace selvage::pipeline {
 
-enum class Command { convert, relax, check, mesh, info, view, roundtrip };
+enum class Command { convert, check, relax, mesh, roundtrip, diff, info, edit, view, formats };
 std::string_view name_of(Command command);
 
 // --relax and what goes with it; lengths in the input's unit.
@@ -27,11 +29,19 @@ struct RelaxSettings {
   int max_iterations = 0;         // 0: the default
 };
 
+// Of `edit`, as given.
+struct EditWords {
+  std::string yarn, to, by, length, along;
+  int point = 0;  // from 1
+};
+
 struct Options {
   Command command = Command::convert;
-  std::vector<std::string> inputs;  // as given: files, folders, patterns, "-", "@list"
-  std::string output;               // -o; empty: beside the inputs; "-": standard output
-  std::string formats;              // --to, as given
+  std::string settings;  // the options that outputs depend on, as words
+  std::vector<std::string>
+      inputs;           // as given: files, folders, patterns, "-", "@list"; of `diff` the two files
+  std::string output;   // -o; empty: beside the inputs; "-": standard output
+  std::string formats;  // --to, as given
 
   std::size_t workers = 0;       // 0: one a core
   double timeout = 0;            // seconds an input; 0: none, but for formats of other programs
@@ -50,11 +60,8 @@ struct Options {
   fabric::Detail detail = fabric::Detail::filaments;  // how far yarns are taken apart
   bool as_published = false;           // constructions as their paper gives them, overlaps and all
   std::optional<yarn::EndStyle> ends;  // none: as the input has them, or patch
-  bool iges_solid = false;
-  std::int64_t iges_lines = 0;  // of a section of one file; 0: what the format can number
-  bool instances = false;       // repeat equal yarns by reference
-  bool split_yarns = false;     // cut those that are too long for one file
-  std::string step_schema = "AP242";
+  bool instances = false;              // repeat equal yarns by reference
+  OptionValues of_formats;             // what formats declare for themselves
 
   double size = 0;          // wanted edge length, input's unit; 0: the mesher's choice
   int order = 0;            // 1, 2; 0: 2 of a plate with its matrix, else 1
@@ -82,17 +89,24 @@ struct Options {
 
   // view
   view::From from = view::From::top;
-  int picture_width = 1200, picture_height = 900;  // pixels
-  yarn::Color background{255, 255, 255};
+  int picture_width = 0, picture_height = 0;  // pixels
+  yarn::Color background{};
   bool flat = false;
 
-  // roundtrip
-  double difference_tolerance = 0;  // input's unit; distances up to it are no difference
+  // roundtrip, diff
+  double difference_tolerance = 0;  // the first input's unit; distances up to it are no difference
   std::string junit;                // JUnit XML goes to this file; empty: nowhere
   std::string scratch;              // a folder that is there while the run is
+  bool all = false;                 // every difference, not only the first ones
 
-  bool json = false;   // info
+  EditWords edit;
+
+  bool json = false;   // info, diff: JSON instead of text
   bool table = false;  // info: the fixed points and control points of garment curves
+
+  [[nodiscard]] bool wants_report() const {
+    return !report.empty() || !junit.empty() || (json && command == Command::info);
+  }
 };
 
 }  // namespace selvage::pipeline

@@ -20,12 +20,19 @@ const Descriptor& picture_format() {
   return self;
 }
 
-namespace {
-
 bool can_be_written(const Descriptor& format, Command command) {
   if (command == Command::mesh) return format.write_mesh != nullptr;
+  if (command == Command::edit) return format.insert_edit != nullptr;
   return format.write_fabric != nullptr || format.open_bodies != nullptr;
 }
+
+std::string_view extension_of_gap_maps() {
+  for (const Descriptor* format : formats::all_formats())
+    if (format->write_gap_map != nullptr) return format->extensions.front();
+  return {};
+}
+
+namespace {
 
 std::string writable_names(Command command) {
   std::string names;
@@ -113,15 +120,16 @@ Result<Formats> wanted_formats(const Options& options) {
     rest.remove_prefix(std::min(comma + 1, rest.size()));
   }
   if (!wanted.empty()) return wanted;
-  const Descriptor* told = told_by_output(options);
-  Formats usual = {format_named("iges"), format_named("step")};
-  if (options.command == Command::mesh) usual = {format_named("inp")};
-  if (options.command == Command::relax) usual = {format_named("txt")};
-  for (const Descriptor* choice : told != nullptr ? Formats{told} : usual) {
-    Result<const Descriptor*> format = fitting(*choice, options.command);
+  if (const Descriptor* told = told_by_output(options)) {
+    Result<const Descriptor*> format = fitting(*told, options.command);
     if (!format) return format.error();
-    wanted.push_back(*format);
+    return Formats{*format};
   }
+  // A text that was worked on stays one.
+  const bool is_text = options.command == Command::relax || options.command == Command::edit;
+  for (const Descriptor* format : formats::all_formats())
+    if ((is_text ? format->is_own : format->is_usual) && can_be_written(*format, options.command))
+      wanted.push_back(format);
   return wanted;
 }
 
@@ -216,9 +224,8 @@ Status plan_gap_map(const Options& options, const InputList& list,
   if (options.gap_map.empty()) return {};
   const Descriptor* format = format_with_extension(fs::path(options.gap_map).extension().string());
   if (format == nullptr || format->write_gap_map == nullptr)
-    return error(Kind::usage, fmt::format("--gap-map writes a VTK file, and '{}' is no name for one; name a "
-                                          ".vtu file",
-                                          options.gap_map));
+    return error(Kind::usage, fmt::format("--gap-map writes no file of the name '{}'; name a {} file",
+                                          options.gap_map, extension_of_gap_maps()));
   if (!list.one_file)
     return error(Kind::usage, fmt::format("'--gap-map {}' names one file, but there may be several inputs; "
                                           "name one input",
@@ -229,10 +236,8 @@ Status plan_gap_map(const Options& options, const InputList& list,
 
 }  // namespace
 
-Result<fs::path> output_of_edit(const std::string& output, const std::string& input) {
-  Options options;
-  options.output = output;
-  options.formats = "txt";
+Result<fs::path> output_of_edit(const Options& options) {
+  const std::string &output = options.output, &input = options.inputs.front();
   const Result<Formats> wanted = wanted_formats(options);
   if (!wanted) return wanted.error();
   if (Status fits = check_single_output(options, {{}, {}, true}, *wanted); !fits) return fits.error();

@@ -23,6 +23,11 @@ struct PlannedOutput {
   bool is_companion = false;  // formats::Descriptor::companion of another one: of meshes with load cases only
 };
 
+// Can this subcommand write it?
+bool can_be_written(const formats::Descriptor& format, Command command);
+// Of the format that `check --gap-map` writes, for help.
+std::string_view extension_of_gap_maps();
+
 // The outputs of each input, in the order of `list.inputs`; empty lists for commands that write no files
 // (check: its gap map).
 // Errors (usage): an unknown or unfitting format, several outputs where one file was named, two outputs of
@@ -31,6 +36,6 @@ Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& opti
 
 // Where `selvage edit` writes its text: by the same rule for -o, "-" for standard output. Errors (usage): a
 // name that is of another format, or of none.
-Result<std::filesystem::path> output_of_edit(const std::string& output, const std::string& input);
+Result<std::filesystem::path> output_of_edit(const Options& options);
 
 }  // namespace selvage::pipeline

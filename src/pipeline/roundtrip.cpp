@@ -107,8 +107,7 @@ Status write(const Job& job, const Original& original, const Trip& trip, const s
   surface.expected_bodies = original.bodies.size();
   surface.date = original.fabric.date;
   surface.tolerance = fabric::tolerance_of(original.fabric, job.build_options());
-  surface.iges_solid = trip.iges_solid;
-  surface.step_schema = job.options.step_schema;
+  if (trip.form != nullptr) surface.own.set(*trip.form);
   Result<std::unique_ptr<formats::BodyWriter>> writer = trip.format->open_bodies(*output, surface);
   if (!writer) return writer.error();
   if (Status status = add_all(original, **writer); !status) return status;
@@ -252,8 +251,9 @@ std::vector<Trip> all_trips() {
   std::vector<Trip> all;
   for (const formats::Descriptor* format : formats::all_formats()) {
     if (!comes_and_goes(*format)) continue;
-    all.push_back({std::string(format->name), format, false});
-    if (format->name == "iges") all.push_back({"iges-solid", format, true});
+    all.push_back({std::string(format->name), format});
+    if (format->other_form != nullptr)
+      all.push_back({std::string(format->other_form->word()), format, format->other_form});
   }
   return all;
 }
@@ -265,6 +265,10 @@ std::string names_of(const std::vector<Trip>& trips) {
 }
 
 }  // namespace
+
+std::string trip_names() {
+  return names_of(all_trips());
+}
 
 Result<std::vector<Trip>> wanted_trips(const Options& options) {
   std::vector<Trip> all = all_trips();

@@ -11,13 +11,15 @@
 namespace selvage::pipeline {
 
 struct Trip {
-  std::string name;  // "iges", "iges-solid", "step", "txt"
+  std::string name;  // of the format, or of the option that makes its other form
   const formats::Descriptor* format = nullptr;
-  bool iges_solid = false;
+  const Option* form = nullptr;  // that option; null: the format as it is
 };
 
-// Every format that surfaces are written to and read from, IGES as surfaces and as solids; those of --to
-// where it is given. Error (usage): an unknown name, a format that is not both written and read.
+// Every format that surfaces are written to and read from, in each of its forms; those of --to where it is
+// given. Error (usage): an unknown name, a format that is not both written and read.
 Result<std::vector<Trip>> wanted_trips(const Options& options);
+// The names of all that there are, for help.
+std::string trip_names();
 
 }  // namespace selvage::pipeline

@@ -69,6 +69,13 @@ class Documents(Case):
                 if option not in ("--help", "--output", "--verbose"):  # -h, -o, -v
                     self.assertIn(option, text, command)
 
+    def test_formats_are_named_in_their_own_folders_alone(self):
+        names = re.findall(r"^  (\w+)", run("formats").stdout, re.MULTILINE)[1:]
+        self.assertGreater(len(names), 10)
+        for path in sorted((*(ROOT / "src/pipeline").iterdir(), *(ROOT / "src/cli").iterdir())):
+            for name in names:
+                self.assertNotIn(f'"{name}"', path.read_text(), path.name)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -38,7 +38,7 @@ class Places(Case):
             message = self.fails(2, *arguments, "-o", self.folder / "x.stl")
             self.assertRegex(message, f"no format has the extension '.stl'.*{listed}")
             self.assertEqual(self.names(), [])
-        self.assertIn("names a file of iges", self.fails(2, "edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0,0,0",
+        self.assertIn("cannot write iges", self.fails(2, "edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0,0,0",
                                                          "-o", self.folder / "x.igs"))
         # A folder may be called so.
         self.succeeds("convert", GRID, "--to", "iges", "-o", f"{self.folder}/v1.5/")

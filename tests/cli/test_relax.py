@@ -270,7 +270,7 @@ class Words(Relaxing):
         for option in (["--gap", "0.1"], ["--overlap", "0.1"], ["--stiff-section"], ["--max-iterations", "3"]):
             for command in ("convert", "mesh"):
                 self.refused(f"{option[0]}.* goes with --relax", command, PATH, "-o", self.out, *option)
-        self.refused("name one of the two", "relax", PATH, "-o", self.out, "--gap", "0.1", "--overlap", "0.1")
+        self.refused("does not go with --gap", "relax", PATH, "-o", self.out, "--gap", "0.1", "--overlap", "0.1")
         for option, value in (("--gap", "-1"), ("--overlap", "0"), ("--max-iterations", "0"), ("--gap", "x")):
             self.refused(re.escape(option), "relax", PATH, "-o", self.out, option, value)
 

@@ -146,6 +146,10 @@ class Resume(Case):
     def test_other_settings_are_other_outputs(self):
         self.assertEqual(self.convert("--ends", "fan")["done"], 3)
         self.assertEqual(self.convert("--ends", "fan")["skipped"], 3)
+        self.assertEqual(self.convert("--tolerance", "0.0020", "--iges-lines", "5000")["done"], 3)
+        self.assertEqual(self.convert("--iges-lines", "5000", "--tolerance", "2e-3", "-j", "2")["skipped"], 3)
+        self.assertEqual(self.convert("--tolerance", "2e-3")["done"], 3)
+        self.assertEqual(self.convert("--tolerance", "2e-3", "--detail", "filaments")["skipped"], 3)
 
     def test_another_program_is_other_outputs(self):
         """Another version, other sources, another library: it may write other bytes."""

@@ -93,7 +93,7 @@ formats::SurfaceOptions surfaces(Unit units) {
 
 formats::SurfaceOptions solids(Unit units) {
   formats::SurfaceOptions options = surfaces(units);
-  options.iges_solid = true;
+  options.yarns_are_solids = true;
   return options;
 }
 
@@ -140,7 +140,7 @@ fs::path dump_model(const std::string& name, const std::vector<yarn::Body>& bodi
       for (const Vec3& p : s->points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
   std::fprintf(file, "file %s\ntitle %s\nunits %s\ntime %s\nlargest %a\n", name.c_str(),
                options.title.c_str(), std::string(name_of(options.units)).c_str(), epoch_time, largest);
-  std::fprintf(file, "solid %d\n", options.iges_solid ? 1 : 0);
+  std::fprintf(file, "solid %d\n", options.yarns_are_solids ? 1 : 0);
   for (const yarn::Body& body : bodies) {
     std::fprintf(file, "body %s\nrole %s\ncolor %d %d %d\nvolume %a\nring %d\ninward %d\nstart %s\nend %s\n",
                  body.name.c_str(), std::string(yarn::name_of(body.role)).c_str(), body.color.red,

@@ -105,7 +105,7 @@ TEST(OcctReads, Samples) {
     formats::SurfaceOptions options;
     const std::vector<yarn::Body> bodies = sample(name, EndStyle::patch, &options.units);
     expect_solids(read_with_occt(write_iges("sample.igs", bodies, options), 1e-6), bodies, options.units);
-    options.iges_solid = true;
+    options.yarns_are_solids = true;
     expect_solids(read_with_occt(write_iges("sample-solid.igs", bodies, options), 0), bodies, options.units);
   }
 }
@@ -200,7 +200,7 @@ TEST(GmshMeshes, Samples) {
     formats::SurfaceOptions options;
     const std::vector<yarn::Body> bodies = sample(name, EndStyle::patch, &options.units);
     expect_meshed(write_iges("sample.igs", bodies, options), bodies, true);
-    options.iges_solid = true;
+    options.yarns_are_solids = true;
     expect_meshed(write_iges("sample-solid.igs", bodies, options), bodies, false);
   }
 }

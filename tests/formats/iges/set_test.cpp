@@ -6,6 +6,7 @@
 #include "formats/iges/bodies.h"
 #include "formats/iges/files.h"
 #include "formats/iges/header.h"
+#include "formats/iges/options.h"
 #include "formats/iges/reader.h"
 #include "formats/iges/writer.h"
 
@@ -113,7 +114,7 @@ TEST(Set, PliesStayTogether) {
   EXPECT_EQ((*written.facts)->parts[1].at("402"), 4U);
   // A group that fits nowhere is refused, whatever else is asked for.
   SurfaceOptions options;
-  options.split_yarns = true;
+  options.own.set(formats::iges::option::split_yarns);
   written = write_set(bodies, options, 2 * one);
   ASSERT_FALSE(written.status.ok());
   EXPECT_EQ(written.status.error().kind, Kind::limit);
@@ -133,7 +134,7 @@ TEST(Set, AYarnThatFitsNowhereIsRefusedOrCut) {
   EXPECT_NE(written.status.error().text.find("--split-yarns"), std::string::npos);
 
   SurfaceOptions options;
-  options.split_yarns = true;
+  options.own.set(formats::iges::option::split_yarns);
   written = write_set(bodies, options, needed - 1);
   ASSERT_TRUE(written.facts && written.facts->ok());
   ASSERT_EQ((*written.facts)->messages.size(), 1U);

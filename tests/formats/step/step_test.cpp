@@ -10,6 +10,7 @@
 #include <regex>
 
 #include "bodies.h"
+#include "formats/step/options.h"
 #include "formats/step/step.h"
 #include "reading.h"
 
@@ -81,7 +82,7 @@ TEST_F(Step, EveryEndStyleReadsBackAsValidSolid) {
   SurfaceOptions options;
   options.title = "Seven yarns";
   for (const char* schema : {"AP242", "AP214"}) {
-    options.step_schema = schema;
+    options.own.set(formats::step::option::schema, schema);
     Result<WriteFacts> facts = write(bodies, options);
     ASSERT_TRUE(facts.ok()) << to_string(facts.error());
     EXPECT_EQ(facts->entities.at("MANIFOLD_SOLID_BREP"), 7U);
@@ -208,7 +209,7 @@ TEST_F(Step, HeaderSaysWhatWroteIt) {
   EXPECT_NE(first.find("'selvage 0.1.0'"), std::string::npos);
   EXPECT_NE(first.find("FILE_DESCRIPTION(('Plain weave')"), std::string::npos);
   EXPECT_NE(first.find("AP242_MANAGED_MODEL_BASED_3D_ENGINEERING"), std::string::npos);
-  options.step_schema = "AP214";
+  options.own.set(formats::step::option::schema, "AP214");
   ASSERT_TRUE(write({tests::tube("yarn", EndStyle::patch)}, options).ok());
   EXPECT_NE(text().find("AUTOMOTIVE_DESIGN"), std::string::npos);
   ::unsetenv("SOURCE_DATE_EPOCH");
@@ -255,7 +256,7 @@ TEST_F(Step, LinesAreShortAndRealsHaveAPoint) {
 
 TEST_F(Step, UnknownSchemaIsAnError) {
   SurfaceOptions options;
-  options.step_schema = "AP203";
+  options.own.set(formats::step::option::schema, "AP203");
   Result<WriteFacts> facts = write({tests::tube("yarn", EndStyle::patch)}, options);
   ASSERT_FALSE(facts.ok());
   EXPECT_EQ(facts.error().kind, Kind::usage);

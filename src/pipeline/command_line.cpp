@@ -1,0 +1,536 @@
+#include "pipeline/command_line.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <deque>
+#include <limits>
+
+#include "formats/format.h"
+#include "pipeline/limits.h"
+#include "pipeline/outputs.h"
+#include "pipeline/roundtrip.h"
+#include "view/picture.h"
+
+namespace selvage::pipeline {
+
+namespace {
+
+using enum Command;
+using Commands = std::vector<Command>;
+using Take = decltype(Row::take);
+
+constexpr std::array commands = {
+    Subcommand{convert, "convert", "write surfaces, solids or text"},
+    Subcommand{check, "check", "closed? valid? overlapping? within tolerance? (exit code 3: no)"},
+    Subcommand{relax, "relax", "move and reshape yarns until none overlap (exit code 3: no solution)"},
+    Subcommand{mesh, "mesh",
+               "tetrahedra in every yarn, or in a unit cell with its matrix, as a solver's input deck"},
+    Subcommand{roundtrip, "roundtrip",
+               "write, read back and compare, for every surface format (exit code 3: different)"},
+    Subcommand{diff, "diff", "compare the geometry of two files (exit code 3: they differ)"},
+    Subcommand{info, "info", "what is in a file: yarns, sizes, units, lengths"},
+    Subcommand{edit, "edit", "move a point of a yarn: adds an `edit` line to a text"},
+    Subcommand{view, "view", "a picture of the yarns, ray-traced (PNG)"},
+    Subcommand{formats, "formats", "the formats that can be read and written"}};
+
+const Commands on_batch = {convert, check, relax, mesh, roundtrip, info, view};
+const Commands on_yarns = {convert, check, relax, mesh, roundtrip, diff, info, view};
+const Commands writing = {convert, relax, mesh, view};
+
+template <class T>
+void store(T& to, const std::string& text) {
+  if constexpr (std::is_same_v<T, bool>)
+    to = true;
+  else if constexpr (std::is_arithmetic_v<T>)
+    std::from_chars(text.data(), text.data() + text.size(), to);
+  else if constexpr (std::is_same_v<T, std::vector<std::string>>)
+    to.push_back(text);
+  else if constexpr (std::is_same_v<T, std::optional<double>>)
+    store(to.emplace(), text);
+  else
+    to = text;
+}
+
+template <class T>
+Take into(T Options::*member) {
+  return [=](Options& options, const std::string& text) -> Status {
+    return store(options.*member, text), Status();
+  };
+}
+template <class Group, class T>
+Take into(Group Options::*group, T Group::*member) {
+  return [=](Options& options, const std::string& text) -> Status {
+    return store(options.*group.*member, text), Status();
+  };
+}
+
+// The rows as they are declared.
+class OptionTable {
+ public:
+  // A heading of help, for what follows.
+  void begin(std::string heading) { heading_ = std::move(heading); }
+
+  Option& option(Commands of, const Option& option, Take take) {
+    rows_.push_back({std::move(of), option, std::move(take), heading_});
+    return rows_.back().option;
+  }
+  Option& option(Commands of, std::string_view name, std::string_view help, const Argument& argument,
+                 Take take) {
+    return option(std::move(of), {.name = name, .help = help, .argument = argument}, std::move(take));
+  }
+  template <class T>
+  Option& option(Commands of, std::string_view name, std::string_view help, const Argument& argument,
+                 T Options::*member) {
+    return option(std::move(of), name, help, argument, into(member));
+  }
+  Option& flag(Commands of, std::string_view name, std::string_view help, bool Options::*member) {
+    return option(std::move(of), name, help, {}, into(member));
+  }
+  // One of some words, which stand for `values`.
+  template <class T, class Value>
+  Option& choice(Commands of, std::string_view name, std::string_view help, std::string_view words,
+                 T Options::*member, std::initializer_list<Value> values) {
+    const auto take = [=, values = std::vector<Value>(values)](Options& options, const std::string& text) {
+      const std::vector<std::string_view> known = words_of(words);
+      options.*member =
+          values[static_cast<std::size_t>(std::find(known.begin(), known.end(), text) - known.begin())];
+      return Status();
+    };
+    return option(std::move(of), name, help, Argument::one_of(words), take);
+  }
+
+  [[nodiscard]] std::deque<Row> take() { return std::move(rows_); }
+
+ private:
+  std::string heading_;
+  std::deque<Row> rows_;  // where they are, they stay
+};
+
+// Whole numbers between `separator`s, each within [low, high]: exactly as many as the array holds.
+template <std::size_t Count>
+std::optional<std::array<int, Count>> numbers(std::string_view text, char separator, int low, int high) {
+  std::array<int, Count> values{};
+  const char *at = text.data(), *end = at + text.size();
+  for (std::size_t k = 0; k < Count; ++k) {
+    if (k > 0 && (at == end || *at++ != separator)) return std::nullopt;
+    const auto [rest, failure] = std::from_chars(at, end, values[k]);
+    if (failure != std::errc() || values[k] < low || values[k] > high) return std::nullopt;
+    at = rest;
+  }
+  if (at != end) return std::nullopt;
+  return values;
+}
+
+Status take_picture_size(Options& options, const std::string& text) {
+  const auto size = numbers<2>(text, 'x', 1, view::largest_side);
+  if (!size)
+    return error(Kind::usage,
+                 fmt::format("'{}' is no size; it is WxH in pixels, up to {}, for example 1200x900", text,
+                             view::largest_side));
+  options.picture_width = (*size)[0];
+  options.picture_height = (*size)[1];
+  return {};
+}
+
+Status take_background(Options& options, const std::string& text) {
+  const auto color = numbers<3>(text, ',', 0, 255);
+  if (!color)
+    return error(Kind::usage,
+                 fmt::format("'{}' is no colour; it is R,G,B, each 0-255, for example 255,255,255", text));
+  options.background = {(*color)[0], (*color)[1], (*color)[2]};
+  return {};
+}
+
+Status take_shard(Options& options, const std::string& text) {
+  const std::size_t bar = std::min(text.find('/'), text.size());
+  const char *middle = text.data() + bar, *end = text.data() + text.size();
+  if (const auto part = std::from_chars(text.data(), middle, options.part);
+      part.ec == std::errc() && part.ptr == middle && middle != end) {
+    const auto parts = std::from_chars(middle + 1, end, options.parts);
+    if (parts.ec == std::errc() && parts.ptr == end && options.part < options.parts) return {};
+  }
+  return error(Kind::usage, fmt::format("'{}' is not I/N with 0 <= I < N, for example 0/4", text));
+}
+
+// Text that is made, for as long as the program runs.
+std::string_view kept(std::string text) {
+  static std::deque<std::string> all;
+  return all.emplace_back(std::move(text));
+}
+
+void inputs_and_outputs(OptionTable& t) {
+  t.begin("Inputs and outputs");
+  t.option(on_batch, "INPUT", "files, folders, patterns, @LIST of paths, - for standard input",
+           Argument::texts(""), &Options::inputs)
+      .required()
+      .of_run();
+  t.option({edit}, "INPUT", "a text with yarns, or - for standard input", Argument::text(""),
+           &Options::inputs)
+      .required();
+  t.option({diff}, "A", "a file of any readable format, or - for standard input", Argument::text(""),
+           &Options::inputs)
+      .required();
+  t.option({diff}, "B", "another one, of the same or another format", Argument::text(""), &Options::inputs)
+      .required();
+  t.option(writing, "-o,--output",
+           "a file (by its extension), a folder, or - for standard output (default: beside the input)",
+           Argument::text("PLACE"), &Options::output)
+      .of_run();
+  t.option({edit}, "-o,--output", "the new text (may be INPUT), or - for standard output",
+           Argument::text("PLACE"), &Options::output)
+      .required();
+  t.option({convert, relax, mesh}, "--to", "formats to write, separated by commas (see selvage formats)",
+           Argument::text("FORMAT"), &Options::formats)
+      .of_run();
+  t.option({roundtrip}, "--to",
+           kept(fmt::format("formats to go through, separated by commas (default: {})", trip_names())),
+           Argument::text("FORMAT"), &Options::formats);
+  t.choice({convert, relax}, "--units",
+           "write surfaces in this unit (default: the input's, which costs no bits)", "m cm mm um inch",
+           &Options::units, {Unit::m, Unit::cm, Unit::mm, Unit::um, Unit::inch});
+  t.choice({check, info}, "--units", "show lengths in this unit (default: the input's)", "m cm mm um inch",
+           &Options::units, {Unit::m, Unit::cm, Unit::mm, Unit::um, Unit::inch});
+  t.flag({info}, "--json", "print the JSON report instead of tables", &Options::json).of_run();
+  t.flag({diff}, "--json", "one JSON object instead of lines", &Options::json);
+  t.flag({diff}, "--all", "every difference (default: the first 20 and a count)", &Options::all);
+  t.flag({info}, "--table",
+         "garment curves: each fixed point's error, and the control points by both methods", &Options::table);
+  t.option({check}, "--gap-map",
+           kept(fmt::format("write the yarns coloured by the gap to the next one to this file ({})",
+                            extension_of_gap_maps())),
+           Argument::text("FILE"), &Options::gap_map)
+      .of_run();
+  t.option(on_batch, "--report", "write a JSON report to this file", Argument::text("FILE"), &Options::report)
+      .of_run();
+  t.option({roundtrip}, "--junit", "write the results as JUnit XML to this file", Argument::text("FILE"),
+           &Options::junit)
+      .of_run();
+  t.flag(writing, "--resume", "skip inputs that --report says are done, if their outputs are whole",
+         &Options::resume)
+      .of_run();
+}
+
+void of_yarns(OptionTable& t) {
+  t.begin("Yarns");
+  t.option({convert, check, relax, mesh, info, view}, "--tolerance",
+           "of tubes, in the input's unit, instead of the input's own", Argument::positive(),
+           &Options::tolerance);
+  t.choice({convert, check, relax, mesh, roundtrip, info}, "--ends",
+           "how a yarn is sealed (default: as the input has it, else patch)", "patch fan planar none",
+           &Options::ends,
+           {yarn::EndStyle::patch, yarn::EndStyle::fan, yarn::EndStyle::planar, yarn::EndStyle::none});
+  t.choice(on_yarns, "--detail", "how far yarns are taken apart, where their threads say so",
+           "yarn plies filaments", &Options::detail,
+           {fabric::Detail::yarn, fabric::Detail::plies, fabric::Detail::filaments})
+      .with_preset("filaments");
+  t.flag(on_yarns, "--as-published", "constructions exactly as their paper gives them, overlaps and all",
+         &Options::as_published);
+  t.flag({convert, relax}, "--instances",
+         "yarns that are equal up to a motion are written once and placed, where the format can (not "
+         "every system reads such references)",
+         &Options::instances)
+      .goes_with("repeats yarns that are whole", "", "--cut --matrix");
+  t.option({check}, "--reach", "list near contacts, too: gaps between yarns up to this, in the input's unit",
+           Argument::positive(), &Options::reach);
+  t.option({roundtrip}, "--tolerance",
+           "distances up to this, in the input's unit, are no difference (default: 0, every bit counts)",
+           Argument::non_negative(), &Options::difference_tolerance);
+  t.option({diff}, "--tolerance",
+           "distances up to this, in A's unit, are no difference (default: 0, every bit counts)",
+           Argument::non_negative(), &Options::difference_tolerance);
+}
+
+void of_an_edit(OptionTable& t) {
+  t.begin("The edit");
+  t.option({edit}, "--yarn", "the yarn's name", Argument::text("NAME"),
+           into(&Options::edit, &EditWords::yarn))
+      .required();
+  t.option({edit}, "--point", "which joint of its centre line, from 1",
+           Argument::whole(1, std::numeric_limits<int>::max()), into(&Options::edit, &EditWords::point))
+      .required();
+  t.option({edit}, "--to", "where the joint goes, in the file's unit", Argument::text("X,Y,Z"),
+           into(&Options::edit, &EditWords::to));
+  t.option({edit}, "--by", "what moves it: a control point, or a weight", Argument::one_of("control weight"),
+           into(&Options::edit, &EditWords::by))
+      .with_preset("control");
+  t.option({edit}, "--length", "instead of --to: the length that the centre line gets", Argument::text("L"),
+           into(&Options::edit, &EditWords::length));
+  t.option({edit}, "--along", "the direction in which the joint moves for --length", Argument::text("X,Y,Z"),
+           into(&Options::edit, &EditWords::along));
+}
+
+void of_a_picture(OptionTable& t) {
+  t.begin("The picture");
+  t.choice({view}, "--from", "where the eye is; side: +x", "top bottom front back side iso", &Options::from,
+           {view::From::top, view::From::bottom, view::From::front, view::From::back, view::From::side,
+            view::From::iso})
+      .with_preset("top");
+  t.option({view}, "--size", "in pixels", Argument::text("WxH"), take_picture_size).with_preset("1200x900");
+  t.option({view}, "--background", "its colour, each 0-255", Argument::text("R,G,B"), take_background)
+      .with_preset("255,255,255");
+  t.flag({view}, "--flat", "without shadows, which is faster", &Options::flat);
+}
+
+void of_a_mesh(OptionTable& t) {
+  t.begin("The mesh");
+  constexpr std::string_view of_tetrahedra = "is of tetrahedra, and voxels are hexahedra of eight nodes";
+
+  t.option({mesh}, "--size",
+           "wanted edge length, in the input's unit (default: a quarter of the thinnest section)",
+           Argument::positive(), &Options::size)
+      .goes_with(of_tetrahedra, "", "--voxel");
+  t.option({mesh}, "--order",
+           "1: four nodes, 2: ten nodes a tetrahedron (default: 1; 2 with --matrix of a cell that is "
+           "periodic along x and y only: a plate bends)",
+           Argument::one_of("1 2"), &Options::order)
+      .goes_with(of_tetrahedra, "", "--voxel", "2");
+  t.option({mesh}, "--min-dihedral",
+           "wanted smallest angle between faces of a tetrahedron, degrees (default: 10)",
+           Argument::between(0.1, 30), &Options::min_dihedral)
+      .goes_with(of_tetrahedra, "", "--voxel");
+  t.flag({mesh}, "--allow-overlap", "mesh overlapping yarns as they are, with a warning",
+         &Options::allow_overlap);
+  t.flag({mesh}, "--force",
+         "go on where the estimate says more than 10^8 tetrahedra, or yarns nearly touch each other or "
+         "a face",
+         &Options::force);
+}
+
+void of_a_cell(OptionTable& t) {
+  t.begin("The unit cell");
+  t.flag({convert}, "--cut", "the yarns cut flush by the cell's faces, as solids", &Options::cut);
+  t.flag({mesh}, "--cut", "cut yarns flush by the faces of the input's cell", &Options::cut);
+  t.flag({convert}, "--matrix",
+         "with them what they leave of the cell, as one solid that shares its faces with theirs "
+         "(implies --cut)",
+         &Options::matrix);
+  t.flag({mesh}, "--matrix", "mesh the cell: its yarns, and the matrix between them", &Options::matrix);
+  t.flag({mesh}, "--periodic",
+         "opposite faces of the cell get the same nodes, and equations between them (as its "
+         "`periodic` says; without that word along every axis that can be)",
+         &Options::periodic);
+  t.option({mesh}, "--voxel",
+           "mesh the cell with so many hexahedra along its longest side instead (always works; yarns "
+           "have stairs)",
+           Argument::whole(1, 10'000), &Options::voxels);
+  t.choice({mesh}, "--yarn-stiffness",
+           "given: a yarn's material is the yarn's; chamis: it is its fibres', and the yarn's follows "
+           "from the local fibre fraction by Chamis's formulas",
+           "given chamis", &Options::chamis, {false, true})
+      .goes_with("is of a unit cell", "--matrix --periodic --cut --voxel", "")
+      .with_preset("given");
+  t.option({mesh}, "--segments", "so many edges go round each yarn, thin or thick",
+           Argument::whole(6, 10'000), &Options::segments)
+      .goes_with("is of tetrahedra in a unit cell", "--matrix --periodic --cut", "--voxel");
+  t.option({mesh}, "--matrix-size",
+           "with --matrix: to which edges may grow away from the yarns, in the input's unit (default: "
+           "--size)",
+           Argument::positive(), &Options::matrix_size)
+      .goes_with("is of tetrahedra in the matrix", "--matrix", "--voxel");
+  t.flag({mesh}, "--bond",
+         "with --matrix: yarns in contact share faces (what lies between yarns nearer than 1.5 times "
+         "the gap becomes part of them), instead of a gap filled with matrix",
+         &Options::bond)
+      .goes_with("joins yarns in a mesh of tetrahedra with its matrix", "--matrix", "--voxel");
+}
+
+void of_relaxing(OptionTable& t) {
+  t.begin("Moving yarns apart");
+  constexpr std::string_view why = "says how yarns are moved apart";
+  const Commands all = {convert, relax, mesh};
+
+  t.option({convert, mesh}, "--relax",
+           "first move and reshape yarns until none overlap (exit code 3: no solution)", {},
+           into(&Options::relaxing, &RelaxSettings::wanted));
+  t.option({convert, mesh}, "--gap",
+           "with --relax, and in a unit cell: the least gap between yarns, in the input's unit "
+           "(default: 1 % of the smaller thickness; in a cell that is meshed 5 %)",
+           Argument::non_negative(), into(&Options::relaxing, &RelaxSettings::gap))
+      .goes_with(why, "--relax --matrix --periodic --cut --voxel", "");
+  t.option({relax}, "--gap",
+           "the least gap between yarns, in the input's unit (default: 1 % of the smaller thickness)",
+           Argument::non_negative(), into(&Options::relaxing, &RelaxSettings::gap));
+  t.option(all, "--overlap",
+           "let yarns that meet overlap to this depth, and bring them to it, instead of a gap",
+           Argument::positive(), into(&Options::relaxing, &RelaxSettings::overlap))
+      .goes_with("brings yarns to a depth that they overlap", "--relax", "--gap");
+  t.option(all, "--stiff-section", "sections keep their shape, only centre lines move", {},
+           into(&Options::relaxing, &RelaxSettings::stiff_section))
+      .goes_with(why, "--relax", "");
+  t.option(all, "--max-iterations", "give up after so many steps", Argument::whole(1, 1'000'000),
+           into(&Options::relaxing, &RelaxSettings::max_iterations))
+      .goes_with(why, "--relax", "");
+}
+
+void of_running(OptionTable& t) {
+  t.begin("Running");
+  const Commands with_edit = {convert, check, relax, mesh, roundtrip, diff, info, edit, view};
+
+  t.option(on_yarns, "-j", "inputs worked on at once (default: one a core)", Argument::whole(1, 4096),
+           &Options::workers)
+      .of_run();
+  t.flag(with_edit, "-q,--quiet", "errors only", &Options::quiet).of_run();
+  t.flag(on_yarns, "-v,--verbose", "say more", &Options::verbose).of_run();
+  t.flag(on_yarns, "--no-progress", "no progress bar or lines", &Options::no_progress).of_run();
+  t.flag(on_yarns, "--strict", "a warning fails its input", &Options::strict);
+  t.option(on_batch, "--shard", "only the I-th of N equal parts of the inputs, from 0", Argument::text("I/N"),
+           take_shard)
+      .of_run();
+  t.option(with_edit, "--timeout",
+           kept(fmt::format("seconds an input may take (default: {:g} for formats of other programs, "
+                            "else no limit)",
+                            foreign_timeout)),
+           Argument::positive(), &Options::timeout)
+      .of_run();
+  t.option(with_edit, "--memory",
+           "MB of memory an input may take (default: what the machine, or the container, has free, "
+           "shared by the inputs worked on at once; at least 1024)",
+           Argument::positive(), &Options::memory)
+      .of_run();
+  t.choice(with_edit, "--sandbox",
+           "keep the processes that read files to their inputs and outputs, without network: require "
+           "(or refuse to run), auto (as far as the kernel can), off",
+           "require auto off", &Options::sandbox, {Sandbox::required, Sandbox::automatic, Sandbox::off})
+      .with_preset("auto")
+      .of_run();
+  t.flag(with_edit, "--allow-outside",
+         "files that a text names (`draft file`) may be anywhere, not only in its folder or below",
+         &Options::allow_outside)
+      .of_run();
+}
+
+// What formats declare for themselves.
+void of_formats(OptionTable& t) {
+  for (const formats::Descriptor* format : formats::all_formats()) {
+    t.begin(fmt::format("Written as {}", format->name));
+    Commands writers;
+    for (const Command command : {convert, relax, mesh})
+      if (can_be_written(*format, command)) writers.push_back(command);
+    for (const Option* option : format->options) t.option(writers, *option, nullptr);
+  }
+}
+
+const std::deque<Row>& all_rows() {
+  static const std::deque<Row> rows = [] {
+    OptionTable table;
+    for (auto* const part : {inputs_and_outputs, of_an_edit, of_a_picture, of_yarns, of_relaxing, of_a_mesh,
+                             of_a_cell, of_formats, of_running})
+      part(table);
+    return table.take();
+  }();
+  return rows;
+}
+
+// The options of one command line.
+class Line {
+ public:
+  Line(Command command, const Given& given) : rows_(rows_of(command)) {
+    for (const Row* row : rows_)
+      if (const auto found = given.find(row->option.name); found != given.end())
+        given_.emplace_back(row, found->second);
+  }
+
+  Status take(Options& options);
+  [[nodiscard]] Status check_company() const;
+
+ private:
+  // Of `names`, those that there are, and whether one of them was given.
+  struct Company {
+    std::vector<std::string_view> names;
+    bool is_given = false;
+  };
+  [[nodiscard]] Company company(std::string_view names) const;
+
+  std::vector<const Row*> rows_;
+  std::vector<std::pair<const Row*, std::vector<std::string>>> given_;  // in the order of the table
+};
+
+// Presets, and then what was given, whose spelling becomes the canonical one.
+Status Line::take(Options& options) {
+  for (const Row* row : rows_)
+    if (!row->option.preset.empty() && row->take)
+      if (Status s = row->take(options, std::string(row->option.preset)); !s) return s;
+  for (auto& [row, values] : given_) {
+    const Option& option = row->option;
+    for (std::string& value : values) {
+      Result<std::string> canonical = option.argument.canonical(value);
+      Status status = canonical ? Status() : Status(canonical.error());
+      if (canonical) value = *canonical;
+      if (canonical && row->take) status = row->take(options, value);
+      if (!status.ok())
+        return error(Kind::usage, fmt::format("{}: {}", option.long_name(), status.error().text));
+      if (!row->take) options.of_formats.set(option, value);
+      if (option.is_of_run || (!value.empty() && value == option.preset)) continue;
+      options.settings += fmt::format(" {}{}{}", option.word(), value.empty() ? "" : "=", value);
+    }
+  }
+  return {};
+}
+
+Line::Company Line::company(std::string_view names) const {
+  Company company;
+  for (const std::string_view name : words_of(names)) {
+    const auto is_it = [&](const Row* row) { return row->option.long_name() == name; };
+    if (std::none_of(rows_.begin(), rows_.end(), is_it)) continue;
+    company.names.push_back(name);
+    company.is_given = company.is_given || std::any_of(given_.begin(), given_.end(),
+                                                       [&](const auto& one) { return is_it(one.first); });
+  }
+  return company;
+}
+
+// Options that would do nothing, or contradict each other, are mistakes.
+Status Line::check_company() const {
+  for (const auto& [row, values] : given_) {
+    const Option& option = row->option;
+    if (option.only_as.empty() ? values.back() == option.preset && !option.preset.empty()
+                               : values.back() != option.only_as)
+      continue;
+    const Company needed = company(option.needs), refused = company(option.not_with);
+    if ((needed.names.empty() || needed.is_given) && !refused.is_given) continue;
+    std::string text = fmt::format("{}{}{} {}: it", option.long_name(), option.only_as.empty() ? "" : " ",
+                                   option.only_as, option.why);
+    if (!needed.names.empty()) text += " goes with " + alternatives(needed.names);
+    if (!refused.names.empty())
+      text += fmt::format("{}{}", needed.names.empty() ? " does not go with " : ", and not with ",
+                          alternatives(refused.names));
+    return error(Kind::usage, std::move(text));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string_view name_of(Command command) {
+  return commands[static_cast<std::size_t>(command)].name;
+}
+
+std::span<const Subcommand> all_commands() {
+  return commands;
+}
+
+std::vector<const Row*> rows_of(Command command) {
+  std::vector<const Row*> rows;
+  for (const Row& row : all_rows())
+    if (std::find(row.commands.begin(), row.commands.end(), command) != row.commands.end())
+      rows.push_back(&row);
+  return rows;
+}
+
+Result<Options> understand(Command command, const Given& given) {
+  Options options;
+  options.command = command;
+  Line line(command, given);
+  if (Status status = line.take(options); !status.ok()) return status.error();
+  if (Status status = line.check_company(); !status.ok()) return status.error();
+  if (options.matrix) options.cut = true;
+  if (command == relax) options.relaxing.wanted = true;
+  if (options.resume && (options.report.empty() || options.report == "-"))
+    return error(Kind::usage, "--resume goes by the report of the run before: name it with --report FILE");
+  return options;
+}
+
+}  // namespace selvage::pipeline

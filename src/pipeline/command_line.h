@@ -1,0 +1,43 @@
+// What the program understands: its subcommands and their options, in one table. The command line's parser
+// and its help, defaults, and the settings that `--resume` compares are made from it.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/diagnostics.h"
+#include "core/option.h"
+#include "pipeline/options.h"
+
+namespace selvage::pipeline {
+
+struct Subcommand {
+  Command command;
+  std::string_view name, help;
+};
+// In the order of help.
+std::span<const Subcommand> all_commands();
+
+// An option of some subcommands. Several rows may have one name, for different ones.
+struct Row {
+  std::vector<Command> commands;
+  Option option;
+  // Puts a value, as Argument::canonical() gives it, where it belongs; error (usage): it is none. Null: it is
+  // a format's own.
+  std::function<Status(Options&, const std::string&)> take;
+  std::string group{};  // its heading in help
+};
+// Those of a subcommand, in the order of help, with what the formats that it can write declare.
+std::vector<const Row*> rows_of(Command command);
+
+// What was given, as it was given, by Option::name; flags without a value.
+using Given = std::map<std::string_view, std::vector<std::string>>;
+
+// Errors (usage): a value that is none; options that do not go together; --resume without a report.
+Result<Options> understand(Command command, const Given& given);
+
+}  // namespace selvage::pipeline
