@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/parallel.h"
 #include "pipeline/cell_cad.h"
 #include "pipeline/facts.h"
 #include "pipeline/instances.h"
@@ -164,18 +163,12 @@ std::optional<InstanceFinder> find_instances(Job& job, const fabric::Fabric& fab
   if (!job.options.instances) return std::nullopt;
   const Unit units = job.options.units.value_or(fabric.units);
   InstanceFinder finder(converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, units));
-  const std::size_t batch = 2 * job.threads;
-  for (std::size_t first = 0; first < builder.count(); first += batch) {
-    job.progress("comparing yarn", first + 1, builder.count());
-    std::vector<std::optional<Result<yarn::Body>>> built(std::min(batch, builder.count() - first));
-    for_each_index(built.size(), static_cast<int>(job.threads),
-                   [&](std::size_t i) { built[i] = builder.build(first + i); });
-    for (std::optional<Result<yarn::Body>>& body : built) {
-      if (!body->ok()) continue;
-      convert_lengths(**body, fabric.units, units);
-      finder.count(**body);
-    }
-  }
+  job.build_each(builder, "comparing yarn", [&](std::size_t /*index*/, Result<yarn::Body>&& body) {
+    if (!body) return true;
+    convert_lengths(*body, fabric.units, units);
+    finder.count(*body);
+    return true;
+  });
   return finder;
 }
 

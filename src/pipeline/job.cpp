@@ -181,8 +181,8 @@ std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {
   return made;
 }
 
-void Job::for_each_yarn(const fabric::YarnBuilder& builder, std::string_view verb,
-                        const std::function<bool(yarn::Body&&)>& take) {
+void Job::build_each(const fabric::YarnBuilder& builder, std::string_view verb,
+                     const std::function<bool(std::size_t index, Result<yarn::Body>&&)>& take) {
   const std::size_t batch = 2 * threads;  // more would only cost memory
   for (std::size_t first = 0; first < builder.count(); first += batch) {
     std::vector<std::optional<Result<yarn::Body>>> built(std::min(batch, builder.count() - first));
@@ -190,16 +190,22 @@ void Job::for_each_yarn(const fabric::YarnBuilder& builder, std::string_view ver
                    [&](std::size_t i) { built[i] = builder.build(first + i); });
     for (std::size_t i = 0; i < built.size(); ++i) {
       progress(verb, first + i + 1, builder.count());
-      Result<yarn::Body>& body = *built[i];
-      if (!body) {
-        say(body.error());
-        continue;
-      }
-      say_all(body->messages);
-      if (wants_report()) report.yarns.push_back(facts_of(*body, file_units()));
-      if (!take(std::move(*body))) return;
+      if (!take(first + i, std::move(*built[i]))) return;
     }
   }
+}
+
+void Job::for_each_yarn(const fabric::YarnBuilder& builder, std::string_view verb,
+                        const std::function<bool(yarn::Body&&)>& take) {
+  build_each(builder, verb, [&](std::size_t /*index*/, Result<yarn::Body>&& body) {
+    if (!body) {
+      say(body.error());
+      return true;
+    }
+    say_all(body->messages);
+    if (wants_report()) report.yarns.push_back(facts_of(*body, file_units()));
+    return take(std::move(*body));
+  });
 }
 
 std::optional<std::vector<yarn::Body>> Job::build_all(const fabric::YarnBuilder& builder) {

@@ -86,10 +86,12 @@ class Job {
   std::optional<fabric::Fabric> read(const CadLook& look = {});
   // The builder of its yarns; nothing when that failed. It may have none where the fabric holds pieces.
   std::optional<fabric::YarnBuilder> builder(const fabric::Fabric& fabric);
-  // Builds the yarns, a few at once on this job's threads, and hands them to `take` one by one in their
-  // order, in the file's unit, with their warnings said and their facts in the report. One that fails is told
-  // and left out; the others are tried, so that every error is told. `verb` is for the progress. Stops when
-  // `take` gives false.
+  // Builds the yarns, a few at once on this job's threads, and hands them, or why there is none, to `take`
+  // one by one in their order, in the file's unit. `verb` is for the progress. Stops when `take` gives false.
+  void build_each(const fabric::YarnBuilder& builder, std::string_view verb,
+                  const std::function<bool(std::size_t index, Result<yarn::Body>&&)>& take);
+  // The same, with their warnings said and their facts in the report. One that fails is told and left out;
+  // the others are tried, so that every error is told.
   void for_each_yarn(const fabric::YarnBuilder& builder, std::string_view verb,
                      const std::function<bool(yarn::Body&&)>& take);
   // All of them; nothing when one failed (the others were tried, so that every error is told).

@@ -8,7 +8,6 @@
 
 #include "contact/interlacing.h"
 #include "contact/relax.h"
-#include "core/parallel.h"
 #include "core/readable.h"
 #include "fabric/as_grid.h"
 #include "pipeline/table.h"
@@ -75,25 +74,18 @@ void make_names_unique(Built& built) {
 // when the yarns have moved.
 std::optional<Built> build(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilder& builder) {
   Built built;
-  const std::size_t batch = 2 * job.threads;
-  for (std::size_t first = 0; first < builder.count(); first += batch) {
-    std::vector<std::optional<Result<yarn::Body>>> some(std::min(batch, builder.count() - first));
-    for_each_index(some.size(), static_cast<int>(job.threads),
-                   [&](std::size_t i) { some[i] = builder.build(first + i); });
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      job.progress("building yarn", first + i + 1, builder.count());
-      if (!some[i]->ok()) {
-        job.say(some[i]->error());
-        continue;
-      }
-      yarn::Body& body = **some[i];
-      if (!body.tight_bends.empty()) body.messages.pop_back();  // it is the last one
-      job.say_all(body.messages);
-      built.yarns.push_back(yarn_of(builder, first + i, body));
-      keep_whole(fabric, built.yarns.back());
-      built.bodies.push_back(std::move(body));
+  job.build_each(builder, "building yarn", [&](std::size_t index, Result<yarn::Body>&& body) {
+    if (!body) {
+      job.say(body.error());
+      return true;
     }
-  }
+    if (!body->tight_bends.empty()) body->messages.pop_back();  // it is the last one
+    job.say_all(body->messages);
+    built.yarns.push_back(yarn_of(builder, index, *body));
+    keep_whole(fabric, built.yarns.back());
+    built.bodies.push_back(std::move(*body));
+    return true;
+  });
   if (built.bodies.size() != builder.count()) return std::nullopt;
   make_names_unique(built);
   return built;
