@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
-#include <new>
 
 #include "core/parallel.h"
 #include "core/sha256.h"
@@ -280,24 +278,14 @@ Verdict work(Job& job, const std::string& earlier) {
   return defective || job.unsolved ? Verdict::defect : Verdict::done;
 }
 
-// Libraries may throw; nothing passes this line.
-Verdict guarded_work(Job& job, const std::string& earlier) {
-  try {
-    return work(job, earlier);
-  } catch (const std::bad_alloc&) {
-    job.say(error(Kind::limit, fmt::format("needs more memory than {}", memory_limit(job.options))));
-  } catch (const std::exception& failure) {
-    job.say(error(Kind::internal, fmt::format("unexpected failure: {}", failure.what())));
-  }
-  return Verdict::failed;
-}
-
 }  // namespace
 
 Verdict run_job(Job& job, const std::string& earlier, const Channel& channel) {
   const Clock::time_point start = Clock::now();
   if (job.wants_report()) job.report.settings = settings_of(job.options);
-  const Verdict verdict = guarded_work(job, earlier);
+  Verdict verdict = Verdict::failed;
+  if (Status whole = guarded(job.options, [&] { verdict = work(job, earlier); }); !whole)
+    job.say(whole.error());
   job.say_rest();
   if (!job.wants_report()) return verdict;
   job.report.ok = verdict == Verdict::done || verdict == Verdict::skipped;

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <new>
 
 #include "core/containment.h"
 #include "core/machine.h"
@@ -71,6 +73,17 @@ void share_memory(Options& options, std::size_t jobs) {
 
 void limit_time(const Options& options, const formats::Descriptor& format) {
   if (options.timeout <= 0 && !format.is_own) end_after(foreign_timeout);
+}
+
+Status guarded(const Options& options, const std::function<void()>& work) {
+  try {
+    work();
+    return {};
+  } catch (const std::bad_alloc&) {
+    return error(Kind::limit, fmt::format("needs more memory than {}", memory_limit(options)));
+  } catch (const std::exception& failure) {
+    return error(Kind::internal, fmt::format("unexpected failure: {}", failure.what()));
+  }
 }
 
 std::string memory_limit(const Options& options) {

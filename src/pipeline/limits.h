@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <span>
 #include <string>
@@ -23,6 +24,9 @@ void share_memory(Options& options, std::size_t jobs);
 
 // In a job: ends its process after foreign_timeout when this format is of another program.
 void limit_time(const Options& options, const formats::Descriptor& format);
+
+// Does a job's work: what libraries throw does not leave it. Errors: limit (memory), internal.
+Status guarded(const Options& options, const std::function<void()>& work);
 
 // How much memory a job may take, and the remedy: "the 4000 MB of --memory".
 std::string memory_limit(const Options& options);

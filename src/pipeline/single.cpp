@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <exception>
-#include <new>
 
 #include "core/output.h"
 #include "core/process.h"
@@ -17,23 +15,20 @@ namespace selvage::pipeline {
 
 namespace {
 
-// Libraries may throw; nothing passes this function.
-Verdict guarded_work(const Options& options, const Single& single, const Channel& channel) {
+Verdict contained_work(const Options& options, const Single& single, const Channel& channel) {
   const auto fail = [&](Message message) {
     message.file = "selvage";
     channel.send(packet::message, to_string(message));
     return Verdict::failed;
   };
-  try {
-    if (const Status contained = contain_job(options, single.inputs, single.outputs); !contained)
-      return fail(contained.error());
-    return single.work(channel);
-  } catch (const std::bad_alloc&) {
-    return fail(
-        error(Kind::limit, fmt::format("{} needs more memory than {}", single.what, memory_limit(options))));
-  } catch (const std::exception& failure) {
-    return fail(error(Kind::internal, fmt::format("unexpected failure: {}", failure.what())));
-  }
+  Verdict verdict = Verdict::failed;
+  Status whole = guarded(options, [&] {
+    const Status contained = contain_job(options, single.inputs, single.outputs);
+    verdict = contained ? single.work(channel) : fail(contained.error());
+  });
+  if (whole) return verdict;
+  if (whole.error().kind == Kind::limit) whole.error().text.insert(0, single.what + " ");
+  return fail(whole.error());
 }
 
 }  // namespace
@@ -53,7 +48,7 @@ int run_single(const Options& wanted, const Single& single) {
   pool.seconds = options.timeout;
   pool.mebibytes = options.memory;
   pool.run = [&](std::size_t, const Channel& channel) {
-    return static_cast<int>(guarded_work(options, single, channel));
+    return static_cast<int>(contained_work(options, single, channel));
   };
   pool.received = [&](std::size_t, char kind, std::string_view bytes) {
     if (kind == packet::result) results += bytes;
