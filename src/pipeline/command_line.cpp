@@ -70,8 +70,11 @@ Take into(Group Options::*group, T Group::*member) {
 // The rows as they are declared.
 class OptionTable {
  public:
-  // A heading of help, for what follows.
-  void begin(std::string heading) { heading_ = std::move(heading); }
+  // A heading of help, for what follows; `of_run` as Option::is_of_run.
+  void begin(std::string heading, bool of_run = false) {
+    heading_ = std::move(heading);
+    of_run_ = of_run;
+  }
 
   Option& option(Commands of, const Option& option, Take take) {
     rows_.push_back({std::move(of), option, std::move(take), heading_});
@@ -79,7 +82,10 @@ class OptionTable {
   }
   Option& option(Commands of, std::string_view name, std::string_view help, const Argument& argument,
                  Take take) {
-    return option(std::move(of), {.name = name, .help = help, .argument = argument}, std::move(take));
+    Option& made = option(std::move(of), {.name = name, .help = help, .argument = argument}, std::move(take));
+    made.is_required = !name.starts_with('-');
+    made.is_of_run = of_run_;
+    return made;
   }
   template <class T>
   Option& option(Commands of, std::string_view name, std::string_view help, const Argument& argument,
@@ -106,6 +112,7 @@ class OptionTable {
 
  private:
   std::string heading_;
+  bool of_run_ = false;
   std::deque<Row> rows_;  // where they are, they stay
 };
 
@@ -125,34 +132,32 @@ std::optional<std::array<int, Count>> numbers(std::string_view text, char separa
 }
 
 Status take_picture_size(Options& options, const std::string& text) {
-  const auto size = numbers<2>(text, 'x', 1, view::largest_side);
-  if (!size)
-    return error(Kind::usage,
-                 fmt::format("'{}' is no size; it is WxH in pixels, up to {}, for example 1200x900", text,
-                             view::largest_side));
-  options.picture_width = (*size)[0];
-  options.picture_height = (*size)[1];
-  return {};
+  if (const auto size = numbers<2>(text, 'x', 1, view::largest_side)) {
+    options.picture_width = (*size)[0];
+    options.picture_height = (*size)[1];
+    return {};
+  }
+  return error(Kind::usage,
+               fmt::format("'{}' is no size; it is WxH in pixels, up to {}, for example 1200x900", text,
+                           view::largest_side));
 }
 
 Status take_background(Options& options, const std::string& text) {
-  const auto color = numbers<3>(text, ',', 0, 255);
-  if (!color)
-    return error(Kind::usage,
-                 fmt::format("'{}' is no colour; it is R,G,B, each 0-255, for example 255,255,255", text));
-  options.background = {(*color)[0], (*color)[1], (*color)[2]};
-  return {};
+  if (const auto color = numbers<3>(text, ',', 0, 255)) {
+    options.background = {(*color)[0], (*color)[1], (*color)[2]};
+    return {};
+  }
+  return error(Kind::usage,
+               fmt::format("'{}' is no colour; it is R,G,B, each 0-255, for example 255,255,255", text));
 }
 
 Status take_shard(Options& options, const std::string& text) {
-  const std::size_t bar = std::min(text.find('/'), text.size());
-  const char *middle = text.data() + bar, *end = text.data() + text.size();
-  if (const auto part = std::from_chars(text.data(), middle, options.part);
-      part.ec == std::errc() && part.ptr == middle && middle != end) {
-    const auto parts = std::from_chars(middle + 1, end, options.parts);
-    if (parts.ec == std::errc() && parts.ptr == end && options.part < options.parts) return {};
-  }
-  return error(Kind::usage, fmt::format("'{}' is not I/N with 0 <= I < N, for example 0/4", text));
+  const auto shard = numbers<2>(text, '/', 0, std::numeric_limits<int>::max());
+  if (!shard || (*shard)[0] >= (*shard)[1])
+    return error(Kind::usage, fmt::format("'{}' is not I/N with 0 <= I < N, for example 0/4", text));
+  options.part = static_cast<std::size_t>((*shard)[0]);
+  options.parts = static_cast<std::size_t>((*shard)[1]);
+  return {};
 }
 
 // Text that is made, for as long as the program runs.
@@ -162,55 +167,34 @@ std::string_view kept(std::string text) {
 }
 
 void inputs_and_outputs(OptionTable& t) {
-  t.begin("Inputs and outputs");
+  t.begin("Inputs and outputs", true);
+  const Argument file = Argument::text("FILE"), place = Argument::text("PLACE"), unnamed = Argument::text("");
   t.option(on_batch, "INPUT", "files, folders, patterns, @LIST of paths, - for standard input",
-           Argument::texts(""), &Options::inputs)
-      .required()
-      .of_run();
-  t.option({edit}, "INPUT", "a text with yarns, or - for standard input", Argument::text(""),
-           &Options::inputs)
-      .required();
-  t.option({diff}, "A", "a file of any readable format, or - for standard input", Argument::text(""),
-           &Options::inputs)
-      .required();
-  t.option({diff}, "B", "another one, of the same or another format", Argument::text(""), &Options::inputs)
-      .required();
+           Argument::texts(""), &Options::inputs);
+  t.option({edit}, "INPUT", "a text with yarns, or - for standard input", unnamed, &Options::inputs);
+  t.option({diff}, "A", "a file of any readable format, or - for standard input", unnamed, &Options::inputs);
+  t.option({diff}, "B", "another one, of the same or another format", unnamed, &Options::inputs);
   t.option(writing, "-o,--output",
-           "a file (by its extension), a folder, or - for standard output (default: beside the input)",
-           Argument::text("PLACE"), &Options::output)
-      .of_run();
-  t.option({edit}, "-o,--output", "the new text (may be INPUT), or - for standard output",
-           Argument::text("PLACE"), &Options::output)
+           "a file (by its extension), a folder, or - for standard output (default: beside the input)", place,
+           &Options::output);
+  t.option({edit}, "-o,--output", "the new text (may be INPUT), or - for standard output", place,
+           &Options::output)
       .required();
   t.option({convert, relax, mesh}, "--to", "formats to write, separated by commas (see selvage formats)",
-           Argument::text("FORMAT"), &Options::formats)
-      .of_run();
+           Argument::text("FORMAT"), &Options::formats);
   t.option({roundtrip}, "--to",
            kept(fmt::format("formats to go through, separated by commas (default: {})", trip_names())),
            Argument::text("FORMAT"), &Options::formats);
-  t.choice({convert, relax}, "--units",
-           "write surfaces in this unit (default: the input's, which costs no bits)", "m cm mm um inch",
-           &Options::units, {Unit::m, Unit::cm, Unit::mm, Unit::um, Unit::inch});
-  t.choice({check, info}, "--units", "show lengths in this unit (default: the input's)", "m cm mm um inch",
-           &Options::units, {Unit::m, Unit::cm, Unit::mm, Unit::um, Unit::inch});
-  t.flag({info}, "--json", "print the JSON report instead of tables", &Options::json).of_run();
-  t.flag({diff}, "--json", "one JSON object instead of lines", &Options::json);
+  t.flag({info, diff}, "--json", "one JSON object instead of text", &Options::json);
   t.flag({diff}, "--all", "every difference (default: the first 20 and a count)", &Options::all);
-  t.flag({info}, "--table",
-         "garment curves: each fixed point's error, and the control points by both methods", &Options::table);
   t.option({check}, "--gap-map",
            kept(fmt::format("write the yarns coloured by the gap to the next one to this file ({})",
                             extension_of_gap_maps())),
-           Argument::text("FILE"), &Options::gap_map)
-      .of_run();
-  t.option(on_batch, "--report", "write a JSON report to this file", Argument::text("FILE"), &Options::report)
-      .of_run();
-  t.option({roundtrip}, "--junit", "write the results as JUnit XML to this file", Argument::text("FILE"),
-           &Options::junit)
-      .of_run();
+           file, &Options::gap_map);
+  t.option(on_batch, "--report", "write a JSON report to this file", file, &Options::report);
+  t.option({roundtrip}, "--junit", "write the results as JUnit XML to this file", file, &Options::junit);
   t.flag(writing, "--resume", "skip inputs that --report says are done, if their outputs are whole",
-         &Options::resume)
-      .of_run();
+         &Options::resume);
 }
 
 void of_yarns(OptionTable& t) {
@@ -218,6 +202,15 @@ void of_yarns(OptionTable& t) {
   t.option({convert, check, relax, mesh, info, view}, "--tolerance",
            "of tubes, in the input's unit, instead of the input's own", Argument::positive(),
            &Options::tolerance);
+  t.option(
+      {roundtrip, diff}, "--tolerance",
+      "distances up to this, in the first input's unit, are no difference (default: 0, every bit counts)",
+      Argument::non_negative(), &Options::difference_tolerance);
+  t.choice(
+      {convert, relax, check, info}, "--units",
+      "of surfaces that are written, and of lengths that are shown (default: the input's, which costs no "
+      "bits)",
+      "m cm mm um inch", &Options::units, {Unit::m, Unit::cm, Unit::mm, Unit::um, Unit::inch});
   t.choice({convert, check, relax, mesh, roundtrip, info}, "--ends",
            "how a yarn is sealed (default: as the input has it, else patch)", "patch fan planar none",
            &Options::ends,
@@ -228,19 +221,16 @@ void of_yarns(OptionTable& t) {
       .with_preset("filaments");
   t.flag(on_yarns, "--as-published", "constructions exactly as their paper gives them, overlaps and all",
          &Options::as_published);
+  t.flag(on_yarns, "--strict", "a warning fails its input", &Options::strict);
   t.flag({convert, relax}, "--instances",
-         "yarns that are equal up to a motion are written once and placed, where the format can (not "
-         "every system reads such references)",
+         "yarns that are equal up to a motion are written once and placed, where the format can (not every "
+         "system reads such references)",
          &Options::instances)
       .goes_with("repeats yarns that are whole", "", "--cut --matrix");
   t.option({check}, "--reach", "list near contacts, too: gaps between yarns up to this, in the input's unit",
            Argument::positive(), &Options::reach);
-  t.option({roundtrip}, "--tolerance",
-           "distances up to this, in the input's unit, are no difference (default: 0, every bit counts)",
-           Argument::non_negative(), &Options::difference_tolerance);
-  t.option({diff}, "--tolerance",
-           "distances up to this, in A's unit, are no difference (default: 0, every bit counts)",
-           Argument::non_negative(), &Options::difference_tolerance);
+  t.flag({info}, "--table",
+         "garment curves: each fixed point's error, and the control points by both methods", &Options::table);
 }
 
 void of_an_edit(OptionTable& t) {
@@ -301,13 +291,12 @@ void of_a_mesh(OptionTable& t) {
 
 void of_a_cell(OptionTable& t) {
   t.begin("The unit cell");
-  t.flag({convert}, "--cut", "the yarns cut flush by the cell's faces, as solids", &Options::cut);
-  t.flag({mesh}, "--cut", "cut yarns flush by the faces of the input's cell", &Options::cut);
-  t.flag({convert}, "--matrix",
-         "with them what they leave of the cell, as one solid that shares its faces with theirs "
-         "(implies --cut)",
-         &Options::matrix);
-  t.flag({mesh}, "--matrix", "mesh the cell: its yarns, and the matrix between them", &Options::matrix);
+  t.flag({convert, mesh}, "--cut", "yarns cut flush by the faces of the input's cell (convert: as solids)",
+         &Options::cut);
+  t.flag(
+      {convert, mesh}, "--matrix",
+      "with them what they leave of the cell, the matrix, which shares its faces with theirs (implies --cut)",
+      &Options::matrix);
   t.flag({mesh}, "--periodic",
          "opposite faces of the cell get the same nodes, and equations between them (as its "
          "`periodic` says; without that word along every axis that can be)",
@@ -345,14 +334,12 @@ void of_relaxing(OptionTable& t) {
   t.option({convert, mesh}, "--relax",
            "first move and reshape yarns until none overlap (exit code 3: no solution)", {},
            into(&Options::relaxing, &RelaxSettings::wanted));
-  t.option({convert, mesh}, "--gap",
-           "with --relax, and in a unit cell: the least gap between yarns, in the input's unit "
-           "(default: 1 % of the smaller thickness; in a cell that is meshed 5 %)",
-           Argument::non_negative(), into(&Options::relaxing, &RelaxSettings::gap))
+  t.option(
+       all, "--gap",
+       "the least gap between yarns, in the input's unit; of a unit cell, too (default: 1 % of the smaller "
+       "thickness; in a cell that is meshed 5 %)",
+       Argument::non_negative(), into(&Options::relaxing, &RelaxSettings::gap))
       .goes_with(why, "--relax --matrix --periodic --cut --voxel", "");
-  t.option({relax}, "--gap",
-           "the least gap between yarns, in the input's unit (default: 1 % of the smaller thickness)",
-           Argument::non_negative(), into(&Options::relaxing, &RelaxSettings::gap));
   t.option(all, "--overlap",
            "let yarns that meet overlap to this depth, and bring them to it, instead of a gap",
            Argument::positive(), into(&Options::relaxing, &RelaxSettings::overlap))
@@ -366,40 +353,33 @@ void of_relaxing(OptionTable& t) {
 }
 
 void of_running(OptionTable& t) {
-  t.begin("Running");
-  const Commands with_edit = {convert, check, relax, mesh, roundtrip, diff, info, edit, view};
-
+  t.begin("Running", true);
+  const Commands all = {convert, check, relax, mesh, roundtrip, diff, info, edit, view};
   t.option(on_yarns, "-j", "inputs worked on at once (default: one a core)", Argument::whole(1, 4096),
-           &Options::workers)
-      .of_run();
-  t.flag(with_edit, "-q,--quiet", "errors only", &Options::quiet).of_run();
-  t.flag(on_yarns, "-v,--verbose", "say more", &Options::verbose).of_run();
-  t.flag(on_yarns, "--no-progress", "no progress bar or lines", &Options::no_progress).of_run();
-  t.flag(on_yarns, "--strict", "a warning fails its input", &Options::strict);
+           &Options::workers);
+  t.flag(all, "-q,--quiet", "errors only", &Options::quiet);
+  t.flag(on_yarns, "-v,--verbose", "say more", &Options::verbose);
+  t.flag(on_yarns, "--no-progress", "no progress bar or lines", &Options::no_progress);
   t.option(on_batch, "--shard", "only the I-th of N equal parts of the inputs, from 0", Argument::text("I/N"),
-           take_shard)
-      .of_run();
-  t.option(with_edit, "--timeout",
-           kept(fmt::format("seconds an input may take (default: {:g} for formats of other programs, "
-                            "else no limit)",
+           take_shard);
+  t.option(all, "--timeout",
+           kept(fmt::format("seconds an input may take (default: {:g} for formats of other programs, else no "
+                            "limit)",
                             foreign_timeout)),
-           Argument::positive(), &Options::timeout)
-      .of_run();
-  t.option(with_edit, "--memory",
-           "MB of memory an input may take (default: what the machine, or the container, has free, "
-           "shared by the inputs worked on at once; at least 1024)",
-           Argument::positive(), &Options::memory)
-      .of_run();
-  t.choice(with_edit, "--sandbox",
-           "keep the processes that read files to their inputs and outputs, without network: require "
-           "(or refuse to run), auto (as far as the kernel can), off",
-           "require auto off", &Options::sandbox, {Sandbox::required, Sandbox::automatic, Sandbox::off})
-      .with_preset("auto")
-      .of_run();
-  t.flag(with_edit, "--allow-outside",
+           Argument::positive(), &Options::timeout);
+  t.option(all, "--memory",
+           "MB of memory an input may take (default: what the machine, or the container, has free, shared by "
+           "the inputs worked on at once; at least 1024)",
+           Argument::positive(), &Options::memory);
+  t.choice(
+       all, "--sandbox",
+       "keep the processes that read files to their inputs and outputs, without network: require (or refuse "
+       "to run), auto (as far as the kernel can), off",
+       "require auto off", &Options::sandbox, {Sandbox::required, Sandbox::automatic, Sandbox::off})
+      .with_preset("auto");
+  t.flag(all, "--allow-outside",
          "files that a text names (`draft file`) may be anywhere, not only in its folder or below",
-         &Options::allow_outside)
-      .of_run();
+         &Options::allow_outside);
 }
 
 // What formats declare for themselves.
@@ -424,79 +404,51 @@ const std::deque<Row>& all_rows() {
   return rows;
 }
 
-// The options of one command line.
-class Line {
- public:
-  Line(Command command, const Given& given) : rows_(rows_of(command)) {
-    for (const Row* row : rows_)
-      if (const auto found = given.find(row->option.name); found != given.end())
-        given_.emplace_back(row, found->second);
-  }
+// The options that were given, in the order of the table.
+using Line = std::vector<std::pair<const Row*, std::vector<std::string>>>;
 
-  Status take(Options& options);
-  [[nodiscard]] Status check_company() const;
-
- private:
-  // Of `names`, those that there are, and whether one of them was given.
-  struct Company {
-    std::vector<std::string_view> names;
-    bool is_given = false;
-  };
-  [[nodiscard]] Company company(std::string_view names) const;
-
-  std::vector<const Row*> rows_;
-  std::vector<std::pair<const Row*, std::vector<std::string>>> given_;  // in the order of the table
-};
-
-// Presets, and then what was given, whose spelling becomes the canonical one.
-Status Line::take(Options& options) {
-  for (const Row* row : rows_)
-    if (!row->option.preset.empty() && row->take)
-      if (Status s = row->take(options, std::string(row->option.preset)); !s) return s;
-  for (auto& [row, values] : given_) {
-    const Option& option = row->option;
-    for (std::string& value : values) {
-      Result<std::string> canonical = option.argument.canonical(value);
-      Status status = canonical ? Status() : Status(canonical.error());
-      if (canonical) value = *canonical;
-      if (canonical && row->take) status = row->take(options, value);
-      if (!status.ok())
-        return error(Kind::usage, fmt::format("{}: {}", option.long_name(), status.error().text));
-      if (!row->take) options.of_formats.set(option, value);
-      if (option.is_of_run || (!value.empty() && value == option.preset)) continue;
-      options.settings += fmt::format(" {}{}{}", option.word(), value.empty() ? "" : "=", value);
-    }
+// Takes one option, whose values get their canonical spelling.
+Status take(const Row& row, std::vector<std::string>& values, Options& options) {
+  const Option& option = row.option;
+  for (std::string& value : values) {
+    Result<std::string> canonical = option.argument.canonical(value);
+    Status status = canonical ? Status() : Status(canonical.error());
+    if (canonical) value = *canonical;
+    if (canonical && row.take) status = row.take(options, value);
+    if (!status.ok())
+      return error(Kind::usage, fmt::format("{}: {}", option.long_name(), status.error().text));
+    if (!row.take) options.of_formats.set(option, value);
+    if (option.is_of_run || (!value.empty() && value == option.preset)) continue;
+    options.settings += fmt::format(" {}{}{}", option.word(), value.empty() ? "" : "=", value);
   }
   return {};
 }
 
-Line::Company Line::company(std::string_view names) const {
-  Company company;
-  for (const std::string_view name : words_of(names)) {
-    const auto is_it = [&](const Row* row) { return row->option.long_name() == name; };
-    if (std::none_of(rows_.begin(), rows_.end(), is_it)) continue;
-    company.names.push_back(name);
-    company.is_given = company.is_given || std::any_of(given_.begin(), given_.end(),
-                                                       [&](const auto& one) { return is_it(one.first); });
-  }
-  return company;
-}
-
 // Options that would do nothing, or contradict each other, are mistakes.
-Status Line::check_company() const {
-  for (const auto& [row, values] : given_) {
+Status check_company(const std::vector<const Row*>& rows, const Line& line) {
+  // Of some names, those that the subcommand has, and whether one of them was given.
+  const auto company = [&](std::string_view names) {
+    std::pair<std::vector<std::string_view>, bool> found;
+    for (const std::string_view name : words_of(names)) {
+      const auto is_it = [&](const Row* row) { return row->option.long_name() == name; };
+      if (std::none_of(rows.begin(), rows.end(), is_it)) continue;
+      found.first.push_back(name);
+      for (const auto& [row, values] : line) found.second = found.second || is_it(row);
+    }
+    return found;
+  };
+  for (const auto& [row, values] : line) {
     const Option& option = row->option;
-    if (option.only_as.empty() ? values.back() == option.preset && !option.preset.empty()
-                               : values.back() != option.only_as)
-      continue;
-    const Company needed = company(option.needs), refused = company(option.not_with);
-    if ((needed.names.empty() || needed.is_given) && !refused.is_given) continue;
+    const bool is_preset = !option.preset.empty() && values.back() == option.preset;
+    if (option.only_as.empty() ? is_preset : values.back() != option.only_as) continue;
+    const auto [needed, has_needed] = company(option.needs);
+    const auto [refused, has_refused] = company(option.not_with);
+    if ((needed.empty() || has_needed) && !has_refused) continue;
     std::string text = fmt::format("{}{}{} {}: it", option.long_name(), option.only_as.empty() ? "" : " ",
                                    option.only_as, option.why);
-    if (!needed.names.empty()) text += " goes with " + alternatives(needed.names);
-    if (!refused.names.empty())
-      text += fmt::format("{}{}", needed.names.empty() ? " does not go with " : ", and not with ",
-                          alternatives(refused.names));
+    if (!needed.empty()) text += " goes with " + alternatives(needed);
+    if (!refused.empty())
+      text += (needed.empty() ? " does not go with " : ", and not with ") + alternatives(refused);
     return error(Kind::usage, std::move(text));
   }
   return {};
@@ -523,9 +475,18 @@ std::vector<const Row*> rows_of(Command command) {
 Result<Options> understand(Command command, const Given& given) {
   Options options;
   options.command = command;
-  Line line(command, given);
-  if (Status status = line.take(options); !status.ok()) return status.error();
-  if (Status status = line.check_company(); !status.ok()) return status.error();
+  const std::vector<const Row*> rows = rows_of(command);
+  Line line;
+  for (const Row* row : rows) {
+    const Option& option = row->option;
+    if (!option.preset.empty() && row->take)
+      if (Status status = row->take(options, std::string(option.preset)); !status.ok()) return status.error();
+    const auto found = given.find(option.name);
+    if (found == given.end()) continue;
+    line.emplace_back(row, found->second);
+    if (Status status = take(*row, line.back().second, options); !status.ok()) return status.error();
+  }
+  if (Status status = check_company(rows, line); !status.ok()) return status.error();
   if (options.matrix) options.cut = true;
   if (command == relax) options.relaxing.wanted = true;
   if (options.resume && (options.report.empty() || options.report == "-"))
