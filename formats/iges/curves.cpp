@@ -270,6 +270,21 @@ std::optional<std::vector<double>> read_breaks(Parameters& in, std::size_t piece
   return breaks;
 }
 
+std::vector<Vec3> points_along(const cad::Loop& loop) {
+  constexpr std::size_t most = 20'000;  // an edge
+  std::vector<Vec3> points;
+  for (const cad::Edge& edge : loop.edges) {
+    if (edge.curve.points.empty()) continue;
+    const std::vector<double> breaks = nurbs::breakpoints(edge.curve.knots, edge.curve.degree);
+    const int steps = breaks.size() > most / 16 ? 2 : 16;
+    for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
+      for (int k = 0; k < steps; ++k)
+        points.push_back(nurbs::evaluate(edge.curve, breaks[i] + (breaks[i + 1] - breaks[i]) * k / steps));
+    points.push_back(nurbs::evaluate(edge.curve, breaks.back()));
+  }
+  return points;
+}
+
 double size_of(const std::vector<Vec3>& points) {
   Box3 box;
   for (const Vec3& p : points) box.extend(p);

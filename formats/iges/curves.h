@@ -24,6 +24,8 @@ std::optional<std::vector<double>> read_breaks(Parameters& in, std::size_t piece
 // one, any other one alone. Empty after by.fail() or by.give_up().
 std::vector<nurbs::Curve> read_chain(Reading& reading, int pointer, Parameters& by);
 
+// The points of a loop's curves in space, dense enough to tell its way round an axis.
+std::vector<Vec3> points_along(const cad::Loop& loop);
 double size_of(const std::vector<Vec3>& points);  // the diagonal of their box
 // Pieces that are farther apart than this are not joined.
 double most_gap(const std::vector<Vec3>& points);

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include "formats/iges/standard.h"
+
 namespace selvage::formats::iges {
 
 std::string DirectoryEntry::name() const {
@@ -15,78 +17,94 @@ std::string DirectoryEntry::name() const {
 
 namespace {
 
-// The fields of one directory line, each 8 columns wide.
+// The fields of an entry, 1 to 20 on its two lines, each 8 columns wide.
 class Fields {
  public:
-  Fields(const Line& line, TextReport& report) : line_(line), report_(report) {}
+  Fields(const Line& first, const Line& second, DirectoryEntry& entry, Complaints& complaints)
+      : first_(first), second_(second), entry_(entry), complaints_(complaints) {}
 
-  [[nodiscard]] std::string_view text(int number) const {
-    return {line_.at + std::ptrdiff_t{8} * (number - 1), 8};
+  void read() {
+    entry_.line = first_.number;
+    entry_.type = integer(1);
+    entry_.first_line = integer(2);
+    entry_.structure = integer(3);
+    entry_.level = integer(5);
+    entry_.transformation = integer(7);
+    entry_.color = integer(13);
+    entry_.line_count = integer(14);
+    entry_.form = integer(15);
+    std::memcpy(entry_.label.data(), text(18).data(), entry_.label.size());
+    if (const int type = integer(11); type != entry_.type)
+      fault(11, fmt::format("the second line is of type {}", type));
+    read_status();
+    if (complaints_.is_check()) check_others();
   }
-  int integer(int number, std::string_view what) {
-    bool valid = true;
-    const int value = column_number(text(number), valid).value_or(0);
-    if (!valid) {
-      report_.error(line_.spot(8 * (number - 1) + 1),
-                    fmt::format("{} is no {}", in_quotes(text(number)), what));
-      failed_ = true;
-    }
-    return value;
-  }
-  // Two digits of the status, `at` 0, 2, 4 or 6; other characters than digits are blanks in sloppy files.
-  int status(int at, int most) {
-    const char* const digits = text(9).data() + at;
-    int value = 0;
-    for (const char c : {digits[0], digits[1]}) {
-      if (c >= '0' && c <= '9') {
-        value = 10 * value + (c - '0');
-      } else if (c != ' ') {
-        report_.error(line_.spot(65 + at), fmt::format("{} is no status number", in_quotes(text(9))));
-        failed_ = true;
-        return 0;
-      }
-    }
-    return value <= most ? value : 0;
-  }
-  [[nodiscard]] bool failed() const { return failed_; }
 
  private:
-  const Line& line_;
-  TextReport& report_;
-  bool failed_ = false;
-};
-
-bool read_entry(const Line& first_line, const Line& second_line, TextReport& report, DirectoryEntry& entry) {
-  Fields first(first_line, report), second(second_line, report);
-  entry.line = first_line.number;
-  entry.type = first.integer(1, "entity type");
-  entry.first_line = first.integer(2, "line number");
-  entry.structure = first.integer(3, "directory pointer");
-  entry.level = first.integer(5, "level");
-  entry.transformation = first.integer(7, "directory pointer");
-  entry.blanked = first.status(0, 1) == 1;
-  entry.subordinate = first.status(2, 3);
-  entry.use = first.status(4, 6);
-  entry.hierarchy = first.status(6, 2);
-  const int type = second.integer(1, "entity type");
-  entry.color = second.integer(3, "colour");
-  entry.line_count = second.integer(4, "number of lines");
-  entry.form = second.integer(5, "form number");
-  std::memcpy(entry.label.data(), second.text(8).data(), entry.label.size());
-  bool valid = true;
-  entry.subscript = column_number(second.text(9), valid).value_or(0);
-  if (first.failed() || second.failed()) return false;
-  if (type != entry.type) {
-    report.error(second_line.spot(),
-                 fmt::format("the first line of this entity says type {}, the second {}", entry.type, type));
-    return false;
+  // BBSSUUHH; blanks stand for zeros in sloppy files.
+  void read_status() {
+    std::array<int, 4> parts{};
+    constexpr std::array<int, 4> most = {1, 3, 6, 2};
+    constexpr std::array<std::string_view, 4> words = {"blank", "subordinate", "use", "hierarchy"};
+    const std::string_view field = text(9);
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (const char c : field.substr(2 * i, 2)) {
+        if (c >= '0' && c <= '9') {
+          parts[i] = 10 * parts[i] + (c - '0');
+        } else if (c != ' ') {
+          fault(9, fmt::format("status {} is not of eight digits", in_quotes(field)));
+          return;
+        }
+      }
+      if (parts[i] <= most[i]) continue;
+      parts[i] = 0;
+      if (complaints_.is_check())
+        complaints_.defect(
+            kind, spot(9),
+            said(9, fmt::format("status {}: the {} part is 00 to 0{}", in_quotes(field), words[i], most[i])));
+    }
+    entry_.blanked = parts[0] == 1;
+    entry_.subordinate = parts[1];
+    entry_.use = parts[2];
+    entry_.hierarchy = parts[3];
   }
-  return true;
-}
+
+  // What a reader has no use for.
+  void check_others() {
+    entry_.font = integer(4);
+    entry_.view = integer(6);
+    integer(8);
+    integer(19);
+    if (integer(12) < 0) fault(12, "a negative line weight");
+    if (entry_.color > 8) fault(13, fmt::format("there is no colour {}: they are 0 to 8", entry_.color));
+    const StandardType* const type = standard_type(entry_.type);
+    if (type != nullptr && !type->forms.allow(entry_.form))
+      fault(15, fmt::format("type {} has no form {}", entry_.type, entry_.form));
+  }
+
+  [[nodiscard]] std::string_view text(int field) const { return {spot(field).at, 8}; }
+  [[nodiscard]] Spot spot(int field) const {
+    return (field > 10 ? second_ : first_).spot(8 * ((field - 1) % 10) + 1);
+  }
+  int integer(int field) {
+    const std::optional<int> value = column_number(text(field));
+    if (!value) fault(field, fmt::format("{} is no integer", in_quotes(text(field))));
+    return value.value_or(0);
+  }
+  [[nodiscard]] std::string said(int field, const std::string& what) const {
+    return fmt::format("{}: {} (directory field {})", entry_.name(), what, field);
+  }
+  void fault(int field, const std::string& what) { complaints_.fault(kind, spot(field), said(field, what)); }
+
+  static constexpr std::string_view kind = "faults of directory entries";
+  const Line &first_, &second_;
+  DirectoryEntry& entry_;
+  Complaints& complaints_;
+};
 
 }  // namespace
 
-bool File::read_directory(TextReport& report) {
+void File::read_directory(Complaints& complaints) {
   const int lines = lines_.count(Section::directory);
   directory_.resize(static_cast<std::size_t>(lines / 2));
   int pointer = 1;
@@ -94,46 +112,22 @@ bool File::read_directory(TextReport& report) {
     entry.pointer = pointer;
     const Line first = lines_.line(Section::directory, pointer);
     const Line second = lines_.line(Section::directory, pointer + 1);
-    if (!read_entry(first, second, report, entry) && report.is_full()) return false;
+    Fields(first, second, entry, complaints).read();
     pointer += 2;
   }
   if (lines % 2 != 0)
-    report.error(lines_.line(Section::directory, lines).spot(),
-                 "the directory has an odd number of lines, but two belong to each entity");
-  return report.errors() == 0;
+    complaints.fault("faults of directory entries", lines_.line(Section::directory, lines).spot(),
+                     "the directory has an odd number of lines, but two belong to each entity");
 }
 
-// The terminate section says how many lines the others have.
-void File::check_terminate(TextReport& report) const {
-  if (lines_.count(Section::terminate) == 0) {
-    report.warning(lines_.end(), "the terminate section is missing: the file may be cut off");
-    return;
-  }
-  const Line line = lines_.line(Section::terminate, 1);
-  for (const std::size_t i : {0U, 1U, 2U, 3U}) {
-    const std::string_view field = line.text().substr(8 * i, 8);
-    bool valid = field.size() == 8 && field[0] == "SGDP"[i];
-    const std::optional<int> said = valid ? column_number(field.substr(1), valid) : std::nullopt;
-    const int there = lines_.count(static_cast<Section>(i));
-    if (valid && said && *said == there) continue;
-    constexpr std::array<std::string_view, 4> names = {"start", "global", "directory", "parameter"};
-    report.warning(line.spot(static_cast<int>(8 * i) + 1),
-                   fmt::format("the terminate section says {}, but the {} section has {} lines",
-                               in_quotes(field), names[i], there));
-  }
-  if (lines_.count(Section::terminate) > 1)
-    report.warning(lines_.line(Section::terminate, 2).spot(), "the terminate section has more than one line");
-}
-
-std::optional<File> File::open(const Source& source, TextReport& report) {
-  std::optional<Lines> lines = Lines::index(source, report);
-  if (!lines) return std::nullopt;
-  std::optional<Global> global = read_global(*lines, report);
-  if (!global) return std::nullopt;
-  File file(std::move(*lines), std::move(*global));
-  if (!file.read_directory(report)) return std::nullopt;
-  file.check_terminate(report);
-  return file;
+std::optional<File> File::open(const Source& source, Complaints& complaints) {
+  std::optional<Lines> lines = Lines::index(source, complaints);
+  if (!lines || !complaints.goes_on()) return std::nullopt;
+  Global global = read_global(*lines, complaints);
+  if (!complaints.goes_on()) return std::nullopt;
+  File file(std::move(*lines), std::move(global));
+  file.read_directory(complaints);
+  return complaints.goes_on() ? std::optional(std::move(file)) : std::nullopt;
 }
 
 const DirectoryEntry* File::entity(int pointer) const {
@@ -143,12 +137,9 @@ const DirectoryEntry* File::entity(int pointer) const {
   return index < directory_.size() ? &directory_[index] : nullptr;
 }
 
-// The directory pointer that a parameter line ends with; 0 where it has none that can be read.
-int File::owner_of(int parameter_line) const {
+std::string_view File::owner_text(int parameter_line) const {
   const Line line = lines_.line(Section::parameter, parameter_line);
-  bool valid = true;
-  const int owner = column_number({line.at + line.data, 8}, valid).value_or(0);
-  return valid ? owner : 0;
+  return {line.at + line.data, 8};
 }
 
 Parameters File::parameters(const DirectoryEntry& entry) const {

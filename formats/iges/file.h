@@ -22,6 +22,7 @@ struct DirectoryEntry {
   int first_line = 0;      // of its parameters, from 1
   int line_count = 0;      // of them, as the entry says
   int structure = 0;       // field 3
+  int font = 0, view = 0;  // fields 4 and 6; only a check asks for them
   int level = 0;           // below 0: minus the pointer to a 406 form 1 with several
   int transformation = 0;  // pointer to a 124; 0: none
   int color = 0;           // 1-8, or minus the pointer to a 314; 0: none
@@ -31,7 +32,6 @@ struct DirectoryEntry {
   int use = 0;  // 0 geometry, 1 annotation, 2 definition, 3 other, 4 logical, 5 in parameters, 6 construction
   int hierarchy = 0;
   std::array<char, 8> label{};
-  int subscript = 0;
   int line = 0;  // in the file, from 1
 
   [[nodiscard]] bool is_physically_dependent() const { return (subordinate & 1) != 0; }
@@ -41,9 +41,9 @@ struct DirectoryEntry {
 
 class File {
  public:
-  // Reads all but the parameters. Errors (nothing comes back): no IGES; lines, global section or directory
-  // that cannot be understood. `source` outlives this.
-  static std::optional<File> open(const Source& source, TextReport& report);
+  // Reads all but the parameters. Nothing comes back to a reader from what is no IGES, and where lines,
+  // global section or directory cannot be understood; a check gets what there is. `source` outlives this.
+  static std::optional<File> open(const Source& source, Complaints& complaints);
 
   [[nodiscard]] const Global& global() const { return global_; }
   [[nodiscard]] const Lines& lines() const { return lines_; }
@@ -56,16 +56,20 @@ class File {
   // are not there, or where they are those of another entity.
   [[nodiscard]] Parameters parameters(const DirectoryEntry& entry) const;
 
-  // Column 1 of the entry's first line.
-  [[nodiscard]] Spot spot(const DirectoryEntry& entry) const {
-    return lines_.line(Section::directory, entry.pointer).spot();
+  // Where a field of the entry begins, 1 to 20 on its two lines.
+  [[nodiscard]] Spot spot(const DirectoryEntry& entry, int field = 1) const {
+    return lines_.line(Section::directory, entry.pointer + (field - 1) / 10).spot(8 * ((field - 1) % 10) + 1);
+  }
+  // The eight columns in which a parameter line says whose it is; the pointer there, 0 where none can be
+  // read.
+  [[nodiscard]] std::string_view owner_text(int parameter_line) const;
+  [[nodiscard]] int owner_of(int parameter_line) const {
+    return column_number(owner_text(parameter_line)).value_or(0);
   }
 
  private:
   File(Lines lines, Global global) : lines_(std::move(lines)), global_(std::move(global)) {}
-  bool read_directory(TextReport& report);
-  void check_terminate(TextReport& report) const;
-  [[nodiscard]] int owner_of(int parameter_line) const;
+  void read_directory(Complaints& complaints);
 
   Lines lines_;
   Global global_;
@@ -77,8 +81,5 @@ struct Trailer {
   std::vector<int> associativities, properties;
 };
 Trailer read_trailer(Parameters& parameters);
-
-// The standard's name of an entity type: "rational B-spline surface"; empty for a type that it does not have.
-std::string_view entity_title(int type);
 
 }  // namespace selvage::formats::iges

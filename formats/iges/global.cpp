@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace selvage::formats::iges {
 
@@ -12,20 +13,24 @@ namespace {
 
 struct UnitRow {
   int flag;
-  std::array<std::string_view, 3> names;
-  Unit unit;      // in which lengths of the file are kept
-  double factor;  // to it
+  std::array<std::string_view, 2> names;   // of the standard
+  std::array<std::string_view, 2> others;  // that programs write
+  Unit unit;                               // in which lengths of the file are kept
+  double factor;                           // to it
+
+  [[nodiscard]] bool is_named(std::string_view name) const { return name == names[0] || name == names[1]; }
 };
-constexpr std::array<UnitRow, 10> unit_rows = {{{1, {"INCH", "IN", "INCHES"}, Unit::inch, 1},
-                                                {2, {"MM", "MILLIMETER", "MILLIMETRE"}, Unit::mm, 1},
-                                                {4, {"FT", "FOOT", "FEET"}, Unit::mm, 304.8},
-                                                {5, {"MI", "MILE", "MILES"}, Unit::mm, 1609344},
-                                                {6, {"M", "METER", "METRE"}, Unit::m, 1},
-                                                {7, {"KM", "KILOMETER", "KILOMETRE"}, Unit::mm, 1e6},
-                                                {8, {"MIL", "MILS", "THOU"}, Unit::mm, 0.0254},
-                                                {9, {"UM", "MICRON", "MICRONS"}, Unit::um, 1},
-                                                {10, {"CM", "CENTIMETER", "CENTIMETRE"}, Unit::cm, 1},
-                                                {11, {"UIN", "MICROINCH", "UINCH"}, Unit::mm, 0.0000254}}};
+constexpr std::array<UnitRow, 10> unit_rows = {
+    {{1, {"INCH", "IN"}, {"INCHES", "INCHES"}, Unit::inch, 1},
+     {2, {"MM", "MM"}, {"MILLIMETER", "MILLIMETRE"}, Unit::mm, 1},
+     {4, {"FT", "FT"}, {"FOOT", "FEET"}, Unit::mm, 304.8},
+     {5, {"MI", "MI"}, {"MILE", "MILES"}, Unit::mm, 1609344},
+     {6, {"M", "M"}, {"METER", "METRE"}, Unit::m, 1},
+     {7, {"KM", "KM"}, {"KILOMETER", "KILOMETRE"}, Unit::mm, 1e6},
+     {8, {"MIL", "MIL"}, {"MILS", "THOU"}, Unit::mm, 0.0254},
+     {9, {"UM", "UM"}, {"MICRON", "MICRONS"}, Unit::um, 1},
+     {10, {"CM", "CM"}, {"CENTIMETER", "CENTIMETRE"}, Unit::cm, 1},
+     {11, {"UIN", "UIN"}, {"MICROINCH", "UINCH"}, Unit::mm, 0.0000254}}};
 
 const UnitRow* row_of(int flag) {
   const auto* const found = std::find_if(unit_rows.begin(), unit_rows.end(),
@@ -33,11 +38,9 @@ const UnitRow* row_of(int flag) {
   return found == unit_rows.end() ? nullptr : found;
 }
 
-const UnitRow* row_named(std::string name) {
-  for (char& c : name)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+const UnitRow* row_named(std::string_view name) {
   for (const UnitRow& row : unit_rows)
-    if (std::find(row.names.begin(), row.names.end(), name) != row.names.end()) return &row;
+    if (row.is_named(name) || name == row.others[0] || name == row.others[1]) return &row;
   return nullptr;
 }
 
@@ -55,30 +58,167 @@ std::string date_of(const std::string& text) {
   return {};
 }
 
-void take_units(Global& global, const Spot& flag, const Spot& scale, TextReport& report) {
-  const bool by_name = global.unit_flag == 3;
-  const UnitRow* const row = by_name ? row_named(global.unit_name) : row_of(global.unit_flag);
-  if (row == nullptr) {
-    report.error(flag, by_name ? fmt::format("no unit of length is named {}", in_quotes(global.unit_name))
-                               : fmt::format("there is no unit {}: units are 1 to 11", global.unit_flag));
-    return;
-  }
-  const UnitRow* const named = row_named(global.unit_name);
-  if (named != nullptr && named != row)
-    report.warning(flag, fmt::format("unit {} is {}, but its name is given as {}; the number holds",
-                                     row->flag, row->names[0], in_quotes(global.unit_name)));
-  global.units = row->unit;
-  global.factor = row->factor;
-  if (row->factor != 1) report.note(flag, fmt::format("lengths in {} are turned into mm", row->names[0]));
-  if (global.scale == 1) return;
-  if (!(global.scale > 0)) {
-    report.error(scale, fmt::format("a model space scale cannot be {}", global.scale));
-    return;
-  }
-  global.factor /= global.scale;
-  report.note(scale,
-              fmt::format("the model is drawn at the scale {}; it is brought to true size", global.scale));
+// A month, a day and a time that there are, in the form of date_of().
+bool is_date(std::string_view date) {
+  const auto two = [&](std::size_t from_end) {
+    const std::string_view digits = date.substr(date.size() - from_end, 2);
+    return 10 * (digits[0] - '0') + digits[1] - '0';
+  };
+  return !date.empty() && two(11) >= 1 && two(11) <= 12 && two(9) >= 1 && two(9) <= 31 && two(6) <= 24 &&
+         two(4) < 60 && two(2) < 60;
 }
+
+// The parameters behind the delimiters: value i is parameter i + 3.
+class GlobalReader {
+ public:
+  GlobalReader(const Values& values, Complaints& complaints) : values_(values), complaints_(complaints) {}
+
+  Global run() {
+    Global global;
+    take_names(global);
+    take_units(global);
+    if (integer(16, 1, false) < 1) defect(16, "the number of line weights is not positive");
+    global.date = date(18);
+    take_ranges(global);
+    global.author = text(21);
+    global.organization = text(22);
+    const std::int64_t version = integer(23, 3), drafting = integer(24);
+    if (version < 1 || version > last_version)
+      defect(23, fmt::format("there is no version {}: IGES 5.3 is 11", version));
+    if (drafting < 0 || drafting > last_drafting)
+      defect(24, fmt::format("there is no drafting standard {}: they are 0 to 7", drafting));
+    global.version = static_cast<int>(std::clamp<std::int64_t>(version, 1, 99));
+    global.drafting = static_cast<int>(std::clamp<std::int64_t>(drafting, 0, 99));
+    global.modified = date(25);
+    global.protocol = text(26);
+    if (values_.size() > 24)
+      complaints_.flaw(kind, spot(27),
+                       fmt::format("the global section has {} parameters; there are 26", values_.size() + 2));
+    return global;
+  }
+
+ private:
+  static constexpr std::string_view kind = "faults of the global section";
+  static constexpr int last_version = 11, last_drafting = 7;
+
+  void take_names(Global& global) {
+    constexpr std::array<std::pair<int, std::string_view>, 5> due = {
+        {{3, "product"}, {4, "file name"}, {5, "native system"}, {6, "preprocessor"}, {18, "date"}}};
+    for (const auto& [number, name] : due)
+      if (is_blank(number))
+        warning(number,
+                fmt::format("global parameter {} ({}) is not given, and has no default", number, name));
+    global.product = text(3);
+    global.file_name = text(4);
+    global.system = text(5);
+    global.preprocessor = text(6);
+    global.receiver = text(12);
+    bool told = false;
+    for (int number = 7; number <= 11; ++number)
+      if (integer(number) <= 0 && !std::exchange(told, true))
+        warning(number,
+                fmt::format("global parameter {} (range of the sender's numbers) is not given", number));
+  }
+
+  void take_units(Global& global) {
+    const std::int64_t flag = integer(14, 1);
+    global.scale = real(13, 1);
+    global.unit_flag = flag >= 1 && flag <= 11 ? static_cast<int>(flag) : 0;
+    global.unit_name = text(15);
+    std::string name = global.unit_name;
+    for (char& c : name)
+      if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    const UnitRow* const named = row_named(name);
+    const UnitRow* const row = flag == 3 ? named : row_of(global.unit_flag);
+    if (!(global.scale > 0)) {
+      fault(13, fmt::format("the model space scale is not positive: {}", global.scale));
+      global.scale = 1;
+    }
+    if (row == nullptr) {
+      if (flag == 3)
+        fault(15, fmt::format("unit 3 goes by its name, and {} is none", in_quotes(global.unit_name)));
+      else
+        fault(14, fmt::format("there is no unit {}: units are 1 to 11", flag));
+      return;
+    }
+    if (name.empty()) {
+      if (flag != 1)
+        warning(15, fmt::format("the unit's name is not given; unit {} is {}", flag, row->names[0]));
+    } else if (!row->is_named(name) && flag == 3) {
+      defect(15, fmt::format("unit 3 goes by its name, and {} is none of the standard",
+                             in_quotes(global.unit_name)));
+    } else if (!row->is_named(name)) {
+      const std::string text = fmt::format("unit {} is {}, but its name is given as {}; the number holds",
+                                           flag, row->names[0], in_quotes(global.unit_name));
+      named != nullptr&& named != row ? complaints_.flaw(kind, spot(15), text) : defect(15, text);
+    }
+    global.units = row->unit;
+    global.factor = row->factor;
+    if (row->factor != 1)
+      complaints_.reader_note(spot(14), fmt::format("lengths in {} are turned into mm", row->names[0]));
+    if (global.scale == 1) return;
+    global.factor /= global.scale;
+    complaints_.reader_note(
+        spot(13),
+        fmt::format("the model is drawn at the scale {}; it is brought to true size", global.scale));
+  }
+
+  void take_ranges(Global& global) {
+    global.stated_resolution = real(19);
+    global.largest = real(20);
+    global.resolution_spot = spot(19);
+    global.largest_spot = spot(20);
+    global.resolution = std::abs(global.stated_resolution * global.factor);
+    if (is_blank(19))
+      warning(19, "the resolution (global parameter 19) is not given, and has no default");
+    else if (!(global.stated_resolution > 0))
+      defect(19, fmt::format("a resolution (global parameter 19) of {}", global.stated_resolution));
+    if (global.largest < 0) defect(20, "the largest coordinate (global parameter 20) is negative");
+  }
+
+  static std::size_t index(int number) { return static_cast<std::size_t>(number - 3); }
+  [[nodiscard]] Spot spot(int number) const { return values_.spot(index(number)); }
+  [[nodiscard]] bool is_blank(int number) const { return values_.is_blank(index(number)); }
+
+  std::string date(int number) {
+    const std::string said = text(number);
+    std::string date = date_of(said);
+    if (!said.empty() && !is_date(date))
+      warning(number, fmt::format("{} is no date: YYYYMMDD.HHNNSS", in_quotes(said)));
+    return date;
+  }
+  std::string text(int number) {
+    if (is_blank(number)) return {};
+    if (values_[index(number)].is_string) return readable(values_[index(number)].text);
+    fault(number, fmt::format("global parameter {}: {} is no string (its length, H and its characters)",
+                              number, in_quotes(values_[index(number)].text)));
+    return {};
+  }
+  // A reader takes "2." for an integer. `needed`: it minds what is none at all.
+  std::int64_t integer(int number, std::int64_t otherwise = 0, bool needed = true) {
+    if (const std::optional<int> value = values_.integer(index(number), static_cast<int>(otherwise)))
+      return *value;
+    const std::optional<double> value = values_.real(index(number));
+    const bool is_whole = value && std::trunc(*value) == *value && std::abs(*value) < 1e15;
+    const std::string text =
+        fmt::format("global parameter {}: {} is no integer", number, in_quotes(values_[index(number)].text));
+    needed && !is_whole ? void(fault(number, text)) : defect(number, text);
+    return is_whole ? static_cast<std::int64_t>(*value) : otherwise;
+  }
+  double real(int number, double otherwise = 0) {
+    const std::optional<double> value = values_.real(index(number), otherwise);
+    if (!value)
+      fault(number, fmt::format("global parameter {}: {} is no number", number,
+                                in_quotes(values_[index(number)].text)));
+    return value.value_or(otherwise);
+  }
+  bool fault(int number, std::string what) { return complaints_.fault(kind, spot(number), std::move(what)); }
+  void defect(int number, std::string what) { complaints_.defect(kind, spot(number), std::move(what)); }
+  void warning(int number, std::string what) { complaints_.warning(kind, spot(number), std::move(what)); }
+
+  const Values& values_;
+  Complaints& complaints_;
+};
 
 }  // namespace
 
@@ -100,48 +240,24 @@ std::string readable(std::string_view bytes) {
   return wide;
 }
 
-std::optional<Global> read_global(const Lines& lines, TextReport& report) {
+Global read_global(const Lines& lines, Complaints& complaints) {
   const int count = lines.count(Section::global);
-  if (count == 0) {
-    report.error(lines.end(), "there is no global section");
-    return std::nullopt;
-  }
+  if (count == 0) return {};  // which was said
   Parameters cursor(lines, Section::global, 1, count, {});
   Global global;
-  const auto text = [&cursor] { return readable(cursor.text()); };
-  if (const std::optional<Delimiters> delimiters = read_delimiters(cursor)) {
-    global.delimiters = *delimiters;
-    global.product = text();
-    global.file_name = text();
-    global.system = text();
-    global.preprocessor = text();
-    for (int i = 7; i <= 11; ++i) cursor.integer();  // number ranges of the sender
-    global.receiver = text();
-    global.scale = cursor.real(1);
-    const Spot scale = cursor.spot();
-    const auto flag_value = cursor.integer(1);
-    const Spot flag = cursor.spot();
-    global.unit_flag = flag_value >= 1 && flag_value <= 11 ? static_cast<int>(flag_value) : 0;
-    global.unit_name = text();
-    cursor.skip();  // 16, 17: line weights
-    cursor.skip();
-    global.date = date_of(text());
-    global.resolution = cursor.real();
-    global.largest = cursor.real();
-    global.author = text();
-    global.organization = text();
-    global.version = static_cast<int>(std::clamp<std::int64_t>(cursor.integer(3), 1, 99));
-    global.drafting = static_cast<int>(std::clamp<std::int64_t>(cursor.integer(), 0, 99));
-    global.modified = date_of(text());
-    global.protocol = text();
-    if (cursor.ok()) {
-      if (!cursor.at_end()) report.warning(cursor.spot(), "the global section has more than 26 parameters");
-      take_units(global, flag, scale, report);
-      global.resolution = std::abs(global.resolution * global.factor);
-    }
+  if (!read_delimiters(cursor)) {
+    complaints.fault("delimiters", cursor.failure()->spot, cursor.failure()->text);
+  } else if (const Values values(cursor); values.failure()) {
+    complaints.fault("records that cannot be taken apart", values.failure()->spot,
+                     "global section: " + values.failure()->text);
+  } else {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (values[i].is_broken)
+        complaints.fault("values broken across lines", values[i].spot,
+                         "global section: " + broken_number(values[i].text));
+    global = GlobalReader(values, complaints).run();
   }
-  if (!cursor.ok()) report.error(cursor.failure()->spot, cursor.failure()->text);
-  if (report.errors() > 0) return std::nullopt;
+  global.delimiters = cursor.delimiters();
   return global;
 }
 

@@ -16,8 +16,10 @@ struct Global {
   int unit_flag = 1;                                               // 14, 1-11
   std::string unit_name;                                           // 15
   std::string date;                                                // 18, YYYYMMDD.HHNNSS; empty: not given
-  double resolution = 0;                                           // 19, as in the file; 0: not given
+  double stated_resolution = 0;                                    // 19, as in the file; 0: not given
+  double resolution = 0;                                           // the same in `units`, not negative
   double largest = 0;                                              // 20
+  Spot resolution_spot, largest_spot;                              // of 19 and 20
   std::string author, organization;                                // 21, 22
   int version = 3;                                                 // 23: 11 is 5.3
   int drafting = 0;                                                // 24
@@ -29,9 +31,10 @@ struct Global {
   double factor = 1;
 };
 
-// Errors: no delimiters, a value of the wrong type, a scale or unit that is none. Strings are made readable
-// text (Latin-1 becomes UTF-8, control characters become '_').
-std::optional<Global> read_global(const Lines& lines, TextReport& report);
+// Faults: no delimiters, a value of the wrong type, a scale or unit that is none. What is missing or is
+// against the standard only a check minds. Strings are made readable text (Latin-1 becomes UTF-8, control
+// characters become '_').
+Global read_global(const Lines& lines, Complaints& complaints);
 
 // Foreign bytes as text: UTF-8 as it is, other 8-bit characters taken for Latin-1, control characters as '_';
 // without blanks at the end.

@@ -2,16 +2,12 @@
 #include <algorithm>
 #include <array>
 
+#include "formats/iges/standard.h"
 #include "formats/iges/types.h"
 
 namespace selvage::formats::iges {
 
 namespace {
-
-// 1: group, 7: without back pointers, 14: ordered, 15: ordered without back pointers.
-bool is_group(int form) {
-  return form == 1 || form == 7 || form == 14 || form == 15;
-}
 
 // 3: name of a level, 15: name. 1, definition of levels, is looked up, too.
 bool is_known_property(int form) {

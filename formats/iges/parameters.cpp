@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "formats/iges/real_text.h"
 
@@ -16,6 +17,12 @@ bool is_blank(char c) {
 }
 bool is_digit(char c) {
   return static_cast<unsigned char>(c - '0') < 10;
+}
+
+// Without the blanks round it, of which there are none in front.
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
 }
 
 // The integer that all of `token` is, possibly written as a real.
@@ -37,6 +44,11 @@ bool read_integer(std::string_view token, std::int64_t& value) {
 }
 
 }  // namespace
+
+std::string broken_number(std::string_view token) {
+  return fmt::format("{} runs over the end of its line, or the delimiter behind it is missing",
+                     in_quotes(token));
+}
 
 Parameters::Parameters(const Lines& lines, Section section, int first, int last, Delimiters delimiters)
     : lines_(&lines), section_(section), line_(first), last_(last), delimiters_(delimiters) {
@@ -109,23 +121,35 @@ bool Parameters::take_delimiter() {
   return true;
 }
 
+// To the delimiter, or to the end of the line.
+void Parameters::scan() {
+  while (at_ != end_ && *at_ != delimiters_.parameter && *at_ != delimiters_.record) ++at_;
+}
+
 // The characters of the next value, without blanks round them, and past its delimiter. False after an error
 // or the record delimiter.
-bool Parameters::field(std::string_view& token) {
+bool Parameters::field(std::string_view& token, std::string* joined) {
   token = {};
   if (failure_ || done_) return false;
   if (!skip_blanks()) return take_delimiter();  // which fails
   value_spot_ = here();
   const char* const begin = at_;
-  while (at_ != end_ && *at_ != delimiters_.parameter && *at_ != delimiters_.record) ++at_;
-  const char* last = at_;
-  while (last != begin && is_blank(last[-1])) --last;
-  token = {begin, static_cast<std::size_t>(last - begin)};
+  scan();
+  token = trimmed({begin, static_cast<std::size_t>(at_ - begin)});
+  if (at_ != end_) return take_delimiter();
+  if (joined != nullptr) {
+    joined->assign(begin, end_);
+    while (at_ == end_ && next_line()) {
+      scan();
+      joined->append(start_, at_);
+    }
+    token = trimmed(*joined);
+    return take_delimiter();
+  }
   // Were it joined with what follows, a lost delimiter would make one number of two.
-  if (at_ == end_ && last == end_ && next_line() && at_ != end_ && !is_blank(*at_) &&
-      *at_ != delimiters_.parameter && *at_ != delimiters_.record) {
-    fail(fmt::format("{} runs over the end of its line, or the delimiter behind it is missing",
-                     in_quotes(token)));
+  if (!is_blank(end_[-1]) && next_line() && at_ != end_ && !is_blank(*at_) && *at_ != delimiters_.parameter &&
+      *at_ != delimiters_.record) {
+    fail(broken_number(token));
     return false;
   }
   return take_delimiter();
@@ -171,10 +195,7 @@ bool Parameters::characters(std::size_t count, std::string& text) {
         fail("a string runs over the end of a line whose columns are shifted: its characters cannot be told");
         return false;
       }
-      if (!next_line()) {
-        fail("the string is longer than what is left of the parameters");
-        return false;
-      }
+      if (!next_line()) return false;
     }
     const std::size_t part = std::min(count, static_cast<std::size_t>(end_ - at_));
     text.append(at_, part);
@@ -184,52 +205,47 @@ bool Parameters::characters(std::size_t count, std::string& text) {
   return true;
 }
 
+bool Parameters::is_string() {
+  if (failure_ || done_ || !skip_blanks()) return false;
+  const char* p = at_;
+  while (p != end_ && is_digit(*p)) ++p;
+  return p != at_ && p != end_ && (*p == 'H' || *p == 'h');
+}
+
 std::string Parameters::text() {
-  if (failure_ || done_) return {};
-  if (!skip_blanks()) {
-    take_delimiter();
+  if (!is_string()) {
+    std::string_view token;
+    if (field(token) && !token.empty()) fail("a string (its length, H and its characters) is due here");
     return {};
   }
   value_spot_ = here();
-  if (!is_digit(*at_)) {
-    if (*at_ == delimiters_.parameter || *at_ == delimiters_.record)
-      take_delimiter();
-    else
-      fail("a string (its length, H and its characters) is due here");
-    return {};
-  }
   std::size_t length = 0;
-  while (at_ != end_ && is_digit(*at_) && length < 100'000'000)
-    length = 10 * length + static_cast<std::size_t>(*at_++ - '0');
-  if (at_ == end_ || (*at_ != 'H' && *at_ != 'h')) {
-    fail("a string (its length, H and its characters) is due here");
-    return {};
-  }
+  for (; is_digit(*at_); ++at_)
+    if (length < 100'000'000) length = 10 * length + static_cast<std::size_t>(*at_ - '0');
   ++at_;
-  if (length > room()) {
-    fail("the string is longer than what is left of the parameters");
+  std::string value;
+  if (length > room() || !characters(length, value)) {
+    fail(fmt::format("a string of {} characters is longer than what is left of the parameters", length));
     return {};
   }
-  std::string value;
-  if (!characters(length, value)) return {};
   if (at_ == end_) next_line();
-  take_delimiter();
+  if (!skip_blanks() || (*at_ != delimiters_.parameter && *at_ != delimiters_.record))
+    fail("no delimiter after a string: its count may be wrong");
+  else
+    take_delimiter();
   return value;
 }
 
-void Parameters::skip() {
-  if (failure_ || done_ || !skip_blanks()) {
-    integer();
-    return;
-  }
-  const char* p = at_;
-  while (p != end_ && is_digit(*p)) ++p;
-  if (p != at_ && p != end_ && (*p == 'H' || *p == 'h')) {
-    text();
-    return;
-  }
+std::string_view Parameters::token(std::string& joined) {
+  joined.clear();
   std::string_view token;
-  field(token);
+  field(token, &joined);
+  return token;
+}
+
+void Parameters::skip() {
+  std::string_view token;
+  is_string() ? void(text()) : void(field(token));
 }
 
 bool Parameters::slow_real(double& value) {
@@ -285,7 +301,7 @@ std::vector<int> Parameters::pointers(std::string_view what) {
   return all;
 }
 
-std::optional<Delimiters> read_delimiters(Parameters& cursor) {
+bool read_delimiters(Parameters& cursor) {
   const auto one = [&](char& delimiter, std::string_view what) {
     if (!cursor.ok() || !cursor.skip_blanks()) return false;
     cursor.value_spot_ = cursor.here();
@@ -294,11 +310,14 @@ std::optional<Delimiters> read_delimiters(Parameters& cursor) {
       ++cursor.at_;
       return true;
     }
-    constexpr std::string_view not_allowed = "0123456789+-.DEH \t";
-    if (cursor.end_ - at < 4 || at[0] != '1' || at[1] != 'H' ||
-        not_allowed.find(at[2]) != std::string_view::npos || static_cast<unsigned char>(at[2]) < 0x20) {
+    if (cursor.end_ - at < 4 || at[0] != '1' || at[1] != 'H') {
       cursor.fail(fmt::format("the global section does not begin with the {} delimiter, such as 1H{},", what,
                               delimiter));
+      return false;
+    }
+    constexpr std::string_view not_allowed = "0123456789+-.DEH \t";
+    if (not_allowed.find(at[2]) != std::string_view::npos || static_cast<unsigned char>(at[2]) < 0x20) {
+      cursor.fail(fmt::format("{} cannot be the {} delimiter", in_quotes({at + 2, 1}), what));
       return false;
     }
     delimiter = at[2];
@@ -306,15 +325,49 @@ std::optional<Delimiters> read_delimiters(Parameters& cursor) {
     return cursor.take_delimiter();
   };
   Delimiters& own = cursor.delimiters_;
-  if (!one(own.parameter, "parameter") || !one(own.record, "record")) {
+  if (!one(own.parameter, "parameter") || !one(own.record, "record"))
     cursor.fail("the global section ends before its second parameter");
-    return std::nullopt;
-  }
-  if (own.parameter == own.record) {
+  else if (own.parameter == own.record)
     cursor.fail(fmt::format("both delimiters are {}", in_quotes({&own.record, 1})));
-    return std::nullopt;
+  return cursor.ok();
+}
+
+Values::Values(Parameters in) {
+  std::string joined;
+  while (!in.at_end()) {
+    Value value;
+    value.is_string = in.is_string();
+    if (value.is_string) {
+      joined = in.text();
+    } else {
+      value.text = in.token(joined);
+      value.is_broken = !joined.empty();
+    }
+    last_line_ = in.at_line();
+    if (!in.ok()) break;
+    if (value.is_string || value.is_broken) {
+      kept_.push_front(std::exchange(joined, {}));
+      value.text = trimmed(kept_.front());
+    }
+    value.spot = end_ = in.spot();
+    value.is_small = value.is_string && *std::find_if_not(value.spot.at, value.spot.at + 64, is_digit) == 'h';
+    values_.push_back(value);
   }
-  return own;
+  failure_ = in.failure();
+}
+
+std::optional<int> Values::integer(std::size_t i, int otherwise) const {
+  if (is_blank(i)) return otherwise;
+  return values_[i].is_string ? std::nullopt : column_number(values_[i].text);
+}
+
+std::optional<double> Values::real(std::size_t i, double otherwise) const {
+  if (is_blank(i)) return otherwise;
+  const std::string_view text = values_[i].text;
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  if (values_[i].is_string || read_real(text.data(), end, value) != end) return std::nullopt;
+  return value;
 }
 
 }  // namespace selvage::formats::iges

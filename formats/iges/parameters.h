@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <forward_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -47,6 +48,11 @@ class Parameters {
   int pointer();
   std::string text();
   void skip();  // any value
+  // For who takes values of any kind: does a string stand next, which text() takes? If not, token() gives the
+  // characters of the value as they stand, empty where it is defaulted. A number that runs over the end of
+  // its line, which every other function refuses, is put together in `joined` (else left empty).
+  bool is_string();
+  std::string_view token(std::string& joined);
 
   // `count` reals into `out`; a defaulted one is 0. An error where the record ends before.
   bool reals(double* out, std::size_t count);
@@ -62,6 +68,7 @@ class Parameters {
   // Has the record delimiter been passed?
   [[nodiscard]] bool at_end() const { return done_; }
 
+  [[nodiscard]] const Delimiters& delimiters() const { return delimiters_; }
   [[nodiscard]] bool ok() const { return !failure_; }
   [[nodiscard]] const std::optional<Failure>& failure() const { return failure_; }
   // The first one stays. At the value read last, or at `spot`.
@@ -72,18 +79,20 @@ class Parameters {
   }
   // The same for what is well formed but not done here: a warning, and the entity is left out.
   void give_up(std::string text);
-  // Where the value read last began.
+  // Where the value read last began, and the line (number in the section) on which the next one begins.
   [[nodiscard]] Spot spot() const { return value_spot_; }
+  [[nodiscard]] int at_line() const { return line_; }
 
  private:
-  friend std::optional<Delimiters> read_delimiters(Parameters& cursor);
+  friend bool read_delimiters(Parameters& cursor);
 
   [[nodiscard]] Line line() const { return lines_->line(section_, line_); }
   [[nodiscard]] Spot here() const;
   void enter(int line);
   bool next_line();
   bool skip_blanks();
-  bool field(std::string_view& token);
+  void scan();
+  bool field(std::string_view& token, std::string* joined = nullptr);
   bool take_delimiter();
   bool slow_real(double& value);
   bool characters(std::size_t count, std::string& text);
@@ -100,7 +109,51 @@ class Parameters {
   std::optional<Failure> failure_;
 };
 
-// The delimiters, which are the first two values of the global section; nothing after an error.
-std::optional<Delimiters> read_delimiters(Parameters& cursor);
+// What is said of a number that runs over the end of its line.
+std::string broken_number(std::string_view token);
+
+// Reads the delimiters, which are the first two values of the global section, and goes by them. False: the
+// cursor has failed; what was read until then holds.
+bool read_delimiters(Parameters& cursor);
+
+// All values of a record at once, for who looks at them in any order or more than once.
+class Values {
+ public:
+  struct Value {
+    std::string_view text;  // a string's characters, or the bare text without blanks round it
+    Spot spot;
+    bool is_string = false;
+    bool is_small = false;   // a string with h instead of H
+    bool is_broken = false;  // a number that runs over the end of its line
+  };
+
+  // What `in` has left, as far as it can be taken apart: failure() then says what was wrong.
+  explicit Values(Parameters in);
+  Values(const Values&) = delete;
+  Values& operator=(const Values&) = delete;
+
+  [[nodiscard]] std::size_t size() const { return values_.size(); }
+  [[nodiscard]] const Value& operator[](std::size_t i) const { return values_[i]; }
+  [[nodiscard]] const std::optional<Parameters::Failure>& failure() const { return failure_; }
+  // Of value `i`, of the last one where there are fewer.
+  [[nodiscard]] Spot spot(std::size_t i) const { return i < size() ? values_[i].spot : end_; }
+  // The line (number in the section) with the record delimiter.
+  [[nodiscard]] int last_line() const { return last_line_; }
+
+  // A blank value, or one behind the end, is the default. Nothing when it is something else; an integer may
+  // not be written as a real here.
+  [[nodiscard]] bool is_blank(std::size_t i) const {
+    return i >= size() || (!values_[i].is_string && values_[i].text.empty());
+  }
+  [[nodiscard]] std::optional<int> integer(std::size_t i, int otherwise = 0) const;
+  [[nodiscard]] std::optional<double> real(std::size_t i, double otherwise = 0) const;
+
+ private:
+  std::vector<Value> values_;
+  std::forward_list<std::string> kept_;  // what does not stand in the file in one piece
+  std::optional<Parameters::Failure> failure_;
+  Spot end_;
+  int last_line_ = 0;
+};
 
 }  // namespace selvage::formats::iges

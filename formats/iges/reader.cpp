@@ -1,13 +1,14 @@
 #include "formats/iges/reader.h"
 
-#include "formats/iges/reading.h"
+#include "formats/iges/types.h"
 
 namespace selvage::formats::iges {
 
 namespace {
 
 std::optional<cad::Model> read(const Source& source, TextReport& report) {
-  const std::optional<File> file = File::open(source, report);
+  Complaints complaints(report);
+  const std::optional<File> file = File::open(source, complaints);
   if (!file) return std::nullopt;
   const Global& global = file->global();
   cad::Model model;
@@ -18,7 +19,7 @@ std::optional<cad::Model> read(const Source& source, TextReport& report) {
   model.date = global.date;
   model.units = global.units;
   model.resolution = global.resolution;
-  Reading reading(*file, report, model);
+  Reading reading(*file, type_of, report, model);
   reading.stand_all();
   if (report.errors() > 0) return std::nullopt;
   return model;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "formats/iges/standard.h"
 #include "formats/iges/types.h"
 
 namespace selvage::formats::iges {
@@ -71,8 +72,8 @@ class Reading::Nested {
   bool entered_ = false;
 };
 
-Reading::Reading(const File& file, TextReport& report, cad::Model& model)
-    : file_(file), report_(report), model_(model) {
+Reading::Reading(const File& file, TypeOf& type_of, TextReport& report, cad::Model& model)
+    : file_(file), type_of_(type_of), report_(report), model_(model) {
   const std::size_t count = file.directory().size();
   for (std::vector<char>* const flags : {&used_, &held_, &active_, &failed_}) flags->resize(count);
 }

@@ -28,11 +28,16 @@ struct Context {
   std::string group;    // name of the outermost group; empty: none
 };
 
+struct EntityType;
+
 class Reading {
  public:
-  Reading(const File& file, TextReport& report, cad::Model& model);
+  // `type_of` as in types.h: who reads says by which functions.
+  using TypeOf = const EntityType*(const DirectoryEntry& entry);
+  Reading(const File& file, TypeOf& type_of, TextReport& report, cad::Model& model);
 
   [[nodiscard]] const File& file() const { return file_; }
+  [[nodiscard]] const EntityType* type_of(const DirectoryEntry& entry) const { return type_of_(entry); }
   [[nodiscard]] TextReport& report() { return report_; }
   [[nodiscard]] cad::Model& model() { return model_; }
 
@@ -113,6 +118,7 @@ class Reading {
   }
 
   const File& file_;
+  TypeOf& type_of_;
   TextReport& report_;
   cad::Model& model_;
   // By the index of the entity: part of another one; held by a group or definition; being read at present;

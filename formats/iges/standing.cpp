@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "formats/iges/reading.h"
+#include "formats/iges/standard.h"
 #include "formats/iges/types.h"
 
 namespace selvage::formats::iges {

@@ -3,254 +3,294 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <initializer_list>
 
-#include "core/text_report.h"
-#include "formats/iges/structure_file.h"
+#include "formats/iges/standard.h"
+#include "formats/iges/structure_numbers.h"
 
 namespace selvage::formats::iges {
 
-namespace structure {
-
 namespace {
 
-constexpr std::string_view letters = "SGDPT";
-constexpr std::array<std::string_view, 5> names = {"start", "global", "directory", "parameter", "terminate"};
+constexpr std::string_view to_nowhere = "pointers to nowhere",
+                           to_another_type = "pointers to entities of another type",
+                           line_counts = "parameter line counts";
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(' ') - first + 1);
+// What a pointer of the directory or of a record leads to; it is not negative. Null for nothing.
+const DirectoryEntry* target_of(const File& file, int pointer) {
+  return pointer > 0 ? file.entity(pointer) : nullptr;
 }
 
-// Sections in order, sequence numbers, and the lines themselves.
-class LineCheck {
+// The fields that point.
+class DirectoryCheck {
  public:
-  LineCheck(RawFile& file, Findings& findings) : file_(file), findings_(findings) {}
+  DirectoryCheck(const File& file, Findings& findings) : file_(file), findings_(findings) {}
 
-  void run(std::string_view bytes) {
-    int number = 0;
-    while (!bytes.empty()) {
-      const std::size_t end = bytes.find('\n');
-      std::string_view line = bytes.substr(0, end);
-      const bool dos = line.ends_with('\r');
-      if (dos) line.remove_suffix(1);
-      (dos ? dos_ : unix_) += end != std::string_view::npos ? 1 : 0;
-      add({line, ++number});
-      if (end == std::string_view::npos) break;
-      bytes.remove_prefix(end + 1);
+  void run() {
+    for (const DirectoryEntry& entry : file_.directory()) {
+      check_pointer(entry, 7, entry.transformation, {124}, "transformation");
+      check_pointer(entry, 13, -std::min(entry.color, 0), {314}, "colour");
+      check_pointer(entry, 5, -std::min(entry.level, 0), {406}, "level");
+      check_pointer(entry, 4, -std::min(entry.font, 0), {304}, "line font");
+      check_pointer(entry, 6, entry.view, {410, 402}, "view");
+      if (entry.transformation != 0) check_matrices(entry);
     }
-    if (dos_ > 0 && unix_ > 0)
-      findings_.warning("line ends", fmt::format("{} lines end with CR LF, {} with LF", dos_, unix_));
-    for (std::size_t i = 0; i < letters.size(); ++i)
-      if (file_.sections[i].empty())
-        findings_.defect("missing sections", fmt::format("there is no {} section", names[i]), {number, 0});
-    check_terminate();
   }
 
  private:
-  void add(const RawLine& line) {
-    if (trimmed(line.text).empty() || line.text == "\x1A") {
-      findings_.defect("empty lines", "a line without a section letter", line.place());
-      return;
-    }
-    if (line.text.size() != 80)
-      findings_.defect("lines of a wrong length",
-                       fmt::format("the line has {} columns; 80 are due", line.text.size()), line.place());
-    check_characters(line);
-    // Where one character was lost or put in, the section letter stands beside its column.
-    const std::size_t length = line.text.size();
-    const bool shifted =
-        (length == 79 || length == 81) && letters.find(line.text[72]) == std::string_view::npos;
-    const std::size_t column = shifted ? length - 7 : 73;
-    const std::size_t section =
-        length >= column ? letters.find(line.text[column - 1]) : std::string_view::npos;
-    if (section == std::string_view::npos) {
-      findings_.defect("lines without a section letter", "no section letter (S, G, D, P or T) in column 73",
-                       line.place(73));
-      return;
-    }
-    if (section < last_)
-      findings_.defect(
-          "lines out of their section",
-          fmt::format("a line of the {} section after the {} section", names[section], names[last_]),
-          line.place(73));
-    last_ = std::max(last_, section);
-    check_number(line, section, column + 1);
-    file_.sections[section].push_back(line);
+  void check_pointer(const DirectoryEntry& entry, int field, int pointer, std::initializer_list<int> types,
+                     std::string_view what) {
+    if (pointer == 0) return;
+    const DirectoryEntry* const target = target_of(file_, pointer);
+    if (target == nullptr)
+      defect(to_nowhere, entry, field,
+             fmt::format("the {} points to {}, where no directory entry begins", what, pointer));
+    else if (std::find(types.begin(), types.end(), target->type) == types.end())
+      defect(to_another_type, entry, field, fmt::format("the {} points to a {}", what, target->name()));
+  }
+  void check_matrices(const DirectoryEntry& entry) {
+    const DirectoryEntry* at = target_of(file_, entry.transformation);
+    for (std::size_t steps = 0; at != nullptr; at = target_of(file_, at->transformation))
+      if (at == &entry || ++steps > file_.directory().size()) {
+        defect("transformations in a circle", entry, 7, "its transformations go in a circle");
+        return;
+      }
+  }
+  void defect(std::string_view kind, const DirectoryEntry& entry, int field, const std::string& what) {
+    findings_.defect(kind, entry.name() + ": " + what, file_.spot(entry, field).place());
   }
 
-  void check_characters(const RawLine& line) {
-    const auto bad =
-        std::find_if(line.text.begin(), line.text.end(), [](char c) { return c < ' ' || c > '~'; });
-    if (bad == line.text.end()) return;
-    findings_.defect(
-        "lines with characters that are not printable ASCII",
-        fmt::format("the byte 0x{:02X} is not printable ASCII", static_cast<unsigned char>(*bad)),
-        line.place(static_cast<int>(bad - line.text.begin()) + 1));
-  }
-
-  void check_number(const RawLine& line, std::size_t section, std::size_t column) {
-    const std::string_view field = line.columns(column, column + 6);
-    int& expected = ++expected_[section];
-    const std::optional<int> number = trimmed(field).empty() ? std::nullopt : field_number(field);
-    if (!number) {
-      findings_.defect(
-          "sequence numbers that are none",
-          fmt::format("columns 74-80 hold {}, not the sequence number {}", in_quotes(field), expected),
-          line.place(74));
-      return;
-    }
-    if (*number != expected)
-      findings_.defect(
-          "sequence numbers out of order",
-          fmt::format("sequence number {}{} follows {}{}", letters[section], *number,
-                      expected > 1 ? fmt::format("{}{}", letters[section], expected - 1) : "the start",
-                      *number > expected   ? ": lines are missing"
-                      : *number < expected ? ": repeated or out of order"
-                                           : ""),
-          line.place(74));
-    else if (field.back() == ' ')
-      findings_.warning("sequence numbers that are not right-justified",
-                        "the sequence number is not right-justified", line.place(74));
-    expected = *number;
-  }
-
-  void check_terminate() {
-    const Section& lines = file_.sections[4];
-    if (lines.empty()) return;
-    if (lines.size() > 1)
-      findings_.defect("terminate lines", "there is more than one terminate line", lines[1].place());
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::string_view field = lines[0].columns(8 * i + 1, 8 * i + 8);
-      const std::optional<int> count = field.size() == 8 ? field_number(field.substr(1)) : std::nullopt;
-      const TextPlace place = lines[0].place(static_cast<int>(8 * i) + 1);
-      if (field.empty() || field[0] != letters[i] || !count)
-        findings_.defect("fields of the terminate line",
-                         fmt::format("the terminate line says {} where the number of {} lines is due",
-                                     in_quotes(field), names[i]),
-                         place);
-      else if (*count != static_cast<int>(file_.sections[i].size()))
-        findings_.defect("fields of the terminate line",
-                         fmt::format("the terminate line counts {} lines in the {} section; there are {}",
-                                     *count, names[i], file_.sections[i].size()),
-                         place);
-    }
-  }
-
-  RawFile& file_;
+  const File& file_;
   Findings& findings_;
-  std::array<int, 5> expected_{};
-  std::size_t last_ = 0;
-  int dos_ = 0, unix_ = 0;
 };
 
-bool is_number_start(std::string_view text, std::size_t at) {
-  return at < text.size() && text[at] >= '0' && text[at] <= '9';
-}
+// Parameter records: whose lines they are, their values, and what they point to.
+class ParameterCheck {
+ public:
+  ParameterCheck(const File& file, Findings& findings)
+      : file_(file),
+        findings_(findings),
+        there_(file.lines().count(Section::parameter)),
+        owner_(static_cast<std::size_t>(there_) + 1, 0),
+        part_(file.directory().size(), false) {
+    bounds_.resolution = file.global().stated_resolution;
+  }
+
+  void run() {
+    for (const DirectoryEntry& entry : file_.directory())
+      if (entry.type != 0) check(entry);
+    for (int line = 1; line <= there_; ++line)
+      if (owner(line) == 0)
+        findings_.defect("parameter lines that no directory entry has",
+                         "no directory entry has this parameter line", spot(line).place());
+    check_subordinates();
+    check_bounds();
+  }
+
+ private:
+  void check(const DirectoryEntry& entry) {
+    if (entry.first_line < 1 || entry.first_line > there_) {
+      defect("parameter pointers to nowhere", entry, file_.spot(entry, 2),
+             fmt::format("its parameters are said to begin on line P{}, of {}", entry.first_line, there_));
+      return;
+    }
+    if (entry.line_count < 1) {
+      defect(line_counts, entry, file_.spot(entry, 14),
+             fmt::format("a count of {} parameter lines", entry.line_count));
+      return;
+    }
+    const int last = claim(entry);
+    const Values values(
+        Parameters(file_.lines(), Section::parameter, entry.first_line, last, file_.global().delimiters));
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (values[i].is_broken)
+        defect("values broken across lines", entry, values.spot(i), broken_number(values[i].text));
+    if (values.failure()) {
+      defect("records that cannot be taken apart", entry, values.failure()->spot, values.failure()->text);
+      return;
+    }
+    if (values.last_line() < last)
+      defect(line_counts, entry, file_.spot(entry, 14),
+             fmt::format("{} parameter lines are counted, and the record ends on the {}. of them",
+                         entry.line_count, values.last_line() - entry.first_line + 1));
+    if (values.integer(0).value_or(-1) != entry.type)
+      defect("parameters of another type", entry, values.spot(0),
+             fmt::format("its parameters begin with {}", in_quotes(values[0].text)));
+    else
+      check_values(entry, values);
+  }
+
+  // Marks the entry's lines; each must point back. Gives the last one that is there and its own.
+  int claim(const DirectoryEntry& entry) {
+    const int first = entry.first_line, counted = entry.line_count;
+    for (int i = 0; i < counted; ++i) {
+      const int line = first + i;
+      if (line > there_) {
+        defect(line_counts, entry, file_.spot(entry, 14),
+               fmt::format("{} parameter lines are counted, and there are {}", counted, i));
+        return there_;
+      }
+      const std::string_view text = file_.owner_text(line).substr(1);
+      const std::optional<int> back = column_number(text);
+      if (back != entry.pointer) {
+        defect("parameter lines that point to another entity", entry, spot(line, 66),
+               fmt::format("its parameter line points back to {} (columns 66-72)", in_quotes(text)));
+        const bool is_others = owner(line) != 0 || (back && target_of(file_, *back) != nullptr);
+        if (is_others && i > 0) return line - 1;
+      }
+      if (owner(line) != 0)
+        defect("parameter lines of two entities", entry, spot(line),
+               fmt::format("the line belongs to D{} too", owner(line)));
+      owner(line) = entry.pointer;
+    }
+    int last = first + counted - 1;
+    const auto is_next_own = [&] { return last < there_ && file_.owner_of(last + 1) == entry.pointer; };
+    if (is_next_own())
+      defect(line_counts, entry, file_.spot(entry, 14),
+             fmt::format("{} parameter lines are counted, and the next one belongs to it too", counted));
+    while (is_next_own()) owner(++last) = entry.pointer;
+    return last;
+  }
+
+  void check_values(const DirectoryEntry& entry, const Values& values) {
+    const bool is_known = entry.type < 200 || entry.type == 314 || entry.type >= 500;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i].is_small)
+        defect("strings with a small h", entry, values.spot(i), "the h behind a string's length is small");
+      if (is_known && !values[i].is_string && !values.real(i))
+        defect("values that are no numbers", entry, values.spot(i),
+               fmt::format("{} is no number", in_quotes(values[i].text)));
+    }
+    const References references = references_of(entry, values);
+    const bool has_numbers = entry.type == 126 || entry.type == 128 || entry.type == 124;
+    if (has_numbers && (!references.own || values.size() < *references.own)) {
+      defect("entities with too few values", entry, values.spot(values.size() - 1),
+             references.own ? fmt::format("{} values; {} are due", values.size() - 1, *references.own - 1)
+                            : std::string("a count that the record cannot hold"));
+      return;
+    }
+    for (const References::Reference& reference : references.all) check(entry, values, reference);
+    if (references.own) check_trailer(entry, values, *references.own);
+    if (entry.type == 126) check_curve(entry, values, bounds_, findings_);
+    if (entry.type == 128) check_surface(entry, values, bounds_, findings_);
+    if (entry.type == 124) check_matrix(entry, values, findings_);
+    if (entry.type == 314) check_color(entry, values, findings_);
+  }
+
+  void check(const DirectoryEntry& entry, const Values& values, const References::Reference& reference) {
+    const DirectoryEntry* const target = file_.entity(reference.pointer);
+    const Spot spot = values.spot(reference.value);
+    if (target == nullptr || target->type == 0) {
+      defect(to_nowhere, entry, spot,
+             fmt::format("points to {}, where no directory entry begins", reference.pointer));
+      return;
+    }
+    if (target == &entry) {
+      defect("pointers to themselves", entry, spot, "points to itself");
+      return;
+    }
+    if (!may_point(reference.to, target->type))
+      defect(to_another_type, entry, spot, fmt::format("points to a {}", target->name()));
+    if (entry.type != 402 && entry.type != 308 && entry.type != 408)
+      part_[static_cast<std::size_t>(target->pointer / 2)] = true;
+  }
+
+  // Behind its own values: associativities, then properties.
+  void check_trailer(const DirectoryEntry& entry, const Values& values, std::size_t at) {
+    constexpr std::string_view kind = "pointers behind the parameters";
+    for (int list = 0; list < 2 && at < values.size(); ++list) {
+      const std::optional<int> count = values.integer(at);
+      if (!count || *count < 0 || static_cast<std::size_t>(*count) > values.size() - at - 1) {
+        defect(kind, entry, values.spot(at),
+               fmt::format("{} where the number of {} is due", in_quotes(values[at].text),
+                           list == 0 ? "associativities" : "properties"));
+        return;
+      }
+      const std::size_t behind = at + 1 + static_cast<std::size_t>(*count);
+      while (++at < behind) {
+        const int pointer = values.integer(at).value_or(0);
+        const DirectoryEntry* const target = target_of(file_, pointer);
+        if (target == nullptr)
+          defect(to_nowhere, entry, values.spot(at),
+                 fmt::format("points to {}, where no directory entry begins", pointer));
+        else if (list == 1 && target->type != 406 && target->type != 422 && target->type != 316)
+          defect(to_another_type, entry, values.spot(at),
+                 fmt::format("a property that is a {}", target->name()));
+      }
+    }
+    if (at < values.size())
+      defect(kind, entry, values.spot(at), fmt::format("{} values too many", values.size() - at));
+  }
+
+  // Receivers take the status field at its word: what is said to be independent is shown by itself.
+  void check_subordinates() {
+    for (const DirectoryEntry& entry : file_.directory()) {
+      const bool is_geometry = entry.type >= 100 && entry.type < 200 && entry.type != 124 &&
+                               entry.type != 116 && entry.type != 123;
+      if (is_geometry && part_[static_cast<std::size_t>(entry.pointer / 2)] &&
+          !entry.is_physically_dependent())
+        findings_.warning(
+            "parts said to be independent",
+            fmt::format("{}: it is part of another entity, and its status says that it is independent: some "
+                        "systems show it by itself",
+                        entry.name()),
+            file_.spot(entry, 9).place());
+    }
+  }
+
+  void check_bounds() {
+    const Global& global = file_.global();
+    const double found = bounds_.largest_found, resolution = bounds_.resolution;
+    if (found <= 0) return;
+    constexpr std::string_view kind = "faults of the global section";
+    const bool moved =
+        std::any_of(file_.directory().begin(), file_.directory().end(),
+                    [](const DirectoryEntry& entry) { return entry.type == 124 || entry.type == 408; });
+    if (!moved && global.largest > 0 && found > global.largest * (1 + 1e-12))
+      findings_.defect(kind,
+                       fmt::format("the largest coordinate is said to be {} (global parameter 20); {} has {}",
+                                   global.largest, bounds_.largest_entity, found),
+                       global.largest_spot.place());
+    if (resolution > 0.01 * found)
+      findings_.warning(
+          kind,
+          fmt::format("the resolution is said to be {} (global parameter 19), and no coordinate "
+                      "is larger than {}: readers that merge what is nearer than the resolution "
+                      "lose the shape",
+                      resolution, found),
+          global.resolution_spot.place());
+    if (resolution > 0 && resolution < 1e-17 * found)
+      findings_.warning(kind,
+                        fmt::format("the resolution is said to be {} (global parameter 19), finer than the "
+                                    "numbers of the file can be",
+                                    resolution),
+                        global.resolution_spot.place());
+  }
+
+  [[nodiscard]] Spot spot(int line, int column = 1) const {
+    return file_.lines().line(Section::parameter, line).spot(column);
+  }
+  int& owner(int line) { return owner_[static_cast<std::size_t>(line)]; }
+  void defect(std::string_view kind, const DirectoryEntry& entry, const Spot& spot, const std::string& what) {
+    findings_.defect(kind, entry.name() + ": " + what, spot.place());
+  }
+
+  const File& file_;
+  Findings& findings_;
+  int there_;               // parameter lines
+  std::vector<int> owner_;  // of each of them, from 1
+  std::vector<bool> part_;  // of each entry: another one is made of it
+  Bounds bounds_;
+};
 
 }  // namespace
 
-std::optional<int> field_number(std::string_view field) {
-  const std::string_view text = trimmed(field);
-  if (text.empty()) return 0;
-  int value = 0;
-  const char* first = text.data() + (text[0] == '+' ? 1 : 0);
-  const auto [end, code] = std::from_chars(first, text.data() + text.size(), value);
-  if (code != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-std::string Entry::name() const {
-  return fmt::format("{} at D{}", type, de);
-}
-
-Record::Record(const Section& lines, std::size_t first, std::size_t count, std::size_t width)
-    : lines_(lines), first_(first), width_(width) {
-  text_.reserve(count * width);
-  for (std::size_t i = first; i < first + count && i < lines.size(); ++i) {
-    text_ += lines[i].text.substr(0, width);
-    text_.resize((i - first + 1) * width, ' ');
-  }
-}
-
-TextPlace Record::place(std::size_t offset) const {
-  const std::size_t line = first_ + offset / width_;
-  return line < lines_.size() ? lines_[line].place(static_cast<int>(offset % width_) + 1) : TextPlace{};
-}
-
-bool Record::split(char delimiter, char record, const std::string& what, Findings& findings, std::size_t at) {
-  const auto bad = [&](std::string_view kind, std::string text, std::size_t offset) {
-    findings.defect(kind, fmt::format("{}: {}", what, text), place(std::min(offset, text_.size() - 1)));
-    return false;
-  };
-  if (text_.empty()) return false;
-  while (true) {
-    at = text_.find_first_not_of(' ', at);
-    if (at == std::string::npos)
-      return bad("records without an end",
-                 fmt::format("no record delimiter '{}' ends the parameters", record), text_.size() - 1);
-    const std::size_t start = at;
-    std::size_t digits = at;
-    while (is_number_start(text_, digits)) ++digits;
-    Value value{{}, false, start};
-    if (digits > at && digits < text_.size() && text_[digits] == 'H') {
-      std::size_t length = 0;
-      std::from_chars(text_.data() + at, text_.data() + digits, length);
-      if (length > text_.size() - digits - 1)
-        return bad("strings that run out",
-                   fmt::format("a string of {} characters runs out of the record", length), start);
-      value.text = std::string_view(text_).substr(digits + 1, length);
-      value.is_string = true;
-      at = text_.find_first_not_of(' ', digits + 1 + length);
-      if (at == std::string::npos || (text_[at] != delimiter && text_[at] != record))
-        return bad("strings without a delimiter", "no delimiter after a string: its count may be wrong",
-                   start);
-    } else {
-      while (at < text_.size() && text_[at] != delimiter && text_[at] != record) ++at;
-      if (at == text_.size()) continue;  // told above, with nothing but blanks left
-      value.text = trimmed(std::string_view(text_).substr(start, at - start));
-      if (at / width_ != start / width_ && !value.text.empty())
-        findings.defect("values broken across lines",
-                        fmt::format("{}: a number runs over the end of its line", what), place(start));
-    }
-    values_.push_back(value);
-    if (text_[at++] == record) break;
-  }
-  end_ = at - 1;
-  return true;
-}
-
-std::optional<int> Record::integer(std::size_t i, int otherwise) const {
-  if (is_blank(i)) return otherwise;
-  return values_[i].is_string ? std::nullopt : field_number(values_[i].text);
-}
-
-std::optional<double> Record::real(std::size_t i, double otherwise) const {
-  if (is_blank(i)) return otherwise;
-  if (values_[i].is_string) return std::nullopt;
-  std::string text(values_[i].text);
-  for (char& c : text)
-    if (c == 'D' || c == 'd') c = 'E';
-  const char* first = text.data() + (text[0] == '+' ? 1 : 0);
-  double value = 0;
-  const auto [end, code] = std::from_chars(first, text.data() + text.size(), value);
-  if ((code != std::errc{} && code != std::errc::result_out_of_range) || end != text.data() + text.size() ||
-      !std::all_of(text.begin(), text.end(), [](char c) {
-        return (c >= '0' && c <= '9') || c == '.' || c == '+' || c == '-' || c == 'E' || c == 'e';
-      }))
-    return std::nullopt;
-  return value;
-}
-
-}  // namespace structure
-
 void check_structure(const Source& source, Findings& findings) {
-  structure::RawFile file;
-  structure::LineCheck(file, findings).run(source.bytes());
-  structure::Bounds bounds = structure::check_global(file, findings);
-  const structure::Directory directory = structure::check_directory(file, findings);
-  structure::check_parameters(file, directory, bounds, findings);
+  Complaints complaints(findings);
+  const std::optional<File> file = File::open(source, complaints);
+  if (!file) return;
+  DirectoryCheck(*file, findings).run();
+  ParameterCheck(*file, findings).run();
 }
 
 }  // namespace selvage::formats::iges

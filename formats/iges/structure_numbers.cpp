@@ -1,14 +1,14 @@
-// What B-splines, transformations and colours say of themselves against their own numbers.
+#include "formats/iges/structure_numbers.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "formats/iges/structure_file.h"
 #include "nurbs/basis.h"
 #include "nurbs/spline.h"
 
-namespace selvage::formats::iges::structure {
+namespace selvage::formats::iges {
 
 namespace {
 
@@ -19,16 +19,16 @@ constexpr double leave_open = 1e-9;
 
 class Numbers {
  public:
-  Numbers(const Entry& entry, const Record& record, Findings& findings)
-      : entry_(entry), record_(record), findings_(findings) {}
+  Numbers(const DirectoryEntry& entry, const Values& values, Findings& findings)
+      : entry_(entry), values_(values), findings_(findings) {}
 
   std::vector<double> take(std::size_t count) {
     std::vector<double> values(count);
     for (double& value : values) value = take();
     return values;
   }
-  double take() { return record_.real(at_++).value_or(0); }
-  int integer() { return record_.integer(at_++).value_or(0); }
+  double take() { return values_.real(at_++).value_or(0); }
+  int integer() { return values_.integer(at_++).value_or(0); }
   std::vector<Vec3> points(std::size_t count) {
     std::vector<Vec3> points(count);
     for (Vec3& point : points)
@@ -38,11 +38,11 @@ class Numbers {
   [[nodiscard]] std::size_t at() const { return at_; }
 
   void defect(std::string_view kind, const std::string& what, std::size_t value) {
-    findings_.defect(kind, entry_.name() + ": " + what, record_.place_of(value));
+    findings_.defect(kind, entry_.name() + ": " + what, values_.spot(value).place());
     ++defects_;
   }
   void warning(std::string_view kind, const std::string& what, std::size_t value) {
-    findings_.warning(kind, entry_.name() + ": " + what, record_.place_of(value));
+    findings_.warning(kind, entry_.name() + ": " + what, values_.spot(value).place());
   }
   [[nodiscard]] bool is_sound() const { return defects_ == 0; }
 
@@ -93,8 +93,8 @@ class Numbers {
   }
 
  private:
-  const Entry& entry_;
-  const Record& record_;
+  const DirectoryEntry& entry_;
+  const Values& values_;
   Findings& findings_;
   std::size_t at_ = 1;
   int defects_ = 0;
@@ -138,16 +138,16 @@ double largest_gap(const nurbs::Surface& surface, bool in_u, const std::array<do
   return gap;
 }
 
-void note_largest(const Entry& entry, double size, Bounds& bounds) {
-  if (entry.matrix != 0 || size <= bounds.largest_found) return;
+void note_largest(const DirectoryEntry& entry, double size, Bounds& bounds) {
+  if (entry.transformation != 0 || size <= bounds.largest_found) return;
   bounds.largest_found = size;
   bounds.largest_entity = entry.name();
 }
 
 }  // namespace
 
-void check_curve(const Entry& entry, const Record& record, Bounds& bounds, Findings& findings) {
-  Numbers numbers(entry, record, findings);
+void check_curve(const DirectoryEntry& entry, const Values& values, Bounds& bounds, Findings& findings) {
+  Numbers numbers(entry, values, findings);
   nurbs::Curve curve;
   const int last = numbers.integer();
   curve.degree = numbers.integer();
@@ -188,8 +188,8 @@ void check_curve(const Entry& entry, const Record& record, Bounds& bounds, Findi
   if (entry.use != 5 && entry.subordinate == 0) note_largest(entry, size, bounds);
 }
 
-void check_surface(const Entry& entry, const Record& record, Bounds& bounds, Findings& findings) {
-  Numbers numbers(entry, record, findings);
+void check_surface(const DirectoryEntry& entry, const Values& values, Bounds& bounds, Findings& findings) {
+  Numbers numbers(entry, values, findings);
   nurbs::Surface surface;
   surface.count_u = numbers.integer() + 1;
   surface.count_v = numbers.integer() + 1;
@@ -240,8 +240,8 @@ void check_surface(const Entry& entry, const Record& record, Bounds& bounds, Fin
                "PROP2", " in v", 6);
 }
 
-void check_matrix(const Entry& entry, const Record& record, Findings& findings) {
-  Numbers numbers(entry, record, findings);
+void check_matrix(const DirectoryEntry& entry, const Values& values, Findings& findings) {
+  Numbers numbers(entry, values, findings);
   Eigen::Matrix3d rotation;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) rotation(row, column) = numbers.take();
@@ -265,8 +265,8 @@ void check_matrix(const Entry& entry, const Record& record, Findings& findings) 
                    1);
 }
 
-void check_color(const Entry& entry, const Record& record, Findings& findings) {
-  Numbers numbers(entry, record, findings);
+void check_color(const DirectoryEntry& entry, const Values& values, Findings& findings) {
+  Numbers numbers(entry, values, findings);
   for (std::size_t i = 1; i <= 3; ++i) {
     const double percent = numbers.take();
     if (!(percent >= 0 && percent <= 100))
@@ -274,4 +274,4 @@ void check_color(const Entry& entry, const Record& record, Findings& findings) {
   }
 }
 
-}  // namespace selvage::formats::iges::structure
+}  // namespace selvage::formats::iges

@@ -36,7 +36,7 @@ class Expansion {
     const auto known = known_.find(entry.pointer);
     if (known != known_.end()) return known->second;
     double sum = std::max(1.0, static_cast<double>(entry.line_count));
-    const EntityType* const type = type_of(entry);
+    const EntityType* const type = reading_.type_of(entry);
     if (type != nullptr && type->members != nullptr && depth_ < 64) {
       ++depth_;
       Parameters in = reading_.file().parameters(entry);

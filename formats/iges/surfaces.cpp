@@ -11,6 +11,7 @@
 
 #include "cad/natural_border.h"
 #include "formats/iges/curves.h"
+#include "formats/iges/standard.h"
 #include "formats/iges/types.h"
 #include "nurbs/chain.h"
 #include "nurbs/conic.h"
@@ -279,21 +280,6 @@ void align_flat(cad::Edge& edge, const nurbs::Surface& surface) {
   const Vec3 to = nurbs::evaluate(edge.curve, edge.curve.last_parameter());
   if ((start - from).norm() + (end - to).norm() > (start - to).norm() + (end - from).norm())
     edge.flat = nurbs::reversed(edge.flat);
-}
-
-std::vector<Vec3> points_along(const cad::Loop& loop) {
-  constexpr std::size_t most = 20'000;  // an edge
-  std::vector<Vec3> points;
-  for (const cad::Edge& edge : loop.edges) {
-    if (edge.curve.points.empty()) continue;
-    const std::vector<double> breaks = nurbs::breakpoints(edge.curve.knots, edge.curve.degree);
-    const int steps = breaks.size() > most / 16 ? 2 : 16;
-    for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
-      for (int k = 0; k < steps; ++k)
-        points.push_back(nurbs::evaluate(edge.curve, breaks[i] + (breaks[i + 1] - breaks[i]) * k / steps));
-    points.push_back(nurbs::evaluate(edge.curve, breaks.back()));
-  }
-  return points;
 }
 
 std::optional<Surface> bounded_surface(Reading& reading, int pointer, const std::vector<cad::Loop>& loops,

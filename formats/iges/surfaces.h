@@ -46,7 +46,4 @@ class FlatMap {
 // space decides.
 void align_flat(cad::Edge& edge, const nurbs::Surface& surface);
 
-// The points of a loop's curves in space, dense enough to tell its way round an axis.
-std::vector<Vec3> points_along(const cad::Loop& loop);
-
 }  // namespace selvage::formats::iges

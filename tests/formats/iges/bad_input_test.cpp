@@ -254,7 +254,7 @@ TEST(IgesBadInput, SectionsAndLines) {
       std::erase_if(lines, [&](const std::string& line) { return line.substr(72) == tail; });
     });
   };
-  expect_warning(drop('T', 1), "terminate section is missing");
+  expect_warning(drop('T', 1), "there is no terminate section");
   expect_error(drop('D', 3), "lines are missing");
   expect_error(drop('P', 3), "lines are missing");
   expect_error(drop('D', 12), "odd number of lines");
@@ -267,9 +267,9 @@ TEST(IgesBadInput, SectionsAndLines) {
   expect_error(with_lines(bytes, [](auto& lines) { std::swap(lines[0], lines[1]); }), "section after the");
   expect_error(with_lines(bytes, [](auto& lines) { lines[3][72] = 'X'; }), "section letter");
   expect_warning(with_lines(bytes, [](auto& lines) { lines[0].replace(73, 7, "     99"); }),
-                 "not numbered so");
+                 "sequence number S99 follows the start");
   expect_warning(with_lines(bytes, [](auto& lines) { lines.back().replace(0, 8, "S     12"); }),
-                 "terminate section says");
+                 "counts 12 lines in the start section; there are 1");
   expect_warning(bytes + "and more\n", "passed over");
   expect_warning(bytes.substr(0, bytes.size() - 1), "no line end");
 }
@@ -365,10 +365,10 @@ TEST(IgesBadInput, Globals) {
   };
   expect_error(with("1HA,1H;,;"), "");
   expect_error(with("2H,,,1H;,;"), "parameter delimiter");
-  expect_error(with("1H1,1H;,;"), "parameter delimiter");
+  expect_error(with("1H1,1H;,;"), "'1' cannot be the parameter delimiter");
   expect_error(with("1H,,1H,,;"), "both delimiters");
   expect_error(with("1H,,1H;,4HPart,8Hpart.igs,4HTest,4HTest,32,38,6,308,15,4HPart,0.,2,2HMM;"),
-               "scale cannot be 0");
+               "scale is not positive: 0");
   expect_error(with("1H,,1H;,4HPart,8Hpart.igs,4HTest,4HTest,32,38,6,308,15,4HPart,1.,12,2HMM;"),
                "units are 1 to 11");
   expect_error(with("1H,,1H;,4HPart,8Hpart.igs,4HTest,4HTest,32,38,6,308,15,4HPart,1.,3,5HCUBIT;"),
@@ -384,15 +384,16 @@ TEST(IgesBadInput, Globals) {
 TEST(IgesBadInput, DirectoryFields) {
   const std::string bytes = small_text().bytes();
   const std::string entry = "     128       4";
-  expect_error(replaced(bytes, entry, "     1x8       4"), "is no entity type");
-  expect_error(replaced(bytes, entry, "     126       4"), "the second 128");
+  expect_error(replaced(bytes, entry, "     1x8       4"), "'     1x8' is no integer (directory field 1)");
+  expect_error(replaced(bytes, entry, "     126       4"),
+               "126 at D7: the second line is of type 128 (directory field 11)");
   expect_error(replaced(bytes, entry, "     128       5"), "");
   expect_error(replaced(bytes, entry, "     128       3"), "belongs to D5");
   expect_error(replaced(bytes, entry, "     128    9999"), "which has");
   expect_error(replaced(bytes, entry, "     128      -4"), "which has");
   IgesText text = small_text();
   text.entities[3].status = "0000AB00";
-  expect_error(text.bytes(), "status number");
+  expect_error(text.bytes(), "status '0000AB00' is not of eight digits");
   // The number of lines is not believed where the lines themselves say whose they are.
   EXPECT_EQ(read_iges(with_lines(bytes,
                                  [](auto& lines) {

@@ -109,8 +109,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Global, Faults,
-    testing::Values(Fault{small, 2, 3, "3", 2, "begin with the parameter delimiter"},
-                    Fault{small, 2, 7, "-", 2, "cannot be a delimiter"},
+    testing::Values(Fault{small, 2, 3, "3", 2, "'3' cannot be the parameter delimiter"},
+                    Fault{small, 2, 7, "-", 2, "'-' cannot be the record delimiter"},
                     Fault{small, 2, 9, "9", 2, "no delimiter after a string"},
                     Fault{small, 3, 7, "0.", 3, "scale is not positive"},
                     Fault{small, 3, 10, "2", 3, "unit 2 is MM, but its name is given as 'M'"},
@@ -150,11 +150,11 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Parameters, Faults,
     testing::Values(Fault{small, 11, 72, "1", 11, "its parameter line points back to"},
-                    Fault{small, 12, 8, ",", 12, "no record delimiter"},
+                    Fault{small, 12, 8, ",", 12, "the parameters end without ';'"},
                     Fault{small, 9, 1, "100", 9, "its parameters begin with '100'"},
                     Fault{small, 9, 5, "0.x", 9, "'0.x' is no number"},
                     Fault{small, 10, 5, "9", 12, "37 values; 109 are due"},
-                    Fault{loops, 93, 7, "90H", 93, "runs out of the record"},
+                    Fault{loops, 93, 7, "90H", 93, "a string of 90 characters is longer than what is left"},
                     Fault{loops, 89, 7, "9", 89, "142 at D25: points to a 110 at D9"},
                     Fault{loops, 89, 9, "14", 89, "points to 14, where no directory entry begins"},
                     Fault{loops, 89, 9, "25", 89, "points to itself"},
