@@ -20,9 +20,8 @@ struct StandardType {
   } forms;
   // The entity's own parameters in order; empty: not listed.
   //   12          so many values
-  //   a letter    a pointer, to: c curve, C closed curve or 142, s surface, p 116, d 123, l 110, t 142, b
-  //   141,
-  //               v 502, e 502 or 504, o 508, f 510, h 514, D 308, * anything
+  //   a letter    a pointer, to: c curve, C closed curve or 142, s surface, p 116, d 123, l 110,
+  //               t 142, b 141, v 502, e 502 or 504, o 508, f 510, h 514, D 308, * anything
   //   #  ( )      a count; what stands so often
   //   :           the rest only in form 1
   //   @           values by a rule of its own
