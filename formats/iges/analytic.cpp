@@ -16,17 +16,12 @@ namespace {
 
 using Kind = nurbs::Analytic::Kind;
 
-Vec3 read_vector(Parameters& in) {
-  const double x = in.real(), y = in.real(), z = in.real();
-  return {x, y, z};
-}
-
 // The vector of a 116 or 123, turned as its own transformation says, and for a point moved.
 std::optional<Vec3> pointed_vector(Reading& reading, int pointer, int type, Parameters& by) {
   const DirectoryEntry* const entry = reading.entry(pointer, type, by);
   if (entry == nullptr) return std::nullopt;
   Parameters in = reading.file().parameters(*entry);
-  const Vec3 vector = read_vector(in);
+  const Vec3 vector = read_point(in);
   if (in.ok() && type == 123 && !(vector.norm() > 0)) in.fail("a direction without length");
   if (!reading.finish(*entry, in)) {
     by.give_up({});
@@ -39,7 +34,7 @@ std::optional<Vec3> pointed_vector(Reading& reading, int pointer, int type, Para
 
 // A x + B y + C z = D.
 std::optional<nurbs::Analytic> read_plane(Parameters& in) {
-  const Vec3 normal = read_vector(in);
+  const Vec3 normal = read_point(in);
   const double distance = in.real();
   if (in.ok() && !(normal.norm() > 0)) in.fail("a plane without a normal");
   if (!in.ok()) return std::nullopt;

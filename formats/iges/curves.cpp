@@ -88,10 +88,6 @@ Vec2 read_pair(Parameters& in) {
   const double x = in.real(), y = in.real();
   return {x, y};
 }
-Vec3 read_point(Parameters& in) {
-  const double x = in.real(), y = in.real(), z = in.real();
-  return {x, y, z};
-}
 
 std::optional<Curve> read_arc(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
   const std::optional<ArcFrame> arc = read_arc_frame(reading, entry, in);
@@ -218,6 +214,11 @@ bool is_ordinary_line(int form) {
 }
 
 }  // namespace
+
+Vec3 read_point(Parameters& in) {
+  const double x = in.real(), y = in.real(), z = in.real();
+  return {x, y, z};
+}
 
 bool is_point(const DirectoryEntry& entry) {
   return entry.type == 116 || entry.type == 132;

@@ -15,6 +15,8 @@ struct ArcFrame {
 };
 std::optional<ArcFrame> read_arc_frame(Reading& reading, const DirectoryEntry& entry, Parameters& in);
 
+Vec3 read_point(Parameters& in);
+
 bool is_point(const DirectoryEntry& entry);
 
 // `pieces` + 1 increasing values.

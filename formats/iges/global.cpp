@@ -222,6 +222,12 @@ class GlobalReader {
 
 }  // namespace
 
+UnitCode code_of(Unit unit) {
+  const auto* const row = std::find_if(unit_rows.begin(), unit_rows.end(),
+                                       [unit](const UnitRow& r) { return r.unit == unit && r.factor == 1; });
+  return {row->flag, row->names[0]};
+}
+
 std::string readable(std::string_view bytes) {
   std::string text(bytes.substr(0, bytes.find_last_not_of(' ') + 1));
   for (char& c : text)

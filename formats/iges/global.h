@@ -1,8 +1,8 @@
 // The global section: what holds for the whole file.
 #pragma once
 
-#include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/units.h"
 #include "formats/iges/parameters.h"
@@ -35,6 +35,13 @@ struct Global {
 // against the standard only a check minds. Strings are made readable text (Latin-1 becomes UTF-8, control
 // characters become '_').
 Global read_global(const Lines& lines, Complaints& complaints);
+
+// What parameters 14 and 15 say of a unit.
+struct UnitCode {
+  int flag;
+  std::string_view name;
+};
+UnitCode code_of(Unit unit);
 
 // Foreign bytes as text: UTF-8 as it is, other 8-bit characters taken for Latin-1, control characters as '_';
 // without blanks at the end.

@@ -5,10 +5,10 @@
 #include <cfloat>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 
 #include <fmt/format.h>
 
+#include "formats/iges/global.h"
 #include "formats/iges/records.h"
 
 namespace selvage::formats::iges {
@@ -29,27 +29,6 @@ std::string hollerith(std::string_view text) {
 std::string real(double value) {
   std::array<char, max_number_length> buffer;
   return {buffer.data(), write_real(buffer.data(), value)};
-}
-
-struct UnitCode {
-  int flag;
-  std::string_view name;
-};
-
-UnitCode code_of(Unit unit) {
-  switch (unit) {
-    case Unit::m:
-      return {6, "M"};
-    case Unit::cm:
-      return {10, "CM"};
-    case Unit::mm:
-      return {2, "MM"};
-    case Unit::um:
-      return {9, "UM"};
-    case Unit::inch:
-      return {1, "INCH"};
-  }
-  std::abort();
 }
 
 // Fills lines of 72 columns with parameters; only strings may run over the end of a line.

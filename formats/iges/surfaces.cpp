@@ -181,10 +181,10 @@ std::optional<Surface> read_revolution(Reading& reading, const DirectoryEntry& e
 
 std::optional<Surface> read_extrusion(Reading& reading, const DirectoryEntry& /*entry*/, Parameters& in) {
   const int pointer = in.pointer();
-  const double x = in.real(), y = in.real(), z = in.real();
+  const Vec3 end = read_point(in);
   const std::optional<Curve> directrix = reading.curve(pointer, in);
   if (!in.ok() || !directrix) return std::nullopt;
-  const Vec3 shift = Vec3(x, y, z) - nurbs::evaluate(*directrix, directrix->first_parameter());
+  const Vec3 shift = end - nurbs::evaluate(*directrix, directrix->first_parameter());
   if (!(shift.norm() > 0)) {
     in.fail("it ends where its curve starts: it has no height");
     return std::nullopt;

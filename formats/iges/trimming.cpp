@@ -28,6 +28,18 @@ bool is_point_like(const Curve& curve) {
   return true;
 }
 
+// With the entity's own transformation, which curves in parameters do not have.
+std::optional<Boundary> finished(Reading& reading, const DirectoryEntry& entry, Parameters& in,
+                                 Boundary boundary, Parameters& by) {
+  if (!reading.finish(entry, in)) {
+    by.give_up({});
+    return std::nullopt;
+  }
+  const Placement placement = reading.placement(entry);
+  for (Curve& curve : boundary.spatial) placement.apply(curve);
+  return boundary;
+}
+
 // The curve on the surface that a 142 says: its surface is that of the 144.
 std::optional<Boundary> read_curve_on_surface(Reading& reading, int pointer, Parameters& by) {
   const DirectoryEntry* const entry = reading.entry(pointer, 142, by);
@@ -41,13 +53,7 @@ std::optional<Boundary> read_curve_on_surface(Reading& reading, int pointer, Par
   if (in.ok() && flat == 0 && spatial == 0) in.fail("it has no curve, neither in space nor in parameters");
   if (in.ok() && flat != 0) boundary.flat = read_chain(reading, flat, in);
   if (in.ok() && spatial != 0) boundary.spatial = read_chain(reading, spatial, in);
-  if (!reading.finish(*entry, in)) {
-    by.give_up({});
-    return std::nullopt;
-  }
-  const Placement placement = reading.placement(*entry);
-  for (Curve& curve : boundary.spatial) placement.apply(curve);
-  return boundary;
+  return finished(reading, *entry, in, std::move(boundary), by);
 }
 
 std::optional<Boundary> read_boundary_entity(Reading& reading, int pointer, Parameters& by) {
@@ -74,13 +80,7 @@ std::optional<Boundary> read_boundary_entity(Reading& reading, int pointer, Para
     if (!has_flats) boundary.flat.resize(before);
     for (std::size_t k = 0; k < chain.size(); ++k) boundary.spatial.push_back(std::move(chain[k]));
   }
-  if (!reading.finish(*entry, in)) {
-    by.give_up({});
-    return std::nullopt;
-  }
-  const Placement placement = reading.placement(*entry);
-  for (Curve& curve : boundary.spatial) placement.apply(curve);
-  return boundary;
+  return finished(reading, *entry, in, std::move(boundary), by);
 }
 
 // As many edges as the file has, with both curves where they go together one by one.
