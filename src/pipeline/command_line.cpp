@@ -343,7 +343,7 @@ void of_relaxing(OptionTable& t) {
   t.option(all, "--overlap",
            "let yarns that meet overlap to this depth, and bring them to it, instead of a gap",
            Argument::positive(), into(&Options::relaxing, &RelaxSettings::overlap))
-      .goes_with("brings yarns to a depth that they overlap", "--relax", "--gap");
+      .goes_with("lets yarns overlap to a depth", "--relax", "--gap");
   t.option(all, "--stiff-section", "sections keep their shape, only centre lines move", {},
            into(&Options::relaxing, &RelaxSettings::stiff_section))
       .goes_with(why, "--relax", "");
