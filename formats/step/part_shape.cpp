@@ -28,9 +28,9 @@
 #include <cmath>
 #include <gp_Ax3.hxx>
 #include <map>
-#include <numeric>
 #include <tuple>
 
+#include "core/groups.h"
 #include "formats/step/faces.h"
 #include "solid/occt/shape.h"
 
@@ -191,21 +191,13 @@ class PartBuilder {
   }
 
   [[nodiscard]] std::vector<std::vector<std::size_t>> joined_faces() const {
-    std::vector<std::size_t> group(part_.faces.size());
-    std::iota(group.begin(), group.end(), 0);
-    const auto root = [&](std::size_t i) {
-      while (group[i] != i) i = group[i];
-      return i;
-    };
+    Groups groups(part_.faces.size());
     std::map<int, std::size_t> first;
-    for (std::size_t i = 0; i < group.size(); ++i)
+    for (std::size_t i = 0; i < part_.faces.size(); ++i)
       for (const cad::Loop& loop : part_.faces[i].loops)
-        for (const cad::Edge& edge : loop.edges) {
-          const std::size_t a = root(first.try_emplace(edge.id, i).first->second), b = root(i);
-          group[std::max(a, b)] = std::min(a, b);
-        }
+        for (const cad::Edge& edge : loop.edges) groups.join(first.try_emplace(edge.id, i).first->second, i);
     std::map<std::size_t, std::vector<std::size_t>> members;
-    for (std::size_t i = 0; i < group.size(); ++i) members[root(i)].push_back(i);
+    for (std::size_t i = 0; i < part_.faces.size(); ++i) members[groups.of(i)].push_back(i);
     std::vector<std::vector<std::size_t>> result;
     result.reserve(members.size());
     for (auto& [first_face, faces] : members) result.push_back(std::move(faces));

@@ -47,6 +47,7 @@ class Sampling {
   }
   [[nodiscard]] Vec2 unwrapped(Vec2 parameters, const Vec2& near) const;
 
+  [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
   [[nodiscard]] std::size_t triangle_count() const { return 2 * us_.size() * cell_rows(); }
   // Counter-clockwise in (u, v).
   [[nodiscard]] std::array<Vertex, 3> triangle(std::size_t index) const;

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numeric>
 #include <tuple>
 
 #include "cell/sampling.h"
+#include "core/groups.h"
 
 namespace selvage::cell {
 namespace {
@@ -329,27 +329,20 @@ Border Trimmer::trace(std::size_t start, std::vector<bool>& seen) const {
 // What lies beyond a face has to reach farther through it than the tolerance.
 Status Trimmer::check_grazing() const {
   for (int face = 0; face < face_count; ++face) {
-    std::map<Vertex, Vertex> parent;  // of vertices beyond
-    const std::function<Vertex(Vertex)> root_of = [&](Vertex v) {
-      while (parent.at(v) != v) v = parent.at(v);
-      return v;
-    };
+    Groups groups(sampling_.vertex_count());  // of vertices beyond
     for (std::size_t t = 0; t < sampling_.triangle_count(); ++t) {
       const auto corners = sampling_.triangle(t);
       std::optional<Vertex> last;
       for (const Vertex vertex : corners) {
         if (sampling_.depth(vertex, face) >= 0) continue;
-        parent.try_emplace(vertex, vertex);
-        if (last) {
-          const Vertex a = root_of(*last), b = root_of(vertex);
-          parent[std::max(a, b)] = std::min(a, b);
-        }
+        if (last) groups.join(*last, vertex);
         last = vertex;
       }
     }
     std::map<Vertex, Vertex> deepest;
-    for (const auto& [vertex, unused] : parent) {
-      const auto [entry, is_new] = deepest.try_emplace(root_of(vertex), vertex);
+    for (Vertex vertex = 0; vertex < sampling_.vertex_count(); ++vertex) {
+      if (sampling_.depth(vertex, face) >= 0) continue;
+      const auto [entry, is_new] = deepest.try_emplace(groups.of(vertex), vertex);
       if (sampling_.depth(vertex, face) < sampling_.depth(entry->second, face)) entry->second = vertex;
     }
     for (const auto& [unused, vertex] : deepest)

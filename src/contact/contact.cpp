@@ -18,6 +18,7 @@
 #include "contact/place.h"
 #include "contact/repeated.h"
 #include "core/box_tree.h"
+#include "core/groups.h"
 #include "core/parallel.h"
 
 namespace selvage::contact {
@@ -186,17 +187,7 @@ class Search {
       return std::tuple(body_of(x.a), body_of(x.b), x.a, x.b) <
              std::tuple(body_of(y.a), body_of(y.b), y.a, y.b);
     });
-    std::vector<std::uint32_t> parent(pairs.size());
-    std::iota(parent.begin(), parent.end(), 0U);
-    const auto root = [&](std::uint32_t k) {
-      while (parent[k] != k) k = parent[k] = parent[parent[k]];
-      return k;
-    };
-    const auto unite = [&](std::uint32_t x, std::uint32_t y) {
-      x = root(x);
-      y = root(y);
-      parent[std::max(x, y)] = std::min(x, y);
-    };
+    Groups groups(pairs.size());
     std::vector<Cluster> all;
     std::vector<std::uint32_t> by_b;
     std::vector<std::uint32_t> number(pairs.size());
@@ -211,13 +202,12 @@ class Search {
         return std::pair(pairs[x].b, x) < std::pair(pairs[y].b, y);
       });
       for (std::size_t k = begin + 1; k < end; ++k) {
-        if (pairs[k].a == pairs[k - 1].a)
-          unite(static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(k - 1));
+        if (pairs[k].a == pairs[k - 1].a) groups.join(k, k - 1);
         const std::uint32_t here = by_b[k - begin], before = by_b[k - begin - 1];
-        if (pairs[here].b == pairs[before].b) unite(here, before);
+        if (pairs[here].b == pairs[before].b) groups.join(here, before);
       }
       for (std::size_t k = begin; k < end; ++k) {
-        const std::uint32_t group = root(static_cast<std::uint32_t>(k));
+        const std::uint32_t group = groups.of(k);
         if (group == k) {
           number[k] = static_cast<std::uint32_t>(all.size());
           all.emplace_back();

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "contact/overlay.h"
+#include "core/groups.h"
 
 namespace selvage::contact {
 
@@ -197,34 +198,26 @@ class SharedSpace::View {
     struct Run {
       int line;
       double low, high;
-      std::size_t group;
     };
     std::vector<Run> runs;
     std::vector<std::size_t> first(static_cast<std::size_t>(lines) * static_cast<std::size_t>(lines) + 1, 0);
     for_each_shared(raster, [&](const Chord& x, const Chord& y) {
-      runs.push_back(
-          {x.in.line, std::max(x.in.height, y.in.height), std::min(x.out.height, y.out.height), runs.size()});
+      runs.push_back({x.in.line, std::max(x.in.height, y.in.height), std::min(x.out.height, y.out.height)});
     });
     for (const Run& run : runs) ++first[static_cast<std::size_t>(run.line) + 1];
     for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
-    const auto root = [&](std::size_t k) {
-      while (runs[k].group != k) k = runs[k].group = runs[runs[k].group].group;
-      return k;
-    };
+    Groups groups(runs.size());
     for (std::size_t k = 0; k < runs.size(); ++k)
       for (const int step : {1, lines}) {
         const int next = runs[k].line + step;
         if (next >= lines * lines || (step == 1 && next % lines == 0)) continue;
         for (std::size_t m = first[static_cast<std::size_t>(next)];
              m < first[static_cast<std::size_t>(next) + 1]; ++m)
-          if (runs[m].low <= runs[k].high && runs[k].low <= runs[m].high) {
-            const std::size_t x = root(k), y = root(m);
-            runs[std::max(x, y)].group = std::min(x, y);
-          }
+          if (runs[m].low <= runs[k].high && runs[k].low <= runs[m].high) groups.join(k, m);
       }
     std::map<std::size_t, std::vector<Vec3>> walls;
     for (std::size_t k = 0; k < runs.size(); ++k) {
-      std::vector<Vec3>& of_piece = walls[root(k)];
+      std::vector<Vec3>& of_piece = walls[groups.of(k)];
       const Vec2 place = raster.place(runs[k].line);
       of_piece.push_back(frame_.placed(place, runs[k].low));
       of_piece.push_back(frame_.placed(place, runs[k].high));

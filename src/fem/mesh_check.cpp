@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
+#include "core/groups.h"
 #include "fem/cell_sides.h"
 
 namespace selvage::fem {
@@ -138,12 +138,7 @@ Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const
 
   constexpr std::uint32_t unknown = Sides::outside - 1;
   mesh.regions.assign(mesh.cells.size(), unknown);
-  std::vector<std::uint32_t> parent(mesh.cells.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t cell) {
-    while (parent[cell] != cell) cell = parent[cell] = parent[parent[cell]];
-    return cell;
-  };
+  Groups groups(mesh.cells.size());
   // Joins cells over faces; then triangles say what is on their sides.
   std::size_t next = 0;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> told;  // cell, region
@@ -162,7 +157,7 @@ Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const
         told.emplace_back((*faces)[k].cell, (*faces)[k].even == wanted[next].even ? s.behind : s.front);
       ++next;
     } else if (last - i == 2) {
-      parent[root((*faces)[i].cell)] = root((*faces)[i + 1].cell);
+      groups.join((*faces)[i].cell, (*faces)[i + 1].cell);
     } else {
       return in_the_way("the boundary of TetGen's mesh is not the yarns' surface");
     }
@@ -170,14 +165,14 @@ Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const
   }
   if (next < wanted.size()) return in_the_way("TetGen did not keep a triangle of the surface");
   for (const auto& [cell, region] : told) {
-    std::uint32_t& known = mesh.regions[root(cell)];
+    std::uint32_t& known = mesh.regions[groups.of(cell)];
     if (region == Sides::outside || (known != unknown && known != region))
       return wrong("TetGen's mesh joins two regions");
     known = region;
   }
   std::vector<double> volumes(count_regions(sides), 0.0);
   for (std::uint32_t c = 0; c < mesh.cells.size(); ++c) {
-    const std::uint32_t region = mesh.regions[root(c)];
+    const std::uint32_t region = mesh.regions[groups.of(c)];
     if (region == unknown) return wrong("a tetrahedron is in no region");
     mesh.regions[c] = region;
     volumes[region] += six_volumes(mesh, mesh.cells[c]) / 6;

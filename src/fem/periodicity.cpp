@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 
+#include "core/groups.h"
 #include "fem/unit_cell.h"
 
 namespace selvage::fem {
@@ -82,19 +82,10 @@ bool is_on_box(const UnitCell& cell, const Vec3& p) {
 
 // The number of parts that elements and conditions do not connect.
 std::size_t count_parts(const Mesh& mesh, const std::vector<std::size_t>& lowest) {
-  std::vector<std::size_t> parent(mesh.nodes.size());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  auto root = [&](std::size_t n) {
-    while (parent[n] != n) n = parent[n] = parent[parent[n]];
-    return n;
-  };
+  Groups groups(mesh.nodes.size());
   std::size_t parts = mesh.nodes.size();
   auto join = [&](std::size_t a, std::size_t b) {
-    a = root(a);
-    b = root(b);
-    if (a == b) return;
-    parent[std::max(a, b)] = std::min(a, b);
-    --parts;
+    if (groups.join(a, b)) --parts;
   };
   const auto count = static_cast<std::size_t>(mesh.nodes_per_element());
   for (const auto& element : mesh.elements)

@@ -1,9 +1,9 @@
 #include "fem/skin.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "cell/volume.h"
+#include "core/groups.h"
 #include "core/parallel.h"
 #include "fem/cell_size.h"
 
@@ -13,18 +13,11 @@ namespace {
 
 // Of each node the least of those that are opposite each other.
 std::vector<std::uint32_t> leaders_of(const CellCurves& curves, std::size_t nodes) {
-  std::vector<std::uint32_t> leaders(nodes);
-  std::iota(leaders.begin(), leaders.end(), 0U);
-  const auto root = [&](std::uint32_t k) {
-    while (leaders[k] != k) k = leaders[k];
-    return k;
-  };
+  Groups groups(nodes);
   for (const auto& pairs : curves.opposite)
-    for (const auto& [low, high] : pairs) {
-      const std::uint32_t a = root(low), b = root(high);
-      leaders[std::max(a, b)] = std::min(a, b);
-    }
-  for (std::uint32_t k = 0; k < nodes; ++k) leaders[k] = root(k);
+    for (const auto& [low, high] : pairs) groups.join(low, high);
+  std::vector<std::uint32_t> leaders(nodes);
+  for (std::size_t k = 0; k < nodes; ++k) leaders[k] = groups.of(k);
   return leaders;
 }
 
