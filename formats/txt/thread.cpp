@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/plane.h"
 #include "formats/txt/blocks.h"
 
 namespace selvage::formats::txt {
@@ -67,16 +68,6 @@ void read_corner(Parser& p, Corners& corners) {
   if (count == 2) corners.points.push_back(corner);
 }
 
-double area_of(const std::vector<Vec2>& corners) {
-  double twice = 0.0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec2& a = corners[i];
-    const Vec2& b = corners[(i + 1) % corners.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return 0.5 * twice;
-}
-
 std::optional<yarn::Section> read_polygon(Parser& p) {
   static const Table<Corners> table({}, read_corner);
   const Spot spot = p.last();
@@ -89,7 +80,7 @@ std::optional<yarn::Section> read_polygon(Parser& p) {
   else if (points.front() == points.back())
     p.error(corners.last,
             "the polygon's last corner repeats its first: leave it out, the polygon is closed anyway");
-  else if (area_of(points) == 0.0)
+  else if (twice_area(points) == 0.0)
     p.error(spot, "the polygon's area is 0");
   else
     return yarn::Polygon{points};

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/plane.h"
+
 namespace selvage::cell {
 namespace {
 
@@ -14,26 +16,6 @@ Vec2 flat(const Vec3& point, int face) {
   const int axis = axis_of(face);
   const Vec2 result(point[(axis + 1) % 3], point[(axis + 2) % 3]);
   return is_high(face) ? result : Vec2(result.y(), result.x());
-}
-
-double twice_area(const std::vector<Vec2>& polygon) {
-  double twice = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 &p = polygon[i] - polygon[0], q = polygon[(i + 1) % polygon.size()] - polygon[0];
-    twice += p.x() * q.y() - p.y() * q.x();
-  }
-  return twice;
-}
-
-bool contains(const std::vector<Vec2>& polygon, const Vec2& p) {
-  bool inside = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const Vec2 &a = polygon[i], &b = polygon[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
-      inside = !inside;
-  }
-  return inside;
 }
 
 // Where two closed polygons cross.
@@ -51,9 +33,7 @@ std::optional<Vec2> crossing(const std::vector<Vec2>& a, const std::vector<Vec2>
     }
     return sides;
   };
-  const auto turn = [](const Vec2& p, const Vec2& q, const Vec2& r) {
-    return (q - p).x() * (r - p).y() - (q - p).y() * (r - p).x();
-  };
+  const auto turn = [](const Vec2& p, const Vec2& q, const Vec2& r) { return cross(q - p, r - p); };
   const auto sides_b = sides_in(b);
   for (const auto& [p, q] : sides_in(a))
     for (const auto& [r, s] : sides_b)
@@ -268,7 +248,7 @@ void Divider::nest(int face, std::size_t body, std::vector<Outline> outlines) {
   std::vector<Flat> flats;
   for (const Outline& outline : outlines) {
     flats.push_back({polygon(face, outline), 0, 0});
-    flats.back().area = twice_area(flats.back().points) / 2;
+    flats.back().area = twice_area(flats.back().points, flats.back().points.front()) / 2;
   }
   for (std::size_t i = 0; i < outlines.size(); ++i) {
     if (flats[i].area <= 0) continue;
@@ -313,7 +293,7 @@ Status Divider::trace_face(int face) {
     const Vec2 from = flat(division_.corners[segment.from].at, face),
                to = flat(division_.corners[segment.to].at, face);
     const Vec2 middle = flat(box_.center(), face);
-    const bool backward = (to - from).x() * (middle - from).y() - (to - from).y() * (middle - from).x() < 0;
+    const bool backward = cross(to - from, middle - from) < 0;
     const Side side{Side::Kind::segment, {}, i, backward};
     steps[owners_[i]].push_back(
         {side, backward ? segment.to : segment.from, backward ? segment.from : segment.to});

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "contact/patch.h"
+#include "core/plane.h"
 
 namespace selvage::contact {
 
@@ -129,7 +130,7 @@ void Overlay::pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& p
   const bool out = keep == Keep::highest_out || keep == Keep::lowest_out_above;
   const bool highest = keep == Keep::highest_out || keep == Keep::highest_in_below;
   const Vec2 e1 = (seen[1] - seen[0]).head<2>(), e2 = (seen[2] - seen[0]).head<2>();
-  const double size = e1.x() * e2.y() - e1.y() * e2.x();
+  const double size = cross(e1, e2);
   if (out ? !(size > 0.0) : !(size < 0.0)) return;
   // The first line at or above a place, the last one at or below. What is cast is >= 0: no call of ceil().
   const auto first = [&](Eigen::Index axis) {
@@ -150,8 +151,7 @@ void Overlay::pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& p
   for (int j = j0; j <= j1; ++j)
     for (int i = i0; i <= i1; ++i) {
       const Vec2 way = low_ + step_.cwiseProduct(Vec2(i + offset, j + offset)) - seen[0].head<2>();
-      const double w1 = (way.x() * e2.y() - way.y() * e2.x()) / size,
-                   w2 = (e1.x() * way.y() - e1.y() * way.x()) / size, w0 = 1.0 - w1 - w2;
+      const double w1 = cross(way, e2) / size, w2 = cross(e1, way) / size, w0 = 1.0 - w1 - w2;
       if (w0 < slack || w1 < slack || w2 < slack) continue;
       const double height = w0 * seen[0].z() + w1 * seen[1].z() + w2 * seen[2].z();
       Hit& hit = hits[static_cast<std::size_t>(j * lines_ + i)];

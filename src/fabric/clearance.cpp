@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/plane.h"
 #include "yarn/outline.h"
 
 namespace selvage::fabric {
@@ -16,8 +17,7 @@ double signed_distance(const std::vector<Vec2>& polygon, const Vec2& p) {
     const Vec2 edge = b - a, to = p - a;
     const double along = std::clamp(to.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
     nearest = std::min(nearest, (to - along * edge).squaredNorm());
-    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + edge.x() * (p.y() - a.y()) / edge.y())
-      inside = !inside;
+    if (ray_meets(p, a, b)) inside = !inside;
     a = b;
   }
   return inside ? -std::sqrt(nearest) : std::sqrt(nearest);

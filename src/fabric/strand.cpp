@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/plane.h"
 #include "nurbs/interpolate.h"
 
 namespace selvage::fabric {
@@ -46,16 +47,16 @@ Turned turned(const yarn::Frame& frame, const Vec2& place, double angle) {
 // |p1 - (p2 turned by rate * height)|^2 + height^2, convex while r1 r2 rate^2 < 1.
 double helix_distance(const Vec2& a, const Vec2& b, double rate) {
   const double radii = a.squaredNorm() + b.squaredNorm();
-  const double dot = a.dot(b), cross = a.x() * b.y() - a.y() * b.x();
+  const double dot = a.dot(b), turn = cross(a, b);
   double height = 0.0;
   for (int i = 0; i < 12; ++i) {
     const double c = std::cos(rate * height), s = std::sin(rate * height);
-    const double along = dot * c - cross * s, side = dot * s + cross * c;  // -d(along)/d(angle)
+    const double along = dot * c - turn * s, side = dot * s + turn * c;  // -d(along)/d(angle)
     const double step = (rate * side + height) / (rate * rate * along + 1.0);
     height -= step;
     if (std::abs(step) < 1e-14 * std::sqrt(radii)) break;
   }
-  const double along = dot * std::cos(rate * height) - cross * std::sin(rate * height);
+  const double along = dot * std::cos(rate * height) - turn * std::sin(rate * height);
   return std::sqrt(std::max(radii - 2.0 * along + height * height, 0.0));
 }
 

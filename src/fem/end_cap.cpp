@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/plane.h"
+
 namespace selvage::fem {
 
 EndCap::EndCap(const std::vector<Vec3>& rim, const yarn::EndFace& face) : face_(&face) {
@@ -82,7 +84,7 @@ double EndCap::blended_height(const Vec2& point) const {
   auto half_tangent = [&](std::size_t i) {
     const Vec2 a = rim_[i] - point, b = rim_[(i + 1) % n] - point;
     const double dot = a.dot(b) + a.norm() * b.norm();
-    return dot == 0 ? 0.0 : (a.x() * b.y() - a.y() * b.x()) / dot;  // tan(angle / 2)
+    return dot == 0 ? 0.0 : cross(a, b) / dot;  // tan(angle / 2)
   };
   double before = half_tangent(n - 1);
   for (std::size_t i = 0; i < n; ++i) {

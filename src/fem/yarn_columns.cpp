@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/plane.h"
+
 namespace selvage::fem {
 namespace {
 
@@ -55,13 +57,12 @@ class Columns {
  private:
   void meet(const std::array<const Vertex*, 3>& corners, std::size_t i, std::size_t j) {
     const Vec3 &a = corners[0]->at, &b = corners[1]->at, &c = corners[2]->at;
-    auto area = [](const Vec2& p, const Vec2& q) { return p.x() * q.y() - p.y() * q.x(); };
     const Vec2 ab = (b - a).head<2>(), ac = (c - a).head<2>(), ap = Vec2(xs_[i], ys_[j]) - a.head<2>();
-    const double whole = area(ab, ac);
+    const double whole = cross(ab, ac);
     double of_b = 1.0 / 3, of_c = 1.0 / 3;
     if (whole != 0) {
-      of_b = std::clamp(area(ap, ac) / whole, 0.0, 1.0);
-      of_c = std::clamp(area(ab, ap) / whole, 0.0, 1.0 - of_b);
+      of_b = std::clamp(cross(ap, ac) / whole, 0.0, 1.0);
+      of_c = std::clamp(cross(ab, ap) / whole, 0.0, 1.0 - of_b);
     }
     const double of_a = 1 - of_b - of_c;
     crossings_[j * xs_.size() + i].push_back(

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/plane.h"
 #include "nurbs/basis.h"
 
 namespace selvage::nurbs {
@@ -58,7 +59,7 @@ double swept_area(const Bezier& curve, const Vec2& origin) {
   for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
     const double t = 0.5 * (1.0 + rule.nodes[g]);
     const Vec2 p = evaluate(curve, t) - origin, d = derivative(curve, t);
-    sum += 0.5 * rule.weights[g] * (p.x() * d.y() - p.y() * d.x());
+    sum += 0.5 * rule.weights[g] * cross(p, d);
   }
   return 0.5 * sum;
 }

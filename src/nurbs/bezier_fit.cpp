@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/plane.h"
+
 namespace selvage::nurbs {
 
 namespace {
@@ -71,7 +73,7 @@ TurningShape turning_shape(const std::vector<Vec2>& points) {
   for (std::size_t i = 2; i < points.size(); ++i) {
     const Vec2 in = (points[i - 1] - points[i - 2]).normalized(),
                out = (points[i] - points[i - 1]).normalized();
-    const double sine = in.x() * out.y() - in.y() * out.x();
+    const double sine = cross(in, out);
     left = left || sine > straight;
     right = right || sine < -straight;
   }

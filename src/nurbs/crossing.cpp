@@ -4,6 +4,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/plane.h"
 #include "nurbs/bezier.h"
 
 namespace selvage::nurbs {
@@ -11,10 +12,6 @@ namespace selvage::nurbs {
 namespace {
 
 constexpr double relative_touch = 1e-9;  // of the outline's size
-
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 // A part of one curve of the outline.
 struct Part {

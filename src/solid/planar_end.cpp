@@ -2,13 +2,11 @@
 
 #include <algorithm>
 
+#include "core/plane.h"
+
 namespace selvage::solid {
 
 namespace {
-
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 // Twice the area over the square of the longest side: 0.87 for the best shape, 0 or less for one that is no
 // ear.

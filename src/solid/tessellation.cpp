@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/plane.h"
 #include "solid/planar_end.h"
 
 namespace selvage::solid {
@@ -369,16 +370,11 @@ bool add_plane(Skinner& skinner, const yarn::EndFace& face, const Ids& outline, 
     if (ring.empty() || (id != ring.back() && id != ring.front())) ring.push_back(id);
   const Vec3 x = face.normal.unitOrthogonal(), y = face.normal.cross(x);
   std::vector<Vec2> flat;
-  double turning = 0.0;
   for (std::uint32_t id : ring) {
     const Vec3 p = skinner.vertex(id) - face.origin;
     flat.emplace_back(p.dot(x), p.dot(y));
   }
-  for (std::size_t k = 0; k < flat.size(); ++k) {
-    const Vec2 &a = flat[k], &b = flat[(k + 1) % flat.size()];
-    turning += a.x() * b.y() - a.y() * b.x();
-  }
-  if (turning < 0.0) {
+  if (twice_area(flat) < 0.0) {
     std::reverse(flat.begin(), flat.end());
     std::reverse(ring.begin(), ring.end());
   }

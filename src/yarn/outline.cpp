@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/plane.h"
 #include "nurbs/interpolate.h"
 #include "yarn/ends.h"
 #include "yarn/grid.h"
@@ -259,12 +260,7 @@ Outline polygon_outline(const Polygon& shape, const SectionSize& size) {
   std::vector<Vec2> corners = shape.corners;
   const SectionSize own = nominal_size(shape);
   for (Vec2& c : corners) c = c.array() * Eigen::Array2d(size.width / own.width, size.height / own.height);
-  double twice_area = 0.0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec2 &a = corners[i], &b = corners[(i + 1) % corners.size()];
-    twice_area += a.x() * b.y() - b.x() * a.y();
-  }
-  if (twice_area < 0.0) std::reverse(corners.begin(), corners.end());
+  if (twice_area(corners) < 0.0) std::reverse(corners.begin(), corners.end());
   while (corners.size() < 4) {  // a triangle gets a corner on its longest edge: a patch has four
     std::size_t longest = 0;
     const auto edge = [&](std::size_t i) { return (corners[(i + 1) % corners.size()] - corners[i]).norm(); };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/plane.h"
 #include "yarn/ends.h"
 #include "yarn/outline.h"
 
@@ -31,19 +32,8 @@ LensArc lens_arc(const SectionSize& size) {
   return {(a * a + h * h) / (2.0 * h), 2.0 * std::atan2(h, a)};
 }
 
-double signed_area(const std::vector<Vec2>& p) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const Vec2 &a = p[i], &b = p[(i + 1) % p.size()];
-    sum += 0.5 * (a.x() * b.y() - b.x() * a.y());
-  }
-  return sum;
-}
-
 bool edges_cross(const std::vector<Vec2>& p) {
-  const auto side = [](const Vec2& a, const Vec2& b, const Vec2& c) {
-    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-  };
+  const auto side = [](const Vec2& a, const Vec2& b, const Vec2& c) { return cross(b - a, c - a); };
   const std::size_t n = p.size();
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i + 2; j < n; ++j) {
@@ -67,7 +57,7 @@ Status check_polygon(const std::vector<Vec2>& corners) {
     if (corners[i] == corners[(i + 1) % corners.size()])
       return error(Kind::geometry, fmt::format("corners {} and {} of the polygon section are equal", i + 1,
                                                (i + 1) % corners.size() + 1));
-  if (signed_area(corners) == 0.0) return error(Kind::geometry, "the polygon section has no area");
+  if (twice_area(corners) == 0.0) return error(Kind::geometry, "the polygon section has no area");
   if (edges_cross(corners)) return error(Kind::geometry, "the edges of the polygon section cross");
   return {};
 }
@@ -124,7 +114,7 @@ double area(const Section& section, const SectionSize& size) {
                         },
                         [&](const Polygon& s) {
                           const SectionSize own = nominal_size(section);
-                          return std::abs(signed_area(s.corners)) * (w / own.width) * (h / own.height);
+                          return 0.5 * std::abs(twice_area(s.corners)) * (w / own.width) * (h / own.height);
                         },
                     },
                     section);
