@@ -11,6 +11,7 @@
 
 #include "cad/bernstein.h"
 #include "nurbs/basis.h"
+#include "nurbs/sweep.h"
 
 namespace selvage::cad {
 
@@ -190,18 +191,7 @@ Range domain(const Surface& surface) {
 }
 
 nurbs::Surface as_surface(const nurbs::Curve& curve) {
-  Surface surface;
-  surface.degree_u = curve.degree;
-  surface.degree_v = 1;
-  surface.count_u = static_cast<int>(curve.points.size());
-  surface.count_v = 2;
-  surface.knots_u = curve.knots;
-  surface.knots_v = {0, 0, 1, 1};
-  for (int row = 0; row < 2; ++row) {
-    surface.points.insert(surface.points.end(), curve.points.begin(), curve.points.end());
-    surface.weights.insert(surface.weights.end(), curve.weights.begin(), curve.weights.end());
-  }
-  return surface;
+  return nurbs::ruled(curve, curve.points);
 }
 
 SurfaceSet::SurfaceSet(std::vector<const Surface*> surfaces) {

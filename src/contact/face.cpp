@@ -8,6 +8,7 @@
 
 #include "contact/patch.h"
 #include "core/parallel.h"
+#include "nurbs/sweep.h"
 
 namespace selvage::contact {
 
@@ -45,20 +46,8 @@ SectionSize size_of_section(const std::vector<Vec3>& points) {
 // Straight lines from an end's outline to its centre.
 nurbs::Surface flat_end(const yarn::Body& body, bool last) {
   const nurbs::Curve outline = yarn::end_curve(body, last);
-  nurbs::Surface face;
-  face.degree_u = outline.degree;
-  face.degree_v = 1;
-  face.count_u = static_cast<int>(outline.points.size());
-  face.count_v = 2;
-  face.knots_u = outline.knots;
-  face.knots_v = {0.0, 0.0, 1.0, 1.0};
-  face.points = outline.points;
-  face.points.insert(face.points.end(), outline.points.size(), last ? body.end.origin : body.start.origin);
-  if (outline.is_rational()) {
-    face.weights = outline.weights;
-    face.weights.insert(face.weights.end(), outline.weights.begin(), outline.weights.end());
-  }
-  return face;
+  const Vec3& centre = last ? body.end.origin : body.start.origin;
+  return nurbs::ruled(outline, std::vector<Vec3>(outline.points.size(), centre));
 }
 
 bool faces_against(const nurbs::Surface& face, const Vec3& normal) {

@@ -116,16 +116,7 @@ Analytic::Range Analytic::whole() const {
 
 Surface Analytic::part(const Range& range) const {
   const auto [u0, u1, v0, v1] = range;
-  if (kind == Kind::plane) {
-    Surface plane;
-    plane.degree_u = plane.degree_v = 1;
-    plane.count_u = plane.count_v = 2;
-    plane.knots_u = {u0, u0, u1, u1};
-    plane.knots_v = {v0, v0, v1, v1};
-    for (const double v : {v0, v1})
-      for (const double u : {u0, u1}) plane.points.push_back(origin + u * x + v * y);
-    return plane;
-  }
+  if (kind == Kind::plane) return flat(origin, x, y, {u0, v0}, {u1, v1});
   const auto at = [&](double v) -> Vec3 {
     return origin + (radius + (kind == Kind::cone ? v * std::tan(half_angle) : 0)) * x + v * z;
   };

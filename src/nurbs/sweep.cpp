@@ -11,32 +11,40 @@ namespace selvage::nurbs {
 Surface ruled(const Curve& first, const Curve& second) {
   Curve a = first, b = second;
   make_compatible(a, b);
+  Surface surface = ruled(a, b.points);
+  std::copy(b.weights.begin(), b.weights.end(), surface.weights.end() - std::ssize(b.weights));
+  return surface;
+}
+
+Surface ruled(const Curve& first, const std::vector<Vec3>& second) {
   Surface surface;
-  surface.degree_u = a.degree;
+  surface.degree_u = first.degree;
   surface.degree_v = 1;
-  surface.count_u = static_cast<int>(a.points.size());
+  surface.count_u = static_cast<int>(first.points.size());
   surface.count_v = 2;
-  surface.knots_u = a.knots;
+  surface.knots_u = first.knots;
   surface.knots_v = {0, 0, 1, 1};
-  surface.points = a.points;
-  surface.points.insert(surface.points.end(), b.points.begin(), b.points.end());
-  surface.weights = a.weights;
-  surface.weights.insert(surface.weights.end(), b.weights.begin(), b.weights.end());
+  surface.points = first.points;
+  surface.points.insert(surface.points.end(), second.begin(), second.end());
+  surface.weights = first.weights;
+  surface.weights.insert(surface.weights.end(), first.weights.begin(), first.weights.end());
   return surface;
 }
 
 Surface extruded(const Curve& directrix, const Vec3& shift) {
+  std::vector<Vec3> shifted;
+  for (const Vec3& p : directrix.points) shifted.push_back(p + shift);
+  return ruled(directrix, shifted);
+}
+
+Surface flat(const Vec3& origin, const Vec3& x, const Vec3& y, const Vec2& low, const Vec2& high) {
   Surface surface;
-  surface.degree_u = directrix.degree;
-  surface.degree_v = 1;
-  surface.count_u = static_cast<int>(directrix.points.size());
-  surface.count_v = 2;
-  surface.knots_u = directrix.knots;
-  surface.knots_v = {0, 0, 1, 1};
-  surface.points = directrix.points;
-  for (const Vec3& p : directrix.points) surface.points.push_back(p + shift);
-  surface.weights = directrix.weights;
-  surface.weights.insert(surface.weights.end(), directrix.weights.begin(), directrix.weights.end());
+  surface.degree_u = surface.degree_v = 1;
+  surface.count_u = surface.count_v = 2;
+  surface.knots_u = {low.x(), low.x(), high.x(), high.x()};
+  surface.knots_v = {low.y(), low.y(), high.y(), high.y()};
+  for (const double v : {low.y(), high.y()})
+    for (const double u : {low.x(), high.x()}) surface.points.emplace_back(origin + u * x + v * y);
   return surface;
 }
 

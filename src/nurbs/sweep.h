@@ -10,6 +10,12 @@ namespace selvage::nurbs {
 // them.
 Surface ruled(const Curve& a, const Curve& b);
 
+// The same where the second curve has the knots and weights of the first: by its control points.
+Surface ruled(const Curve& first, const std::vector<Vec3>& second);
+
+// origin + u x + v y over a rectangle of parameters.
+Surface flat(const Vec3& origin, const Vec3& x, const Vec3& y, const Vec2& low, const Vec2& high);
+
 // u along the curve, v in [0, 1] along `shift`.
 Surface extruded(const Curve& directrix, const Vec3& shift);
 

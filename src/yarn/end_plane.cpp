@@ -1,5 +1,6 @@
 #include "yarn/end_plane.h"
 
+#include "nurbs/sweep.h"
 #include "yarn/ends.h"
 
 namespace selvage::yarn {
@@ -36,14 +37,7 @@ EndPlane end_plane(const Body& body, const nurbs::Curve& end_curve, bool last) {
   low -= margin;
   high += margin;
 
-  nurbs::Surface& surface = plane.surface;
-  surface.degree_u = surface.degree_v = 1;
-  surface.count_u = surface.count_v = 2;
-  surface.knots_u = {low.x(), low.x(), high.x(), high.x()};
-  surface.knots_v = {low.y(), low.y(), high.y(), high.y()};
-  for (const double v : {low.y(), high.y()})
-    for (const double u : {low.x(), high.x()})
-      surface.points.emplace_back(plane.origin + u * plane.axis_u + v * plane.axis_v);
+  plane.surface = nurbs::flat(plane.origin, plane.axis_u, plane.axis_v, low, high);
   return plane;
 }
 
