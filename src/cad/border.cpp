@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "cad/natural_border.h"
+#include "nurbs/divided.h"
 #include "nurbs/turn.h"
 
 namespace selvage::cad {
@@ -95,9 +96,7 @@ Nearest nearest_on(const std::vector<double>& parameters, const std::vector<Vec3
 SampledCurve::SampledCurve(const nurbs::Curve& sampled) : curve(&sampled) {
   const std::vector<double> breaks = nurbs::breakpoints(sampled.knots, sampled.degree);
   const int parts = breaks.size() < 5 ? 8 : 2;  // of a span
-  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
-    for (int i = 0; i < parts; ++i) parameters.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / parts);
-  parameters.push_back(breaks.back());
+  parameters = nurbs::divided(breaks, std::vector<int>(breaks.size() - 1, parts));
   points.reserve(parameters.size());
   for (const double t : parameters) points.push_back(nurbs::evaluate(sampled, t));
 }

@@ -8,6 +8,7 @@
 
 #include "contact/patch.h"
 #include "core/parallel.h"
+#include "nurbs/divided.h"
 #include "nurbs/sweep.h"
 
 namespace selvage::contact {
@@ -58,15 +59,6 @@ bool faces_against(const nurbs::Surface& face, const Vec3& normal) {
     sum += jet.du.cross(jet.dv);
   }
   return sum.dot(normal) < 0.0;
-}
-
-// Where the cells of one direction end: knots, and places between them.
-std::vector<double> cut(const std::vector<double>& breaks, const std::vector<int>& parts) {
-  std::vector<double> ends;
-  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
-    for (int i = 0; i < parts[k]; ++i) ends.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / parts[k]);
-  ends.push_back(breaks.back());
-  return ends;
 }
 
 // How often each span of u is cut so that no cell turns by more than about 30 degrees.
@@ -154,9 +146,9 @@ CellModel::Made CellModel::make(const yarn::Body& body) {
     parts.push_back(
         static_cast<int>(std::clamp(std::ceil((along[j + 1] - along[j]) / (0.8 * wide)), 1.0, 1e4)));
   }
-  const std::vector<double> vs = cut(breaks, parts);
+  const std::vector<double> vs = nurbs::divided(breaks, parts);
   const std::vector<double> breaks_u = nurbs::breakpoints(s.knots_u, s.degree_u);
-  const std::vector<double> us = cut(breaks_u, cuts_round(s, breaks_u));
+  const std::vector<double> us = nurbs::divided(breaks_u, cuts_round(s, breaks_u));
   Face side;
   side.inward = body.inward;
   side.round_u = true;

@@ -6,7 +6,7 @@
 
 #include "contact/critical.h"
 #include "core/parallel.h"
-#include "nurbs/spline.h"
+#include "nurbs/divided.h"
 
 namespace selvage::contact {
 
@@ -46,9 +46,7 @@ NearSkins::NearSkins(std::span<const Strand> strands) : strands_(strands), skins
     const std::vector<double> breaks = nurbs::breakpoints(s.knots_u, s.degree_u);
     const int parts = std::max(1, static_cast<int>(std::ceil(static_cast<double>(least_round) /
                                                              static_cast<double>(breaks.size() - 1))));
-    for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
-      for (int i = 0; i < parts; ++i) skin.us.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / parts);
-    skin.us.push_back(breaks.back());
+    skin.us = nurbs::divided(breaks, std::vector<int>(breaks.size() - 1, parts));
     skin.round = static_cast<int>(skin.us.size()) - 1;
     skin.along = std::max(2, static_cast<int>(std::ceil(2.0 * strand.length() / strand.spacing())));
     for (int j = 0; j <= skin.along; ++j) {

@@ -4,14 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "nurbs/divided.h"
+
 namespace selvage::contact {
 
 std::vector<SectionShape> section_shapes(const nurbs::Surface& surface, const std::vector<double>& vs) {
-  std::vector<double> us;
-  const std::vector<double> breaks = nurbs::breakpoints(surface.knots_u, surface.degree_u);
-  constexpr int samples = 4;
-  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
-    for (int i = 0; i < samples; ++i) us.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / samples);
+  std::vector<double> us = nurbs::divided(surface.knots_u, surface.degree_u, 4);
+  us.pop_back();  // it is the first again
   const std::vector<Vec3> points = nurbs::evaluate_grid(surface, us, vs);
   const std::size_t n = us.size();
   std::vector<SectionShape> shapes(vs.size());
@@ -35,13 +34,7 @@ std::vector<SectionShape> section_shapes(const nurbs::Surface& surface, const st
 }
 
 std::vector<double> section_places(const nurbs::Surface& surface, int between) {
-  std::vector<double> places;
-  const std::vector<double> breaks = nurbs::breakpoints(surface.knots_v, surface.degree_v);
-  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
-    for (int i = 0; i <= between; ++i)
-      places.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / (between + 1));
-  places.push_back(breaks.back());
-  return places;
+  return nurbs::divided(surface.knots_v, surface.degree_v, between + 1);
 }
 
 }  // namespace selvage::contact

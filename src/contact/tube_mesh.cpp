@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "contact/patch.h"
+#include "nurbs/divided.h"
 
 namespace selvage::contact {
 
@@ -13,15 +14,6 @@ constexpr double quads_round = 64.0, quads_a_thickness = 6.0;
 
 double wrapped(double t, double first, double last) {
   return t - (last - first) * std::floor((t - first) / (last - first));
-}
-
-// Equal parts between neighbouring places.
-std::vector<double> divided(const std::vector<double>& places, const std::vector<int>& parts) {
-  std::vector<double> all;
-  for (std::size_t k = 0; k + 1 < places.size(); ++k)
-    for (int i = 0; i < parts[k]; ++i) all.push_back(places[k] + (places[k + 1] - places[k]) * i / parts[k]);
-  all.push_back(places.back());
-  return all;
 }
 
 class TubeMesher {
@@ -34,7 +26,8 @@ class TubeMesher {
     const nurbs::Surface& s = *face.surface;
     std::vector<double> us = nurbs::breakpoints(s.knots_u, s.degree_u);
     const double spans = static_cast<double>(us.size() - 1);
-    us = divided(us, std::vector<int>(us.size() - 1, static_cast<int>(std::ceil(quads_round / spans))));
+    us =
+        nurbs::divided(us, std::vector<int>(us.size() - 1, static_cast<int>(std::ceil(quads_round / spans))));
     const std::vector<double> vs = rows(us);
     std::vector<double> within;
     for (const double v : vs) within.push_back(face.round_v ? wrapped(v, s.first_v(), s.last_v()) : v);
@@ -77,7 +70,7 @@ class TubeMesher {
       }
       parts.push_back(static_cast<int>(std::clamp(std::ceil(length / longest), 1.0, 1e4)));
     }
-    return divided(places, parts);
+    return nurbs::divided(places, parts);
   }
 
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, bool flip, std::int32_t face) {
@@ -106,7 +99,7 @@ class TubeMesher {
       const auto fine = [](const std::vector<double>& knots, int degree) {
         const std::vector<double> breaks = nurbs::breakpoints(knots, degree);
         const auto parts = static_cast<int>(std::ceil(16.0 / static_cast<double>(breaks.size() - 1)));
-        return divided(breaks, std::vector<int>(breaks.size() - 1, parts));
+        return nurbs::divided(breaks, std::vector<int>(breaks.size() - 1, parts));
       };
       const std::vector<double> us = fine(e.knots_u, e.degree_u), vs = fine(e.knots_v, e.degree_v);
       const std::size_t first = mesh_.vertices.size();

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/plane.h"
+#include "nurbs/divided.h"
 #include "yarn/outline.h"
 
 namespace selvage::fabric {
@@ -31,11 +32,9 @@ std::vector<Vec2> outline_polygon(const yarn::Section& section, int looks) {
   curve.knots = outline.knots;
   for (const Vec2& p : outline.points) curve.points.emplace_back(p.x(), p.y(), 0.0);
   std::vector<Vec2> polygon;
-  const std::vector<double> breaks = nurbs::breakpoints(curve.knots, curve.degree);
-  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
-    for (int i = 0; i < looks; ++i)
-      polygon.push_back(
-          nurbs::evaluate(curve, breaks[k] + (breaks[k + 1] - breaks[k]) * i / looks).head<2>());
+  for (const double t : nurbs::divided(curve.knots, curve.degree, looks))
+    polygon.push_back(nurbs::evaluate(curve, t).head<2>());
+  polygon.pop_back();  // it is the first again
   return polygon;
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fabric/cell_faces.h"
-#include "nurbs/spline.h"
+#include "nurbs/divided.h"
 
 namespace selvage::fabric {
 
@@ -20,17 +20,6 @@ Vec3 across_axis(Vec3 v, int axis) {
   return v;
 }
 
-// Parameters that follow a curve: so many in each of its spans.
-std::vector<double> parameters_of(const nurbs::Curve& curve, int a_span) {
-  const std::vector<double> breaks = nurbs::breakpoints(curve.knots, curve.degree);
-  std::vector<double> parameters;
-  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
-    for (int i = 0; i < a_span; ++i)
-      parameters.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / a_span);
-  parameters.push_back(breaks.back());
-  return parameters;
-}
-
 struct Crossing {
   std::size_t body = 0;
   Vec3 at = Vec3::Zero(), direction = Vec3::Zero();  // unit
@@ -40,7 +29,7 @@ struct Crossing {
 std::vector<Crossing> crossings(const nurbs::Curve& curve, int axis, double plane) {
   constexpr int a_span = 8, halvings = 60;
   constexpr double along = 1e-9;  // what runs in the plane is on both sides of it by rounding
-  const std::vector<double> parameters = parameters_of(curve, a_span);
+  const std::vector<double> parameters = nurbs::divided(curve.knots, curve.degree, a_span);
   std::vector<Crossing> found;
   const auto height = [&](double t) { return nurbs::evaluate(curve, t)[axis] - plane; };
   for (std::size_t k = 0; k + 1 < parameters.size(); ++k) {
@@ -180,7 +169,8 @@ class Lines {
     constexpr int a_span = 16;
     for (const yarn::Body& body : bodies) {
       std::vector<Vec3> line;
-      for (const double t : parameters_of(body.axis, a_span)) line.push_back(nurbs::evaluate(body.axis, t));
+      for (const double t : nurbs::divided(body.axis.knots, body.axis.degree, a_span))
+        line.push_back(nurbs::evaluate(body.axis, t));
       for (const Vec3& p : line) box_.extend(p);
       lines_.push_back(std::move(line));
     }

@@ -6,6 +6,8 @@
 #include <deque>
 #include <limits>
 
+#include "nurbs/divided.h"
+
 namespace selvage::fem {
 namespace {
 
@@ -70,10 +72,7 @@ class Areas {
  public:
   explicit Areas(const yarn::Body& body) {
     constexpr int parts = 8;  // of a span
-    const std::vector<double> breaks = nurbs::breakpoints(body.surface.knots_v, body.surface.degree_v);
-    for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
-      for (int k = 0; k < parts; ++k) places_.push_back(breaks[i] + (breaks[i + 1] - breaks[i]) * k / parts);
-    places_.push_back(breaks.back());
+    places_ = nurbs::divided(body.surface.knots_v, body.surface.degree_v, parts);
     areas_.resize(places_.size(), unknown);
     body_ = &body;
   }
@@ -188,11 +187,7 @@ double section_area(const yarn::Body& body, double v) {
 
 double section_perimeter(const yarn::Body& body, double v) {
   constexpr int parts = 16;  // of a span
-  const std::vector<double> breaks = nurbs::breakpoints(body.surface.knots_u, body.surface.degree_u);
-  std::vector<double> us;
-  for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
-    for (int k = 0; k < parts; ++k) us.push_back(breaks[i] + (breaks[i + 1] - breaks[i]) * k / parts);
-  us.push_back(breaks.back());
+  const std::vector<double> us = nurbs::divided(body.surface.knots_u, body.surface.degree_u, parts);
   const std::vector<Vec3> points = nurbs::evaluate_grid(body.surface, us, {v});
   double length = 0;
   for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();

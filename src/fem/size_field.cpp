@@ -6,6 +6,7 @@
 
 #include "core/box_tree.h"
 #include "core/parallel.h"
+#include "nurbs/divided.h"
 
 namespace selvage::fem {
 
@@ -106,13 +107,12 @@ struct Facet {
 
 std::vector<double> divided(const std::vector<double>& breaks, double length, double step) {
   const double range = breaks.back() - breaks.front();
-  std::vector<double> result;
+  std::vector<int> parts;
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
     const double part = (breaks[k + 1] - breaks[k]) / range * length / step;
-    const auto count = static_cast<int>(std::clamp(std::ceil(part), 1.0, 1e5));
-    for (int i = 0; i < count; ++i) result.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / count);
+    parts.push_back(static_cast<int>(std::clamp(std::ceil(part), 1.0, 1e5)));
   }
-  return result;
+  return nurbs::divided(breaks, parts);
 }
 
 double row_length(const nurbs::Surface& surface, double v) {
@@ -154,10 +154,11 @@ Raster raster_of(const yarn::Body& body, std::uint32_t number, const Box3& near,
     round = std::max(round,
                      row_length(surface, surface.first_v() + (surface.last_v() - surface.first_v()) * j / 4));
   raster.us = divided(breaks, round, std::min(step, round / 24));
+  raster.us.pop_back();  // it is the first again
   for (const double u : raster.us)
     raster.is_crest.push_back(std::binary_search(crests.begin(), crests.end(), u));
-  std::vector<double> vs = divided(nurbs::breakpoints(surface.knots_v, surface.degree_v), body.length, step);
-  vs.push_back(surface.last_v());
+  const std::vector<double> vs =
+      divided(nurbs::breakpoints(surface.knots_v, surface.degree_v), body.length, step);
   const double reach = yarn::widest_section(body);
   const std::vector<Vec3> some = nurbs::evaluate_grid(surface, {surface.first_u()}, vs);
   bool last_kept = false;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/plane.h"
+#include "nurbs/divided.h"
 
 namespace selvage::fem {
 namespace {
@@ -77,14 +78,11 @@ class Columns {
 // The spans of a knot vector cut into steps; `length` says how long the span between two parameters is.
 template <class Length>
 std::vector<double> steps(const std::vector<double>& breaks, double edge, const Length& length) {
-  std::vector<double> result;
-  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
-    const double wanted = std::ceil(length(breaks[i], breaks[i + 1]) / edge);
-    const int parts = static_cast<int>(std::clamp(wanted, 2.0, 1000.0));
-    for (int k = 0; k < parts; ++k) result.push_back(breaks[i] + (breaks[i + 1] - breaks[i]) * k / parts);
-  }
-  result.push_back(breaks.back());
-  return result;
+  std::vector<int> parts;
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
+    parts.push_back(
+        static_cast<int>(std::clamp(std::ceil(length(breaks[i], breaks[i + 1]) / edge), 2.0, 1000.0)));
+  return nurbs::divided(breaks, parts);
 }
 
 }  // namespace
