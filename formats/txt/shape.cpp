@@ -82,7 +82,7 @@ bool is_good_row(Parser& p, const PathRows& rows, const std::array<double, 6>& r
   }
   // Control points may coincide: that only stiffens the curve there.
   const bool same = !path.points.empty() && path.points.back() == Vec3(row[0], row[1], row[2]);
-  if (!same || path.form == Path::Form::control) return true;
+  if (!same || path.form == yarn::PathForm::control) return true;
   p.error(p.statement(), "this point equals the one before it: the yarn has no direction between them");
   return false;
 }
@@ -351,9 +351,9 @@ fabric::Path read_path(Parser& p, ShapeReading& reading) {
   static const Table<PathRows> table({}, read_path_row);
   Path path;
   path.place = reading.spot.place();
-  const auto form = p.more() ? p.choice("form of path", path_words) : Path::Form::chord;
+  const auto form = p.more() ? p.choice("form of path", path_words) : yarn::PathForm::chord;
   if (form) p.finish();
-  path.form = form.value_or(Path::Form::chord);
+  path.form = form.value_or(yarn::PathForm::chord);
   reading.good = true;
   PathRows rows{path, reading};
   const bool complete = p.read_block("path", "", reading.spot, table, rows);
@@ -361,7 +361,7 @@ fabric::Path read_path(Parser& p, ShapeReading& reading) {
   if (complete && rows.seen < 2) {
     p.error(p.last(), fmt::format("a path has at least 2 rows; this one has {}", rows.seen));
     reading.good = false;
-  } else if (complete && reading.good && path.form == Path::Form::control && all_equal(path.points)) {
+  } else if (complete && reading.good && path.form == yarn::PathForm::control && all_equal(path.points)) {
     p.error(reading.last_row, "the path has no length: all its control points are the same");
     reading.good = false;
   }

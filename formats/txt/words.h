@@ -40,12 +40,12 @@ inline constexpr std::array<Word<Role>, 8> role_words{{{"warp", Role::warp},
                                                        {"axial", Role::axial},
                                                        {"binder", Role::binder},
                                                        {"other", Role::other}}};
-inline constexpr std::array<Word<Path::Form>, 6> path_words{{{"chord", Path::Form::chord},
-                                                             {"uniform", Path::Form::uniform},
-                                                             {"centripetal", Path::Form::centripetal},
-                                                             {"polyline", Path::Form::polyline},
-                                                             {"control", Path::Form::control},
-                                                             {"loop", Path::Form::loop}}};
+inline constexpr std::array<Word<yarn::PathForm>, 6> path_words{{{"chord", yarn::PathForm::chord},
+                                                                 {"uniform", yarn::PathForm::uniform},
+                                                                 {"centripetal", yarn::PathForm::centripetal},
+                                                                 {"polyline", yarn::PathForm::polyline},
+                                                                 {"control", yarn::PathForm::control},
+                                                                 {"loop", yarn::PathForm::loop}}};
 // Behind a row of a path.
 inline constexpr std::string_view fixed_word = "fixed";
 inline constexpr std::array<Word<Draft::Form>, 5> draft_words{{{"plain", Draft::Form::plain},
@@ -62,10 +62,10 @@ inline constexpr std::array<Word<Weave::Profile>, 5> profile_words{
 inline constexpr std::array<Word<bool>, 2> binder_words{{{"first", true}, {"levels", false}}};
 inline constexpr std::array<Word<Knit::Form>, 3> knit_words{
     {{"jersey", Knit::Form::jersey}, {"purl", Knit::Form::purl}, {"rib", Knit::Form::rib}}};
-inline constexpr std::array<Word<Knit::Method>, 3> knit_method_words{
-    {{"uniform", Knit::Method::uniform},
-     {"chord", Knit::Method::chord},
-     {"centripetal", Knit::Method::centripetal}}};
+inline constexpr std::array<Word<nurbs::Parameterization>, 3> knit_method_words{
+    {{"uniform", nurbs::Parameterization::uniform},
+     {"chord", nurbs::Parameterization::chord},
+     {"centripetal", nurbs::Parameterization::centripetal}}};
 inline constexpr std::array<Word<Warpknit::Stitch>, 2> stitch_words{
     {{"closed", Warpknit::Stitch::closed}, {"open", Warpknit::Stitch::open}}};
 inline constexpr std::array<Word<std::string_view>, 7> classic_words{{{"tricot", "tricot"},

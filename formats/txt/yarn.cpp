@@ -86,8 +86,8 @@ void check_yarn(Parser& p, const YarnReading& reading) {
   const Yarn& yarn = reading.yarn;
   const auto* path = std::get_if<Path>(&yarn.shape);
   if (path != nullptr && yarn.closed && reading.shape.good) check_closed_path(p, reading, *path);
-  if (reading.tangent && (path == nullptr || yarn.closed || path->form == Path::Form::control ||
-                          path->form == Path::Form::polyline || path->form == Path::Form::loop))
+  if (reading.tangent && (path == nullptr || yarn.closed || path->form == yarn::PathForm::control ||
+                          path->form == yarn::PathForm::polyline || path->form == yarn::PathForm::loop))
     p.report.warning(*reading.tangent,
                      "this tangent changes nothing: only open paths through data points have end tangents");
   if (reading.up && path == nullptr)

@@ -38,7 +38,7 @@ T required(Result<T> result) {
   return std::move(*result);
 }
 
-fabric::Fabric jersey(int size, fabric::Knit::Method method) {
+fabric::Fabric jersey(int size, nurbs::Parameterization method) {
   fabric::Fabric cloth;
   fabric::Thread thread;
   thread.name = "cotton30";
@@ -158,7 +158,7 @@ Options options_of(int count, char** words) {
 }
 
 // Medians of runs in turns: ours, and the peer on the same data points and parameters.
-std::string line_row(std::string_view name, fabric::Knit::Method method, int size, int repeats) {
+std::string line_row(std::string_view name, nurbs::Parameterization method, int size, int repeats) {
   const fabric::Fabric cloth = jersey(size, method);
   const fabric::YarnBuilder builder = builder_of(cloth);
   const fabric::YarnPlan plan = required(builder.plan(0));
@@ -188,7 +188,7 @@ std::string joined(const std::vector<std::string>& rows) {
 
 int main(int count, char** words) {
   const Options options = options_of(count, words);
-  using Method = fabric::Knit::Method;
+  using Method = nurbs::Parameterization;
   const std::vector<std::pair<std::string_view, Method>> methods = {
       {"uniform", Method::uniform}, {"chord", Method::chord}, {"centripetal", Method::centripetal}};
   std::vector<std::string> lines, bodies;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "fabric/grid_net.h"
 #include "yarn/ends.h"
 #include "yarn/grid.h"
 
@@ -23,7 +22,7 @@ bool same_numbers(const nurbs::Surface& a, const nurbs::Surface& b) {
 // What the grid gives, and whether that is the body's surface.
 bool gives(const Grid& grid, const yarn::Body& body, yarn::Body& built) {
   built = {};
-  return yarn::fill_from_grid(built, net_of(grid, false)).ok() && built.closed_along == body.closed_along &&
+  return yarn::fill_from_grid(built, grid).ok() && built.closed_along == body.closed_along &&
          same_numbers(built.surface, body.surface);
 }
 

@@ -13,7 +13,6 @@
 
 #include "fabric/braid.h"
 #include "fabric/edits.h"
-#include "fabric/grid_net.h"
 #include "fabric/knit.h"
 #include "fabric/plies.h"
 #include "fabric/quantities.h"
@@ -415,7 +414,9 @@ Result<yarn::Body> YarnBuilder::build_grid(const Yarn& yarn) const {
   // Its rows are as they are; the word `rotate` says that the fibres keep to their columns.
   const std::optional<Twist> twist = resolved_thread(*fabric_, yarn).twist;
   body.section_turns = twist && twist->rotates && twist->turns != 0.0;
-  Status filled = yarn::fill_from_grid(body, net_of(grid, yarn.closed));
+  yarn::GridNet net = grid;
+  net.closed_along = net.closed_along || yarn.closed;
+  Status filled = yarn::fill_from_grid(body, net);
   if (!filled) {
     filled.error().place = grid.place;
     return filled.error();

@@ -27,18 +27,6 @@ constexpr double least_gap_share = 0.01;  // of the thickness, between two yarns
 // Loops whose moves are solved for, at most: larger repeats are left as published.
 constexpr long long most_solved = 10'000;
 
-nurbs::Parameterization parameterization_of(Knit::Method method) {
-  switch (method) {
-    case Knit::Method::uniform:
-      return nurbs::Parameterization::uniform;
-    case Knit::Method::centripetal:
-      return nurbs::Parameterization::centripetal;
-    case Knit::Method::chord:
-      break;
-  }
-  return nurbs::Parameterization::chord;
-}
-
 class KnitConstruction final : public Construction {
  public:
   KnitConstruction(const Fabric& fabric, const Knit& knit, const Thread& thread, KnitField field,
@@ -111,7 +99,7 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
   moves_.apply(course(index), field_.last_wale + 1, points, points.size() - 1);
   place_from(points.size() - 1, field_.last_wale + 1);
   plan->spec.guide = yarn::FrameGuide::with_up(Vec3::UnitZ());
-  plan->line = course_line(points, parameterization_of(knit_.method.value_or(Knit::Method::chord)));
+  plan->line = course_line(points, knit_.method.value_or(nurbs::Parameterization::chord));
   return plan;
 }
 
@@ -138,7 +126,7 @@ KnitMoves moves_of(const Fabric& fabric, const Knit& knit, const yarn::Section& 
   const double tolerance = tolerance_of(fabric, {});
   const double share = options.gap > 0.0 ? options.gap : least_gap_share * std::min(size.width, size.height);
   const double gap = std::max(share, 2.0 * tolerance);
-  KnitMoves moves(field, {.how = parameterization_of(knit.method.value_or(Knit::Method::chord)),
+  KnitMoves moves(field, {.how = knit.method.value_or(nurbs::Parameterization::chord),
                           .section = section,
                           .half = Vec2(size.width / 2, size.height / 2),
                           .turns = section_twist(*fabric.find_thread(knit.thread), fabric.units) != 0.0 &&

@@ -15,6 +15,8 @@
 #include "core/units.h"
 #include "core/vec.h"
 #include "yarn/body.h"
+#include "yarn/grid.h"
+#include "yarn/path.h"
 #include "yarn/section.h"
 
 namespace selvage::fabric {
@@ -96,8 +98,7 @@ struct SizeAt {
 };
 
 struct Path {
-  enum class Form { chord, uniform, centripetal, polyline, control, loop };
-  Form form = Form::chord;
+  yarn::PathForm form = yarn::PathForm::chord;
   TextPlace place;
   std::vector<Vec3> points;
   // Empty when no row carries a size; else one entry a point (a row without a size has nullopt).
@@ -109,18 +110,9 @@ struct Path {
       lines;  // source line of each row; empty when the rows stand on consecutive lines after `place`
 };
 
-// Control points of the surface itself: `sections` rows of `per_section` points, section after section.
-struct Grid {
+// Control points of the surface itself. `closed_along`: the word `closed` of the grid, not that of the yarn.
+struct Grid : yarn::GridNet {
   TextPlace place;
-  int sections = 0;
-  int per_section = 0;
-  std::optional<int> degree_along, degree_round;
-  std::vector<double> knots_along, knots_round;  // empty: the default
-  bool open_round = false;                       // the rows are the clamped form, seam point at both ends
-  bool closed_along = false;                     // word `closed` of the grid: a ring
-  std::optional<std::array<double, 4>> corners;  // of the end patches: parameters round; none: found
-  std::vector<Vec3> points;
-  std::vector<double> weights;                     // empty: all 1
   std::array<std::optional<Vec3>, 2> fan_centres;  // at the start, at the end; none: the section's
 };
 
@@ -185,14 +177,13 @@ struct Weave {
 
 struct Knit {
   enum class Form { jersey, purl, rib, chart };
-  enum class Method { uniform, chord, centripetal };
   TextPlace place;
   Form form = Form::jersey;
   int rib_a = 0, rib_b = 0;
   std::string thread;
   TextPlace thread_place;
   int courses = 0, wales = 0;
-  std::optional<Method> method;
+  std::optional<nurbs::Parameterization> method;
   std::vector<std::string>
       chart;  // of 'K', 'P', 'T', 'M', top row = last course; empty unless `form` says so
   TextPlace chart_place;

@@ -88,31 +88,12 @@ std::vector<yarn::SectionSize> row_sizes(const Path& path, const yarn::Section& 
 Result<yarn::PathRows> path_rows_of(const Fabric& fabric, const Yarn& yarn, const Thread& thread) {
   const Path& path = std::get<Path>(yarn.shape);
   yarn::PathRows rows;
-  switch (path.form) {
-    case Path::Form::uniform:
-      rows.form = yarn::PathForm::uniform;
-      break;
-    case Path::Form::chord:
-      rows.form = yarn::PathForm::chord;
-      break;
-    case Path::Form::centripetal:
-      rows.form = yarn::PathForm::centripetal;
-      break;
-    case Path::Form::polyline:
-      rows.form = yarn::PathForm::polyline;
-      break;
-    case Path::Form::control:
-      rows.form = yarn::PathForm::control;
-      break;
-    case Path::Form::loop:
-      rows.form = yarn::PathForm::loop;
-      break;
-  }
+  rows.form = path.form;
   rows.points = path.points;
   rows.closed = yarn.closed;
   rows.tangent_start = yarn.tangent_start;
   rows.tangent_end = yarn.tangent_end;
-  if (path.form != Path::Form::polyline) return rows;
+  if (path.form != yarn::PathForm::polyline) return rows;
   Result<yarn::Section> section = section_of(thread, fabric.units, every_row_has_a_size(path));
   if (!section) return at_thread(fabric, yarn, section.error().text);
   const std::vector<yarn::SectionSize> sizes = row_sizes(path, *section);

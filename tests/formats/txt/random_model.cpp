@@ -164,7 +164,7 @@ class Maker {
   // --------------------------------------------------------------------------------------------------------
   Path path() {
     Path path;
-    path.form = static_cast<Path::Form>(up_to(5));
+    path.form = static_cast<yarn::PathForm>(up_to(5));
     const int rows = 3 + up_to(20);
     const bool sized = coin();
     for (int i = 0; i < rows; ++i) {
@@ -297,7 +297,7 @@ class Maker {
         knit.thread = one_of(threads_);
         knit.courses = count();
         knit.wales = count();
-        maybe(knit.method, [&] { return static_cast<Knit::Method>(up_to(2)); });
+        maybe(knit.method, [&] { return static_cast<nurbs::Parameterization>(up_to(2)); });
         if (knit.form == Knit::Form::chart) {
           const int rows = 1 + up_to(3), wales = 1 + up_to(4);
           for (int i = 0; i < rows; ++i) {

@@ -209,7 +209,7 @@ end
   EXPECT_EQ(yarn.tangent_start, Vec3(1, 0, 0));
   EXPECT_EQ(yarn.tangent_end, Vec3(0, 1, 0));
   const Path& path = path_of(fabric);
-  EXPECT_EQ(path.form, Path::Form::centripetal);
+  EXPECT_EQ(path.form, yarn::PathForm::centripetal);
   ASSERT_EQ(path.sizes.size(), 3U);
   EXPECT_FALSE(path.sizes[0]);
   EXPECT_EQ(path.sizes[1], (SizeAt{2, 1, std::nullopt}));
@@ -229,13 +229,14 @@ TEST(Reader, FixedRows) {
 }
 
 TEST(Reader, PathForms) {
-  const std::vector<std::pair<std::string, Path::Form>> forms = {{"", Path::Form::chord},
-                                                                 {"chord", Path::Form::chord},
-                                                                 {"uniform", Path::Form::uniform},
-                                                                 {"centripetal", Path::Form::centripetal},
-                                                                 {"polyline", Path::Form::polyline},
-                                                                 {"control", Path::Form::control},
-                                                                 {"loop", Path::Form::loop}};
+  const std::vector<std::pair<std::string, yarn::PathForm>> forms = {
+      {"", yarn::PathForm::chord},
+      {"chord", yarn::PathForm::chord},
+      {"uniform", yarn::PathForm::uniform},
+      {"centripetal", yarn::PathForm::centripetal},
+      {"polyline", yarn::PathForm::polyline},
+      {"control", yarn::PathForm::control},
+      {"loop", yarn::PathForm::loop}};
   for (const auto& [word, form] : forms)
     EXPECT_EQ(path_of(good("fabric 1\nyarn y\npath " + word + "\n0 0 0\n1 0 0\nend\nend")).form, form);
 }
@@ -374,7 +375,7 @@ end
   EXPECT_EQ(knit.form, Knit::Form::rib);
   EXPECT_EQ(knit.rib_a, 2);
   EXPECT_EQ(knit.rib_b, 1);
-  EXPECT_EQ(knit.method, Knit::Method::uniform);
+  EXPECT_EQ(knit.method, nurbs::Parameterization::uniform);
   const Warpknit& warpknit = item<Warpknit>(fabric, 1);
   ASSERT_EQ(warpknit.bars.size(), 2U);
   EXPECT_EQ(warpknit.bars[0].lapping, "1-0/1-2/2-3/2-1//");

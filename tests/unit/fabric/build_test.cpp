@@ -177,7 +177,7 @@ TEST(BuildTest, PolylineCornersUseTheSectionInThePlaneOfTheBend) {
   tow.section = yarn::Ellipse{0.8, 0.2};
   Yarn yarn = straight("y", 3);
   Path& path = std::get<Path>(yarn.shape);
-  path.form = Path::Form::polyline;
+  path.form = yarn::PathForm::polyline;
   path.points = {{0, 0, 0}, {2, 0, 0}, {2, 0, 2}, {2, 2, 2}};
   const Fabric fabric = fabric_of(tow, yarn);
   const Result<yarn::PathRows> rows = path_rows_of(fabric, yarn, tow);
@@ -196,7 +196,7 @@ TEST(BuildTest, PolylineCornersUseTheSectionInThePlaneOfTheBend) {
 TEST(BuildTest, LoopPathsTellHowFarTheyMissTheirPoints) {
   Yarn yarn = straight("y", 3);
   Path& path = std::get<Path>(yarn.shape);
-  path.form = Path::Form::loop;
+  path.form = yarn::PathForm::loop;
   path.points.clear();
   for (int i = 0; i < 9; ++i) path.points.emplace_back(i, std::sin(0.9 * i), 0.3 * std::cos(1.3 * i));
   Diagnostics diagnostics;

@@ -13,7 +13,7 @@ namespace selvage::fabric {
 namespace {
 
 // One round yarn of diameter 0.3 in a wave, in the plane y = 0.
-Fabric wave(Path::Form form, bool closed = false) {
+Fabric wave(yarn::PathForm form, bool closed = false) {
   Fabric fabric;
   fabric.file = "test.txt";
   Yarn yarn;
@@ -59,7 +59,7 @@ Vec3 joint_at(const nurbs::Curve& curve, int joint) {
 }
 
 TEST(Edits, ApplyInFileOrder) {
-  Fabric fabric = wave(Path::Form::chord);
+  Fabric fabric = wave(yarn::PathForm::chord);
   const Vec3 first(3, 0, 1), second(3.2, 0.4, 0.9);
   fabric.edits = {edit_of(Edit::Form::point, 4, first), edit_of(Edit::Form::point, 4, second),
                   edit_of(Edit::Form::length, 6, Vec3(0, 0, -1), 12.5)};
@@ -75,8 +75,9 @@ TEST(Edits, ApplyInFileOrder) {
 }
 
 TEST(Edits, LeaveEveryOtherControlPointAndTheSizesWhereTheyWere) {
-  for (const Path::Form form : {Path::Form::chord, Path::Form::uniform, Path::Form::centripetal,
-                                Path::Form::control, Path::Form::loop}) {
+  for (const yarn::PathForm form :
+       {yarn::PathForm::chord, yarn::PathForm::uniform, yarn::PathForm::centripetal, yarn::PathForm::control,
+        yarn::PathForm::loop}) {
     Fabric fabric = wave(form);
     const Result<YarnPlan> before = plan_of(fabric);
     ASSERT_TRUE(before.ok());
@@ -95,15 +96,15 @@ TEST(Edits, LeaveEveryOtherControlPointAndTheSizesWhereTheyWere) {
 
 TEST(Edits, JointsAreWhereTheFormatsPageSaysTheyAre) {
   for (const bool closed : {false, true}) {
-    const Fabric chord = wave(Path::Form::chord, closed);
+    const Fabric chord = wave(yarn::PathForm::chord, closed);
     const Result<YarnPlan> through = plan_of(chord);
     ASSERT_TRUE(through.ok());
     EXPECT_EQ(nurbs::joint_count(through->line.curve, closed), 8);
     for (int k = 1; k <= 8; ++k)
       EXPECT_LT((joint_at(through->line.curve, k) - through->points[static_cast<std::size_t>(k - 1)]).norm(),
                 1e-13);
-    const Result<YarnPlan> control = plan_of(wave(Path::Form::control, closed));
-    const Result<YarnPlan> loop = plan_of(wave(Path::Form::loop, closed));
+    const Result<YarnPlan> control = plan_of(wave(yarn::PathForm::control, closed));
+    const Result<YarnPlan> loop = plan_of(wave(yarn::PathForm::loop, closed));
     ASSERT_TRUE(control.ok() && loop.ok());
     EXPECT_EQ(nurbs::joint_count(control->line.curve, closed), closed ? 8 : 8 - 2);
     EXPECT_EQ(nurbs::joint_count(loop->line.curve, closed), closed ? 2 * 8 : 2 * 8 - 4);
@@ -118,7 +119,7 @@ TEST(Edits, JointsAreWhereTheFormatsPageSaysTheyAre) {
 // distance of the radius from the centre line, in the plane across it.
 TEST(Edits, TheTubeOfARationalCentreLineKeepsItsBound) {
   for (const bool closed : {false, true}) {
-    Fabric fabric = wave(Path::Form::chord, closed);
+    Fabric fabric = wave(yarn::PathForm::chord, closed);
     const Result<YarnPlan> plain = plan_of(fabric);
     ASSERT_TRUE(plain.ok());
     const Vec3 joint = joint_at(plain->line.curve, 4);
@@ -159,7 +160,7 @@ std::string refusal(const Fabric& fabric) {
 }
 
 TEST(Edits, AreRefusedAtTheirLines) {
-  Fabric fabric = wave(Path::Form::chord);
+  Fabric fabric = wave(yarn::PathForm::chord);
   fabric.edits = {edit_of(Edit::Form::point, 9, Vec3(0, 0, 0))};
   EXPECT_EQ(refusal(fabric), "test.txt:29:1: error: there is no joint 9: the centre line has 8 (yarn 'a')");
   fabric.edits = {edit_of(Edit::Form::weight, 4, Vec3(3, 2, 0))};
@@ -169,7 +170,7 @@ TEST(Edits, AreRefusedAtTheirLines) {
   fabric.edits = {edit_of(Edit::Form::length, 4, Vec3(0, 0, 1), 3.0)};
   EXPECT_NE(refusal(fabric).find("test.txt:24:1: error: joint 4 moved along (0, 0, 1)"), std::string::npos)
       << refusal(fabric);
-  Fabric corners = wave(Path::Form::polyline);
+  Fabric corners = wave(yarn::PathForm::polyline);
   for (const int joint : {1, 2}) {
     corners.edits = {edit_of(Edit::Form::point, joint, Vec3(0, 0, 0))};
     EXPECT_NE(refusal(corners).find("straights and arcs"), std::string::npos) << refusal(corners);

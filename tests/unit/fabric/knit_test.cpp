@@ -25,7 +25,7 @@ Fabric knitted(Knit knit) {
   return fabric;
 }
 
-Knit jersey(int courses, int wales, Knit::Method method = Knit::Method::chord) {
+Knit jersey(int courses, int wales, nurbs::Parameterization method = nurbs::Parameterization::chord) {
   Knit knit;
   knit.courses = courses;
   knit.wales = wales;
@@ -53,8 +53,8 @@ YarnPlan plan_of(const Fabric& fabric, std::size_t course, bool as_published = t
   return std::move(*plan);
 }
 
-const std::vector<Knit::Method> methods = {Knit::Method::uniform, Knit::Method::chord,
-                                           Knit::Method::centripetal};
+const std::vector<nurbs::Parameterization> methods = {
+    nurbs::Parameterization::uniform, nurbs::Parameterization::chord, nurbs::Parameterization::centripetal};
 
 TEST(Knit, JerseyHasThePublishedNinePoints) {
   const std::vector<Vec3> published = {{-4, -3, -1.5}, {-1, 0, 0},    {-2, 3.5, 1.5},
@@ -72,7 +72,7 @@ TEST(Knit, JerseyHasThePublishedNinePoints) {
 }
 
 TEST(Knit, EveryMethodMeetsTheDataPoints) {
-  for (const Knit::Method method : methods) {
+  for (const nurbs::Parameterization method : methods) {
     Knit knit = charted({"KPTM", "KKPP", "TKKP", "PKKK"}, 6, 40);
     knit.method = method;
     for (const Knit& each : {jersey(2, 60, method), knit}) {
@@ -179,7 +179,7 @@ TEST(Knit, LoopsThatAreMovedApartRepeatToTheLastBit) {
 
 // A loop is changed by little.
 TEST(Knit, LoopsThatAreMovedApartStayLoops) {
-  for (const Knit::Method method : methods) {
+  for (const nurbs::Parameterization method : methods) {
     const YarnPlan raw = plan_of(knitted(jersey(30, 30, method)), 15);
     const YarnPlan moved = plan_of(knitted(jersey(30, 30, method)), 15, false);
     for (std::size_t i = 0; i < raw.points.size(); ++i)
@@ -193,7 +193,7 @@ TEST(Knit, LoopsThatAreMovedApartStayLoops) {
 // A small cloth is its own mirror image as before. (In a large one loops that all are alike and symmetric
 // have no room: each leans to one side, all to the same.)
 TEST(Knit, SmallClothsStaySymmetric) {
-  for (const Knit::Method method : methods) {
+  for (const nurbs::Parameterization method : methods) {
     const std::vector<Vec3> points = plan_of(knitted(jersey(6, 6, method)), 2, false).points;
     const double both = points.front().x() + points.back().x();
     for (std::size_t i = 0; i < points.size(); ++i) {
