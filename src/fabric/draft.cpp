@@ -80,14 +80,6 @@ long long Drawdown::repeat_of_ends() const {
   });
 }
 
-std::vector<std::string> rows_of(const Drawdown& drawdown) {
-  std::vector<std::string> rows(static_cast<std::size_t>(drawdown.picks));
-  for (int pick = 0; pick < drawdown.picks; ++pick)
-    for (int end = 0; end < drawdown.ends; ++end)
-      rows[static_cast<std::size_t>(pick)] += drawdown.warp_on_top(pick, end) ? '1' : '0';
-  return rows;
-}
-
 Result<Drawdown> drawdown_of(const Draft& draft) {
   const long long a = draft.a;
   const long long b = draft.b;

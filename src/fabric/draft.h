@@ -31,9 +31,6 @@ struct Drawdown {
   bool operator==(const Drawdown&) const = default;
 };
 
-// Rows as Fabric TXT writes them, '1' where the warp is on top.
-std::vector<std::string> rows_of(const Drawdown& drawdown);
-
 // plain       10 / 01
 // twill a/b   over a, under b; from a pick to the next one end to the left: a Z twill. Period a + b both
 // ways. satin n/s   weft-faced: one warp on top a pick, s ends further to the left from pick to pick. basket

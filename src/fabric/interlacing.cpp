@@ -10,14 +10,6 @@
 
 namespace selvage::fabric {
 
-double peirce_pitch(double length, double spread, double angle) {
-  return (length - spread * angle) * std::cos(angle) + spread * std::sin(angle);
-}
-
-double peirce_height(double length, double spread, double angle) {
-  return (length - spread * angle) * std::sin(angle) + spread * (1.0 - std::cos(angle));
-}
-
 // The vector from one arc's centre to the other's is (p, h - D): its length is the hypotenuse of the straight
 // and D.
 std::optional<Bridge> find_bridge(double pitch, double height, double spread) {

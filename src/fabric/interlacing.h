@@ -20,10 +20,6 @@
 
 namespace selvage::fabric {
 
-// Peirce's formulas; angle in radians, any one unit of length.
-double peirce_pitch(double length, double spread, double angle);
-double peirce_height(double length, double spread, double angle);
-
 struct Bridge {
   double angle = 0;     // by which each arc turns, radians
   double straight = 0;  // length of the straight between the arcs

@@ -103,13 +103,6 @@ const Overlap& overlap_at(const Lapping& lapping, long long course) {
   return lapping[static_cast<std::size_t>(((course % length) + length) % length)];
 }
 
-Lap lap_at(const Lapping& lapping, long long course) {
-  const Overlap& overlap = overlap_at(lapping, course);
-  if (overlap.is_laid_in()) return Lap::laid_in;
-  const int underlap = overlap_at(lapping, course + 1).from - overlap.to;
-  return underlap * (overlap.to - overlap.from) < 0 ? Lap::closed : Lap::open;
-}
-
 std::vector<std::string_view> classic_lappings(std::string_view name, Warpknit::Stitch stitch) {
   for (const Classic& classic : classics())
     if (classic.name == name) return stitch == Warpknit::Stitch::open ? classic.open : classic.closed;

@@ -36,12 +36,6 @@ Result<Lapping> parse_lapping(std::string_view text, TextPlace place);
 // Any course of the endless chain, before its first one, too.
 const Overlap& overlap_at(const Lapping& lapping, long long course);
 
-enum class Lap { closed, open, laid_in };
-
-// Closed: the underlap that follows goes against the overlap, so that the loop's legs cross at its foot.
-// Without a following underlap (a pillar: 1-0/0-1) it is open.
-Lap lap_at(const Lapping& lapping, long long course);
-
 // The lappings of a warp knit that is known by its name, front bar first; none: the name is unknown.
 // Open: the same needles in the same courses, every lap an open one.
 std::vector<std::string_view> classic_lappings(std::string_view name, Warpknit::Stitch stitch);

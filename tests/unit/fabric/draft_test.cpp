@@ -20,6 +20,15 @@ Draft named(Draft::Form form, int a = 0, int b = 0) {
   return draft;
 }
 
+// Rows as Fabric TXT writes them, '1' where the warp is on top.
+Rows rows_of(const Drawdown& drawdown) {
+  Rows rows(static_cast<std::size_t>(drawdown.picks));
+  for (int pick = 0; pick < drawdown.picks; ++pick)
+    for (int end = 0; end < drawdown.ends; ++end)
+      rows[static_cast<std::size_t>(pick)] += drawdown.warp_on_top(pick, end) ? '1' : '0';
+  return rows;
+}
+
 Draft rows(Rows rows) {
   Draft draft;
   draft.form = Draft::Form::rows;

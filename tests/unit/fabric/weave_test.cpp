@@ -96,6 +96,15 @@ double steepest(const nurbs::Curve& curve) {
   return angle;
 }
 
+// Peirce's formulas; angle in radians.
+double peirce_pitch(double length, double spread, double angle) {
+  return (length - spread * angle) * std::cos(angle) + spread * std::sin(angle);
+}
+
+double peirce_height(double length, double spread, double angle) {
+  return (length - spread * angle) * std::sin(angle) + spread * (1.0 - std::cos(angle));
+}
+
 TEST(Weave, PeircesFormulasGiveTheirPublishedNumbers) {
   const double t = pi / 6.0;
   EXPECT_NEAR(peirce_pitch(1.5, 1.0, t), 1.34559, 1e-5);
