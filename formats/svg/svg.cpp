@@ -6,7 +6,7 @@
 
 #include "core/number_text.h"
 #include "core/text_buffer.h"
-#include "core/text_report.h"
+#include "core/xml_text.h"
 
 namespace selvage::formats::svg {
 
@@ -109,28 +109,6 @@ class Writer final : public BodyWriter {
 };
 
 }  // namespace
-
-std::string xml_text(std::string_view text) {
-  std::string out;
-  while (!text.empty()) {
-    const std::size_t good = text_prefix(text);
-    for (const char c : text.substr(0, good)) {
-      if (c == '&')
-        out += "&amp;";
-      else if (c == '<')
-        out += "&lt;";
-      else if (c == '>')
-        out += "&gt;";
-      else if (c == '"')
-        out += "&quot;";
-      else
-        out += c;
-    }
-    if (good < text.size()) out += "\xEF\xBF\xBD";
-    text.remove_prefix(std::min(good + 1, text.size()));
-  }
-  return out;
-}
 
 const Descriptor& descriptor() {
   static const Descriptor self = {

@@ -2,14 +2,9 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace selvage::pipeline {
-
-// Text as it may stand in XML 1.0, in an element or in quotes; bytes that are no UTF-8 and characters that
-// XML does not know become '?'.
-std::string xml_text(std::string_view text);
 
 struct JunitInput {
   std::string path;

@@ -49,13 +49,6 @@ TEST(Svg, SmallPieceToTheLetter) {
       "</g>\n</svg>\n");
 }
 
-TEST(Svg, TextThatXmlMayHold) {
-  EXPECT_EQ(xml_text("<a&\"b\">"), "&lt;a&amp;&quot;b&quot;&gt;");
-  EXPECT_EQ(xml_text("\xC3\xA9\xE4\xBD\x93"), "\xC3\xA9\xE4\xBD\x93");
-  EXPECT_EQ(xml_text("a\x01z\xFFq"), "a\xEF\xBF\xBDz\xEF\xBF\xBDq");
-  EXPECT_EQ(xml_text(""), "");
-}
-
 TEST(Svg, HoldsNoYarnsAndIsNeverEmpty) {
   Result<OutputFile> output = OutputFile::in_memory();
   Result<std::unique_ptr<BodyWriter>> writer = descriptor().open_bodies(*output, {});
