@@ -132,11 +132,8 @@ class CellFile {
     }
     for (std::size_t i = 0; i < topology_.curves.size(); ++i) {
       const Curve& curve = topology_.curves[i];
-      Box3 box;
-      for (const auto& edge : curve.edges)
-        for (const std::size_t node : edge) box.extend(mesh_.nodes[node]);
       text_ << i + 1 << ' ';
-      write_box(text_, box);
+      write_box(text_, box_of(curve.edges));
       text_ << "1 1 2 " << curve.first + 1 << " -" << curve.last + 1 << '\n';
     }
     for (std::size_t i = 0; i < topology_.surfaces.size(); ++i) write_surface(i);
@@ -144,13 +141,17 @@ class CellFile {
     text_ << "$EndEntities\n";
   }
 
+  [[nodiscard]] Box3 box_of(const auto& lists_of_nodes) const {
+    Box3 box;
+    for (const auto& nodes : lists_of_nodes)
+      for (const std::size_t node : nodes) box.extend(mesh_.nodes[node]);
+    return box;
+  }
+
   void write_surface(std::size_t i) {
     const Surface& surface = topology_.surfaces[i];
-    Box3 box;
-    for (const auto& side : surface.sides)
-      for (const std::size_t node : side) box.extend(mesh_.nodes[node]);
     text_ << i + 1 << ' ';
-    write_box(text_, box);
+    write_box(text_, box_of(surface.sides));
     text_ << "1 " << group_of_[i] << ' ' << surface.curves.size();
     for (const std::size_t curve : surface.curves) text_ << ' ' << curve + 1;
     text_ << '\n';

@@ -235,29 +235,29 @@ const std::vector<Statement<Thread>>& thread_statements() {
   return list;
 }
 
+// A block that others refer to by its name.
+template <class Named>
+static void read_named(Parser& p, const Table<Named>& table, Names& names, std::string_view word,
+                       std::vector<Named>& all) {
+  Named made;
+  const Spot opened = p.statement();
+  made.place = opened.place();
+  const auto name = p.new_name(names);
+  if (name) p.finish();
+  made.name = name.value_or("");
+  p.read_block(word, made.name, opened, table, made);
+  all.push_back(std::move(made));
+}
+
 void read_thread(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   static const Table<Thread> table(thread_statements());
-  Thread thread;
-  const Spot opened = p.statement();
-  thread.place = opened.place();
-  const auto name = p.new_name(p.threads);
-  if (name) p.finish();
-  thread.name = name.value_or("");
-  p.read_block(word, thread.name, opened, table, thread);
-  fabric.threads.push_back(std::move(thread));
+  read_named(p, table, p.threads, word, fabric.threads);
 }
 
 void read_material(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   static const Table<Material> table(
       {{"density", read_material_density}, {"elastic", read_elastic}, {"expansion", read_expansion}});
-  Material material;
-  const Spot opened = p.statement();
-  material.place = opened.place();
-  const auto name = p.new_name(p.materials);
-  if (name) p.finish();
-  material.name = name.value_or("");
-  p.read_block(word, material.name, opened, table, material);
-  fabric.materials.push_back(std::move(material));
+  read_named(p, table, p.materials, word, fabric.materials);
 }
 
 }  // namespace selvage::formats::txt

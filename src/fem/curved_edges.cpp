@@ -191,10 +191,6 @@ class Steps {
 
 }  // namespace
 
-std::uint64_t edge_key(std::uint64_t a, std::uint64_t b) {
-  return std::min(a, b) << 32U | std::max(a, b);
-}
-
 // Regula falsi, Illinois form.
 Vec3 middle_on_surface(const yarn::Body& body, const SurfaceEnd& from, const SurfaceEnd& to) {
   const EdgeLine line(body, from.parameters, to.parameters);

@@ -6,14 +6,12 @@
 #include <span>
 #include <vector>
 
+#include "fem/edge_key.h"
 #include "fem/mesh.h"
 #include "fem/midside.h"
 #include "yarn/body.h"
 
 namespace selvage::fem {
-
-// Of an edge between two nodes, whichever comes first.
-std::uint64_t edge_key(std::uint64_t a, std::uint64_t b);
 
 // An edge of the boundary and where its middle is wanted.
 struct CurvedEdge {

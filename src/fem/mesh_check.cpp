@@ -8,6 +8,7 @@
 
 #include "core/groups.h"
 #include "fem/cell_sides.h"
+#include "fem/edge_key.h"
 
 namespace selvage::fem {
 namespace {
@@ -102,7 +103,7 @@ Status check_surface(std::span<const Vec3> points, std::span<const Triangle> tri
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = triangles[i][k], b = triangles[i][(k + 1) % 3];
-      const std::uint64_t edge = std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+      const std::uint64_t edge = edge_key(a, b);
       const int sense = a < b ? 1 : -1;
       if (sides[i].behind != Sides::outside) uses.push_back({sides[i].behind, edge, sense});
       if (sides[i].front != Sides::outside) uses.push_back({sides[i].front, edge, -sense});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "fem/edge_key.h"
 #include "fem/triangle_mesh.h"
 
 namespace selvage::fem {
@@ -14,10 +15,6 @@ constexpr int most_rounds = 60;
 constexpr double too_long = 1.45;  // an edge, over the wanted length
 constexpr double too_near = 0.65;  // new points to each other, likewise
 constexpr double beside_fixed = 0.8;
-
-std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
-  return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
-}
 
 // Points that are not too near to each other, in cells of the largest wanted length.
 class Spread {
@@ -71,7 +68,7 @@ class Filler {
     fixed_lengths_.assign(region.points.size(), 0);
     for (const solid::PlanarSegment& s : region.segments) {
       mesh_.fixed_edges.push_back({s.from, s.to});
-      segments_.push_back(key_of(s.from, s.to));
+      segments_.push_back(edge_key(s.from, s.to));
       const double length = (region.points[s.from] - region.points[s.to]).norm();
       for (const std::uint32_t end : {s.from, s.to})
         fixed_lengths_[end] = std::max(fixed_lengths_[end], length);
@@ -103,7 +100,7 @@ class Filler {
   [[nodiscard]] std::vector<LongEdge> long_edges() const {
     std::vector<std::uint64_t> keys;
     for (const auto& t : mesh_.triangles)
-      for (std::size_t k = 0; k < 3; ++k) keys.push_back(key_of(t[k], t[(k + 1) % 3]));
+      for (std::size_t k = 0; k < 3; ++k) keys.push_back(edge_key(t[k], t[(k + 1) % 3]));
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     std::vector<LongEdge> result;

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <unordered_set>
 
+#include "fem/edge_key.h"
 #include "fem/triangle_mesh.h"
 
 namespace selvage::fem {
@@ -16,15 +17,11 @@ constexpr double least_alignment = 0.5;            // cosine between a triangle 
 constexpr int rounds = 6, last_rounds = 6;
 constexpr double good_angle = 35;  // degrees: smoothing may take from angles above it
 
-std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
-  return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
-}
-
 class Remesher {
  public:
   Remesher(TriangleMesh& mesh, const Support& support, const SizeField& field)
       : mesh_(mesh), support_(support), field_(field) {
-    for (const auto& edge : mesh.fixed_edges) fixed_.insert(key_of(edge[0], edge[1]));
+    for (const auto& edge : mesh.fixed_edges) fixed_.insert(edge_key(edge[0], edge[1]));
     stars_.resize(mesh.points.size());
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
       for (const std::uint32_t corner : mesh.triangles[t]) stars_[corner].push_back(t);
@@ -112,10 +109,23 @@ class Remesher {
     std::vector<std::uint64_t> keys;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
       for (std::size_t k = 0; alive_[t] && k < 3; ++k)
-        keys.push_back(key_of(mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3]));
+        keys.push_back(edge_key(mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3]));
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     return keys;
+  }
+
+  struct Rated {
+    double ratio;  // length over the wanted one
+    std::uint32_t a, b;
+  };
+  [[nodiscard]] std::vector<Rated> rated_edges() const {
+    std::vector<Rated> all;
+    for (const std::uint64_t key : edges()) {
+      const auto a = static_cast<std::uint32_t>(key >> 32U), b = static_cast<std::uint32_t>(key);
+      all.push_back({ratio(a, b), a, b});
+    }
+    return all;
   }
 
   void split_long();
@@ -144,20 +154,13 @@ class Remesher {
 };
 
 void Remesher::split_long() {
-  struct Long {
-    double ratio;
-    std::uint64_t key;
-  };
-  std::vector<Long> found;
-  for (const std::uint64_t key : edges()) {
-    if (fixed_.contains(key)) continue;
-    const double r = ratio(static_cast<std::uint32_t>(key >> 32U), static_cast<std::uint32_t>(key));
-    if (r > too_long) found.push_back({r, key});
-  }
+  std::vector<Rated> found = rated_edges();
+  std::erase_if(found, [&](const Rated& edge) {
+    return !(edge.ratio > too_long) || fixed_.contains(edge_key(edge.a, edge.b));
+  });
   std::stable_sort(found.begin(), found.end(),
-                   [](const Long& x, const Long& y) { return x.ratio > y.ratio; });
-  for (const Long& edge : found)
-    split(static_cast<std::uint32_t>(edge.key >> 32U), static_cast<std::uint32_t>(edge.key));
+                   [](const Rated& x, const Rated& y) { return x.ratio > y.ratio; });
+  for (const Rated& edge : found) split(edge.a, edge.b);
 }
 
 bool Remesher::split(std::uint32_t a, std::uint32_t b) {
@@ -195,19 +198,11 @@ bool Remesher::split(std::uint32_t a, std::uint32_t b) {
 }
 
 void Remesher::collapse_short() {
-  struct Short {
-    double ratio;
-    std::uint64_t key;
-  };
-  std::vector<Short> found;
-  for (const std::uint64_t key : edges()) {
-    const double r = ratio(static_cast<std::uint32_t>(key >> 32U), static_cast<std::uint32_t>(key));
-    if (r < too_short) found.push_back({r, key});
-  }
+  std::vector<Rated> found = rated_edges();
+  std::erase_if(found, [](const Rated& edge) { return !(edge.ratio < too_short); });
   std::stable_sort(found.begin(), found.end(),
-                   [](const Short& x, const Short& y) { return x.ratio < y.ratio; });
-  for (const Short& edge : found) {
-    const auto a = static_cast<std::uint32_t>(edge.key >> 32U), b = static_cast<std::uint32_t>(edge.key);
+                   [](const Rated& x, const Rated& y) { return x.ratio < y.ratio; });
+  for (const auto& [ratio_before, a, b] : found) {
     if (stars_[a].empty() || stars_[b].empty() || at_edge(a, b).size() != 2 || ratio(a, b) >= too_short)
       continue;
     if (!is_fixed(b) && collapse(b, a)) continue;
@@ -269,7 +264,7 @@ bool Remesher::turn_all() {
       any = true;
       for (const std::uint32_t t : sides)
         for (std::size_t k = 0; k < 3; ++k)
-          next.push_back(key_of(mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3]));
+          next.push_back(edge_key(mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3]));
     }
     std::sort(next.begin(), next.end());
     next.erase(std::unique(next.begin(), next.end()), next.end());

@@ -59,14 +59,18 @@ TetComplex::TetComplex(std::vector<Vec3> all_points, std::span<const Tetrahedron
   mark_walls();
 }
 
-void TetComplex::connect_all(std::span<const Tetrahedron> cells) {
-  const std::vector<CellSide> sides = sorted_sides(cells, points.size());
-  for (std::size_t k = 0; k + 1 < sides.size(); ++k) {
-    const CellSide &a = sides[k], &b = sides[k + 1];
+template <class Listed>
+void TetComplex::connect_sides(const std::vector<Listed>& sorted) {
+  for (std::size_t k = 0; k + 1 < sorted.size(); ++k) {
+    const Listed &a = sorted[k], &b = sorted[k + 1];
     if (a.corners != b.corners) continue;
     cells_[a.cell].beside[a.slot] = b.cell;
     cells_[b.cell].beside[b.slot] = a.cell;
   }
+}
+
+void TetComplex::connect_all(std::span<const Tetrahedron> cells) {
+  connect_sides(sorted_sides(cells, points.size()));
 }
 
 void TetComplex::mark_walls() {
@@ -237,12 +241,7 @@ void TetComplex::replace(std::span<const std::uint32_t> old_cells, std::span<con
   std::sort(open_.begin(), open_.end(), [](const OpenSide& a, const OpenSide& b) {
     return a.corners != b.corners ? a.corners < b.corners : a.cell < b.cell;
   });
-  for (std::size_t k = 0; k + 1 < open_.size(); ++k) {
-    const OpenSide &a = open_[k], &b = open_[k + 1];
-    if (a.corners != b.corners) continue;
-    cells_[a.cell].beside[a.slot] = b.cell;
-    cells_[b.cell].beside[b.slot] = a.cell;
-  }
+  connect_sides(open_);
 }
 
 void TetComplex::measure_all() {

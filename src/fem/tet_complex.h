@@ -88,6 +88,8 @@ class TetComplex {
     Side side;
   };
   void connect_all(std::span<const Tetrahedron> cells);
+  template <class Listed>
+  void connect_sides(const std::vector<Listed>& sorted);  // of the same corners
   void mark_walls();
   void take_out(std::span<const std::uint32_t> cells);
   std::uint32_t new_cell();
