@@ -5,9 +5,9 @@
 #include <map>
 
 #include "core/columns.h"
+#include "fem/complete_cell.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
-#include "fem/unit_cell.h"
 
 namespace selvage::formats::bdf {
 namespace {

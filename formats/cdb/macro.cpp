@@ -1,6 +1,6 @@
 // The macro that ANSYS runs on the archive of a unit cell: every load case, and the stresses of the whole.
 #include "core/text_buffer.h"
-#include "fem/unit_cell.h"
+#include "fem/complete_cell.h"
 #include "formats/cdb/cdb.h"
 
 namespace selvage::formats::cdb {

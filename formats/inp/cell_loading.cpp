@@ -1,7 +1,7 @@
 // What drives a unit cell: nodes whose displacement is a strain, equations, and a step for each load case.
 #include <algorithm>
 
-#include "fem/unit_cell.h"
+#include "fem/complete_cell.h"
 #include "formats/inp/deck.h"
 
 namespace selvage::formats::inp {

@@ -4,9 +4,9 @@
 
 #include "core/columns.h"
 #include "core/readable.h"
+#include "fem/complete_cell.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
-#include "fem/unit_cell.h"
 
 namespace selvage::formats::k {
 namespace {

@@ -5,7 +5,7 @@
 #include <set>
 #include <tuple>
 
-#include "fem/unit_cell.h"
+#include "fem/complete_cell.h"
 
 namespace selvage::formats::msh {
 namespace {

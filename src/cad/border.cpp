@@ -1,161 +1,139 @@
 #include "cad/border.h"
 
 #include <algorithm>
-#include <array>
-#include <cfloat>
 #include <cmath>
 #include <limits>
 
-#include "cad/natural_border.h"
-#include "nurbs/divided.h"
-#include "nurbs/turn.h"
+#include "cad/outline.h"
 
 namespace selvage::cad {
 
 namespace {
 
-double length_of(const std::vector<Vec3>& points) {
-  double length = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
-  return length;
-}
-
-// The four edges of a surface.
-std::array<nurbs::Curve, 4> edges_of(const nurbs::Surface& surface) {
-  return {nurbs::boundary_row(surface, false), nurbs::boundary_row(surface, true),
-          nurbs::boundary_column(surface, false), nurbs::boundary_column(surface, true)};
-}
-
-bool is_point(const nurbs::Curve& curve, double tolerance) {
-  return std::all_of(curve.points.begin(), curve.points.end(),
-                     [&](const Vec3& p) { return (p - curve.points.front()).norm() <= tolerance; });
-}
-
-struct Chord {
-  double distance;    // squared
-  std::size_t index;  // from this sample to the next one
-};
-
-double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double length = along.squaredNorm();
-  const double t = length > 0 ? std::clamp((p - a).dot(along) / length, 0.0, 1.0) : 0.0;
-  return (a + t * along - p).squaredNorm();
-}
-
-// Nearest first.
-std::array<Chord, 4> nearest_chords(const std::vector<Vec3>& points, const Vec3& p) {
-  std::array<Chord, 4> found;
-  found.fill({std::numeric_limits<double>::infinity(), 0});
-  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
-    Chord chord{squared_distance(p, points[k], points[k + 1]), k};
-    for (Chord& other : found)
-      if (chord.distance < other.distance) std::swap(chord, other);
-  }
-  return found;
-}
-
-// Newton's method for the foot of the perpendicular within a smooth piece. It stays off the piece's ends,
-// where the derivatives are the next piece's.
-void improve(Nearest& nearest, const Vec3& p, double from, double to,
-             const std::function<nurbs::CurveJet(double)>& jet) {
-  double t = (from + to) / 2;
-  for (int step = 0; step < 24; ++step) {
-    const nurbs::CurveJet at = jet(t);
-    const Vec3 offset = at.position - p;
-    const double distance = offset.norm(), speed = at.d1.squaredNorm();
-    if (distance < nearest.distance) nearest = {t, distance};
-    if (!(speed > 0)) return;
-    // Where the curve bends too much for Newton's step, Gauss's leads downhill still.
-    const double slope = speed + offset.dot(at.d2);
-    double next = t - offset.dot(at.d1) / (slope > 0 ? slope : speed);
-    if (!(next > from)) next = (t + from) / 2;
-    if (!(next < to)) next = (t + to) / 2;
-    if (next == t) return;
-    t = next;
-  }
-}
+constexpr int fewest_points = 8, points_a_span = 4, most_points = 2000;
+constexpr int newton_steps = 30;
 
 }  // namespace
 
-Nearest nearest_on(const std::vector<double>& parameters, const std::vector<Vec3>& points, const Vec3& p,
-                   double enough, const std::function<nurbs::CurveJet(double)>& jet) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < points.size(); ++i)
-    if ((points[i] - p).squaredNorm() < (points[best] - p).squaredNorm()) best = i;
-  Nearest nearest{parameters[best], (points[best] - p).norm()};
-  if (nearest.distance == 0) return nearest;
-  for (const Chord& chord : nearest_chords(points, p)) {
-    if (!std::isfinite(chord.distance)) break;
-    improve(nearest, p, parameters[chord.index], parameters[chord.index + 1], jet);
-    if (nearest.distance <= enough) break;
+Border::Border(const nurbs::Surface& surface, int side)
+    : Border(constant_curve(surface, side < 2,
+                            side == 0   ? surface.first_u()
+                            : side == 1 ? surface.last_u()
+                            : side == 2 ? surface.first_v()
+                                        : surface.last_v()),
+             side) {}
+
+Border::Border(nurbs::Curve curve, int side)
+    : curve_(std::move(curve)),
+      side_(side),
+      first_(curve_.first_parameter()),
+      last_(curve_.last_parameter()) {
+  const std::vector<double> spans = nurbs::breakpoints(curve_.knots, curve_.degree);
+  const auto count = static_cast<int>(std::max<std::size_t>(spans.size(), 2)) - 1;
+  const int each =
+      std::max({1, (fewest_points + count - 1) / count, std::min(points_a_span, most_points / count)});
+  for (std::size_t i = 0; i + 1 < spans.size(); ++i)
+    for (int k = 0; k < each; ++k)
+      parameters_.push_back(std::lerp(spans[i], spans[i + 1], static_cast<double>(k) / each));
+  parameters_.push_back(last_);
+  for (const double t : parameters_) {
+    points_.push_back(nurbs::evaluate(curve_, t));
+    box_.extend(points_.back());
+    if (points_.size() < 2) continue;
+    const double step = (points_.back() - points_[points_.size() - 2]).norm();
+    length_ += step;
+    step_ = std::max(step_, step);
   }
-  return nearest;
+  box_ = Box3(box_.min().array() - step_, box_.max().array() + step_);
 }
 
-SampledCurve::SampledCurve(const nurbs::Curve& sampled) : curve(&sampled) {
-  const std::vector<double> breaks = nurbs::breakpoints(sampled.knots, sampled.degree);
-  const int parts = breaks.size() < 5 ? 8 : 2;  // of a span
-  parameters = nurbs::divided(breaks, std::vector<int>(breaks.size() - 1, parts));
-  points.reserve(parameters.size());
-  for (const double t : parameters) points.push_back(nurbs::evaluate(sampled, t));
-}
-
-double SampledCurve::length() const {
-  return length_of(points);
-}
-
-Nearest SampledCurve::nearest(const Vec3& p) const {
-  return nearest_on(parameters, points, p, 0, [&](double t) { return nurbs::evaluate_jet(*curve, t); });
-}
-
-double closeness(double size, double largest_coordinate, double resolution) {
-  return std::max(std::clamp(resolution, 1e-6 * size, 1e-4 * size), 16 * DBL_EPSILON * largest_coordinate);
-}
-
-Polylines border_of(const Face& face, double tolerance) {
-  Polylines border;
-  const bool is_whole = has_natural_border(face, tolerance);
-  if (face.loops.size() > 1 && !is_whole) return border;
-  if (is_whole) {
-    const std::array<nurbs::Curve, 4> sides = edges_of(face.surface);
-    for (std::size_t pair : {0U, 2U}) {
-      // Two edges that are one are a seam.
-      if (sides[pair].points.size() == sides[pair + 1].points.size() &&
-          largest_difference(sides[pair].points, sides[pair + 1].points) <= tolerance)
-        continue;
-      for (const std::size_t k : {pair, pair + 1})
-        if (!is_point(sides[k], tolerance)) border.push_back(SampledCurve(sides[k]).points);
-    }
-    return border;
+double Border::distance(const Vec3& p, double hint, double enough, double most) const {
+  if (box_.exteriorDistance(p) > most) return std::numeric_limits<double>::infinity();
+  double best = std::numeric_limits<double>::infinity();
+  for (const double share : {hint, 1 - hint}) {
+    best = std::min(best, (nurbs::evaluate(curve_, std::lerp(first_, last_, share)) - p).norm());
+    if (best <= enough) return best;
   }
-  for (const Edge& edge : face.loops.front().edges) {
-    if (!edge.curve.points.empty()) {
-      border.push_back(SampledCurve(edge.curve).points);
-    } else if (!edge.flat.points.empty()) {
-      border.push_back(SampledCurve(edge.flat).points);
-      for (Vec3& p : border.back()) p = nurbs::evaluate(face.surface, p.x(), p.y());
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const double squared = (points_[i] - p).squaredNorm();
+    if (squared < least) {
+      least = squared;
+      nearest = i;
     }
   }
-  return border;
+  best = std::min(best, std::sqrt(least));
+  // No point of the border is farther from its nearest sample than that one's step.
+  return best <= enough || std::sqrt(least) - step_ > most ? best : std::min(best, refined(p, nearest));
 }
 
-bool runs_along(const Polylines& border, const SampledCurve& closed, double tolerance) {
-  if (border.empty()) return false;
-  double length = 0;
-  for (const std::vector<Vec3>& line : border) {
-    length += length_of(line);
-    for (const Vec3& p : line)
-      if (closed.nearest(p).distance > tolerance) return false;
+double Border::refined(const Vec3& p, std::size_t nearest) const {
+  const double low = parameters_[nearest == 0 ? 0 : nearest - 1];
+  const double high = parameters_[std::min(nearest + 1, parameters_.size() - 1)];
+  double t = parameters_[nearest], best = (points_[nearest] - p).norm();
+  for (int step = 0; step < newton_steps; ++step) {
+    const nurbs::CurveJet jet = nurbs::evaluate_jet(curve_, t);
+    const Vec3 gap = p - jet.position;
+    best = std::min(best, gap.norm());
+    // Newton's method on the derivative of the squared distance; Gauss's form where that is no minimum.
+    const double bend = jet.d1.squaredNorm() - gap.dot(jet.d2);
+    const double slope = bend > 0 ? bend : jet.d1.squaredNorm();
+    if (!(slope > 0)) break;
+    const double next = std::clamp(t + gap.dot(jet.d1) / slope, low, high);
+    if (std::abs(next - t) <= 1e-15 * (high - low)) break;
+    t = next;
   }
-  // Polylines of different samples: the lengths differ by their chords.
-  return std::abs(length / closed.length() - 1) < 0.1;
+  return best;
 }
 
-double largest_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
-  return largest;
+std::vector<Border> borders_of(const Face& face) {
+  std::vector<Border> borders;
+  if (face.loops.empty()) {
+    for (int side = 0; side < 4; ++side) borders.emplace_back(face.surface, side);
+    return borders;
+  }
+  for (const Loop& loop : face.loops)
+    for (const Edge& edge : loop.edges)
+      if (!edge.curve.points.empty()) borders.emplace_back(edge.curve);
+  return borders;
+}
+
+NearestOnSurface nearest_on(const nurbs::Surface& surface, const Vec3& p, std::optional<Vec2> start) {
+  const double u0 = surface.first_u(), u1 = surface.last_u(), v0 = surface.first_v(), v1 = surface.last_v();
+  NearestOnSurface best{std::numeric_limits<double>::infinity(), u0, v0};
+  if (start) {
+    best = {0, std::clamp(start->x(), u0, u1), std::clamp(start->y(), v0, v1)};
+    best.distance = (nurbs::evaluate(surface, best.u, best.v) - p).norm();
+  } else {
+    const int nu = std::clamp(3 * surface.count_u, 8, 64), nv = std::clamp(3 * surface.count_v, 8, 256);
+    for (int i = 0; i <= nu; ++i)
+      for (int j = 0; j <= nv; ++j) {
+        const double u = std::lerp(u0, u1, static_cast<double>(i) / nu),
+                     v = std::lerp(v0, v1, static_cast<double>(j) / nv);
+        const double distance = (nurbs::evaluate(surface, u, v) - p).norm();
+        if (distance < best.distance) best = {distance, u, v};
+      }
+  }
+  double u = best.u, v = best.v;
+  for (int step = 0; step < newton_steps; ++step) {
+    const nurbs::SurfaceJet jet = nurbs::evaluate_jet(surface, u, v);
+    const Vec3 gap = p - jet.position;
+    const double aa = jet.du.squaredNorm(), bb = jet.dv.squaredNorm(), ab = jet.du.dot(jet.dv);
+    const double ga = gap.dot(jet.du), gb = gap.dot(jet.dv), determinant = aa * bb - ab * ab;
+    double du = aa > 0 ? ga / aa : 0, dv = bb > 0 ? gb / bb : 0;
+    if (determinant > 1e-14 * aa * bb) {
+      du = (ga * bb - gb * ab) / determinant;
+      dv = (gb * aa - ga * ab) / determinant;
+    }
+    const double next_u = std::clamp(u + du, u0, u1), next_v = std::clamp(v + dv, v0, v1);
+    if (next_u == u && next_v == v) break;
+    u = next_u;
+    v = next_v;
+    const double distance = (nurbs::evaluate(surface, u, v) - p).norm();
+    if (distance < best.distance) best = {distance, u, v};
+  }
+  return best;
 }
 
 }  // namespace selvage::cad

@@ -1,51 +1,57 @@
-// Where faces end: their borders as points, and whether two borders are one curve.
+// The borders of faces in space, whatever they are made of: the sides of a surface's range, or the edges of
+// its loops.
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <vector>
 
 #include "cad/model.h"
 
 namespace selvage::cad {
 
-// A place of a curve, and how far it is from some point.
-struct Nearest {
-  double parameter, distance;
+// One piece of a face's border, with points on it.
+class Border {
+ public:
+  // The side u = first (0), u = last (1), v = first (2) or v = last (3) of the surface.
+  Border(const nurbs::Surface& surface, int side);
+  explicit Border(nurbs::Curve curve, int side = -1);
+
+  [[nodiscard]] double length() const { return length_; }  // of the polygon through points()
+  // Evenly in the parameter over each span, ends included: at least nine.
+  [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
+  // Where points()[i] is between first and last parameter, 0 to 1.
+  [[nodiscard]] double share(std::size_t i) const { return (parameters_[i] - first_) / (last_ - first_); }
+  // Holds the curve, between points() too.
+  [[nodiscard]] const Box3& box() const { return box_; }
+  [[nodiscard]] int side() const { return side_; }  // -1: an edge of a loop
+
+  // The distance of `p`: at `hint` (0 to 1, from first to last) or its mirror image where that is at most
+  // `enough`, else the least, by Newton's method from the nearest of points(). Where it is more than `most`
+  // only that is sure of the result.
+  [[nodiscard]] double distance(const Vec3& p, double hint, double enough, double most) const;
+
+ private:
+  [[nodiscard]] double refined(const Vec3& p, std::size_t nearest) const;
+
+  nurbs::Curve curve_;
+  int side_;
+  double first_ = 0, last_ = 0, length_ = 0;
+  double step_ = 0;  // longest distance between two points
+  std::vector<double> parameters_;
+  std::vector<Vec3> points_;
+  Box3 box_;
 };
 
-// The place of a curve that is nearest to `p`, or any within `enough` of it. `points` are the curve's at the
-// increasing `parameters` (as many, at least two), the knots among them; `jet` gives it at a parameter, where
-// d2 may be zero (then places far from `p` are found less exactly). Looks along the samples' nearest chords:
-// the nearest sample need not be next to the nearest place, where a closed curve begins or samples are
-// uneven.
-Nearest nearest_on(const std::vector<double>& parameters, const std::vector<Vec3>& points, const Vec3& p,
-                   double enough, const std::function<nurbs::CurveJet(double)>& jet);
+// The sides of an untrimmed face (0 to 3 in that order), or its loops' edges. Edges without a curve in space
+// (poles, or parameters only) are left out.
+std::vector<Border> borders_of(const Face& face);
 
-// Points of a curve at its knots and between them, with their parameters: enough to find the nearest place.
-struct SampledCurve {
-  const nurbs::Curve* curve = nullptr;  // outlives this
-  std::vector<double> parameters;
-  std::vector<Vec3> points;
-
-  explicit SampledCurve(const nurbs::Curve& sampled);
-  [[nodiscard]] double length() const;  // of the polyline through the points
-  // The curve's place that is nearest to `p`.
-  [[nodiscard]] Nearest nearest(const Vec3& p) const;
+// The nearest point of a surface: distance and parameters, by Newton's method from the best of a grid, or
+// from `start` where that is given.
+struct NearestOnSurface {
+  double distance = 0, u = 0, v = 0;
 };
-
-// How far points may be apart that are meant to be one: the file's resolution, within 1e-6 and 1e-4 of the
-// size of what they belong to (and above the rounding of their coordinates).
-double closeness(double size, double largest_coordinate, double resolution);
-
-// The border of a face with at most one loop, as polylines of points that lie on it exactly; seams and edges
-// without length are left out. Nothing where there are holes or no border.
-using Polylines = std::vector<std::vector<Vec3>>;
-Polylines border_of(const Face& face, double tolerance);
-
-// Is this border the closed curve, all of it? Distances up to the tolerance.
-bool runs_along(const Polylines& border, const SampledCurve& closed, double tolerance);
-
-// The largest distance of points with the same index; equally many of both.
-double largest_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
+NearestOnSurface nearest_on(const nurbs::Surface& surface, const Vec3& p,
+                            std::optional<Vec2> start = std::nullopt);
 
 }  // namespace selvage::cad

@@ -8,7 +8,7 @@
 #include <map>
 #include <span>
 
-#include "cad/borders.h"
+#include "cad/border.h"
 #include "core/box_tree.h"
 
 namespace selvage::cad {

@@ -157,7 +157,7 @@ std::optional<double> TubeEnd::parameter_of(const Vec3& p) const {
   for (const double t : nurbs::breakpoints(outline_.knots, outline_.degree))
     if (t < outline_.last_parameter()) look(t, nurbs::evaluate(outline_, t));
   if (found) return found;
-  const Nearest nearest = samples_.nearest(p);
+  const NearestOnCurve nearest = samples_.nearest(p);
   return nearest.distance <= tolerance_ ? std::optional(nearest.parameter) : std::nullopt;
 }
 

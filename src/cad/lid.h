@@ -4,8 +4,8 @@
 #include <array>
 #include <optional>
 
-#include "cad/border.h"
 #include "cad/model.h"
+#include "cad/sampled_curve.h"
 
 namespace selvage::cad {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "cad/border.h"
+#include "cad/sampled_curve.h"
 #include "nurbs/restrict.h"
 
 namespace selvage::cad {
@@ -52,7 +52,7 @@ class Side {
   }
 
   // Any place within `enough` will do.
-  [[nodiscard]] Nearest nearest(const Vec3& p, double enough) const {
+  [[nodiscard]] NearestOnCurve nearest(const Vec3& p, double enough) const {
     return nearest_on(parameters_, points_, p, enough, [&](double t) -> nurbs::CurveJet {
       const nurbs::SurfaceJet jet =
           along_u_ ? nurbs::evaluate_jet(*surface_, t, fixed_) : nurbs::evaluate_jet(*surface_, fixed_, t);
@@ -105,7 +105,7 @@ std::optional<double> share_in_space(const Side& side, const std::vector<Vec3>& 
   double sum = 0, before = 0, sign = 0;
   for (std::size_t i = 0; i < points.size();
        i = i + 1 == points.size() ? i + 1 : std::min(i + stride, points.size() - 1)) {
-    const Nearest foot = side.nearest(points[i], tolerance);
+    const NearestOnCurve foot = side.nearest(points[i], tolerance);
     if (foot.distance > tolerance) return std::nullopt;
     if (i > 0) {
       double step = foot.parameter - before;

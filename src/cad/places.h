@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "cad/border.h"
+#include "cad/sampled_curve.h"
 
 namespace selvage::cad {
 

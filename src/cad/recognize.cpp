@@ -8,9 +8,9 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "cad/border.h"
 #include "cad/lid.h"
 #include "cad/places.h"
+#include "cad/sampled_curve.h"
 #include "cad/tube.h"
 #include "nurbs/turn.h"
 #include "yarn/ends.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "cad/border.h"
 #include "cad/natural_border.h"
+#include "cad/sampled_curve.h"
 #include "nurbs/basis.h"
 #include "nurbs/turn.h"
 #include "yarn/grid.h"

@@ -415,8 +415,8 @@ class Search {
       for (const NearPair& near : cells) {
         if (near.low > best) break;
         const Cell &a = model_.cells()[near.a], &b = model_.cells()[near.b];
-        const Nearest found = find_nearest(model_.face_of(a), a, 0.5 * (a.low + a.high), model_.face_of(b), b,
-                                           0.5 * (b.low + b.high));
+        const NearestPoints found = find_nearest(model_.face_of(a), a, 0.5 * (a.low + a.high),
+                                                 model_.face_of(b), b, 0.5 * (b.low + b.high));
         const double here = (found.p - found.q).norm();
         if (here > best) continue;
         best = here;

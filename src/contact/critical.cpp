@@ -116,8 +116,8 @@ std::optional<Critical> find_critical(const Face& a, const Vec2& site_a, const F
                   moved,       p.normal,    (p.jet.position - moved).dot(p.normal)};
 }
 
-Nearest find_nearest(const Face& a, const Cell& cell_a, const Vec2& site_a, const Face& b, const Cell& cell_b,
-                     const Vec2& site_b) {
+NearestPoints find_nearest(const Face& a, const Cell& cell_a, const Vec2& site_a, const Face& b,
+                           const Cell& cell_b, const Vec2& site_b) {
   Vec4 low, high, x;
   low << cell_a.low, cell_b.low;
   high << cell_a.high, cell_b.high;

@@ -33,11 +33,11 @@ std::optional<Critical> find_critical(const Face& a, const Vec2& site_a, const F
 
 // The two nearest points of two cells, by Newton's method within their parameters' bounds from given sites:
 // also on edges and corners. A local solution.
-struct Nearest {
+struct NearestPoints {
   Vec2 site_a = Vec2::Zero(), site_b = Vec2::Zero();
   Vec3 p = Vec3::Zero(), q = Vec3::Zero();
 };
-Nearest find_nearest(const Face& a, const Cell& cell_a, const Vec2& site_a, const Face& b, const Cell& cell_b,
-                     const Vec2& site_b);
+NearestPoints find_nearest(const Face& a, const Cell& cell_a, const Vec2& site_a, const Face& b,
+                           const Cell& cell_b, const Vec2& site_b);
 
 }  // namespace selvage::contact

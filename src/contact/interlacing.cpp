@@ -92,15 +92,15 @@ Line line_of(const yarn::Body& old_body, const yarn::Body& new_body) {
 }
 
 // The least distance of the segments p + s d and q + u e, s and u in [0, 1], and where it is.
-struct Nearest {
+struct Approach {
   double distance = 0, s = 0, u = 0;
 };
-Nearest nearest(const Vec3& p, const Vec3& d, const Vec3& q, const Vec3& e) {
+Approach approach(const Vec3& p, const Vec3& d, const Vec3& q, const Vec3& e) {
   const Vec3 r = p - q;
   const double dd = d.squaredNorm(), ee = e.squaredNorm(), de = d.dot(e), dr = d.dot(r), er = e.dot(r);
   const auto unit = [](double x) { return std::clamp(x, 0.0, 1.0); };
   const double turn = dd * ee - de * de;
-  Nearest best;
+  Approach best;
   if (dd == 0.0) {
     best.u = ee > 0.0 ? unit(er / ee) : 0.0;
   } else if (ee == 0.0) {
@@ -141,7 +141,7 @@ std::optional<Meeting> meeting(const Moving& a, const Moving& b, double limit) {
   for (int step = 0; step < most_steps; ++step) {
     const Vec3 p = a.start + time * a.start_speed, q = b.start + time * b.start_speed;
     const Vec3 d = a.end + time * a.end_speed - p, e = b.end + time * b.end_speed - q;
-    const Nearest now = nearest(p, d, q, e);
+    const Approach now = approach(p, d, q, e);
     if (now.distance <= 1.001 * limit)
       return Meeting{time, now.s, now.u, 0.5 * (p + now.s * d + q + now.u * e)};
     if (time >= 1.0 || speed == 0.0) return std::nullopt;

@@ -267,7 +267,7 @@ class Measurer {
     ca.high = pair.a.high;
     cb.low = pair.b.low;
     cb.high = pair.b.high;
-    const Nearest nearest = find_nearest(fa, ca, site_a, fb, cb, site_b);
+    const NearestPoints nearest = find_nearest(fa, ca, site_a, fb, cb, site_b);
     return (nearest.p - nearest.q).norm() > touching_;
   }
 
@@ -527,7 +527,8 @@ class Measurer {
       if (pair.low >= best) break;
       const Cell &ca = cell(pair.a), &cb = cell(pair.b);
       const Face &fa = model_.face_of(ca), &fb = model_.face_of(cb);
-      const Nearest found = find_nearest(fa, ca, 0.5 * (ca.low + ca.high), fb, cb, 0.5 * (cb.low + cb.high));
+      const NearestPoints found =
+          find_nearest(fa, ca, 0.5 * (ca.low + ca.high), fb, cb, 0.5 * (cb.low + cb.high));
       const double distance = (found.p - found.q).norm();
       if (distance > best * (1.0 - 1e-6)) continue;
       Spot spot{&fa, &fb, found.site_a, found.site_b, found.p, found.q, Vec3::Zero(), -distance, false};

@@ -9,7 +9,7 @@
 
 #include "fabric/clearance.h"
 #include "fabric/disc_packing.h"
-#include "fabric/strand.h"
+#include "fabric/spine.h"
 
 namespace selvage::fabric {
 

@@ -11,10 +11,10 @@
 #include "core/module.h"
 #include "fem/bond.h"
 #include "fem/cell_size.h"
+#include "fem/complete_cell.h"
 #include "fem/materials.h"
 #include "fem/quality.h"
 #include "fem/sides.h"
-#include "fem/unit_cell.h"
 
 namespace selvage::fem {
 

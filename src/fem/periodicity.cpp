@@ -6,7 +6,7 @@
 #include <array>
 
 #include "core/groups.h"
-#include "fem/unit_cell.h"
+#include "fem/complete_cell.h"
 
 namespace selvage::fem {
 namespace {

@@ -1,4 +1,5 @@
-// The conditions on the nodes of a cell's faces and the load cases; see fem/unit_cell.h for what they say.
+// The conditions on the nodes of a cell's faces and the load cases; see fem/complete_cell.h for what they
+// say.
 #pragma once
 
 #include <vector>

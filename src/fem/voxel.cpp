@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "core/units.h"
+#include "fem/complete_cell.h"
 #include "fem/fibre.h"
 #include "fem/materials.h"
-#include "fem/unit_cell.h"
 #include "fem/yarn_columns.h"
 
 namespace selvage::fem {

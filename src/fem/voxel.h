@@ -23,7 +23,7 @@ struct VoxelOptions {
 // along the sides allow. One region a yarn that has a hexahedron, in the order of `bodies`, then the matrix.
 // A hexahedron is its yarn's whose inside its middle lies in; of two that overlap the one with the nearer
 // centre line, with a note. Orientations, fibre fractions, sets and equations as in every cell (fem/fibre.h,
-// fem/unit_cell.h). Region::exact_volume is not computed (0). Errors: usage (count), limit (more than 20
+// fem/complete_cell.h). Region::exact_volume is not computed (0). Errors: usage (count), limit (more than 20
 // million hexahedra), geometry (no yarn in the cell; a matrix is wanted but not named).
 Result<Mesh> mesh_voxels(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
                          const VoxelOptions& options, Diagnostics& diagnostics);

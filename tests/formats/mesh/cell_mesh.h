@@ -8,9 +8,9 @@
 #include <cmath>
 #include <map>
 
+#include "fem/complete_cell.h"
 #include "fem/mesh.h"
 #include "fem/quality.h"
-#include "fem/unit_cell.h"
 
 namespace selvage::test {
 

@@ -7,8 +7,8 @@
 
 #include "fabric/build.h"
 #include "fem/cell_mesher.h"
+#include "fem/complete_cell.h"
 #include "fem/faces.h"
-#include "fem/unit_cell.h"
 #include "fem/voxel.h"
 #include "formats/inp/inp.h"
 #include "formats/mesh/programs.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cad/border.h"
+#include "cad/sampled_curve.h"
 #include "nurbs/restrict.h"
 
 namespace selvage::test {

@@ -1,4 +1,4 @@
-#include "fabric/strand.h"
+#include "fabric/spine.h"
 
 #include <fmt/format.h>
 

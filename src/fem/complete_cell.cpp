@@ -1,4 +1,4 @@
-#include "fem/unit_cell.h"
+#include "fem/complete_cell.h"
 
 #include <fmt/format.h>
 

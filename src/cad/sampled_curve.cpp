@@ -1,0 +1,161 @@
+#include "cad/sampled_curve.h"
+
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+
+#include "cad/natural_border.h"
+#include "nurbs/divided.h"
+#include "nurbs/turn.h"
+
+namespace selvage::cad {
+
+namespace {
+
+double length_of(const std::vector<Vec3>& points) {
+  double length = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  return length;
+}
+
+// The four edges of a surface.
+std::array<nurbs::Curve, 4> edges_of(const nurbs::Surface& surface) {
+  return {nurbs::boundary_row(surface, false), nurbs::boundary_row(surface, true),
+          nurbs::boundary_column(surface, false), nurbs::boundary_column(surface, true)};
+}
+
+bool is_point(const nurbs::Curve& curve, double tolerance) {
+  return std::all_of(curve.points.begin(), curve.points.end(),
+                     [&](const Vec3& p) { return (p - curve.points.front()).norm() <= tolerance; });
+}
+
+struct Chord {
+  double distance;    // squared
+  std::size_t index;  // from this sample to the next one
+};
+
+double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double length = along.squaredNorm();
+  const double t = length > 0 ? std::clamp((p - a).dot(along) / length, 0.0, 1.0) : 0.0;
+  return (a + t * along - p).squaredNorm();
+}
+
+// Nearest first.
+std::array<Chord, 4> nearest_chords(const std::vector<Vec3>& points, const Vec3& p) {
+  std::array<Chord, 4> found;
+  found.fill({std::numeric_limits<double>::infinity(), 0});
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    Chord chord{squared_distance(p, points[k], points[k + 1]), k};
+    for (Chord& other : found)
+      if (chord.distance < other.distance) std::swap(chord, other);
+  }
+  return found;
+}
+
+// Newton's method for the foot of the perpendicular within a smooth piece. It stays off the piece's ends,
+// where the derivatives are the next piece's.
+void improve(NearestOnCurve& nearest, const Vec3& p, double from, double to,
+             const std::function<nurbs::CurveJet(double)>& jet) {
+  double t = (from + to) / 2;
+  for (int step = 0; step < 24; ++step) {
+    const nurbs::CurveJet at = jet(t);
+    const Vec3 offset = at.position - p;
+    const double distance = offset.norm(), speed = at.d1.squaredNorm();
+    if (distance < nearest.distance) nearest = {t, distance};
+    if (!(speed > 0)) return;
+    // Where the curve bends too much for Newton's step, Gauss's leads downhill still.
+    const double slope = speed + offset.dot(at.d2);
+    double next = t - offset.dot(at.d1) / (slope > 0 ? slope : speed);
+    if (!(next > from)) next = (t + from) / 2;
+    if (!(next < to)) next = (t + to) / 2;
+    if (next == t) return;
+    t = next;
+  }
+}
+
+}  // namespace
+
+NearestOnCurve nearest_on(const std::vector<double>& parameters, const std::vector<Vec3>& points,
+                          const Vec3& p, double enough, const std::function<nurbs::CurveJet(double)>& jet) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if ((points[i] - p).squaredNorm() < (points[best] - p).squaredNorm()) best = i;
+  NearestOnCurve nearest{parameters[best], (points[best] - p).norm()};
+  if (nearest.distance == 0) return nearest;
+  for (const Chord& chord : nearest_chords(points, p)) {
+    if (!std::isfinite(chord.distance)) break;
+    improve(nearest, p, parameters[chord.index], parameters[chord.index + 1], jet);
+    if (nearest.distance <= enough) break;
+  }
+  return nearest;
+}
+
+SampledCurve::SampledCurve(const nurbs::Curve& sampled) : curve(&sampled) {
+  const std::vector<double> breaks = nurbs::breakpoints(sampled.knots, sampled.degree);
+  const int parts = breaks.size() < 5 ? 8 : 2;  // of a span
+  parameters = nurbs::divided(breaks, std::vector<int>(breaks.size() - 1, parts));
+  points.reserve(parameters.size());
+  for (const double t : parameters) points.push_back(nurbs::evaluate(sampled, t));
+}
+
+double SampledCurve::length() const {
+  return length_of(points);
+}
+
+NearestOnCurve SampledCurve::nearest(const Vec3& p) const {
+  return nearest_on(parameters, points, p, 0, [&](double t) { return nurbs::evaluate_jet(*curve, t); });
+}
+
+double closeness(double size, double largest_coordinate, double resolution) {
+  return std::max(std::clamp(resolution, 1e-6 * size, 1e-4 * size), 16 * DBL_EPSILON * largest_coordinate);
+}
+
+Polylines border_of(const Face& face, double tolerance) {
+  Polylines border;
+  const bool is_whole = has_natural_border(face, tolerance);
+  if (face.loops.size() > 1 && !is_whole) return border;
+  if (is_whole) {
+    const std::array<nurbs::Curve, 4> sides = edges_of(face.surface);
+    for (std::size_t pair : {0U, 2U}) {
+      // Two edges that are one are a seam.
+      if (sides[pair].points.size() == sides[pair + 1].points.size() &&
+          largest_difference(sides[pair].points, sides[pair + 1].points) <= tolerance)
+        continue;
+      for (const std::size_t k : {pair, pair + 1})
+        if (!is_point(sides[k], tolerance)) border.push_back(SampledCurve(sides[k]).points);
+    }
+    return border;
+  }
+  for (const Edge& edge : face.loops.front().edges) {
+    if (!edge.curve.points.empty()) {
+      border.push_back(SampledCurve(edge.curve).points);
+    } else if (!edge.flat.points.empty()) {
+      border.push_back(SampledCurve(edge.flat).points);
+      for (Vec3& p : border.back()) p = nurbs::evaluate(face.surface, p.x(), p.y());
+    }
+  }
+  return border;
+}
+
+bool runs_along(const Polylines& border, const SampledCurve& closed, double tolerance) {
+  if (border.empty()) return false;
+  double length = 0;
+  for (const std::vector<Vec3>& line : border) {
+    length += length_of(line);
+    for (const Vec3& p : line)
+      if (closed.nearest(p).distance > tolerance) return false;
+  }
+  // Polylines of different samples: the lengths differ by their chords.
+  return std::abs(length / closed.length() - 1) < 0.1;
+}
+
+double largest_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
+  return largest;
+}
+
+}  // namespace selvage::cad

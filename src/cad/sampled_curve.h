@@ -1,0 +1,51 @@
+// Where faces end: their borders as points, and whether two borders are one curve.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "cad/model.h"
+
+namespace selvage::cad {
+
+// A place of a curve, and how far it is from some point.
+struct NearestOnCurve {
+  double parameter, distance;
+};
+
+// The place of a curve that is nearest to `p`, or any within `enough` of it. `points` are the curve's at the
+// increasing `parameters` (as many, at least two), the knots among them; `jet` gives it at a parameter, where
+// d2 may be zero (then places far from `p` are found less exactly). Looks along the samples' nearest chords:
+// the nearest sample need not be next to the nearest place, where a closed curve begins or samples are
+// uneven.
+NearestOnCurve nearest_on(const std::vector<double>& parameters, const std::vector<Vec3>& points,
+                          const Vec3& p, double enough, const std::function<nurbs::CurveJet(double)>& jet);
+
+// Points of a curve at its knots and between them, with their parameters: enough to find the nearest place.
+struct SampledCurve {
+  const nurbs::Curve* curve = nullptr;  // outlives this
+  std::vector<double> parameters;
+  std::vector<Vec3> points;
+
+  explicit SampledCurve(const nurbs::Curve& sampled);
+  [[nodiscard]] double length() const;  // of the polyline through the points
+  // The curve's place that is nearest to `p`.
+  [[nodiscard]] NearestOnCurve nearest(const Vec3& p) const;
+};
+
+// How far points may be apart that are meant to be one: the file's resolution, within 1e-6 and 1e-4 of the
+// size of what they belong to (and above the rounding of their coordinates).
+double closeness(double size, double largest_coordinate, double resolution);
+
+// The border of a face with at most one loop, as polylines of points that lie on it exactly; seams and edges
+// without length are left out. Nothing where there are holes or no border.
+using Polylines = std::vector<std::vector<Vec3>>;
+Polylines border_of(const Face& face, double tolerance);
+
+// Is this border the closed curve, all of it? Distances up to the tolerance.
+bool runs_along(const Polylines& border, const SampledCurve& closed, double tolerance);
+
+// The largest distance of points with the same index; equally many of both.
+double largest_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
+
+}  // namespace selvage::cad
