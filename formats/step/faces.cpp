@@ -17,6 +17,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/plane.h"
 #include "formats/step/geometry.h"
 
 namespace selvage::formats::step {
@@ -54,7 +55,7 @@ std::vector<Chain> chains_of(const TopoDS_Face& face) {
 
 // A loop in parameter space as a polygon, in its direction.
 constexpr int samples = 8;  // an edge
-using Polygon = std::vector<gp_Pnt2d>;
+using Polygon = std::vector<Vec2>;
 
 // Nothing where an edge has no curve there.
 Polygon polygon_of(const Chain& chain, const TopoDS_Face& face) {
@@ -66,30 +67,17 @@ Polygon polygon_of(const Chain& chain, const TopoDS_Face& face) {
     const bool backward = edge.Orientation() == TopAbs_REVERSED;
     for (int i = 0; i <= samples; ++i) {
       const double share = static_cast<double>(backward ? samples - i : i) / samples;
-      polygon.push_back(curve->Value(first + share * (last - first)));
+      const gp_Pnt2d place = curve->Value(first + share * (last - first));
+      polygon.emplace_back(place.X(), place.Y());
     }
   }
   return polygon;
 }
 
 Range2 box_of(const Polygon& polygon) {
-  Range2 box{polygon.front().X(), polygon.front().X(), polygon.front().Y(), polygon.front().Y()};
-  for (const gp_Pnt2d& p : polygon) {
-    box.u0 = std::min(box.u0, p.X());
-    box.u1 = std::max(box.u1, p.X());
-    box.v0 = std::min(box.v0, p.Y());
-    box.v1 = std::max(box.v1, p.Y());
-  }
-  return box;
-}
-
-double area_of(const Polygon& polygon) {
-  double area = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const gp_Pnt2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    area += a.X() * b.Y() - b.X() * a.Y();
-  }
-  return 0.5 * area;
+  Eigen::AlignedBox2d box;
+  for (const Vec2& p : polygon) box.extend(p);
+  return {box.min().x(), box.max().x(), box.min().y(), box.max().y()};
 }
 
 // How far two parameters may be from each other and be one: what the face's tolerance is there, and no more
@@ -109,11 +97,12 @@ bool is_rectangle(const Polygon& polygon, const Range2& box, const TopoDS_Face& 
   const double width = box.u1 - box.u0, height = box.v1 - box.v0;
   if (!(width > 0) || !(height > 0)) return false;
   const auto [slack_u, slack_v] = slack(face, box);
-  for (const gp_Pnt2d& p : polygon)
-    if (p.X() - box.u0 > slack_u && box.u1 - p.X() > slack_u && p.Y() - box.v0 > slack_v &&
-        box.v1 - p.Y() > slack_v)
+  for (const Vec2& p : polygon)
+    if (p.x() - box.u0 > slack_u && box.u1 - p.x() > slack_u && p.y() - box.v0 > slack_v &&
+        box.v1 - p.y() > slack_v)
       return false;
-  return std::abs(std::abs(area_of(polygon)) - width * height) < 4 * (slack_u * height + slack_v * width);
+  return std::abs(0.5 * std::abs(twice_area(polygon)) - width * height) <
+         4 * (slack_u * height + slack_v * width);
 }
 
 // The rectangle brought to a border of the surface that it misses by no more than the slack.

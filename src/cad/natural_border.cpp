@@ -7,6 +7,7 @@
 
 #include "cad/sampled_curve.h"
 #include "nurbs/restrict.h"
+#include "nurbs/turn.h"
 
 namespace selvage::cad {
 
@@ -207,11 +208,6 @@ nurbs::Curve side_curve(const nurbs::Surface& surface, bool along_u, bool last) 
   return curve;
 }
 
-bool is_clamped(const std::vector<double>& knots, int degree) {
-  const auto order = static_cast<std::size_t>(degree) + 1;
-  return knots[0] == knots[order - 1] && knots[knots.size() - order] == knots.back();
-}
-
 nurbs::Curve flat_line(const Vec3& from, const Vec3& to, double t0, double t1) {
   return {.degree = 1, .knots = {t0, t0, t1, t1}, .points = {from, to}, .weights = {}};
 }
@@ -241,7 +237,8 @@ bool drop_natural_border(Face& face, double tolerance) {
 }
 
 Loop natural_border(const nurbs::Surface& given, double tolerance) {
-  const bool clamped = is_clamped(given.knots_u, given.degree_u) && is_clamped(given.knots_v, given.degree_v);
+  const bool clamped =
+      nurbs::is_clamped(given.knots_u, given.degree_u) && nurbs::is_clamped(given.knots_v, given.degree_v);
   const nurbs::Surface surface =
       clamped ? given
               : nurbs::restricted(given, given.first_u(), given.last_u(), given.first_v(), given.last_v());

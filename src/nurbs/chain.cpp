@@ -5,6 +5,7 @@
 
 #include "nurbs/basis.h"
 #include "nurbs/restrict.h"
+#include "nurbs/turn.h"
 
 namespace selvage::nurbs {
 
@@ -48,12 +49,10 @@ std::vector<Vec4> elevated(std::vector<Vec4> points, int degree) {
   return points;
 }
 
-bool is_clamped(const Curve& curve) {
-  return curve.knots.front() == curve.first_parameter() && curve.knots.back() == curve.last_parameter();
-}
-
 Curve clamped_form(const Curve& curve) {
-  return is_clamped(curve) ? curve : restricted(curve, curve.first_parameter(), curve.last_parameter());
+  return is_clamped(curve.knots, curve.degree)
+             ? curve
+             : restricted(curve, curve.first_parameter(), curve.last_parameter());
 }
 
 void make_rational(Curve& curve) {
@@ -82,9 +81,10 @@ Curve in_pieces(const Curve& curve, const std::vector<double>& breaks, int degre
   }
   out.knots.insert(out.knots.end(), static_cast<std::size_t>(degree) + 1, breaks.back());
   // The ends are its own, to the bit.
-  if (is_clamped(curve) && breaks.front() == curve.first_parameter())
+  if (is_clamped(curve.knots, curve.degree) && breaks.front() == curve.first_parameter())
     out.points.front() = curve.points.front();
-  if (is_clamped(curve) && breaks.back() == curve.last_parameter()) out.points.back() = curve.points.back();
+  if (is_clamped(curve.knots, curve.degree) && breaks.back() == curve.last_parameter())
+    out.points.back() = curve.points.back();
   return out;
 }
 
