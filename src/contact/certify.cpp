@@ -4,7 +4,7 @@
 #include <memory>
 #include <unordered_map>
 
-#include "contact/patch.h"
+#include "nurbs/patch.h"
 
 namespace selvage::contact {
 
@@ -13,20 +13,20 @@ namespace {
 // A part with its control points.
 struct Region {
   Part part;
-  Patch patch;
+  nurbs::Patch patch;
   Box3 box;
   Vec3 normal = Vec3::Zero();
   double size_u = 0, size_v = 0;  // the longest way across, either direction
 };
 
-Region region_of(const CellModel& model, const Part& part, Patch patch) {
+Region region_of(const CellModel& model, const Part& part, nurbs::Patch patch) {
   Region out;
   out.part = part;
   const Face& face = model.face_of(model.cells()[part.cell]);
   out.patch = std::move(patch);
   for (const Vec3& p : out.patch.points) out.box.extend(p);
   out.normal = middle_normal(out.patch, face.inward);
-  const Patch& p = out.patch;
+  const nurbs::Patch& p = out.patch;
   for (const int j : {0, p.count_v - 1})
     out.size_u = std::max(out.size_u, (p.point(p.count_u - 1, j) - p.point(0, j)).norm());
   for (const int i : {0, p.count_u - 1})

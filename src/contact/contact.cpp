@@ -14,12 +14,12 @@
 #include "contact/critical.h"
 #include "contact/deep.h"
 #include "contact/face.h"
-#include "contact/patch.h"
 #include "contact/place.h"
 #include "contact/repeated.h"
 #include "core/box_tree.h"
 #include "core/groups.h"
 #include "core/parallel.h"
+#include "nurbs/patch.h"
 
 namespace selvage::contact {
 
@@ -132,7 +132,7 @@ class Search {
   // The cells of a piece that are near a box, with their control points.
   struct Candidate {
     std::uint32_t cell;
-    Patch patch;
+    nurbs::Patch patch;
   };
   void candidates(const Piece& piece, const Box3& box, double reach, std::vector<Candidate>& out) const {
     out.clear();

@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
-#include "contact/patch.h"
 #include "core/parallel.h"
 #include "nurbs/divided.h"
+#include "nurbs/patch.h"
 #include "nurbs/sweep.h"
 
 namespace selvage::contact {
@@ -102,7 +102,7 @@ void add_cells(const nurbs::Surface& s, bool inward, const std::vector<double>& 
       cell.j = j;
       cell.low = {us[i], vs[j]};
       cell.high = {us[i + 1], vs[j + 1]};
-      const Patch patch = patch_of(s, cell.low, cell.high);
+      const nurbs::Patch patch = patch_of(s, cell.low, cell.high);
       for (const Vec3& p : patch.points) cell.box.extend(p);
       cell.normal = middle_normal(patch, inward);
       cells.push_back(cell);

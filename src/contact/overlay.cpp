@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 
-#include "contact/patch.h"
 #include "core/plane.h"
+#include "nurbs/patch.h"
 
 namespace selvage::contact {
 

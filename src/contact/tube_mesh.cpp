@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/patch.h"
 #include "nurbs/divided.h"
+#include "nurbs/patch.h"
 
 namespace selvage::contact {
 

@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 
 #include "core/readable.h"
 #include "nurbs/measure.h"
+#include "nurbs/patch.h"
 #include "pipeline/facts.h"
 #include "pipeline/job.h"
 #include "pipeline/pieces.h"
@@ -99,6 +101,16 @@ std::string other_tables(const Job& job, const fabric::Fabric& fabric) {
   return text;
 }
 
+// Control points stand up to a half of the section off the surface.
+void extend(Box3& box, const yarn::Body& body) {
+  const double tolerance = 1e-9 * yarn::bounds(body).diagonal().norm();
+  if (!std::isfinite(tolerance)) return;
+  nurbs::extend(box, body.surface, tolerance);
+  for (const yarn::EndFace* end : {&body.start, &body.end})
+    if (end->style != yarn::EndStyle::planar && !end->surface.is_empty())
+      nurbs::extend(box, end->surface, tolerance);
+}
+
 std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) {
   const Unit shown = job.options.units.value_or(file);
   const auto length = [&](double value) { return converted(value, file, shown); };
@@ -116,7 +128,7 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
     total_length += length(body.length);
     total_volume += volume;
     largest_miss = std::max(largest_miss, length(body.path_miss));
-    box.extend(yarn::bounds(body));
+    extend(box, body);
     return true;
   });
   std::string text = fmt::format("  lengths in {}\n{}", name_of(shown), table.text());

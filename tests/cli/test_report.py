@@ -3,6 +3,7 @@
 import hashlib
 import json
 import pathlib
+import re
 import shutil
 import unittest
 
@@ -104,6 +105,18 @@ class Report(Case):
         report = json.loads(self.succeeds("info", RING, "--json").stdout)
         self.assertEqual(report["inputs"][0]["yarn_count"], 1)
         self.assertTrue(report["ok"])
+
+    def test_the_box_is_that_of_the_surface(self):
+        # Straight yarns along x: across it a section of these sizes.
+        for section, across, up, places in (("ellipse 0.6 0.4", 0.3, 0.2, 3), ("circle 0.5", 0.25, 0.25, 3),
+                                            ("loop7 0.4", 0.2, 0.2, 1.9)):
+            source = self.folder / "straight.txt"
+            source.write_text(f"fabric 1\nunits mm\nthread t\n  section {section}\nend\n"
+                              "yarn y t\n  path\n    0 0 0\n    10 0 0\n  end\nend\n")
+            found = re.search(r"within \((.*)\) and \((.*)\)", self.succeeds("info", source).stdout)
+            low, high = ([float(x) for x in found[k].split(",")] for k in (1, 2))
+            for value, wanted in zip(low + high, (0, -across, -up, 10, across, up)):
+                self.assertLess(abs(value - wanted), 10 ** -places, section)
 
     def test_a_crashed_input_is_in_the_report(self):
         self.fails(1, "convert", GRID, "-o", self.folder / "x.igs", "--report", self.path, "--memory", "1")

@@ -6,7 +6,7 @@
 #include "core/vec.h"
 #include "nurbs/spline.h"
 
-namespace selvage::contact {
+namespace selvage::nurbs {
 
 // Control points of a part of a surface within one knot span of either direction, u fastest. The part lies in
 // their convex hull.
@@ -23,13 +23,17 @@ struct Patch {
 
 // The surface between two parameters of either direction that lie in one knot span (Ramshaw 1989: control
 // points are values of the polar form).
-Patch patch_of(const nurbs::Surface& surface, const Vec2& low, const Vec2& high);
+Patch patch_of(const Surface& surface, const Vec2& low, const Vec2& high);
 
 // One half of the patch along an axis (0: u, 1: v), by de Casteljau's scheme.
 Patch half_of(const Patch& patch, int axis, bool upper);
 
 // (cells_u + 1) x (cells_v + 1) points at even steps of the patch's own parameters, u fastest.
 void sample(const Patch& patch, int cells_u, int cells_v, std::vector<Vec3>& out);
+
+// Grows the box until it holds the surface, but for what stands out by `tolerance` (> 0) or less: patches
+// that reach beyond it are halved until that is known.
+void extend(Box3& box, const Surface& surface, double tolerance);
 
 // Unit, by the patch's diagonals; outward when `inward` says how S_u x S_v runs; zero where it has none.
 Vec3 middle_normal(const Patch& patch, bool inward);
@@ -42,4 +46,4 @@ double highest(const Patch& patch, const Vec3& direction);
 // directions. Negative: -(the least overlap of their extents) over these directions.
 double slab_gap(const Patch& a, const Vec3& normal_a, const Patch& b, const Vec3& normal_b);
 
-}  // namespace selvage::contact
+}  // namespace selvage::nurbs

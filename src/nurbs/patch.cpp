@@ -1,18 +1,16 @@
-#include "contact/patch.h"
+#include "nurbs/patch.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "nurbs/basis.h"
 
-namespace selvage::contact {
+namespace selvage::nurbs {
 
 namespace {
-
-using nurbs::BasisRow;
-using nurbs::max_degree;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -26,7 +24,7 @@ struct Extraction {
 
 void extract(const std::vector<double>& knots, int degree, int count, double low, double high,
              Extraction& out) {
-  const int span = nurbs::find_span(knots, degree, count, 0.5 * (low + high));
+  const int span = find_span(knots, degree, count, 0.5 * (low + high));
   out.first = span - degree;
   std::array<BasisRow, max_degree + 1> points;
   for (int k = 0; k <= degree; ++k) {
@@ -66,9 +64,36 @@ const std::vector<double>& bernstein_table(int degree, int steps, std::vector<do
   return scratch;
 }
 
+// How far the hull of the points stands out of the box.
+double excess(const Box3& box, std::span<const Vec3> points) {
+  Box3 hull;
+  for (const Vec3& p : points) hull.extend(p);
+  return std::max((box.min() - hull.min()).maxCoeff(), (hull.max() - box.max()).maxCoeff());
+}
+
+// The largest second difference along an axis.
+double bend(const Patch& patch, int axis) {
+  const int step_u = axis == 0 ? 1 : 0, step_v = 1 - step_u;
+  double most = 0.0;
+  for (int j = step_v; j + step_v < patch.count_v; ++j)
+    for (int i = step_u; i + step_u < patch.count_u; ++i)
+      most = std::max(most, (patch.point(i - step_u, j - step_v) - 2.0 * patch.point(i, j) +
+                             patch.point(i + step_u, j + step_v))
+                                .squaredNorm());
+  return most;
+}
+
+void extend(Box3& box, const Patch& patch, double tolerance) {
+  for (const int j : {0, patch.count_v - 1})
+    for (const int i : {0, patch.count_u - 1}) box.extend(patch.point(i, j));
+  if (!(excess(box, patch.points) > tolerance)) return;
+  const int axis = bend(patch, 0) >= bend(patch, 1) ? 0 : 1;
+  for (const bool upper : {false, true}) extend(box, half_of(patch, axis, upper), tolerance);
+}
+
 }  // namespace
 
-Patch patch_of(const nurbs::Surface& s, const Vec2& low, const Vec2& high) {
+Patch patch_of(const Surface& s, const Vec2& low, const Vec2& high) {
   thread_local Extraction u, v;
   extract(s.knots_u, s.degree_u, s.count_u, low.x(), high.x(), u);
   extract(s.knots_v, s.degree_v, s.count_v, low.y(), high.y(), v);
@@ -168,6 +193,21 @@ void sample(const Patch& patch, int cells_u, int cells_v, std::vector<Vec3>& out
   }
 }
 
+void extend(Box3& box, const Surface& surface, double tolerance) {
+  const std::vector<double> us = breakpoints(surface.knots_u, surface.degree_u),
+                            vs = breakpoints(surface.knots_v, surface.degree_v);
+  for (const Vec3& p : evaluate_grid(surface, us, vs)) box.extend(p);
+  const auto columns = at(surface.count_u), rows = at(surface.degree_v) + 1;
+  for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
+    const auto last =
+        at(find_span(surface.knots_v, surface.degree_v, surface.count_v, 0.5 * (vs[j] + vs[j + 1])));
+    const auto of_span = std::span(surface.points).subspan((last + 1 - rows) * columns, rows * columns);
+    if (!(excess(box, of_span) > tolerance)) continue;
+    for (std::size_t i = 0; i + 1 < us.size(); ++i)
+      extend(box, patch_of(surface, {us[i], vs[j]}, {us[i + 1], vs[j + 1]}), tolerance);
+  }
+}
+
 Vec3 middle_normal(const Patch& patch, bool inward) {
   const Vec3 across = patch.points.back() - patch.points.front(),
              other = patch.point(0, patch.count_v - 1) - patch.point(patch.count_u - 1, 0);
@@ -206,4 +246,4 @@ double slab_gap(const Patch& a, const Vec3& normal_a, const Patch& b, const Vec3
   return best;
 }
 
-}  // namespace selvage::contact
+}  // namespace selvage::nurbs
