@@ -155,6 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{small, 9, 5, "0.x", 9, "'0.x' is no number"},
                     Fault{small, 10, 5, "9", 12, "37 values; 109 are due"},
                     Fault{loops, 93, 7, "90H", 93, "a string of 90 characters is longer than what is left"},
+                    Fault{loops, 93, 9, "h", 93, "the h behind a string's length is small"},
                     Fault{loops, 89, 7, "9", 89, "142 at D25: points to a 110 at D9"},
                     Fault{loops, 89, 9, "14", 89, "points to 14, where no directory entry begins"},
                     Fault{loops, 89, 9, "25", 89, "points to itself"},
@@ -229,6 +230,30 @@ TEST(Structure, AnyDamageIsPutUpWith) {
     broken[at] = static_cast<char>("9,;H-\n D\xFF"[at % 9]);
     findings_in(broken);
   }
+}
+
+// One fault does not hide another one, wherever they are.
+TEST(Structure, AllFaultsAreFound) {
+  std::string broken = fixture("unit_m.igs");
+  broken = over(broken, 13, 17, "D      5");
+  broken = over(broken, 10, 27, "2.0");
+  broken = over(broken, 7, 80, "7");
+  broken = over(broken, 8, 24, "9");
+  broken = over(broken, 3, 7, "0.");
+  broken.insert(0, std::string(80, '\t') + "\n");
+  const std::string text = all_of(findings_in(broken));
+  for (const char* says :
+       {":1:1: error: an empty line", ":4:7: error: the model space scale",
+        ":8:74: error: sequence number D7", ":9:17: error: 128 at D3: there is no colour 9",
+        ":11:31: error: 128 at D3: knot 3 in u", ":14:17: error: the terminate line counts 5"})
+    EXPECT_NE(text.find(says), std::string::npos) << says << "\n" << text;
+}
+
+TEST(Structure, LinesWithoutEnds) {
+  std::string endless = fixture("unit_m.igs");
+  std::erase(endless, '\n');
+  EXPECT_EQ(all_of(findings_in(endless)),
+            "f.igs:1:81: error: the lines have no ends: they follow each other every 80 columns\n");
 }
 
 TEST(Structure, TwentyOfAKindAreShown) {
