@@ -94,13 +94,12 @@ inline const char* read_real(const char* at, const char* end, double& value) {
   if (count > 19)
     for (const char* zero = whole; *zero == '0' || *zero == '.'; ++zero)
       if (*zero == '0') --count;
-  if (count > 19) {
-    return detail::read_slowly(at, p, letter, value) ? p : at;
-  } else if (mantissa <= (std::uint64_t{1} << 53U) && exponent >= -22 && exponent <= 22) {
+  const bool fits = count <= 19;
+  if (fits && mantissa <= (std::uint64_t{1} << 53U) && exponent >= -22 && exponent <= 22) {
     const auto exact = static_cast<double>(mantissa);
     size = exponent < 0 ? exact / detail::exact_powers[static_cast<std::size_t>(-exponent)]
                         : exact * detail::exact_powers[static_cast<std::size_t>(exponent)];
-  } else if (exponent < 0 && exponent >= -27 && mantissa != 0) {
+  } else if (fits && exponent < 0 && exponent >= -27 && mantissa != 0) {
     size = detail::divided(mantissa, static_cast<unsigned>(-exponent));
   } else {
     return detail::read_slowly(at, p, letter, value) ? p : at;

@@ -128,6 +128,7 @@ double largest_gap(const nurbs::Surface& surface, bool in_u, const std::array<do
            : nurbs::greville(surface.knots_u, surface.degree_u, surface.count_u);
   const std::vector<double> ends = in_u ? std::vector{range[0], range[1]} : std::vector{range[2], range[3]};
   std::vector<double> inside;
+  inside.reserve(across.size());
   for (const double t : across) inside.push_back(std::clamp(t, range[in_u ? 2 : 0], range[in_u ? 3 : 1]));
   const std::vector<Vec3> points =
       in_u ? nurbs::evaluate_grid(surface, ends, inside) : nurbs::evaluate_grid(surface, inside, ends);

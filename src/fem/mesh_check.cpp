@@ -168,7 +168,7 @@ Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const
   for (const auto& [cell, region] : told) {
     std::uint32_t& known = mesh.regions[groups.of(cell)];
     if (region == Sides::outside || (known != unknown && known != region))
-      return wrong("TetGen's mesh joins two regions");
+      return in_the_way("TetGen's mesh joins two regions");
     known = region;
   }
   std::vector<double> volumes(count_regions(sides), 0.0);

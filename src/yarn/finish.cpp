@@ -30,6 +30,22 @@ double reach(const Body& body, const Vec3& centre, const Vec3& toward, double v)
   return largest;
 }
 
+// Does the surface go backwards somewhere round the section at v, against its mean way? A bend alone does not
+// say so of a grid, whose axis is only a line through the middles of its rows.
+bool goes_backwards(const Body& body, double v) {
+  const nurbs::Surface& s = body.surface;
+  const std::vector<double> breaks = nurbs::breakpoints(s.knots_u, s.degree_u);
+  constexpr int looks = 4;
+  std::vector<Vec3> ways;
+  Vec3 mean = Vec3::Zero();
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+    for (int i = 0; i < looks; ++i) {
+      ways.push_back(nurbs::evaluate_jet(s, breaks[k] + (breaks[k + 1] - breaks[k]) * i / looks, v).dv);
+      mean += ways.back();
+    }
+  return std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) { return way.dot(mean) <= 0.0; });
+}
+
 void find_bends(Body& body) {
   body.min_bend_radius = std::numeric_limits<double>::infinity();
   // No section reaches farther than the control net does from the axis: most places need no closer look.
@@ -54,7 +70,7 @@ void find_bends(Body& body) {
       if (kappa * body.length > 1e-9) body.min_bend_radius = std::min(body.min_bend_radius, 1.0 / kappa);
       if (kappa * widest <= 1.0) continue;
       const double needed = reach(body, jet.position, curvature / kappa, t);
-      if (needed * kappa >= 1.0 && (!worst || needed * kappa > worst->ratio))
+      if (needed * kappa >= 1.0 && (!worst || needed * kappa > worst->ratio) && goes_backwards(body, t))
         worst = Found{{t, jet.position, 1.0 / kappa, needed}, needed * kappa};
     }
     if (!worst) continue;

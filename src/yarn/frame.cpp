@@ -15,12 +15,14 @@ constexpr double six_degrees = 6.0 / 180.0 * std::numbers::pi;
 // power.
 constexpr double largest_turn = 0.02;
 
-// The frame's `up` carried from one node to another point (two reflections).
+// The frame's `up` carried from one node to another point (two reflections). A chord up to `shortest` has no
+// direction but that of rounding; over it, laying `up` across the tangent is right to the second order.
 Vec3 reflected(const Vec3& up, const Vec3& from, const Vec3& from_tangent, const Vec3& to,
-               const Vec3& to_tangent) {
+               const Vec3& to_tangent, double shortest) {
   const Vec3 v1 = to - from;
   const double c1 = v1.squaredNorm();
   if (c1 == 0.0) return up;
+  if (c1 <= shortest * shortest) return (up - up.dot(to_tangent) * to_tangent).normalized();
   const Vec3 up_l = up - (2.0 / c1) * v1.dot(up) * v1;
   const Vec3 tangent_l = from_tangent - (2.0 / c1) * v1.dot(from_tangent) * v1;
   const Vec3 v2 = to_tangent - tangent_l;
@@ -97,6 +99,8 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& 
   FrameField field;
   field.path_ = path;
   field.guide_ = guide;
+  for (const Vec3& point : path.points)
+    field.shortest_chord_ = std::max(field.shortest_chord_, 1e-8 * point.cwiseAbs().maxCoeff());
   const bool is_free = guide.form == FrameGuide::Form::free;
   const auto node_at = [&](double t) {
     const nurbs::CurveJet jet = nurbs::evaluate_jet(path, t);
@@ -142,7 +146,8 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& 
       const Node& before = field.nodes_.back();
       if (stops(node) || node.tangent.dot(before.tangent) < -0.5) return stopped(node);
       if (is_free) {
-        node.up = reflected(before.up, before.position, before.tangent, node.position, node.tangent);
+        node.up = reflected(before.up, before.position, before.tangent, node.position, node.tangent,
+                            field.shortest_chord_);
       } else {
         Frame frame;
         frame.position = node.position;
@@ -205,8 +210,9 @@ Frame FrameField::at(double t) const {
     return frame;
   }
   frame.turn_dt = spread_rate_ * frame.speed;
-  frame.up =
-      t <= node.t ? node.up : reflected(node.up, node.position, node.tangent, frame.position, frame.tangent);
+  frame.up = t <= node.t ? node.up
+                         : reflected(node.up, node.position, node.tangent, frame.position, frame.tangent,
+                                     shortest_chord_);
   if (spread_rate_ != 0.0) {
     const double angle = spread_rate_ * length_at(t);
     frame.up = Eigen::AngleAxisd(angle, frame.tangent) * frame.up;

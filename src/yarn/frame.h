@@ -71,6 +71,7 @@ class FrameField {
   FrameGuide guide_;
   std::vector<Node> nodes_;
   double spread_rate_ = 0;
+  double shortest_chord_ = 0;  // file units; up to there a chord's direction is rounding
 };
 
 }  // namespace selvage::yarn

