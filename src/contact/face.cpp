@@ -118,6 +118,7 @@ CellModel::Made CellModel::make(const yarn::Body& body) {
   // Sections at the knots along the yarn.
   const std::vector<double> breaks = nurbs::breakpoints(s.knots_v, s.degree_v);
   std::vector<double> round;
+  round.reserve(round_samples);
   for (int k = 0; k < round_samples; ++k)
     round.push_back(s.first_u() + (s.last_u() - s.first_u()) * k / round_samples);
   const std::vector<Vec3> points = nurbs::evaluate_grid(s, round, breaks);

@@ -30,6 +30,7 @@ class TubeMesher {
         nurbs::divided(us, std::vector<int>(us.size() - 1, static_cast<int>(std::ceil(quads_round / spans))));
     const std::vector<double> vs = rows(us);
     std::vector<double> within;
+    within.reserve(vs.size());
     for (const double v : vs) within.push_back(face.round_v ? wrapped(v, s.first_v(), s.last_v()) : v);
     mesh_.vertices = nurbs::evaluate_grid(s, us, within);
     for (const double v : within)
@@ -155,6 +156,7 @@ Eigen::Matrix3d odd_turn() {
 std::vector<Vec3> turned(const std::vector<Vec3>& points) {
   const Eigen::Matrix3d turn = odd_turn();
   std::vector<Vec3> out;
+  out.reserve(points.size());
   for (const Vec3& p : points) out.emplace_back(turn * p);
   return out;
 }
