@@ -63,8 +63,9 @@ Overlay::Overlay(const CellModel& model, const Sheet& a, const Sheet& b, const A
 
 Vec2 Overlay::centre(std::size_t line) const {
   const auto n = static_cast<std::size_t>(lines_);
-  return low_ + step_.cwiseProduct(
-                    Vec2(static_cast<double>(line % n) + offset, static_cast<double>(line / n) + offset));
+  const std::size_t row = line / n;
+  return low_ +
+         step_.cwiseProduct(Vec2(static_cast<double>(line % n) + offset, static_cast<double>(row) + offset));
 }
 
 int Overlay::line_at(const Vec2& p) const {
@@ -154,10 +155,10 @@ void Overlay::pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& p
       const double w1 = cross(way, e2) / size, w2 = cross(e1, way) / size, w0 = 1.0 - w1 - w2;
       if (w0 < slack || w1 < slack || w2 < slack) continue;
       const double height = w0 * seen[0].z() + w1 * seen[1].z() + w2 * seen[2].z();
-      Hit& hit = hits[static_cast<std::size_t>(j * lines_ + i)];
+      Hit& hit = hits[number_of(i, j)];
       if (hit.part >= 0 && (highest ? height <= hit.height : height >= hit.height)) continue;
       if (!bound.empty()) {
-        const Hit& end = bound[static_cast<std::size_t>(j * lines_ + i)];
+        const Hit& end = bound[number_of(i, j)];
         if (end.part < 0 || (highest ? height >= end.height : height <= end.height)) continue;
       }
       const Vec2 place = w0 * places[0] + w1 * places[1] + w2 * places[2];
@@ -179,7 +180,7 @@ bool Overlay::is_peak(std::size_t line) const {
     for (int di = -1; di <= 1; ++di) {
       const int x = i + di, y = j + dj;
       if ((di == 0 && dj == 0) || x < 0 || y < 0 || x >= lines_ || y >= lines_) continue;
-      const auto other = static_cast<std::size_t>(y * lines_ + x);
+      const auto other = number_of(x, y);
       if (!is_met(other)) continue;
       if (depth(other) > depth(line) || (depth(other) == depth(line) && other < line)) return false;
     }
@@ -200,7 +201,7 @@ std::vector<int> Overlay::regions(double least_depth, int& count) const {
       stack.pop_back();
       for (int y = std::max(0, j - 1); y <= std::min(lines_ - 1, j + 1); ++y)
         for (int x = std::max(0, i - 1); x <= std::min(lines_ - 1, i + 1); ++x) {
-          const auto other = static_cast<std::size_t>(y * lines_ + x);
+          const auto other = number_of(x, y);
           if (!in(other)) continue;
           label[other] = count;
           stack.push_back(other);
@@ -218,7 +219,7 @@ std::vector<Part> Overlay::parts_about(std::size_t line, int radius, bool of_a) 
   std::map<std::int32_t, Rectangle> ranges;
   for (int y = std::max(0, j - radius); y <= std::min(lines_ - 1, j + radius); ++y)
     for (int x = std::max(0, i - radius); x <= std::min(lines_ - 1, i + radius); ++x) {
-      const Hit& hit = hits[static_cast<std::size_t>(y * lines_ + x)];
+      const Hit& hit = hits[number_of(x, y)];
       if (hit.part >= 0) ranges[hit.part].extend(Vec2(hit.s, hit.t));
     }
   std::vector<Part> parts;
@@ -250,7 +251,7 @@ bool Overlay::is_smooth_about(std::size_t line, int radius, bool of_a) const {
   for (int y = j - radius; y <= j + radius; ++y)
     for (int x = i - radius; x <= i + radius; ++x) {
       if (x < 0 || y < 0 || x >= lines_ || y >= lines_) continue;
-      const auto k = static_cast<std::size_t>(y * lines_ + x);
+      const auto k = number_of(x, y);
       // Where the sheet ends there is an edge.
       if ((of_a ? a_ : b_)[k].part < 0) return false;
       const Place here = of_a ? on_a(k) : on_b(k);

@@ -87,6 +87,10 @@ class Overlay {
   void pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& places, std::int32_t part, Keep keep,
             const std::vector<Hit>& bound, std::vector<Hit>& hits) const;
   void drop_passing();
+  // Of the line in column `i` and row `j`.
+  [[nodiscard]] std::size_t number_of(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(lines_) + static_cast<std::size_t>(i);
+  }
   [[nodiscard]] Place place(const Hit& hit, const Sheet& sheet, std::size_t line) const;
 
   const CellModel& model_;
