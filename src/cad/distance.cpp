@@ -194,7 +194,7 @@ nurbs::Surface as_surface(const nurbs::Curve& curve) {
   return nurbs::ruled(curve, curve.points);
 }
 
-SurfaceSet::SurfaceSet(std::vector<const Surface*> surfaces) {
+SurfaceSet::SurfaceSet(const std::vector<const Surface*>& surfaces) {
   auto made = std::make_unique<Impl>();
   Box3 box;
   for (const Surface* surface : surfaces)

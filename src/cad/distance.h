@@ -19,7 +19,7 @@ struct Reach {
 // Surfaces that are asked for the points nearest to others. They have to outlive it.
 class SurfaceSet {
  public:
-  explicit SurfaceSet(std::vector<const nurbs::Surface*> surfaces);
+  explicit SurfaceSet(const std::vector<const nurbs::Surface*>& surfaces);
   ~SurfaceSet();
   SurfaceSet(SurfaceSet&&) noexcept;
   SurfaceSet& operator=(SurfaceSet&&) noexcept;

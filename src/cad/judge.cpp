@@ -57,7 +57,7 @@ class Judge {
   };
 
   Message message(Severity severity, const Part& part, const Face& face, std::string text,
-                  std::optional<Vec3> at = std::nullopt) {
+                  const std::optional<Vec3>& at = std::nullopt) {
     Message made = error(Kind::geometry, std::move(text));
     made.severity = severity;
     made.place = place_of(part, face);

@@ -143,7 +143,8 @@ class NearSegments {
   void put(std::size_t i) {
     const Vec3 from = *segments_[i].from, way = *segments_[i].to - from;
     const double pieces = std::max(1.0, std::ceil(way.norm() / size_));
-    for (double piece = 0.0; piece < pieces; piece += 1.0) {
+    for (long long k = 0; static_cast<double>(k) < pieces; ++k) {
+      const auto piece = static_cast<double>(k);
       const Vec3 a = from + way * (piece / pieces), b = from + way * ((piece + 1.0) / pieces);
       const Cube low = cube_of(Vec3(a.cwiseMin(b).array() - reach_)),
                  high = cube_of(Vec3(a.cwiseMax(b).array() + reach_));
@@ -282,7 +283,7 @@ std::optional<LooseEnd> find_loose_end(std::span<const yarn::Body> bodies, const
                                        double tolerance) {
   const std::vector<Crossing> low = crossings_in(bodies, box, axis, false),
                               high = crossings_in(bodies, box, axis, true);
-  if (const auto loose = first_without(low, high, box, axis, false, tolerance)) return loose;
+  if (auto loose = first_without(low, high, box, axis, false, tolerance)) return loose;
   return first_without(high, low, box, axis, true, tolerance);
 }
 
