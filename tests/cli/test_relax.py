@@ -179,6 +179,18 @@ class Solved(Relaxing):
         done = run("check", self.folder / "apart.txt")
         self.assertEqual((done.returncode, done.stderr), (0, ""))  # nothing asks for plies of plies
 
+    def test_folds_of_grids_are_those_of_their_surfaces(self):
+        """The middle line of a grid's rows may be bent where the surface is not: a straight yarn whose sections turn and shrink."""
+        head = "fabric 1\ntolerance 0.002\nthread t\n  diameter 0.55\nend\nyarn y t\n"
+        straight = self.file(head + "  ends fan\n  path polyline\n    0 0.85 -0.26 0.435 0.663 89.9\n"
+                             "    1.1 0.79 -0.02 0.627 0.419\n  end\nend\n")
+        self.succeeds("relax", straight, "-o", self.folder / "grid.txt")
+        self.assertIn("sound: every yarn is a closed valid solid", self.succeeds("check", self.folder / "grid.txt").stdout)
+        # One that is bent more tightly than it is thick folds, as a grid, too.
+        bent = self.file(head + "  path\n    0 0 0\n    1 0 0\n    1.2 0.2 0\n    1 0.4 0\n    0 0.4 0\n  end\nend\n")
+        self.succeeds("convert", bent, "-o", self.folder / "bent.igs")
+        self.assertIn("its surface folds over itself", self.fails(3, "check", self.folder / "bent.igs"))
+
     def test_standard_output_has_the_text_alone(self):
         source = self.file(CROSSING)
         done = self.succeeds("relax", source, "-o", "-")
