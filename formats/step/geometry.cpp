@@ -18,6 +18,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nurbs/basis.h"
+
 namespace selvage::formats::step {
 
 namespace {
@@ -183,7 +185,7 @@ std::optional<nurbs::Surface> exact_spline(const Handle(StepGeom_Surface) & surf
   spline.count_u = entity.base->NbControlPointsListI();
   spline.count_v = entity.base->NbControlPointsListJ();
   if (spline.degree_u < 1 || spline.degree_v < 1 || spline.degree_u >= spline.count_u ||
-      spline.degree_v >= spline.count_v)
+      spline.degree_v >= spline.count_v || std::max(spline.degree_u, spline.degree_v) > nurbs::max_degree)
     return std::nullopt;
   auto knots_u = knots_of(entity.knots_u, entity.times_u, spline.count_u, spline.degree_u);
   auto knots_v = knots_of(entity.knots_v, entity.times_v, spline.count_v, spline.degree_v);

@@ -6,7 +6,6 @@
 
 #include "cad/natural_border.h"
 #include "cad/sampled_curve.h"
-#include "nurbs/basis.h"
 #include "nurbs/turn.h"
 #include "yarn/grid.h"
 
@@ -74,8 +73,7 @@ double end_size(const nurbs::Surface& surface, bool row) {
 
 std::optional<TubeKind> tube_kind(const Face& face, double resolution) {
   const nurbs::Surface& surface = face.surface;
-  if (surface.degree_u > nurbs::max_degree || surface.degree_v > nurbs::max_degree ||
-      !is_continuous(surface.knots_u, surface.degree_u) || !is_continuous(surface.knots_v, surface.degree_v))
+  if (!is_continuous(surface.knots_u, surface.degree_u) || !is_continuous(surface.knots_v, surface.degree_v))
     return std::nullopt;
   // Almost every surface that is no tube is told by its first corners.
   const double rows = end_size(surface, true), columns = end_size(surface, false);

@@ -6,8 +6,9 @@
 
 namespace selvage::nurbs {
 
-// Highest degree that is evaluated: ANSYS reads up to 20.
-inline constexpr int max_degree = 20;
+// Highest degree that is evaluated: readers refuse what is higher. OpenCASCADE, FreeCAD and gmsh have up
+// to 25.
+inline constexpr int max_degree = 25;
 
 using BasisRow = std::array<double, max_degree + 1>;
 

@@ -273,9 +273,9 @@ class GmshCell : public StepCell {
   // Of each region, by gmsh's number: 1, 2, .. in the file's order.
   static std::map<int, double> volumes_of(const Tetrahedra& mesh) {
     std::map<int, double> volumes;
-    for (const auto& [region, corners] : mesh.elements) {
-      const auto at = [&](std::size_t k) { return mesh.nodes[static_cast<std::size_t>(corners[k])]; };
-      volumes[region] += std::abs((at(1) - at(0)).cross(at(2) - at(0)).dot(at(3) - at(0))) / 6;
+    for (const auto& element : mesh.elements) {
+      const auto at = [&](std::size_t k) { return mesh.nodes[static_cast<std::size_t>(element.second[k])]; };
+      volumes[element.first] += std::abs((at(1) - at(0)).cross(at(2) - at(0)).dot(at(3) - at(0))) / 6;
     }
     return volumes;
   }

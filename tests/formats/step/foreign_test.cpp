@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepGProp.hxx>
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
+#include <GeomConvert.hxx>
+#include <Geom_BSplineSurface.hxx>
+#include <Geom_BezierSurface.hxx>
 #include <IGESControl_Controller.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
@@ -15,14 +19,18 @@
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Reader.hxx>
 #include <STEPControl_Writer.hxx>
+#include <TColgp_Array2OfPnt.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
 #include <TopoDS_Shape.hxx>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "cad/judge.h"
 #include "fabric/build.h"
 #include "fabric/from_cad.h"
 #include "formats/iges/iges.h"
@@ -212,6 +220,34 @@ TEST(ForeignGmsh, StepOfGmsh) {
     EXPECT_EQ(solids_in(*reading.model), static_cast<int>(bodies.size()));
     EXPECT_LT(deviation(volumes_of(reading.yarns), facts.volumes), 1e-6);
     EXPECT_LT(deviation(volumes_of(reading.yarns), volumes_of(bodies)), 1e-6);
+  }
+}
+
+// As high degrees as OpenCASCADE has are evaluated as it does, and found to be right.
+TEST(ForeignDegrees, UpToTwentyFive) {
+  for (const int degree : {20, 21, 25}) {
+    TColgp_Array2OfPnt poles(1, degree + 1, 1, 2);
+    for (int i = 0; i <= degree; ++i)
+      for (int j = 0; j < 2; ++j) poles(i + 1, j + 1) = gp_Pnt(i, 10.0 * j, std::sin(1.0 * i + j));
+    const Handle(Geom_BezierSurface) bezier = new Geom_BezierSurface(poles);
+    const TopoDS_Shape face = BRepBuilderAPI_MakeFace(GeomConvert::SurfaceToBSplineSurface(bezier), 1e-7);
+    const Folder folder;
+    occt_write_step(face, folder / "high.step");
+    occt_write_iges(face, folder / "high.igs", false);
+    for (const auto& [format, file] : {std::pair(formats::step::descriptor(), "high.step"),
+                                       std::pair(formats::iges::descriptor(), "high.igs")}) {
+      const Reading reading = read(format, folder / file);
+      ASSERT_TRUE(reading.model.has_value());
+      ASSERT_EQ(reading.model->face_count(), 1U);
+      const nurbs::Surface& surface = reading.model->parts.front().faces.front().surface;
+      EXPECT_EQ(surface.degree_u, degree) << file;
+      for (const double u : {0.0, 0.1, 0.5, 0.77, 1.0}) {
+        const gp_Pnt there = bezier->Value(u, 0.3);
+        EXPECT_LT((nurbs::evaluate(surface, u, 0.3) - Vec3(there.X(), there.Y(), there.Z())).norm(), 1e-12);
+      }
+      Findings findings;
+      EXPECT_EQ(cad::judge(*reading.model, findings).borders, 4U);
+    }
   }
 }
 

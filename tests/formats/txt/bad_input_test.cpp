@@ -333,7 +333,7 @@ const std::vector<Case> grid_cases = {
      in_grid("0 0 0\n0 1 0\n0 0 1\n1 0 0\n1 0 0\n1 0 0"),
      {{12, 1, "section 2 has no size"}}},
     {"no_length", in_grid("0 0 0\n0 1 0\n0 0 1\n0 0 0\n0 1 0\n0 0 1"), {{6, 3, "no length"}}},
-    {"degree_zero", in_grid("degree 0 along\n" + six_rows), {{7, 8, "from 1 to 20"}}},
+    {"degree_zero", in_grid("degree 0 along\n" + six_rows), {{7, 8, "from 1 to 25"}}},
     {"degree_high",
      in_grid("degree 2 along\n" + six_rows),
      {{6, 3, "degree 2 along needs more than 2 sections"}}},
