@@ -13,6 +13,10 @@ jobs=$((gigabytes / 2))
 [ "$jobs" -ge 1 ] || jobs=1
 [ "$jobs" -le "$cores" ] || jobs=$cores
 
+# Of builds with clang's sanitizers: headers of libraries are left as they are, since their exact numbers and matrices take
+# most of the time. Eigen asserts its indices itself.
+sanitizer_flags="-O2 -g1 -DCGAL_NDEBUG -fsanitize-ignorelist=$root/scripts/suppressions/headers.txt"
+
 # configure [CMAKE OPTIONS]: quiet unless it fails.
 configure() {
   log=$(mktemp)

@@ -19,6 +19,8 @@
 #include <cstring>
 #include <vector>
 
+#include "core/sanitized.h"
+
 namespace selvage {
 
 namespace {
@@ -151,7 +153,7 @@ class Runner {
     ::close(signals_);
     for (const Running& other : running_) ::close(other.pipe);
     ::sigprocmask(SIG_SETMASK, &old_mask_, nullptr);
-    if (pool_.mebibytes > 0)
+    if (pool_.mebibytes > 0 && !sanitized)
       set_limit(RLIMIT_AS, static_cast<rlim_t>(std::min(pool_.mebibytes, 1e12) * 1048576.0));
     // A crash is reported by the parent; its memory would only fill the user's folder.
     set_limit(RLIMIT_CORE, 0);

@@ -52,7 +52,7 @@ PieceReport facts_of(const fabric::PieceShape& piece, Unit units, bool with_tabl
   for (const fabric::PieceEdge& edge : piece.edges) {
     facts.edges.push_back({edge.name, edge.is_line(), nurbs::arc_length(edge.curve) * mm, {}});
     if (!with_table || !edge.fit) continue;
-    PieceReport::Fit& fit = facts.edges.back().fit.emplace();
+    PieceReport::Fit& fit = facts.edges.back().fit.emplace(PieceReport::Fit{});
     fit.shape = fabric::name_of(edge.fit->shape);
     fit.iterations = edge.fit->bezier.iterations;
     fit.largest_error = edge.fit->largest_error() * mm;

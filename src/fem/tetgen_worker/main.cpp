@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/containment.h"
+#include "core/sanitized.h"
 #include "fem/tetgen_worker/job.h"
 #include "fem/tetgen_worker/protocol.h"
 
@@ -77,10 +78,8 @@ int run() {
   RequestHead head;
   if (!read_all(&head, sizeof head) || head.magic != request_magic) leave(Outcome::bad_request, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (head.parent != 0 && ::getppid() != head.parent) return 1;      // it died before the line above
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these need terabytes of addresses
-  limit(RLIMIT_AS, head.memory);
-#endif
+  if (head.parent != 0 && ::getppid() != head.parent) return 1;  // it died before the line above
+  if (!sanitized) limit(RLIMIT_AS, head.memory);
   limit(RLIMIT_CPU, head.cpu_seconds);
   const rlimit no_core{0, 0};
   if (::setrlimit(RLIMIT_CORE, &no_core) != 0) return 1;
