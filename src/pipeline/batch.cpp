@@ -179,10 +179,9 @@ void Batch::fail(std::size_t job, Message message) {
   message.file = inputs_[job].path == "-" ? "<stdin>" : inputs_[job].path;
   work_[job].messages += to_string(message) + "\n";
   if (!options_.wants_report()) return;
-  InputReport report;
-  report.path = inputs_[job].path;
+  InputReport report(inputs_[job].path);
   report.messages.push_back(std::move(message));
-  work_[job].report = to_json(report);
+  work_[job].report = report.text();
 }
 
 // The signals of a library that goes astray, not of somebody who ends a process.
@@ -309,10 +308,9 @@ int Batch::run(const std::vector<Message>& missing) {
     std::string text = to_string(message) + "\n";
     show(text);
     ++counts_.failed;
-    InputReport report;
-    report.path = message.file;
+    InputReport report(message.file);
     report.messages.push_back(message);
-    if (options_.wants_report()) missing_reports_.push_back(to_json(report));
+    if (options_.wants_report()) missing_reports_.push_back(report.text());
   }
   remove_leftovers();
 

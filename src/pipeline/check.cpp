@@ -201,7 +201,7 @@ bool check(Job& job) {
   if (!found->bodies.empty()) report_check(job, found->solids, found->bodies);
   if (cad.has_model() && found->bodies.empty())
     if (const std::optional<double> accuracy = cad::absolute_accuracy(*cad.measures()))
-      job.report.creo_absolute_accuracy = *accuracy * millimetres_per(fabric->units);
+      job.report["creo_absolute_accuracy"] = *accuracy * millimetres_per(fabric->units);
   std::size_t defects = cad.defects() + found->solids.overlaps.size() + found->pieces.defects;
   for (std::size_t i = 0; i < found->bodies.size(); ++i) {
     for (Message& message : defects_of(*found, i, fabric->units)) {

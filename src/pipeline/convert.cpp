@@ -173,8 +173,10 @@ std::optional<InstanceFinder> find_instances(Job& job, const fabric::Fabric& fab
 }
 
 void report_instances(Job& job, const InstanceFinder& finder, Unit units) {
-  job.report.instances = finder.found();
-  job.report.instances->largest_deviation *= millimetres_per(units);
+  const InstanceFinder::Found& found = finder.found();
+  job.report["instances"] = {{"shapes", found.shapes},
+                             {"copies", found.copies},
+                             {"largest_deviation", found.largest_deviation * millimetres_per(units)}};
 }
 
 void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
@@ -205,7 +207,8 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
     if (output.writer && !take_facts(job, output, output.writer->finish())) return;
   if (finder) report_instances(job, *finder, units);
   if (thinnest)
-    job.report.creo_absolute_accuracy = creo_accuracy(*thinnest * millimetres_per(fabric.units), {});
+    job.report["creo_absolute_accuracy"] =
+        if_known(creo_accuracy(*thinnest * millimetres_per(fabric.units), {}));
 }
 
 // A text is written without its yarns being built; what is wrong with those that were moved is said all the

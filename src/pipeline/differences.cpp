@@ -4,13 +4,13 @@
 
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "core/text_report.h"
+#include "pipeline/report.h"
+
 namespace selvage::pipeline {
 
 using cad::Difference;
-using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -85,41 +85,34 @@ std::string counts_text(const cad::Comparison::Counts& counts) {
   return text.empty() ? "nothing" : text;
 }
 
-Json point_json(const Vec3& p) {
-  return Json::array({p.x(), p.y(), p.z()});
-}
-
 Json difference_json(const Difference& d) {
-  Json out = {{"kind", name_of(d.kind)}, {"what", name_of(d.what)}, {"name", d.name}};
-  if (d.kind == Difference::Kind::renamed) out["other_name"] = d.other_name;
-  if (!d.entity.empty()) out["entity"] = d.entity;
-  if (d.kind == Difference::Kind::added || d.kind == Difference::Kind::removed) {
-    out["surfaces"] = d.surfaces;
-    out["box"] = {point_json(d.box.min()), point_json(d.box.max())};
-  }
-  if (d.kind == Difference::Kind::moved) {
-    out["vector"] = point_json(d.motion.shift);
-    if (d.motion.angle > 0) {
-      out["angle"] = d.motion.angle;
-      out["axis"] = point_json(d.motion.axis);
-    }
-  }
-  if (d.kind == Difference::Kind::reshaped || d.kind == Difference::Kind::moved) {
-    out["at_least"] = d.reach.at_least;
-    if (std::isfinite(d.reach.at_most)) out["at_most"] = d.reach.at_most;
-    out["at"] = point_json(d.reach.at);
-  }
-  if (!d.surface.empty()) out["surface"] = d.surface;
-  if (d.control_point) {
-    out["control_point"] = {d.control_point->i, d.control_point->j};
-    out["points_changed"] = d.control_point->changed;
-    out["points"] = d.control_point->points;
-  }
-  if (d.kind == Difference::Kind::recoloured) {
-    out["from"] = {d.before.red, d.before.green, d.before.blue};
-    out["to"] = {d.after.red, d.after.green, d.after.blue};
-  }
-  return out;
+  using enum Difference::Kind;
+  const bool has_come_or_gone = d.kind == added || d.kind == removed,
+             has_reach = d.kind == moved || d.kind == reshaped;
+  const auto color = [&](const yarn::Color& c) {
+    return if_true(d.kind == recoloured, {c.red, c.green, c.blue});
+  };
+  const Difference::ControlPoint c = d.control_point.value_or(Difference::ControlPoint{});
+  const bool turns = d.kind == moved && d.motion.angle > 0;
+  return {{"kind", name_of(d.kind)},
+          {"what", name_of(d.what)},
+          {"name", d.name},
+          {"other_name", if_true(d.kind == renamed, d.other_name)},
+          {"entity", if_true(!d.entity.empty(), d.entity)},
+          {"surfaces", if_true(has_come_or_gone, d.surfaces)},
+          {"box", if_true(has_come_or_gone, {point_json(d.box.min()), point_json(d.box.max())})},
+          {"vector", if_true(d.kind == moved, point_json(d.motion.shift))},
+          {"angle", if_true(turns, d.motion.angle)},
+          {"axis", if_true(turns, point_json(d.motion.axis))},
+          {"at_least", if_true(has_reach, d.reach.at_least)},
+          {"at_most", if_true(has_reach, if_finite(d.reach.at_most))},
+          {"at", if_true(has_reach, point_json(d.reach.at))},
+          {"surface", if_true(!d.surface.empty(), d.surface)},
+          {"control_point", if_true(d.control_point.has_value(), {c.i, c.j})},
+          {"points_changed", if_true(d.control_point.has_value(), c.changed)},
+          {"points", if_true(d.control_point.has_value(), c.points)},
+          {"from", color(d.before)},
+          {"to", color(d.after)}};
 }
 
 Json counts_json(const cad::Comparison::Counts& counts) {
@@ -170,21 +163,21 @@ std::string summary_of(const cad::Comparison& found, double tolerance, Unit unit
 
 std::string to_json(const cad::Comparison& found, const std::string& a, const std::string& b,
                     double tolerance, Unit units) {
-  Json list = Json::array(), kinds = Json::object();
-  for (const Difference& d : found.differences) list.push_back(difference_json(d));
+  Json kinds = Json::object();
   for (const Difference::Kind kind : all_kinds) kinds[std::string(name_of(kind))] = count_of(found, kind);
-  const Json out = {{"a", a},
-                    {"b", b},
-                    {"units", name_of(units)},
-                    {"tolerance", tolerance},
-                    {"equal", found.differences.empty()},
-                    {"counts", {{"a", counts_json(found.a)}, {"b", counts_json(found.b)}}},
-                    {"same", found.equal},
-                    {"largest_deviation", found.largest},
-                    {"kinds", kinds},
-                    {"differences", list},
-                    {"notes", found.notes}};
-  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  Json out = {{"a", a},
+              {"b", b},
+              {"units", name_of(units)},
+              {"tolerance", tolerance},
+              {"equal", found.differences.empty()},
+              {"counts", {{"a", counts_json(found.a)}, {"b", counts_json(found.b)}}},
+              {"same", found.equal},
+              {"largest_deviation", found.largest},
+              {"kinds", kinds},
+              {"differences", list_json(found.differences, difference_json)},
+              {"notes", found.notes}};
+  drop_unknown(out);
+  return text_of(out, 2) + "\n";
 }
 
 }  // namespace selvage::pipeline

@@ -9,14 +9,14 @@
 
 namespace selvage::pipeline {
 
-namespace {
-
 bool is_closed(const yarn::Body& body) {
   if (body.closed_along) return true;
   if (body.start.style == yarn::EndStyle::none || body.end.style == yarn::EndStyle::none) return false;
   const double allowed = solid::sewing_gap(body);
   return yarn::end_gap(body, false) <= allowed && yarn::end_gap(body, true) <= allowed;
 }
+
+namespace {
 
 double round_down(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
@@ -27,44 +27,53 @@ double round_down(double value) {
 
 }  // namespace
 
-YarnReport facts_of(const yarn::Body& body, Unit units) {
+Json yarn_json(const yarn::Body& body, Unit units) {
   const double mm = millimetres_per(units);
-  YarnReport facts;
-  facts.name = body.name;
-  facts.closed = is_closed(body);
-  if (!body.tight_bends.empty()) facts.self_overlap = true;
-  facts.length = body.length * mm;
-  facts.volume = body.volume * mm * mm * mm;
-  if (std::isfinite(body.min_bend_radius)) facts.min_bend_radius = body.min_bend_radius * mm;
-  facts.tube_error = body.tube_error * mm;
-  if (body.path_miss > 0) facts.path_miss = body.path_miss * mm;
-  facts.count_u = body.surface.count_u;
-  facts.count_v = body.surface.count_v;
-  return facts;
+  return {{"name", body.name},
+          {"closed", is_closed(body)},
+          {"length", body.length * mm},
+          {"volume", body.volume * mm * mm * mm},
+          {"min_bend_radius", if_finite(body.min_bend_radius * mm)},
+          {"tube_error", body.tube_error * mm},
+          {"path_miss", if_true(body.path_miss > 0, body.path_miss * mm)},
+          {"control_points", {body.surface.count_u, body.surface.count_v}},
+          {"self_overlap", if_true(!body.tight_bends.empty(), true)}};
 }
 
-PieceReport facts_of(const fabric::PieceShape& piece, Unit units, bool with_table) {
+namespace {
+
+Json fit_json(const fabric::CurveFit& fit, double mm) {
+  const auto in_mm = [&](const Vec2& p) { return point_json(p * mm); };
+  return {{"shape", fabric::name_of(fit.shape)},
+          {"points", list_json(fit.points,
+                               [&](const fabric::FixedPoint& point) {
+                                 return Json{{"parameter", point.parameter},
+                                             {"point", in_mm(point.at)},
+                                             {"error", point.error * mm},
+                                             {"distance", point.distance * mm}};
+                               })},
+          {"largest_error", fit.largest_error() * mm},
+          {"largest_distance", fit.largest_distance() * mm},
+          {"control_points", list_json(fit.bezier.solved, in_mm)},
+          {"control_points_by_descent", list_json(fit.bezier.descended, in_mm)},
+          {"descent_steps", fit.bezier.iterations}};
+}
+
+}  // namespace
+
+Json piece_json(const fabric::PieceShape& piece, Unit units, bool with_table) {
   const double mm = millimetres_per(units);
-  PieceReport facts;
-  facts.name = piece.name;
-  facts.area = piece.area * mm * mm;
-  facts.perimeter = piece.perimeter * mm;
-  for (const fabric::PieceEdge& edge : piece.edges) {
-    facts.edges.push_back({edge.name, edge.is_line(), nurbs::arc_length(edge.curve) * mm, {}});
-    if (!with_table || !edge.fit) continue;
-    PieceReport::Fit& fit = facts.edges.back().fit.emplace(PieceReport::Fit{});
-    fit.shape = fabric::name_of(edge.fit->shape);
-    fit.iterations = edge.fit->bezier.iterations;
-    fit.largest_error = edge.fit->largest_error() * mm;
-    fit.largest_distance = edge.fit->largest_distance() * mm;
-    for (const fabric::FixedPoint& point : edge.fit->points)
-      fit.points.push_back({point.parameter, point.at * mm, point.error * mm, point.distance * mm});
-    for (std::size_t k = 0; k < 4; ++k) {
-      fit.solved[k] = edge.fit->bezier.solved[k] * mm;
-      fit.descended[k] = edge.fit->bezier.descended[k] * mm;
-    }
-  }
-  return facts;
+  const auto edge_json = [&](const fabric::PieceEdge& edge) {
+    return Json{{"name", edge.name},
+                {"kind", edge.is_line() ? "line" : "curve"},
+                {"length", nurbs::arc_length(edge.curve) * mm},
+                {"fit", with_table && edge.fit ? fit_json(*edge.fit, mm) : Json()}};
+  };
+  return {{"name", piece.name},
+          {"perimeter", piece.perimeter * mm},
+          {"area", piece.area * mm * mm},
+          {"valid", nullptr},  // until a check knows
+          {"edges", list_json(piece.edges, edge_json)}};
 }
 
 double thinnest_section(const yarn::Body& body) {

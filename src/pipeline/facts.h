@@ -1,8 +1,7 @@
-// Facts of yarns for the report and the tables.
+// Facts of yarns and pieces for the report and the tables.
 #pragma once
 
 #include <optional>
-#include <span>
 
 #include "core/units.h"
 #include "fabric/piece.h"
@@ -11,12 +10,14 @@
 
 namespace selvage::pipeline {
 
-// Lengths of the body in `units`, those of the result in mm. `closed` is told from the joints of the end
-// faces: whether they keep within the rounding of the coordinates.
-YarnReport facts_of(const yarn::Body& body, Unit units);
+// Is it closed along, or do the joints of its end faces keep within the rounding of the coordinates?
+bool is_closed(const yarn::Body& body);
 
-// The same of a garment piece; `with_table`: with the fixed points and control points of its curves.
-PieceReport facts_of(const fabric::PieceShape& piece, Unit units, bool with_table);
+// A yarn in the report; lengths of the body in `units`. `closed` as above, until a check says better.
+Json yarn_json(const yarn::Body& body, Unit units);
+
+// A garment piece in the report; `with_table`: with the fixed points and control points of its curves.
+Json piece_json(const fabric::PieceShape& piece, Unit units, bool with_table);
 
 // The smallest distance across any section, file units: twice the least distance from a section's centre to
 // its control points.

@@ -169,8 +169,8 @@ void info(Job& job) {
   CadLook look;
   look.model = [&](const cad::Model& model, const formats::Descriptor&) {
     of_file = file_facts(model);
-    job.report.entities = model.entities;
-    job.report.unknown = model.unknown;
+    job.report["entities"] = if_true(!model.entities.empty(), model.entities);
+    job.report["not_understood"] = if_true(!model.unknown.empty(), model.unknown);
   };
   const std::optional<fabric::Fabric> fabric = job.read(look);
   if (!fabric) return;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "formats/format.h"
-#include "pipeline/report.h"
 #include "yarn/body.h"
 
 namespace selvage::pipeline {
@@ -23,8 +22,11 @@ class InstanceFinder {
   void count(const yarn::Body& body);
   // Nothing for a yarn that is like no other.
   std::optional<formats::Instance> place(const yarn::Body& body);
-  // Lengths in the yarns' unit.
-  [[nodiscard]] const InstancesReport& found() const { return found_; }
+  struct Found {
+    std::size_t shapes = 0, copies = 0;  // the yarns that are written by reference, and of how many shapes
+    double largest_deviation = 0;        // of a copy from the yarn as it was built; in the yarns' unit
+  };
+  [[nodiscard]] const Found& found() const { return found_; }
 
  private:
   // What must be the same, role and colour among it: a copy has those of its shape.
@@ -47,7 +49,7 @@ class InstanceFinder {
 
   double tolerance_;
   std::map<Kind, Classes> kinds_;
-  InstancesReport found_;
+  Found found_;
 };
 
 }  // namespace selvage::pipeline

@@ -46,9 +46,7 @@ std::string plural(std::size_t count, std::string_view noun) {
 
 Job::Job(const Options& options_in, const Input& input_in, const std::vector<PlannedOutput>& outputs_in,
          const Channel& channel)
-    : options(options_in), input(input_in), outputs(outputs_in), channel_(channel) {
-  report.path = input.path;
-}
+    : options(options_in), input(input_in), outputs(outputs_in), report(input.path), channel_(channel) {}
 
 void Job::say(Message message, double badness) {
   if (says_once && message.severity != Severity::error && !said_.insert(to_string(message)).second) return;
@@ -123,7 +121,7 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
   if (wants_report()) {
     Result<std::string> digest =
         files_of(input.path).size() > 1 ? digest_of(input.path) : sha256(source->bytes());
-    if (digest) report.sha256 = *digest;  // a missing file is told by the reading
+    if (digest) report["sha256"] = *digest;  // a missing file is told by the reading
   }
   Result<const formats::Descriptor*> format = detect_readable(*source);
   if (!format) {
@@ -170,7 +168,8 @@ std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {
   std::optional<fabric::YarnBuilder> made = fabric::YarnBuilder::create(fabric, build_options(), diagnostics);
   forward(diagnostics);
   if (!made) return std::nullopt;
-  report.yarn_count = made->count();
+  report["yarn_count"] = made->count();
+  report["yarns"] = Json::array();
   if (made->count() == 0 && fabric::pieces_of(fabric).empty() && fabric.parts.empty() &&
       fabric.curves.empty()) {
     say(error(Kind::geometry, "there is nothing in this input"));
@@ -201,7 +200,7 @@ void Job::for_each_yarn(const fabric::YarnBuilder& builder, std::string_view ver
       return true;
     }
     say_all(body->messages);
-    if (wants_report()) report.yarns.push_back(facts_of(*body, file_units()));
+    if (wants_report()) report["yarns"].push_back(yarn_json(*body, file_units()));
     return take(std::move(*body));
   });
 }
@@ -227,7 +226,7 @@ std::optional<fabric::PieceShape> Job::build_piece(const fabric::Fabric& fabric,
     for (const Message& message : diagnostics.messages())
       message.severity == Severity::error ? say_defect(message) : say(message);
   }
-  if (shape && wants_report()) report.pieces.push_back(facts_of(*shape, file_units(), options.table));
+  if (shape && wants_report()) report["pieces"].push_back(piece_json(*shape, file_units(), options.table));
   return shape;
 }
 
@@ -288,12 +287,9 @@ Verdict run_job(Job& job, const std::string& earlier, const Channel& channel) {
     job.say(whole.error());
   job.say_rest();
   if (!job.wants_report()) return verdict;
-  job.report.ok = verdict == Verdict::done || verdict == Verdict::skipped;
-  job.report.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  if (verdict == Verdict::skipped)
-    channel.send(packet::report, marked_skipped(earlier));
-  else
-    channel.send(packet::report, to_json(job.report));
+  job.report["ok"] = verdict == Verdict::done;
+  job.report["seconds"] = std::chrono::duration<double>(Clock::now() - start).count();
+  channel.send(packet::report, verdict == Verdict::skipped ? marked_skipped(earlier) : job.report.text());
   return verdict;
 }
 

@@ -33,7 +33,7 @@ namespace packet {
 inline constexpr char message = 'm';   // a line or block for standard error
 inline constexpr char result = 'r';    // a piece of standard output
 inline constexpr char progress = 'p';  // what is being done right now
-inline constexpr char report = 'j';    // the InputReport as JSON
+inline constexpr char report = 'j';    // the InputReport as text
 inline constexpr char files = 'f';     // how many files were written, as decimal digits
 inline constexpr char reader = 'd';    // the format that another program's library reads now; empty: none
 }  // namespace packet

@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "core/xml_text.h"
+#include "pipeline/report.h"
 
 namespace selvage::pipeline {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Case {
   std::string class_name, name, body;
@@ -21,11 +18,6 @@ struct Suite {
   std::vector<Case> cases;
   std::size_t failures = 0, errors = 0, skipped = 0;
 };
-
-std::string text_at(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
 
 std::string lines_of(const Json& object, const char* key) {
   std::string text;

@@ -83,7 +83,7 @@ void mesh(Job& job) {
   Result<fem::Mesh> mesh = fem::mesh_yarns(*fabric, *bodies, fabric->units, mesh_options(job), diagnostics);
   job.say_all(diagnostics.messages());
   if (!mesh) return job.say(mesh.error());
-  job.report.mesh = mesh_facts(*mesh);
+  job.report["mesh"] = mesh_json(*mesh);
   tell_volumes(job, *mesh);
   write_mesh(job, *outputs, *mesh);
 }

@@ -110,8 +110,8 @@ void mesh_cell(Job& job) {
     if (Status derived = fem::derive_yarn_stiffness(*mesh, diagnostics); !derived) mesh = derived.error();
   job.say_all(diagnostics.messages());
   if (!mesh) return job.say(mesh.error());
-  job.report.mesh = mesh_facts(*mesh);
-  if (job.options.voxels == 0) job.report.mesh->estimate = ready->size.tetrahedra;
+  job.report["mesh"] =
+      mesh_json(*mesh, job.options.voxels == 0 ? std::optional(ready->size.tetrahedra) : std::nullopt);
   tell_volumes(job, *mesh);
   write_mesh(job, *outputs, *mesh);
 }

@@ -10,31 +10,43 @@
 namespace selvage::pipeline {
 namespace {
 
-MeshReport::Region region_facts(const fem::Region& region) {
-  MeshReport::Region facts;
-  facts.name = region.name;
-  facts.kind = region.kind == fem::Region::Kind::yarn ? "yarn" : "matrix";
-  facts.elements = region.last_element - region.first_element;
-  facts.volume = region.volume;
-  facts.min_dihedral = region.quality.min_dihedral;
-  if (region.exact_volume > 0) facts.exact_volume = region.exact_volume;
-  return facts;
-}
-
-void add_cell(MeshReport& facts, const fem::Mesh& mesh) {
-  double yarns = 0;
-  for (const fem::Region& region : mesh.regions)
-    if (region.kind == fem::Region::Kind::yarn) yarns += region.volume;
-  facts.yarn_share = yarns / (mesh.cell->high - mesh.cell->low).prod();
-  for (std::size_t k = 0; k < 3; ++k)
-    if (mesh.cell->periodic[k]) facts.periodic += std::string(facts.periodic.empty() ? "" : " ") + "xyz"[k];
-  facts.equations = mesh.equations.size();
-  facts.load_cases = mesh.load_cases.size();
-}
-
 // Relative; of a region whose exact volume is known.
 double volume_error(const fem::Region& region) {
   return region.volume / region.exact_volume - 1;
+}
+
+Json region_json(const fem::Region& region, bool is_voxels) {
+  const bool is_exact = region.exact_volume > 0;
+  return {{"name", region.name},
+          {"kind", region.kind == fem::Region::Kind::yarn ? "yarn" : "matrix"},
+          {is_voxels ? "hexahedra" : "tets", region.last_element - region.first_element},
+          {"volume", region.volume},
+          {"exact_volume", if_true(is_exact, region.exact_volume)},
+          {"volume_error", if_true(is_exact, volume_error(region))},
+          {"min_dihedral", if_true(!is_voxels, region.quality.min_dihedral)}};
+}
+
+Json worst_json(const fem::Mesh& mesh) {
+  return list_json(mesh.worst, [&](const fem::BadElement& bad) {
+    const auto region = std::find_if(mesh.regions.begin(), mesh.regions.end(),
+                                     [&](const fem::Region& r) { return bad.element < r.last_element; });
+    return Json{{"min_dihedral", bad.min_dihedral},
+                {"region", region == mesh.regions.end() ? std::string() : region->name},
+                {"at", point_json(bad.at)}};
+  });
+}
+
+void add_cell(Json& facts, const fem::Mesh& mesh) {
+  double yarns = 0;
+  for (const fem::Region& region : mesh.regions)
+    if (region.kind == fem::Region::Kind::yarn) yarns += region.volume;
+  std::string periodic;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (mesh.cell->periodic[k]) periodic += std::string(periodic.empty() ? "" : " ") + "xyz"[k];
+  facts["yarn_share"] = yarns / (mesh.cell->high - mesh.cell->low).prod();
+  facts["periodic"] = periodic;
+  facts["equations"] = mesh.equations.size();
+  facts["load_cases"] = mesh.load_cases.size();
 }
 
 const fem::Region* worst_volume(const fem::Mesh& mesh) {
@@ -88,34 +100,29 @@ std::optional<Message> wrong_volume(const fem::Mesh& mesh) {
                   mesh.order == 1 ? " or --order 2" : ""));
 }
 
-MeshReport mesh_facts(const fem::Mesh& mesh) {
-  MeshReport facts;
-  facts.nodes = mesh.nodes.size();
-  if (mesh.shape == fem::Mesh::Shape::hexahedron)
-    facts.hexahedra = mesh.elements.size();
-  else
-    facts.tets = mesh.elements.size();
-  facts.min_dihedral = mesh.quality.min_dihedral;
-  facts.max_aspect = mesh.quality.max_aspect;
-  double exact = 0, off = 0;
+Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {
+  const bool is_voxels = mesh.shape == fem::Mesh::Shape::hexahedron;
+  double volume = 0, exact = 0, off = 0;
   for (const fem::Region& region : mesh.regions) {
-    facts.regions.push_back(region_facts(region));
-    facts.volume += region.volume;
+    volume += region.volume;
     if (region.exact_volume <= 0) continue;
     exact += region.exact_volume;
     off += std::abs(region.volume - region.exact_volume);
   }
-  facts.volume_error = exact > 0 ? off / exact : 0;
-  if (mesh.angles) {
-    facts.below_target = mesh.angles->below;
-    facts.in_wedges = mesh.angles->in_wedges;
-  }
-  for (const fem::BadElement& bad : mesh.worst) {
-    const auto region = std::find_if(mesh.regions.begin(), mesh.regions.end(),
-                                     [&](const fem::Region& r) { return bad.element < r.last_element; });
-    facts.worst.push_back(
-        {bad.min_dihedral, region == mesh.regions.end() ? std::string() : region->name, bad.at});
-  }
+  Json facts = {
+      {"nodes", mesh.nodes.size()},
+      {"tets", is_voxels ? 0 : mesh.elements.size()},
+      {"volume", volume},
+      {"hexahedra", if_true(is_voxels, mesh.elements.size())},
+      {"min_dihedral", if_true(!is_voxels, mesh.quality.min_dihedral)},
+      {"max_aspect", if_true(!is_voxels, mesh.quality.max_aspect)},
+      {"volume_error", if_true(!is_voxels, exact > 0 ? off / exact : 0)},
+      {"below_target", mesh.angles ? Json(mesh.angles->below) : Json()},
+      {"in_wedges", mesh.angles ? Json(mesh.angles->in_wedges) : Json()},
+      {"regions",
+       list_json(mesh.regions, [&](const fem::Region& region) { return region_json(region, is_voxels); })},
+      {"worst", if_true(!mesh.worst.empty(), worst_json(mesh))},
+      {"estimate", if_known(estimate)}};
   if (mesh.cell) add_cell(facts, mesh);
   return facts;
 }

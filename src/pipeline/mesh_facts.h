@@ -10,8 +10,8 @@
 
 namespace selvage::pipeline {
 
-// Of tetrahedra or hexahedra, of dry yarns or a unit cell (all but MeshReport::estimate).
-MeshReport mesh_facts(const fem::Mesh& mesh);
+// Of tetrahedra or hexahedra, of dry yarns or a unit cell; `estimate`: how many tetrahedra were expected.
+Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate = {});
 
 // How much of a unit cell is yarn and fibre, and how far the volumes of regions are from those of the
 // B-spline yarns, the worst by name. Empty: nothing is known.

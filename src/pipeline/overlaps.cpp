@@ -25,30 +25,38 @@ Message overlap_message(const solid::Overlap& overlap, std::span<const yarn::Bod
 void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn::Body> bodies) {
   if (!job.wants_report()) return;
   const double mm = millimetres_per(job.file_units());
-  InputReport& report = job.report;
-  for (std::size_t i = 0; i < check.yarns.size() && i < report.yarns.size(); ++i) {
-    report.yarns[i].closed = check.yarns[i].is_shut();
-    report.yarns[i].self_overlap = check.yarns[i].self_intersecting || !bodies[i].tight_bends.empty();
-  }
-  report.overlaps.emplace();
-  for (const solid::Overlap& overlap : check.overlaps)
-    report.overlaps->push_back({bodies[overlap.a].name, bodies[overlap.b].name, overlap.depth * mm,
-                                overlap.at * mm, overlap.direction, overlap.area * mm * mm, overlap.site_a,
-                                overlap.site_b});
-  if (job.options.reach > 0.0) {
-    report.contacts.emplace();
-    for (const solid::NearContact& contact : check.near_contacts)
-      report.contacts->push_back({bodies[contact.a].name, bodies[contact.b].name, contact.gap * mm,
-                                  contact.at * mm, contact.site_a, contact.site_b});
+  Json& yarns = job.report["yarns"];
+  std::optional<double> thinnest, min_gap = check.min_gap;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (i < yarns.size()) {
+      yarns[i]["closed"] = check.yarns[i].is_shut();
+      yarns[i]["self_overlap"] = check.yarns[i].self_intersecting || !bodies[i].tight_bends.empty();
+    }
+    const double thickness = thinnest_section(bodies[i]) * mm;
+    thinnest = std::min(thinnest.value_or(thickness), thickness);
   }
   for (const solid::Overlap& overlap : check.overlaps)
-    if (overlap.a == overlap.b && overlap.a < report.yarns.size())
-      report.yarns[overlap.a].self_overlap = true;
-  std::optional<double> thinnest;
-  for (const yarn::Body& body : bodies)
-    thinnest = std::min(thinnest.value_or(thinnest_section(body) * mm), thinnest_section(body) * mm);
-  if (check.min_gap) report.min_gap = *check.min_gap * mm;
-  report.creo_absolute_accuracy = creo_accuracy(thinnest, report.min_gap);
+    if (overlap.a == overlap.b && overlap.a < yarns.size()) yarns[overlap.a]["self_overlap"] = true;
+  const auto site = [](const std::optional<Vec2>& uv) { return uv ? point_json(*uv) : Json(); };
+  job.report["overlaps"] = list_json(check.overlaps, [&](const solid::Overlap& overlap) {
+    return Json{{"a", bodies[overlap.a].name},
+                {"b", bodies[overlap.b].name},
+                {"depth", overlap.depth * mm},
+                {"at", point_json(overlap.at * mm)},
+                {"direction", point_json(overlap.direction)},
+                {"area", if_true(overlap.area * mm * mm > 0, overlap.area * mm * mm)},
+                {"site_a", site(overlap.site_a)},
+                {"site_b", site(overlap.site_b)}};
+  });
+  if (job.options.reach > 0.0)
+    job.report["contacts"] = list_json(check.near_contacts, [&](const solid::NearContact& contact) {
+      return Json{{"a", bodies[contact.a].name},    {"b", bodies[contact.b].name},
+                  {"gap", contact.gap * mm},        {"at", point_json(contact.at * mm)},
+                  {"site_a", site(contact.site_a)}, {"site_b", site(contact.site_b)}};
+    });
+  if (min_gap) *min_gap *= mm;
+  job.report["min_gap"] = if_known(min_gap);
+  job.report["creo_absolute_accuracy"] = if_known(creo_accuracy(thinnest, min_gap));
 }
 
 bool check_overlaps(Job& job, std::span<const yarn::Body> bodies,

@@ -105,7 +105,7 @@ std::optional<PieceFindings> examine_pieces(Job& job, const fabric::Fabric& fabr
     }
     found.defects += face.defects.size();
     for (const Message& defect : face.defects) job.say_defect(defect);
-    if (job.wants_report()) job.report.pieces[i].valid = face.defects.empty();
+    if (job.wants_report()) job.report["pieces"][i]["valid"] = face.defects.empty();
   }
   return found;
 }

@@ -10,6 +10,7 @@
 #include "contact/relax.h"
 #include "core/readable.h"
 #include "fabric/as_grid.h"
+#include "pipeline/scaling.h"
 #include "pipeline/table.h"
 #include "pipeline/unit_cell.h"
 #include "pipeline/writing.h"
@@ -151,44 +152,53 @@ contact::RelaxOptions relax_options(Job& job, const fabric::Fabric& fabric,
   return options;
 }
 
-// Which yarn changed most, and by how much; `of` gives one of the change's values.
-struct Largest {
-  double value = 0;
-  std::string yarn;
+// The largest of what yarns paid; 0 where none had to move: what differs then is rounding.
+struct Paid {
+  double move = 0, area = 0, length = 0, volume = 0;
+  std::string moved_most;  // the yarn; empty: none
 };
-template <class Of>
-Largest largest(const Relaxation& relaxation, const std::vector<yarn::Body>& bodies, Of of) {
-  Largest most;
-  for (std::size_t i = 0; i < relaxation.changes.size() && i < bodies.size(); ++i)
-    if (const double value = std::abs(of(relaxation.changes[i])); value > most.value)
-      most = {value, bodies[i].name};
+
+bool is_moved(const Relaxation& relaxation) {
+  return relaxation.iterations > 0;
+}
+
+Paid paid_for(const Relaxation& relaxation, const std::vector<yarn::Body>& bodies) {
+  Paid most;
+  for (std::size_t i = 0; is_moved(relaxation) && i < relaxation.changes.size() && i < bodies.size(); ++i) {
+    const contact::YarnChange& change = relaxation.changes[i];
+    if (std::abs(change.move) > most.move) most.moved_most = bodies[i].name;
+    most.move = std::max(most.move, std::abs(change.move));
+    most.area = std::max(most.area, std::abs(change.area));
+    most.length = std::max(most.length, std::abs(change.length));
+    most.volume = std::max(most.volume, std::abs(change.volume));
+  }
   return most;
 }
 
-RelaxReport report_of(const Relaxation& relaxation, const std::vector<yarn::Body>& bodies, Unit units) {
-  const double mm = millimetres_per(units);
-  const auto state = [&](const contact::RelaxState& from) {
-    RelaxReport::State to{from.overlaps, from.depth * mm, {}};
-    if (from.min_gap) to.min_gap = *from.min_gap * mm;
-    return to;
+Json relax_json(const Relaxation& relaxation, const Paid& paid, const std::vector<yarn::Body>& bodies,
+                double mm) {
+  const auto state = [&](const contact::RelaxState& from) -> Json {
+    return {{"overlaps", from.overlaps},
+            {"depth", if_true(from.overlaps > 0, from.depth * mm)},
+            {"min_gap", from.min_gap ? Json(*from.min_gap * mm) : Json()}};
   };
-  RelaxReport report;
-  report.solved = relaxation.solved;
-  report.iterations = relaxation.iterations;
-  report.before = state(relaxation.before);
-  report.after = state(relaxation.after);
-  report.reason = relaxation.reason;
-  for (const contact::Jam& jam : relaxation.jams)
-    report.jams.push_back({bodies[jam.a].name, bodies[jam.b].name, jam.gap * mm, jam.at * mm});
-  if (!report.is_moved()) return report;  // what differs is rounding
-  const auto most = [&](auto of) { return largest(relaxation, bodies, of); };
-  const Largest move = most([](const contact::YarnChange& change) { return change.move; });
-  report.largest_move = move.value * mm;
-  report.moved_most = move.yarn;
-  report.area_change = most([](const contact::YarnChange& change) { return change.area; }).value;
-  report.length_change = most([](const contact::YarnChange& change) { return change.length; }).value;
-  report.volume_change = most([](const contact::YarnChange& change) { return change.volume; }).value;
-  return report;
+  const auto jam_json = [&](const contact::Jam& jam) -> Json {
+    return {{"a", bodies[jam.a].name},
+            {"b", bodies[jam.b].name},
+            {"gap", jam.gap * mm},
+            {"at", point_json(jam.at * mm)}};
+  };
+  return {{"solved", relaxation.solved},
+          {"iterations", relaxation.iterations},
+          {"before", state(relaxation.before)},
+          {"after", state(relaxation.after)},
+          {"largest_move", paid.move * mm},
+          {"largest_area_change", paid.area},
+          {"largest_length_change", paid.length},
+          {"largest_volume_change", paid.volume},
+          {"moved_most", if_true(!paid.moved_most.empty(), paid.moved_most)},
+          {"reason", if_true(!relaxation.reason.empty(), relaxation.reason)},
+          {"jams", if_true(!relaxation.jams.empty(), list_json(relaxation.jams, jam_json))}};
 }
 
 std::string percent(double share) {
@@ -196,31 +206,25 @@ std::string percent(double share) {
 }
 
 // Before and after, as a table for people.
-std::string table_of(const Job& job, const RelaxReport& report, Unit file) {
+std::string table_of(const Job& job, const Relaxation& relaxation, const Paid& paid, Unit file) {
   const Unit shown = job.options.units.value_or(file);
-  const auto length = [&](double mm) { return cell(mm / millimetres_per(shown)); };
-  const auto gap = [&](const RelaxReport::State& state) {
-    return state.min_gap ? length(*state.min_gap) : std::string("-");
-  };
-  const auto depth = [&](const RelaxReport::State& state) {
-    return state.overlaps > 0 ? length(state.depth) : std::string("-");
-  };
-  const auto count = [](std::size_t value) { return std::to_string(value); };
-  const RelaxReport::State &before = report.before, &after = report.after;
-  std::string text = fmt::format("{}: lengths in {}\n", readable(job.input.path), name_of(shown));
+  const auto length = [&](double value) { return cell(converted(value, file, shown)); };
   Table table({"", "overlaps", "deepest", "least gap"});
-  table.add({"before", count(before.overlaps), depth(before), gap(before)});
-  table.add({report.solved ? "after" : "as far as it went", count(after.overlaps), depth(after), gap(after)});
-  text += table.text();
-  if (report.solved && !report.is_moved()) return text + "  nothing had to move\n";
-  text +=
-      fmt::format("  largest move {}{}\n", length(report.largest_move),
-                  report.moved_most.empty() ? "" : fmt::format(", of '{}'", shortened(report.moved_most)));
-  text +=
-      fmt::format("  largest changes: of a section's area {}, of a yarn's length {}, of its volume {}\n",
-                  percent(report.area_change), percent(report.length_change), percent(report.volume_change));
-  return text + fmt::format("  {} after {} step{}\n", report.solved ? "solved" : "not solved",
-                            report.iterations, report.iterations == 1 ? "" : "s");
+  const auto add = [&](const char* when, const contact::RelaxState& state) {
+    table.add({when, std::to_string(state.overlaps), state.overlaps > 0 ? length(state.depth) : "-",
+               state.min_gap ? length(*state.min_gap) : "-"});
+  };
+  add("before", relaxation.before);
+  add(relaxation.solved ? "after" : "as far as it went", relaxation.after);
+  std::string text =
+      fmt::format("{}: lengths in {}\n{}", readable(job.input.path), name_of(shown), table.text());
+  if (relaxation.solved && !is_moved(relaxation)) return text + "  nothing had to move\n";
+  text += fmt::format("  largest move {}{}\n", length(paid.move),
+                      paid.moved_most.empty() ? "" : fmt::format(", of '{}'", shortened(paid.moved_most)));
+  text += fmt::format("  largest changes: of a section's area {}, of a yarn's length {}, of its volume {}\n",
+                      percent(paid.area), percent(paid.length), percent(paid.volume));
+  return text + fmt::format("  {} after {} step{}\n", relaxation.solved ? "solved" : "not solved",
+                            relaxation.iterations, relaxation.iterations == 1 ? "" : "s");
 }
 
 Message jam_message(const contact::Jam& jam, const std::vector<yarn::Body>& bodies, Unit units) {
@@ -347,26 +351,26 @@ std::optional<fabric::Fabric> relaxed(Job& job, fabric::Fabric fabric) {
       job.say(relaxation.error());
     return std::nullopt;
   }
-  job.report.relax = report_of(*relaxation, built->bodies, fabric.units);
-  bool keeps = true;
-  if (relaxation->solved) keeps = keeps_interlacing(job, built->bodies, relaxation->bodies);
-  job.report.relax->solved = relaxation->solved && keeps;
-  tell(job, table_of(job, *job.report.relax, fabric.units));
-  if (!relaxation->solved) tell_jams(job, *relaxation, built->bodies, fabric.units);
+  const bool has_room = relaxation->solved;
+  relaxation->solved = has_room && keeps_interlacing(job, built->bodies, relaxation->bodies);
+  const Paid paid = paid_for(*relaxation, built->bodies);
+  job.report["relax"] = relax_json(*relaxation, paid, built->bodies, millimetres_per(fabric.units));
+  tell(job, table_of(job, *relaxation, paid, fabric.units));
+  if (!has_room) tell_jams(job, *relaxation, built->bodies, fabric.units);
   if (job.has_failed()) return std::nullopt;
-  if (!job.report.relax->solved) {
+  if (!relaxation->solved) {
     job.unsolved = true;
     return std::nullopt;
   }
-  const bool is_moved = job.report.relax->is_moved();
+  const bool moved = is_moved(*relaxation);
   const double tolerance = fabric::tolerance_of(fabric, job.build_options());
-  if (is_moved) {  // a CAD file's own; it is another one now
+  if (moved) {  // a CAD file's own; it is another one now
     fabric.date.clear();
     fabric.file_name.clear();
   }
   std::vector<yarn::Body> bodies =
-      is_moved ? std::move(relaxation->bodies) : std::vector<yarn::Body>(built->bodies);
-  return with_yarns(std::move(fabric), std::move(*built), std::move(bodies), is_moved, tolerance);
+      moved ? std::move(relaxation->bodies) : std::vector<yarn::Body>(built->bodies);
+  return with_yarns(std::move(fabric), std::move(*built), std::move(bodies), moved, tolerance);
 }
 
 }  // namespace selvage::pipeline

@@ -39,10 +39,10 @@ struct Original {
 };
 
 void take_facts(Reading& reading, const yarn::Body& body, Unit units) {
-  const YarnReport facts = facts_of(body, units);
+  const double mm = millimetres_per(units);
   ++reading.yarns;
-  if (facts.closed.value_or(false)) ++reading.closed;
-  reading.volume += facts.volume;
+  if (is_closed(body)) ++reading.closed;
+  reading.volume += body.volume * mm * mm * mm;
 }
 
 std::optional<Original> read_original(Job& job) {
@@ -142,6 +142,15 @@ std::optional<Reading> read_back(const Job& job, const std::filesystem::path& pa
   return std::nullopt;
 }
 
+// How what came back is like what went. Lengths in mm.
+struct Likeness {
+  bool equal = false;
+  double largest = 0;  // deviation: a bound on the distance, or of control points
+  std::string largest_of;
+  Json yarns = Json::array();
+  std::vector<std::string> differences, notes;
+};
+
 class Traveller {
  public:
   Traveller(Job& job, const Original& original) : job_(job), original_(original) {}
@@ -150,8 +159,9 @@ class Traveller {
   [[nodiscard]] std::string table() const { return table_.text(); }
 
  private:
-  void compare(Reading& back, RoundtripReport& report);
-  void add_row(const Trip& trip, const RoundtripReport& report);
+  Likeness compare(Reading& back);
+  void tell(const Trip& trip, const Reading& back, const Likeness& likeness, double seconds);
+  void tell_failure(const Trip& trip, const std::string& reason, double seconds);
 
   Job& job_;
   const Original& original_;
@@ -159,7 +169,7 @@ class Traveller {
                 "largest deviation", "of", "verdict"}};
 };
 
-void Traveller::compare(Reading& back, RoundtripReport& report) {
+Likeness Traveller::compare(Reading& back) {
   const Reading& before = original_.reading;
   const Unit units = original_.fabric.units;
   const double mm = millimetres_per(units);
@@ -167,79 +177,87 @@ void Traveller::compare(Reading& back, RoundtripReport& report) {
   options.tolerance = job_.options.difference_tolerance;
   options.threads = static_cast<int>(job_.threads);
   options.progress = [&](std::size_t done, std::size_t total) { job_.progress("comparing", done, total); };
-  std::string unit_note;
+  Likeness likeness;
+  std::vector<std::string>& differences = likeness.differences;
   if (back.subject.model.units != units) {
-    unit_note = fmt::format("its unit came back as {}", name_of(back.subject.model.units));
+    differences.push_back(fmt::format("its unit came back as {}", name_of(back.subject.model.units)));
     convert_lengths(back.subject, units);
   }
+  if (back.closed != before.closed)
+    differences.push_back(fmt::format("closed yarns: {} before, {} after", before.closed, back.closed));
   const cad::Comparison found = cad::compare(before.subject, back.subject, options);
-  report.equal = found.differences.empty() && unit_note.empty() && back.closed == before.closed;
-  report.largest = 0;
+  likeness.equal = found.differences.empty() && differences.empty();
   for (const cad::Comparison::Match& match : found.matches) {
     const double deviation = match.at_most * mm;
-    if (match.what == cad::Thing::Kind::yarn) report.yarns.push_back({match.name, deviation});
-    if (deviation <= report.largest) continue;
-    report.largest = deviation;
-    report.largest_of = match.name;
+    if (match.what == cad::Thing::Kind::yarn)
+      likeness.yarns.push_back({{"name", match.name}, {"deviation", if_finite(deviation)}});
+    if (deviation <= likeness.largest) continue;
+    likeness.largest = deviation;
+    likeness.largest_of = match.name;
   }
-  if (!unit_note.empty()) report.differences.push_back(unit_note);
-  if (back.closed != before.closed)
-    report.differences.push_back(
-        fmt::format("closed yarns: {} before, {} after", before.closed, back.closed));
   for (const cad::Difference& difference : found.differences) {
-    if (report.differences.size() == shown_differences) break;
-    report.differences.push_back(line_of(difference, units));
+    if (differences.size() == shown_differences) break;
+    differences.push_back(line_of(difference, units));
   }
-  if (found.differences.size() > report.differences.size())
-    report.differences.push_back(fmt::format("... {} differences in all", found.differences.size()));
-  report.notes = found.notes;
+  if (found.differences.size() > differences.size())
+    differences.push_back(fmt::format("... {} differences in all", found.differences.size()));
+  likeness.notes = found.notes;
+  return likeness;
 }
 
-void Traveller::add_row(const Trip& trip, const RoundtripReport& report) {
-  if (!report.error.empty()) {
-    table_.add({trip.name, std::to_string(report.yarns_before), std::to_string(report.closed_before), "-",
-                cell(report.volume_before), "-", "-", "-", "failed"});
-    return;
-  }
-  table_.add({trip.name, std::to_string(report.yarns_before), std::to_string(report.closed_before),
-              std::to_string(report.closed_after), cell(report.volume_before), cell(report.volume_after),
-              report.largest == 0 ? "0" : cell(report.largest),
-              report.largest_of.empty() ? "-" : report.largest_of, report.equal ? "equal" : "different"});
+void Traveller::tell(const Trip& trip, const Reading& back, const Likeness& likeness, double seconds) {
+  const Reading& before = original_.reading;
+  job_.report["roundtrips"].push_back(
+      {{"format", trip.name},
+       {"seconds", seconds},
+       {"equal", likeness.equal},
+       {"largest_deviation", if_finite(likeness.largest)},
+       {"largest_of", if_true(!likeness.largest_of.empty(), likeness.largest_of)},
+       {"closed", {before.closed, back.closed}},
+       {"volume", {before.volume, back.volume}},
+       {"yarn_count", {before.yarns, back.yarns}},
+       {"yarns", likeness.yarns},
+       {"differences", likeness.differences},
+       {"notes", if_true(!likeness.notes.empty(), likeness.notes)}});
+  table_.add(
+      {trip.name, std::to_string(before.yarns), std::to_string(before.closed), std::to_string(back.closed),
+       cell(before.volume), cell(back.volume), likeness.largest == 0 ? "0" : cell(likeness.largest),
+       likeness.largest_of.empty() ? "-" : likeness.largest_of, likeness.equal ? "equal" : "different"});
+  for (const std::string& line : likeness.differences)
+    job_.say_defect(error(Kind::geometry, fmt::format("through {}: {}", trip.name, line)));
+}
+
+void Traveller::tell_failure(const Trip& trip, const std::string& reason, double seconds) {
+  const Reading& before = original_.reading;
+  job_.report["roundtrips"].push_back({{"format", trip.name}, {"seconds", seconds}, {"error", reason}});
+  table_.add({trip.name, std::to_string(before.yarns), std::to_string(before.closed), "-",
+              cell(before.volume), "-", "-", "-", "failed"});
 }
 
 bool Traveller::travel(const Trip& trip) {
   const Clock::time_point start = Clock::now();
-  RoundtripReport report;
-  report.format = trip.name;
-  report.yarns_before = original_.reading.yarns;
-  report.closed_before = original_.reading.closed;
-  report.volume_before = original_.reading.volume;
   const std::filesystem::path path =
       std::filesystem::path(job_.options.scratch) /
       fmt::format("{}-{}{}", job_.number, trip.name, trip.format->extensions.front());
+  std::string failure;
+  std::optional<Reading> back;
+  std::optional<Likeness> likeness;
   if (Status written = write(job_, original_, trip, path); !written) {
-    report.error = written.error().text;
+    failure = written.error().text;
     job_.say(written.error());
-  } else if (std::optional<Reading> back = read_back(job_, path, report.error)) {
-    report.yarns_after = back->yarns;
-    report.closed_after = back->closed;
-    report.volume_after = back->volume;
-    compare(*back, report);
+  } else if ((back = read_back(job_, path, failure))) {
+    likeness = compare(*back);
   } else {
     job_.say(error(Kind::internal, fmt::format("what was written as {} cannot be read back", trip.name)));
   }
   std::error_code ignored;  // the folder goes at the end in any case
   std::filesystem::remove(path, ignored);
-  report.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  add_row(trip, report);
-  const bool is_different = report.error.empty() && !report.equal;
-  if (is_different)
-    for (const std::string& line : report.differences) {
-      Message message = error(Kind::geometry, fmt::format("through {}: {}", trip.name, line));
-      job_.say_defect(std::move(message));
-    }
-  job_.report.roundtrips.push_back(std::move(report));
-  return is_different;
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  if (likeness)
+    tell(trip, *back, *likeness, seconds);
+  else
+    tell_failure(trip, failure, seconds);
+  return likeness && !likeness->equal;
 }
 
 bool comes_and_goes(const formats::Descriptor& format) {
@@ -299,8 +317,9 @@ bool roundtrip(Job& job) {
   if (!original) return false;
   Traveller traveller(job, *original);
   bool is_different = false;
+  std::size_t number = 0;
   for (const Trip& trip : *trips) {
-    job.progress(trip.name, job.report.roundtrips.size() + 1, trips->size());
+    job.progress(trip.name, ++number, trips->size());
     is_different = traveller.travel(trip) || is_different;
   }
   job.print(

@@ -417,7 +417,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
     job.say(std::move(message));
   }
   if (job.has_failed() || nearest == nullptr) return !job.has_failed();
-  job.report.min_gap = nearest->gap * millimetres_per(fabric.units);
+  job.report["min_gap"] = nearest->gap * millimetres_per(fabric.units);
   const std::string &a = bodies[nearest->a].name, &b = bodies[nearest->b].name;
   const std::string who = nearest->a == nearest->b ? fmt::format(
                                                          "yarn '{}' comes as near as {:.3g} {} to "

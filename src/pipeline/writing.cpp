@@ -44,21 +44,24 @@ Result<OutputFile*> open_part(OpenOutput& output, int number) {
 
 namespace {
 
-// One output file for the report.
-Result<OutputReport> report_of(const Job& job, const OpenOutput& output, const OutputFile& file,
-                               const formats::EntityCounts& entities) {
-  OutputReport facts{
-      file.target().string(), std::string(output.plan->format->name), {}, file.size(), entities};
-  if (output.plan->to_standard_output) facts.path = output.plan->path.string();
-  if (!job.wants_report()) return facts;
-  Result<std::string> digest = sha256_of(file);
-  if (!digest) return digest.error();
-  facts.sha256 = *digest;
-  return facts;
+// Puts one output file into the list for the report; false when that failed (it was said why).
+bool report_file(Job& job, const OpenOutput& output, const OutputFile& file,
+                 const formats::EntityCounts& entities, Json& written) {
+  const Result<std::string> digest = job.wants_report() ? sha256_of(file) : std::string();
+  if (!digest) {
+    job.say(digest.error());
+    return false;
+  }
+  written.push_back({{"path", (output.plan->to_standard_output ? output.plan->path : file.target()).string()},
+                     {"format", output.plan->format->name},
+                     {"bytes", file.size()},
+                     {"sha256", *digest},
+                     {"entities", if_true(!entities.empty(), entities)}});
+  return true;
 }
 
 // All files of an output, named and for the report; false when that failed (it was said why).
-bool report_files(Job& job, OpenOutput& output, std::vector<OutputReport>& written) {
+bool report_files(Job& job, OpenOutput& output, Json& written) {
   const std::vector<formats::EntityCounts>& parts = output.facts.parts;
   if (!output.parts.empty()) {
     const std::filesystem::path first = part_path(output.plan->path, 1);
@@ -74,13 +77,8 @@ bool report_files(Job& job, OpenOutput& output, std::vector<OutputReport>& writt
   }
   for (std::size_t k = 0; k <= output.parts.size(); ++k) {
     const OutputFile& file = k == 0 ? output.file : output.parts[k - 1];
-    Result<OutputReport> facts =
-        report_of(job, output, file, parts.empty() ? output.facts.entities : parts[k]);
-    if (!facts) {
-      job.say(facts.error());
+    if (!report_file(job, output, file, parts.empty() ? output.facts.entities : parts[k], written))
       return false;
-    }
-    written.push_back(std::move(*facts));
   }
   return true;
 }
@@ -116,20 +114,21 @@ bool take_facts(Job& job, OpenOutput& output, Result<formats::WriteFacts> facts)
 
 void commit_all(Job& job, OpenOutputs& outputs) {
   if (job.has_failed()) return;
-  std::vector<OutputReport> written;
+  Json written = Json::array();
   for (OpenOutput& output : outputs)
     if (!report_files(job, output, written)) return;
   if (job.has_failed()) return;  // --strict
   if (Status status = commit(outputs); !status) return job.say(status.error());
   job.tell_files(written.size());
-  for (const OutputReport& output : written) {
+  for (const Json& output : written) {
     if (!job.options.verbose) continue;
     Message note;
     note.severity = Severity::note;
-    note.text = fmt::format("wrote '{}', {} bytes", output.path, output.bytes);
+    note.text =
+        fmt::format("wrote '{}', {} bytes", text_at(output, "path"), output["bytes"].get<std::uint64_t>());
     job.say(std::move(note));
   }
-  job.report.outputs = std::move(written);
+  if (!written.empty()) job.report["outputs"] = std::move(written);
 }
 
 void tell(Job& job, const std::string& text) {
