@@ -5,8 +5,6 @@
 #include "cli/parse.h"
 #include "core/standard_output.h"
 #include "pipeline/batch.h"
-#include "pipeline/diff.h"
-#include "pipeline/edit.h"
 
 namespace selvage::cli {
 
@@ -24,16 +22,8 @@ int run(int count, char** words) {
   const Result<Parsed> parsed = parse(count, words);
   if (!parsed) return pipeline::refuse(parsed.error());
   if (!parsed->text.empty()) return tell(parsed->text);
-  switch (parsed->options.command) {
-    case pipeline::Command::formats:
-      return tell(table_of_formats());
-    case pipeline::Command::diff:
-      return pipeline::diff(parsed->options);
-    case pipeline::Command::edit:
-      return pipeline::edit(parsed->options);
-    default:
-      return pipeline::run(parsed->options);
-  }
+  if (parsed->options.command == pipeline::Command::formats) return tell(table_of_formats());
+  return pipeline::run(parsed->options);
 }
 
 }  // namespace

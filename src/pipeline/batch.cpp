@@ -18,6 +18,7 @@
 #include "core/readable.h"
 #include "core/standard_output.h"
 #include "core/temporary.h"
+#include "pipeline/edit.h"
 #include "pipeline/inputs.h"
 #include "pipeline/job.h"
 #include "pipeline/junit.h"
@@ -121,11 +122,13 @@ int Batch::run_one(std::size_t index, const Channel& channel) const {
   std::vector<fs::path> places;
   for (const PlannedOutput& output : outputs_[index])
     if (!output.to_standard_output) places.push_back(output.path);
-  if (const Status contained = contain_job(options_, std::array{inputs_[index].path}, places); !contained) {
+  const Input& input = inputs_[index];
+  if (const Status contained = contain_job(options_, std::array{input.path, input.other}, places);
+      !contained) {
     job.say(contained.error());
     return static_cast<int>(Verdict::failed);
   }
-  return static_cast<int>(run_job(job, entry_of_earlier(inputs_[index].path), channel));
+  return static_cast<int>(run_job(job, entry_of_earlier(input.path), channel));
 }
 
 std::string Batch::entry_of_earlier(const std::string& path) const {
@@ -200,7 +203,7 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
   }
   if (!reason.empty()) {
     const bool is_killed = end.how == JobEnd::How::signalled && is_crash(end.status);
-    if (is_killed && !work.reader.empty())
+    if (is_killed && !work.reader.empty() && inputs_[job].other.empty())
       fail(job,
            error(Kind::malformed,
                  fmt::format(
@@ -208,8 +211,8 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
                      "format in a way that is not told apart; write it anew where it comes from",
                      work.reader, ::strsignal(end.status))));
     else
-      fail(job,
-           error(end.how == JobEnd::How::timed_out ? Kind::limit : Kind::internal, "this input " + reason));
+      fail(job, error(end.how == JobEnd::How::timed_out ? Kind::limit : Kind::internal,
+                      (inputs_[job].other.empty() ? "this input " : "the comparison ") + reason));
     has_lost_workers_ = true;
   }
   const auto verdict = reason.empty() ? static_cast<Verdict>(end.status) : Verdict::failed;
@@ -336,8 +339,12 @@ int Batch::run(const std::vector<Message>& missing) {
   int code = complete ? exit_code() : end.ok() ? exit_code::interrupted : exit_code::failed;
   if (!end.ok()) (void)refuse(end.error());
   if (end.ok() && !complete)
-    std::fputs("selvage: interrupted; the inputs that were not done have no new outputs\n", stderr);
-  if (options_.json && printed_) printed_ = write_to_standard_output(report_text(code == exit_code::well));
+    std::fputs(options_.command == Command::diff
+                   ? "selvage: interrupted\n"
+                   : "selvage: interrupted; the inputs that were not done have no new outputs\n",
+               stderr);
+  if (options_.json && options_.command == Command::info && printed_)
+    printed_ = write_to_standard_output(report_text(code == exit_code::well));
   for (const Status& status : {printed_, write_report(code == exit_code::well), write_junit(missing)}) {
     if (status.ok()) continue;
     std::fprintf(stderr, "%s\n", to_string(status.error()).c_str());
@@ -392,7 +399,9 @@ int run(const Options& wanted) {
     }
     options.scratch = scratch.emplace(std::move(*made)).path();
   }
-  Result<InputList> list = expand_inputs(options.inputs);
+  if (options.command == Command::edit)
+    if (const Result<formats::NewEdit> edit = wanted_edit(options.edit); !edit) return refuse(edit.error());
+  Result<InputList> list = inputs_of(options);
   if (!list) return refuse(list.error());
   Result<std::vector<std::vector<PlannedOutput>>> plan = plan_outputs(options, *list);
   if (!plan) return refuse(plan.error());

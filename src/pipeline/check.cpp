@@ -92,16 +92,16 @@ std::string yarn_tables(const Findings& found, Unit file, Unit shown) {
       return cell(converted(converted(value, file, shown), file, shown));
     };
     Table overlaps({"overlap of", "and", "depth", "area", "x", "y", "z"});
-    for (const solid::Overlap& overlap : found.solids.overlaps)
+    for (const contact::Contact& overlap : found.solids.overlaps)
       overlaps.add({found.bodies[overlap.a].name,
-                    overlap.a == overlap.b ? "itself" : found.bodies[overlap.b].name, length(overlap.depth),
+                    overlap.a == overlap.b ? "itself" : found.bodies[overlap.b].name, length(overlap.depth()),
                     overlap.area > 0 ? square(overlap.area) : "-", length(overlap.at.x()),
                     length(overlap.at.y()), length(overlap.at.z())});
     text += overlaps.text();
   }
   if (!found.solids.near_contacts.empty()) {
     Table near({"near contacts of", "and", "gap", "x", "y", "z"});
-    for (const solid::NearContact& contact : found.solids.near_contacts)
+    for (const contact::Contact& contact : found.solids.near_contacts)
       near.add({found.bodies[contact.a].name,
                 contact.a == contact.b ? "itself" : found.bodies[contact.b].name, length(contact.gap),
                 length(contact.at.x()), length(contact.at.y()), length(contact.at.z())});
@@ -209,8 +209,8 @@ bool check(Job& job) {
       job.say_defect(std::move(message));
     }
   }
-  for (const solid::Overlap& overlap : found->solids.overlaps)
-    job.say_defect(overlap_message(overlap, found->bodies, fabric->units), overlap.depth);
+  for (const contact::Contact& overlap : found->solids.overlaps)
+    job.say_defect(overlap_message(overlap, found->bodies, fabric->units), overlap.depth());
   print_tables(job, *found, cad, defects);
   commit_all(job, *outputs);
   return defects > 0;

@@ -5,15 +5,9 @@
 #include <algorithm>
 
 #include "core/number_text.h"
-#include "core/output.h"
-#include "core/source.h"
-#include "fabric/build.h"
-#include "pipeline/batch.h"
 #include "pipeline/detect.h"
 #include "pipeline/drafts.h"
-#include "pipeline/limits.h"
-#include "pipeline/outputs.h"
-#include "pipeline/single.h"
+#include "pipeline/writing.h"
 
 namespace selvage::pipeline {
 
@@ -39,8 +33,9 @@ Status take_vector(const std::string& option, std::string_view text, formats::Ne
   return {};
 }
 
-// The edit that was asked for.
-Result<formats::NewEdit> edit_of(const EditWords& words) {
+}  // namespace
+
+Result<formats::NewEdit> wanted_edit(const EditWords& words) {
   formats::NewEdit added;
   fabric::Edit& edit = added.edit;
   edit.yarn = words.yarn;
@@ -68,24 +63,7 @@ Result<formats::NewEdit> edit_of(const EditWords& words) {
   return added;
 }
 
-// What is edited, where to, and who is told of it.
-struct Edit {
-  const Options& options;
-  const std::string& input;
-  const std::string& output;  // a file, or "-" for standard output
-  const formats::NewEdit& added;
-  const Channel& channel;
-
-  void say(Message message) const {
-    if (message.file.empty()) message.file = input == "-" ? "<stdin>" : input;
-    if (message.severity == Severity::note) return;
-    if (!options.quiet || message.severity == Severity::error)
-      channel.send(packet::message, to_string(message));
-  }
-  void say_all(const std::vector<Message>& messages) const {
-    for (const Message& message : messages) say(message);
-  }
-};
+namespace {
 
 // The line behind which the edit belongs: the end of the item that makes the yarn (of the last one, where its
 // place is not known), or an edit behind it.
@@ -100,76 +78,53 @@ int line_before(const fabric::Fabric& fabric, TextPlace yarn) {
 }
 
 // Where the yarn is made, if the edit is possible; nothing when it is not (it was said why).
-std::optional<TextPlace> try_edit(const Edit& edit, const fabric::Fabric& before) {
+std::optional<TextPlace> try_edit(Job& job, const fabric::Fabric& before, const fabric::Edit& edit) {
   fabric::Fabric after = before;
-  after.edits.push_back(edit.added.edit);
+  after.edits.push_back(edit);
   Diagnostics diagnostics;
   fabric::BuildOptions options;
   options.detail = fabric::Detail::yarn;  // an edit moves the centre line of the whole yarn
   const std::optional<fabric::YarnBuilder> builder = fabric::YarnBuilder::create(after, options, diagnostics);
-  edit.say_all(diagnostics.messages());
+  job.say_all(diagnostics.messages());
   if (!builder) return std::nullopt;
-  const std::optional<std::size_t> index = builder->find(edit.added.edit.yarn);
+  const std::optional<std::size_t> index = builder->find(edit.yarn);
   if (!index) {
-    edit.say(error(Kind::geometry, fmt::format("there is no yarn '{}'", edit.added.edit.yarn)));
+    job.say(error(Kind::geometry, fmt::format("there is no yarn '{}'", edit.yarn)));
     return std::nullopt;
   }
   const Result<yarn::Body> body = builder->build(*index);
   if (!body) {
-    edit.say(body.error());
+    job.say(body.error());
     return std::nullopt;
   }
-  edit.say_all(body->messages);
+  job.say_all(body->messages);
   return body->place;
-}
-
-Status write(const std::string& output, std::string_view text) {
-  Result<OutputFile> file = output == "-" ? OutputFile::standard_output() : OutputFile::create(output);
-  if (!file) return file.error();
-  if (Status status = file->write(text); !status) return status;
-  return file->commit();
-}
-
-bool work(const Edit& edit) {
-  const auto fail = [&](const Message& message) {
-    edit.say(message);
-    return false;
-  };
-  const Result<Source> source = Source::open(edit.input);
-  if (!source) return fail(source.error());
-  const Result<const formats::Descriptor*> format = detect_readable(*source);
-  if (!format) return fail(format.error());
-  if ((*format)->insert_edit == nullptr)
-    return fail(error(Kind::unsupported, fmt::format("this is {} ({}): an `edit` line belongs in a text",
-                                                     (*format)->name, (*format)->title)));
-  Diagnostics diagnostics;
-  std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
-  if (fabric) resolve_drafts(*fabric, *source, edit.options.allow_outside, diagnostics);
-  edit.say_all(diagnostics.messages());
-  if (!fabric || diagnostics.has_errors()) return false;
-  const std::optional<TextPlace> place = try_edit(edit, *fabric);
-  if (!place) return false;
-  const std::string text = (*format)->insert_edit(source->bytes(), line_before(*fabric, *place), edit.added);
-  const Status written = write(edit.output, text);
-  return written.ok() || fail(written.error());
 }
 
 }  // namespace
 
-int edit(const Options& options) {
-  const Result<formats::NewEdit> added = edit_of(options.edit);
-  if (!added) return refuse(added.error());
-  const Result<std::filesystem::path> place = output_of_edit(options);
-  if (!place) return refuse(place.error());
-  const std::string &input = options.inputs.front(), output = place->string();
-  Single single;
-  single.what = "the edit";
-  single.inputs = {input};
-  if (output != "-") single.outputs = {output};
-  single.work = [&](const Channel& channel) {
-    return work({options, input, output, *added, channel}) ? Verdict::done : Verdict::failed;
-  };
-  return run_single(options, single);
+void edit(Job& job) {
+  const Result<formats::NewEdit> added = wanted_edit(job.options.edit);
+  if (!added) return job.say(added.error());
+  const Result<Source> source = Source::open(job.input.path);
+  if (!source) return job.say(source.error());
+  const Result<const formats::Descriptor*> format = detect_readable(*source);
+  if (!format) return job.say(format.error());
+  if ((*format)->insert_edit == nullptr)
+    return job.say(error(Kind::unsupported, fmt::format("this is {} ({}): an `edit` line belongs in a text",
+                                                        (*format)->name, (*format)->title)));
+  Diagnostics diagnostics;
+  std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
+  if (fabric) resolve_drafts(*fabric, *source, job.options.allow_outside, diagnostics);
+  job.say_all(diagnostics.messages());
+  if (!fabric || diagnostics.has_errors()) return;
+  const std::optional<TextPlace> place = try_edit(job, *fabric, added->edit);
+  if (!place) return;
+  std::optional<OpenOutputs> outputs = open_outputs(job);
+  if (!outputs) return;
+  const std::string text = (*format)->insert_edit(source->bytes(), line_before(*fabric, *place), *added);
+  if (Status written = outputs->front().file.write(text); !written) return job.say(written.error());
+  commit_all(job, *outputs);
 }
 
 }  // namespace selvage::pipeline

@@ -156,9 +156,18 @@ class Expansion {
 
 }  // namespace
 
-Result<InputList> expand_inputs(const std::vector<std::string>& arguments) {
+Result<InputList> inputs_of(const Options& options) {
+  const std::vector<std::string>& given = options.inputs;
+  const std::string& first = given.front();
+  if (options.command == Command::edit)
+    return InputList{{{first, first == "-" ? "stdin" : fs::path(first).stem()}}, {}, true};
+  if (options.command == Command::diff) {
+    if (first == "-" && given[1] == "-")
+      return error(Kind::usage, "standard input can be only one of the two");
+    return InputList{{{first_file(first).string(), {}, first_file(given[1]).string()}}, {}, true};
+  }
   Expansion expansion;
-  for (const std::string& argument : arguments)
+  for (const std::string& argument : given)
     if (Status status = expansion.add(argument); !status.ok()) return status.error();
   expansion.drop_later_parts();
   expansion.list.one_file = expansion.is_one_file();

@@ -14,6 +14,7 @@ namespace selvage::pipeline {
 struct Input {
   std::string path;            // as the user would name it; "-": standard input
   std::filesystem::path stem;  // of its outputs, below the output folder, without an extension: "a/plain"
+  std::string other{};         // of `diff`: the path of what it is compared with; else empty
 };
 
 struct InputList {
@@ -23,8 +24,9 @@ struct InputList {
   bool one_file = false;  // the command line names exactly one file (no folder, no list)
 };
 
-// Errors (usage): a list that cannot be read, "-" twice, nothing named.
-Result<InputList> expand_inputs(const std::vector<std::string>& arguments);
+// Errors (usage): a list that cannot be read, "-" twice, nothing named. `diff` and `edit` take files only, as
+// they are named.
+Result<InputList> inputs_of(const Options& options);
 
 // Keeps the I-th of N parts, which are contiguous and differ by at most one in size. 0 <= part < parts.
 template <class T>

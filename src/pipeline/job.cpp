@@ -180,15 +180,24 @@ std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {
 
 void Job::build_each(const fabric::YarnBuilder& builder, std::string_view verb,
                      const std::function<bool(std::size_t index, Result<yarn::Body>&&)>& take) {
-  const std::size_t batch = 2 * threads;  // more would only cost memory
-  for (std::size_t first = 0; first < builder.count(); first += batch) {
-    std::vector<std::optional<Result<yarn::Body>>> built(std::min(batch, builder.count() - first));
-    for_each_index(built.size(), static_cast<int>(threads),
-                   [&](std::size_t i) { built[i] = builder.build(first + i); });
-    for (std::size_t i = 0; i < built.size(); ++i) {
-      progress(verb, first + i + 1, builder.count());
-      if (!take(first + i, std::move(*built[i]))) return;
-    }
+  const std::size_t most = 2 * threads;  // more would only cost memory
+  std::vector<std::optional<Result<yarn::Body>>> ready;
+  bool goes_on = true;
+  for (std::size_t taken = 0; goes_on && taken < builder.count();) {
+    const std::size_t first = taken + ready.size();
+    std::vector<std::optional<Result<yarn::Body>>> next(std::min(most, builder.count() - first));
+    // While those that are ready are taken, the next ones are built.
+    for_each_index(next.size() + 1, static_cast<int>(threads), [&](std::size_t i) {
+      if (i > 0) {
+        next[i - 1] = builder.build(first + i - 1);
+        return;
+      }
+      for (; goes_on && taken < first; ++taken) {
+        progress(verb, taken + 1, builder.count());
+        goes_on = take(taken, std::move(*ready[taken + ready.size() - first]));
+      }
+    });
+    ready = std::move(next);
   }
 }
 
@@ -269,9 +278,12 @@ Verdict work(Job& job, const std::string& earlier) {
       defective = roundtrip(job);
       break;
     case Command::diff:
+      return diff(job);
     case Command::edit:
+      edit(job);
+      break;
     case Command::formats:
-      break;  // no batch
+      break;  // no job
   }
   if (job.has_failed()) return Verdict::failed;
   return defective || job.unsolved ? Verdict::defect : Verdict::done;

@@ -87,7 +87,8 @@ class Job {
   // The builder of its yarns; nothing when that failed. It may have none where the fabric holds pieces.
   std::optional<fabric::YarnBuilder> builder(const fabric::Fabric& fabric);
   // Builds the yarns, a few at once on this job's threads, and hands them, or why there is none, to `take`
-  // one by one in their order, in the file's unit. `verb` is for the progress. Stops when `take` gives false.
+  // one by one in their order, in the file's unit; the next ones are built meanwhile. `verb` is for the
+  // progress. Stops when `take` gives false.
   void build_each(const fabric::YarnBuilder& builder, std::string_view verb,
                   const std::function<bool(std::size_t index, Result<yarn::Body>&&)>& take);
   // The same, with their warnings said and their facts in the report. One that fails is told and left out;
@@ -135,5 +136,10 @@ void view(Job& job);
 bool check(Job& job);
 // True when something came back different.
 bool roundtrip(Job& job);
+// Of the input and its other one: `defect` when they differ.
+Verdict diff(Job& job);
+// One more `edit` line in a text, behind the block that makes the yarn and all edits that are there, when the
+// yarn can be built with it.
+void edit(Job& job);
 
 }  // namespace selvage::pipeline

@@ -103,7 +103,7 @@ Status contain_job(const Options& options, std::span<const std::string> inputs,
   allowed.libraries = true;
   if (options.allow_outside) allowed.read.emplace_back("/");
   for (const std::string& input : inputs) {
-    if (input == "-") continue;
+    if (input.empty() || input == "-") continue;
     allowed.read.emplace_back(input);  // it may be a link to elsewhere
     allowed.read.push_back(folder_of(input));
   }

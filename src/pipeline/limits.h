@@ -47,9 +47,9 @@ class NewFolders {
   std::set<std::filesystem::path> looked_at_, missing_;
 };
 
-// In the process of a job, before it reads anything: it may read its inputs and what stands beside or below
-// them (anything, where the options allow files outside), and write to the folders of its outputs, which are
-// made where they are missing. Error (internal): it cannot be contained.
+// In the process of a job, before it reads anything: it may read its inputs (empty names are none) and what
+// stands beside or below them (anything, where the options allow files outside), and write to the folders of
+// its outputs, which are made where they are missing. Error (internal): it cannot be contained.
 Status contain_job(const Options& options, std::span<const std::string> inputs,
                    std::span<const std::filesystem::path> outputs);
 

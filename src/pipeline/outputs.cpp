@@ -236,19 +236,10 @@ Status plan_gap_map(const Options& options, const InputList& list,
 
 }  // namespace
 
-Result<fs::path> output_of_edit(const Options& options) {
-  const std::string &output = options.output, &input = options.inputs.front();
-  const Result<Formats> wanted = wanted_formats(options);
-  if (!wanted) return wanted.error();
-  if (Status fits = check_single_output(options, {{}, {}, true}, *wanted); !fits) return fits.error();
-  if (output == "-" || told_by_output(options) != nullptr) return fs::path(output);
-  return output_path(options, {input, input == "-" ? "stdin" : fs::path(input).stem()}, *wanted->front());
-}
-
 Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list) {
   std::vector<std::vector<PlannedOutput>> plan(list.inputs.size());
   if (options.command == Command::check || options.command == Command::info ||
-      options.command == Command::roundtrip) {
+      options.command == Command::roundtrip || options.command == Command::diff) {
     if (Status status = plan_gap_map(options, list, plan); !status.ok()) return status.error();
     if (Status status = check_names(options, list, plan); !status.ok()) return status.error();
     return plan;
@@ -277,6 +268,7 @@ Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& opti
             {&second, fs::path(path).replace_extension(second.extensions.front()), false, {}, true});
     }
   }
+  if (options.command == Command::edit) return plan;  // it may replace its input
   if (Status status = check_names(options, list, plan); !status.ok()) return status.error();
   return plan;
 }

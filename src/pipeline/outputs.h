@@ -31,11 +31,7 @@ std::string_view extension_of_gap_maps();
 // The outputs of each input, in the order of `list.inputs`; empty lists for commands that write no files
 // (check: its gap map).
 // Errors (usage): an unknown or unfitting format, several outputs where one file was named, two outputs of
-// one name, an output that is an input.
+// one name, an output that is an input (but of `edit`).
 Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list);
-
-// Where `selvage edit` writes its text: by the same rule for -o, "-" for standard output. Errors (usage): a
-// name that is of another format, or of none.
-Result<std::filesystem::path> output_of_edit(const Options& options);
 
 }  // namespace selvage::pipeline

@@ -10,15 +10,15 @@
 
 namespace selvage::pipeline {
 
-Message overlap_message(const solid::Overlap& overlap, std::span<const yarn::Body> bodies, Unit units) {
-  const std::string depth = fmt::format("{:.4g} {}", overlap.depth, name_of(units));
+Message overlap_message(const contact::Contact& overlap, std::span<const yarn::Body> bodies, Unit units) {
+  const std::string depth = fmt::format("{:.4g} {}", overlap.depth(), name_of(units));
   const std::string a = in_quotes(bodies[overlap.a].name), b = in_quotes(bodies[overlap.b].name);
   Message message =
       error(Kind::geometry, overlap.a == overlap.b
                                 ? fmt::format("yarn {} meets itself and overlaps, {} deep", a, depth)
                                 : fmt::format("yarns {} and {} overlap, {} deep", a, b, depth));
   // Rounding is no coordinate: 1e-15 would read like a place.
-  message.at = overlap.at.unaryExpr([&](double x) { return std::abs(x) < 1e-6 * overlap.depth ? 0.0 : x; });
+  message.at = overlap.at.unaryExpr([&](double x) { return std::abs(x) < 1e-6 * overlap.depth() ? 0.0 : x; });
   return message;
 }
 
@@ -35,25 +35,22 @@ void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn
     const double thickness = thinnest_section(bodies[i]) * mm;
     thinnest = std::min(thinnest.value_or(thickness), thickness);
   }
-  for (const solid::Overlap& overlap : check.overlaps)
+  for (const contact::Contact& overlap : check.overlaps)
     if (overlap.a == overlap.b && overlap.a < yarns.size()) yarns[overlap.a]["self_overlap"] = true;
   const auto site = [](const std::optional<Vec2>& uv) { return uv ? point_json(*uv) : Json(); };
-  job.report["overlaps"] = list_json(check.overlaps, [&](const solid::Overlap& overlap) {
-    return Json{{"a", bodies[overlap.a].name},
-                {"b", bodies[overlap.b].name},
-                {"depth", overlap.depth * mm},
-                {"at", point_json(overlap.at * mm)},
-                {"direction", point_json(overlap.direction)},
-                {"area", if_true(overlap.area * mm * mm > 0, overlap.area * mm * mm)},
-                {"site_a", site(overlap.site_a)},
-                {"site_b", site(overlap.site_b)}};
-  });
-  if (job.options.reach > 0.0)
-    job.report["contacts"] = list_json(check.near_contacts, [&](const solid::NearContact& contact) {
-      return Json{{"a", bodies[contact.a].name},    {"b", bodies[contact.b].name},
-                  {"gap", contact.gap * mm},        {"at", point_json(contact.at * mm)},
-                  {"site_a", site(contact.site_a)}, {"site_b", site(contact.site_b)}};
-    });
+  const auto contact_json = [&](const contact::Contact& contact) {
+    const double area = contact.area * mm * mm;
+    return Json{{"a", bodies[contact.a].name},
+                {"b", bodies[contact.b].name},
+                {contact.is_overlap() ? "depth" : "gap", std::abs(contact.gap) * mm},
+                {"at", point_json(contact.at * mm)},
+                {"direction", if_true(contact.is_overlap(), point_json(contact.direction))},
+                {"area", if_true(area > 0, area)},
+                {"site_a", site(contact.site_a)},
+                {"site_b", site(contact.site_b)}};
+  };
+  job.report["overlaps"] = list_json(check.overlaps, contact_json);
+  if (job.options.reach > 0.0) job.report["contacts"] = list_json(check.near_contacts, contact_json);
   if (min_gap) *min_gap *= mm;
   job.report["min_gap"] = if_known(min_gap);
   job.report["creo_absolute_accuracy"] = if_known(creo_accuracy(thinnest, min_gap));
@@ -73,10 +70,10 @@ bool check_overlaps(Job& job, std::span<const yarn::Body> bodies,
   }
   report_check(job, *check, bodies);
   for (const solid::YarnCheck& yarn : check->yarns) job.say_all(yarn.defects);
-  for (const solid::Overlap& overlap : check->overlaps) {
+  for (const contact::Contact& overlap : check->overlaps) {
     Message message = overlap_message(overlap, bodies, job.file_units());
     finish(message);
-    job.say(std::move(message), overlap.depth);
+    job.say(std::move(message), overlap.depth());
   }
   return !job.has_failed();
 }

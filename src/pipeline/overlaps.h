@@ -11,7 +11,7 @@
 namespace selvage::pipeline {
 
 // "yarns 'warp1' and 'weft2' overlap 0.013 mm deep", with the place; lengths in the input's unit.
-Message overlap_message(const solid::Overlap& overlap, std::span<const yarn::Body> bodies, Unit units);
+Message overlap_message(const contact::Contact& overlap, std::span<const yarn::Body> bodies, Unit units);
 
 // Closedness, self-crossing, overlaps, near contacts where asked for, the smallest gap and Creo's accuracy,
 // as the check found them.

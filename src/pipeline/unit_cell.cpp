@@ -405,12 +405,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
       nearest = &contact;  // the list goes on with larger gaps
       break;
     }
-    solid::Overlap overlap;
-    overlap.a = contact.a;
-    overlap.b = contact.b;
-    overlap.depth = contact.depth();
-    overlap.at = contact.at;
-    Message message = overlap_message(overlap, bodies, fabric.units);
+    Message message = overlap_message(contact, bodies, fabric.units);
     message.text += job.options.relaxing.wanted
                         ? "; thin one of them"
                         : "; --relax moves them apart where they have room, else make one thinner";

@@ -42,11 +42,8 @@ Result<SolidCheck> check_solids(std::span<const yarn::Body> bodies, const CheckO
                                [](const YarnCheck& yarn) { return !yarn.defects.empty(); }))
     return result;
   if (!contacts) return contacts.error();
-  for (const contact::Contact& c : contacts->list)
-    if (c.is_overlap())
-      result->overlaps.push_back({c.a, c.b, c.depth(), c.at, c.direction, c.area, c.site_a, c.site_b});
-    else
-      result->near_contacts.push_back({c.a, c.b, c.gap, c.at, c.site_a, c.site_b});
+  for (contact::Contact& c : contacts->list)
+    (c.is_overlap() ? result->overlaps : result->near_contacts).push_back(std::move(c));
   result->min_gap = contacts->min_gap;
   return result;
 }

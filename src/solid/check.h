@@ -37,30 +37,11 @@ struct YarnCheck {
   std::vector<Message> defects;  // errors, each with yarn, place and remedy; empty: a valid solid
 };
 
-// One connected piece of space that two yarns share, or that a yarn shares with itself (a == b): what is of
-// use of a contact::Contact that is an overlap.
-struct Overlap {
-  std::size_t a = 0, b = 0;       // indices of the yarns, a <= b
-  double depth = 0;               // as Contact::depth()
-  Vec3 at = Vec3::Zero();         // in the middle of the shared space
-  Vec3 direction = Vec3::Zero();  // unit: moving yarn b by depth * direction (or yarn a against it) ends it
-  double area = 0;                // of a's surface that lies in b
-  std::optional<Vec2> site_a, site_b;  // (u, v) on both; none on an end face
-};
-
-// A place where two yarns, or two places of one, are near each other: a local minimum of the gap.
-struct NearContact {
-  std::size_t a = 0, b = 0;  // indices of the yarns, a <= b
-  double gap = 0;
-  Vec3 at = Vec3::Zero();              // in the middle of the gap
-  std::optional<Vec2> site_a, site_b;  // (u, v) on both; none on an end face
-};
-
 struct SolidCheck {
   std::vector<YarnCheck> yarns;
-  std::vector<Overlap> overlaps;           // deepest first
-  std::vector<NearContact> near_contacts;  // within CheckOptions::reach, the smallest gap first
-  // As in contact::Contacts; right to 1 %, 0: they touch (to rounding).
+  // As in contact::Contacts: overlaps, the deepest first; contacts within CheckOptions::reach, the smallest
+  // gap first; the smallest gap, right to 1 %, 0: they touch (to rounding).
+  std::vector<contact::Contact> overlaps, near_contacts;
   std::optional<double> min_gap;
 };
 

@@ -244,7 +244,7 @@ TEST(Relax, AWantedOverlapIsMade) {
     const Result<solid::SolidCheck> check = solid::check_solids(relaxed.bodies, {});
     ASSERT_TRUE(check.ok());
     ASSERT_FALSE(check->overlaps.empty());
-    EXPECT_NEAR(check->overlaps[0].depth, 0.03, 0.002);
+    EXPECT_NEAR(check->overlaps[0].depth(), 0.03, 0.002);
   }
 }
 
