@@ -87,34 +87,38 @@ std::optional<yarn::Section> read_polygon(Parser& p) {
   return std::nullopt;
 }
 
-std::optional<yarn::Section> read_flat_section(Parser& p, int kind) {
-  const auto width = p.positive("the section's width");
-  const auto height = width ? p.positive("the section's height") : std::nullopt;
-  if (!height) return std::nullopt;
-  if (kind == 1) return yarn::Ellipse{*width, *height};
-  if (kind == 2) return yarn::Lenticular{*width, *height};
-  if (kind == 3) return yarn::Racetrack{*width, *height};
-  const auto exponent = p.positive("the section's exponent");
-  if (!exponent) return std::nullopt;
-  return yarn::Power{*width, *height, *exponent};
+// What stands behind the word of a shape, by its members.
+template <class Shape>
+std::optional<yarn::Section> read_shape(Parser& p) {
+  Shape shape;
+  const auto read = [&](double& value, std::string_view what) {
+    const std::optional<double> given = p.positive(what);
+    value = given.value_or(0.0);
+    return given.has_value();
+  };
+  bool good = true;
+  if constexpr (requires { shape.corners; }) {
+    return read_polygon(p);
+  } else if constexpr (requires { shape.diameter; }) {
+    good = !p.more() || read(shape.diameter, "the section's diameter");
+  } else {
+    good = read(shape.width, "the section's width") && read(shape.height, "the section's height");
+    if constexpr (requires { shape.exponent; }) good = good && read(shape.exponent, "the section's exponent");
+  }
+  return good && p.finish() ? std::optional<yarn::Section>(shape) : std::nullopt;
+}
+
+template <std::size_t... Kind>
+std::optional<yarn::Section> read_section(Parser& p, std::size_t kind, std::index_sequence<Kind...>) {
+  constexpr std::array readers{&read_shape<std::variant_alternative_t<Kind, yarn::Section>>...};
+  return readers[kind](p);
 }
 
 void read_section(Parser& p, Thread& thread, std::string_view) {
   const auto kind = p.choice("section", section_words);
   if (!kind) return p.skip_statement();
-  if (*kind == 6) {
-    thread.section = read_polygon(p);
-    return;
-  }
-  std::optional<yarn::Section> section;
-  if (*kind >= 1 && *kind <= 4) {
-    section = read_flat_section(p, *kind);
-  } else {
-    const auto diameter = p.more() ? p.positive("the section's diameter") : std::optional<double>(0.0);
-    if (diameter && *kind == 0) section = yarn::Circle{*diameter};
-    if (diameter && *kind == 5) section = yarn::Loop7{*diameter};
-  }
-  if (section && p.finish()) thread.section = section;
+  constexpr std::make_index_sequence<std::variant_size_v<yarn::Section>> all;
+  if (std::optional<yarn::Section> section = read_section(p, *kind, all)) thread.section = std::move(section);
 }
 
 void read_twist(Parser& p, Thread& thread, std::string_view) {

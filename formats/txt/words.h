@@ -83,17 +83,38 @@ inline constexpr std::array<Word<yarn::EndStyle>, 4> end_words{{{"patch", yarn::
                                                                 {"none", yarn::EndStyle::none}}};
 
 // The sections, by their index in yarn::Section.
-inline constexpr std::array<Word<int>, 7> section_words{{{"circle", 0},
-                                                         {"ellipse", 1},
-                                                         {"lenticular", 2},
-                                                         {"racetrack", 3},
-                                                         {"power", 4},
-                                                         {"loop7", 5},
-                                                         {"polygon", 6}}};
+inline constexpr std::array<Word<std::size_t>, 7> section_words{{{"circle", 0},
+                                                                 {"ellipse", 1},
+                                                                 {"lenticular", 2},
+                                                                 {"racetrack", 3},
+                                                                 {"power", 4},
+                                                                 {"loop7", 5},
+                                                                 {"polygon", 6}}};
 
 inline constexpr std::array<Word<fabric::Edit::Form>, 3> edit_words{{{"point", fabric::Edit::Form::point},
                                                                      {"weight", fabric::Edit::Form::weight},
                                                                      {"length", fabric::Edit::Form::length}}};
+
+// Whether an enum has this value: the compiler writes one without a name as "(Enum)5".
+template <auto Value>
+consteval bool is_enumerator() {
+  return std::string_view(__PRETTY_FUNCTION__).find("Value = (") == std::string_view::npos;
+}
+template <class Enum, int First = 0>
+consteval std::size_t enumerators() {
+  if constexpr (is_enumerator<static_cast<Enum>(First)>()) return enumerators<Enum, First + 1>();
+  return First;
+}
+// Is there a word for each enumerator, but for `without` of them, which are said in other ways?
+template <class Enum, std::size_t N>
+consteval bool says_all(const std::array<Word<Enum>, N>&, std::size_t without = 0) {
+  return N + without == enumerators<Enum>();
+}
+static_assert(says_all(hand_words) && says_all(density_words) && says_all(unit_words) &&
+              says_all(role_words) && says_all(path_words) && says_all(profile_words) &&
+              says_all(knit_method_words) && says_all(stitch_words) && says_all(end_words) &&
+              says_all(edit_words) && section_words.size() == std::variant_size_v<yarn::Section>);
+static_assert(says_all(draft_words, 1) && says_all(knit_words, 1) && says_all(curve_words, 1));
 
 template <class T, std::size_t N>
 constexpr std::string_view word_of(const std::array<Word<T>, N>& words, const T& value) {

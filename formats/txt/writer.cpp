@@ -110,22 +110,18 @@ class Lines {
 
 void write_section(Lines& out, int depth, const yarn::Section& section) {
   out.line(depth, "section").word(section_words[section.index()].text);
-  if (const auto* circle = std::get_if<yarn::Circle>(&section)) {
-    if (circle->diameter != 0.0) out.value(circle->diameter);
-  } else if (const auto* loop = std::get_if<yarn::Loop7>(&section)) {
-    if (loop->diameter != 0.0) out.value(loop->diameter);
-  } else if (const auto* ellipse = std::get_if<yarn::Ellipse>(&section)) {
-    out.value(ellipse->width).value(ellipse->height);
-  } else if (const auto* lens = std::get_if<yarn::Lenticular>(&section)) {
-    out.value(lens->width).value(lens->height);
-  } else if (const auto* track = std::get_if<yarn::Racetrack>(&section)) {
-    out.value(track->width).value(track->height);
-  } else if (const auto* power = std::get_if<yarn::Power>(&section)) {
-    out.value(power->width).value(power->height).value(power->exponent);
-  } else if (const auto* polygon = std::get_if<yarn::Polygon>(&section)) {
-    for (const Vec2& corner : polygon->corners) out.row(depth + 1, corner.x()).value(corner.y());
-    out.line(depth, "end");
-  }
+  const auto write = [&](const auto& shape) {
+    if constexpr (requires { shape.corners; }) {
+      for (const Vec2& corner : shape.corners) out.row(depth + 1, corner.x()).value(corner.y());
+      out.line(depth, "end");
+    } else if constexpr (requires { shape.diameter; }) {
+      if (shape.diameter != 0.0) out.value(shape.diameter);
+    } else {
+      out.value(shape.width).value(shape.height);
+      if constexpr (requires { shape.exponent; }) out.value(shape.exponent);
+    }
+  };
+  std::visit(write, section);
 }
 
 void write_thread_statements(Lines& out, int depth, const Thread& thread) {
@@ -419,6 +415,7 @@ Result<WriteFacts> write_fabric(const fabric::Fabric& fabric, OutputFile& output
   for (const Thread& thread : fabric.threads) write_thread(out, thread);
   WriteFacts facts;
   constexpr std::array<std::string_view, 6> kinds = {"yarn", "weave", "knit", "warpknit", "braid", "piece"};
+  static_assert(kinds.size() == std::variant_size_v<fabric::Item>);
   EndsChanged changed;
   for (const fabric::Item& item : fabric.items) {
     out.blank_line();

@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "core/overloaded.h"
 #include "fabric/braid.h"
 #include "fabric/edits.h"
 #include "fabric/knit.h"
@@ -47,20 +48,27 @@ Message in_file(const Fabric& fabric, TextPlace place, Message message) {
 
 // The names of the threads that a construction uses.
 std::vector<std::string> threads_of(const Item& item) {
-  if (const auto* weave = std::get_if<Weave>(&item)) {
-    std::vector<std::string> names = weave->warp.threads;
-    names.insert(names.end(), weave->weft.threads.begin(), weave->weft.threads.end());
-    for (const Binder& binder : weave->binders) names.push_back(binder.thread);
-    return names;
-  }
-  if (const auto* knit = std::get_if<Knit>(&item)) return {knit->thread};
-  if (const auto* braid = std::get_if<Braid>(&item)) return {braid->thread, braid->axial_thread};
-  if (const auto* warpknit = std::get_if<Warpknit>(&item)) {
-    std::vector<std::string> names = {warpknit->thread};
-    for (const WarpknitBar& bar : warpknit->bars) names.push_back(bar.thread);
-    return names;
-  }
-  return {};
+  using Names = std::vector<std::string>;
+  return std::visit(Overloaded{
+                        [](const Yarn&) { return Names(); },
+                        [](const Weave& weave) {
+                          Names names = weave.warp.threads;
+                          names.insert(names.end(), weave.weft.threads.begin(), weave.weft.threads.end());
+                          for (const Binder& binder : weave.binders) names.push_back(binder.thread);
+                          return names;
+                        },
+                        [](const Knit& knit) { return Names{knit.thread}; },
+                        [](const Warpknit& warpknit) {
+                          Names names = {warpknit.thread};
+                          for (const WarpknitBar& bar : warpknit.bars) names.push_back(bar.thread);
+                          return names;
+                        },
+                        [](const Braid& braid) {
+                          return Names{braid.thread, braid.axial_thread};
+                        },
+                        [](const Piece&) { return Names(); },
+                    },
+                    item);
 }
 
 // Data points that a yarn may have: every one becomes a section at least. What cannot be held is refused
@@ -312,24 +320,24 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
     if (warning && warned.insert(warning->text).second) diagnostics.add(std::move(*warning));
   };
   for (const Item& item : fabric.items) {
-    if (const auto* yarn = std::get_if<Yarn>(&item)) {
-      const Thread thread = resolved_thread(fabric, *yarn);
-      builder.add_yarn(*yarn, diagnostics);
-      warn(fibre_share_warning(fabric, *yarn, thread));
-      warn(roundness_note(fabric, thread, yarn->place));
-    }
-    if (const auto* weave = std::get_if<Weave>(&item))
-      builder.add_construction("weave", make_weave(fabric, *weave, options, diagnostics), weave->place,
+    const auto construct = [&](std::string_view kind, const auto& construction, const auto& make) {
+      builder.add_construction(kind, make(fabric, construction, options, diagnostics), construction.place,
                                diagnostics);
-    if (const auto* knit = std::get_if<Knit>(&item))
-      builder.add_construction("knit", make_knit(fabric, *knit, options, diagnostics), knit->place,
-                               diagnostics);
-    if (const auto* warpknit = std::get_if<Warpknit>(&item))
-      builder.add_construction("warpknit", make_warpknit(fabric, *warpknit, options, diagnostics),
-                               warpknit->place, diagnostics);
-    if (const auto* braid = std::get_if<Braid>(&item))
-      builder.add_construction("braid", make_braid(fabric, *braid, options, diagnostics), braid->place,
-                               diagnostics);
+    };
+    std::visit(Overloaded{
+                   [&](const Yarn& yarn) {
+                     const Thread thread = resolved_thread(fabric, yarn);
+                     builder.add_yarn(yarn, diagnostics);
+                     warn(fibre_share_warning(fabric, yarn, thread));
+                     warn(roundness_note(fabric, thread, yarn.place));
+                   },
+                   [&](const Weave& weave) { construct("weave", weave, make_weave); },
+                   [&](const Knit& knit) { construct("knit", knit, make_knit); },
+                   [&](const Warpknit& warpknit) { construct("warpknit", warpknit, make_warpknit); },
+                   [&](const Braid& braid) { construct("braid", braid, make_braid); },
+                   [](const Piece&) {},
+               },
+               item);
     for (const std::string& name : threads_of(item))
       if (const Thread* thread = fabric.find_thread(name)) {
         warn(fibre_share_warning(fabric, *thread, thread->place));

@@ -279,9 +279,11 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
         return Bend::racetrack;
       case Weave::Profile::sine:
         return std::nullopt;
-      default:
-        return Bend::round;
+      case Weave::Profile::peirce:
+      case Weave::Profile::straight:
+        break;
     }
+    return Bend::round;
   };
   warp_bend_ = bend_over(weft_);
   weft_bend_ = bend_over(warp_);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/overloaded.h"
 #include "core/plane.h"
 #include "nurbs/interpolate.h"
 #include "yarn/ends.h"
@@ -299,39 +300,59 @@ Vec2 from_shape(const Section& section, const SectionSize& size, const Vec2& p) 
     const Vec2 d = q - centre;
     return d * (1.0 - radius / d.norm());
   };
-  if (std::holds_alternative<Lenticular>(section)) {
-    const double radius = (a * a + h * h) / (2.0 * h);
-    return from_circle(p, Vec2(0.0, h - radius), radius);
-  }
-  if (std::holds_alternative<Racetrack>(section)) {
-    const double r = std::min(a, h);
-    const Vec2 centre(std::min(p.x(), a - r), std::min(p.y(), h - r));
-    return from_circle(p, centre, r);
-  }
-  const Vec2 unit(p.x() / a, p.y() / h);
-  Vec2 away;
-  if (const auto* power = std::get_if<Power>(&section))
-    away = power->exponent == 1.0 ? from_circle(unit, Vec2::Zero(), 1.0)
-                                  : from_power_curve(power->exponent, unit, 0.0, pi / 2);
-  else
-    away = from_circle(unit, Vec2::Zero(), 1.0);
-  return {away.x() * a, away.y() * h};
+  const auto from_ellipse = [&]() -> Vec2 {
+    const Vec2 away = from_circle({p.x() / a, p.y() / h}, Vec2::Zero(), 1.0);
+    return {away.x() * a, away.y() * h};
+  };
+  return std::visit(Overloaded{
+                        [&](const Circle&) { return from_ellipse(); },
+                        [&](const Ellipse&) { return from_ellipse(); },
+                        [&](const Lenticular&) {
+                          const double radius = (a * a + h * h) / (2.0 * h);
+                          return from_circle(p, Vec2(0.0, h - radius), radius);
+                        },
+                        [&](const Racetrack&) {
+                          const double r = std::min(a, h);
+                          const Vec2 centre(std::min(p.x(), a - r), std::min(p.y(), h - r));
+                          return from_circle(p, centre, r);
+                        },
+                        [&](const Power& power) -> Vec2 {
+                          if (power.exponent == 1.0) return from_ellipse();
+                          const Vec2 unit(p.x() / a, p.y() / h);
+                          const Vec2 away = from_power_curve(power.exponent, unit, 0.0, pi / 2);
+                          return {away.x() * a, away.y() * h};
+                        },
+                        // Exact.
+                        [&](const Loop7&) -> Vec2 { return Vec2::Zero(); },
+                        [&](const Polygon&) -> Vec2 { return Vec2::Zero(); },
+                    },
+                    section);
+}
+
+Outline ellipse_outline(const Section& section, const SectionSize& size, int pieces) {
+  Outline outline = assemble(ellipse_quarter(size, pieces));
+  const double scale = std::sqrt(area(section, size) / area_vector(as_curve(outline)).norm());
+  for (Vec2& p : outline.points) p *= scale;
+  return outline;
 }
 
 }  // namespace
 
 Outline make_outline(const Section& section, const SectionSize& size, int pieces, bool varying) {
   pieces = std::max(pieces, 1);
-  if (const auto* polygon = std::get_if<Polygon>(&section)) return polygon_outline(*polygon, size);
-  if (std::holds_alternative<Loop7>(section)) return loop7_outline(size);
-  if (std::holds_alternative<Lenticular>(section)) return assemble(lens_quarter(size, pieces));
-  if (std::holds_alternative<Racetrack>(section)) return assemble(racetrack_quarter(size, pieces, varying));
-  if (const auto* power = std::get_if<Power>(&section); power != nullptr && power->exponent != 1.0)
-    return assemble(power_quarter(*power, size, pieces));
-  Outline outline = assemble(ellipse_quarter(size, pieces));
-  const double scale = std::sqrt(area(section, size) / area_vector(as_curve(outline)).norm());
-  for (Vec2& p : outline.points) p *= scale;
-  return outline;
+  return std::visit(Overloaded{
+                        [&](const Circle&) { return ellipse_outline(section, size, pieces); },
+                        [&](const Ellipse&) { return ellipse_outline(section, size, pieces); },
+                        [&](const Lenticular&) { return assemble(lens_quarter(size, pieces)); },
+                        [&](const Racetrack&) { return assemble(racetrack_quarter(size, pieces, varying)); },
+                        [&](const Power& power) {
+                          return power.exponent == 1.0 ? ellipse_outline(section, size, pieces)
+                                                       : assemble(power_quarter(power, size, pieces));
+                        },
+                        [&](const Loop7&) { return loop7_outline(size); },
+                        [&](const Polygon& polygon) { return polygon_outline(polygon, size); },
+                    },
+                    section);
 }
 
 double outline_error(const Section& section, const SectionSize& size, const Outline& outline) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/overloaded.h"
 #include "core/plane.h"
 #include "yarn/ends.h"
 #include "yarn/outline.h"
@@ -15,13 +16,6 @@ namespace selvage::yarn {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-template <class... Fs>
-struct Overloaded : Fs... {
-  using Fs::operator()...;
-};
-template <class... Fs>
-Overloaded(Fs...) -> Overloaded<Fs...>;
 
 // Half the angle and the radius of the circular arcs of a lenticular section, seen from the arc's centre.
 struct LensArc {
@@ -132,6 +126,9 @@ Status check_section(const Section& section, const SectionSize& size) {
                    fmt::format("the exponent {} of a power section is outside 0.1 .. 10", power->exponent));
   return {};
 }
+
+// What a new shape is, too, has to be thought about.
+static_assert(std::variant_size_v<Section> == 7);
 
 bool is_affine(const Section& section) {
   return !std::holds_alternative<Lenticular>(section) && !std::holds_alternative<Racetrack>(section);
