@@ -171,25 +171,11 @@ class CellBuilder {
     return edge;
   }
 
-  // By which v is multiplied, a power of two: faces are to be longer than wide in their parameters, so that
-  // points at one end of a face lie on no empty circle with those at the other, which may be opposite to
-  // them: see uneven() in tube_faces.cpp.
-  static double stretch_of(const TubeFace& face) {
-    constexpr double least = 3;
-    const double ratio = least * (face.high_u - face.low_u) / (face.high_v - face.low_v);
-    return std::exp2(std::max(0.0, std::ceil(std::log2(ratio))));
-  }
-
   [[nodiscard]] cad::Face tube_face(const TubeFace& given) const {
     const yarn::Body& body = bodies_[given.body];
     cad::Face face;
-    const double last_u = body.surface.last_u();
-    face.surface = nurbs::restricted(body.surface, given.low_u, std::min(given.high_u, last_u), given.low_v,
-                                     given.high_v);
-    if (given.high_u > last_u) face.surface = nurbs::extended_u(face.surface, given.high_u - last_u);
+    face.surface = nurbs::restricted(body.surface, given.low_u, given.high_u, given.low_v, given.high_v);
     face.reversed = body.inward;
-    const double stretch = stretch_of(given);
-    for (double& knot : face.surface.knots_v) knot *= stretch;
     for (const EdgeLoop& uses : given.loops) {
       cad::Loop loop;
       for (const EdgeUse& use : uses) {
@@ -197,7 +183,7 @@ class CellBuilder {
         edge.flat = use.backward ? nurbs::reversed(tubes_.edges[use.edge].flat) : tubes_.edges[use.edge].flat;
         for (Vec3& p : edge.flat.points)
           p = Vec3(std::clamp(p.x() + use.shift_u, given.low_u, given.high_u),
-                   stretch * std::clamp(p.y(), given.low_v, given.high_v), 0);
+                   std::clamp(p.y(), given.low_v, given.high_v), 0);
         loop.edges.push_back(std::move(edge));
       }
       face.loops.push_back(std::move(loop));

@@ -70,15 +70,6 @@ class ArcPath {
 // The line of constant u from v0 to v1 (< v1), exactly.
 EdgeCurves line_of_constant_u(const nurbs::Surface& surface, double u, double v0, double v1);
 
-// A parabola of the parameters beside the line of constant u from v0 to v1 (< v1), by so much more u: at v0,
-// between, as the middle control point has it, and at v1 (>= 0, much less than a span of the surface). In
-// space within `tolerance`.
-struct Beside {
-  double first = 0, middle = 0, last = 0;
-};
-EdgeCurves line_beside_u(const nurbs::Surface& surface, double u, double v0, double v1, const Beside& beside,
-                         double tolerance);
-
 // The same backwards, over the same range of the parameter.
 EdgeCurves reversed(const EdgeCurves& edge);
 

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
-#include "cell/trim.h"
+#include "core/plane.h"
 #include "nurbs/bezier.h"  // Box2
 #include "nurbs/restrict.h"
 #include "nurbs/spline.h"
@@ -20,13 +19,6 @@ namespace {
 using nurbs::Box2;
 
 constexpr double on_line = 1e-9;  // of the period
-// Of a curve as long as the yarn is round: along the yarn, and across it where a face of the box cuts it.
-constexpr double pieces_along = 4, pieces_across = 8;
-constexpr double unevenness = 0.13;
-constexpr double most_sag = 0.005;  // of the thickness: half a piece along the yarn off its chord
-// How far lines along the yarn are bowed, of the period: below what is seen, above what meshers take for
-// rounding.
-constexpr double bow_share = 2e-5;
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
 // A place of a border where edges end: a corner between two arcs, or a node.
@@ -36,8 +28,8 @@ struct Stop {
   // A node: where a line of constant u meets the border; the piece is above it (v more) or below.
   bool is_node = false, is_up = false;
   std::size_t line = 0;
-  long turn = 0;                                    // periods that the line is moved by
-  std::size_t first_edge = none, last_edge = none;  // [first, last) leave it forward along the border
+  long turn = 0;            // periods that the line is moved by
+  std::size_t edge = none;  // that leaves it forward along the border
 };
 
 // A kept point of a border.
@@ -57,25 +49,6 @@ struct Traced {
   EdgeLoop uses;
   std::vector<Vec2> outline;
 };
-
-double area(const std::vector<Vec2>& outline) {
-  double twice = 0;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Vec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return 0.5 * twice;
-}
-
-bool holds(const std::vector<Vec2>& outline, const Vec2& p) {
-  bool inside = false;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Vec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
-    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-    if (p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
-  }
-  return inside;
-}
 
 class PieceDivider {
  public:
@@ -100,7 +73,6 @@ class PieceDivider {
     for (std::size_t b = 0; b < piece_.borders.size(); ++b)
       if (Status status = find_stops(b); !status.ok()) return status;
     if (Status status = pair_nodes(); !status.ok()) return status;
-    is_smooth_ = is_smooth();
     make_edges();
     return trace_all();
   }
@@ -271,147 +243,23 @@ class PieceDivider {
         const Stop& next = stops_[b][(s + 1) % stops_[b].size()];
         const ArcPath& path = paths_[b][here.arc];
         double to = next.arc == here.arc ? next.along : path.length();
-        if (path.is_closed() && to <= here.along) to += path.length();
-        if (!path.is_closed() && to <= here.along) to = path.length();
-        here.first_edge = out_.edges.size();
-        const std::vector<double> places = places_of(path, here.along, to);
-        for (std::size_t i = 1; i < places.size(); ++i) {
-          of_arc[here.arc].push_back(out_.edges.size());
-          out_.edges.push_back(path.curves(places[i - 1], places[i], tolerance_));
-        }
-        here.last_edge = out_.edges.size();
+        if (to <= here.along) to = path.is_closed() ? to + path.length() : path.length();
+        here.edge = out_.edges.size();
+        of_arc[here.arc].push_back(here.edge);
+        out_.edges.push_back(path.curves(here.along, to, tolerance_));
       }
     }
     for (Pair& pair : pairs_) {
-      const double u = lines_[stop(pair.from).line];
-      const double low = parameters_of(pair.from).y(), high = parameters_of(pair.to).y();
-      pair.first_edge = out_.edges.size();
-      const std::vector<double> stations = stations_of(u, low, high);
-      for (std::size_t i = 1; i < stations.size(); ++i)
-        out_.edges.push_back(line(u, low, high, stations[i - 1], stations[i]));
-      pair.last_edge = out_.edges.size();
+      pair.edge = out_.edges.size();
+      out_.edges.push_back(line_of_constant_u(body_.surface, lines_[stop(pair.from).line],
+                                              parameters_of(pair.from).y(), parameters_of(pair.to).y()));
     }
   }
 
   struct Pair {
     StopPlace from, to;
-    std::size_t first_edge = none, last_edge = none;  // from `from` up to `to`
+    std::size_t edge = none;  // from `from` up to `to`
   };
-
-  // Bowed as a whole, and each of its edges once more: no three points lie on a line of the parameters, no
-  // two have the same u.
-  [[nodiscard]] EdgeCurves line(double u, double low, double high, double from, double to) const {
-    if (!is_smooth_) return line_of_constant_u(body_.surface, u, from, to);
-    const double bow = bow_share * period_;
-    const auto beside = [&](double v) {
-      return 4 * bow * (v - low) * (high - v) / ((high - low) * (high - low));
-    };
-    const double first = std::max(beside(from), 0.0), last = std::max(beside(to), 0.0);
-    return line_beside_u(body_.surface, u, from, to, {first, 0.5 * (first + last) + 2 * bow, last},
-                         tolerance_);
-  }
-
-  // Goes the surface on across each line as it comes there, for as far as lines are bowed? Not where sections
-  // have a tip: there the line has to be on it.
-  [[nodiscard]] bool is_smooth() const {
-    const nurbs::Surface& surface = body_.surface;
-    const double beyond = 3 * bow_share * period_;
-    const std::vector<double> knots = nurbs::breakpoints(surface.knots_v, surface.degree_v);
-    for (const double line : lines_) {
-      const double end = line > first_u_ ? line : surface.last_u();
-      const nurbs::Surface going_on = nurbs::extended_u(
-          nurbs::restricted(surface, surface.first_u(), end, surface.first_v(), surface.last_v()), beyond);
-      for (std::size_t i = 1; i < knots.size(); ++i)
-        for (const double share : {0.0, 0.5}) {
-          const double v = std::lerp(knots[i - 1], knots[i], share);
-          const Vec3 there = nurbs::evaluate(surface, line + beyond, v);
-          if ((nurbs::evaluate(going_on, end + beyond, v) - there).norm() > 0.5 * tolerance_) return false;
-        }
-    }
-    return true;
-  }
-
-  // Meshers put points on each edge, so edges are divided into short pieces. Uneven ones: where four such
-  // points lie on one circle of the surface's parameters, gmsh leaves it to random numbers how they are
-  // joined, in each of two solids that share a face anew.
-  static std::vector<double> uneven(double from, double to, int count, double amount) {
-    std::vector<double> places;
-    for (int i = 0; i <= count; ++i) {
-      const double share = static_cast<double>(i) / count;
-      places.push_back(i == count ? to : std::lerp(from, to, share + share * (1 - share) * amount));
-    }
-    return places;
-  }
-
-  template <typename At>
-  static double length(const At& at) {
-    constexpr int samples = 64;
-    double sum = 0;
-    for (int i = 1; i <= samples; ++i)
-      sum += (at(static_cast<double>(i) / samples) - at(static_cast<double>(i - 1) / samples)).norm();
-    return sum;
-  }
-
-  struct Size {
-    double round = 0, thickness = 0;
-  };
-  // Of the section at v; the thickness as if it were an ellipse of the same area and width.
-  [[nodiscard]] Size size_at(double v) const {
-    constexpr std::size_t count = 64;
-    std::vector<Vec3> points;
-    for (std::size_t i = 0; i < count; ++i)
-      points.push_back(position(body_, {first_u_ + period_ * static_cast<double>(i) / count, v}));
-    Size size;
-    double width = 0;
-    Vec3 twice_area = Vec3::Zero();
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 next = points[(i + 1) % count];
-      size.round += (next - points[i]).norm();
-      twice_area += (points[i] - points[0]).cross(next - points[0]);
-      width = std::max(width, (points[i] - points[(i + count / 2) % count]).norm());
-    }
-    size.thickness = 2 * twice_area.norm() / (std::numbers::pi * width);
-    return size;
-  }
-
-  // Where the yarn bends, as short as it takes for half a piece to stay near its chord: yarns that cross bend
-  // round each other.
-  [[nodiscard]] std::vector<double> stations_of(double u, double low, double high) const {
-    constexpr int samples = 512;
-    const Size size = size_at(0.5 * (low + high));
-    const double step = (high - low) / samples;
-    const auto at = [&](int i) { return position(body_, {u, std::clamp(low + step * i, low, high)}); };
-    std::vector<double> pieces = {0};  // from `low` on
-    for (int i = 0; i < samples; ++i) {
-      const Vec3 before = at(std::max(i - 1, 0)), here = at(std::max(i, 1)), after = at(std::max(i + 1, 2));
-      const Vec3 in = here - before, out = after - here;
-      const double length = 0.5 * (in.norm() + out.norm());
-      const double bend = in.cross(out).norm() / (length * length * length);
-      pieces.push_back(pieces.back() + length * std::max(pieces_along / size.round,
-                                                         std::sqrt(bend / (32 * most_sag * size.thickness))));
-    }
-    const int count = std::clamp(static_cast<int>(std::ceil(pieces.back())), 2, 256);
-    std::vector<double> stations =
-        uneven(0, pieces.back(), count, u == first_u_ ? unevenness : -1.3 * unevenness);
-    for (double& station : stations) {
-      const auto next = std::upper_bound(pieces.begin() + 1, pieces.end() - 1, station);
-      const double share = std::clamp((station - *(next - 1)) / (*next - *(next - 1)), 0.0, 1.0);
-      station = std::lerp(low, high, (static_cast<double>(next - 1 - pieces.begin()) + share) / samples);
-    }
-    stations.front() = low;
-    stations.back() = high;
-    return stations;
-  }
-
-  // Across the yarn alike where it enters and where it leaves the box: with u; along it with the border.
-  [[nodiscard]] std::vector<double> places_of(const ArcPath& path, double from, double to) const {
-    const Vec2 way = path.at(to) - path.at(from);
-    const double along = length([&](double share) { return path.position(std::lerp(from, to, share)); });
-    const double round = size_at(path.at(0.5 * (from + to)).y()).round;
-    const bool is_backward = way.x() < -0.1 * period_;
-    const int count = std::clamp(static_cast<int>(std::ceil(pieces_across * along / round - 1e-6)), 1, 256);
-    return uneven(from, to, count, is_backward ? -unevenness : unevenness);
-  }
 
   // The use of a line that goes on from this node, and the node at its other end.
   [[nodiscard]] const Pair* pair_at(const StopPlace& place) const {
@@ -430,7 +278,7 @@ class PieceDivider {
         if (done[b][s]) continue;
         Traced traced;
         if (Status status = trace({b, s}, done, traced); !status.ok()) return status;
-        (area(traced.outline) > 0 ? outer : holes).push_back(std::move(traced));
+        (twice_area(traced.outline) > 0 ? outer : holes).push_back(std::move(traced));
       }
     if (outer.empty()) return fault("cannot be divided into faces", {});
     return add_faces(outer, holes);
@@ -442,13 +290,12 @@ class PieceDivider {
     do {
       if (done[place.border][place.stop]) return fault("cannot be divided into faces", parameters_of(place));
       done[place.border][place.stop] = true;
-      for (std::size_t e = stop(place).first_edge; e < stop(place).last_edge; ++e) append(traced, e, false);
+      append(traced, stop(place).edge, false);
       place.stop = (place.stop + 1) % stops_[place.border].size();
       if (!stop(place).is_node) continue;
       const Pair& pair = *pair_at(place);
       const bool up = pair.from.border == place.border && pair.from.stop == place.stop;
-      for (std::size_t e = pair.first_edge; e < pair.last_edge; ++e)
-        append(traced, up ? e : pair.first_edge + pair.last_edge - 1 - e, !up);
+      append(traced, pair.edge, !up);
       place = up ? pair.to : pair.from;
     } while (place.border != start.border || place.stop != start.stop);
     const double miss = std::abs(traced.outline.back().x() - traced.outline.front().x());
@@ -490,8 +337,8 @@ class PieceDivider {
     for (Traced& hole : holes) {
       std::size_t best = none;
       for (std::size_t i = 0; i < outer.size(); ++i)
-        if (holds(outer[i].outline, hole.outline.front()) &&
-            (best == none || area(outer[i].outline) < area(outer[best].outline)))
+        if (contains(outer[i].outline, hole.outline.front()) &&
+            (best == none || twice_area(outer[i].outline) < twice_area(outer[best].outline)))
           best = i;
       if (best == none) return fault("cannot be divided into faces", hole.outline.front());
       faces[best].loops.push_back(std::move(hole.uses));
@@ -521,7 +368,6 @@ class PieceDivider {
                                     double first, double last, const std::vector<double>& lines) {
     for (const double line : lines)
       if (std::abs(value - line) <= 1e-6 * (last - first)) return line;
-    if (value > last) return value + bow_share * (last - first);
     value = std::clamp(value + margin, first, last);
     for (const double knot : knots)
       if ((knot - value) * margin >= 0 && std::abs(knot - value) <= 1e-3 * (last - first)) return knot;
@@ -533,7 +379,6 @@ class PieceDivider {
   double tolerance_;
   TubeFaces& out_;
   double first_u_ = 0, period_ = 1;
-  bool is_smooth_ = false;                   // across the lines
   std::vector<std::vector<ArcPath>> paths_;  // [border][arc]
   std::vector<double> lines_;                // of constant u
   std::vector<std::vector<Stop>> stops_;     // [border], along it

@@ -19,7 +19,7 @@ using EdgeLoop = std::vector<EdgeUse>;
 
 struct TubeFace {
   std::size_t body = 0;
-  // The part of the surface's domain that it needs; high_u may be a little past the last one.
+  // The part of the surface's domain that it needs.
   double low_u = 0, high_u = 0, low_v = 0, high_v = 0;
   std::vector<EdgeLoop> loops;  // the outer one first; counter-clockwise in (u, v)
 };

@@ -131,14 +131,6 @@ Surface restricted(const Surface& surface, double u0, double u1, double v0, doub
                   restriction(surface.knots_v, surface.degree_v, surface.count_v, v0, v1));
 }
 
-Surface extended_u(const Surface& surface, double beyond) {
-  std::vector<double> made = surface.knots_u;
-  for (double& knot : made)
-    if (knot == surface.last_u()) knot += beyond;
-  return combined(surface, over_knots(surface.knots_u, surface.degree_u, surface.count_u, std::move(made)),
-                  over_knots(surface.knots_v, surface.degree_v, surface.count_v, surface.knots_v));
-}
-
 Surface refined(const Surface& surface, const std::vector<double>& new_v) {
   std::vector<double> made;
   std::merge(surface.knots_v.begin(), surface.knots_v.end(), new_v.begin(), new_v.end(),

@@ -11,8 +11,6 @@ namespace selvage::nurbs {
 // with another argument in every step.
 Curve restricted(const Curve& curve, double t0, double t1);
 Surface restricted(const Surface& surface, double u0, double u1, double v0, double v1);
-// The same, of which the last polynomial goes on past the last u by `beyond` (> 0, shorter than its span).
-Surface extended_u(const Surface& surface, double beyond);
 
 // The same surface with these knots inserted along v (increasing, inside the domain; multiplicities
 // afterwards at most the degree). Control points whose knots do not change keep their values up to rounding.

@@ -1,5 +1,5 @@
 // Unit cells as STEP: OpenCASCADE finds valid solids, of which each yarn has the volume that is inside the
-// cell and all fill it; gmsh meshes them conformally.
+// cell and all fill it; gmsh meshes them conformally by samples/cell.geo.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -200,39 +200,14 @@ TEST_P(SharedFaces, AreEqualToTheBit) {
 
 INSTANTIATE_TEST_SUITE_P(, SharedFaces, testing::Values("cell_plain", "cell_jersey"));
 
-// A mesh of gmsh: nodes that are one place are one.
+// A mesh of gmsh.
 struct Tetrahedra {
   std::vector<Vec3> nodes;
   std::vector<std::pair<int, std::array<int, 4>>> elements;  // with their volume
 };
 
-// Places within `reach` are one.
-class Places {
- public:
-  Places(double reach, std::vector<Vec3>& nodes) : reach_(reach), nodes_(nodes) {}
-  int at(const Vec3& p) {
-    const Vec3 cell = (p / (2 * reach_)).array().floor();
-    for (int k = 0; k < 27; ++k) {
-      const auto [first, last] = known_.equal_range(key(cell + Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
-      for (auto it = first; it != last; ++it)
-        if ((nodes_[static_cast<std::size_t>(it->second)] - p).norm() <= reach_) return it->second;
-    }
-    nodes_.push_back(p);
-    const int number = static_cast<int>(nodes_.size()) - 1;
-    known_.emplace(key(cell), number);
-    return number;
-  }
-
- private:
-  static std::array<double, 3> key(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
-  double reach_;
-  std::vector<Vec3>& nodes_;
-  std::multimap<std::array<double, 3>, int> known_;
-};
-
-Tetrahedra read_mesh(const fs::path& path, double reach) {
+Tetrahedra read_mesh(const fs::path& path) {
   Tetrahedra mesh;
-  Places places(reach, mesh.nodes);
   std::ifstream in(path);
   std::map<long, int> node_of;
   std::string line;
@@ -243,7 +218,8 @@ Tetrahedra read_mesh(const fs::path& path, double reach) {
         long id = 0;
         Vec3 p;
         in >> id >> p.x() >> p.y() >> p.z();
-        node_of[id] = places.at(p);
+        node_of[id] = static_cast<int>(mesh.nodes.size());
+        mesh.nodes.push_back(p);
       }
     if (line == "$Elements" && in >> count)
       for (std::size_t i = 0; i < count; ++i) {
@@ -265,8 +241,10 @@ Tetrahedra read_mesh(const fs::path& path, double reach) {
 class GmshCell : public StepCell {
  protected:
   void fill(const std::string& options) const {
+    fs::copy_file(fs::path(places::samples()) / "cell.geo", folder_ / "cell.geo",
+                  fs::copy_options::overwrite_existing);
     const std::string command = "cd '" + folder_.string() + "' && timeout 200 '" + places::gmsh() +
-                                "' -3 cell.stp " + options + " -format msh22 -o cell.msh > log 2>&1";
+                                "' -save " + options + " cell.geo -format msh22 -o cell.msh > log 2>&1";
     ASSERT_EQ(std::system(command.c_str()), 0);
   }
 
@@ -315,15 +293,23 @@ class GmshCell : public StepCell {
   }
 };
 
-// gmsh takes each copy of a face by itself and puts random numbers into its points: with other ones, it still
-// comes out with equal meshes.
-TEST_P(GmshCell, IsMeshedConformallyWithoutOptions) {
+// Edges so short that facets of neighbours do not cut each other; -clcurv: so many on a full turn.
+const std::map<std::string, std::string> sizes = {{"cell_plain", "-clmax 0.3"},
+                                                  {"twill_cell", "-clmax 0.2"},
+                                                  {"cell_satin5", "-clmax 0.3 -clcurv 12"},
+                                                  {"cell_orthogonal", "-clmax 0.3 -clcurv 12"},
+                                                  {"cell_jersey", "-clmax 0.1"},
+                                                  {"cell_tricot", "-clmax 0.1 -clcurv 12"},
+                                                  {"cell_straight", "-clmax 0.1"},
+                                                  {"cell_fibre", "-clmax 0.02"}};
+
+TEST_P(GmshCell, IsMeshedConformally) {
   const BuiltCell built = build(GetParam(), 0.05);
   const std::vector<cad::Part> parts = write(built);
   for (const std::string options : {"", "-setnumber Mesh.RandomSeed 7"}) {
     if (!options.empty() && GetParam() != "cell_plain" && GetParam() != "cell_jersey") continue;
-    fill(options);
-    const Tetrahedra mesh = read_mesh(folder_ / "cell.msh", 1e-9 * built.box.diagonal().norm());
+    fill(sizes.at(GetParam()) + " " + options);
+    const Tetrahedra mesh = read_mesh(folder_ / "cell.msh");
     const std::map<int, double> volumes = volumes_of(mesh);
     ASSERT_EQ(volumes.size(), parts.size());
     std::map<std::string, double> by_name;

@@ -197,20 +197,5 @@ TEST(SurfaceTest, BoundaryRowIsTheBoundary) {
   }
 }
 
-// Cut inside the last span in u, which ends at 4, and extended again.
-TEST(SurfaceTest, ExtendedGoesOnAsItWas) {
-  for (const bool rational : {false, true}) {
-    const Surface surface = wild_surface(rational);
-    const double cut = 3.8, first_v = surface.first_v(), last_v = surface.last_v();
-    const Surface extended = extended_u(restricted(surface, surface.first_u(), cut, first_v, last_v), 0.15);
-    EXPECT_EQ(extended.last_u(), cut + 0.15);
-    for (double u = 3.2; u <= 3.95; u += 0.05)
-      for (const double share : {0.0, 0.3, 0.7, 1.0}) {
-        const double v = std::lerp(first_v, last_v, share);
-        EXPECT_LT((evaluate(extended, u, v) - evaluate(surface, u, v)).norm(), 1e-11) << u << " " << v;
-      }
-  }
-}
-
 }  // namespace
 }  // namespace selvage::nurbs
