@@ -122,9 +122,10 @@ class CellBuilder {
 
   Result<std::vector<cad::Part>> run(bool with_matrix) {
     set_corners();
-    for (const Segment& segment : division_.segments) {
-      segment_edges_.push_back(tubes_.edges.size());
-      const Vec3 &a = division_.corners[segment.from].at, &b = division_.corners[segment.to].at;
+    for (const Edge& part : division_.edges) {
+      if (part.arc != nullptr) continue;
+      tubes_.of_arc.push_back({tubes_.edges.size()});
+      const Vec3 &a = division_.corners[part.from].at, &b = division_.corners[part.to].at;
       const double length = (b - a).norm();
       tubes_.edges.push_back(
           {{.degree = 1, .knots = {0, 0, length, length}, .points = {a, b}, .weights = {}}, {}});
@@ -152,16 +153,13 @@ class CellBuilder {
  private:
   // Where yarns cross the edges of the box: the corners' own numbers.
   void set_corners() {
-    for (std::size_t p = 0; p < cut_.pieces.size(); ++p)
-      for (std::size_t b = 0; b < cut_.pieces[p].borders.size(); ++b)
-        for (std::size_t a = 0; a < cut_.pieces[p].borders[b].arcs.size(); ++a) {
-          const Division::ArcEnds ends = division_.ends[p][b][a];
-          const std::vector<std::size_t>& edges = tubes_.of_arc[p][b][a];
-          if (ends.first != Division::none)
-            tubes_.edges[edges.front()].space.points.front() = division_.corners[ends.first].at;
-          if (ends.last != Division::none)
-            tubes_.edges[edges.back()].space.points.back() = division_.corners[ends.last].at;
-        }
+    for (std::size_t e = 0; e < division_.edges.size(); ++e) {
+      const Edge& edge = division_.edges[e];
+      if (edge.arc == nullptr || edge.is_border()) continue;
+      const std::vector<std::size_t>& parts = tubes_.of_arc[e];
+      tubes_.edges[parts.front()].space.points.front() = division_.corners[edge.from].at;
+      tubes_.edges[parts.back()].space.points.back() = division_.corners[edge.to].at;
+    }
   }
 
   [[nodiscard]] cad::Edge edge_of(std::size_t id, bool backward) const {
@@ -191,12 +189,12 @@ class CellBuilder {
     return face;
   }
 
-  // The arc's edges, one after the other in the direction that is asked for.
+  // The parts of an edge, one after the other in the direction that is asked for.
   template <typename Take>
-  void for_each_edge(const ArcPlace& arc, bool backward, const Take& take) const {
-    const std::vector<std::size_t>& edges = tubes_.of_arc[arc.piece][arc.border][arc.arc];
-    for (std::size_t i = 0; i < edges.size(); ++i)
-      take(backward ? edges[edges.size() - 1 - i] : edges[i], backward);
+  void for_each_part(std::size_t edge, bool backward, const Take& take) const {
+    const std::vector<std::size_t>& parts = tubes_.of_arc[edge];
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      take(backward ? parts[parts.size() - 1 - i] : parts[i], backward);
   }
 
   [[nodiscard]] cad::Face region_face(const FaceRegion& region) const {
@@ -211,12 +209,7 @@ class CellBuilder {
         for (const Vec3& p : edge.flat.points) range.extend(p.head<2>());
         loop.edges.push_back(std::move(edge));
       };
-      for (const Side& side : outline) {
-        if (side.kind == Side::Kind::segment)
-          add(segment_edges_[side.segment], side.backward);
-        else
-          for_each_edge(side.arc, side.backward, add);
-      }
+      for (const Side& side : outline) for_each_part(side.edge, side.backward, add);
       face.loops.push_back(std::move(loop));
     }
     if (region.body != FaceRegion::matrix) {
@@ -228,8 +221,8 @@ class CellBuilder {
   }
 
   // What seals a yarn that ends inside the box.
-  Result<cad::Face> end_face(const yarn::Body& body, const ArcPlace& place, const Arc& arc) const {
-    const bool last = arc.along == Arc::Along::end;
+  Result<cad::Face> end_face(const yarn::Body& body, std::size_t edge_number) const {
+    const bool last = division_.edges[edge_number].arc->along == Arc::Along::end;
     const yarn::EndFace& end = last ? body.end : body.start;
     if (end.style == yarn::EndStyle::fan || end.style == yarn::EndStyle::none)
       return end_fault(body, end.style, last);
@@ -245,7 +238,7 @@ class CellBuilder {
       face.reversed = end.inward;
     }
     // Along growing u.
-    for_each_edge(place, last, [&](std::size_t id, bool backward) {
+    for_each_part(edge_number, last, [&](std::size_t id, bool backward) {
       cad::Edge edge = edge_of(id, backward);
       edge.flat = plane ? plane->in_parameters(edge.curve) : on_patch(body, edge.curve);
       loop.edges.push_back(std::move(edge));
@@ -294,17 +287,13 @@ class CellBuilder {
     std::vector<cad::Face> faces;
     for (const TubeFace& face : tubes_.faces)
       if (face.body == body) faces.push_back(tube_face(face));
-    for (std::size_t p = 0; p < cut_.pieces.size(); ++p) {
-      if (cut_.pieces[p].body != body) continue;
-      for (std::size_t b = 0; b < cut_.pieces[p].borders.size(); ++b) {
-        const Border& border = cut_.pieces[p].borders[b];
-        for (std::size_t a = 0; a < border.arcs.size(); ++a) {
-          if (border.arcs[a].face < face_count) continue;
-          Result<cad::Face> face = end_face(bodies_[body], {p, b, a}, border.arcs[a]);
-          if (!face) return face.error();
-          faces.push_back(std::move(*face));
-        }
-      }
+    for (std::size_t e = 0; e < division_.edges.size(); ++e) {
+      const Edge& edge = division_.edges[e];
+      if (edge.arc == nullptr || edge.arc->face < face_count || cut_.pieces[edge.piece].body != body)
+        continue;
+      Result<cad::Face> face = end_face(bodies_[body], e);
+      if (!face) return face.error();
+      faces.push_back(std::move(*face));
     }
     return faces;
   }
@@ -371,7 +360,6 @@ class CellBuilder {
   const Cut& cut_;
   Division division_;
   TubeFaces tubes_;
-  std::vector<std::size_t> segment_edges_;
 };
 
 }  // namespace

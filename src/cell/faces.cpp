@@ -42,6 +42,8 @@ std::optional<Vec2> crossing(const std::vector<Vec2>& a, const std::vector<Vec2>
   return std::nullopt;
 }
 
+constexpr std::size_t nothing = FaceRegion::matrix - 1;  // outside of the box
+
 class Divider {
  public:
   Divider(std::span<const yarn::Body> bodies, const Box3& box, const Cut& cut)
@@ -55,24 +57,24 @@ class Divider {
     double along = 0;
     bool leaves = false;  // the yarn, in the direction of the axis
   };
-  struct Step {
-    Side side;
-    std::size_t from = 0, to = 0;  // corners
-  };
   void find_corners();
   Status divide_edges();
-  Status own(std::size_t segment, std::size_t body);
+  Status own(std::size_t edge, std::size_t body);
   void spread_owners();
   Status trace_face(int face);
-  Status chain(int face, std::size_t body, const std::vector<Step>& steps,
+  Status chain(int face, std::size_t body, const std::vector<Side>& sides,
                std::vector<Outline>& outlines) const;
   void nest(int face, std::size_t body, std::vector<Outline> outlines);
   Status check_apart() const;
-  [[nodiscard]] bool body_is_left(const Side& side) const;
+  [[nodiscard]] std::size_t body_left_of(const Side& side, int face) const;
   [[nodiscard]] std::vector<Vec2> polygon(int face, const Outline& outline) const;
-  [[nodiscard]] const Piece& piece_of(const ArcPlace& place) const { return cut_.pieces[place.piece]; }
-  [[nodiscard]] const Arc& arc_at(const ArcPlace& place) const {
-    return piece_of(place).borders[place.border].arcs[place.arc];
+  [[nodiscard]] const Edge& edge_of(const Side& side) const { return division_.edges[side.edge]; }
+  [[nodiscard]] std::size_t start_of(const Side& side) const {
+    return side.backward ? edge_of(side).to : edge_of(side).from;
+  }
+  [[nodiscard]] std::size_t end_of(const Side& side) const { return start_of({side.edge, !side.backward}); }
+  [[nodiscard]] const yarn::Body& body_of(const Edge& arc) const {
+    return bodies_[cut_.pieces[arc.piece].body];
   }
   [[nodiscard]] Message overlap(std::size_t a, std::size_t b, const Vec3& at) const;
 
@@ -81,7 +83,7 @@ class Divider {
   const Cut& cut_;
   Division division_;
   std::array<std::vector<OnEdge>, edge_count> on_edges_;
-  std::vector<std::size_t> owners_;  // of segments
+  std::vector<std::size_t> owners_;  // of parts of the box's edges
   std::vector<bool> is_owned_;
 };
 
@@ -102,45 +104,48 @@ void Divider::find_corners() {
     for (int axis = 0; axis < 3; ++axis) at[axis] = plane_of(box_, 2 * axis + (number >> axis & 1));
     division_.corners.push_back({at});
   }
-  for (const Piece& piece : cut_.pieces) {
-    auto& borders = division_.ends.emplace_back();
+  for (std::size_t p = 0; p < cut_.pieces.size(); ++p) {
+    const Piece& piece = cut_.pieces[p];
     const yarn::Body& body = bodies_[piece.body];
+    division_.first_edges.emplace_back();
     for (const Border& border : piece.borders) {
-      const std::size_t count = border.arcs.size();
-      auto& ends = borders.emplace_back(count);
+      const std::size_t count = border.arcs.size(), first = division_.edges.size();
+      division_.first_edges.back().push_back(first);
+      for (const Arc& arc : border.arcs) division_.edges.push_back({&arc, p});
       for (std::size_t k = 0; count > 1 && k < count; ++k) {
         const Arc &arc = border.arcs[k], &next = border.arcs[(k + 1) % count];
         const int edge = edge_between(arc.face, next.face);
         const nurbs::SurfaceJet s = jet(body, arc.parameters.back());
         const double outward = s.du.cross(s.dv)[edge / 4] * (body.inward ? -1 : 1);
-        ends[k].last = ends[(k + 1) % count].first = division_.corners.size();
+        const std::size_t corner = division_.corners.size();
+        division_.edges[first + k].to = division_.edges[first + (k + 1) % count].from = corner;
         on_edges_[static_cast<std::size_t>(edge)].push_back(
-            {division_.corners.size(), piece.body, s.position[edge / 4], outward > 0});
+            {corner, piece.body, s.position[edge / 4], outward > 0});
         division_.corners.push_back({edge_point(box_, edge, s.position[edge / 4])});
       }
     }
   }
 }
 
-Status Divider::own(std::size_t segment, std::size_t body) {
-  if (is_owned_[segment] && owners_[segment] != body) {
-    const std::size_t other = owners_[segment];
-    const Vec3 at = division_.corners[division_.segments[segment].from].at;
+Status Divider::own(std::size_t edge, std::size_t body) {
+  if (is_owned_[edge] && owners_[edge] != body) {
+    const std::size_t other = owners_[edge];
+    const Vec3 at = division_.corners[division_.edges[edge].from].at;
     if (body != FaceRegion::matrix && other != FaceRegion::matrix) return overlap(body, other, at);
     // One yarn's end is another's inside.
-    for (const auto& edge : on_edges_)
-      for (const OnEdge& a : edge)
-        for (const OnEdge& b : edge)
-          if (a.body != b.body && (a.corner == division_.segments[segment].from) &&
-              (b.corner == division_.segments[segment].to))
+    for (const auto& list : on_edges_)
+      for (const OnEdge& a : list)
+        for (const OnEdge& b : list)
+          if (a.body != b.body && (a.corner == division_.edges[edge].from) &&
+              (b.corner == division_.edges[edge].to))
             return overlap(a.body, b.body, at);
     Message message = error(Kind::geometry, "yarns overlap, or fold, where an edge of the cell cuts them");
     message.yarn = bodies_[body == FaceRegion::matrix ? other : body].name;
     message.at = at;
     return message;
   }
-  is_owned_[segment] = true;
-  owners_[segment] = body;
+  is_owned_[edge] = true;
+  owners_[edge] = body;
   return {};
 }
 
@@ -156,12 +161,12 @@ Status Divider::divide_edges() {
     for (std::size_t k = 0; k <= list.size(); ++k) {
       const std::size_t to =
           k < list.size() ? list[k].corner : static_cast<std::size_t>(low | 1 << (edge / 4));
-      division_.segments.push_back({edge, from, to});
+      division_.edges.push_back({nullptr, 0, edge, from, to});
       from = to;
     }
-    owners_.resize(division_.segments.size(), FaceRegion::matrix);
-    is_owned_.resize(division_.segments.size(), false);
-    const std::size_t first = division_.segments.size() - list.size() - 1;
+    owners_.resize(division_.edges.size(), FaceRegion::matrix);
+    is_owned_.resize(division_.edges.size(), false);
+    const std::size_t first = division_.edges.size() - list.size() - 1;
     for (std::size_t k = 0; k < list.size(); ++k) {
       if (Status s = own(first + k, list[k].leaves ? list[k].body : FaceRegion::matrix); !s) return s;
       if (Status s = own(first + k + 1, list[k].leaves ? FaceRegion::matrix : list[k].body); !s) return s;
@@ -170,13 +175,13 @@ Status Divider::divide_edges() {
   return {};
 }
 
-// A segment that ends at a corner of the box belongs to what the others there belong to.
+// A part that ends at a corner of the box belongs to what the others there belong to.
 void Divider::spread_owners() {
   for (int pass = 0; pass < 8; ++pass)
     for (std::size_t a = 0; a < owners_.size(); ++a)
       for (std::size_t b = 0; b < owners_.size(); ++b) {
         if (!is_owned_[a] || is_owned_[b]) continue;
-        const Segment &s = division_.segments[a], &t = division_.segments[b];
+        const Edge &s = division_.edges[a], &t = division_.edges[b];
         for (const std::size_t corner : {s.from, s.to})
           if (corner < 8 && (corner == t.from || corner == t.to)) {
             owners_[b] = owners_[a];
@@ -185,42 +190,46 @@ void Divider::spread_owners() {
       }
 }
 
-bool Divider::body_is_left(const Side& side) const {
-  return side.backward != bodies_[piece_of(side.arc).body].inward;
+// What lies to the left of the side in a face that it is in: counter-clockwise is the inside of the face.
+std::size_t Divider::body_left_of(const Side& side, int face) const {
+  const Edge& edge = edge_of(side);
+  if (edge.arc != nullptr)
+    return side.backward != body_of(edge).inward ? cut_.pieces[edge.piece].body : FaceRegion::matrix;
+  const Vec2 from = flat(division_.corners[start_of(side)].at, face),
+             to = flat(division_.corners[end_of(side)].at, face);
+  return cross(to - from, flat(box_.center(), face) - from) < 0 ? nothing : owners_[side.edge];
 }
 
 // The points of an outline, in the face's coordinates.
 std::vector<Vec2> Divider::polygon(int face, const Outline& outline) const {
   std::vector<Vec2> points;
   for (const Side& side : outline) {
-    if (side.kind == Side::Kind::segment) {
-      const Segment& segment = division_.segments[side.segment];
-      points.push_back(flat(division_.corners[side.backward ? segment.to : segment.from].at, face));
+    const Edge& edge = edge_of(side);
+    if (edge.arc == nullptr) {
+      points.push_back(flat(division_.corners[start_of(side)].at, face));
       continue;
     }
-    const Arc& arc = arc_at(side.arc);
-    const yarn::Body& body = bodies_[piece_of(side.arc).body];
     std::vector<Vec2> run;
-    for (const Vec2& q : arc.parameters) run.push_back(flat(position(body, q), face));
+    for (const Vec2& q : edge.arc->parameters) run.push_back(flat(position(body_of(edge), q), face));
     if (side.backward) std::reverse(run.begin(), run.end());
     points.insert(points.end(), run.begin(), run.end() - 1);
   }
   return points;
 }
 
-Status Divider::chain(int face, std::size_t body, const std::vector<Step>& steps,
+Status Divider::chain(int face, std::size_t body, const std::vector<Side>& sides,
                       std::vector<Outline>& outlines) const {
   std::map<std::size_t, std::size_t> from;
-  for (std::size_t i = 0; i < steps.size(); ++i) from[steps[i].from] = i;
-  std::vector<bool> used(steps.size(), false);
-  for (std::size_t i = 0; i < steps.size(); ++i) {
+  for (std::size_t i = 0; i < sides.size(); ++i) from[start_of(sides[i])] = i;
+  std::vector<bool> used(sides.size(), false);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
     if (used[i]) continue;
     Outline outline;
     std::size_t k = i;
     while (!used[k]) {
       used[k] = true;
-      outline.push_back(steps[k].side);
-      const auto next = from.find(steps[k].to);
+      outline.push_back(sides[k]);
+      const auto next = from.find(end_of(sides[k]));
       if (next == from.end()) break;
       k = next->second;
     }
@@ -230,7 +239,7 @@ Status Divider::chain(int face, std::size_t body, const std::vector<Step>& steps
                                             "there, or one folds",
                                             name_of_face(face)));
       if (body != FaceRegion::matrix) message.yarn = bodies_[body].name;
-      message.at = division_.corners[steps[i].from].at;
+      message.at = division_.corners[start_of(sides[i])].at;
       return message;
     }
     outlines.push_back(std::move(outline));
@@ -267,38 +276,24 @@ void Divider::nest(int face, std::size_t body, std::vector<Outline> outlines) {
 }
 
 Status Divider::trace_face(int face) {
-  std::map<std::size_t, std::vector<Step>> steps;        // by owner
+  std::map<std::size_t, std::vector<Side>> sides;        // by owner
   std::map<std::size_t, std::vector<Outline>> outlines;  // those of one arc
-  for (std::size_t p = 0; p < cut_.pieces.size(); ++p)
-    for (std::size_t b = 0; b < cut_.pieces[p].borders.size(); ++b)
-      for (std::size_t a = 0; a < cut_.pieces[p].borders[b].arcs.size(); ++a) {
-        if (cut_.pieces[p].borders[b].arcs[a].face != face) continue;
-        const Division::ArcEnds ends = division_.ends[p][b][a];
-        for (const bool backward : {false, true}) {
-          Side side{Side::Kind::arc, {p, b, a}, 0, backward};
-          const std::size_t owner = body_is_left(side) ? cut_.pieces[p].body : FaceRegion::matrix;
-          if (ends.first == Division::none) {
-            outlines[owner].push_back({side});
-          } else {
-            steps[owner].push_back(
-                {side, backward ? ends.last : ends.first, backward ? ends.first : ends.last});
-          }
-        }
-      }
-  for (std::size_t i = 0; i < division_.segments.size(); ++i) {
-    const Segment& segment = division_.segments[i];
-    const std::array<int, 2> faces = faces_of_edge(segment.edge);
+  for (std::size_t i = 0; i < division_.edges.size(); ++i) {
+    const Edge& edge = division_.edges[i];
+    const std::array<int, 2> faces =
+        edge.arc != nullptr ? std::array{edge.arc->face, edge.arc->face} : faces_of_edge(edge.box_edge);
     if (faces[0] != face && faces[1] != face) continue;
-    // Counter-clockwise: the inside of the face lies to the left.
-    const Vec2 from = flat(division_.corners[segment.from].at, face),
-               to = flat(division_.corners[segment.to].at, face);
-    const Vec2 middle = flat(box_.center(), face);
-    const bool backward = cross(to - from, middle - from) < 0;
-    const Side side{Side::Kind::segment, {}, i, backward};
-    steps[owners_[i]].push_back(
-        {side, backward ? segment.to : segment.from, backward ? segment.from : segment.to});
+    for (const bool backward : {false, true}) {
+      const Side side{i, backward};
+      const std::size_t owner = body_left_of(side, face);
+      if (owner == nothing) continue;
+      if (edge.is_border())
+        outlines[owner].push_back({side});
+      else
+        sides[owner].push_back(side);
+    }
   }
-  for (const auto& [owner, list] : steps)
+  for (const auto& [owner, list] : sides)
     if (Status chained = chain(face, owner, list, outlines[owner]); !chained) return chained;
   for (auto& [owner, list] : outlines) nest(face, owner, std::move(list));
   return {};

@@ -233,10 +233,9 @@ class PieceDivider {
   Stop& stop(const StopPlace& place) { return stops_[place.border][place.stop]; }
 
   void make_edges() {
-    out_.of_arc.emplace_back();
     for (std::size_t b = 0; b < stops_.size(); ++b) {
-      out_.of_arc.back().emplace_back(piece_.borders[b].arcs.size());
-      std::vector<std::vector<std::size_t>>& of_arc = out_.of_arc.back().back();
+      const std::size_t first = out_.of_arc.size();
+      out_.of_arc.resize(first + piece_.borders[b].arcs.size());
       if (stops_[b].empty()) stops_[b].push_back({});
       for (std::size_t s = 0; s < stops_[b].size(); ++s) {
         Stop& here = stops_[b][s];
@@ -245,7 +244,7 @@ class PieceDivider {
         double to = next.arc == here.arc ? next.along : path.length();
         if (to <= here.along) to = path.is_closed() ? to + path.length() : path.length();
         here.edge = out_.edges.size();
-        of_arc[here.arc].push_back(here.edge);
+        out_.of_arc[first + here.arc].push_back(here.edge);
         out_.edges.push_back(path.curves(here.along, to, tolerance_));
       }
     }

@@ -27,9 +27,9 @@ struct TubeFace {
 struct TubeFaces {
   std::vector<EdgeCurves> edges;
   std::vector<TubeFace> faces;
-  // The edges that each arc was divided into, in its direction, as [piece][border][arc]; those of an arc that
-  // is a border by itself begin anywhere.
-  std::vector<std::vector<std::vector<std::vector<std::size_t>>>> of_arc;
+  // The edges that each arc was divided into, in its direction, in the order of Division::edges; those of an
+  // arc that is a border by itself begin anywhere.
+  std::vector<std::vector<std::size_t>> of_arc;
 };
 
 // A piece that goes all round is divided along two lines of constant u, any other one along the surface's

@@ -111,15 +111,14 @@ double area_of(std::span<const yarn::Body> bodies, const Box3& box, const Cut& c
   double area = 0;
   for (const Outline& outline : region.outlines)
     for (const Side& side : outline) {
-      if (side.kind == Side::Kind::segment) {
-        const Segment& segment = division.segments[side.segment];
-        const Vec3 &p = division.corners[side.backward ? segment.to : segment.from].at,
-                   &q = division.corners[side.backward ? segment.from : segment.to].at;
+      const Edge& edge = division.edges[side.edge];
+      if (edge.arc == nullptr) {
+        const Vec3 &p = division.corners[side.backward ? edge.to : edge.from].at,
+                   &q = division.corners[side.backward ? edge.from : edge.to].at;
         area += (p[x] + q[x] - 2 * box.min()[x]) / 2 * (q[y] - p[y]);
         continue;
       }
-      const Piece& piece = cut.pieces[side.arc.piece];
-      const ArcCurve curve(bodies[piece.body], box, piece.borders[side.arc.border].arcs[side.arc.arc]);
+      const ArcCurve curve(bodies[cut.pieces[edge.piece].body], box, *edge.arc);
       const auto coordinate = [&](int which) {
         return [&curve, &box, which](const Vec2& q) { return curve.position(q)[which] - box.min()[which]; };
       };

@@ -52,9 +52,7 @@ std::uint32_t body_of(const cell::FaceRegion& region) {
 std::vector<std::uint32_t> outline_nodes(const CellCurves& curves, const cell::Outline& outline) {
   std::vector<std::uint32_t> result;
   for (const cell::Side& side : outline) {
-    std::vector<std::uint32_t> nodes = side.kind == cell::Side::Kind::arc
-                                           ? curves.arcs[side.arc.piece][side.arc.border][side.arc.arc].nodes
-                                           : curves.segments[side.segment];
+    std::vector<std::uint32_t> nodes = curves.chains[side.edge].nodes;
     if (side.backward) std::reverse(nodes.begin(), nodes.end());
     result.insert(result.end(), nodes.begin(), nodes.end() - 1);
   }

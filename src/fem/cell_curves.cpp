@@ -14,8 +14,6 @@ namespace selvage::fem {
 
 namespace {
 
-using cell::ArcPlace;
-
 // A place on an arc by its length.
 struct OnArc {
   double along = 0;
@@ -53,8 +51,8 @@ class Divider {
 
  private:
   struct ArcEntry {
-    ArcPlace place;
     const cell::Arc* arc;
+    const cell::Border* border;
     std::size_t body;
     bool is_border;  // by itself
     cell::ArcCurve curve;
@@ -72,10 +70,14 @@ class Divider {
     point[axis] = shape_.box.max()[axis];
     return point;
   }
-  [[nodiscard]] const cell::Division::ArcEnds& ends(const ArcPlace& at) const {
-    return shape_.division.ends[at.piece][at.border][at.arc];
+  // Arcs are the first of the edges.
+  [[nodiscard]] std::size_t number(const ArcEntry& entry) const {
+    return static_cast<std::size_t>(&entry - arcs_.data());
   }
-  Chain& chain(const ArcPlace& at) { return curves_.arcs[at.piece][at.border][at.arc]; }
+  [[nodiscard]] const cell::Edge& edge(const ArcEntry& entry) const {
+    return shape_.division.edges[number(entry)];
+  }
+  Chain& chain(const ArcEntry& entry) { return curves_.chains[number(entry)]; }
 
   Status find_copies();
   Status make_corners();
@@ -84,10 +86,9 @@ class Divider {
   Status copy(ArcEntry& entry);
   // What the parameters gain along an arc that is a border by itself.
   [[nodiscard]] Vec2 turn_of(const ArcEntry& entry) const {
-    const cell::Border& border = shape_.cut.pieces[entry.place.piece].borders[entry.place.border];
     const nurbs::Surface& surface = shape_.bodies[entry.body].surface;
-    return {border.turns_u * (surface.last_u() - surface.first_u()),
-            border.turns_v * (surface.last_v() - surface.first_v())};
+    return {entry.border->turns_u * (surface.last_u() - surface.first_u()),
+            entry.border->turns_v * (surface.last_v() - surface.first_v())};
   }
   [[nodiscard]] Vec2 place_at(const ArcEntry& entry, double along) const;
   [[nodiscard]] std::vector<OnArc> places(const ArcEntry& entry) const;
@@ -105,24 +106,17 @@ class Divider {
 };
 
 void Divider::collect_arcs() {
-  for (std::size_t p = 0; p < shape_.cut.pieces.size(); ++p) {
-    const cell::Piece& piece = shape_.cut.pieces[p];
-    curves_.arcs.emplace_back();
-    for (std::size_t b = 0; b < piece.borders.size(); ++b) {
-      const auto& arcs = piece.borders[b].arcs;
-      curves_.arcs.back().emplace_back(arcs.size());
-      for (std::size_t a = 0; a < arcs.size(); ++a) {
-        const yarn::Body& body = shape_.bodies[piece.body];
-        arcs_.push_back({{p, b, a},
-                         &arcs[a],
+  curves_.chains.resize(shape_.division.edges.size());
+  for (const cell::Piece& piece : shape_.cut.pieces)
+    for (const cell::Border& border : piece.borders)
+      for (const cell::Arc& arc : border.arcs)
+        arcs_.push_back({&arc,
+                         &border,
                          piece.body,
-                         arcs.size() == 1,
-                         cell::ArcCurve(body, shape_.box, arcs[a]),
+                         border.arcs.size() == 1,
+                         cell::ArcCurve(shape_.bodies[piece.body], shape_.box, arc),
                          {},
                          none});
-      }
-    }
-  }
   for (ArcEntry& entry : arcs_) {
     entry.polygon.lengths = &entry.curve.lengths();
     for (const Vec2& q : entry.arc->parameters) entry.polygon.points.push_back(entry.curve.position(q));
@@ -199,7 +193,8 @@ Status Divider::make_corners() {
   };
   for (std::size_t c = 0; c < 8; ++c) make(c, division.corners[c].at);
   std::array<std::vector<std::size_t>, cell::edge_count> on_edge;
-  for (const cell::Segment& s : division.segments) on_edge[static_cast<std::size_t>(s.edge)].push_back(s.to);
+  for (const cell::Edge& e : division.edges)
+    if (e.arc == nullptr) on_edge[static_cast<std::size_t>(e.box_edge)].push_back(e.to);
   for (int edge = 0; edge < cell::edge_count; ++edge) {
     auto& corners = on_edge[static_cast<std::size_t>(edge)];
     std::sort(corners.begin(), corners.end(), [&](std::size_t a, std::size_t b) {
@@ -231,14 +226,13 @@ Status Divider::make_corners() {
 }
 
 Status Divider::make_segments() {
-  const cell::Division& division = shape_.division;
-  curves_.segments.resize(division.segments.size());
+  const std::vector<cell::Edge>& edges = shape_.division.edges;
   const auto find = [&](int edge, double from) {
     std::size_t best = none;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t s = 0; s < division.segments.size(); ++s) {
-      if (division.segments[s].edge != edge) continue;
-      const double off = std::abs(nodes_.points[corner_nodes_[division.segments[s].from]][edge / 4] - from);
+    for (std::size_t s = arcs_.size(); s < edges.size(); ++s) {
+      if (edges[s].box_edge != edge) continue;
+      const double off = std::abs(nodes_.points[corner_nodes_[edges[s].from]][edge / 4] - from);
       if (off < least) {
         least = off;
         best = s;
@@ -247,16 +241,15 @@ Status Divider::make_segments() {
     return best;
   };
   for (const int pass : {0, 1})
-    for (std::size_t s = 0; s < division.segments.size(); ++s) {
-      const cell::Segment& segment = division.segments[s];
-      const int edge = segment.edge, a = edge / 4;
+    for (std::size_t s = arcs_.size(); s < edges.size(); ++s) {
+      const int edge = edges[s].box_edge, a = edge / 4;
       int master = edge;
       for (int bit = 0; bit < 2; ++bit)
         if ((edge >> bit & 1) != 0 && shape_.periodic[static_cast<std::size_t>((a + 1 + bit) % 3)])
           master -= 1 << bit;
       if ((master == edge) != (pass == 0)) continue;
-      std::vector<std::uint32_t>& chain = curves_.segments[s];
-      const std::uint32_t from = corner_nodes_[segment.from], to = corner_nodes_[segment.to];
+      std::vector<std::uint32_t>& chain = curves_.chains[s].nodes;
+      const std::uint32_t from = corner_nodes_[edges[s].from], to = corner_nodes_[edges[s].to];
       chain.push_back(from);
       const double start = nodes_.points[from][a];
       if (master == edge) {
@@ -267,7 +260,7 @@ Status Divider::make_segments() {
         for (std::size_t k = 1; k + 1 < parts.size(); ++k)
           chain.push_back(nodes_.add(at(parts[k]), {no_body, Vec2::Zero()}));
       } else {
-        const std::vector<std::uint32_t>& original = curves_.segments[find(master, start)];
+        const std::vector<std::uint32_t>& original = curves_.chains[find(master, start)].nodes;
         for (std::size_t k = 1; k + 1 < original.size(); ++k)
           chain.push_back(nodes_.add(cell::edge_point(shape_.box, edge, nodes_.points[original[k]][a]),
                                      {no_body, Vec2::Zero()}));
@@ -275,14 +268,15 @@ Status Divider::make_segments() {
       chain.push_back(to);
     }
   // Which nodes are opposite each other, axis by axis.
-  for (std::size_t s = 0; s < division.segments.size(); ++s) {
-    const int edge = division.segments[s].edge, a = edge / 4;
+  for (std::size_t s = arcs_.size(); s < edges.size(); ++s) {
+    const std::vector<std::uint32_t>& here = curves_.chains[s].nodes;
+    const int edge = edges[s].box_edge, a = edge / 4;
     for (int bit = 0; bit < 2; ++bit) {
       const auto across = static_cast<std::size_t>((a + 1 + bit) % 3);
       if ((edge >> bit & 1) == 0 || !shape_.periodic[across]) continue;
-      const std::size_t low = find(edge - (1 << bit), nodes_.points[curves_.segments[s].front()][a]);
-      for (std::size_t k = 0; k < curves_.segments[s].size(); ++k)
-        curves_.opposite[across][curves_.segments[low][k]] = curves_.segments[s][k];
+      const std::vector<std::uint32_t>& low =
+          curves_.chains[find(edge - (1 << bit), nodes_.points[here.front()][a])].nodes;
+      for (std::size_t k = 0; k < here.size(); ++k) curves_.opposite[across][low[k]] = here[k];
     }
   }
   return {};
@@ -362,7 +356,7 @@ Vec2 Divider::place_at(const ArcEntry& entry, double along) const {
 }
 
 void Divider::divide(ArcEntry& entry) {
-  Chain& made = chain(entry.place);
+  Chain& made = chain(entry);
   const std::vector<OnArc> parts = places(entry);
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const bool first = k == 0, last = k + 1 == parts.size();
@@ -374,9 +368,7 @@ void Divider::divide(ArcEntry& entry) {
     if (entry.is_border) {
       node = last ? made.nodes.front() : nodes_.add(entry.curve.position(q), place);
     } else if (first || last) {
-      const auto& corner = ends(entry.place);
-      const std::size_t c = first ? corner.first : corner.last;
-      node = corner_nodes_[c];
+      node = corner_nodes_[first ? edge(entry).from : edge(entry).to];
       nodes_.places[node] = place;
     } else {
       node = nodes_.add(entry.curve.position(q), place);
@@ -392,7 +384,7 @@ void Divider::divide(ArcEntry& entry) {
 // The nodes of the low arc, moved; each with the parameters of the place nearest to it on the high arc.
 Status Divider::copy(ArcEntry& entry) {
   const ArcEntry& low = arcs_[entry.low];
-  const Chain& original = chain(low.place);
+  const Chain& original = chain(low);
   const int a = cell::axis_of(entry.arc->face);
   auto& opposite = curves_.opposite[static_cast<std::size_t>(a)];
   const yarn::Body& body = shape_.bodies[entry.body];
@@ -423,7 +415,7 @@ Status Divider::copy(ArcEntry& entry) {
     std::rotate(order.begin(), start, order.end());
     if (order.size() > 2 && order[1].along > order.back().along) std::reverse(order.begin() + 1, order.end());
   }
-  Chain& made = chain(entry.place);
+  Chain& made = chain(entry);
   for (std::size_t k = 0; k < order.size(); ++k) {
     if (k > 0 && !(order[k].along > order[k - 1].along))
       return does_not_go_on(entry, (miss_ > 0 ? std::numeric_limits<double>::infinity() : 0),
@@ -441,8 +433,7 @@ Status Divider::copy(ArcEntry& entry) {
     const Vec3 point = moved(nodes_.points[order[k].low], a);
     std::uint32_t node = 0;
     if (!entry.is_border && (k == 0 || k + 1 == order.size())) {
-      const auto& corner = ends(entry.place);
-      node = corner_nodes_[k == 0 ? corner.first : corner.last];
+      node = corner_nodes_[k == 0 ? edge(entry).from : edge(entry).to];
       nodes_.places[node] = place;
     } else {
       node = nodes_.add(point, place);

@@ -39,17 +39,17 @@ struct CellNodes {
   }
 };
 
-// Nodes along an arc from its first point to its last; of an arc that is a border by itself they may begin
+// Nodes along an edge from its first point to its last; of an arc that is a border by itself they may begin
 // anywhere, and the last is the first one, with its parameters a period on where the border goes round.
 struct Chain {
   std::vector<std::uint32_t> nodes;
+  // On an arc:
   std::vector<Vec2> parameters;  // u runs on past the seam
   std::vector<bool> on_crest;    // u is exactly a crest's
 };
 
 struct CellCurves {
-  std::vector<std::vector<std::vector<Chain>>> arcs;  // [piece][border][arc]
-  std::vector<std::vector<std::uint32_t>> segments;   // of Division::segments, both ends included
+  std::vector<Chain> chains;  // of Division::edges
   // Of each periodic axis: the node on the high face opposite each node of curves on the low one.
   std::array<std::unordered_map<std::uint32_t, std::uint32_t>, 3> opposite;
 };

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "core/plane.h"
 #include "fem/divided_line.h"
 
 namespace selvage::fem {
@@ -37,31 +38,10 @@ struct CrestLine {
   std::vector<std::uint32_t> inner;  // indices into Unrolled::nodes, v increasing
 };
 
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 bool do_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const double p = cross(b - a, c - a), q = cross(b - a, d - a), r = cross(d - c, a - c),
                s = cross(d - c, b - c);
   return (p > 0) != (q > 0) && (r > 0) != (s > 0);
-}
-
-bool is_inside(const std::vector<Vec2>& polygon, const Vec2& p) {
-  bool inside = false;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec2 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
-    if ((a.y() <= p.y()) == (b.y() <= p.y())) continue;
-    if (a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()) > p.x()) inside = !inside;
-  }
-  return inside;
-}
-
-double signed_area(const std::vector<Vec2>& polygon) {
-  double sum = 0;
-  for (std::size_t k = 0; k < polygon.size(); ++k)
-    sum += cross(polygon[k], polygon[(k + 1) % polygon.size()]);
-  return sum / 2;
 }
 
 class Unroller {
@@ -70,7 +50,8 @@ class Unroller {
            const CellNodes& nodes)
       : body_(shape.bodies[shape.cut.pieces[piece].body]),
         piece_(shape.cut.pieces[piece]),
-        chains_(curves.arcs[piece]),
+        chains_(curves.chains),
+        first_edges_(shape.division.first_edges[piece]),
         field_(field),
         cell_nodes_(nodes),
         period_(body_.surface.last_u() - body_.surface.first_u(),
@@ -126,7 +107,8 @@ class Unroller {
 
   const yarn::Body& body_;
   const cell::Piece& piece_;
-  const std::vector<std::vector<Chain>>& chains_;
+  const std::vector<Chain>& chains_;
+  const std::vector<std::size_t>& first_edges_;
   const SizeField& field_;
   const CellNodes& cell_nodes_;
   Vec2 period_;
@@ -138,12 +120,14 @@ class Unroller {
 };
 
 void Unroller::collect_loops() {
-  for (std::size_t b = 0; b < chains_.size(); ++b) {
+  for (std::size_t b = 0; b < first_edges_.size(); ++b) {
     Loop loop;
     loop.turn = Vec2(piece_.borders[b].turns_u, piece_.borders[b].turns_v).cwiseProduct(period_);
-    for (const Chain& chain : chains_[b])
+    for (std::size_t a = 0; a < piece_.borders[b].arcs.size(); ++a) {
+      const Chain& chain = chains_[first_edges_[b] + a];
       for (std::size_t k = 0; k + 1 < chain.nodes.size(); ++k)
         loop.points.push_back({chain.nodes[k], chain.parameters[k], chain.on_crest[k]});
+    }
     loops_.push_back(std::move(loop));
   }
 }
@@ -229,7 +213,7 @@ Status Unroller::unroll_disc() {
   for (std::size_t k = 0; k < loops_.size(); ++k) {
     std::vector<Vec2> polygon;
     for (const LoopPoint& p : loops_[k].points) polygon.push_back(chart(p.q));
-    const double area = signed_area(polygon);
+    const double area = twice_area(polygon);
     if (area > largest) {
       largest = area;
       outer = k;
@@ -253,7 +237,7 @@ void Unroller::add_holes(const std::vector<std::size_t>& used) {
     Vec2 shift = Vec2::Zero();
     for (int m = -3; m <= 3; ++m)
       for (int n = body_.closed_along ? -3 : 0; n <= (body_.closed_along ? 3 : 0); ++n)
-        if (is_inside(outline_, loop.points[0].q + Vec2(m, n).cwiseProduct(period_)))
+        if (contains(outline_, loop.points[0].q + Vec2(m, n).cwiseProduct(period_)))
           shift = Vec2(m, n).cwiseProduct(period_);
     const auto first = static_cast<std::uint32_t>(result_.owner.size());
     for (const LoopPoint& p : loop.points) add_point(node_of(p.node, p.q), p.q + shift);
@@ -270,7 +254,7 @@ void Unroller::add_crests(const CrestLine* cut) {
     for (int m = -3; m <= 3; ++m) {
       const double u = line.u + m * period_.x();
       const double v = (line.low_v + line.high_v) / 2;
-      if (!is_inside(outline_, {u, v})) continue;
+      if (!contains(outline_, {u, v})) continue;
       const auto point_at = [&](std::uint32_t known, double at_v) {
         const auto [from, to] = points.equal_range(numbers_.at(known));
         std::uint32_t best = from->second;
@@ -321,7 +305,7 @@ void Unroller::add_beside(double u, double v, double distance, double side) {
   }
   for (int m = -3; m <= 3; ++m) {
     const Vec2 q(u + side * step + m * period_.x(), v);
-    if (!is_inside(outline_, q)) continue;
+    if (!contains(outline_, q)) continue;
     const Vec3 point = cell::position(body_, q);
     const double room = 0.6 * distance;
     // Near in space alone is the other side of the crest.

@@ -198,8 +198,9 @@ Status add_yarn_surfaces(const CellShape& shape, const CellCurves& curves, const
     made[p].reset();
     for (std::size_t b = 0; b < piece.borders.size(); ++b)
       if (piece.borders[b].arcs.front().face >= cell::face_count)
-        if (Status added = add_end(shape, piece, piece.borders[b], curves.arcs[p][b].front(), field, options,
-                                   nodes, result);
+        if (Status added =
+                add_end(shape, piece, piece.borders[b], curves.chains[shape.division.first_edges[p][b]],
+                        field, options, nodes, result);
             !added)
           return added;
   }

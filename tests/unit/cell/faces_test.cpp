@@ -26,14 +26,13 @@ double area_of(std::span<const yarn::Body> bodies, const Box3& box, const Cut& c
   };
   for (const Outline& outline : region.outlines)
     for (const Side& side : outline) {
-      if (side.kind == Side::Kind::segment) {
-        const Segment& segment = division.segments[side.segment];
-        const Vec3 &p = division.corners[segment.from].at, &q = division.corners[segment.to].at;
+      const Edge& edge = division.edges[side.edge];
+      if (edge.arc == nullptr) {
+        const Vec3 &p = division.corners[edge.from].at, &q = division.corners[edge.to].at;
         side.backward ? add(q, p) : add(p, q);
         continue;
       }
-      const Piece& piece = cut.pieces[side.arc.piece];
-      const ArcCurve curve(bodies[piece.body], box, piece.borders[side.arc.border].arcs[side.arc.arc]);
+      const ArcCurve curve(bodies[cut.pieces[edge.piece].body], box, *edge.arc);
       for (int k = 0; k < parts; ++k) {
         const Vec3 p = curve.position(curve.at(curve.length() * k / parts)),
                    q = curve.position(curve.at(curve.length() * (k + 1) / parts));
