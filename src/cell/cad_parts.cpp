@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <string>
 
 #include "cell/faces.h"
 #include "cell/tube_faces.h"
+#include "core/groups.h"
 #include "nurbs/bezier.h"  // Box2
 #include "nurbs/restrict.h"
 #include "yarn/end_plane.h"
@@ -38,52 +38,23 @@ std::vector<yarn::Body> flush(std::span<const yarn::Body> bodies, const Box3& bo
   return result;
 }
 
-// The parameters of a face of the box, of which the first cross the second points outward.
-std::array<int, 2> plane_axes(int face) {
-  const int b = (axis_of(face) + 1) % 3, c = (axis_of(face) + 2) % 3;
-  return is_high(face) ? std::array{b, c} : std::array{c, b};
-}
-
-nurbs::Curve in_plane(const nurbs::Curve& curve, const std::array<int, 2>& axes) {
-  nurbs::Curve flat = curve;
-  for (Vec3& p : flat.points) p = Vec3(p[axes[0]], p[axes[1]], 0);
-  return flat;
+// In the parameters of a face of the box.
+nurbs::Curve in_plane(nurbs::Curve curve, int face) {
+  for (Vec3& p : curve.points) p << flat(p, face), 0;
+  return curve;
 }
 
 nurbs::Surface rectangle(const Box3& box, int face, const Box2& range) {
-  const std::array<int, 2> axes = plane_axes(face);
   nurbs::Surface surface;
   surface.degree_u = surface.degree_v = 1;
   surface.count_u = surface.count_v = 2;
   surface.knots_u = {range.min().x(), range.min().x(), range.max().x(), range.max().x()};
   surface.knots_v = {range.min().y(), range.min().y(), range.max().y(), range.max().y()};
   for (const double v : {range.min().y(), range.max().y()})
-    for (const double u : {range.min().x(), range.max().x()}) {
-      Vec3 p;
-      p[axis_of(face)] = plane_of(box, face);
-      p[axes[0]] = u;
-      p[axes[1]] = v;
-      surface.points.push_back(p);
-    }
+    for (const double u : {range.min().x(), range.max().x()})
+      surface.points.push_back(in_face(box, face, {u, v}));
   return surface;
 }
-
-class Groups {
- public:
-  explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::size_t of(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) {
-    a = of(a);
-    b = of(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 // A shell: faces that hang together by their edges.
 struct Shell {
@@ -198,14 +169,13 @@ class CellBuilder {
   }
 
   [[nodiscard]] cad::Face region_face(const FaceRegion& region) const {
-    const std::array<int, 2> axes = plane_axes(region.face);
     cad::Face face;
     Box2 range;
     for (const Outline& outline : region.outlines) {
       cad::Loop loop;
       const auto add = [&](std::size_t id, bool backward) {
         cad::Edge edge = edge_of(id, backward);
-        edge.flat = in_plane(edge.curve, axes);
+        edge.flat = in_plane(edge.curve, region.face);
         for (const Vec3& p : edge.flat.points) range.extend(p.head<2>());
         loop.edges.push_back(std::move(edge));
       };

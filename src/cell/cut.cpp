@@ -12,6 +12,14 @@ std::string name_of_face(int face) {
   return std::string(1, "xyz"[axis_of(face)]) + (is_high(face) ? " high" : " low");
 }
 
+Vec3 in_face(const Box3& box, int face, const Vec2& at) {
+  Vec3 point;
+  point[axis_of(face)] = plane_of(box, face);
+  point[axes_in(face)[0]] = at.x();
+  point[axes_in(face)[1]] = at.y();
+  return point;
+}
+
 int edge_between(int face_a, int face_b) {
   const int axis = 3 - axis_of(face_a) - axis_of(face_b);
   int side = 0;

@@ -27,6 +27,16 @@ inline double plane_of(const Box3& box, int face) {
   return is_high(face) ? box.max()[axis_of(face)] : box.min()[axis_of(face)];
 }
 std::string name_of_face(int face);  // "x low" ...
+// The axes in a face, of which the first cross the second points out of the box; a point's coordinates along
+// them; and the point of the face that has these.
+inline constexpr std::array<int, 2> axes_in(int face) {
+  const int b = (axis_of(face) + 1) % 3, c = (axis_of(face) + 2) % 3;
+  return is_high(face) ? std::array{b, c} : std::array{c, b};
+}
+inline Vec2 flat(const Vec3& point, int face) {
+  return {point[axes_in(face)[0]], point[axes_in(face)[1]]};
+}
+Vec3 in_face(const Box3& box, int face, const Vec2& at);
 
 // Edges of the box, which two faces share: number 4 a + k runs along axis a, where k has bit 0 set on the
 // high side of the axis after a (x, y, z, x, ..), bit 1 on the high side of the one after that.

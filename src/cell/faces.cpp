@@ -11,13 +11,6 @@
 namespace selvage::cell {
 namespace {
 
-// Coordinates in a face, counter-clockwise seen from outside of the box.
-Vec2 flat(const Vec3& point, int face) {
-  const int axis = axis_of(face);
-  const Vec2 result(point[(axis + 1) % 3], point[(axis + 2) % 3]);
-  return is_high(face) ? result : Vec2(result.y(), result.x());
-}
-
 // Where two closed polygons cross.
 std::optional<Vec2> crossing(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
   Eigen::AlignedBox2d box_a, box_b;
@@ -318,12 +311,7 @@ Status Divider::check_apart() const {
       if (!at && flats[j].region->outlines.size() == 1 && contains(flats[j].points, flats[i].points.front()))
         at = flats[i].points.front();
       if (!at) continue;
-      const int face = flats[i].region->face, axis = axis_of(face);
-      Vec3 place;
-      place[axis] = plane_of(box_, face);
-      place[(axis + 1) % 3] = is_high(face) ? at->x() : at->y();
-      place[(axis + 2) % 3] = is_high(face) ? at->y() : at->x();
-      return overlap(flats[i].region->body, flats[j].region->body, place);
+      return overlap(flats[i].region->body, flats[j].region->body, in_face(box_, flats[i].region->face, *at));
     }
   return {};
 }

@@ -28,7 +28,6 @@ struct Stop {
   // A node: where a line of constant u meets the border; the piece is above it (v more) or below.
   bool is_node = false, is_up = false;
   std::size_t line = 0;
-  long turn = 0;            // periods that the line is moved by
   std::size_t edge = none;  // that leaves it forward along the border
 };
 
@@ -185,8 +184,6 @@ class PieceDivider {
   void settle(std::size_t b, Stop node) {
     const Border& border = piece_.borders[b];
     const ArcPath& path = paths_[b][node.arc];
-    const double u = path.at(node.along).x();
-    node.turn = std::lround((u - lines_[node.line]) / period_);
     if (border.arcs.size() > 1) {
       const Vec3 here = path.position(node.along);
       for (const bool last : {false, true}) {
@@ -201,7 +198,6 @@ class PieceDivider {
       }
     } else if (node.along >= path.length()) {
       node.along = 0;
-      node.turn -= border.turns_u;
     }
     stops_[b].push_back(node);
   }

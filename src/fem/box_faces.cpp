@@ -14,33 +14,22 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 // A face of the box as a plane, seen from outside.
 class FaceSupport final : public Support {
  public:
-  FaceSupport(const Box3& box, int face)
-      : axis_(cell::axis_of(face)), high_(cell::is_high(face)), plane_(cell::plane_of(box, face)) {}
+  FaceSupport(const Box3& box, int face) : box_(box), face_(face) {}
 
-  [[nodiscard]] Vec2 project(const Vec3& p) const {
-    const Vec2 q(p[(axis_ + 1) % 3], p[(axis_ + 2) % 3]);
-    return high_ ? q : Vec2(q.y(), q.x());
-  }
-  [[nodiscard]] Vec3 point(const Vec2& q) const override {
-    Vec3 p;
-    p[axis_] = plane_;
-    p[(axis_ + 1) % 3] = high_ ? q.x() : q.y();
-    p[(axis_ + 2) % 3] = high_ ? q.y() : q.x();
-    return p;
-  }
+  [[nodiscard]] Vec3 point(const Vec2& q) const override { return cell::in_face(box_, face_, q); }
   [[nodiscard]] Vec3 normal(const Vec2& /*q*/) const override {
     Vec3 n = Vec3::Zero();
-    n[axis_] = high_ ? 1 : -1;
+    n[cell::axis_of(face_)] = cell::is_high(face_) ? 1 : -1;
     return n;
   }
   [[nodiscard]] Place nearest(const Vec2& /*start*/, const Vec3& target) const override {
-    return {project(target), point(project(target))};
+    const Vec2 q = cell::flat(target, face_);
+    return {q, point(q)};
   }
 
  private:
-  int axis_;
-  bool high_;
-  double plane_;
+  const Box3& box_;
+  int face_;
 };
 
 std::uint32_t body_of(const cell::FaceRegion& region) {
@@ -90,7 +79,7 @@ Result<FaceMesh> mesh_face(const CellShape& shape, const std::map<Edge, std::siz
     if (is_new) {
       result.known.push_back(node);
       region.points.push_back(nodes.points[node]);
-      region.parameters.push_back(support.project(nodes.points[node]));
+      region.parameters.push_back(cell::flat(nodes.points[node], face));
     }
     return at->second;
   };

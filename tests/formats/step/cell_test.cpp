@@ -294,14 +294,11 @@ class GmshCell : public StepCell {
 };
 
 // Edges so short that facets of neighbours do not cut each other; -clcurv: so many on a full turn.
-const std::map<std::string, std::string> sizes = {{"cell_plain", "-clmax 0.3"},
-                                                  {"twill_cell", "-clmax 0.2"},
-                                                  {"cell_satin5", "-clmax 0.15"},
-                                                  {"cell_orthogonal", "-clmax 0.3 -clcurv 12"},
-                                                  {"cell_jersey", "-clmax 0.1"},
-                                                  {"cell_tricot", "-clmax 0.1 -clcurv 12"},
-                                                  {"cell_straight", "-clmax 0.1"},
-                                                  {"cell_fibre", "-clmax 0.02"}};
+const std::map<std::string, std::string> sizes = {
+    {"cell_plain", "-clmax 0.3"},    {"twill_cell", "-clmax 0.2"},
+    {"cell_satin5", "-clmax 0.15"},  {"cell_orthogonal", "-clmax 0.3 -clcurv 12"},
+    {"cell_jersey", "-clmax 0.1"},   {"cell_tricot", "-clmax 0.1 -clcurv 12"},
+    {"cell_straight", "-clmax 0.1"}, {"cell_fibre", "-clmax 0.02"}};
 
 TEST_P(GmshCell, IsMeshedConformally) {
   const BuiltCell built = build(GetParam(), 0.05);
