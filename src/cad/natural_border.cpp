@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cad/sampled_curve.h"
+#include "nurbs/divided.h"
 #include "nurbs/restrict.h"
 #include "nurbs/turn.h"
 
@@ -17,16 +18,8 @@ constexpr double flat_tolerance = 1e-6;      // of the parameters' range
 constexpr double coverage_slack = 0.01;      // of a side: a closed chain covers it a whole number of times
 constexpr std::size_t most_tests = 400'000;  // distances a side and edge
 
-// The breakpoints of a curve and `between` values within each span.
 std::vector<double> sample_parameters(const std::vector<double>& knots, int degree, int least) {
-  const std::vector<double> breaks = nurbs::breakpoints(knots, degree);
-  const int spans = static_cast<int>(breaks.size()) - 1;
-  const int pieces = std::max(degree == 1 ? 1 : 4, (least + spans - 1) / spans);
-  std::vector<double> result;
-  for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
-    for (int k = 0; k < pieces; ++k) result.push_back(breaks[i] + (breaks[i + 1] - breaks[i]) * k / pieces);
-  result.push_back(breaks.back());
-  return result;
+  return nurbs::divided(knots, degree, degree == 1 ? 1 : 4, least);
 }
 
 // One side of the surface: u or v is fixed.
@@ -39,7 +32,7 @@ class Side {
                           : sample_parameters(surface.knots_v, surface.degree_v, 16);
     points_ = along_u ? nurbs::evaluate_grid(surface, parameters_, {fixed_})
                       : nurbs::evaluate_grid(surface, {fixed_}, parameters_);
-    for (std::size_t i = 1; i < points_.size(); ++i) length_ += (points_[i] - points_[i - 1]).norm();
+    length_ = nurbs::length_of(points_);
   }
 
   [[nodiscard]] bool along_u() const { return along_u_; }
@@ -147,12 +140,8 @@ class Border {
     const std::vector<double> parameters =
         sample_parameters(edge.curve.knots, edge.curve.degree, edge.curve.degree == 1 ? 2 : 12);
     std::vector<Vec3> points;
-    double length = 0;
-    for (const double t : parameters) {
-      points.push_back(nurbs::evaluate(edge.curve, t));
-      if (points.size() > 1) length += (points.back() - points[points.size() - 2]).norm();
-    }
-    if (length <= tolerance_) return true;
+    for (const double t : parameters) points.push_back(nurbs::evaluate(edge.curve, t));
+    if (nurbs::length_of(points) <= tolerance_) return true;
     for (std::size_t i = 0; i < 4; ++i) {
       if (sides_[i].length() <= tolerance_) continue;
       if (const auto share = share_in_space(sides_[i], points, tolerance_)) {
@@ -194,20 +183,6 @@ class Border {
   std::array<Coverage, 4> coverage_{};
 };
 
-nurbs::Curve side_curve(const nurbs::Surface& surface, bool along_u, bool last) {
-  nurbs::Curve curve;
-  curve.degree = along_u ? surface.degree_u : surface.degree_v;
-  curve.knots = along_u ? surface.knots_u : surface.knots_v;
-  const int count = along_u ? surface.count_u : surface.count_v;
-  for (int k = 0; k < count; ++k) {
-    const int i = along_u ? k : (last ? surface.count_u - 1 : 0),
-              j = along_u ? (last ? surface.count_v - 1 : 0) : k;
-    curve.points.push_back(surface.point(i, j));
-    if (surface.is_rational()) curve.weights.push_back(surface.weight(i, j));
-  }
-  return curve;
-}
-
 nurbs::Curve flat_line(const Vec3& from, const Vec3& to, double t0, double t1) {
   return {.degree = 1, .knots = {t0, t0, t1, t1}, .points = {from, to}, .weights = {}};
 }
@@ -248,7 +223,7 @@ Loop natural_border(const nurbs::Surface& given, double tolerance) {
   for (std::size_t i = 0; i < 4; ++i) {
     const bool along_u = i % 2 == 0, last = i == 1 || i == 2;
     Edge edge;
-    edge.curve = side_curve(surface, along_u, last);
+    edge.curve = along_u ? nurbs::boundary_row(surface, last) : nurbs::boundary_column(surface, last);
     if (i >= 2) edge.curve = nurbs::reversed(edge.curve);
     edge.flat = flat_line(corners[i], corners[(i + 1) % 4], edge.curve.first_parameter(),
                           edge.curve.last_parameter());

@@ -14,12 +14,6 @@ namespace selvage::cad {
 
 namespace {
 
-double length_of(const std::vector<Vec3>& points) {
-  double length = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
-  return length;
-}
-
 // The four edges of a surface.
 std::array<nurbs::Curve, 4> edges_of(const nurbs::Surface& surface) {
   return {nurbs::boundary_row(surface, false), nurbs::boundary_row(surface, true),
@@ -102,7 +96,7 @@ SampledCurve::SampledCurve(const nurbs::Curve& sampled) : curve(&sampled) {
 }
 
 double SampledCurve::length() const {
-  return length_of(points);
+  return nurbs::length_of(points);
 }
 
 NearestOnCurve SampledCurve::nearest(const Vec3& p) const {
@@ -144,7 +138,7 @@ bool runs_along(const Polylines& border, const SampledCurve& closed, double tole
   if (border.empty()) return false;
   double length = 0;
   for (const std::vector<Vec3>& line : border) {
-    length += length_of(line);
+    length += nurbs::length_of(line);
     for (const Vec3& p : line)
       if (closed.nearest(p).distance > tolerance) return false;
   }

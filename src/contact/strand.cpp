@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "nurbs/basis.h"
+#include "nurbs/divided.h"
 #include "nurbs/restrict.h"
 #include "yarn/grid.h"
 
@@ -31,22 +33,48 @@ void cubic(double t, double step, Stencil& out) {
               t / (step * step)};
 }
 
+constexpr int chords_a_span = 8;
+
+// Of the centre line at each of these parameters, from the first one.
+std::vector<double> arcs_at(const nurbs::Curve& centres, const std::vector<double>& parameters) {
+  std::vector<double> arcs = {0.0};
+  Vec3 last = nurbs::evaluate(centres, parameters.front());
+  for (std::size_t k = 1; k < parameters.size(); ++k) {
+    const Vec3 p = nurbs::evaluate(centres, parameters[k]);
+    arcs.push_back(arcs.back() + (p - last).norm());
+    last = p;
+  }
+  return arcs;
+}
+
 // Knots that bring neighbouring rows nearer than `spacing`, by the length of the centre line over each span.
 std::vector<double> missing_knots(const nurbs::Curve& centres, double spacing) {
-  std::vector<double> knots;
   const std::vector<double> breaks = nurbs::breakpoints(centres.knots, centres.degree);
-  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-    double run = 0.0;
-    Vec3 last = nurbs::evaluate(centres, breaks[k]);
-    for (int i = 1; i <= 8; ++i) {
-      const Vec3 p = nurbs::evaluate(centres, breaks[k] + (breaks[k + 1] - breaks[k]) * i / 8.0);
-      run += (p - last).norm();
-      last = p;
-    }
-    const int parts = static_cast<int>(std::ceil(run / spacing - 1e-9));
-    for (int i = 1; i < parts; ++i) knots.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / parts);
-  }
+  const std::vector<double> arcs =
+      arcs_at(centres, nurbs::divided(centres.knots, centres.degree, chords_a_span));
+  std::vector<int> parts;
+  for (std::size_t k = chords_a_span; k < arcs.size(); k += chords_a_span)
+    parts.push_back(
+        std::max(1, static_cast<int>(std::ceil((arcs[k] - arcs[k - chords_a_span]) / spacing - 1e-9))));
+  const std::vector<double> all = nurbs::divided(breaks, parts);
+  std::vector<double> knots;
+  std::set_difference(all.begin(), all.end(), breaks.begin(), breaks.end(), std::back_inserter(knots));
   return knots;
+}
+
+// Where a value stands in an increasing table: between entries `above` - 1 and `above`, by a share.
+struct TablePlace {
+  std::size_t above;
+  double share;
+  [[nodiscard]] double in(const std::vector<double>& other) const {
+    return other[above - 1] + share * (other[above] - other[above - 1]);
+  }
+};
+TablePlace place_in(const std::vector<double>& table, double value) {
+  const auto next = std::upper_bound(table.begin() + 1, table.end() - 1, value);
+  const double low = *(next - 1), step = *next - low;
+  return {static_cast<std::size_t>(next - table.begin()),
+          step > 0.0 ? std::clamp((value - low) / step, 0.0, 1.0) : 0.0};
 }
 
 }  // namespace
@@ -108,18 +136,8 @@ Strand::Strand(yarn::Body body, double spacing) : body_(std::move(body)), cyclic
   const std::vector<double> knots = missing_knots(yarn::section_centres(body_.surface), spacing);
   if (!knots.empty()) body_.surface = nurbs::refined(body_.surface, knots);
   centres_ = yarn::section_centres(body_.surface);
-  const std::vector<double> breaks = nurbs::breakpoints(centres_.knots, centres_.degree);
-  table_v_.push_back(breaks.front());
-  table_arc_.push_back(0.0);
-  Vec3 last = nurbs::evaluate(centres_, breaks.front());
-  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
-    for (int i = 1; i <= 8; ++i) {
-      const double v = i == 8 ? breaks[k + 1] : breaks[k] + (breaks[k + 1] - breaks[k]) * i / 8.0;
-      const Vec3 p = nurbs::evaluate(centres_, v);
-      table_v_.push_back(v);
-      table_arc_.push_back(table_arc_.back() + (p - last).norm());
-      last = p;
-    }
+  table_v_ = nurbs::divided(centres_.knots, centres_.degree, chords_a_span);
+  table_arc_ = arcs_at(centres_, table_v_);
   length_ = table_arc_.back();
   const int spans = std::max(cyclic_ ? 4 : 1, static_cast<int>(std::lround(length_ / spacing)));
   const std::vector<double> places =
@@ -147,18 +165,11 @@ Stencil Strand::stencil(double arc) const {
 }
 
 double Strand::arc_of(double v) const {
-  const auto next = std::upper_bound(table_v_.begin() + 1, table_v_.end() - 1, v);
-  const auto k = static_cast<std::size_t>(next - table_v_.begin());
-  const double share = (v - table_v_[k - 1]) / (table_v_[k] - table_v_[k - 1]);
-  return table_arc_[k - 1] + std::clamp(share, 0.0, 1.0) * (table_arc_[k] - table_arc_[k - 1]);
+  return place_in(table_v_, v).in(table_arc_);
 }
 
 double Strand::parameter_at(double arc) const {
-  const auto next = std::upper_bound(table_arc_.begin() + 1, table_arc_.end() - 1, arc);
-  const auto k = static_cast<std::size_t>(next - table_arc_.begin());
-  const double step = table_arc_[k] - table_arc_[k - 1];
-  const double share = step > 0.0 ? std::clamp((arc - table_arc_[k - 1]) / step, 0.0, 1.0) : 0.0;
-  return table_v_[k - 1] + share * (table_v_[k] - table_v_[k - 1]);
+  return place_in(table_arc_, arc).in(table_v_);
 }
 
 Frame Strand::frame_at(double v) const {
@@ -170,11 +181,7 @@ Frame Strand::frame_at(double v) const {
   frame.x = (seam - seam.dot(frame.along) * frame.along).normalized();
   frame.y = frame.along.cross(frame.x);
   // Half extents change slowly: those of the nearest rows.
-  const double arc = arc_of(v);
-  const auto next = std::upper_bound(row_arcs_.begin() + 1, row_arcs_.end() - 1, arc);
-  const auto k = static_cast<std::size_t>(next - row_arcs_.begin());
-  const double step = row_arcs_[k] - row_arcs_[k - 1];
-  const double share = step > 0.0 ? std::clamp((arc - row_arcs_[k - 1]) / step, 0.0, 1.0) : 0.0;
+  const auto [k, share] = place_in(row_arcs_, arc_of(v));
   frame.half_x = (1.0 - share) * row_frames_[k - 1].half_x + share * row_frames_[k].half_x;
   frame.half_y = (1.0 - share) * row_frames_[k - 1].half_y + share * row_frames_[k].half_y;
   frame.tilts = is_cyclic() || (v > body_.surface.first_v() && v < body_.surface.last_v());

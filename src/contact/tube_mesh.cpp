@@ -10,7 +10,8 @@ namespace selvage::contact {
 
 namespace {
 
-constexpr double quads_round = 64.0, quads_a_thickness = 6.0;
+constexpr int quads_round = 64;
+constexpr double quads_a_thickness = 6.0;
 
 double wrapped(double t, double first, double last) {
   return t - (last - first) * std::floor((t - first) / (last - first));
@@ -24,10 +25,7 @@ class TubeMesher {
   Mesh run() {
     const Face& face = model_.faces()[side_];
     const nurbs::Surface& s = *face.surface;
-    std::vector<double> us = nurbs::breakpoints(s.knots_u, s.degree_u);
-    const double spans = static_cast<double>(us.size() - 1);
-    us =
-        nurbs::divided(us, std::vector<int>(us.size() - 1, static_cast<int>(std::ceil(quads_round / spans))));
+    const std::vector<double> us = nurbs::divided(s.knots_u, s.degree_u, 1, quads_round);
     const std::vector<double> vs = rows(us);
     std::vector<double> within;
     within.reserve(vs.size());
@@ -97,12 +95,8 @@ class TubeMesher {
     const bool at_end = !face.round_v && (last ? stretch_.last >= s.last_v() : stretch_.first <= s.first_v());
     if (const std::optional<std::uint32_t> end = at_end ? model_.end(body_, last) : std::nullopt) {
       const nurbs::Surface& e = *model_.faces()[*end].surface;
-      const auto fine = [](const std::vector<double>& knots, int degree) {
-        const std::vector<double> breaks = nurbs::breakpoints(knots, degree);
-        const auto parts = static_cast<int>(std::ceil(16.0 / static_cast<double>(breaks.size() - 1)));
-        return nurbs::divided(breaks, std::vector<int>(breaks.size() - 1, parts));
-      };
-      const std::vector<double> us = fine(e.knots_u, e.degree_u), vs = fine(e.knots_v, e.degree_v);
+      const std::vector<double> us = nurbs::divided(e.knots_u, e.degree_u, 1, 16),
+                                vs = nurbs::divided(e.knots_v, e.degree_v, 1, 16);
       const std::size_t first = mesh_.vertices.size();
       for (const Vec3& p : nurbs::evaluate_grid(e, us, vs)) mesh_.vertices.push_back(p);
       for (const double v : vs)

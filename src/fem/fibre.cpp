@@ -188,10 +188,7 @@ double section_area(const yarn::Body& body, double v) {
 double section_perimeter(const yarn::Body& body, double v) {
   constexpr int parts = 16;  // of a span
   const std::vector<double> us = nurbs::divided(body.surface.knots_u, body.surface.degree_u, parts);
-  const std::vector<Vec3> points = nurbs::evaluate_grid(body.surface, us, {v});
-  double length = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
-  return length;
+  return nurbs::length_of(nurbs::evaluate_grid(body.surface, us, {v}));
 }
 
 }  // namespace selvage::fem

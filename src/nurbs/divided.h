@@ -1,6 +1,7 @@
 // Parameters at which a curve or surface is looked at: its knots, and places between them.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "nurbs/spline.h"
@@ -20,6 +21,20 @@ inline std::vector<double> divided(const std::vector<double>& breaks, const std:
 inline std::vector<double> divided(const std::vector<double>& knots, int degree, int parts) {
   const std::vector<double> breaks = breakpoints(knots, degree);
   return divided(breaks, std::vector<int>(breaks.size() - 1, parts));
+}
+
+// The same, into `parts` or more, so that there are at least `least` in all.
+inline std::vector<double> divided(const std::vector<double>& knots, int degree, int parts, int least) {
+  const std::vector<double> breaks = breakpoints(knots, degree);
+  const int spans = static_cast<int>(breaks.size()) - 1;
+  return divided(breaks, std::vector<int>(breaks.size() - 1, std::max(parts, (least + spans - 1) / spans)));
+}
+
+// Of the polygon through these points.
+inline double length_of(const std::vector<Vec3>& points) {
+  double length = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  return length;
 }
 
 }  // namespace selvage::nurbs

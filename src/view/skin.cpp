@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "nurbs/spline.h"
+#include "nurbs/divided.h"
 
 namespace selvage::view {
 
@@ -105,25 +105,16 @@ class Direction {
   [[nodiscard]] std::vector<double> fine_parameters() const {
     constexpr double least = 4, most = 256;
     const std::vector<double> breaks = nurbs::breakpoints(knots(), degree());
-    std::vector<double> halves;
-    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-      halves.push_back(breaks[k]);
-      halves.push_back(0.5 * (breaks[k] + breaks[k + 1]));
-    }
-    halves.push_back(breaks.back());
-    const Lines lines = lines_at(halves);
-    std::vector<double> fine;
+    const Lines lines = lines_at(nurbs::divided(knots(), degree(), 2));
+    std::vector<int> parts;
     for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
       double bend = 0.0;
       for (std::size_t line = 0; line < lines.lines; ++line)
         bend = std::max(bend, distance_to_segment(lines.at(2 * k + 1, line), lines.at(2 * k, line),
                                                   lines.at(2 * k + 2, line)));
-      const double steps = std::clamp(std::ceil(2.0 * std::sqrt(bend / chord_)), least, most);
-      for (double step = 0; step < steps; ++step)
-        fine.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * step / steps);
+      parts.push_back(static_cast<int>(std::clamp(std::ceil(2.0 * std::sqrt(bend / chord_)), least, most)));
     }
-    fine.push_back(breaks.back());
-    return fine;
+    return nurbs::divided(breaks, parts);
   }
 
   // The farthest sample from `start`, up to `limit`, to which the lines are straight.
