@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <tuple>
 
+#include "core/box_tree.h"
 #include "nurbs/spline.h"
 
 namespace selvage::contact {
@@ -159,25 +159,16 @@ class Search {
   }
 
   std::vector<Passage> run() {
-    sort_into_cells();
-    for (std::size_t first = 0; first < cells_.size();) {
-      std::size_t last = first;
-      while (last < cells_.size() && cells_[last].cell == cells_[first].cell) ++last;
-      for (std::size_t i = first; i < last; ++i)
-        for (std::size_t k = i + 1; k < last; ++k)
-          look_at(cells_[first].cell, cells_[i].chord, cells_[k].chord);
-      first = last;
-    }
+    std::vector<Box3> boxes;
+    boxes.reserve(chords_.size());
+    for (const Chord& chord : chords_) boxes.push_back(box_of(chord));
+    BoxTree(std::move(boxes)).near_pairs(0.0, [&](std::uint32_t i, std::uint32_t k) {
+      look_at(chords_[i], chords_[k]);
+    });
     return one_a_place();
   }
 
  private:
-  using Cell = std::array<std::int64_t, 3>;
-  struct Entry {
-    Cell cell;
-    std::size_t chord = 0;
-  };
-
   // Of the chord all along its way, with the room that its line may take beside it.
   [[nodiscard]] Box3 box_of(const Chord& chord) const {
     const Line& line = lines_[chord.line];
@@ -194,36 +185,6 @@ class Search {
     const Line& line = lines_[chord.line];
     return 1.1 * std::max(line.deviations[chord.index], 1e-9 * line.width);
   }
-  [[nodiscard]] Cell cell_at(const Vec3& p) const {
-    Cell cell{};
-    for (Eigen::Index k = 0; k < 3; ++k)
-      cell[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(p[k] / edge_));
-    return cell;
-  }
-
-  void sort_into_cells() {
-    boxes_.reserve(chords_.size());
-    double sum = 0.0, largest = 0.0;
-    for (const Chord& chord : chords_) {
-      boxes_.push_back(box_of(chord));
-      const double extent = boxes_.back().sizes().maxCoeff();
-      sum += extent;
-      largest = std::max(largest, extent);
-    }
-    // No box has more than some hundred cells.
-    edge_ =
-        std::max(2.0 * sum / static_cast<double>(std::max<std::size_t>(chords_.size(), 1)), largest / 6.0);
-    for (std::size_t c = 0; c < chords_.size(); ++c) {
-      const Cell low = cell_at(boxes_[c].min()), high = cell_at(boxes_[c].max());
-      for (std::int64_t x = low[0]; x <= high[0]; ++x)
-        for (std::int64_t y = low[1]; y <= high[1]; ++y)
-          for (std::int64_t z = low[2]; z <= high[2]; ++z) cells_.push_back({{x, y, z}, c});
-    }
-    std::sort(cells_.begin(), cells_.end(), [](const Entry& a, const Entry& b) {
-      return std::tie(a.cell, a.chord) < std::tie(b.cell, b.chord);
-    });
-  }
-
   [[nodiscard]] bool are_neighbours(const Chord& a, const Chord& b) const {
     if (a.line != b.line) return false;
     const Line& line = lines_[a.line];
@@ -234,11 +195,7 @@ class Search {
     return along < 1.5 * line.width;
   }
 
-  void look_at(const Cell& cell, std::size_t first, std::size_t second) {
-    const Box3 shared = boxes_[first].intersection(boxes_[second]);
-    // A pair that shares several cells is looked at in the first of them.
-    if (shared.isEmpty() || cell_at(shared.min()) != cell) return;
-    const Chord &a = chords_[first], &b = chords_[second];
+  void look_at(const Chord& a, const Chord& b) {
     if (are_neighbours(a, b)) return;
     const Line &line_a = lines_[a.line], &line_b = lines_[b.line];
     const std::optional<Meeting> met =
@@ -270,9 +227,6 @@ class Search {
 
   std::vector<Line> lines_;
   std::vector<Chord> chords_;
-  std::vector<Box3> boxes_;
-  double edge_ = 1;
-  std::vector<Entry> cells_;
   std::vector<Passage> found_;
 };
 

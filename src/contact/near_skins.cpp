@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "contact/critical.h"
 #include "core/parallel.h"
@@ -37,16 +36,13 @@ void fill(Facing& facing, const SurfacePoint& p, const SurfacePoint& q) {
 
 }  // namespace
 
-NearSkins::NearSkins(std::span<const Strand> strands) : strands_(strands), skins_(strands.size()) {
+NearSkins::NearSkins(std::span<const Strand> strands) : strands_(strands), skins_(strands.size()), tree_({}) {
   for (std::size_t y = 0; y < strands.size(); ++y) {
     const Strand& strand = strands[y];
     const nurbs::Surface& s = strand.body().surface;
     Skin& skin = skins_[y];
     skin.cyclic = strand.is_cyclic();
-    const std::vector<double> breaks = nurbs::breakpoints(s.knots_u, s.degree_u);
-    const int parts = std::max(1, static_cast<int>(std::ceil(static_cast<double>(least_round) /
-                                                             static_cast<double>(breaks.size() - 1))));
-    skin.us = nurbs::divided(breaks, std::vector<int>(breaks.size() - 1, parts));
+    skin.us = nurbs::divided(s.knots_u, s.degree_u, 1, least_round);
     skin.round = static_cast<int>(skin.us.size()) - 1;
     skin.along = std::max(2, static_cast<int>(std::ceil(2.0 * strand.length() / strand.spacing())));
     for (int j = 0; j <= skin.along; ++j) {
@@ -58,42 +54,13 @@ NearSkins::NearSkins(std::span<const Strand> strands) : strands_(strands), skins
       for (int i = 0; i < skin.round; i += leaf_columns)
         leaves_.push_back({static_cast<std::uint32_t>(y), j, i, std::min(leaf_columns, skin.round - i)});
   }
-  std::vector<Vec3> centres;
-  centres.reserve(leaves_.size());
-  for (const Leaf& leaf : leaves_) centres.push_back(box_of(leaf).center());
-  std::vector<std::uint32_t> order(leaves_.size());
-  std::iota(order.begin(), order.end(), 0U);
-  nodes_.reserve(2 * leaves_.size());
-  if (!order.empty()) root_ = build(order.data(), order.data() + order.size(), centres);
-}
-
-std::uint32_t NearSkins::build(std::uint32_t* first, std::uint32_t* last, const std::vector<Vec3>& centres) {
-  const auto node = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.emplace_back();
-  if (last - first == 1) {
-    nodes_[node].left = nodes_[node].right = *first;
-    nodes_[node].is_leaf = true;
-    return node;
-  }
-  Box3 box;
-  for (const std::uint32_t* k = first; k != last; ++k) box.extend(centres[*k]);
-  Eigen::Index axis = 0;
-  box.sizes().maxCoeff(&axis);
-  std::uint32_t* middle = first + (last - first) / 2;
-  std::nth_element(first, middle, last, [&](std::uint32_t x, std::uint32_t y) {
-    return std::pair(centres[x][axis], x) < std::pair(centres[y][axis], y);
-  });
-  const std::uint32_t left = build(first, middle, centres), right = build(middle, last, centres);
-  nodes_[node].left = left;
-  nodes_[node].right = right;
-  return node;
+  tree_ = BoxTree(boxes(), 1);
 }
 
 void NearSkins::sample(std::size_t strand) {
   const yarn::Body& body = strands_[strand].body();
   Skin& skin = skins_[strand];
-  const std::vector<double> us(skin.us.begin(), skin.us.end());
-  skin.points = nurbs::evaluate_grid(body.surface, us, skin.vs);
+  skin.points = nurbs::evaluate_grid(body.surface, skin.us, skin.vs);
   // Normals from the differences of samples: they only choose directions.
   skin.normals.resize(skin.points.size());
   const int n = skin.round + 1;
@@ -108,13 +75,17 @@ void NearSkins::sample(std::size_t strand) {
     }
 }
 
-Box3 NearSkins::box_of(const Leaf& leaf) const {
-  const Skin& skin = skins_[leaf.strand];
-  const int n = skin.round + 1;
-  Box3 box;
-  for (int j = leaf.row; j <= leaf.row + 1; ++j)
-    for (int i = leaf.column; i <= leaf.column + leaf.columns; ++i) box.extend(skin.points[at(j * n + i)]);
-  return box;
+std::vector<Box3> NearSkins::boxes() const {
+  std::vector<Box3> boxes(leaves_.size());
+  for (std::size_t k = 0; k < leaves_.size(); ++k) {
+    const Leaf& leaf = leaves_[k];
+    const Skin& skin = skins_[leaf.strand];
+    const int n = skin.round + 1;
+    for (int j = leaf.row; j <= leaf.row + 1; ++j)
+      for (int i = leaf.column; i <= leaf.column + leaf.columns; ++i)
+        boxes[k].extend(skin.points[at(j * n + i)]);
+  }
+  return boxes;
 }
 
 bool NearSkins::are_neighbours(const Leaf& a, const Leaf& b) const {
@@ -186,39 +157,26 @@ std::vector<Vec2> NearSkins::hits(const Leaf& leaf, const Ray& ray) const {
   return sites;
 }
 
-void NearSkins::look_from(const Leaf& leaf, double reach, std::vector<Facing>& found) const {
-  Box3 box = box_of(leaf);
-  const double margin = reach + 0.45 * strands_[leaf.strand].thickness();
+void NearSkins::look_from(std::uint32_t leaf, double reach, std::vector<Facing>& found) const {
+  const Leaf& from = leaves_[leaf];
+  const double margin = reach + 0.45 * strands_[from.strand].thickness();
+  Box3 box = tree_.box(leaf);
   box.min().array() -= margin;
   box.max().array() += margin;
-  std::array<std::uint32_t, 128> stack{};
-  std::size_t depth = 0;
-  stack[depth++] = root_;
-  while (depth > 0) {
-    const Node& node = nodes_[stack[--depth]];
-    if (!node.box.intersects(box)) continue;
-    if (!node.is_leaf) {
-      stack[depth++] = node.right;
-      stack[depth++] = node.left;
-    } else if (const Leaf& other = leaves_[node.left]; !are_neighbours(leaf, other)) {
-      cast(leaf, other, node.box, reach, found);
-    }
-  }
+  tree_.meeting(box, [&](std::uint32_t other) {
+    if (!are_neighbours(from, leaves_[other])) cast(from, leaves_[other], tree_.box(other), reach, found);
+  });
 }
 
 std::vector<Facing> NearSkins::find(double reach, int threads) {
   for_each_index(strands_.size(), threads, [&](std::size_t y) { sample(y); });
-  for (std::size_t k = nodes_.size(); k-- > 0;) {
-    Node& node = nodes_[k];
-    node.box = node.is_leaf ? box_of(leaves_[node.left]) : nodes_[node.left].box;
-    if (!node.is_leaf) node.box.extend(nodes_[node.right].box);
-  }
+  tree_.refit(boxes());
   constexpr std::size_t block = 512;
   const std::size_t blocks = (leaves_.size() + block - 1) / block;
   std::vector<std::vector<Facing>> parts(blocks);
   for_each_index(blocks, threads, [&](std::size_t b) {
     for (std::size_t k = b * block; k < std::min(leaves_.size(), (b + 1) * block); ++k)
-      look_from(leaves_[k], reach, parts[b]);
+      look_from(static_cast<std::uint32_t>(k), reach, parts[b]);
   });
   std::vector<Facing> all;
   for (const std::vector<Facing>& part : parts) all.insert(all.end(), part.begin(), part.end());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contact/strand.h"
+#include "core/box_tree.h"
 
 namespace selvage::contact {
 
@@ -41,15 +42,9 @@ class NearSkins {
     std::uint32_t strand = 0;
     std::int32_t row = 0, column = 0, columns = 0;  // quads (column .. column + columns - 1, row)
   };
-  struct Node {
-    Box3 box;
-    std::uint32_t left = 0, right = 0;  // nodes; a leaf has left == right == the leaf's number, is_leaf
-    bool is_leaf = false;
-  };
-  std::uint32_t build(std::uint32_t* first, std::uint32_t* last, const std::vector<Vec3>& centres);
   void sample(std::size_t strand);
-  [[nodiscard]] Box3 box_of(const Leaf& leaf) const;
-  void look_from(const Leaf& leaf, double reach, std::vector<Facing>& found) const;
+  [[nodiscard]] std::vector<Box3> boxes() const;  // of the leaves
+  void look_from(std::uint32_t leaf, double reach, std::vector<Facing>& found) const;
   struct Ray {
     Vec3 origin, direction;
     double from = 0, to = 0;
@@ -62,8 +57,7 @@ class NearSkins {
   std::span<const Strand> strands_;
   std::vector<Skin> skins_;
   std::vector<Leaf> leaves_;
-  std::vector<Node> nodes_;
-  std::uint32_t root_ = 0;
+  BoxTree tree_;  // of the leaves
 };
 
 // The facing at the place where the two surfaces are nearest (or deepest in each other) that belongs to this

@@ -5,7 +5,8 @@
 
 namespace selvage {
 
-BoxTree::BoxTree(std::vector<Box3> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
+BoxTree::BoxTree(std::vector<Box3> boxes, std::uint32_t leaf_size)
+    : boxes_(std::move(boxes)), leaf_size_(leaf_size), order_(boxes_.size()) {
   if (boxes_.empty()) return;
   std::iota(order_.begin(), order_.end(), 0U);
   nodes_.reserve(boxes_.size());
@@ -21,7 +22,7 @@ void BoxTree::split(std::uint32_t node) {
     spread.extend(boxes_[order_[k]].center());
   }
   nodes_[node].box = box;
-  if (count <= leaf_size) return;
+  if (count <= leaf_size_) return;
   Eigen::Index axis = 0;
   spread.diagonal().maxCoeff(&axis);
   const auto begin = order_.begin() + first;
@@ -38,6 +39,15 @@ void BoxTree::split(std::uint32_t node) {
   nodes_[node].count = 0;
   split(left);
   split(left + 1);
+}
+
+void BoxTree::refit(std::vector<Box3> boxes) {
+  boxes_ = std::move(boxes);
+  for (std::size_t k = nodes_.size(); k-- > 0;) {  // children stand behind their parents
+    Node& node = nodes_[k];
+    node.box = node.count == 0 ? nodes_[node.first].box.merged(nodes_[node.first + 1].box) : Box3();
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) node.box.extend(boxes_[order_[i]]);
+  }
 }
 
 }  // namespace selvage

@@ -13,7 +13,12 @@ namespace selvage {
 
 class BoxTree {
  public:
-  explicit BoxTree(std::vector<Box3> boxes);
+  // A leaf holds up to `leaf_size` boxes: fewer where looking at a box is much work.
+  explicit BoxTree(std::vector<Box3> boxes, std::uint32_t leaf_size = 4);
+
+  // As many boxes as before, for what has moved: the tree keeps its structure.
+  void refit(std::vector<Box3> boxes);
+  [[nodiscard]] const Box3& box(std::uint32_t i) const { return boxes_[i]; }
 
   // Calls visit(i, j), i < j, once for each pair of boxes no farther apart than `reach`, in an order that
   // depends on the boxes alone.
@@ -23,6 +28,12 @@ class BoxTree {
   // Calls visit(i) for each box that holds `point`, and for each that the ray from it along +x meets.
   template <class Visit>
   void along_ray(const Vec3& point, const Visit& visit) const;
+
+  // Calls visit(i) for each box that meets this one, in an order that depends on the structure alone.
+  template <class Visit>
+  void meeting(const Box3& box, const Visit& visit) const {
+    walk([&](const Box3& other) { return other.intersects(box); }, visit);
+  }
 
   // Calls visit(i) for each box no farther from `point` than `reach`, about the nearest first; what it gives
   // is the reach from there on.
@@ -35,13 +46,17 @@ class BoxTree {
     std::uint32_t first = 0;  // leaf: into order_; else the left child, the right one follows it
     std::uint32_t count = 0;  // 0: not a leaf
   };
-  static constexpr std::uint32_t leaf_size = 4;
   void split(std::uint32_t node);
+  template <class Meets, class Visit>
+  void walk(const Meets& meets, const Visit& visit) const;
+  // Halves of halves: no deeper than the number of boxes has bits.
+  static constexpr std::size_t most_deep = 72;
   [[nodiscard]] bool near(const Box3& a, const Box3& b, double reach) const {
     return a.squaredExteriorDistance(b) <= reach * reach;
   }
 
   std::vector<Box3> boxes_;
+  std::uint32_t leaf_size_;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;
 };
@@ -76,26 +91,32 @@ void BoxTree::near_pairs(double reach, const Visit& visit) const {
   }
 }
 
-template <class Visit>
-void BoxTree::along_ray(const Vec3& point, const Visit& visit) const {
+template <class Meets, class Visit>
+void BoxTree::walk(const Meets& meets, const Visit& visit) const {
   if (nodes_.empty()) return;
-  const auto meets = [&](const Box3& box) {
-    return box.max().x() >= point.x() && box.min().y() <= point.y() && box.max().y() >= point.y() &&
-           box.min().z() <= point.z() && box.max().z() >= point.z();
-  };
-  std::vector<std::uint32_t> stack = {0U};
-  while (!stack.empty()) {
-    const Node& node = nodes_[stack.back()];
-    stack.pop_back();
+  std::array<std::uint32_t, most_deep> stack{};
+  std::size_t depth = 1;
+  while (depth > 0) {
+    const Node& node = nodes_[stack[--depth]];
     if (!meets(node.box)) continue;
     if (node.count == 0) {
-      stack.push_back(node.first);
-      stack.push_back(node.first + 1);
+      stack[depth++] = node.first + 1;
+      stack[depth++] = node.first;
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
       if (meets(boxes_[order_[i]])) visit(order_[i]);
   }
+}
+
+template <class Visit>
+void BoxTree::along_ray(const Vec3& point, const Visit& visit) const {
+  walk(
+      [&](const Box3& box) {
+        return box.max().x() >= point.x() && box.min().y() <= point.y() && box.max().y() >= point.y() &&
+               box.min().z() <= point.z() && box.max().z() >= point.z();
+      },
+      visit);
 }
 
 template <class Visit>
@@ -105,8 +126,7 @@ void BoxTree::near_point(const Vec3& point, double reach, const Visit& visit) co
     double distance;  // squared
     std::uint32_t node;
   };
-  // Halves of halves: no deeper than the number of boxes has bits.
-  std::array<Entry, 72> stack{};
+  std::array<Entry, most_deep> stack{};
   std::size_t depth = 0;
   stack[depth++] = {nodes_[0].box.squaredExteriorDistance(point), 0U};
   while (depth > 0) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 #include <vector>
 
+#include "core/box_tree.h"
 #include "fabric/cell_faces.h"
 #include "nurbs/divided.h"
 
@@ -92,81 +92,11 @@ double distance_to(const Vec3& p, const Vec3& from, const Vec3& to) {
   return (from + s * way - p).norm();
 }
 
-// Segments by the cubes of a lattice that they come near: who is near a point stands in the point's cube.
-class NearSegments {
- public:
-  // Lattice cubes as large as a segment on average, and no smaller than the reach.
-  void fill(const std::vector<std::vector<Vec3>>& lines, double reach) {
-    double length = 0.0;
-    for (const std::vector<Vec3>& line : lines)
-      for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-        segments_.push_back({&line[k], &line[k + 1]});
-        length += (line[k + 1] - line[k]).norm();
-      }
-    if (segments_.empty()) return;
-    reach_ = reach;
-    size_ = std::max(
-        {length / static_cast<double>(segments_.size()), 2.0 * reach, std::numeric_limits<double>::min()});
-    for (std::size_t i = 0; i < segments_.size(); ++i) put(i);
-  }
-
-  // The nearest segment's distance, where it is at most the reach; else the reach or more.
-  [[nodiscard]] double distance(const Vec3& p) const {
-    double least = infinity;
-    const auto found = cubes_.find(cube_of(p));
-    if (found == cubes_.end()) return least;
-    for (const std::size_t i : found->second)
-      least = std::min(least, distance_to(p, *segments_[i].from, *segments_[i].to));
-    return least;
-  }
-
- private:
-  struct Segment {
-    const Vec3 *from, *to;
-  };
-  using Cube = std::array<long long, 3>;
-  struct Hash {
-    std::size_t operator()(const Cube& cube) const {
-      std::size_t mixed = 0;
-      for (const long long k : cube)
-        mixed = (mixed ^ static_cast<std::size_t>(k)) * std::size_t{0x9E3779B97F4A7C15};
-      return mixed ^ (mixed >> 32);
-    }
-  };
-  [[nodiscard]] Cube cube_of(const Vec3& p) const {
-    Cube cube{};
-    for (std::size_t k = 0; k < 3; ++k)
-      cube[k] = static_cast<long long>(std::floor(p[static_cast<Eigen::Index>(k)] / size_));
-    return cube;
-  }
-  // A long segment piece by piece, so that the cubes that it stands in are those along it.
-  void put(std::size_t i) {
-    const Vec3 from = *segments_[i].from, way = *segments_[i].to - from;
-    const double pieces = std::max(1.0, std::ceil(way.norm() / size_));
-    for (long long k = 0; static_cast<double>(k) < pieces; ++k) {
-      const auto piece = static_cast<double>(k);
-      const Vec3 a = from + way * (piece / pieces), b = from + way * ((piece + 1.0) / pieces);
-      const Cube low = cube_of(Vec3(a.cwiseMin(b).array() - reach_)),
-                 high = cube_of(Vec3(a.cwiseMax(b).array() + reach_));
-      for (long long x = low[0]; x <= high[0]; ++x)
-        for (long long y = low[1]; y <= high[1]; ++y)
-          for (long long z = low[2]; z <= high[2]; ++z) {
-            std::vector<std::size_t>& there = cubes_[{x, y, z}];
-            if (there.empty() || there.back() != i) there.push_back(i);
-          }
-    }
-  }
-
-  double reach_ = 0, size_ = 1;
-  std::vector<Segment> segments_;
-  std::unordered_map<Cube, std::vector<std::size_t>, Hash> cubes_;
-};
-
 // All centre lines as polygons.
 class Lines {
  public:
   // Distances are looked for up to twice the tolerance.
-  Lines(std::span<const yarn::Body> bodies, double tolerance) {
+  Lines(std::span<const yarn::Body> bodies, double tolerance) : reach_(2.0 * tolerance), near_({}) {
     constexpr int a_span = 16;
     for (const yarn::Body& body : bodies) {
       std::vector<Vec3> line;
@@ -175,12 +105,26 @@ class Lines {
       for (const Vec3& p : line) box_.extend(p);
       lines_.push_back(std::move(line));
     }
-    near_.fill(lines_, 2.0 * tolerance);
+    std::vector<Box3> boxes;
+    for (const std::vector<Vec3>& line : lines_)
+      for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+        segments_.push_back(&line[k]);
+        boxes.push_back(Box3(line[k]).extend(line[k + 1]));
+      }
+    near_ = BoxTree(std::move(boxes));
   }
   [[nodiscard]] const Box3& box() const { return box_; }
   [[nodiscard]] const std::vector<std::vector<Vec3>>& list() const { return lines_; }
 
-  [[nodiscard]] double distance(const Vec3& p) const { return near_.distance(p); }
+  // The nearest segment's distance, where it is at most the reach; else the reach or more.
+  [[nodiscard]] double distance(const Vec3& p) const {
+    double least = infinity;
+    near_.near_point(p, reach_, [&](std::uint32_t i) {
+      least = std::min(least, distance_to(p, segments_[i][0], segments_[i][1]));
+      return std::min(least, reach_);
+    });
+    return least;
+  }
 
   // Does a translation take every line to lines, as far as they go? Near their ends, where splines swing,
   // they are not looked at.
@@ -248,7 +192,9 @@ class Lines {
   static constexpr double margin_share = 0.25;  // of what the lines fill, at each side
 
   std::vector<std::vector<Vec3>> lines_;
-  NearSegments near_;  // points into lines_
+  double reach_;
+  std::vector<const Vec3*> segments_;  // from this point of a line to the next
+  BoxTree near_;                       // of the segments
   Box3 box_;
 };
 
