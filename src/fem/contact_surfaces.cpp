@@ -87,7 +87,8 @@ void find_pairs(const Mesh& mesh, ContactSurfaces& result) {
         if (other == own || pairs.contains(pair)) return reach[own];
         const Corners& c = skins.triangles[k];
         ++result.distances;
-        if (shortest_way(mesh.nodes[node], {mesh.nodes[c[0]], mesh.nodes[c[1]], mesh.nodes[c[2]]}).norm() <
+        const Corners3 corners = {mesh.nodes[c[0]], mesh.nodes[c[1]], mesh.nodes[c[2]]};
+        if ((nearest_on(corners, mesh.nodes[node]) - mesh.nodes[node]).norm() <
             std::min(reach[own], reach[other]))
           pairs.insert(pair);
         return reach[own];

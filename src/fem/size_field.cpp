@@ -6,6 +6,7 @@
 
 #include "core/box_tree.h"
 #include "core/parallel.h"
+#include "fem/triangle_distance.h"
 #include "nurbs/divided.h"
 
 namespace selvage::fem {
@@ -119,10 +120,7 @@ double row_length(const nurbs::Surface& surface, double v) {
   std::vector<double> us;
   for (int i = 0; i <= 64; ++i)
     us.push_back(surface.first_u() + (surface.last_u() - surface.first_u()) * i / 64);
-  const std::vector<Vec3> points = nurbs::evaluate_grid(surface, us, {v});
-  double sum = 0;
-  for (std::size_t k = 0; k + 1 < points.size(); ++k) sum += (points[k + 1] - points[k]).norm();
-  return sum;
+  return nurbs::length_of(nurbs::evaluate_grid(surface, us, {v}));
 }
 
 void find_normals(Raster& raster, bool inward) {
@@ -196,28 +194,6 @@ void add_facets(const Raster& raster, const Box3& near, std::vector<Facet>& face
       add(a, b, d);
       add(a, d, c);
     }
-}
-
-// The point of a triangle nearest to `p` (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
-Vec3 nearest_on(const std::array<Vec3, 3>& t, const Vec3& p) {
-  const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return t[0];
-  const Vec3 bp = p - t[1];
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return t[1];
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return t[0] + d1 / (d1 - d3) * ab;
-  const Vec3 cp = p - t[2];
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return t[2];
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return t[0] + d2 / (d2 - d6) * ac;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return t[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1]);
-  const double scale = 1 / (va + vb + vc);
-  return t[0] + vb * scale * ab + vc * scale * ac;
 }
 
 class Rule {

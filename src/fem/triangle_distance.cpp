@@ -50,24 +50,28 @@ bool pierces(const Corners3& edges, const Corners3& t, const Plane& plane) {
   return false;
 }
 
-// To the segment (q, q + b).
-Vec3 to_segment(const Vec3& point, const Vec3& q, const Vec3& b) {
-  const double bb = b.squaredNorm();
-  const double t = bb > 0 ? std::clamp((point - q).dot(b) / bb, 0.0, 1.0) : 0;
-  return q + t * b - point;
-}
-
 }  // namespace
 
-Vec3 shortest_way(const Vec3& from, const Corners3& to) {
-  Vec3 best;
-  if (drop(from, to, plane_of(to), best)) return best;
-  best = to[0] - from;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 way = to_segment(from, to[k], to[(k + 1) % 3] - to[k]);
-    if (way.squaredNorm() < best.squaredNorm()) best = way;
-  }
-  return best;
+// Ericson, 5.1.5.
+Vec3 nearest_on(const Corners3& t, const Vec3& p) {
+  const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return t[0];
+  const Vec3 bp = p - t[1];
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return t[1];
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return t[0] + d1 / (d1 - d3) * ab;
+  const Vec3 cp = p - t[2];
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return t[2];
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return t[0] + d2 / (d2 - d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return t[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1]);
+  const double scale = 1 / (va + vb + vc);
+  return t[0] + vb * scale * ab + vc * scale * ac;
 }
 
 Vec3 shortest_way(const Corners3& from, const Corners3& to) {
