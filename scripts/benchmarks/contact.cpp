@@ -93,7 +93,7 @@ Pairs pairs_in(const contact::Contacts& contacts) {
 
 // The chord error that `check` takes, file units.
 double chord_of(const yarn::Body& body) {
-  return solid::smallest_extent(body) / 200.0;
+  return yarn::narrowest_section(body) / 200.0;
 }
 
 struct Peer {

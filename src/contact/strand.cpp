@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 #include "nurbs/basis.h"
 #include "nurbs/divided.h"
@@ -147,11 +146,9 @@ Strand::Strand(yarn::Body body, double spacing) : body_(std::move(body)), cyclic
   row_frames_.resize(row_arcs_.size());
   measure();
   for (int j = 0; j < rows(); ++j) row_areas_.push_back(row_area(j));
-  thickness_ = std::numeric_limits<double>::infinity();
-  for (const Frame& frame : row_frames_) {
-    thickness_ = std::min(thickness_, 2.0 * std::min(frame.half_x, frame.half_y));
+  thickness_ = yarn::narrowest_section(body_);
+  for (const Frame& frame : row_frames_)
     width_ = std::max(width_, 2.0 * std::max(frame.half_x, frame.half_y));
-  }
 }
 
 Stencil Strand::stencil(double arc) const {

@@ -61,7 +61,7 @@ class Strand {
   [[nodiscard]] int nodes() const { return nodes_; }         // of its lattice
   [[nodiscard]] bool is_cyclic() const { return body_.closed_along; }
   [[nodiscard]] bool has_cyclic_lattice() const { return cyclic_; }
-  [[nodiscard]] double thickness() const { return thickness_; }  // least extent of a section
+  [[nodiscard]] double thickness() const { return thickness_; }  // yarn::narrowest_section as it came
   [[nodiscard]] double width() const { return width_; }          // largest extent of a section
 
   [[nodiscard]] Stencil stencil(double arc) const;

@@ -192,8 +192,10 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
   std::optional<double> thinnest;
   bool is_written = true;
   job.for_each_yarn(*builder, "writing yarn", [&](yarn::Body&& body) {
-    if (job.wants_report())
-      thinnest = std::min(thinnest.value_or(thinnest_section(body)), thinnest_section(body));
+    if (job.wants_report()) {
+      const double own = yarn::narrowest_section(body);
+      thinnest = std::min(thinnest.value_or(own), own);
+    }
     convert_lengths(body, fabric.units, units);
     if (job.has_failed()) return true;
     is_written = add_to_all(job, body, finder ? finder->place(body) : std::nullopt, outputs);

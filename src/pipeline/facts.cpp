@@ -76,19 +76,6 @@ Json piece_json(const fabric::PieceShape& piece, Unit units, bool with_table) {
           {"edges", list_json(piece.edges, edge_json)}};
 }
 
-double thinnest_section(const yarn::Body& body) {
-  double least = std::numeric_limits<double>::infinity();
-  const nurbs::Surface& surface = body.surface;
-  for (int j = 0; j < surface.count_v; ++j) {
-    Vec3 centre = Vec3::Zero();
-    for (int i = 0; i < surface.count_u; ++i) centre += surface.point(i, j);
-    centre /= surface.count_u;
-    for (int i = 0; i < surface.count_u; ++i)
-      least = std::min(least, 2 * (surface.point(i, j) - centre).norm());
-  }
-  return least;
-}
-
 std::optional<double> creo_accuracy(std::optional<double> thinnest, std::optional<double> min_gap) {
   if (!thinnest || !(*thinnest > 0) || !std::isfinite(*thinnest)) return std::nullopt;
   double accuracy = *thinnest / 100;

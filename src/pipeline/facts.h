@@ -19,10 +19,6 @@ Json yarn_json(const yarn::Body& body, Unit units);
 // A garment piece in the report; `with_table`: with the fixed points and control points of its curves.
 Json piece_json(const fabric::PieceShape& piece, Unit units, bool with_table);
 
-// The smallest distance across any section, file units: twice the least distance from a section's centre to
-// its control points.
-double thinnest_section(const yarn::Body& body);
-
 // The absolute accuracy to set in Creo, mm: a hundredth of the thinnest section, and at most a quarter of the
 // smallest gap between two yarns (both mm), rounded down to 1, 2 or 5 times a power of ten. Below both, so
 // that neither a section nor a gap vanishes; far above the rounding of the coordinates. None when there is no

@@ -32,7 +32,7 @@ void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn
       yarns[i]["closed"] = check.yarns[i].is_shut();
       yarns[i]["self_overlap"] = check.yarns[i].self_intersecting || !bodies[i].tight_bends.empty();
     }
-    const double thickness = thinnest_section(bodies[i]) * mm;
+    const double thickness = yarn::narrowest_section(bodies[i]) * mm;
     thinnest = std::min(thinnest.value_or(thickness), thickness);
   }
   for (const contact::Contact& overlap : check.overlaps)

@@ -16,7 +16,7 @@
 namespace selvage::solid {
 
 struct CheckOptions {
-  double chord = 0;  // tessellation, file units; 0: 1/200 of each yarn's smallest section extent
+  double chord = 0;  // tessellation, file units; 0: 1/200 of each yarn's narrowest section
   bool overlaps = true;
   double reach = 0;  // file units; near contacts with a gap up to this are listed too. 0: none
   int threads = 1;

@@ -46,7 +46,7 @@ Result<GapMap> gap_map(std::span<const yarn::Body> bodies, const GapMapOptions& 
   for_each_index(bodies.size(), options.threads, [&](std::size_t b) {
     if (is_too_much()) return;
     const yarn::Body& body = bodies[b];
-    if (!body.surface.is_empty()) extents[b] = smallest_extent(body);
+    if (!body.surface.is_empty()) extents[b] = yarn::narrowest_section(body);
     Result<Tessellation> skin = tessellate(body, chord_share * extents[b], edge_share * extents[b]);
     if (!skin) {
       failures[b] = skin.error();

@@ -19,12 +19,12 @@ struct GapMap {
 };
 
 struct GapMapOptions {
-  double reach = 0;  // file units; 0: a tenth of the smallest thickness
+  double reach = 0;  // file units; 0: a tenth of the narrowest section
   int threads = 1;
   std::function<void(std::size_t done, std::size_t total)> progress;  // may be empty
 };
 
-// No triangle is farther from its yarn's surface than 1/100 of the yarn's smallest thickness, and none is
+// No triangle is farther from its yarn's surface than 1/100 of the yarn's narrowest section, and none is
 // much longer than 1/5 of it, so that the vertices see what a chord can show. Errors: what tessellate() says;
 // limit (more than 100 million triangles).
 Result<GapMap> gap_map(std::span<const yarn::Body> bodies, const GapMapOptions& options);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -110,8 +109,7 @@ class Samples {
     return longest;
   }
 
-  // The diagonal of the largest section's box, and the smallest extent of any section (but for those that
-  // shrink to a point) across its thinner direction.
+  // The diagonal of the largest section's box.
   [[nodiscard]] double largest_section() const {
     double largest = 0.0;
     for (std::size_t j = 0; j < count_v_; ++j) {
@@ -120,15 +118,6 @@ class Samples {
       largest = std::max(largest, box.diagonal().norm());
     }
     return largest;
-  }
-  [[nodiscard]] double smallest_extent() const {
-    const double floor = 1e-3 * largest_section();
-    double smallest = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < count_v_; ++j) {
-      const double extent = thickness(j);
-      if (extent > floor) smallest = std::min(smallest, extent);
-    }
-    return std::isfinite(smallest) ? smallest : largest_section();
   }
 
  private:
@@ -158,21 +147,6 @@ class Samples {
         largest =
             std::max(largest, (at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j)).squaredNorm());
     return 16.0 * std::sqrt(largest);
-  }
-  [[nodiscard]] double thickness(std::size_t j) const {
-    Vec3 mean = Vec3::Zero();
-    for (std::size_t i = 1; i < count_u_; ++i) mean += at(i, j) / static_cast<double>(count_u_ - 1);
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (std::size_t i = 1; i < count_u_; ++i) spread += (at(i, j) - mean) * (at(i, j) - mean).transpose();
-    // Eigenvalues increase: the section's normal, its thin direction, its long one.
-    const Vec3 thin = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(1);
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t i = 1; i < count_u_; ++i) {
-      const double height = (at(i, j) - mean).dot(thin);
-      low = std::min(low, height);
-      high = std::max(high, height);
-    }
-    return high - low;
   }
 
   std::vector<double> breaks_u_, breaks_v_;
@@ -393,10 +367,6 @@ double sewing_gap(const yarn::Body& body) {
   // that.
   constexpr double ten_digits = 1e-8;
   return std::max(rounding, std::min(body.resolution, ten_digits * largest));
-}
-
-double smallest_extent(const yarn::Body& body) {
-  return Samples(body.surface).smallest_extent();
 }
 
 Result<Tessellation> tessellate(const yarn::Body& body, double chord, double longest) {

@@ -29,9 +29,6 @@ struct Tessellation {
 // than 1e-8 of that coordinate.
 double sewing_gap(const yarn::Body& body);
 
-// The thickness of the yarn at its thinnest section across its thinner direction, file units.
-double smallest_extent(const yarn::Body& body);
-
 // Points so dense that no triangle is farther than `chord` (file units, > 0) from the surface: 1/8 (du^2
 // |S_uu| + 2 du dv |S_uv| + dv^2 |S_vv|) by Filip, Magedson and Markot (1986), with the second derivatives
 // from differences of surface points at four places a knot span. Every knot line is an edge line. Errors:

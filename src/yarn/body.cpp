@@ -124,10 +124,16 @@ double narrowest_section(const Body& body) {
   std::vector<double> extents;
   for (std::size_t j = 0; j < sections; ++j) {
     const std::span<const Vec3> row = std::span(points).subspan(j * round, round);
-    // The section's own normal, from the area that it encloses.
-    Vec3 normal = Vec3::Zero();
-    for (std::size_t i = 0; i + 2 < row.size(); ++i)
-      normal += (row[i + 1] - row[0]).cross(row[i + 2] - row[0]);
+    // The section's own normal, from the area that it encloses; of an eight, which may enclose none, from the
+    // largest part of it.
+    Vec3 normal = Vec3::Zero(), largest_part = Vec3::Zero();
+    for (std::size_t i = 0; i + 2 < row.size(); ++i) {
+      const Vec3 part = (row[i + 1] - row[0]).cross(row[i + 2] - row[0]);
+      normal += part;
+      if (part.squaredNorm() > largest_part.squaredNorm()) largest_part = part;
+    }
+    if (normal.norm() < 1e-6 * largest_part.norm()) normal = largest_part;
+    if (!(normal.norm() > 0.0)) continue;  // a point, or a line
     const Vec3 x = normal.unitOrthogonal(), y = normal.normalized().cross(x);
     double extent = std::numeric_limits<double>::infinity();
     for (int k = 0; k < directions; ++k) {
@@ -142,7 +148,8 @@ double narrowest_section(const Body& body) {
     }
     extents.push_back(extent);
   }
-  const double largest = *std::max_element(extents.begin(), extents.end());
+  const double largest = extents.empty() ? 0.0 : *std::max_element(extents.begin(), extents.end());
+  if (const double widest = widest_section(body); !(largest > 1e-9 * widest)) return widest;
   double result = largest;
   for (const double extent : extents)
     if (extent >= largest / 10) result = std::min(result, extent);

@@ -105,8 +105,9 @@ double end_gap(const Body& body, bool last);
 // The largest diagonal of a box round one row of control points: no section is wider.
 double widest_section(const Body& body);
 
-// The smallest width of the body's sections over all directions across the path; sections smaller than a
-// tenth of the largest one are passed over (a yarn that runs to a point). File units.
+// How thick the body is, whatever asks: the smallest width of its sections over all directions across the
+// path. Sections smaller than a tenth of the largest one are passed over (a yarn that runs to a point); where
+// no section has an area, widest_section(). File units.
 double narrowest_section(const Body& body);
 
 // The body's box (of its control points).

@@ -141,7 +141,7 @@ void judge_skin(const yarn::Body& body, double chord, const Tessellation& skin, 
 }  // namespace
 
 double chord_of(const yarn::Body& body, const CheckOptions& options) {
-  return options.chord > 0.0 ? options.chord : smallest_extent(body) / 200.0;
+  return options.chord > 0.0 ? options.chord : yarn::narrowest_section(body) / 200.0;
 }
 
 YarnCheck check_yarn(const yarn::Body& body, double chord) {

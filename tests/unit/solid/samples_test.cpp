@@ -64,7 +64,7 @@ TEST(Samples, TheSkinsVolumeGoesToTheBodys) {
     const std::vector<yarn::Body> bodies = bodies_of(sample);
     ASSERT_FALSE(bodies.empty());
     const yarn::Body& body = bodies.front();
-    Result<Tessellation> skin = tessellate(body, smallest_extent(body) / 5000.0);
+    Result<Tessellation> skin = tessellate(body, yarn::narrowest_section(body) / 5000.0);
     ASSERT_TRUE(skin.ok());
     EXPECT_NEAR(volume(*skin), body.volume, 5e-4 * body.volume) << sample;
   }

@@ -161,9 +161,16 @@ TEST(Tessellation, RefusesWhatHasNoPoints) {
   EXPECT_EQ(skin.error().yarn, "nan");
 }
 
-TEST(Tessellation, ThinDirectionGivesTheExtent) {
-  const yarn::Body body = straight("flat", {0.4, 0.1, 64, 4}, {3, 3, 3}, {1, 1, 0}, {0, 0, 1}, 2.0);
-  EXPECT_NEAR(smallest_extent(body), 0.2, 1e-3);
+TEST(NarrowestSection, IsTheThinDirectionOfAnEightToo) {
+  const Vec3 middle(3, 3, 3);
+  yarn::Body body = straight("flat", {0.4, 0.1, 64, 4}, middle, {1, 1, 0}, {0, 0, 1}, 2.0);
+  EXPECT_NEAR(yarn::narrowest_section(body), 0.2, 1e-3);
+  // Turned over on one side of the middle, so that the halves' areas cancel.
+  for (Vec3& p : body.surface.points)
+    if ((p - middle).dot(Vec3(1, -1, 0)) < 0.0) p.z() = 2.0 * middle.z() - p.z();
+  EXPECT_NEAR(yarn::narrowest_section(body), 0.2, 0.02);
+  for (Vec3& p : body.surface.points) p.z() = middle.z();
+  EXPECT_DOUBLE_EQ(yarn::narrowest_section(body), yarn::widest_section(body));
 }
 
 TEST(PlanarEnd, NonConvexOutlines) {
