@@ -11,11 +11,6 @@ namespace {
 using Vec4 = Eigen::Vector4d;
 using Mat4 = Eigen::Matrix4d;
 
-double wrapped(double t, double first, double last) {
-  const double period = last - first;
-  return t - period * std::floor((t - first) / period);
-}
-
 // Sites outside the domain go round (closed directions) or to its border.
 Vec2 inside(const Face& face, Vec2 site) {
   const nurbs::Surface& s = *face.surface;

@@ -103,7 +103,7 @@ class DeepMeasurer {
   // The cut section lies in the other yarn somewhere.
   [[nodiscard]] static bool is_cut_inside(const nurbs::Surface& s, double v, bool round, const Mesh& other,
                                           const Inside& inside) {
-    if (round) v -= (s.last_v() - s.first_v()) * std::floor((v - s.first_v()) / (s.last_v() - s.first_v()));
+    if (round) v = wrapped(v, s.first_v(), s.last_v());
     std::vector<Vec3> outline;
     constexpr int count = 24;
     Vec3 centre = Vec3::Zero();

@@ -8,17 +8,6 @@ namespace selvage::contact {
 
 namespace {
 
-std::vector<Box3> boxes_of(const SkinMesh& skin) {
-  std::vector<Box3> boxes;
-  boxes.reserve(skin.triangles.size());
-  for (const auto& t : skin.triangles) {
-    Box3 box;
-    for (const std::uint32_t k : t) box.extend(skin.vertices[k]);
-    boxes.push_back(box);
-  }
-  return boxes;
-}
-
 Vec3 unit_or_zero(const Vec3& v) {
   const double size = v.norm();
   return size > 0.0 ? Vec3(v / size) : Vec3(Vec3::Zero());
@@ -26,7 +15,8 @@ Vec3 unit_or_zero(const Vec3& v) {
 
 }  // namespace
 
-SkinDistance::SkinDistance(const SkinMesh& skin) : skin_(skin), tree_(boxes_of(skin)) {
+SkinDistance::SkinDistance(const SkinMesh& skin)
+    : skin_(skin), tree_(boxes_of(skin.vertices, skin.triangles)) {
   for (const Vec3& p : skin.vertices) box_.extend(p);
   find_neighbours();
   find_corner_normals();

@@ -13,10 +13,6 @@ namespace {
 constexpr int quads_round = 64;
 constexpr double quads_a_thickness = 6.0;
 
-double wrapped(double t, double first, double last) {
-  return t - (last - first) * std::floor((t - first) / (last - first));
-}
-
 class TubeMesher {
  public:
   TubeMesher(const CellModel& model, std::size_t body, const Stretch& stretch)
@@ -155,21 +151,10 @@ std::vector<Vec3> turned(const std::vector<Vec3>& points) {
   return out;
 }
 
-std::vector<Box3> boxes_of(const Mesh& mesh, const std::vector<Vec3>& points) {
-  std::vector<Box3> boxes;
-  for (const auto& t : mesh.triangles) {
-    Box3 box(points[t[0]]);
-    box.extend(points[t[1]]);
-    box.extend(points[t[2]]);
-    boxes.push_back(box);
-  }
-  return boxes;
-}
-
 }  // namespace
 
 Inside::Inside(const Mesh& mesh)
-    : mesh_(mesh), turned_(turned(mesh.vertices)), tree_(boxes_of(mesh, turned_)) {}
+    : mesh_(mesh), turned_(turned(mesh.vertices)), tree_(boxes_of(turned_, mesh.triangles)) {}
 
 bool Inside::contains(const Vec3& point) const {
   const Vec3 p = odd_turn() * point;

@@ -11,6 +11,15 @@
 
 namespace selvage {
 
+// Of triangles, each by the numbers of its corners.
+template <class Triangles>
+std::vector<Box3> boxes_of(const std::vector<Vec3>& points, const Triangles& triangles) {
+  std::vector<Box3> boxes(triangles.size());
+  for (std::size_t k = 0; k < boxes.size(); ++k)
+    for (const auto corner : triangles[k]) boxes[k].extend(points[corner]);
+  return boxes;
+}
+
 class BoxTree {
  public:
   // A leaf holds up to `leaf_size` boxes: fewer where looking at a box is much work.

@@ -67,13 +67,7 @@ void find_pairs(const Mesh& mesh, ContactSurfaces& result) {
   for (const ContactSurface& surface : result.surfaces)
     reach.push_back(reach_share * thickness_of(mesh, surface));
   const Skins skins = skins_of(result.surfaces);
-  std::vector<Box3> boxes;
-  for (const Corners& triangle : skins.triangles) {
-    Box3 box;
-    for (const std::size_t node : triangle) box.extend(mesh.nodes[node]);
-    boxes.push_back(box);
-  }
-  const BoxTree tree(std::move(boxes));
+  const BoxTree tree(boxes_of(mesh.nodes, skins.triangles));
   std::set<std::array<std::size_t, 2>> pairs;
   std::vector<bool> has_looked(mesh.nodes.size(), false);
   for (std::size_t t = 0; t < skins.triangles.size(); ++t)

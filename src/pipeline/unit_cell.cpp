@@ -16,6 +16,7 @@
 #include "fabric/repeat.h"
 #include "fem/cell_size.h"
 #include "fem/fibre.h"
+#include "nurbs/divided.h"
 #include "pipeline/overlaps.h"
 
 namespace selvage::pipeline {
@@ -57,15 +58,8 @@ struct Grid {
 
 Grid grid_of(const nurbs::Surface& surface) {
   constexpr int round_a_span = 4, along_a_span = 8;
-  const auto stations = [](const std::vector<double>& breaks, int a_span) {
-    std::vector<double> all;
-    for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
-      for (int i = 0; i < a_span; ++i) all.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / a_span);
-    all.push_back(breaks.back());
-    return all;
-  };
-  const std::vector<double> u = stations(nurbs::breakpoints(surface.knots_u, surface.degree_u), round_a_span);
-  const std::vector<double> v = stations(nurbs::breakpoints(surface.knots_v, surface.degree_v), along_a_span);
+  const std::vector<double> u = nurbs::divided(surface.knots_u, surface.degree_u, round_a_span),
+                            v = nurbs::divided(surface.knots_v, surface.degree_v, along_a_span);
   return {nurbs::evaluate_grid(surface, u, v), u.size(), v.size()};
 }
 
@@ -113,8 +107,7 @@ std::vector<yarn::Body> yarns_in_cell(Job& job, const fabric::Fabric& fabric,
   const Box3 box = box_of(fabric);
   Box3 all;
   std::erase_if(bodies, [&](const yarn::Body& body) {
-    Box3 own;
-    for (const Vec3& p : body.surface.points) own.extend(p);  // holds the surface
+    const Box3 own = yarn::bounds(body);
     all.extend(own);
     return !box.intersects(own);
   });
