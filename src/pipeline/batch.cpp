@@ -114,6 +114,13 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+Status write_whole(const std::string& place, const std::string& text) {
+  Result<OutputFile> file = place == "-" ? OutputFile::standard_output() : OutputFile::create(place);
+  if (!file) return file.error();
+  if (Status status = file->write(text); !status.ok()) return status;
+  return file->commit();
+}
+
 int Batch::run_one(std::size_t index, const Channel& channel) const {
   Job job(options_, inputs_[index], outputs_[index], channel);
   job.number = index;
@@ -268,11 +275,7 @@ std::string Batch::report_text(bool ok) const {
 
 Status Batch::write_report(bool ok) const {
   if (options_.report.empty()) return {};
-  Result<OutputFile> file =
-      options_.report == "-" ? OutputFile::standard_output() : OutputFile::create(options_.report);
-  if (!file) return file.error();
-  if (Status status = file->write(report_text(ok)); !status.ok()) return status;
-  return file->commit();
+  return write_whole(options_.report, report_text(ok));
 }
 
 Status Batch::write_junit(const std::vector<Message>& missing) const {
@@ -280,11 +283,7 @@ Status Batch::write_junit(const std::vector<Message>& missing) const {
   std::vector<JunitInput> all;
   for (std::size_t i = 0; i < work_.size(); ++i) all.push_back({inputs_[i].path, work_[i].report});
   for (std::size_t i = 0; i < missing.size(); ++i) all.push_back({missing[i].file, missing_reports_[i]});
-  Result<OutputFile> file =
-      options_.junit == "-" ? OutputFile::standard_output() : OutputFile::create(options_.junit);
-  if (!file) return file.error();
-  if (Status status = file->write(junit_text(all, started_, seconds_since(start_))); !status) return status;
-  return file->commit();
+  return write_whole(options_.junit, junit_text(all, started_, seconds_since(start_)));
 }
 
 int Batch::exit_code() const {

@@ -144,17 +144,8 @@ std::optional<Findings> examine(Job& job, const fabric::Fabric& fabric) {
   found.pieces = std::move(*pieces);
   if (found.bodies.empty()) return found;
   found.tolerance = fabric::tolerance_of(fabric, job.build_options());
-  solid::CheckOptions options;
-  options.threads = static_cast<int>(job.threads);
-  options.reach = job.options.reach;
-  options.progress = [&job](std::size_t done, std::size_t total) {
-    job.progress("checking yarn", done, total);
-  };
-  Result<solid::SolidCheck> solids = solid::check_solids(found.bodies, options);
-  if (!solids) {
-    job.say(solids.error());
-    return std::nullopt;
-  }
+  std::optional<solid::SolidCheck> solids = check_of(job, found.bodies);
+  if (!solids) return std::nullopt;
   Result<std::vector<solid::BrepCheck>> breps = solid::check_breps(found.bodies);
   if (!breps) {
     job.say(breps.error());
@@ -172,9 +163,7 @@ Result<formats::WriteFacts> write_gap_map(Job& job, const std::vector<yarn::Body
   solid::GapMapOptions options;
   options.reach = job.options.reach;
   options.threads = static_cast<int>(job.threads);
-  options.progress = [&job](std::size_t done, std::size_t total) {
-    job.progress("mapping gaps, block", done, total);
-  };
+  options.progress = job.progress_of("mapping gaps, block");
   Result<solid::GapMap> map = solid::gap_map(bodies, options);
   if (!map) return map.error();
   const double mm = millimetres_per(job.file_units());

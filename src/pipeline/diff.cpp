@@ -50,7 +50,7 @@ Verdict diff(Job& job) {
   cad::CompareOptions options;
   options.tolerance = job.options.difference_tolerance;
   options.threads = static_cast<int>(job.threads);
-  options.progress = [&](std::size_t done, std::size_t total) { job.progress("comparing", done, total); };
+  options.progress = job.progress_of("comparing");
   const Unit units = a->model.units;
   std::string note;
   if (b->model.units != units) {

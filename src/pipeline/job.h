@@ -76,6 +76,10 @@ class Job {
   void progress(std::string_view verb, std::size_t done, std::size_t total);
   // The same in other words.
   void progress(std::string_view what);
+  // The same for whom it is called back: (done, total).
+  [[nodiscard]] std::function<void(std::size_t, std::size_t)> progress_of(std::string_view verb) {
+    return [this, verb](std::size_t done, std::size_t total) { progress(verb, done, total); };
+  }
 
   // An error, or with --strict a warning, was said.
   [[nodiscard]] bool has_failed() const { return errors_ > 0 || (options.strict && warnings_ > 0); }

@@ -20,6 +20,16 @@ const Descriptor& picture_format() {
   return self;
 }
 
+std::vector<std::string_view> listed(std::string_view names) {
+  std::vector<std::string_view> list;
+  while (!names.empty()) {
+    const std::size_t comma = std::min(names.find(','), names.size());
+    list.push_back(names.substr(0, comma));
+    names.remove_prefix(std::min(comma + 1, names.size()));
+  }
+  return list;
+}
+
 bool can_be_written(const Descriptor& format, Command command) {
   if (command == Command::mesh) return format.write_mesh != nullptr;
   if (command == Command::edit) return format.insert_edit != nullptr;
@@ -35,21 +45,19 @@ std::string_view extension_of_gap_maps() {
 namespace {
 
 std::string writable_names(Command command) {
-  std::string names;
+  std::vector<std::string_view> names;
   for (const Descriptor* format : formats::all_formats())
-    if (can_be_written(*format, command))
-      names += fmt::format("{}{}", names.empty() ? "" : ", ", format->name);
-  return names;
+    if (can_be_written(*format, command)) names.push_back(format->name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::string writable_extensions(Command command) {
   if (command == Command::view) return std::string(picture_format().extensions.front());
-  std::string list;
+  std::vector<std::string_view> list;
   for (const Descriptor* format : formats::all_formats())
     if (can_be_written(*format, command))
-      for (std::string_view extension : format->extensions)
-        list += fmt::format("{}{}", list.empty() ? "" : ", ", extension);
-  return list;
+      list.insert(list.end(), format->extensions.begin(), format->extensions.end());
+  return fmt::format("{}", fmt::join(list, ", "));
 }
 
 Result<const Descriptor*> fitting(const Descriptor& format, Command command) {
@@ -111,13 +119,10 @@ Result<Formats> wanted_formats(const Options& options) {
   if (options.command == Command::view) return picture_formats(options);
   if (Status known = check_extension(options); !known) return known.error();
   Formats wanted;
-  std::string_view rest = options.formats;
-  while (!rest.empty()) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    Result<const Descriptor*> format = named_format(rest.substr(0, comma), options.command);
+  for (const std::string_view name : listed(options.formats)) {
+    Result<const Descriptor*> format = named_format(name, options.command);
     if (!format) return format.error();
     if (std::find(wanted.begin(), wanted.end(), *format) == wanted.end()) wanted.push_back(*format);
-    rest.remove_prefix(std::min(comma + 1, rest.size()));
   }
   if (!wanted.empty()) return wanted;
   if (const Descriptor* told = told_by_output(options)) {

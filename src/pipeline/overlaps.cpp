@@ -56,18 +56,21 @@ void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn
   job.report["creo_absolute_accuracy"] = if_known(creo_accuracy(thinnest, min_gap));
 }
 
-bool check_overlaps(Job& job, std::span<const yarn::Body> bodies,
-                    const std::function<void(Message&)>& finish) {
+std::optional<solid::SolidCheck> check_of(Job& job, std::span<const yarn::Body> bodies) {
   solid::CheckOptions options;
   options.threads = static_cast<int>(job.threads);
-  options.progress = [&job](std::size_t done, std::size_t total) {
-    job.progress("checking yarn", done, total);
-  };
+  options.reach = job.options.reach;
+  options.progress = job.progress_of("checking yarn");
   Result<solid::SolidCheck> check = solid::check_solids(bodies, options);
-  if (!check) {
-    job.say(check.error());
-    return false;
-  }
+  if (check) return std::move(*check);
+  job.say(check.error());
+  return std::nullopt;
+}
+
+bool check_overlaps(Job& job, std::span<const yarn::Body> bodies,
+                    const std::function<void(Message&)>& finish) {
+  const std::optional<solid::SolidCheck> check = check_of(job, bodies);
+  if (!check) return false;
   report_check(job, *check, bodies);
   for (const solid::YarnCheck& yarn : check->yarns) job.say_all(yarn.defects);
   for (const contact::Contact& overlap : check->overlaps) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "pipeline/job.h"
@@ -12,6 +13,9 @@ namespace selvage::pipeline {
 
 // "yarns 'warp1' and 'weft2' overlap 0.013 mm deep", with the place; lengths in the input's unit.
 Message overlap_message(const contact::Contact& overlap, std::span<const yarn::Body> bodies, Unit units);
+
+// Nothing when it failed (it was said why).
+std::optional<solid::SolidCheck> check_of(Job& job, std::span<const yarn::Body> bodies);
 
 // Closedness, self-crossing, overlaps, near contacts where asked for, the smallest gap and Creo's accuracy,
 // as the check found them.

@@ -176,7 +176,7 @@ Likeness Traveller::compare(Reading& back) {
   cad::CompareOptions options;
   options.tolerance = job_.options.difference_tolerance;
   options.threads = static_cast<int>(job_.threads);
-  options.progress = [&](std::size_t done, std::size_t total) { job_.progress("comparing", done, total); };
+  options.progress = job_.progress_of("comparing");
   Likeness likeness;
   std::vector<std::string>& differences = likeness.differences;
   if (back.subject.model.units != units) {
@@ -292,17 +292,13 @@ Result<std::vector<Trip>> wanted_trips(const Options& options) {
   std::vector<Trip> all = all_trips();
   if (options.formats.empty()) return all;
   std::vector<Trip> wanted;
-  std::string_view rest = options.formats;
-  while (!rest.empty()) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    const std::string_view name = rest.substr(0, comma);
+  for (const std::string_view name : listed(options.formats)) {
     const auto found =
         std::find_if(all.begin(), all.end(), [&](const Trip& trip) { return trip.name == name; });
     if (found == all.end())
       return error(Kind::usage, fmt::format("'{}' is no format of surfaces that is both written and read: {}",
                                             name, names_of(all)));
     wanted.push_back(*found);
-    rest.remove_prefix(std::min(comma + 1, rest.size()));
   }
   return wanted;
 }

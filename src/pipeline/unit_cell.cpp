@@ -383,9 +383,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
   contact::ContactOptions options;
   options.reach = std::max(wanted, least_gap_share * thickest);
   options.threads = static_cast<int>(job.threads);
-  options.progress = [&job](std::size_t done, std::size_t total) {
-    job.progress("looking for overlaps", done, total);
-  };
+  options.progress = job.progress_of("looking for overlaps");
   const Result<contact::Contacts> contacts = contact::find_contacts(bodies, options);
   if (!contacts) {
     job.say(contacts.error());

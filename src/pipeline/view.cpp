@@ -15,9 +15,7 @@ view::PictureOptions picture_options(Job& job) {
   options.background = given.background;
   options.flat = given.flat;
   options.threads = static_cast<int>(job.threads);
-  options.progress = [&job](std::size_t done, std::size_t total) {
-    job.progress("drawing tile", done, total);
-  };
+  options.progress = job.progress_of("drawing tile");
   return options;
 }
 
