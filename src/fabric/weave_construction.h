@@ -1,0 +1,136 @@
+// The construction `weave` as its parts know it: weave.cpp (layers, heights, yarns) and weave_binders.cpp.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fabric/build.h"
+#include "fabric/draft.h"
+#include "fabric/interlacing.h"
+#include "fabric/weave.h"
+#include "fabric/weave_fit.h"
+#include "fabric/weave_system.h"
+
+namespace selvage::fabric {
+
+inline Message at_line(Message message, TextPlace place) {
+  if (message.place.line == 0) message.place = place;
+  return message;
+}
+
+// A place on the path of a yarn along the warp, or of a weft.
+inline Vec3 along_warp(double s, double z, double y) {
+  return {s, y, z};
+}
+inline Vec3 along_weft(double s, double z, double x) {
+  return {x, s, z};
+}
+
+// The yarns of one kind and layer, one after the other in the construction's order.
+struct Block {
+  enum class Kind { warp, weft, binder } kind = Kind::warp;
+  int layer = 0;        // from 0; of wefts between straight warps one more than of these
+  std::size_t set = 0;  // binder: which line
+  std::size_t first = 0, count = 0;
+  long long begin = 0;       // the number of its first yarn: below 0 before the cloth's edge
+  std::size_t in_cloth = 0;  // of them, those that the text counts: 0, 1, ...
+};
+
+// Yarns side by side: how many the text counts, where they lie, and how wide they are.
+struct Row {
+  long long count = 0;
+  double first = 0, step = 0;  // across the yarns
+  double width = 0;
+};
+
+// How far yarns of one direction go: from and to, and the crossings that they pass (numbers of the other
+// system).
+struct Reach {
+  double from = 0, to = 0;
+  long long first = 0, last = 0;
+};
+
+class WeaveConstruction final : public Construction {
+ public:
+  WeaveConstruction(const Fabric& fabric, const Weave& weave, const BuildOptions& options, System warp,
+                    System weft);
+
+  // Everything that can go wrong, before any yarn is planned.
+  Status prepare(Diagnostics& diagnostics);
+
+  [[nodiscard]] std::size_t count() const override { return blocks_.back().first + blocks_.back().count; }
+  [[nodiscard]] std::string name(std::size_t index) const override;
+  [[nodiscard]] const Thread& thread(std::size_t index) const override;
+  [[nodiscard]] std::uint64_t data_points() const override { return data_points_; }
+  [[nodiscard]] std::uint64_t longest() const override { return std::max(points_of(false), points_of(true)); }
+  [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
+  [[nodiscard]] Repeat repeat() const override;
+
+ private:
+  struct Place {
+    const Block* block;
+    long long yarn;  // its number: from 0 in the cloth
+  };
+  [[nodiscard]] Place place_of(std::size_t index) const;
+  // Data points of a weft, or of a yarn along the warp.
+  [[nodiscard]] std::uint64_t points_of(bool is_weft) const {
+    const Reach& reach = is_weft ? along_y_ : along_x_;
+    const auto crossings = static_cast<std::uint64_t>(reach.last - reach.first + 3);
+    return is_sine(is_weft) ? points_a_wave * crossings : crossings;
+  }
+  [[nodiscard]] bool is_sine(bool is_weft) const {
+    return !is_straight() && !(is_weft ? weft_bend_ : warp_bend_);
+  }
+  [[nodiscard]] bool is_straight() const { return weave_.profile == Weave::Profile::straight; }
+  [[nodiscard]] int layers() const { return weave_.layers.value_or(1); }
+  void add_block(Block::Kind kind, int layer, std::size_t set, const Row& row);
+  [[nodiscard]] static Row row_of(const System& system) {
+    return {system.text->count, system.at(0.0), system.text->pitch, system.widest};
+  }
+  Status prepare_interlacing(Diagnostics& diagnostics);
+  [[nodiscard]] Result<Heights> fit_heights(Diagnostics& diagnostics);
+  Status prepare_binders(Diagnostics& diagnostics);
+  [[nodiscard]] Status check_binder(const Block& block) const;
+  void warn_of_widths(Diagnostics& diagnostics) const;
+  void warn_of_shared_gaps(Diagnostics& diagnostics) const;
+  void warn(TextPlace place, std::string text, Diagnostics& diagnostics) const;
+  [[nodiscard]] double straight_z(bool is_weft, int layer) const;
+  [[nodiscard]] long long binder_gap(const Binder& binder, long long yarn) const {
+    return binder.first + yarn * binder.every;
+  }
+  [[nodiscard]] Pass binder_pass(std::size_t set, long long column) const;
+  void fit_binder(const Block& block, Diagnostics& diagnostics);
+  [[nodiscard]] double binder_gap_to_wefts(const Block& block) const;
+  [[nodiscard]] long long last_different_column(const Binder& binder) const;
+  // Shifts along the weft and the warp after which binders are the same; above longest_repeat: no repeat of
+  // any cell.
+  static constexpr long long longest_repeat = 1'000'000;  // yarns
+  [[nodiscard]] long long repeat_of_binders() const;
+  [[nodiscard]] long long repeat_of_levels() const;
+  [[nodiscard]] std::vector<Pass> passes_of(const Place& place) const;
+  [[nodiscard]] double layer_shift(int layer) const { return (layer - 0.5 * (layers() - 1)) * layer_pitch_; }
+  Status plan_sine(YarnPlan& plan, const std::vector<Pass>& passes, const Reach& reach, bool is_weft,
+                   double across) const;
+
+  const Fabric& fabric_;
+  const Weave& weave_;
+  bool as_published_ = false;
+  System warp_, weft_;
+  // One a binder line: its thread, and the clearance of its bends from the wefts.
+  std::vector<WovenThread> binders_;
+  std::vector<double> binder_clearances_;
+  double warp_layer_ = 0;  // thickness of a layer of straight warps and what lies between them
+  Reach along_x_, along_y_;
+  Drawdown drawdown_;
+  Heights heights_;
+  std::optional<Bend> warp_bend_, weft_bend_;  // none: sine
+  double clearance_ = 0;                       // between yarns that cross
+  double thinner_ = 0;                         // by which warps and wefts are less thick than their threads
+  double layer_pitch_ = 0;
+  std::vector<Block> blocks_;
+  std::uint64_t data_points_ = 0;
+};
+
+}  // namespace selvage::fabric
