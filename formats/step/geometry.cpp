@@ -82,7 +82,7 @@ std::optional<std::vector<double>> knots_of(const Handle(TColStd_HArray1OfReal) 
   if (values.IsNull() || multiplicities.IsNull() || values->Length() != multiplicities->Length())
     return std::nullopt;
   std::vector<double> knots;
-  const auto count = static_cast<std::size_t>(points + degree + 1);
+  const auto count = static_cast<std::size_t>(points) + static_cast<std::size_t>(degree) + 1;
   for (int i = 0; i < values->Length(); ++i) {
     const int times = multiplicities->Value(multiplicities->Lower() + i);
     const double value = values->Value(values->Lower() + i);
