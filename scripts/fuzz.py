@@ -90,10 +90,11 @@ def main():
     write_seeds(SEEDS, KEPT / chosen.target, seeds, most, corpus)
     length = more[0] if more[0].startswith("-") else f"-max_total_time={more[0]}"
     log = chosen.folder / f"{chosen.target}.log"
+    patience = PATIENCE.get(chosen.target, 20)
     begin = time.monotonic()
     with log.open("w") as output:
         code = subprocess.run([chosen.fuzzer, f"--target={chosen.target}", f"-artifact_prefix={found}/{chosen.target}-",
-                               f"-dict={dictionary}", f"-max_len={most}", f"-timeout={PATIENCE.get(chosen.target, 20)}",
+                               f"-dict={dictionary}", f"-max_len={most}", f"-timeout={patience}", f"-report_slow_units={patience}",
                                "-rss_limit_mb=2500", "-close_fd_mask=1", "-entropic=0",
                                "-print_final_stats=1", length, corpus], stderr=output,
                               env={**os.environ, "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", SANITIZER)}).returncode
