@@ -140,6 +140,7 @@ class Border {
     const std::vector<double> parameters =
         sample_parameters(edge.curve.knots, edge.curve.degree, edge.curve.degree == 1 ? 2 : 12);
     std::vector<Vec3> points;
+    points.reserve(parameters.size());
     for (const double t : parameters) points.push_back(nurbs::evaluate(edge.curve, t));
     if (nurbs::length_of(points) <= tolerance_) return true;
     for (std::size_t i = 0; i < 4; ++i) {
