@@ -16,7 +16,7 @@ class Defects {
  public:
   Defects(const yarn::Body& body, YarnCheck& check) : body_(body), check_(check) {}
 
-  void add(Kind kind, std::string text, std::optional<Vec3> at) {
+  void add(Kind kind, std::string text, const std::optional<Vec3>& at) {
     Message message = error(kind, std::move(text));
     message.yarn = body_.name;
     message.place = body_.place;
