@@ -184,7 +184,9 @@ TEST(Mesher, LimitsAndWrongOptions) {
   EXPECT_EQ(kind({.size = -1}), Kind::usage);
   EXPECT_EQ(kind({.min_dihedral = 75}), Kind::usage);
   EXPECT_EQ(kind({.size = 0.01, .timeout = 0.01}), Kind::limit);
-  if (!sanitized) EXPECT_EQ(kind({.size = 0.02, .memory = 64}), Kind::limit);
+  if (!sanitized) {
+    EXPECT_EQ(kind({.size = 0.02, .memory = 64}), Kind::limit);
+  }
   EXPECT_EQ(mesh_yarns({}, {}, Unit::mm, {}, diagnostics).error().kind, Kind::geometry);
 }
 
