@@ -243,7 +243,7 @@ class GmshCell : public StepCell {
   void fill(const std::string& options) const {
     fs::copy_file(fs::path(places::samples()) / "cell.geo", folder_ / "cell.geo",
                   fs::copy_options::overwrite_existing);
-    const std::string command = "cd '" + folder_.string() + "' && timeout 200 '" + places::gmsh() +
+    const std::string command = "cd '" + folder_.string() + "' && timeout 1200 '" + places::gmsh() +
                                 "' -save " + options + " cell.geo -format msh22 -o cell.msh > log 2>&1";
     ASSERT_EQ(std::system(command.c_str()), 0);
   }
