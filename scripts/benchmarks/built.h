@@ -1,8 +1,6 @@
 // All yarns of a fabric, or the end of the program with what went wrong.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstdlib>
 #include <optional>
 #include <string>
@@ -10,13 +8,9 @@
 #include <vector>
 
 #include "fabric/build.h"
+#include "scripts/benchmarks/measuring.h"
 
 namespace selvage::benchmarks {
-
-[[noreturn]] inline void fail(const std::string& text) {
-  fmt::print(stderr, "error: {}\n", text);
-  std::exit(1);
-}
 
 inline std::vector<yarn::Body> built(const fabric::Fabric& cloth, const fabric::BuildOptions& options) {
   Diagnostics diagnostics;

@@ -3,7 +3,7 @@
 // coordinate rounded to 10 digits, without names and in another order; over other knots (one inserted). One
 // JSON object.
 //
-//   compare [--repeats N] [--yarns N,N,...] [--threads N]
+//   compare [--repeats N] [--sizes N,N,...] [--threads N]
 #include "cad/compare.h"
 
 #include <fmt/format.h>
@@ -12,12 +12,12 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 #include <vector>
 
 #include "cad/from_body.h"
 #include "scripts/benchmarks/cloth.h"
+#include "scripts/benchmarks/measuring.h"
 
 namespace {
 
@@ -81,31 +81,24 @@ double median_seconds(const cad::Subject& a, const cad::Subject& b, double toler
     fmt::print(stderr, "error: {} differences instead of {}\n", found.differences.size(), expected);
     std::exit(1);
   }
-  std::sort(all.begin(), all.end());
-  return all[all.size() / 2];
+  return benchmarks::median(all);
 }
 
 }  // namespace
 
 int main(int count, char** words) {
-  int repeats = 5, threads = 2;
-  std::vector<int> sizes = {1250, 2500, 5000, 10000};
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string word = words[i];
-    if (word == "--repeats") repeats = std::max(1, std::atoi(words[i + 1]));
-    if (word == "--threads") threads = std::max(1, std::atoi(words[i + 1]));
-    if (word != "--yarns") continue;
-    sizes.clear();
-    for (char* part = std::strtok(words[i + 1], ","); part != nullptr; part = std::strtok(nullptr, ","))
-      sizes.push_back(std::max(1, std::atoi(part)));
-  }
+  benchmarks::Arguments given;
+  given.repeats = 5;
+  given.sizes = {1250, 2500, 5000, 10000};
+  given.read(count, words);
+  const int repeats = given.repeats, threads = given.threads;
   std::string rows;
   const auto add = [&](const char* pair, int yarns, double seconds) {
     rows += fmt::format(
         "{}  {{\"pair\": \"{}\", \"yarns\": {}, \"seconds\": {:.4g}, \"microseconds_a_yarn\": {:.4g}}}",
         rows.empty() ? "" : ",\n", pair, yarns, seconds, seconds / yarns * 1e6);
   };
-  for (const int yarns : sizes) {
+  for (const int yarns : given.sizes) {
     const cad::Subject cloth = cloth_of(yarns);
     add("one point moved", yarns, median_seconds(cloth, with_one_change(cloth), 0, threads, repeats, 1));
     add("ten digits, no names", yarns,

@@ -204,21 +204,14 @@ std::string row_of(bool weave, int size, const Settings& settings) {
       beyond, peer.tessellation, peer.seconds(), peer.seconds() / seconds);
 }
 
-std::vector<int> numbers(char* list) {
-  std::vector<int> out;
-  for (char* part = std::strtok(list, ","); part != nullptr; part = std::strtok(nullptr, ","))
-    out.push_back(std::max(2, std::atoi(part)));
-  return out;
-}
-
 }  // namespace
 
 int main(int count, char** words) {
   Settings settings;
   for (int i = 1; i + 1 < count; i += 2) {
     const std::string word = words[i];
-    if (word == "--jersey") settings.jersey = numbers(words[i + 1]);
-    if (word == "--weave") settings.weave = numbers(words[i + 1]);
+    if (word == "--jersey") settings.jersey = benchmarks::numbers_in(words[i + 1]);
+    if (word == "--weave") settings.weave = benchmarks::numbers_in(words[i + 1]);
     if (word == "--threads") settings.threads = std::max(1, std::atoi(words[i + 1]));
     if (word == "--repeats") settings.repeats = std::max(1, std::atoi(words[i + 1]));
     if (word == "--peer-limit") settings.peer_limit = std::max(0.0, std::atof(words[i + 1]));

@@ -3,10 +3,8 @@
 // the same file, which is in the system's cache; medians of several repeats; one JSON object to standard
 // output.
 //
-//   iges_read [--repeats N] [--yarns N,N,...] [--folder DIR] [--no-occt]
+//   iges_read [--repeats N] [--sizes N,N,...] [--folder DIR] [--no-occt]
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <IGESControl_Controller.hxx>
@@ -18,7 +16,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,17 +23,15 @@
 #include "core/source.h"
 #include "formats/iges/iges.h"
 #include "scripts/benchmarks/cloth.h"
+#include "scripts/benchmarks/measuring.h"
 
 namespace {
 
 using namespace selvage;
 using benchmarks::Cloth;
+using benchmarks::fail;
+using benchmarks::measure;
 using Clock = std::chrono::steady_clock;
-
-[[noreturn]] void fail(const std::string& text) {
-  fmt::print(stderr, "error: {}\n", text);
-  std::exit(1);
-}
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -48,6 +43,7 @@ struct Outcome {
   double checksum = 0;
   std::uint64_t surfaces = 0;
 };
+using Measured = benchmarks::Measured<Outcome>;
 
 Outcome ours(const std::string& path) {
   Outcome outcome;
@@ -102,58 +98,6 @@ Outcome occt(const std::string& path) {
   return outcome;
 }
 
-struct Measured {
-  Outcome outcome;
-  double peak_mib = 0;  // growth of the largest resident set over that of the process before the job
-};
-
-long peak_kib() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss;
-}
-
-// In a process of its own, so that the peak memory is this job's; on a small file first, since starting up is
-// no reading.
-Measured measure(const std::function<Outcome(const std::string&)>& run, const std::string& small,
-                 const std::string& path) {
-  int ends[2];
-  if (::pipe(ends) != 0) fail("pipe");
-  const pid_t child = ::fork();
-  if (child == 0) {
-    run(small);
-    const long before = peak_kib();
-    Measured measured{run(path), 0};
-    measured.peak_mib = static_cast<double>(peak_kib() - before) / 1024;
-    const bool sent = ::write(ends[1], &measured, sizeof measured) == sizeof measured;
-    ::_exit(sent ? 0 : 1);
-  }
-  ::close(ends[1]);
-  Measured measured;
-  const bool got = ::read(ends[0], &measured, sizeof measured) == sizeof measured;
-  ::close(ends[0]);
-  int state = 0;
-  ::waitpid(child, &state, 0);
-  if (!got || state != 0) fail("a job of the benchmark failed");
-  return measured;
-}
-
-Measured median(std::vector<Measured> all) {
-  std::sort(all.begin(), all.end(),
-            [](const Measured& a, const Measured& b) { return a.outcome.seconds < b.outcome.seconds; });
-  return all[all.size() / 2];
-}
-
-// The median of the ratios of time of neighbouring runs: what else the machine does changes slowly against
-// them.
-double median_ratio(const std::vector<Measured>& above, const std::vector<Measured>& below) {
-  std::vector<double> ratios;
-  for (std::size_t r = 0; r < std::min(above.size(), below.size()); ++r)
-    ratios.push_back(above[r].outcome.seconds / below[r].outcome.seconds);
-  std::sort(ratios.begin(), ratios.end());
-  return ratios[ratios.size() / 2];
-}
-
 std::uint64_t write_file(const std::string& path, int yarns) {
   Result<OutputFile> output = OutputFile::create(path);
   if (!output) fail(to_string(output.error()));
@@ -182,52 +126,30 @@ std::string row(std::string_view reader, int yarns, std::uint64_t bytes, const M
 }  // namespace
 
 int main(int count, char** words) {
-  int repeats = 9;
-  std::vector<int> sizes = {8, 64, 512, 2048};
-  std::string folder = ".";
-  bool with_occt = true;
-  for (int i = 1; i < count; ++i) {
-    const std::string word = words[i];
-    if (word == "--no-occt") {
-      with_occt = false;
-      continue;
-    }
-    if (i + 1 == count) fail("a value is missing after " + word);
-    const char* value = words[++i];
-    if (word == "--repeats") {
-      repeats = std::max(1, std::atoi(value));
-    } else if (word == "--folder") {
-      folder = value;
-    } else if (word == "--yarns") {
-      sizes.clear();
-      for (char* part = std::strtok(words[i], ","); part != nullptr; part = std::strtok(nullptr, ","))
-        sizes.push_back(std::max(1, std::atoi(part)));
-    } else {
-      fail("unknown word " + word);
-    }
-  }
+  benchmarks::Arguments given;
+  given.read(count, words);
   ::Message::DefaultMessenger()->ChangePrinters().Clear();
 
-  const std::string path = fmt::format("{}/selvage-bench-{}.igs", folder, ::getpid());
-  const std::string small = fmt::format("{}/selvage-bench-{}-small.igs", folder, ::getpid());
+  const std::string path = fmt::format("{}/selvage-bench-{}.igs", given.folder, ::getpid());
+  const std::string small = fmt::format("{}/selvage-bench-{}-small.igs", given.folder, ::getpid());
   write_file(small, 8);
   std::vector<std::string> rows;
-  for (const int yarns : sizes) {
+  for (const int yarns : given.sizes) {
     const std::uint64_t bytes = write_file(path, yarns);
     std::vector<Measured> a, b, c;
     measure(ours, small, path);  // warm-up
-    for (int r = 0; r < repeats; ++r) {
+    for (int r = 0; r < given.repeats; ++r) {
       a.push_back(measure(ours, small, path));
       b.push_back(measure(bare, small, path));
-      if (with_occt && (r < 5 || yarns <= 64)) c.push_back(measure(occt, small, path));
+      if (given.is_occt_repeated(r, yarns)) c.push_back(measure(occt, small, path));
     }
     const Measured own = median(a);
     if (own.outcome.surfaces != 3 * static_cast<std::uint64_t>(yarns)) fail("not all surfaces were read");
     std::string ratios = fmt::format(R"(, "time_to_bare_loop": {:.3f})", median_ratio(a, b));
-    if (with_occt) ratios += fmt::format(R"(, "times_occt": {:.1f})", median_ratio(c, a));
+    if (given.with_occt) ratios += fmt::format(R"(, "times_occt": {:.1f})", median_ratio(c, a));
     rows.push_back(row("selvage", yarns, bytes, own, ratios));
     rows.push_back(row("bare loop", yarns, bytes, median(b)));
-    if (with_occt) {
+    if (given.with_occt) {
       const Measured other = median(c);
       rows.push_back(row("OpenCASCADE", yarns, bytes, other,
                          fmt::format(R"(, "parsing_seconds": {:.6g})", other.outcome.parsing)));
@@ -235,11 +157,6 @@ int main(int count, char** words) {
   }
   ::unlink(path.c_str());
   ::unlink(small.c_str());
-  std::string all;
-  for (const std::string& text : rows) all += (all.empty() ? "" : ",\n") + text;
-  fmt::print(
-      "{{\"benchmark\": \"iges_read\", \"control_points\": [18, 16], \"repeats\": {}, \"rows\": "
-      "[\n{}\n]}}\n",
-      repeats, all);
+  benchmarks::print_rows("iges_read", "\"control_points\": [18, 16], ", given.repeats, rows);
   return 0;
 }

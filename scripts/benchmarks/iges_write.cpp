@@ -3,10 +3,8 @@
 // repeats; one JSON object to standard output. Yarns are made on the fly, one at a time, so that the memory
 // seen is the writers' own.
 //
-//   iges_write [--repeats N] [--yarns N,N,...] [--folder DIR] [--no-occt]
+//   iges_write [--repeats N] [--sizes N,N,...] [--folder DIR] [--no-occt]
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <BRepBuilderAPI_MakeFace.hxx>
@@ -27,8 +25,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
-#include <functional>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -37,11 +33,14 @@
 #include "core/number_text.h"
 #include "formats/iges/iges.h"
 #include "scripts/benchmarks/cloth.h"
+#include "scripts/benchmarks/measuring.h"
 
 namespace {
 
 using namespace selvage;
 using benchmarks::Cloth;
+using benchmarks::fail;
+using benchmarks::measure;
 
 std::uint64_t doubles_of(const nurbs::Surface& s) {
   return s.knots_u.size() + s.knots_v.size() + 4 * s.points.size() + 4;
@@ -50,10 +49,6 @@ std::uint64_t doubles_of(const yarn::Body& body) {
   return doubles_of(body.surface) + doubles_of(body.start.surface) + doubles_of(body.end.surface);
 }
 
-[[noreturn]] void fail(const std::string& text) {
-  fmt::print(stderr, "error: {}\n", text);
-  std::exit(1);
-}
 void require(const Status& status) {
   if (!status.ok()) fail(to_string(status.error()));
 }
@@ -80,6 +75,7 @@ struct Outcome {
   double seconds = 0;
   std::uint64_t bytes = 0, doubles = 0;
 };
+using Measured = benchmarks::Measured<Outcome>;
 
 Outcome ours(const Job& job) {
   Cloth cloth;
@@ -218,57 +214,6 @@ Outcome occt(const Job& job) {
   return outcome;
 }
 
-struct Measured {
-  Outcome outcome;
-  double peak_mib = 0;  // growth of the largest resident set over that of the process before the job
-};
-
-long peak_kib() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss;
-}
-
-// In a process of its own, so that the peak memory is this job's.
-Measured measure(const std::function<Outcome(const Job&)>& run, const Job& job) {
-  int ends[2];
-  if (::pipe(ends) != 0) fail("pipe");
-  const pid_t child = ::fork();
-  if (child == 0) {
-    const long before = peak_kib();
-    run({std::min(job.yarns, 8),
-         job.path});  // code and tables are in memory afterwards: starting up is not writing
-    Measured measured{run(job), 0};
-    measured.peak_mib = static_cast<double>(peak_kib() - before) / 1024;
-    const bool sent = ::write(ends[1], &measured, sizeof measured) == sizeof measured;
-    ::_exit(sent ? 0 : 1);
-  }
-  ::close(ends[1]);
-  Measured measured;
-  const bool got = ::read(ends[0], &measured, sizeof measured) == sizeof measured;
-  ::close(ends[0]);
-  int state = 0;
-  ::waitpid(child, &state, 0);
-  if (!got || state != 0) fail("a job of the benchmark failed");
-  return measured;
-}
-
-Measured median(std::vector<Measured> all) {
-  std::sort(all.begin(), all.end(),
-            [](const Measured& a, const Measured& b) { return a.outcome.seconds < b.outcome.seconds; });
-  return all[all.size() / 2];
-}
-
-// The median of the ratios of time of neighbouring runs: what else the machine does changes slowly against
-// them.
-double median_ratio(const std::vector<Measured>& above, const std::vector<Measured>& below) {
-  std::vector<double> ratios;
-  for (std::size_t r = 0; r < std::min(above.size(), below.size()); ++r)
-    ratios.push_back(above[r].outcome.seconds / below[r].outcome.seconds);
-  std::sort(ratios.begin(), ratios.end());
-  return ratios[ratios.size() / 2];
-}
-
 std::string row(std::string_view writer, int yarns, const Measured& m, const std::string& ratios = {}) {
   const double s = m.outcome.seconds;
   return fmt::format(
@@ -281,53 +226,27 @@ std::string row(std::string_view writer, int yarns, const Measured& m, const std
 }  // namespace
 
 int main(int count, char** words) {
-  int repeats = 9;
-  std::vector<int> sizes = {8, 64, 512, 2048};
-  std::string folder = ".";
-  bool with_occt = true;
-  for (int i = 1; i < count; ++i) {
-    const std::string word = words[i];
-    if (word == "--no-occt") {
-      with_occt = false;
-      continue;
-    }
-    if (i + 1 == count) fail("a value is missing after " + word);
-    const char* value = words[++i];
-    if (word == "--repeats") {
-      repeats = std::max(1, std::atoi(value));
-    } else if (word == "--folder") {
-      folder = value;
-    } else if (word == "--yarns") {
-      sizes.clear();
-      for (char* part = std::strtok(words[i], ","); part != nullptr; part = std::strtok(nullptr, ","))
-        sizes.push_back(std::max(1, std::atoi(part)));
-    } else {
-      fail("unknown word " + word);
-    }
-  }
+  benchmarks::Arguments given;
+  given.read(count, words);
   ::Message::DefaultMessenger()->ChangePrinters().Clear();
 
   std::vector<std::string> rows;
-  for (const int yarns : sizes) {
-    const Job job{yarns, fmt::format("{}/selvage-bench-{}.igs", folder, ::getpid())};
+  for (const int yarns : given.sizes) {
+    const Job job{yarns, fmt::format("{}/selvage-bench-{}.igs", given.folder, ::getpid())};
+    const Job small{std::min(yarns, 8), job.path};
     std::vector<Measured> a, b, c;
-    measure(ours, job);  // warm-up
-    for (int r = 0; r < repeats; ++r) {
-      a.push_back(measure(ours, job));
-      b.push_back(measure(bare, job));
-      if (with_occt && (r < 5 || yarns <= 64)) c.push_back(measure(occt, job));
+    measure(ours, small, job);  // warm-up
+    for (int r = 0; r < given.repeats; ++r) {
+      a.push_back(measure(ours, small, job));
+      b.push_back(measure(bare, small, job));
+      if (given.is_occt_repeated(r, yarns)) c.push_back(measure(occt, small, job));
     }
     std::string ratios = fmt::format(R"(, "time_to_bare_loop": {:.3f})", median_ratio(a, b));
-    if (with_occt) ratios += fmt::format(R"(, "times_occt": {:.1f})", median_ratio(c, a));
+    if (given.with_occt) ratios += fmt::format(R"(, "times_occt": {:.1f})", median_ratio(c, a));
     rows.push_back(row("selvage", yarns, median(a), ratios));
     rows.push_back(row("bare loop", yarns, median(b)));
-    if (with_occt) rows.push_back(row("OpenCASCADE", yarns, median(c)));
+    if (given.with_occt) rows.push_back(row("OpenCASCADE", yarns, median(c)));
   }
-  std::string all;
-  for (const std::string& text : rows) all += (all.empty() ? "" : ",\n") + text;
-  fmt::print(
-      "{{\"benchmark\": \"iges_write\", \"control_points\": [18, 16], \"repeats\": {}, \"rows\": "
-      "[\n{}\n]}}\n",
-      repeats, all);
+  benchmarks::print_rows("iges_write", "\"control_points\": [18, 16], ", given.repeats, rows);
   return 0;
 }

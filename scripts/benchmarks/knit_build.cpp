@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,15 +21,13 @@
 #include "formats/iges/iges.h"
 #include "nurbs/basis.h"
 #include "nurbs/interpolate.h"
+#include "scripts/benchmarks/measuring.h"
 
 namespace {
 
 using namespace selvage;
-
-[[noreturn]] void fail(const std::string& text) {
-  fmt::print(stderr, "error: {}\n", text);
-  std::exit(1);
-}
+using benchmarks::fail;
+using benchmarks::median;
 
 template <class T>
 T required(Result<T> result) {
@@ -66,11 +63,6 @@ double seconds(Work work) {
   const auto from = std::chrono::steady_clock::now();
   work();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 // From the text's model to every centre line; the builder is made anew each time.
@@ -132,31 +124,6 @@ Tubes tubes(const fabric::Fabric& cloth, int size, const std::string& path) {
   return measured;
 }
 
-struct Options {
-  int repeats = 15;
-  std::vector<int> sizes = {50, 158, 500};
-  std::string folder = ".";
-};
-
-Options options_of(int count, char** words) {
-  Options options;
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string word = words[i];
-    if (word == "--repeats") {
-      options.repeats = std::max(1, std::atoi(words[i + 1]));
-    } else if (word == "--folder") {
-      options.folder = words[i + 1];
-    } else if (word == "--sizes") {
-      options.sizes.clear();
-      for (char* part = std::strtok(words[i + 1], ","); part != nullptr; part = std::strtok(nullptr, ","))
-        options.sizes.push_back(std::max(1, std::atoi(part)));
-    } else {
-      fail("unknown word " + word);
-    }
-  }
-  return options;
-}
-
 // Medians of runs in turns: ours, and the peer on the same data points and parameters.
 std::string line_row(std::string_view name, nurbs::Parameterization method, int size, int repeats) {
   const fabric::Fabric cloth = jersey(size, method);
@@ -187,15 +154,18 @@ std::string joined(const std::vector<std::string>& rows) {
 }  // namespace
 
 int main(int count, char** words) {
-  const Options options = options_of(count, words);
+  benchmarks::Arguments given;
+  given.repeats = 15;
+  given.sizes = {50, 158, 500};
+  given.read(count, words);
   using Method = nurbs::Parameterization;
   const std::vector<std::pair<std::string_view, Method>> methods = {
       {"uniform", Method::uniform}, {"chord", Method::chord}, {"centripetal", Method::centripetal}};
   std::vector<std::string> lines, bodies;
-  for (const int size : options.sizes) {
-    const int repeats = size > 200 ? std::max(1, options.repeats / 5) : options.repeats;
+  for (const int size : given.sizes) {
+    const int repeats = size > 200 ? std::max(1, given.repeats / 5) : given.repeats;
     for (const auto& [name, method] : methods) lines.push_back(line_row(name, method, size, repeats));
-    const std::string path = fmt::format("{}/selvage-knit-{}.igs", options.folder, ::getpid());
+    const std::string path = fmt::format("{}/selvage-knit-{}.igs", given.folder, ::getpid());
     const Tubes measured = tubes(jersey(size, Method::chord), size, path);
     bodies.push_back(fmt::format(
         R"(  {{"size": {}, "loops": {}, "tube_seconds": {:.6g}, "tube_seconds_a_loop": {:.6g}, "iges_seconds": {:.6g}, "iges_seconds_a_loop": {:.6g}, "bytes": {}}})",

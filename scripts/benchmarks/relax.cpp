@@ -6,13 +6,11 @@
 #include "contact/relax.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -48,28 +46,19 @@ double largest(const std::vector<contact::YarnChange>& changes, double contact::
 }  // namespace
 
 int main(int count, char** words) {
-  int threads = 2;
-  std::vector<int> sizes = {6, 12, 25, 50};
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string word = words[i];
-    if (word == "--threads") threads = std::max(1, std::atoi(words[i + 1]));
-    if (word != "--sizes") continue;
-    sizes.clear();
-    for (char* part = std::strtok(words[i + 1], ","); part != nullptr; part = std::strtok(nullptr, ","))
-      sizes.push_back(std::max(1, std::atoi(part)));
-  }
+  benchmarks::Arguments given;
+  given.sizes = {6, 12, 25, 50};
+  given.read(count, words);
   std::string rows;
-  for (const int size : sizes) {
+  for (const int size : given.sizes) {
     std::vector<yarn::Body> bodies = published_jersey(size);
     contact::RelaxOptions options;
-    options.threads = threads;
+    options.threads = given.threads;
     const auto begin = std::chrono::steady_clock::now();
     const Result<contact::Relaxation> relaxed = contact::relax(std::move(bodies), options);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (!relaxed) fail(to_string(relaxed.error()));
     if (!relaxed->solved || relaxed->after.overlaps > 0) fail("not solved: " + relaxed->reason);
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
     rows += fmt::format(
         "{}  {{\"size\": {}, \"seconds\": {:.4g}, \"milliseconds_a_loop\": {:.4g}, \"steps\": {}, "
         "\"overlaps\": {}, "
@@ -80,8 +69,8 @@ int main(int count, char** words) {
         largest(relaxed->changes, &contact::YarnChange::area),
         largest(relaxed->changes, &contact::YarnChange::length),
         largest(relaxed->changes, &contact::YarnChange::volume),
-        static_cast<double>(usage.ru_maxrss) / 1024.0);
+        static_cast<double>(benchmarks::peak_kib()) / 1024.0);
   }
-  fmt::print("{{\"benchmark\": \"relax\", \"threads\": {}, \"rows\": [\n{}\n]}}\n", threads, rows);
+  fmt::print("{{\"benchmark\": \"relax\", \"threads\": {}, \"rows\": [\n{}\n]}}\n", given.threads, rows);
   return 0;
 }

@@ -46,7 +46,7 @@ def table(heads, rows):
 
 
 def iges_write(bin_folder, folder, quick):
-    command = [f"{bin_folder}/iges_write", "--folder", folder] + (["--repeats", "3", "--yarns", "8,64"] if quick else [])
+    command = [f"{bin_folder}/iges_write", "--folder", folder] + (["--repeats", "3", "--sizes", "8,64"] if quick else [])
     rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
     number = lambda row, key, form: format(row[key], form) if key in row else ""
     return table(
@@ -57,7 +57,7 @@ def iges_write(bin_folder, folder, quick):
 
 
 def iges_read(bin_folder, folder, quick):
-    command = [f"{bin_folder}/iges_read", "--folder", folder] + (["--repeats", "3", "--yarns", "8,64"] if quick else [])
+    command = [f"{bin_folder}/iges_read", "--folder", folder] + (["--repeats", "3", "--sizes", "8,64"] if quick else [])
     rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
     number = lambda row, key, form, factor=1: format(factor * row[key], form) if key in row else ""
     return table(
@@ -86,11 +86,11 @@ def whole_process(bin_folder, folder, quick):
 
 def step_write(bin_folder, folder, quick):
     command = [f"{bin_folder}/step_write", "--folder", folder] + (["--repeats", "1"] if quick else [])
-    command += ["--yarns", "64,512" if quick else "64,512,2048"]
+    command += ["--sizes", "64,512" if quick else "64,512,2048"]
     rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
-    return table(["yarns", "s", "ms a yarn", "MB", "peak memory, MiB"],
+    return table(["yarns", "s", "ms a yarn", "MB", "memory, MiB"],
                  [[str(row["yarns"]), f"{row['seconds']:.2f}", f"{1e3 * row['seconds'] / row['yarns']:.2f}",
-                   f"{row['bytes'] / 1e6:.1f}", f"{row['peak_rss_mib']:.0f}"] for row in rows])
+                   f"{row['bytes'] / 1e6:.1f}", f"{row['peak_rss_growth_mib']:.0f}"] for row in rows])
 
 
 # Chang et al. (methods.md, 1): mean time of one drawing of the centre lines of 50 x 50 loops, s. On their machine, with its
@@ -120,7 +120,7 @@ def knit_build(bin_folder, folder, quick):
 
 
 def compare(bin_folder, folder, quick):
-    command = [f"{bin_folder}/compare"] + (["--repeats", "1", "--yarns", "125,250,500,1000"] if quick else [])
+    command = [f"{bin_folder}/compare"] + (["--repeats", "1", "--sizes", "125,250,500,1000"] if quick else [])
     rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
     first = {row["pair"]: row["microseconds_a_yarn"] for row in reversed(rows)}
     return table(["pair", "yarns", "s", "us a yarn", "to the first"],
