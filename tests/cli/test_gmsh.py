@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import unittest
 
+import gmsh_mesh
 from program import Case, GRID, PATH, RING
 
 GMSH = os.environ.get("SELVAGE_GMSH") or shutil.which("gmsh")
@@ -19,27 +20,14 @@ SEW = ["-setnumber", "Geometry.OCCSewFaces", "1", "-setnumber", "Geometry.OCCMak
 
 
 def tetrahedra_by_volume(path):
-    """{volume: (tetrahedra, their volume)} of a Gmsh 2 file."""
-    nodes, found = {}, {}
-    with open(path) as file:
-        lines = iter(file)
-        for line in lines:
-            if line.startswith("$Nodes"):
-                for _ in range(int(next(lines))):
-                    number, *xyz = next(lines).split()
-                    nodes[number] = tuple(map(float, xyz))
-            elif line.startswith("$Elements"):
-                for _ in range(int(next(lines))):
-                    words = next(lines).split()
-                    if words[1] != "4":
-                        continue
-                    tags = int(words[2])
-                    a, b, c, d = (nodes[n] for n in words[3 + tags:7 + tags])
-                    u, v, w = ([q[k] - a[k] for k in range(3)] for q in (b, c, d))
-                    six = (u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0])
-                           + u[2] * (v[0] * w[1] - v[1] * w[0]))
-                    count, volume = found.get(words[4], (0, 0.0))
-                    found[words[4]] = (count + 1, volume + six / 6)
+    """{volume: (tetrahedra, their volume)} of a mesh."""
+    found = {}
+    for entity, (a, b, c, d) in gmsh_mesh.elements(path, gmsh_mesh.TETRAHEDRON):
+        u, v, w = ([q[k] - a[k] for k in range(3)] for q in (b, c, d))
+        six = (u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0])
+               + u[2] * (v[0] * w[1] - v[1] * w[0]))
+        count, volume = found.get(entity, (0, 0.0))
+        found[entity] = (count + 1, volume + six / 6)
     return found
 
 

@@ -11,6 +11,7 @@ import sys
 import unittest
 import xml.etree.ElementTree
 
+import gmsh_mesh
 from program import Case, PATH, ROOT, SAMPLES
 
 GMSH = os.environ.get("SELVAGE_GMSH") or shutil.which("gmsh")
@@ -71,22 +72,10 @@ def area_of(points):
 
 
 def triangles(mesh):
-    """Number and area of the triangles of a gmsh mesh (format 2)."""
-    nodes, count, area = {}, 0, 0.0
-    lines = iter(mesh.read_text().splitlines())
-    for line in lines:
-        if line.startswith("$Nodes"):
-            for _ in range(int(next(lines))):
-                number, *xyz = next(lines).split()
-                nodes[number] = tuple(map(float, xyz))
-        elif line.startswith("$Elements"):
-            for _ in range(int(next(lines))):
-                words = next(lines).split()
-                if words[1] == "2":
-                    a, b, c = (nodes[n] for n in words[-3:])
-                    area += ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2
-                    count += 1
-    return count, area
+    """Number and area of the triangles of a mesh."""
+    areas = [((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2
+             for _, (a, b, c) in gmsh_mesh.elements(mesh, gmsh_mesh.TRIANGLE)]
+    return len(areas), sum(areas)
 
 
 class Pieces(Case):

@@ -7,9 +7,12 @@
 #include <sstream>
 
 #include "formats/dxf/tags.h"
+#include "shapes.h"
 
 namespace selvage::formats::dxf {
 namespace {
+
+using test::line;
 
 TEST(Dxf, StringValues) {
   EXPECT_EQ(string_value("back 1"), "back 1");
@@ -28,14 +31,6 @@ TEST(Dxf, TagsToTheLetter) {
                                                                                                       0.1);
   EXPECT_EQ(tags.bytes(), "  0\nLINE\n  5\nFF\n 70\n8\n 40\n25.0\n 40\n0.0\n 42\n1e-10\n 40\n0.1\n");
   EXPECT_EQ(Tags().point(210, Vec3::UnitZ()).bytes(), "210\n0.0\n220\n0.0\n230\n1.0\n");
-}
-
-nurbs::Curve line(const Vec3& a, const Vec3& b) {
-  nurbs::Curve curve;
-  curve.degree = 1;
-  curve.knots = {0, 0, 1, 1};
-  curve.points = {a, b};
-  return curve;
 }
 
 fabric::PieceShape triangle(const std::string& name) {

@@ -11,21 +11,11 @@
 #include "formats/iges/bodies.h"
 #include "formats/iges/files.h"
 #include "formats/iges/reading.h"
+#include "shapes.h"
 
 namespace selvage::test {
 
 namespace {
-
-void expect_same_bits(const nurbs::Surface& a, const nurbs::Surface& b) {
-  EXPECT_EQ(a.degree_u, b.degree_u);
-  EXPECT_EQ(a.degree_v, b.degree_v);
-  EXPECT_EQ(a.count_u, b.count_u);
-  EXPECT_EQ(a.count_v, b.count_v);
-  EXPECT_EQ(a.knots_u, b.knots_u);
-  EXPECT_EQ(a.knots_v, b.knots_v);
-  EXPECT_EQ(a.points, b.points);
-  EXPECT_EQ(a.weights, b.weights);
-}
 
 TEST(IgesReader, OwnYarnsComeBackBitForBit) {
   Wave rational;

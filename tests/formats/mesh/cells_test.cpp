@@ -1,7 +1,7 @@
 // The formats of a unit cell's mesh, read by other programs and by parsers of the documented layouts.
 #include <map>
 
-#include "fabric/build.h"
+#include "built.h"
 #include "fem/cell_mesher.h"
 #include "fem/contact_surfaces.h"
 #include "formats/bdf/bdf.h"
@@ -107,14 +107,7 @@ TEST(CellDecks, EveryNumberOfAPlainWeave) {
   Diagnostics diagnostics;
   const auto fabric = formats::txt::descriptor().read_fabric(*source, diagnostics);
   ASSERT_TRUE(fabric);
-  const auto builder = fabric::YarnBuilder::create(*fabric, {}, diagnostics);
-  ASSERT_TRUE(builder);
-  std::vector<yarn::Body> bodies;
-  for (std::size_t i = 0; i < builder->count(); ++i) {
-    Result<yarn::Body> body = builder->build(i);
-    ASSERT_TRUE(body.ok());
-    bodies.push_back(std::move(*body));
-  }
+  const std::vector<yarn::Body> bodies = test::built(*fabric);
   fem::CellMeshOptions options;
   options.size = 0.3;
   options.periodic = {true, true, false};

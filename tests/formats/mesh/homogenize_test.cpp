@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "fabric/build.h"
+#include "built.h"
 #include "fem/cell_mesher.h"
 #include "fem/complete_cell.h"
 #include "fem/faces.h"
@@ -45,11 +45,7 @@ fem::Mesh cell_mesh(const std::string& text, const Wanted& wanted) {
       formats::txt::descriptor().read_fabric(Source::from_memory(text, "cell.txt"), diagnostics);
   EXPECT_TRUE(fabric.has_value());
   if (!fabric) return {};
-  const auto builder = fabric::YarnBuilder::create(*fabric, {}, diagnostics);
-  EXPECT_TRUE(builder.has_value());
-  if (!builder) return {};
-  std::vector<yarn::Body> bodies;
-  for (std::size_t i = 0; i < builder->count(); ++i) bodies.push_back(builder->build(i).value());
+  const std::vector<yarn::Body> bodies = test::built(*fabric);
   const std::array<bool, 3> periodic = {fabric->cell->periodic_x, fabric->cell->periodic_y,
                                         fabric->cell->periodic_z};
   fem::CellMeshOptions options{{.size = wanted.size, .order = wanted.order}};

@@ -12,10 +12,10 @@
 #include <numbers>
 #include <set>
 
+#include "built.h"
 #include "cell/cad_parts.h"
 #include "cell/volume.h"
 #include "core/source.h"
-#include "fabric/build.h"
 #include "formats/step/step.h"
 #include "formats/txt/txt.h"
 #include "nurbs/spline.h"
@@ -48,13 +48,7 @@ BuiltCell build(const std::string& name, double gap = 0) {
   built.box = Box3(fabric->cell->low, fabric->cell->high);
   fabric::BuildOptions options;
   options.gap = gap * fabric::smallest_section(*fabric).value_or(0);
-  const std::optional<fabric::YarnBuilder> builder =
-      fabric::YarnBuilder::create(*fabric, options, diagnostics);
-  for (std::size_t i = 0; builder && i < builder->count(); ++i) {
-    Result<yarn::Body> body = builder->build(i);
-    EXPECT_TRUE(body.ok());
-    if (body) built.bodies.push_back(std::move(*body));
-  }
+  built.bodies = test::built(*fabric, options);
   Result<cell::Cut> cut =
       cell::cut(built.bodies, built.box, {.tolerance = fabric::tolerance_of(*fabric, options)});
   EXPECT_TRUE(cut.ok()) << to_string(cut.error());

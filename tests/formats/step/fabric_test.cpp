@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "fabric/build.h"
+#include "built.h"
 #include "formats/step/step.h"
 #include "formats/txt/txt.h"
 #include "places.h"
@@ -20,22 +20,12 @@ using yarn::EndStyle;
 namespace fs = std::filesystem;
 
 std::vector<yarn::Body> build(const Source& source, EndStyle ends) {
-  std::vector<yarn::Body> bodies;
   Diagnostics diagnostics;
   const std::optional<fabric::Fabric> fabric = formats::txt::descriptor().read_fabric(source, diagnostics);
+  EXPECT_TRUE(fabric.has_value());
   fabric::BuildOptions options;
   options.ends = ends;
-  std::optional<fabric::YarnBuilder> builder;
-  if (fabric) builder = fabric::YarnBuilder::create(*fabric, options, diagnostics);
-  EXPECT_TRUE(builder.has_value());
-  for (const Message& message : diagnostics.messages())
-    EXPECT_NE(message.severity, Severity::error) << to_string(message);
-  for (std::size_t i = 0; builder && i < builder->count(); ++i) {
-    Result<yarn::Body> body = builder->build(i);
-    EXPECT_TRUE(body.ok()) << to_string(body.error());
-    if (body.ok()) bodies.push_back(std::move(*body));
-  }
-  return bodies;
+  return fabric ? test::built(*fabric, options) : std::vector<yarn::Body>{};
 }
 
 void expect_valid(const std::vector<yarn::Body>& bodies) {

@@ -30,8 +30,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "built.h"
 #include "cad/judge.h"
-#include "fabric/build.h"
 #include "fabric/from_cad.h"
 #include "formats/iges/iges.h"
 #include "formats/step/step.h"
@@ -61,32 +61,16 @@ class Folder {
   fs::path path_;
 };
 
-std::vector<yarn::Body> built(const fabric::Fabric& fabric, std::optional<yarn::EndStyle> ends = {},
-                              bool as_published = false) {
-  std::vector<yarn::Body> bodies;
-  Diagnostics diagnostics;
-  fabric::BuildOptions options;
-  options.ends = ends;
-  options.as_published = as_published;
-  auto builder = fabric::YarnBuilder::create(fabric, options, diagnostics);
-  EXPECT_TRUE(builder.has_value());
-  for (const Message& message : diagnostics.messages())
-    EXPECT_NE(message.severity, Severity::error) << to_string(message);
-  for (std::size_t i = 0; builder && i < builder->count(); ++i) {
-    Result<yarn::Body> body = builder->build(i);
-    EXPECT_TRUE(body.ok()) << to_string(body.error());
-    if (body) bodies.push_back(std::move(*body));
-  }
-  return bodies;
-}
-
 std::vector<yarn::Body> bodies_of(const Source& source, std::optional<yarn::EndStyle> ends = {},
                                   bool as_published = false) {
   Diagnostics diagnostics;
   const auto fabric = formats::txt::descriptor().read_fabric(source, diagnostics);
   for (const Message& message : diagnostics.messages())
     EXPECT_NE(message.severity, Severity::error) << to_string(message);
-  return fabric ? built(*fabric, ends, as_published) : std::vector<yarn::Body>{};
+  fabric::BuildOptions options;
+  options.ends = ends;
+  options.as_published = as_published;
+  return fabric ? test::built(*fabric, options) : std::vector<yarn::Body>{};
 }
 
 std::vector<yarn::Body> sample(const std::string& name, const std::string& tolerance) {
@@ -173,7 +157,7 @@ Reading read(const Descriptor& format, const std::string& path) {
   reading.model = format.read_model(*source, diagnostics);
   for (const Message& message : diagnostics.messages())
     EXPECT_NE(message.severity, Severity::error) << to_string(message);
-  if (reading.model) reading.yarns = built(fabric::fabric_of(*reading.model, diagnostics));
+  if (reading.model) reading.yarns = test::built(fabric::fabric_of(*reading.model, diagnostics));
   return reading;
 }
 

@@ -8,11 +8,13 @@
 #include "bodies.h"
 #include "cad/from_body.h"
 #include "formats/step/step.h"
+#include "shapes.h"
 
 namespace selvage {
 namespace {
 
 using formats::SurfaceOptions;
+using test::expect_same_bits;
 using yarn::EndStyle;
 namespace fs = std::filesystem;
 
@@ -68,17 +70,6 @@ cad::Model model_of(const std::string& bytes) {
   return reading.model.value_or(cad::Model{});
 }
 
-void expect_same(const nurbs::Surface& a, const nurbs::Surface& b) {
-  EXPECT_EQ(a.degree_u, b.degree_u);
-  EXPECT_EQ(a.degree_v, b.degree_v);
-  EXPECT_EQ(a.count_u, b.count_u);
-  EXPECT_EQ(a.count_v, b.count_v);
-  EXPECT_EQ(a.knots_u, b.knots_u);
-  EXPECT_EQ(a.knots_v, b.knots_v);
-  EXPECT_EQ(a.points, b.points);
-  EXPECT_EQ(a.weights, b.weights);
-}
-
 void expect_body(const cad::Part& part, const yarn::Body& body) {
   SCOPED_TRACE(body.name);
   const cad::Part own = cad::part_of(body);
@@ -91,7 +82,7 @@ void expect_body(const cad::Part& part, const yarn::Body& body) {
     SCOPED_TRACE(i);
     EXPECT_EQ(part.faces[i].loops.size(), own.faces[i].loops.size());
     if (own.faces[i].loops.empty()) {
-      expect_same(part.faces[i].surface, own.faces[i].surface);
+      expect_same_bits(part.faces[i].surface, own.faces[i].surface);
       EXPECT_EQ(part.faces[i].reversed, own.faces[i].reversed);
     }
     EXPECT_EQ(part.faces[i].color, body.color);
@@ -172,7 +163,7 @@ TEST(StepReader, ForeignPartsComeBack) {
   cad::NamedCurve curve;
   curve.name = "line";
   curve.color = cad::Color{4, 5, 6};
-  curve.curve = {1, {0, 0, 1, 1}, {{0, 0, 0}, {1, 2, 3}}, {}};
+  curve.curve = test::line({0, 0, 0}, {1, 2, 3});
   const cad::Model model = model_of(written_parts(parts, {curve}));
   ASSERT_EQ(model.parts.size(), parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -184,7 +175,7 @@ TEST(StepReader, ForeignPartsComeBack) {
     EXPECT_EQ(read.color, own.color);
     ASSERT_EQ(read.faces.size(), own.faces.size());
     for (std::size_t f = 0; f < own.faces.size(); ++f) {
-      expect_same(read.faces[f].surface, own.faces[f].surface);
+      expect_same_bits(read.faces[f].surface, own.faces[f].surface);
       EXPECT_EQ(read.faces[f].reversed, own.faces[f].reversed);
       EXPECT_EQ(read.faces[f].loops.size(), own.faces[f].loops.size());
       EXPECT_EQ(read.faces[f].color, own.faces[f].color);

@@ -1,28 +1,13 @@
 // Reads a text in memory, as the tests like it.
 #pragma once
 
-#include <optional>
-#include <string>
-
+#include "fabric_reading.h"
 #include "formats/txt/txt.h"
 
 namespace selvage::test {
 
-struct Reading {
-  std::optional<fabric::Fabric> fabric;
-  Diagnostics diagnostics;
-
-  [[nodiscard]] std::string text() const {
-    std::string all;
-    for (const Message& message : diagnostics.messages()) all += to_string(message) + "\n";
-    return all;
-  }
-};
-
 inline Reading read(const Source& source) {
-  Reading reading;
-  reading.fabric = formats::txt::descriptor().read_fabric(source, reading.diagnostics);
-  return reading;
+  return read(formats::txt::descriptor(), source);
 }
 
 inline Reading read(std::string text) {

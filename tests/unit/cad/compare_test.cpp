@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <numbers>
 
+#include "shapes.h"
 #include "unit/cad/surfaces.h"
 
 namespace selvage::cad {
@@ -188,7 +189,7 @@ TEST(Compare, TrimmedFaces) {
     const std::vector<Vec3> corners = {{low, low, 0}, {high, low, 0}, {high, high, 0}, {low, high, 0}};
     for (std::size_t k = 0; k < 4; ++k) {
       Edge edge;
-      edge.flat = {1, {0, 0, 1, 1}, {corners[k], corners[(k + 1) % 4]}, {}};
+      edge.flat = line(corners[k], corners[(k + 1) % 4]);
       edge.curve = edge.flat;
       for (Vec3& p : edge.curve.points) p.z() = 1;
       loop.edges.push_back(edge);

@@ -10,6 +10,7 @@
 #include <functional>
 #include <numbers>
 
+#include "shapes.h"
 #include "unit/cad/surfaces.h"
 
 namespace selvage::test {
@@ -257,14 +258,6 @@ TEST(Judge, KnotsAndWeights) {
   for (std::size_t i = 0; i <= last + 1; ++i) torn.knots_u[i] = torn.knots_u[0];
   model.parts.push_back(alone(face_of(torn, 80)));
   EXPECT_TRUE(verdict_of(model).says(defect, "times, at degree", 80));
-}
-
-nurbs::Curve line(const Vec3& a, const Vec3& b) {
-  nurbs::Curve curve;
-  curve.degree = 1;
-  curve.knots = {0, 0, 1, 1};
-  curve.points = {a, b};
-  return curve;
 }
 
 // The unit square in a plane of 4 x 4, as a hole-free trimmed face on line 5.

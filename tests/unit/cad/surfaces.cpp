@@ -11,22 +11,11 @@ namespace {
 using nurbs::Curve;
 using nurbs::Surface;
 
-Curve line_v(const Surface& surface, int i) {
-  Curve curve;
-  curve.degree = surface.degree_v;
-  curve.knots = surface.knots_v;
-  for (int j = 0; j < surface.count_v; ++j) {
-    curve.points.push_back(surface.point(i, j));
-    if (surface.is_rational()) curve.weights.push_back(surface.weight(i, j));
-  }
-  return curve;
-}
-
 template <class Change>
 Surface along_v(const Surface& surface, const Change& change) {
   Surface out = surface;
   for (int i = 0; i < surface.count_u; ++i) {
-    const Curve curve = change(line_v(surface, i));
+    const Curve curve = change(nurbs::control_column(surface, i));
     out.knots_v = curve.knots;
     out.count_v = static_cast<int>(curve.points.size());
     if (i == 0) {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <map>
 
+#include "built.h"
 #include "cell/volume.h"
 #include "core/source.h"
-#include "fabric/build.h"
 #include "formats/txt/txt.h"
 #include "places.h"
 
@@ -29,14 +29,8 @@ BuiltCell build(const std::filesystem::path& path) {
   EXPECT_TRUE(fabric && fabric->cell) << path;
   if (!fabric || !fabric->cell) return built;
   built.box = Box3(fabric->cell->low, fabric->cell->high);
-  const std::optional<fabric::YarnBuilder> builder = fabric::YarnBuilder::create(*fabric, {}, diagnostics);
-  EXPECT_TRUE(builder.has_value());
   built.tolerance = fabric::tolerance_of(*fabric, {});
-  for (std::size_t i = 0; builder && i < builder->count(); ++i) {
-    Result<yarn::Body> body = builder->build(i);
-    EXPECT_TRUE(body.ok());
-    if (body) built.bodies.push_back(std::move(*body));
-  }
+  built.bodies = test::built(*fabric);
   return built;
 }
 

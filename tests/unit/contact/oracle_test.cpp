@@ -11,16 +11,9 @@
 namespace selvage::contact {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using test::moved;
 
-yarn::Body moved(yarn::Body body, const Vec3& by) {
-  for (nurbs::Surface* s : {&body.surface, &body.start.surface, &body.end.surface})
-    for (Vec3& p : s->points) p += by;
-  for (Vec3& p : body.axis.points) p += by;
-  body.start.origin += by;
-  body.end.origin += by;
-  return body;
-}
+constexpr double pi = std::numbers::pi;
 
 enum class Section { round, elliptic, lenticular };
 

@@ -9,6 +9,7 @@
 namespace selvage::contact {
 namespace {
 
+using test::moved;
 using test::straight;
 using test::TubeForm;
 
@@ -20,15 +21,6 @@ Contacts check(const std::vector<yarn::Body>& bodies, int threads = 1) {
   Result<Contacts> result = find_contacts(bodies, options);
   EXPECT_TRUE(result.ok()) << (result.ok() ? "" : to_string(result.error()));
   return result.ok() ? *result : Contacts{};
-}
-
-yarn::Body moved(yarn::Body body, const Vec3& by) {
-  for (nurbs::Surface* s : {&body.surface, &body.start.surface, &body.end.surface})
-    for (Vec3& p : s->points) p += by;
-  for (Vec3& p : body.axis.points) p += by;
-  body.start.origin += by;
-  body.end.origin += by;
-  return body;
 }
 
 TubeForm round(double radius) {

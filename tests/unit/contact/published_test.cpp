@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "built.h"
 #include "contact/contact.h"
-#include "fabric/build.h"
 #include "formats/txt/txt.h"
 #include "unit/contact/oracle.h"
 
@@ -12,24 +12,16 @@ namespace selvage::contact {
 namespace {
 
 std::vector<yarn::Body> bodies_of(const std::string& text, bool as_published) {
-  std::vector<yarn::Body> bodies;
   Diagnostics diagnostics;
   const std::optional<fabric::Fabric> fabric =
       formats::txt::descriptor().read_fabric(Source::from_memory(text, "cloth.txt"), diagnostics);
   if (!fabric) {
     ADD_FAILURE() << to_string(*diagnostics.first_error());
-    return bodies;
+    return {};
   }
   fabric::BuildOptions options;
   options.as_published = as_published;
-  const std::optional<fabric::YarnBuilder> builder =
-      fabric::YarnBuilder::create(*fabric, options, diagnostics);
-  for (std::size_t i = 0; builder && i < builder->count(); ++i) {
-    Result<yarn::Body> body = builder->build(i);
-    EXPECT_TRUE(body.ok());
-    if (body) bodies.push_back(std::move(*body));
-  }
-  return bodies;
+  return test::built(*fabric, options);
 }
 
 Contacts contacts_of(const std::vector<yarn::Body>& bodies, int threads = 1) {

@@ -50,6 +50,15 @@ inline yarn::Body tube(const std::string& name, const TubeForm& form, const Plac
   return body;
 }
 
+inline yarn::Body moved(yarn::Body body, const Vec3& by) {
+  for (nurbs::Surface* s : {&body.surface, &body.start.surface, &body.end.surface})
+    for (Vec3& p : s->points) p += by;
+  for (Vec3& p : body.axis.points) p += by;
+  body.start.origin += by;
+  body.end.origin += by;
+  return body;
+}
+
 // A straight tube through `middle`, `length` long in the direction `along`; the section's x axis is `across`
 // (made perpendicular), its y axis along x across.
 inline yarn::Body straight(const std::string& name, const TubeForm& form, const Vec3& middle,

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "fabric/build.h"
+#include "built.h"
 #include "formats/txt/txt.h"
 #include "places.h"
 #include "solid/check.h"
@@ -15,22 +15,13 @@ namespace {
 using yarn::EndStyle;
 
 std::vector<yarn::Body> bodies_of(const std::string& sample, EndStyle ends = EndStyle::patch) {
-  std::vector<yarn::Body> bodies;
   Diagnostics diagnostics;
   Result<Source> source = Source::open(places::samples() + "/" + sample);
-  if (!source) return bodies;
+  if (!source) return {};
   const std::optional<fabric::Fabric> fabric = formats::txt::descriptor().read_fabric(*source, diagnostics);
-  if (!fabric) return bodies;
   fabric::BuildOptions options;
   options.ends = ends;
-  const std::optional<fabric::YarnBuilder> builder =
-      fabric::YarnBuilder::create(*fabric, options, diagnostics);
-  if (!builder) return bodies;
-  for (std::size_t i = 0; i < builder->count(); ++i) {
-    Result<yarn::Body> body = builder->build(i);
-    if (body) bodies.push_back(std::move(*body));
-  }
-  return bodies;
+  return fabric ? test::built(*fabric, options) : std::vector<yarn::Body>{};
 }
 
 SolidCheck check(const std::vector<yarn::Body>& bodies) {
