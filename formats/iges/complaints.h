@@ -21,28 +21,27 @@ class Complaints {
   // Is it of use to read on? For a check it always is.
   [[nodiscard]] bool goes_on() const { return is_check() || reader_->errors() == 0; }
 
-  // `kind` as in Findings. What cannot be read: an error, a defect for a check. Returns goes_on().
-  bool fault(std::string_view kind, const Spot& spot, std::string text, Kind of_error = Kind::malformed) {
-    is_check() ? check_->defect(kind, std::move(text), spot.place())
+  // What cannot be read: an error, a defect for a check. Returns goes_on().
+  bool fault(const Spot& spot, std::string text, Kind of_error = Kind::malformed) {
+    is_check() ? check_->defect(std::move(text), spot.place())
                : reader_->error(spot, std::move(text), of_error);
     return goes_on();
   }
   // What a reader puts up with, and says so: a warning, a defect for a check.
-  void flaw(std::string_view kind, const Spot& spot, std::string text) {
-    is_check() ? check_->defect(kind, std::move(text), spot.place())
-               : reader_->warning(spot, std::move(text));
+  void flaw(const Spot& spot, std::string text) {
+    is_check() ? check_->defect(std::move(text), spot.place()) : reader_->warning(spot, std::move(text));
   }
-  // The same for what may be so on every line: a reader says it once. `text` makes the text.
+  // The same for what may be so on every line: a reader says it once of each `habit`. `text` makes the text.
   template <class Text>
-  void habit(std::string_view kind, const Spot& spot, Text text) {
-    if (is_check() || habits_.insert(kind).second) flaw(kind, spot, text());
+  void habit(std::string_view habit, const Spot& spot, Text text) {
+    if (is_check() || habits_.insert(habit).second) flaw(spot, text());
   }
   // What a reader does not mind.
-  void defect(std::string_view kind, const Spot& spot, std::string text) {
-    if (is_check()) check_->defect(kind, std::move(text), spot.place());
+  void defect(const Spot& spot, std::string text) {
+    if (is_check()) check_->defect(std::move(text), spot.place());
   }
-  void warning(std::string_view kind, const Spot& spot, std::string text) {
-    if (is_check()) check_->warning(kind, std::move(text), spot.place());
+  void warning(const Spot& spot, std::string text) {
+    if (is_check()) check_->warning(std::move(text), spot.place());
   }
   // What a reader makes of the file: nothing that a check judges.
   void reader_warning(const Spot& spot, std::string text) {

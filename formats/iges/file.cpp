@@ -59,9 +59,8 @@ class Fields {
       if (parts[i] <= most[i]) continue;
       parts[i] = 0;
       if (complaints_.is_check())
-        complaints_.defect(
-            kind, spot(9),
-            said(9, fmt::format("status {}: the {} part is 00 to 0{}", in_quotes(field), words[i], most[i])));
+        complaints_.defect(spot(9), said(9, fmt::format("status {}: the {} part is 00 to 0{}",
+                                                        in_quotes(field), words[i], most[i])));
     }
     entry_.blanked = parts[0] == 1;
     entry_.subordinate = parts[1];
@@ -94,9 +93,8 @@ class Fields {
   [[nodiscard]] std::string said(int field, const std::string& what) const {
     return fmt::format("{}: {} (directory field {})", entry_.name(), what, field);
   }
-  void fault(int field, const std::string& what) { complaints_.fault(kind, spot(field), said(field, what)); }
+  void fault(int field, const std::string& what) { complaints_.fault(spot(field), said(field, what)); }
 
-  static constexpr std::string_view kind = "faults of directory entries";
   const Line &first_, &second_;
   DirectoryEntry& entry_;
   Complaints& complaints_;
@@ -116,7 +114,7 @@ void File::read_directory(Complaints& complaints) {
     pointer += 2;
   }
   if (lines % 2 != 0)
-    complaints.fault("faults of directory entries", lines_.line(Section::directory, lines).spot(),
+    complaints.fault(lines_.line(Section::directory, lines).spot(),
                      "the directory has an odd number of lines, but two belong to each entity");
 }
 

@@ -92,13 +92,12 @@ class GlobalReader {
     global.modified = date(25);
     global.protocol = text(26);
     if (values_.size() > 24)
-      complaints_.flaw(kind, spot(27),
+      complaints_.flaw(spot(27),
                        fmt::format("the global section has {} parameters; there are 26", values_.size() + 2));
     return global;
   }
 
  private:
-  static constexpr std::string_view kind = "faults of the global section";
   static constexpr int last_version = 11, last_drafting = 7;
 
   void take_names(Global& global) {
@@ -150,7 +149,7 @@ class GlobalReader {
     } else if (!row->is_named(name)) {
       const std::string text = fmt::format("unit {} is {}, but its name is given as {}; the number holds",
                                            flag, row->names[0], in_quotes(global.unit_name));
-      named != nullptr&& named != row ? complaints_.flaw(kind, spot(15), text) : defect(15, text);
+      named != nullptr&& named != row ? complaints_.flaw(spot(15), text) : defect(15, text);
     }
     global.units = row->unit;
     global.factor = row->factor;
@@ -212,9 +211,9 @@ class GlobalReader {
                                 in_quotes(values_[index(number)].text)));
     return value.value_or(otherwise);
   }
-  bool fault(int number, std::string what) { return complaints_.fault(kind, spot(number), std::move(what)); }
-  void defect(int number, std::string what) { complaints_.defect(kind, spot(number), std::move(what)); }
-  void warning(int number, std::string what) { complaints_.warning(kind, spot(number), std::move(what)); }
+  bool fault(int number, std::string what) { return complaints_.fault(spot(number), std::move(what)); }
+  void defect(int number, std::string what) { complaints_.defect(spot(number), std::move(what)); }
+  void warning(int number, std::string what) { complaints_.warning(spot(number), std::move(what)); }
 
   const Values& values_;
   Complaints& complaints_;
@@ -252,15 +251,13 @@ Global read_global(const Lines& lines, Complaints& complaints) {
   Parameters cursor(lines, Section::global, 1, count, {});
   Global global;
   if (!read_delimiters(cursor)) {
-    complaints.fault("delimiters", cursor.failure()->spot, cursor.failure()->text);
+    complaints.fault(cursor.failure()->spot, cursor.failure()->text);
   } else if (const Values values(cursor); values.failure()) {
-    complaints.fault("records that cannot be taken apart", values.failure()->spot,
-                     "global section: " + values.failure()->text);
+    complaints.fault(values.failure()->spot, "global section: " + values.failure()->text);
   } else {
     for (std::size_t i = 0; i < values.size(); ++i)
       if (values[i].is_broken)
-        complaints.fault("values broken across lines", values[i].spot,
-                         "global section: " + broken_number(values[i].text));
+        complaints.fault(values[i].spot, "global section: " + broken_number(values[i].text));
     global = GlobalReader(values, complaints).run();
   }
   global.delimiters = cursor.delimiters();

@@ -63,7 +63,6 @@ void check_characters(std::string_view text, const Line& line, Complaints& compl
   if (good) return;
   const auto* const bad = std::find_if_not(text.begin(), text.end(), is_printable);
   complaints.defect(
-      "lines with characters that are not printable ASCII",
       line.spot(static_cast<int>(bad - text.begin()) + 1),
       fmt::format("the byte 0x{:02X} is not printable ASCII", static_cast<unsigned char>(*bad)));
 }
@@ -71,7 +70,7 @@ void check_characters(std::string_view text, const Line& line, Complaints& compl
 // What this is instead of fixed-length ASCII. False: a reader stops here.
 bool check_form(std::string_view bytes, Complaints& complaints) {
   const auto other = [&](std::string text, Kind kind = Kind::unsupported) {
-    return complaints.fault("files of another form", {bytes.data(), 1, 1}, std::move(text), kind);
+    return complaints.fault({bytes.data(), 1, 1}, std::move(text), kind);
   };
   const std::string_view head = bytes.substr(0, bytes.find_first_of("\r\n"));
   if (head.size() > letter_column && head[letter_column] == 'C' && is_number_field(head.substr(73, 7)))
@@ -145,13 +144,12 @@ class Lines::Order {
 bool Lines::Order::add_odd(const char* letter, int column, const Line& line) {
   const std::size_t section = *section_of(*letter);
   if (section < furthest_ &&
-      !complaints_.fault("lines out of their section", line.spot(column),
-                         fmt::format("a line of the {} section after the {} section", section_names[section],
-                                     section_names[furthest_])))
+      !complaints_.fault(line.spot(column), fmt::format("a line of the {} section after the {} section",
+                                                        section_names[section], section_names[furthest_])))
     return false;
-  if (++last_[section] > most_lines && !complaints_.fault("sections that are too long", line.spot(column),
-                                                          fmt::format("the {} section has more than {} lines",
-                                                                      section_names[section], most_lines)))
+  if (++last_[section] > most_lines &&
+      !complaints_.fault(line.spot(column), fmt::format("the {} section has more than {} lines",
+                                                        section_names[section], most_lines)))
     return false;
   if (!check_number(section, {letter + 1, 7}, line.spot(column + 1))) return false;
   enter(section);
@@ -167,7 +165,6 @@ bool Lines::Order::check_number(std::size_t section, std::string_view field, con
       return fmt::format("columns 74-80 hold {}, not the sequence number {}", in_quotes(field), due);
     });
   } else if (*number != due) {
-    constexpr std::string_view kind = "sequence numbers out of order";
     const auto text = [&] {
       return fmt::format("sequence number {}{} follows {}: {}", section_letters[section], *number,
                          due > 1 ? fmt::format("{}{}", section_letters[section], due - 1) : "the start",
@@ -175,13 +172,12 @@ bool Lines::Order::check_number(std::size_t section, std::string_view field, con
     };
     // Directory and parameter lines are found by their numbers.
     if (section != 2 && section != 3)
-      complaints_.habit(kind, spot, text);
-    else if (!complaints_.fault(kind, spot, text()))
+      complaints_.habit("sequence numbers out of order", spot, text);
+    else if (!complaints_.fault(spot, text()))
       return false;
     if (complaints_.is_check()) due = *number;
   } else if (field.back() == ' ') {
-    complaints_.warning("sequence numbers that are not right-justified", spot,
-                        "the sequence number is not right-justified");
+    complaints_.warning(spot, "the sequence number is not right-justified");
   }
   return true;
 }
@@ -236,7 +232,7 @@ bool Lines::find_stride(bool is_check) {
 
 bool Lines::index_regular(Complaints& complaints) {
   if (stride_ == columns)
-    complaints.defect("lines of a wrong length", {bytes_.data() + columns, 1, static_cast<int>(columns) + 1},
+    complaints.defect({bytes_.data() + columns, 1, static_cast<int>(columns) + 1},
                       "the lines have no ends: they follow each other every 80 columns");
   Order order(complaints);
   const char* at = bytes_.data();
@@ -256,7 +252,7 @@ bool Lines::add_irregular(Line line, std::size_t letter, Order& order, Complaint
   line.is_shifted = letter != letter_column;
   if (line.is_shifted && section == 'D' &&
       !complaints.fault(
-          "lines with their letter beside its column", line.spot(column),
+          line.spot(column),
           fmt::format("the section letter stands in column {} instead of 73, so that the fields "
                       "of this directory line cannot be told apart",
                       column)))
@@ -292,8 +288,7 @@ bool Lines::index_irregular(Complaints& complaints) {
     Line line{text.data(), static_cast<int>(std::min<std::size_t>(trimmed.size(), 1'000'000)), 72, ++number};
     end_ = line.spot(line.length + 1);
     if (number > static_cast<int>(section_count) * most_lines) {
-      complaints.fault("sections that are too long", line.spot(),
-                       "the file has more lines than IGES can number");
+      complaints.fault(line.spot(), "the file has more lines than IGES can number");
       return complaints.is_check();
     }
     if (trimmed.empty() || (complaints.is_check() && trimmed == "\x1A")) {
@@ -307,22 +302,19 @@ bool Lines::index_irregular(Complaints& complaints) {
     }
     if (complaints.is_check()) {
       if (text.size() != columns)
-        complaints.defect("lines of a wrong length", line.spot(),
-                          fmt::format("the line has {} columns; 80 are due", text.size()));
+        complaints.defect(line.spot(), fmt::format("the line has {} columns; 80 are due", text.size()));
       check_characters(text, line, complaints);
     }
     const std::optional<std::size_t> letter = find_letter(line.text(), complaints.is_check());
     if (letter ? !add_irregular(line, *letter, order, complaints)
                : !complaints.fault(
-                     "lines without a section letter",
                      line.spot(std::min(line.length, static_cast<int>(letter_column)) + 1),
                      fmt::format("no section letter (S, G, D, P or T) in column 73 of a line of {} columns",
                                  text.size())))
       return false;
   }
   if (ends[0] > 0 && ends[1] > 0)
-    complaints.warning("line ends", {nullptr, 0, 0},
-                       fmt::format("{} lines end with CR LF, {} with LF", ends[1], ends[0]));
+    complaints.warning({nullptr, 0, 0}, fmt::format("{} lines end with CR LF, {} with LF", ends[1], ends[0]));
   return true;
 }
 
@@ -330,20 +322,18 @@ bool Lines::index_irregular(Complaints& complaints) {
 void Lines::check_sections(Complaints& complaints) const {
   for (std::size_t i = 0; i < section_count; ++i) {
     if (count(static_cast<Section>(i)) > 0) continue;
-    constexpr std::string_view kind = "missing sections";
     const std::string text = fmt::format("there is no {} section", section_names[i]);
     if (i == 1)
-      complaints.fault(kind, end_, text);
+      complaints.fault(end_, text);
     else if (i == 4)
-      complaints.flaw(kind, end_, text + ": the file may be cut off");
+      complaints.flaw(end_, text + ": the file may be cut off");
     else
-      complaints.defect(kind, end_, text);
+      complaints.defect(end_, text);
   }
   const int terminates = count(Section::terminate);
   if (terminates == 0) return;
   if (terminates > 1)
-    complaints.flaw("terminate lines", line(Section::terminate, 2).spot(),
-                    "there is more than one terminate line");
+    complaints.flaw(line(Section::terminate, 2).spot(), "there is more than one terminate line");
   const Line last = line(Section::terminate, 1);
   for (std::size_t i = 0; i < section_count - 1; ++i) {
     const std::string_view field = last.text().substr(8 * i, 8);
@@ -351,7 +341,7 @@ void Lines::check_sections(Complaints& complaints) const {
         field[0] == section_letters[i] ? column_number(field.substr(1)) : std::nullopt;
     const int there = count(static_cast<Section>(i));
     if (said == there) continue;
-    complaints.flaw("fields of the terminate line", last.spot(static_cast<int>(8 * i) + 1),
+    complaints.flaw(last.spot(static_cast<int>(8 * i) + 1),
                     said ? fmt::format("the terminate line counts {} lines in the {} section; there are {}",
                                        *said, section_names[i], there)
                          : fmt::format("the terminate line says {} where the number of {} lines is due",
@@ -365,7 +355,7 @@ std::optional<Lines> Lines::index(const Source& source, Complaints& complaints) 
   lines.end_ = {bytes.data(), 1, 1};
   const std::size_t last = bytes.find_last_not_of(std::string_view(" \t\r\n\v\f\0\x1A", 8));
   if (last == std::string_view::npos) {
-    complaints.fault("files of another form", lines.end_, "the file is empty");
+    complaints.fault(lines.end_, "the file is empty");
     if (!complaints.is_check()) return std::nullopt;
   } else if (!check_form(bytes, complaints)) {
     return std::nullopt;

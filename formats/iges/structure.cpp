@@ -12,10 +12,6 @@ namespace selvage::formats::iges {
 
 namespace {
 
-constexpr std::string_view to_nowhere = "pointers to nowhere",
-                           to_another_type = "pointers to entities of another type",
-                           line_counts = "parameter line counts";
-
 // What a pointer of the directory or of a record leads to; it is not negative. Null for nothing.
 const DirectoryEntry* target_of(const File& file, int pointer) {
   return pointer > 0 ? file.entity(pointer) : nullptr;
@@ -43,21 +39,21 @@ class DirectoryCheck {
     if (pointer == 0) return;
     const DirectoryEntry* const target = target_of(file_, pointer);
     if (target == nullptr)
-      defect(to_nowhere, entry, field,
+      defect(entry, field,
              fmt::format("the {} points to {}, where no directory entry begins", what, pointer));
     else if (std::find(types.begin(), types.end(), target->type) == types.end())
-      defect(to_another_type, entry, field, fmt::format("the {} points to a {}", what, target->name()));
+      defect(entry, field, fmt::format("the {} points to a {}", what, target->name()));
   }
   void check_matrices(const DirectoryEntry& entry) {
     const DirectoryEntry* at = target_of(file_, entry.transformation);
     for (std::size_t steps = 0; at != nullptr; at = target_of(file_, at->transformation))
       if (at == &entry || ++steps > file_.directory().size()) {
-        defect("transformations in a circle", entry, 7, "its transformations go in a circle");
+        defect(entry, 7, "its transformations go in a circle");
         return;
       }
   }
-  void defect(std::string_view kind, const DirectoryEntry& entry, int field, const std::string& what) {
-    findings_.defect(kind, entry.name() + ": " + what, file_.spot(entry, field).place());
+  void defect(const DirectoryEntry& entry, int field, const std::string& what) {
+    findings_.defect(entry.name() + ": " + what, file_.spot(entry, field).place());
   }
 
   const File& file_;
@@ -81,8 +77,7 @@ class ParameterCheck {
       if (entry.type != 0) check(entry);
     for (int line = 1; line <= there_; ++line)
       if (owner(line) == 0)
-        findings_.defect("parameter lines that no directory entry has",
-                         "no directory entry has this parameter line", spot(line).place());
+        findings_.defect("no directory entry has this parameter line", spot(line).place());
     check_subordinates();
     check_bounds();
   }
@@ -90,32 +85,29 @@ class ParameterCheck {
  private:
   void check(const DirectoryEntry& entry) {
     if (entry.first_line < 1 || entry.first_line > there_) {
-      defect("parameter pointers to nowhere", entry, file_.spot(entry, 2),
+      defect(entry, file_.spot(entry, 2),
              fmt::format("its parameters are said to begin on line P{}, of {}", entry.first_line, there_));
       return;
     }
     if (entry.line_count < 1) {
-      defect(line_counts, entry, file_.spot(entry, 14),
-             fmt::format("a count of {} parameter lines", entry.line_count));
+      defect(entry, file_.spot(entry, 14), fmt::format("a count of {} parameter lines", entry.line_count));
       return;
     }
     const int last = claim(entry);
     const Values values(
         Parameters(file_.lines(), Section::parameter, entry.first_line, last, file_.global().delimiters));
     for (std::size_t i = 0; i < values.size(); ++i)
-      if (values[i].is_broken)
-        defect("values broken across lines", entry, values.spot(i), broken_number(values[i].text));
+      if (values[i].is_broken) defect(entry, values.spot(i), broken_number(values[i].text));
     if (values.failure()) {
-      defect("records that cannot be taken apart", entry, values.failure()->spot, values.failure()->text);
+      defect(entry, values.failure()->spot, values.failure()->text);
       return;
     }
     if (values.last_line() < last)
-      defect(line_counts, entry, file_.spot(entry, 14),
+      defect(entry, file_.spot(entry, 14),
              fmt::format("{} parameter lines are counted, and the record ends on the {}. of them",
                          entry.line_count, values.last_line() - entry.first_line + 1));
     if (values.integer(0).value_or(-1) != entry.type)
-      defect("parameters of another type", entry, values.spot(0),
-             fmt::format("its parameters begin with {}", in_quotes(values[0].text)));
+      defect(entry, values.spot(0), fmt::format("its parameters begin with {}", in_quotes(values[0].text)));
     else
       check_values(entry, values);
   }
@@ -126,27 +118,26 @@ class ParameterCheck {
     for (int i = 0; i < counted; ++i) {
       const int line = first + i;
       if (line > there_) {
-        defect(line_counts, entry, file_.spot(entry, 14),
+        defect(entry, file_.spot(entry, 14),
                fmt::format("{} parameter lines are counted, and there are {}", counted, i));
         return there_;
       }
       const std::string_view text = file_.owner_text(line).substr(1);
       const std::optional<int> back = column_number(text);
       if (back != entry.pointer) {
-        defect("parameter lines that point to another entity", entry, spot(line, 66),
+        defect(entry, spot(line, 66),
                fmt::format("its parameter line points back to {} (columns 66-72)", in_quotes(text)));
         const bool is_others = owner(line) != 0 || (back && target_of(file_, *back) != nullptr);
         if (is_others && i > 0) return line - 1;
       }
       if (owner(line) != 0)
-        defect("parameter lines of two entities", entry, spot(line),
-               fmt::format("the line belongs to D{} too", owner(line)));
+        defect(entry, spot(line), fmt::format("the line belongs to D{} too", owner(line)));
       owner(line) = entry.pointer;
     }
     int last = first + counted - 1;
     const auto is_next_own = [&] { return last < there_ && file_.owner_of(last + 1) == entry.pointer; };
     if (is_next_own())
-      defect(line_counts, entry, file_.spot(entry, 14),
+      defect(entry, file_.spot(entry, 14),
              fmt::format("{} parameter lines are counted, and the next one belongs to it too", counted));
     while (is_next_own()) owner(++last) = entry.pointer;
     return last;
@@ -155,16 +146,14 @@ class ParameterCheck {
   void check_values(const DirectoryEntry& entry, const Values& values) {
     const bool is_known = entry.type < 200 || entry.type == 314 || entry.type >= 500;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (values[i].is_small)
-        defect("strings with a small h", entry, values.spot(i), "the h behind a string's length is small");
+      if (values[i].is_small) defect(entry, values.spot(i), "the h behind a string's length is small");
       if (is_known && !values[i].is_string && !values.real(i))
-        defect("values that are no numbers", entry, values.spot(i),
-               fmt::format("{} is no number", in_quotes(values[i].text)));
+        defect(entry, values.spot(i), fmt::format("{} is no number", in_quotes(values[i].text)));
     }
     const References references = references_of(entry, values);
     const bool has_numbers = entry.type == 126 || entry.type == 128 || entry.type == 124;
     if (has_numbers && (!references.own || values.size() < *references.own)) {
-      defect("entities with too few values", entry, values.spot(values.size() - 1),
+      defect(entry, values.spot(values.size() - 1),
              references.own ? fmt::format("{} values; {} are due", values.size() - 1, *references.own - 1)
                             : std::string("a count that the record cannot hold"));
       return;
@@ -181,27 +170,25 @@ class ParameterCheck {
     const DirectoryEntry* const target = file_.entity(reference.pointer);
     const Spot spot = values.spot(reference.value);
     if (target == nullptr || target->type == 0) {
-      defect(to_nowhere, entry, spot,
-             fmt::format("points to {}, where no directory entry begins", reference.pointer));
+      defect(entry, spot, fmt::format("points to {}, where no directory entry begins", reference.pointer));
       return;
     }
     if (target == &entry) {
-      defect("pointers to themselves", entry, spot, "points to itself");
+      defect(entry, spot, "points to itself");
       return;
     }
     if (!may_point(reference.to, target->type))
-      defect(to_another_type, entry, spot, fmt::format("points to a {}", target->name()));
+      defect(entry, spot, fmt::format("points to a {}", target->name()));
     if (entry.type != 402 && entry.type != 308 && entry.type != 408)
       part_[static_cast<std::size_t>(target->pointer / 2)] = true;
   }
 
   // Behind its own values: associativities, then properties.
   void check_trailer(const DirectoryEntry& entry, const Values& values, std::size_t at) {
-    constexpr std::string_view kind = "pointers behind the parameters";
     for (int list = 0; list < 2 && at < values.size(); ++list) {
       const std::optional<int> count = values.integer(at);
       if (!count || *count < 0 || static_cast<std::size_t>(*count) > values.size() - at - 1) {
-        defect(kind, entry, values.spot(at),
+        defect(entry, values.spot(at),
                fmt::format("{} where the number of {} is due", in_quotes(values[at].text),
                            list == 0 ? "associativities" : "properties"));
         return;
@@ -211,15 +198,14 @@ class ParameterCheck {
         const int pointer = values.integer(at).value_or(0);
         const DirectoryEntry* const target = target_of(file_, pointer);
         if (target == nullptr)
-          defect(to_nowhere, entry, values.spot(at),
+          defect(entry, values.spot(at),
                  fmt::format("points to {}, where no directory entry begins", pointer));
         else if (list == 1 && target->type != 406 && target->type != 422 && target->type != 316)
-          defect(to_another_type, entry, values.spot(at),
-                 fmt::format("a property that is a {}", target->name()));
+          defect(entry, values.spot(at), fmt::format("a property that is a {}", target->name()));
       }
     }
     if (at < values.size())
-      defect(kind, entry, values.spot(at), fmt::format("{} values too many", values.size() - at));
+      defect(entry, values.spot(at), fmt::format("{} values too many", values.size() - at));
   }
 
   // Receivers take the status field at its word: what is said to be independent is shown by itself.
@@ -230,7 +216,6 @@ class ParameterCheck {
       if (is_geometry && part_[static_cast<std::size_t>(entry.pointer / 2)] &&
           !entry.is_physically_dependent())
         findings_.warning(
-            "parts said to be independent",
             fmt::format("{}: it is part of another entity, and its status says that it is independent: some "
                         "systems show it by itself",
                         entry.name()),
@@ -242,26 +227,22 @@ class ParameterCheck {
     const Global& global = file_.global();
     const double found = bounds_.largest_found, resolution = bounds_.resolution;
     if (found <= 0) return;
-    constexpr std::string_view kind = "faults of the global section";
     const bool moved =
         std::any_of(file_.directory().begin(), file_.directory().end(),
                     [](const DirectoryEntry& entry) { return entry.type == 124 || entry.type == 408; });
     if (!moved && global.largest > 0 && found > global.largest * (1 + 1e-12))
-      findings_.defect(kind,
-                       fmt::format("the largest coordinate is said to be {} (global parameter 20); {} has {}",
+      findings_.defect(fmt::format("the largest coordinate is said to be {} (global parameter 20); {} has {}",
                                    global.largest, bounds_.largest_entity, found),
                        global.largest_spot.place());
     if (resolution > 0.01 * found)
       findings_.warning(
-          kind,
           fmt::format("the resolution is said to be {} (global parameter 19), and no coordinate "
                       "is larger than {}: readers that merge what is nearer than the resolution "
                       "lose the shape",
                       resolution, found),
           global.resolution_spot.place());
     if (resolution > 0 && resolution < 1e-17 * found)
-      findings_.warning(kind,
-                        fmt::format("the resolution is said to be {} (global parameter 19), finer than the "
+      findings_.warning(fmt::format("the resolution is said to be {} (global parameter 19), finer than the "
                                     "numbers of the file can be",
                                     resolution),
                         global.resolution_spot.place());
@@ -271,8 +252,8 @@ class ParameterCheck {
     return file_.lines().line(Section::parameter, line).spot(column);
   }
   int& owner(int line) { return owner_[static_cast<std::size_t>(line)]; }
-  void defect(std::string_view kind, const DirectoryEntry& entry, const Spot& spot, const std::string& what) {
-    findings_.defect(kind, entry.name() + ": " + what, spot.place());
+  void defect(const DirectoryEntry& entry, const Spot& spot, const std::string& what) {
+    findings_.defect(entry.name() + ": " + what, spot.place());
   }
 
   const File& file_;

@@ -37,12 +37,12 @@ class Numbers {
   }
   [[nodiscard]] std::size_t at() const { return at_; }
 
-  void defect(std::string_view kind, const std::string& what, std::size_t value) {
-    findings_.defect(kind, entry_.name() + ": " + what, values_.spot(value).place());
+  void defect(const std::string& what, std::size_t value) {
+    findings_.defect(entry_.name() + ": " + what, values_.spot(value).place());
     ++defects_;
   }
-  void warning(std::string_view kind, const std::string& what, std::size_t value) {
-    findings_.warning(kind, entry_.name() + ": " + what, values_.spot(value).place());
+  void warning(const std::string& what, std::size_t value) {
+    findings_.warning(entry_.name() + ": " + what, values_.spot(value).place());
   }
   [[nodiscard]] bool is_sound() const { return defects_ == 0; }
 
@@ -50,8 +50,7 @@ class Numbers {
   void check_knots(const std::vector<double>& knots, int degree, std::size_t first, std::string_view where) {
     for (std::size_t i = 1; i < knots.size(); ++i)
       if (!(knots[i] >= knots[i - 1])) {
-        defect("knots out of order",
-               fmt::format("knot {}{} is {} after {}", i + 1, where, knots[i], knots[i - 1]), first + i);
+        defect(fmt::format("knot {}{} is {} after {}", i + 1, where, knots[i], knots[i - 1]), first + i);
         return;
       }
     const auto most = static_cast<std::size_t>(degree);
@@ -60,8 +59,7 @@ class Numbers {
       while (next < knots.size() && knots[next] == knots[i]) ++next;
       const bool is_end = i == 0 || next == knots.size();
       if (next - i > most + (is_end ? 1 : 0))
-        defect("knots that are repeated too often",
-               fmt::format("the knot {}{} is there {} times, at degree {}: {}", knots[i], where, next - i,
+        defect(fmt::format("the knot {}{} is there {} times, at degree {}: {}", knots[i], where, next - i,
                            degree, is_end ? "a control point has no influence" : "the surface is torn"),
                first + i);
       i = next;
@@ -71,23 +69,21 @@ class Numbers {
                      std::string_view name) {
     for (std::size_t i = 0; i < weights.size(); ++i)
       if (!(weights[i] > 0)) {
-        defect("weights that are not positive", fmt::format("weight {} is {}", i + 1, weights[i]), first + i);
+        defect(fmt::format("weight {} is {}", i + 1, weights[i]), first + i);
         return;
       }
     const auto [least, most] = std::minmax_element(weights.begin(), weights.end());
     if (polynomial && *least != *most)
-      defect("wrong flags",
-             fmt::format("{} says that it is polynomial, and its weights are {} to {}", name, *least, *most),
+      defect(fmt::format("{} says that it is polynomial, and its weights are {} to {}", name, *least, *most),
              flag);
   }
   void check_range(double first, double last, double low, double high, std::string_view where,
                    std::size_t value) {
     const double slack = rounding * std::max({1.0, std::abs(low), std::abs(high)});
     if (!(first < last))
-      defect("ranges", fmt::format("the range{} is {} to {}", where, first, last), value);
+      defect(fmt::format("the range{} is {} to {}", where, first, last), value);
     else if (first < low - slack || last > high + slack)
       defect(
-          "ranges",
           fmt::format("the range{} is {} to {}, and the knots allow {} to {}", where, first, last, low, high),
           value);
   }
@@ -111,14 +107,11 @@ void check_closed(Numbers& numbers, bool said, bool periodic, double gap, double
                   std::string_view flag, std::string_view where, std::size_t value) {
   if (said && gap > std::max(leave_open * size, std::min(resolution, 1e-6 * size)))
     numbers.defect(
-        "wrong flags",
         fmt::format("{} says that it is closed{}, and its ends are {:.3g} apart", flag, where, gap), value);
   else if (!said && gap <= rounding * size)
-    numbers.defect("wrong flags", fmt::format("{} says that it is open{}, and it is closed", flag, where),
-                   value);
+    numbers.defect(fmt::format("{} says that it is open{}, and it is closed", flag, where), value);
   if (periodic && gap > std::max(leave_open * size, resolution))
-    numbers.defect("wrong flags",
-                   fmt::format("it is said to be periodic{}, and its ends are {:.3g} apart", where, gap),
+    numbers.defect(fmt::format("it is said to be periodic{}, and its ends are {:.3g} apart", where, gap),
                    value + 3);
 }
 
@@ -153,8 +146,7 @@ void check_curve(const DirectoryEntry& entry, const Values& values, Bounds& boun
   const int last = numbers.integer();
   curve.degree = numbers.integer();
   if (curve.degree < 1 || last < curve.degree) {
-    numbers.defect("impossible degrees",
-                   fmt::format("degree {} with {} control points", curve.degree, last + 1), 2);
+    numbers.defect(fmt::format("degree {} with {} control points", curve.degree, last + 1), 2);
     return;
   }
   const auto count = static_cast<std::size_t>(last) + 1;
@@ -183,7 +175,6 @@ void check_curve(const DirectoryEntry& entry, const Values& values, Bounds& boun
     }
     if (high - low > std::max(1e-6 * size, bounds.resolution))
       numbers.defect(
-          "wrong flags",
           fmt::format("PROP1 says that it is planar, and it leaves its plane by {:.3g}", high - low), 3);
   }
   if (entry.use != 5 && entry.subordinate == 0) note_largest(entry, size, bounds);
@@ -198,8 +189,7 @@ void check_surface(const DirectoryEntry& entry, const Values& values, Bounds& bo
   surface.degree_v = numbers.integer();
   if (surface.degree_u < 1 || surface.degree_v < 1 || surface.count_u <= surface.degree_u ||
       surface.count_v <= surface.degree_v) {
-    numbers.defect("impossible degrees",
-                   fmt::format("degrees {} x {} with {} x {} control points", surface.degree_u,
+    numbers.defect(fmt::format("degrees {} x {} with {} x {} control points", surface.degree_u,
                                surface.degree_v, surface.count_u, surface.count_v),
                    3);
     return;
@@ -227,8 +217,7 @@ void check_surface(const DirectoryEntry& entry, const Values& values, Bounds& bo
   const bool swapped = range != std::array{first_u, last_u, first_v, last_v} &&
                        range == std::array{first_u, first_v, last_u, last_v};
   if (swapped) {
-    numbers.defect("ranges", "the range is given as U0, V0, U1, V1; the standard has U0, U1, V0, V1",
-                   range_at);
+    numbers.defect("the range is given as U0, V0, U1, V1; the standard has U0, U1, V0, V1", range_at);
     return;
   }
   numbers.check_range(range[0], range[1], first_u, last_u, " in u", range_at);
@@ -250,18 +239,15 @@ void check_matrix(const DirectoryEntry& entry, const Values& values, Findings& f
   }
   const double determinant = rotation.determinant();
   if (std::abs(determinant) < 1e-9) {
-    numbers.defect("transformations", fmt::format("it is singular: its determinant is {:.3g}", determinant),
-                   1);
+    numbers.defect(fmt::format("it is singular: its determinant is {:.3g}", determinant), 1);
     return;
   }
   if (entry.form > 1) return;
   const double off = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (off > 1e-5)
-    numbers.defect("transformations", fmt::format("it is no rotation: it scales or shears by {:.3g}", off),
-                   1);
+    numbers.defect(fmt::format("it is no rotation: it scales or shears by {:.3g}", off), 1);
   else if ((determinant > 0) != (entry.form == 0))
-    numbers.defect("transformations",
-                   fmt::format("form {} {} left-handed, and the determinant is {:.3g}", entry.form,
+    numbers.defect(fmt::format("form {} {} left-handed, and the determinant is {:.3g}", entry.form,
                                entry.form == 0 ? "is not" : "is", determinant),
                    1);
 }
@@ -270,8 +256,7 @@ void check_color(const DirectoryEntry& entry, const Values& values, Findings& fi
   Numbers numbers(entry, values, findings);
   for (std::size_t i = 1; i <= 3; ++i) {
     const double percent = numbers.take();
-    if (!(percent >= 0 && percent <= 100))
-      numbers.defect("colours", fmt::format("a share of {} percent", percent), i);
+    if (!(percent >= 0 && percent <= 100)) numbers.defect(fmt::format("a share of {} percent", percent), i);
   }
 }
 

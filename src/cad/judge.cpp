@@ -112,9 +112,9 @@ class Judge {
       const std::vector<double>& knots = in_u ? s.knots_u : s.knots_v;
       const int degree = in_u ? s.degree_u : s.degree_v;
       if (!std::is_sorted(knots.begin(), knots.end())) {
-        findings_.add("knots out of order", message(Severity::error, part, face,
-                                                    fmt::format("{}: its knots in {} are out of order",
-                                                                who(face), in_u ? "u" : "v")));
+        findings_.add(
+            message(Severity::error, part, face,
+                    fmt::format("{}: its knots in {} are out of order", who(face), in_u ? "u" : "v")));
         sound = false;
         continue;
       }
@@ -123,8 +123,7 @@ class Judge {
         while (next < knots.size() && knots[next] == knots[i]) ++next;
         const bool is_end = i == 0 || next == knots.size();
         if (next - i > static_cast<std::size_t>(degree) + (is_end ? 1 : 0))
-          findings_.add("knots that are repeated too often",
-                        message(Severity::error, part, face,
+          findings_.add(message(Severity::error, part, face,
                                 fmt::format("{}: the knot {} in {} is there {} times, at degree {}",
                                             who(face), knots[i], in_u ? "u" : "v", next - i, degree)));
         i = next;
@@ -135,7 +134,6 @@ class Judge {
       m_.least_weight = std::min(m_.least_weight, least);
       if (!(least > 0)) {
         findings_.add(
-            "weights that are not positive",
             message(Severity::error, part, face, fmt::format("{}: a weight of {}", who(face), least)));
         sound = false;
       }
@@ -151,7 +149,6 @@ class Judge {
         const double gap = (end - next).norm();
         if (gap > tolerance_)
           findings_.add(
-              "loops that are not closed",
               message(Severity::error, part, face,
                       fmt::format("{}: its boundary is not closed: {:.3g} {} between two of its edges",
                                   who(face), gap, name_of(model_.units)),
@@ -194,15 +191,13 @@ class Judge {
       }
     }
     if (leaves)
-      findings_.add("loops that leave the range of their surface",
-                    message(Severity::error, part, face,
+      findings_.add(message(Severity::error, part, face,
                             fmt::format("{}: its boundary leaves the range of its surface", who(face))));
     if (off > 10 * tolerance_)
-      findings_.add("edges off their surface",
-                    message(off > far_off * size_ ? Severity::error : Severity::warning, part, face,
-                            fmt::format("{}: an edge lies {:.3g} {} off its surface", who(face), off,
-                                        name_of(model_.units)),
-                            off_at));
+      findings_.add(message(
+          off > far_off * size_ ? Severity::error : Severity::warning, part, face,
+          fmt::format("{}: an edge lies {:.3g} {} off its surface", who(face), off, name_of(model_.units)),
+          off_at));
   }
 
   // An untrimmed face: poles, area, and whether it nearly closes.
@@ -212,8 +207,7 @@ class Judge {
     for (std::size_t i = 0; i < sides.size(); ++i) sides[i] = &borders[i].border;
     const double area = area_of(face.surface);
     if (area <= no_area * size_ * size_) {
-      findings_.add("faces without area",
-                    message(Severity::error, part, face, fmt::format("{}: a face without area", who(face))));
+      findings_.add(message(Severity::error, part, face, fmt::format("{}: a face without area", who(face))));
       return;
     }
     if (!m_.least_area || area < *m_.least_area) {
@@ -225,10 +219,10 @@ class Judge {
     for (std::size_t i = 0; i < 4; ++i)
       if (sides[i]->length() <= tolerance_) {
         ++m_.poles;
-        findings_.add("poles", message(Severity::note, part, face,
-                                       fmt::format("{}: its border {} is one point, a pole", who(face),
-                                                   std::array{"u0", "u1", "v0", "v1"}[i]),
-                                       sides[i]->points().front()));
+        findings_.add(message(Severity::note, part, face,
+                              fmt::format("{}: its border {} is one point, a pole", who(face),
+                                          std::array{"u0", "u1", "v0", "v1"}[i]),
+                              sides[i]->points().front()));
       }
     for (const std::size_t i : {std::size_t{0}, std::size_t{2}}) {
       if (sides[i]->length() <= tolerance_) continue;
@@ -236,14 +230,12 @@ class Judge {
       for (std::size_t k = 0; k < sides[i]->points().size(); ++k)
         gap = std::max(gap, (sides[i]->points()[k] - sides[i + 1]->points()[k]).norm());
       if (gap > rounding * size_ && gap <= tolerance_)
-        findings_.add(
-            "surfaces that nearly close",
-            message(
-                Severity::warning, part, face,
-                fmt::format("{}: it is open in {} by {:.3g} {}, less than the tolerance: systems differ in "
-                            "whether they close it; let its first and last control points be equal",
-                            who(face), i == 0 ? "u" : "v", gap, name_of(model_.units)),
-                sides[i]->points().front()));
+        findings_.add(message(
+            Severity::warning, part, face,
+            fmt::format("{}: it is open in {} by {:.3g} {}, less than the tolerance: systems differ in "
+                        "whether they close it; let its first and last control points be equal",
+                        who(face), i == 0 ? "u" : "v", gap, name_of(model_.units)),
+            sides[i]->points().front()));
     }
   }
 
@@ -304,7 +296,6 @@ class Judge {
     if (gap > far) {
       ++m_.open_borders;
       findings_.add(
-          "open edges",
           message(severity, part, face,
                   fmt::format("{}: an edge of length {:.3g} {} has no other face beside it: the {} is open",
                               who(face), border.length(), name_of(model_.units),
@@ -320,14 +311,12 @@ class Judge {
       m_.gap_entity = who(face);
     }
     if (gap > tolerance_)
-      findings_.add(
-          "gaps between edges",
-          message(
-              severity, part, face,
-              fmt::format("{}: an edge and its neighbour are up to {:.3g} {} apart; {:.3g} are within the "
-                          "file's resolution",
-                          who(face), gap, name_of(model_.units), tolerance_),
-              gap_at));
+      findings_.add(message(
+          severity, part, face,
+          fmt::format("{}: an edge and its neighbour are up to {:.3g} {} apart; {:.3g} are within the "
+                      "file's resolution",
+                      who(face), gap, name_of(model_.units), tolerance_),
+          gap_at));
   }
 
   // Points that tell a face: of its surface's inside, or of its outer loop.
@@ -401,11 +390,10 @@ class Judge {
       // faces in another is there twice.
       const std::size_t fewest = std::min(first->part->faces.size(), second->part->faces.size());
       if (first->part != second->part && shared[std::minmax(first->part, second->part)] < fewest) continue;
-      findings_.add("faces that are there twice",
-                    message(Severity::error, *second->part, *second->face,
-                            fmt::format("{}: the same face as {}, at the same place", who(*second->face),
-                                        who(*first->face)),
-                            second->points.front()));
+      findings_.add(message(
+          Severity::error, *second->part, *second->face,
+          fmt::format("{}: the same face as {}, at the same place", who(*second->face), who(*first->face)),
+          second->points.front()));
     }
   }
 

@@ -54,40 +54,39 @@ class Receivers {
   }
 
  private:
-  void warn(std::string_view kind, std::string text, TextPlace place = {}) {
-    findings_.add(kind, advice(Severity::warning, std::move(text), place));
+  void warn(std::string text, TextPlace place = {}) {
+    findings_.add(advice(Severity::warning, std::move(text), place));
   }
-  void note(std::string_view kind, std::string text, TextPlace place = {}) {
-    findings_.add(kind, advice(Severity::note, std::move(text), place));
+  void note(std::string text, TextPlace place = {}) {
+    findings_.add(advice(Severity::note, std::move(text), place));
   }
 
   void creo() {
     const double accuracy = creo_relative * m_.size;
     if (m_.shortest_border > 0 && accuracy > short_border * m_.shortest_border) {
       const std::optional<double> absolute = absolute_accuracy(m_);
-      warn("advice for Creo",
-           fmt::format("Creo: its default accuracy, 0.0012 of the part's size, is {:.2g} {} here, and {} has "
+      warn(fmt::format("Creo: its default accuracy, 0.0012 of the part's size, is {:.2g} {} here, and {} has "
                        "an edge of "
                        "{:.2g} {}: import it with the absolute accuracy {:g} {}",
                        accuracy, unit_, m_.shortest_entity, m_.shortest_border, unit_, absolute.value_or(0),
                        unit_),
            m_.shortest_place);
     } else if (m_.shortest_border > 0) {
-      note("advice for Creo", fmt::format("Creo: an absolute accuracy of {:g} {} suits the shortest edge",
-                                          absolute_accuracy(m_).value_or(0), unit_));
+      note(fmt::format("Creo: an absolute accuracy of {:g} {} suits the shortest edge",
+                       absolute_accuracy(m_).value_or(0), unit_));
     }
     if (m_.open_borders > 0)
-      warn("advice for Creo", fmt::format("Creo, SolidWorks: {} edges have a face on one side only (above): "
-                                          "the quilt stays open; close it, or "
-                                          "import it as surfaces",
-                                          m_.open_borders));
+      warn(
+          fmt::format("Creo, SolidWorks: {} edges have a face on one side only (above): "
+                      "the quilt stays open; close it, or "
+                      "import it as surfaces",
+                      m_.open_borders));
   }
 
   void poles() {
     if (m_.poles == 0) return;
     const auto [face, part] = first_with_pole();
-    warn("advice on poles",
-         fmt::format("Creo lists surfaces with a pole as bad geometry, and gmsh does not mesh such faces: {} "
+    warn(fmt::format("Creo lists surfaces with a pole as bad geometry, and gmsh does not mesh such faces: {} "
                      "of them{}; of "
                      "Selvage's own yarns, write the ends with --ends patch",
                      m_.poles, face == nullptr ? "" : ", the first is " + face->origin.entity),
@@ -119,20 +118,20 @@ class Receivers {
 
   void gaps() {
     if (m_.largest_gap <= m_.tolerance) return;
-    warn("advice on gaps", fmt::format("SolidWorks and Creo knit surfaces only over gaps that their "
-                                       "tolerance allows: the largest is {:.3g} {} "
-                                       "at {}; allow more than that at import, or mend it where it was made",
-                                       m_.largest_gap, unit_, m_.gap_entity));
+    warn(
+        fmt::format("SolidWorks and Creo knit surfaces only over gaps that their "
+                    "tolerance allows: the largest is {:.3g} {} "
+                    "at {}; allow more than that at import, or mend it where it was made",
+                    m_.largest_gap, unit_, m_.gap_entity));
   }
 
   void ansys() {
     if (m_.largest_degree > ansys_degree)
-      warn("advice for ANSYS", fmt::format("ANSYS reads degrees up to {}: there is one of {}; lower it",
-                                           ansys_degree, m_.largest_degree));
+      warn(fmt::format("ANSYS reads degrees up to {}: there is one of {}; lower it", ansys_degree,
+                       m_.largest_degree));
     if (model_.resolution > 0 && m_.shortest_border > 0 &&
         model_.resolution >= ansys_merge * m_.shortest_border)
-      warn("advice for ANSYS",
-           fmt::format("ANSYS (IOPTN,GTOLER,FILE) and OpenCASCADE merge what is nearer than the file's "
+      warn(fmt::format("ANSYS (IOPTN,GTOLER,FILE) and OpenCASCADE merge what is nearer than the file's "
                        "resolution, {:.3g} {}: "
                        "{} has an edge of {:.3g} {}; set the tolerance by hand",
                        model_.resolution, unit_, m_.shortest_entity, m_.shortest_border, unit_),
@@ -141,16 +140,14 @@ class Receivers {
 
   void weights() {
     if (m_.least_weight > 0 && m_.least_weight < occt_weight)
-      warn("advice for OpenCASCADE",
-           fmt::format(
-               "OpenCASCADE takes all weights of a surface for 1 when one is below 1e-9: the least is {:.3g}",
-               m_.least_weight));
+      warn(fmt::format(
+          "OpenCASCADE takes all weights of a surface for 1 when one is below 1e-9: the least is {:.3g}",
+          m_.least_weight));
   }
 
   void slivers() {
     if (!m_.least_area || *m_.least_area >= sliver * *m_.largest_area) return;
-    warn("advice on slivers",
-         fmt::format("ANSYS drops small areas by default, and gmsh, Netgen and HyperMesh fail on slivers: {} "
+    warn(fmt::format("ANSYS drops small areas by default, and gmsh, Netgen and HyperMesh fail on slivers: {} "
                      "has an area of "
                      "{:.3g} {}^2, the largest face {:.3g}; remove it where it was made",
                      m_.least_area_entity, *m_.least_area, unit_, *m_.largest_area),
@@ -166,26 +163,27 @@ class Receivers {
 
   void abaqus() {
     if (const std::uint64_t instances = count("408"); instances > 0)
-      warn("advice for Abaqus", fmt::format("Abaqus/CAE ignores subfigures (308, 408): the geometry of {} "
-                                            "instances exists only in them; write "
-                                            "the file without instances, or give it to Abaqus as STEP",
-                                            instances));
+      warn(
+          fmt::format("Abaqus/CAE ignores subfigures (308, 408): the geometry of {} "
+                      "instances exists only in them; write "
+                      "the file without instances, or give it to Abaqus as STEP",
+                      instances));
     for (const auto& [entity, what] : std::array<std::pair<std::string_view, std::string_view>, 4>{
              {{"102", "composite curves: a face trimmed by one may come untrimmed"},
               {"314", "colours"},
               {"402", "groups: touching parts may be joined"},
               {"406", "names and levels"}}})
       if (const std::uint64_t number = count(entity); number > 0)
-        note("advice for Abaqus", fmt::format("Abaqus/CAE ignores {} ({} of {})", what, number, entity));
+        note(fmt::format("Abaqus/CAE ignores {} ({} of {})", what, number, entity));
   }
 
   void occt_resolution_of_file() {
     if (model_.resolution > 0 && model_.resolution <= occt_resolution)
-      warn("advice for OpenCASCADE",
-           fmt::format("OpenCASCADE (and FreeCAD, gmsh) takes the resolution of the file as its tolerance "
-                       "only above 1e-8, "
-                       "and 1e-4 otherwise: it is {:.3g} {} (global parameter 19); write at least 1e-7",
-                       model_.resolution, unit_));
+      warn(
+          fmt::format("OpenCASCADE (and FreeCAD, gmsh) takes the resolution of the file as its tolerance "
+                      "only above 1e-8, "
+                      "and 1e-4 otherwise: it is {:.3g} {} (global parameter 19); write at least 1e-7",
+                      model_.resolution, unit_));
   }
 
   const Model& model_;
