@@ -146,6 +146,12 @@ struct Descriptor {
   Result<WriteFacts> (*write_gap_map)(const solid::GapMap& map, OutputFile& output) = nullptr;
 };
 
+// Descriptor::open_bodies of a writer that is made of its arguments.
+template <class Writer>
+Result<std::unique_ptr<BodyWriter>> open_by(OutputFile& output, const SurfaceOptions& options) {
+  return std::unique_ptr<BodyWriter>(std::make_unique<Writer>(output, options));
+}
+
 // Every format of the program, in the order in which `selvage formats` lists them.
 const std::vector<const Descriptor*>& all_formats();
 

@@ -152,10 +152,7 @@ const Descriptor& descriptor() {
       .title = "DXF of AutoCAD 2000, garment pieces as blocks",
       .extensions = {".dxf"},
       .sniff = looks_like_dxf,
-      .open_bodies = [](OutputFile& output,
-                        const SurfaceOptions& options) -> Result<std::unique_ptr<BodyWriter>> {
-        return std::unique_ptr<BodyWriter>(std::make_unique<Writer>(output, options));
-      },
+      .open_bodies = open_by<Writer>,
       .carries_surfaces = false,
       .carries_curves = true,
   };

@@ -21,17 +21,13 @@ std::optional<cad::Model> read(const Source& source, TextReport& report) {
   model.resolution = global.resolution;
   Reading reading(*file, type_of, report, model);
   reading.stand_all();
-  if (report.errors() > 0) return std::nullopt;
   return model;
 }
 
 }  // namespace
 
 std::optional<cad::Model> read_model(const Source& source, Diagnostics& diagnostics) {
-  TextReport report(source);
-  std::optional<cad::Model> model = read(source, report);
-  report.hand_over(diagnostics);
-  return model;
+  return reported(source, diagnostics, read);
 }
 
 }  // namespace selvage::formats::iges

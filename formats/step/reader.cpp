@@ -465,23 +465,20 @@ class ModelReader {
   std::size_t points_ = 0;
 };
 
+std::optional<cad::Model> read(const Source& source, TextReport& report) {
+  const std::optional<Part21> file = inspect(source, report);
+  if (!file) return std::nullopt;
+  Result<cad::Model> model =
+      solid::occt::guarded("the STEP file", [&] { return ModelReader(source, *file, report).read(); });
+  if (model) return std::move(*model);
+  report.error(Spot{source.bytes().data(), 1, 1}, model.error().text, model.error().kind);
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<cad::Model> read_model(const Source& source, Diagnostics& diagnostics) {
-  TextReport report(source);
-  std::optional<cad::Model> model;
-  if (const std::optional<Part21> file = inspect(source, report)) {
-    Result<cad::Model> read =
-        solid::occt::guarded("the STEP file", [&] { return ModelReader(source, *file, report).read(); });
-    if (read)
-      model = std::move(*read);
-    else
-      report.error(Spot{source.bytes().data(), 1, 1}, read.error().text, read.error().kind);
-  }
-  const bool failed = report.errors() > 0;
-  report.hand_over(diagnostics);
-  if (failed) return std::nullopt;
-  return model;
+  return reported(source, diagnostics, read);
 }
 
 }  // namespace selvage::formats::step

@@ -116,10 +116,7 @@ const Descriptor& descriptor() {
       .title = "SVG 1.1, garment pieces drawn at true scale",
       .extensions = {".svg"},
       .sniff = looks_like_svg,
-      .open_bodies = [](OutputFile& output,
-                        const SurfaceOptions& options) -> Result<std::unique_ptr<BodyWriter>> {
-        return std::unique_ptr<BodyWriter>(std::make_unique<Writer>(output, options));
-      },
+      .open_bodies = open_by<Writer>,
       .carries_surfaces = false,
       .carries_curves = true,
   };

@@ -182,26 +182,27 @@ void read_cell(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   fabric.cell = std::move(cell);
 }
 
-std::optional<Fabric> read_fabric(const Source& source, Diagnostics& diagnostics) {
-  TextReport report(source);
-  if (!refuse_binary(source, report)) {
-    Parser p(source, report);
-    p.fabric.file = source.name();
-    if (!p.next_statement()) {
-      if (report.errors() == 0)
-        p.error({source.bytes().data(), 1, 1},
-                "the file has no statement; a fabric begins with the line 'fabric 1'");
-    } else if (read_version(p)) {
-      p.read_block("", "", p.statement(), file_table(), p.fabric);
-      p.check_references();
-    }
-    if (report.errors() == 0) {
-      report.hand_over(diagnostics);
-      return std::move(p.fabric);
-    }
+namespace {
+
+std::optional<Fabric> read(const Source& source, TextReport& report) {
+  if (refuse_binary(source, report)) return std::nullopt;
+  Parser p(source, report);
+  p.fabric.file = source.name();
+  if (!p.next_statement()) {
+    if (report.errors() == 0)
+      p.error({source.bytes().data(), 1, 1},
+              "the file has no statement; a fabric begins with the line 'fabric 1'");
+  } else if (read_version(p)) {
+    p.read_block("", "", p.statement(), file_table(), p.fabric);
+    p.check_references();
   }
-  report.hand_over(diagnostics);
-  return std::nullopt;
+  return std::move(p.fabric);
+}
+
+}  // namespace
+
+std::optional<Fabric> read_fabric(const Source& source, Diagnostics& diagnostics) {
+  return reported(source, diagnostics, read);
 }
 
 bool is_fabric_txt(std::string_view head) {

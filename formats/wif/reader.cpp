@@ -108,10 +108,7 @@ std::optional<fabric::Fabric> read(const Source& source, TextReport& report) {
 }  // namespace
 
 std::optional<fabric::Fabric> read_fabric(const Source& source, Diagnostics& diagnostics) {
-  TextReport report(source);
-  std::optional<fabric::Fabric> fabric = read(source, report);
-  report.hand_over(diagnostics);
-  return fabric;
+  return reported(source, diagnostics, read);
 }
 
 }  // namespace selvage::formats::wif

@@ -68,10 +68,7 @@ std::optional<Lid> as_patch(const Surface& surface, const TubeEnd& end) {
     return std::nullopt;
   Lid lid;
   lid.quarters = at;
-  const std::array<nurbs::Curve, 4> sides = {nurbs::boundary_row(patch, false),
-                                             nurbs::boundary_column(patch, true),
-                                             nurbs::reversed(nurbs::boundary_row(patch, true)),
-                                             nurbs::reversed(nurbs::boundary_column(patch, false))};
+  const std::array<nurbs::Curve, 4> sides = nurbs::boundary_round(patch);
   for (std::size_t k = 0; k < 4; ++k) {
     const double last = k < 3 ? at[k + 1] : end.outline().last_parameter();
     lid.gap = std::max(lid.gap, largest_distance(sides[k], nurbs::sub_curve(end.outline(), at[k], last)));

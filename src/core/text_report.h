@@ -62,4 +62,15 @@ class TextReport {
   int errors_ = 0, warnings_ = 0;
 };
 
+// The optional that read(source, report) gives, all of whose messages go to `diagnostics`; nothing where one
+// is an error.
+template <class Read>
+auto reported(const Source& source, Diagnostics& diagnostics, const Read& read) {
+  TextReport report(source);
+  auto made = read(source, report);
+  if (report.errors() > 0) made.reset();
+  report.hand_over(diagnostics);
+  return made;
+}
+
 }  // namespace selvage

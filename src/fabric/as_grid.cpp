@@ -90,11 +90,7 @@ nurbs::Curve grid_axis(const yarn::Body& body) {
 
 GridYarn as_grid(const yarn::Body& body) {
   GridYarn result;
-  Yarn& yarn = result.yarn;
-  yarn.name = body.name;
-  yarn.place = body.place;
-  yarn.role = body.role;
-  yarn.group = body.group;
+  Yarn& yarn = result.yarn = yarn_like(body);
   if (body.color != Color{}) yarn.own.color = body.color;
   yarn::Body built;
   std::optional<Grid> closed = closed_form(body, built);

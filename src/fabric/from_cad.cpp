@@ -66,13 +66,9 @@ Fabric fabric_of(cad::Model model, Diagnostics& diagnostics) {
       !yarns.empty() && model.entities.contains("186") &&
       std::all_of(yarns.begin(), yarns.end(), [](const cad::FoundYarn& found) { return found.was_solid; });
   for (cad::FoundYarn& found : yarns) {
-    Yarn yarn;
     found.body.name = yarn_names.make(found.body.name);
-    yarn.name = found.body.name;
-    yarn.place = found.body.place;
-    yarn.role = found.body.role;
+    Yarn yarn = yarn_like(found.body);
     yarn.own.color = found.body.color;
-    yarn.group = found.body.group;
     yarn.closed = found.body.closed_along;
     yarn.shape = std::make_shared<const yarn::Body>(std::move(found.body));
     fabric.items.emplace_back(std::move(yarn));

@@ -32,6 +32,15 @@ void override_with(std::optional<T>& base, const std::optional<T>& own) {
 
 }  // namespace
 
+Yarn yarn_like(const yarn::Body& body) {
+  Yarn yarn;
+  yarn.name = body.name;
+  yarn.place = body.place;
+  yarn.group = body.group;
+  yarn.role = body.role;
+  return yarn;
+}
+
 const Thread* Fabric::find_thread(std::string_view name) const {
   return find_named(threads, name);
 }

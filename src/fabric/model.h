@@ -136,6 +136,9 @@ struct Yarn {
   std::variant<std::monostate, Path, Grid, ReadBody> shape;
 };
 
+// What stands in a text of a body beside its thread, its statements and its shape.
+Yarn yarn_like(const yarn::Body& body);
+
 // Threads used in turn: `W1,W2`.
 struct WeaveSystem {
   std::vector<std::string> threads;

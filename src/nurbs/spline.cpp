@@ -161,6 +161,26 @@ Curve boundary_row(const Surface& surface, bool last) {
   return curve;
 }
 
+Curve control_column(const Surface& surface, int i) {
+  Curve curve;
+  curve.degree = surface.degree_v;
+  curve.knots = surface.knots_v;
+  for (int j = 0; j < surface.count_v; ++j) {
+    curve.points.push_back(surface.point(i, j));
+    if (surface.is_rational()) curve.weights.push_back(surface.weight(i, j));
+  }
+  return curve;
+}
+
+Curve boundary_column(const Surface& surface, bool last) {
+  return control_column(surface, last ? surface.count_u - 1 : 0);
+}
+
+std::array<Curve, 4> boundary_round(const Surface& surface) {
+  return {boundary_row(surface, false), boundary_column(surface, true), reversed(boundary_row(surface, true)),
+          reversed(boundary_column(surface, false))};
+}
+
 std::vector<double> breakpoints(const std::vector<double>& knots, int degree) {
   std::vector<double> values(knots.begin() + degree, knots.end() - degree);
   values.erase(std::unique(values.begin(), values.end()), values.end());

@@ -69,8 +69,14 @@ SurfaceJet evaluate_jet(const Surface& surface, double u, double v);
 std::vector<Vec3> evaluate_grid(const Surface& surface, const std::vector<double>& us,
                                 const std::vector<double>& vs);
 
-// The control row j = 0 or j = count_v - 1 of a surface clamped in v: exactly its boundary curve.
+// Column i of the control points over v.
+Curve control_column(const Surface& surface, int i);
+
+// The first or last control row (column) of a surface clamped there: exactly its boundary curve.
 Curve boundary_row(const Surface& surface, bool last);
+Curve boundary_column(const Surface& surface, bool last);
+// The four of them one after the other, counter-clockwise in (u, v) from (first u, first v).
+std::array<Curve, 4> boundary_round(const Surface& surface);
 
 // The different knot values inside the domain, ends included, increasing.
 std::vector<double> breakpoints(const std::vector<double>& knots, int degree);

@@ -41,18 +41,6 @@ Surface reversed_v(const Surface& surface) {
   return out;
 }
 
-Curve boundary_column(const Surface& surface, bool last) {
-  Curve curve;
-  curve.degree = surface.degree_v;
-  curve.knots = surface.knots_v;
-  const int i = last ? surface.count_u - 1 : 0;
-  for (int j = 0; j < surface.count_v; ++j) {
-    curve.points.push_back(surface.point(i, j));
-    if (surface.is_rational()) curve.weights.push_back(surface.weight(i, j));
-  }
-  return curve;
-}
-
 bool is_clamped(const std::vector<double>& knots, int degree) {
   const auto order = static_cast<std::ptrdiff_t>(degree) + 1;
   const auto all_equal = [](auto first, auto last) {

@@ -11,9 +11,6 @@ namespace selvage::nurbs {
 Surface reversed_u(const Surface& surface);
 Surface reversed_v(const Surface& surface);
 
-// The control column i = 0 or i = count_u - 1 of a surface clamped in u: exactly its boundary curve.
-Curve boundary_column(const Surface& surface, bool last);
-
 bool is_clamped(const std::vector<double>& knots, int degree);
 
 // The clamped form of a surface whose end knots are not repeated, in both directions; one that is clamped

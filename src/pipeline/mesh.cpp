@@ -69,7 +69,7 @@ void mesh(Job& job) {
   if (job.options.wants_cell()) return mesh_cell(job);
   std::optional<fabric::Fabric> fabric = job.read();
   if (!fabric || !has_only_yarns(job, *fabric)) return;
-  if (job.options.relaxing.wanted) fabric = relaxed(job, std::move(*fabric));
+  fabric = relaxed(job, std::move(fabric));
   if (!fabric) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);
   if (!outputs) return;

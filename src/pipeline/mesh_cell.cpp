@@ -93,7 +93,7 @@ void mesh_cell(Job& job) {
   if (!fabric || !has_only_yarns(job, *fabric) || !check_cell_text(job, *fabric, job.options.matrix)) return;
   // Voxels need no gap: they take the cloth as it comes.
   if (job.options.voxels == 0 || job.options.relaxing.gap) job.gap = cell_gap(job.options, *fabric);
-  if (job.options.relaxing.wanted) fabric = relaxed(job, std::move(*fabric));
+  fabric = relaxed(job, std::move(fabric));
   if (!fabric) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);
   if (!outputs) return;

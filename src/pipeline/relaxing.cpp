@@ -31,11 +31,7 @@ struct Built {
 // What remains to be said of a yarn in the text when it stands there with its surface.
 fabric::Yarn yarn_of(const fabric::YarnBuilder& builder, std::size_t index, const yarn::Body& body) {
   const fabric::YarnBuilder::Origin origin = builder.origin(index);
-  fabric::Yarn yarn;
-  yarn.name = body.name;
-  yarn.place = body.place;
-  yarn.group = body.group;
-  yarn.role = body.role;
+  fabric::Yarn yarn = fabric::yarn_like(body);
   yarn.closed = body.closed_along;
   if (origin.is_part) {
     // A part has another size and count than the thread of the whole.
@@ -325,9 +321,7 @@ fabric::Fabric with_yarns(fabric::Fabric fabric, Built built, std::vector<yarn::
   return fabric;
 }
 
-}  // namespace
-
-std::optional<fabric::Fabric> relaxed(Job& job, fabric::Fabric fabric) {
+std::optional<fabric::Fabric> moved_apart(Job& job, fabric::Fabric fabric) {
   job.says_once = true;  // the yarns are built again from what comes out
   const std::optional<fabric::YarnBuilder> builder = job.builder(fabric);
   if (!builder) return std::nullopt;
@@ -371,6 +365,13 @@ std::optional<fabric::Fabric> relaxed(Job& job, fabric::Fabric fabric) {
   std::vector<yarn::Body> bodies =
       moved ? std::move(relaxation->bodies) : std::vector<yarn::Body>(built->bodies);
   return with_yarns(std::move(fabric), std::move(*built), std::move(bodies), moved, tolerance);
+}
+
+}  // namespace
+
+std::optional<fabric::Fabric> relaxed(Job& job, std::optional<fabric::Fabric> fabric) {
+  if (!fabric || !job.options.relaxing.wanted) return fabric;
+  return moved_apart(job, std::move(*fabric));
 }
 
 }  // namespace selvage::pipeline

@@ -9,10 +9,11 @@
 
 namespace selvage::pipeline {
 
-// The same fabric (title, units, threads, materials, cell, pieces, ...) with every yarn, ply and filament a
-// yarn of its own whose shape is its surface, moved apart as the options say. Nothing when that failed, or
-// when there is no solution (Job::unsolved is then set): it was said why. Before and after are printed and in
-// the report. Yarns that keep their distances already come back as they were built, to the bit.
-std::optional<fabric::Fabric> relaxed(Job& job, fabric::Fabric fabric);
+// Where the options ask for it: the same fabric (title, units, threads, materials, cell, pieces, ...) with
+// every yarn, ply and filament a yarn of its own whose shape is its surface, moved apart as the options say.
+// Nothing when that failed, or when there is no solution (Job::unsolved is then set): it was said why. Before
+// and after are printed and in the report. Yarns that keep their distances already come back as they were
+// built, to the bit. Without that the fabric as it is.
+std::optional<fabric::Fabric> relaxed(Job& job, std::optional<fabric::Fabric> fabric);
 
 }  // namespace selvage::pipeline

@@ -69,9 +69,7 @@ fabric::Fabric as_grids(const Original& original) {
   grids.units = original.fabric.units;
   grids.units_given = true;
   for (const yarn::Body& body : original.bodies) {
-    auto& yarn = std::get<fabric::Yarn>(grids.items.emplace_back(fabric::Yarn{}));
-    yarn.name = body.name;
-    yarn.role = body.role;
+    auto& yarn = std::get<fabric::Yarn>(grids.items.emplace_back(fabric::yarn_like(body)));
     yarn.own.color = body.color;
     yarn.shape = std::make_shared<const yarn::Body>(body);
   }

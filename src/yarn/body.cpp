@@ -74,13 +74,6 @@ double largest_distance(const nurbs::Curve& a, const nurbs::Curve& b) {
   return largest;
 }
 
-// The four sides of a patch, each in the direction in which the body's end curve runs.
-std::array<nurbs::Curve, 4> patch_sides(const nurbs::Surface& patch) {
-  return {nurbs::boundary_row(patch, false), nurbs::boundary_column(patch, true),
-          nurbs::reversed(nurbs::boundary_row(patch, true)),
-          nurbs::reversed(nurbs::boundary_column(patch, false))};
-}
-
 }  // namespace
 
 double end_gap(const Body& body, bool last) {
@@ -88,7 +81,8 @@ double end_gap(const Body& body, bool last) {
   if (end.style == EndStyle::fan)
     return largest_distance(nurbs::boundary_row(end.surface, false), end_curve(body, last));
   if (end.style == EndStyle::patch) {
-    const std::array<nurbs::Curve, 4> sides = patch_sides(end.surface), quarters = end_quarters(body, last);
+    const std::array<nurbs::Curve, 4> sides = nurbs::boundary_round(end.surface),
+                                      quarters = end_quarters(body, last);
     double gap = 0.0;
     for (std::size_t k = 0; k < 4; ++k) gap = std::max(gap, largest_distance(sides[k], quarters[k]));
     return gap;

@@ -51,7 +51,8 @@ struct TightBend {
   double needed = 0;       // how far the section reaches toward the centre of curvature
 };
 
-struct Body {
+// What a yarn is called and made of.
+struct BodyLabel {
   std::string name;
   std::string thread;    // name of the thread, may be empty
   std::string material;  // name of the material, may be empty
@@ -67,7 +68,9 @@ struct Body {
   TextPlace place;             // in the file that it came from
   // Of a CAD file: the distance below which it calls two points one; 0: only rounding is none.
   double resolution = 0;
+};
 
+struct Body : BodyLabel {
   // u: round the section, closed and clamped: column 0 equals the last column, to the bit. v: along the path,
   // clamped.
   nurbs::Surface surface;

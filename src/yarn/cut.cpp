@@ -16,17 +16,6 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-nurbs::Curve column(const nurbs::Surface& surface, int i) {
-  nurbs::Curve curve;
-  curve.degree = surface.degree_v;
-  curve.knots = surface.knots_v;
-  for (int j = 0; j < surface.count_v; ++j) {
-    curve.points.push_back(surface.point(i, j));
-    if (surface.is_rational()) curve.weights.push_back(surface.weight(i, j));
-  }
-  return curve;
-}
-
 // The surface with the knot v as often as its degree: one row of control points is then the section at v.
 nurbs::Surface opened_at(const nurbs::Surface& surface, double v) {
   const auto present = static_cast<int>(std::count(surface.knots_v.begin(), surface.knots_v.end(), v));
@@ -36,7 +25,7 @@ nurbs::Surface opened_at(const nurbs::Surface& surface, double v) {
   out.points.resize(at(out.count_u) * at(out.count_v));
   if (surface.is_rational()) out.weights.resize(out.points.size());
   for (int i = 0; i < surface.count_u; ++i) {
-    const nurbs::Curve refined = nurbs::insert_knot(column(surface, i), v, missing);
+    const nurbs::Curve refined = nurbs::insert_knot(nurbs::control_column(surface, i), v, missing);
     out.knots_v = refined.knots;
     for (int j = 0; j < out.count_v; ++j) {
       out.points[out.index(i, j)] = refined.points[at(j)];
@@ -91,15 +80,8 @@ std::vector<double> cuts_of(const nurbs::Surface& surface, int count) {
 
 Body piece_of(const Body& whole, nurbs::Surface surface, int number) {
   Body piece;
+  static_cast<BodyLabel&>(piece) = whole;
   piece.name = fmt::format("{}.part{}", whole.name, number);
-  piece.thread = whole.thread;
-  piece.material = whole.material;
-  piece.group = whole.group;
-  piece.role = whole.role;
-  piece.color = whole.color;
-  piece.twist = whole.twist;
-  piece.section_turns = whole.section_turns;
-  piece.place = whole.place;
   piece.quarters = whole.quarters;
   piece.tube_error = whole.tube_error;
   piece.surface = std::move(surface);

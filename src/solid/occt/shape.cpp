@@ -298,9 +298,8 @@ class ShapeBuilder {
     std::vector<Curve> sides;
     const Surface& s = end.surface;
     if (end.style == yarn::EndStyle::patch) {
-      sides = {nurbs::boundary_row(s, false), nurbs::boundary_column(s, true),
-               nurbs::reversed(nurbs::boundary_row(s, true)),
-               nurbs::reversed(nurbs::boundary_column(s, false))};
+      const std::array<Curve, 4> round = nurbs::boundary_round(s);
+      sides.assign(round.begin(), round.end());
     } else if (end.style == yarn::EndStyle::fan) {
       sides = {nurbs::boundary_row(s, false)};
     } else {
