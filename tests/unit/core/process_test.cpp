@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/sanitized.h"
 #include "unit/core/forked.h"
 
 namespace selvage {
@@ -129,6 +130,7 @@ TEST(Process, OwnTimeLimit) {
 
 // A limit that is lower already stays.
 TEST(Process, MemoryIsNotRaised) {
+  if (sanitized) GTEST_SKIP() << "the address space cannot be limited with sanitizers";
   EXPECT_EQ(in_a_child([] {
               const rlimit low{rlim_t{1} << 32, rlim_t{1} << 32};
               ::setrlimit(RLIMIT_AS, &low);
