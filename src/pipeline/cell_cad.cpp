@@ -37,15 +37,11 @@ Result<std::vector<cad::Part>> yarns_alone(const std::vector<yarn::Body>& bodies
 std::optional<std::vector<cad::Part>> cell_solids(Job& job, const fabric::Fabric& fabric,
                                                   const fabric::YarnBuilder& builder) {
   const std::string_view option = job.options.matrix ? "--matrix" : "--cut";
-  const auto refuse = [&](Message message) {
-    job.say(std::move(message));
-    return std::nullopt;
-  };
   if (!check_cell_text(job, fabric, false)) return std::nullopt;  // the CAD of a matrix needs no material
   if (!fabric::pieces_of(fabric).empty() || !fabric.parts.empty() || !fabric.curves.empty())
-    return refuse(at_cell(fabric, error(Kind::unsupported, fmt::format("{} cuts yarns only; this input has "
-                                                                       "other geometry as well",
-                                                                       option))));
+    return job.fail(at_cell(fabric, error(Kind::unsupported, fmt::format("{} cuts yarns only; this input has "
+                                                                         "other geometry as well",
+                                                                         option))));
   const std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
   // Where yarns overlap, the space in both belongs to none.
   const auto finish = [](Message& message) {
@@ -57,14 +53,14 @@ std::optional<std::vector<cad::Part>> cell_solids(Job& job, const fabric::Fabric
   const Box3 box(fabric.cell->low, fabric.cell->high);
   const Result<cell::Cut> cut =
       cell::cut(*bodies, box, {.tolerance = fabric::tolerance_of(fabric, job.build_options())});
-  if (!cut) return refuse(at_cell(fabric, cut.error()));
+  if (!cut) return job.fail(at_cell(fabric, cut.error()));
   job.say_all(cut->notes);
   cell::CadOptions options;
   options.matrix = job.options.matrix;
   options.tolerance = edge_tolerance * box.diagonal().norm();
   Result<std::vector<cad::Part>> parts = options.matrix ? cell::cad_parts(*bodies, box, *cut, options)
                                                         : yarns_alone(*bodies, box, *cut, options);
-  if (!parts) return refuse(at_cell(fabric, parts.error()));
+  if (!parts) return job.fail(at_cell(fabric, parts.error()));
   return std::move(*parts);
 }
 

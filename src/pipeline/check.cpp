@@ -147,10 +147,7 @@ std::optional<Findings> examine(Job& job, const fabric::Fabric& fabric) {
   std::optional<solid::SolidCheck> solids = check_of(job, found.bodies);
   if (!solids) return std::nullopt;
   Result<std::vector<solid::BrepCheck>> breps = solid::check_breps(found.bodies);
-  if (!breps) {
-    job.say(breps.error());
-    return std::nullopt;
-  }
+  if (!breps) return job.fail(breps.error());
   found.solids = std::move(*solids);
   found.breps = std::move(*breps);
   return found;

@@ -43,10 +43,7 @@ bool open_writers(Job& job, const fabric::Fabric& fabric, std::size_t count, Ope
       options.next_part = [&output](int number) { return open_part(output, number); };
     Result<std::unique_ptr<formats::BodyWriter>> writer =
         output.plan->format->open_bodies(output.file, options);
-    if (!writer) {
-      job.say(writer.error());
-      return false;
-    }
+    if (!writer) return job.fail(writer.error());
     output.writer = std::move(*writer);
   }
   return true;
@@ -64,10 +61,7 @@ bool add_to_all(Job& job, const yarn::Body& body, const std::optional<formats::I
   for (OpenOutput& output : outputs) {
     if (!output.writer) continue;
     const Status status = instance ? output.writer->add_instance(body, *instance) : output.writer->add(body);
-    if (!status.ok()) {
-      job.say(status.error());
-      return false;
-    }
+    if (!status.ok()) return job.fail(status.error());
   }
   return true;
 }

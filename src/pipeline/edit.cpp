@@ -88,15 +88,9 @@ std::optional<TextPlace> try_edit(Job& job, const fabric::Fabric& before, const 
   job.say_all(diagnostics.messages());
   if (!builder) return std::nullopt;
   const std::optional<std::size_t> index = builder->find(edit.yarn);
-  if (!index) {
-    job.say(error(Kind::geometry, fmt::format("there is no yarn '{}'", edit.yarn)));
-    return std::nullopt;
-  }
+  if (!index) return job.fail(error(Kind::geometry, fmt::format("there is no yarn '{}'", edit.yarn)));
   const Result<yarn::Body> body = builder->build(*index);
-  if (!body) {
-    job.say(body.error());
-    return std::nullopt;
-  }
+  if (!body) return job.fail(body.error());
   job.say_all(body->messages);
   return body->place;
 }

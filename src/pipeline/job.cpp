@@ -114,20 +114,14 @@ fabric::BuildOptions Job::build_options() const {
 
 std::optional<fabric::Fabric> Job::read(const CadLook& look) {
   Result<Source> source = Source::open(input.path);
-  if (!source) {
-    say(source.error());
-    return std::nullopt;
-  }
+  if (!source) return fail(source.error());
   if (wants_report()) {
     Result<std::string> digest =
         files_of(input.path).size() > 1 ? digest_of(input.path) : sha256(source->bytes());
     if (digest) report["sha256"] = *digest;  // a missing file is told by the reading
   }
   Result<const formats::Descriptor*> format = detect_readable(*source);
-  if (!format) {
-    say(format.error());
-    return std::nullopt;
-  }
+  if (!format) return fail(format.error());
   if (!is_own) limit_time(options, **format);
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric;
@@ -171,10 +165,8 @@ std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {
   report["yarn_count"] = made->count();
   report["yarns"] = Json::array();
   if (made->count() == 0 && fabric::pieces_of(fabric).empty() && fabric.parts.empty() &&
-      fabric.curves.empty()) {
-    say(error(Kind::geometry, "there is nothing in this input"));
-    return std::nullopt;
-  }
+      fabric.curves.empty())
+    return fail(error(Kind::geometry, "there is nothing in this input"));
   return made;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <concepts>
 #include <functional>
 #include <optional>
 #include <set>
@@ -45,6 +46,18 @@ struct CadLook {
       model;  // before yarns are recognised in it
 };
 
+// What a function returns that said why it failed: false, or nothing.
+struct Failed {
+  template <std::same_as<bool> B>
+  operator B() const {
+    return false;
+  }
+  template <class T>
+  operator std::optional<T>() const {
+    return std::nullopt;
+  }
+};
+
 class Job {
  public:
   Job(const Options& options, const Input& input, const std::vector<PlannedOutput>& outputs,
@@ -65,6 +78,11 @@ class Job {
   // Passes a message on; one without a file gets the input's name. Of many alike the first are shown, and at
   // the end their number and the worst (core/tally.h has `badness`).
   void say(Message message, double badness = 0);
+  // The same of what the caller fails by: `return job.fail(...)`.
+  Failed fail(Message message) {
+    say(std::move(message));
+    return {};
+  }
   // A defect that `check` found: shown like an error, but the input has not failed.
   void say_defect(Message message, double badness = 0);
   // What was not shown, of many alike. To be called when all is said.

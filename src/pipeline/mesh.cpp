@@ -55,8 +55,7 @@ bool has_only_yarns(Job& job, const fabric::Fabric& fabric) {
                         "convert it to a CAD file, and mesh the face there",
                         pieces.front()->name));
   message.place = pieces.front()->place;
-  job.say(std::move(message));
-  return false;
+  return job.fail(std::move(message));
 }
 
 void tell_volumes(Job& job, const fem::Mesh& mesh) {

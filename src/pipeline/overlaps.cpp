@@ -63,8 +63,7 @@ std::optional<solid::SolidCheck> check_of(Job& job, std::span<const yarn::Body> 
   options.progress = job.progress_of("checking yarn");
   Result<solid::SolidCheck> check = solid::check_solids(bodies, options);
   if (check) return std::move(*check);
-  job.say(check.error());
-  return std::nullopt;
+  return job.fail(check.error());
 }
 
 bool check_overlaps(Job& job, std::span<const yarn::Body> bodies,

@@ -88,10 +88,7 @@ std::optional<PieceFindings> examine_pieces(Job& job, const fabric::Fabric& fabr
   }
   if (found.shapes.empty()) return found;
   Result<std::vector<solid::FaceCheck>> faces = solid::check_piece_faces(found.shapes);
-  if (!faces) {
-    job.say(faces.error());
-    return std::nullopt;
-  }
+  if (!faces) return job.fail(faces.error());
   found.faces = std::move(*faces);
   for (std::size_t i = 0; i < found.shapes.size(); ++i) {
     const PieceShape& shape = found.shapes[i];

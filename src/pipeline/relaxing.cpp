@@ -249,10 +249,7 @@ void tell_jams(Job& job, const Relaxation& relaxation, const std::vector<yarn::B
 // Lines that meet leave no side to which either could go; false when there are such, each pair told once.
 bool have_sides(Job& job, const std::vector<yarn::Body>& bodies) {
   const Result<std::vector<contact::Passage>> meetings = contact::find_passages(bodies, bodies);
-  if (!meetings) {
-    job.say(meetings.error());
-    return false;
-  }
+  if (!meetings) return job.fail(meetings.error());
   std::size_t told = 0;
   for (std::size_t k = 0; k < meetings->size() && told < most_told; ++k) {
     const contact::Passage& meeting = (*meetings)[k];
@@ -277,10 +274,7 @@ bool have_sides(Job& job, const std::vector<yarn::Body>& bodies) {
 bool keeps_interlacing(Job& job, const std::vector<yarn::Body>& before,
                        const std::vector<yarn::Body>& after) {
   const Result<std::vector<contact::Passage>> passages = contact::find_passages(before, after);
-  if (!passages) {
-    job.say(passages.error());
-    return false;
-  }
+  if (!passages) return job.fail(passages.error());
   for (std::size_t k = 0; k < std::min(passages->size(), most_told); ++k) {
     const contact::Passage& passage = (*passages)[k];
     Message message = error(
@@ -339,10 +333,8 @@ std::optional<fabric::Fabric> moved_apart(Job& job, fabric::Fabric fabric) {
   if (!relaxation) {
     // No room is an answer; everything else is a failure.
     job.unsolved = relaxation.error().kind == Kind::geometry;
-    if (job.unsolved)
-      job.say_defect(relaxation.error());
-    else
-      job.say(relaxation.error());
+    if (!job.unsolved) return job.fail(relaxation.error());
+    job.say_defect(relaxation.error());
     return std::nullopt;
   }
   const bool has_room = relaxation->solved;

@@ -303,10 +303,7 @@ Result<std::vector<Trip>> wanted_trips(const Options& options) {
 
 bool roundtrip(Job& job) {
   const Result<std::vector<Trip>> trips = wanted_trips(job.options);
-  if (!trips) {
-    job.say(trips.error());
-    return false;
-  }
+  if (!trips) return job.fail(trips.error());
   const std::optional<Original> original = read_original(job);
   if (!original) return false;
   Traveller traveller(job, *original);

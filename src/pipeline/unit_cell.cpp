@@ -83,22 +83,19 @@ double cell_gap(const Options& options, const fabric::Fabric& fabric) {
 }
 
 bool check_cell_text(Job& job, const fabric::Fabric& fabric, bool with_matrix) {
-  if (!fabric.cell) {
-    job.say(error(Kind::usage,
-                  "there is no unit cell in this input: `cell X Y Z  X Y Z ... end` says its opposite "
-                  "corners"));
-    return false;
-  }
-  if (with_matrix && fabric.cell->matrix.empty()) {
-    job.say(cell_error(
+  if (!fabric.cell)
+    return job.fail(
+        error(Kind::usage,
+              "there is no unit cell in this input: `cell X Y Z  X Y Z ... end` says its opposite "
+              "corners"));
+  if (with_matrix && fabric.cell->matrix.empty())
+    return job.fail(cell_error(
         fabric,
         fmt::format("this cell names no matrix: add the line `matrix NAME` with one "
                     "of the file's materials{}, or mesh the yarns alone, without "
                     "--matrix",
                     fabric.materials.empty() ? std::string(" (there is none yet)")
                                              : fmt::format(", such as '{}'", fabric.materials.back().name))));
-    return false;
-  }
   return true;
 }
 
@@ -188,10 +185,10 @@ bool is_within_cloth(Job& job, const fabric::Fabric& fabric, std::span<const yar
       if (fabric::find_missing_copy(bodies, box, axis, repeat, tolerance))
         counted = fmt::format("{} guides a bar do not reach all needles in it", knit->wales);
     if (counted.empty()) continue;
-    job.say(cell_error(fabric, fmt::format("this cell reaches beyond the cloth, whose {}: more of them, or a "
-                                           "cell inside, make it periodic",
-                                           counted)));
-    return false;
+    return job.fail(
+        cell_error(fabric, fmt::format("this cell reaches beyond the cloth, whose {}: more of them, or a "
+                                       "cell inside, make it periodic",
+                                       counted)));
   }
   const double length = box.sizes()[axis];  // whole repeats
   const auto missing =
@@ -204,8 +201,7 @@ bool is_within_cloth(Job& job, const fabric::Fabric& fabric, std::span<const yar
                   "other: the fabric ends there; more of it, or a cell inside, make it periodic",
                   name_of_axis(axis), bodies[missing->body].name));
   message.at = missing->at;
-  job.say(std::move(message));
-  return false;
+  return job.fail(std::move(message));
 }
 
 Message loose_end_message(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
@@ -243,20 +239,17 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
     if (names_any && !named[k]) continue;
     const std::optional<double> own = repeat ? (*repeat)[k] : std::nullopt;
     if (!names_any && repeat && !own) continue;  // a cloth has no repeat through its thickness
-    if (own && !is_whole(box.sizes()[axis], *own)) {
-      job.say(not_whole(fabric, axis, box.sizes()[axis], *own));
-      return std::nullopt;
-    }
+    if (own && !is_whole(box.sizes()[axis], *own))
+      return job.fail(not_whole(fabric, axis, box.sizes()[axis], *own));
     if (own && !is_within_cloth(job, fabric, bodies, axis, *own, thinnest)) return std::nullopt;
     if (const auto loose = fabric::find_loose_end(bodies, box, axis, tolerance)) {
       if (!names_any && !repeat) continue;
-      job.say(loose_end_message(fabric, bodies, *loose, axis, tolerance));
-      return std::nullopt;
+      return job.fail(loose_end_message(fabric, bodies, *loose, axis, tolerance));
     }
     periodic[k] = true;
   }
   if (periodic[0] && periodic[1]) return periodic;
-  job.say(cell_error(
+  return job.fail(cell_error(
       fabric,
       fmt::format("this cell is periodic {}: it has to be along x and y (a plate), or along x, y and z "
                   "(a block); without --periodic it is meshed as a piece cut out",
@@ -264,7 +257,6 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
                   : periodic[1] ? periodic[2] ? "along y and z only" : "along y only"
                   : periodic[2] ? "along z only"
                                 : "along no axis")));
-  return std::nullopt;
 }
 
 bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
@@ -356,8 +348,7 @@ bool check_grazed_faces(Job& job, const fabric::Fabric& fabric, std::span<const 
                       std::abs((*at)[axis] - plane), name_of(fabric.units)));
       message.yarn = body.name;
       message.at = at;
-      job.say(std::move(message));
-      return false;
+      return job.fail(std::move(message));
     }
   }
   return true;
@@ -385,10 +376,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
   options.threads = static_cast<int>(job.threads);
   options.progress = job.progress_of("looking for overlaps");
   const Result<contact::Contacts> contacts = contact::find_contacts(bodies, options);
-  if (!contacts) {
-    job.say(contacts.error());
-    return false;
-  }
+  if (!contacts) return job.fail(contacts.error());
   const contact::Contact* nearest = nullptr;
   for (const contact::Contact& contact : contacts->list) {
     if (!is_near(contact, box, options.reach)) continue;
@@ -421,8 +409,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
             "--relax --gap {:.2g} moves them apart where they have room, --force meshes them as they are",
             who, default_gap_share * thin));
     message.at = nearest->at;
-    job.say(std::move(message));
-    return false;
+    return job.fail(std::move(message));
   }
   constexpr double rounding = 1e-3;
   if (nearest->gap < (1.0 - rounding) * wanted) {
@@ -485,14 +472,12 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
   CellSize chosen{sizes_of(job.options, bodies), 0.0};
   keep_to_thickness(job, fabric, bodies, chosen.sizes);
   const auto [finest, coarsest] = std::minmax_element(chosen.sizes.begin(), chosen.sizes.end());
-  if (job.options.matrix_size > 0 && job.options.matrix_size < *finest) {
-    job.say(
+  if (job.options.matrix_size > 0 && job.options.matrix_size < *finest)
+    return job.fail(
         error(Kind::usage,
               fmt::format("--matrix-size is {:.6g}, to which edges grow from those on the yarns, but these "
                           "are {:.6g} {} long: --size makes them finer",
                           job.options.matrix_size, *finest, name_of(fabric.units))));
-    return std::nullopt;
-  }
   chosen.tetrahedra = fem::estimate_tetrahedra(bodies, box_of(fabric), chosen.sizes, job.options.matrix_size,
                                                with_matrix, static_cast<int>(job.threads));
   const std::string lengths = *coarsest - *finest < 1e-3 * *coarsest
@@ -501,14 +486,12 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
   const std::string estimate =
       fmt::format("edges of {} {} on the yarns make about {:.2g} tetrahedra in this cell", lengths,
                   name_of(fabric.units), chosen.tetrahedra);
-  if (chosen.tetrahedra > most && !job.options.force) {
-    job.say(at_cell(
+  if (chosen.tetrahedra > most && !job.options.force)
+    return job.fail(at_cell(
         fabric,
         error(Kind::limit, fmt::format("{}, more than {:.0g}: --size {:.3g} makes ten million, "
                                        "--force goes on all the same",
                                        estimate, most, *finest * std::cbrt(chosen.tetrahedra / 1e7)))));
-    return std::nullopt;
-  }
   Message note = at_cell(fabric, error(Kind::limit, estimate));
   note.severity = Severity::note;
   job.say(std::move(note));

@@ -14,10 +14,7 @@ std::optional<OpenOutputs> open_outputs(Job& job) {
   for (const PlannedOutput& plan : job.outputs) {
     Result<OutputFile> file =
         plan.to_standard_output ? OutputFile::standard_output() : OutputFile::create(plan.path);
-    if (!file) {
-      job.say(file.error());
-      return std::nullopt;
-    }
+    if (!file) return job.fail(file.error());
     outputs.push_back({&plan, std::move(*file), {}, {}, nullptr});
   }
   return outputs;
@@ -48,10 +45,7 @@ namespace {
 bool report_file(Job& job, const OpenOutput& output, const OutputFile& file,
                  const formats::EntityCounts& entities, Json& written) {
   const Result<std::string> digest = job.wants_report() ? sha256_of(file) : std::string();
-  if (!digest) {
-    job.say(digest.error());
-    return false;
-  }
+  if (!digest) return job.fail(digest.error());
   written.push_back({{"path", (output.plan->to_standard_output ? output.plan->path : file.target()).string()},
                      {"format", output.plan->format->name},
                      {"bytes", file.size()},
@@ -65,10 +59,7 @@ bool report_files(Job& job, OpenOutput& output, Json& written) {
   const std::vector<formats::EntityCounts>& parts = output.facts.parts;
   if (!output.parts.empty()) {
     const std::filesystem::path first = part_path(output.plan->path, 1);
-    if (Status status = output.file.set_target(first); !status.ok()) {
-      job.say(status.error());
-      return false;
-    }
+    if (Status status = output.file.set_target(first); !status.ok()) return job.fail(status.error());
     job.say(
         warning(Kind::limit, fmt::format("too long for one {} file: written as {} files, '{}' to '{}', each "
                                          "whole; '{}' stands for all of them",
@@ -103,10 +94,7 @@ Status commit(OpenOutputs& outputs) {
 }  // namespace
 
 bool take_facts(Job& job, OpenOutput& output, Result<formats::WriteFacts> facts) {
-  if (!facts) {
-    job.say(facts.error());
-    return false;
-  }
+  if (!facts) return job.fail(facts.error());
   output.facts = std::move(*facts);
   job.say_all(output.facts.messages);
   return true;
