@@ -99,41 +99,4 @@ std::vector<Border> borders_of(const Face& face) {
   return borders;
 }
 
-NearestOnSurface nearest_on(const nurbs::Surface& surface, const Vec3& p, std::optional<Vec2> start) {
-  const double u0 = surface.first_u(), u1 = surface.last_u(), v0 = surface.first_v(), v1 = surface.last_v();
-  NearestOnSurface best{std::numeric_limits<double>::infinity(), u0, v0};
-  if (start) {
-    best = {0, std::clamp(start->x(), u0, u1), std::clamp(start->y(), v0, v1)};
-    best.distance = (nurbs::evaluate(surface, best.u, best.v) - p).norm();
-  } else {
-    const int nu = std::clamp(3 * surface.count_u, 8, 64), nv = std::clamp(3 * surface.count_v, 8, 256);
-    for (int i = 0; i <= nu; ++i)
-      for (int j = 0; j <= nv; ++j) {
-        const double u = std::lerp(u0, u1, static_cast<double>(i) / nu),
-                     v = std::lerp(v0, v1, static_cast<double>(j) / nv);
-        const double distance = (nurbs::evaluate(surface, u, v) - p).norm();
-        if (distance < best.distance) best = {distance, u, v};
-      }
-  }
-  double u = best.u, v = best.v;
-  for (int step = 0; step < newton_steps; ++step) {
-    const nurbs::SurfaceJet jet = nurbs::evaluate_jet(surface, u, v);
-    const Vec3 gap = p - jet.position;
-    const double aa = jet.du.squaredNorm(), bb = jet.dv.squaredNorm(), ab = jet.du.dot(jet.dv);
-    const double ga = gap.dot(jet.du), gb = gap.dot(jet.dv), determinant = aa * bb - ab * ab;
-    double du = aa > 0 ? ga / aa : 0, dv = bb > 0 ? gb / bb : 0;
-    if (determinant > 1e-14 * aa * bb) {
-      du = (ga * bb - gb * ab) / determinant;
-      dv = (gb * aa - ga * ab) / determinant;
-    }
-    const double next_u = std::clamp(u + du, u0, u1), next_v = std::clamp(v + dv, v0, v1);
-    if (next_u == u && next_v == v) break;
-    u = next_u;
-    v = next_v;
-    const double distance = (nurbs::evaluate(surface, u, v) - p).norm();
-    if (distance < best.distance) best = {distance, u, v};
-  }
-  return best;
-}
-
 }  // namespace selvage::cad

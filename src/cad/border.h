@@ -2,7 +2,6 @@
 // its loops.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "cad/model.h"
@@ -45,13 +44,5 @@ class Border {
 // The sides of an untrimmed face (0 to 3 in that order), or its loops' edges. Edges without a curve in space
 // (poles, or parameters only) are left out.
 std::vector<Border> borders_of(const Face& face);
-
-// The nearest point of a surface: distance and parameters, by Newton's method from the best of a grid, or
-// from `start` where that is given.
-struct NearestOnSurface {
-  double distance = 0, u = 0, v = 0;
-};
-NearestOnSurface nearest_on(const nurbs::Surface& surface, const Vec3& p,
-                            std::optional<Vec2> start = std::nullopt);
 
 }  // namespace selvage::cad

@@ -7,9 +7,9 @@
 #include <limits>
 #include <optional>
 #include <queue>
-#include <span>
 
 #include "cad/bernstein.h"
+#include "core/box_tree.h"
 #include "nurbs/basis.h"
 #include "nurbs/sweep.h"
 
@@ -30,60 +30,9 @@ std::vector<double> sample_sites(const std::vector<double>& breaks) {
   return sites;
 }
 
+// Where a surface was sampled.
 struct Sample {
-  Vec3 point;
   std::uint32_t surface, u, v;
-};
-
-// Samples in a tree of boxes: a k-d tree in an array, the median of each part in its middle.
-class SampleTree {
- public:
-  explicit SampleTree(std::vector<Sample> samples) : samples_(std::move(samples)) {
-    axes_.resize(samples_.size());
-    divide(0, samples_.size());
-  }
-  // The nearest sample that is not on one of the surfaces `but`; null when there is none.
-  [[nodiscard]] const Sample* nearest(const Vec3& point, std::span<const std::size_t> but) const {
-    double best = infinity;
-    std::size_t found = samples_.size();
-    search(0, samples_.size(), point, but, best, found);
-    return found < samples_.size() ? &samples_[found] : nullptr;
-  }
-
- private:
-  void divide(std::size_t first, std::size_t last) {
-    if (last - first < 2) return;
-    Box3 box;
-    for (std::size_t k = first; k < last; ++k) box.extend(samples_[k].point);
-    Eigen::Index axis = 0;
-    box.sizes().maxCoeff(&axis);
-    const std::size_t middle = first + (last - first) / 2;
-    const auto position = [&](std::size_t k) { return samples_.begin() + static_cast<std::ptrdiff_t>(k); };
-    std::nth_element(position(first), position(middle), position(last),
-                     [axis](const Sample& a, const Sample& b) { return a.point[axis] < b.point[axis]; });
-    axes_[middle] = static_cast<std::uint8_t>(axis);
-    divide(first, middle);
-    divide(middle + 1, last);
-  }
-  void search(std::size_t first, std::size_t last, const Vec3& point, std::span<const std::size_t> but,
-              double& best, std::size_t& found) const {
-    if (first >= last) return;
-    const std::size_t middle = first + (last - first) / 2;
-    const double distance = (samples_[middle].point - point).squaredNorm();
-    if (distance < best && std::find(but.begin(), but.end(), samples_[middle].surface) == but.end()) {
-      best = distance;
-      found = middle;
-    }
-    const auto axis = static_cast<Eigen::Index>(axes_[middle]);
-    const double side = point[axis] - samples_[middle].point[axis];
-    const auto low = [&] { search(first, middle, point, but, best, found); };
-    const auto high = [&] { search(middle + 1, last, point, but, best, found); };
-    side < 0 ? low() : high();
-    if (side * side < best) side < 0 ? high() : low();
-  }
-
-  std::vector<Sample> samples_;
-  std::vector<std::uint8_t> axes_;
 };
 
 struct Target {
@@ -182,8 +131,9 @@ std::vector<double> cut_to(const std::vector<double>& breaks, double low, double
 
 struct SurfaceSet::Impl {
   std::vector<Target> targets;
-  std::unique_ptr<SampleTree> tree;
-  double size = 0;  // largest coordinate
+  std::vector<Sample> samples;
+  BoxTree tree{{}};  // of the samples' points
+  double size = 0;   // largest coordinate
 };
 
 Range domain(const Surface& surface) {
@@ -200,16 +150,18 @@ SurfaceSet::SurfaceSet(const std::vector<const Surface*>& surfaces) {
   for (const Surface* surface : surfaces)
     for (const Vec3& p : surface->points) box.extend(p);
   if (!box.isEmpty()) made->size = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
-  std::vector<Sample> samples;
+  std::vector<Box3> places;
   for (const Surface* surface : surfaces) {
     const Target& target = made->targets.emplace_back(target_of(*surface, 1e-9 * made->size));
     const std::vector<Vec3> points = nurbs::evaluate_grid(*surface, target.sites_u, target.sites_v);
     const auto index = static_cast<std::uint32_t>(made->targets.size() - 1);
-    for (std::size_t k = 0; k < points.size(); ++k)
-      samples.push_back({points[k], index, static_cast<std::uint32_t>(k % target.sites_u.size()),
-                         static_cast<std::uint32_t>(k / target.sites_u.size())});
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      made->samples.push_back({index, static_cast<std::uint32_t>(k % target.sites_u.size()),
+                               static_cast<std::uint32_t>(k / target.sites_u.size())});
+      places.emplace_back(points[k]);
+    }
   }
-  made->tree = std::make_unique<SampleTree>(std::move(samples));
+  made->tree = BoxTree(std::move(places));
   impl_ = std::move(made);
 }
 SurfaceSet::~SurfaceSet() = default;
@@ -218,10 +170,19 @@ SurfaceSet& SurfaceSet::operator=(SurfaceSet&&) noexcept = default;
 
 SurfaceSet::Foot SurfaceSet::near(const Vec3& point) const {
   Foot best{0, 0, 0, infinity};
-  std::vector<std::size_t> tried;
+  std::vector<std::uint32_t> tried;
   // Next to a border, or where surfaces meet, the nearest sample may be on another one.
   for (int trial = 0; trial < 3; ++trial) {
-    const Sample* sample = impl_->tree->nearest(point, tried);
+    const Sample* sample = nullptr;
+    double reach = infinity;
+    impl_->tree.near_point(point, reach, [&](std::uint32_t k) {
+      const double distance = (impl_->tree.box(k).min() - point).norm();
+      if (distance < reach && std::ranges::find(tried, impl_->samples[k].surface) == tried.end()) {
+        reach = distance;
+        sample = &impl_->samples[k];
+      }
+      return reach;
+    });
     if (sample == nullptr) break;
     const Target& target = impl_->targets[sample->surface];
     const Foot foot =

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "cad/border.h"
+#include "cad/distance.h"
 #include "core/box_tree.h"
 
 namespace selvage::cad {
@@ -142,6 +143,7 @@ class Judge {
   }
 
   void judge_loops(const Part& part, const Face& face) {
+    std::optional<SurfaceSet> surface;  // of the face, where it is asked for the nearest point
     for (const Loop& loop : face.loops) {
       for (std::size_t i = 0; i < loop.edges.size(); ++i) {
         const Vec3 end = end_of(face, loop.edges[i], true),
@@ -154,7 +156,7 @@ class Judge {
                                   who(face), gap, name_of(model_.units)),
                       end));
       }
-      for (const Edge& edge : loop.edges) judge_edge(part, face, edge);
+      for (const Edge& edge : loop.edges) judge_edge(part, face, edge, surface);
     }
   }
 
@@ -165,7 +167,7 @@ class Judge {
     return &c == &edge.curve ? p : nurbs::evaluate(face.surface, p.x(), p.y());
   }
 
-  void judge_edge(const Part& part, const Face& face, const Edge& edge) {
+  void judge_edge(const Part& part, const Face& face, const Edge& edge, std::optional<SurfaceSet>& surface) {
     const nurbs::Surface& s = face.surface;
     const Vec2 low(s.first_u(), s.first_v()), high(s.last_u(), s.last_v()), slack = outside * (high - low);
     bool leaves = false;
@@ -183,8 +185,11 @@ class Judge {
       if (edge.curve.points.empty()) continue;
       const Vec3 p = nurbs::evaluate(
           edge.curve, std::lerp(edge.curve.first_parameter(), edge.curve.last_parameter(), share));
-      double distance = start ? nearest_on(s, p, start).distance : 0;
-      if (!start || distance > tolerance_) distance = nearest_on(s, p).distance;
+      double distance = start ? (nurbs::evaluate(s, start->x(), start->y()) - p).norm() : 0;
+      if (!start || distance > tolerance_) {
+        if (!surface) surface.emplace(std::vector{&s});
+        distance = surface->near(p).distance;
+      }
       if (distance > off) {
         off = distance;
         off_at = p;

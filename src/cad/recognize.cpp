@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <tuple>
 #include <unordered_map>
 
 #include "cad/lid.h"
-#include "cad/places.h"
 #include "cad/sampled_curve.h"
 #include "cad/tube.h"
+#include "core/box_tree.h"
 #include "nurbs/turn.h"
 #include "yarn/ends.h"
 
@@ -87,6 +88,53 @@ bool replace_ends(yarn::Body& body, const std::array<bool, 2>& other) {
   }
   return true;
 }
+
+Box3 box_of(const Polylines& outline) {
+  Box3 box;
+  for (const std::vector<Vec3>& line : outline)
+    for (const Vec3& p : line) box.extend(p);
+  return box;
+}
+
+// Outlines by their places, among those of like size.
+class Places {
+ public:
+  struct Outline {
+    Box3 box;
+    std::size_t id = 0;
+  };
+  explicit Places(const std::vector<Outline>& outlines) {
+    std::map<int, std::vector<Box3>> middles;
+    for (const Outline& outline : outlines) {
+      middles[level_of(outline.box)].emplace_back(outline.box.center());
+      levels_[level_of(outline.box)].ids.push_back(outline.id);
+    }
+    for (auto& [level, boxes] : middles) levels_[level].tree = BoxTree(std::move(boxes));
+  }
+  // The ids of those whose box may be this one: middles within a quarter of the diagonal, diagonals within a
+  // factor of four; sorted.
+  [[nodiscard]] std::vector<std::size_t> near(const Box3& box) const {
+    const double reach = 0.25 * box.diagonal().norm();
+    std::vector<std::size_t> ids;
+    for (auto level = levels_.lower_bound(level_of(box) - 1);
+         level != levels_.end() && level->first <= level_of(box) + 1; ++level)
+      level->second.tree.near_point(box.center(), reach, [&](std::uint32_t k) {
+        ids.push_back(level->second.ids[k]);
+        return reach;
+      });
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  }
+
+ private:
+  // Diagonals of a level are at least 2^level long, and less than twice that.
+  static int level_of(const Box3& box) { return std::clamp(std::ilogb(box.diagonal().norm()), -1100, 1100); }
+  struct Level {
+    BoxTree tree{{}};
+    std::vector<std::size_t> ids;
+  };
+  std::map<int, Level> levels_;
+};
 
 class Recognizer {
  public:
@@ -208,13 +256,14 @@ class Recognizer {
 
   // Brings faces to the ends that have none yet. True where that may leave some that another call finds.
   bool match_free() {
-    Places places;
+    std::vector<Places::Outline> ends;
     for (std::size_t t = 0; t < tubes_.size(); ++t)
       for (const bool last : {false, true}) {
         if (!is_free(t, last)) continue;
         const nurbs::Curve outline = yarn::end_curve(tubes_[t].body, last);
-        places.add({SampledCurve(outline).points}, 2 * t + (last ? 1 : 0));
+        ends.push_back({box_of({SampledCurve(outline).points}), 2 * t + (last ? 1 : 0)});
       }
+    const Places places(ends);
     std::vector<Fit> fits;
     bool all_tried = true;
     for (std::size_t c = 0; c < candidates_.size(); ++c)
@@ -238,7 +287,7 @@ class Recognizer {
     const Face& face = clamped(part.faces[candidate.face], made);
     const Polylines border = border_of(face, 0);
     if (border.empty()) return true;
-    std::vector<std::size_t> near = places.near(border);
+    std::vector<std::size_t> near = places.near(box_of(border));
     const auto distance = [&](std::size_t end) {
       const std::size_t order = tubes_[end / 2].order;
       return order > candidate.order ? order - candidate.order : candidate.order - order;

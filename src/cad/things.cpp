@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <map>
-#include <unordered_map>
 
 #include "cad/distance.h"
+#include "core/box_tree.h"
 
 namespace selvage::cad {
 
@@ -68,55 +67,36 @@ bool is_invented(std::string_view name) {
 
 using Indices = std::vector<std::size_t>;
 
-// Things by the cell that holds their box's centre.
+// Things by the middles of their boxes.
 class PlaceIndex {
  public:
-  PlaceIndex(const std::vector<Thing>& things, const Indices& which, double cell)
-      : things_(things), cell_(cell) {
-    for (const std::size_t i : which) cells_[key(corner(things[i].box.center()))].push_back(i);
+  PlaceIndex(const std::vector<Thing>& things, const Indices& which) : things_(things), which_(which) {
+    std::vector<Box3> middles;
+    for (const std::size_t i : which) middles.emplace_back(things[i].box.center());
+    tree_ = BoxTree(std::move(middles));
   }
-  // The nearest one by its box's corners, at most `near` (at most the cell's size) away; npos where there is
-  // none.
+  // The nearest one by its box's corners, at most `near` away; npos where there is none.
   [[nodiscard]] std::size_t nearest(const Thing& thing, double near, const std::vector<bool>& taken) const {
     std::size_t found = npos;
-    const std::array<std::int64_t, 3> middle = corner(thing.box.center());
-    for (std::int64_t x = -1; x <= 1; ++x)
-      for (std::int64_t y = -1; y <= 1; ++y)
-        for (std::int64_t z = -1; z <= 1; ++z) {
-          const auto cell = cells_.find(key({middle[0] + x, middle[1] + y, middle[2] + z}));
-          if (cell == cells_.end()) continue;
-          for (const std::size_t i : cell->second) {
-            const Thing& other = things_[i];
-            if (taken[i] || (other.kind == Thing::Kind::curve) != (thing.kind == Thing::Kind::curve))
-              continue;
-            const double distance = std::max((other.box.min() - thing.box.min()).cwiseAbs().maxCoeff(),
-                                             (other.box.max() - thing.box.max()).cwiseAbs().maxCoeff());
-            if (distance > near || (distance == near && found != npos && i > found)) continue;
-            near = distance;
-            found = i;
-          }
-        }
+    const Vec3 middle = thing.box.center(), reach = Vec3::Constant(2 * near);
+    tree_.meeting(Box3(middle - reach, middle + reach), [&](std::uint32_t k) {
+      const std::size_t i = which_[k];
+      const Thing& other = things_[i];
+      if (taken[i] || (other.kind == Thing::Kind::curve) != (thing.kind == Thing::Kind::curve)) return;
+      const double distance = std::max((other.box.min() - thing.box.min()).cwiseAbs().maxCoeff(),
+                                       (other.box.max() - thing.box.max()).cwiseAbs().maxCoeff());
+      if (distance > near || (distance == near && found != npos && i > found)) return;
+      near = distance;
+      found = i;
+    });
     return found;
   }
   static constexpr std::size_t npos = std::numeric_limits<std::size_t>::max();
 
  private:
-  [[nodiscard]] std::array<std::int64_t, 3> corner(const Vec3& p) const {
-    std::array<std::int64_t, 3> out{};
-    for (std::size_t k = 0; k < 3; ++k)
-      out[k] = static_cast<std::int64_t>(
-          std::floor(std::clamp(p[static_cast<Eigen::Index>(k)] / cell_, -1e15, 1e15)));
-    return out;
-  }
-  static std::uint64_t key(const std::array<std::int64_t, 3>& cell) {
-    std::uint64_t hash = 0;
-    for (const std::int64_t c : cell) hash = (hash ^ static_cast<std::uint64_t>(c)) * 0x9E3779B97F4A7C15ULL;
-    return hash;
-  }
-
   const std::vector<Thing>& things_;
-  double cell_;
-  std::unordered_map<std::uint64_t, Indices> cells_;
+  const Indices& which_;
+  BoxTree tree_{{}};
 };
 
 class Pairer {
@@ -169,7 +149,7 @@ class Pairer {
 
   void by_place(const Indices& from, const Indices& to) {
     if (from.empty() || to.empty()) return;
-    const PlaceIndex index(b_, to, std::max(near_, std::numeric_limits<double>::min()));
+    const PlaceIndex index(b_, to);
     for (const std::size_t i : from)
       if (const std::size_t j = index.nearest(a_[i], near_, taken_b_); j != PlaceIndex::npos) take(i, j);
   }
