@@ -11,6 +11,7 @@
 #include "cad/border.h"
 #include "cad/distance.h"
 #include "core/box_tree.h"
+#include "nurbs/samples.h"
 
 namespace selvage::cad {
 
@@ -251,12 +252,12 @@ class Judge {
       us.push_back(std::lerp(s.first_u(), s.last_u(), static_cast<double>(i) / steps));
       vs.push_back(std::lerp(s.first_v(), s.last_v(), static_cast<double>(i) / steps));
     }
-    const std::vector<Vec3> grid = nurbs::evaluate_grid(s, us, vs);
+    const nurbs::Samples grid(s, us, vs);
     double area = 0;
     for (std::size_t j = 0; j < steps; ++j)
       for (std::size_t i = 0; i < steps; ++i) {
-        const Vec3 &a = grid[j * (steps + 1) + i], &b = grid[j * (steps + 1) + i + 1],
-                   &c = grid[(j + 1) * (steps + 1) + i], &d = grid[(j + 1) * (steps + 1) + i + 1];
+        const Vec3 &a = grid.at(i, j), &b = grid.at(i + 1, j), &c = grid.at(i, j + 1),
+                   &d = grid.at(i + 1, j + 1);
         area += 0.5 * ((b - a).cross(c - a).norm() + (b - d).cross(c - d).norm());
       }
     return area;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nurbs/divided.h"
+#include "nurbs/samples.h"
+
 namespace selvage::cell {
 namespace {
 
@@ -10,27 +13,7 @@ namespace {
 constexpr double chord_share = 0.125;
 // Sides are at most this share of the box's smallest size, and of the section's where it is larger.
 constexpr double side_share = 0.25;
-constexpr double fewest = 2, most = 4096;  // pieces of a span
-
-// The span's ends and middles.
-std::vector<double> with_middles(const std::vector<double>& ends) {
-  std::vector<double> all{ends.front()};
-  for (std::size_t i = 1; i < ends.size(); ++i) {
-    all.push_back((ends[i - 1] + ends[i]) / 2);
-    all.push_back(ends[i]);
-  }
-  return all;
-}
-
-// Of a span of this length whose chord is this far from it.
-int pieces_for(double length, double rise, double longest, double wanted) {
-  return static_cast<int>(
-      std::clamp(std::ceil(std::max(length / longest, std::sqrt(rise / wanted))), fewest, most));
-}
-
-void divide(std::vector<double>& values, double from, double to, int pieces) {
-  for (int k = 0; k < pieces; ++k) values.push_back(from + (to - from) * k / pieces);
-}
+constexpr int fewest = 2, most = 4096;  // pieces of a span
 
 // Does any part of the rows first..last of control points reach into the box?
 bool may_enter(const nurbs::Surface& surface, int first, int last, const Box3& box) {
@@ -55,33 +38,28 @@ void Sampling::choose_parameters(const yarn::Body& body, const Box3& box, double
   const nurbs::Surface& surface = body.surface;
   const std::vector<double> ends_u = nurbs::breakpoints(surface.knots_u, surface.degree_u);
   const std::vector<double> ends_v = nurbs::breakpoints(surface.knots_v, surface.degree_v);
-  const std::vector<double> all_u = with_middles(ends_u), all_v = with_middles(ends_v);
-  const std::vector<Vec3> points = nurbs::evaluate_grid(surface, all_u, all_v);
-  const auto at = [&](std::size_t i, std::size_t j) -> const Vec3& { return points[j * all_u.size() + i]; };
+  const nurbs::Samples middles(surface, nurbs::divided(surface.knots_u, surface.degree_u, 2),
+                               nurbs::divided(surface.knots_v, surface.degree_v, 2));
   const double wanted = chord_share * tolerance;
   const double longest = side_share * std::min(box.sizes().minCoeff(), yarn::widest_section(body));
-  for (std::size_t i = 0; i + 1 < ends_u.size(); ++i) {
-    double rise = 0, length = 0;
-    for (std::size_t j = 0; j < all_v.size(); ++j) {
-      rise = std::max(rise, (at(2 * i + 1, j) - (at(2 * i, j) + at(2 * i + 2, j)) / 2).norm());
-      length = std::max(length, (at(2 * i + 2, j) - at(2 * i, j)).norm());
-    }
-    divide(us_, ends_u[i], ends_u[i + 1], pieces_for(length, rise, longest, wanted));
-  }
-  for (std::size_t j = 0; j + 1 < ends_v.size(); ++j) {
+  using Span = std::array<Vec3, 3>;
+  const auto pieces = [&](bool along_v, std::size_t k) {
+    const double rise = middles.largest<3>(along_v, 2 * k,
+                                           [](const Span&p) { return (p[1] - (p[0] + p[2]) / 2).norm(); }),
+                 length =
+                     middles.largest<3>(along_v, 2 * k, [](const Span&p) { return (p[2] - p[0]).norm(); });
+    return nurbs::whole_parts(std::max(length / longest, std::sqrt(rise / wanted)), fewest, most);
+  };
+  us_ = nurbs::divided(ends_u, [&](std::size_t k) { return pieces(false, k); });
+  us_.pop_back();
+  vs_ = nurbs::divided(ends_v, [&](std::size_t k) {
     // The last control row of a span is that of the last knot at its start.
-    const auto knot = std::upper_bound(surface.knots_v.begin(), surface.knots_v.end(), ends_v[j]);
+    const auto knot = std::upper_bound(surface.knots_v.begin(), surface.knots_v.end(), ends_v[k]);
     const int last = std::clamp(static_cast<int>(knot - surface.knots_v.begin()) - 1, surface.degree_v,
                                 surface.count_v - 1);
-    double rise = 0, length = 0;
-    for (std::size_t i = 0; i < all_u.size(); ++i) {
-      rise = std::max(rise, (at(i, 2 * j + 1) - (at(i, 2 * j) + at(i, 2 * j + 2)) / 2).norm());
-      length = std::max(length, (at(i, 2 * j + 2) - at(i, 2 * j)).norm());
-    }
-    const bool near = may_enter(surface, last - surface.degree_v, last, box);
-    divide(vs_, ends_v[j], ends_v[j + 1], near ? pieces_for(length, rise, longest, wanted) : 1);
-  }
-  if (!is_ring_) vs_.push_back(ends_v.back());
+    return may_enter(surface, last - surface.degree_v, last, box) ? pieces(true, k) : 1;
+  });
+  if (is_ring_) vs_.pop_back();
 }
 
 void Sampling::find_end_faces(const Box3& box, double tolerance) {

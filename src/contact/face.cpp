@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "nurbs/divided.h"
 #include "nurbs/patch.h"
+#include "nurbs/samples.h"
 #include "nurbs/sweep.h"
 
 namespace selvage::contact {
@@ -23,7 +24,7 @@ struct SectionSize {
 };
 
 // Extents of a section across its longer and its thinner principal direction.
-SectionSize size_of_section(const std::vector<Vec3>& points) {
+SectionSize size_of_section(std::span<const Vec3> points) {
   SectionSize size;
   for (const Vec3& p : points) size.centre += p / static_cast<double>(points.size());
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -121,14 +122,12 @@ CellModel::Made CellModel::make(const yarn::Body& body) {
   round.reserve(round_samples);
   for (int k = 0; k < round_samples; ++k)
     round.push_back(s.first_u() + (s.last_u() - s.first_u()) * k / round_samples);
-  const std::vector<Vec3> points = nurbs::evaluate_grid(s, round, breaks);
+  const nurbs::Samples samples(s, round, breaks);
   std::vector<SectionSize> sections;
   std::vector<double> along = {0.0};
   double widest = 0.0;
   for (std::size_t j = 0; j < breaks.size(); ++j) {
-    sections.push_back(
-        size_of_section({points.begin() + static_cast<std::ptrdiff_t>(j * round_samples),
-                         points.begin() + static_cast<std::ptrdiff_t>((j + 1) * round_samples)}));
+    sections.push_back(size_of_section(samples.row(j)));
     widest = std::max(widest, sections.back().width);
     if (j > 0) along.push_back(along[j - 1] + (sections[j].centre - sections[j - 1].centre).norm());
   }
@@ -144,8 +143,7 @@ CellModel::Made CellModel::make(const yarn::Body& body) {
   std::vector<int> parts;
   for (std::size_t j = 0; j + 1 < breaks.size(); ++j) {
     const double wide = std::max({sections[j].width, sections[j + 1].width, 0.05 * widest});
-    parts.push_back(
-        static_cast<int>(std::clamp(std::ceil((along[j + 1] - along[j]) / (0.8 * wide)), 1.0, 1e4)));
+    parts.push_back(nurbs::whole_parts((along[j + 1] - along[j]) / (0.8 * wide), 1, 10'000));
   }
   const std::vector<double> vs = nurbs::divided(breaks, parts);
   const std::vector<double> breaks_u = nurbs::breakpoints(s.knots_u, s.degree_u);

@@ -11,11 +11,8 @@ namespace selvage::contact {
 
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
-constexpr int least_round = 24, leaf_columns = 4;
+constexpr int least_round = 24;
+constexpr std::size_t leaf_columns = 4;
 
 // The body's side, for what is asked of single points of it.
 Face side_of(const yarn::Body& body) {
@@ -41,18 +38,19 @@ NearSkins::NearSkins(std::span<const Strand> strands) : strands_(strands), skins
     const Strand& strand = strands[y];
     const nurbs::Surface& s = strand.body().surface;
     Skin& skin = skins_[y];
-    skin.cyclic = strand.is_cyclic();
-    skin.us = nurbs::divided(s.knots_u, s.degree_u, 1, least_round);
-    skin.round = static_cast<int>(skin.us.size()) - 1;
-    skin.along = std::max(2, static_cast<int>(std::ceil(2.0 * strand.length() / strand.spacing())));
-    for (int j = 0; j <= skin.along; ++j) {
-      skin.arcs.push_back(strand.length() * j / skin.along);
-      skin.vs.push_back(j == skin.along ? s.last_v() : strand.parameter_at(skin.arcs.back()));
+    const int along = std::max(2, static_cast<int>(std::ceil(2.0 * strand.length() / strand.spacing())));
+    std::vector<double> vs;
+    for (int j = 0; j <= along; ++j) {
+      skin.arcs.push_back(strand.length() * j / along);
+      vs.push_back(j == along ? s.last_v() : strand.parameter_at(skin.arcs.back()));
     }
+    skin.samples.us = nurbs::divided(s.knots_u, s.degree_u, 1, least_round);
+    skin.samples.vs = std::move(vs);
     sample(y);
-    for (int j = 0; j < skin.along; ++j)
-      for (int i = 0; i < skin.round; i += leaf_columns)
-        leaves_.push_back({static_cast<std::uint32_t>(y), j, i, std::min(leaf_columns, skin.round - i)});
+    const std::size_t round = skin.samples.us.size() - 1;
+    for (std::size_t j = 0; j + 1 < skin.samples.vs.size(); ++j)
+      for (std::size_t i = 0; i < round; i += leaf_columns)
+        leaves_.push_back({static_cast<std::uint32_t>(y), j, i, std::min(leaf_columns, round - i)});
   }
   tree_ = BoxTree(boxes(), 1);
 }
@@ -60,18 +58,19 @@ NearSkins::NearSkins(std::span<const Strand> strands) : strands_(strands), skins
 void NearSkins::sample(std::size_t strand) {
   const yarn::Body& body = strands_[strand].body();
   Skin& skin = skins_[strand];
-  skin.points = nurbs::evaluate_grid(body.surface, skin.us, skin.vs);
+  nurbs::Samples& samples = skin.samples;
+  samples.points = nurbs::evaluate_grid(body.surface, samples.us, samples.vs);
   // Normals from the differences of samples: they only choose directions.
-  skin.normals.resize(skin.points.size());
-  const int n = skin.round + 1;
-  for (int j = 0; j <= skin.along; ++j)
-    for (int i = 0; i <= skin.round; ++i) {
-      const int left = i == 0 ? skin.round - 1 : i - 1, right = i == skin.round ? 1 : i + 1;
-      const int low = j > 0 ? j - 1 : (skin.cyclic ? skin.along - 1 : 0);
-      const int high = j < skin.along ? j + 1 : (skin.cyclic ? 1 : skin.along);
-      const Vec3 du = skin.points[at(j * n + right)] - skin.points[at(j * n + left)];
-      const Vec3 dv = skin.points[at(high * n + i)] - skin.points[at(low * n + i)];
-      skin.normals[at(j * n + i)] = (body.inward ? -1.0 : 1.0) * du.cross(dv).normalized();
+  skin.normals.resize(samples.points.size());
+  const std::size_t round = samples.us.size() - 1, along = samples.vs.size() - 1;
+  const bool cyclic = body.closed_along;
+  for (std::size_t j = 0; j <= along; ++j)
+    for (std::size_t i = 0; i <= round; ++i) {
+      const std::size_t low = j > 0 ? j - 1 : (cyclic ? along - 1 : 0);
+      const std::size_t high = j < along ? j + 1 : (cyclic ? 1 : along);
+      const Vec3 du = samples.at(i == round ? 1 : i + 1, j) - samples.at(i == 0 ? round - 1 : i - 1, j);
+      const Vec3 dv = samples.at(i, high) - samples.at(i, low);
+      skin.normals[samples.index(i, j)] = (body.inward ? -1.0 : 1.0) * du.cross(dv).normalized();
     }
 }
 
@@ -79,11 +78,9 @@ std::vector<Box3> NearSkins::boxes() const {
   std::vector<Box3> boxes(leaves_.size());
   for (std::size_t k = 0; k < leaves_.size(); ++k) {
     const Leaf& leaf = leaves_[k];
-    const Skin& skin = skins_[leaf.strand];
-    const int n = skin.round + 1;
-    for (int j = leaf.row; j <= leaf.row + 1; ++j)
-      for (int i = leaf.column; i <= leaf.column + leaf.columns; ++i)
-        boxes[k].extend(skin.points[at(j * n + i)]);
+    for (std::size_t j = leaf.row; j <= leaf.row + 1; ++j)
+      for (std::size_t i = leaf.column; i <= leaf.column + leaf.columns; ++i)
+        boxes[k].extend(skins_[leaf.strand].samples.at(i, j));
   }
   return boxes;
 }
@@ -92,7 +89,7 @@ bool NearSkins::are_neighbours(const Leaf& a, const Leaf& b) const {
   if (a.strand != b.strand) return false;
   const Strand& strand = strands_[a.strand];
   const Skin& skin = skins_[a.strand];
-  double apart = std::abs(skin.arcs[at(a.row)] - skin.arcs[at(b.row)]);
+  double apart = std::abs(skin.arcs[a.row] - skin.arcs[b.row]);
   if (strand.is_cyclic()) apart = std::min(apart, strand.length() - apart);
   return apart < 1.5 * strand.width();
 }
@@ -100,14 +97,13 @@ bool NearSkins::are_neighbours(const Leaf& a, const Leaf& b) const {
 void NearSkins::cast(const Leaf& from, const Leaf& onto, const Box3& box, double reach,
                      std::vector<Facing>& found) const {
   const Skin& skin = skins_[from.strand];
-  const int n = skin.round + 1;
+  const nurbs::Samples& samples = skin.samples;
   const double inward =
       -0.45 * std::min(strands_[from.strand].thickness(), strands_[onto.strand].thickness());
-  const int rows = from.row + 1 == skin.along && !skin.cyclic ? 2 : 1;
-  for (int row = from.row; row < from.row + rows; ++row)
-    for (int column = from.column; column < from.column + from.columns; ++column) {
-      const auto k = at(row * n + column);
-      const Ray ray{skin.points[k], skin.normals[k], inward, reach};
+  const std::size_t rows = from.row + 2 == samples.vs.size() && !strands_[from.strand].is_cyclic() ? 2 : 1;
+  for (std::size_t row = from.row; row < from.row + rows; ++row)
+    for (std::size_t column = from.column; column < from.column + from.columns; ++column) {
+      const Ray ray{samples.at(column, row), skin.normals[samples.index(column, row)], inward, reach};
       Box3 way(ray.origin + inward * ray.direction);
       way.extend(ray.origin + reach * ray.direction);
       if (!way.intersects(box)) continue;
@@ -115,7 +111,7 @@ void NearSkins::cast(const Leaf& from, const Leaf& onto, const Box3& box, double
         Facing facing;
         facing.a = from.strand;
         facing.b = onto.strand;
-        facing.site_a = {skin.us[at(column)], skin.vs[at(row)]};
+        facing.site_a = {samples.us[column], samples.vs[row]};
         facing.site_b = hit;
         fill(facing, point_at(side_of(strands_[from.strand].body()), facing.site_a),
              point_at(side_of(strands_[onto.strand].body()), facing.site_b));
@@ -126,16 +122,15 @@ void NearSkins::cast(const Leaf& from, const Leaf& onto, const Box3& box, double
 
 // The places where the ray meets quads of the leaf that face it.
 std::vector<Vec2> NearSkins::hits(const Leaf& leaf, const Ray& ray) const {
-  const Skin& skin = skins_[leaf.strand];
-  const int n = skin.round + 1, j = leaf.row;
+  const nurbs::Samples& samples = skins_[leaf.strand].samples;
+  const std::size_t j = leaf.row;
   const double outward = strands_[leaf.strand].body().inward ? -1.0 : 1.0;
   std::vector<Vec2> sites;
-  for (int i = leaf.column; i < leaf.column + leaf.columns; ++i) {
-    const std::array<int, 4> corner = {j * n + i, j * n + i + 1, (j + 1) * n + i + 1, (j + 1) * n + i};
+  for (std::size_t i = leaf.column; i < leaf.column + leaf.columns; ++i) {
+    const Vec3 &p = samples.at(i, j), &across = samples.at(i + 1, j + 1);
     for (int half = 0; half < 2; ++half) {
-      const Vec3& p = skin.points[at(corner[0])];
-      const Vec3 e1 = skin.points[at(corner[at(half + 1)])] - p,
-                 e2 = skin.points[at(corner[at(half + 2)])] - p;
+      const Vec3 e1 = (half == 0 ? samples.at(i + 1, j) : across) - p,
+                 e2 = (half == 0 ? across : samples.at(i, j + 1)) - p;
       const Vec3 face = e1.cross(e2);
       const double facing = face.dot(ray.direction);
       if (outward * facing >= 0.0) continue;
@@ -150,8 +145,8 @@ std::vector<Vec2> NearSkins::hits(const Leaf& leaf, const Ray& ray) const {
       // Of the quad: the first triangle has its corners at (0,0) (1,0) (1,1), the second at (0,0) (1,1)
       // (0,1).
       const Vec2 share = half == 0 ? Vec2(s1 + s2, s2) : Vec2(s1, s1 + s2);
-      sites.emplace_back(skin.us[at(i)] + share.x() * (skin.us[at(i + 1)] - skin.us[at(i)]),
-                         skin.vs[at(j)] + share.y() * (skin.vs[at(j + 1)] - skin.vs[at(j)]));
+      sites.emplace_back(samples.us[i] + share.x() * (samples.us[i + 1] - samples.us[i]),
+                         samples.vs[j] + share.y() * (samples.vs[j + 1] - samples.vs[j]));
     }
   }
   return sites;

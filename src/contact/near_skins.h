@@ -9,6 +9,7 @@
 
 #include "contact/strand.h"
 #include "core/box_tree.h"
+#include "nurbs/samples.h"
 
 namespace selvage::contact {
 
@@ -33,14 +34,13 @@ class NearSkins {
 
  private:
   struct Skin {
-    int round = 0, along = 0;  // samples: round + 1 columns (the last is the first), along + 1 rows
-    std::vector<double> us, vs, arcs;
-    std::vector<Vec3> points, normals;
-    bool cyclic = false;
+    nurbs::Samples samples;    // the last column is the first
+    std::vector<double> arcs;  // of each row
+    std::vector<Vec3> normals;
   };
   struct Leaf {
     std::uint32_t strand = 0;
-    std::int32_t row = 0, column = 0, columns = 0;  // quads (column .. column + columns - 1, row)
+    std::size_t row = 0, column = 0, columns = 0;  // quads (column .. column + columns - 1, row)
   };
   void sample(std::size_t strand);
   [[nodiscard]] std::vector<Box3> boxes() const;  // of the leaves

@@ -5,17 +5,18 @@
 #include <limits>
 
 #include "nurbs/divided.h"
+#include "nurbs/samples.h"
 
 namespace selvage::contact {
 
 std::vector<SectionShape> section_shapes(const nurbs::Surface& surface, const std::vector<double>& vs) {
   std::vector<double> us = nurbs::divided(surface.knots_u, surface.degree_u, 4);
   us.pop_back();  // it is the first again
-  const std::vector<Vec3> points = nurbs::evaluate_grid(surface, us, vs);
+  const nurbs::Samples samples(surface, us, vs);
   const std::size_t n = us.size();
   std::vector<SectionShape> shapes(vs.size());
   for (std::size_t j = 0; j < vs.size(); ++j) {
-    const Vec3* p = points.data() + j * n;
+    const std::span<const Vec3> p = samples.row(j);
     Vec3 area = Vec3::Zero();
     for (std::size_t i = 1; i + 1 < n; ++i) area += 0.5 * (p[i] - p[0]).cross(p[i + 1] - p[0]);
     shapes[j].area = area.norm();

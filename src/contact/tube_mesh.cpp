@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "nurbs/divided.h"
-#include "nurbs/patch.h"
+#include "nurbs/samples.h"
 
 namespace selvage::contact {
 
@@ -22,13 +22,9 @@ class TubeMesher {
     const Face& face = model_.faces()[side_];
     const nurbs::Surface& s = *face.surface;
     const std::vector<double> us = nurbs::divided(s.knots_u, s.degree_u, 1, quads_round);
-    const std::vector<double> vs = rows(us);
-    std::vector<double> within;
-    within.reserve(vs.size());
-    for (const double v : vs) within.push_back(face.round_v ? wrapped(v, s.first_v(), s.last_v()) : v);
-    mesh_.vertices = nurbs::evaluate_grid(s, us, within);
-    for (const double v : within)
-      for (const double u : us) mesh_.sites.emplace_back(u, v);
+    std::vector<double> vs = rows(us);
+    for (double& v : vs) v = within(v);
+    add_points(s, us, vs);
     side_rows_ = vs.size();
     add_grid(us.size(), 0, side_, face.inward);
     for (const bool last : {false, true}) close(us.size(), last);
@@ -36,6 +32,17 @@ class TubeMesher {
   }
 
  private:
+  [[nodiscard]] double within(double v) const {
+    const Face& face = model_.faces()[side_];
+    return face.round_v ? wrapped(v, face.surface->first_v(), face.surface->last_v()) : v;
+  }
+
+  void add_points(const nurbs::Surface& s, const std::vector<double>& us, const std::vector<double>& vs) {
+    for (const Vec3& p : nurbs::evaluate_grid(s, us, vs)) mesh_.vertices.push_back(p);
+    for (const double v : vs)
+      for (const double u : us) mesh_.sites.emplace_back(u, v);
+  }
+
   // Knots in the stretch, and rows between them so that no quad is too long.
   [[nodiscard]] std::vector<double> rows(const std::vector<double>& us) const {
     const Face& face = model_.faces()[side_];
@@ -47,25 +54,15 @@ class TubeMesher {
         if (v + turn * period > places.back() && v + turn * period < stretch_.last)
           places.push_back(v + turn * period);
     places.push_back(stretch_.last);
-    std::vector<int> parts;
     const double longest = model_.thickness(body_) / quads_a_thickness;
     const std::vector<double> some = {us[0], us[us.size() / 4], us[us.size() / 2], us[3 * us.size() / 4]};
-    for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+    return nurbs::divided(places, [&](std::size_t k) {
       std::vector<double> vs;
-      for (int i = 0; i <= 4; ++i) {
-        const double v = places[k] + (places[k + 1] - places[k]) * i / 4.0;
-        vs.push_back(face.round_v ? wrapped(v, s.first_v(), s.last_v()) : v);
-      }
-      const std::vector<Vec3> points = nurbs::evaluate_grid(s, some, vs);
-      double length = 0.0;
-      for (std::size_t c = 0; c < 4; ++c) {
-        double way = 0.0;
-        for (std::size_t i = 0; i < 4; ++i) way += (points[4 * (i + 1) + c] - points[4 * i + c]).norm();
-        length = std::max(length, way);
-      }
-      parts.push_back(static_cast<int>(std::clamp(std::ceil(length / longest), 1.0, 1e4)));
-    }
-    return nurbs::divided(places, parts);
+      for (int i = 0; i <= 4; ++i) vs.push_back(within(places[k] + (places[k + 1] - places[k]) * i / 4.0));
+      const nurbs::Samples samples(s, some, vs);
+      const double length = samples.largest<5>(true, 0, nurbs::length_of<std::array<Vec3, 5>>);
+      return nurbs::whole_parts(length / longest, 1, 10'000);
+    });
   }
 
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, bool flip, std::int32_t face) {
@@ -94,9 +91,7 @@ class TubeMesher {
       const std::vector<double> us = nurbs::divided(e.knots_u, e.degree_u, 1, 16),
                                 vs = nurbs::divided(e.knots_v, e.degree_v, 1, 16);
       const std::size_t first = mesh_.vertices.size();
-      for (const Vec3& p : nurbs::evaluate_grid(e, us, vs)) mesh_.vertices.push_back(p);
-      for (const double v : vs)
-        for (const double u : us) mesh_.sites.emplace_back(u, v);
+      add_points(e, us, vs);
       add_grid(us.size(), first, *end, model_.faces()[*end].inward);
       return;
     }

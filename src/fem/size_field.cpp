@@ -108,12 +108,9 @@ struct Facet {
 
 std::vector<double> divided(const std::vector<double>& breaks, double length, double step) {
   const double range = breaks.back() - breaks.front();
-  std::vector<int> parts;
-  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-    const double part = (breaks[k + 1] - breaks[k]) / range * length / step;
-    parts.push_back(static_cast<int>(std::clamp(std::ceil(part), 1.0, 1e5)));
-  }
-  return nurbs::divided(breaks, parts);
+  return nurbs::divided(breaks, [&](std::size_t k) {
+    return nurbs::whole_parts((breaks[k + 1] - breaks[k]) / range * length / step, 1, 100'000);
+  });
 }
 
 double row_length(const nurbs::Surface& surface, double v) {

@@ -75,31 +75,21 @@ class Columns {
   std::vector<std::vector<Crossing>> crossings_;
 };
 
-// The spans of a knot vector cut into steps; `length` says how long the span between two parameters is.
-template <class Length>
-std::vector<double> steps(const std::vector<double>& breaks, double edge, const Length& length) {
-  std::vector<int> parts;
-  for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
-    parts.push_back(
-        static_cast<int>(std::clamp(std::ceil(length(breaks[i], breaks[i + 1]) / edge), 2.0, 1000.0)));
-  return nurbs::divided(breaks, parts);
-}
-
 }  // namespace
 
 std::vector<std::vector<Crossing>> cross_yarn(const yarn::Body& body, std::span<const double> xs,
                                               std::span<const double> ys, double edge) {
   const nurbs::Surface& surface = body.surface;
-  const std::vector<double> breaks_v = nurbs::breakpoints(surface.knots_v, surface.degree_v);
   const double middle_v = (surface.first_v() + surface.last_v()) / 2;
-  const auto chord_u = [&](double from, double to) {
-    return (nurbs::evaluate(surface, to, middle_v) - nurbs::evaluate(surface, from, middle_v)).norm();
+  const auto steps = [&](const std::vector<double>& breaks, const auto& place) {
+    return nurbs::divided(breaks, [&](std::size_t k) {
+      return nurbs::whole_parts((place(breaks[k + 1]) - place(breaks[k])).norm() / edge, 2, 1000);
+    });
   };
-  const auto chord_v = [&](double from, double to) {
-    return (nurbs::evaluate(body.axis, to) - nurbs::evaluate(body.axis, from)).norm();
-  };
-  const std::vector<double> us = steps(nurbs::breakpoints(surface.knots_u, surface.degree_u), edge, chord_u);
-  const std::vector<double> vs = steps(breaks_v, edge, chord_v);
+  const std::vector<double> us = steps(nurbs::breakpoints(surface.knots_u, surface.degree_u),
+                                       [&](double u) { return nurbs::evaluate(surface, u, middle_v); });
+  const std::vector<double> vs = steps(nurbs::breakpoints(surface.knots_v, surface.degree_v),
+                                       [&](double v) { return nurbs::evaluate(body.axis, v); });
   std::vector<Vec3> points = nurbs::evaluate_grid(surface, us, vs);
   const std::size_t columns = us.size(), rows = vs.size();
   auto vertex = [&](std::size_t i, std::size_t j) {

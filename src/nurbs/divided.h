@@ -2,19 +2,37 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <concepts>
 #include <vector>
 
 #include "nurbs/spline.h"
 
 namespace selvage::nurbs {
 
-// The breaks (increasing, at least one), and between them span k cut into parts[k] >= 1 equal ones.
-inline std::vector<double> divided(const std::vector<double>& breaks, const std::vector<int>& parts) {
+// How many parts a span is cut into that `wanted` asks for: rounded up, `least` to `most`.
+inline int whole_parts(double wanted, int least, int most) {
+  return static_cast<int>(
+      std::clamp(std::ceil(wanted), static_cast<double>(least), static_cast<double>(most)));
+}
+
+// The breaks (increasing, at least one), and between them span k cut into parts[k] equal ones, a whole number
+// >= 1.
+template <class Number>
+std::vector<double> divided(const std::vector<double>& breaks, const std::vector<Number>& parts) {
   std::vector<double> all;
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
     for (int i = 0; i < parts[k]; ++i) all.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / parts[k]);
   all.push_back(breaks.back());
   return all;
+}
+
+// The same into parts_of(k), an int.
+template <std::invocable<std::size_t> Parts>
+std::vector<double> divided(const std::vector<double>& breaks, const Parts& parts_of) {
+  std::vector<int> parts;
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) parts.push_back(parts_of(k));
+  return divided(breaks, parts);
 }
 
 // Each knot of the domain once, and between them every span cut into as many.
@@ -31,7 +49,8 @@ inline std::vector<double> divided(const std::vector<double>& knots, int degree,
 }
 
 // Of the polygon through these points.
-inline double length_of(const std::vector<Vec3>& points) {
+template <class Points>
+double length_of(const Points& points) {
   double length = 0;
   for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
   return length;

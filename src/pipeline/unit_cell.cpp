@@ -17,6 +17,7 @@
 #include "fem/cell_size.h"
 #include "fem/fibre.h"
 #include "nurbs/divided.h"
+#include "nurbs/samples.h"
 #include "pipeline/overlaps.h"
 
 namespace selvage::pipeline {
@@ -48,19 +49,11 @@ Message cell_error(const fabric::Fabric& fabric, std::string text) {
   return at_cell(fabric, error(Kind::geometry, std::move(text)));
 }
 
-// Points of a surface, dense enough to see where it reaches to within a thousandth of its thickness: rows
-// round the section, one a station along.
-struct Grid {
-  std::vector<Vec3> points;
-  std::size_t round = 0, along = 0;
-  [[nodiscard]] const Vec3& at(std::size_t u, std::size_t v) const { return points[v * round + u]; }
-};
-
-Grid grid_of(const nurbs::Surface& surface) {
+// Of a surface, dense enough to see where it reaches to within a thousandth of its thickness.
+nurbs::Samples samples_of(const nurbs::Surface& surface) {
   constexpr int round_a_span = 4, along_a_span = 8;
-  const std::vector<double> u = nurbs::divided(surface.knots_u, surface.degree_u, round_a_span),
-                            v = nurbs::divided(surface.knots_v, surface.degree_v, along_a_span);
-  return {nurbs::evaluate_grid(surface, u, v), u.size(), v.size()};
+  return {surface, nurbs::divided(surface.knots_u, surface.degree_u, round_a_span),
+          nurbs::divided(surface.knots_v, surface.degree_v, along_a_span)};
 }
 
 // A translation that may be written down: as many digits as a cell needs that is to be a whole number of
@@ -268,7 +261,7 @@ bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<cons
     const double room = least_gap_share * yarn::narrowest_section(body);
     const std::span<const yarn::Body> alone(&body, 1);
     double lowest = infinity, highest = -infinity;
-    for (const Vec3& p : grid_of(body.surface).points) {
+    for (const Vec3& p : samples_of(body.surface).points) {
       if (p.x() < box.min().x() || p.x() > box.max().x() || p.y() < box.min().y() || p.y() > box.max().y())
         continue;
       lowest = std::min(lowest, p.z());
@@ -304,7 +297,8 @@ namespace {
 
 // Where a yarn's surface turns round beside the plane of a face (a summit, a hollow or a saddle of its
 // distance from it), inside the rest of the box.
-std::optional<Vec3> grazed_at(const Grid& grid, const Box3& box, int axis, double plane, double room) {
+std::optional<Vec3> grazed_at(const nurbs::Samples& grid, const Box3& box, int axis, double plane,
+                              double room) {
   const double flat = 1e-6 * room;  // rounding along what is parallel to the face
   const auto turns = [flat](double before, double here, double after) {
     const double left = here - before, right = after - here;
@@ -313,8 +307,8 @@ std::optional<Vec3> grazed_at(const Grid& grid, const Box3& box, int axis, doubl
   Box3 near(box.min().array() - room, box.max().array() + room);
   near.min()[axis] = plane - room;
   near.max()[axis] = plane + room;
-  const std::size_t round = grid.round - 1;  // the last one is the first
-  for (std::size_t v = 1; v + 1 < grid.along; ++v)
+  const std::size_t round = grid.us.size() - 1;  // the last one is the first
+  for (std::size_t v = 1; v + 1 < grid.vs.size(); ++v)
     for (std::size_t u = 0; u < round; ++u) {
       const Vec3& here = grid.at(u, v);
       if (!near.contains(here)) continue;
@@ -333,7 +327,7 @@ bool check_grazed_faces(Job& job, const fabric::Fabric& fabric, std::span<const 
   for (const yarn::Body& body : bodies) {
     // Two yarns as near as they may be have a face between them.
     const double room = least_gap_share / 2.0 * yarn::narrowest_section(body);
-    const Grid grid = grid_of(body.surface);
+    const nurbs::Samples grid = samples_of(body.surface);
     for (int face = 0; face < cell::face_count; ++face) {
       const int axis = cell::axis_of(face);
       const double plane = cell::plane_of(box, face);

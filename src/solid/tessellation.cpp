@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "core/plane.h"
+#include "nurbs/divided.h"
+#include "nurbs/samples.h"
 #include "solid/planar_end.h"
 
 namespace selvage::solid {
@@ -34,18 +36,10 @@ struct Cuts {
   std::vector<double> parts;  // one a span, whole numbers >= 1
 };
 
-std::vector<double> sites_of(const Cuts& cuts) {
-  std::vector<double> sites;
-  for (std::size_t k = 0; k + 1 < cuts.breaks.size(); ++k)
-    for (int i = 0; i < static_cast<int>(cuts.parts[k]); ++i)
-      sites.push_back(cuts.breaks[k] + (cuts.breaks[k + 1] - cuts.breaks[k]) * (i / cuts.parts[k]));
-  sites.push_back(cuts.breaks.back());
-  return sites;
-}
-
 // The largest second derivative on a span from five points on it, a quarter of the span apart: exact for
 // degree <= 3, whose second derivative is linear.
-double largest_second_derivative(const std::array<Vec3, 5>& p, double step) {
+using Span = std::array<Vec3, 5>;
+double largest_second_derivative(const Span& p, double step) {
   const std::array<Vec3, 3> d = {p[0] - 2.0 * p[1] + p[2], p[1] - 2.0 * p[2] + p[3],
                                  p[2] - 2.0 * p[3] + p[4]};
   const double ends = std::max((2.0 * d[0] - d[1]).squaredNorm(), (2.0 * d[2] - d[1]).squaredNorm());
@@ -53,105 +47,77 @@ double largest_second_derivative(const std::array<Vec3, 5>& p, double step) {
   return std::sqrt(std::max(ends, inside)) / (step * step);
 }
 
-// Points of the surface at four places a span.
-class Samples {
+// A surface as it is seen at four places a span.
+class Look {
  public:
-  explicit Samples(const nurbs::Surface& surface)
-      : breaks_u_(nurbs::breakpoints(surface.knots_u, surface.degree_u)),
-        breaks_v_(nurbs::breakpoints(surface.knots_v, surface.degree_v)) {
-    const std::vector<double> us = sites_of({breaks_u_, std::vector<double>(breaks_u_.size() - 1, 4.0)});
-    const std::vector<double> vs = sites_of({breaks_v_, std::vector<double>(breaks_v_.size() - 1, 4.0)});
-    count_u_ = us.size();
-    count_v_ = vs.size();
-    points_ = nurbs::evaluate_grid(surface, us, vs);
-  }
+  explicit Look(const nurbs::Surface& surface)
+      : breaks_{nurbs::breakpoints(surface.knots_u, surface.degree_u),
+                nurbs::breakpoints(surface.knots_v, surface.degree_v)},
+        samples_(surface, nurbs::divided(surface.knots_u, surface.degree_u, 4),
+                 nurbs::divided(surface.knots_v, surface.degree_v, 4)) {}
 
   // du, dv so that the bound of tessellate() is met: 0.4 of `chord` for each direction, 0.2 for the twist.
-  void cut(double chord, Cuts& u, Cuts& v) const {
-    u = {breaks_u_, std::vector<double>(breaks_u_.size() - 1, 1.0)};
-    v = {breaks_v_, std::vector<double>(breaks_v_.size() - 1, 1.0)};
-    const auto parts = [&](double step, double derivative) {
-      return std::max(1.0, std::ceil(step * std::sqrt(derivative / (3.2 * chord)) - 1e-9));
-    };
-    for (std::size_t k = 0; k + 1 < breaks_u_.size(); ++k)
-      u.parts[k] = parts(breaks_u_[k + 1] - breaks_u_[k], bend_u(k));
-    for (std::size_t l = 0; l + 1 < breaks_v_.size(); ++l)
-      v.parts[l] = parts(breaks_v_[l + 1] - breaks_v_[l], bend_v(l));
-    std::vector<double> more_u(u.parts.size(), 1.0), more_v(v.parts.size(), 1.0);
-    for (std::size_t l = 0; l < v.parts.size(); ++l)
-      for (std::size_t k = 0; k < u.parts.size(); ++k) {
-        const double excess = std::sqrt(twist(k, l) / (0.8 * chord * u.parts[k] * v.parts[l]));
-        more_u[k] = std::max(more_u[k], excess);
-        more_v[l] = std::max(more_v[l], excess);
+  [[nodiscard]] std::array<Cuts, 2> cut(double chord) const {
+    std::array<Cuts, 2> cuts;
+    std::array<std::vector<double>, 2> more;
+    for (const bool v : {false, true}) {
+      cuts[v].breaks = breaks_[v];
+      for (std::size_t k = 0; k + 1 < breaks_[v].size(); ++k) {
+        const double step = breaks_[v][k + 1] - breaks_[v][k];
+        cuts[v].parts.push_back(
+            std::max(1.0, std::ceil(step * std::sqrt(bend(v, k) / (3.2 * chord)) - 1e-9)));
       }
-    for (std::size_t k = 0; k < u.parts.size(); ++k) u.parts[k] = std::ceil(u.parts[k] * more_u[k] - 1e-9);
-    for (std::size_t l = 0; l < v.parts.size(); ++l) v.parts[l] = std::ceil(v.parts[l] * more_v[l] - 1e-9);
+      more[v].assign(cuts[v].parts.size(), 1.0);
+    }
+    for (std::size_t l = 0; l < more[1].size(); ++l)
+      for (std::size_t k = 0; k < more[0].size(); ++k) {
+        const double excess = std::sqrt(twist(k, l) / (0.8 * chord * cuts[0].parts[k] * cuts[1].parts[l]));
+        more[0][k] = std::max(more[0][k], excess);
+        more[1][l] = std::max(more[1][l], excess);
+      }
+    for (const bool v : {false, true})
+      for (std::size_t k = 0; k < more[v].size(); ++k)
+        cuts[v].parts[k] = std::ceil(cuts[v].parts[k] * more[v][k] - 1e-9);
+    return cuts;
   }
 
-  // The longest way along v across the span l.
-  [[nodiscard]] double reach_v(std::size_t l) const {
-    double longest = 0.0;
-    for (std::size_t i = 0; i < count_u_; ++i) {
-      double way = 0.0;
-      for (std::size_t j = 4 * l; j < 4 * l + 4; ++j) way += (at(i, j + 1) - at(i, j)).norm();
-      longest = std::max(longest, way);
-    }
-    return longest;
-  }
-  // The same along u.
-  [[nodiscard]] double reach_u(std::size_t k) const {
-    double longest = 0.0;
-    for (std::size_t j = 0; j < count_v_; ++j) {
-      double way = 0.0;
-      for (std::size_t i = 4 * k; i < 4 * k + 4; ++i) way += (at(i + 1, j) - at(i, j)).norm();
-      longest = std::max(longest, way);
-    }
-    return longest;
+  // No cell along v (or u) longer than this.
+  void shorten(bool v, double longest, Cuts& cuts) const {
+    for (std::size_t k = 0; k < cuts.parts.size(); ++k)
+      cuts.parts[k] =
+          std::max(cuts.parts[k], std::ceil(samples_.largest<5>(v, 4 * k, nurbs::length_of<Span>) / longest));
   }
 
   // The diagonal of the largest section's box.
   [[nodiscard]] double largest_section() const {
     double largest = 0.0;
-    for (std::size_t j = 0; j < count_v_; ++j) {
+    for (std::size_t j = 0; j < samples_.vs.size(); ++j) {
       Box3 box;
-      for (std::size_t i = 0; i < count_u_; ++i) box.extend(at(i, j));
+      for (const Vec3& p : samples_.row(j)) box.extend(p);
       largest = std::max(largest, box.diagonal().norm());
     }
     return largest;
   }
 
  private:
-  [[nodiscard]] const Vec3& at(std::size_t i, std::size_t j) const { return points_[j * count_u_ + i]; }
-
-  [[nodiscard]] double bend_u(std::size_t k) const {
-    double largest = 0.0;
-    for (std::size_t j = 0; j < count_v_; ++j)
-      largest = std::max(largest, largest_second_derivative({at(4 * k, j), at(4 * k + 1, j), at(4 * k + 2, j),
-                                                             at(4 * k + 3, j), at(4 * k + 4, j)},
-                                                            (breaks_u_[k + 1] - breaks_u_[k]) / 4.0));
-    return largest;
-  }
-  [[nodiscard]] double bend_v(std::size_t l) const {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < count_u_; ++i)
-      largest = std::max(largest, largest_second_derivative({at(i, 4 * l), at(i, 4 * l + 1), at(i, 4 * l + 2),
-                                                             at(i, 4 * l + 3), at(i, 4 * l + 4)},
-                                                            (breaks_v_[l + 1] - breaks_v_[l]) / 4.0));
-    return largest;
+  // Of the span k of u (or v).
+  [[nodiscard]] double bend(bool v, std::size_t k) const {
+    const double step = (breaks_[v][k + 1] - breaks_[v][k]) / 4.0;
+    return samples_.largest<5>(v, 4 * k, [&](const Span& p) { return largest_second_derivative(p, step); });
   }
   // |S_uv| times both spans.
   [[nodiscard]] double twist(std::size_t k, std::size_t l) const {
     double largest = 0.0;
     for (std::size_t j = 4 * l; j < 4 * l + 4; ++j)
       for (std::size_t i = 4 * k; i < 4 * k + 4; ++i)
-        largest =
-            std::max(largest, (at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j)).squaredNorm());
+        largest = std::max(largest, (samples_.at(i + 1, j + 1) - samples_.at(i + 1, j) -
+                                     samples_.at(i, j + 1) + samples_.at(i, j))
+                                        .squaredNorm());
     return 16.0 * std::sqrt(largest);
   }
 
-  std::vector<double> breaks_u_, breaks_v_;
-  std::size_t count_u_ = 0, count_v_ = 0;
-  std::vector<Vec3> points_;
+  std::array<std::vector<double>, 2> breaks_;  // of u and of v
+  nurbs::Samples samples_;
 };
 
 // A quarter of the section over [0, 1]: knots, and how many vertices a unit of length asks for between them.
@@ -199,7 +165,7 @@ std::vector<double> unite(const Quarter& one, const Quarter& two) {
   }
   if (cuts.parts.size() == 1)
     cuts.parts[0] = std::max(cuts.parts[0], 2.0);  // a patch's corner needs a cell of its own
-  return sites_of(cuts);
+  return nurbs::divided(cuts.breaks, cuts.parts);
 }
 
 // The places round the section at which the body has its vertices; the last one is the seam again.
@@ -212,7 +178,7 @@ struct Round {
     const bool has_patch =
         body.start.style == yarn::EndStyle::patch || body.end.style == yarn::EndStyle::patch;
     if (!has_patch) {
-      round.us = sites_of(cuts);
+      round.us = nurbs::divided(cuts.breaks, cuts.parts);
       return round;
     }
     const auto& q = body.quarters;
@@ -327,9 +293,9 @@ void add_patch(Skinner& skinner, const yarn::EndFace& face, const Round& round, 
 
 void add_fan(Skinner& skinner, const yarn::EndFace& face, const Round& round, double chord,
              const Ids& outline, Skin skin) {
-  Cuts unused, along;
-  Samples(face.surface).cut(chord, unused, along);
-  const std::vector<Vec3> points = nurbs::evaluate_grid(face.surface, round.us, sites_of(along));
+  const Cuts along = Look(face.surface).cut(chord)[1];
+  const std::vector<Vec3> points =
+      nurbs::evaluate_grid(face.surface, round.us, nurbs::divided(along.breaks, along.parts));
   Ids ids(points.size(), none);
   for (std::size_t k = 0; k < outline.size(); ++k)
     if (skinner.same(skinner.vertex(outline[k]), points[k])) ids[k] = outline[k];
@@ -377,16 +343,12 @@ Result<Tessellation> tessellate(const yarn::Body& body, double chord, double lon
                    fmt::format("the surface of yarn '{}' has a coordinate that is not finite", body.name));
   if (!(chord > 0.0)) return refusal(body, Kind::internal, "a tessellation needs a chord error above 0");
 
-  const Samples samples(body.surface);
-  Cuts cuts_u, cuts_v;
-  samples.cut(chord, cuts_u, cuts_v);
+  const Look look(body.surface);
+  auto [cuts_u, cuts_v] = look.cut(chord);
   // Rows no farther apart than the section is wide: slivers along a straight yarn would help nobody.
-  const double widest = std::min(samples.largest_section(), longest);
-  for (std::size_t l = 0; l < cuts_v.parts.size(); ++l)
-    if (widest > 0.0) cuts_v.parts[l] = std::max(cuts_v.parts[l], std::ceil(samples.reach_v(l) / widest));
-  if (std::isfinite(longest))
-    for (std::size_t k = 0; k < cuts_u.parts.size(); ++k)
-      cuts_u.parts[k] = std::max(cuts_u.parts[k], std::ceil(samples.reach_u(k) / longest));
+  if (const double widest = std::min(look.largest_section(), longest); widest > 0.0)
+    look.shorten(true, widest, cuts_v);
+  if (std::isfinite(longest)) look.shorten(false, longest, cuts_u);
   double cells_u = 0.0, cells_v = 0.0;
   for (double n : cuts_u.parts) cells_u += n;
   for (double n : cuts_v.parts) cells_v += n;
@@ -404,7 +366,7 @@ Result<Tessellation> tessellate(const yarn::Body& body, double chord, double lon
             chord, 2.0 * cells_u * cells_v, body.name, max_triangles));
 
   const Round round = Round::make(cuts_u, body);
-  const std::vector<double> vs = sites_of(cuts_v);
+  const std::vector<double> vs = nurbs::divided(cuts_v.breaks, cuts_v.parts);
   const std::size_t nu = round.us.size();
   Skinner skinner(sewing_gap(body));
   std::vector<Vec3> points = nurbs::evaluate_grid(body.surface, round.us, vs);

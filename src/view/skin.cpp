@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "nurbs/divided.h"
+#include "nurbs/samples.h"
 
 namespace selvage::view {
 
@@ -15,34 +17,11 @@ namespace {
 constexpr std::size_t fewest_round = 8;
 constexpr double most_facets = 2147483648.0;
 
-// Surface points along several lines of one parameter, the others held: points[k * lines + line].
-struct Lines {
-  std::size_t lines = 0;
-  bool are_neighbours = false;  // the grid has no line between two of these
-  std::vector<Vec3> points;
-  [[nodiscard]] const Vec3& at(std::size_t k, std::size_t line) const { return points[k * lines + line]; }
-};
-
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
   const double square = ab.squaredNorm();
   const double t = square > 0.0 ? std::clamp((p - a).dot(ab) / square, 0.0, 1.0) : 0.0;
   return (p - a - t * ab).norm();
-}
-
-// Neither does a line leave its chord, nor a quadrilateral between two lines its plane, by more than `chord`.
-// (The middle of a quadrilateral cut into triangles is off its bilinear surface by a quarter of its mixed
-// difference.)
-bool is_straight(const Lines& lines, std::size_t from, std::size_t to, double chord) {
-  for (std::size_t line = 0; line + 1 < lines.lines && lines.are_neighbours; ++line) {
-    const Vec3 here = lines.at(to, line) - lines.at(from, line);
-    if ((lines.at(to, line + 1) - lines.at(from, line + 1) - here).norm() > 4.0 * chord) return false;
-  }
-  for (std::size_t k = from + 1; k < to; ++k)
-    for (std::size_t line = 0; line < lines.lines; ++line)
-      if (distance_to_segment(lines.at(k, line), lines.at(from, line), lines.at(to, line)) > chord)
-        return false;
-  return true;
 }
 
 // One parameter of the surface, u or v.
@@ -61,7 +40,7 @@ class Direction {
   // Parameters between which the lines are straight within the chord; every edge of the surface twice.
   [[nodiscard]] std::vector<double> parameters(std::size_t fewest) const {
     const std::vector<double> fine = fine_parameters();
-    const Lines lines = lines_at(fine);
+    const nurbs::Samples lines = lines_at(fine);
     const std::size_t last = fine.size() - 1, longest = std::max<std::size_t>(1, last / fewest);
     std::vector<std::size_t> next_edge(fine.size(), last);
     for (std::size_t k = last; k-- > 0;)
@@ -87,43 +66,45 @@ class Direction {
     return last - first >= degree();
   }
 
-  [[nodiscard]] Lines lines_at(const std::vector<double>& parameters) const {
-    Lines lines{held_.size(), !is_u_, {}};
-    if (!is_u_) {
-      lines.points = nurbs::evaluate_grid(surface_, held_, parameters);
-      return lines;
+  [[nodiscard]] nurbs::Samples lines_at(const std::vector<double>& parameters) const {
+    return is_u_ ? nurbs::Samples(surface_, parameters, held_) : nurbs::Samples(surface_, held_, parameters);
+  }
+
+  // Neither does a line leave its chord, nor a quadrilateral between two of the grid's columns its plane, by
+  // more than the chord. (The middle of a quadrilateral cut into triangles is off its bilinear surface by a
+  // quarter of its mixed difference.)
+  [[nodiscard]] bool is_straight(const nurbs::Samples& lines, std::size_t from, std::size_t to) const {
+    for (std::size_t i = 0; i + 1 < lines.us.size() && !is_u_; ++i) {
+      const Vec3 here = lines.at(i, to) - lines.at(i, from);
+      if ((lines.at(i + 1, to) - lines.at(i + 1, from) - here).norm() > 4.0 * chord_) return false;
     }
-    const std::vector<Vec3> grid = nurbs::evaluate_grid(surface_, parameters, held_);
-    lines.points.resize(grid.size());
-    for (std::size_t k = 0; k < parameters.size(); ++k)
+    const auto at = [&](std::size_t k, std::size_t line) -> const Vec3& {
+      return is_u_ ? lines.at(k, line) : lines.at(line, k);
+    };
+    for (std::size_t k = from + 1; k < to; ++k)
       for (std::size_t line = 0; line < held_.size(); ++line)
-        lines.points[k * held_.size() + line] = grid[line * parameters.size() + k];
-    return lines;
+        if (distance_to_segment(at(k, line), at(from, line), at(to, line)) > chord_) return false;
+    return true;
   }
 
   // Four steps a knot span, more where a span bends by more than the chord.
   [[nodiscard]] std::vector<double> fine_parameters() const {
-    constexpr double least = 4, most = 256;
-    const std::vector<double> breaks = nurbs::breakpoints(knots(), degree());
-    const Lines lines = lines_at(nurbs::divided(knots(), degree(), 2));
-    std::vector<int> parts;
-    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-      double bend = 0.0;
-      for (std::size_t line = 0; line < lines.lines; ++line)
-        bend = std::max(bend, distance_to_segment(lines.at(2 * k + 1, line), lines.at(2 * k, line),
-                                                  lines.at(2 * k + 2, line)));
-      parts.push_back(static_cast<int>(std::clamp(std::ceil(2.0 * std::sqrt(bend / chord_)), least, most)));
-    }
-    return nurbs::divided(breaks, parts);
+    const nurbs::Samples lines = lines_at(nurbs::divided(knots(), degree(), 2));
+    return nurbs::divided(nurbs::breakpoints(knots(), degree()), [&](std::size_t k) {
+      const double bend = lines.largest<3>(
+          !is_u_, 2 * k, [](const std::array<Vec3, 3>& p) { return distance_to_segment(p[1], p[0], p[2]); });
+      return nurbs::whole_parts(2.0 * std::sqrt(bend / chord_), 4, 256);
+    });
   }
 
   // The farthest sample from `start`, up to `limit`, to which the lines are straight.
-  [[nodiscard]] std::size_t farthest(const Lines& lines, std::size_t start, std::size_t limit) const {
+  [[nodiscard]] std::size_t farthest(const nurbs::Samples& lines, std::size_t start,
+                                     std::size_t limit) const {
     std::size_t good = start + 1;
     std::size_t step = 1;
-    for (; good + step <= limit && is_straight(lines, start, good + step, chord_); step *= 2) good += step;
+    for (; good + step <= limit && is_straight(lines, start, good + step); step *= 2) good += step;
     for (; step > 0; step /= 2)
-      if (good + step <= limit && is_straight(lines, start, good + step, chord_)) good += step;
+      if (good + step <= limit && is_straight(lines, start, good + step)) good += step;
     return good;
   }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "nurbs/samples.h"
 #include "nurbs/turn.h"
 
 namespace selvage::yarn {
@@ -114,10 +115,10 @@ double narrowest_section(const Body& body) {
     us.push_back(surface.first_u() + (surface.last_u() - surface.first_u()) * i / round);
   for (int j = 0; j < sections; ++j)
     vs.push_back(surface.first_v() + (surface.last_v() - surface.first_v()) * j / (sections - 1));
-  const std::vector<Vec3> points = nurbs::evaluate_grid(surface, us, vs);
+  const nurbs::Samples samples(surface, us, vs);
   std::vector<double> extents;
   for (std::size_t j = 0; j < sections; ++j) {
-    const std::span<const Vec3> row = std::span(points).subspan(j * round, round);
+    const std::span<const Vec3> row = samples.row(j);
     // The section's own normal, from the area that it encloses; of an eight, which may enclose none, from the
     // largest part of it.
     Vec3 normal = Vec3::Zero(), largest_part = Vec3::Zero();
