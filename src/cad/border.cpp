@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cad/outline.h"
+#include "cad/sampled_curve.h"
 
 namespace selvage::cad {
 
@@ -14,14 +14,6 @@ constexpr int fewest_points = 8, points_a_span = 4, most_points = 2000;
 constexpr int newton_steps = 30;
 
 }  // namespace
-
-Border::Border(const nurbs::Surface& surface, int side)
-    : Border(constant_curve(surface, side < 2,
-                            side == 0   ? surface.first_u()
-                            : side == 1 ? surface.last_u()
-                            : side == 2 ? surface.first_v()
-                                        : surface.last_v()),
-             side) {}
 
 Border::Border(nurbs::Curve curve, int side)
     : curve_(std::move(curve)),
@@ -90,7 +82,8 @@ double Border::refined(const Vec3& p, std::size_t nearest) const {
 std::vector<Border> borders_of(const Face& face) {
   std::vector<Border> borders;
   if (face.loops.empty()) {
-    for (int side = 0; side < 4; ++side) borders.emplace_back(face.surface, side);
+    for (nurbs::Curve& side : sides_of(face.surface))
+      borders.emplace_back(std::move(side), static_cast<int>(borders.size()));
     return borders;
   }
   for (const Loop& loop : face.loops)

@@ -11,8 +11,7 @@ namespace selvage::cad {
 // One piece of a face's border, with points on it.
 class Border {
  public:
-  // The side u = first (0), u = last (1), v = first (2) or v = last (3) of the surface.
-  Border(const nurbs::Surface& surface, int side);
+  // `side`: of those of a whole surface (sides_of); -1: an edge of a loop.
   explicit Border(nurbs::Curve curve, int side = -1);
 
   [[nodiscard]] double length() const { return length_; }  // of the polygon through points()
@@ -22,7 +21,7 @@ class Border {
   [[nodiscard]] double share(std::size_t i) const { return (parameters_[i] - first_) / (last_ - first_); }
   // Holds the curve, between points() too.
   [[nodiscard]] const Box3& box() const { return box_; }
-  [[nodiscard]] int side() const { return side_; }  // -1: an edge of a loop
+  [[nodiscard]] int side() const { return side_; }
 
   // The distance of `p`: at `hint` (0 to 1, from first to last) or its mirror image where that is at most
   // `enough`, else the least, by Newton's method from the nearest of points(). Where it is more than `most`

@@ -79,21 +79,16 @@ std::optional<Lid> as_patch(const Surface& surface, const TubeEnd& end) {
   return lid;
 }
 
-bool is_one_point(const nurbs::Curve& curve, double tolerance) {
-  return std::all_of(curve.points.begin(), curve.points.end(),
-                     [&](const Vec3& p) { return (p - curve.points.front()).norm() <= tolerance; });
-}
-
 // The published end face: the outline's own row, two between, and the centre.
 std::optional<Lid> as_fan(const Surface& surface, const TubeEnd& end) {
   Surface fan = surface;
   const nurbs::Curve& outline = end.outline();
-  if (is_one_point(nurbs::boundary_column(fan, false), end.tolerance()) ||
-      is_one_point(nurbs::boundary_column(fan, true), end.tolerance()))
+  if (is_point(nurbs::boundary_column(fan, false), end.tolerance()) ||
+      is_point(nurbs::boundary_column(fan, true), end.tolerance()))
     fan = nurbs::transposed(fan);
-  if (is_one_point(nurbs::boundary_row(fan, false), end.tolerance())) fan = nurbs::reversed_v(fan);
-  if (!is_one_point(nurbs::boundary_row(fan, true), end.tolerance()) || fan.count_v != 4 ||
-      fan.degree_v != 3 || !same_basis(nurbs::boundary_row(fan, false), outline))
+  if (is_point(nurbs::boundary_row(fan, false), end.tolerance())) fan = nurbs::reversed_v(fan);
+  if (!is_point(nurbs::boundary_row(fan, true), end.tolerance()) || fan.count_v != 4 || fan.degree_v != 3 ||
+      !same_basis(nurbs::boundary_row(fan, false), outline))
     return std::nullopt;
   for (const bool backward : {false, true}) {
     if (backward) fan = nurbs::reversed_u(fan);

@@ -1,13 +1,11 @@
 #include "cad/natural_border.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "cad/sampled_curve.h"
 #include "nurbs/divided.h"
-#include "nurbs/restrict.h"
 #include "nurbs/turn.h"
 
 namespace selvage::cad {
@@ -191,7 +189,7 @@ nurbs::Curve flat_line(const Vec3& from, const Vec3& to, double t0, double t1) {
 }  // namespace
 
 double border_tolerance(const Face& face, double resolution) {
-  Eigen::AlignedBox3d box;
+  Box3 box;
   for (const Vec3& p : face.surface.points) box.extend(p);
   const double size = box.sizes().norm();
   return std::clamp(resolution, 1e-7 * size, 1e-5 * size);
@@ -213,11 +211,7 @@ bool drop_natural_border(Face& face, double tolerance) {
 }
 
 Loop natural_border(const nurbs::Surface& given, double tolerance) {
-  const bool clamped =
-      nurbs::is_clamped(given.knots_u, given.degree_u) && nurbs::is_clamped(given.knots_v, given.degree_v);
-  const nurbs::Surface surface =
-      clamped ? given
-              : nurbs::restricted(given, given.first_u(), given.last_u(), given.first_v(), given.last_v());
+  const nurbs::Surface surface = nurbs::clamped(given);
   const double u0 = surface.first_u(), u1 = surface.last_u(), v0 = surface.first_v(), v1 = surface.last_v();
   const std::array<Vec3, 4> corners = {Vec3(u0, v0, 0), Vec3(u1, v0, 0), Vec3(u1, v1, 0), Vec3(u0, v1, 0)};
   Loop loop;

@@ -3,40 +3,16 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "cad/basis.h"
-#include "nurbs/basis.h"
+#include "cad/sampled_curve.h"
 
 namespace selvage::cad {
 
 using nurbs::Curve;
 using nurbs::Surface;
-
-Curve constant_curve(const Surface& surface, bool of_u, double t) {
-  Curve curve;
-  const std::vector<double>& across = of_u ? surface.knots_u : surface.knots_v;
-  const int degree = of_u ? surface.degree_u : surface.degree_v;
-  const int span = nurbs::find_span(across, degree, of_u ? surface.count_u : surface.count_v, t);
-  nurbs::BasisRow values;
-  nurbs::basis(across, degree, span, t, values);
-  curve.degree = of_u ? surface.degree_v : surface.degree_u;
-  curve.knots = of_u ? surface.knots_v : surface.knots_u;
-  const int count = of_u ? surface.count_v : surface.count_u;
-  for (int k = 0; k < count; ++k) {
-    Vec3 sum = Vec3::Zero();
-    double weight = 0;
-    for (int r = 0; r <= degree; ++r) {
-      const int i = of_u ? span - degree + r : k, j = of_u ? k : span - degree + r;
-      const double share = values[static_cast<std::size_t>(r)] * surface.weight(i, j);
-      sum += share * surface.point(i, j);
-      weight += share;
-    }
-    curve.points.emplace_back(sum / weight);
-    if (surface.is_rational()) curve.weights.push_back(weight);
-  }
-  return curve;
-}
 
 namespace {
 
@@ -92,11 +68,7 @@ std::vector<Curve> outline(const Face& face) {
   std::vector<Curve> curves;
   for (const Loop& loop : face.loops)
     for (const Edge& edge : loop.edges) curves.push_back(edge.curve);
-  if (face.loops.empty()) {
-    const Range range = domain(face.surface);
-    curves = {constant_curve(face.surface, true, range.u0), constant_curve(face.surface, true, range.u1),
-              constant_curve(face.surface, false, range.v0), constant_curve(face.surface, false, range.v1)};
-  }
+  if (face.loops.empty()) std::ranges::copy(sides_of(face.surface), std::back_inserter(curves));
   return open_ones(std::move(curves), size_of(face.surface.points));
 }
 

@@ -8,9 +8,6 @@
 
 namespace selvage::cad {
 
-// The surface's curve of constant u (or v), a parameter of its range.
-nurbs::Curve constant_curve(const nurbs::Surface& surface, bool of_u, double t);
-
 // The curves round a face in space, without seams (edges that it has twice) and poles; those of the whole
 // surface where it has no loops. A surface closed in both directions has none.
 std::vector<nurbs::Curve> outline(const Face& face);

@@ -14,17 +14,6 @@ namespace selvage::cad {
 
 namespace {
 
-// The four edges of a surface.
-std::array<nurbs::Curve, 4> edges_of(const nurbs::Surface& surface) {
-  return {nurbs::boundary_row(surface, false), nurbs::boundary_row(surface, true),
-          nurbs::boundary_column(surface, false), nurbs::boundary_column(surface, true)};
-}
-
-bool is_point(const nurbs::Curve& curve, double tolerance) {
-  return std::all_of(curve.points.begin(), curve.points.end(),
-                     [&](const Vec3& p) { return (p - curve.points.front()).norm() <= tolerance; });
-}
-
 struct Chord {
   double distance;    // squared
   std::size_t index;  // from this sample to the next one
@@ -87,6 +76,17 @@ NearestOnCurve nearest_on(const std::vector<double>& parameters, const std::vect
   return nearest;
 }
 
+std::array<nurbs::Curve, 4> sides_of(const nurbs::Surface& surface) {
+  const nurbs::Surface whole = nurbs::clamped(surface);
+  return {nurbs::boundary_column(whole, false), nurbs::boundary_column(whole, true),
+          nurbs::boundary_row(whole, false), nurbs::boundary_row(whole, true)};
+}
+
+bool is_point(const nurbs::Curve& curve, double tolerance) {
+  return std::all_of(curve.points.begin(), curve.points.end(),
+                     [&](const Vec3& p) { return (p - curve.points.front()).norm() <= tolerance; });
+}
+
 SampledCurve::SampledCurve(const nurbs::Curve& sampled) : curve(&sampled) {
   const std::vector<double> breaks = nurbs::breakpoints(sampled.knots, sampled.degree);
   const int parts = breaks.size() < 5 ? 8 : 2;  // of a span
@@ -112,7 +112,7 @@ Polylines border_of(const Face& face, double tolerance) {
   const bool is_whole = has_natural_border(face, tolerance);
   if (face.loops.size() > 1 && !is_whole) return border;
   if (is_whole) {
-    const std::array<nurbs::Curve, 4> sides = edges_of(face.surface);
+    const std::array<nurbs::Curve, 4> sides = sides_of(face.surface);
     for (std::size_t pair : {0U, 2U}) {
       // Two edges that are one are a seam.
       if (sides[pair].points.size() == sides[pair + 1].points.size() &&

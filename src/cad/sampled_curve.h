@@ -1,12 +1,19 @@
 // Where faces end: their borders as points, and whether two borders are one curve.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
 #include "cad/model.h"
 
 namespace selvage::cad {
+
+// The sides of a surface's range: u = first, u = last, v = first, v = last.
+std::array<nurbs::Curve, 4> sides_of(const nurbs::Surface& surface);
+
+// Does the whole curve lie in one place? By its control points.
+bool is_point(const nurbs::Curve& curve, double tolerance);
 
 // A place of a curve, and how far it is from some point.
 struct NearestOnCurve {
