@@ -6,6 +6,7 @@
 #include "contact/critical.h"
 #include "contact/overlay.h"
 #include "contact/shared_space.h"
+#include "core/plane.h"
 
 namespace selvage::contact {
 
@@ -123,20 +124,15 @@ class DeepMeasurer {
   [[nodiscard]] static bool passes_through(const std::vector<Vec3>& outline, const Vec3& centre,
                                            const Vec3& normal, const Mesh& mesh) {
     const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
-    const auto within = [&](const Vec3& p) {
-      bool in = false;
-      for (std::size_t k = 0; k < outline.size(); ++k) {
-        const Vec3 a = outline[k] - p, b = outline[(k + 1) % outline.size()] - p;
-        const double ay = a.dot(y), by = b.dot(y);
-        if ((ay > 0.0) != (by > 0.0) && a.dot(x) + (b.dot(x) - a.dot(x)) * ay / (ay - by) > 0.0) in = !in;
-      }
-      return in;
-    };
+    const auto seen = [&](const Vec3& p) { return Vec2((p - centre).dot(x), (p - centre).dot(y)); };
+    std::vector<Vec2> polygon;
+    for (const Vec3& p : outline) polygon.push_back(seen(p));
     for (const auto& t : mesh.triangles)
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 &p = mesh.vertices[t[k]], &q = mesh.vertices[t[(k + 1) % 3]];
         const double hp = (p - centre).dot(normal), hq = (q - centre).dot(normal);
-        if ((hp > 0.0) != (hq > 0.0) && within(p + (q - p) * (hp / (hp - hq)))) return true;
+        if ((hp > 0.0) != (hq > 0.0) && selvage::contains(polygon, seen(p + (q - p) * (hp / (hp - hq)))))
+          return true;
       }
     return false;
   }

@@ -206,7 +206,7 @@ double DisplacementSystem::apply(const Demand& demand, const Eigen::VectorXd& x)
       sum += one.form.segment(k * modes_, modes_).dot(x.segment(column(one.strand, one.first + k), modes_));
     return sum;
   };
-  return side(demand.plus) - (demand.has_minus ? side(demand.minus) : 0.0);
+  return side(demand.plus) - side(demand.minus);
 }
 
 void DisplacementSystem::scatter(const Demand& demand, double value, Eigen::VectorXd& y) const {
@@ -215,7 +215,7 @@ void DisplacementSystem::scatter(const Demand& demand, double value, Eigen::Vect
       y.segment(column(one.strand, one.first + k), modes_) += factor * one.form.segment(k * modes_, modes_);
   };
   side(demand.plus, value);
-  if (demand.has_minus) side(demand.minus, -value);
+  side(demand.minus, -value);
 }
 
 void DisplacementSystem::factor(std::span<const Demand> demands, const std::vector<char>& active,
@@ -225,15 +225,10 @@ void DisplacementSystem::factor(std::span<const Demand> demands, const std::vect
   for (std::size_t lattice = 0; lattice < members_.size(); ++lattice)
     bands_[lattice] = Band::Zero(width, length(members_[lattice].front()));
   std::vector<std::vector<const Demand::Side*>> sides(strands_.size());
-  std::vector<std::vector<double>> weights(strands_.size());
   for (std::size_t k = 0; k < demands.size(); ++k) {
     if (!active[k]) continue;
-    const Demand& demand = demands[k];
-    sides[demand.plus.strand].push_back(&demand.plus);
-    weights[demand.plus.strand].push_back(demand.weight);
-    if (!demand.has_minus) continue;
-    sides[demand.minus.strand].push_back(&demand.minus);
-    weights[demand.minus.strand].push_back(demand.weight);
+    for (const Demand::Side* side : {&demands[k].plus, &demands[k].minus})
+      sides[side->strand].push_back(side);
   }
   for_each_strand(threads, [&](std::size_t s) {
     const Strand& strand = strands_[s];
@@ -274,20 +269,18 @@ void DisplacementSystem::factor(std::span<const Demand> demands, const std::vect
       for (const auto& [i, share] : held.parts)
         band(0, i - offset(s)) += held.stiffness * std::abs(share) * sum;
     }
-    for (std::size_t d = 0; d < sides[s].size(); ++d) {
-      const Demand::Side& side = *sides[s][d];
-      const double stiff = stiffness_.contact * weights[s][d];
+    for (const Demand::Side* side : sides[s]) {
       const Eigen::Index first = offset(s);
       for (int l = 0; l < 4; ++l) {
-        const Eigen::Index left = column(s, side.first + l) - first;
+        const Eigen::Index left = column(s, side->first + l) - first;
         for (int k = 0; k < 4; ++k) {
-          const Eigen::Index below = column(s, side.first + k) - first - left;
+          const Eigen::Index below = column(s, side->first + k) - first - left;
           if (below < 0 || below + modes_ > width) continue;
           for (int c = 0; c < modes_; ++c) {
-            const double factor = stiff * side.form[l * modes_ + c];
+            const double factor = stiffness_.contact * side->form[l * modes_ + c];
             const int from = below == 0 ? c : 0;  // the lower triangle
             band.col(left + c).segment(below + from - c, modes_ - from) +=
-                factor * side.form.segment(k * modes_ + from, modes_ - from);
+                factor * side->form.segment(k * modes_ + from, modes_ - from);
           }
         }
       }
@@ -326,15 +319,14 @@ Eigen::VectorXd DisplacementSystem::solve(std::span<const Demand> demands, int t
       y.setZero(size_);
       apply_energy(p, y, threads);
       for (std::size_t k = 0; k < demands.size(); ++k)
-        if (active[k] != 0)
-          scatter(demands[k], stiffness_.contact * demands[k].weight * apply(demands[k], p), y);
+        if (active[k] != 0) scatter(demands[k], stiffness_.contact * apply(demands[k], p), y);
     };
     // r = -(gradient + K x - contact forces)
     Eigen::VectorXd r(size_), z(size_), p, q(size_);
     multiply(x, r);
     r = -start - r;
     for (std::size_t k = 0; k < demands.size(); ++k)
-      if (active[k] != 0) scatter(demands[k], stiffness_.contact * demands[k].weight * demands[k].missing, r);
+      if (active[k] != 0) scatter(demands[k], stiffness_.contact * demands[k].missing, r);
     precondition(r, z, threads);
     p = z;
     double rz = r.dot(z);

@@ -22,7 +22,7 @@ struct Stiffness {
   double end_turn = 10.0;  // against turning the path out of the normal of an end
 };
 
-// J x >= missing: J one linear form of the displacement, or the difference of two.
+// J x >= missing: J the difference of two linear forms of the displacement.
 struct Demand {
   struct Side {
     std::uint32_t strand = 0;
@@ -30,9 +30,7 @@ struct Demand {
     Form form = Form::Zero();
   };
   Side plus, minus;
-  bool has_minus = false;
-  double missing = 0;  // J x has to reach it
-  double weight = 1;
+  double missing = 0;     // J x has to reach it
   bool is_equal = false;  // J x = missing, from both sides
 };
 

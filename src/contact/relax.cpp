@@ -16,6 +16,7 @@
 #include "contact/strand.h"
 #include "contact/ties.h"
 #include "core/parallel.h"
+#include "nurbs/divided.h"
 #include "nurbs/measure.h"
 #include "yarn/finish.h"
 #include "yarn/grid.h"
@@ -64,7 +65,7 @@ Extents extents_of(const nurbs::Surface& s) {
 bool has_flat_sides(const nurbs::Surface& s) {
   constexpr double flat = 2e-3;  // radians between neighbouring samples
   bool is_flat = false;
-  for (const SectionShape& shape : section_shapes(s, section_places(s, 0)))
+  for (const SectionShape& shape : section_shapes(s, nurbs::breakpoints(s.knots_v, s.degree_v)))
     is_flat = is_flat || (shape.least_turning > -turning_noise && shape.least_turning < flat);
   return is_flat;
 }
@@ -365,7 +366,6 @@ class Relaxer {
       Demand& demand = demands[k];
       demand.plus = side(f.b, f.site_b, f.on_b, f.normal);
       demand.minus = side(f.a, f.site_a, f.on_a, f.normal);
-      demand.has_minus = true;
       demand.is_equal = f.is_pulled;
       const double goal = wanted(f.a, f.b);
       demand.missing = goal + (f.is_pulled ? 0.0 : aim * std::abs(goal)) - f.gap;
@@ -451,7 +451,7 @@ class Relaxer {
     const nurbs::Curve old = yarn::section_centres(before.surface);
     change.length = nurbs::arc_length(body.axis) / nurbs::arc_length(old) - 1.0;
     change.volume = body.volume / before.volume - 1.0;
-    const std::vector<double> places = section_places(body.surface, 1);
+    const std::vector<double> places = nurbs::divided(body.surface.knots_v, body.surface.degree_v, 2);
     const std::vector<SectionShape> shapes = section_shapes(body.surface, places),
                                     old_shapes = section_shapes(before.surface, places);
     for (std::size_t k = 0; k < places.size(); ++k) {

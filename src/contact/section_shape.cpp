@@ -34,8 +34,4 @@ std::vector<SectionShape> section_shapes(const nurbs::Surface& surface, const st
   return shapes;
 }
 
-std::vector<double> section_places(const nurbs::Surface& surface, int between) {
-  return nurbs::divided(surface.knots_v, surface.degree_v, between + 1);
-}
-
 }  // namespace selvage::contact

@@ -20,7 +20,4 @@ inline constexpr double turning_noise = 1e-5;
 // Sections at the parameters `vs`.
 std::vector<SectionShape> section_shapes(const nurbs::Surface& surface, const std::vector<double>& vs);
 
-// Parameters at which sections are compared: at every knot along and at `between` places in each span.
-std::vector<double> section_places(const nurbs::Surface& surface, int between);
-
 }  // namespace selvage::contact
