@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -81,11 +82,8 @@ std::vector<int> cuts_round(const nurbs::Surface& s, const std::vector<double>& 
 }  // namespace
 
 struct CellModel::Made {
-  struct MadeFace {
-    std::optional<nurbs::Surface> own;  // of a flat end
-    Face face;
-  };
-  std::vector<MadeFace> faces;
+  std::vector<Face> faces;  // their first_cell: within `cells`
+  std::vector<std::unique_ptr<const nurbs::Surface>> flat_ends;
   std::vector<Cell> cells;    // their face: index into `faces`
   std::vector<Piece> pieces;  // their first_cell: within `cells`
   double thickness = 0, length = 0, touching = 0;
@@ -149,12 +147,13 @@ CellModel::Made CellModel::make(const yarn::Body& body) {
   const std::vector<double> breaks_u = nurbs::breakpoints(s.knots_u, s.degree_u);
   const std::vector<double> us = nurbs::divided(breaks_u, cuts_round(s, breaks_u));
   Face side;
+  side.surface = &s;
   side.inward = body.inward;
   side.round_u = true;
   side.round_v = body.closed_along;
   side.count_u = static_cast<std::uint32_t>(us.size() - 1);
   side.count_v = static_cast<std::uint32_t>(vs.size() - 1);
-  made.faces.push_back({std::nullopt, side});
+  made.faces.push_back(side);
   add_cells(s, body.inward, us, vs, 0, made.cells);
   // Pieces: rows together while they are short.
   std::uint32_t row = 0;
@@ -178,31 +177,32 @@ CellModel::Made CellModel::make(const yarn::Body& body) {
   for (const bool last : {false, true}) {
     const yarn::EndFace& end = last ? body.end : body.start;
     if (end.style == yarn::EndStyle::none) continue;
-    Made::MadeFace face;
-    face.face.is_side = false;
-    face.face.is_last = last;
+    Face face;
+    face.is_side = false;
+    face.is_last = last;
     if (end.style == yarn::EndStyle::planar) {
-      face.own = flat_end(body, last);
-      face.face.inward = faces_against(*face.own, end.normal);
+      made.flat_ends.push_back(std::make_unique<const nurbs::Surface>(flat_end(body, last)));
+      face.surface = made.flat_ends.back().get();
+      face.inward = faces_against(*face.surface, end.normal);
     } else {
-      face.face.surface = &end.surface;
-      face.face.inward = end.inward;
+      face.surface = &end.surface;
+      face.inward = end.inward;
     }
-    const nurbs::Surface& surface = face.own ? *face.own : end.surface;
+    const nurbs::Surface& surface = *face.surface;
     if (surface.is_empty()) continue;
     const std::vector<double> eu = nurbs::breakpoints(surface.knots_u, surface.degree_u),
                               ev = nurbs::breakpoints(surface.knots_v, surface.degree_v);
-    face.face.round_u = end.style != yarn::EndStyle::patch;
-    face.face.count_u = static_cast<std::uint32_t>(eu.size() - 1);
-    face.face.count_v = static_cast<std::uint32_t>(ev.size() - 1);
-    face.face.first_cell = static_cast<std::uint32_t>(made.cells.size());
-    add_cells(surface, face.face.inward, eu, ev, static_cast<std::uint32_t>(made.faces.size()), made.cells);
+    face.round_u = end.style != yarn::EndStyle::patch;
+    face.count_u = static_cast<std::uint32_t>(eu.size() - 1);
+    face.count_v = static_cast<std::uint32_t>(ev.size() - 1);
+    face.first_cell = static_cast<std::uint32_t>(made.cells.size());
+    add_cells(surface, face.inward, eu, ev, static_cast<std::uint32_t>(made.faces.size()), made.cells);
     Piece whole = last ? made.pieces.back() : made.pieces.front();
     whole.place = last ? made.length : 0.0;
-    whole.first_cell = face.face.first_cell;
-    whole.count = face.face.count_u * face.face.count_v;
+    whole.first_cell = face.first_cell;
+    whole.count = face.count_u * face.count_v;
     made.pieces.push_back(whole);
-    made.faces.push_back(std::move(face));
+    made.faces.push_back(face);
   }
   return made;
 }
@@ -221,14 +221,12 @@ CellModel::CellModel(std::span<const yarn::Body> bodies, int threads)
     thickness_[b] = made[b].thickness;
     length_[b] = made[b].length;
     touching_[b] = made[b].touching;
-    for (Made::MadeFace& face : made[b].faces) {
-      Face out = face.face;
-      out.body = static_cast<std::uint32_t>(b);
-      out.first_cell += first_cell;
-      if (out.is_side) out.surface = &bodies[b].surface;
-      if (face.own) out.surface = &flat_ends_.emplace_back(std::move(*face.own));
-      faces_.push_back(out);
+    for (Face& face : made[b].faces) {
+      face.body = static_cast<std::uint32_t>(b);
+      face.first_cell += first_cell;
+      faces_.push_back(face);
     }
+    std::ranges::move(made[b].flat_ends, std::back_inserter(flat_ends_));
     for (Cell& cell : made[b].cells) {
       cell.face += first_face;
       cells_.push_back(cell);

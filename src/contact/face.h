@@ -3,7 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
-#include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -78,7 +78,7 @@ class CellModel {
   static Made make(const yarn::Body& body);
 
   std::span<const yarn::Body> bodies_;
-  std::deque<nurbs::Surface> flat_ends_;
+  std::vector<std::unique_ptr<const nurbs::Surface>> flat_ends_;
   std::vector<Face> faces_;
   std::vector<Cell> cells_;
   std::vector<Piece> pieces_;

@@ -4,19 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include "core/plane.h"
 #include "nurbs/patch.h"
 
 namespace selvage::contact {
-
-namespace {
-
-// Off the middle of the raster's cells by an odd amount, so that no line meets an edge of a regular grid on
-// purpose.
-constexpr double offset = 0.5 + 0.01234567;
-
-}  // namespace
 
 Sheet::Sheet(const CellModel& model, std::vector<Part> of, int steps_a_part)
     : parts(std::move(of)), steps(steps_a_part) {
@@ -45,34 +38,31 @@ Axes::Axes(const Vec3& direction, const std::vector<Vec3>& points)
   y = n.cross(x);
 }
 
+Vec3 turned(const Vec3& n, double step, int k) {
+  const Vec3 x = n.unitOrthogonal(), y = n.cross(x);
+  const double angle = k * std::numbers::pi / 4.0 + 10.0 * step;
+  return (n + step * (std::cos(angle) * x + std::sin(angle) * y)).normalized();
+}
+
 Overlay::Overlay(const CellModel& model, const Sheet& a, const Sheet& b, const Axes& axes,
                  const Rectangle& rectangle, int lines)
     : model_(model),
       sheet_a_(a),
       sheet_b_(b),
       axes_(axes),
-      lines_(lines),
-      low_(rectangle.min()),
-      step_((rectangle.max() - rectangle.min()) / lines),
-      a_(static_cast<std::size_t>(lines) * static_cast<std::size_t>(lines)),
+      raster_(rectangle, lines),
+      a_(raster_.size()),
       b_(a_.size()) {
   pass(a, Keep::highest_out, {}, a_);
   pass(b, Keep::lowest_in, {}, b_);
   drop_passing();
 }
 
-Vec2 Overlay::centre(std::size_t line) const {
-  const auto n = static_cast<std::size_t>(lines_);
-  const std::size_t row = line / n;
-  return low_ +
-         step_.cwiseProduct(Vec2(static_cast<double>(line % n) + offset, static_cast<double>(row) + offset));
-}
-
 int Overlay::line_at(const Vec2& p) const {
-  const Vec2 at = (p - low_).cwiseQuotient(step_);
+  const Vec2 at = (p - raster_.low).cwiseQuotient(raster_.step);
   const double i = std::floor(at.x()), j = std::floor(at.y());
-  if (!(i >= 0.0 && j >= 0.0 && i < lines_ && j < lines_)) return -1;
-  return static_cast<int>(j) * lines_ + static_cast<int>(i);
+  if (!(i >= 0.0 && j >= 0.0 && i < raster_.lines && j < raster_.lines)) return -1;
+  return static_cast<int>(j) * raster_.lines + static_cast<int>(i);
 }
 
 void Overlay::drop_passing() {
@@ -101,8 +91,9 @@ void Overlay::pass(const Sheet& sheet, Keep keep, const std::vector<Hit>& bound,
       low = low.cwiseMin(seen[m].head<2>());
       high = high.cwiseMax(seen[m].head<2>());
     }
-    const Vec2 end = low_ + lines_ * step_;
-    if (high.x() < low_.x() || high.y() < low_.y() || low.x() > end.x() || low.y() > end.y()) continue;
+    const Vec2 end = raster_.low + raster_.lines * raster_.step;
+    if (high.x() < raster_.low.x() || high.y() < raster_.low.y() || low.x() > end.x() || low.y() > end.y())
+      continue;
     const bool inward = model_.face_of(model_.cells()[sheet.parts[k].cell]).inward;
     const double share = 1.0 / static_cast<double>(steps);
     for (std::size_t j = 0; j < steps; ++j)
@@ -133,32 +124,22 @@ void Overlay::pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& p
   const Vec2 e1 = (seen[1] - seen[0]).head<2>(), e2 = (seen[2] - seen[0]).head<2>();
   const double size = cross(e1, e2);
   if (out ? !(size > 0.0) : !(size < 0.0)) return;
-  // The first line at or above a place, the last one at or below. What is cast is >= 0: no call of ceil().
-  const auto first = [&](Eigen::Index axis) {
-    const double low = std::min({seen[0][axis], seen[1][axis], seen[2][axis]}),
-                 at = std::clamp((low - low_[axis]) / step_[axis] - offset, 0.0, static_cast<double>(lines_));
-    const int below = static_cast<int>(at);
-    return below < at ? below + 1 : below;
-  };
-  const auto last = [&](Eigen::Index axis) {
-    const double high = std::max({seen[0][axis], seen[1][axis], seen[2][axis]});
-    return static_cast<int>(std::clamp((high - low_[axis]) / step_[axis] - offset + 1.0, 0.0,
-                                       static_cast<double>(lines_))) -
-           1;
-  };
-  const int i0 = first(0), i1 = last(0), j0 = first(1), j1 = last(1);
+  const auto [x0, x1] = std::minmax({seen[0].x(), seen[1].x(), seen[2].x()});
+  const auto [y0, y1] = std::minmax({seen[0].y(), seen[1].y(), seen[2].y()});
+  const int i0 = raster_.first(0, x0), i1 = raster_.last(0, x1), j0 = raster_.first(1, y0),
+            j1 = raster_.last(1, y1);
   // A little beyond the edges, so that no line slips between two triangles.
   constexpr double slack = -1e-9;
   for (int j = j0; j <= j1; ++j)
     for (int i = i0; i <= i1; ++i) {
-      const Vec2 way = low_ + step_.cwiseProduct(Vec2(i + offset, j + offset)) - seen[0].head<2>();
+      const Vec2 way = raster_.place(i, j) - seen[0].head<2>();
       const double w1 = cross(way, e2) / size, w2 = cross(e1, way) / size, w0 = 1.0 - w1 - w2;
       if (w0 < slack || w1 < slack || w2 < slack) continue;
       const double height = w0 * seen[0].z() + w1 * seen[1].z() + w2 * seen[2].z();
-      Hit& hit = hits[number_of(i, j)];
+      Hit& hit = hits[raster_.number_of(i, j)];
       if (hit.part >= 0 && (highest ? height <= hit.height : height >= hit.height)) continue;
       if (!bound.empty()) {
-        const Hit& end = bound[number_of(i, j)];
+        const Hit& end = bound[raster_.number_of(i, j)];
         if (end.part < 0 || (highest ? height >= end.height : height <= end.height)) continue;
       }
       const Vec2 place = w0 * places[0] + w1 * places[1] + w2 * places[2];
@@ -175,12 +156,12 @@ Overlay::Place Overlay::place(const Hit& hit, const Sheet& sheet, std::size_t li
 }
 
 bool Overlay::is_peak(std::size_t line) const {
-  const int i = static_cast<int>(line) % lines_, j = static_cast<int>(line) / lines_;
+  const int i = static_cast<int>(line) % raster_.lines, j = static_cast<int>(line) / raster_.lines;
   for (int dj = -1; dj <= 1; ++dj)
     for (int di = -1; di <= 1; ++di) {
       const int x = i + di, y = j + dj;
-      if ((di == 0 && dj == 0) || x < 0 || y < 0 || x >= lines_ || y >= lines_) continue;
-      const auto other = number_of(x, y);
+      if ((di == 0 && dj == 0) || x < 0 || y < 0 || x >= raster_.lines || y >= raster_.lines) continue;
+      const auto other = raster_.number_of(x, y);
       if (!is_met(other)) continue;
       if (depth(other) > depth(line) || (depth(other) == depth(line) && other < line)) return false;
     }
@@ -197,11 +178,12 @@ std::vector<int> Overlay::regions(double least_depth, int& count) const {
     label[k] = count;
     stack.push_back(k);
     while (!stack.empty()) {
-      const int i = static_cast<int>(stack.back()) % lines_, j = static_cast<int>(stack.back()) / lines_;
+      const int i = static_cast<int>(stack.back()) % raster_.lines,
+                j = static_cast<int>(stack.back()) / raster_.lines;
       stack.pop_back();
-      for (int y = std::max(0, j - 1); y <= std::min(lines_ - 1, j + 1); ++y)
-        for (int x = std::max(0, i - 1); x <= std::min(lines_ - 1, i + 1); ++x) {
-          const auto other = number_of(x, y);
+      for (int y = std::max(0, j - 1); y <= std::min(raster_.lines - 1, j + 1); ++y)
+        for (int x = std::max(0, i - 1); x <= std::min(raster_.lines - 1, i + 1); ++x) {
+          const auto other = raster_.number_of(x, y);
           if (!in(other)) continue;
           label[other] = count;
           stack.push_back(other);
@@ -215,11 +197,11 @@ std::vector<int> Overlay::regions(double least_depth, int& count) const {
 std::vector<Part> Overlay::parts_about(std::size_t line, int radius, bool of_a) const {
   const Sheet& sheet = of_a ? sheet_a_ : sheet_b_;
   const std::vector<Hit>& hits = of_a ? a_ : b_;
-  const int i = static_cast<int>(line) % lines_, j = static_cast<int>(line) / lines_;
+  const int i = static_cast<int>(line) % raster_.lines, j = static_cast<int>(line) / raster_.lines;
   std::map<std::int32_t, Rectangle> ranges;
-  for (int y = std::max(0, j - radius); y <= std::min(lines_ - 1, j + radius); ++y)
-    for (int x = std::max(0, i - radius); x <= std::min(lines_ - 1, i + radius); ++x) {
-      const Hit& hit = hits[number_of(x, y)];
+  for (int y = std::max(0, j - radius); y <= std::min(raster_.lines - 1, j + radius); ++y)
+    for (int x = std::max(0, i - radius); x <= std::min(raster_.lines - 1, i + radius); ++x) {
+      const Hit& hit = hits[raster_.number_of(x, y)];
       if (hit.part >= 0) ranges[hit.part].extend(Vec2(hit.s, hit.t));
     }
   std::vector<Part> parts;
@@ -246,12 +228,12 @@ Vec3 outward_normal(const Face& face, const Vec2& site) {
 }  // namespace
 
 bool Overlay::is_smooth_about(std::size_t line, int radius, bool of_a) const {
-  const int i = static_cast<int>(line) % lines_, j = static_cast<int>(line) / lines_;
+  const int i = static_cast<int>(line) % raster_.lines, j = static_cast<int>(line) / raster_.lines;
   std::optional<Vec3> first;
   for (int y = j - radius; y <= j + radius; ++y)
     for (int x = i - radius; x <= i + radius; ++x) {
-      if (x < 0 || y < 0 || x >= lines_ || y >= lines_) continue;
-      const auto k = number_of(x, y);
+      if (x < 0 || y < 0 || x >= raster_.lines || y >= raster_.lines) continue;
+      const auto k = raster_.number_of(x, y);
       // Where the sheet ends there is an edge.
       if ((of_a ? a_ : b_)[k].part < 0) return false;
       const Place here = of_a ? on_a(k) : on_b(k);

@@ -1,6 +1,7 @@
 // Two facing sheets of surface seen along one direction: how deep each line along it lies in both.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -37,7 +38,48 @@ struct Axes {
   [[nodiscard]] Vec3 placed(const Vec2& p, double height) const { return p.x() * x + p.y() * y + height * n; }
 };
 
+// The unit vector `n` turned by about `step` (a tangent) toward the k-th of eight sides. For a compass
+// search: steps of other sizes go between these sides, as a fixed pattern gets stuck where two places part
+// last together.
+Vec3 turned(const Vec3& n, double step, int k);
+
 using Rectangle = Eigen::AlignedBox2d;
+
+// lines x lines lines through the cells of a rectangle: line j * lines + i in column i of row j. They pass
+// off the middles by an odd amount, so that none meets an edge of a regular grid on purpose.
+struct Raster {
+  static constexpr double offset = 0.5 + 0.01234567;
+  int lines;
+  Vec2 low, step;  // the rectangle's corner; the cells' size
+
+  Raster(const Rectangle& rectangle, int lines_a_side)
+      : lines(lines_a_side), low(rectangle.min()), step((rectangle.max() - rectangle.min()) / lines_a_side) {}
+  [[nodiscard]] std::size_t size() const {
+    return static_cast<std::size_t>(lines) * static_cast<std::size_t>(lines);
+  }
+  [[nodiscard]] std::size_t number_of(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(lines) + static_cast<std::size_t>(i);
+  }
+  [[nodiscard]] Vec2 place(int i, int j) const {
+    return low + step.cwiseProduct(Vec2(i + offset, j + offset));
+  }
+  [[nodiscard]] Vec2 place(std::size_t line) const {
+    const int k = static_cast<int>(line);
+    return place(k % lines, k / lines);
+  }
+  // The first column (or row) whose lines are at or above a coordinate, and the last one at or below; `lines`
+  // and -1 where there is none. What is cast is >= 0: no call of ceil().
+  [[nodiscard]] int first(Eigen::Index axis, double from) const {
+    const double at = std::clamp((from - low[axis]) / step[axis] - offset, 0.0, static_cast<double>(lines));
+    const int below = static_cast<int>(at);
+    return below < at ? below + 1 : below;
+  }
+  [[nodiscard]] int last(Eigen::Index axis, double to) const {
+    return static_cast<int>(
+               std::clamp((to - low[axis]) / step[axis] - offset + 1.0, 0.0, static_cast<double>(lines))) -
+           1;
+  }
+};
 
 // Lines along `n` on a raster of lines x lines over a rectangle: the highest way out of A and the lowest way
 // into B on each. Lines on which all of A lies above all of B (as at the tips of two lenses) count as not
@@ -47,7 +89,7 @@ class Overlay {
   Overlay(const CellModel& model, const Sheet& a, const Sheet& b, const Axes& axes,
           const Rectangle& rectangle, int lines);
 
-  [[nodiscard]] int lines() const { return lines_; }
+  [[nodiscard]] const Raster& raster() const { return raster_; }
   [[nodiscard]] std::size_t size() const { return a_.size(); }
   [[nodiscard]] const Axes& axes() const { return axes_; }
   // Both sheets are met.
@@ -65,8 +107,8 @@ class Overlay {
   [[nodiscard]] Place on_a(std::size_t line) const { return place(a_[line], sheet_a_, line); }
   [[nodiscard]] Place on_b(std::size_t line) const { return place(b_[line], sheet_b_, line); }
 
-  [[nodiscard]] Vec2 centre(std::size_t line) const;
-  [[nodiscard]] const Vec2& step() const { return step_; }
+  [[nodiscard]] Vec2 centre(std::size_t line) const { return raster_.place(line); }
+  [[nodiscard]] const Vec2& step() const { return raster_.step; }
   [[nodiscard]] int line_at(const Vec2& p) const;  // -1: outside
   // For each line the number of its connected region of overlapping lines (from 0), or -1.
   [[nodiscard]] std::vector<int> regions(double least_depth, int& count) const;
@@ -87,18 +129,13 @@ class Overlay {
   void pass(const std::array<Vec3, 3>& seen, const std::array<Vec2, 3>& places, std::int32_t part, Keep keep,
             const std::vector<Hit>& bound, std::vector<Hit>& hits) const;
   void drop_passing();
-  // Of the line in column `i` and row `j`.
-  [[nodiscard]] std::size_t number_of(int i, int j) const {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(lines_) + static_cast<std::size_t>(i);
-  }
   [[nodiscard]] Place place(const Hit& hit, const Sheet& sheet, std::size_t line) const;
 
   const CellModel& model_;
   const Sheet& sheet_a_;
   const Sheet& sheet_b_;
   Axes axes_;
-  int lines_;
-  Vec2 low_, step_;
+  Raster raster_;
   std::vector<Hit> a_, b_;
 };
 

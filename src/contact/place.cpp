@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include "contact/certify.h"
@@ -185,9 +184,7 @@ class Measurer {
   class Known {
    public:
     Known(const Overlay& overlay, const std::vector<int>& region)
-        : axes_(overlay.axes()), step_(overlay.step()), shared_(region.size()) {
-      lines_ = overlay.lines();
-      low_ = overlay.centre(0);
+        : axes_(overlay.axes()), raster_(overlay.raster()), shared_(region.size()) {
       for (std::size_t k = 0; k < region.size(); ++k) shared_[k] = region[k] >= 0;
     }
     void add(const Vec3& point) { points_.push_back(axes_.seen(point).head<2>()); }
@@ -196,19 +193,18 @@ class Measurer {
     [[nodiscard]] bool holds(const Box3& a, const Box3& b) const {
       const Rectangle view = seen(a).intersection(seen(b));
       if (view.isEmpty()) return false;
-      const Rectangle wide(Vec2(view.min() - 1.5 * step_), Vec2(view.max() + 1.5 * step_));
+      const Rectangle wide(Vec2(view.min() - 1.5 * raster_.step), Vec2(view.max() + 1.5 * raster_.step));
       for (const Vec2& p : points_)
         if (wide.contains(p)) return true;
-      const auto index = [&](double x, Eigen::Index axis) {
-        return static_cast<int>(std::clamp(std::round((x - low_[axis]) / step_[axis]), -1.0, lines_ + 0.0));
+      const auto index = [&](const Vec2& p, Eigen::Index axis, double least, double most) {
+        return static_cast<int>(
+            std::clamp(std::round((p - raster_.place(0, 0))[axis] / raster_.step[axis]), least, most));
       };
-      for (int j = std::max(0, index(wide.min().y(), 1)); j <= std::min(lines_ - 1, index(wide.max().y(), 1));
-           ++j)
-        for (int i = std::max(0, index(wide.min().x(), 0));
-             i <= std::min(lines_ - 1, index(wide.max().x(), 0)); ++i)
-          if (shared_[static_cast<std::size_t>(j) * static_cast<std::size_t>(lines_) +
-                      static_cast<std::size_t>(i)])
-            return true;
+      const double end = raster_.lines;
+      const int last = index(wide.max(), 0, -1.0, end - 1.0);
+      for (int j = index(wide.min(), 1, 0.0, end); j <= index(wide.max(), 1, -1.0, end - 1.0); ++j)
+        for (int i = index(wide.min(), 0, 0.0, end); i <= last; ++i)
+          if (shared_[raster_.number_of(i, j)]) return true;
       return false;
     }
 
@@ -220,8 +216,7 @@ class Measurer {
     }
 
     Axes axes_;
-    Vec2 step_, low_;
-    int lines_ = 0;
+    Raster raster_;
     std::vector<bool> shared_;
     std::vector<Vec2> points_;
   };
@@ -395,13 +390,11 @@ class Measurer {
     double step = 0.3;
     for (int round = 0; round < 8; ++round, step *= 0.5)
       for (int k = 0; k < 8; ++k) {
-        const Vec3 x = n.unitOrthogonal(), y = n.cross(x);
-        const double angle = k * std::numbers::pi / 4.0 + 10.0 * step;
-        const Vec3 turned = (n + step * (std::cos(angle) * x + std::sin(angle) * y)).normalized();
-        const double value = cost(turned);
+        const Vec3 other = turned(n, step, k);
+        const double value = cost(other);
         if (value >= best) continue;
         best = value;
-        n = turned;
+        n = other;
       }
     return n;
   }

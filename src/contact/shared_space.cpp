@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <span>
 
@@ -17,23 +16,18 @@ namespace selvage::contact {
 namespace {
 
 constexpr int coarse = 24, fine = 40;  // lines along a side of the raster: while searching, for the answer
-// Off the middle of the raster's cells by an odd amount, so that no line meets an edge of a regular grid on
-// purpose.
-constexpr double offset = 0.5 + 0.01234567;
-
 // Where a line passes through a triangle, going along the direction.
 struct Passage {
-  int line = 0;
+  std::size_t line = 0;
   double height = 0;
   bool leaves = false;  // out of the yarn
   std::uint32_t triangle = 0;
 };
 
-// Lines along the frame's direction.
-class Raster {
+// Lines along the frame's direction through a skin.
+class Rays : public Raster {
  public:
-  Raster(const Rectangle& rectangle, int lines)
-      : lines_(lines), low_(rectangle.min()), step_((rectangle.max() - rectangle.min()) / lines) {}
+  using Raster::Raster;
 
   // Every passage of a line through a triangle of the skin, line by line, each going up. `seen`: its vertices
   // in the frame.
@@ -41,11 +35,11 @@ class Raster {
     std::vector<Passage> met;
     for (std::uint32_t k = 0; k < skin.triangles.size(); ++k) pass(seen, skin.triangles[k], k, met);
     // By lines in one go, as few passages are on each.
-    std::vector<std::size_t> ends(static_cast<std::size_t>(lines_) * static_cast<std::size_t>(lines_) + 1, 0);
-    for (const Passage& passage : met) ++ends[static_cast<std::size_t>(passage.line) + 1];
+    std::vector<std::size_t> ends(size() + 1, 0);
+    for (const Passage& passage : met) ++ends[passage.line + 1];
     std::partial_sum(ends.begin(), ends.end(), ends.begin());
     std::vector<Passage> all(met.size());
-    for (const Passage& passage : met) all[ends[static_cast<std::size_t>(passage.line)]++] = passage;
+    for (const Passage& passage : met) all[ends[passage.line]++] = passage;
     for (std::size_t begin = 0, line = 0; begin < all.size(); begin = ends[line++])
       std::sort(all.begin() + static_cast<std::ptrdiff_t>(begin),
                 all.begin() + static_cast<std::ptrdiff_t>(ends[line]),
@@ -56,18 +50,12 @@ class Raster {
     return all;
   }
 
-  [[nodiscard]] Vec2 place(int line) const { return place(line % lines_, line / lines_); }
-
   // The cells round a line and half of the next ones.
-  [[nodiscard]] Rectangle about(int line) const {
-    return {Vec2(place(line) - 1.5 * step_), Vec2(place(line) + 1.5 * step_)};
+  [[nodiscard]] Rectangle about(std::size_t line) const {
+    return {Vec2(place(line) - 1.5 * step), Vec2(place(line) + 1.5 * step)};
   }
 
  private:
-  [[nodiscard]] Vec2 place(int i, int j) const {
-    return low_ + step_.cwiseProduct(Vec2(i + offset, j + offset));
-  }
-
   // Twice the area of (a, b, p), with the same absolute value whichever of a and b comes first: a line beside
   // a common edge is on one side of it for both triangles.
   static double side(const std::vector<Vec3>& seen, std::uint32_t a, std::uint32_t b, const Vec2& p) {
@@ -97,22 +85,11 @@ class Raster {
 
   void pass(const std::vector<Vec3>& seen, const std::array<std::uint32_t, 3>& t, std::uint32_t k,
             std::vector<Passage>& all) const {
-    Vec2 low = seen[t[0]].head<2>(), high = low;
-    for (std::size_t c = 1; c < 3; ++c) {
-      low = low.cwiseMin(seen[t[c]].head<2>());
-      high = high.cwiseMax(seen[t[c]].head<2>());
-    }
-    const auto first = [&](int axis, double from) {
-      return static_cast<int>(
-          std::clamp(std::ceil((from - low_[axis]) / step_[axis] - offset), 0.0, lines_ + 0.0));
-    };
-    const auto last = [&](int axis, double to) {
-      return static_cast<int>(
-          std::clamp(std::floor((to - low_[axis]) / step_[axis] - offset), -1.0, lines_ - 1.0));
-    };
-    const int i0 = first(0, low.x()), i1 = last(0, high.x());
+    const auto [x0, x1] = std::minmax({seen[t[0]].x(), seen[t[1]].x(), seen[t[2]].x()});
+    const auto [y0, y1] = std::minmax({seen[t[0]].y(), seen[t[1]].y(), seen[t[2]].y()});
+    const int i0 = first(0, x0), i1 = last(0, x1);
     if (i0 > i1) return;
-    const int j0 = first(1, low.y()), j1 = last(1, high.y());
+    const int j0 = first(1, y0), j1 = last(1, y1);
     for (int j = j0; j <= j1; ++j) {
       // Of long triangles that lie across most lines of the box are outside; a line more on either side
       // leaves the answer to the signs.
@@ -126,13 +103,10 @@ class Raster {
         if ((w1 > 0.0) != leaves || (w2 > 0.0) != leaves) continue;
         const double height =
             (w0 * seen[t[0]].z() + w1 * seen[t[1]].z() + w2 * seen[t[2]].z()) / (w0 + w1 + w2);
-        all.push_back({j * lines_ + i, height, leaves, k});
+        all.push_back({number_of(i, j), height, leaves, k});
       }
     }
   }
-
-  int lines_;
-  Vec2 low_, step_;
 };
 
 // What lies inside a skin on a line.
@@ -182,10 +156,10 @@ class SharedSpace::View {
   [[nodiscard]] Parting parting(int lines) const {
     const Rectangle whole(Vec2(box_.min().head<2>()), Vec2(box_.max().head<2>()));
     if (!(whole.sizes().minCoeff() > 0.0)) return {};
-    const Raster raster(whole, lines);
+    const Rays raster(whole, lines);
     const Last last = find_last(raster);
     if (!(last.distance > 0.0)) return {};
-    const Raster closer(raster.about(last.in.line), lines);
+    const Rays closer(raster.about(last.in.line), lines);
     const Last closer_last = find_last(closer);
     return closer_last.distance > last.distance ? parting(closer, closer_last) : parting(raster, last);
   }
@@ -194,25 +168,25 @@ class SharedSpace::View {
   [[nodiscard]] std::vector<std::vector<Vec3>> pieces(int lines) const {
     const Rectangle whole(Vec2(box_.min().head<2>()), Vec2(box_.max().head<2>()));
     if (!(whole.sizes().minCoeff() > 0.0)) return {};
-    const Raster raster(whole, lines);
+    const Rays raster(whole, lines);
     struct Run {
-      int line;
+      std::size_t line;
       double low, high;
     };
     std::vector<Run> runs;
-    std::vector<std::size_t> first(static_cast<std::size_t>(lines) * static_cast<std::size_t>(lines) + 1, 0);
+    std::vector<std::size_t> first(raster.size() + 1, 0);
     for_each_shared(raster, [&](const Chord& x, const Chord& y) {
       runs.push_back({x.in.line, std::max(x.in.height, y.in.height), std::min(x.out.height, y.out.height)});
     });
-    for (const Run& run : runs) ++first[static_cast<std::size_t>(run.line) + 1];
+    for (const Run& run : runs) ++first[run.line + 1];
     for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
     Groups groups(runs.size());
+    const auto row = static_cast<std::size_t>(lines);
     for (std::size_t k = 0; k < runs.size(); ++k)
-      for (const int step : {1, lines}) {
-        const int next = runs[k].line + step;
-        if (next >= lines * lines || (step == 1 && next % lines == 0)) continue;
-        for (std::size_t m = first[static_cast<std::size_t>(next)];
-             m < first[static_cast<std::size_t>(next) + 1]; ++m)
+      for (const std::size_t step : {std::size_t{1}, row}) {
+        const std::size_t next = runs[k].line + step;
+        if (next >= raster.size() || (step == 1 && next % row == 0)) continue;
+        for (std::size_t m = first[next]; m < first[next + 1]; ++m)
           if (runs[m].low <= runs[k].high && runs[k].low <= runs[m].high) groups.join(k, m);
       }
     std::map<std::size_t, std::vector<Vec3>> walls;
@@ -234,13 +208,13 @@ class SharedSpace::View {
     Passage out, in;  // of A, into B
   };
 
-  [[nodiscard]] Parting parting(const Raster& raster, const Last& last) const {
+  [[nodiscard]] Parting parting(const Rays& raster, const Last& last) const {
     const Vec2 place = raster.place(last.in.line);
     return {last.distance, last.out.triangle, last.in.triangle, frame_.placed(place, last.out.height),
             frame_.placed(place, last.in.height)};
   }
 
-  [[nodiscard]] Last find_last(const Raster& raster) const {
+  [[nodiscard]] Last find_last(const Rays& raster) const {
     Last last;
     for_each_shared(raster, [&](const Chord& x, const Chord& y) {
       if (x.out.height - y.in.height > last.distance) last = {x.out.height - y.in.height, x.out, y.in};
@@ -250,7 +224,7 @@ class SharedSpace::View {
 
   // Calls visit(piece of A, piece of B) for those that overlap, line by line.
   template <class Visit>
-  void for_each_shared(const Raster& raster, const Visit& visit) const {
+  void for_each_shared(const Rays& raster, const Visit& visit) const {
     const std::vector<Passage> all_a = raster.pass(space_.a_, seen_a_),
                                all_b = raster.pass(space_.b_, seen_b_);
     std::vector<Chord> pieces_a, pieces_b;
@@ -309,12 +283,8 @@ Vec3 SharedSpace::easiest_direction(const std::vector<Vec3>& starts) const {
     for (int halving = 0; halving < 7; ++halving, step *= 0.5) {
       for (bool moved = true; moved;) {
         moved = false;
-        const Vec3 x = here.n.unitOrthogonal(), y = here.n.cross(x);
         for (int k = 0; k < 8; ++k) {
-          // Turned from step size to step size: a fixed pattern gets stuck where two places part last
-          // together.
-          const double angle = k * std::numbers::pi / 4.0 + 10.0 * step;
-          const Vec3 n = (here.n + step * (std::cos(angle) * x + std::sin(angle) * y)).normalized();
+          const Vec3 n = turned(here.n, step, k);
           const double value = cost(n);
           // Less than this is the raster's grain.
           if (value < here.cost * (1.0 - 1e-5)) {

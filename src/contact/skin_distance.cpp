@@ -79,7 +79,7 @@ Vec3 SkinDistance::normal_at(std::uint32_t triangle, int feature) const {
 }
 
 // By the signs of barycentric coordinates and of the edges' parameters.
-SkinDistance::Foot SkinDistance::nearest(std::uint32_t triangle, const Vec3& point) const {
+SkinDistance::Foot SkinDistance::foot_on(std::uint32_t triangle, const Vec3& point) const {
   const auto& t = skin_.triangles[triangle];
   const std::array<Vec3, 3> p = {skin_.vertices[t[0]], skin_.vertices[t[1]], skin_.vertices[t[2]]};
   const Vec3 face = (p[1] - p[0]).cross(p[2] - p[0]);
@@ -110,17 +110,8 @@ SkinDistance::Foot SkinDistance::nearest(std::uint32_t triangle, const Vec3& poi
 }
 
 std::optional<double> SkinDistance::at(const Vec3& point, double reach) const {
-  std::optional<double> found;
-  tree_.near_point(point, reach, [&](std::uint32_t triangle) {
-    const double best = found ? std::abs(*found) : reach;
-    const Foot foot = nearest(triangle, point);
-    const Vec3 way = point - foot.point;
-    const double distance = way.norm();
-    if (distance >= best) return best;
-    found = way.dot(normal_at(triangle, foot.feature)) < 0.0 ? -distance : distance;
-    return distance;
-  });
-  return found;
+  const auto all = [](auto...) { return true; };
+  return nearest(point, reach, all, all);
 }
 
 }  // namespace selvage::contact

@@ -34,7 +34,10 @@ class SkinDistance {
     Vec3 point = Vec3::Zero();
     int feature = 0;
   };
-  [[nodiscard]] Foot nearest(std::uint32_t triangle, const Vec3& point) const;
+  [[nodiscard]] Foot foot_on(std::uint32_t triangle, const Vec3& point) const;
+  template <class Wanted, class Counts>
+  [[nodiscard]] std::optional<double> nearest(const Vec3& point, double reach, const Wanted& is_wanted,
+                                              const Counts& counts) const;
   [[nodiscard]] Vec3 normal(std::uint32_t triangle) const;  // unit; zero where it has no area
   // Unit, outward, of a place on the triangle. Zero where it has none, and at the border of an open skin.
   [[nodiscard]] Vec3 normal_at(std::uint32_t triangle, int feature) const;
@@ -49,24 +52,32 @@ class SkinDistance {
   std::vector<Vec3> corner_normals_;                      // one a vertex
 };
 
-template <class Wanted>
-std::optional<double> SkinDistance::to_part(const Vec3& point, double reach, double depth,
-                                            const Wanted& is_wanted) const {
-  constexpr double least_cosine = 0.5;
+template <class Wanted, class Counts>
+std::optional<double> SkinDistance::nearest(const Vec3& point, double reach, const Wanted& is_wanted,
+                                            const Counts& counts) const {
   std::optional<double> found;
   tree_.near_point(point, reach, [&](std::uint32_t triangle) {
     const double best = found ? std::abs(*found) : reach;
     if (!is_wanted(triangle)) return best;
-    const Foot foot = nearest(triangle, point);
+    const Foot foot = foot_on(triangle, point);
     const Vec3 way = point - foot.point;
     const double distance = way.norm();
     if (distance >= best) return best;
     const double height = way.dot(normal_at(triangle, foot.feature));
-    if (std::abs(height) < least_cosine * distance || (height < 0.0 && distance > depth)) return best;
+    if (!counts(distance, height)) return best;
     found = height < 0.0 ? -distance : distance;
     return distance;
   });
   return found;
+}
+
+template <class Wanted>
+std::optional<double> SkinDistance::to_part(const Vec3& point, double reach, double depth,
+                                            const Wanted& is_wanted) const {
+  constexpr double least_cosine = 0.5;
+  return nearest(point, reach, is_wanted, [&](double distance, double height) {
+    return std::abs(height) >= least_cosine * distance && (height >= 0.0 || distance <= depth);
+  });
 }
 
 }  // namespace selvage::contact
