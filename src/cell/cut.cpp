@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cell/trim.h"
@@ -57,6 +58,18 @@ Vec2 in_domain(const yarn::Body& body, const Vec2& parameters) {
   return result;
 }
 
+Vec2 periods(const yarn::Body& body) {
+  const nurbs::Surface& surface = body.surface;
+  return {surface.last_u() - surface.first_u(), surface.last_v() - surface.first_v()};
+}
+
+Vec2 beside(const yarn::Body& body, const Vec2& near, Vec2 parameters) {
+  const Vec2 period = periods(body);
+  for (int axis = 0; axis < (body.closed_along ? 2 : 1); ++axis)
+    parameters[axis] += period[axis] * std::round((near[axis] - parameters[axis]) / period[axis]);
+  return parameters;
+}
+
 Vec3 position(const yarn::Body& body, const Vec2& parameters) {
   const Vec2 q = in_domain(body, parameters);
   return nurbs::evaluate(body.surface, q.x(), q.y());
@@ -70,7 +83,7 @@ nurbs::SurfaceJet jet(const yarn::Body& body, const Vec2& parameters) {
 Result<Cut> cut(std::span<const yarn::Body> bodies, const Box3& box, const CutOptions& options) {
   Cut result;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Result<Trimmed> trimmed = trim(bodies[i], box, options.tolerance);
+    Result<Cut> trimmed = trim(bodies[i], box, options.tolerance);
     if (!trimmed) {
       Message message = trimmed.error();
       message.yarn = bodies[i].name;
@@ -109,6 +122,18 @@ Vec3 ArcCurve::position(const Vec2& parameters) const {
   Vec3 point = cell::position(*body_, parameters);
   if (axis_ >= 0) point[axis_] = plane_;
   return point;
+}
+
+ArcCurve::Foot ArcCurve::nearest(const Vec3& point) const {
+  Foot best;
+  for (std::size_t k = 0; k + 1 < points_.size(); ++k) {
+    const Vec3 way = points_[k + 1] - points_[k];
+    const double square = way.squaredNorm();
+    const double share = square > 0 ? std::clamp((point - points_[k]).dot(way) / square, 0.0, 1.0) : 0;
+    const double distance = (points_[k] + share * way - point).norm();
+    if (distance < best.distance) best = {lengths_[k] + share * (lengths_[k + 1] - lengths_[k]), distance};
+  }
+  return best;
 }
 
 Vec2 ArcCurve::at(double along) const {

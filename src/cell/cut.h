@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -89,6 +90,10 @@ Vec3 position(const yarn::Body& body, const Vec2& parameters);
 nurbs::SurfaceJet jet(const yarn::Body& body, const Vec2& parameters);
 // The same place with parameters inside the surface's domain.
 Vec2 in_domain(const yarn::Body& body, const Vec2& parameters);
+// How far the parameters run in one round of the surface's domain.
+Vec2 periods(const yarn::Body& body);
+// The same place with parameters as they are beside `near`: by whole periods where they go round.
+Vec2 beside(const yarn::Body& body, const Vec2& near, Vec2 parameters);
 
 // Errors (geometry), each with the yarn and the place: an end face that is partly inside the box (askew to
 // the face that it ends near); a yarn that reaches through a face of the box by less than the tolerance; a
@@ -108,6 +113,13 @@ class ArcCurve {
   [[nodiscard]] Vec2 at(double along) const;
   [[nodiscard]] Vec3 position(const Vec2& parameters) const;  // with the face's own coordinate to the bit
   [[nodiscard]] const std::vector<double>& lengths() const { return lengths_; }  // one a kept point
+  [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }      // likewise
+
+  struct Foot {
+    double along = 0, distance = std::numeric_limits<double>::infinity();
+  };
+  // The place of the polygon nearest to a point.
+  [[nodiscard]] Foot nearest(const Vec3& point) const;
 
  private:
   const yarn::Body* body_;

@@ -26,8 +26,6 @@ bool may_enter(const nurbs::Surface& surface, int first, int last, const Box3& b
 }  // namespace
 
 Sampling::Sampling(const yarn::Body& body, const Box3& box, double tolerance) : is_ring_(body.closed_along) {
-  period_u_ = body.surface.last_u() - body.surface.first_u();
-  period_v_ = is_ring_ ? body.surface.last_v() - body.surface.first_v() : 0;
   for (int face = 0; face < face_count; ++face) planes_[static_cast<std::size_t>(face)] = plane_of(box, face);
   choose_parameters(body, box, tolerance);
   points_ = nurbs::evaluate_grid(body.surface, us_, vs_);
@@ -79,12 +77,6 @@ void Sampling::find_end_faces(const Box3& box, double tolerance) {
     while (count + 1 < rows && lies_in(end == 0 ? count : rows - 1 - count, end_faces_[end])) ++count;
     level_rows_[end] = end == 0 ? std::array<std::size_t, 2>{0, count} : std::array{rows - count, rows};
   }
-}
-
-Vec2 Sampling::unwrapped(Vec2 parameters, const Vec2& near) const {
-  parameters.x() += period_u_ * std::round((near.x() - parameters.x()) / period_u_);
-  if (is_ring_) parameters.y() += period_v_ * std::round((near.y() - parameters.y()) / period_v_);
-  return parameters;
 }
 
 std::array<Sampling::Vertex, 3> Sampling::triangle(std::size_t index) const {

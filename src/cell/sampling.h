@@ -41,11 +41,6 @@ class Sampling {
   [[nodiscard]] Vec2 parameters(Vertex vertex) const {
     return {us_[vertex % us_.size()], vs_[vertex / us_.size()]};
   }
-  // The second of two neighbours, with parameters next to the first's.
-  [[nodiscard]] Vec2 parameters_near(Vertex vertex, const Vec2& near) const {
-    return unwrapped(parameters(vertex), near);
-  }
-  [[nodiscard]] Vec2 unwrapped(Vec2 parameters, const Vec2& near) const;
 
   [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
   [[nodiscard]] std::size_t triangle_count() const { return 2 * us_.size() * cell_rows(); }
@@ -55,8 +50,6 @@ class Sampling {
   [[nodiscard]] int own_border(Vertex a, Vertex b) const;
 
   [[nodiscard]] const EndFaces& end_faces() const { return end_faces_; }
-  [[nodiscard]] double period_u() const { return period_u_; }
-  [[nodiscard]] double period_v() const { return period_v_; }
 
  private:
   void choose_parameters(const yarn::Body& body, const Box3& box, double tolerance);
@@ -69,7 +62,6 @@ class Sampling {
   EndFaces end_faces_{-1, -1};
   std::array<std::array<std::size_t, 2>, 2> level_rows_{};  // that lie in the end's face within the tolerance
   bool is_ring_ = false;
-  double period_u_ = 0, period_v_ = 0;
 };
 
 }  // namespace selvage::cell

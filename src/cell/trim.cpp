@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <tuple>
 
 #include "cell/sampling.h"
@@ -42,7 +41,7 @@ class Trimmer {
   Trimmer(const yarn::Body& body, const Box3& box, double tolerance)
       : body_(body), box_(box), tolerance_(tolerance), sampling_(body, box, tolerance) {}
 
-  Result<Trimmed> run();
+  Result<Cut> run();
 
  private:
   struct Step {  // of a border: to the next point, along what
@@ -64,14 +63,18 @@ class Trimmer {
   [[nodiscard]] Vec2 place(const Name& name) const;
   [[nodiscard]] Vec2 crossing(Vertex a, Vertex b, int face) const;
   [[nodiscard]] Vec2 corner(std::size_t triangle, int first, int second) const;
-  [[nodiscard]] double depth_at(const Vec2& parameters, int face) const;
+  [[nodiscard]] double depth_of(const Vec3& point, int face) const {
+    const double above = point[axis_of(face)] - plane_of(box_, face);
+    return is_high(face) ? -above : above;
+  }
+  [[nodiscard]] double depth_at(const Vec2& parameters, int face) const {
+    return depth_of(position(body_, parameters), face);
+  }
   [[nodiscard]] bool is_beyond(const Vec2& parameters, int along) const;
-  std::size_t root(std::size_t set);
-  void join(std::size_t a, std::size_t b) { parents_[root(a)] = root(b); }
   Border trace(std::size_t start, std::vector<bool>& seen) const;
   [[nodiscard]] Arc arc_along(int along) const;
   [[nodiscard]] Status check_grazing() const;
-  Result<Trimmed> collect();
+  Result<Cut> collect();
   [[nodiscard]] Message at(Message message, const Vec3& place) const {
     message.at = place;
     return message;
@@ -81,7 +84,7 @@ class Trimmer {
   const Box3& box_;
   double tolerance_;
   Sampling sampling_;
-  std::vector<std::size_t> parents_;  // triangles that hang together inside
+  Groups groups_{sampling_.triangle_count()};  // of triangles that hang together inside
   std::map<Name, std::size_t> numbers_;
   std::vector<Point> points_;
   std::vector<Step> steps_;  // one a point
@@ -117,14 +120,9 @@ Name Trimmer::name_on(Vertex a, Vertex b, int face) const {
   return {Name::Kind::edge, std::min(a, b), std::max(a, b), face, nothing};
 }
 
-double Trimmer::depth_at(const Vec2& parameters, int face) const {
-  const double coordinate = position(body_, parameters)[axis_of(face)], plane = plane_of(box_, face);
-  return is_high(face) ? plane - coordinate : coordinate - plane;
-}
-
 // Where the side of a triangle goes through a face: bisection, whose bracket is never lost.
 Vec2 Trimmer::crossing(Vertex a, Vertex b, int face) const {
-  Vec2 from = sampling_.parameters(a), to = sampling_.parameters_near(b, from);
+  Vec2 from = sampling_.parameters(a), to = beside(body_, from, sampling_.parameters(b));
   double low = 0, high = 1, low_depth = sampling_.depth(a, face), high_depth = sampling_.depth(b, face);
   if (low_depth == 0) return from;
   if (high_depth == 0) return to;
@@ -152,7 +150,8 @@ Vec2 Trimmer::corner(std::size_t triangle, int first, int second) const {
   std::array<Vec2, 3> q;
   std::array<Vec2, 3> depths;
   for (std::size_t k = 0; k < 3; ++k) {
-    q[k] = k == 0 ? sampling_.parameters(t[0]) : sampling_.parameters_near(t[k], q[0]);
+    q[k] = sampling_.parameters(t[k]);
+    if (k > 0) q[k] = beside(body_, q[0], q[k]);
     depths[k] = {sampling_.depth(t[k], first), sampling_.depth(t[k], second)};
   }
   Eigen::Matrix2d slopes;
@@ -231,11 +230,6 @@ void Trimmer::add_border(std::size_t triangle, const Name& from, int from_face, 
   add_step(corner, to, to_face, triangle);
 }
 
-std::size_t Trimmer::root(std::size_t set) {
-  while (parents_[set] != set) set = parents_[set] = parents_[parents_[set]];
-  return set;
-}
-
 // Goes round the triangle: what lies inside of each side, and where the border leaves it for the next.
 void Trimmer::visit(std::size_t triangle) {
   const auto t = sampling_.triangle(triangle);
@@ -269,8 +263,7 @@ bool Trimmer::is_beyond(const Vec2& parameters, int along) const {
   const Vec3 point = position(body_, parameters);
   for (int face = 0; face < face_count; ++face) {
     if (face == along) continue;
-    const double depth = is_high(face) ? plane_of(box_, face) - point[axis_of(face)]
-                                       : point[axis_of(face)] - plane_of(box_, face);
+    const double depth = depth_of(point, face);
     const auto& ends = sampling_.end_faces();
     if (depth < 0 && !(face == ends[0] || face == ends[1])) return true;
     if (depth < -tolerance_) return true;
@@ -308,7 +301,7 @@ Border Trimmer::trace(std::size_t start, std::vector<bool>& seen) const {
     const std::size_t p = way[k % way.size()];
     seen[p] = true;
     const bool is_corner = k == 0 || k == way.size() || along_before(k) != steps_[p].along;
-    last = sampling_.unwrapped(points_[p].parameters, last);
+    last = beside(body_, last, points_[p].parameters);
     if (k > 0) {
       std::vector<Vec2>& line = border.arcs.back().parameters;
       const bool is_new = (last - line.back()).norm() > 0;
@@ -319,10 +312,9 @@ Border Trimmer::trace(std::size_t start, std::vector<bool>& seen) const {
       border.arcs.back().parameters.push_back(last);
     }
   }
-  const Vec2 gain = last - begin;
-  border.turns_u = static_cast<int>(std::lround(gain.x() / sampling_.period_u()));
-  if (sampling_.period_v() > 0)
-    border.turns_v = static_cast<int>(std::lround(gain.y() / sampling_.period_v()));
+  const Vec2 gain = (last - begin).cwiseQuotient(periods(body_));
+  border.turns_u = static_cast<int>(std::lround(gain.x()));
+  if (body_.closed_along) border.turns_v = static_cast<int>(std::lround(gain.y()));
   return border;
 }
 
@@ -357,17 +349,15 @@ Status Trimmer::check_grazing() const {
   return {};
 }
 
-Result<Trimmed> Trimmer::run() {
+Result<Cut> Trimmer::run() {
   if (Status free = check_grazing(); !free) return free.error();
-  parents_.resize(sampling_.triangle_count());
-  std::iota(parents_.begin(), parents_.end(), std::size_t{0});
   for (std::size_t t = 0; t < sampling_.triangle_count() && !failure_; ++t) visit(t);
   if (failure_) return *failure_;
   return collect();
 }
 
 // The deepest vertex of what hangs together, and the borders.
-Result<Trimmed> Trimmer::collect() {
+Result<Cut> Trimmer::collect() {
   // Triangles hang together over sides with a part inside; `outside` those over vertices that are not.
   std::map<std::pair<Vertex, Vertex>, std::size_t> over_side;
   std::vector<bool> is_entered(sampling_.triangle_count(), false);
@@ -379,7 +369,7 @@ Result<Trimmed> Trimmer::collect() {
       is_entered[t] = true;
       const auto [other, is_new] = over_side.try_emplace(std::minmax(a, b), t);
       if (!is_new) {
-        join(t, other->second);
+        groups_.join(t, other->second);
         over_side.erase(other);
       }
     }
@@ -391,7 +381,7 @@ Result<Trimmed> Trimmer::collect() {
   std::map<std::size_t, Deepest> parts;
   for (std::size_t t = 0; t < sampling_.triangle_count(); ++t) {
     if (!is_entered[t]) continue;
-    Deepest& deepest = parts[root(t)];
+    Deepest& deepest = parts[groups_.of(t)];
     for (const Vertex vertex : sampling_.triangle(t)) {
       double depth = std::numeric_limits<double>::infinity();
       for (int face = 0; face < face_count; ++face) depth = std::min(depth, sampling_.depth(vertex, face));
@@ -402,10 +392,10 @@ Result<Trimmed> Trimmer::collect() {
   std::vector<bool> seen(points_.size(), false);
   for (std::size_t p = 0; p < points_.size(); ++p)
     if (!seen[p]) {
-      const std::size_t part = root(steps_[p].triangle);
+      const std::size_t part = groups_.of(steps_[p].triangle);
       borders[part].push_back(trace(p, seen));
     }
-  Trimmed result;
+  Cut result;
   for (const auto& [part, deepest] : parts) {
     if (deepest.depth < tolerance_) {
       Message note =
@@ -435,8 +425,8 @@ Result<Trimmed> Trimmer::collect() {
 
 }  // namespace
 
-Result<Trimmed> trim(const yarn::Body& body, const Box3& box, double tolerance) {
-  if (!box.intersects(yarn::bounds(body))) return Trimmed{};
+Result<Cut> trim(const yarn::Body& body, const Box3& box, double tolerance) {
+  if (!box.intersects(yarn::bounds(body))) return Cut{};
   return Trimmer(body, box, tolerance).run();
 }
 
