@@ -63,8 +63,8 @@ struct Shell {
   Box3 box;
 };
 
-// In the order of their first faces; `planar[i]`: the face lies in one of the box's.
-std::vector<Shell> shells_of(std::vector<cad::Face> faces, const std::vector<bool>& planar) {
+// In the order of their first faces; those from `first_planar` on lie in faces of the box.
+std::vector<Shell> shells_of(std::vector<cad::Face> faces, std::size_t first_planar) {
   Groups groups(faces.size());
   std::map<int, std::size_t> first;
   for (std::size_t i = 0; i < faces.size(); ++i)
@@ -76,7 +76,7 @@ std::vector<Shell> shells_of(std::vector<cad::Face> faces, const std::vector<boo
     const auto [at, is_new] = index.try_emplace(groups.of(i), shells.size());
     if (is_new) shells.emplace_back();
     Shell& shell = shells[at->second];
-    shell.in_box_faces = shell.in_box_faces || planar[i];
+    shell.in_box_faces = shell.in_box_faces || i >= first_planar;
     for (const cad::Loop& loop : faces[i].loops)
       for (const cad::Edge& edge : loop.edges)
         for (const Vec3& p : edge.curve.points) shell.box.extend(p);
@@ -92,7 +92,6 @@ class CellBuilder {
       : bodies_(bodies), box_(box), cut_(cut), division_(std::move(division)), tubes_(std::move(tubes)) {}
 
   Result<std::vector<cad::Part>> run(bool with_matrix) {
-    set_corners();
     for (const Edge& part : division_.edges) {
       if (part.arc != nullptr) continue;
       tubes_.of_arc.push_back({tubes_.edges.size()});
@@ -103,63 +102,26 @@ class CellBuilder {
     }
     std::vector<cad::Part> parts;
     std::vector<cad::Face> around;  // of the matrix
-    std::vector<bool> planar;
     for (std::size_t body = 0; body < bodies_.size(); ++body) {
       Result<std::vector<cad::Face>> sides = sides_of(body);
       if (!sides) return sides.error();
       if (sides->empty()) continue;
       if (with_matrix)
-        for (const cad::Face& face : *sides) around.push_back(of_matrix(face));
+        for (const cad::Face& face : *sides) {
+          around.push_back(face);
+          around.back().reversed = !face.reversed;
+        }
       add_yarn(body, std::move(*sides), parts);
     }
     if (!with_matrix) return parts;
-    planar.assign(around.size(), false);
+    const std::size_t first_planar = around.size();
     for (const FaceRegion& region : division_.regions)
       if (region.body == FaceRegion::matrix) around.push_back(region_face(region));
-    planar.resize(around.size(), true);
-    add_matrix(shells_of(std::move(around), planar), parts);
+    add_matrix(shells_of(std::move(around), first_planar), parts);
     return parts;
   }
 
  private:
-  // Where yarns cross the edges of the box: the corners' own numbers.
-  void set_corners() {
-    for (std::size_t e = 0; e < division_.edges.size(); ++e) {
-      const Edge& edge = division_.edges[e];
-      if (edge.arc == nullptr || edge.is_border()) continue;
-      const std::vector<std::size_t>& parts = tubes_.of_arc[e];
-      tubes_.edges[parts.front()].space.points.front() = division_.corners[edge.from].at;
-      tubes_.edges[parts.back()].space.points.back() = division_.corners[edge.to].at;
-    }
-  }
-
-  [[nodiscard]] cad::Edge edge_of(std::size_t id, bool backward) const {
-    cad::Edge edge;
-    edge.curve = backward ? nurbs::reversed(tubes_.edges[id].space) : tubes_.edges[id].space;
-    edge.id = static_cast<int>(id);
-    return edge;
-  }
-
-  [[nodiscard]] cad::Face tube_face(const TubeFace& given) const {
-    const yarn::Body& body = bodies_[given.body];
-    cad::Face face;
-    face.surface = nurbs::restricted(body.surface, given.low_u, given.high_u, given.low_v, given.high_v);
-    face.reversed = body.inward;
-    for (const EdgeLoop& uses : given.loops) {
-      cad::Loop loop;
-      for (const EdgeUse& use : uses) {
-        cad::Edge edge = edge_of(use.edge, use.backward);
-        edge.flat = use.backward ? nurbs::reversed(tubes_.edges[use.edge].flat) : tubes_.edges[use.edge].flat;
-        for (Vec3& p : edge.flat.points)
-          p = Vec3(std::clamp(p.x() + use.shift_u, given.low_u, given.high_u),
-                   std::clamp(p.y(), given.low_v, given.high_v), 0);
-        loop.edges.push_back(std::move(edge));
-      }
-      face.loops.push_back(std::move(loop));
-    }
-    return face;
-  }
-
   // The parts of an edge, one after the other in the direction that is asked for.
   template <typename Take>
   void for_each_part(std::size_t edge, bool backward, const Take& take) const {
@@ -174,7 +136,7 @@ class CellBuilder {
     for (const Outline& outline : region.outlines) {
       cad::Loop loop;
       const auto add = [&](std::size_t id, bool backward) {
-        cad::Edge edge = edge_of(id, backward);
+        cad::Edge edge = tubes_.edge(id, backward);
         edge.flat = in_plane(edge.curve, region.face);
         for (const Vec3& p : edge.flat.points) range.extend(p.head<2>());
         loop.edges.push_back(std::move(edge));
@@ -209,7 +171,7 @@ class CellBuilder {
     }
     // Along growing u.
     for_each_part(edge_number, last, [&](std::size_t id, bool backward) {
-      cad::Edge edge = edge_of(id, backward);
+      cad::Edge edge = tubes_.edge(id, backward);
       edge.flat = plane ? plane->in_parameters(edge.curve) : on_patch(body, edge.curve);
       loop.edges.push_back(std::move(edge));
     });
@@ -254,9 +216,7 @@ class CellBuilder {
 
   // The faces that a yarn has in common with the matrix.
   Result<std::vector<cad::Face>> sides_of(std::size_t body) const {
-    std::vector<cad::Face> faces;
-    for (const TubeFace& face : tubes_.faces)
-      if (face.body == body) faces.push_back(tube_face(face));
+    std::vector<cad::Face> faces = tubes_.of_body[body];
     for (std::size_t e = 0; e < division_.edges.size(); ++e) {
       const Edge& edge = division_.edges[e];
       if (edge.arc == nullptr || edge.arc->face < face_count || cut_.pieces[edge.piece].body != body)
@@ -272,25 +232,12 @@ class CellBuilder {
     const yarn::Body& body = bodies_[index];
     for (const FaceRegion& region : division_.regions)
       if (region.body == index) faces.push_back(region_face(region));
-    const std::vector<bool> planar(faces.size(), true);
-    std::vector<Shell> shells = shells_of(std::move(faces), planar);
+    std::vector<Shell> shells = shells_of(std::move(faces), 0);
     for (std::size_t i = 0; i < shells.size(); ++i) {
-      cad::Part part;
-      part.kind = cad::Part::Kind::solid;
-      part.name = shells.size() == 1 ? body.name : fmt::format("{}.part{}", body.name, i + 1);
+      cad::Part part = part_of(body.name, i, shells);
       part.group = shells.size() == 1 || !body.group.empty() ? body.group : body.name;
-      part.color = body.color;
-      part.level = static_cast<int>(body.role) + 1;
-      part.origin.place = body.place;
-      part.faces = std::move(shells[i].faces);
-      name_faces(part);
-      parts.push_back(std::move(part));
+      add_part(std::move(part), body.color, static_cast<int>(body.role) + 1, body.place, parts);
     }
-  }
-
-  static cad::Face of_matrix(cad::Face face) {
-    face.reversed = !face.reversed;
-    return face;
   }
 
   // Shells that lie in no face of the box are round yarns that stand free in the matrix.
@@ -304,25 +251,32 @@ class CellBuilder {
       std::move(inner.faces.begin(), inner.faces.end(), std::back_inserter(home->faces));
     }
     for (std::size_t i = 0; i < outer.size(); ++i) {
-      cad::Part part;
-      part.kind = cad::Part::Kind::solid;
-      part.name = outer.size() == 1 ? std::string(matrix_name) : fmt::format("{}.part{}", matrix_name, i + 1);
+      cad::Part part = part_of(matrix_name, i, outer);
       if (outer.size() > 1) part.group = matrix_name;
-      part.color = yarn::Color{};
-      part.level = matrix_level;
-      part.faces = std::move(outer[i].faces);
-      name_faces(part);
-      parts.push_back(std::move(part));
+      add_part(std::move(part), yarn::Color{}, matrix_level, {}, parts);
     }
   }
 
-  static void name_faces(cad::Part& part) {
+  static cad::Part part_of(std::string_view name, std::size_t index, std::vector<Shell>& shells) {
+    cad::Part part;
+    part.kind = cad::Part::Kind::solid;
+    part.name = shells.size() == 1 ? std::string(name) : fmt::format("{}.part{}", name, index + 1);
+    part.faces = std::move(shells[index].faces);
+    return part;
+  }
+
+  static void add_part(cad::Part part, const yarn::Color& color, int level, const TextPlace& place,
+                       std::vector<cad::Part>& parts) {
+    part.color = color;
+    part.level = level;
+    part.origin.place = place;
     for (cad::Face& face : part.faces) {
       face.name = part.name;
-      face.color = part.color;
-      face.level = part.level;
-      face.origin.place = part.origin.place;
+      face.color = color;
+      face.level = level;
+      face.origin.place = place;
     }
+    parts.push_back(std::move(part));
   }
 
   std::span<const yarn::Body> bodies_;
@@ -339,7 +293,7 @@ Result<std::vector<cad::Part>> cad_parts(std::span<const yarn::Body> given, cons
   const std::vector<yarn::Body> bodies = flush(given, box, cut);
   Result<Division> division = divide_faces(bodies, box, cut);
   if (!division) return division.error();
-  Result<TubeFaces> tubes = tube_faces(bodies, box, cut, options.tolerance);
+  Result<TubeFaces> tubes = tube_faces(bodies, box, cut, *division, options.tolerance);
   if (!tubes) return tubes.error();
   return CellBuilder(bodies, box, cut, std::move(*division), std::move(*tubes)).run(options.matrix);
 }

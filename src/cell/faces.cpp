@@ -240,32 +240,19 @@ Status Divider::chain(int face, std::size_t body, const std::vector<Side>& sides
   return {};
 }
 
-// Outlines that run clockwise are holes in the smallest one that holds them.
 void Divider::nest(int face, std::size_t body, std::vector<Outline> outlines) {
-  struct Flat {
-    std::vector<Vec2> points;
-    double area = 0;
-    std::size_t region = 0;
-  };
-  std::vector<Flat> flats;
-  for (const Outline& outline : outlines) {
-    flats.push_back({polygon(face, outline), 0, 0});
-    flats.back().area = twice_area(flats.back().points, flats.back().points.front()) / 2;
-  }
+  std::vector<std::vector<Vec2>> polygons;
+  for (const Outline& outline : outlines) polygons.push_back(polygon(face, outline));
+  const std::vector<std::size_t> outer = outer_polygons(polygons);
+  std::vector<std::size_t> regions(outlines.size());
   for (std::size_t i = 0; i < outlines.size(); ++i) {
-    if (flats[i].area <= 0) continue;
-    flats[i].region = division_.regions.size();
+    if (outer[i] != i) continue;
+    regions[i] = division_.regions.size();
     division_.regions.push_back({face, body, {std::move(outlines[i])}});
   }
-  for (std::size_t i = 0; i < outlines.size(); ++i) {
-    if (flats[i].area > 0) continue;
-    const Flat* around = nullptr;
-    for (const Flat& other : flats)
-      if (other.area > 0 && contains(other.points, flats[i].points.front()) &&
-          (around == nullptr || other.area < around->area))
-        around = &other;
-    if (around != nullptr) division_.regions[around->region].outlines.push_back(std::move(outlines[i]));
-  }
+  for (std::size_t i = 0; i < outlines.size(); ++i)
+    if (outer[i] != i && outer[i] != no_polygon)
+      division_.regions[regions[outer[i]]].outlines.push_back(std::move(outlines[i]));
 }
 
 Status Divider::trace_face(int face) {

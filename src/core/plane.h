@@ -1,6 +1,7 @@
 // Polygons in the plane: their corners in order, the first one not repeated.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "core/vec.h"
@@ -32,6 +33,23 @@ inline bool contains(const std::vector<Vec2>& polygon, const Vec2& p) {
   for (std::size_t i = 0; i < polygon.size(); ++i)
     if (ray_meets(p, polygon[i], polygon[(i + 1) % polygon.size()])) inside = !inside;
   return inside;
+}
+
+inline constexpr std::size_t no_polygon = static_cast<std::size_t>(-1);
+
+// Of polygons that bound regions of the plane together, the outer one of each one's region: itself where it
+// runs counter-clockwise; of a hole the smallest of these that holds its first corner (no_polygon: none).
+inline std::vector<std::size_t> outer_polygons(const std::vector<std::vector<Vec2>>& polygons) {
+  std::vector<double> areas;
+  for (const auto& polygon : polygons) areas.push_back(twice_area(polygon, polygon.front()));
+  std::vector<std::size_t> result(polygons.size(), no_polygon);
+  for (std::size_t i = 0; i < polygons.size(); ++i)
+    for (std::size_t k = 0; k < polygons.size(); ++k)
+      if (areas[i] > 0 ? k == i
+                       : areas[k] > 0 && contains(polygons[k], polygons[i].front()) &&
+                             (result[i] == no_polygon || areas[k] < areas[result[i]]))
+        result[i] = k;
+  return result;
 }
 
 }  // namespace selvage
