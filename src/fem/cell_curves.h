@@ -25,6 +25,11 @@ struct CellShape {
   std::array<bool, 3> periodic{};
   const cell::Cut& cut;
   const cell::Division& division;
+  bool matrix = true;  // else there is nothing beside the yarns
+
+  [[nodiscard]] SurfacePlace place(std::size_t body, const Vec2& parameters) const {
+    return {body, cell::in_domain(bodies[body], parameters)};
+  }
 };
 
 // Points of the mesh and, where they stand on a yarn's surface, where (`body` no_body: on none).
@@ -32,7 +37,7 @@ struct CellNodes {
   std::vector<Vec3> points;
   std::vector<SurfacePlace> places;
 
-  std::uint32_t add(const Vec3& point, const SurfacePlace& place) {
+  std::uint32_t add(const Vec3& point, const SurfacePlace& place = {no_body, Vec2::Zero()}) {
     points.push_back(point);
     places.push_back(place);
     return static_cast<std::uint32_t>(points.size() - 1);
