@@ -22,27 +22,12 @@ struct CellTriangles {
     std::size_t first = 0, count = 0;  // into `triangles`
   };
   std::vector<Cap> caps;
-
-  void add(const Triangle& triangle, const Sides& both, Part part) {
-    triangles.push_back(triangle);
-    sides.push_back(both);
-    parts.push_back(part);
-  }
 };
 
-struct SurfaceOptions {
-  std::size_t most_triangles = 50'000'000;
-  bool matrix = true;  // else there is nothing beside the yarns
-};
-
-// The yarns' surfaces inside the box, node places on the B-spline surface; sharp crests stay edges. Errors:
-// geometry (with the yarn), limit.
-Status add_yarn_surfaces(const CellShape& shape, const CellCurves& curves, const SizeField& field,
-                         const SurfaceOptions& options, int threads, CellNodes& nodes, CellTriangles& result);
-
-// The faces of the box; on high faces of periodic axes copies of the low ones', moved. Errors: geometry,
-// limit.
-Status add_box_faces(const CellShape& shape, const CellCurves& curves, const SizeField& field,
-                     const SurfaceOptions& options, CellNodes& nodes, CellTriangles& result);
+// The yarns' surfaces inside the box, node places on the B-spline surface, sharp crests as edges; then the
+// faces of the box: on high faces of periodic axes copies of the low ones', moved. Errors: geometry (with the
+// yarn), limit.
+Result<CellTriangles> mesh_surfaces(const CellShape& shape, const CellCurves& curves, const SizeField& field,
+                                    int threads, CellNodes& nodes);
 
 }  // namespace selvage::fem

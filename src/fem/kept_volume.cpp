@@ -11,6 +11,8 @@
 namespace selvage::fem {
 namespace {
 
+using Part = CellTriangles::Part;
+
 constexpr double edge_share = 0.15;  // of the shortest edge at a corner that it may move
 constexpr double steepest = 0.3;  // cosine between the normal and the way in a face: farther is not made up
 constexpr std::uint32_t nobody = YarnFacet::no_yarn, several = nobody - 1;
@@ -72,12 +74,12 @@ void Keeper::collect(const YarnFacet& facet) {
   const Vec3 area = area_of(at), normal = area.stableNormalized();
   for (std::size_t k = 0; k < 3; ++k) {
     Corner& corner = corners_[leader(facet.corners[k])];
-    if (facet.part == YarnFacet::Part::end) corner.end_normal += area;
-    if (facet.part == YarnFacet::Part::box)
+    if (facet.part == Part::start || facet.part == Part::end) corner.end_normal += area;
+    if (facet.part == Part::box)
       for (int axis = 0; axis < 3; ++axis)
         if (at[0][axis] == at[1][axis] && at[0][axis] == at[2][axis])
           corner.in_face[static_cast<std::size_t>(axis)] = true;
-    if (facet.part != YarnFacet::Part::side) continue;
+    if (facet.part != Part::side) continue;
     const Vec3 a = at[(k + 1) % 3] - at[k], b = at[(k + 2) % 3] - at[k];
     const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
     corner.normal += angle * normal;
@@ -128,7 +130,7 @@ void Keeper::keep_gaps() {
   std::vector<Box3> boxes;
   std::vector<Vec3> normals;
   for (const YarnFacet& facet : surface_.facets) {
-    if (facet.part == YarnFacet::Part::box) continue;
+    if (facet.part == Part::box) continue;
     Box3 box;
     double farthest = 0;
     for (const std::uint32_t k : facet.corners) {
@@ -182,7 +184,7 @@ double Keeper::volume_of(std::uint32_t yarn) const {
 double Keeper::free_area(std::uint32_t yarn) const {
   double area = 0;
   for (const YarnFacet* facet : of_yarn_[yarn]) {
-    if (facet->part != YarnFacet::Part::side) continue;
+    if (facet->part != Part::side) continue;
     int count = 0;
     for (const std::uint32_t k : facet->corners) {
       const Corner& corner = corners_[leader(k)];

@@ -10,19 +10,18 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "fem/cell_surfaces.h"
 #include "fem/curved_edges.h"
-#include "fem/worker.h"
 #include "yarn/body.h"
 
 namespace selvage::fem {
 
 // One triangle of what bounds the yarns.
 struct YarnFacet {
-  enum class Part : std::uint8_t { side, end, box };  // of a yarn, or in a face of the box
   static constexpr std::uint32_t no_yarn = static_cast<std::uint32_t>(-1);  // of the box, beside the yarns
   Triangle corners{};  // counter-clockwise seen from outside the yarn
   std::uint32_t yarn = no_yarn;
-  Part part = Part::side;
+  CellTriangles::Part part = CellTriangles::Part::side;
   double height = 0;  // of a side: the mean height of the yarn's surface above it
 };
 

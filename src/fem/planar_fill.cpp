@@ -12,6 +12,7 @@ namespace selvage::fem {
 namespace {
 
 constexpr int most_rounds = 60;
+constexpr std::size_t most_triangles = 50'000'000;
 constexpr double too_long = 1.45;  // an edge, over the wanted length
 constexpr double too_near = 0.65;  // new points to each other, likewise
 constexpr double beside_fixed = 0.8;
@@ -60,33 +61,33 @@ class Filler {
  public:
   Filler(const PlanarRegion& region, const Support& support, const SizeField& field)
       : region_(region), support_(support), field_(field) {
-    mesh_.points = region.points;
-    mesh_.parameters = region.parameters;
-    mesh_.fixed_points = region.points.size();
-    for (const Vec2& p : region.parameters) chart_.push_back(p.cwiseProduct(region.scale));
-    for (const Vec3& p : region.points) wanted_.push_back(field.at(p));
-    fixed_lengths_.assign(region.points.size(), 0);
+    for (const PlanarRegion::Place& place : region.places) {
+      mesh_.points.push_back(region.nodes[place.node].point);
+      mesh_.parameters.push_back(place.parameters);
+      chart_.push_back(place.parameters.cwiseProduct(region.scale));
+      wanted_.push_back(field.at(mesh_.points.back()));
+    }
+    fixed_lengths_.assign(mesh_.points.size(), 0);
     for (const solid::PlanarSegment& s : region.segments) {
-      mesh_.fixed_edges.push_back({s.from, s.to});
       segments_.push_back(edge_key(s.from, s.to));
-      const double length = (region.points[s.from] - region.points[s.to]).norm();
+      const double length = (mesh_.points[s.from] - mesh_.points[s.to]).norm();
       for (const std::uint32_t end : {s.from, s.to})
         fixed_lengths_[end] = std::max(fixed_lengths_[end], length);
     }
     std::sort(segments_.begin(), segments_.end());
   }
 
-  Result<TriangleMesh> run(std::size_t most) {
+  Result<TriangleMesh> run() {
     for (int round = 0;; ++round) {
       Result<solid::PlanarTriangles> made = solid::triangulate(chart_, region_.segments);
       if (!made) return placed(std::move(made.error()));
       mesh_.triangles = std::move(made->triangles);
       mesh_.domains = std::move(made->domains);
-      if (mesh_.triangles.size() > most)
+      if (mesh_.triangles.size() > most_triangles)
         return error(Kind::limit, fmt::format("the surfaces need more than {} triangles; choose a coarser "
                                               "--size",
-                                              most));
-      if (round == most_rounds || !add_points()) return std::move(mesh_);
+                                              most_triangles));
+      if (round == most_rounds || !add_points()) return joined();
     }
   }
 
@@ -121,6 +122,40 @@ class Filler {
     return result;
   }
 
+  // Places of one node become one point: fixed ones, the others, and those that were put in.
+  [[nodiscard]] TriangleMesh joined() {
+    TriangleMesh mesh;
+    std::vector<bool> used(region_.nodes.size(), false);
+    for (const PlanarRegion::Place& place : region_.places) used[place.node] = true;
+    std::vector<std::uint32_t> number(region_.nodes.size());
+    for (const bool fixed : {true, false}) {
+      for (std::size_t k = 0; k < region_.nodes.size(); ++k) {
+        const PlanarRegion::Node& node = region_.nodes[k];
+        if (node.is_fixed != fixed || !used[k]) continue;
+        number[k] = static_cast<std::uint32_t>(mesh.points.size());
+        mesh.points.push_back(node.point);
+        mesh.parameters.push_back(node.parameters);
+        if (fixed) mesh.known.push_back(node.known);
+      }
+      if (fixed) mesh.fixed_points = mesh.points.size();
+    }
+    const auto places = static_cast<std::uint32_t>(region_.places.size()),
+               shared = static_cast<std::uint32_t>(mesh.points.size());
+    mesh.points.insert(mesh.points.end(), mesh_.points.begin() + places, mesh_.points.end());
+    mesh.parameters.insert(mesh.parameters.end(), mesh_.parameters.begin() + places, mesh_.parameters.end());
+    const auto number_of = [&](std::uint32_t k) {
+      return k < places ? number[region_.places[k].node] : shared + (k - places);
+    };
+    for (const auto& [a, b, c] : mesh_.triangles)
+      mesh.triangles.push_back({number_of(a), number_of(b), number_of(c)});
+    for (const solid::PlanarSegment& s : region_.segments)
+      if (const std::uint32_t a = number_of(s.from), b = number_of(s.to);
+          a < mesh.fixed_points && b < mesh.fixed_points)
+        mesh.fixed_edges.push_back({a, b});
+    mesh.domains = std::move(mesh_.domains);
+    return mesh;
+  }
+
   // Of the longest fixed edge at a point.
   [[nodiscard]] double fixed_length(std::uint32_t k) const {
     return k < fixed_lengths_.size() ? fixed_lengths_[k] : 0;
@@ -146,7 +181,7 @@ class Filler {
   const PlanarRegion& region_;
   const Support& support_;
   const SizeField& field_;
-  TriangleMesh mesh_;
+  TriangleMesh mesh_;  // of places
   std::vector<Vec2> chart_;
   std::vector<double> wanted_, fixed_lengths_;
   std::vector<std::uint64_t> segments_;
@@ -154,9 +189,10 @@ class Filler {
 
 }  // namespace
 
-Result<TriangleMesh> fill(const PlanarRegion& region, const Support& support, const SizeField& field,
-                          std::size_t most) {
-  return Filler(region, support, field).run(most);
+Result<TriangleMesh> fill(const PlanarRegion& region, const Support& support, const SizeField& field) {
+  Result<TriangleMesh> mesh = Filler(region, support, field).run();
+  if (mesh) remesh(*mesh, support, field);
+  return mesh;
 }
 
 }  // namespace selvage::fem

@@ -61,17 +61,12 @@ Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Box3& box, cons
 
   step("meshing surfaces");
   const SizeField field = size_field(bodies, box, rules, options.threads);
-  const CellShape shape{bodies, box, options.periodic, *cut, *division};
+  const CellShape shape{bodies, box, options.periodic, *cut, *division, options.matrix};
   Result<CellCurves> curves = divide_curves(shape, field, options.miss, skin.nodes);
   if (!curves) return curves.error();
-  SurfaceOptions surfaces;
-  surfaces.matrix = options.matrix;
-  if (Status made =
-          add_yarn_surfaces(shape, *curves, field, surfaces, options.threads, skin.nodes, skin.surface);
-      !made)
-    return made.error();
-  if (Status made = add_box_faces(shape, *curves, field, surfaces, skin.nodes, skin.surface); !made)
-    return made.error();
+  Result<CellTriangles> surface = mesh_surfaces(shape, *curves, field, options.threads, skin.nodes);
+  if (!surface) return surface.error();
+  skin.surface = std::move(*surface);
   skin.leaders = leaders_of(*curves, skin.nodes.points.size());
   drop_unused(skin);
   return skin;
@@ -98,17 +93,14 @@ Box3 box_round(const yarn::Body& body) {
 }
 
 std::vector<YarnFacet> facets_of(std::span<const yarn::Body> bodies, const Skin& skin, int threads) {
-  using Part = CellTriangles::Part;
   std::vector<YarnFacet> facets(skin.surface.triangles.size());
   for_each_index(facets.size(), threads, [&](std::size_t k) {
     const Triangle& t = skin.surface.triangles[k];
     YarnFacet& facet = facets[k];
     facet.corners = t;
     if (skin.surface.sides[k].behind != CellTriangles::matrix) facet.yarn = skin.surface.sides[k].behind;
-    const Part part = skin.surface.parts[k];
-    if (part == Part::box) facet.part = YarnFacet::Part::box;
-    if (part == Part::start || part == Part::end) facet.part = YarnFacet::Part::end;
-    if (facet.part != YarnFacet::Part::side) return;
+    facet.part = skin.surface.parts[k];
+    if (facet.part != CellTriangles::Part::side) return;
     std::array<SurfaceEnd, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
       const SurfacePlace& place = skin.nodes.places[t[i]];

@@ -34,8 +34,8 @@ struct Skin {
 };
 
 // Edges are about as long as `rules` has them. Sides are bodies' indices (CellTriangles::matrix,
-// Sides::outside). Errors: what cell::cut, cell::divide_faces, divide_curves, add_yarn_surfaces and
-// add_box_faces say. The bodies outlive the skin.
+// Sides::outside). Errors: what cell::cut, cell::divide_faces, divide_curves and mesh_surfaces say. The
+// bodies outlive the skin.
 Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Box3& box, const SizeRules& rules,
                        const SkinOptions& options);
 

@@ -37,24 +37,53 @@ class Support {
 struct TriangleMesh {
   std::vector<Vec3> points;                               // the fixed ones first
   std::vector<Vec2> parameters;                           // one a point
+  std::vector<std::uint32_t> known;                       // one a fixed point: PlanarRegion::Node::known
   std::size_t fixed_points = 0;                           // they stay where they are
   std::vector<std::array<std::uint32_t, 2>> fixed_edges;  // between fixed points: they stay edges
   std::vector<std::array<std::uint32_t, 3>> triangles;    // counter-clockwise on the support
   std::vector<std::int32_t> domains;  // one a triangle; domains meet along fixed edges only
 };
 
-// A region of the parameter plane to fill: points on its borders and lines, and these.
+// A region of the parameter plane to fill: the nodes on its borders and lines, and where in the plane they
+// are, which is more than one place where a surface was cut open.
 struct PlanarRegion {
-  std::vector<Vec2> parameters;  // need not be quite those of the points
-  std::vector<Vec3> points;
-  std::vector<solid::PlanarSegment> segments;
+  static constexpr std::uint32_t none = static_cast<std::uint32_t>(-1);
+  struct Node {
+    Vec3 point;
+    Vec2 parameters;             // need not be quite those of the point
+    std::uint32_t known = none;  // the caller's number of it; none: a new one
+    bool is_fixed = true;        // else it may be moved, or taken away
+  };
+  struct Place {
+    Vec2 parameters;
+    std::uint32_t node;
+  };
+  std::vector<Node> nodes;  // fixed ones and others in any order; those without a place are left out
+  std::vector<Place> places;
+  std::vector<solid::PlanarSegment> segments;  // between places
   Vec2 scale = Vec2::Ones();  // lengths per parameter: Delaunay's circles are drawn in such lengths
+
+  std::uint32_t add_node(const Node& node) {
+    nodes.push_back(node);
+    return static_cast<std::uint32_t>(nodes.size() - 1);
+  }
+  std::uint32_t add_place(const Vec2& parameters, std::uint32_t node) {
+    places.push_back({parameters, node});
+    return static_cast<std::uint32_t>(places.size() - 1);
+  }
+  // A node with a place of its own.
+  std::uint32_t add(const Node& node) { return add_place(node.parameters, add_node(node)); }
+  // The places from this one on, closed to a loop.
+  void close(std::uint32_t first, std::int32_t left = 0, std::int32_t right = -1) {
+    const auto last = static_cast<std::uint32_t>(places.size());
+    for (std::uint32_t k = first; k < last; ++k)
+      segments.push_back({k, k + 1 < last ? k + 1 : first, left, right});
+  }
 };
 
-// Triangles with points inside, no edge inside much longer than the field has it. The points are the region's
-// first, all fixed. Errors: what solid::triangulate() says, limit (more than `most` triangles).
-Result<TriangleMesh> fill(const PlanarRegion& region, const Support& support, const SizeField& field,
-                          std::size_t most);
+// Triangles of the region with points inside, whose edges are about as long as the field has them. Segments
+// between fixed nodes stay edges. Errors: what solid::triangulate() says, limit (more than 5e7 triangles).
+Result<TriangleMesh> fill(const PlanarRegion& region, const Support& support, const SizeField& field);
 
 // Split, collapse, turn and smooth until edges are about as long as the field has them, and angles good;
 // after Botsch and Kobbelt (A remeshing approach to multiresolution modeling, 2004). Fixed points and edges

@@ -35,7 +35,7 @@ struct CrestLine {
   double u;
   std::uint32_t low, high;  // nodes of the cell
   double low_v, high_v;
-  std::vector<std::uint32_t> inner;  // indices into Unrolled::nodes, v increasing
+  std::vector<std::uint32_t> inner;  // nodes of the region, v increasing
 };
 
 bool do_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
@@ -54,10 +54,9 @@ class Unroller {
         first_edges_(shape.division.first_edges[piece]),
         field_(field),
         cell_nodes_(nodes),
-        period_(body_.surface.last_u() - body_.surface.first_u(),
-                body_.surface.last_v() - body_.surface.first_v()) {}
+        period_(cell::periods(body_)) {}
 
-  Result<Unrolled> run();
+  Result<PlanarRegion> run();
 
  private:
   void collect_loops();
@@ -66,7 +65,7 @@ class Unroller {
   void add_crest_line(const LoopPoint& low, const LoopPoint& high, double u);
   Status unroll_disc();
   Status unroll_tube(std::size_t low, std::size_t high);
-  Status unroll_all();  // no borders
+  void unroll_all();  // no borders
   struct CutPath {
     std::size_t low = 0, high = 0;  // points of the two loops
     Vec2 shift = Vec2::Zero();      // of the high one, so that it faces the low one
@@ -77,32 +76,25 @@ class Unroller {
   [[nodiscard]] std::optional<CutPath> straight_path(const Loop& low, const Loop& high) const;
   [[nodiscard]] bool is_clear(const Vec2& from, const Vec2& to) const;
   [[nodiscard]] std::vector<std::uint32_t> straight_nodes(const Vec2& from, const Vec2& to);
+  void add_along(const Loop& loop, std::size_t from, std::size_t count, const Vec2& shift = Vec2::Zero(),
+                 const Vec2& turn = Vec2::Zero());
+  void enclose();
   void add_holes(const std::vector<std::size_t>& used);
   void add_crests(const CrestLine* cut);
   void add_rows_beside_crests();
   void add_beside(double u, double v, double distance, double side);
-  [[nodiscard]] Vec2 chart(const Vec2& q) const { return q.cwiseProduct(result_.region.scale); }
+  [[nodiscard]] Vec2 chart(const Vec2& q) const { return q.cwiseProduct(region_.scale); }
+  [[nodiscard]] Vec3 position(const Vec2& q) const { return cell::position(body_, q); }
+  // Whole periods: up to `most` either way.
+  [[nodiscard]] std::vector<Vec2> shifts(int most) const;
 
   std::uint32_t node_of(std::uint32_t known, const Vec2& q) {
-    const auto [at, is_new] = numbers_.emplace(known, static_cast<std::uint32_t>(result_.nodes.size()));
-    if (is_new) result_.nodes.push_back({cell_nodes_.points[known], q, known, true});
+    const auto [at, is_new] = numbers_.emplace(known, static_cast<std::uint32_t>(region_.nodes.size()));
+    if (is_new) region_.add_node({cell_nodes_.points[known], q, known});
     return at->second;
   }
-  std::uint32_t add_point(std::uint32_t node, const Vec2& q) {
-    result_.region.parameters.push_back(q);
-    result_.region.points.push_back(result_.nodes[node].point);
-    result_.owner.push_back(node);
-    return static_cast<std::uint32_t>(result_.owner.size() - 1);
-  }
-  void add_segment(std::uint32_t a, std::uint32_t b, std::int32_t right) {
-    result_.region.segments.push_back({a, b, 0, right});
-    const Unrolled::Node &p = result_.nodes[result_.owner[a]], &q = result_.nodes[result_.owner[b]];
-    if (p.is_fixed && q.is_fixed) result_.fixed_edges.push_back({result_.owner[a], result_.owner[b]});
-  }
-  // Points from the first number on, closed to a loop round the domain.
-  void close(std::uint32_t first) {
-    const auto last = static_cast<std::uint32_t>(result_.owner.size());
-    for (std::uint32_t k = first; k < last; ++k) add_segment(k, k + 1 < last ? k + 1 : first, -1);
+  std::uint32_t new_node(const Vec2& q, bool is_fixed) {
+    return region_.add_node({position(q), q, PlanarRegion::none, is_fixed});
   }
 
   const yarn::Body& body_;
@@ -116,8 +108,16 @@ class Unroller {
   std::vector<CrestLine> crests_;
   std::map<std::uint32_t, std::uint32_t> numbers_;
   std::vector<Vec2> outline_;  // of the unrolled domain
-  Unrolled result_;
+  PlanarRegion region_;
 };
+
+std::vector<Vec2> Unroller::shifts(int most) const {
+  std::vector<Vec2> result;
+  const int most_v = body_.closed_along ? most : 0;
+  for (int m = -most; m <= most; ++m)
+    for (int n = -most_v; n <= most_v; ++n) result.push_back(Vec2(m, n).cwiseProduct(period_));
+  return result;
+}
 
 void Unroller::collect_loops() {
   for (std::size_t b = 0; b < first_edges_.size(); ++b) {
@@ -141,7 +141,7 @@ void Unroller::find_scale() {
         cell::jet(body_, {body_.surface.first_u() + period_.x() * k / round, piece_.inside.y()});
     sum += Vec2(s.du.norm(), s.dv.norm());
   }
-  result_.region.scale = sum / round;
+  region_.scale = sum / round;
 }
 
 void Unroller::find_crest_lines() {
@@ -182,7 +182,7 @@ void Unroller::add_crest_line(const LoopPoint& low, const LoopPoint& high, doubl
   std::vector<Vec3> points;
   for (int k = 0; k <= parts; ++k) {
     vs.push_back(low.q.y() + (high.q.y() - low.q.y()) * k / parts);
-    points.push_back(cell::position(body_, {u, vs.back()}));
+    points.push_back(position({u, vs.back()}));
     if (k > 0) lengths.push_back(lengths.back() + (points.back() - points[points.size() - 2]).norm());
   }
   const auto v_at = [&](double along) {
@@ -192,18 +192,26 @@ void Unroller::add_crest_line(const LoopPoint& low, const LoopPoint& high, doubl
     return vs[k - 1] + share * (vs[k] - vs[k - 1]);
   };
   CrestLine line{u, low.node, high.node, low.q.y(), high.q.y(), {}};
-  const std::vector<double> divided = divided_line(
-      lengths.back(),
-      [&](double along) {
-        return field_.at(cell::position(body_, {u, v_at(along)}));
-      },
-      1);
-  for (std::size_t k = 1; k + 1 < divided.size(); ++k) {
-    const Vec2 q(u, v_at(divided[k]));
-    line.inner.push_back(static_cast<std::uint32_t>(result_.nodes.size()));
-    result_.nodes.push_back({cell::position(body_, q), q, Unrolled::none, true});
-  }
+  const auto wanted = [&](double along) { return field_.at(position({u, v_at(along)})); };
+  const std::vector<double> divided = divided_line(lengths.back(), wanted, 1);
+  for (std::size_t k = 1; k + 1 < divided.size(); ++k)
+    line.inner.push_back(new_node({u, v_at(divided[k])}, true));
   crests_.push_back(std::move(line));
+}
+
+// So many points of a loop from one on.
+void Unroller::add_along(const Loop& loop, std::size_t from, std::size_t count, const Vec2& shift,
+                         const Vec2& turn) {
+  for (std::size_t k = from; k < from + count; ++k) {
+    const LoopPoint& p = loop.points[k % loop.points.size()];
+    region_.add_place(loop.at(k) + shift + turn, node_of(p.node, p.q));
+  }
+}
+
+// What there is until now is the outer border.
+void Unroller::enclose() {
+  for (const PlanarRegion::Place& place : region_.places) outline_.push_back(place.parameters);
+  region_.close(0);
 }
 
 // Loops without a turn: the outer one, then holes.
@@ -220,11 +228,8 @@ Status Unroller::unroll_disc() {
     }
   }
   if (!(largest > 0)) return error(Kind::geometry, "a part of the yarn's surface has no outer border");
-  for (const LoopPoint& p : loops_[outer].points) {
-    outline_.push_back(p.q);
-    add_point(node_of(p.node, p.q), p.q);
-  }
-  close(0);
+  add_along(loops_[outer], 0, loops_[outer].points.size());
+  enclose();
   add_holes({outer});
   add_crests(nullptr);
   return {};
@@ -235,42 +240,42 @@ void Unroller::add_holes(const std::vector<std::size_t>& used) {
     if (std::find(used.begin(), used.end(), k) != used.end()) continue;
     const Loop& loop = loops_[k];
     Vec2 shift = Vec2::Zero();
-    for (int m = -3; m <= 3; ++m)
-      for (int n = body_.closed_along ? -3 : 0; n <= (body_.closed_along ? 3 : 0); ++n)
-        if (contains(outline_, loop.points[0].q + Vec2(m, n).cwiseProduct(period_)))
-          shift = Vec2(m, n).cwiseProduct(period_);
-    const auto first = static_cast<std::uint32_t>(result_.owner.size());
-    for (const LoopPoint& p : loop.points) add_point(node_of(p.node, p.q), p.q + shift);
-    close(first);
+    for (const Vec2& other : shifts(3))
+      if (contains(outline_, loop.points[0].q + other)) shift = other;
+    const auto first = static_cast<std::uint32_t>(region_.places.size());
+    add_along(loop, 0, loop.points.size(), shift);
+    region_.close(first);
   }
 }
 
 // Crests inside the unrolled domain, but the one along which it was cut.
 void Unroller::add_crests(const CrestLine* cut) {
-  std::multimap<std::uint32_t, std::uint32_t> points;  // of each node
-  for (std::uint32_t k = 0; k < result_.owner.size(); ++k) points.emplace(result_.owner[k], k);
+  // Where a border's node is nearest to a place.
+  const std::vector<PlanarRegion::Place> on_borders = region_.places;
+  const auto place_at = [&](std::uint32_t known, const Vec2& q) {
+    std::uint32_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t k = 0; k < on_borders.size(); ++k)
+      if (const double far = (on_borders[k].parameters - q).norm();
+          on_borders[k].node == numbers_.at(known) && far < least) {
+        least = far;
+        best = k;
+      }
+    return best;
+  };
   for (const CrestLine& line : crests_) {
     if (&line == cut) continue;
     for (int m = -3; m <= 3; ++m) {
       const double u = line.u + m * period_.x();
-      const double v = (line.low_v + line.high_v) / 2;
-      if (!contains(outline_, {u, v})) continue;
-      const auto point_at = [&](std::uint32_t known, double at_v) {
-        const auto [from, to] = points.equal_range(numbers_.at(known));
-        std::uint32_t best = from->second;
-        for (auto k = from; k != to; ++k)
-          if ((result_.region.parameters[k->second] - Vec2(u, at_v)).norm() <
-              (result_.region.parameters[best] - Vec2(u, at_v)).norm())
-            best = k->second;
-        return best;
-      };
-      std::uint32_t last = point_at(line.low, line.low_v);
-      for (const std::uint32_t node : line.inner) {
-        const std::uint32_t next = add_point(node, {u, result_.nodes[node].parameters.y()});
-        add_segment(last, next, 0);
+      if (!contains(outline_, {u, (line.low_v + line.high_v) / 2})) continue;
+      std::uint32_t last = place_at(line.low, {u, line.low_v});
+      const auto go_on = [&](std::uint32_t next) {
+        region_.segments.push_back({last, next, 0, 0});
         last = next;
-      }
-      add_segment(last, point_at(line.high, line.high_v), 0);
+      };
+      for (const std::uint32_t node : line.inner)
+        go_on(region_.add_place({u, region_.nodes[node].parameters.y()}, node));
+      go_on(place_at(line.high, {u, line.high_v}));
       break;
     }
   }
@@ -281,12 +286,11 @@ void Unroller::add_crests(const CrestLine* cut) {
 void Unroller::add_rows_beside_crests() {
   for (const CrestLine& line : crests_) {
     std::vector<double> vs = {line.low_v};
-    for (const std::uint32_t node : line.inner) vs.push_back(result_.nodes[node].parameters.y());
+    for (const std::uint32_t node : line.inner) vs.push_back(region_.nodes[node].parameters.y());
     vs.push_back(line.high_v);
     for (std::size_t k = 0; k + 1 < vs.size(); ++k) {
       const double height = std::sqrt(0.75);  // of a triangle of equal edges
-      const double edge =
-          (cell::position(body_, {line.u, vs[k + 1]}) - cell::position(body_, {line.u, vs[k]})).norm();
+      const double edge = (position({line.u, vs[k + 1]}) - position({line.u, vs[k]})).norm();
       for (const double side : {-1.0, 1.0}) add_beside(line.u, (vs[k] + vs[k + 1]) / 2, height * edge, side);
     }
   }
@@ -295,10 +299,10 @@ void Unroller::add_rows_beside_crests() {
 // A fixed point at this distance from a crest, unless something else of the outline is near.
 void Unroller::add_beside(double u, double v, double distance, double side) {
   constexpr double widest = 0.2;  // of the way round
-  const Vec3 from = cell::position(body_, {u, v});
-  double step = distance / result_.region.scale.x();
+  const Vec3 from = position({u, v});
+  double step = distance / region_.scale.x();
   for (int k = 0; k < 4; ++k) {
-    const double reached = (cell::position(body_, {u + side * step, v}) - from).norm();
+    const double reached = (position({u + side * step, v}) - from).norm();
     if (!(reached > 0)) return;
     step *= distance / reached;
     if (!(step < widest * period_.x())) return;
@@ -306,16 +310,14 @@ void Unroller::add_beside(double u, double v, double distance, double side) {
   for (int m = -3; m <= 3; ++m) {
     const Vec2 q(u + side * step + m * period_.x(), v);
     if (!contains(outline_, q)) continue;
-    const Vec3 point = cell::position(body_, q);
+    const Vec3 point = position(q);
     const double room = 0.6 * distance;
     // Near in space alone is the other side of the crest.
-    for (std::size_t k = 0; k < result_.region.points.size(); ++k)
-      if ((result_.region.points[k] - point).norm() < room &&
-          chart(result_.region.parameters[k] - q).norm() < 2 * room)
+    for (const PlanarRegion::Place& place : region_.places)
+      if ((region_.nodes[place.node].point - point).norm() < room &&
+          chart(place.parameters - q).norm() < 2 * room)
         return;
-    const auto node = static_cast<std::uint32_t>(result_.nodes.size());
-    result_.nodes.push_back({point, q, Unrolled::none, true});
-    add_point(node, q);
+    region_.add_place(q, new_node(q, true));
     return;
   }
 }
@@ -339,15 +341,13 @@ std::optional<Unroller::CutPath> Unroller::crest_path(const Loop& low, const Loo
 // May a cut run there? It meets no border and no crest but with its ends.
 bool Unroller::is_clear(const Vec2& from, const Vec2& to) const {
   const Vec2 way = to - from, a = from + 1e-6 * way, b = to - 1e-6 * way;
-  for (int m = -2; m <= 2; ++m)
-    for (int n = body_.closed_along ? -2 : 0; n <= (body_.closed_along ? 2 : 0); ++n) {
-      const Vec2 shift = Vec2(m, n).cwiseProduct(period_);
-      for (const Loop& loop : loops_)
-        for (std::size_t k = 0; k < loop.points.size(); ++k)
-          if (do_cross(a, b, loop.at(k) + shift, loop.at(k + 1) + shift)) return false;
-      for (const CrestLine& line : crests_)
-        if (do_cross(a, b, Vec2(line.u, line.low_v) + shift, Vec2(line.u, line.high_v) + shift)) return false;
-    }
+  for (const Vec2& shift : shifts(2)) {
+    for (const Loop& loop : loops_)
+      for (std::size_t k = 0; k < loop.points.size(); ++k)
+        if (do_cross(a, b, loop.at(k) + shift, loop.at(k + 1) + shift)) return false;
+    for (const CrestLine& line : crests_)
+      if (do_cross(a, b, Vec2(line.u, line.low_v) + shift, Vec2(line.u, line.high_v) + shift)) return false;
+  }
   return true;
 }
 
@@ -361,8 +361,12 @@ std::optional<Unroller::CutPath> Unroller::straight_path(const Loop& low, const 
     if (low.turn.y() == 0) shift.y() = 0;
     return CutPath{i, j, shift, nullptr, chart(way + shift).norm()};
   };
-  const auto is_free = [&](const CutPath& path) {
-    return is_clear(low.points[path.low].q, high.points[path.high].q + path.shift);
+  const auto first_free = [&](std::vector<CutPath> paths) -> std::optional<CutPath> {
+    std::stable_sort(paths.begin(), paths.end(),
+                     [](const CutPath& a, const CutPath& b) { return a.length < b.length; });
+    for (const CutPath& path : paths)
+      if (is_clear(low.points[path.low].q, high.points[path.high].q + path.shift)) return path;
+    return std::nullopt;
   };
   // The shortest from some points of the low border to their nearest on the high one, or else from any to
   // any.
@@ -373,34 +377,24 @@ std::optional<Unroller::CutPath> Unroller::straight_path(const Loop& low, const 
       if (const CutPath path = path_between(i, j); path.length < nearest.length) nearest = path;
     paths.push_back(nearest);
   }
-  const auto shorter = [](const CutPath& a, const CutPath& b) { return a.length < b.length; };
-  std::stable_sort(paths.begin(), paths.end(), shorter);
-  for (const CutPath& path : paths)
-    if (is_free(path)) return path;
-  paths.clear();
+  if (const auto path = first_free(std::move(paths))) return path;
   constexpr std::size_t most = 4'000'000;
   const std::size_t stride = 1 + low.points.size() * high.points.size() / most;
+  paths.clear();
   for (std::size_t i = 0; i < low.points.size(); i += stride)
     for (std::size_t j = 0; j < high.points.size(); ++j) paths.push_back(path_between(i, j));
-  std::stable_sort(paths.begin(), paths.end(), shorter);
-  for (const CutPath& path : paths)
-    if (is_free(path)) return path;
-  return std::nullopt;
+  return first_free(std::move(paths));
 }
 
 std::vector<std::uint32_t> Unroller::straight_nodes(const Vec2& from, const Vec2& to) {
   const auto at = [&](double along, double length) { return Vec2(from + along / length * (to - from)); };
   double length = 0;
-  for (int k = 0; k < 32; ++k)
-    length += (cell::position(body_, at(k + 1, 32)) - cell::position(body_, at(k, 32))).norm();
-  const std::vector<double> divided = divided_line(
-      length, [&](double along) { return field_.at(cell::position(body_, at(along, length))); }, 1);
+  for (int k = 0; k < 32; ++k) length += (position(at(k + 1, 32)) - position(at(k, 32))).norm();
+  const auto wanted = [&](double along) { return field_.at(position(at(along, length))); };
+  const std::vector<double> divided = divided_line(length, wanted, 1);
   std::vector<std::uint32_t> result;
-  for (std::size_t k = 1; k + 1 < divided.size(); ++k) {
-    const Vec2 q = at(divided[k], length);
-    result.push_back(static_cast<std::uint32_t>(result_.nodes.size()));
-    result_.nodes.push_back({cell::position(body_, q), q, Unrolled::none, false});
-  }
+  for (std::size_t k = 1; k + 1 < divided.size(); ++k)
+    result.push_back(new_node(at(divided[k], length), false));
   return result;
 }
 
@@ -413,52 +407,41 @@ Status Unroller::unroll_tube(std::size_t low_number, std::size_t high_number) {
   const Vec2 turn = low.turn, from = low.points[path->low].q, to = high.points[path->high].q + path->shift;
   const std::vector<std::uint32_t> inner =
       path->crest != nullptr ? path->crest->inner : straight_nodes(from, to);
-  const auto add = [&](std::uint32_t node, const Vec2& q) {
-    outline_.push_back(q);
-    add_point(node, q);
-  };
-  const auto inner_at = [&](std::size_t k) {
-    const Vec2& q = result_.nodes[inner[k]].parameters;
+  const auto inner_at = [&](std::uint32_t node) {
+    const Vec2& q = region_.nodes[node].parameters;
     return path->crest != nullptr ? Vec2(from.x(), q.y()) : q;
   };
-  for (std::size_t k = 0; k <= low.points.size(); ++k) {
-    const LoopPoint& p = low.points[(path->low + k) % low.points.size()];
-    add(node_of(p.node, p.q), low.at(path->low + k));
-  }
-  for (std::size_t k = 0; k < inner.size(); ++k) add(inner[k], inner_at(k) + turn);
-  for (std::size_t k = 0; k <= high.points.size(); ++k) {
-    const LoopPoint& p = high.points[(path->high + k) % high.points.size()];
-    add(node_of(p.node, p.q), high.at(path->high + k) + path->shift + turn);
-  }
-  for (std::size_t k = inner.size(); k-- > 0;) add(inner[k], inner_at(k));
-  close(0);
+  add_along(low, path->low, low.points.size() + 1);
+  for (const std::uint32_t node : inner) region_.add_place(inner_at(node) + turn, node);
+  add_along(high, path->high, high.points.size() + 1, path->shift, turn);
+  for (std::size_t k = inner.size(); k-- > 0;) region_.add_place(inner_at(inner[k]), inner[k]);
+  enclose();
   add_holes({low_number, high_number});
   add_crests(path->crest);
   return {};
 }
 
 // A ring inside the box: cut open both ways.
-Status Unroller::unroll_all() {
-  const Vec2 corner(body_.surface.first_u(), body_.surface.first_v());
+void Unroller::unroll_all() {
+  const Vec2 start(body_.surface.first_u(), body_.surface.first_v());
   const Vec2 u(period_.x(), 0), v(0, period_.y());
-  const auto start = static_cast<std::uint32_t>(result_.nodes.size());
-  result_.nodes.push_back({cell::position(body_, corner), corner, Unrolled::none, false});
-  const std::vector<std::uint32_t> round = straight_nodes(corner, corner + u),
-                                   along = straight_nodes(corner, corner + v);
-  const auto at = [&](std::uint32_t node) { return result_.nodes[node].parameters; };
-  add_point(start, corner);
-  for (const std::uint32_t node : round) add_point(node, at(node));
-  add_point(start, corner + u);
-  for (const std::uint32_t node : along) add_point(node, at(node) + u);
-  add_point(start, corner + u + v);
-  for (std::size_t k = round.size(); k-- > 0;) add_point(round[k], at(round[k]) + v);
-  add_point(start, corner + v);
-  for (std::size_t k = along.size(); k-- > 0;) add_point(along[k], at(along[k]));
-  close(0);
-  return {};
+  const std::uint32_t corner = new_node(start, false);
+  std::vector<std::uint32_t> round = straight_nodes(start, start + u),
+                             along = straight_nodes(start, start + v);
+  round.insert(round.begin(), corner);
+  along.insert(along.begin(), corner);
+  const auto add = [&](std::uint32_t node, const Vec2& shift) {
+    region_.add_place(region_.nodes[node].parameters + shift, node);
+  };
+  for (const std::uint32_t node : round) add(node, Vec2::Zero());
+  for (const std::uint32_t node : along) add(node, u);
+  add(corner, u + v);
+  for (std::size_t k = round.size(); k-- > 0;) add(round[k], v);
+  for (std::size_t k = along.size(); k-- > 1;) add(along[k], Vec2::Zero());
+  enclose();
 }
 
-Result<Unrolled> Unroller::run() {
+Result<PlanarRegion> Unroller::run() {
   collect_loops();
   find_scale();
   find_crest_lines();
@@ -470,7 +453,7 @@ Result<Unrolled> Unroller::run() {
   }
   Status done;
   if (loops_.empty())
-    done = unroll_all();
+    unroll_all();
   else if (ahead.empty() && back.empty())
     done = unroll_disc();
   else if (ahead.size() == 1 && back.size() == 1 && (loops_[ahead[0]].turn + loops_[back[0]].turn).isZero())
@@ -480,16 +463,16 @@ Result<Unrolled> Unroller::run() {
   if (done) add_rows_beside_crests();
   if (!done) {
     Message message = done.error();
-    message.at = cell::position(body_, piece_.inside);
+    message.at = position(piece_.inside);
     return message;
   }
-  return std::move(result_);
+  return std::move(region_);
 }
 
 }  // namespace
 
-Result<Unrolled> unroll(const CellShape& shape, const CellCurves& curves, std::size_t piece,
-                        const SizeField& field, const CellNodes& nodes) {
+Result<PlanarRegion> unroll(const CellShape& shape, const CellCurves& curves, std::size_t piece,
+                            const SizeField& field, const CellNodes& nodes) {
   return Unroller(shape, curves, piece, field, nodes).run();
 }
 

@@ -30,17 +30,13 @@ inline ClosedSurface two_plates(double radius, double gap, double edge) {
   const Plane plane;
   const fem::SizeField field(edge, 0.3, {});
   fem::PlanarRegion region;
-  region.parameters = rim;
-  for (std::uint32_t k = 0; k < rim.size(); ++k) {
-    region.points.push_back(plane.point(rim[k]));
-    region.segments.push_back({k, (k + 1) % static_cast<std::uint32_t>(rim.size()), 0, -1});
-  }
-  Result<fem::TriangleMesh> plate = fem::fill(region, plane, field, 1'000'000);
+  for (const Vec2& q : rim) region.add({plane.point(q), q});
+  region.close(0);
+  Result<fem::TriangleMesh> plate = fem::fill(region, plane, field);
   if (!plate) {
     ADD_FAILURE() << plate.error().text;
     return {};
   }
-  fem::remesh(*plate, plane, field);
   // Turned by a number of rim points that is no symmetry of the lattice.
   const int turned = round / 7 + 1;
   const double angle = 2 * std::numbers::pi * turned / round;

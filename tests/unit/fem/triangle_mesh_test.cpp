@@ -59,13 +59,9 @@ void expect_whole(const TriangleMesh& mesh, std::size_t border_edges) {
 
 void add_loop(PlanarRegion& region, const Support& support, const std::vector<Vec2>& loop, std::int32_t left,
               std::int32_t right) {
-  const auto first = static_cast<std::uint32_t>(region.points.size());
-  const auto n = static_cast<std::uint32_t>(loop.size());
-  for (std::uint32_t k = 0; k < n; ++k) {
-    region.parameters.push_back(loop[k]);
-    region.points.push_back(support.point(loop[k]));
-    region.segments.push_back({first + k, first + (k + 1) % n, left, right});
-  }
+  const auto first = static_cast<std::uint32_t>(region.places.size());
+  for (const Vec2& q : loop) region.add({support.point(q), q});
+  region.close(first, left, right);
 }
 
 std::vector<Vec2> square(double half, int pieces) {
@@ -94,9 +90,8 @@ TEST(TriangleMesh, GradedPlaneWithTwoDomains) {
   PlanarRegion region;
   add_loop(region, plane, square(1, 10), 0, -1);
   add_loop(region, plane, circle(0.5, 24), 1, 0);
-  Result<TriangleMesh> mesh = fill(region, plane, field, 100000);
+  Result<TriangleMesh> mesh = fill(region, plane, field);
   ASSERT_TRUE(mesh.ok()) << to_string(mesh.error());
-  remesh(*mesh, plane, field);
   expect_whole(*mesh, 40);
   const Figures f = figures_of(*mesh, field);
   const double disc = 12 * std::sin(2 * std::numbers::pi / 24) * 0.25;
@@ -106,7 +101,7 @@ TEST(TriangleMesh, GradedPlaneWithTwoDomains) {
   EXPECT_LT(f.longest, 1.6);
   EXPECT_GT(f.shortest, 0.5);
   EXPECT_GT(mesh->triangles.size(), 400);
-  for (std::size_t k = 0; k < region.points.size(); ++k) EXPECT_EQ(mesh->points[k], region.points[k]);
+  for (std::size_t k = 0; k < region.nodes.size(); ++k) EXPECT_EQ(mesh->points[k], region.nodes[k].point);
 }
 
 // A zone of the unit sphere between two latitudes: points on it, its area nearly the zone's.
@@ -116,9 +111,8 @@ TEST(TriangleMesh, PatchOfASphere) {
   PlanarRegion region;
   std::vector<Vec2> loop = square(0.6, 12);
   add_loop(region, sphere, loop, 0, -1);
-  Result<TriangleMesh> mesh = fill(region, sphere, field, 100000);
+  Result<TriangleMesh> mesh = fill(region, sphere, field);
   ASSERT_TRUE(mesh.ok());
-  remesh(*mesh, sphere, field);
   expect_whole(*mesh, 48);
   const Figures f = figures_of(*mesh, field);
   const double exact = 1.2 * 2 * std::sin(0.6);

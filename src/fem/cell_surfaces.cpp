@@ -1,0 +1,312 @@
+#include "fem/cell_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "core/parallel.h"
+#include "fem/triangle_mesh.h"
+#include "fem/unrolled.h"
+
+namespace selvage::fem {
+
+namespace {
+
+class BodySupport final : public Support {
+ public:
+  explicit BodySupport(const yarn::Body& body) : body_(body) {}
+
+  [[nodiscard]] Vec3 point(const Vec2& q) const override { return cell::position(body_, q); }
+
+  [[nodiscard]] Vec3 normal(const Vec2& q) const override {
+    const nurbs::SurfaceJet s = cell::jet(body_, q);
+    return s.du.cross(s.dv).stableNormalized();
+  }
+
+  // Gauss-Newton's method.
+  [[nodiscard]] Place nearest(const Vec2& start, const Vec3& target) const override {
+    Vec2 q = start;
+    for (int step = 0; step < 8; ++step) {
+      const nurbs::SurfaceJet s = cell::jet(body_, q);
+      const Vec3 way = target - s.position;
+      const double a = s.du.squaredNorm(), b = s.du.dot(s.dv), c = s.dv.squaredNorm();
+      const double determinant = a * c - b * b;
+      if (!(determinant > 1e-12 * a * c)) break;
+      const double x = s.du.dot(way), y = s.dv.dot(way);
+      Vec2 change((c * x - b * y) / determinant, (a * y - b * x) / determinant);
+      const double size = std::sqrt(a) * std::abs(change.x()) + std::sqrt(c) * std::abs(change.y());
+      q += change;
+      if (!body_.closed_along) q.y() = std::clamp(q.y(), body_.surface.first_v(), body_.surface.last_v());
+      if (size < 1e-4 * way.norm() + 1e-14) break;
+    }
+    return {q, point(q)};
+  }
+
+  [[nodiscard]] Vec2 beside(const Vec2& a, const Vec2& b) const override { return cell::beside(body_, a, b); }
+
+ private:
+  const yarn::Body& body_;
+};
+
+// A yarn's end inside the box, over the mean plane of its rim.
+class CapSupport final : public Support {
+ public:
+  CapSupport(const EndCap& cap, double step) : cap_(cap), step_(step) {}
+  [[nodiscard]] Vec3 point(const Vec2& q) const override { return cap_.lift(q); }
+  [[nodiscard]] Vec3 normal(const Vec2& q) const override {
+    const Vec3 here = point(q);
+    return (point(q + Vec2(step_, 0)) - here).cross(point(q + Vec2(0, step_)) - here).stableNormalized();
+  }
+  [[nodiscard]] Place nearest(const Vec2& /*start*/, const Vec3& target) const override {
+    const Vec2 q = cap_.project(target);
+    return {q, point(q)};
+  }
+
+ private:
+  const EndCap& cap_;
+  double step_;
+};
+
+// A face of the box as a plane, seen from outside.
+class FaceSupport final : public Support {
+ public:
+  FaceSupport(const Box3& box, int face) : box_(box), face_(face) {}
+
+  [[nodiscard]] Vec3 point(const Vec2& q) const override { return cell::in_face(box_, face_, q); }
+  [[nodiscard]] Vec3 normal(const Vec2& /*q*/) const override {
+    Vec3 n = Vec3::Zero();
+    n[cell::axis_of(face_)] = cell::is_high(face_) ? 1 : -1;
+    return n;
+  }
+  [[nodiscard]] Place nearest(const Vec2& /*start*/, const Vec3& target) const override {
+    const Vec2 q = cell::flat(target, face_);
+    return {q, point(q)};
+  }
+
+ private:
+  const Box3& box_;
+  int face_;
+};
+
+std::uint32_t body_of(const cell::FaceRegion& region) {
+  return region.body == cell::FaceRegion::matrix ? CellTriangles::matrix
+                                                 : static_cast<std::uint32_t>(region.body);
+}
+
+// Nodes of an outline in its own direction, closed.
+std::vector<std::uint32_t> outline_nodes(const CellCurves& curves, const cell::Outline& outline) {
+  std::vector<std::uint32_t> result;
+  for (const cell::Side& side : outline) {
+    std::vector<std::uint32_t> nodes = curves.chains[side.edge].nodes;
+    if (side.backward) std::reverse(nodes.begin(), nodes.end());
+    result.insert(result.end(), nodes.begin(), nodes.end() - 1);
+  }
+  return result;
+}
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+// The region to the left of each directed edge in a face; without those of the matrix where there is none.
+std::map<Edge, std::size_t> edges_of(const CellShape& shape, const CellCurves& curves, int face) {
+  std::map<Edge, std::size_t> result;
+  const auto& regions = shape.division.regions;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    if (regions[r].face != face || (!shape.matrix && body_of(regions[r]) == CellTriangles::matrix)) continue;
+    for (const cell::Outline& outline : regions[r].outlines) {
+      const std::vector<std::uint32_t> nodes = outline_nodes(curves, outline);
+      for (std::size_t k = 0; k < nodes.size(); ++k) result[{nodes[k], nodes[(k + 1) % nodes.size()]}] = r;
+    }
+  }
+  return result;
+}
+
+Message about(Message message, const yarn::Body& body) {
+  message.yarn = body.name;
+  message.place = body.place;
+  return message;
+}
+
+class Surfaces {
+ public:
+  Surfaces(const CellShape& shape, const CellCurves& curves, const SizeField& field, CellNodes& nodes)
+      : shape_(shape), curves_(curves), field_(field), nodes_(nodes) {}
+
+  Result<CellTriangles> run(int threads) {
+    const std::size_t count = shape_.cut.pieces.size();
+    std::vector<std::optional<Result<TriangleMesh>>> made(count);
+    for_each_index(count, threads, [&](std::size_t k) { made[k] = mesh_piece(k); });
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!made[k]->ok()) return made[k]->error();
+      if (Status added = add_piece(k, **made[k]); !added) return added.error();
+      made[k].reset();
+    }
+    for (int face = 0; face < cell::face_count; ++face)
+      if (!cell::is_high(face) || !is_periodic(face))
+        if (Status added = add_face(face); !added) return added.error();
+    return std::move(result_);
+  }
+
+ private:
+  using Part = CellTriangles::Part;
+
+  [[nodiscard]] bool is_periodic(int face) const {
+    return shape_.periodic[static_cast<std::size_t>(cell::axis_of(face))];
+  }
+  [[nodiscard]] Result<TriangleMesh> mesh_piece(std::size_t number) const;
+  Status add_piece(std::size_t number, const TriangleMesh& mesh);
+  Status add_end(const cell::Piece& piece, bool is_end, const Chain& chain);
+  Status add_face(int face);
+  Status add_opposite(int face, const std::map<Edge, std::size_t>& edges, const TriangleMesh& mesh,
+                      const std::vector<std::uint32_t>& numbers);
+
+  // The nodes of a mesh's points: new ones but for those that it knows, on a body's surface or none.
+  std::vector<std::uint32_t> numbers_of(const TriangleMesh& mesh, std::size_t body = no_body) {
+    std::vector<std::uint32_t> numbers = mesh.known;
+    numbers.resize(mesh.points.size(), PlanarRegion::none);
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      if (numbers[k] != PlanarRegion::none) continue;
+      numbers[k] = body == no_body ? nodes_.add(mesh.points[k])
+                                   : nodes_.add(mesh.points[k], shape_.place(body, mesh.parameters[k]));
+    }
+    return numbers;
+  }
+  void add(const Triangle& corners, const std::vector<std::uint32_t>& numbers, const Sides& sides,
+           Part part) {
+    result_.triangles.push_back({numbers[corners[0]], numbers[corners[1]], numbers[corners[2]]});
+    result_.sides.push_back(sides);
+    result_.parts.push_back(part);
+  }
+  [[nodiscard]] Sides sides_of(const cell::Piece& piece) const {
+    return {static_cast<std::uint32_t>(piece.body), shape_.matrix ? CellTriangles::matrix : Sides::outside};
+  }
+
+  const CellShape& shape_;
+  const CellCurves& curves_;
+  const SizeField& field_;
+  CellNodes& nodes_;
+  CellTriangles result_;
+};
+
+Result<TriangleMesh> Surfaces::mesh_piece(std::size_t number) const {
+  const yarn::Body& body = shape_.bodies[shape_.cut.pieces[number].body];
+  const Result<PlanarRegion> region = unroll(shape_, curves_, number, field_, nodes_);
+  if (!region) return about(region.error(), body);
+  Result<TriangleMesh> mesh = fill(*region, BodySupport(body), field_);
+  if (!mesh) return about(mesh.error(), body);
+  return mesh;
+}
+
+Status Surfaces::add_piece(std::size_t number, const TriangleMesh& mesh) {
+  const cell::Piece& piece = shape_.cut.pieces[number];
+  const std::vector<std::uint32_t> numbers = numbers_of(mesh, piece.body);
+  for (auto t : mesh.triangles) {
+    if (shape_.bodies[piece.body].inward) std::swap(t[1], t[2]);
+    add(t, numbers, sides_of(piece), Part::side);
+  }
+  for (std::size_t b = 0; b < piece.borders.size(); ++b)
+    if (const int face = piece.borders[b].arcs.front().face; face >= cell::face_count)
+      if (Status added = add_end(piece, face == cell::Arc::own_end,
+                                 curves_.chains[shape_.division.first_edges[number][b]]);
+          !added)
+        return added;
+  return {};
+}
+
+// The end face at a border that runs along the yarn's own end.
+Status Surfaces::add_end(const cell::Piece& piece, bool is_end, const Chain& chain) {
+  const yarn::Body& body = shape_.bodies[piece.body];
+  std::vector<std::uint32_t> rim(chain.nodes.begin(), chain.nodes.end() - 1);
+  if (!body.inward) std::reverse(rim.begin(), rim.end());
+  std::vector<Vec3> points;
+  points.reserve(rim.size());
+  for (const std::uint32_t node : rim) points.push_back(nodes_.points[node]);
+  const EndCap cap(points, is_end ? body.end : body.start);
+  PlanarRegion region;
+  for (std::size_t k = 0; k < rim.size(); ++k) region.add({points[k], cap.rim()[k], rim[k]});
+  region.close(0);
+  const Result<TriangleMesh> mesh = fill(region, CapSupport(cap, 1e-4 * field_.largest()), field_);
+  if (!mesh) return about(mesh.error(), body);
+  const std::vector<std::uint32_t> numbers = numbers_of(*mesh);
+  result_.caps.push_back({cap, result_.triangles.size(), mesh->triangles.size()});
+  for (const auto& t : mesh->triangles) add(t, numbers, sides_of(piece), is_end ? Part::end : Part::start);
+  return {};
+}
+
+Status Surfaces::add_face(int face) {
+  const std::map<Edge, std::size_t> edges = edges_of(shape_, curves_, face);
+  if (edges.empty()) return {};
+  PlanarRegion region;
+  std::map<std::uint32_t, std::uint32_t> places;
+  const auto place_of = [&](std::uint32_t node) {
+    const auto [at, is_new] = places.emplace(node, static_cast<std::uint32_t>(places.size()));
+    const Vec3& point = nodes_.points[node];
+    if (is_new) region.add({point, cell::flat(point, face), node});
+    return at->second;
+  };
+  for (const auto& [edge, left] : edges) {
+    const auto back = edges.find({edge.second, edge.first});
+    if (back != edges.end() && edge.first > edge.second) continue;
+    const std::int32_t right = back == edges.end() ? -1 : static_cast<std::int32_t>(back->second);
+    const std::uint32_t from = place_of(edge.first), to = place_of(edge.second);
+    region.segments.push_back({from, to, static_cast<std::int32_t>(left), right});
+  }
+  Result<TriangleMesh> mesh = fill(region, FaceSupport(shape_.box, face), field_);
+  if (!mesh) {
+    mesh.error().text += " in the " + cell::name_of_face(face) + " face of the cell";
+    return mesh.error();
+  }
+  const std::vector<std::uint32_t> numbers = numbers_of(*mesh);
+  for (std::size_t k = 0; k < mesh->triangles.size(); ++k) {
+    const auto region_number = static_cast<std::size_t>(mesh->domains[k]);
+    add(mesh->triangles[k], numbers, {body_of(shape_.division.regions[region_number]), Sides::outside},
+        Part::box);
+  }
+  if (!is_periodic(face)) return {};
+  return add_opposite(face, edges, *mesh, numbers);
+}
+
+// A low face's triangles, moved to the high one.
+Status Surfaces::add_opposite(int face, const std::map<Edge, std::size_t>& edges, const TriangleMesh& mesh,
+                              const std::vector<std::uint32_t>& numbers) {
+  const int a = cell::axis_of(face);
+  const auto& across = curves_.opposite[static_cast<std::size_t>(a)];
+  std::vector<std::uint32_t> opposite;
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    Vec3 moved = mesh.points[k];
+    moved[a] = shape_.box.max()[a];
+    opposite.push_back(k < mesh.known.size() ? across.at(numbers[k]) : nodes_.add(moved));
+  }
+  // What is behind the high face, region by region: by an edge of each.
+  const std::map<Edge, std::size_t> high = edges_of(shape_, curves_, face + 1);
+  std::map<std::int32_t, std::uint32_t> behind;
+  for (const auto& [edge, left] : edges) {
+    const auto found = high.find({across.at(edge.second), across.at(edge.first)});
+    const std::uint32_t body =
+        found == high.end() ? Sides::outside : body_of(shape_.division.regions[found->second]);
+    if (found == high.end() || (body == CellTriangles::matrix) !=
+                                   (body_of(shape_.division.regions[left]) == CellTriangles::matrix)) {
+      Message message = error(Kind::geometry,
+                              "opposite faces of the cell are divided in different ways: "
+                              "the yarns do not repeat there");
+      message.at = nodes_.points[edge.first];
+      return message;
+    }
+    behind[static_cast<std::int32_t>(left)] = body;
+  }
+  for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
+    const auto& t = mesh.triangles[k];
+    add({t[0], t[2], t[1]}, opposite, {behind.at(mesh.domains[k]), Sides::outside}, Part::box);
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<CellTriangles> mesh_surfaces(const CellShape& shape, const CellCurves& curves, const SizeField& field,
+                                    int threads, CellNodes& nodes) {
+  return Surfaces(shape, curves, field, nodes).run(threads);
+}
+
+}  // namespace selvage::fem
