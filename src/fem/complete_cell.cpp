@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "fem/periodicity.h"
+#include "fem/sides.h"
 
 namespace selvage::fem {
 namespace {
@@ -152,17 +152,6 @@ Status order_sets(const Mesh& mesh, UnitCell& cell, double size) {
           (cell.corners[corner] == no_node) != (cell.corners[corner ^ (std::size_t{1} << axis)] == no_node))
         return error(Kind::geometry, "opposite corners of the cell do not both have a node");
   return {};
-}
-
-// The sides of an element as corner numbers, counter-clockwise seen from outside; a triangle repeats its
-// last.
-std::span<const std::array<std::size_t, 4>> element_sides(Mesh::Shape shape) {
-  static constexpr std::array<std::array<std::size_t, 4>, 4> tetrahedron = {
-      {{0, 2, 1, 1}, {0, 1, 3, 3}, {1, 2, 3, 3}, {2, 0, 3, 3}}};
-  static constexpr std::array<std::array<std::size_t, 4>, 6> hexahedron = {
-      {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
-  if (shape == Mesh::Shape::tetrahedron) return tetrahedron;
-  return hexahedron;
 }
 
 void find_face_sides(const Mesh& mesh, UnitCell& cell, const std::vector<Sides>& sides) {

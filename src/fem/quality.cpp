@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fem/cell_sides.h"
 #include "fem/faces.h"
 
 namespace selvage::fem {
@@ -63,10 +64,9 @@ ElementShape shape_of(const std::array<Vec3, 4>& p) {
   ElementShape shape;
   const double six = (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]);
   std::array<Vec3, 4> normals;  // of the face opposite to each corner, outward, as long as twice its area
-  constexpr std::array<std::array<std::size_t, 3>, 4> faces = {{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
   double largest_face = 0, longest = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto& f = faces[i];
+    const auto& f = opposite_sides[i];
     normals[i] = (p[f[1]] - p[f[0]]).cross(p[f[2]] - p[f[0]]);
     largest_face = std::max(largest_face, normals[i].norm());
   }
@@ -141,7 +141,7 @@ void measure(Mesh& mesh) {
       const std::array<Vec3, 10> nodes = nodes_of(mesh, e);
       region.volume += volume_of(mesh, e);
       sum += shape.scaled_jacobian;
-      add(region.quality, shape);
+      for (Quality* quality : {&region.quality, &mesh.quality}) add(*quality, shape);
       const Vec3 middle = (nodes[0] + nodes[1] + nodes[2] + nodes[3]) / 4;
       worst.push_back({e, shape.min_dihedral, middle});
       std::push_heap(worst.begin(), worst.end(), worse);  // the best of the worst on top
@@ -153,11 +153,6 @@ void measure(Mesh& mesh) {
     region.quality.mean_scaled_jacobian =
         sum / static_cast<double>(region.last_element - region.first_element);
     jacobians += sum;
-    mesh.quality.min_dihedral = std::min(mesh.quality.min_dihedral, region.quality.min_dihedral);
-    mesh.quality.max_dihedral = std::max(mesh.quality.max_dihedral, region.quality.max_dihedral);
-    mesh.quality.max_aspect = std::max(mesh.quality.max_aspect, region.quality.max_aspect);
-    mesh.quality.min_scaled_jacobian =
-        std::min(mesh.quality.min_scaled_jacobian, region.quality.min_scaled_jacobian);
   }
   mesh.quality.mean_scaled_jacobian =
       jacobians / static_cast<double>(std::max<std::size_t>(mesh.elements.size(), 1));

@@ -16,10 +16,8 @@ struct Key {
 };
 
 std::array<std::size_t, 4> corners_of(const Mesh& mesh, std::size_t element, std::size_t side) {
-  const auto& local =
-      mesh.shape == Mesh::Shape::tetrahedron ? tetrahedron_sides[side] : hexahedron_sides[side];
-  std::array<std::size_t, 4> nodes{};
-  for (std::size_t k = 0; k < 4; ++k) nodes[k] = mesh.elements[element][local[k]];
+  std::array<std::size_t, 4> nodes = element_sides(mesh.shape)[side];
+  for (std::size_t& node : nodes) node = mesh.elements[element][node];
   return nodes;
 }
 
@@ -38,8 +36,17 @@ int face_of(const Mesh& mesh, const std::array<std::size_t, 4>& nodes) {
 
 }  // namespace
 
+std::span<const std::array<std::size_t, 4>> element_sides(Mesh::Shape shape) {
+  static constexpr std::array<std::array<std::size_t, 4>, 4> tetrahedron = {
+      {{0, 2, 1, 1}, {0, 1, 3, 3}, {1, 2, 3, 3}, {2, 0, 3, 3}}};
+  static constexpr std::array<std::array<std::size_t, 4>, 6> hexahedron = {
+      {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
+  if (shape == Mesh::Shape::tetrahedron) return tetrahedron;
+  return hexahedron;
+}
+
 std::vector<OuterSide> outer_sides(const Mesh& mesh) {
-  const std::size_t count = mesh.shape == Mesh::Shape::tetrahedron ? 4 : 6;
+  const std::size_t count = element_sides(mesh.shape).size();
   std::vector<Key> keys;
   keys.reserve(count * mesh.elements.size());
   for (std::size_t i = 0; i < mesh.regions.size(); ++i)
