@@ -3,57 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cell/cut.h"
 #include "fem/faces.h"
 #include "fem/quality.h"
 
 namespace selvage::fem {
 namespace {
-
-// `b` on the same side of a closed line's joint as `a`: past its end, or before its start.
-double beside(double a, double b, double range) {
-  return std::abs(b - a) > range / 2 ? b + (b < a ? range : -range) : b;
-}
-
-// Parameters of an edge's ends without a jump over the seam, and points of the surface between them.
-class EdgeLine {
- public:
-  EdgeLine(const yarn::Body& body, const Vec2& from, const Vec2& to)
-      : surface_(body.surface),
-        range_u_(surface_.last_u() - surface_.first_u()),
-        range_v_(surface_.last_v() - surface_.first_v()),
-        closed_along_(body.closed_along),
-        from_(from),
-        to_(to) {
-    to_.x() = beside(from_.x(), to_.x(), range_u_);
-    if (closed_along_) to_.y() = beside(from_.y(), to_.y(), range_v_);
-  }
-  [[nodiscard]] Vec2 at(double share) const { return from_ + share * (to_ - from_); }
-  [[nodiscard]] nurbs::SurfaceJet jet(const Vec2& parameters) const {
-    const Vec2 p = in_domain(parameters);
-    return nurbs::evaluate_jet(surface_, p.x(), p.y());
-  }
-  [[nodiscard]] Vec3 point(double share) const {
-    const Vec2 p = in_domain(at(share));
-    return nurbs::evaluate(surface_, p.x(), p.y());
-  }
-
- private:
-  [[nodiscard]] Vec2 in_domain(Vec2 p) const {
-    const auto wrapped = [](double x, double first, double last) {
-      const double range = last - first;
-      return x < first || x > last ? x - range * std::floor((x - first) / range) : x;
-    };
-    p.x() = wrapped(p.x(), surface_.first_u(), surface_.last_u());
-    p.y() = closed_along_ ? wrapped(p.y(), surface_.first_v(), surface_.last_v())
-                          : std::clamp(p.y(), surface_.first_v(), surface_.last_v());
-    return p;
-  }
-
-  const nurbs::Surface& surface_;
-  double range_u_, range_v_;
-  bool closed_along_;
-  Vec2 from_, to_;
-};
 
 // Numbers the edges in increasing order of their ends, appends straight middles, and returns the ends by
 // number.
@@ -193,14 +148,14 @@ class Steps {
 
 // Regula falsi, Illinois form.
 Vec3 middle_on_surface(const yarn::Body& body, const SurfaceEnd& from, const SurfaceEnd& to) {
-  const EdgeLine line(body, from.parameters, to.parameters);
+  const Vec2 way = cell::beside(body, from.parameters, to.parameters) - from.parameters;
   const Vec3 chord = to.at - from.at, middle = (from.at + to.at) / 2;
   const double length = chord.squaredNorm();
   double low = 0, high = 1, low_miss = -0.5, high_miss = 0.5;
   Vec3 found = middle;
   for (int step = 0, side = 0; step < 40; ++step) {
     const double share = (low * high_miss - high * low_miss) / (high_miss - low_miss);
-    found = line.point(share);
+    found = cell::position(body, from.parameters + share * way);
     const double miss = (found - middle).dot(chord) / length;
     if (std::abs(miss) < 1e-6) break;
     if (miss > 0) {
@@ -220,14 +175,14 @@ Vec3 middle_on_surface(const yarn::Body& body, const SurfaceEnd& from, const Sur
 
 std::optional<Vec3> middle_in_plane(const yarn::Body& body, const SurfaceEnd& from, const SurfaceEnd& to,
                                     int axis) {
-  const EdgeLine line(body, from.parameters, to.parameters);
+  const Vec2 end = cell::beside(body, from.parameters, to.parameters);
   const Vec3 chord = to.at - from.at, middle = (from.at + to.at) / 2;
   const double length = chord.norm(), plane = from.at[axis];
   if (!(length > 0)) return std::nullopt;
   const Vec3 along = chord / length;
-  Vec2 at = line.at(0.5);
+  Vec2 at = from.parameters + 0.5 * (end - from.parameters);
   for (int step = 0; step < 20; ++step) {
-    const nurbs::SurfaceJet jet = line.jet(at);
+    const nurbs::SurfaceJet jet = cell::jet(body, at);
     Vec3 found = jet.position;
     const Vec2 miss(found[axis] - plane, (found - middle).dot(along));
     if (miss.cwiseAbs().maxCoeff() < 1e-12 * length || (step == 19 && miss.norm() < 1e-8 * length)) {
