@@ -1,5 +1,7 @@
 #include "fem/block.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -115,10 +117,14 @@ std::vector<Message> complete(Mesh& mesh, const Block& block, int order) {
     add_fibres(mesh, mesh.regions[r], block.bodies[body], along);
   }
   if (order == 1) return {};
-  const Box3 box(block.box.min() * scale, block.box.max() * scale);
-  const MidsideNodes nodes = add_midside_nodes(mesh, {block.bodies, places, scale, box, block.periodic,
-                                                      block.skin.surface.caps, block.skin.surface.triangles});
-  return nodes.held > 0 ? std::vector{told_of(nodes, 1)} : std::vector<Message>{};
+  const MidsideNodes nodes = add_midside_nodes(mesh, block);
+  if (nodes.held == 0) return {};
+  Message note = warning(Kind::geometry,
+                         fmt::format("{} midside nodes were held back from the yarns' surfaces so that no "
+                                     "element folds, the farthest by {:.3g} mm",
+                                     nodes.held, nodes.farthest));
+  note.severity = Severity::note;
+  return {std::move(note)};
 }
 
 Status check_elements(const Mesh& mesh, Unit units) {

@@ -1,10 +1,9 @@
 #include "fem/midside.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "fem/block.h"
 #include "fem/curved_edges.h"
 #include "fem/sides.h"
 
@@ -13,8 +12,13 @@ namespace {
 
 class CellEdges {
  public:
-  CellEdges(const Mesh& mesh, const CellSurface& surface)
-      : mesh_(mesh), surface_(surface), snug_(1e-9 * surface.box.diagonal().norm()) {}
+  CellEdges(const Mesh& mesh, const Block& block)
+      : mesh_(mesh),
+        block_(block),
+        places_(block.skin.nodes.places),
+        scale_(millimetres_per(block.units)),
+        box_(block.box.min() * scale_, block.box.max() * scale_),
+        snug_(1e-9 * box_.diagonal().norm()) {}
 
   // The edges of the yarns' surfaces, with their middles.
   [[nodiscard]] std::vector<CurvedEdge> curved() const;
@@ -26,7 +30,7 @@ class CellEdges {
   // The axis of the face of the box that both nodes are on; none: -1.
   [[nodiscard]] int face_axis(std::size_t a, std::size_t b) const;
   [[nodiscard]] bool is_on(std::size_t node, int axis, bool high) const {
-    const double plane = high ? surface_.box.max()[axis] : surface_.box.min()[axis];
+    const double plane = high ? box_.max()[axis] : box_.min()[axis];
     return std::abs(mesh_.nodes[node][axis] - plane) <= snug_;
   }
   // In a face of the box, or (all on one yarn's surface) at the yarn's own end.
@@ -35,7 +39,10 @@ class CellEdges {
   void tie_over(int axis, std::vector<CurvedEdge>& edges, std::vector<TiedEdges>& tied) const;
 
   const Mesh& mesh_;
-  const CellSurface& surface_;
+  const Block& block_;
+  const std::vector<SurfacePlace>& places_;
+  double scale_;  // mm per file unit
+  Box3 box_;      // mm
   double snug_;
 };
 
@@ -47,17 +54,17 @@ int CellEdges::face_axis(std::size_t a, std::size_t b) const {
 }
 
 std::optional<Vec3> CellEdges::middle(std::size_t a, std::size_t b) const {
-  if (std::max(a, b) >= surface_.places.size()) return std::nullopt;
-  const SurfacePlace &from = surface_.places[a], &to = surface_.places[b];
-  if (from.body == CellSurface::no_body || from.body != to.body) return std::nullopt;
-  const yarn::Body& body = surface_.bodies[from.body];
-  const SurfaceEnd start{from.parameters, mesh_.nodes[a] / surface_.scale},
-      end{to.parameters, mesh_.nodes[b] / surface_.scale};
+  if (std::max(a, b) >= places_.size()) return std::nullopt;
+  const SurfacePlace &from = places_[a], &to = places_[b];
+  if (from.body == no_body || from.body != to.body) return std::nullopt;
+  const yarn::Body& body = block_.bodies[from.body];
+  const SurfaceEnd start{from.parameters, mesh_.nodes[a] / scale_},
+      end{to.parameters, mesh_.nodes[b] / scale_};
   const int axis = face_axis(a, b);
-  if (axis < 0) return middle_on_surface(body, start, end) * surface_.scale;
+  if (axis < 0) return middle_on_surface(body, start, end) * scale_;
   std::optional<Vec3> result = middle_in_plane(body, start, end, axis);
   if (!result) return std::nullopt;
-  *result *= surface_.scale;
+  *result *= scale_;
   (*result)[axis] = mesh_.nodes[a][axis];
   return result;
 }
@@ -67,14 +74,13 @@ bool CellEdges::is_flat(const std::array<std::size_t, 3>& t) const {
     for (const bool high : {false, true})
       if (is_on(t[0], axis, high) && is_on(t[1], axis, high) && is_on(t[2], axis, high)) return true;
   // The yarn's own end: all three on the rim.
-  const SurfacePlace& first = surface_.places[t[0]];
-  const yarn::Body& body = surface_.bodies[first.body];
+  const SurfacePlace& first = places_[t[0]];
+  const yarn::Body& body = block_.bodies[first.body];
   if (body.closed_along) return false;
   for (const double end : {body.surface.first_v(), body.surface.last_v()}) {
     const double snug = 1e-9 * (body.surface.last_v() - body.surface.first_v());
-    if (std::all_of(t.begin(), t.end(), [&](std::size_t node) {
-          return std::abs(surface_.places[node].parameters.y() - end) <= snug;
-        }))
+    if (std::all_of(t.begin(), t.end(),
+                    [&](std::size_t node) { return std::abs(places_[node].parameters.y() - end) <= snug; }))
       return true;
   }
   return false;
@@ -86,11 +92,9 @@ std::vector<CurvedEdge> CellEdges::curved() const {
     const std::array<std::size_t, 3> t = {side.nodes[0], side.nodes[1], side.nodes[2]};
     // Between a yarn and the rest, all of it on one yarn's surface.
     const std::size_t last = *std::max_element(t.begin(), t.end());
-    if (last >= surface_.places.size()) continue;
-    const std::size_t body = surface_.places[t[0]].body;
-    if (body == CellSurface::no_body || surface_.places[t[1]].body != body ||
-        surface_.places[t[2]].body != body || is_flat(t))
-      continue;
+    if (last >= places_.size()) continue;
+    const std::size_t body = places_[t[0]].body;
+    if (body == no_body || places_[t[1]].body != body || places_[t[2]].body != body || is_flat(t)) continue;
     for (std::size_t k = 0; k < 3; ++k) keys.push_back(edge_key(t[k], t[(k + 1) % 3]));
   }
   std::sort(keys.begin(), keys.end());
@@ -98,12 +102,13 @@ std::vector<CurvedEdge> CellEdges::curved() const {
   std::vector<CurvedEdge> result;
   for (const std::uint64_t key : keys)
     if (const auto at = middle(key >> 32U, key & 0xffffffffU)) result.push_back({key, *at});
-  for (const CellTriangles::Cap& cap : surface_.caps)
-    for (const Triangle& t : surface_.triangles.subspan(cap.first, cap.count))
+  const CellTriangles& surface = block_.skin.surface;
+  for (const CellTriangles::Cap& cap : surface.caps)
+    for (const Triangle& t : std::span(surface.triangles).subspan(cap.first, cap.count))
       for (std::size_t k = 0; k < 3 && !cap.shape.is_flat(); ++k) {
         const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-        const Vec3 chord = (mesh_.nodes[a] + mesh_.nodes[b]) / (2 * surface_.scale);
-        result.push_back({edge_key(a, b), cap.shape.lift(cap.shape.project(chord)) * surface_.scale});
+        const Vec3 chord = (mesh_.nodes[a] + mesh_.nodes[b]) / (2 * scale_);
+        result.push_back({edge_key(a, b), cap.shape.lift(cap.shape.project(chord)) * scale_});
       }
   sort_edges(result);  // a rim's middle is its side's, which stands first
   return result;
@@ -159,23 +164,14 @@ void CellEdges::tie_over(int axis, std::vector<CurvedEdge>& edges, std::vector<T
 std::vector<TiedEdges> CellEdges::tie(std::vector<CurvedEdge>& edges) const {
   std::vector<TiedEdges> tied;
   for (int axis = 0; axis < 3; ++axis)
-    if (surface_.periodic[static_cast<std::size_t>(axis)]) tie_over(axis, edges, tied);
+    if (block_.periodic[static_cast<std::size_t>(axis)]) tie_over(axis, edges, tied);
   return tied;
 }
 
 }  // namespace
 
-Message told_of(const MidsideNodes& nodes, double scale) {
-  Message note = warning(Kind::geometry,
-                         fmt::format("{} midside nodes were held back from the yarns' surfaces so that no "
-                                     "element folds, the farthest by {:.3g} mm",
-                                     nodes.held, nodes.farthest * scale));
-  note.severity = Severity::note;
-  return note;
-}
-
-MidsideNodes add_midside_nodes(Mesh& mesh, const CellSurface& surface) {
-  const CellEdges cell(mesh, surface);
+MidsideNodes add_midside_nodes(Mesh& mesh, const Block& block) {
+  const CellEdges cell(mesh, block);
   std::vector<CurvedEdge> edges = cell.curved();
   const std::vector<TiedEdges> tied = cell.tie(edges);
   return add_midside_nodes(mesh, edges, tied);

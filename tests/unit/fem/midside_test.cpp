@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/module.h"
+#include "fem/block.h"
 #include "fem/cell_size.h"
 #include "fem/curved_edges.h"
 #include "fem/faces.h"
@@ -66,8 +67,8 @@ double distance_to(const yarn::Body& body, const Vec3& point) {
 struct CellOfYarn {
   yarn::Body body = wave();
   Mesh mesh;
-  Skin skin;
-  CellSurface surface;
+  std::optional<Block> block{};
+  Box3 box{};  // mm
 };
 
 void fill(CellOfYarn& cell, double size) {
@@ -77,10 +78,11 @@ void fill(CellOfYarn& cell, double size) {
       make_skin(one, box, cell_size_rules(one, std::span(&size, 1), 0, yarn::narrowest_section(cell.body)),
                 {.tolerance = 1e-4, .miss = 1e-3, .periodic = {true, false, false}});
   ASSERT_TRUE(skin.ok()) << to_string(skin.error());
-  cell.skin = std::move(*skin);
-  const std::vector<Vec3>& points = cell.skin.nodes.points;
+  cell.block.emplace(one, Unit::inch, box, std::array{true, false, false}, std::move(*skin));
+  const CellTriangles& surface = cell.block->skin.surface;
+  const std::vector<Vec3>& points = cell.block->skin.nodes.points;
   Result<TetMesh> tets = run_tetgen(find_worker("selvage-tetgen").value(),
-                                    {.points = points, .triangles = cell.skin.surface.triangles}, {});
+                                    {.points = points, .triangles = surface.triangles}, {});
   ASSERT_TRUE(tets.ok());
   std::vector<std::uint32_t> regions(tets->cells.size(), 0);
   improve(tets->points, tets->cells, regions, points.size(),
@@ -90,24 +92,21 @@ void fill(CellOfYarn& cell, double size) {
   for (const auto& t : tets->cells) cell.mesh.elements.push_back({t[0], t[1], t[2], t[3]});
   Region region;
   region.last_element = cell.mesh.elements.size();
-  for (std::size_t k = 0; k < cell.skin.surface.triangles.size(); ++k)
-    if (const Triangle& t = cell.skin.surface.triangles[k];
-        cell.skin.surface.parts[k] == CellTriangles::Part::side)
+  for (std::size_t k = 0; k < surface.triangles.size(); ++k)
+    if (const Triangle& t = surface.triangles[k]; surface.parts[k] == CellTriangles::Part::side)
       region.side_faces.push_back({t[0], t[1], t[2]});  // for the test
   cell.mesh.regions.push_back(region);
-  cell.surface = {.bodies = one, .places = cell.skin.nodes.places, .scale = mm};
-  cell.surface.box = Box3(Vec3(mm * box.min()), Vec3(mm * box.max()));
-  cell.surface.periodic = {true, false, false};
+  cell.box = Box3(Vec3(mm * box.min()), Vec3(mm * box.max()));
 }
 
 TEST(CellMidside, OnTheSurfaceInTheFacesAndOppositeOnesAlike) {
   CellOfYarn cell;
   fill(cell, 0.07);
   measure(cell.mesh);
-  const double mm = cell.surface.scale, exact = cell.skin.volumes.front() * mm * mm * mm;
+  const double mm = 25.4, exact = cell.block->skin.volumes.front() * mm * mm * mm;
   const double straight = std::abs(cell.mesh.regions[0].volume - exact);
   const std::size_t corners = cell.mesh.nodes.size();
-  const MidsideNodes nodes = add_midside_nodes(cell.mesh, cell.surface);
+  const MidsideNodes nodes = add_midside_nodes(cell.mesh, *cell.block);
   EXPECT_EQ(nodes.held, 0U);
   EXPECT_EQ(nodes.farthest, 0);
   measure(cell.mesh);
@@ -120,8 +119,8 @@ TEST(CellMidside, OnTheSurfaceInTheFacesAndOppositeOnesAlike) {
     for (std::size_t k = 4; k < 10; ++k) ASSERT_GE(element[k], corners);
   for (std::size_t p = corners; p < cell.mesh.nodes.size(); ++p) {
     const Vec3& at = cell.mesh.nodes[p];
-    if (at.x() == cell.surface.box.min().x()) low.emplace_back(at.y(), at.z());
-    if (at.x() == cell.surface.box.max().x()) high.emplace_back(at.y(), at.z());
+    if (at.x() == cell.box.min().x()) low.emplace_back(at.y(), at.z());
+    if (at.x() == cell.box.max().x()) high.emplace_back(at.y(), at.z());
   }
   const auto before = [](const Vec2& a, const Vec2& b) {
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
