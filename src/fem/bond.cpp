@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
+
+#include "fem/cell_sides.h"
 
 namespace selvage::fem {
 namespace {
@@ -107,19 +108,13 @@ class Gaps {
 
 double shared_area(std::span<const Vec3> points, std::span<const Cell> cells, std::uint32_t matrix,
                    const std::vector<std::uint32_t>& regions) {
-  std::map<std::array<std::uint32_t, 3>, std::uint32_t> open;
   double area = 0;
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    if (regions[c] == matrix) continue;
-    for (std::size_t k = 0; k < 4; ++k) {
-      std::array<std::uint32_t, 3> face{cells[c][(k + 1) % 4], cells[c][(k + 2) % 4], cells[c][(k + 3) % 4]};
-      std::sort(face.begin(), face.end());
-      const auto [other, is_new] = open.try_emplace(face, regions[c]);
-      if (is_new) continue;
-      if (other->second != regions[c])
-        area += (points[face[1]] - points[face[0]]).cross(points[face[2]] - points[face[0]]).norm() / 2;
-      open.erase(other);
-    }
+  const std::vector<CellSide> sides = sorted_sides(cells, points.size());
+  for (std::size_t k = 0; k + 1 < sides.size(); ++k) {
+    const std::array<std::uint32_t, 3>& face = sides[k].corners;
+    const std::uint32_t a = regions[sides[k].cell], b = regions[sides[k + 1].cell];
+    if (sides[k + 1].corners == face && a != b && a != matrix && b != matrix)
+      area += (points[face[1]] - points[face[0]]).cross(points[face[2]] - points[face[0]]).norm() / 2;
   }
   return area;
 }

@@ -34,15 +34,6 @@ double quality_of_angle(double degrees) {
   return -std::cos(degrees * std::numbers::pi / 180);
 }
 
-TetFace TetComplex::sorted_side(const Tetrahedron& t, std::size_t slot) {
-  const auto& side = opposite_sides[slot];
-  TetFace result = {t[side[0]], t[side[1]], t[side[2]]};
-  if (result[0] > result[1]) std::swap(result[0], result[1]);
-  if (result[1] > result[2]) std::swap(result[1], result[2]);
-  if (result[0] > result[1]) std::swap(result[0], result[1]);
-  return result;
-}
-
 TetComplex::TetComplex(std::vector<Vec3> all_points, std::span<const Tetrahedron> cells,
                        std::size_t fixed_points)
     : points(std::move(all_points)) {
@@ -55,22 +46,17 @@ TetComplex::TetComplex(std::vector<Vec3> all_points, std::span<const Tetrahedron
     for (const std::uint32_t corner : cells[c]) cell_at_[corner] = static_cast<std::uint32_t>(c);
   }
   seen_.assign(cells_.size(), 0);
-  connect_all(cells);
+  connect_sides(sorted_sides(cells, points.size()));
   mark_walls();
 }
 
-template <class Listed>
-void TetComplex::connect_sides(const std::vector<Listed>& sorted) {
+void TetComplex::connect_sides(const std::vector<CellSide>& sorted) {
   for (std::size_t k = 0; k + 1 < sorted.size(); ++k) {
-    const Listed &a = sorted[k], &b = sorted[k + 1];
+    const CellSide &a = sorted[k], &b = sorted[k + 1];
     if (a.corners != b.corners) continue;
     cells_[a.cell].beside[a.slot] = b.cell;
     cells_[b.cell].beside[b.slot] = a.cell;
   }
-}
-
-void TetComplex::connect_all(std::span<const Tetrahedron> cells) {
-  connect_sides(sorted_sides(cells, points.size()));
 }
 
 void TetComplex::mark_walls() {
@@ -222,12 +208,12 @@ void TetComplex::replace(std::span<const std::uint32_t> old_cells, std::span<con
   for (const std::uint32_t c : old_cells) seen_[c] = walk_;
   // What is left open outside, named by the neighbour's side.
   for (const std::uint32_t c : old_cells)
-    for (std::size_t slot = 0; slot < 4; ++slot) {
+    for (std::uint32_t slot = 0; slot < 4; ++slot) {
       const std::uint32_t out = cells_[c].beside[slot];
       if (out == none || seen_[out] == walk_) continue;
       const auto& back = cells_[out].beside;
-      const auto there = static_cast<std::uint32_t>(std::find(back.begin(), back.end(), c) - back.begin());
-      open_.push_back({sorted_side(cells_[c].corners, slot), out, there});
+      open_.push_back(side_of(cells_[c].corners, out, slot));
+      open_.back().slot = static_cast<std::uint32_t>(std::find(back.begin(), back.end(), c) - back.begin());
     }
   take_out(old_cells);
   added.clear();
@@ -235,10 +221,10 @@ void TetComplex::replace(std::span<const std::uint32_t> old_cells, std::span<con
     const std::uint32_t c = new_cell();
     cells_[c] = {.corners = t, .beside = {none, none, none, none}, .quality = quality(t)};
     added.push_back(c);
-    for (std::uint32_t slot = 0; slot < 4; ++slot) open_.push_back({sorted_side(t, slot), c, slot});
+    for (std::uint32_t slot = 0; slot < 4; ++slot) open_.push_back(side_of(t, c, slot));
     for (const std::uint32_t corner : t) cell_at_[corner] = c;
   }
-  std::sort(open_.begin(), open_.end(), [](const OpenSide& a, const OpenSide& b) {
+  std::sort(open_.begin(), open_.end(), [](const CellSide& a, const CellSide& b) {
     return a.corners != b.corners ? a.corners < b.corners : a.cell < b.cell;
   });
   connect_sides(open_);

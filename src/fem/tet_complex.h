@@ -78,23 +78,16 @@ class TetComplex {
   void measure_star(std::uint32_t point);
 
  private:
-  struct OpenSide {
-    TetFace corners;  // increasing
-    std::uint32_t cell, slot;
-  };
   // What is on the other side of a cavity's side: `slot` is its own there; no cell: a wall.
   struct Beyond {
     TetFace corners;  // counter-clockwise seen from outside of the cavity
     Side side;
   };
-  void connect_all(std::span<const Tetrahedron> cells);
-  template <class Listed>
-  void connect_sides(const std::vector<Listed>& sorted);  // of the same corners
+  void connect_sides(const std::vector<CellSide>& sorted);  // of the same corners
   void mark_walls();
   void take_out(std::span<const std::uint32_t> cells);
   std::uint32_t new_cell();
   std::size_t local_number(std::uint32_t point);
-  static TetFace sorted_side(const Tetrahedron& t, std::size_t slot);
 
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> free_;
@@ -102,7 +95,7 @@ class TetComplex {
   std::vector<std::uint8_t> fixed_;
   mutable std::vector<std::uint32_t> seen_;  // of each cell: the last walk that met it
   mutable std::uint32_t walk_ = 0;
-  std::vector<OpenSide> open_;
+  std::vector<CellSide> open_;
   std::vector<Beyond> beyond_;
   std::vector<std::uint32_t> local_, locals_;  // numbers of the points round a cavity, and those points
   std::vector<std::uint32_t>
