@@ -154,6 +154,7 @@ std::size_t Improver::pass(bool with_points) {
 
 // One region: its points in their order among all, those that stay first, and its cells.
 struct Part {
+  std::uint32_t region = 0;
   std::vector<std::uint32_t> numbers;  // of its points among all
   std::size_t fixed_points = 0;
   std::vector<Vec3> points;
@@ -170,6 +171,7 @@ std::vector<Part> divide(const std::vector<Vec3>& points, const std::vector<Tetr
   std::sort(order.begin(), order.end());
   order.erase(std::unique(order.begin(), order.end()), order.end());
   std::vector<Part> parts(order.size());
+  for (std::size_t k = 0; k < parts.size(); ++k) parts[k].region = order[k];
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const auto at = std::lower_bound(order.begin(), order.end(), regions[c]) - order.begin();
     parts[static_cast<std::size_t>(at)].cells.push_back(cells[c]);
@@ -248,13 +250,9 @@ void join(std::vector<Part>& parts, std::vector<Vec3>& points, std::vector<Tetra
   }
   result.points_removed = before - count;
   points.resize(count);
-  std::vector<std::uint32_t> names(regions);
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
   cells.clear();
   regions.clear();
-  for (std::size_t r = 0; r < parts.size(); ++r) {
-    Part& part = parts[r];
+  for (Part& part : parts) {
     for (std::uint32_t& p : part.numbers) p = number[p];
     for (std::size_t p = part.numbers.size(); p < part.points.size(); ++p) {
       part.numbers.push_back(static_cast<std::uint32_t>(points.size()));
@@ -268,7 +266,7 @@ void join(std::vector<Part>& parts, std::vector<Vec3>& points, std::vector<Tetra
       for (std::uint32_t& corner : cell) corner = part.numbers[corner];
       cells.push_back(cell);
     }
-    regions.resize(cells.size(), names[r]);
+    regions.resize(cells.size(), part.region);
     part = {};
   }
   result.points_added = points.size() - count;

@@ -40,14 +40,11 @@ std::vector<NodeSet> node_sets(const Mesh& mesh) {
 
 namespace {
 
-Result<std::size_t> material_of(const Mesh& mesh, const Region& region) {
+std::size_t material_of(const Mesh& mesh, const Region& region) {
   const auto found =
       std::find_if(mesh.materials.begin(), mesh.materials.end(),
                    [&](const fabric::Material& material) { return material.name == region.material; });
-  if (found != mesh.materials.end()) return static_cast<std::size_t>(found - mesh.materials.begin());
-  Message message = error(Kind::internal, "the yarn's material has no elastic constants");
-  message.yarn = region.name;
-  return message;
+  return static_cast<std::size_t>(found - mesh.materials.begin());
 }
 
 }  // namespace
@@ -57,15 +54,9 @@ Result<std::vector<Section>> sections(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
     const Region& region = mesh.regions[i];
     std::map<std::size_t, std::vector<std::size_t>> by_material;
-    if (mesh.element_material.empty()) {
-      const Result<std::size_t> material = material_of(mesh, region);
-      if (!material) return material.error();
-      std::vector<std::size_t>& elements = by_material[*material];
-      for (std::size_t e = region.first_element; e < region.last_element; ++e) elements.push_back(e);
-    } else {
-      for (std::size_t e = region.first_element; e < region.last_element; ++e)
-        by_material[mesh.element_material[e]].push_back(e);
-    }
+    const std::size_t of_all = material_of(mesh, region);
+    for (std::size_t e = region.first_element; e < region.last_element; ++e)
+      by_material[mesh.element_material.empty() ? of_all : mesh.element_material[e]].push_back(e);
     for (auto& [material, elements] : by_material) {
       if (material >= mesh.materials.size() ||
           std::holds_alternative<std::monostate>(mesh.materials[material].elastic)) {
