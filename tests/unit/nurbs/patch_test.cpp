@@ -56,7 +56,7 @@ TEST(BoxOfASurface, HoldsItsPointsAndNoMore) {
 
 TEST(Divided, SpansIntoEqualParts) {
   EXPECT_EQ(divided({0, 0, 0, 1, 3, 3, 3}, 2, 2), (std::vector<double>{0, 0.5, 1, 2, 3}));
-  EXPECT_EQ(divided({0, 1, 3}, {1, 4}), (std::vector<double>{0, 1, 1.5, 2, 2.5, 3}));
+  EXPECT_EQ(divided({0, 1, 3}, std::vector<int>{1, 4}), (std::vector<double>{0, 1, 1.5, 2, 2.5, 3}));
 }
 
 }  // namespace
