@@ -50,7 +50,8 @@ bool Tally::take(const Message& message, double badness) {
     kind.worst = message;
   }
   if (kind.shown.size() < shown_of_a_kind) {
-    std::string text = to_string(message);
+    // Where there is no file yet, the place is not in the text.
+    std::string text = fmt::format("{}:{}: {}", message.place.line, message.place.column, to_string(message));
     if (std::find(kind.shown.begin(), kind.shown.end(), text) == kind.shown.end()) {
       kind.shown.push_back(std::move(text));
       return true;
