@@ -23,8 +23,8 @@ struct PlanarTriangles {
 };
 
 // The triangles of all domains; points may lie anywhere. The same input gives the same triangles. Errors
-// (geometry, `at` in the plane with z = 0): two points in one place, segments that cross or pass through
-// points, a domain that is on both sides of a segment that says otherwise.
+// (geometry, `at` in the plane with z = 0): two points in one place, all on a line, segments that cross or
+// pass through points, a domain that is on both sides of a segment that says otherwise.
 Result<PlanarTriangles> triangulate(std::span<const Vec2> points, std::span<const PlanarSegment> segments);
 
 }  // namespace selvage::solid

@@ -9,7 +9,7 @@
 #include "core/plane.h"
 #include "nurbs/divided.h"
 #include "nurbs/samples.h"
-#include "solid/planar_end.h"
+#include "solid/planar.h"
 
 namespace selvage::solid {
 
@@ -303,8 +303,8 @@ void add_fan(Skinner& skinner, const yarn::EndFace& face, const Round& round, do
   skinner.add_grid(ids, outline.size(), face.inward, skin);
 }
 
-// False: the outline crosses itself.
-bool add_plane(Skinner& skinner, const yarn::EndFace& face, const Ids& outline, Skin skin) {
+// Errors: as solid::triangulate().
+Status add_plane(Skinner& skinner, const yarn::EndFace& face, const Ids& outline, Skin skin) {
   Ids ring;
   for (std::uint32_t id : outline)
     if (ring.empty() || (id != ring.back() && id != ring.front())) ring.push_back(id);
@@ -314,13 +314,15 @@ bool add_plane(Skinner& skinner, const yarn::EndFace& face, const Ids& outline, 
     const Vec3 p = skinner.vertex(id) - face.origin;
     flat.emplace_back(p.dot(x), p.dot(y));
   }
-  if (twice_area(flat) < 0.0) {
-    std::reverse(flat.begin(), flat.end());
-    std::reverse(ring.begin(), ring.end());
-  }
-  const auto triangles = triangulate(flat);
-  for (const auto& t : triangles) skinner.add_triangle(ring[t[0]], ring[t[1]], ring[t[2]], false, skin);
-  return !triangles.empty();
+  const bool turns_left = twice_area(flat) > 0.0;
+  std::vector<PlanarSegment> border;
+  for (std::uint32_t k = 0; k < ring.size(); ++k)
+    border.push_back(
+        {k, (k + 1) % static_cast<std::uint32_t>(ring.size()), turns_left ? 0 : -1, turns_left ? -1 : 0});
+  const Result<PlanarTriangles> made = triangulate(flat, border);
+  if (!made) return made.error();
+  for (const auto& t : made->triangles) skinner.add_triangle(ring[t[0]], ring[t[1]], ring[t[2]], false, skin);
+  return {};
 }
 
 }  // namespace
@@ -383,11 +385,14 @@ Result<Tessellation> tessellate(const yarn::Body& body, double chord, double lon
                              : Ids(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(nu));
     if (face.style == yarn::EndStyle::patch) add_patch(skinner, face, round, outline, skin);
     if (face.style == yarn::EndStyle::fan) add_fan(skinner, face, round, chord, outline, skin);
-    if (face.style == yarn::EndStyle::planar && !add_plane(skinner, face, outline, skin))
+    if (face.style != yarn::EndStyle::planar) continue;
+    if (const Status done = add_plane(skinner, face, outline, skin); !done)
       return refusal(
-          body, Kind::geometry,
-          fmt::format("the outline at the {} of yarn '{}' crosses itself: no plane face can seal it",
-                      last ? "end" : "start", body.name));
+          body, done.error().kind,
+          done.error().kind == Kind::geometry
+              ? fmt::format("the outline at the {} of yarn '{}' crosses itself: no plane face can seal it",
+                            last ? "end" : "start", body.name)
+              : done.error().text);
   }
   Tessellation& out = skinner.result();
   out.sites.assign(out.vertices.size(), Vec2::Constant(std::numeric_limits<double>::quiet_NaN()));

@@ -1,4 +1,4 @@
-// A yarn's skin as triangles: what the checks look at. No CGAL here.
+// A yarn's skin as triangles: what the checks look at. Flat ends are triangulated by solid/planar.h.
 #pragma once
 
 #include <array>
@@ -33,8 +33,9 @@ double sewing_gap(const yarn::Body& body);
 // |S_uu| + 2 du dv |S_uv| + dv^2 |S_vv|) by Filip, Magedson and Markot (1986), with the second derivatives
 // from differences of surface points at four places a knot span. Every knot line is an edge line. Errors:
 // geometry (an empty or a non-finite surface, an end whose outline crosses itself), limit (more than 100
-// million triangles). A yarn without ends (style none) that is not closed is tessellated open. No edge on the
-// side, but for diagonals, is longer than `longest`, to a few percent.
+// million triangles), and of the module where an end is flat. A yarn without ends (style none) that is not
+// closed is tessellated open. No edge on the side, but for diagonals, is longer than `longest`, to a few
+// percent.
 Result<Tessellation> tessellate(const yarn::Body& body, double chord,
                                 double longest = std::numeric_limits<double>::infinity());
 

@@ -75,6 +75,8 @@ Result<PlanarTriangles> triangulate_with_cgal(std::span<const Vec2> points,
     vertices[v->info()] = v;
   for (std::size_t k = 0; k < points.size(); ++k)
     if (vertices[k] == Vertex()) return wrong("two points lie in one place", points[k]);
+  if (!points.empty() && triangulation.dimension() < 2)
+    return wrong("all points lie on a line", points.front());
   for (const PlanarSegment& s : segments) {
     const Vec2 middle = (points[s.from] + points[s.to]) / 2;
     try {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "solid/planar_end.h"
+#include "solid/planar.h"
 #include "unit/solid/bodies.h"
 
 namespace selvage::solid {
@@ -173,6 +173,13 @@ TEST(NarrowestSection, IsTheThinDirectionOfAnEightToo) {
   EXPECT_DOUBLE_EQ(yarn::narrowest_section(body), yarn::widest_section(body));
 }
 
+std::vector<PlanarSegment> border_of(const std::vector<Vec2>& outline) {
+  std::vector<PlanarSegment> border;
+  const auto n = static_cast<std::uint32_t>(outline.size());
+  for (std::uint32_t k = 0; k < n; ++k) border.push_back({k, (k + 1) % n, 0, -1});
+  return border;
+}
+
 TEST(PlanarEnd, NonConvexOutlines) {
   // An L, a comb, and a star: the triangles' areas add up to the outline's, none is turned over.
   std::vector<std::vector<Vec2>> outlines = {
@@ -189,7 +196,9 @@ TEST(PlanarEnd, NonConvexOutlines) {
       const Vec2 &a = outline[k], &b = outline[(k + 1) % outline.size()];
       whole += 0.5 * (a.x() * b.y() - a.y() * b.x());
     }
-    const auto triangles = triangulate(outline);
+    const Result<PlanarTriangles> made = triangulate(outline, border_of(outline));
+    ASSERT_TRUE(made.ok());
+    const auto& triangles = made->triangles;
     EXPECT_EQ(triangles.size(), outline.size() - 2);
     for (const auto& t : triangles) {
       const Vec2 ab = outline[t[1]] - outline[t[0]], ac = outline[t[2]] - outline[t[0]];
@@ -201,9 +210,23 @@ TEST(PlanarEnd, NonConvexOutlines) {
   }
 }
 
+// A racetrack's straight sides as rounding leaves them: no outline that crosses itself.
+TEST(PlanarEnd, StraightSidesWithRounding) {
+  std::vector<Vec2> outline;
+  const Vec2 along(std::cos(0.7), std::sin(0.7)), up(-along.y(), along.x());
+  for (int i = 0; i <= 24; ++i) outline.emplace_back(along * (i / 24.0) - up * 0.1);
+  for (int i = 1; i < 8; ++i)
+    outline.emplace_back(along * (1.0 + 0.1 * std::sin(pi * i / 8)) - up * (0.1 * std::cos(pi * i / 8)));
+  for (int i = 24; i >= 0; --i) outline.emplace_back(along * (i / 24.0) + up * 0.1);
+  const Result<PlanarTriangles> made = triangulate(outline, border_of(outline));
+  ASSERT_TRUE(made.ok());
+  EXPECT_EQ(made->triangles.size(), outline.size() - 2);
+}
+
 TEST(PlanarEnd, ACrossedOutlineIsRefused) {
-  EXPECT_TRUE(triangulate({{0, 0}, {1, 1}, {1, 0}, {0, 1}}).empty());
-  EXPECT_TRUE(triangulate({{0, 0}, {1, 1}}).empty());
+  const std::vector<std::vector<Vec2>> outlines = {
+      {{0, 0}, {1, 1}, {1, 0}, {0, 1}}, {{0, 0}, {1, 1}}, {{0, 0}, {1, 1}, {2, 2}, {3, 3}}};
+  for (const auto& outline : outlines) EXPECT_FALSE(triangulate(outline, border_of(outline)).ok());
 }
 
 }  // namespace
