@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "contact/critical.h"
 #include "core/plane.h"
 #include "nurbs/patch.h"
 
@@ -220,11 +221,6 @@ namespace {
 
 constexpr int close_lines = 24, close_steps = 8, close_rounds = 5;
 
-Vec3 outward_normal(const Face& face, const Vec2& site) {
-  const nurbs::SurfaceJet jet = nurbs::evaluate_jet(*face.surface, site.x(), site.y());
-  return (face.inward ? -1.0 : 1.0) * jet.du.cross(jet.dv).normalized();
-}
-
 }  // namespace
 
 bool Overlay::is_smooth_about(std::size_t line, int radius, bool of_a) const {
@@ -237,7 +233,7 @@ bool Overlay::is_smooth_about(std::size_t line, int radius, bool of_a) const {
       // Where the sheet ends there is an edge.
       if ((of_a ? a_ : b_)[k].part < 0) return false;
       const Place here = of_a ? on_a(k) : on_b(k);
-      const Vec3 normal = outward_normal(model_.face_of(model_.cells()[here.cell]), here.site);
+      const Vec3 normal = point_at(model_.face_of(model_.cells()[here.cell]), here.site).normal;
       if (!first) first = normal;
       if (!(first->dot(normal) > 0.99)) return false;
     }

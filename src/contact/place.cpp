@@ -45,12 +45,9 @@ std::vector<std::uint32_t> covering_range(const std::set<std::uint32_t>& used, s
 constexpr double deep_share = 0.3;
 
 // A local minimum of the gap.
-struct Spot {
+struct Spot : Critical {
   const Face* face_a = nullptr;
   const Face* face_b = nullptr;
-  Vec2 site_a = Vec2::Zero(), site_b = Vec2::Zero();
-  Vec3 p = Vec3::Zero(), q = Vec3::Zero(), normal = Vec3::Zero();
-  double depth = 0;
   bool is_critical = true;  // else on an edge or a border
 };
 
@@ -252,8 +249,7 @@ class Measurer {
     if (found && found->depth > touching_ && found->depth < 0.01 * thickness_ &&
         (found->p - start).norm() < 0.1 * thickness_) {
       if (is_known(found->p, found->q)) return true;
-      spots_.push_back(
-          {&fa, &fb, found->site_a, found->site_b, found->p, found->q, found->normal, found->depth});
+      spots_.push_back({*found, &fa, &fb});
       contacts_.push_back(contact_of({spots_.back()}));
       return true;
     }
@@ -314,9 +310,7 @@ class Measurer {
       return false;
     // Where it says that they overlap, the lines have to say so too.
     if (found->depth > slack() && !agrees(overlay, middle, found->depth)) return false;
-    if (!is_known(found->p, found->q))
-      spots_.push_back(
-          {&fa, &fb, found->site_a, found->site_b, found->p, found->q, found->normal, found->depth});
+    if (!is_known(found->p, found->q)) spots_.push_back({*found, &fa, &fb});
     return true;
   }
 
@@ -354,29 +348,26 @@ class Measurer {
     std::optional<Deepest> found = close_in(model_, pa, pb, n, start, reach, 0.5 * slack());
     if (found && found->depth > touching_) {
       // Against a smooth surface an edge is parted along that surface's normal.
-      const std::optional<Vec3> easier = found->smooth_a   ? normal_at(found->a)
-                                         : found->smooth_b ? normal_at(found->b)
-                                                           : easiest_direction(pa, pb, n, start, reach);
-      if (easier) {
-        const Vec3 turned = easier->dot(n) < 0.0 ? Vec3(-*easier) : *easier;
-        if (const std::optional<Deepest> again = close_in(model_, pa, pb, turned, start, reach)) {
+      Vec3 easier = found->smooth_a   ? normal_at(found->a)
+                    : found->smooth_b ? normal_at(found->b)
+                                      : easiest_direction(pa, pb, n, start, reach);
+      if (easier.dot(n) < 0.0) easier = -easier;
+      if (easier.squaredNorm() > 0.0)
+        if (const std::optional<Deepest> again = close_in(model_, pa, pb, easier, start, reach)) {
           found = again;
-          n = turned;
+          n = easier;
         }
-      }
     }
     if (!found || !(found->depth > touching_) || is_known(found->a.point, found->b.point)) return;
-    spots_.push_back({&model_.face_of(cell(found->a.cell)), &model_.face_of(cell(found->b.cell)),
-                      found->a.site, found->b.site, found->a.point, found->b.point, n, found->depth, false});
+    spots_.push_back({{found->a.site, found->b.site, found->a.point, found->b.point, n, found->depth},
+                      &model_.face_of(cell(found->a.cell)),
+                      &model_.face_of(cell(found->b.cell)),
+                      false});
   }
 
-  [[nodiscard]] std::optional<Vec3> normal_at(const Overlay::Place& place) const {
-    const Face& face = model_.face_of(cell(place.cell));
-    const nurbs::SurfaceJet jet = nurbs::evaluate_jet(*face.surface, place.site.x(), place.site.y());
-    const Vec3 normal = jet.du.cross(jet.dv);
-    const double size = normal.norm();
-    if (!(size > 0.0)) return std::nullopt;
-    return normal / size;
+  // Outward, zero where there is none.
+  [[nodiscard]] Vec3 normal_at(const Overlay::Place& place) const {
+    return point_at(model_.face_of(cell(place.cell)), place.site).normal;
   }
 
   // Edge across edge: the direction along which the deepest line is the shortest, by compass search.
@@ -400,13 +391,9 @@ class Measurer {
   }
 
   [[nodiscard]] static Minimum minimum_of(const Spot& spot) {
-    Minimum minimum;
-    if (spot.face_a != nullptr && spot.face_a->is_side) minimum.site_a = spot.site_a;
-    if (spot.face_b != nullptr && spot.face_b->is_side) minimum.site_b = spot.site_b;
-    minimum.on_a = spot.p;
-    minimum.on_b = spot.q;
-    minimum.normal = spot.normal;
-    minimum.gap = -spot.depth;
+    Minimum minimum{{}, {}, spot.p, spot.q, spot.normal, -spot.depth};
+    if (spot.face_a->is_side) minimum.site_a = spot.site_a;
+    if (spot.face_b->is_side) minimum.site_b = spot.site_b;
     return minimum;
   }
 
@@ -466,8 +453,7 @@ class Measurer {
     std::vector<std::optional<std::size_t>> group_of(static_cast<std::size_t>(regions));
     for (const Spot& spot : spots_) {
       if (spot.depth < -reach_) continue;
-      const Vec3 seen = overlay.axes().seen(0.5 * (spot.p + spot.q));
-      const int line = overlay.line_at(seen.head<2>());
+      const int line = overlay.line_at(overlay.axes().seen(0.5 * (spot.p + spot.q)).head<2>());
       const int here = line < 0 ? -1 : region[static_cast<std::size_t>(line)];
       if (here >= 0 && group_of[static_cast<std::size_t>(here)]) {
         groups[*group_of[static_cast<std::size_t>(here)]].spots.push_back(spot);
@@ -524,7 +510,7 @@ class Measurer {
           find_nearest(fa, ca, 0.5 * (ca.low + ca.high), fb, cb, 0.5 * (cb.low + cb.high));
       const double distance = (found.p - found.q).norm();
       if (distance > best * (1.0 - 1e-6)) continue;
-      Spot spot{&fa, &fb, found.site_a, found.site_b, found.p, found.q, Vec3::Zero(), -distance, false};
+      Spot spot{{found.site_a, found.site_b, found.p, found.q, Vec3::Zero(), -distance}, &fa, &fb, false};
       if (distance > 0.0) spot.normal = (found.q - found.p) / distance;
       is_deep_ = is_deep_ || distance <= touching_;
       if (body_a_ == body_b_ && distance > touching_ && !is_facing(ca, cb, spot.normal)) continue;
