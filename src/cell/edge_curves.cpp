@@ -235,7 +235,8 @@ EdgeCurves ArcPath::row(double from, double to) const {
                .knots = {t0, t0, t1, t1},
                .points = {Vec3(t0 + shift, a.y(), 0), Vec3(t1 + shift, a.y(), 0)},
                .weights = {}};
-  return backward ? reversed(edge) : edge;
+  if (backward) edge = {nurbs::reversed(edge.space), nurbs::reversed(edge.flat)};
+  return edge;
 }
 
 EdgeCurves ArcPath::curves(double from, double to, double tolerance) const {
@@ -277,10 +278,6 @@ EdgeCurves line_of_constant_u(const nurbs::Surface& surface, double u, double v0
   edge.flat = {
       .degree = 1, .knots = {v0, v0, v1, v1}, .points = {Vec3(u, v0, 0), Vec3(u, v1, 0)}, .weights = {}};
   return edge;
-}
-
-EdgeCurves reversed(const EdgeCurves& edge) {
-  return {nurbs::reversed(edge.space), nurbs::reversed(edge.flat)};
 }
 
 }  // namespace selvage::cell

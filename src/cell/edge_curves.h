@@ -70,7 +70,4 @@ class ArcPath {
 // The line of constant u from v0 to v1 (< v1), exactly.
 EdgeCurves line_of_constant_u(const nurbs::Surface& surface, double u, double v0, double v1);
 
-// The same backwards, over the same range of the parameter.
-EdgeCurves reversed(const EdgeCurves& edge);
-
 }  // namespace selvage::cell

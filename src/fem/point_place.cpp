@@ -32,8 +32,8 @@ double distance_to_line(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a).cross(ab).norm() / ab.norm();
 }
 
-}  // namespace
-
+// The smallest tet_quality of the point over the sides, or any value at most `enough` when it falls below
+// that.
 double star_quality(const Vec3& at, std::span<const StarSide> sides, double enough) {
   double least = 1;
   for (const StarSide& side : sides) {
@@ -42,6 +42,8 @@ double star_quality(const Vec3& at, std::span<const StarSide> sides, double enou
   }
   return least;
 }
+
+}  // namespace
 
 // The angles of the tetrahedra of quality less than `below`, and how they change with the point.
 void PointPlace::measure(const Vec3& at, std::span<const StarSide> sides, double below) {

@@ -11,10 +11,6 @@ namespace selvage::fem {
 
 using StarSide = std::array<Vec3, 3>;  // (point, side) is positive
 
-// The smallest tet_quality of the point over the sides, or any value at most `enough` when it falls below
-// that.
-double star_quality(const Vec3& at, std::span<const StarSide> sides, double enough);
-
 // Moves a point within the sides of its star such that the smallest dihedral angle of all its tetrahedra
 // grows: steepest ascent of a minimum of smooth functions, along the shortest vector in the hull of the
 // gradients of those that are smallest. Stops when `goal` (a quality) is reached. Returns the quality there.
