@@ -435,8 +435,7 @@ class ModelReader {
     report_fails(transferred);
   }
 
-  void report_fails(const Interface_CheckIterator& list) {
-    Interface_CheckIterator checks = list;
+  void report_fails(const Interface_CheckIterator& checks) {
     for (checks.Start(); checks.More(); checks.Next()) {
       const Handle(Interface_Check)& check = checks.Value();
       if (!check->HasFailed()) continue;

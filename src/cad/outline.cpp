@@ -44,6 +44,7 @@ std::vector<Curve> open_ones(std::vector<Curve> curves, double size) {
 
 std::vector<Surface> as_surfaces(const std::vector<Curve>& curves) {
   std::vector<Surface> out;
+  out.reserve(curves.size());
   for (const Curve& curve : curves) out.push_back(as_surface(curve));
   return out;
 }
@@ -54,6 +55,7 @@ Reach worse(const Reach& a, const Reach& b) {
 
 Reach one_way(const std::vector<Surface>& from, const std::vector<Surface>& to, double enough) {
   std::vector<const Surface*> all;
+  all.reserve(to.size());
   for (const Surface& surface : to) all.push_back(&surface);
   const SurfaceSet others(all);
   Reach reach;

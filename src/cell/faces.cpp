@@ -242,6 +242,7 @@ Status Divider::chain(int face, std::size_t body, const std::vector<Side>& sides
 
 void Divider::nest(int face, std::size_t body, std::vector<Outline> outlines) {
   std::vector<std::vector<Vec2>> polygons;
+  polygons.reserve(outlines.size());
   for (const Outline& outline : outlines) polygons.push_back(polygon(face, outline));
   const std::vector<std::size_t> outer = outer_polygons(polygons);
   std::vector<std::size_t> regions(outlines.size());

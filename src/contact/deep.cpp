@@ -126,6 +126,7 @@ class DeepMeasurer {
     const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
     const auto seen = [&](const Vec3& p) { return Vec2((p - centre).dot(x), (p - centre).dot(y)); };
     std::vector<Vec2> polygon;
+    polygon.reserve(outline.size());
     for (const Vec3& p : outline) polygon.push_back(seen(p));
     for (const auto& t : mesh.triangles)
       for (std::size_t k = 0; k < 3; ++k) {

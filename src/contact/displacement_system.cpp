@@ -203,7 +203,8 @@ double DisplacementSystem::apply(const Demand& demand, const Eigen::VectorXd& x)
   const auto side = [&](const Demand::Side& one) {
     double sum = 0.0;
     for (int k = 0; k < 4; ++k)
-      sum += one.form.segment(k * modes_, modes_).dot(x.segment(column(one.strand, one.first + k), modes_));
+      sum += one.form.segment(Eigen::Index{k} * modes_, modes_)
+                 .dot(x.segment(column(one.strand, one.first + k), modes_));
     return sum;
   };
   return side(demand.plus) - side(demand.minus);
@@ -212,7 +213,8 @@ double DisplacementSystem::apply(const Demand& demand, const Eigen::VectorXd& x)
 void DisplacementSystem::scatter(const Demand& demand, double value, Eigen::VectorXd& y) const {
   const auto side = [&](const Demand::Side& one, double factor) {
     for (int k = 0; k < 4; ++k)
-      y.segment(column(one.strand, one.first + k), modes_) += factor * one.form.segment(k * modes_, modes_);
+      y.segment(column(one.strand, one.first + k), modes_) +=
+          factor * one.form.segment(Eigen::Index{k} * modes_, modes_);
   };
   side(demand.plus, value);
   side(demand.minus, -value);
@@ -220,7 +222,7 @@ void DisplacementSystem::scatter(const Demand& demand, double value, Eigen::Vect
 
 void DisplacementSystem::factor(std::span<const Demand> demands, const std::vector<char>& active,
                                 int threads) {
-  const Eigen::Index width = 4 * modes_;
+  const Eigen::Index width = Eigen::Index{4} * modes_;
   bands_.resize(members_.size());
   for (std::size_t lattice = 0; lattice < members_.size(); ++lattice)
     bands_[lattice] = Band::Zero(width, length(members_[lattice].front()));

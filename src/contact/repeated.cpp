@@ -19,8 +19,10 @@ std::size_t drop_repeated(std::vector<Contact>& list) {
     if (list[k].depth() > 0.0) by_yarns[{list[k].a, list[k].b}].push_back(k);
   std::size_t compared = 0;
   std::vector<bool> gone(list.size(), false);
-  for (const auto& [yarns, overlaps] : by_yarns) {
+  for (const auto& entry : by_yarns) {
+    const std::vector<std::size_t>& overlaps = entry.second;
     std::vector<Box3> places;
+    places.reserve(overlaps.size());
     for (const std::size_t k : overlaps) places.emplace_back(list[k].at);
     const BoxTree tree(std::move(places));
     for (std::size_t k = 0; k < overlaps.size(); ++k) {

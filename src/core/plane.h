@@ -41,6 +41,7 @@ inline constexpr std::size_t no_polygon = static_cast<std::size_t>(-1);
 // runs counter-clockwise; of a hole the smallest of these that holds its first corner (no_polygon: none).
 inline std::vector<std::size_t> outer_polygons(const std::vector<std::vector<Vec2>>& polygons) {
   std::vector<double> areas;
+  areas.reserve(polygons.size());
   for (const auto& polygon : polygons) areas.push_back(twice_area(polygon, polygon.front()));
   std::vector<std::size_t> result(polygons.size(), no_polygon);
   for (std::size_t i = 0; i < polygons.size(); ++i)
