@@ -377,7 +377,7 @@ std::optional<Unroller::CutPath> Unroller::straight_path(const Loop& low, const 
       if (const CutPath path = path_between(i, j); path.length < nearest.length) nearest = path;
     paths.push_back(nearest);
   }
-  if (const auto path = first_free(std::move(paths))) return path;
+  if (auto path = first_free(std::move(paths))) return path;
   constexpr std::size_t most = 4'000'000;
   const std::size_t stride = 1 + low.points.size() * high.points.size() / most;
   paths.clear();
