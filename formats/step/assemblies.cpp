@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "formats/step/graph.h"
+#include "core/graph.h"
 
 namespace selvage::formats::step {
 
@@ -61,8 +61,8 @@ class Assemblies {
     if (edges.empty()) return;
     const Graph graph = make_graph(file_.statements.size(), edges);
     std::vector<std::size_t> order;
-    if (const std::optional<Circle> circle = sort_from_leaves(graph, order)) {
-      const Statement &at = file_.statements[circle->at], &by = file_.statements[circle->by];
+    if (const std::vector<Circle> circles = sort_from_leaves(graph, order); !circles.empty()) {
+      const Statement &at = file_.statements[circles[0].at], &by = file_.statements[circles[0].by];
       report_.error(at.spot, fmt::format("#{} is {}, by way of #{}", at.id, circular, by.id));
       return;
     }

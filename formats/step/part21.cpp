@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "formats/step/graph.h"
+#include "core/graph.h"
 #include "formats/step/lexer.h"
 #include "formats/step/strings.h"
 
@@ -14,6 +14,11 @@ namespace selvage::formats::step {
 namespace {
 
 constexpr int deepest = 64;  // brackets in brackets
+
+const Statement* found_in(const std::vector<Statement>& sorted, int id) {
+  const auto found = std::ranges::lower_bound(sorted, id, {}, &Statement::id);
+  return found != sorted.end() && found->id == id ? &*found : nullptr;
+}
 
 // Statements by their ids.
 class Places {
@@ -30,9 +35,8 @@ class Places {
   [[nodiscard]] int of(int id) const {
     if (!table_.empty())
       return static_cast<std::size_t>(id) < table_.size() ? table_[static_cast<std::size_t>(id)] : -1;
-    const auto found = std::lower_bound(statements_.begin(), statements_.end(), id,
-                                        [](const Statement& a, int b) { return a.id < b; });
-    return found != statements_.end() && found->id == id ? static_cast<int>(found - statements_.begin()) : -1;
+    const Statement* const found = found_in(statements_, id);
+    return found != nullptr ? static_cast<int>(found - statements_.data()) : -1;
   }
 
  private:
@@ -284,8 +288,8 @@ class FileReader {
     graph.firsts.push_back(file_.refs.size());
     graph.targets = file_.targets;
     std::vector<std::size_t> order;
-    if (const std::optional<Circle> circle = sort_from_leaves(graph, order)) {
-      const Statement &at = file_.statements[circle->at], &by = file_.statements[circle->by];
+    if (const std::vector<Circle> circles = sort_from_leaves(graph, order); !circles.empty()) {
+      const Statement &at = file_.statements[circles[0].at], &by = file_.statements[circles[0].by];
       report_.error(at.spot, fmt::format("#{} refers to itself, by way of #{}", at.id, by.id));
     }
   }
@@ -302,9 +306,7 @@ class FileReader {
 }  // namespace
 
 const Statement* Part21::find(int id) const {
-  const auto found = std::lower_bound(statements.begin(), statements.end(), id,
-                                      [](const Statement& a, int b) { return a.id < b; });
-  return found != statements.end() && found->id == id ? &*found : nullptr;
+  return found_in(statements, id);
 }
 
 std::size_t Part21::refs_end(std::size_t place) const {

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <utility>
 #include <vector>
 
-namespace selvage::formats::step {
+namespace selvage {
 
 struct Graph {
   std::vector<std::size_t> firsts;  // node i leads to targets[firsts[i]] up to targets[firsts[i + 1]]
@@ -24,12 +23,13 @@ struct Circle {
   std::size_t at = 0, by = 0;
 };
 
-// `order` gets all nodes, each after those that it leads to; half of them where there is a circle. Time and
-// memory are linear, and nothing recurses: a chain may be as long as a file.
-std::optional<Circle> sort_from_leaves(const Graph& graph, std::vector<std::size_t>& order);
+// All circles, in the order in which a walk from the first node on finds them. `order` gets all nodes, each
+// after those that it leads to but for circles. Time and memory are linear, and nothing recurses: a chain may
+// be as long as a file.
+std::vector<Circle> sort_from_leaves(const Graph& graph, std::vector<std::size_t>& order);
 
 // In how many ways each node is reached from the nodes that nothing leads to; those themselves: 1. `order` is
 // that of sort_from_leaves. As double: the numbers grow beyond all integers.
 std::vector<double> count_ways(const Graph& graph, const std::vector<std::size_t>& order);
 
-}  // namespace selvage::formats::step
+}  // namespace selvage

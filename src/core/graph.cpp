@@ -1,9 +1,9 @@
-#include "formats/step/graph.h"
+#include "core/graph.h"
 
 #include <algorithm>
 #include <numeric>
 
-namespace selvage::formats::step {
+namespace selvage {
 
 Graph make_graph(std::size_t count, const std::vector<std::pair<int, int>>& edges) {
   Graph graph{std::vector<std::size_t>(count + 1, 0), std::vector<int>(edges.size())};
@@ -14,10 +14,11 @@ Graph make_graph(std::size_t count, const std::vector<std::pair<int, int>>& edge
   return graph;
 }
 
-std::optional<Circle> sort_from_leaves(const Graph& graph, std::vector<std::size_t>& order) {
+std::vector<Circle> sort_from_leaves(const Graph& graph, std::vector<std::size_t>& order) {
   enum : char { untouched, open, done };
   std::vector<char> state(graph.size(), untouched);
   std::vector<std::pair<std::size_t, std::size_t>> path;  // node, where it leads next
+  std::vector<Circle> circles;
   order.clear();
   for (std::size_t root = 0; root < state.size(); ++root) {
     if (state[root] != untouched) continue;
@@ -34,13 +35,13 @@ std::optional<Circle> sort_from_leaves(const Graph& graph, std::vector<std::size
       const int target = graph.targets[next++];
       if (target < 0) continue;
       const auto to = static_cast<std::size_t>(target);
-      if (state[to] == open) return Circle{to, at};
-      if (state[to] == done) continue;
+      if (state[to] == open) circles.push_back({to, at});
+      if (state[to] != untouched) continue;
       state[to] = open;
       path.emplace_back(to, graph.firsts[to]);
     }
   }
-  return std::nullopt;
+  return circles;
 }
 
 std::vector<double> count_ways(const Graph& graph, const std::vector<std::size_t>& order) {
@@ -53,4 +54,4 @@ std::vector<double> count_ways(const Graph& graph, const std::vector<std::size_t
   return ways;
 }
 
-}  // namespace selvage::formats::step
+}  // namespace selvage
