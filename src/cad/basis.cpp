@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "cad/model.h"
+
 namespace selvage::cad {
 
 namespace {
@@ -55,12 +57,6 @@ double largest_slope(const Surface& s, bool v) {
   return slope;
 }
 
-Box3 box_of(const Surface& s) {
-  Box3 box;
-  for (const Vec3& p : s.points) box.extend(p);
-  return box;
-}
-
 // Weighted means of the same points whose weights differ by a factor between low and high are at most
 // (high / low - 1) times the points' extent apart.
 double weight_slack(const Surface& a, const Surface& b, const Alignment& alignment) {
@@ -73,7 +69,7 @@ double weight_slack(const Surface& a, const Surface& b, const Alignment& alignme
       low = std::min(low, factor);
       high = std::max(high, factor);
     }
-  return (high / low - 1) * box_of(a).diagonal().norm();
+  return (high / low - 1) * box_of(a.points).diagonal().norm();
 }
 
 // One of the eight ways.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cad/edges.h"
 #include "cad/sampled_curve.h"
 
 namespace selvage::cad {
@@ -86,9 +87,8 @@ std::vector<Border> borders_of(const Face& face) {
       borders.emplace_back(std::move(side), static_cast<int>(borders.size()));
     return borders;
   }
-  for (const Loop& loop : face.loops)
-    for (const Edge& edge : loop.edges)
-      if (!edge.curve.points.empty()) borders.emplace_back(edge.curve);
+  for (const Edge& edge : edges_of(face))
+    if (!edge.curve.points.empty()) borders.emplace_back(edge.curve);
   return borders;
 }
 

@@ -44,6 +44,11 @@ struct PairFinding {
   std::optional<Motion> motion;
 };
 
+// What of its surface `k` a thing has.
+Range range_of(const Thing& thing, std::size_t k) {
+  return k < thing.faces.size() ? used_range(*thing.faces[k]) : domain(*thing.surfaces[k]);
+}
+
 class Comparer {
  public:
   Comparer(const Subject& a, const Subject& b, const CompareOptions& options)
@@ -130,9 +135,8 @@ std::vector<std::size_t> Comparer::partners(const Thing& a, const Thing& b) cons
   constexpr std::size_t most = 4000;
   if (count == 1 || count > most) return partner;
   const auto boxes = [](const Thing& thing) {
-    std::vector<Box3> list(thing.surfaces.size());
-    for (std::size_t k = 0; k < list.size(); ++k)
-      for (const Vec3& p : thing.surfaces[k]->points) list[k].extend(p);
+    std::vector<Box3> list;
+    for (const Surface* const surface : thing.surfaces) list.push_back(box_of(surface->points));
     return list;
   };
   const std::vector<Box3> of_a = boxes(a), of_b = boxes(b);
@@ -163,15 +167,13 @@ PairFinding Comparer::compare_unions(const Thing& a, const Thing& b) const {
   PairFinding finding;
   const SurfaceSet all_a(a.surfaces), all_b(b.surfaces);
   for (std::size_t i = 0; i < a.surfaces.size(); ++i) {
-    const Range range = i < a.faces.size() ? used_range(*a.faces[i]) : domain(*a.surfaces[i]);
-    const Reach reach = distance_to(*a.surfaces[i], range, all_b, limits_.distances);
+    const Reach reach = distance_to(*a.surfaces[i], range_of(a, i), all_b, limits_.distances);
     if (reach.at_most < finding.reach.at_most) continue;
     finding.reach = reach;
     finding.surface = i;
   }
   for (std::size_t j = 0; j < b.surfaces.size(); ++j) {
-    const Range range = j < b.faces.size() ? used_range(*b.faces[j]) : domain(*b.surfaces[j]);
-    const Reach reach = distance_to(*b.surfaces[j], range, all_a, limits_.distances);
+    const Reach reach = distance_to(*b.surfaces[j], range_of(b, j), all_a, limits_.distances);
     if (reach.at_most <= finding.reach.at_most) continue;
     finding.reach = reach;
     finding.surface = a.surfaces.size();
@@ -321,7 +323,7 @@ void Comparer::absorb_regrouped(Pairing& pairing) {
       double most = 0;
       for (std::size_t k = 0; k < thing.surfaces.size(); ++k) {
         const Surface& s = *thing.surfaces[k];
-        const Range range = k < thing.faces.size() ? used_range(*thing.faces[k]) : domain(s);
+        const Range range = range_of(thing, k);
         const Vec3 middle = nurbs::evaluate(s, 0.5 * (range.u0 + range.u1), 0.5 * (range.v0 + range.v1));
         if (others.near(middle).distance > near_) return false;
         most = std::max(most, distance_to(s, range, others, limits_.distances).at_most);

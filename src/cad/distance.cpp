@@ -118,6 +118,14 @@ double snapped(double t, const std::vector<double>& values, double near) {
   return t;
 }
 
+// The range divided at its middle in both directions; nothing where doubles have no number between.
+std::optional<std::array<Range, 4>> quarters(const Range& r) {
+  const double u = 0.5 * (r.u0 + r.u1), v = 0.5 * (r.v0 + r.v1);
+  if (!(u > r.u0 && u < r.u1 && v > r.v0 && v < r.v1)) return std::nullopt;
+  return std::array<Range, 4>{
+      {{r.u0, u, r.v0, v}, {u, r.u1, r.v0, v}, {r.u0, u, v, r.v1}, {u, r.u1, v, r.v1}}};
+}
+
 // The sorted breaks between two values, with these at the ends.
 std::vector<double> cut_to(const std::vector<double>& breaks, double low, double high) {
   std::vector<double> values = {low};
@@ -218,12 +226,9 @@ double SurfaceSet::least_distance(const Vec3& point, const Foot& foot) const {
     const Piece piece = queue.top();
     if (piece.distance >= near_enough) return piece.distance;
     queue.pop();
-    const Range& r = piece.range;
-    const double u = 0.5 * (r.u0 + r.u1), v = 0.5 * (r.v0 + r.v1);
-    if (!(u > r.u0 && u < r.u1 && v > r.v0 && v < r.v1)) return piece.distance;
-    for (const Range& part :
-         {Range{r.u0, u, r.v0, v}, Range{u, r.u1, r.v0, v}, Range{r.u0, u, v, r.v1}, Range{u, r.u1, v, r.v1}})
-      push(piece.target, part);
+    const auto parts = quarters(piece.range);
+    if (!parts) return piece.distance;
+    for (const Range& part : *parts) push(piece.target, part);
   }
   return queue.empty() ? foot.distance : queue.top().distance;
 }
@@ -438,15 +443,10 @@ Reach Surveyor::survey(const Range& range) {
     const Cell cell = cells_.top();
     if (cell.bound <= 1.1 * worst_foot_.distance || cell.depth >= deepest) break;
     cells_.pop();
-    const Range& r = cell.range;
-    const double u = 0.5 * (r.u0 + r.u1), v = 0.5 * (r.v0 + r.v1);
-    if (!(u > r.u0 && u < r.u1 && v > r.v0 && v < r.v1)) {
+    if (const auto parts = quarters(cell.range))
+      for (const Range& part : *parts) look_at(part, cell.depth + 1);
+    else
       settled_ = std::max(settled_, cell.bound);
-      continue;
-    }
-    for (const Range& part :
-         {Range{r.u0, u, r.v0, v}, Range{u, r.u1, r.v0, v}, Range{r.u0, u, v, r.v1}, Range{u, r.u1, v, r.v1}})
-      look_at(part, cell.depth + 1);
   }
   Reach reach;
   reach.at_most = cells_.empty() ? settled_ : std::max(settled_, cells_.top().bound);

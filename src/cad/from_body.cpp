@@ -45,12 +45,7 @@ Part part_of(const yarn::Body& body) {
     }
   }
   part.kind = closed ? Part::Kind::solid : Part::Kind::surfaces;
-  for (Face& face : part.faces) {
-    face.name = body.name;
-    face.color = body.color;
-    face.level = part.level;
-    face.origin.place = body.place;
-  }
+  for (Face& face : part.faces) face.label() = part.label();
   return part;
 }
 

@@ -10,6 +10,7 @@
 
 #include "cad/border.h"
 #include "cad/distance.h"
+#include "cad/sampled_curve.h"
 #include "core/box_tree.h"
 #include "nurbs/samples.h"
 
@@ -40,11 +41,8 @@ class Judge {
 
   Measures run() {
     Box3 all;
-    for (const Part& part : model_.parts)
-      for (const Face& face : part.faces)
-        for (const Vec3& p : face.surface.points) all.extend(p);
-    for (const NamedCurve& curve : model_.curves)
-      for (const Vec3& p : curve.curve.points) all.extend(p);
+    for (const Part& part : model_.parts) all.extend(box_of(part));
+    for (const NamedCurve& curve : model_.curves) all.extend(box_of(curve.curve.points));
     m_.size = all.isEmpty() ? 0 : all.sizes().maxCoeff();
     for (const Part& part : model_.parts) judge_part(part);
     m_.tolerance = std::max(model_.resolution, least_tolerance * m_.size);
@@ -58,22 +56,19 @@ class Judge {
     const Face* face;
   };
 
-  Message message(Severity severity, const Part& part, const Face& face, std::string text,
-                  const std::optional<Vec3>& at = std::nullopt) {
-    Message made = error(Kind::geometry, std::move(text));
+  void find(Severity severity, const Part& part, const Face& face, std::string_view text,
+            const std::optional<Vec3>& at = std::nullopt) {
+    Message made = error(Kind::geometry, fmt::format("{}: {}", who(face), text));
     made.severity = severity;
     made.place = place_of(part, face);
     made.at = at;
-    return made;
+    findings_.add(std::move(made));
   }
 
   void judge_part(const Part& part) {
-    Box3 box;
+    const Box3 box = box_of(part);
     bool sound = true;
-    for (const Face& face : part.faces) {
-      for (const Vec3& p : face.surface.points) box.extend(p);
-      sound = judge_spline(part, face) && sound;
-    }
+    for (const Face& face : part.faces) sound = judge_spline(part, face) && sound;
     m_.faces += part.faces.size();
     if (!sound || box.isEmpty()) return;
     size_ = box.sizes().maxCoeff();
@@ -114,9 +109,7 @@ class Judge {
       const std::vector<double>& knots = in_u ? s.knots_u : s.knots_v;
       const int degree = in_u ? s.degree_u : s.degree_v;
       if (!std::is_sorted(knots.begin(), knots.end())) {
-        findings_.add(
-            message(Severity::error, part, face,
-                    fmt::format("{}: its knots in {} are out of order", who(face), in_u ? "u" : "v")));
+        find(Severity::error, part, face, fmt::format("its knots in {} are out of order", in_u ? "u" : "v"));
         sound = false;
         continue;
       }
@@ -125,9 +118,9 @@ class Judge {
         while (next < knots.size() && knots[next] == knots[i]) ++next;
         const bool is_end = i == 0 || next == knots.size();
         if (next - i > static_cast<std::size_t>(degree) + (is_end ? 1 : 0))
-          findings_.add(message(Severity::error, part, face,
-                                fmt::format("{}: the knot {} in {} is there {} times, at degree {}",
-                                            who(face), knots[i], in_u ? "u" : "v", next - i, degree)));
+          find(Severity::error, part, face,
+               fmt::format("the knot {} in {} is there {} times, at degree {}", knots[i], in_u ? "u" : "v",
+                           next - i, degree));
         i = next;
       }
     }
@@ -135,8 +128,7 @@ class Judge {
       const double least = *std::min_element(s.weights.begin(), s.weights.end());
       m_.least_weight = std::min(m_.least_weight, least);
       if (!(least > 0)) {
-        findings_.add(
-            message(Severity::error, part, face, fmt::format("{}: a weight of {}", who(face), least)));
+        find(Severity::error, part, face, fmt::format("a weight of {}", least));
         sound = false;
       }
     }
@@ -151,11 +143,10 @@ class Judge {
                    next = end_of(face, loop.edges[(i + 1) % loop.edges.size()], false);
         const double gap = (end - next).norm();
         if (gap > tolerance_)
-          findings_.add(
-              message(Severity::error, part, face,
-                      fmt::format("{}: its boundary is not closed: {:.3g} {} between two of its edges",
-                                  who(face), gap, name_of(model_.units)),
-                      end));
+          find(Severity::error, part, face,
+               fmt::format("its boundary is not closed: {:.3g} {} between two of its edges", gap,
+                           name_of(model_.units)),
+               end);
       }
       for (const Edge& edge : loop.edges) judge_edge(part, face, edge, surface);
     }
@@ -164,8 +155,7 @@ class Judge {
   static Vec3 end_of(const Face& face, const Edge& edge, bool last) {
     const nurbs::Curve& c = edge.curve.points.empty() ? edge.flat : edge.curve;
     if (c.points.empty()) return face.surface.points.front();
-    const Vec3 p = nurbs::evaluate(c, last ? c.last_parameter() : c.first_parameter());
-    return &c == &edge.curve ? p : nurbs::evaluate(face.surface, p.x(), p.y());
+    return &c == &edge.curve ? at_share(c, last ? 1 : 0) : at_share(face.surface, c, last ? 1 : 0);
   }
 
   void judge_edge(const Part& part, const Face& face, const Edge& edge, std::optional<SurfaceSet>& surface) {
@@ -177,15 +167,12 @@ class Judge {
     for (const double share : {0.0, 0.21, 0.5, 0.77, 1.0}) {
       std::optional<Vec2> start;
       if (!edge.flat.points.empty()) {
-        const Vec3 flat = nurbs::evaluate(
-            edge.flat, std::lerp(edge.flat.first_parameter(), edge.flat.last_parameter(), share));
-        start = flat.head<2>();
+        start = at_share(edge.flat, share).head<2>();
         leaves =
             leaves || ((*start - low + slack).minCoeff() < 0) || ((high + slack - *start).minCoeff() < 0);
       }
       if (edge.curve.points.empty()) continue;
-      const Vec3 p = nurbs::evaluate(
-          edge.curve, std::lerp(edge.curve.first_parameter(), edge.curve.last_parameter(), share));
+      const Vec3 p = at_share(edge.curve, share);
       double distance = start ? (nurbs::evaluate(s, start->x(), start->y()) - p).norm() : 0;
       if (!start || distance > tolerance_) {
         if (!surface) surface.emplace(std::vector{&s});
@@ -196,14 +183,10 @@ class Judge {
         off_at = p;
       }
     }
-    if (leaves)
-      findings_.add(message(Severity::error, part, face,
-                            fmt::format("{}: its boundary leaves the range of its surface", who(face))));
+    if (leaves) find(Severity::error, part, face, "its boundary leaves the range of its surface");
     if (off > 10 * tolerance_)
-      findings_.add(message(
-          off > far_off * size_ ? Severity::error : Severity::warning, part, face,
-          fmt::format("{}: an edge lies {:.3g} {} off its surface", who(face), off, name_of(model_.units)),
-          off_at));
+      find(off > far_off * size_ ? Severity::error : Severity::warning, part, face,
+           fmt::format("an edge lies {:.3g} {} off its surface", off, name_of(model_.units)), off_at);
   }
 
   // An untrimmed face: poles, area, and whether it nearly closes.
@@ -212,10 +195,7 @@ class Judge {
     std::array<const Border*, 4> sides{};
     for (std::size_t i = 0; i < sides.size(); ++i) sides[i] = &borders[i].border;
     const double area = area_of(face.surface);
-    if (area <= no_area * size_ * size_) {
-      findings_.add(message(Severity::error, part, face, fmt::format("{}: a face without area", who(face))));
-      return;
-    }
+    if (area <= no_area * size_ * size_) return find(Severity::error, part, face, "a face without area");
     if (!m_.least_area || area < *m_.least_area) {
       m_.least_area = area;
       m_.least_area_entity = who(face);
@@ -224,11 +204,10 @@ class Judge {
     m_.largest_area = std::max(m_.largest_area.value_or(0), area);
     for (std::size_t i = 0; i < 4; ++i)
       if (sides[i]->length() <= tolerance_) {
-        ++m_.poles;
-        findings_.add(message(Severity::note, part, face,
-                              fmt::format("{}: its border {} is one point, a pole", who(face),
-                                          std::array{"u0", "u1", "v0", "v1"}[i]),
-                              sides[i]->points().front()));
+        if (m_.poles++ == 0) m_.first_pole = face.origin;
+        find(Severity::note, part, face,
+             fmt::format("its border {} is one point, a pole", std::array{"u0", "u1", "v0", "v1"}[i]),
+             sides[i]->points().front());
       }
     for (const std::size_t i : {std::size_t{0}, std::size_t{2}}) {
       if (sides[i]->length() <= tolerance_) continue;
@@ -236,12 +215,11 @@ class Judge {
       for (std::size_t k = 0; k < sides[i]->points().size(); ++k)
         gap = std::max(gap, (sides[i]->points()[k] - sides[i + 1]->points()[k]).norm());
       if (gap > rounding * size_ && gap <= tolerance_)
-        findings_.add(message(
-            Severity::warning, part, face,
-            fmt::format("{}: it is open in {} by {:.3g} {}, less than the tolerance: systems differ in "
-                        "whether they close it; let its first and last control points be equal",
-                        who(face), i == 0 ? "u" : "v", gap, name_of(model_.units)),
-            sides[i]->points().front()));
+        find(Severity::warning, part, face,
+             fmt::format("it is open in {} by {:.3g} {}, less than the tolerance: systems differ in "
+                         "whether they close it; let its first and last control points be equal",
+                         i == 0 ? "u" : "v", gap, name_of(model_.units)),
+             sides[i]->points().front());
     }
   }
 
@@ -301,15 +279,12 @@ class Judge {
     const Severity severity = part.kind == Part::Kind::solid ? Severity::error : Severity::warning;
     if (gap > far) {
       ++m_.open_borders;
-      findings_.add(
-          message(severity, part, face,
-                  fmt::format("{}: an edge of length {:.3g} {} has no other face beside it: the {} is open",
-                              who(face), border.length(), name_of(model_.units),
-                              part.kind == Part::Kind::solid   ? "solid"
-                              : part.kind == Part::Kind::shell ? "shell"
-                                                               : "group of surfaces"),
-                  gap_at));
-      return;
+      constexpr std::array<std::string_view, 3> kinds = {"group of surfaces", "shell", "solid"};
+      return find(
+          severity, part, face,
+          fmt::format("an edge of length {:.3g} {} has no other face beside it: the {} is open",
+                      border.length(), name_of(model_.units), kinds[static_cast<std::size_t>(part.kind)]),
+          gap_at);
     }
     if (gap > m_.largest_gap) {
       m_.largest_gap = gap;
@@ -317,12 +292,11 @@ class Judge {
       m_.gap_entity = who(face);
     }
     if (gap > tolerance_)
-      findings_.add(message(
-          severity, part, face,
-          fmt::format("{}: an edge and its neighbour are up to {:.3g} {} apart; {:.3g} are within the "
-                      "file's resolution",
-                      who(face), gap, name_of(model_.units), tolerance_),
-          gap_at));
+      find(severity, part, face,
+           fmt::format("an edge and its neighbour are up to {:.3g} {} apart; {:.3g} are within the "
+                       "file's resolution",
+                       gap, name_of(model_.units), tolerance_),
+           gap_at);
   }
 
   // Points that tell a face: of its surface's inside, or of its outer loop.
@@ -337,22 +311,15 @@ class Judge {
     Signature made{&part, &face, {}, {}};
     if (face.loops.empty()) {
       for (const double a : {0.2, 0.5, 0.8})
-        for (const double b : {0.2, 0.5, 0.8})
-          made.points.push_back(nurbs::evaluate(face.surface,
-                                                std::lerp(face.surface.first_u(), face.surface.last_u(), a),
-                                                std::lerp(face.surface.first_v(), face.surface.last_v(), b)));
+        for (const double b : {0.2, 0.5, 0.8}) made.points.push_back(at_shares(face.surface, a, b));
     } else {
       for (const Edge& edge : face.loops.front().edges)
         if (!edge.curve.points.empty())
-          for (const double a : {0.0, 0.5})
-            made.points.push_back(nurbs::evaluate(
-                edge.curve, std::lerp(edge.curve.first_parameter(), edge.curve.last_parameter(), a)));
+          for (const double a : {0.0, 0.5}) made.points.push_back(at_share(edge.curve, a));
       // Two half spheres have one outline: their insides differ.
-      made.points.push_back(nurbs::evaluate(face.surface,
-                                            0.5 * (face.surface.first_u() + face.surface.last_u()),
-                                            0.5 * (face.surface.first_v() + face.surface.last_v())));
+      made.points.push_back(at_shares(face.surface, 0.5, 0.5));
     }
-    for (const Vec3& p : made.points) made.box.extend(p);
+    made.box = box_of(made.points);
     return made;
   }
 
@@ -396,10 +363,8 @@ class Judge {
       // faces in another is there twice.
       const std::size_t fewest = std::min(first->part->faces.size(), second->part->faces.size());
       if (first->part != second->part && shared[std::minmax(first->part, second->part)] < fewest) continue;
-      findings_.add(message(
-          Severity::error, *second->part, *second->face,
-          fmt::format("{}: the same face as {}, at the same place", who(*second->face), who(*first->face)),
-          second->points.front()));
+      find(Severity::error, *second->part, *second->face,
+           fmt::format("the same face as {}, at the same place", who(*first->face)), second->points.front());
     }
   }
 

@@ -14,6 +14,7 @@ struct Measures {
   std::size_t faces = 0, borders = 0;
   std::size_t open_borders = 0;  // of solids and of parts with several faces: no other face beside them
   std::size_t poles = 0;         // borders of untrimmed faces that are one point
+  Origin first_pole;             // of the face that has the first of them
   double size = 0;               // largest side of the box round everything
   double tolerance = 0;          // up to which edges count as joined: see judge()
   double largest_gap = 0;        // between edges that are neighbours

@@ -37,22 +37,28 @@ struct Loop {
   std::vector<Edge> edges;
 };
 
-struct Face {
+// What the file says of a thing in it.
+struct Label {
+  std::string name;  // may be empty
+  std::optional<Color> color;
+  int level = 0;  // IGES
+  Origin origin;
+
+  Label& label() { return *this; }
+};
+
+struct Face : Label {
   // As in the file, restricted to the range that the file gives; it need not be clamped.
   nurbs::Surface surface;
   bool reversed = false;    // the face's outside is against S_u x S_v
   std::vector<Loop> loops;  // empty: the whole surface; else the outer one first, then holes
-  std::string name;
-  std::optional<Color> color;
-  int level = 0;  // IGES
-  Origin origin;
   // As another program's kernel measured it in the file that it read; none: nobody did. Who makes the face
   // anew has to find it again.
   std::optional<double> area;
 };
 
 // What belongs together, by the file's own word.
-struct Part {
+struct Part : Label {
   enum class Kind {
     surfaces,  // one face, or a group of them (IGES 402 form 7 with nothing but faces in it)
     shell,     // faces joined along their edges, not said to enclose anything
@@ -60,24 +66,20 @@ struct Part {
   };
   Kind kind = Kind::surfaces;
   std::vector<Face> faces;
-  std::string name;
   std::string group;  // of the outermost group or assembly below the file that holds it; empty: none
-  std::optional<Color> color;
-  int level = 0;
-  Origin origin;
 };
 
 // Are all edges of all faces shared by name, each by two of them (poles, which have no curve in space, need
 // not be)? Not when a face has no loops.
 bool has_shared_edges(const Part& part);
 
-struct NamedCurve {
+struct NamedCurve : Label {
   nurbs::Curve curve;
-  std::string name;
-  std::optional<Color> color;
-  int level = 0;
-  Origin origin;
 };
+
+// Of control points; of a part those of its surfaces.
+Box3 box_of(const std::vector<Vec3>& points);
+Box3 box_of(const Part& part);
 
 struct Model {
   std::string file;  // as messages name it

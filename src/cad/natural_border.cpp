@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "cad/edges.h"
 #include "cad/sampled_curve.h"
 #include "nurbs/divided.h"
 #include "nurbs/turn.h"
@@ -16,49 +17,32 @@ constexpr double flat_tolerance = 1e-6;      // of the parameters' range
 constexpr double coverage_slack = 0.01;      // of a side: a closed chain covers it a whole number of times
 constexpr std::size_t most_tests = 400'000;  // distances a side and edge
 
-std::vector<double> sample_parameters(const std::vector<double>& knots, int degree, int least) {
-  return nurbs::divided(knots, degree, degree == 1 ? 1 : 4, least);
+std::vector<double> sample_parameters(const nurbs::Curve& curve, int least) {
+  return nurbs::divided(curve.knots, curve.degree, curve.degree == 1 ? 1 : 4, least);
 }
 
 // One side of the surface: u or v is fixed.
-class Side {
- public:
-  Side(const nurbs::Surface& surface, bool along_u, bool last) : surface_(&surface), along_u_(along_u) {
-    fixed_ = along_u ? (last ? surface.last_v() : surface.first_v())
-                     : (last ? surface.last_u() : surface.first_u());
-    parameters_ = along_u ? sample_parameters(surface.knots_u, surface.degree_u, 16)
-                          : sample_parameters(surface.knots_v, surface.degree_v, 16);
-    points_ = along_u ? nurbs::evaluate_grid(surface, parameters_, {fixed_})
-                      : nurbs::evaluate_grid(surface, {fixed_}, parameters_);
-    length_ = nurbs::length_of(points_);
-  }
+struct Side {
+  Side(nurbs::Curve side, bool is_along_u, double at)
+      : curve(std::move(side)),
+        along_u(is_along_u),
+        fixed(at),
+        samples(curve, sample_parameters(curve, 16)) {}
+  // The samples refer to the curve.
+  Side(const Side&) = delete;
+  Side& operator=(const Side&) = delete;
 
-  [[nodiscard]] bool along_u() const { return along_u_; }
-  [[nodiscard]] double fixed() const { return fixed_; }
-  [[nodiscard]] double first() const { return parameters_.front(); }
-  [[nodiscard]] double last() const { return parameters_.back(); }
-  [[nodiscard]] double length() const { return length_; }
-  [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
+  [[nodiscard]] double first() const { return samples.parameters.front(); }
+  [[nodiscard]] double last() const { return samples.parameters.back(); }
   [[nodiscard]] bool is_closed(double tolerance) const {
-    return (points_.front() - points_.back()).norm() <= tolerance;
+    return (samples.points.front() - samples.points.back()).norm() <= tolerance;
   }
 
-  // Any place within `enough` will do.
-  [[nodiscard]] NearestOnCurve nearest(const Vec3& p, double enough) const {
-    return nearest_on(parameters_, points_, p, enough, [&](double t) -> nurbs::CurveJet {
-      const nurbs::SurfaceJet jet =
-          along_u_ ? nurbs::evaluate_jet(*surface_, t, fixed_) : nurbs::evaluate_jet(*surface_, fixed_, t);
-      return {jet.position, along_u_ ? jet.du : jet.dv, Vec3::Zero()};
-    });
-  }
-
- private:
-  const nurbs::Surface* surface_;
-  bool along_u_;
-  double fixed_ = 0;
-  std::vector<double> parameters_;
-  std::vector<Vec3> points_;
-  double length_ = 0;
+  nurbs::Curve curve;
+  bool along_u;
+  double fixed;
+  SampledCurve samples;
+  double length = samples.length();
 };
 
 // How often the edges run along a side, in shares of it: all of them, and with signs.
@@ -73,31 +57,30 @@ struct Coverage {
 
 std::optional<double> share_by_flat(const Side& side, const nurbs::Curve& flat,
                                     const nurbs::Surface& surface) {
-  const int across = side.along_u() ? 1 : 0;
+  const int across = side.along_u ? 1 : 0;
   const double width =
-      side.along_u() ? surface.last_v() - surface.first_v() : surface.last_u() - surface.first_u();
+      side.along_u ? surface.last_v() - surface.first_v() : surface.last_u() - surface.first_u();
   const double length = side.last() - side.first();
   for (const Vec3& p : flat.points) {
-    if (std::abs(p[across] - side.fixed()) > flat_tolerance * width) return std::nullopt;
+    if (std::abs(p[across] - side.fixed) > flat_tolerance * width) return std::nullopt;
     if (p[1 - across] < side.first() - flat_tolerance * length ||
         p[1 - across] > side.last() + flat_tolerance * length)
       return std::nullopt;
   }
-  const Vec3 from = nurbs::evaluate(flat, flat.first_parameter()),
-             to = nurbs::evaluate(flat, flat.last_parameter());
-  return (to[1 - across] - from[1 - across]) / length;
+  return (at_share(flat, 1) - at_share(flat, 0))[1 - across] / length;
 }
 
 // Nothing where the curve leaves the side, or does not run along it in one direction.
 std::optional<double> share_in_space(const Side& side, const std::vector<Vec3>& points, double tolerance) {
   const double period = side.last() - side.first();
   const bool closed = side.is_closed(tolerance);
-  const double slack = 1e-6 * period + period * tolerance / side.length();
-  const std::size_t stride = std::max<std::size_t>(1, points.size() * side.points().size() / most_tests);
+  const double slack = 1e-6 * period + period * tolerance / side.length;
+  const std::size_t stride =
+      std::max<std::size_t>(1, points.size() * side.samples.points.size() / most_tests);
   double sum = 0, before = 0, sign = 0;
   for (std::size_t i = 0; i < points.size();
        i = i + 1 == points.size() ? i + 1 : std::min(i + stride, points.size() - 1)) {
-    const NearestOnCurve foot = side.nearest(points[i], tolerance);
+    const NearestOnCurve foot = side.samples.nearest(points[i], tolerance);
     if (foot.distance > tolerance) return std::nullopt;
     if (i > 0) {
       double step = foot.parameter - before;
@@ -120,11 +103,7 @@ bool is_near(double value, double wanted) {
 
 class Border {
  public:
-  Border(const nurbs::Surface& surface, double tolerance)
-      : surface_(surface),
-        tolerance_(tolerance),
-        sides_{Side(surface, true, false), Side(surface, false, true), Side(surface, true, true),
-               Side(surface, false, false)} {}
+  Border(const nurbs::Surface& surface, double tolerance) : Border(surface, tolerance, sides_of(surface)) {}
 
   // False where it leaves the border.
   bool add(const Edge& edge) {
@@ -135,15 +114,11 @@ class Border {
           return true;
         }
     if (edge.curve.points.empty()) return edge.flat.points.empty();  // a pole
-    const std::vector<double> parameters =
-        sample_parameters(edge.curve.knots, edge.curve.degree, edge.curve.degree == 1 ? 2 : 12);
-    std::vector<Vec3> points;
-    points.reserve(parameters.size());
-    for (const double t : parameters) points.push_back(nurbs::evaluate(edge.curve, t));
-    if (nurbs::length_of(points) <= tolerance_) return true;
+    const SampledCurve samples(edge.curve, sample_parameters(edge.curve, edge.curve.degree == 1 ? 2 : 12));
+    if (samples.length() <= tolerance_) return true;
     for (std::size_t i = 0; i < 4; ++i) {
-      if (sides_[i].length() <= tolerance_) continue;
-      if (const auto share = share_in_space(sides_[i], points, tolerance_)) {
+      if (sides_[i].length <= tolerance_) continue;
+      if (const auto share = share_in_space(sides_[i], samples.points, tolerance_)) {
         coverage_[i].add(*share);
         return true;
       }
@@ -160,7 +135,7 @@ class Border {
         continue;
       }
       for (const std::size_t side : {i, i + 2})
-        if (sides_[side].length() > tolerance_ &&
+        if (sides_[side].length > tolerance_ &&
             !(is_near(coverage_[side].all, 1) && is_near(std::abs(coverage_[side].directed), 1)))
           return false;
     }
@@ -168,12 +143,18 @@ class Border {
   }
 
  private:
+  // `sides` as of sides_of().
+  Border(const nurbs::Surface& surface, double tolerance, std::array<nurbs::Curve, 4> sides)
+      : surface_(surface),
+        tolerance_(tolerance),
+        sides_{Side(std::move(sides[2]), true, surface.first_v()),
+               Side(std::move(sides[1]), false, surface.last_u()),
+               Side(std::move(sides[3]), true, surface.last_v()),
+               Side(std::move(sides[0]), false, surface.first_u())} {}
   // Do the opposite sides i and i + 2 coincide?
   [[nodiscard]] bool is_seam(std::size_t i) const {
-    const std::vector<Vec3>&a = sides_[i].points(), &b = sides_[i + 2].points();
-    for (std::size_t k = 0; k < a.size(); ++k)
-      if ((a[k] - b[k]).norm() > tolerance_) return false;
-    return sides_[i].length() > tolerance_;
+    return sides_[i].length > tolerance_ &&
+           largest_difference(sides_[i].samples.points, sides_[i + 2].samples.points) <= tolerance_;
   }
 
   const nurbs::Surface& surface_;
@@ -182,25 +163,18 @@ class Border {
   std::array<Coverage, 4> coverage_{};
 };
 
-nurbs::Curve flat_line(const Vec3& from, const Vec3& to, double t0, double t1) {
-  return {.degree = 1, .knots = {t0, t0, t1, t1}, .points = {from, to}, .weights = {}};
-}
-
 }  // namespace
 
 double border_tolerance(const Face& face, double resolution) {
-  Box3 box;
-  for (const Vec3& p : face.surface.points) box.extend(p);
-  const double size = box.sizes().norm();
+  const double size = box_of(face.surface.points).sizes().norm();
   return std::clamp(resolution, 1e-7 * size, 1e-5 * size);
 }
 
 bool has_natural_border(const Face& face, double tolerance) {
   if (face.loops.empty()) return true;
   Border border(face.surface, tolerance);
-  for (const Loop& loop : face.loops)
-    for (const Edge& edge : loop.edges)
-      if (!border.add(edge)) return false;
+  for (const Edge& edge : edges_of(face))
+    if (!border.add(edge)) return false;
   return border.is_covered();
 }
 
@@ -214,16 +188,13 @@ Loop natural_border(const nurbs::Surface& given, double tolerance) {
   const nurbs::Surface surface = nurbs::clamped(given);
   const double u0 = surface.first_u(), u1 = surface.last_u(), v0 = surface.first_v(), v1 = surface.last_v();
   const std::array<Vec3, 4> corners = {Vec3(u0, v0, 0), Vec3(u1, v0, 0), Vec3(u1, v1, 0), Vec3(u0, v1, 0)};
+  std::array<nurbs::Curve, 4> sides = nurbs::boundary_round(surface);
   Loop loop;
   for (std::size_t i = 0; i < 4; ++i) {
-    const bool along_u = i % 2 == 0, last = i == 1 || i == 2;
-    Edge edge;
-    edge.curve = along_u ? nurbs::boundary_row(surface, last) : nurbs::boundary_column(surface, last);
-    if (i >= 2) edge.curve = nurbs::reversed(edge.curve);
-    edge.flat = flat_line(corners[i], corners[(i + 1) % 4], edge.curve.first_parameter(),
-                          edge.curve.last_parameter());
-    if (Side(surface, along_u, last).length() <= tolerance) edge.curve = {};
-    loop.edges.push_back(std::move(edge));
+    Edge& edge = loop.edges.emplace_back();
+    edge.flat =
+        straight(corners[i], corners[(i + 1) % 4], sides[i].first_parameter(), sides[i].last_parameter());
+    if (SampledCurve(sides[i]).length() > tolerance) edge.curve = std::move(sides[i]);
   }
   return loop;
 }

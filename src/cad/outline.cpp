@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "cad/basis.h"
+#include "cad/edges.h"
 #include "cad/sampled_curve.h"
 
 namespace selvage::cad {
@@ -17,9 +18,7 @@ using nurbs::Surface;
 namespace {
 
 double size_of(const std::vector<Vec3>& points) {
-  Box3 box;
-  for (const Vec3& p : points) box.extend(p);
-  return box.isEmpty() ? 0.0 : box.diagonal().norm();
+  return points.empty() ? 0.0 : box_of(points).diagonal().norm();
 }
 
 bool same_curve(const Curve& a, const Curve& b, double near) {
@@ -68,8 +67,7 @@ Reach one_way(const std::vector<Surface>& from, const std::vector<Surface>& to, 
 
 std::vector<Curve> outline(const Face& face) {
   std::vector<Curve> curves;
-  for (const Loop& loop : face.loops)
-    for (const Edge& edge : loop.edges) curves.push_back(edge.curve);
+  for (const Edge& edge : edges_of(face)) curves.push_back(edge.curve);
   if (face.loops.empty()) std::ranges::copy(sides_of(face.surface), std::back_inserter(curves));
   return open_ones(std::move(curves), size_of(face.surface.points));
 }
@@ -95,11 +93,10 @@ Reach outline_distance(const Face& a, const Face& b, double enough) {
 Range used_range(const Face& face) {
   const Range whole = domain(face.surface);
   Box3 box;
-  for (const Loop& loop : face.loops)
-    for (const Edge& edge : loop.edges) {
-      if (edge.flat.points.empty()) return whole;
-      for (const Vec3& p : edge.flat.points) box.extend(p);
-    }
+  for (const Edge& edge : edges_of(face)) {
+    if (edge.flat.points.empty()) return whole;
+    box.extend(box_of(edge.flat.points));
+  }
   if (box.isEmpty()) return whole;
   const Range range = {std::max(whole.u0, box.min().x()), std::min(whole.u1, box.max().x()),
                        std::max(whole.v0, box.min().y()), std::min(whole.v1, box.max().y())};

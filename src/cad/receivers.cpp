@@ -66,8 +66,7 @@ class Receivers {
     if (m_.shortest_border > 0 && accuracy > short_border * m_.shortest_border) {
       const std::optional<double> absolute = absolute_accuracy(m_);
       warn(fmt::format("Creo: its default accuracy, 0.0012 of the part's size, is {:.2g} {} here, and {} has "
-                       "an edge of "
-                       "{:.2g} {}: import it with the absolute accuracy {:g} {}",
+                       "an edge of {:.2g} {}: import it with the absolute accuracy {:g} {}",
                        accuracy, unit_, m_.shortest_entity, m_.shortest_border, unit_, absolute.value_or(0),
                        unit_),
            m_.shortest_place);
@@ -77,52 +76,26 @@ class Receivers {
     }
     if (m_.open_borders > 0)
       warn(
-          fmt::format("Creo, SolidWorks: {} edges have a face on one side only (above): "
-                      "the quilt stays open; close it, or "
-                      "import it as surfaces",
+          fmt::format("Creo, SolidWorks: {} edges have a face on one side only (above): the quilt stays "
+                      "open; close it, or import it as surfaces",
                       m_.open_borders));
   }
 
   void poles() {
     if (m_.poles == 0) return;
-    const auto [face, part] = first_with_pole();
+    const std::string& face = m_.first_pole.entity;
     warn(fmt::format("Creo lists surfaces with a pole as bad geometry, and gmsh does not mesh such faces: {} "
-                     "of them{}; of "
-                     "Selvage's own yarns, write the ends with --ends patch",
-                     m_.poles, face == nullptr ? "" : ", the first is " + face->origin.entity),
-         face == nullptr ? TextPlace{} : face->origin.place);
-  }
-
-  [[nodiscard]] std::pair<const Face*, const Part*> first_with_pole() const {
-    for (const Part& part : model_.parts)
-      for (const Face& face : part.faces) {
-        if (!face.loops.empty() || face.surface.is_empty()) continue;
-        const nurbs::Surface& s = face.surface;
-        const auto is_point = [&](bool row, bool last) {
-          const double fixed = row ? (last ? s.last_v() : s.first_v()) : (last ? s.last_u() : s.first_u());
-          const Vec3 a =
-              row ? nurbs::evaluate(s, s.first_u(), fixed) : nurbs::evaluate(s, fixed, s.first_v());
-          for (const double share : {0.31, 0.5, 0.77, 1.0}) {
-            const Vec3 b = row ? nurbs::evaluate(s, std::lerp(s.first_u(), s.last_u(), share), fixed)
-                               : nurbs::evaluate(s, fixed, std::lerp(s.first_v(), s.last_v(), share));
-            if ((a - b).norm() > m_.tolerance) return false;
-          }
-          return true;
-        };
-        for (const bool row : {true, false})
-          for (const bool last : {true, false})
-            if (is_point(row, last)) return {&face, &part};
-      }
-    return {nullptr, nullptr};
+                     "of them, the first is {}; of Selvage's own yarns, write the ends with --ends patch",
+                     m_.poles, face),
+         m_.first_pole.place);
   }
 
   void gaps() {
     if (m_.largest_gap <= m_.tolerance) return;
-    warn(
-        fmt::format("SolidWorks and Creo knit surfaces only over gaps that their "
-                    "tolerance allows: the largest is {:.3g} {} "
-                    "at {}; allow more than that at import, or mend it where it was made",
-                    m_.largest_gap, unit_, m_.gap_entity));
+    warn(fmt::format(
+        "SolidWorks and Creo knit surfaces only over gaps that their tolerance allows: the largest is {:.3g} "
+        "{} at {}; allow more than that at import, or mend it where it was made",
+        m_.largest_gap, unit_, m_.gap_entity));
   }
 
   void ansys() {
@@ -132,8 +105,7 @@ class Receivers {
     if (model_.resolution > 0 && m_.shortest_border > 0 &&
         model_.resolution >= ansys_merge * m_.shortest_border)
       warn(fmt::format("ANSYS (IOPTN,GTOLER,FILE) and OpenCASCADE merge what is nearer than the file's "
-                       "resolution, {:.3g} {}: "
-                       "{} has an edge of {:.3g} {}; set the tolerance by hand",
+                       "resolution, {:.3g} {}: {} has an edge of {:.3g} {}; set the tolerance by hand",
                        model_.resolution, unit_, m_.shortest_entity, m_.shortest_border, unit_),
            m_.shortest_place);
   }
@@ -148,8 +120,7 @@ class Receivers {
   void slivers() {
     if (!m_.least_area || *m_.least_area >= sliver * *m_.largest_area) return;
     warn(fmt::format("ANSYS drops small areas by default, and gmsh, Netgen and HyperMesh fail on slivers: {} "
-                     "has an area of "
-                     "{:.3g} {}^2, the largest face {:.3g}; remove it where it was made",
+                     "has an area of {:.3g} {}^2, the largest face {:.3g}; remove it where it was made",
                      m_.least_area_entity, *m_.least_area, unit_, *m_.largest_area),
          m_.least_area_place);
   }
@@ -164,9 +135,8 @@ class Receivers {
   void abaqus() {
     if (const std::uint64_t instances = count("408"); instances > 0)
       warn(
-          fmt::format("Abaqus/CAE ignores subfigures (308, 408): the geometry of {} "
-                      "instances exists only in them; write "
-                      "the file without instances, or give it to Abaqus as STEP",
+          fmt::format("Abaqus/CAE ignores subfigures (308, 408): the geometry of {} instances exists only in "
+                      "them; write the file without instances, or give it to Abaqus as STEP",
                       instances));
     for (const auto& [entity, what] : std::array<std::pair<std::string_view, std::string_view>, 4>{
              {{"102", "composite curves: a face trimmed by one may come untrimmed"},
@@ -179,11 +149,10 @@ class Receivers {
 
   void occt_resolution_of_file() {
     if (model_.resolution > 0 && model_.resolution <= occt_resolution)
-      warn(
-          fmt::format("OpenCASCADE (and FreeCAD, gmsh) takes the resolution of the file as its tolerance "
-                      "only above 1e-8, "
-                      "and 1e-4 otherwise: it is {:.3g} {} (global parameter 19); write at least 1e-7",
-                      model_.resolution, unit_));
+      warn(fmt::format(
+          "OpenCASCADE (and FreeCAD, gmsh) takes the resolution of the file as its tolerance only above "
+          "1e-8, and 1e-4 otherwise: it is {:.3g} {} (global parameter 19); write at least 1e-7",
+          model_.resolution, unit_));
   }
 
   const Model& model_;

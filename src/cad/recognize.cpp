@@ -52,10 +52,6 @@ struct Fit {
   }
 };
 
-void put(yarn::Body& body, bool last, Lid& lid) {
-  (last ? body.end : body.start) = std::move(lid.face);
-}
-
 bool has_patch(const yarn::Body& body) {
   return body.start.style == yarn::EndStyle::patch || body.end.style == yarn::EndStyle::patch;
 }
@@ -69,7 +65,7 @@ void seal_end(yarn::Body& body, bool last, Lid& lid, std::array<bool, 2>& other)
       body.quarters = lid.quarters;
   }
   other[last ? 1 : 0] = lid.face.style == yarn::EndStyle::none;
-  put(body, last, lid);
+  (last ? body.end : body.start) = std::move(lid.face);
 }
 
 // Ends that are sealed by something else get a standard face: the first style that works.
@@ -91,8 +87,7 @@ bool replace_ends(yarn::Body& body, const std::array<bool, 2>& other) {
 
 Box3 box_of(const Polylines& outline) {
   Box3 box;
-  for (const std::vector<Vec3>& line : outline)
-    for (const Vec3& p : line) box.extend(p);
+  for (const std::vector<Vec3>& line : outline) box.extend(cad::box_of(line));
   return box;
 }
 

@@ -40,11 +40,10 @@ std::array<Chord, 4> nearest_chords(const std::vector<Vec3>& points, const Vec3&
 
 // Newton's method for the foot of the perpendicular within a smooth piece. It stays off the piece's ends,
 // where the derivatives are the next piece's.
-void improve(NearestOnCurve& nearest, const Vec3& p, double from, double to,
-             const std::function<nurbs::CurveJet(double)>& jet) {
+void improve(NearestOnCurve& nearest, const Vec3& p, double from, double to, const nurbs::Curve& curve) {
   double t = (from + to) / 2;
   for (int step = 0; step < 24; ++step) {
-    const nurbs::CurveJet at = jet(t);
+    const nurbs::CurveJet at = nurbs::evaluate_jet(curve, t);
     const Vec3 offset = at.position - p;
     const double distance = offset.norm(), speed = at.d1.squaredNorm();
     if (distance < nearest.distance) nearest = {t, distance};
@@ -61,25 +60,28 @@ void improve(NearestOnCurve& nearest, const Vec3& p, double from, double to,
 
 }  // namespace
 
-NearestOnCurve nearest_on(const std::vector<double>& parameters, const std::vector<Vec3>& points,
-                          const Vec3& p, double enough, const std::function<nurbs::CurveJet(double)>& jet) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < points.size(); ++i)
-    if ((points[i] - p).squaredNorm() < (points[best] - p).squaredNorm()) best = i;
-  NearestOnCurve nearest{parameters[best], (points[best] - p).norm()};
-  if (nearest.distance == 0) return nearest;
-  for (const Chord& chord : nearest_chords(points, p)) {
-    if (!std::isfinite(chord.distance)) break;
-    improve(nearest, p, parameters[chord.index], parameters[chord.index + 1], jet);
-    if (nearest.distance <= enough) break;
-  }
-  return nearest;
-}
-
 std::array<nurbs::Curve, 4> sides_of(const nurbs::Surface& surface) {
   const nurbs::Surface whole = nurbs::clamped(surface);
   return {nurbs::boundary_column(whole, false), nurbs::boundary_column(whole, true),
           nurbs::boundary_row(whole, false), nurbs::boundary_row(whole, true)};
+}
+
+Vec3 at_share(const nurbs::Curve& curve, double share) {
+  return nurbs::evaluate(curve, std::lerp(curve.first_parameter(), curve.last_parameter(), share));
+}
+
+Vec3 at_shares(const nurbs::Surface& surface, double of_u, double of_v) {
+  return nurbs::evaluate(surface, std::lerp(surface.first_u(), surface.last_u(), of_u),
+                         std::lerp(surface.first_v(), surface.last_v(), of_v));
+}
+
+Vec3 at_share(const nurbs::Surface& surface, const nurbs::Curve& flat, double share) {
+  const Vec3 p = at_share(flat, share);
+  return nurbs::evaluate(surface, p.x(), p.y());
+}
+
+nurbs::Curve straight(const Vec3& from, const Vec3& to, double t0, double t1) {
+  return {.degree = 1, .knots = {t0, t0, t1, t1}, .points = {from, to}, .weights = {}};
 }
 
 bool is_point(const nurbs::Curve& curve, double tolerance) {
@@ -87,10 +89,14 @@ bool is_point(const nurbs::Curve& curve, double tolerance) {
                      [&](const Vec3& p) { return (p - curve.points.front()).norm() <= tolerance; });
 }
 
-SampledCurve::SampledCurve(const nurbs::Curve& sampled) : curve(&sampled) {
+SampledCurve::SampledCurve(const nurbs::Curve& sampled) {
   const std::vector<double> breaks = nurbs::breakpoints(sampled.knots, sampled.degree);
   const int parts = breaks.size() < 5 ? 8 : 2;  // of a span
-  parameters = nurbs::divided(breaks, std::vector<int>(breaks.size() - 1, parts));
+  *this = {sampled, nurbs::divided(breaks, std::vector<int>(breaks.size() - 1, parts))};
+}
+
+SampledCurve::SampledCurve(const nurbs::Curve& sampled, std::vector<double> at)
+    : curve(&sampled), parameters(std::move(at)) {
   points.reserve(parameters.size());
   for (const double t : parameters) points.push_back(nurbs::evaluate(sampled, t));
 }
@@ -99,8 +105,18 @@ double SampledCurve::length() const {
   return nurbs::length_of(points);
 }
 
-NearestOnCurve SampledCurve::nearest(const Vec3& p) const {
-  return nearest_on(parameters, points, p, 0, [&](double t) { return nurbs::evaluate_jet(*curve, t); });
+NearestOnCurve SampledCurve::nearest(const Vec3& p, double enough) const {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if ((points[i] - p).squaredNorm() < (points[best] - p).squaredNorm()) best = i;
+  NearestOnCurve nearest{parameters[best], (points[best] - p).norm()};
+  if (nearest.distance == 0) return nearest;
+  for (const Chord& chord : nearest_chords(points, p)) {
+    if (!std::isfinite(chord.distance)) break;
+    improve(nearest, p, parameters[chord.index], parameters[chord.index + 1], *curve);
+    if (nearest.distance <= enough) break;
+  }
+  return nearest;
 }
 
 double closeness(double size, double largest_coordinate, double resolution) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <vector>
 
 #include "cad/model.h"
@@ -12,6 +11,15 @@ namespace selvage::cad {
 // The sides of a surface's range: u = first, u = last, v = first, v = last.
 std::array<nurbs::Curve, 4> sides_of(const nurbs::Surface& surface);
 
+// The curve's point at a share of its range: 0 its start, 1 its end.
+Vec3 at_share(const nurbs::Curve& curve, double share);
+Vec3 at_shares(const nurbs::Surface& surface, double of_u, double of_v);
+// The surface's point at the flat curve's.
+Vec3 at_share(const nurbs::Surface& surface, const nurbs::Curve& flat, double share);
+
+// Over [t0, t1].
+nurbs::Curve straight(const Vec3& from, const Vec3& to, double t0 = 0, double t1 = 1);
+
 // Does the whole curve lie in one place? By its control points.
 bool is_point(const nurbs::Curve& curve, double tolerance);
 
@@ -20,14 +28,6 @@ struct NearestOnCurve {
   double parameter, distance;
 };
 
-// The place of a curve that is nearest to `p`, or any within `enough` of it. `points` are the curve's at the
-// increasing `parameters` (as many, at least two), the knots among them; `jet` gives it at a parameter, where
-// d2 may be zero (then places far from `p` are found less exactly). Looks along the samples' nearest chords:
-// the nearest sample need not be next to the nearest place, where a closed curve begins or samples are
-// uneven.
-NearestOnCurve nearest_on(const std::vector<double>& parameters, const std::vector<Vec3>& points,
-                          const Vec3& p, double enough, const std::function<nurbs::CurveJet(double)>& jet);
-
 // Points of a curve at its knots and between them, with their parameters: enough to find the nearest place.
 struct SampledCurve {
   const nurbs::Curve* curve = nullptr;  // outlives this
@@ -35,9 +35,12 @@ struct SampledCurve {
   std::vector<Vec3> points;
 
   explicit SampledCurve(const nurbs::Curve& sampled);
-  [[nodiscard]] double length() const;  // of the polyline through the points
-  // The curve's place that is nearest to `p`.
-  [[nodiscard]] NearestOnCurve nearest(const Vec3& p) const;
+  SampledCurve(const nurbs::Curve& sampled, std::vector<double> at);  // the knots among them
+  [[nodiscard]] double length() const;                                // of the polyline through the points
+  // The curve's place that is nearest to `p`, or any within `enough` of it. Looks along the nearest chords:
+  // the nearest sample need not be next to the nearest place, where a closed curve begins or samples are
+  // uneven.
+  [[nodiscard]] NearestOnCurve nearest(const Vec3& p, double enough = 0) const;
 };
 
 // How far points may be apart that are meant to be one: the file's resolution, within 1e-6 and 1e-4 of the

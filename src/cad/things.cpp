@@ -7,6 +7,7 @@
 #include <map>
 
 #include "cad/distance.h"
+#include "cad/edges.h"
 #include "core/box_tree.h"
 
 namespace selvage::cad {
@@ -36,9 +37,8 @@ class Edges {
   explicit Edges(const Model& model) {
     for (const Part& part : model.parts)
       for (const Face& face : part.faces)
-        for (const Loop& loop : face.loops)
-          for (const Edge& edge : loop.edges)
-            if (!edge.curve.points.empty()) by_ends_.emplace(key(edge.curve), &edge.curve);
+        for (const Edge& edge : edges_of(face))
+          if (!edge.curve.points.empty()) by_ends_.emplace(key(edge.curve), &edge.curve);
   }
   [[nodiscard]] bool contain(const nurbs::Curve& curve) const {
     if (curve.points.empty()) return false;
@@ -205,15 +205,7 @@ class Pairer {
 }  // namespace
 
 std::string_view name_of(Thing::Kind kind) {
-  switch (kind) {
-    case Thing::Kind::yarn:
-      return "yarn";
-    case Thing::Kind::part:
-      return "part";
-    case Thing::Kind::curve:
-      return "curve";
-  }
-  return "part";
+  return std::array<std::string_view, 3>{"yarn", "part", "curve"}[static_cast<std::size_t>(kind)];
 }
 
 Things things_of(const Subject& subject) {

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string>
 
+#include "cad/edges.h"
+#include "cad/sampled_curve.h"
 #include "cell/faces.h"
 #include "cell/tube_faces.h"
-#include "core/groups.h"
 #include "nurbs/bezier.h"  // Box2
 #include "nurbs/restrict.h"
 #include "yarn/end_plane.h"
@@ -65,22 +65,14 @@ struct Shell {
 
 // In the order of their first faces; those from `first_planar` on lie in faces of the box.
 std::vector<Shell> shells_of(std::vector<cad::Face> faces, std::size_t first_planar) {
-  Groups groups(faces.size());
-  std::map<int, std::size_t> first;
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    for (const cad::Loop& loop : faces[i].loops)
-      for (const cad::Edge& edge : loop.edges) groups.join(first.try_emplace(edge.id, i).first->second, i);
   std::vector<Shell> shells;
-  std::map<std::size_t, std::size_t> index;
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const auto [at, is_new] = index.try_emplace(groups.of(i), shells.size());
-    if (is_new) shells.emplace_back();
-    Shell& shell = shells[at->second];
-    shell.in_box_faces = shell.in_box_faces || i >= first_planar;
-    for (const cad::Loop& loop : faces[i].loops)
-      for (const cad::Edge& edge : loop.edges)
-        for (const Vec3& p : edge.curve.points) shell.box.extend(p);
-    shell.faces.push_back(std::move(faces[i]));
+  for (const std::vector<std::size_t>& members : cad::shells_of(faces)) {
+    Shell& shell = shells.emplace_back();
+    for (const std::size_t i : members) {
+      shell.in_box_faces = shell.in_box_faces || i >= first_planar;
+      for (const cad::Edge& edge : cad::edges_of(faces[i])) shell.box.extend(cad::box_of(edge.curve.points));
+      shell.faces.push_back(std::move(faces[i]));
+    }
   }
   return shells;
 }
@@ -97,8 +89,7 @@ class CellBuilder {
       tubes_.of_arc.push_back({tubes_.edges.size()});
       const Vec3 &a = division_.corners[part.from].at, &b = division_.corners[part.to].at;
       const double length = (b - a).norm();
-      tubes_.edges.push_back(
-          {{.degree = 1, .knots = {0, 0, length, length}, .points = {a, b}, .weights = {}}, {}});
+      tubes_.edges.push_back({cad::straight(a, b, 0, length), {}});
     }
     std::vector<cad::Part> parts;
     std::vector<cad::Face> around;  // of the matrix
@@ -211,7 +202,7 @@ class CellBuilder {
           return Vec3(0, 1 - share, 0);
       }
     };
-    return {.degree = 1, .knots = {t0, t0, t1, t1}, .points = {at(t0), at(t1)}, .weights = {}};
+    return cad::straight(at(t0), at(t1), t0, t1);
   }
 
   // The faces that a yarn has in common with the matrix.
@@ -271,10 +262,7 @@ class CellBuilder {
     part.level = level;
     part.origin.place = place;
     for (cad::Face& face : part.faces) {
-      face.name = part.name;
-      face.color = color;
-      face.level = level;
-      face.origin.place = place;
+      face.label() = part.label();
     }
     parts.push_back(std::move(part));
   }

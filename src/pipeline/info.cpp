@@ -1,6 +1,7 @@
 // `selvage info`: what is in a file.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -77,12 +78,9 @@ std::string other_tables(const Job& job, const fabric::Fabric& fabric) {
     constexpr std::array<std::string_view, 3> kinds = {"surfaces", "shell", "solid"};
     Table table({"part", "kind", "faces", "trimmed", "extent", "entity"});
     for (const cad::Part& part : fabric.parts) {
-      Box3 box;
-      std::size_t trimmed = 0;
-      for (const cad::Face& face : part.faces) {
-        for (const Vec3& p : face.surface.points) box.extend(p);
-        trimmed += face.loops.empty() ? 0 : 1;
-      }
+      const Box3 box = cad::box_of(part);
+      const auto trimmed =
+          std::ranges::count_if(part.faces, [](const cad::Face& face) { return !face.loops.empty(); });
       table.add({part.name.empty() ? "-" : part.name, std::string(kinds[static_cast<std::size_t>(part.kind)]),
                  std::to_string(part.faces.size()), std::to_string(trimmed),
                  box.isEmpty() ? "-" : cell(converted(box.diagonal().norm(), file, shown)),

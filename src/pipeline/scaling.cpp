@@ -3,6 +3,7 @@
 #include <array>
 #include <numeric>
 
+#include "cad/edges.h"
 #include "yarn/ends.h"
 
 namespace selvage::pipeline {
@@ -102,8 +103,7 @@ void convert_lengths(cad::Part& part, Unit from, Unit to) {
   };
   for (cad::Face& face : part.faces) {
     all(face.surface.points);
-    for (cad::Loop& loop : face.loops)
-      for (cad::Edge& edge : loop.edges) all(edge.curve.points);
+    for (cad::Edge& edge : cad::edges_of(face)) all(edge.curve.points);
   }
 }
 
