@@ -1,9 +1,9 @@
 #include "formats/iges/entities.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 
 #include "nurbs/turn.h"
 
@@ -24,29 +24,44 @@ void write_weights(Records& records, const std::vector<double>& weights, std::si
     records.reals(weights);
 }
 
-}  // namespace
-
-bool is_closed_u(const nurbs::Surface& surface) {
-  if (!nurbs::is_clamped(surface.knots_u, surface.degree_u)) return false;
-  const int last = surface.count_u - 1;
-  for (int j = 0; j < surface.count_v; ++j)
-    if (surface.point(0, j) != surface.point(last, j) || surface.weight(0, j) != surface.weight(last, j))
-      return false;
-  return true;
-}
-
-bool is_closed_v(const nurbs::Surface& surface) {
-  if (!nurbs::is_clamped(surface.knots_v, surface.degree_v)) return false;
-  const int last = surface.count_v - 1;
-  for (int i = 0; i < surface.count_u; ++i)
-    if (surface.point(i, 0) != surface.point(i, last) || surface.weight(i, 0) != surface.weight(i, last))
-      return false;
-  return true;
-}
-
 bool is_closed(const nurbs::Curve& curve) {
   return nurbs::is_clamped(curve.knots, curve.degree) && curve.points.front() == curve.points.back() &&
          (curve.weights.empty() || curve.weights.front() == curve.weights.back());
+}
+
+// Does the first control column (row) equal the last, in a surface that is clamped there?
+bool is_closed(const nurbs::Surface& surface, bool in_u) {
+  if (!(in_u ? nurbs::is_clamped(surface.knots_u, surface.degree_u)
+             : nurbs::is_clamped(surface.knots_v, surface.degree_v)))
+    return false;
+  const nurbs::Curve first =
+                         in_u ? nurbs::boundary_column(surface, false) : nurbs::boundary_row(surface, false),
+                     last = in_u ? nurbs::boundary_column(surface, true) : nurbs::boundary_row(surface, true);
+  return first.points == last.points && first.weights == last.weights;
+}
+
+}  // namespace
+
+// Magnitudes order like their bits, and what is not finite is above all others.
+std::optional<double> largest_of(std::span<const double> values) {
+  constexpr std::uint64_t sign = std::uint64_t{1} << 63U;
+  std::uint64_t largest = 0;
+  for (const double value : values) largest = std::max(largest, std::bit_cast<std::uint64_t>(value) & ~sign);
+  const double magnitude = std::bit_cast<double>(largest);
+  return std::isfinite(magnitude) ? std::optional(magnitude) : std::nullopt;
+}
+
+std::optional<double> largest_of(const std::vector<Vec3>& points) {
+  return points.empty() ? 0.0 : largest_of({points.data()->data(), 3 * points.size()});
+}
+
+bool is_finite(const nurbs::Surface& surface) {
+  return largest_of(surface.points) && largest_of(surface.weights) && largest_of(surface.knots_u) &&
+         largest_of(surface.knots_v);
+}
+
+bool is_finite(const nurbs::Curve& curve) {
+  return largest_of(curve.points) && largest_of(curve.weights) && largest_of(curve.knots);
 }
 
 int write_surface(Records& records, const Entity& entity, const nurbs::Surface& surface, int property) {
@@ -55,8 +70,8 @@ int write_surface(Records& records, const Entity& entity, const nurbs::Surface& 
   records.integer(surface.count_v - 1);
   records.integer(surface.degree_u);
   records.integer(surface.degree_v);
-  records.integer(is_closed_u(surface) ? 1 : 0);
-  records.integer(is_closed_v(surface) ? 1 : 0);
+  records.integer(is_closed(surface, true) ? 1 : 0);
+  records.integer(is_closed(surface, false) ? 1 : 0);
   records.integer(is_polynomial(surface.weights) ? 1 : 0);
   records.integer(0);  // periodic in neither direction: the knots are clamped
   records.integer(0);
@@ -100,7 +115,8 @@ int write_planar_end(Records& records, const Common& common, const yarn::Body& b
   const int flat =
       write_curve(records, common.entity(126, 0, dependent_in_2d), plane.in_parameters(outline), &up);
   const int curve = write_curve(records, common.entity(126, 0, dependent), outline, &plane.normal);
-  return write_trimmed(records, common, write_boundary(records, common, surface, flat, curve), surface);
+  const int boundary = write_boundary(records, common, surface, flat, curve);
+  return write_trimmed(records, common, {&boundary, 1}, surface);
 }
 
 int write_boundary(Records& records, const Common& common, int surface, int flat, int spatial) {
@@ -114,28 +130,35 @@ int write_boundary(Records& records, const Common& common, int surface, int flat
   return pointer;
 }
 
-int write_trimmed(Records& records, const Common& common, int boundary, int surface) {
+int write_trimmed(Records& records, const Common& common, std::span<const int> boundaries, int surface) {
   const int pointer = records.begin(common.entity(144));
   records.integer(surface);
   records.integer(1);  // the outer boundary is not the surface's own
-  records.integer(0);  // no holes
-  records.integer(boundary);
+  records.integer(static_cast<std::int64_t>(boundaries.size()) - 1);
+  for (const int boundary : boundaries) records.integer(boundary);
   records.end(common.name);
+  return pointer;
+}
+
+int write_composite(Records& records, const Common& common, std::string_view status,
+                    std::span<const int> curves) {
+  const int pointer = records.begin(common.entity(102, 0, status));
+  records.list(curves);
+  records.end();
   return pointer;
 }
 
 int write_group(Records& records, const Common& common, std::span<const int> members) {
   const int pointer = records.begin(common.entity(402, 7));
-  records.integer(static_cast<std::int64_t>(members.size()));
-  for (const int member : members) records.integer(member);
+  records.list(members);
   records.end(common.name);
   return pointer;
 }
 
-int write_name(Records& records, const Common& common, std::string_view ascii_name) {
+int write_name(Records& records, const Common& common) {
   const int pointer = records.begin({.type = 406, .form = 15, .label = common.label});
   records.integer(1);  // number of values
-  records.text(ascii_name);
+  records.text(common.label);
   records.end();
   return pointer;
 }
@@ -154,8 +177,7 @@ int write_definition(Records& records, const Common& common, std::string_view as
   const int pointer = records.begin(common.entity(308, 0, definition));
   records.integer(0);  // depth: no instances inside
   records.text(ascii_name);
-  records.integer(static_cast<std::int64_t>(members.size()));
-  for (const int member : members) records.integer(member);
+  records.list(members);
   records.end();
   return pointer;
 }

@@ -2,6 +2,7 @@
 // directory pointer. Pointers that are arguments are directory pointers.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -26,10 +27,12 @@ struct Common {
   }
 };
 
-// Does the first control column (row) equal the last, in a surface that is clamped there?
-bool is_closed_u(const nurbs::Surface& surface);
-bool is_closed_v(const nurbs::Surface& surface);
-bool is_closed(const nurbs::Curve& curve);
+// The largest magnitude of numbers that are all finite; nothing where one is not, which cannot be written.
+std::optional<double> largest_of(std::span<const double> values);
+std::optional<double> largest_of(const std::vector<Vec3>& points);
+bool is_finite(const nurbs::Surface& surface);
+bool is_finite(const nurbs::Curve& curve);
+inline constexpr std::string_view not_finite = "has a coordinate, weight or knot that is not a finite number";
 
 // 128, form 0. `property`: of the entity, or 0.
 int write_surface(Records& records, const Entity& entity, const nurbs::Surface& surface, int property = 0);
@@ -45,11 +48,15 @@ inline constexpr int entities_of_planar_end = 5;
 
 // 142: the boundary of a trimmed surface by a curve in its parameters and the same in space.
 int write_boundary(Records& records, const Common& common, int surface, int flat, int spatial);
-int write_trimmed(Records& records, const Common& common, int boundary, int surface);  // 144, without holes
+// 144; the outer boundary is the first.
+int write_trimmed(Records& records, const Common& common, std::span<const int> boundaries, int surface);
+// 102; `status` is that of the curves.
+int write_composite(Records& records, const Common& common, std::string_view status,
+                    std::span<const int> curves);
 
 int write_group(Records& records, const Common& common, std::span<const int> members);  // 402, form 7
-int write_name(Records& records, const Common& common, std::string_view ascii_name);    // 406, form 15
-int write_level_name(Records& records, int level, std::string_view name);               // 406, form 3
+int write_name(Records& records, const Common& common);  // 406, form 15: the label, all of it
+int write_level_name(Records& records, int level, std::string_view name);  // 406, form 3
 // 308, of members that say that they are dependent; `ascii_name`: of the shape.
 int write_definition(Records& records, const Common& common, std::string_view ascii_name,
                      std::span<const int> members);

@@ -28,7 +28,7 @@ std::string hollerith(std::string_view text) {
 
 std::string real(double value) {
   std::array<char, max_number_length> buffer;
-  return {buffer.data(), write_real(buffer.data(), value)};
+  return {buffer.data(), write_pointed(buffer.data(), value)};
 }
 
 // Fills lines of 72 columns with parameters; only strings may run over the end of a line.

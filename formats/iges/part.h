@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <string_view>
 
 #include "cad/model.h"
 #include "formats/iges/entities.h"
@@ -12,7 +12,7 @@ namespace selvage::formats::iges {
 
 // Why the part cannot be written; empty: it can. Numbers that are not finite, a loop of which neither all
 // curves in space nor all curves in the parameters are known.
-std::string fault_of(const cad::Part& part);
+std::string_view fault_of(const cad::Part& part);
 
 // Does a 186 say it all: every face with loops, every edge with an id that two uses share?
 bool is_written_as_solid(const cad::Part& part);

@@ -15,11 +15,7 @@ int write_outline(Records& records, const Common& common, const fabric::PieceSha
   std::vector<int> parts;
   for (const fabric::PieceEdge& edge : piece.edges)
     parts.push_back(write_curve(records, common.entity(126, 0, status), edge.curve, &up));
-  const int pointer = records.begin(common.entity(102, 0, status));
-  records.integer(static_cast<std::int64_t>(parts.size()));
-  for (const int part : parts) records.integer(part);
-  records.end();
-  return pointer;
+  return write_composite(records, common, status, parts);
 }
 
 }  // namespace
@@ -42,21 +38,21 @@ int entities_of_piece(const fabric::PieceShape& piece) {
   return 6 + 4 * static_cast<int>(piece.edges.size());
 }
 
-void write_piece(Records& records, const Common& common, const fabric::PieceShape& piece) {
+int write_piece(Records& records, const Common& common, const fabric::PieceShape& piece) {
   const int plane = write_surface(records, common.entity(128, 0, dependent), plane_of(piece));
   const int flat = write_outline(records, common, piece, dependent_in_2d);
   const int spatial = write_outline(records, common, piece, dependent);
-  std::vector<int> members = {
-      write_trimmed(records, common, write_boundary(records, common, plane, flat, spatial), plane)};
+  const int boundary = write_boundary(records, common, plane, flat, spatial);
+  std::vector<int> members = {write_trimmed(records, common, {&boundary, 1}, plane)};
   const Vec3 up = Vec3::UnitZ();
   for (const fabric::PieceEdge& edge : piece.edges) {
     const std::string name = ascii(edge.name);
     Common of_edge = common;
     of_edge.label = name;
-    of_edge.name = write_name(records, of_edge, name);
+    of_edge.name = write_name(records, of_edge);
     members.push_back(write_curve(records, of_edge.entity(126), edge.curve, &up, of_edge.name));
   }
-  write_group(records, common, members);
+  return write_group(records, common, members);
 }
 
 }  // namespace selvage::formats::iges

@@ -84,11 +84,16 @@ void Records::integer(std::int64_t value) {
   cursor_ = end > line_ + data_columns ? next_line(cursor_, end) : end;
 }
 
+void Records::list(std::span<const int> values) {
+  integer(static_cast<std::int64_t>(values.size()));
+  for (const int value : values) integer(value);
+}
+
 void Records::reals(const double* values, std::size_t count) {
   char* at = cursor_;
   const char* limit = line_ + data_columns;
   for (std::size_t i = 0; i < count; ++i) {
-    char* end = write_real(at, values[i]);
+    char* end = write_pointed(at, values[i]);
     *end++ = ',';
     if (end > limit) {
       end = next_line(at, end);

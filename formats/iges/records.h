@@ -8,12 +8,13 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "core/diagnostics.h"
-#include "core/number_text.h"
 #include "core/output.h"
+#include "core/pointed_number.h"
 #include "nurbs/spline.h"
 
 namespace selvage::formats::iges {
@@ -21,24 +22,6 @@ namespace selvage::formats::iges {
 inline constexpr std::size_t line_length = 81;         // 80 columns and the newline
 inline constexpr std::size_t data_columns = 64;        // of a parameter line
 inline constexpr std::int64_t most_lines = 9'999'999;  // in one section: the number has seven columns
-
-// Writes a finite `value` as IGES has it: the shortest digits that read back to the same bits, always with a
-// decimal point, exponent letter E: "0.1", "-3.", "1.E+22". At most max_number_length bytes; returns the end.
-inline char* write_real(char* out, double value) {
-  char* end = write_number(out, value);
-  char* exponent = end;
-  if (end - out > 4 && end[-4] == 'e') exponent = end - 4;
-  if (end - out > 5 && end[-5] == 'e') exponent = end - 5;
-  char* at = out;
-  while (at != exponent && *at != '.') ++at;
-  if (at == exponent) {  // no point among the digits
-    for (char* from = end; from != exponent; --from) *from = from[-1];
-    *exponent++ = '.';
-    ++end;
-  }
-  if (exponent != end) *exponent = 'E';
-  return end;
-}
 
 // The status field: blank, subordinate, use, hierarchy; two digits each.
 inline constexpr std::string_view independent = "00000000";
@@ -78,7 +61,8 @@ class Records {
   void reals(const double* values, std::size_t count);
   void reals(const std::vector<double>& values) { reals(values.data(), values.size()); }
   void points(const std::vector<Vec3>& points) { reals(points.data()->data(), 3 * points.size()); }
-  void ones(std::size_t count);  // 1. so many times
+  void ones(std::size_t count);            // 1. so many times
+  void list(std::span<const int> values);  // how many there are, then they themselves
   void text(std::string_view ascii);
   // `property`: directory pointer of a property of this entity; 0: none.
   void end(int property = 0);

@@ -10,27 +10,15 @@ namespace {
 
 using yarn::EndStyle;
 
-// The topology of one yarn. Vertices, edges and faces have the indices 0, 1, ... in the order in which they
-// were added.
-struct Edge {
-  nurbs::Curve curve;
-  std::size_t from = 0, to = 0;
-  const Vec3* normal = nullptr;  // of the curve's plane
-};
-struct Use {
-  bool is_vertex =
-      false;  // a pole: the loop passes through a point where the surface has an edge of length zero
-  std::size_t index = 0;
-  bool forward = true;
-};
+// The topology of one yarn.
 struct Face {
   const nurbs::Surface* surface = nullptr;
-  bool outward = true;    // S_u x S_v points out of the yarn
-  std::vector<Use> loop;  // counter-clockwise in the surface's parameters
+  bool outward = true;        // S_u x S_v points out of the yarn
+  std::vector<EdgeUse> loop;  // counter-clockwise in the surface's parameters
 };
 struct Topology {
   std::vector<Vec3> vertices;
-  std::vector<Edge> edges;
+  std::vector<SolidEdge> edges;
   std::vector<Face> faces;
 };
 
@@ -61,7 +49,7 @@ Rim add_rim(Topology& topology, const yarn::Body& body, bool last, const yarn::E
   return rim;
 }
 
-void add_uses(std::vector<Use>& loop, const Rim& rim, bool forward) {
+void add_uses(std::vector<EdgeUse>& loop, const Rim& rim, bool forward) {
   for (std::size_t k = 0; k < rim.count; ++k)
     loop.push_back({false, rim.first_edge + (forward ? k : rim.count - 1 - k), forward});
 }
@@ -111,51 +99,75 @@ Topology tube(const yarn::Body& body, const yarn::EndPlane* start, const yarn::E
   return topology;
 }
 
-int write_vertex_list(Records& records, const Common& common, const std::vector<Vec3>& vertices) {
-  const int pointer = records.begin(common.entity(502, 1, dependent));
+}  // namespace
+
+SolidLists write_lists(Records& records, const Common& common, const std::vector<Vec3>& vertices,
+                       const std::vector<SolidEdge>& edges) {
+  std::vector<int> curves;
+  for (const SolidEdge& edge : edges)
+    curves.push_back(write_curve(records, common.entity(126, 0, dependent), edge.curve, edge.normal));
+  SolidLists lists;
+  lists.vertices = records.begin(common.entity(502, 1, dependent));
   records.integer(static_cast<std::int64_t>(vertices.size()));
   records.points(vertices);
   records.end();
-  return pointer;
-}
-
-int write_edge_list(Records& records, const Common& common, const std::vector<Edge>& edges,
-                    const std::vector<int>& curves, int vertex_list) {
-  const int pointer = records.begin(common.entity(504, 1, dependent));
+  lists.edges = records.begin(common.entity(504, 1, dependent));
   records.integer(static_cast<std::int64_t>(edges.size()));
   for (std::size_t i = 0; i < edges.size(); ++i) {
     records.integer(curves[i]);
     for (const std::size_t vertex : {edges[i].from, edges[i].to}) {
-      records.integer(vertex_list);
+      records.integer(lists.vertices);
       records.integer(static_cast<std::int64_t>(vertex) + 1);
     }
   }
   records.end();
-  return pointer;
+  return lists;
 }
 
-int write_face(Records& records, const Common& common, const Face& face, int surface, int vertex_list,
-               int edge_list) {
-  const int loop = records.begin(common.entity(508, 1, dependent));
-  records.integer(static_cast<std::int64_t>(face.loop.size()));
-  for (const Use& use : face.loop) {
+int write_loop(Records& records, const Common& common, const SolidLists& lists,
+               std::span<const EdgeUse> uses) {
+  const int pointer = records.begin(common.entity(508, 1, dependent));
+  records.integer(static_cast<std::int64_t>(uses.size()));
+  for (const EdgeUse& use : uses) {
     records.integer(use.is_vertex ? 1 : 0);
-    records.integer(use.is_vertex ? vertex_list : edge_list);
+    records.integer(use.is_vertex ? lists.vertices : lists.edges);
     records.integer(static_cast<std::int64_t>(use.index) + 1);
     records.integer(use.forward ? 1 : 0);
-    records.integer(0);  // no curves in the surface's parameters
+    records.integer(use.flat != 0 ? 1 : 0);
+    if (use.flat == 0) continue;
+    records.integer(0);  // not said to be along a parameter
+    records.integer(use.flat);
   }
-  records.end();
-  const int pointer = records.begin(common.entity(510, 1, dependent));
-  records.integer(surface);
-  records.integer(1);  // loops
-  records.integer(1);  // the first is the outer one
-  records.integer(loop);
   records.end();
   return pointer;
 }
 
-}  // namespace
+int write_face(Records& records, const Common& common, int surface, std::span<const int> loops,
+               int property) {
+  const int pointer = records.begin(common.entity(510, 1, dependent));
+  records.integer(surface);
+  records.integer(static_cast<std::int64_t>(loops.size()));
+  records.integer(1);  // the first is the outer one
+  for (const int loop : loops) records.integer(loop);
+  records.end(property);
+  return pointer;
+}
+
+int write_shell(Records& records, const Common& common, std::span<const SolidFace> faces) {
+  const int shell = records.begin(common.entity(514, 1, dependent));
+  records.integer(static_cast<std::int64_t>(faces.size()));
+  for (const SolidFace& face : faces) {
+    records.integer(face.pointer);
+    records.integer(face.outward ? 1 : 0);
+  }
+  records.end();
+  const int solid = records.begin(common.entity(186));
+  records.integer(shell);
+  records.integer(1);  // the shell's orientation is that of its faces
+  records.integer(0);  // no voids
+  records.end(common.name);
+  return solid;
+}
 
 int entities_of_solid(const yarn::Body& body) {
   // Face: surface, 508, 510; and 502, 504, 514, 186.
@@ -175,29 +187,16 @@ int write_solid(Records& records, const Common& common, const yarn::Body& body) 
   };
   const Topology topology = body.closed_along ? ring(body) : tube(body, plane_of(false), plane_of(true));
 
-  std::vector<int> surfaces, curves, faces;
+  std::vector<int> surfaces;
   for (const Face& face : topology.faces)
     surfaces.push_back(write_surface(records, common.entity(128, 0, dependent), *face.surface));
-  for (const Edge& edge : topology.edges)
-    curves.push_back(write_curve(records, common.entity(126, 0, dependent), edge.curve, edge.normal));
-  const int vertex_list = write_vertex_list(records, common, topology.vertices);
-  const int edge_list = write_edge_list(records, common, topology.edges, curves, vertex_list);
-  for (std::size_t i = 0; i < topology.faces.size(); ++i)
-    faces.push_back(write_face(records, common, topology.faces[i], surfaces[i], vertex_list, edge_list));
-
-  const int shell = records.begin(common.entity(514, 1, dependent));
-  records.integer(static_cast<std::int64_t>(faces.size()));
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    records.integer(faces[i]);
-    records.integer(topology.faces[i].outward ? 1 : 0);
+  const SolidLists lists = write_lists(records, common, topology.vertices, topology.edges);
+  std::vector<SolidFace> faces;
+  for (const Face& face : topology.faces) {
+    const int loop = write_loop(records, common, lists, face.loop);
+    faces.push_back({write_face(records, common, surfaces[faces.size()], {&loop, 1}), face.outward});
   }
-  records.end();
-  const int solid = records.begin(common.entity(186));
-  records.integer(shell);
-  records.integer(1);  // the shell's orientation is that of its faces
-  records.integer(0);  // no voids
-  records.end(common.name);
-  return solid;
+  return write_shell(records, common, faces);
 }
 
 }  // namespace selvage::formats::iges

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "core/number_text.h"
+#include "core/pointed_number.h"
 
 namespace selvage::formats::step {
 
@@ -165,20 +165,8 @@ void StepStream::put_number(std::string_view number) {
   if (!number.substr(sign).starts_with("0x")) return put(number);
   double value = 0.0;
   std::from_chars(number.data() + sign + 2, number.data() + number.size(), value, std::chars_format::hex);
-  put_real(sign == 1 ? -value : value);
-}
-
-void StepStream::put_real(double value) {
-  char real[max_number_length + 1];
-  char* end = write_number(real, value);
-  char* exponent = std::find(real, end, 'e');
-  if (std::find(real, exponent, '.') == exponent) {
-    std::copy_backward(exponent, end, end + 1);
-    *exponent++ = '.';
-    ++end;
-  }
-  if (exponent != end) *exponent = 'E';
-  put({real, static_cast<std::size_t>(end - real)});
+  char real[max_number_length];
+  put({real, static_cast<std::size_t>(write_pointed(real, sign == 1 ? -value : value) - real)});
 }
 
 // Lines are broken after a comma, a space or an opening bracket, never inside a string.

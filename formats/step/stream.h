@@ -34,7 +34,6 @@ class StepStream : public std::streambuf {
   void convert_string(std::string_view piece);
   void put(std::string_view token);
   void put_number(std::string_view number);
-  void put_real(double value);
   void put_encoded();
 
   OutputFile& output_;

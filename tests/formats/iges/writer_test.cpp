@@ -25,7 +25,7 @@ using yarn::EndStyle;
 
 std::string real(double value) {
   char buffer[max_number_length];
-  return {buffer, formats::iges::write_real(buffer, value)};
+  return {buffer, write_pointed(buffer, value)};
 }
 
 TEST(Real, HasAPointAndAnUpperCaseExponent) {
