@@ -19,17 +19,15 @@ using Kind = nurbs::Analytic::Kind;
 // The vector of a 116 or 123, turned as its own transformation says, and for a point moved.
 std::optional<Vec3> pointed_vector(Reading& reading, int pointer, int type, Parameters& by) {
   const DirectoryEntry* const entry = reading.entry(pointer, type, by);
-  if (entry == nullptr) return std::nullopt;
-  Parameters in = reading.file().parameters(*entry);
-  const Vec3 vector = read_point(in);
-  if (in.ok() && type == 123 && !(vector.norm() > 0)) in.fail("a direction without length");
-  if (!reading.finish(*entry, in)) {
-    by.give_up({});
-    return std::nullopt;
-  }
+  const std::optional<Vec3> vector = reading.inside(entry, by, [&](Parameters& in) {
+    const Vec3 read = read_point(in);
+    if (in.ok() && type == 123 && !(read.norm() > 0)) in.fail("a direction without length");
+    return std::optional(read);
+  });
+  if (!vector) return std::nullopt;
   const Placement placement = reading.placement(*entry);
-  if (type == 116) return placement(vector);
-  return placement.is_identity ? vector : Vec3(placement.linear * vector);
+  if (type == 116) return placement(*vector);
+  return placement.is_identity ? vector : std::optional<Vec3>(placement.linear * *vector);
 }
 
 // A x + B y + C z = D.
@@ -51,10 +49,7 @@ double read_radius(Parameters& in, const char* what) {
 std::optional<nurbs::Surface> read_whole(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
   const std::optional<nurbs::Analytic> shape = read_analytic(reading, entry, in);
   if (!shape) return std::nullopt;
-  if (!shape->is_finite()) {
-    in.give_up("it has no end, and nothing bounds it here");
-    return std::nullopt;
-  }
+  if (!shape->is_finite()) return in.give_up("it has no end, and nothing bounds it here");
   return shape->part(shape->whole());
 }
 
@@ -64,19 +59,14 @@ std::optional<cad::Face> read_bounded_plane(Reading& reading, const DirectoryEnt
   const int pointer = in.pointer();
   for (int value = 0; value < 4; ++value) in.real();  // where its symbol stands, and how large
   if (!plane) return std::nullopt;
-  if (entry.form != 1 || pointer == 0) {
-    in.give_up(entry.form == -1 ? "it is a hole in a plane" : "it is a plane without end");
-    return std::nullopt;
-  }
+  if (entry.form != 1 || pointer == 0)
+    return in.give_up(entry.form == -1 ? "it is a hole in a plane" : "it is a plane without end");
   std::vector<nurbs::Curve> chain = read_chain(reading, pointer, in);
   if (!in.ok()) return std::nullopt;
   cad::Loop loop;
   for (nurbs::Curve& curve : chain) loop.edges.push_back({std::move(curve), {}, -1});
   const auto range = plane->bounded_by({points_along(loop)});
-  if (!range) {
-    in.fail("its curve bounds no area");
-    return std::nullopt;
-  }
+  if (!range) return in.fail("its curve bounds no area");
   cad::Face face;
   face.surface = plane->part(plane->widened(*range));
   face.loops.push_back(std::move(loop));
@@ -112,24 +102,20 @@ std::optional<nurbs::Analytic> read_analytic(Reading& reading, const DirectoryEn
   if (entry.type == 198) {
     radius = read_radius(in, "major radius");
     second = read_radius(in, "minor radius");
-    if (in.ok() && second >= radius) {
+    if (in.ok() && second >= radius)
       in.give_up(fmt::format("its radii are {} and {}: it crosses itself", radius, second));
-      return std::nullopt;
-    }
   }
   const int reference_pointer = has_reference ? in.pointer() : 0;
   if (!in.ok()) return std::nullopt;
   const std::optional<Vec3> origin = pointed_vector(reading, place, 116, in);
-  const std::optional<Vec3> axis = axis_pointer != 0 || !is_sphere
-                                       ? pointed_vector(reading, axis_pointer, 123, in)
-                                       : std::optional(Vec3(0, 0, 1));
-  const std::optional<Vec3> reference = reference_pointer != 0
-                                            ? pointed_vector(reading, reference_pointer, 123, in)
-                                            : std::optional(is_sphere ? Vec3(1, 0, 0) : Vec3(0, 0, 0));
-  if (!in.ok() || !origin || !axis || !reference) return std::nullopt;
+  Vec3 axis = Vec3::UnitZ(), reference = is_sphere ? Vec3(1, 0, 0) : Vec3(0, 0, 0);
+  if (axis_pointer != 0 || !is_sphere) axis = pointed_vector(reading, axis_pointer, 123, in).value_or(axis);
+  if (reference_pointer != 0)
+    reference = pointed_vector(reading, reference_pointer, 123, in).value_or(reference);
+  if (!in.ok()) return std::nullopt;
   constexpr std::array<Kind, 5> kinds = {Kind::plane, Kind::cylinder, Kind::cone, Kind::sphere, Kind::torus};
   nurbs::Analytic shape = nurbs::Analytic::placed(kinds[static_cast<std::size_t>(entry.type - 190) / 2],
-                                                  *origin, *axis, *reference);
+                                                  *origin, axis, reference);
   shape.radius = radius;
   shape.half_angle = second * std::numbers::pi / 180;
   shape.minor = second;

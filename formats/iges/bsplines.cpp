@@ -38,57 +38,57 @@ std::int64_t read_degree(Parameters& in, std::int64_t last) {
   return degree;
 }
 
+// `values` from where `in` stands. fail_at(i, text) is what is wrong with number i of them.
+bool read_values(Parameters& in, std::vector<double>& values, const auto& is_wrong) {
+  const Parameters start = in;
+  if (!in.reals(values.data(), values.size())) return false;
+  return !is_wrong([&](std::size_t i, std::string text) {
+    Parameters again = start;
+    std::vector<double> before(i);
+    again.reals(before.data(), i);
+    again.real();
+    in.fail(again.spot(), std::move(text));
+    return true;
+  });
+}
+
 // Not decreasing, with a domain, and nowhere so many equal ones that the shape falls apart.
 bool read_knots(Parameters& in, const Direction& direction, std::vector<double>& knots,
                 std::string_view which) {
   knots.resize(direction.knots());
-  Parameters start = in;
-  if (!in.reals(knots.data(), knots.size())) return false;
-  const auto order = static_cast<std::size_t>(direction.degree) + 1;
-  const std::size_t points = direction.points();
-  const auto fail = [&](std::size_t at, std::string text) {
-    std::vector<double> before(at + 1);
-    start.reals(before.data(), at);
-    start.real();
-    in.fail(start.spot(), std::move(text));
+  return read_values(in, knots, [&](const auto& fail) {
+    const auto order = static_cast<std::size_t>(direction.degree) + 1;
+    const std::size_t points = direction.points();
+    for (std::size_t i = 1; i < knots.size(); ++i)
+      if (knots[i] < knots[i - 1])
+        return fail(i, fmt::format("{} {} is {} and thus below the one before it, {}", which, i + 1, knots[i],
+                                   knots[i - 1]));
+    if (!(knots[order - 1] < knots[points]))
+      return fail(points,
+                  fmt::format("the {}s span nothing: from {} to {}", which, knots[order - 1], knots[points]));
+    for (std::size_t i = 1; i + order <= points; ++i)  // inner ones
+      if (knots[i] == knots[i + order - 1] && knots[i] > knots[order - 1] && knots[i] < knots[points])
+        return fail(i, fmt::format("{} {} stands {} times or more: the shape of degree {} falls apart there",
+                                   which, knots[i], order, direction.degree));
     return false;
-  };
-  for (std::size_t i = 1; i < knots.size(); ++i)
-    if (knots[i] < knots[i - 1])
-      return fail(i, fmt::format("{} {} is {} and thus below the one before it, {}", which, i + 1, knots[i],
-                                 knots[i - 1]));
-  if (!(knots[order - 1] < knots[points]))
-    return fail(points,
-                fmt::format("the {}s span nothing: from {} to {}", which, knots[order - 1], knots[points]));
-  for (std::size_t i = 1; i + order <= points; ++i)  // inner ones
-    if (knots[i] == knots[i + order - 1] && knots[i] > knots[order - 1] && knots[i] < knots[points])
-      return fail(i, fmt::format("{} {} stands {} times or more: the shape of degree {} falls apart there",
-                                 which, knots[i], order, direction.degree));
-  return true;
+  });
 }
 
 // Empty where all are 1.
 bool read_weights(Parameters& in, std::size_t count, std::vector<double>& weights) {
   weights.resize(count);
-  Parameters start = in;
-  if (!in.reals(weights.data(), count)) return false;
-  const auto bad = std::find_if(weights.begin(), weights.end(), [](double weight) { return !(weight > 0); });
-  if (bad != weights.end()) {
-    std::vector<double> before(count);
-    start.reals(before.data(), static_cast<std::size_t>(bad - weights.begin()));
-    start.real();
-    in.fail(start.spot(), fmt::format("a weight of {}: weights have to be above 0", *bad));
-    return false;
-  }
-  if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 1; })) {
-    weights.clear();
-    weights.shrink_to_fit();
-  }
-  return true;
+  const bool good = read_values(in, weights, [&](const auto& fail) {
+    const auto bad = std::ranges::find_if_not(weights, [](double weight) { return weight > 0; });
+    return bad != weights.end() && fail(static_cast<std::size_t>(bad - weights.begin()),
+                                        fmt::format("a weight of {}: weights have to be above 0", *bad));
+  });
+  if (std::ranges::all_of(weights, [](double weight) { return weight == 1; })) weights = {};
+  return good;
 }
 
 struct Range {
   double from = 0, to = 0;
+  bool operator==(const Range&) const = default;
 };
 
 // What of the domain the file says is the shape: all of it where the file says nothing, or more than there
@@ -96,8 +96,7 @@ struct Range {
 Range used_range(Reading& reading, const DirectoryEntry& entry, const Range& said, const Range& domain,
                  std::string_view which) {
   const double slack = 1e-9 * (domain.to - domain.from);
-  if (said.from == domain.from && said.to == domain.to) return domain;
-  if (said.from == 0 && said.to == 0) return domain;  // defaulted
+  if (said == domain || said == Range{}) return domain;  // or defaulted
   if (!(said.from < said.to) || said.from < domain.from - slack || said.to > domain.to + slack) {
     reading.warning(
         entry, fmt::format("its range {} to {} of {} is not within the knots' {} to {}; all of it is taken",
@@ -110,10 +109,6 @@ Range used_range(Reading& reading, const DirectoryEntry& entry, const Range& sai
   return used;
 }
 
-bool is_all(const Range& used, const Range& domain) {
-  return used.from == domain.from && used.to == domain.to;
-}
-
 std::optional<nurbs::Curve> read_curve(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
   Direction along;
   along.last = read_last(in);
@@ -121,10 +116,8 @@ std::optional<nurbs::Curve> read_curve(Reading& reading, const DirectoryEntry& e
   for (int flag = 1; flag <= 4; ++flag)
     in.integer();  // planar, closed, polynomial, periodic: seen in the numbers
   if (!in.ok()) return std::nullopt;
-  if (along.knots() + 4 * along.points() > in.room()) {
-    in.fail(fmt::format("{} control points: more than the entity's lines can hold", along.points()));
-    return std::nullopt;
-  }
+  if (along.knots() + 4 * along.points() > in.room())
+    return in.fail(fmt::format("{} control points: more than the entity's lines can hold", along.points()));
   nurbs::Curve curve;
   curve.degree = static_cast<int>(along.degree);
   if (!read_knots(in, along, curve.knots, "knot") || !read_weights(in, along.points(), curve.weights))
@@ -136,7 +129,7 @@ std::optional<nurbs::Curve> read_curve(Reading& reading, const DirectoryEntry& e
   if (!in.ok()) return std::nullopt;
   const Range domain{curve.first_parameter(), curve.last_parameter()};
   const Range used = used_range(reading, entry, {from, to}, domain, "the parameter");
-  if (is_all(used, domain)) return curve;
+  if (used == domain) return curve;
   return nurbs::restricted(curve, used.from, used.to);
 }
 
@@ -148,11 +141,9 @@ std::optional<nurbs::Surface> read_surface(Reading& reading, const DirectoryEntr
   v.degree = read_degree(in, v.last);
   for (int flag = 1; flag <= 5; ++flag) in.integer();  // closed, polynomial, periodic: seen in the numbers
   if (!in.ok()) return std::nullopt;
-  if (u.knots() + v.knots() + 4 * u.points() * v.points() > in.room()) {
-    in.fail(
+  if (u.knots() + v.knots() + 4 * u.points() * v.points() > in.room())
+    return in.fail(
         fmt::format("{} x {} control points: more than the entity's lines can hold", u.points(), v.points()));
-    return std::nullopt;
-  }
   nurbs::Surface surface;
   surface.degree_u = static_cast<int>(u.degree);
   surface.degree_v = static_cast<int>(v.degree);
@@ -170,7 +161,7 @@ std::optional<nurbs::Surface> read_surface(Reading& reading, const DirectoryEntr
   const Range domain_u{surface.first_u(), surface.last_u()}, domain_v{surface.first_v(), surface.last_v()};
   const Range used_u = used_range(reading, entry, {ranges[0], ranges[1]}, domain_u, "u");
   const Range used_v = used_range(reading, entry, {ranges[2], ranges[3]}, domain_v, "v");
-  if (is_all(used_u, domain_u) && is_all(used_v, domain_v)) return surface;
+  if (used_u == domain_u && used_v == domain_v) return surface;
   return nurbs::restricted(surface, used_u.from, used_u.to, used_v.from, used_v.to);
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cad/sampled_curve.h"
 #include "formats/iges/types.h"
 #include "nurbs/chain.h"
 #include "nurbs/conic.h"
@@ -54,15 +55,10 @@ std::vector<Curve> read_links(Reading& reading, int pointer, Parameters& by, std
     by.fail(fmt::format("D{} is nested in more than {} others", pointer, deepest_nesting));
   if (!by.ok() || (trail.size() > 1 && !reading.spend(cost_of_nesting, by))) return {};
   trail.push_back(entry->pointer);
-  Parameters in = reading.file().parameters(*entry);
-  links = read_links(reading, in, trail);
+  const auto read = [&](Parameters& in) { return std::optional(read_links(reading, in, trail)); };
+  links = reading.inside(entry, by, read).value_or(links);
   trail.pop_back();
-  if (!reading.finish(*entry, in)) {
-    by.give_up({});
-    return {};
-  }
-  const Placement placement = reading.placement(*entry);
-  for (Curve& curve : links) placement.apply(curve);
+  if (!links.empty()) reading.placement(*entry).apply(links);
   return links;
 }
 
@@ -113,12 +109,9 @@ std::optional<Curve> read_conic(Reading& /*reading*/, const DirectoryEntry& entr
 
 std::optional<Curve> read_line(Reading& /*reading*/, const DirectoryEntry& entry, Parameters& in) {
   const Vec3 from = read_point(in), to = read_point(in);
+  if (in.ok() && entry.form != 0) in.give_up("it is a line without end");
   if (!in.ok()) return std::nullopt;
-  if (entry.form != 0) {
-    in.give_up("it is a line without end");
-    return std::nullopt;
-  }
-  return Curve{.degree = 1, .knots = {0, 0, 1, 1}, .points = {from, to}, .weights = {}};
+  return cad::straight(from, to);
 }
 
 bool is_polyline(int form) {
@@ -142,10 +135,7 @@ std::optional<Curve> read_copious(Reading& /*reading*/, const DirectoryEntry& en
     for (std::size_t k = 3; k < each; ++k) in.real();  // a direction at the point
   }
   if (!in.ok() || !is_polyline(entry.form)) return std::nullopt;
-  if (points.size() < 2) {
-    in.fail(fmt::format("a polyline of {} points", points.size()));
-    return std::nullopt;
-  }
+  if (points.size() < 2) return in.fail(fmt::format("a polyline of {} points", points.size()));
   return polyline(points);
 }
 
@@ -173,39 +163,32 @@ std::vector<Curve> read_pieces(Reading& reading, const DirectoryEntry& entry, Pa
   return read_links(reading, in, trail);
 }
 
-// The largest gap between pieces, and whether it is too large for one curve.
-std::pair<double, bool> gap_of(const std::vector<Curve>& pieces, std::vector<Vec3>& points) {
+// The pieces as one curve, or as they are where they do not meet; `gap` is the largest between them.
+std::vector<Curve> joined(Reading& reading, const DirectoryEntry& entry, std::vector<Curve> pieces,
+                          double& gap) {
+  if (pieces.empty()) return pieces;
+  std::vector<Vec3> points;
   for (const Curve& piece : pieces) points.insert(points.end(), piece.points.begin(), piece.points.end());
-  const double gap = nurbs::largest_gap(pieces);
-  return {gap, gap > most_gap(points)};
+  gap = nurbs::largest_gap(pieces);
+  if (gap > most_gap(points)) return pieces;
+  warn_of_gap(reading, entry, gap, points);
+  return {nurbs::chained(pieces)};
 }
 
 std::optional<Curve> read_composite(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
-  const std::vector<Curve> pieces = read_pieces(reading, entry, in);
-  if (pieces.empty()) return std::nullopt;
-  std::vector<Vec3> points;
-  const auto [gap, too_large] = gap_of(pieces, points);
-  if (too_large) {
-    in.give_up(fmt::format("its curves do not meet, by {:.3g}", gap));
-    return std::nullopt;
-  }
-  warn_of_gap(reading, entry, gap, points);
-  return nurbs::chained(pieces);
+  double gap = 0;
+  std::vector<Curve> pieces = joined(reading, entry, read_pieces(reading, entry, in), gap);
+  if (pieces.size() > 1) return in.give_up(fmt::format("its curves do not meet, by {:.3g}", gap));
+  return pieces.empty() ? std::nullopt : std::optional(std::move(pieces.front()));
 }
 
 // By itself it may be in pieces.
 void stand_composite(Reading& reading, const DirectoryEntry& entry, Parameters& in, const Context& context) {
-  std::vector<Curve> pieces = read_pieces(reading, entry, in);
-  if (pieces.empty()) return;
-  std::vector<Vec3> points;
-  const auto [gap, too_large] = gap_of(pieces, points);
-  if (too_large) {
+  double gap = 0;
+  std::vector<Curve> pieces = joined(reading, entry, read_pieces(reading, entry, in), gap);
+  if (pieces.size() > 1)
     reading.warning(
         entry, fmt::format("its curves do not meet, by {:.3g}: they stay {} curves", gap, pieces.size()));
-  } else {
-    warn_of_gap(reading, entry, gap, points);
-    pieces = {nurbs::chained(pieces)};
-  }
   reading.stand_curves(entry, context, in, std::move(pieces));
 }
 
@@ -230,15 +213,10 @@ std::optional<ArcFrame> read_arc_frame(Reading& reading, const DirectoryEntry& e
   if (!in.ok()) return std::nullopt;
   const Vec2 a = start - center, b = end - center;
   const double radius = a.norm();
-  if (!(radius > 0)) {
-    in.fail("an arc of radius 0");
-    return std::nullopt;
-  }
+  if (!(radius > 0)) return in.fail("an arc of radius 0");
   const double miss = std::abs(b.norm() - radius);
-  if (miss > 1e-3 * radius) {
-    in.fail(fmt::format("its ends are {} and {} from its centre", radius, b.norm()));
-    return std::nullopt;
-  }
+  if (miss > 1e-3 * radius)
+    return in.fail(fmt::format("its ends are {} and {} from its centre", radius, b.norm()));
   if (miss > 1e-6 * radius)
     reading.warning(
         entry, fmt::format("its ends are {} and {} from its centre; the first counts", radius, b.norm()));
@@ -264,10 +242,9 @@ std::optional<std::vector<double>> read_breaks(Parameters& in, std::size_t piece
   std::vector<double> breaks(pieces + 1);
   if (!in.reals(breaks.data(), breaks.size())) return std::nullopt;
   for (std::size_t i = 1; i < breaks.size(); ++i)
-    if (!(breaks[i] > breaks[i - 1])) {
-      in.fail(fmt::format("breakpoint {} is {}, the one before it {}", i + 1, breaks[i], breaks[i - 1]));
-      return std::nullopt;
-    }
+    if (!(breaks[i] > breaks[i - 1]))
+      return in.fail(
+          fmt::format("breakpoint {} is {}, the one before it {}", i + 1, breaks[i], breaks[i - 1]));
   return breaks;
 }
 
@@ -287,9 +264,7 @@ std::vector<Vec3> points_along(const cad::Loop& loop) {
 }
 
 double size_of(const std::vector<Vec3>& points) {
-  Box3 box;
-  for (const Vec3& p : points) box.extend(p);
-  return box.isEmpty() ? 0 : box.sizes().norm();
+  return points.empty() ? 0 : cad::box_of(points).sizes().norm();
 }
 
 double most_gap(const std::vector<Vec3>& points) {

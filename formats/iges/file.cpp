@@ -27,7 +27,7 @@ class Fields {
     entry_.line = first_.number;
     entry_.type = integer(1);
     entry_.first_line = integer(2);
-    entry_.structure = integer(3);
+    integer(3);  // structure
     entry_.level = integer(5);
     entry_.transformation = integer(7);
     entry_.color = integer(13);
@@ -65,7 +65,6 @@ class Fields {
     entry_.blanked = parts[0] == 1;
     entry_.subordinate = parts[1];
     entry_.use = parts[2];
-    entry_.hierarchy = parts[3];
   }
 
   // What a reader has no use for.
@@ -168,12 +167,13 @@ Parameters File::parameters(const DirectoryEntry& entry) const {
   return parameters;
 }
 
-Trailer read_trailer(Parameters& parameters) {
-  Trailer trailer;
-  for (std::vector<int>* const list : {&trailer.associativities, &trailer.properties})
-    if (!parameters.at_end() && parameters.ok())
-      *list = parameters.pointers("pointers behind the parameters");
-  return trailer;
+std::vector<int> read_properties(Parameters& parameters) {
+  const auto next = [&] {
+    const bool is_there = !parameters.at_end() && parameters.ok();
+    return is_there ? parameters.pointers("pointers behind the parameters") : std::vector<int>();
+  };
+  next();  // associativities
+  return next();
 }
 
 }  // namespace selvage::formats::iges

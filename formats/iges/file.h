@@ -21,7 +21,6 @@ struct DirectoryEntry {
   int pointer = 0;         // its own: the number of its first line, odd
   int first_line = 0;      // of its parameters, from 1
   int line_count = 0;      // of them, as the entry says
-  int structure = 0;       // field 3
   int font = 0, view = 0;  // fields 4 and 6; only a check asks for them
   int level = 0;           // below 0: minus the pointer to a 406 form 1 with several
   int transformation = 0;  // pointer to a 124; 0: none
@@ -30,7 +29,6 @@ struct DirectoryEntry {
   // Subordinate entity switch: 0 independent, 1 physically dependent, 2 logically, 3 both.
   int subordinate = 0;
   int use = 0;  // 0 geometry, 1 annotation, 2 definition, 3 other, 4 logical, 5 in parameters, 6 construction
-  int hierarchy = 0;
   std::array<char, 8> label{};
   int line = 0;  // in the file, from 1
 
@@ -76,10 +74,8 @@ class File {
   std::vector<DirectoryEntry> directory_;
 };
 
-// The pointers that may follow an entity's own parameters. The cursor stands behind the last of these.
-struct Trailer {
-  std::vector<int> associativities, properties;
-};
-Trailer read_trailer(Parameters& parameters);
+// The pointers to properties that may follow an entity's own parameters, behind those to associativities. The
+// cursor stands behind the last of its own.
+std::vector<int> read_properties(Parameters& parameters);
 
 }  // namespace selvage::formats::iges

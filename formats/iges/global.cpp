@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "formats/iges/real_text.h"
+
 namespace selvage::formats::iges {
 
 namespace {
@@ -32,7 +34,7 @@ constexpr std::array<UnitRow, 10> unit_rows = {
      {10, {"CM", "CM"}, {"CENTIMETER", "CENTIMETRE"}, Unit::cm, 1},
      {11, {"UIN", "UIN"}, {"MICROINCH", "UINCH"}, Unit::mm, 0.0000254}}};
 
-const UnitRow* row_of(int flag) {
+const UnitRow* row_of(std::int64_t flag) {
   const auto* const found = std::find_if(unit_rows.begin(), unit_rows.end(),
                                          [flag](const UnitRow& row) { return row.flag == flag; });
   return found == unit_rows.end() ? nullptr : found;
@@ -49,7 +51,7 @@ std::string date_of(const std::string& text) {
   const auto has_form = [](std::string_view date) {
     for (std::size_t i = 0; i < date.size(); ++i) {
       const bool is_point = i + 7 == date.size();
-      if (is_point ? date[i] != '.' : (date[i] < '0' || date[i] > '9')) return false;
+      if (is_point ? date[i] != '.' : !is_digit(date[i])) return false;
     }
     return true;
   };
@@ -80,17 +82,15 @@ class GlobalReader {
     if (integer(16, 1, false) < 1) defect(16, "the number of line weights is not positive");
     global.date = date(18);
     take_ranges(global);
-    global.author = text(21);
-    global.organization = text(22);
+    text(21);  // author
+    text(22);  // organization
     const std::int64_t version = integer(23, 3), drafting = integer(24);
     if (version < 1 || version > last_version)
       defect(23, fmt::format("there is no version {}: IGES 5.3 is 11", version));
     if (drafting < 0 || drafting > last_drafting)
       defect(24, fmt::format("there is no drafting standard {}: they are 0 to 7", drafting));
-    global.version = static_cast<int>(std::clamp<std::int64_t>(version, 1, 99));
-    global.drafting = static_cast<int>(std::clamp<std::int64_t>(drafting, 0, 99));
-    global.modified = date(25);
-    global.protocol = text(26);
+    date(25);  // of the last change
+    text(26);  // protocol
     if (values_.size() > 24)
       complaints_.flaw(spot(27),
                        fmt::format("the global section has {} parameters; there are 26", values_.size() + 2));
@@ -109,9 +109,7 @@ class GlobalReader {
                 fmt::format("global parameter {} ({}) is not given, and has no default", number, name));
     global.product = text(3);
     global.file_name = text(4);
-    global.system = text(5);
-    global.preprocessor = text(6);
-    global.receiver = text(12);
+    for (const int number : {5, 6, 12}) text(number);
     bool told = false;
     for (int number = 7; number <= 11; ++number)
       if (integer(number) <= 0 && !std::exchange(told, true))
@@ -121,21 +119,17 @@ class GlobalReader {
 
   void take_units(Global& global) {
     const std::int64_t flag = integer(14, 1);
-    global.scale = real(13, 1);
-    global.unit_flag = flag >= 1 && flag <= 11 ? static_cast<int>(flag) : 0;
-    global.unit_name = text(15);
-    std::string name = global.unit_name;
+    const double scale = real(13, 1);
+    const std::string said = text(15);
+    std::string name = said;
     for (char& c : name)
       if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
     const UnitRow* const named = row_named(name);
-    const UnitRow* const row = flag == 3 ? named : row_of(global.unit_flag);
-    if (!(global.scale > 0)) {
-      fault(13, fmt::format("the model space scale is not positive: {}", global.scale));
-      global.scale = 1;
-    }
+    const UnitRow* const row = flag == 3 ? named : row_of(flag);
+    if (!(scale > 0)) fault(13, fmt::format("the model space scale is not positive: {}", scale));
     if (row == nullptr) {
       if (flag == 3)
-        fault(15, fmt::format("unit 3 goes by its name, and {} is none", in_quotes(global.unit_name)));
+        fault(15, fmt::format("unit 3 goes by its name, and {} is none", in_quotes(said)));
       else
         fault(14, fmt::format("there is no unit {}: units are 1 to 11", flag));
       return;
@@ -144,22 +138,20 @@ class GlobalReader {
       if (flag != 1)
         warning(15, fmt::format("the unit's name is not given; unit {} is {}", flag, row->names[0]));
     } else if (!row->is_named(name) && flag == 3) {
-      defect(15, fmt::format("unit 3 goes by its name, and {} is none of the standard",
-                             in_quotes(global.unit_name)));
+      defect(15, fmt::format("unit 3 goes by its name, and {} is none of the standard", in_quotes(said)));
     } else if (!row->is_named(name)) {
       const std::string text = fmt::format("unit {} is {}, but its name is given as {}; the number holds",
-                                           flag, row->names[0], in_quotes(global.unit_name));
+                                           flag, row->names[0], in_quotes(said));
       named != nullptr&& named != row ? complaints_.flaw(spot(15), text) : defect(15, text);
     }
     global.units = row->unit;
     global.factor = row->factor;
     if (row->factor != 1)
       complaints_.reader_note(spot(14), fmt::format("lengths in {} are turned into mm", row->names[0]));
-    if (global.scale == 1) return;
-    global.factor /= global.scale;
+    if (!(scale > 0) || scale == 1) return;
+    global.factor /= scale;
     complaints_.reader_note(
-        spot(13),
-        fmt::format("the model is drawn at the scale {}; it is brought to true size", global.scale));
+        spot(13), fmt::format("the model is drawn at the scale {}; it is brought to true size", scale));
   }
 
   void take_ranges(Global& global) {

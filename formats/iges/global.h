@@ -11,19 +11,12 @@ namespace selvage::formats::iges {
 
 struct Global {
   Delimiters delimiters;
-  std::string product, file_name, system, preprocessor, receiver;  // 3-6, 12
-  double scale = 1;                                                // 13: model space over real space
-  int unit_flag = 1;                                               // 14, 1-11
-  std::string unit_name;                                           // 15
-  std::string date;                                                // 18, YYYYMMDD.HHNNSS; empty: not given
-  double stated_resolution = 0;                                    // 19, as in the file; 0: not given
-  double resolution = 0;                                           // the same in `units`, not negative
-  double largest = 0;                                              // 20
-  Spot resolution_spot, largest_spot;                              // of 19 and 20
-  std::string author, organization;                                // 21, 22
-  int version = 3;                                                 // 23: 11 is 5.3
-  int drafting = 0;                                                // 24
-  std::string modified, protocol;                                  // 25, 26
+  std::string product, file_name;      // 3, 4
+  std::string date;                    // 18, YYYYMMDD.HHNNSS; empty: not given
+  double stated_resolution = 0;        // 19, as in the file; 0: not given
+  double resolution = 0;               // the same in `units`, not negative
+  double largest = 0;                  // 20
+  Spot resolution_spot, largest_spot;  // of 19 and 20
 
   // What coordinates of the file are multiplied by to be lengths in `units`: 1 but for a scale and for units
   // that Selvage does not have, which become mm.

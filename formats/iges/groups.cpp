@@ -1,5 +1,4 @@
 // 402: groups. And what is understood without a function of its own, since others look it up.
-#include <algorithm>
 #include <array>
 
 #include "formats/iges/standard.h"
@@ -22,10 +21,10 @@ std::vector<int> members_of(Reading& /*reading*/, const DirectoryEntry& /*entry*
 void stand_group(Reading& reading, const DirectoryEntry& entry, Parameters& in, const Context& context) {
   const std::vector<int> members = members_of(reading, entry, in);
   if (!in.ok() || members.empty()) return;
-  const Attributes own = reading.attributes(entry, in);
+  const cad::Label own = reading.attributes(entry, in);
   if (!in.ok()) return;
-  if (std::all_of(members.begin(), members.end(), [&](int member) { return reading.is_face(member); })) {
-    reading.stand_together(entry, own, members, context, in);
+  if (reading.are_faces(members)) {
+    reading.stand_together(own, members, context, in);
     return;
   }
   Context inner = context;

@@ -1,6 +1,7 @@
 #include "formats/iges/iges.h"
 
 #include "formats/iges/header.h"
+#include "formats/iges/lines.h"
 #include "formats/iges/options.h"
 #include "formats/iges/reader.h"
 #include "formats/iges/structure.h"
@@ -11,11 +12,9 @@ namespace selvage::formats::iges {
 namespace {
 
 bool sniff(std::string_view head) {
-  if (head.size() < 80 || (head[72] != 'S' && head[72] != 'C'))
-    return false;  // C: compressed, refused by name
-  for (const char c : head.substr(73, 7))
-    if (c != ' ' && (c < '0' || c > '9')) return false;
-  return head.substr(0, 72).find_first_of("\r\n") == std::string_view::npos;
+  return head.size() >= 80 && (head[72] == 'S' || head[72] == 'C') &&  // C: compressed, refused by name
+         is_number_field(head.substr(73, 7)) &&
+         head.substr(0, 72).find_first_of("\r\n") == std::string_view::npos;
 }
 
 }  // namespace

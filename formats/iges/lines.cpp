@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "formats/iges/real_text.h"
 #include "formats/iges/records.h"
 
 namespace selvage::formats::iges {
@@ -15,29 +16,13 @@ constexpr std::string_view blanks = " \t\r\v\f";
 constexpr std::size_t columns = 80, letter_column = 72;  // from 0
 
 std::optional<std::size_t> section_of(char letter) {
-  switch (letter) {
-    case 'P':
-      return 3;
-    case 'D':
-      return 2;
-    case 'G':
-      return 1;
-    case 'S':
-      return 0;
-    case 'T':
-      return 4;
-    default:
-      return std::nullopt;
-  }
+  const std::size_t section = section_letters.find(letter);
+  return section == std::string_view::npos ? std::nullopt : std::optional(section);
 }
 
 std::string_view without_trailing_blanks(std::string_view text) {
   const std::size_t last = text.find_last_not_of(blanks);
   return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
-}
-
-bool is_number_field(std::string_view field) {
-  return std::all_of(field.begin(), field.end(), [](char c) { return c == ' ' || (c >= '0' && c <= '9'); });
 }
 
 // The column (from 0) of the section letter: 72, or one beside it where a character was lost or put in. A
@@ -84,6 +69,10 @@ bool check_form(std::string_view bytes, Complaints& complaints) {
 
 }  // namespace
 
+bool is_number_field(std::string_view field) {
+  return std::ranges::all_of(field, [](char c) { return c == ' ' || is_digit(c); });
+}
+
 std::optional<int> column_number(std::string_view field) {
   const std::size_t first = field.find_first_not_of(' ');
   if (first == std::string_view::npos) return 0;
@@ -93,7 +82,7 @@ std::optional<int> column_number(std::string_view field) {
   if (field.empty() || field.size() > 9) return std::nullopt;
   int value = 0;
   for (const char c : field) {
-    if (c < '0' || c > '9') return std::nullopt;
+    if (!is_digit(c)) return std::nullopt;
     value = 10 * value + (c - '0');
   }
   return negative ? -value : value;

@@ -76,6 +76,8 @@ class Lines {
   Spot end_;
 };
 
+// Blanks and digits only?
+bool is_number_field(std::string_view field);
 // The integer in the columns of a field, with blanks and zeros before or behind it: a blank field is 0.
 // Nothing when it is no integer or has more than 9 digits.
 std::optional<int> column_number(std::string_view field);

@@ -15,9 +15,6 @@ namespace {
 bool is_blank(char c) {
   return c == ' ' || c == '\t';
 }
-bool is_digit(char c) {
-  return static_cast<unsigned char>(c - '0') < 10;
-}
 
 // Without the blanks round it, of which there are none in front.
 std::string_view trimmed(std::string_view text) {
@@ -25,22 +22,24 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// The integer that all of `token` is, possibly written as a real.
-bool read_integer(std::string_view token, std::int64_t& value) {
+// The number that all of `token` is.
+std::optional<double> whole_real(std::string_view token) {
+  double value = 0;
+  const char* const end = token.data() + token.size();
+  return read_real(token.data(), end, value) == end ? std::optional(value) : std::nullopt;
+}
+// The same of an integer, possibly written as a real.
+std::optional<std::int64_t> whole_integer(std::string_view token) {
   const bool negative = token.front() == '-';
   std::string_view digits = token.substr(negative || token.front() == '+' ? 1 : 0);
   if (!digits.empty() && digits.size() <= 18 && std::all_of(digits.begin(), digits.end(), is_digit)) {
-    value = 0;
+    std::int64_t value = 0;
     for (const char c : digits) value = 10 * value + (c - '0');
-    if (negative) value = -value;
-    return true;
+    return negative ? -value : value;
   }
-  double real = 0;
-  const char* const end = token.data() + token.size();
-  if (read_real(token.data(), end, real) != end || std::trunc(real) != real || std::abs(real) > 1e15)
-    return false;
-  value = static_cast<std::int64_t>(real);
-  return true;
+  const std::optional<double> real = whole_real(token);
+  if (!real || std::trunc(*real) != *real || std::abs(*real) > 1e15) return std::nullopt;
+  return static_cast<std::int64_t>(*real);
 }
 
 }  // namespace
@@ -88,16 +87,18 @@ bool Parameters::skip_blanks() {
   }
 }
 
-void Parameters::fail(std::string text) {
-  fail(value_spot_, std::move(text));
+std::nullopt_t Parameters::fail(std::string text) {
+  return fail(value_spot_, std::move(text));
 }
 
-void Parameters::fail(const Spot& spot, std::string text) {
+std::nullopt_t Parameters::fail(const Spot& spot, std::string text) {
   if (!failure_) failure_ = Failure{spot, std::move(text), false};
+  return std::nullopt;
 }
 
-void Parameters::give_up(std::string text) {
+std::nullopt_t Parameters::give_up(std::string text) {
   if (!failure_) failure_ = Failure{value_spot_, std::move(text), true};
+  return std::nullopt;
 }
 
 std::size_t Parameters::room() const {
@@ -107,23 +108,19 @@ std::size_t Parameters::room() const {
 }
 
 bool Parameters::take_delimiter() {
-  if (!skip_blanks()) {
+  if (!skip_blanks())
     fail(here(), fmt::format("the parameters end without {}", in_quotes({&delimiters_.record, 1})));
-    return false;
-  }
-  if (*at_ != delimiters_.parameter && *at_ != delimiters_.record) {
+  else if (is_delimiter())
+    done_ = *at_++ == delimiters_.record;
+  else
     fail(here(), fmt::format("{} or {} is missing here", in_quotes({&delimiters_.parameter, 1}),
                              in_quotes({&delimiters_.record, 1})));
-    return false;
-  }
-  done_ = *at_ == delimiters_.record;
-  ++at_;
-  return true;
+  return ok();
 }
 
 // To the delimiter, or to the end of the line.
 void Parameters::scan() {
-  while (at_ != end_ && *at_ != delimiters_.parameter && *at_ != delimiters_.record) ++at_;
+  while (at_ != end_ && !is_delimiter()) ++at_;
 }
 
 // The characters of the next value, without blanks round them, and past its delimiter. False after an error
@@ -147,44 +144,32 @@ bool Parameters::field(std::string_view& token, std::string* joined) {
     return take_delimiter();
   }
   // Were it joined with what follows, a lost delimiter would make one number of two.
-  if (!is_blank(end_[-1]) && next_line() && at_ != end_ && !is_blank(*at_) && *at_ != delimiters_.parameter &&
-      *at_ != delimiters_.record) {
+  if (!is_blank(end_[-1]) && next_line() && at_ != end_ && !is_blank(*at_) && !is_delimiter())
     fail(broken_number(token));
-    return false;
-  }
-  return take_delimiter();
+  return ok() && take_delimiter();
 }
 
 std::int64_t Parameters::integer(std::int64_t otherwise) {
   std::string_view token;
   if (!field(token) || token.empty()) return otherwise;
-  std::int64_t value = 0;
-  if (!read_integer(token, value)) {
-    fail(fmt::format("{} is no integer", in_quotes(token)));
-    return otherwise;
-  }
-  return value;
+  const std::optional<std::int64_t> value = whole_integer(token);
+  if (!value) fail(fmt::format("{} is no integer", in_quotes(token)));
+  return value.value_or(otherwise);
 }
 
 int Parameters::pointer() {
   const std::int64_t value = integer();
-  if (std::abs(value) > most_pointer) {
-    fail(fmt::format("{} cannot be a directory pointer", value));
-    return 0;
-  }
-  return static_cast<int>(value);
+  if (std::abs(value) <= most_pointer) return static_cast<int>(value);
+  fail(fmt::format("{} cannot be a directory pointer", value));
+  return 0;
 }
 
 double Parameters::real(double otherwise) {
   std::string_view token;
   if (!field(token) || token.empty()) return otherwise;
-  double value = 0;
-  const char* const end = token.data() + token.size();
-  if (read_real(token.data(), end, value) != end) {
-    fail(fmt::format("{} is no number", in_quotes(token)));
-    return otherwise;
-  }
-  return value;
+  const std::optional<double> value = whole_real(token);
+  if (!value) fail(fmt::format("{} is no number", in_quotes(token)));
+  return value.value_or(otherwise);
 }
 
 // As it stands in the file, over line ends.
@@ -229,7 +214,7 @@ std::string Parameters::text() {
     return {};
   }
   if (at_ == end_) next_line();
-  if (!skip_blanks() || (*at_ != delimiters_.parameter && *at_ != delimiters_.record))
+  if (!skip_blanks() || !is_delimiter())
     fail("no delimiter after a string: its count may be wrong");
   else
     take_delimiter();
@@ -249,10 +234,7 @@ void Parameters::skip() {
 }
 
 bool Parameters::slow_real(double& value) {
-  if (done_) {
-    fail("the parameters end here");
-    return false;
-  }
+  if (done_) fail("the parameters end here");
   value = real();
   return ok();
 }
@@ -278,17 +260,12 @@ bool Parameters::reals(double* out, std::size_t count) {
 
 std::size_t Parameters::count(std::string_view what, std::size_t fields_each) {
   const std::int64_t value = integer();
-  if (!ok()) return 0;
-  if (value < 0) {
-    fail(fmt::format("a number of {} cannot be {}", what, value));
-    return 0;
-  }
   const auto number = static_cast<std::size_t>(value);
-  if (fields_each > 0 && number > room() / fields_each) {
+  if (value < 0)
+    fail(fmt::format("a number of {} cannot be {}", what, value));
+  else if (number > room() / fields_each)
     fail(fmt::format("{} {}: more than the entity's {} lines can hold", value, what, last_ - line_ + 1));
-    return 0;
-  }
-  return number;
+  return ok() ? number : 0;
 }
 
 std::vector<int> Parameters::pointers(std::string_view what) {
@@ -363,11 +340,7 @@ std::optional<int> Values::integer(std::size_t i, int otherwise) const {
 
 std::optional<double> Values::real(std::size_t i, double otherwise) const {
   if (is_blank(i)) return otherwise;
-  const std::string_view text = values_[i].text;
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  if (values_[i].is_string || read_real(text.data(), end, value) != end) return std::nullopt;
-  return value;
+  return values_[i].is_string ? std::nullopt : whole_real(values_[i].text);
 }
 
 }  // namespace selvage::formats::iges

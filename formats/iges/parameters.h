@@ -71,14 +71,14 @@ class Parameters {
   [[nodiscard]] const Delimiters& delimiters() const { return delimiters_; }
   [[nodiscard]] bool ok() const { return !failure_; }
   [[nodiscard]] const std::optional<Failure>& failure() const { return failure_; }
-  // The first one stays. At the value read last, or at `spot`.
-  void fail(std::string text);
-  void fail(const Spot& spot, std::string text);
+  // The first one stays. At the value read last, or at `spot`. Nothing comes back, for who returns it.
+  std::nullopt_t fail(std::string text);
+  std::nullopt_t fail(const Spot& spot, std::string text);
   void replace_failure(const Spot& spot, std::string text) {
     failure_ = Failure{spot, std::move(text), false};
   }
   // The same for what is well formed but not done here: a warning, and the entity is left out.
-  void give_up(std::string text);
+  std::nullopt_t give_up(std::string text);
   // Where the value read last began, and the line (number in the section) on which the next one begins.
   [[nodiscard]] Spot spot() const { return value_spot_; }
   [[nodiscard]] int at_line() const { return line_; }
@@ -91,6 +91,9 @@ class Parameters {
   void enter(int line);
   bool next_line();
   bool skip_blanks();
+  [[nodiscard]] bool is_delimiter() const {
+    return *at_ == delimiters_.parameter || *at_ == delimiters_.record;
+  }
   void scan();
   bool field(std::string_view& token, std::string* joined = nullptr);
   bool take_delimiter();

@@ -1,5 +1,7 @@
 #include "formats/iges/placement.h"
 
+#include "cad/edges.h"
+
 namespace selvage::formats::iges {
 
 Placement Placement::of(const Eigen::Matrix3d& linear, const Vec3& shift) {
@@ -12,25 +14,21 @@ Placement Placement::operator*(const Placement& inner) const {
   return of(linear * inner.linear, linear * inner.shift + shift);
 }
 
-void Placement::apply(nurbs::Curve& curve) const {
+void Placement::apply(std::vector<Vec3>& points) const {
   if (is_identity) return;
-  for (Vec3& point : curve.points) point = (*this)(point);
+  for (Vec3& point : points) point = (*this)(point);
 }
 
-void Placement::apply(nurbs::Surface& surface) const {
-  if (is_identity) return;
-  for (Vec3& point : surface.points) point = (*this)(point);
+void Placement::apply(std::vector<nurbs::Curve>& curves) const {
+  for (nurbs::Curve& curve : curves) apply(curve);
 }
 
 void Placement::apply(cad::Face& face) const {
-  if (is_identity) return;
   apply(face.surface);
-  for (cad::Loop& loop : face.loops)
-    for (cad::Edge& edge : loop.edges) apply(edge.curve);
+  for (cad::Edge& edge : cad::edges_of(face)) apply(edge.curve);
 }
 
 void Placement::apply(cad::Part& part) const {
-  if (is_identity) return;
   const bool turns = part.kind != cad::Part::Kind::surfaces && mirrors();
   for (cad::Face& face : part.faces) {
     apply(face);

@@ -20,10 +20,14 @@ struct Placement {
   [[nodiscard]] Placement operator*(const Placement& inner) const;
   [[nodiscard]] bool mirrors() const { return !is_identity && linear.determinant() < 0; }
 
-  void apply(nurbs::Curve& curve) const;
-  void apply(nurbs::Surface& surface) const;
+  void apply(nurbs::Curve& curve) const { apply(curve.points); }
+  void apply(std::vector<nurbs::Curve>& curves) const;
+  void apply(nurbs::Surface& surface) const { apply(surface.points); }
   void apply(cad::Face& face) const;  // its surface and the curves in space; not `reversed`
   void apply(cad::Part& part) const;  // faces of shells and solids keep their outsides outside
+
+ private:
+  void apply(std::vector<Vec3>& points) const;
 };
 
 }  // namespace selvage::formats::iges

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "cad/edges.h"
 #include "formats/iges/standard.h"
 #include "formats/iges/types.h"
 
@@ -30,8 +31,7 @@ std::size_t points_of(const nurbs::Curve& curve) {
 }
 std::size_t points_of(const cad::Face& face) {
   std::size_t points = points_of(face.surface);
-  for (const cad::Loop& loop : face.loops)
-    for (const cad::Edge& edge : loop.edges) points += points_of(edge.curve) + points_of(edge.flat);
+  for (const cad::Edge& edge : cad::edges_of(face)) points += points_of(edge.curve) + points_of(edge.flat);
   return points;
 }
 std::size_t points_of(const cad::Part& part) {
@@ -76,6 +76,7 @@ Reading::Reading(const File& file, TypeOf& type_of, TextReport& report, cad::Mod
     : file_(file), type_of_(type_of), report_(report), model_(model) {
   const std::size_t count = file.directory().size();
   for (std::vector<char>* const flags : {&used_, &held_, &active_, &failed_}) flags->resize(count);
+  extents_.resize(count);
 }
 
 void Reading::warning(const DirectoryEntry& entry, const std::string& text) {
@@ -85,15 +86,17 @@ void Reading::warning(const DirectoryEntry& entry, const std::string& text) {
 bool Reading::finish(const DirectoryEntry& entry, Parameters& parameters) {
   if (parameters.ok()) return true;
   const Parameters::Failure& failure = *parameters.failure();
-  if (std::exchange(failed_[index(entry)], 1) != 0 || failure.text.empty()) return false;
-  const std::string text = entry.name() + ": " + failure.text;
-  if (failure.unsupported) {
-    report_.warning(failure.spot, text + "; it is left out");
+  if (!failure.unsupported && !failure.text.empty()) {
+    fail_once(entry, failure.spot, failure.text);
+  } else if (std::exchange(failed_[index(entry)], 1) == 0 && !failure.text.empty()) {
+    report_.warning(failure.spot, entry.name() + ": " + failure.text + "; it is left out");
     ++model_.unknown[fmt::format("{} ({})", entry.type, entity_title(entry.type))];
-  } else {
-    report_.error(failure.spot, text);
   }
   return false;
+}
+
+void Reading::fail_once(const DirectoryEntry& entry, const Spot& spot, const std::string& text) {
+  if (std::exchange(failed_[index(entry)], 1) == 0) report_.error(spot, entry.name() + ": " + text);
 }
 
 const DirectoryEntry* Reading::entry(int pointer, Parameters& by) {
@@ -120,21 +123,20 @@ const std::vector<int>* Reading::edge_list(int pointer, Parameters& by) {
   const DirectoryEntry* const list = entry(pointer, 504, by);
   if (list == nullptr) return nullptr;
   const auto [known, is_new] = edge_lists_.try_emplace(list->pointer);
-  std::optional<std::vector<int>>& curves = known->second;
-  if (is_new) {
-    Parameters in = file_.parameters(*list);
-    std::vector<int> found(in.count("edges", 5));
-    for (int& curve : found) {
-      curve = in.pointer();
-      use(curve);
-      for (int k = 0; k < 2; ++k) {  // start and end: a list of vertices, and the vertex in it
-        use(in.pointer());
-        in.integer();
+  if (is_new)
+    known->second = inside(list, by, [this](Parameters& in) {
+      std::vector<int> curves(in.count("edges", 5));
+      for (int& curve : curves) {
+        curve = in.pointer();
+        use(curve);
+        for (int k = 0; k < 2; ++k) {  // start and end: a list of vertices, and the vertex in it
+          use(in.pointer());
+          in.integer();
+        }
       }
-    }
-    if (finish(*list, in)) curves = std::move(found);
-  }
-  if (curves) return &*curves;
+      return std::optional(std::move(curves));
+    });
+  if (known->second) return &*known->second;
   by.give_up({});  // said once
   return nullptr;
 }
@@ -155,33 +157,26 @@ bool Reading::spend(std::size_t points, Parameters& by) {
   return false;
 }
 
-// `read` makes the shape by the entity's type: nothing where the type has no such function.
-template <class Shape, class Read>
-std::optional<Shape> Reading::shape(int pointer, Parameters& by, std::string_view kind, Read read) {
+// The function of the entity's type that reads the shape is null where the type has none.
+template <class Shape, class FunctionOf>
+std::optional<Shape> Reading::shape(int pointer, Parameters& by, std::string_view kind,
+                                    FunctionOf function_of) {
   const DirectoryEntry* const found = entry(pointer, by);
   if (found == nullptr) return std::nullopt;
   use(pointer);
   const EntityType* const type = type_of(*found);
-  if (type == nullptr) {
-    by.give_up(fmt::format("it is made of {}, which is not understood", described(*found)));
-    return std::nullopt;
-  }
-  const auto function = read(*type);
-  if (function == nullptr) {
-    by.fail(fmt::format("a {} is due, not {}", kind, described(*found)));
-    return std::nullopt;
-  }
+  if (type == nullptr)
+    return by.give_up(fmt::format("it is made of {}, which is not understood", described(*found)));
+  const auto function = function_of(*type);
+  if (function == nullptr) return by.fail(fmt::format("a {} is due, not {}", kind, described(*found)));
   const Nested nested(*this, *found, by);
   if (!nested) return std::nullopt;
-  Parameters parameters = file_.parameters(*found);
-  std::optional<Shape> shape;
-  if (parameters.ok()) shape = function(*this, *found, parameters);
-  if (shape) spend(points_of(*shape), parameters);
-  if (!finish(*found, parameters) || !shape) {
-    by.give_up({});  // what is wrong has been said there
-    return std::nullopt;
-  }
-  placement(*found).apply(*shape);
+  std::optional<Shape> shape = inside(found, by, [&](Parameters& in) {
+    std::optional<Shape> made = function(*this, *found, in);
+    if (made) spend(points_of(*made), in);
+    return made;
+  });
+  if (shape) placement(*found).apply(*shape);
   return shape;
 }
 
@@ -207,40 +202,25 @@ std::optional<cad::Face> Reading::face(int pointer, Parameters& by) {
 // With its own transformation.
 std::optional<cad::Face> Reading::read_face(const DirectoryEntry& entry, Parameters& by) {
   const EntityType* const type = type_of(entry);
-  if (type == nullptr || (type->face == nullptr && type->surface == nullptr)) {
-    by.fail(fmt::format("a face is due, not {}", described(entry)));
-    return std::nullopt;
-  }
+  if (type == nullptr || (type->face == nullptr && type->surface == nullptr))
+    return by.fail(fmt::format("a face is due, not {}", described(entry)));
   const Nested nested(*this, entry, by);
   if (!nested) return std::nullopt;
-  Parameters parameters = file_.parameters(entry);
-  std::optional<cad::Face> face;
-  if (parameters.ok() && type->face != nullptr) {
-    face = type->face(*this, entry, parameters);
-  } else if (parameters.ok()) {
-    if (std::optional<nurbs::Surface> surface = type->surface(*this, entry, parameters)) {
-      face.emplace();
-      face->surface = std::move(*surface);
+  std::optional<cad::Face> face = inside(&entry, by, [&](Parameters& in) {
+    std::optional<cad::Face> made;
+    if (type->face != nullptr) {
+      made = type->face(*this, entry, in);
+    } else if (std::optional<nurbs::Surface> surface = type->surface(*this, entry, in)) {
+      made.emplace().surface = std::move(*surface);
     }
-  }
-  if (face) {
-    spend(points_of(*face), parameters);
-    Attributes own = attributes(entry, parameters);
-    face->name = std::move(own.name);
-    face->color = own.color;
-    face->level = own.level;
-    face->origin = origin(entry);
-  }
-  if (!finish(entry, parameters) || !face) {
-    by.give_up({});
-    return std::nullopt;
-  }
-  placement(entry).apply(*face);
+    if (made) {
+      spend(points_of(*made), in);
+      made->label() = attributes(entry, in);
+    }
+    return made;
+  });
+  if (face) placement(entry).apply(*face);
   return face;
-}
-
-cad::Origin Reading::origin(const DirectoryEntry& entry) const {
-  return {{entry.line, 1}, entry.name()};
 }
 
 Placement Reading::placement(const DirectoryEntry& entry) {
@@ -249,8 +229,7 @@ Placement Reading::placement(const DirectoryEntry& entry) {
   for (int steps = 0; user->transformation != 0; ++steps) {
     const DirectoryEntry* const matrix = file_.entity(user->transformation);
     const auto fail = [&](const std::string& text) {
-      if (std::exchange(failed_[index(*user)], 1) == 0)
-        report_.error(file_.spot(*user), user->name() + ": " + text);
+      fail_once(*user, file_.spot(*user), text);
       return Placement{};
     };
     if (matrix == nullptr || matrix->type != 124)
@@ -275,11 +254,9 @@ Placement Reading::placement(const DirectoryEntry& entry) {
   return all;
 }
 
-Attributes Reading::attributes(const DirectoryEntry& entry, Parameters& parameters) {
-  Attributes result;
-  result.color = color(entry);
-  result.level = entry.level;
-  for (const int pointer : read_trailer(parameters).properties) {
+cad::Label Reading::attributes(const DirectoryEntry& entry, Parameters& parameters) {
+  cad::Label result{{}, color(entry), entry.level, {{entry.line, 1}, entry.name()}};
+  for (const int pointer : read_properties(parameters)) {
     const DirectoryEntry* const property = file_.entity(pointer);
     if (property == nullptr) {
       warning(entry, fmt::format("its property would be at line {} of the directory, where no entity begins",

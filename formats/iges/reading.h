@@ -2,7 +2,7 @@
 // these functions, a table row an entity type.
 #pragma once
 
-#include <map>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,13 +14,6 @@
 #include "formats/iges/placement.h"
 
 namespace selvage::formats::iges {
-
-// Name, colour and level of an entity.
-struct Attributes {
-  std::string name;  // of its property 406 form 15, else its label; may be empty
-  std::optional<cad::Color> color;
-  int level = 0;
-};
 
 // Where something stands that other entities hold: groups and subfigure instances.
 struct Context {
@@ -49,6 +42,17 @@ class Reading {
   std::optional<nurbs::Surface> surface(int pointer, Parameters& by);
   std::optional<cad::Face> face(int pointer, Parameters& by);
   std::optional<cad::Part> part(int pointer, Parameters& by);
+  // The optional that `read` makes of the parameters of `entry`, a part of the entity whose parameters are
+  // `by`: nothing where it is null or these fail, which is said once; `by` give up then.
+  template <class Read>
+  auto inside(const DirectoryEntry* entry, Parameters& by, const Read& read) -> decltype(read(by)) {
+    if (entry == nullptr) return std::nullopt;
+    Parameters in = file_.parameters(*entry);
+    decltype(read(by)) made;
+    if (in.ok()) made = read(in);
+    if (finish(*entry, in) && made) return made;
+    return by.give_up({});
+  }
   // The entry there, whatever it is (an edge list, a vertex list, a boundary); null after by.fail().
   const DirectoryEntry* entry(int pointer, Parameters& by);
   // The same, of one type; it is marked as part of the other one.
@@ -64,18 +68,25 @@ class Reading {
   // Puts the entity into the model: as a part, a curve, or what it holds. Groups and instances call it for
   // their members. `by` as above.
   void stand(int pointer, const Context& context, Parameters& by);
-  // Is it a surface or a face, so that a group of nothing else is one part?
-  [[nodiscard]] bool is_face(int pointer) const;
+  // Are they surfaces or faces, so that a group of nothing else is one part?
+  [[nodiscard]] bool are_faces(const std::vector<int>& members) const {
+    return std::all_of(members.begin(), members.end(), [this](int member) { return is_face(member); });
+  }
   // A part that is a face each member, in their order.
-  void stand_together(const DirectoryEntry& group, const Attributes& own, const std::vector<int>& members,
-                      const Context& context, Parameters& by);
+  void stand_together(const cad::Label& label, const std::vector<int>& members, const Context& context,
+                      Parameters& by);
 
   // Several curves with the attributes of one entity; `parameters` stand behind its own.
   void stand_curves(const DirectoryEntry& entry, const Context& context, Parameters& parameters,
                     std::vector<nurbs::Curve> curves);
 
-  // Name, colour and level; `parameters` stand behind the entity's own.
-  Attributes attributes(const DirectoryEntry& entry, Parameters& parameters);
+  // What is said of an entity, its name by its property 406 form 15, else by its label; `parameters` stand
+  // behind its own.
+  cad::Label attributes(const DirectoryEntry& entry, Parameters& parameters);
+
+  // How many control points an entity stands for at least, instances and all: lines of 64 columns hold one
+  // each or more. Counted before anything is made.
+  [[nodiscard]] double extent(const DirectoryEntry& entry) const { return extents_[index(entry)]; }
 
   // Against files that hold little and say much (a subfigure of subfigures): counts control points over all
   // that is made, and fails past most_points.
@@ -97,9 +108,10 @@ class Reading {
   void stand_all();
 
  private:
-  template <class Shape, class Read>
-  std::optional<Shape> shape(int pointer, Parameters& by, std::string_view kind, Read read);
+  template <class Shape, class FunctionOf>
+  std::optional<Shape> shape(int pointer, Parameters& by, std::string_view kind, FunctionOf function_of);
   class Nested;
+  [[nodiscard]] bool is_face(int pointer) const;
 
   void stand_entry(const DirectoryEntry& entry, const Context& context);
   void stand_face(const DirectoryEntry& entry, const Context& context, Parameters& parameters);
@@ -108,11 +120,10 @@ class Reading {
   std::optional<cad::Face> read_face(const DirectoryEntry& entry, Parameters& by);
   void count_entities();
   void find_members();
-  void find_circles(const std::unordered_map<int, std::vector<int>>& members);
   void read_levels();
   void drop_used();
   [[nodiscard]] std::optional<cad::Color> color(const DirectoryEntry& entry);
-  [[nodiscard]] cad::Origin origin(const DirectoryEntry& entry) const;
+  void fail_once(const DirectoryEntry& entry, const Spot& spot, const std::string& text);
   static std::size_t index(const DirectoryEntry& entry) {
     return static_cast<std::size_t>(entry.pointer / 2);
   }
@@ -124,6 +135,7 @@ class Reading {
   // By the index of the entity: part of another one; held by a group or definition; being read at present;
   // its failure was reported.
   std::vector<char> used_, held_, active_, failed_;
+  std::vector<double> extents_;  // of each entity
   int depth_ = 0;
   std::size_t points_ = 0;
   std::unordered_map<int, std::optional<cad::Color>> colors_;

@@ -15,15 +15,15 @@ namespace selvage::formats::iges {
 // double nearest to the text, the very bits of std::from_chars.
 inline const char* read_real(const char* at, const char* end, double& value);
 
+inline bool is_digit(char c) {
+  return static_cast<unsigned char>(c - '0') < 10;
+}
+
 namespace detail {
 
 inline constexpr std::array<double, 23> exact_powers = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                                         1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                                         1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-
-inline bool is_digit(char c) {
-  return static_cast<unsigned char>(c - '0') < 10;
-}
 
 // Eight digits at once, as Lemire describes it ("Quickly parsing eight digits", 2018): pairs, then fours.
 inline bool eight_digits(std::uint64_t bytes) {
@@ -67,7 +67,7 @@ inline const char* read_real(const char* at, const char* end, double& value) {
   if (negative || *p == '+') ++p;
   std::uint64_t mantissa = 0;
   const char* const whole = p;
-  while (p != end && detail::is_digit(*p)) mantissa = 10 * mantissa + static_cast<std::uint64_t>(*p++ - '0');
+  while (p != end && is_digit(*p)) mantissa = 10 * mantissa + static_cast<std::uint64_t>(*p++ - '0');
   std::ptrdiff_t count = p - whole;
   std::int64_t exponent = 0;
   if (p != end && *p == '.') {
@@ -82,9 +82,9 @@ inline const char* read_real(const char* at, const char* end, double& value) {
     letter = p++;
     const bool down = p != end && *p == '-';
     if (p != end && (down || *p == '+')) ++p;
-    if (p == end || !detail::is_digit(*p)) return at;
+    if (p == end || !is_digit(*p)) return at;
     std::int64_t power = 0;
-    for (; p != end && detail::is_digit(*p); ++p)
+    for (; p != end && is_digit(*p); ++p)
       if (power < 100'000) power = 10 * power + (*p - '0');
     exponent += down ? -power : power;
   }

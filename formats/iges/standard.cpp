@@ -4,6 +4,8 @@
 #include <array>
 #include <iterator>
 
+#include "formats/iges/real_text.h"
+
 namespace selvage::formats::iges {
 
 namespace {
@@ -118,10 +120,6 @@ constexpr Target targets[] = {{'c', {100, 102, 104, 106, 110, 112, 126, 130}},
                               {'f', {510}},
                               {'h', {514}},
                               {'D', {308}}};
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
 
 // A cursor over the values along the fields of the table.
 class Walk {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "core/graph.h"
 #include "formats/iges/reading.h"
 #include "formats/iges/standard.h"
 #include "formats/iges/types.h"
@@ -65,11 +67,8 @@ void Reading::stand_face(const DirectoryEntry& entry, const Context& context, Pa
   if (!face) return;
   context.placement.apply(*face);
   cad::Part part;
-  part.name = face->name;
-  part.color = face->color;
-  part.level = face->level;
+  part.label() = face->label();
   part.group = context.group;
-  part.origin = face->origin;
   part.faces.push_back(std::move(*face));
   face_pointers_.push_back(entry.pointer);
   model_.parts.push_back(std::move(part));
@@ -81,13 +80,9 @@ void Reading::stand_part(const DirectoryEntry& entry, const Context& context, Pa
   std::size_t points = 0;
   for (const cad::Face& face : part->faces) points += face.surface.points.size();
   spend(points, parameters);
-  Attributes own = attributes(entry, parameters);
+  part->label() = attributes(entry, parameters);
   if (!parameters.ok()) return;
-  part->name = std::move(own.name);
-  part->color = own.color;
-  part->level = own.level;
   part->group = context.group;
-  part->origin = origin(entry);
   context.placement.apply(*part);
   face_pointers_.insert(face_pointers_.end(), part->faces.size(), 0);
   model_.parts.push_back(std::move(*part));
@@ -97,23 +92,20 @@ void Reading::stand_curves(const DirectoryEntry& entry, const Context& context, 
                            std::vector<nurbs::Curve> curves) {
   if (curves.empty()) return;
   for (const nurbs::Curve& curve : curves) spend(curve.points.size(), parameters);
-  const Attributes own = attributes(entry, parameters);
+  const cad::Label own = attributes(entry, parameters);
   if (!parameters.ok()) return;
   for (nurbs::Curve& curve : curves) {
     context.placement.apply(curve);
     curve_pointers_.push_back(entry.pointer);
-    model_.curves.push_back({std::move(curve), own.name, own.color, own.level, origin(entry)});
+    model_.curves.push_back({own, std::move(curve)});
   }
 }
 
-void Reading::stand_together(const DirectoryEntry& group, const Attributes& own,
-                             const std::vector<int>& members, const Context& context, Parameters& by) {
+void Reading::stand_together(const cad::Label& label, const std::vector<int>& members, const Context& context,
+                             Parameters& by) {
   cad::Part part;
-  part.name = own.name;
-  part.color = own.color;
-  part.level = own.level;
+  part.label() = label;
   part.group = context.group;
-  part.origin = origin(group);
   for (const int member : members) {
     const DirectoryEntry* const found = entry(member, by);
     if (found == nullptr || report_.is_full()) return;
@@ -127,54 +119,35 @@ void Reading::stand_together(const DirectoryEntry& group, const Attributes& own,
 }
 
 // Groups of groups, instances of definitions that hold instances: no entity may hold itself.
-void Reading::find_circles(const std::unordered_map<int, std::vector<int>>& members) {
-  enum class State : char { fresh, open, done };
-  std::vector<State> states(file_.directory().size(), State::fresh);
-  struct Step {
-    const DirectoryEntry* entry;
-    std::size_t next;
-  };
-  std::vector<Step> path;
-  for (const DirectoryEntry& root : file_.directory()) {
-    if (members.count(root.pointer) == 0 || states[index(root)] != State::fresh) continue;
-    path.push_back({&root, 0});
-    states[index(root)] = State::open;
-    while (!path.empty()) {
-      Step& step = path.back();
-      const auto found = members.find(step.entry->pointer);
-      if (found == members.end() || step.next == found->second.size()) {
-        states[index(*step.entry)] = State::done;
-        path.pop_back();
-        continue;
-      }
-      const DirectoryEntry* const member = file_.entity(found->second[step.next++]);
-      if (member == nullptr || states[index(*member)] == State::done) continue;
-      if (states[index(*member)] == State::open) {
-        if (std::exchange(failed_[index(*member)], 1) == 0)
-          report_.error(file_.spot(*member), fmt::format("{}: it holds itself (through D{})", member->name(),
-                                                         step.entry->pointer));
-        continue;
-      }
-      states[index(*member)] = State::open;
-      path.push_back({member, 0});
-    }
-  }
-}
-
 void Reading::find_members() {
-  std::unordered_map<int, std::vector<int>> members;
+  Graph members;
   for (const DirectoryEntry& entry : file_.directory()) {
+    members.firsts.push_back(members.targets.size());
     const EntityType* const type = type_of(entry);
     if (type == nullptr || type->members == nullptr) continue;
     Parameters parameters = file_.parameters(entry);
     std::vector<int> held;
     if (parameters.ok()) held = type->members(*this, entry, parameters);
-    if (!finish(entry, parameters)) continue;
-    for (const int pointer : held)
-      if (const DirectoryEntry* const member = file_.entity(pointer)) held_[index(*member)] = 1;
-    members.emplace(entry.pointer, std::move(held));
+    if (!finish(entry, parameters)) held.clear();
+    for (const int pointer : held) {
+      const DirectoryEntry* const member = file_.entity(pointer);
+      if (member == nullptr) continue;
+      held_[index(*member)] = 1;
+      members.targets.push_back(static_cast<int>(index(*member)));
+    }
   }
-  find_circles(members);
+  members.firsts.push_back(members.targets.size());
+  std::vector<std::size_t> order;
+  for (const Circle& circle : sort_from_leaves(members, order)) {
+    const DirectoryEntry& member = file_.directory()[circle.at];
+    fail_once(member, file_.spot(member),
+              fmt::format("it holds itself (through D{})", file_.directory()[circle.by].pointer));
+  }
+  for (const std::size_t node : order) {
+    extents_[node] = std::max(1, file_.directory()[node].line_count);
+    for (std::size_t k = members.firsts[node]; k < members.firsts[node + 1]; ++k)
+      extents_[node] += extents_[static_cast<std::size_t>(members.targets[k])];
+  }
 }
 
 void Reading::count_entities() {

@@ -17,53 +17,11 @@ const DirectoryEntry* target_of(const File& file, int pointer) {
   return pointer > 0 ? file.entity(pointer) : nullptr;
 }
 
-// The fields that point.
-class DirectoryCheck {
+// The fields of the directory that point, and parameter records: whose lines they are, their values, and what
+// they point to.
+class StructureCheck {
  public:
-  DirectoryCheck(const File& file, Findings& findings) : file_(file), findings_(findings) {}
-
-  void run() {
-    for (const DirectoryEntry& entry : file_.directory()) {
-      check_pointer(entry, 7, entry.transformation, {124}, "transformation");
-      check_pointer(entry, 13, -std::min(entry.color, 0), {314}, "colour");
-      check_pointer(entry, 5, -std::min(entry.level, 0), {406}, "level");
-      check_pointer(entry, 4, -std::min(entry.font, 0), {304}, "line font");
-      check_pointer(entry, 6, entry.view, {410, 402}, "view");
-      if (entry.transformation != 0) check_matrices(entry);
-    }
-  }
-
- private:
-  void check_pointer(const DirectoryEntry& entry, int field, int pointer, std::initializer_list<int> types,
-                     std::string_view what) {
-    if (pointer == 0) return;
-    const DirectoryEntry* const target = target_of(file_, pointer);
-    if (target == nullptr)
-      defect(entry, field,
-             fmt::format("the {} points to {}, where no directory entry begins", what, pointer));
-    else if (std::find(types.begin(), types.end(), target->type) == types.end())
-      defect(entry, field, fmt::format("the {} points to a {}", what, target->name()));
-  }
-  void check_matrices(const DirectoryEntry& entry) {
-    const DirectoryEntry* at = target_of(file_, entry.transformation);
-    for (std::size_t steps = 0; at != nullptr; at = target_of(file_, at->transformation))
-      if (at == &entry || ++steps > file_.directory().size()) {
-        defect(entry, 7, "its transformations go in a circle");
-        return;
-      }
-  }
-  void defect(const DirectoryEntry& entry, int field, const std::string& what) {
-    findings_.defect(entry.name() + ": " + what, file_.spot(entry, field).place());
-  }
-
-  const File& file_;
-  Findings& findings_;
-};
-
-// Parameter records: whose lines they are, their values, and what they point to.
-class ParameterCheck {
- public:
-  ParameterCheck(const File& file, Findings& findings)
+  StructureCheck(const File& file, Findings& findings)
       : file_(file),
         findings_(findings),
         there_(file.lines().count(Section::parameter)),
@@ -73,6 +31,7 @@ class ParameterCheck {
   }
 
   void run() {
+    for (const DirectoryEntry& entry : file_.directory()) check_pointers(entry);
     for (const DirectoryEntry& entry : file_.directory())
       if (entry.type != 0) check(entry);
     for (int line = 1; line <= there_; ++line)
@@ -83,6 +42,30 @@ class ParameterCheck {
   }
 
  private:
+  void check_pointers(const DirectoryEntry& entry) {
+    check_pointer(entry, 7, entry.transformation, {124}, "transformation");
+    check_pointer(entry, 13, -std::min(entry.color, 0), {314}, "colour");
+    check_pointer(entry, 5, -std::min(entry.level, 0), {406}, "level");
+    check_pointer(entry, 4, -std::min(entry.font, 0), {304}, "line font");
+    check_pointer(entry, 6, entry.view, {410, 402}, "view");
+    const DirectoryEntry* at = target_of(file_, entry.transformation);
+    for (std::size_t steps = 0; at != nullptr; at = target_of(file_, at->transformation))
+      if (at == &entry || ++steps > file_.directory().size()) {
+        defect(entry, file_.spot(entry, 7), "its transformations go in a circle");
+        return;
+      }
+  }
+  void check_pointer(const DirectoryEntry& entry, int field, int pointer, std::initializer_list<int> types,
+                     std::string_view what) {
+    if (pointer == 0) return;
+    const DirectoryEntry* const target = target_of(file_, pointer);
+    if (target == nullptr)
+      defect(entry, file_.spot(entry, field),
+             fmt::format("the {} points to {}, where no directory entry begins", what, pointer));
+    else if (std::find(types.begin(), types.end(), target->type) == types.end())
+      defect(entry, file_.spot(entry, field), fmt::format("the {} points to a {}", what, target->name()));
+  }
+
   void check(const DirectoryEntry& entry) {
     if (entry.first_line < 1 || entry.first_line > there_) {
       defect(entry, file_.spot(entry, 2),
@@ -270,8 +253,7 @@ void check_structure(const Source& source, Findings& findings) {
   Complaints complaints(findings);
   const std::optional<File> file = File::open(source, complaints);
   if (!file) return;
-  DirectoryCheck(*file, findings).run();
-  ParameterCheck(*file, findings).run();
+  StructureCheck(*file, findings).run();
 }
 
 }  // namespace selvage::formats::iges

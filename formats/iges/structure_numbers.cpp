@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/iges/entities.h"
 #include "nurbs/basis.h"
 #include "nurbs/spline.h"
 
@@ -97,9 +98,7 @@ class Numbers {
 };
 
 double size_of(const std::vector<Vec3>& points) {
-  double size = 0;
-  for (const Vec3& point : points) size = std::max(size, point.cwiseAbs().maxCoeff());
-  return size;
+  return largest_of(points).value_or(0);
 }
 
 // The flags PROP1 and PROP4 (PROP2 and PROP5) against the largest distance of the two opposite borders.

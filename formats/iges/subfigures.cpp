@@ -2,9 +2,7 @@
 // for itself.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <unordered_map>
 
 #include "formats/iges/types.h"
 
@@ -26,36 +24,8 @@ std::vector<int> definition_of_instance(Reading& /*reading*/, const DirectoryEnt
   return {in.pointer()};
 }
 
-// How many control points an entity stands for at least, instances and all: lines of 64 columns hold one each
-// or more. Counted before anything is made; circles were found before.
-class Expansion {
- public:
-  explicit Expansion(Reading& reading) : reading_(reading) {}
-
-  double points(const DirectoryEntry& entry) {
-    const auto known = known_.find(entry.pointer);
-    if (known != known_.end()) return known->second;
-    double sum = std::max(1.0, static_cast<double>(entry.line_count));
-    const EntityType* const type = reading_.type_of(entry);
-    if (type != nullptr && type->members != nullptr && depth_ < 64) {
-      ++depth_;
-      Parameters in = reading_.file().parameters(entry);
-      for (const int pointer : type->members(reading_, entry, in))
-        if (const DirectoryEntry* const member = reading_.file().entity(pointer)) sum += points(*member);
-      --depth_;
-    }
-    known_.emplace(entry.pointer, sum);
-    return sum;
-  }
-
- private:
-  Reading& reading_;
-  std::unordered_map<int, double> known_;
-  int depth_ = 0;
-};
-
 // What has no name of its own has the instance's.
-void take_over(const Attributes& own, cad::Part& part) {
+void take_over(const cad::Label& own, cad::Part& part) {
   if (part.name.empty()) part.name = own.name;
   if (!part.color) part.color = own.color;
   for (cad::Face& face : part.faces)
@@ -67,35 +37,30 @@ void stand_instance(Reading& reading, const DirectoryEntry& entry, Parameters& i
   const double x = in.real(), y = in.real(), z = in.real(), scale = in.real(1);
   const DirectoryEntry* const definition = reading.entry(pointer, 308, in);
   if (definition == nullptr) return;
-  if (!(scale > 0)) {
+  const double points = reading.extent(entry);
+  if (!(scale > 0))
     in.fail(fmt::format("an instance at a scale of {}", scale));
-    return;
-  }
-  const double points = Expansion(reading).points(entry);
-  if (points > static_cast<double>(Reading::most_points)) {
+  else if (points > static_cast<double>(Reading::most_points))
     in.fail(fmt::format("this instance stands for {:.2g} control points or more: at most {} are made", points,
                         Reading::most_points));
-    return;
-  }
-  Parameters inside = reading.file().parameters(*definition);
+  if (!in.ok()) return;
+  Parameters inside = reading.file().parameters(*definition);  // which were read once without a fault
   const std::vector<int> members = members_of_definition(reading, *definition, inside);
   Context inner = context;
   inner.placement = context.placement * Placement::of(scale * Eigen::Matrix3d::Identity(), {x, y, z}) *
                     reading.placement(*definition);
-  const Attributes own = reading.attributes(entry, in);
+  const cad::Label own = reading.attributes(entry, in);
   if (!in.ok()) return;
   const std::size_t before = reading.model().parts.size();
   // Faces that are placed together are one part, as in a group.
-  if (members.size() > 1 &&
-      std::all_of(members.begin(), members.end(), [&](int member) { return reading.is_face(member); }))
-    reading.stand_together(entry, own, members, inner, in);
+  if (members.size() > 1 && reading.are_faces(members))
+    reading.stand_together(own, members, inner, in);
   else
     for (const int member : members) {
-      if (!inside.ok() || !in.ok()) break;
+      if (!in.ok()) break;
       reading.stand(member, inner, in);
     }
   if (reading.model().parts.size() == before + 1) take_over(own, reading.model().parts.back());
-  if (!reading.finish(*definition, inside)) in.give_up({});
 }
 
 }  // namespace

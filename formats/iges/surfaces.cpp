@@ -9,12 +9,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "cad/edges.h"
 #include "cad/natural_border.h"
+#include "cad/sampled_curve.h"
 #include "formats/iges/curves.h"
 #include "formats/iges/standard.h"
 #include "formats/iges/types.h"
 #include "nurbs/chain.h"
 #include "nurbs/conic.h"
+#include "nurbs/divided.h"
 #include "nurbs/interpolate.h"
 #include "nurbs/measure.h"
 #include "nurbs/power.h"
@@ -51,10 +54,8 @@ std::optional<Surface> read_patches(Reading& reading, const DirectoryEntry& entr
   if (!in.ok()) return std::nullopt;
   double gap = 0;
   Surface surface = nurbs::from_power(*breaks_u, *breaks_v, patches, &gap);
-  if (gap > most_gap(surface.points)) {
-    in.give_up(fmt::format("its patches do not meet, by {:.3g}", gap));
-    return std::nullopt;
-  }
+  if (gap > most_gap(surface.points))
+    return in.give_up(fmt::format("its patches do not meet, by {:.3g}", gap));
   warn_of_gap(reading, entry, gap, surface.points);
   return surface;
 }
@@ -161,14 +162,9 @@ std::optional<Surface> read_revolution(Reading& reading, const DirectoryEntry& e
   const std::optional<Curve> generatrix = reading.curve(curve_pointer, in);
   if (!in.ok() || !axis || !generatrix) return std::nullopt;
   const Vec3 foot = axis->points.front(), direction = axis->points.back() - foot;
-  if (axis->degree != 1 || axis->points.size() != 2 || !(direction.norm() > 0)) {
-    in.fail("its axis is no line");
-    return std::nullopt;
-  }
-  if (from == to) {
-    in.fail(fmt::format("it is turned from {} to {} radians: by nothing", from, to));
-    return std::nullopt;
-  }
+  if (axis->degree != 1 || axis->points.size() != 2 || !(direction.norm() > 0))
+    return in.fail("its axis is no line");
+  if (from == to) return in.fail(fmt::format("it is turned from {} to {} radians: by nothing", from, to));
   if (to < from) to += 2 * pi * std::ceil((from - to) / (2 * pi));
   if (std::abs(to - from - 2 * pi) < 1e-7) {
     to = from + 2 * pi;
@@ -184,11 +180,8 @@ std::optional<Surface> read_extrusion(Reading& reading, const DirectoryEntry& /*
   const Vec3 end = read_point(in);
   const std::optional<Curve> directrix = reading.curve(pointer, in);
   if (!in.ok() || !directrix) return std::nullopt;
-  const Vec3 shift = end - nurbs::evaluate(*directrix, directrix->first_parameter());
-  if (!(shift.norm() > 0)) {
-    in.fail("it ends where its curve starts: it has no height");
-    return std::nullopt;
-  }
+  const Vec3 shift = end - cad::at_share(*directrix, 0);
+  if (!(shift.norm() > 0)) return in.fail("it ends where its curve starts: it has no height");
   return nurbs::extruded(*directrix, shift);
 }
 
@@ -234,68 +227,48 @@ double FlatMap::Axis::operator()(double value) const {
 std::optional<Curve> FlatMap::operator()(const Curve& flat, bool only_exact) const {
   if (!is_known_) return std::nullopt;
   if (u_.is_identity() && v_.is_identity()) return flat;
-  if (u_.angles.empty() && v_.angles.empty()) {
+  const auto point_by_point = [&] {
     Curve mapped = flat;
     for (Vec3& p : mapped.points) p = at(p);
     return mapped;
-  }
+  };
+  if (u_.angles.empty() && v_.angles.empty()) return point_by_point();
   const auto constant = [&](int axis) {
     return std::all_of(flat.points.begin(), flat.points.end(),
                        [&](const Vec3& p) { return p[axis] == flat.points.front()[axis]; });
   };
-  const double first = flat.first_parameter(), last = flat.last_parameter();
   if (constant(0) || constant(1)) {
     const int axis = constant(0) ? 1 : 0;
-    if ((axis == 0 ? u_ : v_).angles.empty() || flat.degree == 1) {
-      Curve mapped = flat;
-      for (Vec3& p : mapped.points) p = at(p);
-      return mapped;
-    }
-    return Curve{.degree = 1,
-                 .knots = {first, first, last, last},
-                 .points = {at(nurbs::evaluate(flat, first)), at(nurbs::evaluate(flat, last))},
-                 .weights = {}};
+    if ((axis == 0 ? u_ : v_).angles.empty() || flat.degree == 1) return point_by_point();
+    return cad::straight(at(cad::at_share(flat, 0)), at(cad::at_share(flat, 1)), flat.first_parameter(),
+                         flat.last_parameter());
   }
   if (only_exact) return std::nullopt;
+  const std::vector<double> parameters = nurbs::divided(flat.knots, flat.degree, 32);
   std::vector<Vec3> points;
-  std::vector<double> parameters;
-  const std::vector<double> breaks = nurbs::breakpoints(flat.knots, flat.degree);
-  for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
-    for (int k = i == 0 ? 0 : 1; k <= 32; ++k) {
-      parameters.push_back(k == 32 ? breaks[i + 1] : breaks[i] + (breaks[i + 1] - breaks[i]) * k / 32);
-      points.push_back(at(nurbs::evaluate(flat, parameters.back())));
-    }
+  for (const double t : parameters) points.push_back(at(nurbs::evaluate(flat, t)));
   return nurbs::interpolate(points, parameters, nurbs::end_derivative(points, parameters, false),
                             nurbs::end_derivative(points, parameters, true));
 }
 
 void align_flat(cad::Edge& edge, const nurbs::Surface& surface) {
   if (edge.curve.points.empty() || edge.flat.points.empty()) return;
-  const auto on_surface = [&](double t) {
-    const Vec3 uv = nurbs::evaluate(edge.flat, t);
-    return nurbs::evaluate(surface, uv.x(), uv.y());
-  };
-  const Vec3 start = on_surface(edge.flat.first_parameter()), end = on_surface(edge.flat.last_parameter());
-  const Vec3 from = nurbs::evaluate(edge.curve, edge.curve.first_parameter());
-  const Vec3 to = nurbs::evaluate(edge.curve, edge.curve.last_parameter());
+  const Vec3 start = cad::at_share(surface, edge.flat, 0), end = cad::at_share(surface, edge.flat, 1);
+  const Vec3 from = cad::at_share(edge.curve, 0), to = cad::at_share(edge.curve, 1);
   if ((start - from).norm() + (end - to).norm() > (start - to).norm() + (end - from).norm())
     edge.flat = nurbs::reversed(edge.flat);
 }
 
-std::optional<Surface> bounded_surface(Reading& reading, int pointer, const std::vector<cad::Loop>& loops,
-                                       Parameters& by) {
-  const DirectoryEntry* const entry = reading.entry(pointer, by);
-  if (entry == nullptr) return std::nullopt;
-  if (!is_analytic(*entry)) return reading.surface(pointer, by);
-  reading.use(pointer);
-  Parameters in = reading.file().parameters(*entry);
+namespace {
+
+// One by formula, as far as the loops reach.
+std::optional<Surface> bounded_surface(Reading& reading, const DirectoryEntry& entry,
+                                       const std::vector<cad::Loop>& loops, Parameters& by) {
+  reading.use(entry.pointer);
   const std::optional<nurbs::Analytic> shape =
-      in.ok() ? read_analytic(reading, *entry, in) : std::optional<nurbs::Analytic>();
-  if (!reading.finish(*entry, in) || !shape) {
-    by.give_up({});
-    return std::nullopt;
-  }
-  const Placement placement = reading.placement(*entry);
+      reading.inside(&entry, by, [&](Parameters& in) { return read_analytic(reading, entry, in); });
+  if (!shape) return std::nullopt;
+  const Placement placement = reading.placement(entry);
   const Eigen::Matrix3d inverse = placement.linear.inverse();
   std::vector<std::vector<Vec3>> points;
   for (const cad::Loop& loop : loops) {
@@ -305,15 +278,12 @@ std::optional<Surface> bounded_surface(Reading& reading, int pointer, const std:
   }
   std::optional<nurbs::Analytic::Range> range = shape->bounded_by(points);
   if (!range && shape->is_finite()) range = shape->whole();
-  if (!range) {
-    by.give_up(fmt::format("its loops do not bound D{}, a {} ({})", pointer, entry->type,
-                           entity_title(entry->type)));
-    return std::nullopt;
-  }
+  if (!range)
+    return by.give_up(fmt::format("its loops do not bound D{}, a {} ({})", entry.pointer, entry.type,
+                                  entity_title(entry.type)));
   cad::Face face;
   face.loops = loops;
-  for (cad::Loop& loop : face.loops)
-    for (cad::Edge& edge : loop.edges) edge.flat = {};  // in the file's parameters, still
+  for (cad::Edge& edge : cad::edges_of(face)) edge.flat = {};  // in the file's parameters, still
   face.surface = shape->part(*range);
   placement.apply(face.surface);
   const double tolerance = cad::border_tolerance(face, reading.file().global().resolution);
@@ -322,6 +292,18 @@ std::optional<Surface> bounded_surface(Reading& reading, int pointer, const std:
     placement.apply(face.surface);
   }
   return std::move(face.surface);
+}
+
+}  // namespace
+
+std::optional<FlatMap> put_surface(Reading& reading, int pointer, cad::Face& face, Parameters& by) {
+  const DirectoryEntry* const entry = reading.entry(pointer, by);
+  if (entry == nullptr) return std::nullopt;
+  std::optional<Surface> surface =
+      is_analytic(*entry) ? bounded_surface(reading, *entry, face.loops, by) : reading.surface(pointer, by);
+  if (!surface) return std::nullopt;
+  face.surface = std::move(*surface);
+  return FlatMap(reading, pointer, face.surface);
 }
 
 std::span<const EntityType> surface_types() {

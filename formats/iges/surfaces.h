@@ -13,11 +13,6 @@ namespace selvage::formats::iges {
 bool is_analytic(const DirectoryEntry& entry);
 std::optional<nurbs::Analytic> read_analytic(Reading& reading, const DirectoryEntry& entry, Parameters& in);
 
-// The surface at `pointer` for a face with these loops, its own transformation applied: one by formula as far
-// as the loops reach, every other one as it is. Nothing after by.fail() or by.give_up().
-std::optional<nurbs::Surface> bounded_surface(Reading& reading, int pointer,
-                                              const std::vector<cad::Loop>& loops, Parameters& by);
-
 // What is due to a curve in the parameters that the standard gives to the surface at `pointer`, so that it
 // is one in those of the B-spline `surface`: these run along arcs otherwise than the angle does.
 class FlatMap {
@@ -41,6 +36,10 @@ class FlatMap {
   bool is_known_ = true;
   Axis u_, v_;
 };
+
+// Gives the face the surface at `pointer`, its own transformation applied: one by formula as far as the
+// face's loops reach, every other one as it is. Nothing after by.fail() or by.give_up().
+std::optional<FlatMap> put_surface(Reading& reading, int pointer, cad::Face& face, Parameters& by);
 
 // Files differ in which way a curve in the parameters runs where an edge is used backwards: the curve in
 // space decides.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "cad/edges.h"
 #include "cad/natural_border.h"
 #include "formats/iges/surfaces.h"
 #include "formats/iges/types.h"
@@ -21,26 +22,23 @@ struct Use {
   int flat = 0;  // pointer to the curve in the surface's parameters, where there is exactly one; else 0
 };
 
-// How many a list has, for its items' indices.
-std::size_t size_of_list(Reading& reading, const Use& use, Parameters& by) {
-  const int type = use.is_vertex ? 502 : 504;
-  const DirectoryEntry* const list = reading.entry(use.list, type, by);
-  if (list == nullptr) return 0;
-  Parameters in = reading.file().parameters(*list);
-  const std::size_t count = in.count(use.is_vertex ? "vertices" : "edges", use.is_vertex ? 3 : 5);
-  if (!reading.finish(*list, in)) by.give_up({});
-  return count;
+// Of `what` of a list there are `size`.
+void check_index(const Use& use, std::string_view what, std::size_t size, Parameters& by) {
+  if (use.index < 1 || use.index > static_cast<std::int64_t>(size))
+    by.fail(fmt::format("{} {} of the list D{}, which has {}", what, use.index, use.list, size));
 }
 
-// The curve of an edge: field 5 i + 1 of the 504. Nothing after an error.
+void check_vertex(Reading& reading, const Use& use, Parameters& by) {
+  const auto size = reading.inside(reading.entry(use.list, 502, by), by,
+                                   [](Parameters& in) { return std::optional(in.count("vertices", 3)); });
+  if (size) check_index(use, "vertex", *size, by);
+}
+
+// The curve of an edge: field 5 i + 1 of the 504. 0 after an error.
 int edge_curve(Reading& reading, const Use& use, Parameters& by) {
   const std::vector<int>* const curves = reading.edge_list(use.list, by);
-  if (curves == nullptr) return 0;
-  if (use.index < 1 || use.index > static_cast<std::int64_t>(curves->size())) {
-    by.fail(fmt::format("edge {} of the list D{}, which has {}", use.index, use.list, curves->size()));
-    return 0;
-  }
-  return (*curves)[static_cast<std::size_t>(use.index) - 1];
+  if (curves != nullptr) check_index(use, "edge", curves->size(), by);
+  return by.ok() ? (*curves)[static_cast<std::size_t>(use.index) - 1] : 0;
 }
 
 // One number for an edge of one list in the whole file: an edge takes five values, so a line of 64 columns
@@ -49,10 +47,8 @@ int id_of(const DirectoryEntry& list, std::int64_t index) {
   return static_cast<int>(16LL * list.first_line + index);
 }
 
-std::optional<std::vector<Use>> read_uses(Reading& reading, int pointer, Parameters& by) {
-  const DirectoryEntry* const entry = reading.entry(pointer, 508, by);
-  if (entry == nullptr) return std::nullopt;
-  Parameters in = reading.file().parameters(*entry);
+// Those of a 508.
+std::vector<Use> read_uses(Reading& reading, Parameters& in) {
   std::vector<Use> uses(in.count("edges of the loop", 5));
   for (Use& use : uses) {
     use.is_vertex = in.integer() == 1;
@@ -67,23 +63,19 @@ std::optional<std::vector<Use>> read_uses(Reading& reading, int pointer, Paramet
       use.flat = curves == 1 ? flat : 0;
     }
     if (!in.ok()) break;
-    if (use.is_vertex) {
-      const std::size_t vertices = size_of_list(reading, use, in);
-      if (in.ok() && (use.index < 1 || use.index > static_cast<std::int64_t>(vertices)))
-        in.fail(fmt::format("vertex {} of the list D{}, which has {}", use.index, use.list, vertices));
-    } else {
+    if (use.is_vertex)
+      check_vertex(reading, use, in);
+    else
       edge_curve(reading, use, in);
-    }
   }
   if (in.ok() && uses.empty()) in.fail("a loop without edges");
-  if (reading.finish(*entry, in)) return uses;
-  by.give_up({});
-  return std::nullopt;
+  return uses;
 }
 
 // The curves in the parameters are still as in the file.
 std::optional<cad::Loop> read_loop(Reading& reading, int pointer, Parameters& by) {
-  const std::optional<std::vector<Use>> uses = read_uses(reading, pointer, by);
+  const auto uses = reading.inside(reading.entry(pointer, 508, by), by,
+                                   [&](Parameters& in) { return std::optional(read_uses(reading, in)); });
   if (!uses) return std::nullopt;
   cad::Loop loop;
   for (const Use& use : *uses) {
@@ -117,18 +109,14 @@ std::optional<cad::Face> read_face(Reading& reading, const DirectoryEntry& /*ent
     if (!loop) return std::nullopt;
     face.loops.push_back(std::move(*loop));
   }
-  std::optional<nurbs::Surface> surface = bounded_surface(reading, surface_pointer, face.loops, in);
-  if (!surface) return std::nullopt;
-  face.surface = std::move(*surface);
-  const FlatMap map(reading, surface_pointer, face.surface);
-  for (cad::Loop& loop : face.loops)
-    for (cad::Edge& edge : loop.edges) {
-      if (edge.flat.points.empty()) continue;
-      // Beside the curve in space only what is exact; a pole has no other one, and needs none.
-      std::optional<nurbs::Curve> flat = map(edge.flat, true);
-      edge.flat = flat ? std::move(*flat) : nurbs::Curve{};
-      align_flat(edge, face.surface);
-    }
+  const std::optional<FlatMap> map = put_surface(reading, surface_pointer, face, in);
+  if (!map) return std::nullopt;
+  for (cad::Edge& edge : cad::edges_of(face)) {
+    if (edge.flat.points.empty()) continue;
+    // Beside the curve in space only what is exact; a pole has no other one, and needs none.
+    edge.flat = (*map)(edge.flat, true).value_or(nurbs::Curve{});
+    align_flat(edge, face.surface);
+  }
   cad::drop_natural_border(face, cad::border_tolerance(face, reading.file().global().resolution));
   return face;
 }

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "cad/natural_border.h"
+#include "cad/sampled_curve.h"
 #include "formats/iges/curves.h"
 #include "formats/iges/surfaces.h"
 #include "formats/iges/types.h"
@@ -18,52 +20,27 @@ using nurbs::Curve;
 // A boundary as the file has it: curves in space, in the parameters, or both, one after the other.
 struct Boundary {
   std::vector<Curve> spatial, flat;
-  bool prefers_flat = false;
-  std::vector<std::size_t> flats_each;  // 141: how many of `flat` go with each spatial one
 };
 
-bool is_point_like(const Curve& curve) {
-  for (const Vec3& p : curve.points)
-    if (p != curve.points.front()) return false;
-  return true;
-}
-
-// With the entity's own transformation, which curves in parameters do not have.
-std::optional<Boundary> finished(Reading& reading, const DirectoryEntry& entry, Parameters& in,
-                                 Boundary boundary, Parameters& by) {
-  if (!reading.finish(entry, in)) {
-    by.give_up({});
-    return std::nullopt;
-  }
-  const Placement placement = reading.placement(entry);
-  for (Curve& curve : boundary.spatial) placement.apply(curve);
-  return boundary;
-}
-
-// The curve on the surface that a 142 says: its surface is that of the 144.
-std::optional<Boundary> read_curve_on_surface(Reading& reading, int pointer, Parameters& by) {
-  const DirectoryEntry* const entry = reading.entry(pointer, 142, by);
-  if (entry == nullptr) return std::nullopt;
-  Parameters in = reading.file().parameters(*entry);
+// A 142, the curve on the surface of a 144.
+Boundary read_curve_on_surface(Reading& reading, Parameters& in) {
   in.integer();  // how it was made
   in.pointer();  // the surface
   const int flat = in.pointer(), spatial = in.pointer();
+  in.integer();  // which one is preferred
   Boundary boundary;
-  boundary.prefers_flat = in.integer() == 1;
   if (in.ok() && flat == 0 && spatial == 0) in.fail("it has no curve, neither in space nor in parameters");
   if (in.ok() && flat != 0) boundary.flat = read_chain(reading, flat, in);
   if (in.ok() && spatial != 0) boundary.spatial = read_chain(reading, spatial, in);
-  return finished(reading, *entry, in, std::move(boundary), by);
+  return boundary;
 }
 
-std::optional<Boundary> read_boundary_entity(Reading& reading, int pointer, Parameters& by) {
-  const DirectoryEntry* const entry = reading.entry(pointer, 141, by);
-  if (entry == nullptr) return std::nullopt;
-  Parameters in = reading.file().parameters(*entry);
+// A 141.
+Boundary read_boundary_entity(Reading& reading, Parameters& in) {
   const bool has_flats = in.integer() == 1;
-  Boundary boundary;
-  boundary.prefers_flat = in.integer() == 2;
+  in.integer();  // which ones are preferred
   in.pointer();  // the surface
+  Boundary boundary;
   const std::size_t count = in.count("curves", 3);
   if (in.ok() && count == 0) in.fail("a boundary without curves");
   for (std::size_t i = 0; i < count && in.ok(); ++i) {
@@ -74,13 +51,24 @@ std::optional<Boundary> read_boundary_entity(Reading& reading, int pointer, Para
       std::reverse(chain.begin(), chain.end());
       for (Curve& piece : chain) piece = nurbs::reversed(piece);
     }
-    const std::size_t flats = in.count("curves in parameters"), before = boundary.flat.size();
+    std::ranges::move(chain, std::back_inserter(boundary.spatial));
+    const std::size_t flats = in.count("curves in parameters");
     for (std::size_t k = 0; k < flats && in.ok(); ++k)
-      for (Curve& flat : read_chain(reading, in.pointer(), in)) boundary.flat.push_back(std::move(flat));
-    if (!has_flats) boundary.flat.resize(before);
-    for (std::size_t k = 0; k < chain.size(); ++k) boundary.spatial.push_back(std::move(chain[k]));
+      std::ranges::move(read_chain(reading, in.pointer(), in), std::back_inserter(boundary.flat));
   }
-  return finished(reading, *entry, in, std::move(boundary), by);
+  if (!has_flats) boundary.flat.clear();
+  return boundary;
+}
+
+// With the entity's own transformation, which curves in parameters do not have.
+std::optional<Boundary> read_boundary(Reading& reading, int pointer, int type, Parameters& by) {
+  const DirectoryEntry* const entry = reading.entry(pointer, type, by);
+  std::optional<Boundary> boundary = reading.inside(entry, by, [&](Parameters& in) {
+    return std::optional(type == 142 ? read_curve_on_surface(reading, in)
+                                     : read_boundary_entity(reading, in));
+  });
+  if (boundary) reading.placement(*entry).apply(boundary->spatial);
+  return boundary;
 }
 
 // As many edges as the file has, with both curves where they go together one by one.
@@ -88,7 +76,7 @@ cad::Loop spatial_loop(std::vector<Curve> spatial) {
   cad::Loop loop;
   for (Curve& curve : spatial) {
     cad::Edge edge;
-    if (!is_point_like(curve)) edge.curve = std::move(curve);
+    if (!cad::is_point(curve, 0)) edge.curve = std::move(curve);
     loop.edges.push_back(std::move(edge));
   }
   return loop;
@@ -103,10 +91,8 @@ void add_flats(cad::Loop& loop, const Boundary& boundary, const FlatMap& map, co
   if (!alone && boundary.flat.size() != loop.edges.size()) return;
   for (std::size_t i = 0; i < boundary.flat.size(); ++i) {
     std::optional<Curve> flat = map(boundary.flat[i], !alone);
-    if (alone && !flat) {
+    if (alone && !flat)
       by.give_up("its boundary is known in the surface's parameters only, which are not understood");
-      return;
-    }
     if (alone) loop.edges.emplace_back();
     cad::Edge& edge = loop.edges[i];
     if (!flat) continue;
@@ -115,25 +101,23 @@ void add_flats(cad::Loop& loop, const Boundary& boundary, const FlatMap& map, co
   }
 }
 
-template <class Read>
+// `boundaries` are entities of `type`.
 std::optional<cad::Face> read_trimmed(Reading& reading, int surface_pointer,
-                                      const std::vector<int>& boundaries, bool own_border, Parameters& in,
-                                      Read read) {
+                                      const std::vector<int>& boundaries, int type, bool own_border,
+                                      Parameters& in) {
   std::vector<Boundary> read_ones;
   cad::Face face;
   for (const int pointer : boundaries) {
-    std::optional<Boundary> boundary = in.ok() ? read(reading, pointer, in) : std::nullopt;
+    std::optional<Boundary> boundary = read_boundary(reading, pointer, type, in);
     if (!boundary) return std::nullopt;
     // Where only the parameters count, the file's curves in space are what somebody made of them.
     face.loops.push_back(spatial_loop(std::move(boundary->spatial)));
     read_ones.push_back(std::move(*boundary));
   }
-  std::optional<nurbs::Surface> surface = bounded_surface(reading, surface_pointer, face.loops, in);
-  if (!in.ok() || !surface) return std::nullopt;
-  face.surface = std::move(*surface);
-  const FlatMap map(reading, surface_pointer, face.surface);
+  const std::optional<FlatMap> map = put_surface(reading, surface_pointer, face, in);
+  if (!map) return std::nullopt;
   for (std::size_t i = 0; i < face.loops.size(); ++i)
-    add_flats(face.loops[i], read_ones[i], map, face.surface, in);
+    add_flats(face.loops[i], read_ones[i], *map, face.surface, in);
   if (!in.ok()) return std::nullopt;
   const double tolerance = cad::border_tolerance(face, reading.file().global().resolution);
   if (own_border && !face.loops.empty())
@@ -150,7 +134,7 @@ std::optional<cad::Face> read_144(Reading& reading, const DirectoryEntry& /*entr
   const int first = in.pointer();
   if (outer != 0) boundaries.push_back(first);
   for (std::size_t i = 0; i < holes && in.ok(); ++i) boundaries.push_back(in.pointer());
-  return read_trimmed(reading, surface, boundaries, outer == 0, in, read_curve_on_surface);
+  return read_trimmed(reading, surface, boundaries, 142, outer == 0, in);
 }
 
 std::optional<cad::Face> read_143(Reading& reading, const DirectoryEntry& /*entry*/, Parameters& in) {
@@ -159,7 +143,7 @@ std::optional<cad::Face> read_143(Reading& reading, const DirectoryEntry& /*entr
   const std::size_t count = in.count("boundaries");
   std::vector<int> boundaries;
   for (std::size_t i = 0; i < count && in.ok(); ++i) boundaries.push_back(in.pointer());
-  return read_trimmed(reading, surface, boundaries, false, in, read_boundary_entity);
+  return read_trimmed(reading, surface, boundaries, 141, false, in);
 }
 
 }  // namespace
