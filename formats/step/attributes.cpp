@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/option.h"  // words_of()
 #include "formats/step/entities.h"
 #include "formats/step/lexer.h"
 
@@ -17,12 +18,10 @@ struct TypeFacts {
 
 TypeFacts facts_of(std::string_view type) {
   TypeFacts facts;
-  while (!type.empty()) {
-    const std::size_t length = std::min(type.find(' '), type.size());
-    const Entity* const entity = find_entity(type.substr(0, length));
+  for (const std::string_view name : words_of(type)) {
+    const Entity* const entity = find_entity(name);
     facts.is_known = facts.is_known && entity != nullptr;
     if (entity != nullptr) facts.kinds |= entity->kinds;
-    type.remove_prefix(std::min(length + 1, type.size()));
   }
   return facts;
 }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "core/option.h"  // words_of()
 #include "formats/step/entity_table.h"
 
 namespace selvage::formats::step {
@@ -37,8 +38,8 @@ class Entities {
     Entity entity;
     entity.name = row.name;
     entity.kinds.set(numbers_.at(row.name));
-    for_each_word(row.supertypes,
-                  [&](std::string_view name) { entity.kinds |= list_.at(numbers_.at(name)).kinds; });
+    for (const std::string_view name : words_of(row.supertypes))
+      entity.kinds |= list_.at(numbers_.at(name)).kinds;
     entity.is_open = row.attributes == "...";
     if (entity.is_open) return entity;
     entity.own = attributes_of(row.attributes);
@@ -54,28 +55,19 @@ class Entities {
   }
 
   void append_inherited(std::string_view supertypes, EntitySet& taken, std::vector<Attribute>& whole) const {
-    for_each_word(supertypes, [&](std::string_view name) {
+    for (const std::string_view name : words_of(supertypes)) {
       const std::size_t number = numbers_.at(name);
-      if (taken.test(number)) return;
+      if (taken.test(number)) continue;
       taken.set(number);
       append_inherited(entity_rows[number].supertypes, taken, whole);
       const std::vector<Attribute>& own = list_.at(number).own;
       whole.insert(whole.end(), own.begin(), own.end());
-    });
-  }
-
-  template <class Take>
-  static void for_each_word(std::string_view words, Take take) {
-    while (!words.empty()) {
-      const std::size_t length = std::min(words.find(' '), words.size());
-      take(words.substr(0, length));
-      words.remove_prefix(std::min(length + 1, words.size()));
     }
   }
 
   [[nodiscard]] std::vector<Attribute> attributes_of(std::string_view pattern) const {
     std::vector<Attribute> attributes;
-    for_each_word(pattern, [&](std::string_view word) { attributes.push_back(attribute_of(word)); });
+    for (const std::string_view word : words_of(pattern)) attributes.push_back(attribute_of(word));
     return attributes;
   }
 
@@ -129,12 +121,7 @@ std::string names_of(const EntitySet& set) {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < std::size(entity_rows); ++i)
     if (set.test(i)) names.push_back(entity_rows[i].name);
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
-    text += names[i];
-  }
-  return text;
+  return alternatives(names);
 }
 
 }  // namespace selvage::formats::step

@@ -17,6 +17,7 @@
 #include <array>
 #include <cmath>
 
+#include "cad/edges.h"
 #include "core/plane.h"
 #include "formats/step/geometry.h"
 
@@ -74,7 +75,7 @@ Polygon polygon_of(const Chain& chain, const TopoDS_Face& face) {
   return polygon;
 }
 
-Range2 box_of(const Polygon& polygon) {
+cad::Range box_of(const Polygon& polygon) {
   Eigen::AlignedBox2d box;
   for (const Vec2& p : polygon) box.extend(p);
   return {box.min().x(), box.max().x(), box.min().y(), box.max().y()};
@@ -82,7 +83,7 @@ Range2 box_of(const Polygon& polygon) {
 
 // How far two parameters may be from each other and be one: what the face's tolerance is there, and no more
 // than a ten thousandth of the range.
-std::array<double, 2> slack(const TopoDS_Face& face, const Range2& range) {
+std::array<double, 2> slack(const TopoDS_Face& face, const cad::Range& range) {
   const BRepAdaptor_Surface adaptor(face, false);
   const double tolerance = std::max(BRep_Tool::Tolerance(face), 10 * Precision::Confusion());
   const auto within = [](double resolution, double width) {
@@ -93,7 +94,7 @@ std::array<double, 2> slack(const TopoDS_Face& face, const Range2& range) {
 }
 
 // Does the loop run once round a rectangle of parameters?
-bool is_rectangle(const Polygon& polygon, const Range2& box, const TopoDS_Face& face) {
+bool is_rectangle(const Polygon& polygon, const cad::Range& box, const TopoDS_Face& face) {
   const double width = box.u1 - box.u0, height = box.v1 - box.v0;
   if (!(width > 0) || !(height > 0)) return false;
   const auto [slack_u, slack_v] = slack(face, box);
@@ -106,7 +107,7 @@ bool is_rectangle(const Polygon& polygon, const Range2& box, const TopoDS_Face& 
 }
 
 // The rectangle brought to a border of the surface that it misses by no more than the slack.
-Range2 snapped(Range2 box, const Range2& whole, const TopoDS_Face& face) {
+cad::Range snapped(cad::Range box, const cad::Range& whole, const TopoDS_Face& face) {
   const auto [slack_u, slack_v] = slack(face, box);
   const auto snap = [](double& value, double border, double within) {
     if (std::abs(value - border) <= within) value = border;
@@ -118,18 +119,18 @@ Range2 snapped(Range2 box, const Range2& whole, const TopoDS_Face& face) {
   return box;
 }
 
-Range2 bounds_of(const Handle(Geom_Surface) & surface) {
-  Range2 whole;
+cad::Range bounds_of(const Handle(Geom_Surface) & surface) {
+  cad::Range whole;
   surface->Bounds(whole.u0, whole.u1, whole.v0, whole.v1);
   return whole;
 }
 
-bool is_finite(const Range2& range) {
+bool is_finite(const cad::Range& range) {
   return !Precision::IsInfinite(range.u0) && !Precision::IsInfinite(range.u1) &&
          !Precision::IsInfinite(range.v0) && !Precision::IsInfinite(range.v1);
 }
 
-bool is_whole(const Range2& box, const Range2& whole, const TopoDS_Face& face) {
+bool is_whole(const cad::Range& box, const cad::Range& whole, const TopoDS_Face& face) {
   const auto [slack_u, slack_v] = slack(face, whole);
   return box.u1 - box.u0 >= whole.u1 - whole.u0 - slack_u && box.v1 - box.v0 >= whole.v1 - whole.v0 - slack_v;
 }
@@ -166,7 +167,7 @@ class FaceMaker {
     std::vector<Polygon> polygons;
     polygons.reserve(chains.size());
     for (const Chain& chain : chains) polygons.push_back(polygon_of(chain, face_));
-    const Range2 whole = bounds_of(surface_);
+    const cad::Range whole = bounds_of(surface_);
     if (chains.empty()) {
       if (!is_finite(whole)) throw Standard_Failure("a face without a boundary on an unbounded surface");
       take_surface(whole, whole);
@@ -181,19 +182,20 @@ class FaceMaker {
   }
 
  private:
-  void take_surface(const Range2& range, const Range2& whole) {
+  void take_surface(const cad::Range& range, const cad::Range& whole) {
     const bool is_spline = surface_->IsKind(STANDARD_TYPE(Geom_BSplineSurface));
     result_.surface = exact_ && is_spline && is_whole(range, whole, face_) ? std::move(*exact_)
                                                                            : to_spline(surface_, range);
-    place(result_.surface, location_.Transformation());
+    place(result_.surface.points, location_.Transformation());
   }
 
   // B-spline surfaces are kept whole under their loops; others are given where the loops are.
-  [[nodiscard]] Range2 trimmed_range(const std::vector<Polygon>& polygons, const Range2& whole) const {
+  [[nodiscard]] cad::Range trimmed_range(const std::vector<Polygon>& polygons,
+                                         const cad::Range& whole) const {
     if (surface_->IsKind(STANDARD_TYPE(Geom_BSplineSurface))) return whole;
     Polygon all;
     for (const Polygon& polygon : polygons) all.insert(all.end(), polygon.begin(), polygon.end());
-    Range2 box = whole;
+    cad::Range box = whole;
     if (!all.empty()) {
       box = box_of(all);
       // Between two samples a curve may bulge out.
@@ -247,8 +249,7 @@ void stretch(nurbs::Curve& curve, double factor) {
 
 void stretch(cad::Face& face, double factor) {
   for (Vec3& p : face.surface.points) p *= factor;
-  for (cad::Loop& loop : face.loops)
-    for (cad::Edge& edge : loop.edges) stretch(edge.curve, factor);
+  for (cad::Edge& edge : cad::edges_of(face)) stretch(edge.curve, factor);
   if (face.area) *face.area *= factor * factor;
 }
 
@@ -265,7 +266,7 @@ nurbs::Curve to_curve(const TopoDS_Edge& edge) {
   const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, location, first, last);
   if (curve.IsNull()) return {};
   nurbs::Curve spline = to_spline(curve, first, last);
-  place(spline, location.Transformation());
+  place(spline.points, location.Transformation());
   return edge.Orientation() == TopAbs_REVERSED ? nurbs::reversed(spline) : spline;
 }
 

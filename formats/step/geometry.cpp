@@ -24,20 +24,12 @@ namespace selvage::formats::step {
 
 namespace {
 
-Vec3 vector_of(const gp_Pnt& p) {
-  return {p.X(), p.Y(), p.Z()};
-}
-Vec3 vector_of(const gp_Pnt2d& p) {
-  return {p.X(), p.Y(), 0.0};
-}
-
 template <class SplineHandle>
 nurbs::Curve from_spline(const SplineHandle& spline) {
   if (spline->IsPeriodic()) spline->SetNotPeriodic();
   nurbs::Curve curve;
   curve.degree = spline->Degree();
-  for (int i = 1; i <= spline->NbKnots(); ++i)
-    curve.knots.insert(curve.knots.end(), static_cast<std::size_t>(spline->Multiplicity(i)), spline->Knot(i));
+  curve.knots.assign(spline->KnotSequence().begin(), spline->KnotSequence().end());
   for (int i = 1; i <= spline->NbPoles(); ++i) {
     curve.points.push_back(vector_of(spline->Pole(i)));
     if (spline->IsRational()) curve.weights.push_back(spline->Weight(i));
@@ -53,12 +45,11 @@ nurbs::Surface from_spline(const Handle(Geom_BSplineSurface) & spline) {
   surface.degree_v = spline->VDegree();
   surface.count_u = spline->NbUPoles();
   surface.count_v = spline->NbVPoles();
-  for (int i = 1; i <= spline->NbUKnots(); ++i)
-    surface.knots_u.insert(surface.knots_u.end(), static_cast<std::size_t>(spline->UMultiplicity(i)),
-                           spline->UKnot(i));
-  for (int i = 1; i <= spline->NbVKnots(); ++i)
-    surface.knots_v.insert(surface.knots_v.end(), static_cast<std::size_t>(spline->VMultiplicity(i)),
-                           spline->VKnot(i));
+  const auto sequence = [](const TColStd_Array1OfReal& knots) {
+    return std::vector<double>(knots.begin(), knots.end());
+  };
+  surface.knots_u = sequence(spline->UKnotSequence());
+  surface.knots_v = sequence(spline->VKnotSequence());
   const bool is_rational = spline->IsURational() || spline->IsVRational();
   for (int j = 1; j <= surface.count_v; ++j)
     for (int i = 1; i <= surface.count_u; ++i) {
@@ -68,7 +59,7 @@ nurbs::Surface from_spline(const Handle(Geom_BSplineSurface) & spline) {
   return surface;
 }
 
-bool covers(const Range2& range, const Handle(Geom_Surface) & surface) {
+bool covers(const cad::Range& range, const Handle(Geom_Surface) & surface) {
   double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
   surface->Bounds(u0, u1, v0, v1);
   const double within_u = 1e-9 * (u1 - u0), within_v = 1e-9 * (v1 - v0);
@@ -95,36 +86,6 @@ std::optional<std::vector<double>> knots_of(const Handle(TColStd_HArray1OfReal) 
   return knots;
 }
 
-// A handle that may be null: the file's author's numbers need not fit.
-struct SplineEntity {
-  Handle(StepGeom_BSplineSurface) base;
-  Handle(TColStd_HArray1OfReal) knots_u, knots_v;
-  Handle(TColStd_HArray1OfInteger) times_u, times_v;
-  Handle(TColStd_HArray2OfReal) weights;
-};
-
-template <class Entity>
-void take_knots(SplineEntity& spline, const Handle(Entity) & entity) {
-  spline.base = entity;
-  spline.knots_u = entity->UKnots();
-  spline.knots_v = entity->VKnots();
-  spline.times_u = entity->UMultiplicities();
-  spline.times_v = entity->VMultiplicities();
-}
-
-SplineEntity spline_entity(const Handle(StepGeom_Surface) & surface) {
-  SplineEntity spline;
-  if (const auto plain = Handle(StepGeom_BSplineSurfaceWithKnots)::DownCast(surface); !plain.IsNull())
-    take_knots(spline, plain);
-  const auto rational = Handle(StepGeom_BSplineSurfaceWithKnotsAndRationalBSplineSurface)::DownCast(surface);
-  if (!rational.IsNull() && !rational->BSplineSurfaceWithKnots().IsNull()) {
-    take_knots(spline, rational);
-    spline.weights = rational->WeightsData();
-    if (spline.weights.IsNull()) spline.base.Nullify();
-  }
-  return spline;
-}
-
 bool is_identity(const gp_Trsf& placement) {
   if (placement.Form() == gp_Identity) return true;
   for (int row = 1; row <= 3; ++row)
@@ -133,12 +94,15 @@ bool is_identity(const gp_Trsf& placement) {
   return true;
 }
 
-void place(std::vector<Vec3>& points, const gp_Trsf& placement) {
-  if (is_identity(placement)) return;
-  for (Vec3& p : points) p = vector_of(gp_Pnt(p.x(), p.y(), p.z()).Transformed(placement));
+}  // namespace
+
+Vec3 vector_of(const gp_Pnt& p) {
+  return {p.X(), p.Y(), p.Z()};
 }
 
-}  // namespace
+Vec3 vector_of(const gp_Pnt2d& p) {
+  return {p.X(), p.Y(), 0.0};
+}
 
 nurbs::Curve to_spline(const Handle(Geom_Curve) & curve, double first, double last) {
   if (const auto spline = Handle(Geom_BSplineCurve)::DownCast(curve); !spline.IsNull()) {
@@ -154,13 +118,13 @@ nurbs::Curve to_spline(const Handle(Geom2d_Curve) & curve, double first, double 
   return from_spline(Geom2dConvert::CurveToBSplineCurve(new Geom2d_TrimmedCurve(curve, first, last)));
 }
 
-nurbs::Surface to_spline(const Handle(Geom_Surface) & surface, const Range2& range) {
+nurbs::Surface to_spline(const Handle(Geom_Surface) & surface, const cad::Range& range) {
   if (surface->IsKind(STANDARD_TYPE(Geom_BSplineSurface)) && covers(range, surface))
     return from_spline(Handle(Geom_BSplineSurface)::DownCast(surface->Copy()));
   Handle(Geom_Surface) basis = surface;
   if (const auto trimmed = Handle(Geom_RectangularTrimmedSurface)::DownCast(surface); !trimmed.IsNull())
     basis = trimmed->BasisSurface();
-  Range2 used = range;
+  cad::Range used = range;
   if (basis->IsUPeriodic()) used.u1 = std::min(used.u1, used.u0 + basis->UPeriod());
   if (basis->IsVPeriodic()) used.v1 = std::min(used.v1, used.v0 + basis->VPeriod());
   return from_spline(GeomConvert::SurfaceToBSplineSurface(
@@ -177,45 +141,52 @@ bool keeps_parameters(const Handle(Geom_Surface) & surface) {
 }
 
 std::optional<nurbs::Surface> exact_spline(const Handle(StepGeom_Surface) & surface, double scale) {
-  const SplineEntity entity = spline_entity(surface);
-  if (entity.base.IsNull() || entity.base->ControlPointsList().IsNull()) return std::nullopt;
+  const auto base = Handle(StepGeom_BSplineSurface)::DownCast(surface);
+  auto with_knots = Handle(StepGeom_BSplineSurfaceWithKnots)::DownCast(surface);
+  Handle(TColStd_HArray2OfReal) weights;
+  const auto rational = Handle(StepGeom_BSplineSurfaceWithKnotsAndRationalBSplineSurface)::DownCast(surface);
+  if (!rational.IsNull()) {
+    with_knots = rational->BSplineSurfaceWithKnots();
+    weights = rational->WeightsData();
+    if (weights.IsNull()) return std::nullopt;
+  }
+  // The file's author's numbers need not fit.
+  if (with_knots.IsNull() || base->ControlPointsList().IsNull()) return std::nullopt;
   nurbs::Surface spline;
-  spline.degree_u = entity.base->UDegree();
-  spline.degree_v = entity.base->VDegree();
-  spline.count_u = entity.base->NbControlPointsListI();
-  spline.count_v = entity.base->NbControlPointsListJ();
+  spline.degree_u = base->UDegree();
+  spline.degree_v = base->VDegree();
+  spline.count_u = base->NbControlPointsListI();
+  spline.count_v = base->NbControlPointsListJ();
   if (spline.degree_u < 1 || spline.degree_v < 1 || spline.degree_u >= spline.count_u ||
       spline.degree_v >= spline.count_v || std::max(spline.degree_u, spline.degree_v) > nurbs::max_degree)
     return std::nullopt;
-  auto knots_u = knots_of(entity.knots_u, entity.times_u, spline.count_u, spline.degree_u);
-  auto knots_v = knots_of(entity.knots_v, entity.times_v, spline.count_v, spline.degree_v);
+  auto knots_u =
+      knots_of(with_knots->UKnots(), with_knots->UMultiplicities(), spline.count_u, spline.degree_u);
+  auto knots_v =
+      knots_of(with_knots->VKnots(), with_knots->VMultiplicities(), spline.count_v, spline.degree_v);
   if (!knots_u || !knots_v) return std::nullopt;
   spline.knots_u = std::move(*knots_u);
   spline.knots_v = std::move(*knots_v);
-  if (!entity.weights.IsNull() &&
-      (entity.weights->ColLength() != spline.count_u || entity.weights->RowLength() != spline.count_v))
+  if (!weights.IsNull() && (weights->ColLength() != spline.count_u || weights->RowLength() != spline.count_v))
     return std::nullopt;
   for (int j = 1; j <= spline.count_v; ++j)
     for (int i = 1; i <= spline.count_u; ++i) {
-      const Handle(StepGeom_CartesianPoint) point = entity.base->ControlPointsListValue(i, j);
+      const Handle(StepGeom_CartesianPoint) point = base->ControlPointsListValue(i, j);
       if (point.IsNull() || point->NbCoordinates() != 3) return std::nullopt;
       spline.points.emplace_back(point->CoordinatesValue(1), point->CoordinatesValue(2),
                                  point->CoordinatesValue(3));
       if (scale != 1.0) spline.points.back() *= scale;
-      if (entity.weights.IsNull()) continue;
-      const double weight =
-          entity.weights->Value(entity.weights->LowerRow() + i - 1, entity.weights->LowerCol() + j - 1);
+      if (weights.IsNull()) continue;
+      const double weight = weights->Value(weights->LowerRow() + i - 1, weights->LowerCol() + j - 1);
       if (!(weight > 0) || !std::isfinite(weight)) return std::nullopt;
       spline.weights.push_back(weight);
     }
   return spline;
 }
 
-void place(nurbs::Curve& curve, const gp_Trsf& placement) {
-  place(curve.points, placement);
-}
-void place(nurbs::Surface& surface, const gp_Trsf& placement) {
-  place(surface.points, placement);
+void place(std::vector<Vec3>& points, const gp_Trsf& placement) {
+  if (is_identity(placement)) return;
+  for (Vec3& p : points) p = vector_of(gp_Pnt(p.x(), p.y(), p.z()).Transformed(placement));
 }
 
 }  // namespace selvage::formats::step

@@ -8,14 +8,10 @@
 #include <gp_Trsf.hxx>
 #include <optional>
 
+#include "cad/distance.h"
 #include "nurbs/spline.h"
 
 namespace selvage::formats::step {
-
-// A rectangle of parameters.
-struct Range2 {
-  double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
-};
 
 // Exceptions of all of these: Standard_Failure.
 
@@ -26,7 +22,7 @@ nurbs::Curve to_spline(const Handle(Geom_Curve) & curve, double first, double la
 nurbs::Curve to_spline(const Handle(Geom2d_Curve) & curve, double first, double last);
 
 // The surface over `range`, clamped, or the whole of a B-spline surface where `range` covers it.
-nurbs::Surface to_spline(const Handle(Geom_Surface) & surface, const Range2& range);
+nurbs::Surface to_spline(const Handle(Geom_Surface) & surface, const cad::Range& range);
 // Does to_spline give a surface of the same parameters?
 bool keeps_parameters(const Handle(Geom_Surface) & surface);
 
@@ -35,7 +31,9 @@ bool keeps_parameters(const Handle(Geom_Surface) & surface);
 std::optional<nurbs::Surface> exact_spline(const Handle(StepGeom_Surface) & surface, double scale);
 
 // In place; nothing changes under the identity.
-void place(nurbs::Curve& curve, const gp_Trsf& placement);
-void place(nurbs::Surface& surface, const gp_Trsf& placement);
+void place(std::vector<Vec3>& points, const gp_Trsf& placement);
+
+Vec3 vector_of(const gp_Pnt& p);
+Vec3 vector_of(const gp_Pnt2d& p);
 
 }  // namespace selvage::formats::step

@@ -30,8 +30,10 @@
 #include <map>
 #include <tuple>
 
-#include "core/groups.h"
+#include "cad/edges.h"
+#include "cad/sampled_curve.h"
 #include "formats/step/faces.h"
+#include "formats/step/geometry.h"
 #include "solid/occt/shape.h"
 
 namespace selvage::formats::step {
@@ -52,11 +54,6 @@ Handle(Geom2d_BSplineCurve) flat_curve(const nurbs::Curve& flat) {
   return new Geom2d_BSplineCurve(poles, weights, spline->Knots(), spline->Multiplicities(), flat.degree);
 }
 
-Vec3 point_of(const TopoDS_Vertex& vertex) {
-  const gp_Pnt p = BRep_Tool::Pnt(vertex);
-  return {p.X(), p.Y(), p.Z()};
-}
-
 // One vertex for all ends of edges that are one place.
 class Vertices {
  public:
@@ -71,7 +68,7 @@ class Vertices {
           const auto found = cells_.find(near);
           if (found == cells_.end()) continue;
           for (const TopoDS_Vertex& vertex : found->second)
-            if ((point_of(vertex) - place).norm() <= tolerance_) return vertex;
+            if ((vector_of(BRep_Tool::Pnt(vertex)) - place).norm() <= tolerance_) return vertex;
         }
     TopoDS_Vertex vertex;
     BRep_Builder().MakeVertex(vertex, gp_Pnt(place.x(), place.y(), place.z()), tolerance_);
@@ -111,12 +108,11 @@ class PartBuilder {
   static bool is_stated(const cad::Part& part) {
     if (part.kind != cad::Part::Kind::solid || !cad::has_shared_edges(part)) return false;
     for (const cad::Face& face : part.faces)
-      for (const cad::Loop& loop : face.loops)
-        for (const cad::Edge& edge : loop.edges)
-          if (edge.curve.points.empty() || edge.flat.points.empty() ||
-              edge.curve.first_parameter() != edge.flat.first_parameter() ||
-              edge.curve.last_parameter() != edge.flat.last_parameter())
-            return false;
+      for (const cad::Edge& edge : cad::edges_of(face))
+        if (edge.curve.points.empty() || edge.flat.points.empty() ||
+            edge.curve.first_parameter() != edge.flat.first_parameter() ||
+            edge.curve.last_parameter() != edge.flat.last_parameter())
+          return false;
     return true;
   }
 
@@ -127,7 +123,7 @@ class PartBuilder {
     for (const cad::Face& face : part_.faces) faces.push_back(stated_face(face));
     TopoDS_Solid solid;
     builder_.MakeSolid(solid);
-    for (const std::vector<std::size_t>& group : joined_faces()) {
+    for (const std::vector<std::size_t>& group : cad::shells_of(part_.faces)) {
       TopoDS_Shell shell;
       builder_.MakeShell(shell);
       for (const std::size_t i : group) builder_.Add(shell, faces[i]);
@@ -150,12 +146,7 @@ class PartBuilder {
       builder_.MakeWire(wire);
       for (const cad::Edge& edge : loop.edges) {
         auto known = shared_.find(edge.id);
-        if (known == shared_.end()) {
-          TopoDS_Edge made;
-          builder_.MakeEdge(made, solid::occt::spatial_curve(edge.curve, 1.0), Precision::Confusion());
-          finish_edge(made, edge.curve.points.front(), edge.curve.points.back(), edge.curve);
-          known = shared_.emplace(edge.id, made).first;
-        }
+        if (known == shared_.end()) known = shared_.emplace(edge.id, spatial_edge(edge.curve)).first;
         const TopoDS_Edge use = turned(known->second, edge);
         const bool forward = use.Orientation() == TopAbs_FORWARD;
         builder_.UpdateEdge(known->second, flat_curve(forward ? edge.flat : nurbs::reversed(edge.flat)),
@@ -188,20 +179,6 @@ class PartBuilder {
       }
     }
     return solid::occt::spatial_surface(surface, 1.0);
-  }
-
-  [[nodiscard]] std::vector<std::vector<std::size_t>> joined_faces() const {
-    Groups groups(part_.faces.size());
-    std::map<int, std::size_t> first;
-    for (std::size_t i = 0; i < part_.faces.size(); ++i)
-      for (const cad::Loop& loop : part_.faces[i].loops)
-        for (const cad::Edge& edge : loop.edges) groups.join(first.try_emplace(edge.id, i).first->second, i);
-    std::map<std::size_t, std::vector<std::size_t>> members;
-    for (std::size_t i = 0; i < part_.faces.size(); ++i) members[groups.of(i)].push_back(i);
-    std::vector<std::vector<std::size_t>> result;
-    result.reserve(members.size());
-    for (auto& [first_face, faces] : members) result.push_back(std::move(faces));
-    return result;
   }
 
   TopoDS_Face build_face(const cad::Face& face) {
@@ -249,11 +226,10 @@ class PartBuilder {
     }
     TopoDS_Edge built;
     if (!edge.curve.points.empty()) {
-      builder_.MakeEdge(built, solid::occt::spatial_curve(edge.curve, 1.0), Precision::Confusion());
-      finish_edge(built, edge.curve.points.front(), edge.curve.points.back(), edge.curve);
+      built = spatial_edge(edge.curve);
     } else {
-      const Vec3 from = on_surface(surface, edge.flat.points.front()),
-                 to = on_surface(surface, edge.flat.points.back());
+      const auto at = [&](const Vec3& p) { return vector_of(surface->Value(p.x(), p.y())); };
+      const Vec3 from = at(edge.flat.points.front()), to = at(edge.flat.points.back());
       BRepBuilderAPI_MakeEdge maker(flat_curve(edge.flat), surface, vertices_.at(from), vertices_.at(to));
       if (!maker.IsDone()) return {};  // of no length
       built = maker.Edge();
@@ -263,49 +239,41 @@ class PartBuilder {
     return built;
   }
 
-  void finish_edge(TopoDS_Edge& edge, const Vec3& from, const Vec3& to, const nurbs::Curve& curve) {
-    builder_.Add(edge, vertices_.at(from).Oriented(TopAbs_FORWARD));
-    builder_.Add(edge, vertices_.at(to).Oriented(TopAbs_REVERSED));
+  TopoDS_Edge spatial_edge(const nurbs::Curve& curve) {
+    TopoDS_Edge edge;
+    builder_.MakeEdge(edge, solid::occt::spatial_curve(curve, 1.0), Precision::Confusion());
+    builder_.Add(edge, vertices_.at(curve.points.front()).Oriented(TopAbs_FORWARD));
+    builder_.Add(edge, vertices_.at(curve.points.back()).Oriented(TopAbs_REVERSED));
     builder_.Range(edge, curve.first_parameter(), curve.last_parameter());
-  }
-
-  static Vec3 on_surface(const Handle(Geom_BSplineSurface) & surface, const Vec3& at) {
-    const gp_Pnt p = surface->Value(at.x(), at.y());
-    return {p.X(), p.Y(), p.Z()};
+    return edge;
   }
 
   // A shared edge in the direction of this use of it, told by a point before its middle (a closed edge has
   // but one end).
   static TopoDS_Edge turned(const TopoDS_Edge& shared, const cad::Edge& use) {
-    if (use.curve.points.empty()) return TopoDS::Edge(shared.Reversed());
     double first = 0, last = 0;
     const Handle(Geom_Curve) curve = BRep_Tool::Curve(shared, first, last);
-    if (curve.IsNull()) return TopoDS::Edge(shared.Reversed());
-    const auto point = [&](double share) {
-      const gp_Pnt p = curve->Value(first + share * (last - first));
-      return Vec3(p.X(), p.Y(), p.Z());
-    };
-    const double t0 = use.curve.first_parameter(), t1 = use.curve.last_parameter();
-    const Vec3 mine = nurbs::evaluate(use.curve, t0 + 0.25 * (t1 - t0));
+    if (use.curve.points.empty() || curve.IsNull()) return TopoDS::Edge(shared.Reversed());
+    const auto point = [&](double share) { return vector_of(curve->Value(first + share * (last - first))); };
+    const Vec3 mine = cad::at_share(use.curve, 0.25);
     const bool same = (mine - point(0.25)).norm() <= (mine - point(0.75)).norm();
     return same ? shared : TopoDS::Edge(shared.Reversed());
+  }
+
+  TopoDS_Shape shell_of(const TopoDS_Shape& face) {
+    TopoDS_Shell shell;
+    builder_.MakeShell(shell);
+    builder_.Add(shell, face);
+    return shell;
   }
 
   PartShape loose(const std::vector<TopoDS_Face>& faces) {
     PartShape result;
     TopoDS_Compound compound;
     builder_.MakeCompound(compound);
-    for (const TopoDS_Face& face : faces) {
-      TopoDS_Shell shell;
-      builder_.MakeShell(shell);
-      builder_.Add(shell, face);
-      if (faces.size() == 1)
-        result.shape = shell;
-      else
-        builder_.Add(compound, shell);
-      result.faces.push_back(face);
-    }
-    if (faces.size() != 1) result.shape = compound;
+    for (const TopoDS_Face& face : faces) builder_.Add(compound, shell_of(face));
+    result.shape = faces.size() == 1 ? shell_of(faces.front()) : TopoDS_Shape(compound);
+    result.faces.assign(faces.begin(), faces.end());
     return result;
   }
 
@@ -317,12 +285,7 @@ class PartBuilder {
     result.shape = sewing.SewedShape();
     if (result.shape.IsNull()) throw Standard_Failure("faces that make no shell");
     for (const TopoDS_Face& face : faces) result.faces.push_back(sewing.ModifiedSubShape(face));
-    if (result.shape.ShapeType() == TopAbs_FACE) {
-      TopoDS_Shell shell;
-      builder_.MakeShell(shell);
-      builder_.Add(shell, result.shape);
-      result.shape = shell;
-    }
+    if (result.shape.ShapeType() == TopAbs_FACE) result.shape = shell_of(result.shape);
     if (part_.kind == cad::Part::Kind::solid) make_solid(result);
     return result;
   }

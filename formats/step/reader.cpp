@@ -120,8 +120,11 @@ class ModelReader {
     find_entities();
     shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
     colors_ = XCAFDoc_DocumentTool::ColorTool(document_->Main());
-    Status status = take_roots();
-    if (!status.ok()) return status.error();
+    take_roots();
+    if (points_ > most_points)
+      return error(Kind::limit,
+                   fmt::format("more than {} control points, every instance counted (or {} faces)",
+                               most_points, most_points / face_cost));
     report_checks();
     return std::move(model_);
   }
@@ -241,22 +244,17 @@ class ModelReader {
     std::size_t parts = 0;                                        // how many were made of it
   };
 
-  Status take_roots() {
+  void take_roots() {
     TDF_LabelSequence roots;
     shapes_->GetFreeShapes(roots);
     if (roots.Length() == 1) model_.title = name_of_label(roots.First());
     if (file_.originating_system.starts_with("selvage")) model_.title = file_.description;
-    for (const TDF_Label& root : roots) {
-      Status status = walk(root, TopLoc_Location(), "", 0, {});
-      if (!status.ok()) return status;
-    }
-    return {};
+    for (const TDF_Label& root : roots) walk(root, TopLoc_Location(), "", 0, {});
   }
 
-  Status walk(const TDF_Label& label, const TopLoc_Location& above, const std::string& group, int depth,
-              const std::optional<cad::Color>& color_above) {
-    Status spent = spend(face_cost);
-    if (!spent.ok()) return spent;
+  void walk(const TDF_Label& label, const TopLoc_Location& above, const std::string& group, int depth,
+            const std::optional<cad::Color>& color_above) {
+    if (!spend(face_cost)) return;
     TDF_Label product = label;
     std::string name = name_of_label(label);
     TopLoc_Location place = above;
@@ -272,15 +270,12 @@ class ModelReader {
     if (!XCAFDoc_ShapeTool::IsAssembly(product)) return take_product(product, name, group, place, color);
     TDF_LabelSequence components;
     XCAFDoc_ShapeTool::GetComponents(product, components);
-    for (const TDF_Label& component : components) {
-      Status status = walk(component, place, depth == 1 ? name : group, depth + 1, color);
-      if (!status.ok()) return status;
-    }
-    return {};
+    for (const TDF_Label& component : components)
+      walk(component, place, depth == 1 ? name : group, depth + 1, color);
   }
 
-  Status take_product(const TDF_Label& product, const std::string& name, const std::string& group,
-                      const TopLoc_Location& place, const std::optional<cad::Color>& color) {
+  void take_product(const TDF_Label& product, const std::string& name, const std::string& group,
+                    const TopLoc_Location& place, const std::optional<cad::Color>& color) {
     Context context{name, group, color, {}, 0};
     TDF_LabelSequence subshapes;
     XCAFDoc_ShapeTool::GetSubShapes(product, subshapes);
@@ -288,7 +283,7 @@ class ModelReader {
       if (const std::optional<cad::Color> own = color_of_label(subshape))
         context.colors.emplace(XCAFDoc_ShapeTool::GetShape(subshape).TShape().get(), *own);
     const std::size_t first_part = model_.parts.size(), first_curve = model_.curves.size();
-    Status status = take_shape(XCAFDoc_ShapeTool::GetShape(product).Moved(place), context);
+    take_shape(XCAFDoc_ShapeTool::GetShape(product).Moved(place), context);
     // One thing in a product without a name of its own has the product's; where the product stands in several
     // places, that of the place, which tells them apart.
     TDF_LabelSequence users;
@@ -297,7 +292,6 @@ class ModelReader {
       model_.parts.back().name = name;
     if (model_.curves.size() == first_curve + 1 && (model_.curves.back().name.empty() || is_repeated))
       model_.curves.back().name = name;
-    return status;
   }
 
   // Nothing but faces, bare or in shells of their own: a group of surfaces.
@@ -309,7 +303,7 @@ class ModelReader {
     return shape.NbChildren() > 0;
   }
 
-  Status take_shape(const TopoDS_Shape& shape, Context& context) {
+  void take_shape(const TopoDS_Shape& shape, Context& context) {
     switch (shape.ShapeType()) {
       case TopAbs_SOLID:
         return take_part(shape, cad::Part::Kind::solid, context);
@@ -323,7 +317,7 @@ class ModelReader {
       case TopAbs_EDGE:
         return take_edge(TopoDS::Edge(shape), context);
       case TopAbs_VERTEX:
-        return {};
+        return;
       default:
         break;
     }
@@ -331,12 +325,8 @@ class ModelReader {
                                    : take_children(shape, context);
   }
 
-  Status take_children(const TopoDS_Shape& shape, Context& context) {
-    for (TopoDS_Iterator it(shape); it.More(); it.Next()) {
-      Status status = take_shape(it.Value(), context);
-      if (!status.ok()) return status;
-    }
-    return {};
+  void take_children(const TopoDS_Shape& shape, Context& context) {
+    for (TopoDS_Iterator it(shape); it.More(); it.Next()) take_shape(it.Value(), context);
   }
 
   [[nodiscard]] static std::optional<cad::Color> color_in(const Context& context, const TopoDS_Shape& shape,
@@ -345,65 +335,61 @@ class ModelReader {
     return own == context.colors.end() ? otherwise : own->second;
   }
 
-  Status take_part(const TopoDS_Shape& shape, cad::Part::Kind kind, Context& context) {
+  // Of what was made of `item`; `otherwise`: its colour where it has none of its own.
+  [[nodiscard]] cad::Label label_of(const TopoDS_Shape& shape,
+                                    const Handle(StepRepr_RepresentationItem) & item,
+                                    const std::optional<cad::Color>& otherwise,
+                                    const Context& context) const {
+    return {name_of_item(item), color_in(context, shape, otherwise), 0, origin_of(item)};
+  }
+
+  void take_part(const TopoDS_Shape& shape, cad::Part::Kind kind, Context& context) {
     cad::Part part;
     part.kind = kind;
-    const Handle(StepRepr_RepresentationItem) item = item_of(shape);
-    part.name = name_of_item(item);
+    part.label() = label_of(shape, item_of(shape), context.color, context);
     part.group = context.group;
-    part.origin = origin_of(item);
-    part.color = color_in(context, shape, context.color);
     EdgeIds ids;
-    Status status = take_faces(shape, part, part.color, ids, context);
-    if (!status.ok()) return status;
-    if (part.faces.empty()) return {};
+    take_faces(shape, part, part.color, ids, context);
+    if (part.faces.empty()) return;
     // Files give a group its colour face by face.
     const std::optional<cad::Color>& first = part.faces.front().color;
     if (!part.color && std::all_of(part.faces.begin(), part.faces.end(),
                                    [&](const cad::Face& face) { return face.color == first; }))
       part.color = first;
     model_.parts.push_back(std::move(part));
-    return {};
   }
 
-  Status take_faces(const TopoDS_Shape& shape, cad::Part& part, const std::optional<cad::Color>& color,
-                    EdgeIds& ids, const Context& context) {
+  void take_faces(const TopoDS_Shape& shape, cad::Part& part, const std::optional<cad::Color>& color,
+                  EdgeIds& ids, const Context& context) {
     if (shape.ShapeType() == TopAbs_FACE) return take_face(TopoDS::Face(shape), part, color, ids, context);
-    for (TopoDS_Iterator it(shape); it.More(); it.Next()) {
-      if (it.Value().ShapeType() > TopAbs_FACE) continue;
-      Status status = take_faces(it.Value(), part, color_in(context, it.Value(), color), ids, context);
-      if (!status.ok()) return status;
-    }
-    return {};
+    for (TopoDS_Iterator it(shape); it.More(); it.Next())
+      if (it.Value().ShapeType() <= TopAbs_FACE)
+        take_faces(it.Value(), part, color_in(context, it.Value(), color), ids, context);
   }
 
-  // Every placement of a thing costs something, empty ones too.
-  Status spend(std::size_t points) {
-    points_ += points;
-    if (points_ <= most_points) return {};
-    return error(Kind::limit, fmt::format("more than {} control points, every instance counted (or {} faces)",
-                                          most_points, most_points / face_cost));
+  // Every placement of a thing costs something, empty ones too. False: nothing more is taken.
+  bool spend(std::size_t points) {
+    if (points_ <= most_points) points_ += points;
+    return points_ <= most_points;
   }
 
-  Status take_face(const TopoDS_Face& shape, cad::Part& part, const std::optional<cad::Color>& color,
-                   EdgeIds& ids, const Context& context) {
+  void take_face(const TopoDS_Face& shape, cad::Part& part, const std::optional<cad::Color>& color,
+                 EdgeIds& ids, const Context& context) {
+    if (points_ > most_points) return;
     const auto entity = Handle(StepShape_FaceSurface)::DownCast(item_of(shape));
-    const cad::Origin origin = origin_of(entity);
     try {
       cad::Face face = to_face(shape, one_unit_ ? entity : Handle(StepShape_FaceSurface)(), working_, ids);
       stretch(face, scale_ / working_);
       cad::drop_natural_border(face, cad::border_tolerance(face, model_.resolution));
-      face.name = name_of_item(entity);
-      face.color = color_in(context, shape, color);
-      face.origin = origin;
+      face.label() = label_of(shape, entity, color, context);
       points_ += face.surface.points.size();
       for (const Vec3& p : face.surface.points)
         if (!p.allFinite()) throw Standard_Failure("a control point is no number");
       part.faces.push_back(std::move(face));
     } catch (const Standard_Failure& failure) {
-      lost_face(origin, failure);
+      lost_face(origin_of(entity), failure);
     }
-    return spend(face_cost);
+    spend(face_cost);
   }
 
   void lost_face(const cad::Origin& origin, const Standard_Failure& failure) {
@@ -413,17 +399,13 @@ class ModelReader {
                   Kind::geometry);
   }
 
-  Status take_edge(const TopoDS_Edge& edge, Context& context) {
+  void take_edge(const TopoDS_Edge& edge, Context& context) {
     cad::NamedCurve curve;
     curve.curve = to_curve(edge);
-    if (curve.curve.points.empty()) return {};
+    if (curve.curve.points.empty()) return;
     stretch(curve.curve, scale_ / working_);
-    const Handle(StepRepr_RepresentationItem) item = item_of(edge);
-    curve.name = name_of_item(item);
-    curve.origin = origin_of(item);
-    curve.color = color_in(context, edge, context.color);
+    curve.label() = label_of(edge, item_of(edge), context.color, context);
     model_.curves.push_back(std::move(curve));
-    return {};
   }
 
   // What OpenCASCADE could not use, as warnings.

@@ -3,6 +3,7 @@
 #include <Interface_Static.hxx>
 #include <STEPCAFControl_Controller.hxx>
 #include <StepData_GlobalFactors.hxx>
+#include <array>
 
 namespace selvage::formats::step {
 
@@ -13,21 +14,8 @@ std::mutex& one_at_a_time() {
   return mutex;
 }
 
-const char* unit_word(Unit unit) {
-  switch (unit) {
-    case Unit::m:
-      return "M";
-    case Unit::cm:
-      return "CM";
-    case Unit::mm:
-      return "MM";
-    case Unit::um:
-      return "UM";
-    case Unit::inch:
-      return "INCH";
-  }
-  return "MM";
-}
+// In the order of Unit.
+constexpr std::array<const char*, all_units.size()> unit_words = {"M", "CM", "MM", "UM", "INCH"};
 
 }  // namespace
 
@@ -44,8 +32,8 @@ Session::Session() : lock_(one_at_a_time()) {
 Session Session::to_write(Unit units, std::string_view schema) {
   Session session;
   Interface_Static::SetCVal("write.step.schema", schema_word(schema));
-  Interface_Static::SetCVal("xstep.cascade.unit", unit_word(units));
-  Interface_Static::SetCVal("write.step.unit", unit_word(units));
+  for (const char* const setting : {"xstep.cascade.unit", "write.step.unit"})
+    Interface_Static::SetCVal(setting, unit_words[static_cast<std::size_t>(units)]);
   Interface_Static::SetIVal("write.surfacecurve.mode", 0);
   return session;
 }

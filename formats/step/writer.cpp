@@ -103,8 +103,7 @@ class StepBodyWriter : public BodyWriter {
 
   Status add_curve(const cad::NamedCurve& curve) override {
     return solid::occt::guarded(fmt::format("curve '{}' to STEP", curve.name), [&]() -> Status {
-      Status finite = check_finite(curve.curve.points, curve.name);
-      if (!finite.ok()) return finite;
+      if (Status finite = check_finite(curve.curve.points, curve.name); !finite.ok()) return finite;
       ++facts_.entities["GEOMETRIC_CURVE_SET"];
       TopoDS_Compound set;
       BRep_Builder().MakeCompound(set);
@@ -151,8 +150,8 @@ class StepBodyWriter : public BodyWriter {
   }
 
   Result<Part> part_of(const yarn::Body& body) {
-    Status finite = check_finite(body.surface.points, "yarn '" + body.name + "'");
-    if (!finite.ok()) return finite.error();
+    if (Status finite = check_finite(body.surface.points, "yarn '" + body.name + "'"); !finite.ok())
+      return finite.error();
     const bool open_by_choice = !body.closed_along && (body.start.style == yarn::EndStyle::none ||
                                                        body.end.style == yarn::EndStyle::none);
     if (!open_by_choice) {
@@ -184,15 +183,12 @@ class StepBodyWriter : public BodyWriter {
   }
 
   Status add_foreign(const cad::Part& part) {
-    Box3 box;
-    for (const cad::Face& face : part.faces) {
-      Status finite = check_finite(face.surface.points, "'" + part.name + "'");
-      if (!finite.ok()) return finite;
-      for (const Vec3& p : face.surface.points) box.extend(p);
-    }
+    for (const cad::Face& face : part.faces)
+      if (Status finite = check_finite(face.surface.points, "'" + part.name + "'"); !finite.ok())
+        return finite;
     if (part.faces.empty()) return {};
     const double tolerance =
-        std::max(1e-6 * box.diagonal().norm(), uncertainty / millimetres_per(options_.units));
+        std::max(1e-6 * cad::box_of(part).diagonal().norm(), uncertainty / millimetres_per(options_.units));
     const PartShape built = build_part(part, tolerance);
     if (const std::optional<std::string> flaw = flaw_of(built, part)) {
       Message refused = error(
@@ -259,8 +255,7 @@ class StepBodyWriter : public BodyWriter {
     // One transfer for all yarns: one each would take time that grows with their square.
     if (!writer.Transfer(document_, STEPControl_AsIs))
       return error(Kind::internal, "OpenCASCADE does not translate the yarns to STEP");
-    Status styled = add_styles(writer.ChangeWriter());
-    if (!styled.ok()) return styled.error();
+    if (Status styled = add_styles(writer.ChangeWriter()); !styled.ok()) return styled.error();
     number_places(writer.ChangeWriter().Model());
     return send(writer.ChangeWriter().Model());
   }
@@ -337,8 +332,7 @@ class StepBodyWriter : public BodyWriter {
     StepStream buffer(output_);
     std::ostream stream(&buffer);
     const bool complete = lines.Print(stream);
-    Status status = buffer.close();
-    if (!status.ok()) return status.error();
+    if (Status status = buffer.close(); !status.ok()) return status.error();
     if (!complete) return error(Kind::internal, "OpenCASCADE does not write the STEP file");
     return std::move(facts_);
   }
