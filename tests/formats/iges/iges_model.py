@@ -122,24 +122,12 @@ class Model:
 
     def analytic_pointers(self, e):
         v = Values(e.values, e.what)
-        found = v.integers(1)
-        if e.type == 190:
-            found += v.integers(2)
-        elif e.type == 192:
-            found.append(v.integer())
-            v.real()
-            found += v.integers(1)
-        elif e.type == 194:
-            found.append(v.integer())
-            v.reals(2)
-            found += v.integers(1)
-        elif e.type == 196:
-            v.real()
-            found += v.integers(2)
-        elif e.type == 198:
-            found.append(v.integer())
-            v.reals(2)
-            found += v.integers(1)
+        # Behind the place: pointers, reals, pointers.
+        before, reals, behind = {190: (2, 0, 0), 192: (1, 1, 1), 194: (1, 2, 1), 196: (0, 1, 2),
+                                 198: (1, 2, 1)}[e.type]
+        found = v.integers(1) + v.integers(before)
+        v.reals(reals)
+        found += v.integers(behind)
         return [p for p in found if p]
 
     def target(self, de, e, *types):
