@@ -119,12 +119,6 @@ cad::Range snapped(cad::Range box, const cad::Range& whole, const TopoDS_Face& f
   return box;
 }
 
-cad::Range bounds_of(const Handle(Geom_Surface) & surface) {
-  cad::Range whole;
-  surface->Bounds(whole.u0, whole.u1, whole.v0, whole.v1);
-  return whole;
-}
-
 bool is_finite(const cad::Range& range) {
   return !Precision::IsInfinite(range.u0) && !Precision::IsInfinite(range.u1) &&
          !Precision::IsInfinite(range.v0) && !Precision::IsInfinite(range.v1);

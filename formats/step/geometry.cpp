@@ -60,8 +60,7 @@ nurbs::Surface from_spline(const Handle(Geom_BSplineSurface) & spline) {
 }
 
 bool covers(const cad::Range& range, const Handle(Geom_Surface) & surface) {
-  double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
-  surface->Bounds(u0, u1, v0, v1);
+  const auto [u0, u1, v0, v1] = bounds_of(surface);
   const double within_u = 1e-9 * (u1 - u0), within_v = 1e-9 * (v1 - v0);
   return range.u1 - range.u0 >= u1 - u0 - within_u && range.v1 - range.v0 >= v1 - v0 - within_v;
 }
@@ -95,6 +94,12 @@ bool is_identity(const gp_Trsf& placement) {
 }
 
 }  // namespace
+
+cad::Range bounds_of(const Handle(Geom_Surface) & surface) {
+  cad::Range whole;
+  surface->Bounds(whole.u0, whole.u1, whole.v0, whole.v1);
+  return whole;
+}
 
 Vec3 vector_of(const gp_Pnt& p) {
   return {p.X(), p.Y(), p.Z()};

@@ -30,6 +30,9 @@ bool keeps_parameters(const Handle(Geom_Surface) & surface);
 // surfaces and for numbers that do not fit together.
 std::optional<nurbs::Surface> exact_spline(const Handle(StepGeom_Surface) & surface, double scale);
 
+// Of the surface's parameters; infinite where it has no end.
+cad::Range bounds_of(const Handle(Geom_Surface) & surface);
+
 // In place; nothing changes under the identity.
 void place(std::vector<Vec3>& points, const gp_Trsf& placement);
 

@@ -125,7 +125,8 @@ class ModelReader {
       return error(Kind::limit,
                    fmt::format("more than {} control points, every instance counted (or {} faces)",
                                most_points, most_points / face_cost));
-    report_checks();
+    report_fails(reader_.ChangeReader().WS()->ModelCheckList(true));
+    report_fails(reader_.ChangeReader().WS()->TransferReader()->LastCheckList());
     return std::move(model_);
   }
 
@@ -409,14 +410,6 @@ class ModelReader {
   }
 
   // What OpenCASCADE could not use, as warnings.
-  void report_checks() {
-    const Interface_CheckIterator loaded = reader_.ChangeReader().WS()->ModelCheckList(true);
-    const Interface_CheckIterator transferred =
-        reader_.ChangeReader().WS()->TransferReader()->LastCheckList();
-    report_fails(loaded);
-    report_fails(transferred);
-  }
-
   void report_fails(const Interface_CheckIterator& checks) {
     for (checks.Start(); checks.More(); checks.Next()) {
       const Handle(Interface_Check)& check = checks.Value();

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "core/pointed_number.h"
+#include "core/readable.h"
 
 namespace selvage::formats::step {
 
@@ -36,16 +37,10 @@ std::size_t length_while(std::string_view text, Belongs belongs) {
 // The first character of a text in UTF-8, taken off it; a byte that is none stands for itself (Latin-1).
 char32_t take_character(std::string_view& text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char lead = byte(0);
-  const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
-  char32_t code = lead;
-  std::size_t taken = 1;
-  if (length > 1 && text.size() >= length) {
-    code = lead & (0xFFU >> (length + 1));
-    while (taken < length && (byte(taken) & 0xC0U) == 0x80) code = code << 6U | (byte(taken++) & 0x3FU);
-    if (taken < length) code = lead, taken = 1;
-  }
-  text.remove_prefix(taken);
+  const std::size_t length = character_length(text);
+  char32_t code = length > 1 ? byte(0) & (0xFFU >> (length + 1)) : byte(0);
+  for (std::size_t i = 1; i < length; ++i) code = code << 6U | (byte(i) & 0x3FU);
+  text.remove_prefix(std::max<std::size_t>(length, 1));
   return code;
 }
 
