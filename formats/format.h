@@ -1,4 +1,4 @@
-// What a file format is to the program: one descriptor a folder, listed in registry.cpp. Detection, `--to`,
+// What a file format is to the program: one descriptor a folder, listed in registry.h. Detection, `--to`,
 // `selvage formats` and the conformance tests all come from it. CONTRIBUTING.md: how to add one.
 #pragma once
 
@@ -18,6 +18,7 @@
 #include "core/option.h"
 #include "core/output.h"
 #include "core/source.h"
+#include "core/text_buffer.h"
 #include "core/units.h"
 #include "fabric/model.h"
 #include "fabric/piece.h"
@@ -33,9 +34,9 @@ using EntityCounts = std::map<std::string, std::uint64_t>;
 
 // What was written, for the report.
 struct WriteFacts {
-  EntityCounts entities;
-  std::vector<Message> messages;    // warnings
-  std::vector<EntityCounts> parts;  // of each file where there are several; else empty
+  EntityCounts entities{};
+  std::vector<Message> messages{};    // warnings
+  std::vector<EntityCounts> parts{};  // of each file where there are several; else empty
 };
 
 // A file that is one of several that hold a fabric together, as it says itself.
@@ -152,7 +153,12 @@ Result<std::unique_ptr<BodyWriter>> open_by(OutputFile& output, const SurfaceOpt
   return std::unique_ptr<BodyWriter>(std::make_unique<Writer>(output, options));
 }
 
-// Every format of the program, in the order in which `selvage formats` lists them.
-const std::vector<const Descriptor*>& all_formats();
+// What a mesh or drawing writer gives at its end: all of `counts`, and those of `others` that are not 0.
+inline Result<WriteFacts> finished(TextBuffer& text, EntityCounts counts, const EntityCounts& others = {}) {
+  if (Status done = text.finish(); !done) return done.error();
+  for (const auto& [name, count] : others)
+    if (count > 0) counts[name] = count;
+  return WriteFacts{.entities = std::move(counts)};
+}
 
 }  // namespace selvage::formats

@@ -1,4 +1,4 @@
-#include "formats/bdf/bdf.h"
+#include "formats/registry.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -64,33 +64,20 @@ std::string word(std::size_t value) {
 }
 
 // Sets are numbered in the case control: elements of the regions and sections, then nodes.
-struct NumberedSet {
-  std::string name;
-  std::vector<std::size_t> members;
-  bool is_range = false;  // members: first and last
-};
-
-std::vector<NumberedSet> sets_of(const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
-  std::vector<NumberedSet> sets;
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
-    sets.push_back(
-        {fem::set_name(mesh, i), {mesh.regions[i].first_element, mesh.regions[i].last_element - 1}, true});
-  for (const fem::Section& section : sections)
-    if (section.name != fem::set_name(mesh, section.region))
-      sets.push_back({section.name, section.elements, false});
-  for (fem::NodeSet& set : fem::node_sets(mesh))
-    sets.push_back({std::move(set.name), std::move(set.nodes), false});
+std::vector<fem::NamedSet> sets_of(const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
+  std::vector<fem::NamedSet> sets = fem::element_sets(mesh, sections);
+  for (fem::NamedSet& set : fem::node_sets(mesh)) sets.push_back(std::move(set));
   return sets;
 }
 
 // At most 72 columns a line, commas at the ends of lines that go on.
-void write_sets(TextBuffer& text, const std::vector<NumberedSet>& sets) {
+void write_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::NamedSet>& sets) {
   constexpr std::size_t longest = 70;
   for (std::size_t i = 0; i < sets.size(); ++i) {
     const std::vector<std::size_t>& members = sets[i].members;
     text << "$ SET " << i + 1 << " is " << sets[i].name << '\n';
-    if (sets[i].is_range) {
-      text << "SET " << i + 1 << " = " << members[0] + 1 << " THRU " << members[1] + 1 << '\n';
+    if (i < mesh.regions.size()) {
+      text << "SET " << i + 1 << " = " << members.front() + 1 << " THRU " << members.back() + 1 << '\n';
       continue;
     }
     std::string line = "SET " + word(i + 1) + " = ";
@@ -107,18 +94,17 @@ void write_sets(TextBuffer& text, const std::vector<NumberedSet>& sets) {
   }
 }
 
-void write_case_control(TextBuffer& text, const fem::Mesh& mesh, const std::vector<NumberedSet>& sets) {
+void write_case_control(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::NamedSet>& sets) {
   text << "SOL 101\nCEND\nTITLE = Selvage: " << std::string_view(mesh.title).substr(0, 50)
        << "\n$ Units: mm, N, MPa, tonne, s\nECHO = NONE\n";
-  write_sets(text, sets);
+  write_sets(text, mesh, sets);
   if (mesh.load_cases.empty()) {
     text << "BEGIN BULK\n";
     return;
   }
   const std::size_t drivers = sets.size() + 1;
   text << "$ SET " << drivers << " is the drivers\n"
-       << "SET " << drivers << " = " << mesh.nodes.size() + 1 << " THRU "
-       << mesh.nodes.size() + mesh.drivers.size()
+       << "SET " << drivers << " = " << mesh.nodes.size() + 1 << " THRU " << mesh.numbered()
        << "\nMPC = 1\nTEMPERATURE(INITIAL) = 999\nDISPLACEMENT = " << drivers << "\nSPCFORCES = " << drivers
        << "\nSTRESS = NONE\n";
   for (std::size_t i = 0; i < mesh.load_cases.size(); ++i) {
@@ -133,8 +119,8 @@ void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   put_left(text, "GRDSET", narrow);
   put_right(text, "456", 7 * narrow);
   text << '\n';
-  for (std::size_t n = 0; n < mesh.nodes.size() + mesh.drivers.size(); ++n) {
-    const Vec3& p = n < mesh.nodes.size() ? mesh.nodes[n] : mesh.drivers[n - mesh.nodes.size()].at;
+  for (std::size_t n = 0; n < mesh.numbered(); ++n) {
+    const Vec3& p = mesh.place(n);
     put_card(text, "GRID", {word(n + 1), "", real(p.x()), real(p.y()), real(p.z())});
   }
 }
@@ -166,12 +152,15 @@ class Properties {
   std::vector<std::size_t> of_element_;
 };
 
+const char* element_type(const fem::Mesh& mesh) {
+  return mesh.shape == fem::Mesh::Shape::hexahedron ? "CHEXA" : "CTETRA";
+}
+
 void write_elements(TextBuffer& text, const fem::Mesh& mesh, const Properties& properties) {
-  const auto count = static_cast<std::size_t>(mesh.nodes_per_element());
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     std::vector<std::size_t> fields = {e + 1, properties.of(e)};
-    for (std::size_t k = 0; k < count; ++k) fields.push_back(mesh.elements[e][k] + 1);
-    put_small(text, mesh.shape == fem::Mesh::Shape::hexahedron ? "CHEXA" : "CTETRA", fields);
+    for (const std::size_t node : mesh.nodes_of(e)) fields.push_back(node + 1);
+    put_small(text, element_type(mesh), fields);
   }
 }
 
@@ -247,7 +236,7 @@ void write_loads(TextBuffer& text, const fem::Mesh& mesh) {
     text << "$ " << load.name << '\n';
     if (const auto held = fem::held_node(mesh)) put_card(text, "SPC1", {word(i + 1), "123", word(*held + 1)});
     for (std::size_t d = 0; d < mesh.drivers.size(); ++d) {
-      const std::string node = word(mesh.nodes.size() + d + 1);
+      const std::string node = word(mesh.number_of_driver(d) + 1);
       put_card(text, "SPC1", {word(i + 1), "23", node});
       if (load.drivers[d]) put_card(text, "SPC", {word(i + 1), node, "1", real(*load.drivers[d])});
     }
@@ -257,7 +246,7 @@ void write_loads(TextBuffer& text, const fem::Mesh& mesh) {
 
 Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   constexpr std::size_t most = 99'999'999;  // columns of eight
-  if (mesh.nodes.size() + mesh.drivers.size() > most || mesh.elements.size() > most)
+  if (mesh.numbered() > most || mesh.elements.size() > most)
     return error(Kind::limit, "Nastran numbers at most 99 999 999 nodes and elements");
   const Result<std::vector<fem::Section>> sections = fem::sections(mesh);
   if (!sections) return sections.error();
@@ -274,13 +263,10 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   write_equations(text, mesh);
   write_loads(text, mesh);
   text << "ENDDATA\n";
-  if (Status done = text.finish(); !done) return done.error();
-  WriteFacts facts;
-  facts.entities = {{"GRID", mesh.nodes.size() + mesh.drivers.size()},
-                    {mesh.shape == fem::Mesh::Shape::hexahedron ? "CHEXA" : "CTETRA", mesh.elements.size()},
-                    {"PSOLID", properties.count()}};
-  if (!mesh.equations.empty()) facts.entities["MPC"] = mesh.equations.size();
-  return facts;
+  return finished(
+      text,
+      {{"GRID", mesh.numbered()}, {element_type(mesh), mesh.elements.size()}, {"PSOLID", properties.count()}},
+      {{"MPC", mesh.equations.size()}});
 }
 
 bool is_bulk_data(std::string_view head) {

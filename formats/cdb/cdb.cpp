@@ -1,7 +1,8 @@
-#include "formats/cdb/cdb.h"
+#include "formats/registry.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/columns.h"
 #include "core/text_report.h"
@@ -16,17 +17,20 @@ int element_type(const fem::Mesh& mesh) {
   return mesh.order == 1 ? 285 : 187;
 }
 
-void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
-  const std::size_t count = mesh.nodes.size() + mesh.drivers.size();
-  text << "NBLOCK,6,SOLID,";
+// A block of so many lines, the largest number being theirs, too.
+void open_block(TextBuffer& text, std::string_view command, std::size_t count, std::string_view form) {
+  text << command;
   put_right(text, count, 10);
   text << ',';
   put_right(text, count, 10);
-  text << "\n(3i9,6e21.13e3)\n";
-  for (std::size_t n = 0; n < count; ++n) {
-    const Vec3& p = n < mesh.nodes.size() ? mesh.nodes[n] : mesh.drivers[n - mesh.nodes.size()].at;
-    for (const std::size_t value : {n + 1, std::size_t{0}, std::size_t{0}}) put_right(text, value, 9);
-    for (int k = 0; k < 3; ++k) put_right(text, scientific_text(p[k], 13), 21);
+  text << '\n' << form << '\n';
+}
+
+void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
+  open_block(text, "NBLOCK,6,SOLID,", mesh.numbered(), "(3i9,6e21.13e3)");
+  for (std::size_t n = 0; n < mesh.numbered(); ++n) {
+    put_right(text, {n + 1, 0, 0}, 9);
+    for (const double x : mesh.place(n)) put_right(text, scientific_text(x, 13), 21);
     text << '\n';
   }
   text << "N,R5.3,LOC,       -1,\n";
@@ -59,69 +63,43 @@ void write_element_head(TextBuffer& text, std::size_t material, std::size_t type
                         std::size_t nodes, std::size_t number) {
   // Material, type, real constants, section, coordinate system, alive, solid model, shape, number of nodes,
   // (not used), number.
-  for (const std::size_t value : {material, type, type, std::size_t{1}, system, std::size_t{0},
-                                  std::size_t{0}, std::size_t{0}, nodes, std::size_t{0}, number})
-    put_right(text, value, 10);
+  put_right(text, {material, type, type, 1, system, 0, 0, 0, nodes, 0, number}, 10);
 }
 
 void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
                     const fem::Frames& frames) {
-  std::vector<std::size_t> material(mesh.elements.size(), 0);
-  for (const fem::Section& section : sections)
-    for (const std::size_t e : section.elements) material[e] = section.material + 1;
-  const std::size_t count = mesh.elements.size() + mesh.drivers.size();
-  const auto nodes = static_cast<std::size_t>(mesh.nodes_per_element());
-  text << "EBLOCK,19,SOLID,";
-  put_right(text, count, 10);
-  text << ',';
-  put_right(text, count, 10);
-  text << "\n(19i10)\n";
+  const std::vector<std::size_t> materials = fem::element_materials(mesh, sections);
+  open_block(text, "EBLOCK,19,SOLID,", mesh.elements.size() + mesh.drivers.size(), "(19i10)");
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const std::size_t frame = frames.of_element[e];
-    write_element_head(text, material[e], 1, frame == fem::Frames::none ? 0 : first_local + frame - 1, nodes,
-                       e + 1);
-    for (std::size_t k = 0; k < nodes; ++k) {
-      if (k == 8) text << '\n';
-      put_right(text, mesh.elements[e][k] + 1, 10);
-    }
-    text << '\n';
+    const std::span<const std::size_t> nodes = mesh.nodes_of(e);
+    write_element_head(text, materials[e] + 1, 1, frame == fem::Frames::none ? 0 : first_local + frame - 1,
+                       nodes.size(), e + 1);
+    put_numbers(text, nodes, 10, 8);
   }
   for (std::size_t k = 0; k < mesh.drivers.size(); ++k) {
     write_element_head(text, 1, 2, 0, 1, mesh.elements.size() + k + 1);
-    put_right(text, mesh.nodes.size() + k + 1, 10);
+    put_right(text, mesh.number_of_driver(k) + 1, 10);
     text << '\n';
   }
   text << "        -1\n";
 }
 
-void write_component(TextBuffer& text, std::string_view name, bool is_nodes,
-                     const std::vector<std::size_t>& members) {
-  constexpr std::size_t per_row = 8;
-  text << "CMBLOCK," << name << (is_nodes ? ",NODE," : ",ELEM,");
-  put_right(text, members.size(), 8);
+void write_component(TextBuffer& text, const fem::NamedSet& set, bool is_nodes) {
+  text << "CMBLOCK," << set.name << (is_nodes ? ",NODE," : ",ELEM,");
+  put_right(text, set.members.size(), 8);
   text << "\n(8i10)\n";
-  for (std::size_t k = 0; k < members.size(); ++k) {
-    put_right(text, members[k] + 1, 10);
-    if (k % per_row == per_row - 1 || k + 1 == members.size()) text << '\n';
-  }
+  put_numbers(text, set.members, 10, 8);
 }
 
 void write_components(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
-  std::vector<std::size_t> all;
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
-    std::vector<std::size_t> members;
-    for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
-      members.push_back(e);
-    all.insert(all.end(), members.begin(), members.end());
-    write_component(text, fem::set_name(mesh, i), false, members);
-  }
-  for (const fem::Section& section : sections)
-    if (section.name != fem::set_name(mesh, section.region))
-      write_component(text, section.name, false, section.elements);
-  write_component(text, "AllElements", false, all);  // ANSYS takes ALL for a word of its own
-  for (const fem::NodeSet& set : fem::node_sets(mesh)) write_component(text, set.name, true, set.nodes);
+  for (const fem::NamedSet& set : fem::element_sets(mesh, sections)) write_component(text, set, false);
+  fem::NamedSet all{"AllElements", std::vector<std::size_t>(mesh.elements.size())};  // ALL is a word of ANSYS
+  std::iota(all.members.begin(), all.members.end(), std::size_t{0});
+  write_component(text, all, false);
+  for (const fem::NamedSet& set : fem::node_sets(mesh)) write_component(text, set, true);
   for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
-    write_component(text, mesh.drivers[k].name, true, {mesh.nodes.size() + k});
+    write_component(text, {mesh.drivers[k].name, {mesh.number_of_driver(k)}}, true);
 }
 
 void write_material(TextBuffer& text, std::size_t number, const fabric::Material& material) {
@@ -202,13 +180,11 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   write_materials(text, mesh);
   write_equations(text, mesh);
   text << "FINISH\n";
-  if (Status done = text.finish(); !done) return done.error();
-  WriteFacts facts;
-  facts.entities = {{"nodes", mesh.nodes.size()},
-                    {"SOLID" + std::to_string(element_type(mesh)), mesh.elements.size()},
-                    {"coordinate systems", frames.axes.size()}};
-  if (!mesh.equations.empty()) facts.entities["constraint equations"] = mesh.equations.size();
-  return facts;
+  return finished(text,
+                  {{"nodes", mesh.nodes.size()},
+                   {"SOLID" + std::to_string(element_type(mesh)), mesh.elements.size()},
+                   {"coordinate systems", frames.axes.size()}},
+                  {{"constraint equations", mesh.equations.size()}});
 }
 
 bool is_an_archive(std::string_view head) {

@@ -1,7 +1,7 @@
 // The macro that ANSYS runs on the archive of a unit cell: every load case, and the stresses of the whole.
 #include "core/text_buffer.h"
 #include "fem/complete_cell.h"
-#include "formats/cdb/cdb.h"
+#include "formats/registry.h"
 
 namespace selvage::formats::cdb {
 namespace {
@@ -23,12 +23,12 @@ void write_solution(TextBuffer& text, const fem::Mesh& mesh) {
   text << "/SOLU\nANTYPE,STATIC\nTREF,0\nOUTRES,ALL,ALL\n";
   if (const auto held = fem::held_node(mesh)) text << "D," << *held + 1 << ",UX,0,,,,UY,UZ\n";
   for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
-    text << "D," << mesh.nodes.size() + k + 1 << ",UY,0,,,,UZ   ! " << mesh.drivers[k].name << '\n';
+    text << "D," << mesh.number_of_driver(k) + 1 << ",UY,0,,,,UZ   ! " << mesh.drivers[k].name << '\n';
   for (std::size_t i = 0; i < mesh.load_cases.size(); ++i) {
     const fem::LoadCase& load = mesh.load_cases[i];
     text << "! load step " << i + 1 << ": " << load.name << '\n';
     for (std::size_t k = 0; k < load.drivers.size(); ++k) {
-      const std::size_t node = mesh.nodes.size() + k + 1;
+      const std::size_t node = mesh.number_of_driver(k) + 1;
       if (load.drivers[k])
         text << "D," << node << ",UX," << *load.drivers[k] << '\n';
       else
@@ -82,10 +82,7 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   write_solution(text, mesh);
   write_evaluation(text);
   write_printing(text, !mesh.cell->periodic[2]);
-  if (Status done = text.finish(); !done) return done.error();
-  WriteFacts facts;
-  facts.entities = {{"load cases", mesh.load_cases.size()}};
-  return facts;
+  return finished(text, {{"load cases", mesh.load_cases.size()}});
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
-#include "formats/dxf/dxf.h"
+#include "formats/registry.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
+#include "core/words.h"
 #include "formats/dxf/skeleton.h"
 
 namespace selvage::formats::dxf {
@@ -116,22 +117,18 @@ class Writer final : public BodyWriter {
   std::string new_name(const PieceShape& piece) {
     const std::string wanted = block_name(piece.name);
     std::string name = wanted;
-    // Block names ignore case.
-    const auto folded = [](std::string text) {
-      std::transform(text.begin(), text.end(), text.begin(),
-                     [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+    const auto folded = [](std::string text) {  // block names ignore case
+      std::ranges::transform(text, text.begin(), lower);
       return text;
     };
     for (int number = 2; !names_.insert(folded(name)).second; ++number)
       name = fmt::format("{}_{}", wanted, number);
-    if (name != string_value(piece.name)) {
-      Message message =
+    if (name != string_value(piece.name))
+      facts_.messages.push_back(
           warning(Kind::unsupported,
                   fmt::format("DXF does not admit the name '{}': the block of this piece is named '{}'",
-                              piece.name, name));
-      message.place = piece.place;
-      facts_.messages.push_back(std::move(message));
-    }
+                              piece.name, name),
+                  {.place = piece.place}));
     return name;
   }
 

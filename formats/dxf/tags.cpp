@@ -3,45 +3,22 @@
 #include <fmt/format.h>
 
 #include "core/number_text.h"
-#include "core/text_report.h"
+#include "core/readable.h"
 
 namespace selvage::formats::dxf {
-
-namespace {
-
-// The code of the UTF-8 character at the beginning of `text`, which is whole; `length` is set.
-std::uint32_t code_point(std::string_view text, std::size_t& length) {
-  const auto byte = [text](std::size_t i) {
-    return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]));
-  };
-  length = byte(0) < 0x80 ? 1 : byte(0) < 0xE0 ? 2 : byte(0) < 0xF0 ? 3 : 4;
-  if (length == 1) return byte(0);
-  std::uint32_t code = byte(0) & (0x7FU >> length);
-  for (std::size_t i = 1; i < length; ++i) code = code << 6U | (byte(i) & 0x3FU);
-  return code;
-}
-
-}  // namespace
 
 std::string string_value(std::string_view text) {
   std::string out;
   while (!text.empty()) {
-    std::string_view good = text.substr(0, text_prefix(text));
-    text.remove_prefix(good.size());
-    while (!good.empty()) {
-      std::size_t length = 1;
-      const std::uint32_t code = code_point(good, length);
-      if (code == '^')
-        out += "^ ";
-      else if (code < 0x80)
-        out += code < 0x20 ? '_' : static_cast<char>(code);
-      else
-        out += code > 0xFFFF ? std::string("_") : fmt::format("\\U+{:04X}", code);
-      good.remove_prefix(length);
-    }
-    if (text.empty()) break;
-    out += '_';
-    text.remove_prefix(1);
+    const Character character = take_character(text);
+    const char32_t code = character.is_valid ? character.code() : 0;
+    if (code < 0x20 || code == 0x7F || code > 0xFFFF)
+      out += '_';
+    else if (code == '^')
+      out += "^ ";
+    else
+      out += code < 0x80 ? std::string(character.bytes)
+                         : fmt::format("\\U+{:04X}", static_cast<std::uint32_t>(code));
   }
   return out;
 }

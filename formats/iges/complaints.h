@@ -23,8 +23,10 @@ class Complaints {
 
   // What cannot be read: an error, a defect for a check. Returns goes_on().
   bool fault(const Spot& spot, std::string text, Kind of_error = Kind::malformed) {
-    is_check() ? check_->defect(std::move(text), spot.place())
-               : reader_->error(spot, std::move(text), of_error);
+    if (is_check())
+      check_->defect(std::move(text), spot.place());
+    else
+      reader_->error(spot, std::move(text), of_error);
     return goes_on();
   }
   // What a reader puts up with, and says so: a warning, a defect for a check.

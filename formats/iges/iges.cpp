@@ -1,4 +1,4 @@
-#include "formats/iges/iges.h"
+#include "formats/registry.h"
 
 #include "formats/iges/header.h"
 #include "formats/iges/lines.h"

@@ -34,7 +34,7 @@ struct Load {
 // extent. None for a region that has no nodes of its own.
 std::vector<Load> plan_loads(const fem::Mesh& mesh);
 
-std::vector<fem::NodeSet> sets_of(const std::vector<Load>& loads);
+std::vector<fem::NamedSet> sets_of(const std::vector<Load>& loads);
 
 // *TRANSFORM cards, for end faces that look along no coordinate axis. They belong before the step.
 void write_transforms(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>& loads);

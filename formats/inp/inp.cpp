@@ -1,4 +1,4 @@
-#include "formats/inp/inp.h"
+#include "formats/registry.h"
 
 #include "core/columns.h"
 #include "core/text_report.h"
@@ -35,15 +35,12 @@ void write_node(TextBuffer& text, std::size_t number, const Vec3& p) {
 // One block, for meshio knows no second one: drivers, which are no part of AllNodes, stand at its end.
 void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   text << (mesh.drivers.empty() ? "*NODE, NSET=AllNodes\n" : "*NODE\n");
-  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) write_node(text, i + 1, mesh.nodes[i]);
+  for (std::size_t n = 0; n < mesh.numbered(); ++n) write_node(text, n + 1, mesh.place(n));
   if (mesh.drivers.empty()) return;
-  for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
-    write_node(text, mesh.nodes.size() + k + 1, mesh.drivers[k].at);
   text << "*NSET, NSET=AllNodes, GENERATE\n1, " << mesh.nodes.size() << ", 1\n";
   for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
-    text << "*NSET, NSET=" << mesh.drivers[k].name << '\n' << mesh.nodes.size() + k + 1 << '\n';
-  text << "*NSET, NSET=Drivers, GENERATE\n"
-       << mesh.nodes.size() + 1 << ", " << mesh.nodes.size() + mesh.drivers.size() << ", 1\n";
+    text << "*NSET, NSET=" << mesh.drivers[k].name << '\n' << mesh.number_of_driver(k) + 1 << '\n';
+  text << "*NSET, NSET=Drivers, GENERATE\n" << mesh.nodes.size() + 1 << ", " << mesh.numbered() << ", 1\n";
 }
 
 std::string_view element_type(const fem::Mesh& mesh) {
@@ -60,8 +57,7 @@ void write_elements(TextBuffer& text, const fem::Mesh& mesh) {
     text << "*ELEMENT, TYPE=" << element_type(mesh) << ", ELSET=" << name << '\n';
     for (std::size_t e = region.first_element; e < region.last_element; ++e) {
       text << e + 1;
-      for (int k = 0; k < mesh.nodes_per_element(); ++k)
-        text << ", " << mesh.elements[e][static_cast<std::size_t>(k)] + 1;
+      for (const std::size_t node : mesh.nodes_of(e)) text << ", " << node + 1;
       text << '\n';
     }
   }
@@ -78,10 +74,10 @@ void write_element_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vect
   }
 }
 
-void write_node_sets(TextBuffer& text, const std::vector<fem::NodeSet>& sets) {
-  for (const fem::NodeSet& set : sets) {
+void write_node_sets(TextBuffer& text, const std::vector<fem::NamedSet>& sets) {
+  for (const fem::NamedSet& set : sets) {
     text << "*NSET, NSET=" << set.name << '\n';
-    write_set(text, set.nodes);
+    write_set(text, set.members);
   }
 }
 
@@ -156,7 +152,7 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   const std::vector<std::string> names = fem::solver_names(mesh.materials);
   const fem::ContactSurfaces contact = fem::contact_surfaces(mesh);
   const std::vector<Load> loads = mesh.cell ? std::vector<Load>() : plan_loads(mesh);
-  std::vector<fem::NodeSet> sets = mesh.cell ? fem::node_sets(mesh) : sets_of(loads);
+  const std::vector<fem::NamedSet> sets = mesh.cell ? fem::node_sets(mesh) : sets_of(loads);
   write_heading(text, mesh);
   text << "** Units: mm, N, MPa, tonne, s\n";
   write_nodes(text, mesh);
@@ -175,16 +171,14 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
     write_transforms(text, mesh, loads);
     write_step(text, mesh, loads);
   }
-  if (Status done = text.finish(); !done) return done.error();
-  WriteFacts facts;
-  facts.entities = {{"nodes", mesh.nodes.size()},
-                    {std::string(element_type(mesh)), mesh.elements.size()},
-                    {"element sets", mesh.regions.size() + 1},
-                    {"node sets", sets.size() + 1 + mesh.drivers.size()}};
-  if (!mesh.equations.empty()) facts.entities["equations"] = mesh.equations.size();
-  if (!contact.pairs.empty()) facts.entities["contact pairs"] = contact.pairs.size();
-  if (!mesh.load_cases.empty()) facts.entities["steps"] = mesh.load_cases.size();
-  return facts;
+  return finished(text,
+                  {{"nodes", mesh.nodes.size()},
+                   {std::string(element_type(mesh)), mesh.elements.size()},
+                   {"element sets", mesh.regions.size() + 1},
+                   {"node sets", sets.size() + 1 + mesh.drivers.size()}},
+                  {{"equations", mesh.equations.size()},
+                   {"contact pairs", contact.pairs.size()},
+                   {"steps", mesh.load_cases.size()}});
 }
 
 bool looks_like_a_deck(std::string_view head) {

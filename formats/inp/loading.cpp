@@ -103,8 +103,8 @@ std::vector<Load> plan_loads(const fem::Mesh& mesh) {
   return loads;
 }
 
-std::vector<fem::NodeSet> sets_of(const std::vector<Load>& loads) {
-  std::vector<fem::NodeSet> sets;
+std::vector<fem::NamedSet> sets_of(const std::vector<Load>& loads) {
+  std::vector<fem::NamedSet> sets;
   for (const Load& load : loads) {
     sets.push_back({load.start_set, load.start});
     sets.push_back({load.end_set, load.end});

@@ -1,4 +1,4 @@
-#include "formats/k/k.h"
+#include "formats/registry.h"
 
 #include <algorithm>
 
@@ -28,15 +28,15 @@ void put_reals(TextBuffer& text, std::initializer_list<double> values, std::size
   text << '\n';
 }
 
-void put_integers(TextBuffer& text, std::initializer_list<std::size_t> values, std::size_t width = 10) {
-  for (const std::size_t value : values) put_right(text, value, width);
+void put_integers(TextBuffer& text, std::initializer_list<std::size_t> values) {
+  put_right(text, values, 10);
   text << '\n';
 }
 
 void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   text << "*NODE\n$    nid               x               y               z\n";
-  for (std::size_t n = 0; n < mesh.nodes.size() + mesh.drivers.size(); ++n) {
-    const Vec3& p = n < mesh.nodes.size() ? mesh.nodes[n] : mesh.drivers[n - mesh.nodes.size()].at;
+  for (std::size_t n = 0; n < mesh.numbered(); ++n) {
+    const Vec3& p = mesh.place(n);
     put_right(text, n + 1, 8);
     put_reals(text, {p.x(), p.y(), p.z()}, 16);
   }
@@ -98,17 +98,12 @@ void write_expansions(TextBuffer& text, const fem::Mesh& mesh, const std::vector
 }
 
 void write_element(TextBuffer& text, const fem::Mesh& mesh, std::size_t e, std::size_t part) {
-  const auto& nodes = mesh.elements[e];
-  put_right(text, e + 1, 8);
-  put_right(text, part, 8);
-  if (mesh.nodes_per_element() == 10) {
-    text << '\n';
-    for (const std::size_t node : nodes) put_right(text, node + 1, 8);
-  } else {
-    // A tetrahedron repeats its last node.
-    const std::size_t count = mesh.shape == fem::Mesh::Shape::hexahedron ? 8 : 4;
-    for (std::size_t n = 0; n < 8; ++n) put_right(text, nodes[std::min(n, count - 1)] + 1, 8);
-  }
+  const std::span<const std::size_t> nodes = mesh.nodes_of(e);
+  put_right(text, {e + 1, part}, 8);
+  if (nodes.size() == 10) text << '\n';
+  // A tetrahedron of four nodes repeats its last one.
+  for (std::size_t n = 0; n < std::max<std::size_t>(nodes.size(), 8); ++n)
+    put_right(text, nodes[std::min(n, nodes.size() - 1)] + 1, 8);
   text << '\n';
 }
 
@@ -129,10 +124,7 @@ void write_list(TextBuffer& text, std::string_view keyword, std::size_t number, 
                 const std::vector<std::size_t>& members) {
   text << '*' << keyword << "_TITLE\n" << name << '\n';
   put_integers(text, {number});
-  for (std::size_t k = 0; k < members.size(); ++k) {
-    put_right(text, members[k] + 1, 10);
-    if (k % 8 == 7 || k + 1 == members.size()) text << '\n';
-  }
+  put_numbers(text, members, 10, 8);
 }
 
 void write_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
@@ -146,10 +138,10 @@ void write_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::
   }
   write_list(text, "SET_PART_LIST", mesh.regions.size() + 1, "All", all);
   std::size_t number = 0;
-  for (const fem::NodeSet& set : fem::node_sets(mesh))
-    write_list(text, "SET_NODE_LIST", ++number, set.name, set.nodes);
+  for (const fem::NamedSet& set : fem::node_sets(mesh))
+    write_list(text, "SET_NODE_LIST", ++number, set.name, set.members);
   for (std::size_t d = 0; d < mesh.drivers.size(); ++d)
-    write_list(text, "SET_NODE_LIST", ++number, mesh.drivers[d].name, {mesh.nodes.size() + d});
+    write_list(text, "SET_NODE_LIST", ++number, mesh.drivers[d].name, {mesh.number_of_driver(d)});
 }
 
 void write_equations(TextBuffer& text, const fem::Mesh& mesh) {
@@ -159,8 +151,7 @@ void write_equations(TextBuffer& text, const fem::Mesh& mesh) {
   for (const fem::Equation& equation : mesh.equations) {
     put_integers(text, {equation.size()});
     for (const fem::Term& term : equation) {
-      put_right(text, term.node + 1, 10);
-      put_right(text, static_cast<std::size_t>(term.direction) + 1, 10);
+      put_right(text, {term.node + 1, static_cast<std::size_t>(term.direction) + 1}, 10);
       put_reals(text, {term.factor});
     }
   }
@@ -199,13 +190,11 @@ void write_loading(TextBuffer& text, const fem::Mesh& mesh) {
   text << "*BOUNDARY_SPC_NODE\n";
   if (const auto held = fem::held_node(mesh)) put_integers(text, {*held + 1, 0, 1, 1, 1, 0, 0, 0});
   for (std::size_t d = 0; d < mesh.drivers.size(); ++d)
-    put_integers(text, {mesh.nodes.size() + d + 1, 0, 0, 1, 1, 0, 0, 0});
+    put_integers(text, {mesh.number_of_driver(d) + 1, 0, 0, 1, 1, 0, 0, 0});
   text << "*BOUNDARY_PRESCRIBED_MOTION_NODE\n";
   for (std::size_t d = 0; d < mesh.drivers.size(); ++d) {
     if (!mesh.load_cases.front().drivers[d]) continue;
-    for (const std::size_t value :
-         {mesh.nodes.size() + d + 1, std::size_t{1}, std::size_t{2}, std::size_t{1}})
-      put_right(text, value, 10);
+    put_right(text, {mesh.number_of_driver(d) + 1, 1, 2, 1}, 10);
     put_right(text, "&VALUE" + std::to_string(d), 10);
     text << '\n';
   }
@@ -213,7 +202,7 @@ void write_loading(TextBuffer& text, const fem::Mesh& mesh) {
 
 Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   constexpr std::size_t most = 99'999'999;  // columns of eight
-  if (mesh.nodes.size() + mesh.drivers.size() > most || mesh.elements.size() > most)
+  if (mesh.numbered() > most || mesh.elements.size() > most)
     return error(Kind::limit,
                  "an LS-DYNA file in standard format numbers at most 99 999 999 nodes and elements");
   const Result<std::vector<fem::Section>> sections = fem::sections(mesh);
@@ -230,12 +219,9 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   write_equations(text, mesh);
   write_loading(text, mesh);
   text << "*END\n";
-  if (Status done = text.finish(); !done) return done.error();
-  WriteFacts facts;
-  facts.entities = {
-      {"nodes", mesh.nodes.size()}, {"solids", mesh.elements.size()}, {"parts", sections->size()}};
-  if (!mesh.equations.empty()) facts.entities["constraints"] = mesh.equations.size();
-  return facts;
+  return finished(
+      text, {{"nodes", mesh.nodes.size()}, {"solids", mesh.elements.size()}, {"parts", sections->size()}},
+      {{"constraints", mesh.equations.size()}});
 }
 
 bool is_a_keyword_file(std::string_view head) {

@@ -108,8 +108,7 @@ class CellFile {
         for (const std::size_t node : nodes_of(side)) take(2, i, node);
     for (std::size_t i = 0; i < counts[3]; ++i)
       for (std::size_t e = mesh_.regions[i].first_element; e < mesh_.regions[i].last_element; ++e)
-        for (int k = 0; k < mesh_.nodes_per_element(); ++k)
-          take(3, i, mesh_.elements[e][static_cast<std::size_t>(k)]);
+        for (const std::size_t node : mesh_.nodes_of(e)) take(3, i, node);
   }
 
   void write_names() {
@@ -117,8 +116,7 @@ class CellFile {
           << groups_.size() + mesh_.regions.size() + 2 << "\n0 1 \"points\"\n1 1 \"curves\"\n";
     for (std::size_t g = 0; g < groups_.size(); ++g)
       text_ << "2 " << g + 1 << ' ' << quoted(groups_[g]) << '\n';
-    for (std::size_t i = 0; i < mesh_.regions.size(); ++i)
-      text_ << "3 " << i + 1 << ' ' << quoted(mesh_.regions[i].name) << '\n';
+    write_region_names(text_, mesh_);
     text_ << "$EndPhysicalNames\n";
   }
 
@@ -137,7 +135,8 @@ class CellFile {
       text_ << "1 1 2 " << curve.first + 1 << " -" << curve.last + 1 << '\n';
     }
     for (std::size_t i = 0; i < topology_.surfaces.size(); ++i) write_surface(i);
-    for (std::size_t i = 0; i < mesh_.regions.size(); ++i) write_volume(i);
+    for (std::size_t i = 0; i < mesh_.regions.size(); ++i)
+      write_volume(text_, i + 1, box_of_volume(i), around_volume(i));
     text_ << "$EndEntities\n";
   }
 
@@ -157,23 +156,22 @@ class CellFile {
     text_ << '\n';
   }
 
-  void write_volume(std::size_t i) {
+  [[nodiscard]] Box3 box_of_volume(std::size_t i) const {
     Box3 box;
     for (std::size_t e = mesh_.regions[i].first_element; e < mesh_.regions[i].last_element; ++e)
-      for (int k = 0; k < mesh_.nodes_per_element(); ++k)
-        box.extend(mesh_.nodes[mesh_.elements[e][static_cast<std::size_t>(k)]]);
-    text_ << i + 1 << ' ';
-    write_box(text_, box);
-    text_ << "1 " << i + 1;
-    std::string around;
-    std::size_t count = 0;
+      for (const std::size_t node : mesh_.nodes_of(e)) box.extend(mesh_.nodes[node]);
+    return box;
+  }
+
+  [[nodiscard]] std::vector<std::string> around_volume(std::size_t i) const {
+    std::vector<std::string> around;
     for (std::size_t s = 0; s < topology_.surfaces.size(); ++s) {
-      const bool is_own = topology_.surfaces[s].region == i;
-      if (!is_own && topology_.surfaces[s].behind != i) continue;
-      around += (is_own ? " " : " -") + std::to_string(s + 1);
-      ++count;
+      if (topology_.surfaces[s].region == i)
+        around.push_back(std::to_string(s + 1));
+      else if (topology_.surfaces[s].behind == i)
+        around.push_back("-" + std::to_string(s + 1));
     }
-    text_ << ' ' << count << around << '\n';
+    return around;
   }
 
   void write_nodes() {
@@ -181,14 +179,8 @@ class CellFile {
     for (const auto& entities : members_) blocks += entities.size();
     text_ << "$Nodes\n" << blocks << ' ' << mesh_.nodes.size() << " 1 " << mesh_.nodes.size() << '\n';
     for (std::size_t d = 0; d < members_.size(); ++d)
-      for (std::size_t i = 0; i < members_[d].size(); ++i) {
-        text_ << d << ' ' << i + 1 << " 0 " << members_[d][i].size() << '\n';
-        for (const std::size_t node : members_[d][i]) text_ << node + 1 << '\n';
-        for (const std::size_t node : members_[d][i]) {
-          const Vec3& p = mesh_.nodes[node];
-          text_ << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
-        }
-      }
+      for (std::size_t i = 0; i < members_[d].size(); ++i)
+        write_node_block(text_, mesh_, d, i + 1, members_[d][i]);
     text_ << "$EndNodes\n";
   }
 
@@ -201,8 +193,7 @@ class CellFile {
     text_ << '\n';
   }
 
-  // Gmsh's types: 15 point, 1 and 8 lines, 2 and 9 triangles, 3 quadrangle, 4 and 11 tetrahedra, 5
-  // hexahedron.
+  // Gmsh's types: 15 point, 1 and 8 lines, 2 and 9 triangles, 3 quadrangle.
   void write_elements() {
     const bool is_brick = mesh_.shape == fem::Mesh::Shape::hexahedron, is_straight = mesh_.order == 1;
     std::size_t count = topology_.points.size() + mesh_.elements.size();
@@ -224,16 +215,7 @@ class CellFile {
       open_block(2, i, is_brick ? 3 : is_straight ? 2 : 9, topology_.surfaces[i].sides.size());
       for (const auto& side : topology_.surfaces[i].sides) write_element(nodes_of(side));
     }
-    const auto corners = static_cast<std::size_t>(mesh_.nodes_per_element());
-    for (std::size_t i = 0; i < mesh_.regions.size(); ++i) {
-      const fem::Region& region = mesh_.regions[i];
-      open_block(3, i, is_brick ? 5 : is_straight ? 4 : 11, region.last_element - region.first_element);
-      for (std::size_t e = region.first_element; e < region.last_element; ++e) {
-        text_ << ++number_;
-        for (std::size_t k = 0; k < corners; ++k) text_ << ' ' << mesh_.elements[e][node_order[k]] + 1;
-        text_ << '\n';
-      }
-    }
+    write_volume_elements(text_, mesh_, number_);
     text_ << "$EndElements\n";
   }
 
@@ -293,10 +275,7 @@ Result<WriteFacts> write_cell(const fem::Mesh& mesh, OutputFile& output) {
   TextBuffer text(output);
   CellFile file(mesh, text);
   file.write();
-  if (Status done = text.finish(); !done) return done.error();
-  WriteFacts facts;
-  facts.entities = file.counts();
-  return facts;
+  return finished(text, file.counts());
 }
 
 }  // namespace selvage::formats::msh

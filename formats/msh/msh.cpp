@@ -1,4 +1,4 @@
-#include "formats/msh/msh.h"
+#include "formats/registry.h"
 
 #include <algorithm>
 
@@ -16,6 +16,37 @@ std::string quoted(std::string name) {
 void write_box(TextBuffer& text, const Box3& box) {
   for (const Vec3& corner : {Vec3(box.min()), Vec3(box.max())})
     for (int k = 0; k < 3; ++k) text << corner[k] << ' ';
+}
+
+void write_region_names(TextBuffer& text, const fem::Mesh& mesh) {
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
+    text << "3 " << i + 1 << ' ' << quoted(mesh.regions[i].name) << '\n';
+}
+
+void write_volume(TextBuffer& text, std::size_t tag, const Box3& box,
+                  const std::vector<std::string>& around) {
+  text << tag << ' ';
+  write_box(text, box);
+  text << "1 " << tag << ' ' << around.size();
+  for (const std::string& surface : around) text << ' ' << surface;
+  text << '\n';
+}
+
+void write_volume_elements(TextBuffer& text, const fem::Mesh& mesh, std::size_t number) {
+  // Tetrahedra of 4 and 10 nodes, hexahedra. Gmsh's ten-node tetrahedron has the midpoints of the edges 01 12
+  // 20 03 23 13: ours with the last two exchanged.
+  const int type = mesh.shape == fem::Mesh::Shape::hexahedron ? 5 : mesh.order == 1 ? 4 : 11;
+  constexpr std::array<std::size_t, 10> node_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+    const fem::Region& region = mesh.regions[i];
+    text << "3 " << i + 1 << ' ' << type << ' ' << region.last_element - region.first_element << '\n';
+    for (std::size_t e = region.first_element; e < region.last_element; ++e) {
+      text << ++number;
+      for (std::size_t k = 0; k < mesh.nodes_of(e).size(); ++k)
+        text << ' ' << mesh.elements[e][node_order[k]] + 1;
+      text << '\n';
+    }
+  }
 }
 
 namespace {
@@ -49,8 +80,7 @@ std::vector<Skin> skins_of(const fem::Mesh& mesh) {
 void write_names(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Skin>& skins) {
   text << "$PhysicalNames\n" << skins.size() + mesh.regions.size() << '\n';
   for (const Skin& skin : skins) text << "2 " << skin.tag << ' ' << quoted(skin.name) << '\n';
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
-    text << "3 " << i + 1 << ' ' << quoted(mesh.regions[i].name) << '\n';
+  write_region_names(text, mesh);
   text << "$EndPhysicalNames\n";
 }
 
@@ -68,15 +98,10 @@ void write_entities(TextBuffer& text, const fem::Mesh& mesh, const std::vector<S
     const fem::Region& region = mesh.regions[i];
     Box3 box;
     for (std::size_t n = region.first_node; n < region.last_node; ++n) box.extend(mesh.nodes[n]);
-    text << i + 1 << ' ';
-    write_box(text, box);
-    text << "1 " << i + 1;
-    std::vector<int> around;
+    std::vector<std::string> around;
     for (const Skin& skin : skins)
-      if (skin.region == i) around.push_back(skin.tag);
-    text << ' ' << around.size();
-    for (const int tag : around) text << ' ' << tag;
-    text << '\n';
+      if (skin.region == i) around.push_back(std::to_string(skin.tag));
+    write_volume(text, i + 1, box, around);
   }
   text << "$EndEntities\n";
 }
@@ -84,21 +109,14 @@ void write_entities(TextBuffer& text, const fem::Mesh& mesh, const std::vector<S
 // All nodes of a yarn are said to be in its volume: the triangles of its skin use them from there.
 void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   text << "$Nodes\n" << mesh.regions.size() << ' ' << mesh.nodes.size() << " 1 " << mesh.nodes.size() << '\n';
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
-    const fem::Region& region = mesh.regions[i];
-    text << "3 " << i + 1 << " 0 " << region.last_node - region.first_node << '\n';
-    for (std::size_t n = region.first_node; n < region.last_node; ++n) text << n + 1 << '\n';
-    for (std::size_t n = region.first_node; n < region.last_node; ++n) {
-      const Vec3& p = mesh.nodes[n];
-      text << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
-    }
-  }
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
+    write_node_block(text, mesh, 3, i + 1,
+                     std::views::iota(mesh.regions[i].first_node, mesh.regions[i].last_node));
   text << "$EndNodes\n";
 }
 
 void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Skin>& skins) {
-  // Gmsh's element types: 2 and 9 are triangles of 3 and 6 nodes, 4 and 11 tetrahedra of 4 and 10.
-  const auto corners = static_cast<std::size_t>(mesh.nodes_per_element());
+  // Gmsh's element types: 2 and 9 are triangles of 3 and 6 nodes.
   std::size_t count = mesh.elements.size();
   for (const Skin& skin : skins) count += skin.faces->size();
   text << "$Elements\n" << skins.size() + mesh.regions.size() << ' ' << count << " 1 " << count << '\n';
@@ -111,16 +129,7 @@ void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<S
       text << '\n';
     }
   }
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
-    const fem::Region& region = mesh.regions[i];
-    text << "3 " << i + 1 << (mesh.order == 1 ? " 4 " : " 11 ") << region.last_element - region.first_element
-         << '\n';
-    for (std::size_t e = region.first_element; e < region.last_element; ++e) {
-      text << ++number;
-      for (std::size_t k = 0; k < corners; ++k) text << ' ' << mesh.elements[e][node_order[k]] + 1;
-      text << '\n';
-    }
-  }
+  write_volume_elements(text, mesh, number);
   text << "$EndElements\n";
 }
 
@@ -133,15 +142,12 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   write_entities(text, mesh, skins);
   write_nodes(text, mesh);
   write_elements(text, mesh, skins);
-  if (Status done = text.finish(); !done) return done.error();
-  WriteFacts facts;
   std::size_t triangles = 0;
   for (const Skin& skin : skins) triangles += skin.faces->size();
-  facts.entities = {{"nodes", mesh.nodes.size()},
-                    {"triangles", triangles},
-                    {"tetrahedra", mesh.elements.size()},
-                    {"physical groups", skins.size() + mesh.regions.size()}};
-  return facts;
+  return finished(text, {{"nodes", mesh.nodes.size()},
+                         {"triangles", triangles},
+                         {"tetrahedra", mesh.elements.size()},
+                         {"physical groups", skins.size() + mesh.regions.size()}});
 }
 
 bool has_the_first_line(std::string_view head) {

@@ -1,4 +1,4 @@
-#include "formats/step/step.h"
+#include "formats/registry.h"
 
 #include "core/module.h"
 #include "formats/step/options.h"

@@ -1,10 +1,11 @@
-#include "formats/svg/svg.h"
+#include "formats/registry.h"
 
 #include <algorithm>
 #include <cctype>
 #include <set>
 
 #include "core/number_text.h"
+#include "core/readable.h"
 #include "core/text_buffer.h"
 #include "core/xml_text.h"
 
@@ -77,10 +78,7 @@ class Writer final : public BodyWriter {
          << R"(" stroke-linejoin="round">)"
          << "\n"
          << paths_ << "</g>\n</svg>\n";
-    if (Status status = text.finish(); !status.ok()) return status.error();
-    WriteFacts facts;
-    facts.entities["path"] = pieces_;
-    return facts;
+    return finished(text, {{"path", pieces_}});
   }
 
  private:
@@ -88,7 +86,7 @@ class Writer final : public BodyWriter {
   std::string new_id(std::string_view name) {
     std::string id;
     for (const char c : name) {
-      if ((static_cast<unsigned char>(c) & 0xC0U) == 0x80U) continue;  // its character has its '_' already
+      if (is_continuation(c)) continue;  // its character has its '_' already
       const bool keep = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
       id += keep && static_cast<unsigned char>(c) < 0x80 ? c : '_';
     }

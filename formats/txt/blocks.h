@@ -25,6 +25,18 @@ struct ShapeReading {
 fabric::Path read_path(Parser& p, ShapeReading& reading);
 fabric::Grid read_grid(Parser& p, ShapeReading& reading);
 
+// shape.cpp, too: rows `x y`, of a polygon's corners or a curve's points.
+struct PointRows {
+  std::string_view noun, what;  // "corner", "a corner"
+  bool may_repeat = false;      // a point may equal the one before it
+  std::vector<Vec2> points{};
+  Spot last{};  // of the last row
+  bool good = true;
+};
+// Up to the `end` of the block; false when a row is wrong, or the `end` missing.
+bool read_points(Parser& p, std::string_view kind, std::string_view name, const Spot& opened,
+                 PointRows& rows);
+
 // construction.cpp
 void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word);
 void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word);

@@ -20,18 +20,21 @@ using fabric::WeaveSystem;
 // --- weave
 // ----------------------------------------------------------------------------------------------------------
 
+void read_extent(Parser& p, std::string_view what, int& count, double& pitch) {
+  const auto number = p.count(what);
+  p.expect("pitch");
+  const auto distance = p.positive("the pitch");
+  if (!p.finish()) return;
+  count = *number;
+  pitch = *distance;
+}
+
 void read_system(Parser& p, WeaveSystem& system) {
   system.place = p.statement().place();
-  do {
-    const auto thread = p.reference(p.threads);
-    if (!thread) return;
-    system.threads.emplace_back(*thread);
-  } while (p.comma());
-  const auto count = p.count("the number of yarns");
-  const auto pitch = count && p.expect("pitch") ? p.positive("the pitch") : std::nullopt;
-  if (!pitch || !p.finish()) return;
-  system.count = *count;
-  system.pitch = *pitch;
+  do
+    if (const auto thread = p.reference(p.threads)) system.threads.emplace_back(*thread);
+  while (p.comma());
+  read_extent(p, "the number of yarns", system.count, system.pitch);
 }
 
 // A weave's statements, and where its draft stands: only the whole block tells whether there has to be one.
@@ -126,48 +129,33 @@ void read_draft(Parser& p, WeaveBlock& weave, std::string_view) {
 
 void read_profile(Parser& p, WeaveBlock& weave, std::string_view) {
   const auto profile = p.choice("profile", profile_words);
-  if (!profile) return;
-  if (*profile == Weave::Profile::sine && p.more()) {
-    const auto amplitude = p.positive("the amplitude");
-    if (!amplitude) return;
-    weave.amplitude = *amplitude;
-  }
+  if (profile == Weave::Profile::sine && p.more()) weave.amplitude = p.positive("the amplitude");
   if (p.finish()) weave.profile = *profile;
 }
 
 void read_crimp(Parser& p, WeaveBlock& weave, std::string_view) {
   const auto share = p.number("the warp's share of the crimp");
   if (share && !(*share >= 0.0 && *share <= 1.0)) p.error(p.last(), "a share lies between 0 and 1");
-  if (share && p.finish()) weave.crimp = *share;
+  if (p.finish()) weave.crimp = *share;
 }
 
 void read_binder(Parser& p, WeaveBlock& weave, std::string_view) {
   fabric::Binder binder;
   binder.place = p.statement().place();
   const auto thread = p.reference(p.threads);
-  if (!thread) return;
-  binder.thread = *thread;
-  const auto every = p.expect("every") ? p.count("every how many gaps") : std::nullopt;
-  if (!every) return;
-  binder.every = *every;
-  const auto has_first = p.choice("binder", binder_words);
-  if (!has_first) return;
-  if (*has_first) {
-    const auto first = p.count("the first gap");
-    if (!first || !p.expect("levels")) return;
-    binder.first = *first;
+  p.expect("every");
+  const auto every = p.count("every how many gaps");
+  if (p.choice("binder", binder_words).value_or(false)) {
+    binder.first = p.count("the first gap").value_or(1);
+    p.expect("levels");
   }
-  do {
-    const auto level = p.count("a level", 0);
-    if (!level) return;
-    binder.levels.push_back(*level);
-  } while (p.more());
-  if (p.finish()) weave.binders.push_back(std::move(binder));
-}
-
-void read_layers(Parser& p, WeaveBlock& weave, std::string_view) {
-  const auto layers = p.count("the number of layers");
-  if (layers && p.finish()) weave.layers = *layers;
+  do
+    if (const auto level = p.count("a level", 0)) binder.levels.push_back(*level);
+  while (p.more());
+  if (!p.finish()) return;
+  binder.thread = *thread;
+  binder.every = *every;
+  weave.binders.push_back(std::move(binder));
 }
 
 // --- knit
@@ -176,25 +164,9 @@ void read_layers(Parser& p, WeaveBlock& weave, std::string_view) {
 template <class T>
 void read_construction_thread(Parser& p, T& construction, std::string_view) {
   const auto thread = p.reference(p.threads);
-  if (!thread) return;
+  if (!p.finish()) return;
   construction.thread = *thread;
   construction.thread_place = p.last().place();
-  p.finish();
-}
-
-void read_knit_courses(Parser& p, Knit& knit, std::string_view) {
-  const auto count = p.count("the number of courses");
-  if (count && p.finish()) knit.courses = *count;
-}
-
-void read_knit_wales(Parser& p, Knit& knit, std::string_view) {
-  const auto count = p.count("the number of wales");
-  if (count && p.finish()) knit.wales = *count;
-}
-
-void read_method(Parser& p, Knit& knit, std::string_view) {
-  const auto method = p.choice("method", knit_method_words);
-  if (method && p.finish()) knit.method = *method;
 }
 
 void read_chart(Parser& p, Knit& knit, std::string_view) {
@@ -232,25 +204,12 @@ void read_bar(Parser& p, Warpknit& warpknit, std::string_view) {
   warpknit.bars.push_back(std::move(bar));
 }
 
-void read_extent(Parser& p, std::string_view what, int& count, double& pitch) {
-  const auto number = p.count(what);
-  const auto distance = number && p.expect("pitch") ? p.positive("the pitch") : std::nullopt;
-  if (!distance || !p.finish()) return;
-  count = *number;
-  pitch = *distance;
-}
-
 void read_warpknit_wales(Parser& p, Warpknit& warpknit, std::string_view) {
   read_extent(p, "the number of wales", warpknit.wales, warpknit.wale_pitch);
 }
 
 void read_warpknit_courses(Parser& p, Warpknit& warpknit, std::string_view) {
   read_extent(p, "the number of courses", warpknit.courses, warpknit.course_pitch);
-}
-
-void read_stitch(Parser& p, Warpknit& warpknit, std::string_view) {
-  const auto stitch = p.choice("stitch", stitch_words);
-  if (stitch && p.finish()) warpknit.stitch = *stitch;
 }
 
 // --- braid
@@ -264,7 +223,7 @@ struct BraidBlock : Braid {
 
 void read_carriers(Parser& p, BraidBlock& braid, std::string_view) {
   const auto count = p.count("the number of carriers", 2);
-  if (!count || !p.finish()) return;
+  if (!p.finish()) return;
   braid.carriers = *count;
   braid.carriers_spot = p.last();
   braid.carriers_place = p.last().place();
@@ -272,14 +231,14 @@ void read_carriers(Parser& p, BraidBlock& braid, std::string_view) {
 
 void read_pattern(Parser& p, BraidBlock& braid, std::string_view) {
   const auto numbers = p.pair("the pattern", '/');
-  if (!numbers || !p.finish()) return;
+  if (!p.finish()) return;
   braid.over = (*numbers)[0];
   braid.under = (*numbers)[1];
 }
 
 void read_radius(Parser& p, BraidBlock& braid, std::string_view) {
   const auto value = p.positive("the radius");
-  if (!value || !p.finish()) return;
+  if (!p.finish()) return;
   braid.radius = *value;
   braid.radius_place = p.last().place();
 }
@@ -289,26 +248,21 @@ void read_flat(Parser& p, BraidBlock& braid, std::string_view) {
   braid.radius_place = p.statement().place();
   if (!p.more()) return;
   const auto value = p.positive("the width");
-  if (value && p.finish()) braid.width = *value;
+  if (p.finish()) braid.width = *value;
 }
 
 void read_angle(Parser& p, BraidBlock& braid, std::string_view) {
   const auto value = p.number("the angle");
   if (value && !(*value > 0.0 && *value < 90.0))
     p.error(p.last(), "the angle between yarn and axis lies between 0 and 90 degrees, both excluded");
-  if (value && p.finish()) braid.angle = *value;
-}
-
-void read_length(Parser& p, BraidBlock& braid, std::string_view) {
-  const auto value = p.positive("the length");
-  if (value && p.finish()) braid.length = *value;
+  if (p.finish()) braid.angle = *value;
 }
 
 void read_axial(Parser& p, BraidBlock& braid, std::string_view) {
   braid.axial_place = p.statement().place();
   const auto thread = p.reference(p.threads);
-  const auto count = thread ? p.count("the number of axial yarns") : std::nullopt;
-  if (!count || !p.finish()) return;
+  const auto count = p.count("the number of axial yarns");
+  if (!p.finish()) return;
   braid.axial_thread = *thread;
   braid.axial_count = *count;
 }
@@ -321,7 +275,7 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                         {"draft", read_draft},
                                         {"profile", read_profile},
                                         {"crimp", read_crimp},
-                                        {"layers", read_layers},
+                                        {"layers", into(&Weave::layers, a_count("the number of layers"))},
                                         {"binder", read_binder, Times::any}});
   WeaveBlock weave;
   const Spot opened = p.statement();
@@ -342,11 +296,12 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 }
 
 void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
-  static const Table<Knit> table({{"thread", read_construction_thread<Knit>, Times::once},
-                                  {"courses", read_knit_courses, Times::once},
-                                  {"wales", read_knit_wales, Times::once},
-                                  {"method", read_method},
-                                  {"chart", read_chart}});
+  static const Table<Knit> table(
+      {{"thread", read_construction_thread<Knit>, Times::once},
+       {"courses", into(&Knit::courses, a_count("the number of courses")), Times::once},
+       {"wales", into(&Knit::wales, a_count("the number of wales")), Times::once},
+       {"method", into(&Knit::method, one_of("method", knit_method_words))},
+       {"chart", read_chart}});
   Knit knit;
   const Spot opened = p.statement();
   knit.place = opened.place();
@@ -358,7 +313,7 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     knit.rib_a = (*rib)[0];
     knit.rib_b = (*rib)[1];
   }
-  if (form && (rib || *form != Knit::Form::rib)) p.finish();
+  p.finish();
   const int errors = p.report.errors();
   if (p.read_block(word, "", opened, table, knit) && p.report.errors() == errors && form) {
     if (has_form && !knit.chart.empty())
@@ -375,7 +330,7 @@ void read_warpknit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                       {"bar", read_bar, Times::any},
                                       {"wales", read_warpknit_wales, Times::once},
                                       {"courses", read_warpknit_courses, Times::once},
-                                      {"stitch", read_stitch}});
+                                      {"stitch", into(&Warpknit::stitch, one_of("stitch", stitch_words))}});
   Warpknit warpknit;
   const Spot opened = p.statement();
   warpknit.place = opened.place();
@@ -401,14 +356,15 @@ void read_warpknit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 }
 
 void read_braid(Parser& p, fabric::Fabric& fabric, std::string_view word) {
-  static const Table<BraidBlock> table({{"thread", read_construction_thread<BraidBlock>, Times::once},
-                                        {"carriers", read_carriers, Times::once},
-                                        {"pattern", read_pattern, Times::once},
-                                        {"radius", read_radius, Times::once},
-                                        {"flat", read_flat, Times::once, "radius"},
-                                        {"angle", read_angle, Times::once},
-                                        {"length", read_length, Times::once},
-                                        {"axial", read_axial}});
+  static const Table<BraidBlock> table(
+      {{"thread", read_construction_thread<BraidBlock>, Times::once},
+       {"carriers", read_carriers, Times::once},
+       {"pattern", read_pattern, Times::once},
+       {"radius", read_radius, Times::once},
+       {"flat", read_flat, Times::once, "radius"},
+       {"angle", read_angle, Times::once},
+       {"length", into(&Braid::length, a_positive("the length")), Times::once},
+       {"axial", read_axial}});
   BraidBlock braid;
   const Spot opened = p.statement();
   braid.place = opened.place();

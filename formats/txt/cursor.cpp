@@ -59,6 +59,7 @@ Spot Cursor::spot_at(const char* p) const {
 }
 
 bool Cursor::next_statement() {
+  go_on();
   if (is_stopped()) return false;
   if (reread_) {
     reread_ = false;
@@ -119,13 +120,13 @@ std::size_t Cursor::rows_ahead() const {
 // --- tokens
 // ---------------------------------------------------------------------------------------------------------
 
-bool Cursor::more() {
+bool Cursor::has_token() {
   while (at_ != end_ && is_blank(*at_)) ++at_;
   return !ends_line(at_);
 }
 
 Spot Cursor::here() {
-  if (more()) return spot_at(at_);
+  if (has_token()) return spot_at(at_);
   const char* behind = at_;
   while (behind != line_begin_ && is_blank(behind[-1])) --behind;
   return spot_at(behind);
@@ -138,7 +139,7 @@ std::string_view Cursor::word_at(const char* p) const {
 }
 
 std::string_view Cursor::peek_word() {
-  return more() ? word_at(at_) : std::string_view{};
+  return has_token() ? word_at(at_) : std::string_view{};
 }
 
 std::string_view Cursor::take_word() {
@@ -150,7 +151,7 @@ std::string_view Cursor::take_word() {
 }
 
 std::string_view Cursor::take_rest() {
-  if (!more()) return {};
+  if (!has_token()) return {};
   token_ = at_;
   while (!ends_line(at_)) ++at_;
   const char* last = at_;
@@ -170,36 +171,28 @@ bool Cursor::refuse_foreign(std::string_view token) {
     report_.error(spot_at(bad), fmt::format("a control character (byte {}): this is not a text file",
                                             static_cast<int>(static_cast<unsigned char>(*bad))));
   stop();
+  failed_ = true;
   return true;
 }
 
 std::optional<std::string_view> Cursor::quoted_name(std::string_view what, bool may_be_empty) {
   const char* close = at_ + 1;
   while (close != end_ && *close != '"' && *close != '\n') ++close;
-  if (close == end_ || *close != '"') {
-    report_.error(spot_at(at_), fmt::format("{}: the quote is not closed on this line", what));
-    at_ = close;
-    return std::nullopt;
-  }
-  const std::string_view text(at_ + 1, static_cast<std::size_t>(close - at_ - 1));
-  at_ = close + 1;
+  const Spot open = spot_at(at_);
+  at_ = close;
+  if (close == end_ || *close != '"')
+    return fail(open, fmt::format("{}: the quote is not closed on this line", what));
+  const std::string_view text(open.at + 1, static_cast<std::size_t>(close - open.at - 1));
+  ++at_;
   if (refuse_foreign(text)) return std::nullopt;
-  if (text.empty() && !may_be_empty) {
-    report_.error(last(), fmt::format("{}: an empty name", what));
-    return std::nullopt;
-  }
-  if (!ends_token(at_) && *at_ != ',') {
-    report_.error(spot_at(at_), fmt::format("{}: a blank is missing after the quote", what));
-    return std::nullopt;
-  }
-  return text;
+  if (text.empty() && !may_be_empty) return fail(last(), fmt::format("{}: an empty name", what));
+  if (ends_token(at_) || *at_ == ',') return text;
+  return fail(spot_at(at_), fmt::format("{}: a blank is missing after the quote", what));
 }
 
 std::optional<std::string_view> Cursor::name(std::string_view what, bool may_be_empty) {
-  if (!more()) {
-    report_.error(here(), fmt::format("{} is missing", what));
-    return std::nullopt;
-  }
+  if (failed_) return std::nullopt;
+  if (!more()) return fail(here(), fmt::format("{} is missing", what));
   token_ = at_;
   if (*at_ == '"') return quoted_name(what, may_be_empty);
   const std::string_view word = word_at(at_);
@@ -212,11 +205,9 @@ std::optional<std::string_view> Cursor::name(std::string_view what, bool may_be_
   }
   at_ += word.size();
   if (refuse_foreign(word)) return std::nullopt;
-  report_.error(last(),
-                fmt::format("{}: {} is not a name (letters, digits, '_', '.', '-', a letter first; anything "
-                            "else stands in double quotes)",
-                            what, in_quotes(word)));
-  return std::nullopt;
+  return fail(last(), fmt::format("{}: {} is not a name (letters, digits, '_', '.', '-', a letter first; "
+                                  "anything else stands in double quotes)",
+                                  what, in_quotes(word)));
 }
 
 bool Cursor::comma() {
@@ -258,11 +249,11 @@ bool Cursor::parse_tiny_number(double& value) {
 }
 
 // The token at hand is no number: says why, and leaves it behind.
-void Cursor::explain_number(std::string_view what) {
+std::nullopt_t Cursor::explain_number(std::string_view what) {
   token_ = at_;
   const std::string_view word = word_at(at_);
   at_ += word.size();
-  if (refuse_foreign(word)) return;
+  if (refuse_foreign(word)) return std::nullopt;
   std::string pointed(word);
   const auto commas = std::count(word.begin(), word.end(), ',');
   std::replace(pointed.begin(), pointed.end(), ',', '.');
@@ -279,41 +270,33 @@ void Cursor::explain_number(std::string_view what) {
     reason = fmt::format("{} is too large for a number in double precision", in_quotes(word));
   else
     reason = fmt::format("{} is not a number", in_quotes(word));
-  report_.error(last(), fmt::format("{}: {}", what, reason));
+  return fail(last(), fmt::format("{}: {}", what, reason));
 }
 
 std::optional<double> Cursor::number(std::string_view what) {
-  if (!more()) {
-    report_.error(here(), fmt::format("{} is missing", what));
-    return std::nullopt;
-  }
+  if (failed_) return std::nullopt;
+  if (!more()) return fail(here(), fmt::format("{} is missing", what));
   token_ = at_;
   double value = 0.0;
   if (parse_number(value)) return value;
-  explain_number(what);
-  return std::nullopt;
+  return explain_number(what);
 }
 
 std::optional<int> Cursor::integer(std::string_view what, int least, int most) {
   const std::string_view word = peek_word();
   const std::optional<double> value = number(what);
   if (!value) return std::nullopt;
-  if (*value != std::floor(*value) || word.find_first_of(".eE") != word.npos) {
-    report_.error(last(), fmt::format("{}: {} is not a whole number", what, in_quotes(word)));
-    return std::nullopt;
-  }
-  if (*value < least || *value > most) {
-    std::string range = fmt::format("from {} to {}", least, most);
-    if (most == std::numeric_limits<int>::max() && *value < least) range = fmt::format("{} or more", least);
-    report_.error(last(), fmt::format("{}: {} has to be {}", what, in_quotes(word), range));
-    return std::nullopt;
-  }
-  return static_cast<int>(*value);
+  if (*value != std::floor(*value) || word.find_first_of(".eE") != word.npos)
+    return fail(last(), fmt::format("{}: {} is not a whole number", what, in_quotes(word)));
+  if (*value >= least && *value <= most) return static_cast<int>(*value);
+  std::string range = fmt::format("from {} to {}", least, most);
+  if (most == std::numeric_limits<int>::max() && *value < least) range = fmt::format("{} or more", least);
+  return fail(last(), fmt::format("{}: {} has to be {}", what, in_quotes(word), range));
 }
 
 int Cursor::row(double* values, int most, std::string_view what, std::string_view word) {
   for (int count = 0;; ++count) {
-    if (!more()) return count;
+    if (!has_token()) return count;
     token_ = at_;
     const bool is_number = count < most && parse_number(values[count]);
     if (is_number) continue;
@@ -327,7 +310,7 @@ int Cursor::row(double* values, int most, std::string_view what, std::string_vie
 }
 
 bool Cursor::finish() {
-  if (!more()) return true;
+  if (!more()) return !failed_;
   token_ = at_;
   const std::string_view word = word_at(at_);
   if (!refuse_foreign(word))

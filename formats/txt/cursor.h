@@ -36,8 +36,8 @@ class Cursor {
 
   // --- tokens of the statement
   // ------------------------------------------------------------------------------------ Is there another
-  // token on this line?
-  bool more();
+  // token on this line? Not behind a value that is wrong.
+  bool more() { return !failed_ && has_token(); }
   // The next token's spot; at the end of the line just behind the last token.
   Spot here();
   // The spot of the token taken last.
@@ -49,8 +49,8 @@ class Cursor {
   // The text up to a comment or the end of the line, without blanks round it.
   std::string_view take_rest();
 
-  // The following report what is wrong, calling the value `what`, and give nothing then.
-  // A name, or text in quotes; `may_be_empty`: "" is allowed.
+  // The following report what is wrong, calling the value `what`, and give nothing then, nor for what follows
+  // it in the statement: that is not looked at. A name, or text in quotes; `may_be_empty`: "" is allowed.
   std::optional<std::string_view> name(std::string_view what, bool may_be_empty = false);
   // The comma of a list of names, with blanks round it, if it comes next.
   bool comma();
@@ -59,17 +59,28 @@ class Cursor {
   // The numbers up to the end of the line, or up to the word `word` where one may follow them, at most `most`
   // of them; returns how many. An error gives -1.
   int row(double* values, int most, std::string_view what, std::string_view word = {});
-  // Reports what is left on the line. True when there is nothing.
+  // Reports what is left on the line. True when there is nothing, and no value was wrong.
   bool finish();
+  // A value was wrong: no further one of the statement is looked at.
+  [[nodiscard]] bool has_failed() const { return failed_; }
+  // Further ones are.
+  void go_on() { failed_ = false; }
+
+ protected:
+  std::nullopt_t fail(const Spot& spot, std::string text) {
+    failed_ = true;
+    return report_.error(spot, std::move(text));
+  }
 
  private:
   [[nodiscard]] bool ends_token(const char* p) const;
   [[nodiscard]] bool ends_line(const char* p) const;
   [[nodiscard]] Spot spot_at(const char* p) const;
   [[nodiscard]] std::string_view word_at(const char* p) const;
+  bool has_token();
   bool parse_number(double& value);
   bool parse_tiny_number(double& value);
-  void explain_number(std::string_view what);
+  std::nullopt_t explain_number(std::string_view what);
   std::optional<std::string_view> quoted_name(std::string_view what, bool may_be_empty);
   void skip_comment();
   // Reports bytes that are no text and stops; false when all of `token` is text.
@@ -85,6 +96,7 @@ class Cursor {
   bool fresh_ = true;  // the first line has not been looked at
   bool reread_ = false;
   bool stopped_ = false;
+  bool failed_ = false;  // a value of the statement
 };
 
 }  // namespace selvage::formats::txt

@@ -142,18 +142,24 @@ int Parser::missing_end(const Block& block) {
 // --- values
 // ---------------------------------------------------------------------------------------------------------
 
-std::optional<double> Parser::positive(std::string_view what) {
+std::optional<double> Parser::number_of(const fabric::Quantity& quantity, std::string_view what) {
   const std::optional<double> value = number(what);
-  if (!value || *value > 0.0) return value;
-  error(last(), fmt::format("{} has to be larger than 0", what));
-  return std::nullopt;
+  if (value) check(quantity, *value);
+  return value;
 }
 
-std::optional<double> Parser::not_negative(std::string_view what) {
+std::optional<double> Parser::positive(std::string_view what, const fabric::Quantity* quantity) {
   const std::optional<double> value = number(what);
-  if (!value || *value >= 0.0) return value;
-  error(last(), fmt::format("{} has to be 0 or larger", what));
-  return std::nullopt;
+  if (value && !(*value > 0.0)) return fail(last(), fmt::format("{} has to be larger than 0", what));
+  if (value && quantity != nullptr) check(*quantity, *value);
+  return value;
+}
+
+std::optional<double> Parser::not_negative(std::string_view what, const fabric::Quantity* quantity) {
+  const std::optional<double> value = number(what);
+  if (value && !(*value >= 0.0)) return fail(last(), fmt::format("{} has to be 0 or larger", what));
+  if (value && quantity != nullptr) check(*quantity, *value);
+  return value;
 }
 
 void Parser::check(const fabric::Quantity& quantity, double value) {
@@ -167,44 +173,42 @@ std::optional<int> Parser::count(std::string_view what, int least) {
 
 std::optional<Vec3> Parser::point(std::string_view what) {
   Vec3 point;
-  for (double& x : point) {
-    const std::optional<double> value = number(what);
-    if (!value) return std::nullopt;
-    x = *value;
-  }
-  return point;
+  for (double& x : point) x = number(what).value_or(0.0);
+  return has_failed() ? std::nullopt : std::optional(point);
 }
 
 std::optional<Vec3> Parser::direction(std::string_view what) {
   const Spot spot = here();
   std::optional<Vec3> vector = point(what);
   if (!vector || *vector != Vec3::Zero()) return vector;
-  error(spot, fmt::format("{}: 0 0 0 is no direction", what));
-  return std::nullopt;
+  return fail(spot, fmt::format("{}: 0 0 0 is no direction", what));
 }
 
 std::string_view Parser::missing_choice(std::string_view what, std::string_view word,
                                         const std::vector<std::string_view>& known) {
   if (word.empty()) {
-    error(here(), fmt::format("{} is missing: {}", what, fmt::join(known, ", ")));
+    fail(here(), fmt::format("{} is missing: {}", what, fmt::join(known, ", ")));
     return {};
   }
   const std::string meant = did_you_mean(word, known);
-  error(last(), fmt::format("unknown {} {}{}", what, in_quotes(word),
-                            meant.empty() ? fmt::format("; known: {}", fmt::join(known, ", ")) : meant));
+  fail(last(), fmt::format("unknown {} {}{}", what, in_quotes(word),
+                           meant.empty() ? fmt::format("; known: {}", fmt::join(known, ", ")) : meant));
+  if (!meant.empty()) go_on();
   return near_word(word, known);
 }
 
 bool Parser::expect(std::string_view word) {
+  if (has_failed()) return false;
   const Spot spot = here();
   const std::string_view found = take_word();
-  if (same_word(found, word)) return true;
-  error(spot, found.empty() ? fmt::format("the word '{}' is missing", word)
-                            : fmt::format("the word '{}' is expected, found {}", word, in_quotes(found)));
-  return false;
+  if (!same_word(found, word))
+    fail(spot, found.empty() ? fmt::format("the word '{}' is missing", word)
+                             : fmt::format("the word '{}' is expected, found {}", word, in_quotes(found)));
+  return !has_failed();
 }
 
 std::optional<std::array<int, 2>> Parser::pair(std::string_view what, char sign) {
+  if (has_failed()) return std::nullopt;
   const Spot spot = here();
   const std::string_view word = take_word();
   std::array<int, 2> values{};
@@ -218,11 +222,9 @@ std::optional<std::array<int, 2>> Parser::pair(std::string_view what, char sign)
     p = stop + (i == 0 && good ? 1 : 0);
   }
   if (good) return values;
-  error(spot, word.empty()
-                  ? fmt::format("{} is missing", what)
-                  : fmt::format("{}: two whole numbers joined by '{}' are expected, as in 2{}1, found {}",
+  if (word.empty()) return fail(spot, fmt::format("{} is missing", what));
+  return fail(spot, fmt::format("{}: two whole numbers joined by '{}' are expected, as in 2{}1, found {}",
                                 what, sign, sign, in_quotes(word)));
-  return std::nullopt;
 }
 
 // --- names

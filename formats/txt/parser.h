@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,7 +31,7 @@ enum class Times { at_most_once, once, any };
 template <class T>
 struct Statement {
   std::string_view word;
-  void (*read)(Parser&, T&, std::string_view word);
+  std::function<void(Parser&, T&, std::string_view word)> read;
   Times times = Times::at_most_once;
   std::string_view instead_of = {};
 };
@@ -103,9 +104,10 @@ class Parser : public Cursor {
 
   // --- values: each reports what is wrong with it, calling it `what`, and gives nothing then
   // -----------------------
-  std::optional<double> positive(std::string_view what);
-  std::optional<double> not_negative(std::string_view what);
-  // Reports a value, the one read last, that is far outside of what exists.
+  // Of a quantity: one far outside of what exists is reported, too.
+  std::optional<double> number_of(const fabric::Quantity& quantity, std::string_view what);
+  std::optional<double> positive(std::string_view what, const fabric::Quantity* quantity = nullptr);
+  std::optional<double> not_negative(std::string_view what, const fabric::Quantity* quantity = nullptr);
   void check(const fabric::Quantity& quantity, double value);
   std::optional<int> count(std::string_view what, int least = 1);
   std::optional<Vec3> point(std::string_view what);
@@ -177,6 +179,7 @@ bool Parser::read_block(std::string_view kind, std::string_view name, const Spot
 
 template <class T, std::size_t N>
 std::optional<T> Parser::choice(std::string_view what, const std::array<Word<T>, N>& words) {
+  if (has_failed()) return std::nullopt;
   const std::string_view found = take_word();
   for (const Word<T>& word : words)
     if (same_word(word.text, found)) return word.value;
@@ -186,6 +189,30 @@ std::optional<T> Parser::choice(std::string_view what, const std::array<Word<T>,
   for (const Word<T>& word : words)
     if (word.text == meant) return word.value;
   return std::nullopt;
+}
+
+// --- statements of one value
+// ------------------------------------------------------------------------------------------ The statement
+// that is a value, as `read` reads it, which goes to `member`.
+template <class T, class Value, class Read>
+auto into(Value T::*member, const Read& read) {
+  return [member, read](Parser& p, T& target, std::string_view) {
+    const auto value = read(p);
+    if (p.finish()) target.*member = *value;
+  };
+}
+inline auto a_count(std::string_view what) {
+  return [what](Parser& p) { return p.count(what); };
+}
+inline auto a_positive(std::string_view what, const fabric::Quantity* quantity = nullptr) {
+  return [what, quantity](Parser& p) { return p.positive(what, quantity); };
+}
+inline auto a_reference(const Names Parser::*names) {
+  return [names](Parser& p) { return p.reference(p.*names); };
+}
+template <class Words>
+auto one_of(std::string_view what, const Words& words) {
+  return [what, &words](Parser& p) { return p.choice(what, words); };
 }
 
 }  // namespace selvage::formats::txt

@@ -23,37 +23,22 @@ void read_repeated_version(Parser& p, Fabric&, std::string_view) {
   p.error(p.statement(), "'fabric' is the first statement of a file, and its only one of this name");
 }
 
-void read_title(Parser& p, Fabric& fabric, std::string_view) {
-  const auto title = p.name("the title", true);
-  if (title && p.finish()) fabric.title = std::string(*title);
-}
-
 void read_units(Parser& p, Fabric& fabric, std::string_view) {
   const auto units = p.choice("unit", unit_words);
-  if (!units || !p.finish()) return;
+  if (!p.finish()) return;
   fabric.units = *units;
   fabric.units_given = true;
-}
-
-void read_tolerance(Parser& p, Fabric& fabric, std::string_view) {
-  const auto tolerance = p.positive("the tolerance");
-  if (tolerance && p.finish()) fabric.tolerance = *tolerance;
 }
 
 // --- cell
 // -----------------------------------------------------------------------------------------------------------
 
-void read_matrix(Parser& p, Cell& cell, std::string_view) {
-  const auto name = p.reference(p.materials);
-  if (name && p.finish()) cell.matrix = *name;
-}
-
 void read_periodic(Parser& p, Cell& cell, std::string_view) {
-  constexpr std::array<Word<int>, 3> axes{{{"x", 0}, {"y", 1}, {"z", 2}}};
+  constexpr std::array<Word<std::size_t>, 3> axes{{{"x", 0}, {"y", 1}, {"z", 2}}};
   do {
     const auto axis = p.choice("axis", axes);
     if (!axis) return;
-    bool& is_periodic = *axis == 0 ? cell.periodic_x : *axis == 1 ? cell.periodic_y : cell.periodic_z;
+    bool& is_periodic = cell.periodic[*axis];
     if (is_periodic) p.error(p.last(), "this axis is named twice");
     is_periodic = true;
   } while (p.more());
@@ -63,20 +48,21 @@ void read_periodic(Parser& p, Cell& cell, std::string_view) {
 // -----------------------------------------------------------------------------------------------------------
 
 const Table<Fabric>& file_table() {
-  static const Table<Fabric> table({{"title", read_title},
-                                    {"units", read_units},
-                                    {"tolerance", read_tolerance},
-                                    {"thread", read_thread, Times::any},
-                                    {"material", read_material, Times::any},
-                                    {"yarn", read_yarn, Times::any},
-                                    {"weave", read_weave, Times::any},
-                                    {"knit", read_knit, Times::any},
-                                    {"warpknit", read_warpknit, Times::any},
-                                    {"braid", read_braid, Times::any},
-                                    {"piece", read_piece, Times::any},
-                                    {"edit", read_edit, Times::any},
-                                    {"cell", read_cell},
-                                    {"fabric", read_repeated_version, Times::any}});
+  static const Table<Fabric> table(
+      {{"title", into(&Fabric::title, [](Parser& p) { return p.name("the title", true); })},
+       {"units", read_units},
+       {"tolerance", into(&Fabric::tolerance, a_positive("the tolerance"))},
+       {"thread", read_thread, Times::any},
+       {"material", read_material, Times::any},
+       {"yarn", read_yarn, Times::any},
+       {"weave", read_weave, Times::any},
+       {"knit", read_knit, Times::any},
+       {"warpknit", read_warpknit, Times::any},
+       {"braid", read_braid, Times::any},
+       {"piece", read_piece, Times::any},
+       {"edit", read_edit, Times::any},
+       {"cell", read_cell},
+       {"fabric", read_repeated_version, Times::any}});
   return table;
 }
 
@@ -132,7 +118,7 @@ bool read_version(Parser& p) {
     p.take_word();
   }
   const auto version = p.count("the version of the language");
-  if (!version || !p.finish() || *version <= newest_version) return true;
+  if (!p.finish() || *version <= newest_version) return true;
   p.report.error(p.last(),
                  fmt::format("version {} of the language is newer than this program, which knows version {}",
                              *version, newest_version),
@@ -146,32 +132,30 @@ void read_edit(Parser& p, fabric::Fabric& fabric, std::string_view) {
   Edit edit;
   edit.place = p.statement().place();
   const auto yarn = p.reference(p.yarns);
-  const auto form = yarn ? p.choice("edit", edit_words) : std::nullopt;
-  if (!form) return;
-  edit.yarn = *yarn;
-  edit.form = *form;
-  if (*form == Edit::Form::length) {
-    const auto length = p.positive("the length");
-    if (!length || !p.expect("point")) return;
-    edit.length = *length;
+  edit.form = p.choice("edit", edit_words).value_or(Edit::Form::point);
+  const bool is_length = edit.form == Edit::Form::length;
+  if (is_length) {
+    edit.length = p.positive("the length").value_or(0.0);
+    p.expect("point");
   }
   const auto joint = p.count("the number of the joint");
-  const bool is_length = *form == Edit::Form::length;
-  if (!joint || !p.expect(is_length ? "along" : "to")) return;
-  edit.joint = *joint;
+  p.expect(is_length ? "along" : "to");
   const auto vector = is_length ? p.direction("the direction") : p.point("the target");
-  if (!vector || !p.finish()) return;
+  if (!p.finish()) return;
+  edit.yarn = *yarn;
+  edit.joint = *joint;
   (is_length ? edit.direction : edit.target) = *vector;
   fabric.edits.push_back(std::move(edit));
 }
 
 void read_cell(Parser& p, fabric::Fabric& fabric, std::string_view word) {
-  static const Table<Cell> table({{"matrix", read_matrix}, {"periodic", read_periodic}});
+  static const Table<Cell> table(
+      {{"matrix", into(&Cell::matrix, a_reference(&Parser::materials))}, {"periodic", read_periodic}});
   Cell cell;
   const Spot opened = p.statement();
   cell.place = opened.place();
   const auto one = p.point("a corner of the cell");
-  const auto other = one ? p.point("the opposite corner of the cell") : std::nullopt;
+  const auto other = p.point("the opposite corner of the cell");
   if (other) {
     cell.low = one->cwiseMin(*other);
     cell.high = one->cwiseMax(*other);

@@ -68,9 +68,8 @@ bool is_good_row(Parser& p, const PathRows& rows, const std::array<double, 6>& r
   const Path& path = rows.path;
   if (count < 0) return false;
   if (count != 3 && count != 5 && count != 6) {
-    p.error(p.here(),
-            fmt::format("a row of a path is x y z or x y z W H or x y z W H ANGLE; this one has {} value{}",
-                        count, count == 1 ? "" : "s"));
+    p.error(p.here(), fmt::format("a row of a path is x y z or x y z W H or x y z W H ANGLE; this one has {}",
+                                  counted(static_cast<std::size_t>(count), "value")));
     return false;
   }
   if (count > 3 && !(row[3] > 0.0 && row[4] > 0.0)) {
@@ -109,6 +108,24 @@ bool all_equal(const std::vector<Vec3>& points) {
                      [&](const Vec3& point) { return point == points.front(); });
 }
 
+// --- points in the plane
+// --------------------------------------------------------------------------------------------
+
+void read_point_row(Parser& p, PointRows& rows) {
+  rows.last = p.statement();
+  std::array<double, 2> xy{};
+  const int count = p.row(xy.data(), 2, rows.what);
+  if (count == 0 || count == 1) p.error(p.here(), fmt::format("{} has two coordinates: x y", rows.what));
+  rows.good = rows.good && count == 2;
+  if (count != 2) return;
+  const Vec2 point(xy[0], xy[1]);
+  if (!rows.may_repeat && !rows.points.empty() && rows.points.back() == point) {
+    p.error(rows.last, fmt::format("this {} equals the one before it", rows.noun));
+    rows.good = false;
+  }
+  rows.points.push_back(point);
+}
+
 // --- grid
 // -----------------------------------------------------------------------------------------------------------
 
@@ -134,7 +151,7 @@ std::optional<bool> direction_word(Parser& p) {
 
 void read_degree(Parser& p, GridRows& rows) {
   const auto degree = p.integer("the degree", 1, nurbs::max_degree);
-  const auto along = degree ? direction_word(p) : std::nullopt;
+  const auto along = direction_word(p);
   if (!along) return;
   std::optional<int>& place = *along ? rows.grid.degree_along : rows.grid.degree_round;
   if (place) p.error(p.last(), fmt::format("the degree {} is given twice", *along ? "along" : "round"));
@@ -144,17 +161,14 @@ void read_degree(Parser& p, GridRows& rows) {
 void read_knots(Parser& p, GridRows& rows) {
   const Spot spot = p.last();
   const auto along = direction_word(p);
-  if (!along) {
-    p.take_rest();
-    return;
-  }
+  if (!along) return;
   std::vector<double>& knots = *along ? rows.grid.knots_along : rows.grid.knots_round;
   if (!knots.empty()) p.error(spot, fmt::format("the knots {} are given twice", *along ? "along" : "round"));
   (*along ? rows.knots_along_spot : rows.knots_round_spot) = spot;
   while (p.more() && !is_letter(*p.here().at)) {
     const auto knot = p.number("a knot");
     if (!knot) {
-      rows.reading.good = false;
+      p.go_on();  // all that are wrong are told
       continue;
     }
     if (!knots.empty() && *knot < knots.back())
@@ -175,14 +189,8 @@ void read_grid_closed(Parser&, GridRows& rows) {
 void read_corners(Parser& p, GridRows& rows) {
   rows.corners_spot = p.last();
   std::array<double, 4> corners{};
-  for (double& corner : corners) {
-    const auto value = p.number("a corner of the end patches (there are four)");
-    if (!value) {
-      p.take_rest();
-      return;
-    }
-    corner = *value;
-  }
+  for (double& corner : corners)
+    corner = p.number("a corner of the end patches (there are four)").value_or(0.0);
   rows.grid.corners = corners;
 }
 
@@ -190,11 +198,8 @@ void read_centre(Parser& p, GridRows& rows) {
   constexpr std::array<Word<std::size_t>, 2> ends{{{"start", 0}, {"end", 1}}};
   const Spot spot = p.last();
   const auto end = p.choice("end of the grid", ends);
-  const auto centre = end ? p.point("the centre of the end's fan") : std::nullopt;
-  if (!centre) {
-    p.take_rest();
-    return;
-  }
+  const auto centre = p.point("the centre of the end's fan");
+  if (!centre) return;
   if (rows.grid.fan_centres[*end])
     p.error(spot, fmt::format("the centre at the {} is given twice", ends[*end].text));
   rows.grid.fan_centres[*end] = *centre;
@@ -211,7 +216,7 @@ constexpr std::array<Word<GridWord>, 6> grid_words{{{"degree", read_degree},
 void read_grid_words(Parser& p, GridRows& rows, std::string_view word) {
   const int errors = p.report.errors();
   if (rows.seen > 0) p.error(p.statement(), fmt::format("the word '{}' has to stand before the rows", word));
-  while (!word.empty() && p.report.errors() == errors) {
+  while (!word.empty() && p.report.errors() == errors && !p.has_failed()) {
     const auto known = std::find_if(grid_words.begin(), grid_words.end(),
                                     [&](const auto& candidate) { return same_word(candidate.text, word); });
     if (known != grid_words.end()) {
@@ -315,8 +320,8 @@ void read_grid_row(Parser& p, GridRows& rows) {
   std::array<double, 4> row{};
   const int count = p.row(row.data(), 4, "a row of the grid");
   if (count >= 0 && count < 3)
-    p.error(p.here(), fmt::format("a row of a grid is x y z or x y z WEIGHT; this one has {} value{}", count,
-                                  count == 1 ? "" : "s"));
+    p.error(p.here(), fmt::format("a row of a grid is x y z or x y z WEIGHT; this one has {}",
+                                  counted(static_cast<std::size_t>(count), "value")));
   if (count == 4 && !(row[3] > 0.0)) p.error(p.last(), "a weight has to be larger than 0");
   rows.reading.good = rows.reading.good && (count == 3 || (count == 4 && row[3] > 0.0));
   if (!rows.reading.good || rows.expected == 0) return;
@@ -347,12 +352,18 @@ void read_grid_line(Parser& p, GridRows& rows) {
 
 }  // namespace
 
+bool read_points(Parser& p, std::string_view kind, std::string_view name, const Spot& opened,
+                 PointRows& rows) {
+  static const Table<PointRows> table({}, read_point_row);
+  return p.read_block(kind, name, opened, table, rows) && rows.good;
+}
+
 fabric::Path read_path(Parser& p, ShapeReading& reading) {
   static const Table<PathRows> table({}, read_path_row);
   Path path;
   path.place = reading.spot.place();
   const auto form = p.more() ? p.choice("form of path", path_words) : yarn::PathForm::chord;
-  if (form) p.finish();
+  p.finish();
   path.form = form.value_or(yarn::PathForm::chord);
   reading.good = true;
   PathRows rows{path, reading};

@@ -26,54 +26,20 @@ void read_linear_density(Parser& p, Thread& thread, std::string_view word) {
   if (p.finish()) thread.linear_density = density;
 }
 
-void read_density(Parser& p, Thread& thread, std::string_view) {
-  const auto value = p.positive("the fibre density");
-  if (value) p.check(fabric::density_quantity, *value);
-  if (value && p.finish()) thread.density = *value;
-}
-
 void read_packing(Parser& p, Thread& thread, std::string_view) {
   const auto value = p.positive("the packing");
   if (value && *value > 1.0)
     p.error(p.last(), "the packing is a share of the section: it cannot be larger than 1");
   else if (value)
     p.check(fabric::packing_quantity, *value);
-  if (value && p.finish()) thread.packing = *value;
-}
-
-void read_diameter(Parser& p, Thread& thread, std::string_view) {
-  const auto value = p.positive("the diameter");
-  if (value && p.finish()) thread.diameter = *value;
-}
-
-// Rows `x y` of a polygon's corners.
-struct Corners {
-  std::vector<Vec2> points;
-  Spot last{};
-  bool good = true;
-};
-
-void read_corner(Parser& p, Corners& corners) {
-  const Spot spot = corners.last = p.statement();
-  std::array<double, 2> xy{};
-  const int count = p.row(xy.data(), 2, "a corner");
-  const Vec2 corner(xy[0], xy[1]);
-  bool good = count == 2;
-  if (count == 0 || count == 1) p.error(p.here(), "a corner has two coordinates: x y");
-  if (good && !corners.points.empty() && corner == corners.points.back()) {
-    p.error(spot, "this corner equals the one before it");
-    good = false;
-  }
-  corners.good = corners.good && good;
-  if (count == 2) corners.points.push_back(corner);
+  if (p.finish()) thread.packing = *value;
 }
 
 std::optional<yarn::Section> read_polygon(Parser& p) {
-  static const Table<Corners> table({}, read_corner);
   const Spot spot = p.last();
   p.finish();
-  Corners corners;
-  if (!p.read_block("polygon", "", spot, table, corners) || !corners.good) return std::nullopt;
+  PointRows corners{"corner", "a corner"};
+  if (!read_points(p, "polygon", "", spot, corners)) return std::nullopt;
   const std::vector<Vec2>& points = corners.points;
   if (points.size() < 3)
     p.error(p.last(), fmt::format("a polygon has at least 3 corners; this one has {}", points.size()));
@@ -109,7 +75,7 @@ std::optional<yarn::Section> read_shape(Parser& p) {
 }
 
 template <std::size_t... Kind>
-std::optional<yarn::Section> read_section(Parser& p, std::size_t kind, std::index_sequence<Kind...>) {
+std::optional<yarn::Section> read_kind(Parser& p, std::size_t kind, std::index_sequence<Kind...>) {
   constexpr std::array readers{&read_shape<std::variant_alternative_t<Kind, yarn::Section>>...};
   return readers[kind](p);
 }
@@ -118,63 +84,39 @@ void read_section(Parser& p, Thread& thread, std::string_view) {
   const auto kind = p.choice("section", section_words);
   if (!kind) return p.skip_statement();
   constexpr std::make_index_sequence<std::variant_size_v<yarn::Section>> all;
-  if (std::optional<yarn::Section> section = read_section(p, *kind, all)) thread.section = std::move(section);
+  if (std::optional<yarn::Section> section = read_kind(p, *kind, all)) thread.section = std::move(section);
 }
 
 void read_twist(Parser& p, Thread& thread, std::string_view) {
-  const auto turns = p.not_negative("the twist (its direction is the letter Z or S)");
-  if (turns) p.check(fabric::twist_quantity, *turns);
-  const auto hand = turns ? p.choice("twist direction", hand_words) : std::nullopt;
-  if (!hand) return;
-  const bool rotates = p.more();
-  if (rotates && !p.expect("rotate")) return;
+  const auto turns =
+      p.not_negative("the twist (its direction is the letter Z or S)", &fabric::twist_quantity);
+  const auto hand = p.choice("twist direction", hand_words);
+  const bool rotates = p.more() && p.expect("rotate");
   if (p.finish()) thread.twist = {*turns, *hand, rotates};
 }
 
 void read_plies(Parser& p, Thread& thread, std::string_view) {
   const auto count = p.count("the number of plies");
   const auto turns =
-      count ? p.not_negative("the ply twist (its direction is the letter Z or S)") : std::nullopt;
-  if (turns) p.check(fabric::twist_quantity, *turns);
-  const auto hand = turns ? p.choice("twist direction", hand_words) : std::nullopt;
-  if (hand && p.finish()) thread.plies = {*count, *turns, *hand};
-}
-
-void read_filaments(Parser& p, Thread& thread, std::string_view) {
-  const auto count = p.count("the number of filaments");
-  if (count && p.finish()) thread.filaments = *count;
+      p.not_negative("the ply twist (its direction is the letter Z or S)", &fabric::twist_quantity);
+  const auto hand = p.choice("twist direction", hand_words);
+  if (p.finish()) thread.plies = {*count, *turns, *hand};
 }
 
 void read_color(Parser& p, Thread& thread, std::string_view) {
   fabric::Color color;
-  for (int* part : {&color.red, &color.green, &color.blue}) {
-    const auto value = p.integer("a colour's red, green or blue", 0, 255);
-    if (!value) return;
-    *part = *value;
-  }
+  for (int* part : {&color.red, &color.green, &color.blue})
+    *part = p.integer("a colour's red, green or blue", 0, 255).value_or(0);
   if (p.finish()) thread.color = color;
-}
-
-void read_material_name(Parser& p, Thread& thread, std::string_view) {
-  const auto name = p.reference(p.materials);
-  if (name && p.finish()) thread.material = std::string(*name);
 }
 
 // --- material
 // -------------------------------------------------------------------------------------------------------
 
-void read_material_density(Parser& p, Material& material, std::string_view) {
-  const auto value = p.positive("the density");
-  if (value) p.check(fabric::density_quantity, *value);
-  if (value && p.finish()) material.density = *value;
-}
-
 void read_isotropic(Parser& p, Material& material) {
-  const auto modulus = p.positive("Young's modulus");
-  if (modulus) p.check(fabric::modulus_quantity, *modulus);
-  const auto poisson = modulus ? p.number("Poisson's ratio") : std::nullopt;
-  if (!poisson) return;
-  if (*poisson <= -1.0 || *poisson >= 0.5)
+  const auto modulus = p.positive("Young's modulus", &fabric::modulus_quantity);
+  const auto poisson = p.number("Poisson's ratio");
+  if (poisson && (*poisson <= -1.0 || *poisson >= 0.5))
     p.error(p.last(), "Poisson's ratio of an isotropic material lies between -1 and 0.5, both excluded");
   if (p.finish()) material.elastic = fabric::IsotropicElastic{*modulus, *poisson};
 }
@@ -189,9 +131,8 @@ void read_transverse(Parser& p, Material& material) {
                                                     "Poisson's ratio nu23"};
   for (std::size_t i = 0; i < value.size(); ++i) {
     const bool is_ratio = i == 2 || i == 4;
-    const auto number = is_ratio ? p.number(what[i]) : p.positive(what[i]);
+    const auto number = is_ratio ? p.number(what[i]) : p.positive(what[i], &fabric::modulus_quantity);
     if (!number) return;
-    if (!is_ratio) p.check(fabric::modulus_quantity, *number);
     value[i] = *number;
     spot[i] = p.last();
   }
@@ -213,11 +154,9 @@ void read_elastic(Parser& p, Material& material, std::string_view) {
 }
 
 void read_expansion(Parser& p, Material& material, std::string_view) {
-  const auto along = p.number("the expansion along");
-  if (along) p.check(fabric::expansion_quantity, *along);
-  const auto across = along ? p.number("the expansion across") : std::nullopt;
-  if (across) p.check(fabric::expansion_quantity, *across);
-  if (across && p.finish()) material.expansion = {*along, *across};
+  const auto along = p.number_of(fabric::expansion_quantity, "the expansion along");
+  const auto across = p.number_of(fabric::expansion_quantity, "the expansion across");
+  if (p.finish()) material.expansion = {*along, *across};
 }
 
 }  // namespace
@@ -227,15 +166,15 @@ const std::vector<Statement<Thread>>& thread_statements() {
       {"tex", read_linear_density},
       {"denier", read_linear_density, Times::at_most_once, "tex"},
       {"Ne", read_linear_density, Times::at_most_once, "tex"},
-      {"density", read_density},
+      {"density", into(&Thread::density, a_positive("the fibre density", &fabric::density_quantity))},
       {"packing", read_packing},
-      {"diameter", read_diameter},
+      {"diameter", into(&Thread::diameter, a_positive("the diameter"))},
       {"section", read_section},
       {"twist", read_twist},
       {"plies", read_plies},
-      {"filaments", read_filaments},
+      {"filaments", into(&Thread::filaments, a_count("the number of filaments"))},
       {"color", read_color},
-      {"material", read_material_name}};
+      {"material", into(&Thread::material, a_reference(&Parser::materials))}};
   return list;
 }
 
@@ -247,7 +186,7 @@ static void read_named(Parser& p, const Table<Named>& table, Names& names, std::
   const Spot opened = p.statement();
   made.place = opened.place();
   const auto name = p.new_name(names);
-  if (name) p.finish();
+  p.finish();
   made.name = name.value_or("");
   p.read_block(word, made.name, opened, table, made);
   all.push_back(std::move(made));
@@ -260,7 +199,9 @@ void read_thread(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 
 void read_material(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   static const Table<Material> table(
-      {{"density", read_material_density}, {"elastic", read_elastic}, {"expansion", read_expansion}});
+      {{"density", into(&Material::density, a_positive("the density", &fabric::density_quantity))},
+       {"elastic", read_elastic},
+       {"expansion", read_expansion}});
   read_named(p, table, p.materials, word, fabric.materials);
 }
 

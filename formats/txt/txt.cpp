@@ -1,4 +1,4 @@
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 
 #include "formats/txt/edit_line.h"
 #include "formats/txt/reader.h"

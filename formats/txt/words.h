@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "core/words.h"
 #include "fabric/model.h"
 
 namespace selvage::formats::txt {
@@ -137,16 +138,6 @@ constexpr bool is_plain_name(std::string_view text) {
   if (text.empty() || !starts_name(text.front())) return false;
   for (char c : text)
     if (!continues_name(c)) return false;
-  return true;
-}
-
-constexpr char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-constexpr bool same_word(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    if (lower(a[i]) != lower(b[i])) return false;
   return true;
 }
 

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
-#include <memory>
 
-#include "core/number_text.h"
+#include "core/text_buffer.h"
 #include "core/text_report.h"
 #include "fabric/as_grid.h"
 #include "formats/txt/words.h"
@@ -17,11 +15,10 @@ namespace {
 
 using fabric::Thread;
 
-// Text on its way to the file: one buffer, handed over when it is full. The first failure stays; what follows
-// it is dropped.
+// Lines of statements on their way to the file. The first failure stays; what follows it is dropped.
 class Lines {
  public:
-  explicit Lines(OutputFile& output) : output_(output), buffer_(std::make_unique<char[]>(room)) {}
+  explicit Lines(OutputFile& output) : text_(output) {}
 
   // Begins a line of a statement.
   Lines& line(int depth, std::string_view word) {
@@ -41,13 +38,7 @@ class Lines {
 
   Lines& word(std::string_view word) { return raw(" ").raw(word); }
   Lines& value(double value) { return raw(" ").number(value); }
-  Lines& value(int value) {
-    need(max_number_length + 1);
-    buffer_[used_++] = ' ';
-    used_ = static_cast<std::size_t>(write_number(buffer_.get() + used_, static_cast<long long>(value)) -
-                                     buffer_.get());
-    return *this;
-  }
+  Lines& value(int value) { return text_ << ' ' << value, *this; }
   Lines& values(const Vec3& vector) { return value(vector.x()).value(vector.y()).value(vector.z()); }
   Lines& name(std::string_view name) { return raw(" ").bare_name(name); }
   Lines& bare_name(std::string_view name) {
@@ -63,46 +54,18 @@ class Lines {
   }
   Lines& number(double value) {
     if (!std::isfinite(value)) fail("a number of the fabric is not finite");
-    need(max_number_length);
-    used_ = static_cast<std::size_t>(write_number(buffer_.get() + used_, value) - buffer_.get());
-    return *this;
+    return text_ << value, *this;
   }
-  Lines& raw(std::string_view text) {
-    if (text.size() > room) {
-      flush();
-      if (status_.ok()) status_ = output_.write(text);
-      return *this;
-    }
-    need(text.size());
-    std::memcpy(buffer_.get() + used_, text.data(), text.size());
-    used_ += text.size();
-    return *this;
-  }
-  void fail(std::string text) {
-    if (status_.ok()) status_ = selvage::error(Kind::malformed, std::move(text));
-  }
+  Lines& raw(std::string_view text) { return text_ << text, *this; }
+  void fail(std::string text) { text_.fail(selvage::error(Kind::malformed, std::move(text))); }
   Status finish() {
     if (begun_) raw("\n");
-    flush();
-    return status_;
+    return text_.finish();
   }
 
  private:
-  static constexpr std::size_t room = std::size_t{1} << 20;
-
-  void need(std::size_t size) {
-    if (used_ + size > room) flush();
-  }
-  void flush() {
-    if (status_.ok()) status_ = output_.write({buffer_.get(), used_});
-    used_ = 0;
-  }
-
-  OutputFile& output_;
-  std::unique_ptr<char[]> buffer_;
-  std::size_t used_ = 0;
+  TextBuffer text_;
   bool begun_ = false;
-  Status status_;
 };
 
 // --- threads and materials
@@ -362,12 +325,9 @@ void write_cell(Lines& out, const fabric::Cell& cell) {
   out.blank_line();
   out.line(0, "cell").values(cell.low).raw(" ").values(cell.high);
   if (!cell.matrix.empty()) out.line(1, "matrix").name(cell.matrix);
-  if (cell.periodic_x || cell.periodic_y || cell.periodic_z) {
-    out.line(1, "periodic");
-    if (cell.periodic_x) out.word("x");
-    if (cell.periodic_y) out.word("y");
-    if (cell.periodic_z) out.word("z");
-  }
+  if (cell.names_axes()) out.line(1, "periodic");
+  for (const std::size_t axis : {0U, 1U, 2U})
+    if (cell.periodic[axis]) out.word(std::string_view("xyz").substr(axis, 1));
   out.line(0, "end");
 }
 
@@ -386,20 +346,17 @@ void warn_of_losses(const fabric::Fabric& fabric, const EndsChanged& changed, Wr
   const auto warn = [&](std::string text) {
     facts.messages.push_back(warning(Kind::unsupported, std::move(text)));
   };
-  const auto plural = [](std::size_t count, std::string_view noun) {
-    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-  };
   if (changed.yarns > 0)
     warn(fmt::format(
         "Fabric TXT says how a yarn is sealed, not with which surfaces: {}, such as '{}', will be "
         "sealed anew when the text is read",
-        plural(changed.yarns, "yarn"), changed.first));
+        counted(changed.yarns, "yarn"), changed.first));
   if (!fabric.parts.empty())
     warn(fmt::format("Fabric TXT holds no free surfaces: {}, such as '{}', left out",
-                     plural(fabric.parts.size(), "part"), fabric.parts.front().name));
+                     counted(fabric.parts.size(), "part"), fabric.parts.front().name));
   if (!fabric.curves.empty())
     warn(fmt::format("Fabric TXT holds no free curves: {}, such as '{}', left out",
-                     plural(fabric.curves.size(), "curve"), fabric.curves.front().name));
+                     counted(fabric.curves.size(), "curve"), fabric.curves.front().name));
 }
 
 }  // namespace

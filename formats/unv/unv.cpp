@@ -1,4 +1,4 @@
-#include "formats/unv/unv.h"
+#include "formats/registry.h"
 
 #include <algorithm>
 
@@ -21,8 +21,7 @@ void open_dataset(TextBuffer& text, std::size_t number) {
 void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   open_dataset(text, 2411);
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
-    for (const std::size_t value : {n + 1, std::size_t{1}, std::size_t{1}, std::size_t{11}})
-      put_right(text, value, width);
+    put_right(text, {n + 1, 1, 1, 11}, width);
     text << '\n';
     // The exponent has two digits here unless it needs three.
     for (int k = 0; k < 3; ++k) {
@@ -42,52 +41,35 @@ void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<f
   const std::size_t descriptor = is_brick ? 115 : mesh.order == 1 ? 111 : 118;
   constexpr std::array<std::size_t, 10> plain = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9},
                                         round = {0, 4, 1, 5, 2, 6, 7, 8, 9, 3};
-  const auto& order = mesh.nodes_per_element() == 10 ? round : plain;
-  const auto count = static_cast<std::size_t>(mesh.nodes_per_element());
-  std::vector<std::size_t> material(mesh.elements.size(), 1);
-  for (const fem::Section& section : sections)
-    for (const std::size_t e : section.elements) material[e] = section.material + 1;
+  std::vector<std::size_t> nodes(static_cast<std::size_t>(mesh.nodes_per_element()));
+  const auto& order = nodes.size() == 10 ? round : plain;
+  const std::vector<std::size_t> materials = fem::element_materials(mesh, sections);
   open_dataset(text, 2412);
   for (std::size_t i = 0; i < mesh.regions.size(); ++i)
     for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e) {
-      for (const std::size_t value : {e + 1, descriptor, i + 1, material[e], std::size_t{7}, count})
-        put_right(text, value, width);
+      put_right(text, {e + 1, descriptor, i + 1, materials[e] + 1, 7, nodes.size()}, width);
       text << '\n';
-      for (std::size_t k = 0; k < count; ++k) {
-        put_right(text, mesh.elements[e][order[k]] + 1, width);
-        if (k % 8 == 7 || k + 1 == count) text << '\n';
-      }
+      for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] = mesh.elements[e][order[k]];
+      put_numbers(text, nodes, width, 8);
     }
   text << mark;
 }
 
 // Of dataset 2467; the entity type is 7 for nodes, 8 for elements.
-void write_group(TextBuffer& text, std::size_t number, std::string_view name, std::size_t type,
-                 const std::vector<std::size_t>& members) {
-  put_right(text, number, width);
-  for (int k = 0; k < 6; ++k) put_right(text, std::size_t{0}, width);
-  put_right(text, members.size(), width);
-  text << '\n' << name << '\n';
-  for (std::size_t k = 0; k < members.size(); ++k) {
-    for (const std::size_t value : {type, members[k] + 1, std::size_t{0}, std::size_t{0}})
-      put_right(text, value, width);
-    if (k % 2 == 1 || k + 1 == members.size()) text << '\n';
+void write_group(TextBuffer& text, std::size_t number, const fem::NamedSet& set, std::size_t type) {
+  put_right(text, {number, 0, 0, 0, 0, 0, 0, set.members.size()}, width);
+  text << '\n' << set.name << '\n';
+  for (std::size_t k = 0; k < set.members.size(); ++k) {
+    put_right(text, {type, set.members[k] + 1, 0, 0}, width);
+    if (k % 2 == 1 || k + 1 == set.members.size()) text << '\n';
   }
 }
 
 std::size_t write_groups(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
   open_dataset(text, 2467);
   std::size_t number = 0;
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
-    std::vector<std::size_t> members;
-    for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
-      members.push_back(e);
-    write_group(text, ++number, fem::set_name(mesh, i), 8, members);
-  }
-  for (const fem::Section& section : sections)
-    if (section.name != fem::set_name(mesh, section.region))
-      write_group(text, ++number, section.name, 8, section.elements);
-  for (const fem::NodeSet& set : fem::node_sets(mesh)) write_group(text, ++number, set.name, 7, set.nodes);
+  for (const fem::NamedSet& set : fem::element_sets(mesh, sections)) write_group(text, ++number, set, 8);
+  for (const fem::NamedSet& set : fem::node_sets(mesh)) write_group(text, ++number, set, 7);
   text << mark;
   return number;
 }
@@ -99,10 +81,8 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   write_nodes(text, mesh);
   write_elements(text, mesh, *sections);
   const std::size_t groups = write_groups(text, mesh, *sections);
-  if (Status done = text.finish(); !done) return done.error();
-  WriteFacts facts;
-  facts.entities = {{"nodes", mesh.nodes.size()}, {"elements", mesh.elements.size()}, {"groups", groups}};
-  return facts;
+  return finished(text,
+                  {{"nodes", mesh.nodes.size()}, {"elements", mesh.elements.size()}, {"groups", groups}});
 }
 
 bool begins_with_a_dataset(std::string_view head) {

@@ -1,4 +1,4 @@
-#include "formats/vtu/vtu.h"
+#include "formats/registry.h"
 
 #include <bit>
 
@@ -19,14 +19,12 @@ constexpr std::string_view type_name() {
 }
 
 template <class T>
-Status write_array(TextBuffer& text, std::string_view name, const std::vector<T>& values,
-                   int components = 1) {
+void write_array(TextBuffer& text, std::string_view name, const std::vector<T>& values, int components = 1) {
   const Result<std::string> encoded = encode(values.data(), values.size() * sizeof(T));
-  if (!encoded) return encoded.error();
+  if (!encoded) return text.fail(encoded.error());
   text << "        <DataArray type=\"" << type_name<T>() << "\" Name=\"" << name << "\"";
   if (components > 1) text << " NumberOfComponents=\"" << components << '"';
   text << " format=\"binary\">\n" << *encoded << "\n        </DataArray>\n";
-  return {};
 }
 
 std::vector<double> flat(const std::vector<Vec3>& vectors) {
@@ -43,31 +41,30 @@ struct Cells {
   std::vector<std::int64_t> connectivity;  // point indices, as many a cell
 };
 
-Status write_cells(TextBuffer& text, const Cells& cells) {
+void write_cells(TextBuffer& text, const Cells& cells) {
   std::vector<std::int64_t> offsets;
   offsets.reserve(cells.count);
   for (std::size_t k = 1; k <= cells.count; ++k)
     offsets.push_back(static_cast<std::int64_t>(k * (cells.connectivity.size() / cells.count)));
   const std::vector<std::uint8_t> types(cells.count, cells.type);
-  if (Status done = write_array(text, "connectivity", cells.connectivity); !done) return done;
-  if (Status done = write_array(text, "offsets", offsets); !done) return done;
-  return write_array(text, "types", types);
+  write_array(text, "connectivity", cells.connectivity);
+  write_array(text, "offsets", offsets);
+  write_array(text, "types", types);
 }
 
 Cells cells_of(const fem::Mesh& mesh) {
   // Hexahedra, tetrahedra of 4 and 10 nodes, in the order of ours.
   const int type = mesh.shape == fem::Mesh::Shape::hexahedron ? 12 : mesh.order == 1 ? 10 : 24;
   Cells cells{static_cast<std::uint8_t>(type), mesh.elements.size(), {}};
-  const auto nodes = static_cast<std::size_t>(mesh.nodes_per_element());
-  for (const auto& element : mesh.elements)
-    for (std::size_t k = 0; k < nodes; ++k)
-      cells.connectivity.push_back(static_cast<std::int64_t>(element[k]));
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
+    for (const std::size_t node : mesh.nodes_of(e))
+      cells.connectivity.push_back(static_cast<std::int64_t>(node));
   return cells;
 }
 
 // Quality of tetrahedra; a box has none to speak of.
-Status write_quality(TextBuffer& text, const fem::Mesh& mesh) {
-  if (mesh.shape != fem::Mesh::Shape::tetrahedron) return {};
+void write_quality(TextBuffer& text, const fem::Mesh& mesh) {
+  if (mesh.shape != fem::Mesh::Shape::tetrahedron) return;
   std::vector<float> jacobians, angles, aspects;
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const fem::ElementShape shape = fem::shape_of(mesh, e);
@@ -75,26 +72,24 @@ Status write_quality(TextBuffer& text, const fem::Mesh& mesh) {
     angles.push_back(static_cast<float>(shape.min_dihedral));
     aspects.push_back(static_cast<float>(shape.aspect));
   }
-  if (Status done = write_array(text, "scaled_jacobian", jacobians); !done) return done;
-  if (Status done = write_array(text, "min_dihedral", angles); !done) return done;
-  return write_array(text, "aspect", aspects);
+  write_array(text, "scaled_jacobian", jacobians);
+  write_array(text, "min_dihedral", angles);
+  write_array(text, "aspect", aspects);
 }
 
-Status write_cell_data(TextBuffer& text, const fem::Mesh& mesh) {
+void write_cell_data(TextBuffer& text, const fem::Mesh& mesh) {
   std::vector<std::int32_t> yarns(mesh.elements.size(), -1), materials;
   for (std::size_t i = 0; i < mesh.regions.size(); ++i)
     if (mesh.regions[i].kind == fem::Region::Kind::yarn)
       for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
         yarns[e] = static_cast<std::int32_t>(i);
   materials.assign(mesh.element_material.begin(), mesh.element_material.end());
-  if (Status done = write_array(text, "yarn", yarns); !done) return done;
-  if (Status done = write_array(text, "along", flat(mesh.along), 3); !done) return done;
-  if (Status done = write_array(text, "across", flat(mesh.across), 3); !done) return done;
-  if (!mesh.fibre_fraction.empty())
-    if (Status done = write_array(text, "fibre_fraction", mesh.fibre_fraction); !done) return done;
-  if (!materials.empty())
-    if (Status done = write_array(text, "material", materials); !done) return done;
-  return write_quality(text, mesh);
+  write_array(text, "yarn", yarns);
+  write_array(text, "along", flat(mesh.along), 3);
+  write_array(text, "across", flat(mesh.across), 3);
+  if (!mesh.fibre_fraction.empty()) write_array(text, "fibre_fraction", mesh.fibre_fraction);
+  if (!materials.empty()) write_array(text, "material", materials);
+  write_quality(text, mesh);
 }
 
 // Two hyphens would end a comment.
@@ -106,8 +101,8 @@ std::string comment_text(std::string name) {
 }
 
 // The file up to its data; `names`: of the yarns.
-Status write_grid(TextBuffer& text, const std::vector<std::string>& names, const std::vector<Vec3>& points,
-                  const Cells& cells) {
+void write_grid(TextBuffer& text, const std::vector<std::string>& names, const std::vector<Vec3>& points,
+                const Cells& cells) {
   text << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   for (std::size_t i = 0; i < names.size(); ++i)
     text << "<!-- yarn " << i << ": " << comment_text(names[i]) << " -->\n";
@@ -116,19 +111,15 @@ Status write_grid(TextBuffer& text, const std::vector<std::string>& names, const
        << "\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
        << "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" << points.size() << "\" NumberOfCells=\""
        << cells.count << "\">\n      <Points>\n";
-  if (Status done = write_array(text, "Points", flat(points), 3); !done) return done;
+  write_array(text, "Points", flat(points), 3);
   text << "      </Points>\n      <Cells>\n";
-  if (Status done = write_cells(text, cells); !done) return done;
+  write_cells(text, cells);
   text << "      </Cells>\n";
-  return {};
 }
 
 Result<WriteFacts> finish(TextBuffer& text, std::size_t points, std::size_t cells) {
   text << "    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
-  if (Status done = text.finish(); !done) return done.error();
-  WriteFacts facts;
-  facts.entities = {{"points", points}, {"cells", cells}};
-  return facts;
+  return finished(text, {{"points", points}, {"cells", cells}});
 }
 
 Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
@@ -136,9 +127,9 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   std::vector<std::string> names;
   for (const fem::Region& region : mesh.regions)
     if (region.kind == fem::Region::Kind::yarn) names.push_back(region.name);
-  if (Status done = write_grid(text, names, mesh.nodes, cells_of(mesh)); !done) return done.error();
+  write_grid(text, names, mesh.nodes, cells_of(mesh));
   text << "      <CellData Scalars=\"yarn\">\n";
-  if (Status done = write_cell_data(text, mesh); !done) return done.error();
+  write_cell_data(text, mesh);
   text << "      </CellData>\n";
   return finish(text, mesh.nodes.size(), mesh.elements.size());
 }
@@ -160,11 +151,11 @@ Result<WriteFacts> write_gaps(const solid::GapMap& map, OutputFile& output) {
     cells.count += skin.triangles.size();
   }
   TextBuffer text(output);
-  if (Status done = write_grid(text, map.names, points, cells); !done) return done.error();
+  write_grid(text, map.names, points, cells);
   text << "      <PointData Scalars=\"gap\">\n";
-  if (Status done = write_array(text, "gap", gaps); !done) return done.error();
+  write_array(text, "gap", gaps);
   text << "      </PointData>\n      <CellData>\n";
-  if (Status done = write_array(text, "yarn", yarns); !done) return done.error();
+  write_array(text, "yarn", yarns);
   text << "      </CellData>\n";
   return finish(text, points.size(), cells.count);
 }

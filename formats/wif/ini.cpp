@@ -1,7 +1,6 @@
 #include "formats/wif/ini.h"
 
 #include <fmt/format.h>
-#include <strings.h>
 
 #include <algorithm>
 
@@ -32,10 +31,9 @@ std::string_view section_name(std::string_view line) {
 }
 
 std::string lowered(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
+  std::string lowered(text);
+  std::ranges::transform(text, lowered.begin(), lower);
+  return lowered;
 }
 
 Spot spot_of(const char* at, std::string_view line, int number) {
@@ -43,10 +41,6 @@ Spot spot_of(const char* at, std::string_view line, int number) {
 }
 
 }  // namespace
-
-bool same_word(std::string_view a, std::string_view b) {
-  return a.size() == b.size() && ::strncasecmp(a.data(), b.data(), a.size()) == 0;
-}
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t from = std::min(text.find_first_not_of(" \t"), text.size());
@@ -63,6 +57,11 @@ const Entry* Section::find(std::string_view key) const {
 const Section* Ini::find(std::string_view name) const {
   const auto found = places_.find(lowered(name));
   return found == places_.end() ? nullptr : &sections_[found->second];
+}
+
+const Entry* Ini::find(std::string_view section, std::string_view key) const {
+  const Section* const found = find(section);
+  return found == nullptr ? nullptr : found->find(key);
 }
 
 Ini::Ini(const Source& source, TextReport& report) {

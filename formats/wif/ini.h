@@ -9,6 +9,7 @@
 
 #include "core/source.h"
 #include "core/text_report.h"
+#include "core/words.h"
 
 namespace selvage::formats::wif {
 
@@ -36,6 +37,7 @@ class Ini {
 
   // Names in any case. Null: there is none.
   [[nodiscard]] const Section* find(std::string_view name) const;
+  [[nodiscard]] const Entry* find(std::string_view section, std::string_view key) const;
   [[nodiscard]] const std::vector<Section>& sections() const { return sections_; }
   [[nodiscard]] const Spot& end() const { return end_; }
 
@@ -50,8 +52,6 @@ class Ini {
   Spot end_;
 };
 
-// Equal but for the case of ASCII letters.
-bool same_word(std::string_view a, std::string_view b);
 // Without blanks and tabs at both ends.
 std::string_view trimmed(std::string_view text);
 

@@ -44,6 +44,13 @@ struct Threading {
   std::map<int, std::vector<std::size_t>> ends_of_shaft;  // from 0
 };
 
+// In ascending order.
+Shafts each_once(Shafts shafts) {
+  std::sort(shafts.begin(), shafts.end());
+  shafts.erase(std::unique(shafts.begin(), shafts.end()), shafts.end());
+  return shafts;
+}
+
 // The shafts or treadles that an entry names. Zeros say "none" and are left out.
 Shafts named(const Numbered& line, const Counted& counted, TextReport& report) {
   std::optional<Shafts> values = whole_numbers(*line.entry, report);
@@ -51,9 +58,7 @@ Shafts named(const Numbered& line, const Counted& counted, TextReport& report) {
   std::erase(*values, 0);
   for (const int value : *values)
     if (!is_within(value, counted, *line.entry, report)) return {};
-  std::sort(values->begin(), values->end());
-  values->erase(std::unique(values->begin(), values->end()), values->end());
-  return std::move(*values);
+  return each_once(std::move(*values));
 }
 
 // A cloth has the threads that the section speaks of: what it leaves open at its end would hang beside the
@@ -118,16 +123,14 @@ Lifts read_treadling(const Section& section, const Section& tieup_section, const
         report.warning(line.entry->value_spot, fmt::format("treadle {} is tied to no shaft", treadle));
       }
     }
-    std::sort(moved.begin(), moved.end());
-    moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+    moved = each_once(std::move(moved));
   }
   return lifts;
 }
 
 // Does [CONTENTS] say that the section is not there?
 bool is_disowned(const Ini& ini, std::string_view name, TextReport& report) {
-  const Section* const contents = ini.find("CONTENTS");
-  const Entry* const entry = contents != nullptr ? contents->find(name) : nullptr;
+  const Entry* const entry = ini.find("CONTENTS", name);
   return entry != nullptr && !boolean(*entry, report).value_or(true);
 }
 
@@ -152,15 +155,12 @@ std::optional<Sheds> read_sheds(const Ini& ini, const Loom& loom, TextReport& re
     else if (tieup == nullptr || is_disowned(ini, "TREADLING", report))
       treadling = nullptr;
   }
-  if (plan == nullptr && treadling == nullptr) {
-    report.error(ini.end(), tieup != nullptr ? "[TREADLING] is missing: what is tied up is not trodden"
-                                             : "there is neither [LIFTPLAN] nor [TIEUP] and [TREADLING]");
-    return std::nullopt;
-  }
-  if (plan == nullptr && tieup == nullptr) {
-    report.error(treadling->spot, "[TREADLING] needs [TIEUP], which is missing");
-    return std::nullopt;
-  }
+  if (plan == nullptr && treadling == nullptr)
+    return report.error(ini.end(), tieup != nullptr
+                                       ? "[TREADLING] is missing: what is tied up is not trodden"
+                                       : "there is neither [LIFTPLAN] nor [TIEUP] and [TREADLING]");
+  if (plan == nullptr && tieup == nullptr)
+    return report.error(treadling->spot, "[TREADLING] needs [TIEUP], which is missing");
   if (plan == nullptr) return Sheds{treadling, read_treadling(*treadling, *tieup, loom, report)};
   Sheds sheds{plan, read_liftplan(*plan, loom, report)};
   if (treadling != nullptr && read_treadling(*treadling, *tieup, loom, report) != sheds.lifts)
@@ -229,13 +229,11 @@ std::optional<std::vector<std::string>> read_drawdown(const Ini& ini, const Loom
   if (!threading || !sheds || report.errors() > 0) return std::nullopt;
   const auto ends = static_cast<std::size_t>(threading->ends);
   const std::size_t picks = sheds->lifts.size();
-  if (static_cast<long long>(picks) > fabric::most_crossings / threading->ends) {
-    report.error(sheds->section->spot,
-                 fmt::format("{} picks by {} threads are more than the {} crossings that are taken", picks,
-                             ends, fabric::most_crossings),
-                 Kind::limit);
-    return std::nullopt;
-  }
+  if (static_cast<long long>(picks) > fabric::most_crossings / threading->ends)
+    return report.error(sheds->section->spot,
+                        fmt::format("{} picks by {} threads are more than the {} crossings that are taken",
+                                    picks, ends, fabric::most_crossings),
+                        Kind::limit);
   const char moved = loom.is_rising ? '1' : '0';
   const char at_rest = loom.is_rising ? '0' : '1';
   std::vector<std::string> rows(picks, std::string(ends, at_rest));

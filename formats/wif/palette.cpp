@@ -14,8 +14,10 @@ namespace {
 void read_range(const Entry& entry, Palette& palette, TextReport& report) {
   const std::optional<std::vector<int>> range = whole_numbers(entry, report);
   if (!range) return;
-  if (range->size() != 2 || (*range)[0] >= (*range)[1])
-    return report.error(entry.value_spot, "a range is two whole numbers, the smaller one first");
+  if (range->size() != 2 || (*range)[0] >= (*range)[1]) {
+    report.error(entry.value_spot, "a range is two whole numbers, the smaller one first");
+    return;
+  }
   palette.low = (*range)[0];
   palette.high = (*range)[1];
 }
@@ -27,11 +29,9 @@ std::optional<yarn::Color> scaled(const std::vector<int>& values, std::size_t fr
   const double size = static_cast<double>(palette.high) - palette.low;
   for (std::size_t i = 0; i < 3; ++i) {
     const int value = values[from + i];
-    if (value < palette.low || value > palette.high) {
-      report.error(entry.value_spot, fmt::format("{} is not within the colours' range, {} to {}", value,
-                                                 palette.low, palette.high));
-      return std::nullopt;
-    }
+    if (value < palette.low || value > palette.high)
+      return report.error(entry.value_spot, fmt::format("{} is not within the colours' range, {} to {}",
+                                                        value, palette.low, palette.high));
     parts[i] = static_cast<int>(std::lround((static_cast<double>(value) - palette.low) / size * 255));
   }
   return yarn::Color{parts[0], parts[1], parts[2]};
@@ -50,10 +50,6 @@ void read_table(const Section& section, Palette& palette, TextReport& report) {
     if (const auto color = scaled(*values, 0, *line.entry, palette, report))
       palette.colors[line.number] = *color;
   }
-}
-
-bool is_known(int number, const Palette& palette) {
-  return palette.colors.contains(number);
 }
 
 Color numbered_color(int number, const Palette& palette) {
@@ -91,9 +87,8 @@ CommonColor read_common(const Section& system, const Palette& palette, TextRepor
 
 Palette read_palette(const Ini& ini, TextReport& report) {
   Palette palette;
-  const Section* const described = ini.find("COLOR PALETTE");
   const Section* const table = ini.find("COLOR TABLE");
-  const Entry* const range = described != nullptr ? described->find("Range") : nullptr;
+  const Entry* const range = ini.find("COLOR PALETTE", "Range");
   if (range != nullptr)
     read_range(*range, palette, report);
   else if (table != nullptr)
@@ -112,7 +107,7 @@ std::vector<std::optional<Color>> read_colors(const Ini& ini, const Section& sys
       if (without_comment(line.entry->value).empty()) continue;
       const std::optional<int> number = whole_number(*line.entry, report);
       if (!number) continue;
-      if (!is_known(*number, palette)) report.error(line.entry->value_spot, unknown(*number, palette));
+      if (!palette.colors.contains(*number)) report.error(line.entry->value_spot, unknown(*number, palette));
       const std::size_t thread = static_cast<std::size_t>(line.number) - 1;
       if (thread >= count) continue;
       colors[thread] = numbered_color(*number, palette);

@@ -17,18 +17,16 @@ constexpr std::array<std::string_view, 15> used_sections = {
     "WEFT COLORS",   "WARP SPACING", "WEFT SPACING", "WARP THICKNESS", "WEFT THICKNESS"};
 
 void check_contents(const Ini& ini, TextReport& report) {
-  const Section* const contents = ini.find("CONTENTS");
-  if (contents == nullptr) return;
   for (const std::string_view name : used_sections) {
-    const Entry* const entry = contents->find(name);
+    const Entry* const entry = ini.find("CONTENTS", name);
     if (entry == nullptr || ini.find(name) != nullptr) continue;
     if (boolean(*entry, report).value_or(false))
       report.warning(entry->key_spot, fmt::format("[CONTENTS] promises [{}], which is not there", name));
   }
 }
 
-void check_version(const Section& wif, TextReport& report) {
-  const Entry* const version = wif.find("Version");
+void check_version(const Ini& ini, TextReport& report) {
+  const Entry* const version = ini.find("WIF", "Version");
   if (version == nullptr) return;
   const std::optional<double> number = real_number(*version, report);
   if (number && *number >= 2)
@@ -73,12 +71,9 @@ std::string made_title(std::string_view text) {
 std::optional<fabric::Fabric> read(const Source& source, TextReport& report) {
   if (refuse_binary(source, report)) return std::nullopt;
   const Ini ini(source, report);
-  const Section* const wif = ini.find("WIF");
-  if (wif == nullptr) {
-    report.error(Spot{source.bytes().data(), 1, 1}, "this is no WIF: the section [WIF] is missing");
-    return std::nullopt;
-  }
-  check_version(*wif, report);
+  if (ini.find("WIF") == nullptr)
+    return report.error(Spot{source.bytes().data(), 1, 1}, "this is no WIF: the section [WIF] is missing");
+  check_version(ini, report);
   check_contents(ini, report);
   const Loom loom = read_loom(ini, report);
   std::optional<std::vector<std::string>> rows = read_drawdown(ini, loom, report);
@@ -91,8 +86,7 @@ std::optional<fabric::Fabric> read(const Source& source, TextReport& report) {
   fabric.file = source.name();
   fabric.units = yarns.units;
   fabric.units_given = true;
-  const Section* const text = ini.find("TEXT");
-  const Entry* const title = text != nullptr ? text->find("Title") : nullptr;
+  const Entry* const title = ini.find("TEXT", "Title");
   if (title != nullptr && !title->value.empty()) fabric.title = made_title(title->value);
   fabric.threads = std::move(yarns.threads);
   fabric::Weave weave;

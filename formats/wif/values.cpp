@@ -29,20 +29,18 @@ Spot spot_in(const Entry& entry, std::string_view part) {
 }
 
 std::optional<int> whole(const Entry& entry, std::string_view text, TextReport& report) {
-  const std::optional<int> value = parsed<int>(text);
-  if (!value)
-    report.error(spot_in(entry, text), text.empty() ? fmt::format("{} has no value", in_quotes(entry.key))
-                                                    : fmt::format("{} is no whole number", in_quotes(text)));
-  return value;
+  if (const std::optional<int> value = parsed<int>(text)) return value;
+  return report.error(spot_in(entry, text), text.empty()
+                                                ? fmt::format("{} has no value", in_quotes(entry.key))
+                                                : fmt::format("{} is no whole number", in_quotes(text)));
 }
 
 std::optional<int> key_number(const Entry& entry, std::string_view noun, TextReport& report) {
   const std::optional<int> number = parsed<int>(entry.key);
   if (number && *number >= 1) return number;
-  report.error(entry.key_spot, number
-                                   ? fmt::format("there is no {} {}: they count from 1", noun, *number)
-                                   : fmt::format("{} is not the number of a {}", in_quotes(entry.key), noun));
-  return std::nullopt;
+  return report.error(entry.key_spot,
+                      number ? fmt::format("there is no {} {}: they count from 1", noun, *number)
+                             : fmt::format("{} is not the number of a {}", in_quotes(entry.key), noun));
 }
 
 std::string beyond(int number, const Counted& counted) {
@@ -67,11 +65,10 @@ std::optional<double> real_number(const Entry& entry, TextReport& report) {
   const std::optional<double> value = parsed<double>(text);
   if (value && std::isfinite(*value)) return value;
   const bool has_comma = text.find(',') != std::string_view::npos;
-  report.error(entry.value_spot, text.empty()
-                                     ? fmt::format("{} has no value", in_quotes(entry.key))
-                                     : fmt::format("{} is no number{}", in_quotes(text),
-                                                   has_comma ? ": a decimal comma? WIF has the point" : ""));
-  return std::nullopt;
+  return report.error(entry.value_spot,
+                      text.empty() ? fmt::format("{} has no value", in_quotes(entry.key))
+                                   : fmt::format("{} is no number{}", in_quotes(text),
+                                                 has_comma ? ": a decimal comma? WIF has the point" : ""));
 }
 
 std::optional<bool> boolean(const Entry& entry, TextReport& report) {
@@ -80,20 +77,15 @@ std::optional<bool> boolean(const Entry& entry, TextReport& report) {
     if (same_word(text, word)) return true;
   for (const std::string_view word : {"false", "off", "no", "0"})
     if (same_word(text, word)) return false;
-  report.error(entry.value_spot,
-               fmt::format("{} is neither true (on, yes, 1) nor false (off, no, 0)", in_quotes(text)));
-  return std::nullopt;
+  return report.error(entry.value_spot,
+                      fmt::format("{} is neither true (on, yes, 1) nor false (off, no, 0)", in_quotes(text)));
 }
 
 std::optional<std::vector<int>> whole_numbers(const Entry& entry, TextReport& report) {
   std::vector<int> values;
-  std::string_view rest = without_comment(entry.value);
-  while (!rest.empty()) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    const std::string_view part = trimmed(rest.substr(0, comma));
-    rest.remove_prefix(std::min(comma + 1, rest.size()));
-    if (part.empty()) continue;
-    const std::optional<int> value = whole(entry, part, report);
+  for (const std::string_view part : split(without_comment(entry.value), ',')) {
+    if (trimmed(part).empty()) continue;
+    const std::optional<int> value = whole(entry, trimmed(part), report);
     if (!value) return std::nullopt;
     values.push_back(*value);
   }

@@ -1,4 +1,4 @@
-#include "formats/wif/wif.h"
+#include "formats/registry.h"
 
 #include "formats/wif/ini.h"
 #include "formats/wif/reader.h"

@@ -1,6 +1,6 @@
 #include "cli/formats.h"
 
-#include "formats/format.h"
+#include "formats/registry.h"
 #include "pipeline/table.h"
 
 namespace selvage::cli {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <initializer_list>
+#include <span>
 #include <string>
 
 #include "core/text_buffer.h"
@@ -31,6 +33,18 @@ inline void put_right(TextBuffer& text, std::size_t value, std::size_t width) {
   char digits[max_number_length];
   const char* end = write_number(digits, static_cast<long long>(value));
   put_right(text, std::string_view(digits, static_cast<std::size_t>(end - digits)), width);
+}
+
+inline void put_right(TextBuffer& text, std::initializer_list<std::size_t> values, std::size_t width) {
+  for (const std::size_t value : values) put_right(text, value, width);
+}
+// Lines of `per_line` numbers each, those of things that are counted from 0 here and from 1 in the file.
+inline void put_numbers(TextBuffer& text, std::span<const std::size_t> indices, std::size_t width,
+                        std::size_t per_line) {
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    put_right(text, indices[k] + 1, width);
+    if (k % per_line == per_line - 1 || k + 1 == indices.size()) text << '\n';
+  }
 }
 
 // Fortran's Ew.dE3 with one digit before the point: `digits` after it, three of the exponent; digits + 8

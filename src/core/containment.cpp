@@ -21,6 +21,7 @@
 #include <string_view>
 
 #include "core/module.h"
+#include "core/words.h"
 
 namespace selvage {
 
@@ -112,12 +113,8 @@ std::vector<fs::path> library_places() {
                                   "/proc/self",  "/proc/cpuinfo", "/proc/meminfo", "/sys/devices/system",
                                   "/dev/urandom"};
   const char* listed = std::getenv("LD_LIBRARY_PATH");
-  std::string_view rest = listed == nullptr ? "" : listed;
-  while (!rest.empty()) {
-    const std::size_t colon = std::min(rest.find(':'), rest.size());
-    if (colon > 0) places.emplace_back(rest.substr(0, colon));
-    rest.remove_prefix(std::min(colon + 1, rest.size()));
-  }
+  for (const std::string_view place : words_of(listed == nullptr ? "" : listed, ':'))
+    places.emplace_back(place);
   return places;
 }
 

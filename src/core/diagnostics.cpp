@@ -3,46 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "core/readable.h"
+#include "core/words.h"
 
 namespace selvage {
 
 std::string_view name_of(Severity severity) {
-  switch (severity) {
-    case Severity::note:
-      return "note";
-    case Severity::warning:
-      return "warning";
-    case Severity::error:
-      return "error";
-  }
-  return "error";
+  constexpr std::array<std::string_view, 3> names = {"note", "warning", "error"};
+  return names[static_cast<std::size_t>(severity)];
 }
 
 std::string_view name_of(Kind kind) {
-  switch (kind) {
-    case Kind::malformed:
-      return "malformed";
-    case Kind::unsupported:
-      return "unsupported";
-    case Kind::io:
-      return "io";
-    case Kind::geometry:
-      return "geometry";
-    case Kind::limit:
-      return "limit";
-    case Kind::usage:
-      return "usage";
-    case Kind::internal:
-      return "internal";
-    case Kind::interrupted:
-      return "interrupted";
-  }
-  return "internal";
+  constexpr std::array<std::string_view, 8> names = {"malformed", "unsupported", "io",       "geometry",
+                                                     "limit",     "usage",       "internal", "interrupted"};
+  return names[static_cast<std::size_t>(kind)];
 }
 
 std::string to_string(const Message& message) {
@@ -70,9 +48,7 @@ std::string to_string(const Message& message) {
       out += "\n  ";
       for (int i = 0; i + 1 < message.caret && i < static_cast<int>(message.excerpt.size()); ++i) {
         const char c = message.excerpt[static_cast<std::size_t>(i)];
-        const bool continues =
-            (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // a UTF-8 character: one column
-        if (!continues) out += c == '\t' ? '\t' : ' ';
+        if (!is_continuation(c)) out += c == '\t' ? '\t' : ' ';  // a character: one column
       }
       out += '^';
     }
@@ -80,15 +56,15 @@ std::string to_string(const Message& message) {
   return out;
 }
 
-Message error(Kind kind, std::string text) {
-  Message message;
+Message error(Kind kind, std::string text, About about) {
+  Message message{std::move(about)};
   message.kind = kind;
   message.text = std::move(text);
   return message;
 }
 
-Message warning(Kind kind, std::string text) {
-  Message message = error(kind, std::move(text));
+Message warning(Kind kind, std::string text, About about) {
+  Message message = error(kind, std::move(text), std::move(about));
   message.severity = Severity::warning;
   return message;
 }
@@ -99,7 +75,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   // Optimal string alignment: a swap of two neighbours counts as one step.
   std::vector<std::size_t> before(b.size() + 1), row(b.size() + 1), next(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
-  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
   for (std::size_t i = 1; i <= a.size(); ++i) {
     next[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {

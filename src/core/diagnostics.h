@@ -34,16 +34,20 @@ struct TextPlace {
   int column = 0;
 };
 
-struct Message {
+// What a message is about; what is unknown stays empty.
+struct About {
+  std::string file{};        // as the user named it
+  TextPlace place{};         // in `file`
+  std::string yarn{};        // the yarn concerned
+  std::optional<Vec3> at{};  // the place in the model concerned, in file units
+};
+
+struct Message : About {
   Severity severity = Severity::error;
   Kind kind = Kind::malformed;
-  std::string text;          // what is wrong and, where it is known, the remedy; no trailing newline
-  std::string file;          // as the user named it; empty: none
-  TextPlace place{};         // in `file`
-  std::string excerpt{};     // the offending line (shortened when long), without its newline
-  int caret = 0;             // 1-based column in `excerpt` under which the caret stands; 0: none
-  std::string yarn{};        // the yarn concerned; empty: none
-  std::optional<Vec3> at{};  // the place in the model concerned, in file units
+  std::string text{};     // what is wrong and, where it is known, the remedy; no trailing newline
+  std::string excerpt{};  // the offending line (shortened when long), without its newline
+  int caret = 0;          // 1-based column in `excerpt` under which the caret stands; 0: none
 };
 
 // "FILE:LINE:COLUMN: error: TEXT" and, with an excerpt, the line and a caret under it; parts that are
@@ -55,8 +59,8 @@ std::string_view name_of(Severity severity);
 std::string_view name_of(Kind kind);
 
 // Short makers of a Message.
-Message error(Kind kind, std::string text);
-Message warning(Kind kind, std::string text);
+Message error(Kind kind, std::string text, About about = {});
+Message warning(Kind kind, std::string text, About about = {});
 
 // The known word nearest to `word` (edit distance, ignoring case) if it is near enough to be what the user
 // meant (at most a third of its length away); empty otherwise. Used for "did you mean".

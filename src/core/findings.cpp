@@ -6,15 +6,11 @@
 namespace selvage {
 
 void Findings::defect(std::string text, TextPlace place) {
-  Message message = error(Kind::malformed, std::move(text));
-  message.place = place;
-  add(std::move(message));
+  add(error(Kind::malformed, std::move(text), {.place = place}));
 }
 
 void Findings::warning(std::string text, TextPlace place) {
-  Message message = selvage::warning(Kind::malformed, std::move(text));
-  message.place = place;
-  add(std::move(message));
+  add(selvage::warning(Kind::malformed, std::move(text), {.place = place}));
 }
 
 void Findings::add(Message message) {

@@ -19,6 +19,20 @@ std::filesystem::path program_folder();
 // `extern "C" const void* ENTRY()` gives: a pointer to a table of functions, declared in the header of the
 // part that the module implements. Errors (internal): missing file, missing entry.
 Result<const void*> open_module(const std::string& name, const std::string& entry);
+// The same, as the table that it is.
+template <class Table>
+Result<const Table*> module_table(const std::string& name, const std::string& entry) {
+  Result<const void*> table = open_module(name, entry);
+  if (!table) return table.error();
+  return static_cast<const Table*>(*table);
+}
+// What a function of the table gives for these arguments; the error where there is no module.
+template <class Table, class Value, class... Parameters, class... Arguments>
+Result<Value> call(const Result<const Table*>& module, Result<Value> (*Table::*function)(Parameters...),
+                   const Arguments&... arguments) {
+  if (!module) return module.error();
+  return ((*module)->*function)(arguments...);
+}
 
 // "needs more memory than the 2000 MB that it may take; --memory gives it more", of this process.
 std::string memory_ended();

@@ -1,7 +1,6 @@
 #include "core/option.h"
 
 #include <fmt/format.h>
-#include <strings.h>
 
 #include <algorithm>
 #include <charconv>
@@ -9,6 +8,7 @@
 #include <optional>
 
 #include "core/number_text.h"
+#include "core/words.h"
 
 namespace selvage {
 
@@ -22,10 +22,6 @@ std::optional<std::int64_t> read_whole(std::string_view text) {
   const auto [rest, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (failure != std::errc() || rest != text.data() + text.size()) return std::nullopt;
   return value;
-}
-
-bool same_word(std::string_view a, std::string_view b, bool any_case) {
-  return a == b || (any_case && a.size() == b.size() && ::strncasecmp(a.data(), b.data(), a.size()) == 0);
 }
 
 std::string wanted(const Argument& argument) {
@@ -55,7 +51,7 @@ Result<std::string> Argument::canonical(std::string_view given) const {
       return std::string(given);
     case Form::word:
       for (const std::string_view word : words_of(words))
-        if (same_word(word, given, any_case)) return std::string(word);
+        if (word == given || (any_case && same_word(word, given))) return std::string(word);
       break;
     case Form::whole:
       if (const auto value = read_whole(given); value && fits(static_cast<double>(*value)))
@@ -101,23 +97,6 @@ std::string_view OptionValues::text(const Option& option) const {
 
 std::int64_t OptionValues::whole(const Option& option) const {
   return read_whole(text(option)).value_or(0);
-}
-
-std::vector<std::string_view> words_of(std::string_view text) {
-  std::vector<std::string_view> words;
-  while (!text.empty()) {
-    const std::size_t blank = std::min(text.find(' '), text.size());
-    if (blank > 0) words.push_back(text.substr(0, blank));
-    text.remove_prefix(std::min(blank + 1, text.size()));
-  }
-  return words;
-}
-
-std::string alternatives(const std::vector<std::string_view>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i)
-    text += fmt::format("{}{}", i == 0 ? "" : i + 1 < words.size() ? ", " : " or ", words[i]);
-  return text;
 }
 
 }  // namespace selvage

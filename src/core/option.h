@@ -6,7 +6,6 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "core/diagnostics.h"
 
@@ -78,10 +77,5 @@ class OptionValues {
  private:
   std::map<std::string, std::string, std::less<>> given_;
 };
-
-// What stands between blanks.
-std::vector<std::string_view> words_of(std::string_view text);
-// "a, b or c".
-std::string alternatives(const std::vector<std::string_view>& words);
 
 }  // namespace selvage

@@ -27,10 +27,6 @@ namespace {
 constexpr std::uint64_t copied_at_once = 1U << 20;
 constexpr std::string_view hidden_begin = ".selvage-", hidden_end = ".partial";
 
-fs::path folder_of(const fs::path& path) {
-  return path.has_parent_path() ? path.parent_path() : fs::path(".");
-}
-
 Status sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   // EINVAL: a file system that has nothing to do here.
@@ -38,13 +34,15 @@ Status sync_folder(const fs::path& folder) {
   const int reason = errno;
   if (descriptor >= 0) ::close(descriptor);
   if (is_done) return {};
-  Message message =
-      error(Kind::io, fmt::format("cannot make the names of new files durable: {}", std::strerror(reason)));
-  message.file = folder.string();
-  return message;
+  return error(Kind::io, fmt::format("cannot make the names of new files durable: {}", std::strerror(reason)),
+               {.file = folder.string()});
 }
 
 }  // namespace
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
 
 std::optional<fs::path> followed(const fs::path& target) {
   constexpr int most_links = 40;  // as Linux has it
@@ -60,9 +58,8 @@ std::optional<fs::path> followed(const fs::path& target) {
 }
 
 Message OutputFile::io_error(std::string_view what) const {
-  Message message = error(Kind::io, fmt::format("{}: {}", what, std::strerror(errno)));
-  message.file = form_ == Form::standard_output ? "<stdout>" : target_.string();
-  return message;
+  return error(Kind::io, fmt::format("{}: {}", what, std::strerror(errno)),
+               {.file = form_ == Form::standard_output ? "<stdout>" : target_.string()});
 }
 
 std::string OutputFile::unnamed() const {
@@ -78,10 +75,9 @@ Status OutputFile::check_target() const {
     return io_error("cannot write");
   }
   if (!fs::is_other(there)) return {};
-  Message message = error(
-      Kind::io, "cannot write: this is a device or a pipe, which a file would replace; - is standard output");
-  message.file = target_.string();
-  return message;
+  return error(Kind::io,
+               "cannot write: this is a device or a pipe, which a file would replace; - is standard output",
+               {.file = target_.string()});
 }
 
 // Every folder that is made needs its own name made durable, too: from where they begin is kept.
@@ -231,12 +227,8 @@ Status OutputFile::set_target(const fs::path& target) {
   }
   Result<OutputFile> there = create(target);
   if (!there) return there.error();
-  for (std::uint64_t offset = 0; offset < size_; offset += copied_at_once) {
-    const Result<std::string> bytes =
-        read_at(offset, static_cast<std::size_t>(std::min(copied_at_once, size_ - offset)));
-    if (!bytes) return bytes.error();
-    if (Status written = there->write(*bytes); !written) return written;
-  }
+  const auto copy = [&](std::string_view bytes) { return there->write(bytes); };
+  if (Status copied = read_all(copy); !copied) return copied;
   *this = std::move(*there);
   return {};
 }
@@ -245,12 +237,12 @@ Result<std::string> OutputFile::contents() const {
   return read_at(0, static_cast<std::size_t>(size()));
 }
 
-Status OutputFile::copy_to_standard_output() {
+Status OutputFile::read_all(const std::function<Status(std::string_view)>& take) const {
   for (std::uint64_t offset = 0; offset < size_; offset += copied_at_once) {
     const Result<std::string> bytes =
         read_at(offset, static_cast<std::size_t>(std::min(copied_at_once, size_ - offset)));
     if (!bytes) return bytes.error();
-    if (Status printed = write_to_standard_output(*bytes); !printed) return printed;
+    if (Status taken = take(*bytes); !taken) return taken;
   }
   return {};
 }
@@ -278,7 +270,7 @@ Status OutputFile::stage() {
 }
 
 Status OutputFile::take_name(bool may_be_taken_back) {
-  if (form_ == Form::standard_output) return copy_to_standard_output();
+  if (form_ == Form::standard_output) return read_all(write_to_standard_output);
   if (form_ == Form::memory) return {};
   if (hidden_.empty()) {
     if (::linkat(AT_FDCWD, unnamed().c_str(), AT_FDCWD, place_.c_str(), AT_SYMLINK_FOLLOW) == 0) {
@@ -343,14 +335,8 @@ void OutputFile::remove_leftovers(const std::vector<fs::path>& targets) {
   std::set<fs::path> folders;
   for (const fs::path& target : targets)
     if (const std::optional<fs::path> place = followed(target)) folders.insert(folder_of(*place));
-  for (const fs::path& folder : folders) {
-    std::error_code failure;
-    for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
-         entry.increment(failure))
-      if (is_temporary_name(entry->path().filename().string(), hidden_begin, hidden_end) &&
-          is_abandoned(entry->path()))
-        ::unlink(entry->path().c_str());
-  }
+  for (const fs::path& folder : folders)
+    for (const fs::path& hidden : abandoned_in(folder, hidden_begin, hidden_end)) ::unlink(hidden.c_str());
 }
 
 }  // namespace selvage

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,6 +26,9 @@ namespace selvage {
 
 // Where the links of `target` lead, also where nothing is there yet. None (errno tells): they go in a circle.
 std::optional<std::filesystem::path> followed(const std::filesystem::path& target);
+
+// The folder in which `path` is: "." where it names none.
+std::filesystem::path folder_of(const std::filesystem::path& path);
 
 class OutputFile {
  public:
@@ -61,6 +65,8 @@ class OutputFile {
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
   [[nodiscard]] Result<std::string> contents() const;
+  // Hands over all bytes in their order, a block at a time, until `take` fails.
+  Status read_all(const std::function<Status(std::string_view)>& take) const;
   // As it was named; a link is not followed.
   [[nodiscard]] const std::filesystem::path& target() const { return target_; }
   // Another name for commit() to give. Error (io): as create().
@@ -81,7 +87,6 @@ class OutputFile {
   [[nodiscard]] Status check_target() const;
   Status make_folder();
   Status open_hidden();
-  Status copy_to_standard_output();
   // The steps of commit().
   Status stage();
   Status hide();

@@ -8,23 +8,6 @@ namespace selvage {
 
 namespace {
 
-bool is_continuation(char c) {
-  return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
-}
-
-char32_t code_point(std::string_view character) {
-  const auto first = static_cast<unsigned char>(character.front());
-  char32_t code = character.size() == 1 ? first : first & (0x7FU >> character.size());
-  for (char c : character.substr(1)) code = code << 6U | (static_cast<unsigned char>(c) & 0x3FU);
-  return code;
-}
-
-bool is_control(char32_t code) {
-  const auto in = [code](char32_t from, char32_t to) { return code >= from && code <= to; };
-  return code < 0x20 || in(0x7F, 0x9F) || code == 0x61C || in(0x200E, 0x200F) || in(0x2028, 0x202E) ||
-         in(0x2066, 0x2069);
-}
-
 std::string escaped(char32_t code) {
   if (code == '\n') return "\\n";
   if (code == '\t') return "\\t";
@@ -49,8 +32,24 @@ std::size_t character_length(std::string_view bytes) {
   return overlong || beyond ? 0 : length;
 }
 
-bool is_control(std::string_view character) {
-  return is_control(code_point(character));
+char32_t Character::code() const {
+  const auto first = static_cast<unsigned char>(bytes.front());
+  char32_t code = bytes.size() == 1 ? first : first & (0x7FU >> bytes.size());
+  for (char c : bytes.substr(1)) code = code << 6U | (static_cast<unsigned char>(c) & 0x3FU);
+  return code;
+}
+
+Character take_character(std::string_view& text) {
+  const std::size_t length = character_length(text);
+  const Character taken{text.substr(0, std::max<std::size_t>(length, 1)), length > 0};
+  text.remove_prefix(taken.bytes.size());
+  return taken;
+}
+
+bool is_control(char32_t code) {
+  const auto in = [code](char32_t from, char32_t to) { return code >= from && code <= to; };
+  return code < 0x20 || in(0x7F, 0x9F) || code == 0x61C || in(0x200E, 0x200F) || in(0x2028, 0x202E) ||
+         in(0x2066, 0x2069);
 }
 
 std::string readable(std::string_view text) {
@@ -62,15 +61,13 @@ std::string readable(std::string_view text) {
     shown += text.substr(0, plain);
     text.remove_prefix(plain);
     if (text.empty()) break;
-    const std::size_t length = character_length(text);
-    const std::string_view character = text.substr(0, std::max<std::size_t>(length, 1));
-    if (length == 0)
-      shown += escaped(static_cast<unsigned char>(text.front()));
-    else if (is_control(character))
-      shown += escaped(code_point(character));
+    const Character character = take_character(text);
+    if (!character.is_valid)
+      shown += escaped(static_cast<unsigned char>(character.bytes.front()));
+    else if (is_control(character.code()))
+      shown += escaped(character.code());
     else
-      shown += character;
-    text.remove_prefix(character.size());
+      shown += character.bytes;
   }
   return shown;
 }

@@ -7,14 +7,27 @@
 
 namespace selvage {
 
+// A byte of a UTF-8 character that is not its first.
+constexpr bool is_continuation(char byte) {
+  return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U;
+}
+
 // The length of the UTF-8 character at the front of `bytes`, which are not empty (RFC 3629); 0 where there is
 // none.
 std::size_t character_length(std::string_view bytes);
 
-// Whether that character, of character_length() bytes, would steer a terminal or turn text around instead of
-// being seen: control characters (of C0, tab and newline too, and C1), marks of direction, separators of
-// lines.
-bool is_control(std::string_view character);
+// A UTF-8 character, or a byte that is none.
+struct Character {
+  std::string_view bytes;
+  bool is_valid = false;
+  [[nodiscard]] char32_t code() const;  // of a valid one
+};
+// The one at the front of `text`, which is not empty, taken off it.
+Character take_character(std::string_view& text);
+
+// Whether a character would steer a terminal or turn text around instead of being seen: control characters
+// (of C0, tab and newline too, and C1), marks of direction, separators of lines.
+bool is_control(char32_t code);
 
 // Controls, and bytes that are no UTF-8, as \n, \t, \x1B, \u202E; the rest as it is. What is readable stays
 // as it is.

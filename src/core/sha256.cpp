@@ -3,7 +3,6 @@
 #include <sha256.h>
 #include <sys/types.h>
 
-#include <algorithm>
 #include <array>
 
 #include "core/source.h"
@@ -44,14 +43,11 @@ Result<std::string> sha256_of_file(const std::filesystem::path& path) {
 
 Result<std::string> sha256_of(const OutputFile& output) {
   Digest digest;
-  const std::uint64_t total = output.size();
-  constexpr std::uint64_t block = 1U << 20;
-  for (std::uint64_t offset = 0; offset < total; offset += block) {
-    Result<std::string> bytes =
-        output.read_at(offset, static_cast<std::size_t>(std::min(block, total - offset)));
-    if (!bytes) return bytes.error();
-    digest.add(*bytes);
-  }
+  const auto add = [&](std::string_view bytes) {
+    digest.add(bytes);
+    return Status();
+  };
+  if (Status read = output.read_all(add); !read) return read.error();
   return digest.text();
 }
 

@@ -16,14 +16,8 @@ namespace {
 
 constexpr int patience = 10;  // seconds that a pipe without a writer is waited for
 
-Message io_message(const std::filesystem::path& path, std::string text) {
-  Message message = error(Kind::io, std::move(text));
-  message.file = path.string();
-  return message;
-}
-
 Message io_error(const std::filesystem::path& path, std::string_view what) {
-  return io_message(path, fmt::format("{}: {}", what, std::strerror(errno)));
+  return error(Kind::io, fmt::format("{}: {}", what, std::strerror(errno)), {.file = path.string()});
 }
 
 struct Descriptor {
@@ -80,7 +74,7 @@ Result<Source> Source::open(const std::filesystem::path& path) {
     return io_error(path, "cannot read");
   }
   if (file.owned && (S_ISCHR(facts.st_mode) || S_ISBLK(facts.st_mode)))
-    return io_message(path, "this is a device, not a file; '-' reads standard input");
+    return error(Kind::io, "this is a device, not a file; '-' reads standard input", {.file = path.string()});
   Source source;
   source.name_ = path == "-" ? "<stdin>" : path.string();
   if (S_ISREG(facts.st_mode) && facts.st_size > 0 && file.owned) {
@@ -97,8 +91,8 @@ Result<Source> Source::open(const std::filesystem::path& path) {
   std::string& bytes = *source.owned_;
   if (file.owned) {
     if (S_ISFIFO(facts.st_mode) && !await_writer(file.fd, bytes))
-      return io_message(path,
-                        fmt::format("nothing has opened this pipe to write to it within {} s", patience));
+      return error(Kind::io, fmt::format("nothing has opened this pipe to write to it within {} s", patience),
+                   {.file = path.string()});
     if (::fcntl(file.fd, F_SETFL, O_RDONLY) != 0) return io_error(path, "cannot read");
   }
   if (!read_to_end(file.fd, bytes)) return io_error(path, "cannot read");

@@ -13,12 +13,9 @@ Status write_to_standard_output(std::string_view text) {
   while (!text.empty()) {
     const ssize_t put = ::write(STDOUT_FILENO, text.data(), text.size());
     if (put < 0 && errno == EINTR) continue;
-    if (put < 0) {
-      Message message =
-          error(Kind::io, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
-      message.file = "selvage";
-      return message;
-    }
+    if (put < 0)
+      return error(Kind::io, fmt::format("cannot write to standard output: {}", std::strerror(errno)),
+                   {.file = "selvage"});
     text.remove_prefix(static_cast<std::size_t>(put));
   }
   return {};

@@ -29,36 +29,10 @@ bool is_ours(const fs::path& path) {
   return ::lstat(path.c_str(), &facts) == 0 && S_ISDIR(facts.st_mode) && facts.st_uid == ::geteuid();
 }
 
-// What cannot be removed stays: nothing rests on it.
-void remove_abandoned_folders(const fs::path& place) {
-  std::error_code failure;
-  for (fs::directory_iterator entry(place, failure), end; !failure && entry != end; entry.increment(failure))
-    if (is_temporary_name(entry->path().filename().string(), folder_begin, "") && is_ours(entry->path()) &&
-        is_abandoned(entry->path())) {
-      std::error_code ignored;
-      fs::remove_all(entry->path(), ignored);
-    }
-}
-
-}  // namespace
-
-std::string temporary_name(std::string_view begin, std::string_view end) {
-  std::random_device source;
-  const std::uint64_t number = std::uint64_t{source()} << 32U | source();
-  return fmt::format("{}{:0{}x}{}", begin, number, digits, end);
-}
-
 bool is_temporary_name(std::string_view name, std::string_view begin, std::string_view end) {
   if (name.size() != begin.size() + digits + end.size() || !name.starts_with(begin) || !name.ends_with(end))
     return false;
   return name.substr(begin.size(), digits).find_first_not_of("0123456789abcdef") == std::string_view::npos;
-}
-
-bool hold(int descriptor) {
-  while (::flock(descriptor, LOCK_EX) != 0)
-    if (errno != EINTR) return true;
-  struct stat facts {};
-  return ::fstat(descriptor, &facts) != 0 || facts.st_nlink > 0;
 }
 
 bool is_abandoned(const fs::path& path) {
@@ -70,6 +44,31 @@ bool is_abandoned(const fs::path& path) {
                        ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
   ::close(descriptor);
   return is_free;
+}
+
+}  // namespace
+
+std::string temporary_name(std::string_view begin, std::string_view end) {
+  std::random_device source;
+  const std::uint64_t number = std::uint64_t{source()} << 32U | source();
+  return fmt::format("{}{:0{}x}{}", begin, number, digits, end);
+}
+
+bool hold(int descriptor) {
+  while (::flock(descriptor, LOCK_EX) != 0)
+    if (errno != EINTR) return true;
+  struct stat facts {};
+  return ::fstat(descriptor, &facts) != 0 || facts.st_nlink > 0;
+}
+
+std::vector<fs::path> abandoned_in(const fs::path& place, std::string_view begin, std::string_view end) {
+  std::vector<fs::path> found;
+  std::error_code failure;
+  for (fs::directory_iterator entry(place, failure), last; !failure && entry != last;
+       entry.increment(failure))
+    if (is_temporary_name(entry->path().filename().string(), begin, end) && is_abandoned(entry->path()))
+      found.push_back(entry->path());
+  return found;
 }
 
 TemporaryFolder::TemporaryFolder(fs::path path, int lock)
@@ -90,7 +89,9 @@ TemporaryFolder::~TemporaryFolder() {
 Result<TemporaryFolder> TemporaryFolder::create() {
   const char* named = std::getenv("TMPDIR");
   const fs::path place = named != nullptr && *named != '\0' ? named : "/tmp";
-  remove_abandoned_folders(place);
+  std::error_code ignored;  // what cannot be removed stays: nothing rests on it
+  for (const fs::path& folder : abandoned_in(place, folder_begin, ""))
+    if (is_ours(folder)) fs::remove_all(folder, ignored);
   for (;;) {
     const fs::path path = place / temporary_name(folder_begin, "");
     const auto refused = [&] {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/diagnostics.h"
 
@@ -14,16 +15,14 @@ namespace selvage {
 // `begin`, 16 hexadecimal digits drawn at random, `end`.
 std::string temporary_name(std::string_view begin, std::string_view end);
 
-// Whether `name` has that form. No user's own file does by chance.
-bool is_temporary_name(std::string_view name, std::string_view begin, std::string_view end);
-
 // Locks the open file or folder until every copy of `descriptor` is closed; false when it has lost its name
 // before the lock was had (it was taken for abandoned). A file system without locks says true.
 bool hold(int descriptor);
 
-// Whether `path` is a regular file or a folder that no process holds. False where the file system cannot
-// tell.
-bool is_abandoned(const std::filesystem::path& path);
+// The regular files and folders in `place` with a name of that form, which no user's own has by chance, that
+// no process holds. Where the file system cannot tell, it is held.
+std::vector<std::filesystem::path> abandoned_in(const std::filesystem::path& place, std::string_view begin,
+                                                std::string_view end);
 
 // Removed, with all that is in it, when the object goes: by the process that made it, not by its children.
 // What a killed process left is removed when the next one makes a folder.

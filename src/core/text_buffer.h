@@ -34,6 +34,11 @@ class TextBuffer {
   TextBuffer& operator<<(std::size_t value) { return number(static_cast<long long>(value)); }
   TextBuffer& operator<<(int value) { return number(static_cast<long long>(value)); }
 
+  // What is written from here on is dropped, too.
+  void fail(Message message) {
+    if (status_.ok()) status_ = std::move(message);
+  }
+
   Status finish() {
     flush();
     return status_;

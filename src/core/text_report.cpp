@@ -11,10 +11,6 @@ namespace {
 
 constexpr std::size_t excerpt_before = 60, excerpt_after = 50;  // bytes shown on either side of the caret
 
-bool is_continuation(char c) {
-  return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
-}
-
 // What no text file holds.
 bool is_foreign(char c) {
   return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7F;
@@ -25,13 +21,11 @@ std::string made_readable(std::string_view bytes) {
   std::string text;
   text.reserve(bytes.size());
   while (!bytes.empty()) {
-    const std::size_t length = character_length(bytes);
-    const std::string_view character = bytes.substr(0, std::max<std::size_t>(length, 1));
-    if (length == 0 || (character != "\t" && is_control(character)))
+    const Character character = take_character(bytes);
+    if (!character.is_valid || (character.bytes != "\t" && is_control(character.code())))
       text += '?';
     else
-      text += character;
-    bytes.remove_prefix(character.size());
+      text += character.bytes;
   }
   return text;
 }
@@ -104,21 +98,18 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string_vi
 }
 
 void TextReport::add(Severity severity, Kind kind, const Spot& spot, std::string text) {
-  Message message;
+  Message message = selvage::error(
+      kind, std::move(text), {.file = source_.name(), .place = spot.place(), .yarn = made_readable(yarn_)});
   message.severity = severity;
-  message.kind = kind;
-  message.text = std::move(text);
-  message.file = source_.name();
-  message.place = spot.place();
-  message.yarn = made_readable(yarn_);
   add_excerpt(message, spot, source_.bytes());
   messages_.push_back(std::move(message));
 }
 
-void TextReport::error(const Spot& spot, std::string text, Kind kind) {
-  if (is_full()) return;
+std::nullopt_t TextReport::error(const Spot& spot, std::string text, Kind kind) {
+  if (is_full()) return std::nullopt;
   ++errors_;
   add(Severity::error, kind, spot, std::move(text));
+  return std::nullopt;
 }
 
 void TextReport::warning(const Spot& spot, std::string text) {
@@ -136,10 +127,8 @@ void TextReport::hand_over(Diagnostics& diagnostics) {
   for (Message& message : messages_) diagnostics.add(std::move(message));
   messages_.clear();
   if (warnings_ <= most_warnings) return;
-  Message rest =
-      selvage::warning(Kind::malformed, fmt::format("{} more warnings", warnings_ - most_warnings));
-  rest.file = source_.name();
-  diagnostics.add(std::move(rest));
+  diagnostics.add(selvage::warning(
+      Kind::malformed, fmt::format("{} more warnings", warnings_ - most_warnings), {.file = source_.name()}));
 }
 
 }  // namespace selvage

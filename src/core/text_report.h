@@ -1,6 +1,7 @@
 // What is wrong with a text, gathered while it is read and handed over in the order of its lines.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,7 +43,8 @@ class TextReport {
 
   explicit TextReport(const Source& source) : source_(source) {}
 
-  void error(const Spot& spot, std::string text, Kind kind = Kind::malformed);
+  // Gives nothing: what a function returns that has no value then.
+  std::nullopt_t error(const Spot& spot, std::string text, Kind kind = Kind::malformed);
   void warning(const Spot& spot, std::string text);
   void note(const Spot& spot, std::string text);  // for what is said once a file
 

@@ -2,42 +2,27 @@
 
 namespace selvage {
 
+namespace {
+
+struct Size {
+  std::string_view name;
+  std::int64_t tenths_of_um;
+};
+constexpr std::array<Size, all_units.size()> sizes = {
+    {{"m", 10'000'000}, {"cm", 100'000}, {"mm", 10'000}, {"um", 10}, {"inch", 254'000}}};
+
+}  // namespace
+
 std::string_view name_of(Unit unit) {
-  switch (unit) {
-    case Unit::m:
-      return "m";
-    case Unit::cm:
-      return "cm";
-    case Unit::mm:
-      return "mm";
-    case Unit::um:
-      return "um";
-    case Unit::inch:
-      return "inch";
-  }
-  return "mm";
+  return sizes[static_cast<std::size_t>(unit)].name;
 }
 
-std::optional<Unit> unit_named(std::string_view word) {
-  for (Unit unit : all_units)
-    if (name_of(unit) == word) return unit;
-  return std::nullopt;
+std::int64_t exact_size(Unit unit) {
+  return sizes[static_cast<std::size_t>(unit)].tenths_of_um;
 }
 
 double millimetres_per(Unit unit) {
-  switch (unit) {
-    case Unit::m:
-      return 1000.0;
-    case Unit::cm:
-      return 10.0;
-    case Unit::mm:
-      return 1.0;
-    case Unit::um:
-      return 0.001;
-    case Unit::inch:
-      return 25.4;
-  }
-  return 1.0;
+  return static_cast<double>(exact_size(unit)) / static_cast<double>(exact_size(Unit::mm));
 }
 
 }  // namespace selvage

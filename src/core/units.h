@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <optional>
+#include <cstdint>
 #include <string_view>
 
 namespace selvage {
@@ -14,8 +14,9 @@ inline constexpr std::array<Unit, 5> all_units = {Unit::m, Unit::cm, Unit::mm, U
 
 // The unit's word in Fabric TXT: "m", "cm", "mm", "um", "inch".
 std::string_view name_of(Unit unit);
-std::optional<Unit> unit_named(std::string_view word);
 
+// Tenths of a micrometre in one unit: a whole number.
+std::int64_t exact_size(Unit unit);
 // Millimetres in one unit: 1000, 10, 1, 0.001, 25.4.
 double millimetres_per(Unit unit);
 

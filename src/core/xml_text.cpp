@@ -1,6 +1,7 @@
 #include "core/xml_text.h"
 
-#include <algorithm>
+#include <array>
+#include <utility>
 
 #include "core/readable.h"
 
@@ -14,28 +15,23 @@ bool is_known(std::string_view character) {
                        : first == '\t' || first == '\n' || first == '\r';
 }
 
+// What stands for a character that means something to XML; else empty.
+std::string_view entity_of(std::string_view character) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> entities = {
+      {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}, {"\r", "&#13;"}}};
+  for (const auto& [letter, entity] : entities)
+    if (letter == character) return entity;
+  return {};
+}
+
 }  // namespace
 
 std::string xml_text(std::string_view text, std::string_view unknown) {
   std::string out;
   while (!text.empty()) {
-    const std::size_t length = character_length(text);
-    const std::string_view one = text.substr(0, std::max<std::size_t>(length, 1));
-    if (length == 0 || !is_known(one))
-      out += unknown;
-    else if (one == "&")
-      out += "&amp;";
-    else if (one == "<")
-      out += "&lt;";
-    else if (one == ">")
-      out += "&gt;";
-    else if (one == "\"")
-      out += "&quot;";
-    else if (one == "\r")
-      out += "&#13;";
-    else
-      out += one;
-    text.remove_prefix(one.size());
+    const Character one = take_character(text);
+    const std::string_view entity = entity_of(one.bytes);
+    out += !one.is_valid || !is_known(one.bytes) ? unknown : entity.empty() ? one.bytes : entity;
   }
   return out;
 }

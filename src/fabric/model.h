@@ -259,8 +259,9 @@ struct Edit {
 struct Cell {
   TextPlace place;
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
-  std::string matrix;  // a material; empty: none
-  bool periodic_x = false, periodic_y = false, periodic_z = false;
+  std::string matrix;              // a material; empty: none
+  std::array<bool, 3> periodic{};  // along x, y, z, as its text says
+  [[nodiscard]] bool names_axes() const { return periodic[0] || periodic[1] || periodic[2]; }
 };
 
 using Item = std::variant<Yarn, Weave, Knit, Warpknit, Braid, Piece>;

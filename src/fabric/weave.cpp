@@ -92,8 +92,7 @@ void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, 
   const bool is_weft = kind == Block::Kind::weft;
   const Cell cell = fabric_.cell.value_or(Cell{});
   const int axis = is_weft ? 0 : 1;
-  const auto [begin, end] =
-      numbers_of(row, is_weft ? cell.periodic_x : cell.periodic_y, cell.low[axis], cell.high[axis]);
+  const auto [begin, end] = numbers_of(row, cell.periodic[is_weft ? 0 : 1], cell.low[axis], cell.high[axis]);
   const auto count = static_cast<std::size_t>(end - begin);
   Block block{kind, layer, set, 0, count, begin, static_cast<std::size_t>(row.count)};
   if (!blocks_.empty()) block.first = blocks_.back().first + blocks_.back().count;

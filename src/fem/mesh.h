@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -135,6 +136,16 @@ struct Mesh {
 
   [[nodiscard]] int corners_per_element() const { return shape == Shape::tetrahedron ? 4 : 8; }
   [[nodiscard]] int nodes_per_element() const { return shape == Shape::hexahedron ? 8 : order == 1 ? 4 : 10; }
+  [[nodiscard]] std::span<const std::size_t> nodes_of(std::size_t element) const {
+    return std::span(elements[element]).first(static_cast<std::size_t>(nodes_per_element()));
+  }
+
+  // The numbers of Term::node: nodes, then drivers.
+  [[nodiscard]] std::size_t numbered() const { return nodes.size() + drivers.size(); }
+  [[nodiscard]] std::size_t number_of_driver(std::size_t k) const { return nodes.size() + k; }
+  [[nodiscard]] const Vec3& place(std::size_t number) const {
+    return number < nodes.size() ? nodes[number] : drivers[number - nodes.size()].at;
+  }
 };
 
 }  // namespace selvage::fem

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "fem/materials.h"
 
@@ -15,8 +16,8 @@ std::string set_name(const Mesh& mesh, std::size_t region) {
   return "Yarn" + std::to_string(number);
 }
 
-std::vector<NodeSet> node_sets(const Mesh& mesh) {
-  std::vector<NodeSet> sets;
+std::vector<NamedSet> node_sets(const Mesh& mesh) {
+  std::vector<NamedSet> sets;
   const auto add = [&](std::string name, const std::vector<std::size_t>& nodes) {
     if (!nodes.empty()) sets.push_back({std::move(name), nodes});
   };
@@ -59,11 +60,8 @@ Result<std::vector<Section>> sections(const Mesh& mesh) {
       by_material[mesh.element_material.empty() ? of_all : mesh.element_material[e]].push_back(e);
     for (auto& [material, elements] : by_material) {
       if (material >= mesh.materials.size() ||
-          std::holds_alternative<std::monostate>(mesh.materials[material].elastic)) {
-        Message message = error(Kind::internal, "the yarn's material has no elastic constants");
-        message.yarn = region.name;
-        return message;
-      }
+          std::holds_alternative<std::monostate>(mesh.materials[material].elastic))
+        return error(Kind::internal, "the yarn's material has no elastic constants", {.yarn = region.name});
       const std::string name = set_name(mesh, i);
       const bool is_alone = by_material.size() == 1;
       const std::size_t number = static_cast<std::size_t>(std::count_if(
@@ -73,6 +71,25 @@ Result<std::vector<Section>> sections(const Mesh& mesh) {
     }
   }
   return list;
+}
+
+std::vector<NamedSet> element_sets(const Mesh& mesh, const std::vector<Section>& sections) {
+  std::vector<NamedSet> sets;
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+    const Region& region = mesh.regions[i];
+    sets.push_back({set_name(mesh, i), std::vector<std::size_t>(region.last_element - region.first_element)});
+    std::iota(sets.back().members.begin(), sets.back().members.end(), region.first_element);
+  }
+  for (const Section& section : sections)
+    if (section.name != sets[section.region].name) sets.push_back({section.name, section.elements});
+  return sets;
+}
+
+std::vector<std::size_t> element_materials(const Mesh& mesh, const std::vector<Section>& sections) {
+  std::vector<std::size_t> materials(mesh.elements.size());
+  for (const Section& section : sections)
+    for (const std::size_t e : section.elements) materials[e] = section.material;
+  return materials;
 }
 
 Frames frames(const Mesh& mesh, const std::vector<Section>& sections) {

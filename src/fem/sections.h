@@ -12,15 +12,15 @@ namespace selvage::fem {
 // "Yarn0", "Yarn1", .. in the order of the yarns; "Matrix".
 std::string set_name(const Mesh& mesh, std::size_t region);
 
-struct NodeSet {
+struct NamedSet {
   std::string name;
-  std::vector<std::size_t> nodes;  // indices into Mesh::nodes
+  std::vector<std::size_t> members;  // nodes or elements
 };
 
 // Of a unit cell: FaceA .. FaceF (without edges), Edge1 .. Edge12 (without corners), Corner1 .. Corner8,
 // those that have nodes. Without a cell: the yarns' ends, Yarn0_Start, Yarn0_End, .. , of those that have
 // ends.
-std::vector<NodeSet> node_sets(const Mesh& mesh);
+std::vector<NamedSet> node_sets(const Mesh& mesh);
 
 // The elements of one region that have one material.
 struct Section {
@@ -32,6 +32,11 @@ struct Section {
 
 // Every element is in exactly one. Error (internal): a region without a material that has elastic constants.
 Result<std::vector<Section>> sections(const Mesh& mesh);
+
+// The sets of elements: of each region, then of the sections that are not a whole one.
+std::vector<NamedSet> element_sets(const Mesh& mesh, const std::vector<Section>& sections);
+// The material of each element.
+std::vector<std::size_t> element_materials(const Mesh& mesh, const std::vector<Section>& sections);
 
 // Orientations that are in use: of each section whose material is not isotropic, its elements' (along,
 // across) made a right-handed orthonormal frame; frames that are equal to the bit are one.

@@ -18,6 +18,7 @@
 #include "core/readable.h"
 #include "core/standard_output.h"
 #include "core/temporary.h"
+#include "core/words.h"
 #include "pipeline/edit.h"
 #include "pipeline/inputs.h"
 #include "pipeline/job.h"
@@ -298,7 +299,7 @@ void Batch::summarize() const {
   std::string text = fmt::format("selvage: {} of {} inputs done", counts_.done, counts_.inputs);
   if (counts_.skipped > 0) text += fmt::format(", {} were up to date", counts_.skipped);
   if (counts_.failed > 0) text += fmt::format(", {} failed", counts_.failed);
-  text += fmt::format("; {} file{} written", files_, files_ == 1 ? "" : "s");
+  text += fmt::format("; {} written", counted(files_, "file"));
   if (!options_.output.empty()) text += fmt::format(" to '{}'", readable(options_.output));
   text += '\n';
   std::fwrite(text.data(), 1, text.size(), stderr);

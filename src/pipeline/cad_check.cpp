@@ -1,6 +1,5 @@
 #include "pipeline/cad_check.h"
 
-#include "pipeline/scaling.h"
 #include "pipeline/table.h"
 
 namespace selvage::pipeline {
@@ -28,9 +27,9 @@ std::size_t CadCheck::defects() const {
   return static_cast<std::size_t>(structure_.defects()) + static_cast<std::size_t>(geometry_.defects());
 }
 
-std::string CadCheck::table(Unit file, Unit shown) const {
+std::string CadCheck::table(const Shown& shown) const {
   if (!measures_) return {};
-  const auto length = [&](double value) { return cell(converted(value, file, shown)); };
+  const auto length = [&](double value) { return cell(shown.length(value)); };
   Table table({"faces", "edges", "open edges", "poles", "largest gap", "tolerance", "shortest edge", "size"});
   table.add({std::to_string(measures_->faces), std::to_string(measures_->borders),
              std::to_string(measures_->open_borders), std::to_string(measures_->poles),

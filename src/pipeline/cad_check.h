@@ -24,8 +24,8 @@ class CadCheck {
   [[nodiscard]] std::string_view sound() const {
     return has_structure_ ? "the file keeps to its format, its surfaces are sound" : "its surfaces are sound";
   }
-  // A table of what was measured, lengths in `shown`; of `file` they are now.
-  [[nodiscard]] std::string table(Unit file, Unit shown) const;
+  // A table of what was measured.
+  [[nodiscard]] std::string table(const Shown& shown) const;
   [[nodiscard]] const std::optional<cad::Measures>& measures() const { return measures_; }
 
  private:

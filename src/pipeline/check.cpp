@@ -1,6 +1,7 @@
 // `selvage check`: is every yarn a closed, valid solid within its tolerance, and do no two share space? Is
 // the outline of every garment piece closed and simple, and its face valid?
 #include "solid/check.h"
+#include "core/words.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +12,6 @@
 #include "pipeline/facts.h"
 #include "pipeline/overlaps.h"
 #include "pipeline/pieces.h"
-#include "pipeline/scaling.h"
 #include "pipeline/table.h"
 #include "pipeline/writing.h"
 #include "solid/brep.h"
@@ -36,35 +36,28 @@ std::string_view yes_no(bool yes) {
   return yes ? "yes" : "no";
 }
 
-Message defect(const yarn::Body& body, std::string text) {
-  Message message = error(Kind::geometry, std::move(text));
-  message.yarn = body.name;
-  message.place = body.place;
-  return message;
-}
-
 // What is wrong with yarn i, beside overlaps; empty: nothing.
 std::vector<Message> defects_of(const Findings& found, std::size_t i, Unit units) {
   const yarn::Body& body = found.bodies[i];
   std::vector<Message> defects = found.solids.yarns[i].defects;
   const solid::BrepCheck& brep = found.breps[i];
+  const auto say = [&](std::string text, const std::optional<Vec3>& at = {}) {
+    defects.push_back(error(Kind::geometry, std::move(text), about(body, at)));
+  };
   defects.insert(defects.end(), brep.defects.begin(), brep.defects.end());
   if (defects.empty() && std::abs(brep.volume - body.volume) > volume_agreement * std::abs(body.volume))
-    defects.push_back(
-        defect(body, fmt::format("yarn '{}': the solid's volume is {:.6g}, the B-spline's {:.6g} {}^3",
-                                 body.name, brep.volume, body.volume, name_of(units))));
+    say(fmt::format("yarn '{}': the solid's volume is {:.6g}, the B-spline's {:.6g} {}^3", body.name,
+                    brep.volume, body.volume, name_of(units)));
   if (body.tube_error > found.tolerance)
-    defects.push_back(defect(
-        body, fmt::format("yarn '{}': the surface may be {:.3g} {} away from the exact tube, {:.3g} are "
-                          "allowed; raise the file's tolerance or use --tolerance",
-                          body.name, body.tube_error, name_of(units), found.tolerance)));
-  for (const yarn::TightBend& bend : body.tight_bends) {
-    defects.push_back(
-        defect(body, fmt::format("yarn '{}' bends with a radius of {:.4g} {} where its section needs {:.4g}: "
-                                 "its surface folds over itself",
-                                 body.name, bend.radius, name_of(units), bend.needed)));
-    defects.back().at = bend.at;
-  }
+    say(
+        fmt::format("yarn '{}': the surface may be {:.3g} {} away from the exact tube, {:.3g} are allowed; "
+                    "raise the file's tolerance or use --tolerance",
+                    body.name, body.tube_error, name_of(units), found.tolerance));
+  for (const yarn::TightBend& bend : body.tight_bends)
+    say(fmt::format("yarn '{}' bends with a radius of {:.4g} {} where its section needs {:.4g}: its surface "
+                    "folds over itself",
+                    body.name, bend.radius, name_of(units), bend.needed),
+        bend.at);
   return defects;
 }
 
@@ -73,29 +66,26 @@ std::string brep_word(const solid::BrepCheck& brep) {
   return brep.valid ? fmt::format("{} free edges", brep.free_edges) : "invalid";
 }
 
-std::string yarn_tables(const Findings& found, Unit file, Unit shown) {
-  const auto length = [&](double value) { return cell(converted(value, file, shown)); };
+std::string yarn_tables(const Findings& found, const Shown& shown) {
+  const auto length = [&](double value) { return cell(shown.length(value)); };
   Table yarns({"yarn", "points", "length", "volume", "least bend radius", "tube error", "closed",
                "crosses itself", "B-rep", "defects"});
   for (std::size_t i = 0; i < found.bodies.size(); ++i) {
     const yarn::Body& body = found.bodies[i];
     const solid::YarnCheck& solid = found.solids.yarns[i];
-    const double cubic = converted(converted(converted(body.volume, file, shown), file, shown), file, shown);
     yarns.add({body.name, fmt::format("{}x{}", body.surface.count_u, body.surface.count_v),
-               length(body.length), cell(cubic), length(body.min_bend_radius), length(body.tube_error),
-               std::string(yes_no(solid.is_shut())), std::string(yes_no(solid.self_intersecting)),
-               brep_word(found.breps[i]), std::to_string(defects_of(found, i, file).size())});
+               length(body.length), cell(shown.volume(body.volume)), length(body.min_bend_radius),
+               length(body.tube_error), std::string(yes_no(solid.is_shut())),
+               std::string(yes_no(solid.self_intersecting)), brep_word(found.breps[i]),
+               std::to_string(defects_of(found, i, shown.file).size())});
   }
   std::string text = yarns.text();
   if (!found.solids.overlaps.empty()) {
-    const auto square = [&](double value) {
-      return cell(converted(converted(value, file, shown), file, shown));
-    };
     Table overlaps({"overlap of", "and", "depth", "area", "x", "y", "z"});
     for (const contact::Contact& overlap : found.solids.overlaps)
       overlaps.add({found.bodies[overlap.a].name,
                     overlap.a == overlap.b ? "itself" : found.bodies[overlap.b].name, length(overlap.depth()),
-                    overlap.area > 0 ? square(overlap.area) : "-", length(overlap.at.x()),
+                    overlap.area > 0 ? cell(shown.area(overlap.area)) : "-", length(overlap.at.x()),
                     length(overlap.at.y()), length(overlap.at.z())});
     text += overlaps.text();
   }
@@ -113,22 +103,22 @@ std::string yarn_tables(const Findings& found, Unit file, Unit shown) {
 }
 
 void print_tables(const Job& job, const Findings& found, const CadCheck& cad, std::size_t defects) {
-  const Unit file = job.file_units(), shown = job.options.units.value_or(file);
-  std::string text = fmt::format("{}: lengths in {}\n", readable(job.input.path), name_of(shown)), sound;
+  const Shown shown = job.shown();
+  std::string text = fmt::format("{}: lengths in {}\n", readable(job.input.path), name_of(shown.unit)), sound;
   if (cad.has_model()) {
-    text += cad.table(file, shown);
+    text += cad.table(shown);
     sound = cad.sound();
   }
   if (!found.bodies.empty()) {
-    text += yarn_tables(found, file, shown);
+    text += yarn_tables(found, shown);
     sound += fmt::format("{}every yarn is a closed valid solid, no two overlap", sound.empty() ? "" : "; ");
   }
   if (!found.pieces.shapes.empty()) {
-    text += face_table(found.pieces, file, shown);
+    text += face_table(found.pieces, shown);
     sound += fmt::format("{}every piece is a valid face in a closed outline", sound.empty() ? "" : "; ");
   }
-  text += defects == 0 ? fmt::format("  sound: {}\n", sound)
-                       : fmt::format("  {} defect{}\n", defects, defects == 1 ? "" : "s");
+  text +=
+      defects == 0 ? fmt::format("  sound: {}\n", sound) : fmt::format("  {}\n", counted(defects, "defect"));
   job.print(text);
 }
 

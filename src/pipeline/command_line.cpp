@@ -8,7 +8,8 @@
 #include <deque>
 #include <limits>
 
-#include "formats/format.h"
+#include "core/words.h"
+#include "formats/registry.h"
 #include "pipeline/limits.h"
 #include "pipeline/outputs.h"
 #include "pipeline/roundtrip.h"

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/words.h"
+#include "formats/registry.h"
 #include "pipeline/cell_cad.h"
 #include "pipeline/facts.h"
 #include "pipeline/instances.h"
@@ -25,7 +27,7 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
   // A file that is read and written again stays the same to the byte, under whatever name.
   for (const std::string_view extension : output.format->extensions)
     if (fabric.file_name.ends_with(extension)) surface.file_name = fabric.file_name;
-  surface.units = job.options.units.value_or(fabric.units);
+  surface.units = job.shown().unit;
   surface.expected_bodies = count;
   surface.date = fabric.date;
   surface.tolerance =
@@ -56,12 +58,11 @@ std::string formats_with(bool formats::Descriptor::*what) {
   return alternatives(names);
 }
 
-bool add_to_all(Job& job, const yarn::Body& body, const std::optional<formats::Instance>& instance,
-                OpenOutputs& outputs) {
+// False: a writer failed, which was said.
+bool add_to_all(Job& job, OpenOutputs& outputs, const std::function<Status(formats::BodyWriter&)>& add) {
   for (OpenOutput& output : outputs) {
     if (!output.writer) continue;
-    const Status status = instance ? output.writer->add_instance(body, *instance) : output.writer->add(body);
-    if (!status.ok()) return job.fail(status.error());
+    if (Status status = add(*output.writer); !status) return job.fail(status.error());
   }
   return true;
 }
@@ -75,49 +76,35 @@ bool can_carry(Job& job, const fabric::Fabric& fabric, std::size_t yarns, const 
     if (yarns > 0 && !format.carries_surfaces)
       job.say(
           error(Kind::unsupported, fmt::format("{} holds garment pieces (`piece`) only, and this input has "
-                                               "{} yarn{}: write it as {}",
-                                               format.name, yarns, yarns == 1 ? "" : "s",
+                                               "{}: write it as {}",
+                                               format.name, counted(yarns, "yarn"),
                                                formats_with(&formats::Descriptor::carries_surfaces))));
-    if (!pieces.empty() && !format.carries_curves) {
-      Message message =
-          error(Kind::unsupported,
-                fmt::format("{} holds no garment pieces, such as '{}': write it as {}", format.name,
-                            pieces.front()->name, formats_with(&formats::Descriptor::carries_curves)));
-      message.place = pieces.front()->place;
-      job.say(std::move(message));
-    }
+    if (!pieces.empty() && !format.carries_curves)
+      job.say(error(Kind::unsupported,
+                    fmt::format("{} holds no garment pieces, such as '{}': write it as {}", format.name,
+                                pieces.front()->name, formats_with(&formats::Descriptor::carries_curves)),
+                    {.place = pieces.front()->place}));
   }
   return !job.has_failed();
 }
 
-void write_pieces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
-  const Unit units = job.options.units.value_or(fabric.units);
+void write_others(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
+  const Unit units = job.shown().unit;
   for (const fabric::Piece* piece : fabric::pieces_of(fabric)) {
     std::optional<fabric::PieceShape> shape = job.build_piece(fabric, *piece);
-    if (!shape) continue;  // the others are tried, so that every error is told
+    if (!shape || job.has_failed()) continue;  // the others are tried, so that every error is told
     convert_lengths(*shape, fabric.units, units);
-    for (OpenOutput& output : outputs) {
-      if (!output.writer || job.has_failed()) continue;
-      if (Status status = output.writer->add_piece(*shape); !status.ok()) job.say(status.error());
-    }
+    add_to_all(job, outputs, [&](formats::BodyWriter& writer) { return writer.add_piece(*shape); });
   }
-}
-
-void write_others(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
-  const Unit units = job.options.units.value_or(fabric.units);
-  const auto to_all = [&](const auto& add) {
-    for (OpenOutput& output : outputs) {
-      if (!output.writer || job.has_failed()) continue;
-      if (Status status = add(*output.writer); !status.ok()) job.say(status.error());
-    }
-  };
   for (cad::Part part : fabric.parts) {
+    if (job.has_failed()) return;
     convert_lengths(part, fabric.units, units);
-    to_all([&](formats::BodyWriter& writer) { return writer.add_part(part); });
+    add_to_all(job, outputs, [&](formats::BodyWriter& writer) { return writer.add_part(part); });
   }
   for (cad::NamedCurve curve : fabric.curves) {
+    if (job.has_failed()) return;
     convert_lengths(curve, fabric.units, units);
-    to_all([&](formats::BodyWriter& writer) { return writer.add_curve(curve); });
+    add_to_all(job, outputs, [&](formats::BodyWriter& writer) { return writer.add_curve(curve); });
   }
 }
 
@@ -127,13 +114,11 @@ void write_cell(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
   if (!builder) return;
   std::optional<std::vector<cad::Part>> parts = cell_solids(job, fabric, *builder);
   if (!parts || !open_writers(job, fabric, parts->size(), outputs)) return;
-  const Unit units = job.options.units.value_or(fabric.units);
   for (std::size_t i = 0; i < parts->size(); ++i) {
     cad::Part& part = (*parts)[i];
     job.progress("writing solid", i + 1, parts->size());
-    convert_lengths(part, fabric.units, units);
-    for (OpenOutput& output : outputs)
-      if (Status status = output.writer->add_part(part); !status.ok()) return job.say(status.error());
+    convert_lengths(part, fabric.units, job.shown().unit);
+    if (!add_to_all(job, outputs, [&](formats::BodyWriter& writer) { return writer.add_part(part); })) return;
   }
   for (OpenOutput& output : outputs)
     if (!take_facts(job, output, output.writer->finish())) return;
@@ -155,7 +140,7 @@ bool holds_solids(Job& job, const OpenOutputs& outputs) {
 std::optional<InstanceFinder> find_instances(Job& job, const fabric::Fabric& fabric,
                                              const fabric::YarnBuilder& builder) {
   if (!job.options.instances) return std::nullopt;
-  const Unit units = job.options.units.value_or(fabric.units);
+  const Unit units = job.shown().unit;
   InstanceFinder finder(converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, units));
   job.build_each(builder, "comparing yarn", [&](std::size_t /*index*/, Result<yarn::Body>&& body) {
     if (!body) return true;
@@ -181,7 +166,7 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
           builder->count() + fabric::pieces_of(fabric).size() + fabric.parts.size() + fabric.curves.size(),
           outputs))
     return;
-  const Unit units = job.options.units.value_or(fabric.units);
+  const Unit units = job.shown().unit;
   std::optional<InstanceFinder> finder = find_instances(job, fabric, *builder);
   std::optional<double> thinnest;
   bool is_written = true;
@@ -192,11 +177,12 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
     }
     convert_lengths(body, fabric.units, units);
     if (job.has_failed()) return true;
-    is_written = add_to_all(job, body, finder ? finder->place(body) : std::nullopt, outputs);
-    return is_written;
+    const std::optional<formats::Instance> instance = finder ? finder->place(body) : std::nullopt;
+    return is_written = add_to_all(job, outputs, [&](formats::BodyWriter& writer) {
+             return instance ? writer.add_instance(body, *instance) : writer.add(body);
+           });
   });
   if (!is_written) return;
-  write_pieces(job, fabric, outputs);
   write_others(job, fabric, outputs);
   if (job.has_failed()) return;
   for (OpenOutput& output : outputs)

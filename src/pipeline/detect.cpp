@@ -1,7 +1,9 @@
 #include "pipeline/detect.h"
 
 #include <fmt/format.h>
-#include <strings.h>
+
+#include "core/words.h"
+#include "formats/registry.h"
 
 namespace selvage::pipeline {
 
@@ -16,10 +18,6 @@ const Descriptor* sniff(std::string_view head) {
   for (const Descriptor* format : all_formats())
     if (format->sniff != nullptr && format->sniff(head)) return format;
   return nullptr;
-}
-
-bool same_word(std::string_view a, std::string_view b) {
-  return a.size() == b.size() && ::strncasecmp(a.data(), b.data(), a.size()) == 0;
 }
 
 }  // namespace
@@ -45,17 +43,15 @@ Result<const Descriptor*> detect_readable(const Source& source) {
   std::string readable;
   for (const Descriptor* other : all_formats())
     if (other->is_readable()) readable += fmt::format("{}{}", readable.empty() ? "" : ", ", other->name);
-  Message message =
+  return error(
+      Kind::unsupported,
       format != nullptr
-          ? error(Kind::unsupported,
-                  fmt::format("this is {} ({}), which this version cannot read; it reads: {}", format->name,
-                              format->title, readable))
-          : error(Kind::unsupported,
-                  fmt::format(
-                      "of no known format: neither its first bytes nor its extension tell; readable are: {}",
-                      readable));
-  message.file = source.name();
-  return message;
+          ? fmt::format("this is {} ({}), which this version cannot read; it reads: {}", format->name,
+                        format->title, readable)
+          : fmt::format(
+                "of no known format: neither its first bytes nor its extension tell; readable are: {}",
+                readable),
+      {.file = source.name()});
 }
 
 bool is_readable_format(const std::filesystem::path& path) {

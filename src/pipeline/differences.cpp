@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/text_report.h"
+#include "core/words.h"
 #include "pipeline/report.h"
 
 namespace selvage::pipeline {
@@ -20,10 +21,6 @@ std::string point_text(const Vec3& p) {
 
 std::string color_text(const yarn::Color& c) {
   return fmt::format("{},{},{}", c.red, c.green, c.blue);
-}
-
-std::string counted(std::size_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 // "yarn 'warp1'", or "part #120" where there is no name.
@@ -68,21 +65,27 @@ constexpr std::array<Difference::Kind, 6> all_kinds = {
     Difference::Kind::reshaped, Difference::Kind::renamed, Difference::Kind::recoloured};
 
 std::size_t count_of(const cad::Comparison& found, Difference::Kind kind) {
-  std::size_t count = 0;
-  for (const Difference& d : found.differences) count += d.kind == kind ? 1 : 0;
-  return count;
+  return static_cast<std::size_t>(std::ranges::count(found.differences, kind, &Difference::kind));
 }
 
-std::string counts_text(const cad::Comparison::Counts& counts) {
+using Counts = cad::Comparison::Counts;
+constexpr std::array<std::pair<std::string_view, std::size_t Counts::*>, 4> counted_things = {
+    {{"yarn", &Counts::yarns},
+     {"part", &Counts::parts},
+     {"surface", &Counts::surfaces},
+     {"curve", &Counts::curves}}};
+
+std::string counts_text(const Counts& counts) {
   std::string text;
-  const auto add = [&](std::size_t count, std::string_view noun) {
-    if (count > 0) text += fmt::format("{}{}", text.empty() ? "" : ", ", counted(count, noun));
-  };
-  add(counts.yarns, "yarn");
-  add(counts.parts, "part");
-  add(counts.surfaces, "surface");
-  add(counts.curves, "curve");
+  for (const auto& [noun, count] : counted_things)
+    if (counts.*count > 0) text += (text.empty() ? "" : ", ") + counted(counts.*count, noun);
   return text.empty() ? "nothing" : text;
+}
+
+Json counts_json(const Counts& counts) {
+  Json json;
+  for (const auto& [noun, count] : counted_things) json[std::string(noun) + "s"] = counts.*count;
+  return json;
 }
 
 Json difference_json(const Difference& d) {
@@ -113,13 +116,6 @@ Json difference_json(const Difference& d) {
           {"points", if_true(d.control_point.has_value(), c.points)},
           {"from", color(d.before)},
           {"to", color(d.after)}};
-}
-
-Json counts_json(const cad::Comparison::Counts& counts) {
-  return {{"yarns", counts.yarns},
-          {"parts", counts.parts},
-          {"surfaces", counts.surfaces},
-          {"curves", counts.curves}};
 }
 
 }  // namespace

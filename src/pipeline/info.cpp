@@ -8,12 +8,12 @@
 #include <map>
 
 #include "core/readable.h"
+#include "core/words.h"
 #include "nurbs/measure.h"
 #include "nurbs/patch.h"
 #include "pipeline/facts.h"
 #include "pipeline/job.h"
 #include "pipeline/pieces.h"
-#include "pipeline/scaling.h"
 #include "pipeline/table.h"
 
 namespace selvage::pipeline {
@@ -45,17 +45,14 @@ std::string heading(const Job& job, const fabric::Fabric& fabric) {
   std::map<std::string_view, std::size_t> kinds;
   for (const fabric::Item& item : fabric.items) ++kinds[kind_of(item)];
   text += "  holds     ";
-  for (const auto& [kind, count] : kinds) text += fmt::format(" {} {}{}", count, kind, count == 1 ? "" : "s");
-  const auto others = [&](std::size_t count, std::string_view what) {
-    if (count > 0) text += fmt::format(" {} {}{}", count, what, count == 1 ? "" : "s");
-  };
-  others(fabric.parts.size(), "other part");
-  others(fabric.curves.size(), "curve");
+  for (const auto& [kind, count] : kinds) text += " " + counted(count, kind);
+  if (!fabric.parts.empty()) text += " " + counted(fabric.parts.size(), "other part");
+  if (!fabric.curves.empty()) text += " " + counted(fabric.curves.size(), "curve");
   return text + "\n";
 }
 
 // What a CAD file says of itself: "4 x 128, 1 x 314".
-std::string counted(const std::map<std::string, std::uint64_t>& counts) {
+std::string numbers_of(const std::map<std::string, std::uint64_t>& counts) {
   std::string text;
   for (const auto& [name, count] : counts)
     text += fmt::format("{}{} x {}", text.empty() ? "" : ", ", count, name);
@@ -65,14 +62,14 @@ std::string counted(const std::map<std::string, std::uint64_t>& counts) {
 std::string file_facts(const cad::Model& model) {
   std::string text;
   if (model.resolution > 0) text += fmt::format("  resolution {:.6g}\n", model.resolution);
-  text += fmt::format("  entities   {}\n", counted(model.entities));
-  if (!model.unknown.empty()) text += fmt::format("  not understood  {}\n", counted(model.unknown));
+  text += fmt::format("  entities   {}\n", numbers_of(model.entities));
+  if (!model.unknown.empty()) text += fmt::format("  not understood  {}\n", numbers_of(model.unknown));
   return text;
 }
 
 // What is neither a yarn nor a garment piece.
 std::string other_tables(const Job& job, const fabric::Fabric& fabric) {
-  const Unit file = fabric.units, shown = job.options.units.value_or(file);
+  const Shown shown = job.shown();
   std::string text;
   if (!fabric.parts.empty()) {
     constexpr std::array<std::string_view, 3> kinds = {"surfaces", "shell", "solid"};
@@ -83,8 +80,7 @@ std::string other_tables(const Job& job, const fabric::Fabric& fabric) {
           std::ranges::count_if(part.faces, [](const cad::Face& face) { return !face.loops.empty(); });
       table.add({part.name.empty() ? "-" : part.name, std::string(kinds[static_cast<std::size_t>(part.kind)]),
                  std::to_string(part.faces.size()), std::to_string(trimmed),
-                 box.isEmpty() ? "-" : cell(converted(box.diagonal().norm(), file, shown)),
-                 part.origin.entity});
+                 box.isEmpty() ? "-" : cell(shown.length(box.diagonal().norm())), part.origin.entity});
     }
     text += table.text();
   }
@@ -93,7 +89,7 @@ std::string other_tables(const Job& job, const fabric::Fabric& fabric) {
     for (const cad::NamedCurve& curve : fabric.curves)
       table.add({curve.name.empty() ? "-" : curve.name, std::to_string(curve.curve.degree),
                  std::to_string(curve.curve.points.size()),
-                 cell(converted(nurbs::arc_length(curve.curve), file, shown)), curve.origin.entity});
+                 cell(shown.length(nurbs::arc_length(curve.curve))), curve.origin.entity});
     text += table.text();
   }
   return text;
@@ -109,15 +105,15 @@ void extend(Box3& box, const yarn::Body& body) {
       nurbs::extend(box, end->surface, tolerance);
 }
 
-std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) {
-  const Unit shown = job.options.units.value_or(file);
-  const auto length = [&](double value) { return converted(value, file, shown); };
+std::string yarn_table(Job& job, const fabric::YarnBuilder& builder) {
+  const Shown shown = job.shown();
+  const auto length = [&](double value) { return shown.length(value); };
   Table table({"yarn", "role", "points", "length", "volume", "least bend radius", "tube error", "ends"});
   double total_length = 0, total_volume = 0, largest_miss = 0;
   Box3 box;
   std::map<std::string, int> groups;  // yarns of plies or filaments
   job.for_each_yarn(builder, "building yarn", [&](yarn::Body&& body) {
-    const double volume = length(length(length(body.volume)));
+    const double volume = shown.volume(body.volume);
     table.add({body.name, std::string(yarn::name_of(body.role)),
                fmt::format("{}x{}", body.surface.count_u, body.surface.count_v), cell(length(body.length)),
                cell(volume), cell(length(body.min_bend_radius)), cell(length(body.tube_error)),
@@ -129,7 +125,7 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
     extend(box, body);
     return true;
   });
-  std::string text = fmt::format("  lengths in {}\n{}", name_of(shown), table.text());
+  std::string text = fmt::format("  lengths in {}\n{}", name_of(shown.unit), table.text());
   if (!groups.empty()) {
     NameList all;
     for (const auto& [yarn, parts] : groups)
@@ -148,15 +144,14 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder, Unit file) 
 }
 
 std::string piece_tables(Job& job, const fabric::Fabric& fabric) {
-  const Unit shown = job.options.units.value_or(fabric.units);
   std::vector<fabric::PieceShape> shapes;
   for (const fabric::Piece* piece : fabric::pieces_of(fabric))
     if (std::optional<fabric::PieceShape> shape = job.build_piece(fabric, *piece))
       shapes.push_back(std::move(*shape));
   if (shapes.empty()) return {};
-  std::string text = piece_table(shapes, fabric.units, shown);
+  std::string text = piece_table(shapes, job.shown());
   if (job.options.table)
-    for (const fabric::PieceShape& shape : shapes) text += curve_tables(shape, fabric.units, shown);
+    for (const fabric::PieceShape& shape : shapes) text += curve_tables(shape, job.shown());
   return text;
 }
 
@@ -175,7 +170,7 @@ void info(Job& job) {
   const std::string head = heading(job, *fabric) + of_file;
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
   std::string tables;
-  if (builder && builder->count() > 0) tables = yarn_table(job, *builder, fabric->units);
+  if (builder && builder->count() > 0) tables = yarn_table(job, *builder);
   if (builder) tables += piece_tables(job, *fabric) + other_tables(job, *fabric);
   if (!job.options.json) job.print(head + tables);
 }

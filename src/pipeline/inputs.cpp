@@ -10,6 +10,7 @@
 #include <unordered_set>
 
 #include "core/source.h"
+#include "core/words.h"
 #include "pipeline/detect.h"
 #include "pipeline/parts.h"
 
@@ -18,12 +19,6 @@ namespace selvage::pipeline {
 namespace fs = std::filesystem;
 
 namespace {
-
-Message about(const std::string& path, Kind kind, std::string text) {
-  Message message = error(kind, std::move(text));
-  message.file = path;
-  return message;
-}
 
 class Expansion {
  public:
@@ -73,7 +68,7 @@ class Expansion {
     for (const fs::path& file : files)
       list.inputs.push_back(input_at(file.string(), file.lexically_relative(folder)));
     if (files.empty() && list.missing.empty())
-      list.missing.push_back(about(folder.string(), Kind::io, "no readable file in this folder"));
+      list.missing.push_back(error(Kind::io, "no readable file in this folder", {.file = folder.string()}));
     return {};
   }
 
@@ -90,8 +85,8 @@ class Expansion {
         files.push_back(path);
     }
     if (failure)
-      list.missing.push_back(
-          about(folder.string(), Kind::io, fmt::format("cannot read the folder: {}", failure.message())));
+      list.missing.push_back(error(Kind::io, fmt::format("cannot read the folder: {}", failure.message()),
+                                   {.file = folder.string()}));
   }
 
   Status add_pattern(const std::string& pattern) {
@@ -102,12 +97,12 @@ class Expansion {
     if (outcome == 0) paths.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
     ::globfree(&found);
     if (outcome == GLOB_NOSPACE || (outcome == GLOB_ABORTED && reason != ENOENT))
-      list.missing.push_back(
-          about(pattern, Kind::io,
-                fmt::format("cannot search all folders of this pattern: {}",
-                            outcome == GLOB_NOSPACE ? "no memory" : std::strerror(reason))));
+      list.missing.push_back(error(Kind::io,
+                                   fmt::format("cannot search all folders of this pattern: {}",
+                                               outcome == GLOB_NOSPACE ? "no memory" : std::strerror(reason)),
+                                   {.file = pattern}));
     else if (paths.empty())
-      list.missing.push_back(about(pattern, Kind::io, "no file matches this pattern"));
+      list.missing.push_back(error(Kind::io, "no file matches this pattern", {.file = pattern}));
     for (const std::string& path : paths)
       if (Status status = add(path); !status.ok()) return status;
     return {};
@@ -120,15 +115,11 @@ class Expansion {
       return source.error();
     }
     from_folder_ = true;
-    std::string_view rest = source->bytes();
-    while (!rest.empty()) {
-      const std::size_t end = std::min(rest.find('\n'), rest.size());
-      std::string line(rest.substr(0, end));
-      rest.remove_prefix(std::min(end + 1, rest.size()));
-      if (line.ends_with('\r')) line.pop_back();
+    for (std::string_view line : split(source->bytes(), '\n')) {
+      if (line.ends_with('\r')) line.remove_suffix(1);
       if (line.empty()) continue;
-      if (line.front() == '@') return about(name, Kind::usage, "a list cannot name another list");
-      if (Status status = add(line); !status.ok()) return status;
+      if (line.front() == '@') return error(Kind::usage, "a list cannot name another list", {.file = name});
+      if (Status status = add(std::string(line)); !status.ok()) return status;
     }
     return {};
   }

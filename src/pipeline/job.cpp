@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/sha256.h"
 #include "core/source.h"
+#include "core/words.h"
 #include "fabric/from_cad.h"
 #include "pipeline/detect.h"
 #include "pipeline/drafts.h"
@@ -36,10 +37,6 @@ std::vector<std::filesystem::path> further_files(const std::string& path) {
   std::vector<std::filesystem::path> files = files_of(path);
   files.erase(files.begin());
   return files;
-}
-
-std::string plural(std::size_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -88,7 +85,7 @@ void Job::forward(const Diagnostics& diagnostics) {
   }
   if (diagnostics.error_count() > shown)
     say(error(Kind::malformed,
-              plural(static_cast<std::size_t>(diagnostics.error_count() - shown), "further error")));
+              counted(static_cast<std::size_t>(diagnostics.error_count() - shown), "further error")));
 }
 
 void Job::progress(std::string_view verb, std::size_t done, std::size_t total) {

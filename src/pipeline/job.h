@@ -23,6 +23,7 @@
 #include "pipeline/options.h"
 #include "pipeline/outputs.h"
 #include "pipeline/report.h"
+#include "pipeline/scaling.h"
 
 namespace selvage::pipeline {
 
@@ -128,6 +129,7 @@ class Job {
   [[nodiscard]] fabric::BuildOptions build_options() const;
   [[nodiscard]] const Channel& channel() const { return channel_; }
   [[nodiscard]] Unit file_units() const { return report.units.value_or(Unit::mm); }
+  [[nodiscard]] Shown shown() const { return {file_units(), options.units.value_or(file_units())}; }
 
  private:
   void show(Message message, double badness);
@@ -151,7 +153,6 @@ Verdict run_job(Job& job, const std::string& earlier, const Channel& channel);
 // Job::has_failed().
 void convert(Job& job);
 void mesh(Job& job);
-void mesh_cell(Job& job);  // of `mesh`, where the options ask for the unit cell
 void info(Job& job);
 void view(Job& job);
 // True when a defect was found.

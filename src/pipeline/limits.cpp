@@ -24,10 +24,6 @@ namespace {
 // Address space is what is limited, and libraries take some of it that is no memory.
 constexpr double least_share = 1024;  // MiB
 
-fs::path folder_of(const fs::path& path) {
-  return path.has_parent_path() ? path.parent_path() : fs::path(".");
-}
-
 // Where it is missing, with a name that lasts. What cannot be made is told when the output is.
 void make_folder(const fs::path& folder) {
   std::error_code failure;

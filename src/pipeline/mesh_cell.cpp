@@ -1,14 +1,9 @@
-// `selvage mesh` of the unit cell: its yarns, cut flush, and the matrix between them.
-#include <fmt/format.h>
+#include "pipeline/meshing.h"
 
 #include "fem/cell_mesher.h"
 #include "fem/fibre.h"
 #include "fem/voxel.h"
-#include "pipeline/mesh_facts.h"
-#include "pipeline/meshing.h"
-#include "pipeline/relaxing.h"
 #include "pipeline/unit_cell.h"
-#include "pipeline/writing.h"
 
 namespace selvage::pipeline {
 
@@ -88,32 +83,18 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
 
 }  // namespace
 
-void mesh_cell(Job& job) {
-  std::optional<fabric::Fabric> fabric = job.read();
-  if (!fabric || !has_only_yarns(job, *fabric) || !check_cell_text(job, *fabric, job.options.matrix)) return;
-  // Voxels need no gap: they take the cloth as it comes.
-  if (job.options.voxels == 0 || job.options.relaxing.gap) job.gap = cell_gap(job.options, *fabric);
-  fabric = relaxed(job, std::move(fabric));
-  if (!fabric) return;
-  std::optional<OpenOutputs> outputs = open_outputs(job);
-  if (!outputs) return;
-  const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
-  if (!builder) return;
-  if (job.options.periodic) snap_cell(job, *fabric, *builder);
-  const std::optional<ReadyCell> ready = prepare(job, *fabric, *builder);
-  if (!ready) return;
-  say_what_bending_costs(job, *fabric, *ready);
-
-  Diagnostics diagnostics;
-  Result<fem::Mesh> mesh = mesh_of(job, *fabric, *ready, diagnostics);
-  if (mesh && job.options.chamis)
-    if (Status derived = fem::derive_yarn_stiffness(*mesh, diagnostics); !derived) mesh = derived.error();
-  job.say_all(diagnostics.messages());
-  if (!mesh) return job.say(mesh.error());
-  job.report["mesh"] =
-      mesh_json(*mesh, job.options.voxels == 0 ? std::optional(ready->size.tetrahedra) : std::nullopt);
-  tell_volumes(job, *mesh);
-  write_mesh(job, *outputs, *mesh);
+std::optional<MadeMesh> mesh_of_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder,
+                                     Diagnostics& diagnostics) {
+  if (job.options.periodic) snap_cell(job, fabric, builder);
+  const std::optional<ReadyCell> ready = prepare(job, fabric, builder);
+  if (!ready) return std::nullopt;
+  say_what_bending_costs(job, fabric, *ready);
+  MadeMesh made{mesh_of(job, fabric, *ready, diagnostics)};
+  if (job.options.voxels == 0) made.estimate = ready->size.tetrahedra;
+  if (made.mesh && job.options.chamis)
+    if (Status derived = fem::derive_yarn_stiffness(*made.mesh, diagnostics); !derived)
+      made.mesh = derived.error();
+  return made;
 }
 
 }  // namespace selvage::pipeline

@@ -1,5 +1,7 @@
-// What the meshing of yarns and that of unit cells have in common.
+// What `mesh` asks for of yarns and of unit cells.
 #pragma once
+
+#include <optional>
 
 #include "fabric/model.h"
 #include "fem/block.h"
@@ -11,10 +13,15 @@ namespace selvage::pipeline {
 // yarn.
 fem::MeshOptions mesh_options(Job& job);
 
-// Tetrahedra fill yarns; a garment piece is flat. False: it was said which piece is there.
-bool has_only_yarns(Job& job, const fabric::Fabric& fabric);
+// A mesh and, of a unit cell in tetrahedra, how many of them were expected.
+struct MadeMesh {
+  Result<fem::Mesh> mesh;
+  std::optional<double> estimate{};
+};
 
-// On the console: the cell's fractions, the worst volume.
-void tell_volumes(Job& job, const fem::Mesh& mesh);
+// Of the unit cell: its yarns, cut flush, and the matrix between them. Nothing when something is wrong with
+// the yarns or the cell (it was said). The cell may be snapped to its yarns' repeats.
+std::optional<MadeMesh> mesh_of_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder,
+                                     Diagnostics& diagnostics);
 
 }  // namespace selvage::pipeline

@@ -6,6 +6,8 @@
 #include <unordered_map>
 
 #include "core/output.h"
+#include "core/words.h"
+#include "formats/registry.h"
 #include "pipeline/detect.h"
 #include "pipeline/parts.h"
 
@@ -18,16 +20,6 @@ using Formats = std::vector<const Descriptor*>;
 const Descriptor& picture_format() {
   static const Descriptor self = {.name = "png", .title = "PNG picture", .extensions = {".png"}};
   return self;
-}
-
-std::vector<std::string_view> listed(std::string_view names) {
-  std::vector<std::string_view> list;
-  while (!names.empty()) {
-    const std::size_t comma = std::min(names.find(','), names.size());
-    list.push_back(names.substr(0, comma));
-    names.remove_prefix(std::min(comma + 1, names.size()));
-  }
-  return list;
 }
 
 bool can_be_written(const Descriptor& format, Command command) {
@@ -119,7 +111,7 @@ Result<Formats> wanted_formats(const Options& options) {
   if (options.command == Command::view) return picture_formats(options);
   if (Status known = check_extension(options); !known) return known.error();
   Formats wanted;
-  for (const std::string_view name : listed(options.formats)) {
+  for (const std::string_view name : split(options.formats, ',')) {
     Result<const Descriptor*> format = named_format(name, options.command);
     if (!format) return format.error();
     if (std::find(wanted.begin(), wanted.end(), *format) == wanted.end()) wanted.push_back(*format);

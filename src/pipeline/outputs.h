@@ -24,8 +24,6 @@ struct PlannedOutput {
   bool is_companion = false;  // formats::Descriptor::companion of another one: of meshes with load cases only
 };
 
-// The names of a list with commas, as --to takes it.
-std::vector<std::string_view> listed(std::string_view names);
 // Can this subcommand write it?
 bool can_be_written(const formats::Descriptor& format, Command command);
 // Of the format that `check --gap-map` writes, for help.

@@ -13,13 +13,12 @@ namespace selvage::pipeline {
 Message overlap_message(const contact::Contact& overlap, std::span<const yarn::Body> bodies, Unit units) {
   const std::string depth = fmt::format("{:.4g} {}", overlap.depth(), name_of(units));
   const std::string a = in_quotes(bodies[overlap.a].name), b = in_quotes(bodies[overlap.b].name);
-  Message message =
-      error(Kind::geometry, overlap.a == overlap.b
-                                ? fmt::format("yarn {} meets itself and overlaps, {} deep", a, depth)
-                                : fmt::format("yarns {} and {} overlap, {} deep", a, b, depth));
   // Rounding is no coordinate: 1e-15 would read like a place.
-  message.at = overlap.at.unaryExpr([&](double x) { return std::abs(x) < 1e-6 * overlap.depth() ? 0.0 : x; });
-  return message;
+  const auto clean = [&](double x) { return std::abs(x) < 1e-6 * overlap.depth() ? 0.0 : x; };
+  return error(Kind::geometry,
+               overlap.a == overlap.b ? fmt::format("yarn {} meets itself and overlaps, {} deep", a, depth)
+                                      : fmt::format("yarns {} and {} overlap, {} deep", a, b, depth),
+               {.at = overlap.at.unaryExpr(clean)});
 }
 
 void report_check(Job& job, const solid::SolidCheck& check, std::span<const yarn::Body> bodies) {

@@ -46,11 +46,6 @@ void join(cad::Model& model, cad::Model further) {
   model.resolution = std::min(model.resolution, further.resolution);
 }
 
-Message about(const fs::path& file, Message message) {
-  message.file = file.string();
-  return message;
-}
-
 // File `number` of the set, or why it is not to be had.
 Result<cad::Model> read_part(const Descriptor& format, const fs::path& path, const PartMark& first,
                              int number, Diagnostics& diagnostics) {
@@ -62,20 +57,20 @@ Result<cad::Model> read_part(const Descriptor& format, const fs::path& path, con
   }
   const std::optional<PartMark> mark = mark_in(format, *source);
   if (!mark || *mark != PartMark{number, first.count, first.set})
-    return about(
-        path,
-        error(Kind::malformed,
-              mark ? fmt::format("this is file {} of {} of the set {}, where file {} of {} of "
-                                 "the set {} is needed: the files come from different runs",
-                                 mark->number, mark->count, mark->set, number, first.count, first.set)
-                   : fmt::format("this is not file {} of {} of the set {}", number, first.count, first.set)));
+    return error(Kind::malformed,
+                 mark
+                     ? fmt::format("this is file {} of {} of the set {}, where file {} of {} of "
+                                   "the set {} is needed: the files come from different runs",
+                                   mark->number, mark->count, mark->set, number, first.count, first.set)
+                     : fmt::format("this is not file {} of {} of the set {}", number, first.count, first.set),
+                 {.file = path.string()});
   const int errors = diagnostics.error_count();
   std::optional<cad::Model> model = format.read_model(*source, diagnostics);
   if (model) return std::move(*model);
   if (diagnostics.error_count() > errors)
-    return about(path, error(Kind::malformed, "this file of the fabric has errors"));
-  return about(path, error(Kind::internal,
-                           fmt::format("the reader of {} gave neither a model nor a reason", format.name)));
+    return error(Kind::malformed, "this file of the fabric has errors", {.file = path.string()});
+  return error(Kind::internal, fmt::format("the reader of {} gave neither a model nor a reason", format.name),
+               {.file = path.string()});
 }
 
 }  // namespace
@@ -150,17 +145,17 @@ std::optional<cad::Model> read_whole_model(const Descriptor& format, const Sourc
   if (mark->number > 1 || (!whole && mark->count > 1)) {
     const std::string where =
         whole ? fmt::format("; '{}' stands for all", part_path(*whole, 1).string()) : std::string();
-    diagnostics.add(
-        about(source.name(), warning(Kind::unsupported, fmt::format("this is file {} of {} of a fabric, read "
-                                                                    "by itself{}",
-                                                                    mark->number, mark->count, where))));
+    diagnostics.add(warning(
+        Kind::unsupported,
+        fmt::format("this is file {} of {} of a fabric, read by itself{}", mark->number, mark->count, where),
+        {.file = source.name()}));
     return model;
   }
   for (int number = 2; number <= mark->count; ++number) {
     Result<cad::Model> further = read_part(format, part_path(*whole, number), *mark, number, diagnostics);
     if (further && further->units != model->units)
-      further = about(part_path(*whole, number),
-                      error(Kind::malformed, "its unit is not that of the first file of the fabric"));
+      further = error(Kind::malformed, "its unit is not that of the first file of the fabric",
+                      {.file = part_path(*whole, number).string()});
     if (!further) {
       diagnostics.add(further.error());
       return std::nullopt;
@@ -175,8 +170,8 @@ Status remove_stale_parts(const fs::path& whole, int from, const std::vector<fs:
     std::error_code failure;
     fs::remove(path, failure);
     if (!failure) return {};
-    return about(path, error(Kind::io, fmt::format("cannot remove this file of an earlier run: {}",
-                                                   failure.message())));
+    return error(Kind::io, fmt::format("cannot remove this file of an earlier run: {}", failure.message()),
+                 {.file = path.string()});
   };
   std::error_code failure;
   if (from > 1 && fs::is_regular_file(whole, failure))

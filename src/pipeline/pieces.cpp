@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/text_report.h"
-#include "pipeline/scaling.h"
 #include "pipeline/table.h"
 
 namespace selvage::pipeline {
@@ -46,8 +45,7 @@ std::string control_table(const nurbs::BezierFit& fit) {
 
 }  // namespace
 
-std::string piece_table(const std::vector<PieceShape>& pieces, Unit file, Unit shown) {
-  const auto length = [&](double value) { return converted(value, file, shown); };
+std::string piece_table(const std::vector<PieceShape>& pieces, const Shown& shown) {
   Table table({"piece", "lines", "curves", "perimeter", "area", "width", "height", "largest error"});
   for (const PieceShape& piece : pieces) {
     const auto lines = std::count_if(piece.edges.begin(), piece.edges.end(),
@@ -58,15 +56,15 @@ std::string piece_table(const std::vector<PieceShape>& pieces, Unit file, Unit s
     const Vec2 size = piece.box.sizes();
     table.add({piece.name, std::to_string(lines),
                std::to_string(static_cast<std::ptrdiff_t>(piece.edges.size()) - lines),
-               cell(length(piece.perimeter)), cell(length(length(piece.area))), cell(length(size.x())),
-               cell(length(size.y())), small(length(largest))});
+               cell(shown.length(piece.perimeter)), cell(shown.area(piece.area)),
+               cell(shown.length(size.x())), cell(shown.length(size.y())), small(shown.length(largest))});
   }
-  return fmt::format("  lengths in {}\n{}", name_of(shown), table.text());
+  return fmt::format("  lengths in {}\n{}", name_of(shown.unit), table.text());
 }
 
-std::string curve_tables(const PieceShape& piece, Unit file, Unit shown) {
+std::string curve_tables(const PieceShape& piece, const Shown& shown) {
   PieceShape converted_piece = piece;
-  convert_lengths(converted_piece, file, shown);
+  convert_lengths(converted_piece, shown.file, shown.unit);
   std::string text;
   for (const PieceEdge& edge : converted_piece.edges) {
     if (!edge.fit) continue;
@@ -93,13 +91,12 @@ std::optional<PieceFindings> examine_pieces(Job& job, const fabric::Fabric& fabr
   for (std::size_t i = 0; i < found.shapes.size(); ++i) {
     const PieceShape& shape = found.shapes[i];
     solid::FaceCheck& face = found.faces[i];
-    if (face.defects.empty() && std::abs(face.area - shape.area) > area_agreement * shape.area) {
+    if (face.defects.empty() && std::abs(face.area - shape.area) > area_agreement * shape.area)
       face.defects.push_back(
           error(Kind::geometry,
                 fmt::format("piece '{}': the face's area is {:.9g}, that of the outline {:.9g} {}^2",
-                            shape.name, face.area, shape.area, name_of(fabric.units))));
-      face.defects.back().place = shape.place;
-    }
+                            shape.name, face.area, shape.area, name_of(fabric.units)),
+                {.place = shape.place}));
     found.defects += face.defects.size();
     for (const Message& defect : face.defects) job.say_defect(defect);
     if (job.wants_report()) job.report["pieces"][i]["valid"] = face.defects.empty();
@@ -107,13 +104,12 @@ std::optional<PieceFindings> examine_pieces(Job& job, const fabric::Fabric& fabr
   return found;
 }
 
-std::string face_table(const PieceFindings& found, Unit file, Unit shown) {
-  const auto length = [&](double value) { return converted(value, file, shown); };
+std::string face_table(const PieceFindings& found, const Shown& shown) {
   Table table({"piece", "edges", "perimeter", "area", "closed", "crosses itself", "B-rep", "defects"});
   for (std::size_t i = 0; i < found.shapes.size(); ++i) {
     const PieceShape& shape = found.shapes[i];
-    table.add({shape.name, std::to_string(shape.edges.size()), cell(length(shape.perimeter)),
-               cell(length(length(shape.area))), "yes", "no", found.faces[i].valid ? "valid" : "invalid",
+    table.add({shape.name, std::to_string(shape.edges.size()), cell(shown.length(shape.perimeter)),
+               cell(shown.area(shape.area)), "yes", "no", found.faces[i].valid ? "valid" : "invalid",
                std::to_string(found.faces[i].defects.size())});
   }
   return found.shapes.empty() ? std::string() : table.text();

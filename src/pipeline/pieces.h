@@ -12,11 +12,11 @@
 namespace selvage::pipeline {
 
 // One line a piece: outline, perimeter, area, and how far its curves pass from their fixed points.
-std::string piece_table(const std::vector<fabric::PieceShape>& pieces, Unit file, Unit shown);
+std::string piece_table(const std::vector<fabric::PieceShape>& pieces, const Shown& shown);
 
 // For each curve of the piece: its shape, the error at each fixed point, and the control points by both
 // methods.
-std::string curve_tables(const fabric::PieceShape& piece, Unit file, Unit shown);
+std::string curve_tables(const fabric::PieceShape& piece, const Shown& shown);
 
 // What `check` found: every piece whose outline is closed and does not cross itself, with OpenCASCADE's
 // verdict on its face.
@@ -27,6 +27,6 @@ struct PieceFindings {
 };
 // Nothing when OpenCASCADE could not be asked (it was said why).
 std::optional<PieceFindings> examine_pieces(Job& job, const fabric::Fabric& fabric);
-std::string face_table(const PieceFindings& found, Unit file, Unit shown);
+std::string face_table(const PieceFindings& found, const Shown& shown);
 
 }  // namespace selvage::pipeline

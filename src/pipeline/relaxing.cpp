@@ -9,8 +9,8 @@
 #include "contact/interlacing.h"
 #include "contact/relax.h"
 #include "core/readable.h"
+#include "core/words.h"
 #include "fabric/as_grid.h"
-#include "pipeline/scaling.h"
 #include "pipeline/table.h"
 #include "pipeline/unit_cell.h"
 #include "pipeline/writing.h"
@@ -116,11 +116,9 @@ std::vector<contact::FixedPoint> fixed_points(const Job& job, const fabric::Fabr
 
 std::vector<Vec3> periods_of(const fabric::Fabric& fabric) {
   std::vector<Vec3> periods;
-  if (!fabric.cell) return periods;
-  const Vec3 size = (fabric.cell->high - fabric.cell->low).cwiseAbs();
-  if (fabric.cell->periodic_x) periods.emplace_back(size.x(), 0, 0);
-  if (fabric.cell->periodic_y) periods.emplace_back(0, size.y(), 0);
-  if (fabric.cell->periodic_z) periods.emplace_back(0, 0, size.z());
+  for (int axis = 0; fabric.cell && axis < 3; ++axis)
+    if (fabric.cell->periodic[static_cast<std::size_t>(axis)])
+      periods.push_back(std::abs(fabric.cell->high[axis] - fabric.cell->low[axis]) * Vec3::Unit(axis));
   return periods;
 }
 
@@ -202,9 +200,9 @@ std::string percent(double share) {
 }
 
 // Before and after, as a table for people.
-std::string table_of(const Job& job, const Relaxation& relaxation, const Paid& paid, Unit file) {
-  const Unit shown = job.options.units.value_or(file);
-  const auto length = [&](double value) { return cell(converted(value, file, shown)); };
+std::string table_of(const Job& job, const Relaxation& relaxation, const Paid& paid) {
+  const Shown shown = job.shown();
+  const auto length = [&](double value) { return cell(shown.length(value)); };
   Table table({"", "overlaps", "deepest", "least gap"});
   const auto add = [&](const char* when, const contact::RelaxState& state) {
     table.add({when, std::to_string(state.overlaps), state.overlaps > 0 ? length(state.depth) : "-",
@@ -213,27 +211,25 @@ std::string table_of(const Job& job, const Relaxation& relaxation, const Paid& p
   add("before", relaxation.before);
   add(relaxation.solved ? "after" : "as far as it went", relaxation.after);
   std::string text =
-      fmt::format("{}: lengths in {}\n{}", readable(job.input.path), name_of(shown), table.text());
+      fmt::format("{}: lengths in {}\n{}", readable(job.input.path), name_of(shown.unit), table.text());
   if (relaxation.solved && !is_moved(relaxation)) return text + "  nothing had to move\n";
   text += fmt::format("  largest move {}{}\n", length(paid.move),
                       paid.moved_most.empty() ? "" : fmt::format(", of '{}'", shortened(paid.moved_most)));
   text += fmt::format("  largest changes: of a section's area {}, of a yarn's length {}, of its volume {}\n",
                       percent(paid.area), percent(paid.length), percent(paid.volume));
-  return text + fmt::format("  {} after {} step{}\n", relaxation.solved ? "solved" : "not solved",
-                            relaxation.iterations, relaxation.iterations == 1 ? "" : "s");
+  return text + fmt::format("  {} after {}\n", relaxation.solved ? "solved" : "not solved",
+                            counted(static_cast<std::size_t>(relaxation.iterations), "step"));
 }
 
 Message jam_message(const contact::Jam& jam, const std::vector<yarn::Body>& bodies, Unit units) {
   const std::string &a = bodies[jam.a].name, &b = bodies[jam.b].name;
   const std::string who = jam.a == jam.b ? fmt::format("yarn '{}' jams with itself", a)
                                          : fmt::format("yarns '{}' and '{}' jam", a, b);
-  Message message = error(
-      Kind::geometry, jam.gap < 0 ? fmt::format("{}: the smallest overlap that was reached is {:.4g} {}", who,
-                                                -jam.gap, name_of(units))
-                                  : fmt::format("{}: the largest gap that was reached is {:.4g} {}", who,
-                                                jam.gap, name_of(units)));
-  message.at = jam.at;
-  return message;
+  return error(
+      Kind::geometry,
+      fmt::format("{}: the {} that was reached is {:.4g} {}", who,
+                  jam.gap < 0 ? "smallest overlap" : "largest gap", std::abs(jam.gap), name_of(units)),
+      {.at = jam.at});
 }
 
 void tell_jams(Job& job, const Relaxation& relaxation, const std::vector<yarn::Body>& bodies, Unit units) {
@@ -262,9 +258,7 @@ bool have_sides(Job& job, const std::vector<yarn::Body>& bodies) {
     else
       text += a.axis.points == b.axis.points ? "they have the same centre line"
                                              : "they run through each other's middle";
-    Message message = error(Kind::geometry, text);
-    message.at = meeting.at;
-    job.say_defect(std::move(message));
+    job.say_defect(error(Kind::geometry, text, {.at = meeting.at}));
     ++told;
   }
   return meetings->empty();
@@ -277,13 +271,12 @@ bool keeps_interlacing(Job& job, const std::vector<yarn::Body>& before,
   if (!passages) return job.fail(passages.error());
   for (std::size_t k = 0; k < std::min(passages->size(), most_told); ++k) {
     const contact::Passage& passage = (*passages)[k];
-    Message message = error(
-        Kind::geometry, passage.a == passage.b
-                            ? fmt::format("yarn '{}' would have to go through itself", before[passage.a].name)
-                            : fmt::format("yarns '{}' and '{}' would have to go through each other",
-                                          before[passage.a].name, before[passage.b].name));
-    message.at = passage.at;
-    job.say_defect(std::move(message));
+    const std::string &a = before[passage.a].name, &b = before[passage.b].name;
+    job.say_defect(error(Kind::geometry,
+                         passage.a == passage.b
+                             ? fmt::format("yarn '{}' would have to go through itself", a)
+                             : fmt::format("yarns '{}' and '{}' would have to go through each other", a, b),
+                         {.at = passage.at}));
   }
   if (!passages->empty())
     job.say_defect(error(Kind::geometry,
@@ -320,14 +313,11 @@ std::optional<fabric::Fabric> moved_apart(Job& job, fabric::Fabric fabric) {
   const std::optional<fabric::YarnBuilder> builder = job.builder(fabric);
   if (!builder) return std::nullopt;
   if (builder->count() == 0) return fabric;
-  if (fabric.cell && (fabric.cell->periodic_x || fabric.cell->periodic_y || fabric.cell->periodic_z))
-    snap_cell(job, fabric, *builder);
+  if (fabric.cell && fabric.cell->names_axes()) snap_cell(job, fabric, *builder);
   std::optional<Built> built = build(job, fabric, *builder);
   if (!built || job.has_failed()) return std::nullopt;
-  if (!have_sides(job, built->bodies)) {
-    job.unsolved = true;
-    return std::nullopt;
-  }
+  job.unsolved = !have_sides(job, built->bodies);
+  if (job.unsolved) return std::nullopt;
   const contact::RelaxOptions options = relax_options(job, fabric, *builder);
   Result<Relaxation> relaxation = contact::relax(built->bodies, options);
   if (!relaxation) {
@@ -341,13 +331,10 @@ std::optional<fabric::Fabric> moved_apart(Job& job, fabric::Fabric fabric) {
   relaxation->solved = has_room && keeps_interlacing(job, built->bodies, relaxation->bodies);
   const Paid paid = paid_for(*relaxation, built->bodies);
   job.report["relax"] = relax_json(*relaxation, paid, built->bodies, millimetres_per(fabric.units));
-  tell(job, table_of(job, *relaxation, paid, fabric.units));
+  tell(job, table_of(job, *relaxation, paid));
   if (!has_room) tell_jams(job, *relaxation, built->bodies, fabric.units);
-  if (job.has_failed()) return std::nullopt;
-  if (!relaxation->solved) {
-    job.unsolved = true;
-    return std::nullopt;
-  }
+  job.unsolved = !job.has_failed() && !relaxation->solved;
+  if (job.has_failed() || job.unsolved) return std::nullopt;
   const bool moved = is_moved(*relaxation);
   const double tolerance = fabric::tolerance_of(fabric, job.build_options());
   if (moved) {  // a CAD file's own; it is another one now

@@ -90,12 +90,9 @@ Result<std::map<std::string, std::string>> read_entries(const std::string& repor
   if (!source) return source.error();
   const Json report = Json::parse(source->bytes(), nullptr, false);
   const auto inputs = report.is_object() ? report.find("inputs") : report.end();
-  if (!report.is_object() || inputs == report.end() || !inputs->is_array()) {
-    Message message =
-        error(Kind::malformed, "this is not a report of selvage, so nothing can be resumed from it");
-    message.file = report_path;
-    return message;
-  }
+  if (!report.is_object() || inputs == report.end() || !inputs->is_array())
+    return error(Kind::malformed, "this is not a report of selvage, so nothing can be resumed from it",
+                 {.file = report_path});
   std::map<std::string, std::string> entries;
   for (const Json& entry : *inputs)
     if (const std::string path = text_at(entry, "path"); !path.empty()) entries[path] = text_of(entry);

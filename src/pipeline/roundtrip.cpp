@@ -7,9 +7,12 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 #include "cad/compare.h"
 #include "core/readable.h"
+#include "core/words.h"
+#include "formats/registry.h"
 #include "pipeline/detect.h"
 #include "pipeline/differences.h"
 #include "pipeline/facts.h"
@@ -275,9 +278,7 @@ std::vector<Trip> all_trips() {
 }
 
 std::string names_of(const std::vector<Trip>& trips) {
-  std::string names;
-  for (const Trip& trip : trips) names += fmt::format("{}{}", names.empty() ? "" : ", ", trip.name);
-  return names;
+  return fmt::format("{}", fmt::join(trips | std::views::transform(&Trip::name), ", "));
 }
 
 }  // namespace
@@ -290,7 +291,7 @@ Result<std::vector<Trip>> wanted_trips(const Options& options) {
   std::vector<Trip> all = all_trips();
   if (options.formats.empty()) return all;
   std::vector<Trip> wanted;
-  for (const std::string_view name : listed(options.formats)) {
+  for (const std::string_view name : split(options.formats, ',')) {
     const auto found =
         std::find_if(all.begin(), all.end(), [&](const Trip& trip) { return trip.name == name; });
     if (found == all.end())

@@ -12,6 +12,14 @@ namespace selvage::pipeline {
 // of them is a decimal multiple of the other).
 double converted(double value, Unit from, Unit to);
 
+// Lengths of a file as they are shown, or written, in another unit.
+struct Shown {
+  Unit file = Unit::mm, unit = Unit::mm;
+  [[nodiscard]] double length(double value) const { return converted(value, file, unit); }
+  [[nodiscard]] double area(double value) const { return length(length(value)); }
+  [[nodiscard]] double volume(double value) const { return length(area(value)); }
+};
+
 // The same yarn or piece in another unit: every length, area and volume of it, messages excepted. Equal
 // numbers stay equal, so that seams and joints stay closed.
 void convert_lengths(yarn::Body& body, Unit from, Unit to);

@@ -45,8 +45,9 @@ std::string_view name_of_axis(int axis) {
   return names[static_cast<std::size_t>(axis)];
 }
 
-Message cell_error(const fabric::Fabric& fabric, std::string text) {
-  return at_cell(fabric, error(Kind::geometry, std::move(text)));
+Message cell_error(const fabric::Fabric& fabric, std::string text, const std::optional<Vec3>& at = {},
+                   const std::string& yarn = {}) {
+  return at_cell(fabric, error(Kind::geometry, std::move(text), {.yarn = yarn, .at = at}));
 }
 
 // Of a surface, dense enough to see where it reaches to within a thousandth of its thickness.
@@ -137,12 +138,10 @@ void snap_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& buil
   const std::optional<fabric::Repeat> repeat = builder.repeat();
   if (!fabric.cell || !repeat) return;
   fabric::Cell& cell = *fabric.cell;
-  const std::array<bool, 3> named = {cell.periodic_x, cell.periodic_y, cell.periodic_z};
-  const bool names_any = named[0] || named[1] || named[2];
   for (int axis = 0; axis < 3; ++axis) {
     const auto k = static_cast<std::size_t>(axis);
     const double own = (*repeat)[k].value_or(0.0), length = cell.high[axis] - cell.low[axis];
-    if (own == 0.0 || (names_any && !named[k]) || is_whole(length, own)) continue;
+    if (own == 0.0 || (cell.names_axes() && !cell.periodic[k]) || is_whole(length, own)) continue;
     const double whole = std::round(length / own) * own;
     if (whole == 0.0 || std::abs(length - whole) > most * own) continue;
     cell.high[axis] = cell.low[axis] + whole;
@@ -166,7 +165,7 @@ bool is_within_cloth(Job& job, const fabric::Fabric& fabric, std::span<const yar
   const double tolerance = tolerance_share * thinnest;
   for (const fabric::Item& item : fabric.items) {
     std::string counted;
-    const bool goes_on = axis == 0 ? fabric.cell->periodic_x : fabric.cell->periodic_y;  // weaves, beyond
+    const bool goes_on = fabric.cell->periodic[static_cast<std::size_t>(axis)];  // weaves, beyond
     if (const auto* weave = std::get_if<fabric::Weave>(&item); weave != nullptr && axis < 2 && !goes_on) {
       const fabric::WeaveSystem& across = axis == 0 ? weave->weft : weave->warp;
       const double end = across.count * across.pitch, slack = 1e-9 * end;
@@ -188,13 +187,12 @@ bool is_within_cloth(Job& job, const fabric::Fabric& fabric, std::span<const yar
       repeat > 0.0 ? fabric::find_missing_in_faces(bodies, box, axis, length, 0.25 * thinnest, tolerance)
                    : std::nullopt;
   if (!missing) return true;
-  Message message = cell_error(
+  return job.fail(cell_error(
       fabric,
       fmt::format("this cell is not periodic along {}: yarn '{}' lies in one of its faces, and none in the "
                   "other: the fabric ends there; more of it, or a cell inside, make it periodic",
-                  name_of_axis(axis), bodies[missing->body].name));
-  message.at = missing->at;
-  return job.fail(std::move(message));
+                  name_of_axis(axis), bodies[missing->body].name),
+      missing->at));
 }
 
 Message loose_end_message(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
@@ -208,9 +206,7 @@ Message loose_end_message(const fabric::Fabric& fabric, std::span<const yarn::Bo
     text += fmt::format("; its yarns repeat after {}", length_text(*repeat, *repeat, fabric.units));
   else
     text += fmt::format("; no repeat was found along {}: the fabric ends there", name_of_axis(axis));
-  Message message = cell_error(fabric, std::move(text));
-  message.at = loose.at;
-  return message;
+  return cell_error(fabric, std::move(text), loose.at);
 }
 
 }  // namespace
@@ -219,8 +215,7 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
                                                  const fabric::YarnBuilder& builder,
                                                  std::span<const yarn::Body> bodies) {
   const fabric::Cell& cell = *fabric.cell;
-  const std::array<bool, 3> named = {cell.periodic_x, cell.periodic_y, cell.periodic_z};
-  const bool names_any = named[0] || named[1] || named[2];
+  const bool names_any = cell.names_axes();
   const std::optional<fabric::Repeat> repeat = builder.repeat();
   const Box3 box = box_of(fabric);
   double thinnest = infinity;
@@ -229,7 +224,7 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
   std::array<bool, 3> periodic{};
   for (int axis = 0; axis < 3; ++axis) {
     const auto k = static_cast<std::size_t>(axis);
-    if (names_any && !named[k]) continue;
+    if (cell.names_axes() && !cell.periodic[k]) continue;
     const std::optional<double> own = repeat ? (*repeat)[k] : std::nullopt;
     if (!names_any && repeat && !own) continue;  // a cloth has no repeat through its thickness
     if (own && !is_whole(box.sizes()[axis], *own))
@@ -275,7 +270,7 @@ bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<cons
       // A plate has free faces; without periodic sides the cell is a piece that was cut out.
       const bool runs_through = fabric::runs_through(alone, box, 2, top);
       if (runs_through && !periodic[0] && !periodic[1]) continue;
-      Message message = cell_error(
+      job.say(cell_error(
           fabric,
           fmt::format("yarn '{}' {} the {} of this cell, z = {:.6g}: it reaches to z = {:.6g}; a cell "
                       "that holds it, with a tenth of its thickness beyond, ends at z = {:.4g}",
@@ -284,9 +279,8 @@ bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<cons
                       : std::abs(reach - face) <= room ? "touches"
                                                        : "goes beyond",
                       top ? "top" : "bottom", face, reach,
-                      reach + (top ? 0.1 : -0.1) * yarn::narrowest_section(body)));
-      message.yarn = body.name;
-      job.say(std::move(message));
+                      reach + (top ? 0.1 : -0.1) * yarn::narrowest_section(body)),
+          {}, body.name));
       fits = false;
     }
   }
@@ -333,16 +327,14 @@ bool check_grazed_faces(Job& job, const fabric::Fabric& fabric, std::span<const 
       const double plane = cell::plane_of(box, face);
       const std::optional<Vec3> at = grazed_at(grid, box, axis, plane, room);
       if (!at) continue;
-      Message message = cell_error(
+      return job.fail(cell_error(
           fabric,
           fmt::format("yarn '{}' grazes the {} face of this cell, {} = {:.6g}: its surface runs along it, "
                       "{:.2g} {} away, and what lies between would be meshed as flat as that; move the "
                       "cell, or --force meshes it as it is",
                       body.name, cell::name_of_face(face), name_of_axis(axis), plane,
-                      std::abs((*at)[axis] - plane), name_of(fabric.units)));
-      message.yarn = body.name;
-      message.at = at;
-      return job.fail(std::move(message));
+                      std::abs((*at)[axis] - plane), name_of(fabric.units)),
+          at, body.name));
     }
   }
   return true;
@@ -387,32 +379,26 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
   if (job.has_failed() || nearest == nullptr) return !job.has_failed();
   job.report["min_gap"] = nearest->gap * millimetres_per(fabric.units);
   const std::string &a = bodies[nearest->a].name, &b = bodies[nearest->b].name;
-  const std::string who = nearest->a == nearest->b ? fmt::format(
-                                                         "yarn '{}' comes as near as {:.3g} {} to "
-                                                         "itself",
-                                                         a, nearest->gap, name_of(fabric.units))
-                                                   : fmt::format("yarns '{}' and '{}' are {:.3g} {} apart", a,
-                                                                 b, nearest->gap, name_of(fabric.units));
+  const std::string gap = fmt::format("{:.3g} {}", nearest->gap, name_of(fabric.units));
+  const std::string who = nearest->a == nearest->b
+                              ? fmt::format("yarn '{}' comes as near as {} to itself", a, gap)
+                              : fmt::format("yarns '{}' and '{}' are {} apart", a, b, gap);
   const double thin =
       std::min(yarn::narrowest_section(bodies[nearest->a]), yarn::narrowest_section(bodies[nearest->b]));
-  if (nearest->gap < least_gap_share * thin && !job.options.force) {
-    Message message = error(
+  if (nearest->gap < least_gap_share * thin && !job.options.force)
+    return job.fail(error(
         Kind::geometry,
         fmt::format(
             "{}, less than 1 % of their thickness: what lies between would be meshed as flat as that; "
             "--relax --gap {:.2g} moves them apart where they have room, --force meshes them as they are",
-            who, default_gap_share * thin));
-    message.at = nearest->at;
-    return job.fail(std::move(message));
-  }
+            who, default_gap_share * thin),
+        {.at = nearest->at}));
   constexpr double rounding = 1e-3;
-  if (nearest->gap < (1.0 - rounding) * wanted) {
-    Message message =
-        warning(Kind::geometry, fmt::format("{}, nearer than the gap of {:.3g} {} that is wanted", who,
-                                            wanted, name_of(fabric.units)));
-    message.at = nearest->at;
-    job.say(std::move(message));
-  }
+  if (nearest->gap < (1.0 - rounding) * wanted)
+    job.say(warning(Kind::geometry,
+                    fmt::format("{}, nearer than the gap of {:.3g} {} that is wanted", who, wanted,
+                                name_of(fabric.units)),
+                    {.at = nearest->at}));
   return !job.has_failed();
 }
 

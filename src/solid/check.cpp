@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "core/module.h"
+
 namespace selvage::solid {
 
 Result<SolidCheck> check_solids(std::span<const yarn::Body> bodies, const CheckOptions& options) {
-  Result<const CgalModule*> module = cgal_module();
-  if (!module) return module.error();
-  if (!options.overlaps) return (*module)->check(bodies, options);
+  if (!options.overlaps) return call(cgal_module(), &CgalModule::check, bodies, options);
   // One step a yarn for its own check, and one for its share of the contacts.
   const std::size_t count = bodies.size();
   std::size_t done = 0;
@@ -19,7 +19,7 @@ Result<SolidCheck> check_solids(std::span<const yarn::Body> bodies, const CheckO
   };
   CheckOptions each = options;
   each.progress = [&](std::size_t step, std::size_t /*total*/) { step_to(step); };
-  Result<SolidCheck> result = (*module)->check(bodies, each);
+  Result<SolidCheck> result = call(cgal_module(), &CgalModule::check, bodies, each);
   if (!result) return result;
   contact::ContactOptions contact_options;
   contact_options.threads = options.threads;

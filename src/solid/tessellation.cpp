@@ -18,13 +18,6 @@ namespace {
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 constexpr double max_triangles = 1e8;
 
-Message refusal(const yarn::Body& body, Kind kind, std::string text) {
-  Message message = error(kind, std::move(text));
-  message.yarn = body.name;
-  message.place = body.place;
-  return message;
-}
-
 bool is_finite(const nurbs::Surface& surface) {
   return std::all_of(surface.points.begin(), surface.points.end(),
                      [](const Vec3& p) { return p.allFinite(); });
@@ -339,11 +332,12 @@ double sewing_gap(const yarn::Body& body) {
 
 Result<Tessellation> tessellate(const yarn::Body& body, double chord, double longest) {
   if (body.surface.is_empty())
-    return refusal(body, Kind::geometry, fmt::format("yarn '{}' has no surface", body.name));
+    return error(Kind::geometry, fmt::format("yarn '{}' has no surface", body.name), about(body));
   if (!is_finite(body.surface) || !is_finite(body.start.surface) || !is_finite(body.end.surface))
-    return refusal(body, Kind::geometry,
-                   fmt::format("the surface of yarn '{}' has a coordinate that is not finite", body.name));
-  if (!(chord > 0.0)) return refusal(body, Kind::internal, "a tessellation needs a chord error above 0");
+    return error(Kind::geometry,
+                 fmt::format("the surface of yarn '{}' has a coordinate that is not finite", body.name),
+                 about(body));
+  if (!(chord > 0.0)) return error(Kind::internal, "a tessellation needs a chord error above 0", about(body));
 
   const Look look(body.surface);
   auto [cuts_u, cuts_v] = look.cut(chord);
@@ -361,11 +355,12 @@ Result<Tessellation> tessellate(const yarn::Body& body, double chord, double lon
   if (body.closed_along && cells_v < 4.0)
     for (double& n : cuts_v.parts) n = std::max(n, 4.0);
   if (2.0 * cells_u * cells_v > max_triangles)
-    return refusal(
-        body, Kind::limit,
+    return error(
+        Kind::limit,
         fmt::format(
             "a chord error of {} needs {:.3g} triangles on yarn '{}' (at most {:.0e}); allow a larger one",
-            chord, 2.0 * cells_u * cells_v, body.name, max_triangles));
+            chord, 2.0 * cells_u * cells_v, body.name, max_triangles),
+        about(body));
 
   const Round round = Round::make(cuts_u, body);
   const std::vector<double> vs = nurbs::divided(cuts_v.breaks, cuts_v.parts);
@@ -387,12 +382,13 @@ Result<Tessellation> tessellate(const yarn::Body& body, double chord, double lon
     if (face.style == yarn::EndStyle::fan) add_fan(skinner, face, round, chord, outline, skin);
     if (face.style != yarn::EndStyle::planar) continue;
     if (const Status done = add_plane(skinner, face, outline, skin); !done)
-      return refusal(
-          body, done.error().kind,
+      return error(
+          done.error().kind,
           done.error().kind == Kind::geometry
               ? fmt::format("the outline at the {} of yarn '{}' crosses itself: no plane face can seal it",
                             last ? "end" : "start", body.name)
-              : done.error().text);
+              : done.error().text,
+          about(body));
   }
   Tessellation& out = skinner.result();
   out.sites.assign(out.vertices.size(), Vec2::Constant(std::numeric_limits<double>::quiet_NaN()));

@@ -25,18 +25,6 @@ Eigen::Matrix3d axes_of(From from) {
 
 }  // namespace
 
-std::string_view name_of(From from) {
-  constexpr std::array<std::string_view, all_views.size()> names = {"top",  "bottom", "front",
-                                                                    "back", "side",   "iso"};
-  return names[static_cast<std::size_t>(from)];
-}
-
-std::optional<From> view_named(std::string_view word) {
-  for (From from : all_views)
-    if (name_of(from) == word) return from;
-  return std::nullopt;
-}
-
 Camera::Camera(From from, std::span<const yarn::Body> bodies, int width, int height) : turn_(axes_of(from)) {
   Box3 seen;
   for (const yarn::Body& body : bodies)

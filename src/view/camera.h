@@ -1,10 +1,7 @@
 // Where the eye is: an orthographic camera that holds a whole fabric.
 #pragma once
 
-#include <array>
-#include <optional>
 #include <span>
-#include <string_view>
 
 #include "core/vec.h"
 #include "yarn/body.h"
@@ -16,10 +13,6 @@ namespace selvage::view {
 // the right, z up. iso: from above, the front and the right (along (-1, 1, -1)), z up: x and y run equally
 // shortened, to the lower right and to the upper right.
 enum class From { top, bottom, front, back, side, iso };
-inline constexpr std::array<From, 6> all_views = {From::top,  From::bottom, From::front,
-                                                  From::back, From::side,   From::iso};
-std::string_view name_of(From from);
-std::optional<From> view_named(std::string_view word);
 
 // Camera space: pixels; x to the right, y up, z toward the eye, the origin in the picture's centre.
 class Camera {

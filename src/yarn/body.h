@@ -95,6 +95,11 @@ struct Body : BodyLabel {
   std::vector<Message> messages;       // warnings made while building: a fold that made an end planar, ...
 };
 
+// What a message about it says of it.
+inline About about(const BodyLabel& body, const std::optional<Vec3>& at = {}) {
+  return {.place = body.place, .yarn = body.name, .at = at};
+}
+
 // The outline at the body's start or end: the boundary row as a curve over u.
 nurbs::Curve end_curve(const Body& body, bool last);
 

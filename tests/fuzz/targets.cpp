@@ -7,7 +7,7 @@
 #include "fabric/from_cad.h"
 #include "fem/skin.h"
 #include "fem/voxel.h"
-#include "formats/format.h"
+#include "formats/registry.h"
 #include "formats/step/inspect.h"
 #include "fuzz/fabric_text.h"
 

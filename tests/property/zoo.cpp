@@ -7,7 +7,7 @@
 
 #include "core/source.h"
 #include "formats/format.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 #include "places.h"
 
 namespace selvage::zoo {

@@ -25,9 +25,7 @@ using Vertex = Triangulation::Vertex_handle;
 using Face = Triangulation::Face_handle;
 
 Message wrong(const char* what, const Vec2& place) {
-  Message message = error(Kind::geometry, what);
-  message.at = Vec3(place.x(), place.y(), 0);
-  return message;
+  return error(Kind::geometry, what, {.at = Vec3(place.x(), place.y(), 0)});
 }
 
 // The face to the left of the edge from a to b.

@@ -12,22 +12,10 @@ namespace selvage::solid {
 
 namespace {
 
-class Defects {
- public:
-  Defects(const yarn::Body& body, YarnCheck& check) : body_(body), check_(check) {}
-
-  void add(Kind kind, std::string text, const std::optional<Vec3>& at) {
-    Message message = error(kind, std::move(text));
-    message.yarn = body_.name;
-    message.place = body_.place;
-    message.at = at;
-    check_.defects.push_back(std::move(message));
-  }
-
- private:
-  const yarn::Body& body_;
-  YarnCheck& check_;
-};
+void add_defect(const yarn::Body& body, YarnCheck& check, std::string text,
+                const std::optional<Vec3>& at = {}) {
+  check.defects.push_back(error(Kind::geometry, std::move(text), about(body, at)));
+}
 
 const char* side_of(bool last) {
   return last ? "end" : "start";
@@ -52,25 +40,25 @@ std::optional<Vec3> find_border(const Tessellation& skin) {
 }
 
 // True when a gap or a missing face was named.
-bool name_gaps(const yarn::Body& body, YarnCheck& check, Defects& defects) {
+bool name_gaps(const yarn::Body& body, YarnCheck& check) {
   bool named = false;
   if (body.closed_along) return named;
   for (bool last : {false, true}) {
     const yarn::EndFace& face = last ? body.end : body.start;
     if (face.style == yarn::EndStyle::none) {
-      defects.add(Kind::geometry,
-                  fmt::format("open: yarn '{}' has no face at its {}; seal it with --ends patch", body.name,
-                              side_of(last)),
-                  nurbs::evaluate(body.surface, body.surface.first_u(),
-                                  last ? body.surface.last_v() : body.surface.first_v()));
+      add_defect(body, check,
+                 fmt::format("open: yarn '{}' has no face at its {}; seal it with --ends patch", body.name,
+                             side_of(last)),
+                 nurbs::evaluate(body.surface, body.surface.first_u(),
+                                 last ? body.surface.last_v() : body.surface.first_v()));
       named = true;
       continue;
     }
     const double gap = yarn::end_gap(body, last);
     check.end_gap = std::max(check.end_gap, gap);
     if (gap <= allowed_gap(body, last)) continue;
-    defects.add(
-        Kind::geometry,
+    add_defect(
+        body, check,
         fmt::format("open: the edge of the {} face of yarn '{}' is {:.3g} away from the body (rounding "
                     "allows {:.1g}); "
                     "build the face from the body's own end curve, or seal the yarn anew with --ends patch",
@@ -81,23 +69,20 @@ bool name_gaps(const yarn::Body& body, YarnCheck& check, Defects& defects) {
   return named;
 }
 
-void compare_volumes(const yarn::Body& body, const Tessellation& skin, double chord, const YarnCheck& check,
-                     Defects& defects) {
+void compare_volumes(const yarn::Body& body, const Tessellation& skin, double chord, YarnCheck& check) {
   // Between the triangles and the surface lies at most a layer as thick as the chord error.
   const double allowed = area(skin) * chord + 1e-12 * std::abs(check.volume);
   if (std::abs(check.volume - body.volume) <= allowed) return;
-  defects.add(
-      Kind::geometry,
+  add_defect(
+      body, check,
       fmt::format(
           "the skin of yarn '{}' encloses {:.6g}, the surfaces say {:.6g} (a difference of {:.2g} at most "
           "comes from the triangles): body and end faces do not belong together, or the yarn overlaps itself",
-          body.name, check.volume, body.volume, allowed),
-      std::nullopt);
+          body.name, check.volume, body.volume, allowed));
 }
 
 void judge_skin(const yarn::Body& body, double chord, const Tessellation& skin, YarnCheck& check) {
-  Defects defects(body, check);
-  const bool gaps_named = name_gaps(body, check, defects);
+  const bool gaps_named = name_gaps(body, check);
   const Verdict verdict = judge(skin);
   check.volume = volume(skin);
   check.closed = verdict.closed && !gaps_named;
@@ -106,16 +91,15 @@ void judge_skin(const yarn::Body& body, double chord, const Tessellation& skin, 
   check.outward = verdict.outward;
   check.self_intersection_at = verdict.crossing;
   if (!verdict.consistent)
-    defects.add(
-        Kind::geometry,
+    add_defect(
+        body, check,
         fmt::format(
             "the faces of yarn '{}' do not all face outward, or more than two meet in an edge; the grid's "
             "sections must run the same way round, and each end face outward",
-            body.name),
-        std::nullopt);
+            body.name));
   if (verdict.consistent && !verdict.closed && !gaps_named)
-    defects.add(Kind::geometry, fmt::format("open: the skin of yarn '{}' has a border", body.name),
-                find_border(skin));
+    add_defect(body, check, fmt::format("open: the skin of yarn '{}' has a border", body.name),
+               find_border(skin));
   if (verdict.self_intersecting) {
     std::string text = fmt::format("the surface of yarn '{}' crosses itself", body.name);
     text += body.tight_bends.empty() ? "; move its path or its sections apart there"
@@ -124,18 +108,16 @@ void judge_skin(const yarn::Body& body, double chord, const Tessellation& skin, 
                                            "{:.3g} inward; make the bend "
                                            "wider or the yarn thinner",
                                            body.tight_bends.front().radius, body.tight_bends.front().needed);
-    defects.add(Kind::geometry, std::move(text), verdict.crossing);
+    add_defect(body, check, std::move(text), verdict.crossing);
   }
   if (verdict.closed && !verdict.outward)
-    defects.add(
-        Kind::geometry,
+    add_defect(
+        body, check,
         fmt::format("the faces of yarn '{}' face inward: reverse the order of the points in its sections",
-                    body.name),
-        std::nullopt);
+                    body.name));
   if (verdict.closed && !verdict.self_intersecting && !verdict.bounds_volume)
-    defects.add(Kind::geometry, fmt::format("the skin of yarn '{}' does not bound a volume", body.name),
-                std::nullopt);
-  if (verdict.closed && verdict.outward) compare_volumes(body, skin, chord, check, defects);
+    add_defect(body, check, fmt::format("the skin of yarn '{}' does not bound a volume", body.name));
+  if (verdict.closed && verdict.outward) compare_volumes(body, skin, chord, check);
 }
 
 }  // namespace
@@ -156,7 +138,7 @@ YarnCheck check_yarn(const yarn::Body& body, double chord) {
         judge_skin(body, chord, *skin, check);
         return {};
       });
-  if (!judged) Defects(body, check).add(judged.error().kind, judged.error().text, std::nullopt);
+  if (!judged) check.defects.push_back(error(judged.error().kind, judged.error().text, about(body)));
   return check;
 }
 

@@ -161,14 +161,6 @@ gp_Pnt place_of(const TopoDS_Shape& shape) {
   return vertices.IsEmpty() ? gp_Pnt() : BRep_Tool::Pnt(TopoDS::Vertex(vertices(1)));
 }
 
-Message defect(const yarn::Body& body, std::string text, const std::optional<Vec3>& at) {
-  Message message = error(Kind::geometry, std::move(text));
-  message.yarn = body.name;
-  message.place = body.place;
-  message.at = at;
-  return message;
-}
-
 class Judge {
  public:
   Judge(const yarn::Body& body, BrepCheck& verdict)
@@ -188,13 +180,13 @@ class Judge {
     verdict_.volume = volume.value_or(0.0) / (scale_ * scale_ * scale_);
     if (verdict_.volume > 0) return;
     verdict_.valid = false;
-    verdict_.defects.push_back(defect(
-        body_,
+    verdict_.defects.push_back(error(
+        Kind::geometry,
         volume ? fmt::format("yarn '{}' is inside out: its volume is {:.6g}; let the sections run round the "
                              "path the other way",
                              body_.name, verdict_.volume)
                : fmt::format("OpenCASCADE finds no volume for yarn '{}'", body_.name),
-        body_.start.origin));
+        about(body_, body_.start.origin)));
   }
 
  private:
@@ -205,10 +197,10 @@ class Judge {
     for (BRepCheck_ListIteratorOfListOfStatus it(statuses); it.More(); it.Next()) {
       if (it.Value() == BRepCheck_NoError || !reported_.insert(it.Value()).second) continue;
       verdict_.defects.push_back(
-          defect(body_,
-                 fmt::format("yarn '{}': {} ({}); {}", body_.name, words_for(it.Value()), name_of(it.Value()),
-                             remedy_for(it.Value())),
-                 unscaled(place_of(shape))));
+          error(Kind::geometry,
+                fmt::format("yarn '{}': {} ({}); {}", body_.name, words_for(it.Value()), name_of(it.Value()),
+                            remedy_for(it.Value())),
+                about(body_, unscaled(place_of(shape)))));
     }
   }
 
@@ -241,23 +233,19 @@ class Judge {
     if (verdict_.free_edges == 0) return;
     const bool by_choice = !body_.closed_along && (body_.start.style == yarn::EndStyle::none ||
                                                    body_.end.style == yarn::EndStyle::none);
-    verdict_.defects.push_back(defect(
-        body_,
-        fmt::format("yarn '{}' is open: {} edges have only one face{}", body_.name, verdict_.free_edges,
-                    by_choice ? "; ends `none` leave no solid, use --ends patch" : ""),
-        first));
+    verdict_.defects.push_back(
+        error(Kind::geometry,
+              fmt::format("yarn '{}' is open: {} edges have only one face{}", body_.name, verdict_.free_edges,
+                          by_choice ? "; ends `none` leave no solid, use --ends patch" : ""),
+              about(body_, first)));
   }
 
   double largest_tolerance() const {
     double largest = 0.0;
-    TopTools_IndexedMapOfShape parts;
-    TopExp::MapShapes(yarn_.shape, TopAbs_VERTEX, parts);
-    for (int i = 1; i <= parts.Extent(); ++i)
-      largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Vertex(parts(i))));
-    parts.Clear();
-    TopExp::MapShapes(yarn_.shape, TopAbs_EDGE, parts);
-    for (int i = 1; i <= parts.Extent(); ++i)
-      largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Edge(parts(i))));
+    for (TopExp_Explorer at(yarn_.shape, TopAbs_VERTEX); at.More(); at.Next())
+      largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Vertex(at.Current())));
+    for (TopExp_Explorer at(yarn_.shape, TopAbs_EDGE); at.More(); at.Next())
+      largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Edge(at.Current())));
     return largest;
   }
 
@@ -278,8 +266,7 @@ BrepCheck judged(const yarn::Body& body, bool with_volume) {
   });
   if (status.ok()) return verdict;
   verdict = BrepCheck{};  // what OpenCASCADE cannot even build is a defect of that yarn, not of the run
-  verdict.defects.push_back(defect(body, status.error().text, std::nullopt));
-  verdict.defects.back().kind = status.error().kind;
+  verdict.defects.push_back(error(status.error().kind, status.error().text, about(body)));
   return verdict;
 }
 

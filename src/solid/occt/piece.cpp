@@ -6,13 +6,9 @@
 #include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <GProp_GProps.hxx>
-#include <Geom_BSplineCurve.hxx>
 #include <Geom_Line.hxx>
 #include <Geom_Plane.hxx>
 #include <Precision.hxx>
-#include <TColStd_Array1OfInteger.hxx>
-#include <TColStd_Array1OfReal.hxx>
-#include <TColgp_Array1OfPnt.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Shell.hxx>
@@ -21,6 +17,7 @@
 #include <cmath>
 
 #include "solid/occt/guard.h"
+#include "solid/occt/shape.h"
 
 namespace selvage::solid::occt {
 
@@ -28,22 +25,10 @@ namespace {
 
 constexpr double area_precision = 1e-9;  // relative
 
-gp_Pnt point(const Vec3& p, double scale) {
-  return {scale * p.x(), scale * p.y(), scale * p.z()};
-}
-
 Handle(Geom_Curve) spatial(const fabric::PieceEdge& edge, double scale) {
-  const std::vector<Vec3>& points = edge.curve.points;
-  const gp_Pnt first = point(points.front(), scale);
-  if (edge.is_line()) return new Geom_Line(first, gp_Dir(gp_Vec(first, point(points.back(), scale))));
-  TColgp_Array1OfPnt poles(1, 4);
-  for (int i = 0; i < 4; ++i) poles.SetValue(i + 1, point(points[static_cast<std::size_t>(i)], scale));
-  TColStd_Array1OfReal knots(1, 2);
-  knots.SetValue(1, 0.0);
-  knots.SetValue(2, 1.0);
-  TColStd_Array1OfInteger multiplicities(1, 2);
-  multiplicities.Init(4);
-  return new Geom_BSplineCurve(poles, knots, multiplicities, 3);
+  if (!edge.is_line()) return spatial_curve(edge.curve, scale);
+  const gp_Pnt first = point(edge.curve.points.front(), scale);
+  return new Geom_Line(first, gp_Dir(gp_Vec(first, point(edge.curve.points.back(), scale))));
 }
 
 double length_of(const fabric::PieceEdge& edge, double scale) {
@@ -92,13 +77,10 @@ FaceCheck check_piece(const fabric::PieceShape& piece) {
   GProp_GProps properties;
   BRepGProp::SurfaceProperties(shape, properties, area_precision);
   verdict.area = properties.Mass() / (scale * scale);
-  if (!verdict.valid) {
-    Message message =
-        error(Kind::geometry,
-              fmt::format("piece '{}': OpenCASCADE finds no valid face in its outline", piece.name));
-    message.place = piece.place;
-    verdict.defects.push_back(std::move(message));
-  }
+  if (!verdict.valid)
+    verdict.defects.push_back(error(
+        Kind::geometry, fmt::format("piece '{}': OpenCASCADE finds no valid face in its outline", piece.name),
+        {.place = piece.place}));
   return verdict;
 }
 

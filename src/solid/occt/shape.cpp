@@ -40,10 +40,6 @@ int as_int(std::size_t n) {
   return static_cast<int>(n);
 }
 
-gp_Pnt point(const Vec3& p, double scale) {
-  return {scale * p.x(), scale * p.y(), scale * p.z()};
-}
-
 // Knots as OpenCASCADE keeps them: each value once, with its multiplicity.
 struct Knots {
   TColStd_Array1OfReal values;
@@ -69,6 +65,10 @@ Knots different_knots(const std::vector<double>& knots) {
 }
 
 }  // namespace
+
+gp_Pnt point(const Vec3& p, double scale) {
+  return {scale * p.x(), scale * p.y(), scale * p.z()};
+}
 
 Handle(Geom_BSplineCurve) spatial_curve(const Curve& curve, double scale) {
   const int count = as_int(curve.points.size());
@@ -278,15 +278,12 @@ class ShapeBuilder {
       return;
     }
     closed_ = false;
-    Message defect = error(
+    defects_.push_back(error(
         Kind::geometry,
         fmt::format("yarn '{}': its {} face stands {:.3g} off the body's {} curve, so it does not close "
                     "the yarn; build the ends anew from the body, or check the points of that end",
-                    body_.name, last ? "end" : "start", gap, last ? "end" : "start"));
-    defect.yarn = body_.name;
-    defect.place = body_.place;
-    defect.at = end.origin;
-    defects_.push_back(std::move(defect));
+                    body_.name, last ? "end" : "start", gap, last ? "end" : "start"),
+        about(body_, end.origin)));
     add_end(end, own_outline(end, shared), last);
   }
 

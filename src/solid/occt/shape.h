@@ -32,6 +32,7 @@ struct YarnShape {
 // Standard_Failure, for what OpenCASCADE refuses (a knot of too high multiplicity, ...).
 YarnShape build_shape(const yarn::Body& body, double scale);
 
+gp_Pnt point(const Vec3& p, double scale);
 // The same numbers as OpenCASCADE's, all lengths multiplied by `scale`. Exceptions: Standard_Failure.
 Handle(Geom_BSplineCurve) spatial_curve(const nurbs::Curve& curve, double scale);
 Handle(Geom_BSplineSurface) spatial_surface(const nurbs::Surface& surface, double scale);

@@ -1,5 +1,5 @@
 // DXF by hand: values, names, handles. tests/cli/test_pieces.py asks ezdxf.
-#include "formats/dxf/dxf.h"
+#include "formats/registry.h"
 
 #include <gtest/gtest.h>
 

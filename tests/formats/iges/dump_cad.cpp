@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/source.h"
-#include "formats/iges/iges.h"
+#include "formats/registry.h"
 
 namespace selvage::test {
 namespace {

@@ -8,8 +8,8 @@
 #include "cad/from_body.h"
 #include "formats/iges/bodies.h"
 #include "formats/iges/files.h"
-#include "formats/iges/iges.h"
 #include "formats/iges/reading.h"
+#include "formats/registry.h"
 #include "nurbs/measure.h"
 #include "places.h"
 

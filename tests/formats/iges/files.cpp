@@ -11,9 +11,8 @@
 #include <fstream>
 
 #include "fabric/build.h"
-#include "formats/iges/iges.h"
 #include "formats/iges/writer.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 #include "places.h"
 
 namespace selvage::test {

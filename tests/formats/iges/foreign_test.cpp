@@ -21,9 +21,9 @@
 #include <numbers>
 
 #include "formats/iges/files.h"
-#include "formats/iges/iges.h"
 #include "formats/iges/occt_reader.h"
 #include "formats/iges/reading.h"
+#include "formats/registry.h"
 #include "nurbs/measure.h"
 
 namespace selvage::test {

@@ -13,8 +13,8 @@
 #include "formats/iges/bodies.h"
 #include "formats/iges/files.h"
 #include "formats/iges/header.h"
-#include "formats/iges/iges.h"
 #include "formats/iges/writer.h"
+#include "formats/registry.h"
 
 namespace selvage::test {
 namespace {

@@ -4,16 +4,9 @@
 #include "built.h"
 #include "fem/cell_mesher.h"
 #include "fem/contact_surfaces.h"
-#include "formats/bdf/bdf.h"
-#include "formats/cdb/cdb.h"
-#include "formats/inp/inp.h"
-#include "formats/k/k.h"
 #include "formats/mesh/cell_mesh.h"
 #include "formats/mesh/programs.h"
-#include "formats/msh/msh.h"
-#include "formats/txt/txt.h"
-#include "formats/unv/unv.h"
-#include "formats/vtu/vtu.h"
+#include "formats/registry.h"
 #include "places.h"
 
 namespace selvage {

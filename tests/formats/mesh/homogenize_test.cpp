@@ -10,9 +10,8 @@
 #include "fem/complete_cell.h"
 #include "fem/faces.h"
 #include "fem/voxel.h"
-#include "formats/inp/inp.h"
 #include "formats/mesh/programs.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 #include "places.h"
 
 namespace selvage {
@@ -46,8 +45,7 @@ fem::Mesh cell_mesh(const std::string& text, const Wanted& wanted) {
   EXPECT_TRUE(fabric.has_value());
   if (!fabric) return {};
   const std::vector<yarn::Body> bodies = test::built(*fabric);
-  const std::array<bool, 3> periodic = {fabric->cell->periodic_x, fabric->cell->periodic_y,
-                                        fabric->cell->periodic_z};
+  const std::array<bool, 3> periodic = fabric->cell->periodic;
   fem::CellMeshOptions options{{.size = wanted.size, .order = wanted.order}};
   options.periodic = periodic;
   Result<fem::Mesh> mesh =

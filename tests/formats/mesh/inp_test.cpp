@@ -1,5 +1,5 @@
 // The Abaqus deck, judged by CalculiX.
-#include "formats/inp/inp.h"
+#include "formats/registry.h"
 
 #include <cmath>
 
@@ -8,7 +8,6 @@
 #include "formats/inp/deck.h"
 #include "formats/mesh/cell_mesh.h"
 #include "formats/mesh/programs.h"
-#include "formats/txt/txt.h"
 #include "places.h"
 
 namespace selvage {

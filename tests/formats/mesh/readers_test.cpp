@@ -3,10 +3,8 @@
 #include <map>
 
 #include "fem/quality.h"
-#include "formats/inp/inp.h"
 #include "formats/mesh/programs.h"
-#include "formats/msh/msh.h"
-#include "formats/vtu/vtu.h"
+#include "formats/registry.h"
 #include "places.h"
 
 namespace selvage {

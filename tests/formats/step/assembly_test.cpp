@@ -19,7 +19,7 @@
 #include <gp_Trsf.hxx>
 #include <numbers>
 
-#include "formats/step/step.h"
+#include "formats/registry.h"
 
 namespace selvage {
 namespace {

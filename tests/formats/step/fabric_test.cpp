@@ -7,8 +7,7 @@
 #include <filesystem>
 
 #include "built.h"
-#include "formats/step/step.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 #include "places.h"
 #include "reading.h"
 #include "solid/brep.h"

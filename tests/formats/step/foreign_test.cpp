@@ -33,9 +33,7 @@
 #include "built.h"
 #include "cad/judge.h"
 #include "fabric/from_cad.h"
-#include "formats/iges/iges.h"
-#include "formats/step/step.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 #include "nurbs/measure.h"
 #include "places.h"
 

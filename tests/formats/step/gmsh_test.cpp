@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "bodies.h"
-#include "formats/step/step.h"
+#include "formats/registry.h"
 #include "places.h"
 
 namespace selvage {

@@ -7,7 +7,7 @@
 
 #include "bodies.h"
 #include "cad/from_body.h"
-#include "formats/step/step.h"
+#include "formats/registry.h"
 #include "shapes.h"
 
 namespace selvage {

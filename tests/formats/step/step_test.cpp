@@ -10,8 +10,8 @@
 #include <regex>
 
 #include "bodies.h"
+#include "formats/registry.h"
 #include "formats/step/options.h"
-#include "formats/step/step.h"
 #include "reading.h"
 
 namespace selvage {

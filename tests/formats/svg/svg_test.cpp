@@ -1,6 +1,6 @@
 // SVG by hand: exact text of a small piece, and names that XML cannot hold. tests/cli/test_pieces.py asks an
 // XML parser.
-#include "formats/svg/svg.h"
+#include "formats/registry.h"
 
 #include <gtest/gtest.h>
 

@@ -246,9 +246,9 @@ class Flat {
     add(path + ".low", v.low);
     add(path + ".high", v.high);
     add(path + ".matrix", v.matrix);
-    add(path + ".periodic_x", v.periodic_x);
-    add(path + ".periodic_y", v.periodic_y);
-    add(path + ".periodic_z", v.periodic_z);
+    add(path + ".periodic_x", v.periodic[0]);
+    add(path + ".periodic_y", v.periodic[1]);
+    add(path + ".periodic_z", v.periodic[2]);
   }
 };
 

@@ -388,9 +388,9 @@ class Maker {
     cell.low = {between(-5.0, 0.0), between(-5.0, 0.0), between(-5.0, 0.0)};
     cell.high = {positive(), positive(), positive()};
     if (!materials_.empty() && coin()) cell.matrix = one_of(materials_);
-    cell.periodic_x = coin();
-    cell.periodic_y = coin();
-    cell.periodic_z = coin();
+    cell.periodic[0] = coin();
+    cell.periodic[1] = coin();
+    cell.periodic[2] = coin();
     return cell;
   }
 

@@ -463,8 +463,8 @@ end
   EXPECT_EQ(fabric.cell->low, Vec3(0, 0, -0.3));
   EXPECT_EQ(fabric.cell->high, Vec3(2, 2, 0.3));
   EXPECT_EQ(fabric.cell->matrix, "epoxy");
-  EXPECT_TRUE(fabric.cell->periodic_x && fabric.cell->periodic_y);
-  EXPECT_FALSE(fabric.cell->periodic_z);
+  EXPECT_TRUE(fabric.cell->periodic[0] && fabric.cell->periodic[1]);
+  EXPECT_FALSE(fabric.cell->periodic[2]);
 }
 
 // The yarns of a construction get their names when it is built: an edit may name them.

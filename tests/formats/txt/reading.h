@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fabric_reading.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 
 namespace selvage::test {
 

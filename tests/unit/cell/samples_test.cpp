@@ -7,7 +7,7 @@
 #include "built.h"
 #include "cell/volume.h"
 #include "core/source.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 #include "places.h"
 
 namespace selvage::cell {

@@ -5,7 +5,7 @@
 
 #include "built.h"
 #include "contact/contact.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 #include "unit/contact/oracle.h"
 
 namespace selvage::contact {

@@ -9,7 +9,7 @@
 
 #include "fabric/build.h"
 #include "fabric/quantities.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 
 namespace {
 std::atomic<std::uint64_t> allocations = 0;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/source.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 
 namespace selvage::fabric {
 namespace {

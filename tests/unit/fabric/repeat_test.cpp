@@ -9,7 +9,7 @@
 
 #include "contact/contact.h"
 #include "fabric/build.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 #include "places.h"
 
 namespace selvage::fabric {

@@ -3,7 +3,7 @@
 
 #include "fabric/build.h"
 #include "fabric/lapping.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 
 namespace selvage::fabric {
 namespace {

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "built.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 #include "places.h"
 #include "solid/check.h"
 #include "solid/tessellation.h"

@@ -1,0 +1,53 @@
+// Every format of the program. Each is defined in its folder, whose README.md says what it reads and writes.
+#pragma once
+
+#include "formats/format.h"
+
+namespace selvage::formats {
+
+namespace txt {  // Fabric TXT, the input language
+const Descriptor& descriptor();
+}
+namespace wif {  // weaving information files, the exchange format of weaving programs
+const Descriptor& descriptor();
+}
+namespace iges {  // IGES 5.3, B-spline surfaces or solids
+const Descriptor& descriptor();
+}
+namespace step {  // STEP AP242 or AP214: each yarn a manifold solid with its name and colour
+const Descriptor& descriptor();
+}
+namespace svg {  // SVG 1.1: garment pieces as a drawing at true scale
+const Descriptor& descriptor();
+}
+namespace dxf {  // DXF of AutoCAD 2000 (AC1015), ASCII: garment pieces as blocks
+const Descriptor& descriptor();
+}
+namespace inp {  // Abaqus and CalculiX input deck
+const Descriptor& descriptor();
+}
+namespace cdb {  // ANSYS mesh archive
+const Descriptor& descriptor();
+// NAME.mac, which solves the load cases of the unit cell in NAME.cdb.
+const Descriptor& macro_descriptor();
+}  // namespace cdb
+namespace k {  // LS-DYNA keyword file
+const Descriptor& descriptor();
+}
+namespace bdf {  // Nastran bulk data file
+const Descriptor& descriptor();
+}
+namespace msh {  // Gmsh mesh 4.1
+const Descriptor& descriptor();
+}
+namespace vtu {  // VTK unstructured grid
+const Descriptor& descriptor();
+}
+namespace unv {  // I-DEAS universal file
+const Descriptor& descriptor();
+}
+
+// In the order in which `selvage formats` lists them.
+const std::vector<const Descriptor*>& all_formats();
+
+}  // namespace selvage::formats
