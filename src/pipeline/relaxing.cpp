@@ -9,7 +9,6 @@
 #include "contact/interlacing.h"
 #include "contact/relax.h"
 #include "core/readable.h"
-#include "core/words.h"
 #include "fabric/as_grid.h"
 #include "pipeline/table.h"
 #include "pipeline/unit_cell.h"
@@ -217,8 +216,8 @@ std::string table_of(const Job& job, const Relaxation& relaxation, const Paid& p
                       paid.moved_most.empty() ? "" : fmt::format(", of '{}'", shortened(paid.moved_most)));
   text += fmt::format("  largest changes: of a section's area {}, of a yarn's length {}, of its volume {}\n",
                       percent(paid.area), percent(paid.length), percent(paid.volume));
-  return text + fmt::format("  {} after {}\n", relaxation.solved ? "solved" : "not solved",
-                            counted(static_cast<std::size_t>(relaxation.iterations), "step"));
+  return text + fmt::format("  {} after {} step{}\n", relaxation.solved ? "solved" : "not solved",
+                            relaxation.iterations, relaxation.iterations == 1 ? "" : "s");
 }
 
 Message jam_message(const contact::Jam& jam, const std::vector<yarn::Body>& bodies, Unit units) {
