@@ -111,7 +111,7 @@ std::optional<Curve> read_line(Reading& /*reading*/, const DirectoryEntry& entry
   const Vec3 from = read_point(in), to = read_point(in);
   if (in.ok() && entry.form != 0) in.give_up("it is a line without end");
   if (!in.ok()) return std::nullopt;
-  return cad::straight(from, to);
+  return nurbs::segment(from, to);
 }
 
 bool is_polyline(int form) {

@@ -101,7 +101,7 @@ int PartWriter::boundary(const Common& common, int pointer, const nurbs::Surface
       const cad::Edge& before = loop.edges[(i + loop.edges.size() - k) % loop.edges.size()];
       if (is_pole(before)) continue;
       const Vec3 at = cad::at_share(before.curve, 1);
-      poles[i] = cad::straight(at, at);
+      poles[i] = nurbs::segment(at, at);
       break;
     }
     curves.back() = &poles[i];

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/option.h"  // words_of()
+#include "core/words.h"
 #include "formats/step/entities.h"
 #include "formats/step/lexer.h"
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "core/option.h"  // words_of()
+#include "core/words.h"
 #include "formats/step/entity_table.h"
 
 namespace selvage::formats::step {

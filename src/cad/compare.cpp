@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <numeric>
 
 #include "cad/basis.h"
@@ -376,15 +375,11 @@ Comparison Comparer::run() {
   out_.b = counts_of(b_);
   Pairing pairing = pair_things(a_.list, b_.list, near_);
   std::vector<PairFinding> findings(pairing.pairs.size());
-  std::mutex guard;
-  std::size_t done = 0;
-  for_each_index(findings.size(), options_.threads, [&](std::size_t k) {
+  const auto look = [&](std::size_t k) {
     const auto [i, j] = pairing.pairs[k];
     findings[k] = look_at(a_.list[i], b_.list[j]);
-    if (!options_.progress) return;
-    const std::lock_guard lock(guard);
-    options_.progress(++done, findings.size());
-  });
+  };
+  for_each_index(findings.size(), options_.threads, look, options_.progress);
   absorb_regrouped(pairing);
   std::size_t next = 0;
   for (std::size_t k = 0; k <= findings.size(); ++k) {

@@ -80,10 +80,6 @@ Vec3 at_share(const nurbs::Surface& surface, const nurbs::Curve& flat, double sh
   return nurbs::evaluate(surface, p.x(), p.y());
 }
 
-nurbs::Curve straight(const Vec3& from, const Vec3& to, double t0, double t1) {
-  return {.degree = 1, .knots = {t0, t0, t1, t1}, .points = {from, to}, .weights = {}};
-}
-
 bool is_point(const nurbs::Curve& curve, double tolerance) {
   return std::all_of(curve.points.begin(), curve.points.end(),
                      [&](const Vec3& p) { return (p - curve.points.front()).norm() <= tolerance; });

@@ -17,9 +17,6 @@ Vec3 at_shares(const nurbs::Surface& surface, double of_u, double of_v);
 // The surface's point at the flat curve's.
 Vec3 at_share(const nurbs::Surface& surface, const nurbs::Curve& flat, double share);
 
-// Over [t0, t1].
-nurbs::Curve straight(const Vec3& from, const Vec3& to, double t0 = 0, double t1 = 1);
-
 // Does the whole curve lie in one place? By its control points.
 bool is_point(const nurbs::Curve& curve, double tolerance);
 

@@ -12,7 +12,7 @@
 #include "cell/faces.h"
 #include "cell/tube_faces.h"
 #include "nurbs/bezier.h"  // Box2
-#include "nurbs/restrict.h"
+#include "nurbs/sweep.h"
 #include "yarn/end_plane.h"
 
 namespace selvage::cell {
@@ -45,15 +45,9 @@ nurbs::Curve in_plane(nurbs::Curve curve, int face) {
 }
 
 nurbs::Surface rectangle(const Box3& box, int face, const Box2& range) {
-  nurbs::Surface surface;
-  surface.degree_u = surface.degree_v = 1;
-  surface.count_u = surface.count_v = 2;
-  surface.knots_u = {range.min().x(), range.min().x(), range.max().x(), range.max().x()};
-  surface.knots_v = {range.min().y(), range.min().y(), range.max().y(), range.max().y()};
-  for (const double v : {range.min().y(), range.max().y()})
-    for (const double u : {range.min().x(), range.max().x()})
-      surface.points.push_back(in_face(box, face, {u, v}));
-  return surface;
+  const auto [x, y] = axes_in(face);
+  return nurbs::flat(in_face(box, face, Vec2::Zero()), Vec3::Unit(x), Vec3::Unit(y), range.min(),
+                     range.max());
 }
 
 // A shell: faces that hang together by their edges.
@@ -89,7 +83,7 @@ class CellBuilder {
       tubes_.of_arc.push_back({tubes_.edges.size()});
       const Vec3 &a = division_.corners[part.from].at, &b = division_.corners[part.to].at;
       const double length = (b - a).norm();
-      tubes_.edges.push_back({cad::straight(a, b, 0, length), {}});
+      tubes_.edges.push_back({nurbs::segment(a, b, 0, length), {}});
     }
     std::vector<cad::Part> parts;
     std::vector<cad::Face> around;  // of the matrix
@@ -171,16 +165,12 @@ class CellBuilder {
   }
 
   Message end_fault(const yarn::Body& body, yarn::EndStyle style, bool last) const {
-    const nurbs::Curve outline = yarn::end_curve(body, last);
-    Message message =
-        error(style == yarn::EndStyle::fan ? Kind::unsupported : Kind::geometry,
-              fmt::format("yarn '{}' ends inside the cell {}; --ends patch or planar closes it", body.name,
-                          style == yarn::EndStyle::fan ? "in a fan of triangles, which is not cut"
-                                                       : "without an end face"));
-    message.yarn = body.name;
-    message.place = body.place;
-    message.at = outline.points.front();
-    return message;
+    return error(style == yarn::EndStyle::fan ? Kind::unsupported : Kind::geometry,
+                 fmt::format("yarn '{}' ends inside the cell {}; --ends patch or planar closes it", body.name,
+                             style == yarn::EndStyle::fan ? "in a fan of triangles, which is not cut"
+                                                          : "without an end face"))
+        .of_yarn(body.name, body.place)
+        .at_point(yarn::end_curve(body, last).points.front());
   }
 
   // Along a side of the unit square, in proportion to its share of the quarter.
@@ -202,7 +192,7 @@ class CellBuilder {
           return Vec3(0, 1 - share, 0);
       }
     };
-    return cad::straight(at(t0), at(t1), t0, t1);
+    return nurbs::segment(at(t0), at(t1), t0, t1);
   }
 
   // The faces that a yarn has in common with the matrix.

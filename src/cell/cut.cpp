@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cell/trim.h"
+#include "core/wrapped.h"
 
 namespace selvage::cell {
 
@@ -44,9 +45,7 @@ Vec3 edge_point(const Box3& box, int edge, double along) {
 namespace {
 
 double into_domain(double value, double first, double last) {
-  const double period = last - first;
-  if (value >= first && value <= last) return value;
-  return value - period * std::floor((value - first) / period);
+  return value >= first && value <= last ? value : wrapped(value, first, last);
 }
 
 }  // namespace
@@ -80,21 +79,13 @@ nurbs::SurfaceJet jet(const yarn::Body& body, const Vec2& parameters) {
   return nurbs::evaluate_jet(body.surface, q.x(), q.y());
 }
 
-Result<Cut> cut(std::span<const yarn::Body> bodies, const Box3& box, const CutOptions& options) {
+Result<Cut> cut(std::span<const yarn::Body> bodies, const Box3& box, double tolerance) {
   Cut result;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Result<Cut> trimmed = trim(bodies[i], box, options.tolerance);
-    if (!trimmed) {
-      Message message = trimmed.error();
-      message.yarn = bodies[i].name;
-      message.place = bodies[i].place;
-      return message;
-    }
-    for (Message& note : trimmed->notes) {
-      note.yarn = bodies[i].name;
-      note.place = bodies[i].place;
-      result.notes.push_back(std::move(note));
-    }
+    Result<Cut> trimmed = trim(bodies[i], box, tolerance);
+    if (!trimmed) return trimmed.error().of_yarn(bodies[i].name, bodies[i].place);
+    for (const Message& note : trimmed->notes)
+      result.notes.push_back(note.of_yarn(bodies[i].name, bodies[i].place));
     for (Piece& piece : trimmed->pieces) {
       piece.body = i;
       result.pieces.push_back(std::move(piece));
@@ -127,10 +118,8 @@ Vec3 ArcCurve::position(const Vec2& parameters) const {
 ArcCurve::Foot ArcCurve::nearest(const Vec3& point) const {
   Foot best;
   for (std::size_t k = 0; k + 1 < points_.size(); ++k) {
-    const Vec3 way = points_[k + 1] - points_[k];
-    const double square = way.squaredNorm();
-    const double share = square > 0 ? std::clamp((point - points_[k]).dot(way) / square, 0.0, 1.0) : 0;
-    const double distance = (points_[k] + share * way - point).norm();
+    const double share = nearest_share(point, points_[k], points_[k + 1]);
+    const double distance = (points_[k] + share * (points_[k + 1] - points_[k]) - point).norm();
     if (distance < best.distance) best = {lengths_[k] + share * (lengths_[k + 1] - lengths_[k]), distance};
   }
   return best;

@@ -74,12 +74,6 @@ struct Piece {
   Vec2 inside = Vec2::Zero();  // parameters of a point of it
 };
 
-struct CutOptions {
-  // File units, > 0. An end face this near a face of the box lies in it; a part of a yarn that reaches less
-  // far into the box is left out, with a note.
-  double tolerance = 0;
-};
-
 struct Cut {
   std::vector<Piece> pieces;  // by body
   std::vector<Message> notes;
@@ -95,10 +89,12 @@ Vec2 periods(const yarn::Body& body);
 // The same place with parameters as they are beside `near`: by whole periods where they go round.
 Vec2 beside(const yarn::Body& body, const Vec2& near, Vec2 parameters);
 
+// `tolerance`, file units, > 0: an end face this near a face of the box lies in it; a part of a yarn that
+// reaches less far into the box is left out, with a note.
 // Errors (geometry), each with the yarn and the place: an end face that is partly inside the box (askew to
 // the face that it ends near); a yarn that reaches through a face of the box by less than the tolerance; a
 // box thinner than what the yarns are sampled by; no yarn that enters the box.
-Result<Cut> cut(std::span<const yarn::Body> bodies, const Box3& box, const CutOptions& options);
+Result<Cut> cut(std::span<const yarn::Body> bodies, const Box3& box, double tolerance);
 
 // An arc as a curve with a length: exact points between those that are kept.
 class ArcCurve {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "nurbs/restrict.h"
+#include "nurbs/roots.h"
 #include "nurbs/turn.h"
 
 namespace selvage::cell {
@@ -102,29 +103,18 @@ ArcPath::Place ArcPath::place(double along) const {
 }
 
 double ArcPath::crossing(int axis, double value, double from, double to) const {
-  double low = at(from)[axis] - value, high = at(to)[axis] - value;
-  if (low == 0) return from;
-  if (high == 0) return to;
-  // Illinois' rule of false position, which halves where it does not come nearer.
-  int side = 0;
-  for (int step = 0; step < 100 && to - from > 1e-15 * (1 + length_); ++step) {
-    double middle = from + (to - from) * low / (low - high);
-    if (step % 8 == 7 || !(middle > from && middle < to)) middle = 0.5 * (from + to);
+  nurbs::FalsePosition root{from, at(from)[axis] - value, to, at(to)[axis] - value};
+  if (root.at_from == 0) return from;
+  if (root.at_to == 0) return to;
+  for (int step = 0; step < 100 && root.to - root.from > 1e-15 * (1 + length_); ++step) {
+    // Halved where it does not come nearer.
+    double middle = root.from + (root.to - root.from) * root.at_from / (root.at_from - root.at_to);
+    if (step % 8 == 7 || !(middle > root.from && middle < root.to)) middle = 0.5 * (root.from + root.to);
     const double miss = at(middle)[axis] - value;
     if (miss == 0 || std::abs(miss) < 1e-15 * (1 + std::abs(value))) return middle;
-    if ((miss > 0) == (high > 0)) {
-      to = middle;
-      high = miss;
-      if (side == 1) low *= 0.5;
-      side = 1;
-    } else {
-      from = middle;
-      low = miss;
-      if (side == -1) high *= 0.5;
-      side = -1;
-    }
+    root.take(middle, miss);
   }
-  return 0.5 * (from + to);
+  return 0.5 * (root.from + root.to);
 }
 
 // Seen from a place a little beside, since the surface may have an edge along a knot line here.
@@ -231,10 +221,7 @@ EdgeCurves ArcPath::row(double from, double to) const {
       nurbs::restricted(nurbs::boundary_row(surface, arc_->along == Arc::Along::end),
                         std::max(low - shift, surface.first_u()), std::min(high - shift, surface.last_u()));
   const double t0 = edge.space.first_parameter(), t1 = edge.space.last_parameter();
-  edge.flat = {.degree = 1,
-               .knots = {t0, t0, t1, t1},
-               .points = {Vec3(t0 + shift, a.y(), 0), Vec3(t1 + shift, a.y(), 0)},
-               .weights = {}};
+  edge.flat = nurbs::segment(Vec3(t0 + shift, a.y(), 0), Vec3(t1 + shift, a.y(), 0), t0, t1);
   if (backward) edge = {nurbs::reversed(edge.space), nurbs::reversed(edge.flat)};
   return edge;
 }
@@ -275,8 +262,7 @@ EdgeCurves line_of_constant_u(const nurbs::Surface& surface, double u, double v0
                                  : nurbs::restricted(surface, u, surface.last_u(), v0, v1);
   EdgeCurves edge;
   edge.space = nurbs::boundary_column(beside, at_end);
-  edge.flat = {
-      .degree = 1, .knots = {v0, v0, v1, v1}, .points = {Vec3(u, v0, 0), Vec3(u, v1, 0)}, .weights = {}};
+  edge.flat = nurbs::segment(Vec3(u, v0, 0), Vec3(u, v1, 0), v0, v1);
   return edge;
 }
 

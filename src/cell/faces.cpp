@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/bounds.h"
 #include "core/plane.h"
 
 namespace selvage::cell {
@@ -13,10 +14,7 @@ namespace {
 
 // Where two closed polygons cross.
 std::optional<Vec2> crossing(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
-  Eigen::AlignedBox2d box_a, box_b;
-  for (const Vec2& p : a) box_a.extend(p);
-  for (const Vec2& p : b) box_b.extend(p);
-  const Eigen::AlignedBox2d both = box_a.intersection(box_b);
+  const Eigen::AlignedBox2d both = bounds_of(a).intersection(bounds_of(b));
   if (both.isEmpty()) return std::nullopt;
   const auto sides_in = [&](const std::vector<Vec2>& polygon) {
     std::vector<std::array<Vec2, 2>> sides;
@@ -81,14 +79,12 @@ class Divider {
 };
 
 Message Divider::overlap(std::size_t a, std::size_t b, const Vec3& at) const {
-  Message message =
-      error(Kind::geometry,
-            fmt::format("yarns '{}' and '{}' overlap where a face of the cell cuts them; --relax moves "
-                        "them apart where they have room",
-                        bodies_[a].name, bodies_[b].name));
-  message.yarn = bodies_[a].name;
-  message.at = at;
-  return message;
+  return error(Kind::geometry,
+               fmt::format("yarns '{}' and '{}' overlap where a face of the cell cuts them; --relax moves "
+                           "them apart where they have room",
+                           bodies_[a].name, bodies_[b].name))
+      .of_yarn(bodies_[a].name)
+      .at_point(at);
 }
 
 void Divider::find_corners() {
@@ -132,10 +128,9 @@ Status Divider::own(std::size_t edge, std::size_t body) {
           if (a.body != b.body && (a.corner == division_.edges[edge].from) &&
               (b.corner == division_.edges[edge].to))
             return overlap(a.body, b.body, at);
-    Message message = error(Kind::geometry, "yarns overlap, or fold, where an edge of the cell cuts them");
-    message.yarn = bodies_[body == FaceRegion::matrix ? other : body].name;
-    message.at = at;
-    return message;
+    return error(Kind::geometry, "yarns overlap, or fold, where an edge of the cell cuts them")
+        .of_yarn(bodies_[body == FaceRegion::matrix ? other : body].name)
+        .at_point(at);
   }
   is_owned_[edge] = true;
   owners_[edge] = body;
@@ -226,15 +221,13 @@ Status Divider::chain(int face, std::size_t body, const std::vector<Side>& sides
       if (next == from.end()) break;
       k = next->second;
     }
-    if (k != i) {
-      Message message =
-          error(Kind::geometry, fmt::format("what is cut by the cell's face {} is not closed: yarns overlap "
-                                            "there, or one folds",
-                                            name_of_face(face)));
-      if (body != FaceRegion::matrix) message.yarn = bodies_[body].name;
-      message.at = division_.corners[start_of(sides[i])].at;
-      return message;
-    }
+    if (k != i)
+      return error(Kind::geometry,
+                   fmt::format("what is cut by the cell's face {} is not closed: yarns overlap "
+                               "there, or one folds",
+                               name_of_face(face)))
+          .of_yarn(body != FaceRegion::matrix ? bodies_[body].name : std::string())
+          .at_point(division_.corners[start_of(sides[i])].at);
     outlines.push_back(std::move(outline));
   }
   return {};

@@ -75,10 +75,6 @@ class Trimmer {
   [[nodiscard]] Arc arc_along(int along) const;
   [[nodiscard]] Status check_grazing() const;
   Result<Cut> collect();
-  [[nodiscard]] Message at(Message message, const Vec3& place) const {
-    message.at = place;
-    return message;
-  }
 
   const yarn::Body& body_;
   const Box3& box_;
@@ -207,11 +203,11 @@ void Trimmer::add_step(const Name& from, const Name& to, int along, std::size_t 
 void Trimmer::add_border(std::size_t triangle, const Name& from, int from_face, const Name& to, int to_face) {
   if (from_face == to_face) return add_step(from, to, from_face, triangle);
   if (axis_of(from_face) == axis_of(to_face)) {
-    failure_ = at(
+    failure_ =
         error(Kind::geometry, fmt::format("the cell is too thin along {} for its yarns: both its faces cut "
                                           "one of a yarn's smallest parts",
-                                          "xyz"[axis_of(from_face)])),
-        sampling_.point(sampling_.triangle(triangle)[0]));
+                                          "xyz"[axis_of(from_face)]))
+            .at_point(sampling_.point(sampling_.triangle(triangle)[0]));
     return;
   }
   const Name corner{Name::Kind::corner, triangle, 0, from_face, to_face};
@@ -339,12 +335,12 @@ Status Trimmer::check_grazing() const {
     }
     for (const auto& [unused, vertex] : deepest)
       if (sampling_.depth(vertex, face) > -tolerance_)
-        return at(
-            error(Kind::geometry,
-                  fmt::format("grazes the cell's face {}: it reaches only {:.2g} through it; move that face "
-                              "by more than {:.2g}",
-                              name_of_face(face), -sampling_.depth(vertex, face), tolerance_)),
-            sampling_.point(vertex));
+        return error(
+                   Kind::geometry,
+                   fmt::format("grazes the cell's face {}: it reaches only {:.2g} through it; move that face "
+                               "by more than {:.2g}",
+                               name_of_face(face), -sampling_.depth(vertex, face), tolerance_))
+            .at_point(sampling_.point(vertex));
   }
   return {};
 }
@@ -398,12 +394,11 @@ Result<Cut> Trimmer::collect() {
   Cut result;
   for (const auto& [part, deepest] : parts) {
     if (deepest.depth < tolerance_) {
-      Message note =
-          warning(Kind::geometry,
-                  fmt::format("reaches less than the tolerance ({:.3g} deep) into the cell: left out there",
-                              std::max(deepest.depth, 0.0)));
-      note.severity = Severity::note;
-      result.notes.push_back(at(std::move(note), sampling_.point(deepest.vertex)));
+      result.notes.push_back(
+          note(Kind::geometry,
+               fmt::format("reaches less than the tolerance ({:.3g} deep) into the cell: left out there",
+                           std::max(deepest.depth, 0.0)))
+              .at_point(sampling_.point(deepest.vertex)));
       continue;
     }
     Piece piece;
@@ -412,12 +407,11 @@ Result<Cut> Trimmer::collect() {
     for (const Border& border : piece.borders)
       for (const Arc& arc : border.arcs)
         if (arc.face >= face_count && border.arcs.size() > 1)
-          return at(
-              error(
-                  Kind::geometry,
-                  "the yarn's end is partly inside of the cell: let it end in the cell's face, beyond it, or "
-                  "well inside"),
-              position(body_, arc.parameters.front()));
+          return error(Kind::geometry,
+                       "the yarn's end is partly inside of the cell: let it end in the cell's face, beyond "
+                       "it, or "
+                       "well inside")
+              .at_point(position(body_, arc.parameters.front()));
     result.pieces.push_back(std::move(piece));
   }
   return result;

@@ -84,11 +84,9 @@ class PieceDivider {
 
  private:
   Status fault(const std::string& what, const std::optional<Vec2>& at) const {
-    Message message = error(Kind::geometry, fmt::format("yarn '{}' {}", body_.name, what));
-    message.yarn = body_.name;
-    message.place = body_.place;
-    message.at = position(body_, at.value_or(piece_.inside));
-    return message;
+    return error(Kind::geometry, fmt::format("yarn '{}' {}", body_.name, what))
+        .of_yarn(body_.name, body_.place)
+        .at_point(position(body_, at.value_or(piece_.inside)));
   }
 
   // Which stripe between copies of the line u is in; nothing where it is on one of them.

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <mutex>
 #include <numeric>
 #include <set>
 #include <tuple>
@@ -39,13 +37,10 @@ std::optional<Message> find_fault(std::span<const yarn::Body> bodies) {
     if (body.surface.is_empty()) continue;
     for (const nurbs::Surface* s : {&body.surface, &body.start.surface, &body.end.surface})
       for (const Vec3& p : s->points)
-        if (!p.allFinite()) {
-          Message message =
-              error(Kind::geometry, "the surface of yarn '" + body.name + "' has a point that is not finite");
-          message.yarn = body.name;
-          message.place = body.place;
-          return message;
-        }
+        if (!p.allFinite())
+          return error(Kind::geometry,
+                       "the surface of yarn '" + body.name + "' has a point that is not finite")
+              .of_yarn(body.name, body.place);
   }
   return std::nullopt;
 }
@@ -222,14 +217,10 @@ class Search {
   [[nodiscard]] std::vector<Contact> contacts_within(double reach, double& unsettled) const {
     const std::vector<Cluster> places = clusters(reach);
     std::vector<Measured> found(places.size());
-    std::size_t done = 0;
-    std::mutex guard;
-    for_each_index(places.size(), options_.threads, [&](std::size_t k) {
-      found[k] = measure(model_, places[k], reach, resolution());
-      if (!options_.progress) return;
-      const std::lock_guard lock(guard);
-      options_.progress(++done, places.size());
-    });
+    for_each_index(
+        places.size(), options_.threads,
+        [&](std::size_t k) { found[k] = measure(model_, places[k], reach, resolution()); },
+        options_.progress);
     std::vector<Contact> all;
     for (Measured& part : found) {
       unsettled = std::max(unsettled, part.unsettled);

@@ -6,6 +6,7 @@
 #include "contact/critical.h"
 #include "contact/overlay.h"
 #include "contact/shared_space.h"
+#include "core/bounds.h"
 #include "core/plane.h"
 
 namespace selvage::contact {
@@ -40,10 +41,7 @@ class DeepMeasurer {
 
   std::vector<Contact> run(const Box3& walls) {
     grow();
-    Box3 box_a, box_b;
-    for (const Vec3& p : mesh_a_.vertices) box_a.extend(p);
-    for (const Vec3& p : mesh_b_.vertices) box_b.extend(p);
-    const Box3 common = box_a.intersection(box_b);
+    const Box3 common = bounds_of(mesh_a_.vertices).intersection(bounds_of(mesh_b_.vertices));
     std::vector<Contact> contacts;
     if (common.isEmpty()) return contacts;
     std::vector<Vec3> corners;
@@ -55,11 +53,8 @@ class DeepMeasurer {
     // Not along an axis: grids of points often are.
     Vec3 direction = Vec3::Unit(axis) + Vec3(0.0123, 0.0231, 0.0317);
     for (std::vector<Vec3>& piece :
-         SharedSpace(mesh_a_, mesh_b_, corners, grain()).pieces(direction.normalized())) {
-      Box3 box;
-      for (const Vec3& p : piece) box.extend(p);
-      if (box.intersects(walls)) measure(std::move(piece), contacts);
-    }
+         SharedSpace(mesh_a_, mesh_b_, corners, grain()).pieces(direction.normalized()))
+      if (bounds_of(piece).intersects(walls)) measure(std::move(piece), contacts);
     return contacts;
   }
 
@@ -147,8 +142,7 @@ class DeepMeasurer {
     Vec3 middle = Vec3::Zero();
     for (const Vec3& p : walls) middle += p / static_cast<double>(walls.size());
     // The piece may reach a line's width beyond what lines met.
-    Box3 box;
-    for (const Vec3& p : walls) box.extend(p);
+    const Box3 box = bounds_of(walls);
     const Vec3 margin = 0.03 * box.sizes();
     for (int k = 0; k < 8; ++k)
       walls.push_back(

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "core/wrapped.h"
 #include "yarn/body.h"
 
 namespace selvage::contact {
@@ -25,12 +26,6 @@ struct Face {
   std::uint32_t first_cell = 0;           // cell (i, j) is first_cell + j * count_u + i
   std::uint32_t count_u = 0, count_v = 0;
 };
-
-// A parameter that goes round, brought into its range.
-inline double wrapped(double t, double first, double last) {
-  const double period = last - first;
-  return t - period * std::floor((t - first) / period);
-}
 
 // A part of a face within one knot span of either direction, about as long as its yarn is wide at most.
 struct Cell {

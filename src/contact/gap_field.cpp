@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <mutex>
 
 #include "contact/face.h"
 #include "contact/skin_distance.h"
@@ -53,15 +52,11 @@ class GapField {
       out[b].resize(count);
       for (std::size_t k = 0; k < count; k += block) blocks.push_back({b, k, std::min(count, k + block)});
     }
-    std::size_t done = 0;
-    std::mutex guard;
-    for_each_index(blocks.size(), options_.threads, [&](std::size_t k) {
+    const auto fill = [&](std::size_t k) {
       const Block& part = blocks[k];
       for (std::size_t v = part.first; v < part.last; ++v) out[part.skin][v] = value(part.skin, v);
-      if (!options_.progress) return;
-      const std::lock_guard lock(guard);
-      options_.progress(++done, blocks.size());
-    });
+    };
+    for_each_index(blocks.size(), options_.threads, fill, options_.progress);
     return out;
   }
 

@@ -67,11 +67,9 @@ Line line_of(const yarn::Body& old_body, const yarn::Body& new_body) {
   Line line;
   line.width = yarn::widest_section(old_body);
   line.closed = old_body.closed_along;
-  std::vector<double> breaks = nurbs::breakpoints(before.knots, before.degree);
-  const std::vector<double> further = nurbs::breakpoints(after.knots, after.degree);
-  breaks.insert(breaks.end(), further.begin(), further.end());
-  std::sort(breaks.begin(), breaks.end());
-  breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
+  std::vector<double> breaks;
+  std::ranges::set_union(nurbs::breakpoints(before.knots, before.degree),
+                         nurbs::breakpoints(after.knots, after.degree), std::back_inserter(breaks));
   const double allowed = chord_share * line.width;
   add_point(line, before, after, breaks.front());
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {

@@ -157,16 +157,9 @@ Overlay::Place Overlay::place(const Hit& hit, const Sheet& sheet, std::size_t li
 }
 
 bool Overlay::is_peak(std::size_t line) const {
-  const int i = static_cast<int>(line) % raster_.lines, j = static_cast<int>(line) / raster_.lines;
-  for (int dj = -1; dj <= 1; ++dj)
-    for (int di = -1; di <= 1; ++di) {
-      const int x = i + di, y = j + dj;
-      if ((di == 0 && dj == 0) || x < 0 || y < 0 || x >= raster_.lines || y >= raster_.lines) continue;
-      const auto other = raster_.number_of(x, y);
-      if (!is_met(other)) continue;
-      if (depth(other) > depth(line) || (depth(other) == depth(line) && other < line)) return false;
-    }
-  return true;
+  return raster_.all_about(line, 1, [&](std::size_t other) {
+    return !is_met(other) || depth(other) < depth(line) || (depth(other) == depth(line) && other >= line);
+  });
 }
 
 std::vector<int> Overlay::regions(double least_depth, int& count) const {
@@ -179,16 +172,14 @@ std::vector<int> Overlay::regions(double least_depth, int& count) const {
     label[k] = count;
     stack.push_back(k);
     while (!stack.empty()) {
-      const int i = static_cast<int>(stack.back()) % raster_.lines,
-                j = static_cast<int>(stack.back()) / raster_.lines;
+      const std::size_t here = stack.back();
       stack.pop_back();
-      for (int y = std::max(0, j - 1); y <= std::min(raster_.lines - 1, j + 1); ++y)
-        for (int x = std::max(0, i - 1); x <= std::min(raster_.lines - 1, i + 1); ++x) {
-          const auto other = raster_.number_of(x, y);
-          if (!in(other)) continue;
-          label[other] = count;
-          stack.push_back(other);
-        }
+      raster_.all_about(here, 1, [&](std::size_t other) {
+        if (!in(other)) return true;
+        label[other] = count;
+        stack.push_back(other);
+        return true;
+      });
     }
     ++count;
   }
@@ -198,13 +189,11 @@ std::vector<int> Overlay::regions(double least_depth, int& count) const {
 std::vector<Part> Overlay::parts_about(std::size_t line, int radius, bool of_a) const {
   const Sheet& sheet = of_a ? sheet_a_ : sheet_b_;
   const std::vector<Hit>& hits = of_a ? a_ : b_;
-  const int i = static_cast<int>(line) % raster_.lines, j = static_cast<int>(line) / raster_.lines;
   std::map<std::int32_t, Rectangle> ranges;
-  for (int y = std::max(0, j - radius); y <= std::min(raster_.lines - 1, j + radius); ++y)
-    for (int x = std::max(0, i - radius); x <= std::min(raster_.lines - 1, i + radius); ++x) {
-      const Hit& hit = hits[raster_.number_of(x, y)];
-      if (hit.part >= 0) ranges[hit.part].extend(Vec2(hit.s, hit.t));
-    }
+  raster_.all_about(line, radius, [&](std::size_t k) {
+    if (hits[k].part >= 0) ranges[hits[k].part].extend(Vec2(hits[k].s, hits[k].t));
+    return true;
+  });
   std::vector<Part> parts;
   const double more = 1.0 / sheet.steps;
   for (const auto& [k, range] : ranges) {
@@ -224,20 +213,15 @@ constexpr int close_lines = 24, close_steps = 8, close_rounds = 5;
 }  // namespace
 
 bool Overlay::is_smooth_about(std::size_t line, int radius, bool of_a) const {
-  const int i = static_cast<int>(line) % raster_.lines, j = static_cast<int>(line) / raster_.lines;
   std::optional<Vec3> first;
-  for (int y = j - radius; y <= j + radius; ++y)
-    for (int x = i - radius; x <= i + radius; ++x) {
-      if (x < 0 || y < 0 || x >= raster_.lines || y >= raster_.lines) continue;
-      const auto k = raster_.number_of(x, y);
-      // Where the sheet ends there is an edge.
-      if ((of_a ? a_ : b_)[k].part < 0) return false;
-      const Place here = of_a ? on_a(k) : on_b(k);
-      const Vec3 normal = point_at(model_.face_of(model_.cells()[here.cell]), here.site).normal;
-      if (!first) first = normal;
-      if (!(first->dot(normal) > 0.99)) return false;
-    }
-  return true;
+  return raster_.all_about(line, radius, [&](std::size_t k) {
+    // Where the sheet ends there is an edge.
+    if ((of_a ? a_ : b_)[k].part < 0) return false;
+    const Place here = of_a ? on_a(k) : on_b(k);
+    const Vec3 normal = point_at(model_.face_of(model_.cells()[here.cell]), here.site).normal;
+    if (!first) first = normal;
+    return first->dot(normal) > 0.99;
+  });
 }
 
 std::optional<Deepest> close_in(const CellModel& model, std::vector<Part> parts_a, std::vector<Part> parts_b,

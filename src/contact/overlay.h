@@ -67,6 +67,15 @@ struct Raster {
     const int k = static_cast<int>(line);
     return place(k % lines, k / lines);
   }
+  // Whether it holds of all lines up to `radius` steps from this one, itself included.
+  template <class Holds>
+  bool all_about(std::size_t line, int radius, const Holds& holds) const {
+    const int i = static_cast<int>(line) % lines, j = static_cast<int>(line) / lines;
+    for (int y = std::max(0, j - radius); y <= std::min(lines - 1, j + radius); ++y)
+      for (int x = std::max(0, i - radius); x <= std::min(lines - 1, i + radius); ++x)
+        if (!holds(number_of(x, y))) return false;
+    return true;
+  }
   // The first column (or row) whose lines are at or above a coordinate, and the last one at or below; `lines`
   // and -1 where there is none. What is cast is >= 0: no call of ceil().
   [[nodiscard]] int first(Eigen::Index axis, double from) const {

@@ -89,8 +89,7 @@ class Measurer {
       sum += std::exp(-farther) * (1e-6 + opposed * opposed) * a.box.diagonal().squaredNorm() *
              b.box.diagonal().squaredNorm() * (a.normal - b.normal);
     }
-    const double size = sum.norm();
-    return size > 0.0 ? Vec3(sum / size) : Vec3::Zero();
+    return unit_or_zero(sum);
   }
 
   // The same from the lines on which the two overlap; zero where there are none.
@@ -98,8 +97,7 @@ class Measurer {
     Vec3 sum = Vec3::Zero();
     for (std::size_t k = 0; k < region.size(); ++k)
       if (region[k] >= 0) sum += cell(overlay.on_a(k).cell).normal - cell(overlay.on_b(k).cell).normal;
-    const double size = sum.norm();
-    return size > 0.0 ? Vec3(sum / size) : Vec3::Zero();
+    return unit_or_zero(sum);
   }
 
   // The cells on one side, and those between them.

@@ -182,18 +182,19 @@ class Relaxer {
                        [&](const Contact& c) { return c.gap < wanted(c.a, c.b); });
   }
 
-  Relaxation unchanged() {
+  void go_back() {
     out_.after = out_.before;
     out_.bodies = originals_;
     out_.changes.assign(originals_.size(), {});
+  }
+  Relaxation unchanged() {
+    go_back();
     out_.solved = true;
     return std::move(out_);
   }
 
   Relaxation give_up(const Contacts& contacts) {
-    out_.after = out_.before;
-    out_.bodies = originals_;
-    out_.changes.assign(originals_.size(), {});
+    go_back();
     list_jams(contacts);
     return std::move(out_);
   }
@@ -249,6 +250,11 @@ class Relaxer {
       (broken_bound().empty() ? kept : broken) = middle;
     }
     if (Status done = finish_bodies(between(kept)); !done) return done;
+    return take_stock();
+  }
+
+  // What is too near where the bodies are now.
+  Status take_stock() {
     Result<Contacts> contacts = survey(out_.bodies);
     if (!contacts) return contacts.error();
     out_.after = state_of(*contacts);
@@ -412,16 +418,10 @@ class Relaxer {
     if (best_.empty()) best_ = present();
     if (Status done = finish_bodies(best_); !done) {
       // The surfaces went so far astray that they are no yarns any more: nothing is said of their gaps.
-      out_.bodies = originals_;
-      out_.changes.assign(originals_.size(), {});
-      out_.after = out_.before;
+      go_back();
       return {};
     }
-    Result<Contacts> contacts = survey(out_.bodies);
-    if (!contacts) return contacts.error();
-    out_.after = state_of(*contacts);
-    list_jams(*contacts);
-    return {};
+    return take_stock();
   }
 
   [[nodiscard]] std::vector<nurbs::Surface> present() const {
@@ -486,11 +486,9 @@ class Relaxer {
 
 Result<Relaxation> relax(std::vector<yarn::Body> bodies, const RelaxOptions& options) {
   for (const yarn::Body& body : bodies)
-    if (body.surface.is_empty() || body.surface.count_v < 2) {
-      Message message = error(Kind::geometry, fmt::format("yarn '{}' has no surface to move", body.name));
-      message.yarn = body.name;
-      return message;
-    }
+    if (body.surface.is_empty() || body.surface.count_v < 2)
+      return error(Kind::geometry, fmt::format("yarn '{}' has no surface to move", body.name))
+          .of_yarn(body.name);
   return Relaxer(std::move(bodies), options).run();
 }
 

@@ -6,15 +6,6 @@
 
 namespace selvage::contact {
 
-namespace {
-
-Vec3 unit_or_zero(const Vec3& v) {
-  const double size = v.norm();
-  return size > 0.0 ? Vec3(v / size) : Vec3(Vec3::Zero());
-}
-
-}  // namespace
-
 SkinDistance::SkinDistance(const SkinMesh& skin)
     : skin_(skin), tree_(boxes_of(skin.vertices, skin.triangles)) {
   for (const Vec3& p : skin.vertices) box_.extend(p);

@@ -37,9 +37,8 @@ struct Line {
     if (box.squaredExteriorDistance(p) > reach * reach) return std::nullopt;
     double best = reach, arc = -1.0;
     for (std::size_t k = 0; k + 1 < points.size(); ++k) {
-      const Vec3 way = points[k + 1] - points[k];
-      const double share = std::clamp((p - points[k]).dot(way) / way.squaredNorm(), 0.0, 1.0);
-      const double distance = (points[k] + share * way - p).norm();
+      const double share = nearest_share(p, points[k], points[k + 1]);
+      const double distance = (points[k] + share * (points[k + 1] - points[k]) - p).norm();
       if (distance < best) {
         best = distance;
         arc = (static_cast<double>(k) + share) * step;

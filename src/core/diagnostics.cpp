@@ -69,6 +69,31 @@ Message warning(Kind kind, std::string text, About about) {
   return message;
 }
 
+Message note(Kind kind, std::string text) {
+  Message message = error(kind, std::move(text));
+  message.severity = Severity::note;
+  return message;
+}
+
+Message Message::placed(TextPlace where, std::string_view in_file) const {
+  Message message = *this;
+  if (place.line == 0) message.place = where;
+  if (file.empty()) message.file = in_file;
+  return message;
+}
+
+Message Message::of_yarn(std::string_view name, TextPlace where) const {
+  Message message = placed(where);
+  if (yarn.empty()) message.yarn = name;
+  return message;
+}
+
+Message Message::at_point(const Vec3& point) const {
+  Message message = *this;
+  if (!at) message.at = point;
+  return message;
+}
+
 namespace {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {

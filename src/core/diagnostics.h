@@ -48,6 +48,11 @@ struct Message : About {
   std::string text{};     // what is wrong and, where it is known, the remedy; no trailing newline
   std::string excerpt{};  // the offending line (shortened when long), without its newline
   int caret = 0;          // 1-based column in `excerpt` under which the caret stands; 0: none
+
+  // The same, of this place, file, yarn or point where it does not say one itself.
+  [[nodiscard]] Message placed(TextPlace where, std::string_view in_file = {}) const;
+  [[nodiscard]] Message of_yarn(std::string_view name, TextPlace where = {}) const;
+  [[nodiscard]] Message at_point(const Vec3& point) const;
 };
 
 // "FILE:LINE:COLUMN: error: TEXT" and, with an excerpt, the line and a caret under it; parts that are
@@ -61,6 +66,7 @@ std::string_view name_of(Kind kind);
 // Short makers of a Message.
 Message error(Kind kind, std::string text, About about = {});
 Message warning(Kind kind, std::string text, About about = {});
+Message note(Kind kind, std::string text);
 
 // The known word nearest to `word` (edit distance, ignoring case) if it is near enough to be what the user
 // meant (at most a third of its length away); empty otherwise. Used for "did you mean".

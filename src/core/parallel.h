@@ -40,4 +40,17 @@ void for_each_index(std::size_t count, int threads, const Work& work) {
   if (failure) std::rethrow_exception(failure);
 }
 
+// The same, with progress(done, count) after each; it may be empty.
+template <class Work, class Progress>
+void for_each_index(std::size_t count, int threads, const Work& work, const Progress& progress) {
+  std::size_t done = 0;
+  std::mutex guard;
+  for_each_index(count, threads, [&](std::size_t i) {
+    work(i);
+    if (!progress) return;
+    const std::lock_guard lock(guard);
+    progress(++done, count);
+  });
+}
+
 }  // namespace selvage

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "nurbs/interpolate.h"
 #include "yarn/ends.h"
 #include "yarn/grid.h"
 
@@ -13,17 +14,11 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-bool same_numbers(const nurbs::Surface& a, const nurbs::Surface& b) {
-  return a.degree_u == b.degree_u && a.degree_v == b.degree_v && a.count_u == b.count_u &&
-         a.count_v == b.count_v && a.knots_u == b.knots_u && a.knots_v == b.knots_v && a.points == b.points &&
-         a.weights == b.weights;
-}
-
 // What the grid gives, and whether that is the body's surface.
 bool gives(const Grid& grid, const yarn::Body& body, yarn::Body& built) {
   built = {};
   return yarn::fill_from_grid(built, grid).ok() && built.closed_along == body.closed_along &&
-         same_numbers(built.surface, body.surface);
+         built.surface == body.surface;
 }
 
 // The columns [first, last) of the surface as the grid's rows.
@@ -46,11 +41,8 @@ void describe_along(Grid& grid, const yarn::Body& body) {
   grid.closed_along = body.closed_along;
   const int standard = std::min(3, body.closed_along ? surface.count_v : surface.count_v - 1);
   if (surface.degree_v != standard) grid.degree_along = surface.degree_v;
-  bool is_standard = !body.closed_along;
-  for (std::size_t i = 0; is_standard && i < surface.knots_v.size(); ++i)
-    is_standard = surface.knots_v[i] ==
-                  std::clamp(static_cast<int>(i) - surface.degree_v, 0, surface.count_v - surface.degree_v);
-  if (!is_standard) grid.knots_along = surface.knots_v;
+  if (body.closed_along || surface.knots_v != nurbs::clamped_integer_knots(surface.count_v, surface.degree_v))
+    grid.knots_along = surface.knots_v;
 }
 
 // The clamped form of the sections, which any surface has.

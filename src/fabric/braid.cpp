@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/wrapped.h"
 #include "fabric/braid_fit.h"
 #include "fabric/braid_shape.h"
 #include "fabric/build.h"
@@ -33,12 +34,6 @@ constexpr double steepest_strip = 80.0;
 double rounded_up(double value) {
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
   return std::ceil(value / unit * (1.0 - 1e-9)) * unit;
-}
-
-Message at_place(TextPlace place, std::string text) {
-  Message message = error(Kind::geometry, std::move(text));
-  message.place = place;
-  return message;
 }
 
 class BraidConstruction : public Construction {
@@ -147,13 +142,13 @@ class BraidConstruction : public Construction {
       return Vec3(at.derivative / shape_.step * (end_ - begin_));
     };
     const auto point_at = [&](std::int64_t k) {
-      if (shape_.flat) k = ((k + copy.ahead * points_) % round + round) % round;
+      if (shape_.flat) k = wrapped(k + copy.ahead * points_, round);
       return point(copy, static_cast<double>(k) / points_ - 0.5);
     };
     Vec3 first = Vec3::Zero();
     const double room = 0.25 * shape_.step / points_;  // the last point stands no nearer to its neighbour
     for (std::int64_t k = first_repeat_ * per_repeat;; ++k) {
-      const std::int64_t within = ((k % per_repeat) + per_repeat) % per_repeat;
+      const std::int64_t within = wrapped(k, per_repeat);
       const std::int64_t repeat = (k - within) / per_repeat;
       const double base = static_cast<double>(within) * shape_.step / points_;
       const double along = base + static_cast<double>(repeat) * pitch;
@@ -197,24 +192,27 @@ class BraidConstruction : public Construction {
 
 Status check_counts(const Braid& braid, const BraidShape& shape) {
   if (braid.flat && braid.angle > steepest_strip)
-    return at_place(
-        braid.radius_place,
-        fmt::format("braiders at {:.6g} degrees to the axis of a strip turn back on themselves at its "
-                    "edges: at most {:.4g} degrees",
-                    braid.angle, steepest_strip));
+    return error(
+               Kind::geometry,
+               fmt::format("braiders at {:.6g} degrees to the axis of a strip turn back on themselves at its "
+                           "edges: at most {:.4g} degrees",
+                           braid.angle, steepest_strip))
+        .placed(braid.radius_place);
   const std::int64_t period = std::lcm(std::int64_t{2}, std::int64_t{braid.over} + braid.under);
   if (!shape.flat && braid.carriers % period != 0)
-    return at_place(
-        braid.carriers_place,
-        fmt::format("the pattern {}/{} does not close round a tube of {} carriers: it takes a "
-                    "multiple of {}, such as {}",
-                    braid.over, braid.under, braid.carriers, period, (braid.carriers / period + 1) * period));
+    return error(Kind::geometry,
+                 fmt::format("the pattern {}/{} does not close round a tube of {} carriers: it takes a "
+                             "multiple of {}, such as {}",
+                             braid.over, braid.under, braid.carriers, period,
+                             (braid.carriers / period + 1) * period))
+        .placed(braid.carriers_place);
   const std::int64_t runs = run_count(shape);
   if (braid.axial_count > runs)
-    return at_place(braid.axial_place,
-                    fmt::format("{} axial yarns are too many: between {} carriers in the pattern {}/{} there "
-                                "is room for {} (one wherever the same braiders stay on top)",
-                                braid.axial_count, braid.carriers, braid.over, braid.under, runs));
+    return error(Kind::geometry,
+                 fmt::format("{} axial yarns are too many: between {} carriers in the pattern {}/{} there "
+                             "is room for {} (one wherever the same braiders stay on top)",
+                             braid.axial_count, braid.carriers, braid.over, braid.under, runs))
+        .placed(braid.axial_place);
   return {};
 }
 
@@ -224,28 +222,31 @@ Status check_widths(const Braid& braid, const BraidShape& shape, double width, s
   if (2.0 * shape.column * cosine >= width * (1.0 - 1e-9)) return {};
   const double needed = 0.5 * width / cosine;  // a column
   if (shape.flat)
-    return at_place(
-        braid.radius_place,
-        fmt::format(
-            "{} braiders {:.4g} {} wide do not fit side by side into this strip: at {:.4g} degrees it "
-            "has to be at least {:.4g} {} wide",
-            braid.carriers, width, unit, braid.angle,
-            rounded_up(strip_columns(shape, braid.angle) * needed + width), unit));
-  return at_place(
-      braid.radius_place,
-      fmt::format("{} braiders {:.4g} {} wide do not fit side by side round a radius of {:.4g} {} at {:.4g} "
-                  "degrees: the radius has to be at least {:.4g} {}, or the braiders at most {:.4g} {} wide",
-                  braid.carriers, width, unit, shape.radius, unit, braid.angle,
-                  rounded_up(needed * braid.carriers / (2.0 * pi)), unit, 2.0 * shape.column * cosine, unit));
+    return error(
+               Kind::geometry,
+               fmt::format(
+                   "{} braiders {:.4g} {} wide do not fit side by side into this strip: at {:.4g} degrees it "
+                   "has to be at least {:.4g} {} wide",
+                   braid.carriers, width, unit, braid.angle,
+                   rounded_up(strip_columns(shape, braid.angle) * needed + width), unit))
+        .placed(braid.radius_place);
+  return error(Kind::geometry,
+               fmt::format(
+                   "{} braiders {:.4g} {} wide do not fit side by side round a radius of {:.4g} {} at {:.4g} "
+                   "degrees: the radius has to be at least {:.4g} {}, or the braiders at most {:.4g} {} wide",
+                   braid.carriers, width, unit, shape.radius, unit, braid.angle,
+                   rounded_up(needed * braid.carriers / (2.0 * pi)), unit, 2.0 * shape.column * cosine, unit))
+      .placed(braid.radius_place);
 }
 
 // The mandrel has room for the innermost yarns.
 Status check_radius(const Braid& braid, double reach, std::string_view unit) {
   if (braid.flat || braid.radius > reach) return {};
-  return at_place(braid.radius_place,
-                  fmt::format("a radius of {:.4g} {} leaves no room for the yarns inside: the cloth's middle "
-                              "surface needs more than {:.4g} {}",
-                              braid.radius, unit, rounded_up(reach), unit));
+  return error(Kind::geometry,
+               fmt::format("a radius of {:.4g} {} leaves no room for the yarns inside: the cloth's middle "
+                           "surface needs more than {:.4g} {}",
+                           braid.radius, unit, rounded_up(reach), unit))
+      .placed(braid.radius_place);
 }
 
 // Step, columns and the rest at crossings, for braiders of this size.
@@ -290,12 +291,11 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
   const std::string_view unit = name_of(fabric.units);
   const auto outline_of = [&](const Thread& of, TextPlace place) -> Result<std::vector<Vec2>> {
     const Result<yarn::Section> section = centred_section_of(of, fabric.units);
-    Status checked;
-    if (!section)
-      checked = section.error();
-    else
-      checked = yarn::check_section(*section, yarn::nominal_size(*section));
-    if (!checked) return at_place(place, fmt::format("thread '{}': {}", of.name, checked.error().text));
+    const Status checked =
+        section ? yarn::check_section(*section, yarn::nominal_size(*section)) : Status(section.error());
+    if (!checked)
+      return error(Kind::geometry, fmt::format("thread '{}': {}", of.name, checked.error().text))
+          .placed(place);
     return outline_polygon(*section);
   };
   const Result<std::vector<Vec2>> outline = outline_of(thread, braid.thread_place);
@@ -328,13 +328,12 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
   if (gap < 0.5 * wanted) {
     const std::string found = gap > 0.0 ? fmt::format("come as near as about {:.2g} {}", gap, unit)
                                         : fmt::format("overlap, by about {:.2g} {}", -gap, unit);
-    Message message = warning(
-        Kind::geometry, fmt::format("crossing yarns have too little room and {}: fewer carriers, narrower "
-                                    "yarns or a larger {} give it",
-                                    found, braid.flat ? "width" : "radius"));
-    message.file = fabric.file;
-    message.place = braid.place;
-    diagnostics.add(std::move(message));
+    diagnostics.add(
+        warning(Kind::geometry,
+                fmt::format("crossing yarns have too little room and {}: fewer carriers, narrower "
+                            "yarns or a larger {} give it",
+                            found, braid.flat ? "width" : "radius"))
+            .placed(braid.place, fabric.file));
   }
   return std::unique_ptr<Construction>(
       std::make_unique<BraidConstruction>(fabric, braid, thread, axial, shape, points_of(shape)));

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "fabric/clearance.h"
+#include "nurbs/roots.h"
 
 namespace selvage::fabric {
 
@@ -138,10 +139,7 @@ double fit_amplitude(BraidShape& shape, double least, double wanted, const std::
     shape.amplitude = best;
     return best_gap;
   }
-  for (int i = 0; i < 10; ++i) {
-    const double middle = 0.5 * (low + high);
-    (gap_at(middle) >= wanted ? high : low) = middle;
-  }
+  nurbs::halve_between(low, high, 10, [&](double middle) { return !(gap_at(middle) >= wanted); });
   return gap_at(high);
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/wrapped.h"
+
 namespace selvage::fabric {
 
 namespace {
@@ -55,8 +57,7 @@ Slope zigzag(const BraidShape& shape, double t) {
 
 bool BraidShape::is_over(std::int64_t column_number) const {
   const std::int64_t period = std::int64_t{over} + under;
-  const std::int64_t place = (column_number - (flat ? 1 : 0)) % period;
-  return (place < 0 ? place + period : place) < over;
+  return wrapped(column_number - (flat ? 1 : 0), period) < over;
 }
 
 int braid_state(const BraidShape& shape, const Braider& braider, std::int64_t k) {
@@ -65,14 +66,14 @@ int braid_state(const BraidShape& shape, const Braider& braider, std::int64_t k)
     return on_top ? braider.direction : -braider.direction;
   }
   const std::int64_t n = shape.carriers;
-  const std::int64_t way = ((braider.start + k) % (2 * n) + 2 * n) % (2 * n);
+  const std::int64_t way = wrapped(braider.start + k, 2 * n);
   if (way % n == 0) return 0;
   const bool back = way > n;
   return shape.is_over(back ? 2 * n - way : way) != back ? 1 : -1;
 }
 
 Vec2 unit_at(std::int64_t k, std::int64_t n) {
-  k = (k % n + n) % n;
+  k = wrapped(k, n);
   std::int64_t eighth = 8 * k / n;
   // Within the first eighth of a turn, counted from the nearest axis.
   const bool backward = eighth % 2 == 1;

@@ -40,12 +40,6 @@ yarn::Sealings sealings_of(const Yarn* yarn, const BuildOptions& options) {
   return sealings;
 }
 
-Message in_file(const Fabric& fabric, TextPlace place, Message message) {
-  message.file = fabric.file;
-  if (message.place.line == 0) message.place = place;
-  return message;
-}
-
 // The names of the threads that a construction uses.
 std::vector<std::string> threads_of(const Item& item) {
   using Names = std::vector<std::string>;
@@ -80,16 +74,12 @@ std::size_t most_rows(const BuildOptions& options) {
 
 // The yarn of a path block as a plan, before edits.
 Result<YarnPlan> plan_of_path(const Fabric& fabric, const Yarn& yarn, const BuildOptions& options) {
-  YarnPlan plan{.name = yarn.name,
-                .group = {},
-                .role = yarn.role.value_or(Role::other),
-                .place = yarn.place,
-                .thread_name = yarn.thread,
-                .thread = resolved_thread(fabric, yarn),
-                .points = {},
-                .line = {},
-                .spec = {},
-                .messages = {}};
+  YarnPlan plan;
+  plan.name = yarn.name;
+  plan.role = yarn.role.value_or(Role::other);
+  plan.place = yarn.place;
+  plan.thread_name = yarn.thread;
+  plan.thread = resolved_thread(fabric, yarn);
   Result<yarn::PathRows> rows = path_rows_of(fabric, yarn, plan.thread);
   if (!rows) return rows.error();
   const Path& path = std::get<Path>(yarn.shape);
@@ -156,7 +146,7 @@ bool YarnBuilder::take_on(const Work& work, TextPlace place, Diagnostics& diagno
   WorkLimits limits = options_.work;
   limits.longest = std::min<std::uint64_t>(limits.longest, most_rows(options_));
   const Status fits = check_work(work_, limits);
-  if (!fits) diagnostics.add(in_file(*fabric_, place, fits.error()));
+  if (!fits) diagnostics.add(fits.error().placed(place, fabric_->file));
   return fits.ok();
 }
 
@@ -176,16 +166,16 @@ void YarnBuilder::add_yarn(const Yarn& yarn, Diagnostics& diagnostics) {
   entry.yarn = &yarn;
   add_entries(entry, parts);
   if (path == nullptr && part_count(thread, options_.detail) > 1)
-    diagnostics.add(in_file(
-        *fabric_, yarn.place,
+    diagnostics.add(
         warning(Kind::unsupported, fmt::format("yarn '{}' is a grid: it is built as it stands, without plies "
                                                "and filaments",
-                                               yarn.name))));
+                                               yarn.name))
+            .placed(yarn.place, fabric_->file));
 }
 
 void YarnBuilder::add_construction(std::string_view kind, Result<std::unique_ptr<Construction>> made,
                                    TextPlace place, Diagnostics& diagnostics) {
-  if (!made) return diagnostics.add(in_file(*fabric_, place, made.error()));
+  if (!made) return diagnostics.add(made.error().placed(place, fabric_->file));
   const Construction& construction = **made;
   const std::size_t count = construction.count();
   const Work plain{count, construction.data_points(), construction.longest()};
@@ -253,11 +243,11 @@ void YarnBuilder::make_names_unique(Diagnostics& diagnostics) {
     for (int number = ++numbers[made->kind]; is_taken(); ++number)
       made->prefix = fmt::format("{}{}_", made->kind, number);
     if (!made->prefix.empty())
-      diagnostics.add(in_file(
-          *fabric_, made->place,
+      diagnostics.add(
           warning(Kind::geometry, fmt::format("other yarns of this file have names of this {}'s: its own "
                                               "begin with '{}', as in '{}'",
-                                              made->kind, made->prefix, name_of_yarn(0)))));
+                                              made->kind, made->prefix, name_of_yarn(0)))
+              .placed(made->place, fabric_->file));
     for (std::size_t i = 0; i < construction.count(); ++i) taken.insert(name_of_yarn(i));
   }
 }
@@ -277,11 +267,11 @@ void YarnBuilder::check_part_names(Diagnostics& diagnostics) const {
                                                   : other.made->construction->thread(other.index);
       for (std::size_t part = 0; part < other.parts; ++part)
         if (part_name(name_of(other), thread, options_.detail, part) == name)
-          diagnostics.add(in_file(
-              *fabric_, entry.yarn->place,
+          diagnostics.add(
               error(Kind::geometry, fmt::format("yarn '{}' has the name of a part of yarn '{}': give it "
                                                 "another one",
-                                                name, name_of(other)))));
+                                                name, name_of(other)))
+                  .placed(entry.yarn->place, fabric_->file));
     }
   }
 }
@@ -296,11 +286,11 @@ void YarnBuilder::check_edited_names(Diagnostics& diagnostics) const {
       std::sort(names.begin(), names.end());
     }
     const std::string_view near = nearest_word(edit.yarn, names);
-    diagnostics.add(in_file(
-        *fabric_, edit.place,
+    diagnostics.add(
         error(Kind::geometry,
               fmt::format("there is no yarn '{}' to edit{}", edit.yarn,
-                          near.empty() ? std::string() : fmt::format("; did you mean '{}'?", near)))));
+                          near.empty() ? std::string() : fmt::format("; did you mean '{}'?", near)))
+            .placed(edit.place, fabric_->file));
   }
 }
 
@@ -415,20 +405,17 @@ Result<yarn::Body> YarnBuilder::build_grid(const Yarn& yarn) const {
            yarn.role.value_or(Role::other), yarn.place);
   for (const Edit& edit : fabric_->edits)
     if (edit.yarn == yarn.name)
-      return in_file(*fabric_, edit.place,
-                     error(Kind::unsupported,
-                           fmt::format("yarn '{}' is a grid: it has no centre line to edit", yarn.name)));
+      return error(Kind::unsupported,
+                   fmt::format("yarn '{}' is a grid: it has no centre line to edit", yarn.name))
+          .placed(edit.place, fabric_->file);
   body.group = yarn.group;
   // Its rows are as they are; the word `rotate` says that the fibres keep to their columns.
   const std::optional<Twist> twist = resolved_thread(*fabric_, yarn).twist;
   body.section_turns = twist && twist->rotates && twist->turns != 0.0;
   yarn::GridNet net = grid;
   net.closed_along = net.closed_along || yarn.closed;
-  Status filled = yarn::fill_from_grid(body, net);
-  if (!filled) {
-    filled.error().place = grid.place;
-    return filled.error();
-  }
+  if (const Status filled = yarn::fill_from_grid(body, net); !filled)
+    return filled.error().placed(grid.place);
   return body;
 }
 

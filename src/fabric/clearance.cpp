@@ -26,11 +26,8 @@ double signed_distance(const std::vector<Vec2>& polygon, const Vec2& p) {
 
 std::vector<Vec2> outline_polygon(const yarn::Section& section, int looks) {
   constexpr int pieces = 8;  // in a quarter
-  const yarn::Outline outline = yarn::make_outline(section, yarn::nominal_size(section), pieces, false);
-  nurbs::Curve curve;
-  curve.degree = outline.degree;
-  curve.knots = outline.knots;
-  for (const Vec2& p : outline.points) curve.points.emplace_back(p.x(), p.y(), 0.0);
+  const nurbs::Curve curve =
+      yarn::as_curve(yarn::make_outline(section, yarn::nominal_size(section), pieces, false));
   std::vector<Vec2> polygon;
   for (const double t : nurbs::divided(curve.knots, curve.degree, looks))
     polygon.push_back(nurbs::evaluate(curve, t).head<2>());

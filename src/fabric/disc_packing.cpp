@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "fabric/clearance.h"
+#include "nurbs/roots.h"
 
 namespace selvage::fabric {
 
@@ -170,8 +171,8 @@ DiscPacking discs_in_circle(std::size_t n) {
 }
 
 DiscPacking discs_in_polygon(std::size_t n, const std::vector<Vec2>& polygon) {
-  Box3 box;
-  for (const Vec2& p : polygon) box.extend(Vec3(p.x(), p.y(), 0.0));
+  Eigen::AlignedBox2d box;
+  for (const Vec2& p : polygon) box.extend(p);
   // The lattice's points with room for a disc of diameter d, both ways round and about each centre.
   const auto found = [&](double d) {
     std::vector<Vec2> best;
@@ -193,16 +194,11 @@ DiscPacking discs_in_polygon(std::size_t n, const std::vector<Vec2>& polygon) {
       }
     return best;
   };
-  double low = 0.0, high = std::min(box.sizes().x(), box.sizes().y());
   const double area = box.sizes().x() * box.sizes().y();
   double fits = 0.5 * std::sqrt(area / static_cast<double>(n));
   for (int i = 0; i < 20 && found(fits).size() < n; ++i) fits *= 0.7;
-  low = fits;
-  high = std::max(high, low);
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (found(middle).size() >= n ? low : high) = middle;
-  }
+  double low = fits, high = std::max(std::min(box.sizes().x(), box.sizes().y()), fits);
+  nurbs::halve_between(low, high, 40, [&](double middle) { return found(middle).size() >= n; });
   DiscPacking packing{0.5 * low, found(low)};
   if (packing.centres.size() < n) return {0.0, {}};
   // Those too many go from the outside.

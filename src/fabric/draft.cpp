@@ -4,16 +4,12 @@
 
 #include <numeric>
 
+#include "core/wrapped.h"
 #include "fabric/repeat.h"
 
 namespace selvage::fabric {
 
 namespace {
-
-int wrapped(long long index, int period) {
-  const auto rest = static_cast<int>(index % period);
-  return rest < 0 ? rest + period : rest;
-}
 
 // The square or oblong repeat whose crossings `is_on_top(pick, end)` tells.
 template <class Rule>
@@ -58,26 +54,16 @@ Result<Drawdown> satin(long long n, long long step) {
 }  // namespace
 
 bool Drawdown::warp_on_top(long long pick, long long end) const {
-  return bits[static_cast<std::size_t>(wrapped(pick, picks)) * static_cast<std::size_t>(ends) +
-              static_cast<std::size_t>(wrapped(end, ends))];
+  return bits[static_cast<std::size_t>(wrapped<long long>(pick, picks) * ends +
+                                       wrapped<long long>(end, ends))];
 }
 
 long long Drawdown::repeat_of_picks() const {
-  return smallest_shift(picks, [this](long long shift) {
-    for (int pick = 0; pick < picks; ++pick)
-      for (int end = 0; end < ends; ++end)
-        if (warp_on_top(pick + shift, end) != warp_on_top(pick, end)) return false;
-    return true;
-  });
+  return smallest_repeat(picks, ends, [&](long long pick, long long end) { return warp_on_top(pick, end); });
 }
 
 long long Drawdown::repeat_of_ends() const {
-  return smallest_shift(ends, [this](long long shift) {
-    for (int pick = 0; pick < picks; ++pick)
-      for (int end = 0; end < ends; ++end)
-        if (warp_on_top(pick, end + shift) != warp_on_top(pick, end)) return false;
-    return true;
-  });
+  return smallest_repeat(ends, picks, [&](long long end, long long pick) { return warp_on_top(pick, end); });
 }
 
 Result<Drawdown> drawdown_of(const Draft& draft) {

@@ -29,10 +29,7 @@ Status apply_edits(const Fabric& fabric, std::string_view yarn, yarn::CentreLine
   for (const Edit& edit : fabric.edits) {
     if (edit.yarn != yarn) continue;
     Result<nurbs::Curve> curve = edited(edit, line);
-    if (!curve) {
-      curve.error().place = edit.place;
-      return curve.error();
-    }
+    if (!curve) return curve.error().placed(edit.place);
     line.curve = std::move(*curve);
   }
   return {};

@@ -107,10 +107,7 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
 KnitMoves moves_of(const Fabric& fabric, const Knit& knit, const yarn::Section& section,
                    const KnitField& field, const BuildOptions& options, Diagnostics& diagnostics) {
   const auto warn = [&](std::string text) {
-    Message message = warning(Kind::geometry, std::move(text));
-    message.file = fabric.file;
-    message.place = knit.place;
-    diagnostics.add(std::move(message));
+    diagnostics.add(warning(Kind::geometry, std::move(text)).placed(knit.place, fabric.file));
   };
   const yarn::SectionSize size = yarn::nominal_size(section);
   if (!(size.width > 0.0) || !(size.height > 0.0)) return {};
@@ -150,18 +147,14 @@ KnitMoves moves_of(const Fabric& fabric, const Knit& knit, const yarn::Section& 
 
 Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit& knit,
                                                 const BuildOptions& options, Diagnostics& diagnostics) {
-  const auto failed = [](Message message, TextPlace place) {
-    if (message.place.line == 0) message.place = place;
-    return message;
-  };
   Result<StitchChart> chart = StitchChart::of(knit);
-  if (!chart) return failed(chart.error(), knit.place);
+  if (!chart) return chart.error().placed(knit.place);
   const Thread* thread = fabric.find_thread(knit.thread);
   if (thread == nullptr)
-    return failed(error(Kind::geometry, fmt::format("there is no thread '{}'", knit.thread)),
-                  knit.thread_place);
+    return error(Kind::geometry, fmt::format("there is no thread '{}'", knit.thread))
+        .placed(knit.thread_place);
   Result<yarn::Section> section = centred_section_of(*thread, fabric.units);
-  if (!section) return failed(section.error(), knit.thread_place);
+  if (!section) return section.error().placed(knit.thread_place);
   const yarn::SectionSize size = yarn::nominal_size(*section);
   const long long beside = fabric.cell ? margin_wales : 0;
   // The loops of courses below reach up into the cell as far as they are held, and one course further.

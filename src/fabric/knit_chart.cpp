@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "core/wrapped.h"
 #include "fabric/repeat.h"
 
 namespace selvage::fabric {
@@ -12,11 +13,6 @@ namespace selvage::fabric {
 namespace {
 
 constexpr int most_rib_wales = 100'000;  // more than any machine has needles
-
-int wrapped(long long index, int period) {
-  const auto rest = static_cast<int>(index % period);
-  return rest < 0 ? rest + period : rest;
-}
 
 }  // namespace
 
@@ -76,41 +72,30 @@ Status StitchChart::measure_holding(const Knit& knit, int wale) {
     run = is_loop(at(course, wale)) ? 0 : run + 1;
     longest_hold_ = std::max(longest_hold_, run);
     if (run <= max_held) continue;
-    Message message = error(
-        Kind::geometry, fmt::format("wale {} of the chart has more than {} tucks and misses one above the "
-                                    "other: no loop can be held over more courses",
-                                    wale + 1, max_held));
     const auto row = static_cast<std::size_t>(courses_ - 1 - course % courses_);
-    if (row < knit.chart_lines.size())
-      message.place = {knit.chart_lines[row], 1};
-    else
-      message.place = knit.chart_place;
-    return message;
+    const bool has_line = row < knit.chart_lines.size();
+    return error(Kind::geometry,
+                 fmt::format("wale {} of the chart has more than {} tucks and misses one above the "
+                             "other: no loop can be held over more courses",
+                             wale + 1, max_held))
+        .placed(has_line ? TextPlace{knit.chart_lines[row], 1} : knit.chart_place);
   }
   return {};
 }
 
 Stitch StitchChart::at(long long course, long long wale) const {
-  return stitches_[static_cast<std::size_t>(wrapped(course, courses_)) * static_cast<std::size_t>(wales_) +
-                   static_cast<std::size_t>(wrapped(wale, wales_))];
+  return stitches_[static_cast<std::size_t>(wrapped<long long>(course, courses_) * wales_ +
+                                            wrapped<long long>(wale, wales_))];
 }
 
 long long StitchChart::repeat_of_courses() const {
-  return smallest_shift(courses_, [&](long long shift) {
-    for (int course = 0; course < courses_; ++course)
-      for (int wale = 0; wale < wales_; ++wale)
-        if (at(course + shift, wale) != at(course, wale)) return false;
-    return true;
-  });
+  return smallest_repeat(courses_, wales_,
+                         [&](long long course, long long wale) { return at(course, wale); });
 }
 
 long long StitchChart::repeat_of_wales() const {
-  return smallest_shift(wales_, [&](long long shift) {
-    for (int course = 0; course < courses_; ++course)
-      for (int wale = 0; wale < wales_; ++wale)
-        if (at(course, wale + shift) != at(course, wale)) return false;
-    return true;
-  });
+  return smallest_repeat(wales_, courses_,
+                         [&](long long wale, long long course) { return at(course, wale); });
 }
 
 }  // namespace selvage::fabric

@@ -5,6 +5,8 @@
 #include <array>
 #include <charconv>
 
+#include "core/wrapped.h"
+
 namespace selvage::fabric {
 
 namespace {
@@ -62,10 +64,8 @@ class LappingReader {
     return value;
   }
   [[nodiscard]] Message fault(std::string what) const {
-    Message message = error(Kind::malformed, std::move(what));
-    message.place = place_;
-    if (place_.column > 0) message.place.column += static_cast<int>(at_);
-    return message;
+    const int column = place_.column > 0 ? place_.column + static_cast<int>(at_) : 0;
+    return error(Kind::malformed, std::move(what)).placed({place_.line, column});
   }
 
   std::string_view text_;
@@ -99,8 +99,7 @@ Result<Lapping> parse_lapping(std::string_view text, TextPlace place) {
 }
 
 const Overlap& overlap_at(const Lapping& lapping, long long course) {
-  const auto length = static_cast<long long>(lapping.size());
-  return lapping[static_cast<std::size_t>(((course % length) + length) % length)];
+  return lapping[static_cast<std::size_t>(wrapped(course, static_cast<long long>(lapping.size())))];
 }
 
 std::vector<std::string_view> classic_lappings(std::string_view name, Warpknit::Stitch stitch) {

@@ -71,7 +71,6 @@ class Mender {
   // Calls each(line, place, jet, curvature, lack) wherever a bend is too tight.
   template <class Each>
   void for_tight_bends(const State& state, const Each& each) const;
-  void report(const State& first, const State& last, Mending& mending) const;
 
   const MendProblem& problem_;
   Eigen::Index size_;
@@ -375,34 +374,6 @@ double largest_of(const Vector& moves) {
   return largest;
 }
 
-double length_of(const CubicPath& path) {
-  constexpr int steps = 16;
-  double length = 0;
-  for (std::size_t i = 0; i < path.spans() * steps; ++i)
-    length += path.at((static_cast<double>(i) + 0.5) / steps).d1.norm() / steps;
-  return length;
-}
-
-void Mender::report(const State& first, const State& last, Mending& mending) const {
-  mending.missing_before = first.missing;
-  mending.missing = last.missing;
-  mending.at = last.at;
-  mending.largest_move = largest_of(last.moves);
-  for (std::size_t c = 0; c < problem_.freedom.size(); ++c)
-    mending.moves.emplace_back(last.moves.segment<3>(3 * static_cast<Eigen::Index>(c)));
-  double sharpest = 0;
-  for (std::size_t l = 0; l < last.paths.size(); ++l) {
-    const double before = length_of(first.paths[l]);
-    mending.largest_stretch =
-        std::max(mending.largest_stretch, std::abs(length_of(last.paths[l]) / before - 1));
-    for (std::size_t i = 0; i <= last.paths[l].spans() * 4 * looks; ++i) {
-      const CubicPath::Jet jet = last.paths[l].at(static_cast<double>(i) / (4 * looks));
-      sharpest = std::max(sharpest, problem_.lines[l].radius * curvature_of(jet));
-    }
-  }
-  mending.tightest_bend = sharpest > 0 ? 1 / sharpest : 0;
-}
-
 // Does no yarn come to the other side of one that it is near to?
 bool keeps_sides(const State& before, const State& after) {
   constexpr double least_share = 0.3;  // of the distance that has to be left
@@ -414,7 +385,6 @@ bool keeps_sides(const State& before, const State& after) {
 }
 
 Mending Mender::run() {
-  Mending mending;
   make_stiffness();
   State state = state_at(Vector::Zero(size_));
   finder_.emplace(problem_, state.paths);
@@ -424,9 +394,9 @@ Mending Mender::run() {
   ahead_ = 2 * longest_step * radius_;
   look(state, more);
   int stalls = 0;
-  const State first = state;
   State best = state;
-  for (; mending.steps < problem_.max_steps && first.missing > 0; ++mending.steps) {
+  const bool is_needed = state.missing > 0;
+  for (int steps = 0; is_needed && steps < problem_.max_steps; ++steps) {
     Vector step = this->step(state, more);
     const double longest = largest_of(step);
     if (longest > longest_step * radius_) step *= longest_step * radius_ / longest;
@@ -459,7 +429,9 @@ Mending Mender::run() {
     if (more > 0.5 * radius_) break;
     look(state, more);
   }
-  report(first, best, mending);
+  Mending mending{{}, best.missing, best.at};
+  for (std::size_t c = 0; c < problem_.freedom.size(); ++c)
+    mending.moves.emplace_back(best.moves.segment<3>(3 * static_cast<Eigen::Index>(c)));
   return mending;
 }
 

@@ -61,12 +61,7 @@ struct MendProblem {
 struct Mending {
   std::vector<Vec3> moves;  // one a class
   double missing = 0;       // the largest lack of distance that is left; 0: every pair has what it needs
-  double missing_before = 0;
-  Vec3 at = Vec3::Zero();  // where most is missing
-  double largest_move = 0;
-  double largest_stretch = 0;  // relative change of length of a line, the largest
-  double tightest_bend = 0;    // radius of curvature over the line's radius, the smallest
-  int steps = 0;
+  Vec3 at = Vec3::Zero();   // where most is missing
 
   [[nodiscard]] bool is_solved() const { return missing == 0; }
 };

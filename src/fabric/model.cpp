@@ -20,12 +20,6 @@ double LinearDensity::tex() const {
 namespace {
 
 template <class T>
-const T* find_named(const std::vector<T>& list, std::string_view name) {
-  const auto found = std::find_if(list.begin(), list.end(), [&](const T& item) { return item.name == name; });
-  return found == list.end() ? nullptr : &*found;
-}
-
-template <class T>
 void override_with(std::optional<T>& base, const std::optional<T>& own) {
   if (own) base = own;
 }

@@ -2,6 +2,7 @@
 // grammar but not yet built. Numbers are as written, in the file's unit.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -288,6 +289,13 @@ struct Fabric {
   [[nodiscard]] const Thread* find_thread(std::string_view name) const;
   [[nodiscard]] const Material* find_material(std::string_view name) const;
 };
+
+// Null: none has that name.
+template <class T>
+const T* find_named(const std::vector<T>& list, std::string_view name) {
+  const auto found = std::find_if(list.begin(), list.end(), [&](const T& item) { return item.name == name; });
+  return found == list.end() ? nullptr : &*found;
+}
 
 // The thread's statements with the yarn's own over them.
 Thread resolved_thread(const Fabric& fabric, const Yarn& yarn);

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "core/plane.h"
 #include "nurbs/measure.h"
 
 namespace selvage::fabric {
@@ -79,11 +81,7 @@ class Builder {
   }
 
  private:
-  void say(Message message, TextPlace place) {
-    message.file = fabric_.file;
-    message.place = place;
-    diagnostics_.add(std::move(message));
-  }
+  void say(const Message& message, TextPlace place) { diagnostics_.add(message.placed(place, fabric_.file)); }
 
   void check_size() {
     if (rows_.size() > most_edges)
@@ -198,9 +196,7 @@ class Builder {
     const Vec2 along = farthest - origin;
     for (const Bezier& curve : outline)
       for (const Vec2& p : curve)
-        if (std::abs(along.x() * (p - origin).y() - along.y() * (p - origin).x()) >
-            no_area * extent_ * extent_)
-          return false;
+        if (std::abs(cross(along, Vec2(p - origin))) > no_area * extent_ * extent_) return false;
     return true;
   }
 
@@ -228,27 +224,16 @@ class Builder {
 }  // namespace
 
 std::string_view name_of(TurningShape shape) {
-  switch (shape) {
-    case TurningShape::straight:
-      return "straight";
-    case TurningShape::c:
-      return "C";
-    case TurningShape::s:
-      return "S";
-  }
-  return "straight";
+  constexpr std::array<std::string_view, 3> names = {"straight", "C", "S"};
+  return names[static_cast<std::size_t>(shape)];
 }
 
 double CurveFit::largest_error() const {
-  double largest = 0.0;
-  for (const FixedPoint& point : points) largest = std::max(largest, point.error);
-  return largest;
+  return std::ranges::max(points, {}, &FixedPoint::error).error;
 }
 
 double CurveFit::largest_distance() const {
-  double largest = 0.0;
-  for (const FixedPoint& point : points) largest = std::max(largest, point.distance);
-  return largest;
+  return std::ranges::max(points, {}, &FixedPoint::distance).distance;
 }
 
 Bezier PieceEdge::bezier() const {

@@ -9,18 +9,15 @@
 
 namespace selvage::fabric {
 
-namespace {
-
-constexpr auto most = std::numeric_limits<std::uint64_t>::max();
-
 std::uint64_t sum_of(std::uint64_t a, std::uint64_t b) {
+  constexpr auto most = std::numeric_limits<std::uint64_t>::max();
   return a > most - b ? most : a + b;
 }
+
 std::uint64_t product_of(std::uint64_t a, std::uint64_t b) {
+  constexpr auto most = std::numeric_limits<std::uint64_t>::max();
   return b != 0 && a > most / b ? most : a * b;
 }
-
-}  // namespace
 
 Work& Work::operator+=(const Work& more) {
   yarns = sum_of(yarns, more.yarns);

@@ -50,8 +50,11 @@ class Construction {
   [[nodiscard]] virtual Repeat repeat() const = 0;
 };
 
-// What a fabric costs to build, known before any of it is computed. Counts end at the largest that there is
-// instead of beginning anew.
+// Counts that end at the largest that there is instead of beginning anew.
+std::uint64_t sum_of(std::uint64_t a, std::uint64_t b);
+std::uint64_t product_of(std::uint64_t a, std::uint64_t b);
+
+// What a fabric costs to build, known before any of it is computed.
 struct Work {
   std::uint64_t yarns = 0;    // plies and filaments counted for themselves
   std::uint64_t points = 0;   // data points of all their centre lines

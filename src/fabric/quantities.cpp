@@ -24,11 +24,9 @@ class LengthCheck {
   bool is_good(const Quantity& quantity, double length, TextPlace place, const std::string& yarn) {
     const std::string odd = oddity(quantity, length * millimetres_per(fabric_.units));
     if (odd.empty()) return true;
-    Message message = error(Kind::geometry, odd + (fabric_.units_given ? "" : " (a file without `units`)"));
-    message.file = fabric_.file;
-    message.place = place;
-    message.yarn = yarn;
-    diagnostics_.add(std::move(message));
+    diagnostics_.add(error(Kind::geometry, odd + (fabric_.units_given ? "" : " (a file without `units`)"))
+                         .placed(place, fabric_.file)
+                         .of_yarn(yarn));
     return false;
   }
   bool is_good(const Vec3& point, TextPlace place, const std::string& yarn) {
@@ -84,14 +82,13 @@ std::string oddity(const Quantity& quantity, double value) {
 
 Status check_proportion(std::string_view what, double distance, double size, Unit units, TextPlace place) {
   if (!is_odd(ratio_quantity, distance / size)) return {};
-  Message message = error(
-      Kind::geometry,
-      fmt::format("{} of {:.4g} {} is out of all proportion to yarns of {:.4g} {}: it lies between {:g} and "
-                  "{:g} times their size",
-                  what, distance, name_of(units), size, name_of(units), ratio_quantity.least,
-                  ratio_quantity.most));
-  message.place = place;
-  return message;
+  return error(Kind::geometry,
+               fmt::format(
+                   "{} of {:.4g} {} is out of all proportion to yarns of {:.4g} {}: it lies between {:g} and "
+                   "{:g} times their size",
+                   what, distance, name_of(units), size, name_of(units), ratio_quantity.least,
+                   ratio_quantity.most))
+      .placed(place);
 }
 
 void check_lengths(const Fabric& fabric, double tolerance, Diagnostics& diagnostics) {
@@ -107,15 +104,14 @@ void check_lengths(const Fabric& fabric, double tolerance, Diagnostics& diagnost
   if (diagnostics.error_count() > errors) return;
   const std::optional<double> smallest = smallest_section(fabric);
   if (!smallest || (tolerance >= finest * *smallest && tolerance <= coarsest * *smallest)) return;
-  Message message = error(
-      Kind::geometry,
-      fmt::format("a tolerance of {:.4g} {} does not go with sections of {:.4g} {}: it lies between {:.4g} "
-                  "and {:.4g}, and mostly is a thousandth of them",
-                  tolerance, name_of(fabric.units), *smallest, name_of(fabric.units), finest * *smallest,
-                  coarsest * *smallest));
-  message.file = fabric.file;
-  message.place = {1, 1};
-  diagnostics.add(std::move(message));
+  diagnostics.add(
+      error(Kind::geometry,
+            fmt::format(
+                "a tolerance of {:.4g} {} does not go with sections of {:.4g} {}: it lies between {:.4g} "
+                "and {:.4g}, and mostly is a thousandth of them",
+                tolerance, name_of(fabric.units), *smallest, name_of(fabric.units), finest * *smallest,
+                coarsest * *smallest))
+          .placed({1, 1}, fabric.file));
 }
 
 }  // namespace selvage::fabric

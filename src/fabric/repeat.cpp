@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/box_tree.h"
-#include "fabric/cell_faces.h"
 #include "nurbs/divided.h"
 
 namespace selvage::fabric {
@@ -85,13 +84,6 @@ std::optional<LooseEnd> first_without(const std::vector<Crossing>& crossings, st
   return std::nullopt;
 }
 
-double distance_to(const Vec3& p, const Vec3& from, const Vec3& to) {
-  const Vec3 way = to - from;
-  const double length = way.squaredNorm();
-  const double s = length > 0.0 ? std::clamp((p - from).dot(way) / length, 0.0, 1.0) : 0.0;
-  return (from + s * way - p).norm();
-}
-
 // All centre lines as polygons.
 class Lines {
  public:
@@ -120,10 +112,26 @@ class Lines {
   [[nodiscard]] double distance(const Vec3& p) const {
     double least = infinity;
     near_.near_point(p, reach_, [&](std::uint32_t i) {
-      least = std::min(least, distance_to(p, segments_[i][0], segments_[i][1]));
+      const Vec3 &from = segments_[i][0], &to = segments_[i][1];
+      least = std::min(least, (from + nearest_share(p, from, to) * (to - from) - p).norm());
       return std::min(least, reach_);
     });
     return least;
+  }
+
+  // The first point, moved by the repeat and back, that comes where no line is; counts(from, to): which moves
+  // are looked at.
+  template <class Counts>
+  [[nodiscard]] std::optional<LooseEnd> missing_copy(double repeat, int axis, double tolerance,
+                                                     const Counts& counts) const {
+    for (std::size_t i = 0; i < lines_.size(); ++i)
+      for (const Vec3& p : lines_[i])
+        for (const double way : {-repeat, repeat}) {
+          Vec3 copy = p;
+          copy[axis] += way;
+          if (counts(p, copy) && distance(copy) > tolerance) return LooseEnd{i, copy, way > 0.0};
+        }
+    return std::nullopt;
   }
 
   // Does a translation take every line to lines, as far as they go? Near their ends, where splines swing,
@@ -165,8 +173,7 @@ class Lines {
     for (const std::vector<Vec3>& line : lines_)
       for (std::size_t k = 0; k + 1 < line.size(); ++k) {
         const Vec3 a = across_axis(line[k] - from, axis), way = across_axis(line[k + 1] - line[k], axis);
-        const double length = way.squaredNorm();
-        const double s = length > 0.0 ? std::clamp(-a.dot(way) / length, 0.0, 1.0) : 0.0;
+        const double s = nearest_share<Vec3>(-a, Vec3::Zero(), way);
         const double distance = (a + s * way).norm();
         if (distance > tolerance) continue;
         const double shift = (line[k] + s * (line[k + 1] - line[k]) - from)[axis];
@@ -200,7 +207,12 @@ class Lines {
 
 }  // namespace
 
-long long smallest_shift(long long count, const std::function<bool(long long shift)>& is_same_after) {
+long long smallest_shift(long long count, const std::function<bool(long long, long long)>& are_same) {
+  const auto is_same_after = [&](long long shift) {
+    for (long long k = 0; k < count; ++k)
+      if (!are_same(k + shift, k)) return false;
+    return true;
+  };
   for (long long shift = 1; shift < count; ++shift)
     if (count % shift == 0 && is_same_after(shift)) return shift;
   return count;
@@ -235,36 +247,22 @@ std::optional<LooseEnd> find_loose_end(std::span<const yarn::Body> bodies, const
 
 std::optional<LooseEnd> find_missing_copy(std::span<const yarn::Body> bodies, const Box3& box, int axis,
                                           double repeat, double tolerance) {
-  const Lines lines(bodies, tolerance);
   const Box3 inside(box.min().array() + tolerance, box.max().array() - tolerance);
-  for (std::size_t i = 0; i < lines.list().size(); ++i)
-    for (const Vec3& p : lines.list()[i])
-      for (const double way : {-repeat, repeat}) {
-        Vec3 copy = p;
-        copy[axis] += way;
-        if (inside.contains(copy) && lines.distance(copy) > tolerance) return LooseEnd{i, copy, way > 0.0};
-      }
-  return std::nullopt;
+  return Lines(bodies, tolerance).missing_copy(repeat, axis, tolerance, [&](const Vec3&, const Vec3& to) {
+    return inside.contains(to);
+  });
 }
 
 std::optional<LooseEnd> find_missing_in_faces(std::span<const yarn::Body> bodies, const Box3& box, int axis,
                                               double repeat, double margin, double tolerance) {
-  const Lines lines(bodies, tolerance);
   const auto is_in_a_face = [&](const Vec3& p) {
     for (int k = 0; k < 3; ++k)
       if (k != axis && (p[k] < box.min()[k] || p[k] > box.max()[k])) return false;
     return std::abs(p[axis] - box.min()[axis]) <= margin || std::abs(p[axis] - box.max()[axis]) <= margin;
   };
-  for (std::size_t i = 0; i < lines.list().size(); ++i)
-    for (const Vec3& p : lines.list()[i]) {
-      if (!is_in_a_face(p)) continue;
-      for (const double way : {-repeat, repeat}) {
-        Vec3 copy = p;
-        copy[axis] += way;
-        if (is_in_a_face(copy) && lines.distance(copy) > tolerance) return LooseEnd{i, copy, way > 0.0};
-      }
-    }
-  return std::nullopt;
+  return Lines(bodies, tolerance).missing_copy(repeat, axis, tolerance, [&](const Vec3& p, const Vec3& to) {
+    return is_in_a_face(p) && is_in_a_face(to);
+  });
 }
 
 bool runs_through(std::span<const yarn::Body> bodies, const Box3& box, int axis, bool high) {

@@ -17,8 +17,18 @@ namespace selvage::fabric {
 using Repeat = std::array<std::optional<double>, 3>;
 
 // The smallest divisor of `count` by which a sequence of `count` things that begins anew after the last can
-// be shifted without a change.
-long long smallest_shift(long long count, const std::function<bool(long long shift)>& is_same_after);
+// be shifted without a change; are_same(i, k): of things of any two numbers from 0.
+long long smallest_shift(long long count, const std::function<bool(long long, long long)>& are_same);
+
+// The same of the lines of a pattern, each of so many places; at(line, place).
+template <class At>
+long long smallest_repeat(long long lines, long long places, const At& at) {
+  return smallest_shift(lines, [&](long long i, long long k) {
+    for (long long place = 0; place < places; ++place)
+      if (at(i, place) != at(k, place)) return false;
+    return true;
+  });
+}
 
 // The smallest repeat of two fabrics in one: a multiple of both; none beyond a thousand repeats of either.
 Repeat common_repeat(const Repeat& a, const Repeat& b);
@@ -40,6 +50,11 @@ std::optional<LooseEnd> find_loose_end(std::span<const yarn::Body> bodies, const
 // is missing.
 std::optional<LooseEnd> find_missing_copy(std::span<const yarn::Body> bodies, const Box3& box, int axis,
                                           double repeat, double tolerance);
+
+// The same of the centre lines within `margin` of the box's two faces across `axis`, as far as that brings
+// them to one of the faces: runs along a face cross it nowhere, so find_loose_end does not see them.
+std::optional<LooseEnd> find_missing_in_faces(std::span<const yarn::Body> bodies, const Box3& box, int axis,
+                                              double repeat, double margin, double tolerance);
 
 // Does a centre line cross the low or the high face of the box across `axis`?
 bool runs_through(std::span<const yarn::Body> bodies, const Box3& box, int axis, bool high);

@@ -8,6 +8,7 @@
 
 #include "core/plane.h"
 #include "nurbs/interpolate.h"
+#include "nurbs/roots.h"
 
 namespace selvage::fabric {
 
@@ -93,14 +94,11 @@ Result<Spine> make_spine(const yarn::CentreLine& line, const yarn::FrameGuide& g
   add(breaks.back());
   for (const yarn::Frame& frame : spine.frames) {
     const double tightness = frame.tangent_dt.norm() / frame.speed * reach;
-    if (tightness > tightest) {
-      Message message =
-          error(Kind::geometry, fmt::format("the path bends with a radius of {:.3g}: too tight to lay "
-                                            "parts about it at distances up to {:.3g}",
-                                            reach / tightness, reach));
-      message.at = frame.position;
-      return message;
-    }
+    if (tightness > tightest)
+      return error(Kind::geometry, fmt::format("the path bends with a radius of {:.3g}: too tight to lay "
+                                               "parts about it at distances up to {:.3g}",
+                                               reach / tightness, reach))
+          .at_point(frame.position);
     const double rate = std::abs(spine.turning + frame.turn_dt / frame.speed);
     spine.inclination = std::max(spine.inclination, rate * reach / (1.0 - tightness));
   }
@@ -167,10 +165,7 @@ double largest_diameter(const DiscPacking& packing, double reach, double inclina
   };
   if (fits(high)) return high;
   double low = 0.0;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (fits(middle) ? low : high) = middle;
-  }
+  nurbs::halve_between(low, high, 40, fits);
   return low;
 }
 

@@ -48,12 +48,7 @@ class WarpknitConstruction final : public Construction {
   [[nodiscard]] const Thread& thread(std::size_t index) const override {
     return *piece_.bars[bar_of(index)].thread;
   }
-  [[nodiscard]] std::uint64_t data_points() const override {
-    const std::uint64_t a_yarn = longest();
-    const auto yarns = static_cast<std::uint64_t>(count());
-    constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
-    return yarns > most / a_yarn ? most : yarns * a_yarn;
-  }
+  [[nodiscard]] std::uint64_t data_points() const override { return product_of(count(), longest()); }
   [[nodiscard]] std::uint64_t longest() const override {
     return points_of_a_course * static_cast<std::uint64_t>(piece_.last_course - piece_.first_course) + 6;
   }
@@ -94,33 +89,25 @@ Repeat WarpknitConstruction::repeat() const {
   constexpr long long longest = 1'000'000;
   long long courses = 1;
   for (const Bar& bar : piece_.bars) {
-    const auto length = static_cast<long long>(bar.lapping.size());
-    const long long own = smallest_shift(length, [&](long long shift) {
-      for (long long k = 0; k < length; ++k)
-        if (overlap_at(bar.lapping, k + shift) != overlap_at(bar.lapping, k)) return false;
-      return true;
-    });
-    courses = std::lcm(courses, own);
+    courses = std::lcm(
+        courses, smallest_shift(static_cast<long long>(bar.lapping.size()), [&](long long i, long long k) {
+          return overlap_at(bar.lapping, i) == overlap_at(bar.lapping, k);
+        }));
     if (courses > longest) return {warpknit_.wale_pitch, std::nullopt, std::nullopt};
   }
   return {warpknit_.wale_pitch, static_cast<double>(courses) * warpknit_.course_pitch, std::nullopt};
-}
-
-Message at(Message message, TextPlace place) {
-  if (message.place.line == 0) message.place = place;
-  return message;
 }
 
 Status check_overlaps(const WarpknitBar& bar, const Lapping& lapping) {
   for (std::size_t i = 0; i < lapping.size(); ++i) {
     const Overlap& o = lapping[i];
     if (std::abs(o.from - o.to) <= 1) continue;
-    return at(error(Kind::unsupported,
-                    fmt::format(
-                        "overlap {} of this lapping, {}-{}, goes over {} needles at once; a guide wraps one "
-                        "needle a course, between neighbouring spaces",
-                        i + 1, o.from, o.to, std::abs(o.from - o.to))),
-              bar.lapping_place);
+    return error(Kind::unsupported,
+                 fmt::format(
+                     "overlap {} of this lapping, {}-{}, goes over {} needles at once; a guide wraps one "
+                     "needle a course, between neighbouring spaces",
+                     i + 1, o.from, o.to, std::abs(o.from - o.to)))
+        .placed(bar.lapping_place);
   }
   return {};
 }
@@ -131,17 +118,17 @@ Result<std::vector<Bar>> read_bars(const Fabric& fabric, const Warpknit& warpkni
     for (const std::string_view lapping :
          classic_lappings(warpknit.classic, warpknit.stitch.value_or(Warpknit::Stitch::closed)))
       texts.push_back({warpknit.thread, warpknit.place, std::string(lapping), {}, false});
-  if (texts.empty()) return at(error(Kind::geometry, "this warp knit has no bars"), warpknit.place);
+  if (texts.empty()) return error(Kind::geometry, "this warp knit has no bars").placed(warpknit.place);
   std::vector<Bar> bars;
   for (const WarpknitBar& text : texts) {
     Bar bar;
     Result<Lapping> lapping = parse_lapping(text.lapping, text.lapping_place);
-    if (!lapping) return at(lapping.error(), text.place);
-    if (Status checked = check_overlaps(text, *lapping); !checked) return at(checked.error(), text.place);
+    if (!lapping) return lapping.error().placed(text.place);
+    if (Status checked = check_overlaps(text, *lapping); !checked) return checked.error().placed(text.place);
     bar.lapping = std::move(*lapping);
     bar.thread = fabric.find_thread(text.thread);
     if (bar.thread == nullptr)
-      return at(error(Kind::geometry, fmt::format("there is no thread '{}'", text.thread)), text.place);
+      return error(Kind::geometry, fmt::format("there is no thread '{}'", text.thread)).placed(text.place);
     bar.is_fall_plate = text.fall_plate;
     bar.place = text.place;
     bar.has_feet = wraps(bar.lapping);
@@ -204,10 +191,7 @@ Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, std::ve
 LoopMoves moves_apart(const Fabric& fabric, const Warpknit& warpknit, const WarpknitPiece& piece,
                       const BuildOptions& options, Diagnostics& diagnostics) {
   const auto warn = [&](std::string text) {
-    Message message = warning(Kind::geometry, std::move(text));
-    message.file = fabric.file;
-    message.place = warpknit.place;
-    diagnostics.add(std::move(message));
+    diagnostics.add(warning(Kind::geometry, std::move(text)).placed(warpknit.place, fabric.file));
   };
   double thickest = 0.0;
   for (const Bar& bar : piece.bars) thickest = std::max(thickest, bar.thickness);
@@ -232,11 +216,11 @@ LoopMoves moves_apart(const Fabric& fabric, const Warpknit& warpknit, const Warp
 Result<std::unique_ptr<Construction>> make_warpknit(const Fabric& fabric, const Warpknit& warpknit,
                                                     const BuildOptions& options, Diagnostics& diagnostics) {
   if (warpknit.wales < 1 || warpknit.courses < 1)
-    return at(error(Kind::geometry, "a warp knit needs at least one wale and one course"), warpknit.place);
+    return error(Kind::geometry, "a warp knit needs at least one wale and one course").placed(warpknit.place);
   Result<std::vector<Bar>> bars = read_bars(fabric, warpknit);
   if (!bars) return bars.error();
   const Result<Measures> measures = measure(fabric, warpknit, *bars);
-  if (!measures) return at(measures.error(), warpknit.place);
+  if (!measures) return measures.error().placed(warpknit.place);
   WarpknitPiece piece;
   piece.bars = std::move(*bars);
   piece.measures = *measures;

@@ -6,6 +6,7 @@
 
 #include "core/diagnostics.h"
 #include "core/vec.h"
+#include "core/wrapped.h"
 #include "fabric/lapping.h"
 #include "fabric/model.h"
 
@@ -64,7 +65,7 @@ class LoopMoves {
 
   // Numbers of moves: point k of a course, of the beginning, and of the end.
   [[nodiscard]] std::size_t of_course(std::size_t bar, long long course, std::size_t k) const {
-    return at(bar, ((course % repeat_) + repeat_) % repeat_, k);
+    return at(bar, wrapped(course, repeat_), k);
   }
   [[nodiscard]] std::size_t of_beginning(std::size_t bar, std::size_t k) const { return at(bar, repeat_, k); }
   [[nodiscard]] std::size_t of_end(std::size_t bar, std::size_t k) const { return at(bar, repeat_ + 1, k); }

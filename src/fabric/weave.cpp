@@ -97,10 +97,7 @@ void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, 
   Block block{kind, layer, set, 0, count, begin, static_cast<std::size_t>(row.count)};
   if (!blocks_.empty()) block.first = blocks_.back().first + blocks_.back().count;
   blocks_.push_back(block);
-  const std::uint64_t each = points_of(is_weft);
-  constexpr auto most = std::numeric_limits<std::uint64_t>::max();
-  const bool fits = count == 0 || each <= (most - data_points_) / count;
-  data_points_ = fits ? data_points_ + count * each : most;
+  data_points_ = sum_of(data_points_, product_of(count, points_of(is_weft)));
 }
 
 // Heights at which yarns pass each other at the clearance, and how much thinner they become for it.
@@ -139,7 +136,7 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
 
 Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   Result<Drawdown> drawdown = drawdown_of(weave_.draft);
-  if (!drawdown) return at_line(drawdown.error(), weave_.draft.place);
+  if (!drawdown) return drawdown.error().placed(weave_.draft.place);
   drawdown_ = std::move(*drawdown);
   const auto bend_over = [&](const System& crossed) -> std::optional<Bend> {
     if (!weave_.profile) return natural_bend(crossed);
@@ -176,10 +173,7 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
 }
 
 void WeaveConstruction::warn(TextPlace place, std::string text, Diagnostics& diagnostics) const {
-  Message message = warning(Kind::geometry, std::move(text));
-  message.file = fabric_.file;
-  message.place = place;
-  diagnostics.add(std::move(message));
+  diagnostics.add(warning(Kind::geometry, std::move(text)).placed(place, fabric_.file));
 }
 
 void WeaveConstruction::warn_of_widths(Diagnostics& diagnostics) const {

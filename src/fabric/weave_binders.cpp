@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "core/wrapped.h"
 #include "fabric/weave_construction.h"
 
 namespace selvage::fabric {
@@ -14,8 +15,8 @@ namespace selvage::fabric {
 namespace {
 
 int level_at(const Binder& binder, long long column) {
-  const auto n = static_cast<long long>(binder.levels.size());
-  return binder.levels[static_cast<std::size_t>(((column % n) + n) % n)];
+  return binder
+      .levels[static_cast<std::size_t>(wrapped(column, static_cast<long long>(binder.levels.size())))];
 }
 
 // The first gap up to `last` that holds binders of both lines; 0 where none does.
@@ -31,12 +32,8 @@ long long shared_gap(const Binder& a, const Binder& b, long long last) {
 
 // Shifts of a sequence of levels along the warp.
 long long shift_of_levels(const Binder& binder) {
-  const auto count = static_cast<long long>(binder.levels.size());
-  return smallest_shift(count, [&](long long shift) {
-    for (long long k = 0; k < count; ++k)
-      if (level_at(binder, k + shift) != level_at(binder, k)) return false;
-    return true;
-  });
+  return smallest_shift(static_cast<long long>(binder.levels.size()),
+                        [&](long long i, long long k) { return level_at(binder, i) == level_at(binder, k); });
 }
 
 }  // namespace
@@ -57,20 +54,18 @@ Status WeaveConstruction::prepare_binders(Diagnostics& diagnostics) {
       if (level > 0 && level <= layers() && !as_published_)
         warp_layer_ = std::max(warp_layer_, binders_.back().size.height);
       if (level > layers() + 1)
-        return at_line(
-            error(Kind::geometry,
-                  fmt::format("level {} is above all layers: {} layers of warp have {} layers of weft, "
-                              "so levels go from 0 to {}",
-                              level, layers(), layers() + 1, layers() + 1)),
-            binder.place);
+        return error(Kind::geometry,
+                     fmt::format("level {} is above all layers: {} layers of warp have {} layers of weft, "
+                                 "so levels go from 0 to {}",
+                                 level, layers(), layers() + 1, layers() + 1))
+            .placed(binder.place);
     }
     const int gaps = warp_.text->count - 1;
     if (binder.first > gaps)
-      return at_line(
-          error(Kind::geometry,
-                fmt::format("there is no gap {}: {} warp{} {} gap{} between them", binder.first,
-                            warp_.text->count, gaps == 0 ? " has" : "s have", gaps, gaps == 1 ? "" : "s")),
-          binder.place);
+      return error(Kind::geometry,
+                   fmt::format("there is no gap {}: {} warp{} {} gap{} between them", binder.first,
+                               warp_.text->count, gaps == 0 ? " has" : "s have", gaps, gaps == 1 ? "" : "s"))
+          .placed(binder.place);
     const double pitch = warp_.text->pitch;
     add_block(Block::Kind::binder, 0, set,
               {(gaps - binder.first) / binder.every + 1, binder.first * pitch, binder.every * pitch,
@@ -160,7 +155,7 @@ Status WeaveConstruction::check_binder(const Block& block) const {
   for (long long k = along_x_.first; k <= last; ++k) passes.push_back(binder_pass(block.set, k));
   Result<yarn::CentreLine> line =
       bridge_passes(passes, along_x_.from, weft_.at(static_cast<double>(last) + 0.5), along_warp, 0.0);
-  if (!line) return at_line(line.error(), binder.place);
+  if (!line) return line.error().placed(binder.place);
   return {};
 }
 
@@ -232,15 +227,10 @@ long long WeaveConstruction::repeat_of_binders() const {
   const auto in_gap = [&](long long gap) {
     std::multiset<std::pair<std::string, std::vector<int>>> binders;
     for (const Binder& binder : weave_.binders)
-      if (((gap - binder.first) % binder.every + binder.every) % binder.every == 0)
-        binders.emplace(binder.thread, binder.levels);
+      if ((gap - binder.first) % binder.every == 0) binders.emplace(binder.thread, binder.levels);
     return binders;
   };
-  return smallest_shift(all, [&](long long shift) {
-    for (long long gap = 0; gap < all; ++gap)
-      if (in_gap(gap + shift) != in_gap(gap)) return false;
-    return true;
-  });
+  return smallest_shift(all, [&](long long i, long long k) { return in_gap(i) == in_gap(k); });
 }
 
 }  // namespace selvage::fabric

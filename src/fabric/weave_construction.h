@@ -15,11 +15,6 @@
 
 namespace selvage::fabric {
 
-inline Message at_line(Message message, TextPlace place) {
-  if (message.place.line == 0) message.place = place;
-  return message;
-}
-
 // A place on the path of a yarn along the warp, or of a weft.
 inline Vec3 along_warp(double s, double z, double y) {
   return {s, y, z};

@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "core/wrapped.h"
 #include "fabric/quantities.h"
 #include "fabric/repeat.h"
 #include "fabric/yarn_spec.h"
@@ -13,40 +14,27 @@
 namespace selvage::fabric {
 
 long long System::repeat_of_threads() const {
-  const auto count = static_cast<long long>(threads.size());
-  return smallest_shift(count, [&](long long shift) {
-    for (long long k = 0; k < count; ++k)
-      if (thread(k + shift).thread != thread(k).thread) return false;
-    return true;
-  });
+  return smallest_shift(static_cast<long long>(threads.size()),
+                        [&](long long i, long long k) { return thread(i).thread == thread(k).thread; });
 }
 
 const WovenThread& System::thread(long long yarn) const {
-  const auto n = static_cast<long long>(threads.size());
-  return threads[static_cast<std::size_t>(((yarn % n) + n) % n)];
+  return threads[static_cast<std::size_t>(wrapped(yarn, static_cast<long long>(threads.size())))];
 }
 
 Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, TextPlace place) {
   WovenThread woven;
   woven.thread = fabric.find_thread(name);
-  if (woven.thread == nullptr) {
-    Message message = error(Kind::geometry, fmt::format("there is no thread '{}'", name));
-    message.place = place;
-    return message;
-  }
+  if (woven.thread == nullptr)
+    return error(Kind::geometry, fmt::format("there is no thread '{}'", name)).placed(place);
   Result<yarn::Section> section = centred_section_of(*woven.thread, fabric.units);
-  if (!section) {
-    Message message = error(Kind::geometry, fmt::format("thread '{}': {}", name, section.error().text));
-    message.place = woven.thread->place;
-    return message;
-  }
+  if (!section)
+    return error(Kind::geometry, fmt::format("thread '{}': {}", name, section.error().text))
+        .placed(woven.thread->place);
   woven.section = *section;
   woven.size = yarn::nominal_size(woven.section);
-  if (Status checked = yarn::check_section(woven.section, woven.size); !checked) {
-    Message message = checked.error();
-    message.place = woven.thread->place;
-    return message;
-  }
+  if (Status checked = yarn::check_section(woven.section, woven.size); !checked)
+    return checked.error().placed(woven.thread->place);
   return woven;
 }
 
@@ -121,13 +109,12 @@ Result<Heights> share_crimp(const SystemPair& pair, const std::optional<double>&
   const double slack = 1e-9 * both;
   const auto too_tight = [&](const System& own, const System& crossed, Bend bend, double height) {
     const auto [flats, spread] = worst_pair(own, crossed, bend, clearance);
-    Message message = error(
-        Kind::geometry,
-        fmt::format("the pitch {:.6g} is too small: no yarn fits over and under these at a crimp height of "
-                    "{:.6g}; the smallest pitch is {:.6g}",
-                    crossed.text->pitch, height, flats + smallest_pitch(height, spread)));
-    message.place = crossed.text->place;
-    return message;
+    return error(Kind::geometry,
+                 fmt::format(
+                     "the pitch {:.6g} is too small: no yarn fits over and under these at a crimp height of "
+                     "{:.6g}; the smallest pitch is {:.6g}",
+                     crossed.text->pitch, height, flats + smallest_pitch(height, spread)))
+        .placed(crossed.text->place);
   };
   double warp_height = wanted.value_or(0.5) * both;
   if (!wanted) {

@@ -12,19 +12,19 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-Message at_thread(const Fabric& fabric, const Yarn& yarn, std::string text,
-                  Severity severity = Severity::error) {
-  Message message = error(Kind::geometry, std::move(text));
-  message.severity = severity;
-  message.file = fabric.file;
-  message.place = yarn.place;
-  message.yarn = yarn.name;
-  return message;
+Message at_thread(const Fabric& fabric, const Yarn& yarn, const Message& message) {
+  return message.placed(yarn.place, fabric.file).of_yarn(yarn.name);
 }
 
 bool every_row_has_a_size(const Path& path) {
   return !path.sizes.empty() &&
          std::all_of(path.sizes.begin(), path.sizes.end(), [](const auto& s) { return s.has_value(); });
+}
+
+// By which the section stands turned at a row, radians.
+double angle_at(const Path& path, std::size_t row) {
+  const bool has_size = row < path.sizes.size() && path.sizes[row];
+  return has_size ? path.sizes[row]->angle.value_or(0.0) / 180.0 * pi : 0.0;
 }
 
 // How far the section reaches from the path toward a direction given in section axes.
@@ -95,10 +95,10 @@ Result<yarn::PathRows> path_rows_of(const Fabric& fabric, const Yarn& yarn, cons
   rows.tangent_end = yarn.tangent_end;
   if (path.form != yarn::PathForm::polyline) return rows;
   Result<yarn::Section> section = section_of(thread, fabric.units, every_row_has_a_size(path));
-  if (!section) return at_thread(fabric, yarn, section.error().text);
+  if (!section) return at_thread(fabric, yarn, section.error());
   const std::vector<yarn::SectionSize> sizes = row_sizes(path, *section);
   for (const yarn::SectionSize& size : sizes)
-    if (Status s = yarn::check_section(*section, size); !s) return at_thread(fabric, yarn, s.error().text);
+    if (Status s = yarn::check_section(*section, size); !s) return at_thread(fabric, yarn, s.error());
   // The section's axes are carried from segment to segment by the turn at each corner, as the
   // rotation-minimizing frame does.
   const std::vector<Vec3>& p = path.points;
@@ -116,9 +116,7 @@ Result<yarn::PathRows> path_rows_of(const Fabric& fabric, const Yarn& yarn, cons
     if (inward.norm() > 1e-12) {
       Vec3 toward = inward - inward.dot(tangent) * tangent;
       toward.normalize();
-      double angle = 0.0;
-      if (i < path.sizes.size() && path.sizes[i] && path.sizes[i]->angle)
-        angle = *path.sizes[i]->angle / 180.0 * pi;
+      const double angle = angle_at(path, i);
       const Vec3 across = up.cross(tangent);
       const Vec3 x = std::cos(angle) * across + std::sin(angle) * up,
                  y = -std::sin(angle) * across + std::cos(angle) * up;
@@ -145,14 +143,11 @@ Result<yarn::TubeSpec> tube_spec_of(const Fabric& fabric, const Yarn& yarn, cons
   const Path& path = std::get<Path>(yarn.shape);
   yarn::TubeSpec spec;
   Result<yarn::Section> section = section_of(thread, fabric.units, every_row_has_a_size(path));
-  if (!section) return at_thread(fabric, yarn, section.error().text);
+  if (!section) return at_thread(fabric, yarn, section.error());
   spec.section = *section;
   const std::vector<yarn::SectionSize> sizes = row_sizes(path, spec.section);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
-    double angle = 0.0;
-    if (i < path.sizes.size() && path.sizes[i] && path.sizes[i]->angle)
-      angle = *path.sizes[i]->angle / 180.0 * pi;
-    spec.sizes.push_back({row_parameters[i], sizes[i], angle});
+    spec.sizes.push_back({row_parameters[i], sizes[i], angle_at(path, i)});
     if (path.sizes.empty()) break;  // one size for the whole yarn
   }
   spec.guide = yarn::FrameGuide::free_from(yarn.up);
@@ -201,10 +196,10 @@ std::optional<Message> fibre_share_warning(const Fabric& fabric, const Yarn& yar
   if (!section) return std::nullopt;  // reported where the yarn is built
   const std::string oddity = share_oddity(thread, *section, row_sizes(*path, *section), fabric.units);
   if (oddity.empty()) return std::nullopt;
-  return at_thread(fabric, yarn,
-                   fmt::format("{} '{}': {}", yarn.thread.empty() ? "yarn" : "thread",
-                               yarn.thread.empty() ? yarn.name : yarn.thread, oddity),
-                   Severity::warning);
+  return at_thread(
+      fabric, yarn,
+      warning(Kind::geometry, fmt::format("{} '{}': {}", yarn.thread.empty() ? "yarn" : "thread",
+                                          yarn.thread.empty() ? yarn.name : yarn.thread, oddity)));
 }
 
 std::optional<Message> fibre_share_warning(const Fabric& fabric, const Thread& thread, TextPlace place) {
@@ -213,23 +208,16 @@ std::optional<Message> fibre_share_warning(const Fabric& fabric, const Thread& t
   if (!section) return std::nullopt;
   const std::string oddity = share_oddity(thread, *section, {yarn::nominal_size(*section)}, fabric.units);
   if (oddity.empty()) return std::nullopt;
-  Message message = warning(Kind::geometry, fmt::format("thread '{}': {}", thread.name, oddity));
-  message.file = fabric.file;
-  message.place = place;
-  return message;
+  return warning(Kind::geometry, fmt::format("thread '{}': {}", thread.name, oddity))
+      .placed(place, fabric.file);
 }
 
 std::optional<Message> roundness_note(const Fabric& fabric, const Thread& thread, TextPlace place) {
   if (!thread.section || !std::holds_alternative<yarn::Loop7>(*thread.section)) return std::nullopt;
-  Message message =
-      error(Kind::geometry,
-            fmt::format(
-                "section loop7: its radius has the nominal mean, but varies by {:.3g} % of it round the yarn",
-                100.0 * yarn::loop7_out_of_roundness()));
-  message.severity = Severity::note;
-  message.file = fabric.file;
-  message.place = place;
-  return message;
+  return note(Kind::geometry, fmt::format("section loop7: its radius has the nominal mean, but varies by "
+                                          "{:.3g} % of it round the yarn",
+                                          100.0 * yarn::loop7_out_of_roundness()))
+      .placed(place, fabric.file);
 }
 
 std::optional<Message> turning_warning(const Fabric& fabric, const Thread& thread, TextPlace place) {
@@ -238,15 +226,12 @@ std::optional<Message> turning_warning(const Fabric& fabric, const Thread& threa
   if (!section || std::holds_alternative<yarn::Circle>(*section) ||
       std::holds_alternative<yarn::Loop7>(*section))
     return std::nullopt;
-  Message message = warning(
-      Kind::geometry,
-      fmt::format(
-          "the section of thread '{}' turns along its yarns, which have room as if it did not: 'selvage "
-          "check' tells where they overlap, --relax moves them apart where they have room",
-          thread.name));
-  message.file = fabric.file;
-  message.place = place;
-  return message;
+  return warning(Kind::geometry,
+                 fmt::format("the section of thread '{}' turns along its yarns, which have room as if it did "
+                             "not: 'selvage "
+                             "check' tells where they overlap, --relax moves them apart where they have room",
+                             thread.name))
+      .placed(place, fabric.file);
 }
 
 std::optional<double> smallest_size(const Fabric& fabric, const Yarn& yarn) {

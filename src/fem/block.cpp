@@ -119,20 +119,18 @@ std::vector<Message> complete(Mesh& mesh, const Block& block, int order) {
   if (order == 1) return {};
   const MidsideNodes nodes = add_midside_nodes(mesh, block);
   if (nodes.held == 0) return {};
-  Message note = warning(Kind::geometry,
-                         fmt::format("{} midside nodes were held back from the yarns' surfaces so that no "
-                                     "element folds, the farthest by {:.3g} mm",
-                                     nodes.held, nodes.farthest));
-  note.severity = Severity::note;
-  return {std::move(note)};
+  return {
+      note(Kind::geometry,
+           fmt::format("{} midside nodes were held back from the yarns' surfaces so that no element folds, "
+                       "the farthest by {:.3g} mm",
+                       nodes.held, nodes.farthest))};
 }
 
 Status check_elements(const Mesh& mesh, Unit units) {
   if (mesh.quality.min_scaled_jacobian > 0) return {};
-  Message message =
+  const Message message =
       error(Kind::geometry, "the mesh has an element with a negative Jacobian; try another --size");
-  if (!mesh.worst.empty()) message.at = mesh.worst.front().at / millimetres_per(units);
-  return message;
+  return mesh.worst.empty() ? message : message.at_point(mesh.worst.front().at / millimetres_per(units));
 }
 
 }  // namespace selvage::fem

@@ -132,9 +132,7 @@ Bonding bond_contacts(std::span<const Vec3> points, std::span<const std::array<s
     if (!owner) continue;
     regions[c] = *owner;
     ++bonding.cells;
-    const Vec3& p = points[cells[c][0]];
-    bonding.volume +=
-        (points[cells[c][1]] - p).cross(points[cells[c][2]] - p).dot(points[cells[c][3]] - p) / 6;
+    bonding.volume += six_volumes(points, cells[c]) / 6;
   }
   bonding.area = shared_area(points, cells, matrix, regions);
   return bonding;

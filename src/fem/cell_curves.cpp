@@ -105,16 +105,15 @@ void Divider::collect_arcs() {
 }
 
 Message Divider::does_not_go_on(const ArcEntry& entry, double by, const Vec3& at) const {
-  Message message = error(
-      Kind::geometry,
-      fmt::format("yarn '{}' goes through the {} face of the cell where no yarn goes through the opposite one"
-                  "{}: the cell is no whole repeat there, or the yarns do not repeat",
-                  shape_.bodies[entry.body].name, cell::name_of_face(entry.face()),
-                  std::isfinite(by) ? fmt::format(" (it misses the nearest by {:.3g})", by) : std::string()));
-  message.yarn = shape_.bodies[entry.body].name;
-  message.place = shape_.bodies[entry.body].place;
-  message.at = at;
-  return message;
+  return error(
+             Kind::geometry,
+             fmt::format(
+                 "yarn '{}' goes through the {} face of the cell where no yarn goes through the opposite one"
+                 "{}: the cell is no whole repeat there, or the yarns do not repeat",
+                 shape_.bodies[entry.body].name, cell::name_of_face(entry.face()),
+                 std::isfinite(by) ? fmt::format(" (it misses the nearest by {:.3g})", by) : std::string()))
+      .of_yarn(shape_.bodies[entry.body].name, shape_.bodies[entry.body].place)
+      .at_point(at);
 }
 
 // Which low arc each high one is the copy of: the nearest to some of its points.
@@ -172,13 +171,11 @@ Status Divider::make_corners() {
       const std::size_t corner = division.edges[first_part(edge) + k].to;
       const Vec3& at = division.corners[corner].at;
       const double along = differs ? 0 : division.corners[division.edges[first_part(low) + k].to].at[a];
-      if (differs || std::abs(along - at[a]) > miss_) {
-        Message message = error(Kind::geometry,
-                                "yarns cross edges of the cell that face each other at different places: the "
-                                "cell is no whole repeat there, or the yarns do not repeat");
-        message.at = at;
-        return message;
-      }
+      if (differs || std::abs(along - at[a]) > miss_)
+        return error(Kind::geometry,
+                     "yarns cross edges of the cell that face each other at different places: the cell is no "
+                     "whole repeat there, or the yarns do not repeat")
+            .at_point(at);
       if (corner >= 8) corner_nodes_[corner] = nodes_.add(cell::edge_point(shape_.box, edge, along));
     }
   }

@@ -10,6 +10,7 @@
 
 #include "core/module.h"
 #include "fem/bond.h"
+#include "fem/cell_sides.h"
 #include "fem/cell_size.h"
 #include "fem/complete_cell.h"
 #include "fem/materials.h"
@@ -33,7 +34,7 @@ class CellMesher {
   Status make_surfaces();
   Status fill_regions();
   Status finish(Mesh& mesh);
-  [[nodiscard]] Message located(Message message) const;
+  [[nodiscard]] Message located(const Message& message) const { return message.placed({}, fabric_.file); }
   [[nodiscard]] std::string yarns_near(const Vec3& at) const;
   [[nodiscard]] double coarsest() const {
     return std::max(*std::max_element(sizes_.begin(), sizes_.end()), options_.coarsest);
@@ -55,11 +56,6 @@ class CellMesher {
   TetMesh tets_;
   AngleTarget angles_;
 };
-
-Message CellMesher::located(Message message) const {
-  if (message.file.empty()) message.file = fabric_.file;
-  return message;
-}
 
 // The two yarns whose surfaces have corners nearest to a place, in words.
 std::string CellMesher::yarns_near(const Vec3& at) const {
@@ -106,12 +102,8 @@ Status CellMesher::make_surfaces() {
   options.progress = [&, done = std::size_t{0}](const char* name) mutable { step(name, done++); };
   Result<Skin> skin =
       make_skin(bodies_, box_, cell_size_rules(bodies_, sizes_, options_.coarsest, extent_), options);
-  if (!skin) {
-    Message message = located(skin.error());
-    if (message.place.line == 0) message.place = fabric_.cell->place;
-    return message;
-  }
-  for (Message& note : skin->notes) diagnostics_.add(located(std::move(note)));
+  if (!skin) return skin.error().placed(fabric_.cell->place, fabric_.file);
+  for (Message& note : skin->notes) diagnostics_.add(located(note));
   if (options_.order == 1)
     fem::keep_volumes(skin->nodes.points, {.facets = facets_of(bodies_, *skin, options_.threads),
                                            .volumes = skin->volumes,
@@ -138,7 +130,7 @@ Status CellMesher::fill_regions() {
   angles_ = improved.angles;
   for (Message& note : improved.notes) {
     note.text += yarns_near(*note.at);
-    diagnostics_.add(located(std::move(note)));
+    diagnostics_.add(located(note));
   }
   return {};
 }
@@ -156,19 +148,15 @@ void CellMesher::bond() {
       bond_contacts(tets_.points, tets_.cells, yarns, matrix, options_.bond, tets_.regions);
   for (std::size_t c = 0; c < before.size(); ++c) {
     if (before[c] == tets_.regions[c]) continue;
-    const auto& cell = tets_.cells[c];
-    const Vec3& p = tets_.points[cell[0]];
     block_->skin.volumes[block_->of_regions[tets_.regions[c]]] +=
-        (tets_.points[cell[1]] - p).cross(tets_.points[cell[2]] - p).dot(tets_.points[cell[3]] - p) / 6;
+        six_volumes(tets_.points, tets_.cells[c]) / 6;
   }
   const std::string_view unit = name_of(fabric_.units);
-  Message note =
-      warning(Kind::geometry,
-              fmt::format("yarns within {:.3g} {} of each other are bonded: {} tetrahedra between them "
-                          "({:.3g} {}3) became theirs, and they share {:.3g} {}2",
-                          options_.bond, unit, bonding.cells, bonding.volume, unit, bonding.area, unit));
-  note.severity = Severity::note;
-  diagnostics_.add(located(std::move(note)));
+  diagnostics_.add(located(
+      note(Kind::geometry,
+           fmt::format("yarns within {:.3g} {} of each other are bonded: {} tetrahedra between them "
+                       "({:.3g} {}3) became theirs, and they share {:.3g} {}2",
+                       options_.bond, unit, bonding.cells, bonding.volume, unit, bonding.area, unit))));
 }
 
 // Where bonded yarns meet, their faces are no longer those of their surfaces.
@@ -198,7 +186,7 @@ Status CellMesher::finish(Mesh& mesh) {
   mesh.materials = std::move(choice.materials);
 
   step("finishing", 4);
-  for (Message& note : complete(mesh, *block_, options_.order)) diagnostics_.add(located(std::move(note)));
+  for (Message& note : complete(mesh, *block_, options_.order)) diagnostics_.add(located(note));
   const Box3 box_mm(box_.min() * scale, box_.max() * scale);
   if (Status complete = complete_cell(mesh, box_mm, options_.periodic); !complete)
     return located(complete.error());

@@ -7,7 +7,15 @@
 #include <span>
 #include <vector>
 
+#include "core/vec.h"
+
 namespace selvage::fem {
+
+// Six times a tetrahedron's volume.
+inline double six_volumes(std::span<const Vec3> points, const std::array<std::uint32_t, 4>& cell) {
+  const Vec3& p = points[cell[0]];
+  return (points[cell[1]] - p).cross(points[cell[2]] - p).dot(points[cell[3]] - p);
+}
 
 // The corners of the side opposite each corner, counter-clockwise seen from outside of a positive one.
 inline constexpr std::array<std::array<std::size_t, 3>, 4> opposite_sides = {

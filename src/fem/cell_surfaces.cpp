@@ -122,12 +122,6 @@ std::map<Edge, std::size_t> edges_of(const CellShape& shape, const CellCurves& c
   return result;
 }
 
-Message about(Message message, const yarn::Body& body) {
-  message.yarn = body.name;
-  message.place = body.place;
-  return message;
-}
-
 class Surfaces {
  public:
   Surfaces(const CellShape& shape, const CellCurves& curves, const SizeField& field, CellNodes& nodes)
@@ -192,9 +186,9 @@ class Surfaces {
 Result<TriangleMesh> Surfaces::mesh_piece(std::size_t number) const {
   const yarn::Body& body = shape_.bodies[shape_.cut.pieces[number].body];
   const Result<PlanarRegion> region = unroll(shape_, curves_, number, field_, nodes_);
-  if (!region) return about(region.error(), body);
+  if (!region) return region.error().of_yarn(body.name, body.place);
   Result<TriangleMesh> mesh = fill(*region, BodySupport(body), field_);
-  if (!mesh) return about(mesh.error(), body);
+  if (!mesh) return mesh.error().of_yarn(body.name, body.place);
   return mesh;
 }
 
@@ -227,7 +221,7 @@ Status Surfaces::add_end(const cell::Piece& piece, bool is_end, const Chain& cha
   for (std::size_t k = 0; k < rim.size(); ++k) region.add({points[k], cap.rim()[k], rim[k]});
   region.close(0);
   const Result<TriangleMesh> mesh = fill(region, CapSupport(cap, 1e-4 * field_.largest()), field_);
-  if (!mesh) return about(mesh.error(), body);
+  if (!mesh) return mesh.error().of_yarn(body.name, body.place);
   const std::vector<std::uint32_t> numbers = numbers_of(*mesh);
   result_.caps.push_back({cap, result_.triangles.size(), mesh->triangles.size()});
   for (const auto& t : mesh->triangles) add(t, numbers, sides_of(piece), is_end ? Part::end : Part::start);
@@ -285,14 +279,11 @@ Status Surfaces::add_opposite(int face, const std::map<Edge, std::size_t>& edges
     const auto found = high.find({across.at(edge.second), across.at(edge.first)});
     const std::uint32_t body =
         found == high.end() ? Sides::outside : body_of(shape_.division.regions[found->second]);
-    if (found == high.end() || (body == CellTriangles::matrix) !=
-                                   (body_of(shape_.division.regions[left]) == CellTriangles::matrix)) {
-      Message message = error(Kind::geometry,
-                              "opposite faces of the cell are divided in different ways: "
-                              "the yarns do not repeat there");
-      message.at = nodes_.points[edge.first];
-      return message;
-    }
+    if (found == high.end() ||
+        (body == CellTriangles::matrix) != (body_of(shape_.division.regions[left]) == CellTriangles::matrix))
+      return error(Kind::geometry,
+                   "opposite faces of the cell are divided in different ways: the yarns do not repeat there")
+          .at_point(nodes_.points[edge.first]);
     behind[static_cast<std::int32_t>(left)] = body;
   }
   for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {

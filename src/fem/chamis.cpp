@@ -5,31 +5,16 @@
 #include <map>
 
 #include "fem/fibre.h"
+#include "fem/materials.h"
 
 namespace selvage::fem {
 namespace {
-
-fabric::TransverseElastic as_transverse(const fabric::Material& material) {
-  if (const auto* two = std::get_if<fabric::TransverseElastic>(&material.elastic)) return *two;
-  const auto& same = std::get<fabric::IsotropicElastic>(material.elastic);
-  return {.e1 = same.modulus,
-          .e2 = same.modulus,
-          .nu12 = same.poisson,
-          .g12 = same.modulus / (2 * (1 + same.poisson)),
-          .nu23 = same.poisson};
-}
-
-const fabric::Material* find(const Mesh& mesh, const std::string& name) {
-  const auto found = std::find_if(mesh.materials.begin(), mesh.materials.end(),
-                                  [&](const fabric::Material& material) { return material.name == name; });
-  return found == mesh.materials.end() ? nullptr : &*found;
-}
 
 // The material of the matrix, fit for the formulas.
 Result<fabric::Material> matrix_of(const Mesh& mesh) {
   for (const Region& region : mesh.regions) {
     if (region.kind != Region::Kind::matrix) continue;
-    const fabric::Material* material = find(mesh, region.material);
+    const fabric::Material* material = fabric::find_named(mesh.materials, region.material);
     if (material != nullptr && std::holds_alternative<fabric::IsotropicElastic>(material->elastic))
       return *material;
     return error(Kind::geometry,
@@ -92,7 +77,7 @@ Status derive_yarn_stiffness(Mesh& mesh, Diagnostics& diagnostics) {
     return place->second;
   };
   for (Region& region : mesh.regions) {
-    const fabric::Material* material = find(mesh, region.material);
+    const fabric::Material* material = fabric::find_named(mesh.materials, region.material);
     if (material == nullptr) return error(Kind::internal, "a region of the mesh has no material");
     std::size_t without = 0;
     for (std::size_t e = region.first_element; e < region.last_element; ++e) {
@@ -106,15 +91,13 @@ Status derive_yarn_stiffness(Mesh& mesh, Diagnostics& diagnostics) {
       }
       of_element[e] = number_of(*material, hundredths);
     }
-    if (without > 0) {
-      Message message = warning(
+    if (without > 0)
+      diagnostics.add(warning(
           Kind::geometry,
           fmt::format(
               "{} elements of yarn '{}' have no fibre fraction between 0 and 1, and keep the constants "
               "of '{}': its thread needs `tex` and `density`, and a section that holds them",
-              without, region.name, region.material));
-      diagnostics.add(std::move(message));
-    }
+              without, region.name, region.material)));
     if (region.first_element < region.last_element)
       region.material = made[of_element[region.first_element]].name;
   }

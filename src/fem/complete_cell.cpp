@@ -34,13 +34,10 @@ Result<std::vector<Sides>> find_sides(const Mesh& mesh, const Box3& box) {
       int& side = sides[n][static_cast<std::size_t>(axis)];
       side = x == low ? -1 : x == high ? 1 : 0;
       const double off = std::min(std::abs(x - low), std::abs(x - high));
-      if (side == 0 && (off < beside * size || x < low || x > high)) {
-        Message message = error(Kind::internal, fmt::format("a node of the mesh lies {:.1e} mm beside a face "
-                                                            "of the cell",
-                                                            off));
-        message.at = mesh.nodes[n];
-        return message;
-      }
+      if (side == 0 && (off < beside * size || x < low || x > high))
+        return error(Kind::internal,
+                     fmt::format("a node of the mesh lies {:.1e} mm beside a face of the cell", off))
+            .at_point(mesh.nodes[n]);
     }
   return sides;
 }
@@ -79,11 +76,11 @@ void sort_by_place(const Mesh& mesh, std::vector<std::size_t>& nodes, int first_
 }
 
 Message no_opposite(const Mesh& mesh, std::size_t node, int axis) {
-  Message message = error(Kind::geometry, fmt::format("a node on one face across {} has no node opposite on "
-                                                      "the other: these faces have different meshes",
-                                                      "xyz"[axis]));
-  message.at = mesh.nodes[node];
-  return message;
+  return error(Kind::geometry,
+               fmt::format("a node on one face across {} has no node opposite on the other: these "
+                           "faces have different meshes",
+                           "xyz"[axis]))
+      .at_point(mesh.nodes[node]);
 }
 
 // Brings `high` into the order of `low`: the k-th opposite the k-th over `axis`. Both are sorted by place;

@@ -6,6 +6,7 @@
 #include "cell/cut.h"
 #include "fem/faces.h"
 #include "fem/quality.h"
+#include "nurbs/roots.h"
 
 namespace selvage::fem {
 namespace {
@@ -146,29 +147,18 @@ class Steps {
 
 }  // namespace
 
-// Regula falsi, Illinois form.
 Vec3 middle_on_surface(const yarn::Body& body, const SurfaceEnd& from, const SurfaceEnd& to) {
   const Vec2 way = cell::beside(body, from.parameters, to.parameters) - from.parameters;
   const Vec3 chord = to.at - from.at, middle = (from.at + to.at) / 2;
   const double length = chord.squaredNorm();
-  double low = 0, high = 1, low_miss = -0.5, high_miss = 0.5;
+  nurbs::FalsePosition root{0, -0.5, 1, 0.5};
   Vec3 found = middle;
-  for (int step = 0, side = 0; step < 40; ++step) {
-    const double share = (low * high_miss - high * low_miss) / (high_miss - low_miss);
+  for (int step = 0; step < 40; ++step) {
+    const double share = root.crossing();
     found = cell::position(body, from.parameters + share * way);
     const double miss = (found - middle).dot(chord) / length;
     if (std::abs(miss) < 1e-6) break;
-    if (miss > 0) {
-      high = share;
-      high_miss = miss;
-      if (side == 1) low_miss /= 2;
-      side = 1;
-    } else {
-      low = share;
-      low_miss = miss;
-      if (side == -1) high_miss /= 2;
-      side = -1;
-    }
+    root.take(share, miss);
   }
   return found;
 }

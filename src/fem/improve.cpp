@@ -160,8 +160,7 @@ struct Part {
   std::vector<Vec3> points;
   std::vector<Tetrahedron> cells;
   std::vector<BelowTarget> below;
-  double least_before = 1, least = 1;  // quality
-  std::size_t below_before = 0;
+  bool was_below = false;          // any of its cells was below the target
   std::vector<std::uint8_t> used;  // of each point: a cell has it
 };
 
@@ -201,8 +200,7 @@ void improve(Part& part, const ImproveOptions& options) {
   const double wanted = quality_of_angle(options.target);
   for (const TetComplex::Cell& cell : complex.cells()) {
     if (cell.corners[0] == TetComplex::none) continue;
-    part.least_before = std::min(part.least_before, cell.quality);
-    part.below_before += cell.quality < wanted ? 1 : 0;
+    part.was_below = part.was_below || cell.quality < wanted;
   }
   // A little more is asked for, so that no other way of computing the angle finds it missed.
   Improver improver(complex, quality_of_angle(options.target + 1e-6));
@@ -213,7 +211,6 @@ void improve(Part& part, const ImproveOptions& options) {
   part.used.assign(complex.points.size(), 0);
   for (const TetComplex::Cell& cell : complex.cells()) {
     if (cell.corners[0] == TetComplex::none) continue;
-    part.least = std::min(part.least, cell.quality);
     part.cells.push_back(cell.corners);
     for (const std::uint32_t corner : cell.corners) part.used[corner] = 1;
   }
@@ -248,7 +245,6 @@ void join(std::vector<Part>& parts, std::vector<Vec3>& points, std::vector<Tetra
     points[count] = points[p];
     number[p] = static_cast<std::uint32_t>(count++);
   }
-  result.points_removed = before - count;
   points.resize(count);
   cells.clear();
   regions.clear();
@@ -269,7 +265,6 @@ void join(std::vector<Part>& parts, std::vector<Vec3>& points, std::vector<Tetra
     regions.resize(cells.size(), part.region);
     part = {};
   }
-  result.points_added = points.size() - count;
 }
 
 }  // namespace
@@ -280,15 +275,8 @@ Improvement improve(std::vector<Vec3>& points, std::vector<Tetrahedron>& cells,
   Improvement result;
   std::vector<Part> parts = divide(points, cells, regions, fixed_points);
   improve_all(parts, options);
-  double least_before = 1, least = 1;
-  for (const Part& part : parts) {
-    least_before = std::min(least_before, part.least_before);
-    least = std::min(least, part.least);
-    result.below_before += part.below_before;
-  }
-  result.angle_before = angle_of_quality(least_before);
-  result.angle_after = angle_of_quality(least);
-  if (result.below_before == 0 && !options.refine) return result;
+  const bool was_below = std::ranges::any_of(parts, &Part::was_below);
+  if (!was_below && !options.refine) return result;
   join(parts, points, cells, regions, std::min(fixed_points, points.size()), result);
   std::stable_sort(result.below.begin(), result.below.end(),
                    [](const BelowTarget& a, const BelowTarget& b) { return a.angle < b.angle; });

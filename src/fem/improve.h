@@ -39,10 +39,7 @@ struct BelowTarget {
 };
 
 struct Improvement {
-  double angle_before = 180, angle_after = 180;  // smallest dihedral angle, degrees
-  std::size_t below_before = 0;                  // tetrahedra below the target
-  std::vector<BelowTarget> below;                // after, worst first
-  std::size_t points_added = 0, points_removed = 0;
+  std::vector<BelowTarget> below;  // worst first
 };
 
 struct ImproveOptions {

@@ -158,11 +158,10 @@ std::vector<Message> describe(const Improvement& improvement, double target, std
       if (is_worse) worst = &below;
     }
     if (worst == nullptr) continue;
-    Message message =
-        warning(Kind::geometry, text_of(*worst, how_many(improvement, cause), target, least_edge, unit));
-    if (cause == Cause::geometry) message.severity = Severity::note;
-    message.at = worst->at;
-    result.push_back(std::move(message));
+    const auto message = cause == Cause::geometry ? note : warning;
+    result.push_back(
+        message(Kind::geometry, text_of(*worst, how_many(improvement, cause), target, least_edge, unit))
+            .at_point(worst->at));
   }
   return result;
 }

@@ -15,26 +15,23 @@ fabric::Material generic_material() {
   return material;
 }
 
+fabric::TransverseElastic as_transverse(const fabric::Material& material) {
+  if (const auto* two = std::get_if<fabric::TransverseElastic>(&material.elastic)) return *two;
+  const auto& same = std::get<fabric::IsotropicElastic>(material.elastic);
+  return {.e1 = same.modulus,
+          .e2 = same.modulus,
+          .nu12 = same.poisson,
+          .g12 = same.modulus / (2 * (1 + same.poisson)),
+          .nu23 = same.poisson};
+}
+
 Orthotropic orthotropic(const fabric::Material& material) {
   Orthotropic result;
-  if (const auto* same = std::get_if<fabric::IsotropicElastic>(&material.elastic)) {
-    const double shear = same->modulus / (2 * (1 + same->poisson));
-    result = {true,
-              same->modulus,
-              same->modulus,
-              same->modulus,
-              same->poisson,
-              same->poisson,
-              same->poisson,
-              shear,
-              shear,
-              shear,
-              {},
-              {}};
-  } else if (const auto* two = std::get_if<fabric::TransverseElastic>(&material.elastic)) {
-    const double g23 = two->e2 / (2 * (1 + two->nu23));
-    result = {false,     two->e1,  two->e2,  two->e2, two->nu12, two->nu12,
-              two->nu23, two->g12, two->g12, g23,     {},        {}};
+  if (!std::holds_alternative<std::monostate>(material.elastic)) {
+    const fabric::TransverseElastic two = as_transverse(material);
+    const double g23 = two.e2 / (2 * (1 + two.nu23));
+    const bool isotropic = std::holds_alternative<fabric::IsotropicElastic>(material.elastic);
+    result = {isotropic, two.e1, two.e2, two.e2, two.nu12, two.nu12, two.nu23, two.g12, two.g12, g23, {}, {}};
   }
   if (material.expansion) {
     const auto [along, across] = *material.expansion;
@@ -55,19 +52,15 @@ bool same_letters(const std::string& a, const std::string& b) {
 // Adds a material to those in use, with elastic constants, unless it is there.
 void use(const fabric::Fabric& fabric, fabric::Material material, MaterialChoice& choice,
          Diagnostics& diagnostics) {
-  if (std::any_of(choice.materials.begin(), choice.materials.end(),
-                  [&](const fabric::Material& other) { return other.name == material.name; }))
-    return;
+  if (fabric::find_named(choice.materials, material.name) != nullptr) return;
   if (std::holds_alternative<std::monostate>(material.elastic)) {
     material.elastic = generic_material().elastic;
-    Message message =
+    diagnostics.add(
         warning(Kind::unsupported,
                 fmt::format("material '{}' has no elastic constants; the mesh carries E = 10000 MPa, "
                             "nu = 0.3 for it: give it an 'elastic' line",
-                            material.name));
-    message.file = fabric.file;
-    message.place = material.place;
-    diagnostics.add(std::move(message));
+                            material.name))
+            .placed(material.place, fabric.file));
   }
   choice.materials.push_back(std::move(material));
 }
@@ -106,26 +99,22 @@ MaterialChoice choose_materials(const fabric::Fabric& fabric, std::span<const ya
     choice.of_body.push_back(material.name);
     use(fabric, std::move(material), choice, diagnostics);
   }
-  if (!without.empty()) {
-    Message message = warning(
-        Kind::unsupported,
-        fmt::format("{} {} no material; the mesh carries a generic one (E = 10000 MPa, nu = 0.3, 1.5 g/cm3): "
+  if (!without.empty())
+    diagnostics.add(
+        warning(Kind::unsupported,
+                fmt::format(
+                    "{} {} no material; the mesh carries a generic one (E = 10000 MPa, nu = 0.3, 1.5 g/cm3): "
                     "name one in the yarn's thread",
                     without.size() == 1 ? fmt::format("yarn '{}'", without.front())
                                         : fmt::format("{} yarns", without.size()),
-                    without.size() == 1 ? "has" : "have"));
-    message.file = fabric.file;
-    diagnostics.add(std::move(message));
-  }
+                    without.size() == 1 ? "has" : "have"))
+            .placed({}, fabric.file));
   return choice;
 }
 
 Status add_matrix_material(const fabric::Fabric& fabric, MaterialChoice& choice, Diagnostics& diagnostics) {
   auto failed = [&](std::string text, TextPlace place) {
-    Message message = error(Kind::geometry, std::move(text));
-    message.file = fabric.file;
-    message.place = place;
-    return message;
+    return error(Kind::geometry, std::move(text)).placed(place, fabric.file);
   };
   if (!fabric.cell) return failed("a matrix fills a `cell`, and the file says none", {});
   const fabric::Cell& cell = *fabric.cell;

@@ -28,6 +28,9 @@ struct Orthotropic {
   std::optional<std::array<double, 3>> expansion;  // 1/K
   std::optional<double> density;                   // tonne/mm3
 };
+// The same constants about an axis. Precondition: the material has elastic constants.
+fabric::TransverseElastic as_transverse(const fabric::Material& material);
+
 // All zero of a material without elastic constants.
 Orthotropic orthotropic(const fabric::Material& material);
 

@@ -21,11 +21,6 @@ bool is_before(const CellSide& a, const CellSide& b) {
   return a.corners < b.corners;
 }
 
-double six_volumes(const TetMesh& mesh, const std::array<std::uint32_t, 4>& cell) {
-  const Vec3& p = mesh.points[cell[0]];
-  return (mesh.points[cell[1]] - p).cross(mesh.points[cell[2]] - p).dot(mesh.points[cell[3]] - p);
-}
-
 Message wrong(const std::string& text) {
   return error(Kind::internal, text + "; try another --size");
 }
@@ -33,11 +28,6 @@ Message wrong(const std::string& text) {
 // Of triangles of the surface that are in each other's way.
 Message in_the_way(const std::string& text) {
   return error(Kind::geometry, text + "; try another --size");
-}
-
-Message at(Message message, const Vec3& place) {
-  message.at = place;
-  return message;
 }
 
 Status check_input(std::span<const Vec3> points, std::span<const Triangle> triangles) {
@@ -61,7 +51,7 @@ Result<std::vector<CellSide>> sorted_faces(TetMesh& mesh, std::span<const Vec3> 
   for (auto& cell : mesh.cells) {
     for (const std::uint32_t corner : cell)
       if (corner >= mesh.points.size()) return wrong("a tetrahedron has a point that is not there");
-    if (six_volumes(mesh, cell) < 0) std::swap(cell[2], cell[3]);
+    if (six_volumes(mesh.points, cell) < 0) std::swap(cell[2], cell[3]);
   }
   return sorted_sides(mesh.cells, mesh.points.size());
 }
@@ -117,9 +107,8 @@ Status check_surface(std::span<const Vec3> points, std::span<const Triangle> tri
     for (; i < uses.size() && uses[i].region == first.region && uses[i].edge == first.edge; ++i)
       sum += uses[i].sense;
     if (sum != 0)
-      return at(
-          error(Kind::geometry, "the surface is not closed here; look at the yarn with 'selvage check'"),
-          points[first.edge >> 32U]);
+      return error(Kind::geometry, "the surface is not closed here; look at the yarn with 'selvage check'")
+          .at_point(points[first.edge >> 32U]);
   }
   const std::vector<double> volumes = enclosed_volumes(points, triangles, sides);
   if (std::any_of(volumes.begin(), volumes.end(), [](double volume) { return !(volume > 0); }))
@@ -176,7 +165,7 @@ Status find_regions(TetMesh& mesh, std::span<const Vec3> points, std::span<const
     const std::uint32_t region = mesh.regions[groups.of(c)];
     if (region == unknown) return wrong("a tetrahedron is in no region");
     mesh.regions[c] = region;
-    volumes[region] += six_volumes(mesh, mesh.cells[c]) / 6;
+    volumes[region] += six_volumes(mesh.points, mesh.cells[c]) / 6;
   }
   const std::vector<double> enclosed = enclosed_volumes(points, triangles, sides);
   for (std::size_t r = 0; r < volumes.size(); ++r)

@@ -45,11 +45,8 @@ Result<Skin> skin_of(const yarn::Body& body, const MeshOptions& options) {
   }
 }
 
-Message about(Message message, const yarn::Body& body, const fabric::Fabric& fabric) {
-  message.yarn = body.name;
-  message.file = fabric.file;
-  message.place = body.place;
-  return message;
+Message about(const Message& message, const yarn::Body& body, const fabric::Fabric& fabric) {
+  return message.of_yarn(body.name, body.place).placed({}, fabric.file);
 }
 
 // The nodes of a set of boundary triangles, midside ones included, increasing.
@@ -230,11 +227,7 @@ Result<Mesh> mesh_yarns(const fabric::Fabric& fabric, std::span<const yarn::Body
   mesh.materials = std::move(choice.materials);
   for (std::size_t i = 0; i < bodies.size(); ++i) mesh.regions[i].material = choice.of_body[i];
   measure(mesh);
-  if (Status sound = check_elements(mesh, units); !sound) {
-    Message message = sound.error();
-    message.file = fabric.file;
-    return message;
-  }
+  if (Status sound = check_elements(mesh, units); !sound) return sound.error().placed({}, fabric.file);
   return mesh;
 }
 

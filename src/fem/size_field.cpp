@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/bounds.h"
 #include "core/box_tree.h"
 #include "core/parallel.h"
 #include "fem/triangle_distance.h"
@@ -175,9 +176,7 @@ Raster raster_of(const yarn::Body& body, std::uint32_t number, const Box3& near,
 void add_facets(const Raster& raster, const Box3& near, std::vector<Facet>& facets) {
   const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
     const std::array<Vec3, 3> corners = {raster.points[a], raster.points[b], raster.points[c]};
-    Box3 box;
-    for (const Vec3& corner : corners) box.extend(corner);
-    if (!near.intersects(box)) return;
+    if (!near.intersects(bounds_of(corners))) return;
     Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     if (normal.norm() == 0) return;
     normal.normalize();
@@ -280,11 +279,7 @@ SizeField size_field(std::span<const yarn::Body> bodies, const Box3& box, const 
   for (const Raster& raster : rasters) add_facets(raster, near, facets);
   std::vector<Box3> boxes;
   boxes.reserve(facets.size());
-  for (const Facet& facet : facets) {
-    Box3 one;
-    for (const Vec3& corner : facet.corners) one.extend(corner);
-    boxes.push_back(one);
-  }
+  for (const Facet& facet : facets) boxes.push_back(bounds_of(facet.corners));
   const BoxTree tree(std::move(boxes));
   const Rule rule(facets, tree, box, rules);
   std::vector<std::vector<SizeField::Bound>> bounds(rasters.size());
@@ -304,8 +299,7 @@ SizeField size_field(std::span<const yarn::Body> bodies, const Box3& box, const 
 std::vector<double> crests_of(const nurbs::Surface& surface) {
   std::vector<double> candidates;
   for (const double value : nurbs::breakpoints(surface.knots_u, surface.degree_u))
-    if (value < surface.last_u() &&
-        std::count(surface.knots_u.begin(), surface.knots_u.end(), value) >= surface.degree_u)
+    if (value < surface.last_u() && nurbs::multiplicity(surface.knots_u, value) >= surface.degree_u)
       candidates.push_back(value);
   // A many-fold knot need not be sharp: the angle on a few sections tells.
   const double range = surface.last_u() - surface.first_u(), step = 1e-4 * range;

@@ -51,7 +51,7 @@ Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Box3& box, cons
     if (options.progress) options.progress(name);
   };
   step("cutting");
-  Result<cell::Cut> cut = cell::cut(bodies, box, {.tolerance = options.tolerance});
+  Result<cell::Cut> cut = cell::cut(bodies, box, options.tolerance);
   if (!cut) return cut.error();
   Result<cell::Division> division = cell::divide_faces(bodies, box, *cut);
   if (!division) return division.error();

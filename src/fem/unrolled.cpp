@@ -461,11 +461,7 @@ Result<PlanarRegion> Unroller::run() {
   else
     done = error(Kind::geometry, "a part of the yarn's surface inside the cell is no tube, disc or ring");
   if (done) add_rows_beside_crests();
-  if (!done) {
-    Message message = done.error();
-    message.at = position(piece_.inside);
-    return message;
-  }
+  if (!done) return done.error().at_point(position(piece_.inside));
   return std::move(region_);
 }
 

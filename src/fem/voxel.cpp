@@ -215,12 +215,9 @@ void fill_quality(Mesh& mesh, const Grid& grid, double unit) {
 
 void say_what_is_rough(const Owners& owners, Diagnostics& diagnostics) {
   if (owners.in_two == 0) return;
-  Message note =
-      warning(Kind::geometry, fmt::format("{} hexahedra lie in two yarns that overlap; each went to "
-                                          "the nearer centre line",
-                                          owners.in_two));
-  note.severity = Severity::note;
-  diagnostics.add(std::move(note));
+  diagnostics.add(note(Kind::geometry, fmt::format("{} hexahedra lie in two yarns that overlap; each went to "
+                                                   "the nearer centre line",
+                                                   owners.in_two)));
 }
 
 }  // namespace
@@ -230,11 +227,7 @@ Result<Mesh> mesh_voxels(const fabric::Fabric& fabric, std::span<const yarn::Bod
   if (!fabric.cell) return error(Kind::geometry, "the file says no `cell` to mesh");
   const fabric::Cell& cell = *fabric.cell;
   const Box3 box(cell.low.cwiseMin(cell.high), cell.low.cwiseMax(cell.high));
-  auto at_cell = [&](Message message) {
-    message.file = fabric.file;
-    message.place = cell.place;
-    return message;
-  };
+  const auto at_cell = [&](const Message& message) { return message.placed(cell.place, fabric.file); };
   const Result<Grid> grid = make_grid(box, options.count);
   if (!grid) return grid.error();
   MaterialChoice choice = choose_materials(fabric, bodies, diagnostics);

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <utility>
 
+#include "core/bounds.h"
 #include "fem/mesh_check.h"
 #include "fem/tetgen_worker/protocol.h"
 
@@ -46,11 +47,6 @@ Message system_error(std::string_view what) {
   return error(Kind::internal, fmt::format("cannot {} for the mesh worker: {}", what, std::strerror(errno)));
 }
 
-Message with_place(Message message, const Vec3& at) {
-  message.at = at;
-  return message;
-}
-
 bool write_all(int to, const void* from, std::size_t size) {
   const auto* bytes = static_cast<const char*>(from);
   while (size > 0) {
@@ -65,9 +61,7 @@ bool write_all(int to, const void* from, std::size_t size) {
 
 double relative_epsilon(const TetgenJob& job) {
   if (job.smallest_feature <= 0) return 1e-8;
-  Box3 box;
-  for (const Vec3& point : job.points) box.extend(point);
-  return std::clamp(1e-5 * job.smallest_feature / box.diagonal().norm(), 1e-13, 1e-8);
+  return std::clamp(1e-5 * job.smallest_feature / bounds_of(job.points).diagonal().norm(), 1e-13, 1e-8);
 }
 
 // The request in an anonymous file: it need not be fed while the worker runs.
@@ -279,10 +273,10 @@ Message crossing(const TetgenJob& job, const std::vector<Triangle>& triangles) {
             "a finer --size"
           : "yarns overlap there, or are too near to each other for triangles of this size; try "
             "a finer --size, or move them apart with --relax where they have room";
-  return with_place(error(Kind::geometry,
-                          fmt::format("{} facets cross each other, the first at ({:.6g}, {:.6g}, {:.6g}): {}",
-                                      triangles.size(), at.x(), at.y(), at.z(), why)),
-                    at);
+  return error(Kind::geometry,
+               fmt::format("{} facets cross each other, the first at ({:.6g}, {:.6g}, {:.6g}): {}",
+                           triangles.size(), at.x(), at.y(), at.z(), why))
+      .at_point(at);
 }
 
 Result<TetMesh> read_answer(const TetgenJob& job, const Ended& ended, const TetgenLimits& limits) {

@@ -20,10 +20,6 @@ using Kind = Analytic::Kind;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double angle_slack = 1e-6;
 
-Curve segment(const Vec3& from, const Vec3& to, double t0, double t1) {
-  return {.degree = 1, .knots = {t0, t0, t1, t1}, .points = {from, to}, .weights = {}};
-}
-
 struct Span {
   double low = infinite, high = -infinite;
 

@@ -73,6 +73,24 @@ void basis_derivatives(const std::vector<double>& knots, int degree, int span, d
   basis(knots, degree, span, t, rows[0]);
 }
 
+void polar_form(const std::vector<double>& knots, int degree, int span, const double* arguments,
+                BasisRow& factors) {
+  const auto at = [](int i) { return static_cast<std::size_t>(i); };
+  std::array<BasisRow, max_degree + 1> points;
+  for (int i = 0; i <= degree; ++i)
+    std::fill_n(points[at(i)].begin(), degree + 1, 0.0), points[at(i)][at(i)] = 1.0;
+  for (int r = 1; r <= degree; ++r) {
+    const double t = arguments[r - 1];
+    for (int i = degree; i >= r; --i) {
+      const double low = knots[at(span - degree + i)], high = knots[at(span + 1 + i - r)];
+      const double share = (t - low) / (high - low);  // high > low: the span lies between them
+      for (int c = i - r; c <= i; ++c)
+        points[at(i)][at(c)] = (1.0 - share) * points[at(i - 1)][at(c)] + share * points[at(i)][at(c)];
+    }
+  }
+  std::copy_n(points[at(degree)].begin(), degree + 1, factors.begin());
+}
+
 std::vector<double> greville(const std::vector<double>& knots, int degree, int count) {
   std::vector<double> sites(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {

@@ -23,6 +23,11 @@ void basis(const std::vector<double>& knots, int degree, int span, double t, Bas
 void basis_derivatives(const std::vector<double>& knots, int degree, int span, double t,
                        std::array<BasisRow, 3>& rows);
 
+// The polar form at `arguments` (`degree` of them) on span k, as factors of the control points k - degree ..
+// k: de Boor's triangle run on unit vectors (Ramshaw 1989).
+void polar_form(const std::vector<double>& knots, int degree, int span, const double* arguments,
+                BasisRow& factors);
+
 // The mean of `degree` neighbouring knots that belongs to each control point: where a linear function has its
 // coefficients.
 std::vector<double> greville(const std::vector<double>& knots, int degree, int count);

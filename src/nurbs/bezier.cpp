@@ -4,6 +4,7 @@
 
 #include "core/plane.h"
 #include "nurbs/basis.h"
+#include "nurbs/roots.h"
 
 namespace selvage::nurbs {
 
@@ -73,10 +74,7 @@ double nearest_parameter(const Bezier& curve, const Vec2& target) {
   for (int i = 0; i < intervals; ++i) {
     double low = static_cast<double>(i) / intervals, high = static_cast<double>(i + 1) / intervals;
     if (!(slope(low) < 0.0) || slope(high) < 0.0) continue;
-    for (int step = 0; step < 60; ++step) {
-      const double middle = 0.5 * (low + high);
-      (slope(middle) < 0.0 ? low : high) = middle;
-    }
+    halve_between(low, high, 60, [&](double t) { return slope(t) < 0.0; });
     if (distance(high) < distance(nearest)) nearest = high;
   }
   return nearest;

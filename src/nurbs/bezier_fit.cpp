@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/bounds.h"
 #include "core/plane.h"
 
 namespace selvage::nurbs {
@@ -91,10 +92,8 @@ BezierFit fit_bezier(const std::vector<Vec2>& points) {
   const LeastSquares sums = equations(points);
   fit.solved = assembled(points, points.size() == 3 ? elevated_parabola(points)
                                                     : Eigen::Matrix2d(sums.matrix.inverse() * sums.right));
-  Box2 box;
-  for (const Vec2& p : points) box.extend(p);
   Eigen::Matrix2d inner = start;
-  fit.iterations = descend(sums, box.diagonal().norm(), inner);
+  fit.iterations = descend(sums, bounds_of(points).diagonal().norm(), inner);
   fit.descended = assembled(points, inner);
   return fit;
 }

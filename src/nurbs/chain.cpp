@@ -11,15 +11,6 @@ namespace selvage::nurbs {
 
 namespace {
 
-using Vec4 = Eigen::Vector4d;
-
-Vec4 homogeneous(const Curve& curve, std::size_t i) {
-  const double w = curve.is_rational() ? curve.weights[i] : 1.0;
-  Vec4 h;
-  h << w * curve.points[i], w;
-  return h;
-}
-
 // One span of the curve with nothing else of it: cheap to restrict.
 Curve window(const Curve& curve, int span) {
   const auto first = static_cast<std::ptrdiff_t>(span) - curve.degree,

@@ -72,13 +72,6 @@ bool only_meet_at(const Vec2& apex, const Part& a, const Part& b) {
   return false;
 }
 
-double distance(const Vec2& p, const Vec2& a, const Vec2& b, Vec2& foot) {
-  const Vec2 d = b - a;
-  const double length = d.squaredNorm();
-  foot = length > 0.0 ? Vec2(a + std::clamp((p - a).dot(d) / length, 0.0, 1.0) * d) : a;
-  return (p - foot).norm();
-}
-
 // Where the chords of two flat parts meet or come nearer than `touch`.
 std::optional<Vec2> meeting(const Part& a, const Part& b, double touch) {
   const Vec2 u = a.last() - a.first(), v = b.last() - b.first(), w = b.first() - a.first();
@@ -87,11 +80,12 @@ std::optional<Vec2> meeting(const Part& a, const Part& b, double touch) {
     const double s = cross(w, v) / area, t = cross(w, u) / area;
     if (s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0) return a.first() + s * u;
   }
-  Vec2 foot;
-  for (const Vec2& p : {b.first(), b.last()})
-    if (distance(p, a.first(), a.last(), foot) <= touch) return foot;
-  for (const Vec2& p : {a.first(), a.last()})
-    if (distance(p, b.first(), b.last(), foot) <= touch) return foot;
+  for (const auto& [ends, chord] : {std::pair(&b, &a), std::pair(&a, &b)})
+    for (const Vec2& p : {ends->first(), ends->last()}) {
+      const Vec2 &from = chord->first(), &to = chord->last();
+      const Vec2 foot = from + nearest_share(p, from, to) * (to - from);
+      if ((p - foot).norm() <= touch) return foot;
+    }
   return std::nullopt;
 }
 

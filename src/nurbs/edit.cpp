@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 
+#include "core/wrapped.h"
 #include "nurbs/basis.h"
 #include "nurbs/measure.h"
+#include "nurbs/roots.h"
 
 namespace selvage::nurbs {
 
@@ -56,9 +58,8 @@ class Rows {
 
   // Knots of the periodic form, any index; knot(0) is the seam.
   [[nodiscard]] double knot(int i) const {
-    const int n = spans(), wrapped = ((i % n) + n) % n;
-    const int turns = (i - wrapped) / n;
-    return breaks_[at(wrapped)] + turns * (breaks_.back() - breaks_.front());
+    const int k = wrapped(i, spans()), turns = (i - k) / spans();
+    return breaks_[at(k)] + turns * (breaks_.back() - breaks_.front());
   }
 
   [[nodiscard]] Row get(int i) const {
@@ -87,9 +88,7 @@ class Rows {
   }
 
  private:
-  [[nodiscard]] Row own(int i) const {
-    return {curve_.points[at(i)], curve_.is_rational() ? curve_.weights[at(i)] : 1.0};
-  }
+  [[nodiscard]] Row own(int i) const { return {curve_.points[at(i)], curve_.weight(at(i))}; }
   void set_own(int i, const Row& row) {
     if (!curve_.is_rational() && row.weight != 1.0) curve_.weights.assign(curve_.points.size(), 1.0);
     curve_.points[at(i)] = row.point;
@@ -163,21 +162,19 @@ Status check(const Curve& curve, bool closed, int number) {
   if (number < 1 || number > count)
     return error(Kind::geometry, fmt::format("there is no joint {}: the centre line has {}", number, count));
   const std::vector<double> breaks = breakpoints(curve.knots, curve.degree);
-  const auto multiplicity = [&](double t) {
-    return static_cast<int>(std::count(curve.knots.begin(), curve.knots.end(), t));
-  };
   const int last = static_cast<int>(breaks.size()) - 1;
-  if ((closed || (number > 1 && number <= last)) && multiplicity(breaks[at(number - 1)]) == curve.degree)
+  if ((closed || (number > 1 && number <= last)) &&
+      multiplicity(curve.knots, breaks[at(number - 1)]) == curve.degree)
     return error(
         Kind::geometry,
         fmt::format("joint {} stands on its control point, as where an arc meets a straight: moving it "
                     "would make a corner",
                     number));
   if (!closed) return {};
-  const bool is_simple =
-      std::all_of(breaks.begin() + 1, breaks.end() - 1, [&](double t) { return multiplicity(t) == 1; });
-  if (curve.degree != 3 || last < 3 || !is_simple || multiplicity(breaks.front()) != 4 ||
-      multiplicity(breaks.back()) != 4 || curve.points.front() != curve.points.back())
+  const bool is_simple = std::all_of(breaks.begin() + 1, breaks.end() - 1,
+                                     [&](double t) { return multiplicity(curve.knots, t) == 1; });
+  if (curve.degree != 3 || last < 3 || !is_simple || multiplicity(curve.knots, breaks.front()) != 4 ||
+      multiplicity(curve.knots, breaks.back()) != 4 || curve.points.front() != curve.points.back())
     return error(Kind::geometry,
                  "only a closed cubic with at least three segments and simple knots can be edited");
   return {};
@@ -217,13 +214,6 @@ Triangle triangle_of(const Rows& rows, const Joint& joint) {
   return triangle;
 }
 
-Vec3 nearest_on_segment(const Vec3& from, const Vec3& to, const Vec3& target) {
-  const Vec3 along = to - from;
-  const double square = along.squaredNorm();
-  if (square == 0.0) return from;
-  return from + std::clamp((target - from).dot(along) / square, 0.0, 1.0) * along;
-}
-
 Vec3 nearest_reachable(const Triangle& t, const Vec3& target) {
   const std::array<Vec3, 4> corners = {t.joint(t.low[0], t.low[1]), t.joint(t.high[0], t.low[1]),
                                        t.joint(t.high[0], t.high[1]), t.joint(t.low[0], t.high[1])};
@@ -241,7 +231,8 @@ Vec3 nearest_reachable(const Triangle& t, const Vec3& target) {
   }
   Vec3 best = corners[0];
   for (std::size_t k = 0; k < 4; ++k) {
-    const Vec3 point = nearest_on_segment(corners[k], corners[(k + 1) % 4], target);
+    const Vec3 &from = corners[k], &to = corners[(k + 1) % 4];
+    const Vec3 point = from + nearest_share(target, from, to) * (to - from);
     if ((point - target).norm() < (best - target).norm()) best = point;
   }
   return best;
@@ -379,27 +370,15 @@ class Slide {
   }
 
   // The displacement between two at which the length is the wanted one, given that it is on different sides
-  // at them (regula falsi with the Illinois rule).
+  // at them.
   double solve(double wanted, double a, double b) {
-    double excess_a = length(a) - wanted, excess_b = length(b) - wanted;
-    int side = 0;
+    FalsePosition root{a, length(a) - wanted, b, length(b) - wanted};
     for (int i = 0; i < 200; ++i) {
-      const double middle = (a * excess_b - b * excess_a) / (excess_b - excess_a);
-      const double excess = length(middle) - wanted;
-      if (std::abs(excess) <= 1e-14 * wanted || middle == a || middle == b) return middle;
-      if ((excess > 0.0) == (excess_b > 0.0)) {
-        b = middle;
-        excess_b = excess;
-        if (side == -1) excess_a *= 0.5;
-        side = -1;
-      } else {
-        a = middle;
-        excess_a = excess;
-        if (side == 1) excess_b *= 0.5;
-        side = 1;
-      }
+      const double middle = root.crossing(), excess = length(middle) - wanted;
+      if (std::abs(excess) <= 1e-14 * wanted || middle == root.from || middle == root.to) return middle;
+      root.take(middle, excess);
     }
-    return std::abs(excess_a) < std::abs(excess_b) ? a : b;
+    return std::abs(root.at_from) < std::abs(root.at_to) ? root.from : root.to;
   }
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/wrapped.h"
 #include "nurbs/basis.h"
 
 namespace selvage::nurbs {
@@ -120,9 +121,8 @@ Eigen::MatrixXd interpolate_periodic(const std::vector<double>& t, const Eigen::
   // Knots of the periodic spline, three more on each side of the period.
   std::vector<double> knots;
   for (Eigen::Index i = -3; i <= n + 3; ++i) {
-    const Eigen::Index wrapped = ((i % n) + n) % n;
-    const Eigen::Index turns = (i - wrapped) / n;
-    knots.push_back(t[at(wrapped)] + period * static_cast<double>(turns));
+    const Eigen::Index k = wrapped(i, n), turns = (i - k) / n;
+    knots.push_back(t[at(k)] + period * static_cast<double>(turns));
   }
   knots[at(n + 3)] = t.back();
   // The unknown row i stands in the middle of the three functions that live at data point i (rows i - 1, i, i
@@ -154,7 +154,7 @@ Eigen::MatrixXd interpolate_periodic(const std::vector<double>& t, const Eigen::
   // Cut open at the first parameter: value and derivative there are blends of three rows; all rows but the
   // outermost two on each side of the seam stay what they are.
   Eigen::MatrixXd control(n + 3, data.cols());
-  const auto row = [&](Eigen::Index i) { return rows.row(((i % n) + n) % n); };
+  const auto row = [&](Eigen::Index i) { return rows.row(wrapped(i, n)); };
   const auto knot = [&](Eigen::Index i) { return knots[at(i + 3)]; };  // knot(0) is the seam
   const auto blend = [&](Eigen::Index i, double a, double b, double s) -> Eigen::RowVectorXd {
     const double share_of_next = (s - a) / (b - a);
@@ -183,29 +183,27 @@ Curve interpolate_closed(const std::vector<Vec3>& points, const std::vector<doub
   return as_curve(clamped_knots(t), interpolate_periodic(t, as_matrix(points)));
 }
 
-Curve clamped(const Curve& curve) {
-  Curve whole = curve;
-  const double first = curve.first_parameter(), last = curve.last_parameter();
-  const auto multiplicity = [&](double t) {
-    return static_cast<int>(std::count(whole.knots.begin(), whole.knots.end(), t));
-  };
-  for (double t : {first, last}) whole = insert_knot(whole, t, std::max(0, curve.degree - multiplicity(t)));
-  // As in sub_curve: the points whose following knots are all `first`, up to the one before the first `last`.
-  const auto first_knot = std::lower_bound(whole.knots.begin(), whole.knots.end(), first);
-  const auto past_first = std::upper_bound(whole.knots.begin(), whole.knots.end(), first);
-  const auto last_knot = std::lower_bound(whole.knots.begin(), whole.knots.end(), last);
-  const auto extra = past_first - first_knot > curve.degree ? 0 : 1;
-  const auto first_point = first_knot - whole.knots.begin() - extra;
-  const auto last_point = last_knot - whole.knots.begin() - 1;
-  Curve out;
-  out.degree = curve.degree;
-  out.points.assign(whole.points.begin() + first_point, whole.points.begin() + last_point + 1);
-  if (whole.is_rational())
-    out.weights.assign(whole.weights.begin() + first_point, whole.weights.begin() + last_point + 1);
-  out.knots.assign(static_cast<std::size_t>(curve.degree) + 1, first);
-  out.knots.insert(out.knots.end(), past_first, last_knot);
-  out.knots.insert(out.knots.end(), static_cast<std::size_t>(curve.degree) + 1, last);
-  return out;
+std::vector<double> clamped_integer_knots(int count, int degree) {
+  std::vector<double> knots;
+  for (int i = 0; i < count + degree + 1; ++i) knots.push_back(std::clamp(i - degree, 0, count - degree));
+  return knots;
+}
+
+Curve closed_uniform(const std::vector<Vec3>& points, const std::vector<double>& weights, int degree,
+                     const std::function<double(int)>& knot) {
+  const int n = static_cast<int>(points.size());
+  Curve periodic;
+  periodic.degree = degree;
+  for (int i = -degree; i <= n + degree; ++i) periodic.knots.push_back(knot(i));
+  for (int i = 0; i < n + degree; ++i) {
+    const int k = wrapped(i - degree / 2, n);
+    periodic.points.push_back(points[at(k)]);
+    if (!weights.empty()) periodic.weights.push_back(weights[at(k)]);
+  }
+  Curve curve = sub_curve(periodic, periodic.first_parameter(), periodic.last_parameter());
+  curve.points.back() = curve.points.front();
+  if (curve.is_rational()) curve.weights.back() = curve.weights.front();
+  return curve;
 }
 
 }  // namespace selvage::nurbs

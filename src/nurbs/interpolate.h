@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -45,7 +46,13 @@ Curve interpolate(const std::vector<Vec3>& points, const std::vector<double>& pa
                   const Vec3& first_derivative, const Vec3& last_derivative);
 Curve interpolate_closed(const std::vector<Vec3>& points, const std::vector<double>& parameters);
 
-// The clamped form of a curve whose end knots are not repeated (a periodic one cut open).
-Curve clamped(const Curve& curve);
+// 0, 1, 2, .., the first and last as often as a clamped curve of so many control points has them.
+std::vector<double> clamped_integer_knots(int count, int degree);
+
+// A closed polygon as a clamped closed B-spline over knot(0) .. knot(points.size()), which are evenly spaced
+// and go on beyond them: degree 2 begins in the middle of the edge from the last point to the first, degree 3
+// beside the first point, and so on. Weights: none, or one a point.
+Curve closed_uniform(const std::vector<Vec3>& points, const std::vector<double>& weights, int degree,
+                     const std::function<double(int)>& knot);
 
 }  // namespace selvage::nurbs

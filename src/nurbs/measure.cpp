@@ -129,7 +129,6 @@ double volume_flux(const Surface& surface, const Vec3& origin) {
                                                 order(surface.degree_u), surface.is_rational());
   const std::vector<Node> nodes_v = gauss_nodes(surface.knots_v, surface.degree_v, surface.count_v,
                                                 order(surface.degree_v), surface.is_rational());
-  using Vec4 = Eigen::Vector4d;
   std::vector<Vec4> line(static_cast<std::size_t>(surface.count_u)), slope_line(line.size());
   double sum = 0.0;
   for (const Node& v : nodes_v) {
@@ -137,9 +136,7 @@ double volume_flux(const Surface& surface, const Vec3& origin) {
     for (int i = 0; i < surface.count_u; ++i) {
       Vec4 position = Vec4::Zero(), slope = Vec4::Zero();
       for (int j = 0; j <= surface.degree_v; ++j) {
-        const double w = surface.weight(i, v.first + j);
-        const Vec3 p = w * (surface.point(i, v.first + j) - origin);
-        const Vec4 h(p.x(), p.y(), p.z(), w);
+        const Vec4 h = homogeneous(surface.point(i, v.first + j) - origin, surface.weight(i, v.first + j));
         position += v.value[static_cast<std::size_t>(j)] * h;
         slope += v.slope[static_cast<std::size_t>(j)] * h;
       }

@@ -26,21 +26,11 @@ void extract(const std::vector<double>& knots, int degree, int count, double low
              Extraction& out) {
   const int span = find_span(knots, degree, count, 0.5 * (low + high));
   out.first = span - degree;
-  std::array<BasisRow, max_degree + 1> points;
+  std::array<double, max_degree> arguments{};  // `degree - k` times low, k times high
+  std::fill_n(arguments.begin(), degree, low);
   for (int k = 0; k <= degree; ++k) {
-    for (int i = 0; i <= degree; ++i)
-      std::fill_n(points[at(i)].begin(), degree + 1, 0.0), points[at(i)][at(i)] = 1.0;
-    // Arguments: `degree - k` times low, k times high.
-    for (int r = 1; r <= degree; ++r) {
-      const double t = r <= degree - k ? low : high;
-      for (int i = degree; i >= r; --i) {
-        const double from = knots[at(span - degree + i)], to = knots[at(span + 1 + i - r)];
-        const double share = (t - from) / (to - from);
-        for (int c = i - r; c <= i; ++c)
-          points[at(i)][at(c)] = (1.0 - share) * points[at(i - 1)][at(c)] + share * points[at(i)][at(c)];
-      }
-    }
-    std::copy_n(points[at(degree)].begin(), degree + 1, out.rows[at(k)].begin());
+    if (k > 0) arguments[at(degree - k)] = high;
+    polar_form(knots, degree, span, arguments.data(), out.rows[at(k)]);
   }
 }
 
@@ -211,9 +201,7 @@ void extend(Box3& box, const Surface& surface, double tolerance) {
 Vec3 middle_normal(const Patch& patch, bool inward) {
   const Vec3 across = patch.points.back() - patch.points.front(),
              other = patch.point(0, patch.count_v - 1) - patch.point(patch.count_u - 1, 0);
-  const Vec3 normal = across.cross(other) * (inward ? -1.0 : 1.0);
-  const double size = normal.norm();
-  return size > 0.0 ? Vec3(normal / size) : Vec3::Zero();
+  return unit_or_zero(across.cross(other) * (inward ? -1.0 : 1.0));
 }
 
 double lowest(const Patch& patch, const Vec3& direction) {

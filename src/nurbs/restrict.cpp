@@ -10,8 +10,6 @@ namespace selvage::nurbs {
 
 namespace {
 
-using Vec4 = Eigen::Vector4d;
-
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
@@ -26,23 +24,6 @@ struct Restriction {
   std::vector<Row> rows;
 };
 
-// The polar form at `arguments` (`degree` of them) on span k, as factors of the control points k - degree ..
-// k: de Boor's triangle run on unit vectors.
-Restriction::Row polar_form(const std::vector<double>& knots, int degree, int k, const double* arguments) {
-  std::array<BasisRow, max_degree + 1> points{};
-  for (int i = 0; i <= degree; ++i) points[at(i)][at(i)] = 1;
-  for (int r = 1; r <= degree; ++r) {
-    const double t = arguments[r - 1];
-    for (int i = degree; i >= r; --i) {
-      const double low = knots[at(k - degree + i)], high = knots[at(k + 1 + i - r)];
-      const double share = (t - low) / (high - low);  // high > low: the span k lies between them
-      for (int c = 0; c <= degree; ++c)
-        points[at(i)][at(c)] = (1 - share) * points[at(i - 1)][at(c)] + share * points[at(i)][at(c)];
-    }
-  }
-  return {k - degree, points[at(degree)]};
-}
-
 // The control points over knots that hold all the old ones of their range.
 Restriction over_knots(const std::vector<double>& knots, int degree, int count,
                        std::vector<double> new_knots) {
@@ -56,7 +37,9 @@ Restriction over_knots(const std::vector<double>& knots, int degree, int count,
     while (j < i + degree && made[at(j)] == made[at(j) + 1]) ++j;
     while (j > i && made[at(j)] == made[at(j) + 1]) --j;
     const int span = find_span(knots, degree, count, (made[at(j)] + made[at(j) + 1]) / 2);
-    result.rows.push_back(polar_form(knots, degree, span, made.data() + i + 1));
+    Restriction::Row& row = result.rows.emplace_back();
+    row.first = span - degree;
+    polar_form(knots, degree, span, made.data() + i + 1, row.factors);
   }
   return result;
 }
@@ -67,10 +50,6 @@ Restriction restriction(const std::vector<double>& knots, int degree, int count,
     if (knot > t0 && knot < t1) made.push_back(knot);
   made.insert(made.end(), at(degree) + 1, t1);
   return over_knots(knots, degree, count, std::move(made));
-}
-
-Vec4 homogeneous(const Vec3& point, double weight) {
-  return {point.x() * weight, point.y() * weight, point.z() * weight, weight};
 }
 
 }  // namespace
@@ -85,8 +64,7 @@ Curve restricted(const Curve& curve, double t0, double t1) {
     Vec4 sum = Vec4::Zero();
     for (int c = 0; c <= curve.degree; ++c) {
       const std::size_t old = at(row.first + c);
-      sum +=
-          row.factors[at(c)] * homogeneous(curve.points[old], curve.is_rational() ? curve.weights[old] : 1.0);
+      sum += row.factors[at(c)] * homogeneous(curve.points[old], curve.weight(old));
     }
     part.points.push_back(curve.is_rational() ? Vec3(sum.head<3>() / sum.w()) : Vec3(sum.head<3>()));
     if (curve.is_rational()) part.weights.push_back(sum.w());

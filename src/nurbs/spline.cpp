@@ -38,9 +38,8 @@ CurveJet evaluate_jet(const Curve& curve, double t) {
   std::array<double, 3> weights = {0.0, 0.0, 0.0};
   for (int j = 0; j <= curve.degree; ++j) {
     const std::size_t i = at(span - curve.degree + j);
-    const double weight = curve.is_rational() ? curve.weights[i] : 1.0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const double share = rows[k][at(j)] * weight;
+      const double share = rows[k][at(j)] * curve.weight(i);
       sums[k] += share * curve.points[i];
       weights[k] += share;
     }
@@ -59,7 +58,7 @@ Vec3 evaluate(const Curve& curve, double t) {
   double total = 0.0;
   for (int j = 0; j <= curve.degree; ++j) {
     const std::size_t i = at(span - curve.degree + j);
-    const double share = values[at(j)] * (curve.is_rational() ? curve.weights[i] : 1.0);
+    const double share = values[at(j)] * curve.weight(i);
     sum += share * curve.points[i];
     total += share;
   }
@@ -172,6 +171,22 @@ Curve control_column(const Surface& surface, int i) {
   return curve;
 }
 
+Surface of_columns(int degree_u, const std::vector<double>& knots_u, const std::vector<Curve>& columns) {
+  Surface surface;
+  surface.degree_u = degree_u;
+  surface.degree_v = columns.front().degree;
+  surface.count_u = static_cast<int>(columns.size());
+  surface.count_v = static_cast<int>(columns.front().points.size());
+  surface.knots_u = knots_u;
+  surface.knots_v = columns.front().knots;
+  for (std::size_t j = 0; j < columns.front().points.size(); ++j)
+    for (const Curve& column : columns) {
+      surface.points.push_back(column.points[j]);
+      if (column.is_rational()) surface.weights.push_back(column.weights[j]);
+    }
+  return surface;
+}
+
 Curve boundary_column(const Surface& surface, bool last) {
   return control_column(surface, last ? surface.count_u - 1 : 0);
 }
@@ -198,7 +213,7 @@ Curve insert_knot(const Curve& curve, double t, int times) {
   out.knots.insert(out.knots.begin() + span + 1, t);
   out.points.reserve(at(count + 1));
   std::vector<double> weights;
-  const auto weight = [&](int i) { return curve.is_rational() ? curve.weights[at(i)] : 1.0; };
+  const auto weight = [&](int i) { return curve.weight(at(i)); };
   for (int i = 0; i <= count; ++i) {
     double alpha = 0.0;
     if (i <= span - p) {
@@ -227,40 +242,51 @@ Curve insert_knot(const Curve& curve, double t, int times) {
   return insert_knot(out, t, times - 1);
 }
 
+Curve segment(const Vec3& from, const Vec3& to, double t0, double t1) {
+  return {.degree = 1, .knots = {t0, t0, t1, t1}, .points = {from, to}, .weights = {}};
+}
+
+int multiplicity(const std::vector<double>& knots, double t) {
+  return static_cast<int>(std::count(knots.begin(), knots.end(), t));
+}
+
+Curve opened_at(const Curve& curve, double t) {
+  return insert_knot(curve, t, curve.degree - multiplicity(curve.knots, t));
+}
+
 Curve sub_curve(const Curve& curve, double t0, double t1) {
-  const int p = curve.degree;
-  const auto multiplicity = [](const Curve& c, double t) {
-    return static_cast<int>(std::count(c.knots.begin(), c.knots.end(), t));
-  };
-  Curve whole = curve;
-  for (double t : {t0, t1})
-    if (t > curve.first_parameter() && t < curve.last_parameter())
-      whole = insert_knot(whole, t, std::max(0, p - multiplicity(whole, t)));
-  // With multiplicity p at t, the curve passes through the control point whose p following knots are all t.
-  const auto first_knot = std::lower_bound(whole.knots.begin(), whole.knots.end(), t0) - whole.knots.begin();
-  const auto past_t1 = std::lower_bound(whole.knots.begin(), whole.knots.end(), t1) - whole.knots.begin();
-  const int extra = t0 > curve.first_parameter() ? 1 : 0;  // clamped start has p + 1 knots, an inner one p
-  const int first_point = static_cast<int>(first_knot) - extra;
-  const int last_point = static_cast<int>(past_t1) - 1;
+  const Curve whole = opened_at(opened_at(curve, t0), t1);
+  const auto first_knot = std::lower_bound(whole.knots.begin(), whole.knots.end(), t0),
+             past_first = std::upper_bound(first_knot, whole.knots.end(), t0),
+             last_knot = std::lower_bound(past_first, whole.knots.end(), t1);
+  // With multiplicity p at t, the curve passes through the control point whose p following knots are all t;
+  // a clamped start has p + 1.
+  const auto first_point =
+                 first_knot - whole.knots.begin() - (past_first - first_knot > curve.degree ? 0 : 1),
+             end_point = last_knot - whole.knots.begin();
   Curve part;
-  part.degree = p;
-  part.points.assign(whole.points.begin() + first_point, whole.points.begin() + last_point + 1);
+  part.degree = curve.degree;
+  part.points.assign(whole.points.begin() + first_point, whole.points.begin() + end_point);
   if (whole.is_rational())
-    part.weights.assign(whole.weights.begin() + first_point, whole.weights.begin() + last_point + 1);
-  part.knots.assign(at(p + 1), t0);
-  for (double knot : whole.knots)
-    if (knot > t0 && knot < t1) part.knots.push_back(knot);
-  part.knots.insert(part.knots.end(), at(p + 1), t1);
+    part.weights.assign(whole.weights.begin() + first_point, whole.weights.begin() + end_point);
+  part.knots.assign(at(curve.degree + 1), t0);
+  part.knots.insert(part.knots.end(), past_first, last_knot);
+  part.knots.insert(part.knots.end(), at(curve.degree + 1), t1);
   return part;
+}
+
+std::vector<double> reversed_knots(const std::vector<double>& knots) {
+  std::vector<double> out(knots.size());
+  const double sum = knots.front() + knots.back();
+  std::transform(knots.rbegin(), knots.rend(), out.begin(), [sum](double knot) { return sum - knot; });
+  return out;
 }
 
 Curve reversed(const Curve& curve) {
   Curve out = curve;
   std::reverse(out.points.begin(), out.points.end());
   std::reverse(out.weights.begin(), out.weights.end());
-  const double sum = curve.knots.front() + curve.knots.back();
-  std::transform(curve.knots.rbegin(), curve.knots.rend(), out.knots.begin(),
-                 [&](double k) { return sum - k; });
+  out.knots = reversed_knots(curve.knots);
   return out;
 }
 

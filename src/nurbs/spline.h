@@ -18,6 +18,7 @@ struct Curve {
   std::vector<double> weights;
 
   [[nodiscard]] bool is_rational() const { return !weights.empty(); }
+  [[nodiscard]] double weight(std::size_t i) const { return weights.empty() ? 1.0 : weights[i]; }
   [[nodiscard]] double first_parameter() const { return knots[static_cast<std::size_t>(degree)]; }
   [[nodiscard]] double last_parameter() const { return knots[points.size()]; }
 };
@@ -47,6 +48,8 @@ struct Surface {
   [[nodiscard]] double last_u() const { return knots_u[static_cast<std::size_t>(count_u)]; }
   [[nodiscard]] double first_v() const { return knots_v[static_cast<std::size_t>(degree_v)]; }
   [[nodiscard]] double last_v() const { return knots_v[static_cast<std::size_t>(count_v)]; }
+
+  bool operator==(const Surface&) const = default;
 };
 
 // Position and derivatives at one parameter. d1, d2: first and second derivative.
@@ -69,8 +72,12 @@ SurfaceJet evaluate_jet(const Surface& surface, double u, double v);
 std::vector<Vec3> evaluate_grid(const Surface& surface, const std::vector<double>& us,
                                 const std::vector<double>& vs);
 
-// Column i of the control points over v.
+// Straight and even, from one place at t0 to another at t1.
+Curve segment(const Vec3& from, const Vec3& to, double t0 = 0, double t1 = 1);
+
+// Column i of the control points over v; the surface that has these columns, all over the same knots.
 Curve control_column(const Surface& surface, int i);
+Surface of_columns(int degree_u, const std::vector<double>& knots_u, const std::vector<Curve>& columns);
 
 // The first or last control row (column) of a surface clamped there: exactly its boundary curve.
 Curve boundary_row(const Surface& surface, bool last);
@@ -85,11 +92,28 @@ std::vector<double> breakpoints(const std::vector<double>& knots, int degree);
 // parameter, and the multiplicity afterwards does not pass the degree.
 Curve insert_knot(const Curve& curve, double t, int times = 1);
 
-// The part of a clamped curve between two parameters, with the end knots clamped there; t0 < t1. Knot values
-// keep their numbers (no reparameterization).
+// How often a knot stands there.
+int multiplicity(const std::vector<double>& knots, double t);
+
+// The same curve with the knot t as often as its degree at least: it passes through a control point there.
+Curve opened_at(const Curve& curve, double t);
+
+// The part of a curve, clamped or not, between two parameters, with the end knots clamped there; t0 < t1.
+// Knot values keep their numbers (no reparameterization).
 Curve sub_curve(const Curve& curve, double t0, double t1);
 
 // The same curve run backwards; the knots become (first + last) - knot.
 Curve reversed(const Curve& curve);
+std::vector<double> reversed_knots(const std::vector<double>& knots);
+
+using Vec4 = Eigen::Vector4d;
+
+// (w p, w): a control point as blends take it.
+inline Vec4 homogeneous(const Vec3& point, double weight) {
+  return {point.x() * weight, point.y() * weight, point.z() * weight, weight};
+}
+inline Vec4 homogeneous(const Curve& curve, std::size_t i) {
+  return homogeneous(curve.points[i], curve.weight(i));
+}
 
 }  // namespace selvage::nurbs

@@ -52,31 +52,16 @@ Surface revolved(const Curve& generatrix, const Vec3& foot, const Vec3& directio
   const Vec3 axis = direction.normalized();
   double size = 0;
   for (const Vec3& p : generatrix.points) size = std::max(size, (p - foot).norm());
-  Surface surface;
-  surface.degree_u = generatrix.degree;
-  surface.degree_v = 2;
-  surface.count_u = static_cast<int>(generatrix.points.size());
-  surface.knots_u = generatrix.knots;
+  std::vector<Curve> circles;
   for (std::size_t i = 0; i < generatrix.points.size(); ++i) {
     const Vec3 offset = generatrix.points[i] - foot;
     const double height = offset.dot(axis);
     Vec3 radial = offset - height * axis;
     if (radial.norm() <= 1e-13 * size) radial.setZero();
-    const Curve circle = elliptic_arc(generatrix.points[i] - radial, radial, axis.cross(radial), from, to);
-    if (i == 0) {
-      surface.count_v = static_cast<int>(circle.points.size());
-      surface.knots_v = circle.knots;
-      surface.points.resize(generatrix.points.size() * circle.points.size());
-      surface.weights.resize(surface.points.size());
-    }
-    const double weight = generatrix.is_rational() ? generatrix.weights[i] : 1.0;
-    for (int j = 0; j < surface.count_v; ++j) {
-      const auto k = static_cast<std::size_t>(j);
-      surface.point(static_cast<int>(i), j) = circle.points[k];
-      surface.weights[surface.index(static_cast<int>(i), j)] = weight * circle.weights[k];
-    }
+    circles.push_back(elliptic_arc(generatrix.points[i] - radial, radial, axis.cross(radial), from, to));
+    for (double& weight : circles.back().weights) weight *= generatrix.weight(i);
   }
-  return surface;
+  return of_columns(generatrix.degree, generatrix.knots, circles);
 }
 
 }  // namespace selvage::nurbs

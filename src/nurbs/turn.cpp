@@ -6,17 +6,6 @@
 
 namespace selvage::nurbs {
 
-namespace {
-
-std::vector<double> reversed_knots(const std::vector<double>& knots) {
-  std::vector<double> out(knots.size());
-  const double sum = knots.front() + knots.back();
-  std::transform(knots.rbegin(), knots.rend(), out.begin(), [sum](double knot) { return sum - knot; });
-  return out;
-}
-
-}  // namespace
-
 Surface reversed_u(const Surface& surface) {
   Surface out = surface;
   out.knots_u = reversed_knots(surface.knots_u);

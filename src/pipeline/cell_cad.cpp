@@ -51,8 +51,7 @@ std::optional<std::vector<cad::Part>> cell_solids(Job& job, const fabric::Fabric
   };
   if (!bodies || (job.options.matrix && !check_overlaps(job, *bodies, finish))) return std::nullopt;
   const Box3 box(fabric.cell->low, fabric.cell->high);
-  const Result<cell::Cut> cut =
-      cell::cut(*bodies, box, {.tolerance = fabric::tolerance_of(fabric, job.build_options())});
+  const Result<cell::Cut> cut = cell::cut(*bodies, box, fabric::tolerance_of(fabric, job.build_options()));
   if (!cut) return job.fail(at_cell(fabric, cut.error()));
   job.say_all(cut->notes);
   cell::CadOptions options;

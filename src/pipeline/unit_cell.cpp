@@ -12,7 +12,6 @@
 
 #include "cell/cut.h"
 #include "contact/contact.h"
-#include "fabric/cell_faces.h"
 #include "fabric/repeat.h"
 #include "fem/cell_size.h"
 #include "fem/fibre.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/bounds.h"
 #include "core/plane.h"
 #include "nurbs/divided.h"
 #include "nurbs/samples.h"
@@ -84,11 +85,8 @@ class Look {
   // The diagonal of the largest section's box.
   [[nodiscard]] double largest_section() const {
     double largest = 0.0;
-    for (std::size_t j = 0; j < samples_.vs.size(); ++j) {
-      Box3 box;
-      for (const Vec3& p : samples_.row(j)) box.extend(p);
-      largest = std::max(largest, box.diagonal().norm());
-    }
+    for (std::size_t j = 0; j < samples_.vs.size(); ++j)
+      largest = std::max(largest, bounds_of(samples_.row(j)).diagonal().norm());
     return largest;
   }
 

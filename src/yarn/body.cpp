@@ -1,51 +1,29 @@
 #include "yarn/body.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <span>
 #include <vector>
 
+#include "core/bounds.h"
 #include "nurbs/samples.h"
 #include "nurbs/turn.h"
+#include "yarn/ends.h"
 
 namespace selvage::yarn {
 
 std::string_view name_of(Role role) {
-  switch (role) {
-    case Role::warp:
-      return "warp";
-    case Role::weft:
-      return "weft";
-    case Role::wale:
-      return "wale";
-    case Role::course:
-      return "course";
-    case Role::braider:
-      return "braider";
-    case Role::axial:
-      return "axial";
-    case Role::binder:
-      return "binder";
-    case Role::other:
-      return "other";
-  }
-  return "other";
+  constexpr std::array<std::string_view, all_roles.size()> names = {"warp",    "weft",  "wale",   "course",
+                                                                    "braider", "axial", "binder", "other"};
+  return names[static_cast<std::size_t>(role)];
 }
 
 std::string_view name_of(EndStyle style) {
-  switch (style) {
-    case EndStyle::patch:
-      return "patch";
-    case EndStyle::fan:
-      return "fan";
-    case EndStyle::planar:
-      return "planar";
-    case EndStyle::none:
-      return "none";
-  }
-  return "none";
+  constexpr std::array<std::string_view, 4> names = {"patch", "fan", "planar", "none"};
+  return names[static_cast<std::size_t>(style)];
 }
 
 nurbs::Curve end_curve(const Body& body, bool last) {
@@ -88,13 +66,7 @@ double end_gap(const Body& body, bool last) {
     for (std::size_t k = 0; k < 4; ++k) gap = std::max(gap, largest_distance(sides[k], quarters[k]));
     return gap;
   }
-  if (end.style == EndStyle::planar) {
-    double gap = 0.0;
-    const nurbs::Curve curve = end_curve(body, last);
-    for (const Vec3& p : curve.points) gap = std::max(gap, std::abs((p - end.origin).dot(end.normal)));
-    return gap;
-  }
-  return 0.0;
+  return end.style == EndStyle::planar ? flatness(end_curve(body, last), end.origin, end.normal) : 0.0;
 }
 
 double widest_section(const Body& body) {
@@ -152,9 +124,7 @@ double narrowest_section(const Body& body) {
 }
 
 Box3 bounds(const Body& body) {
-  Box3 box;
-  for (const Vec3& p : body.surface.points) box.extend(p);
-  return box;
+  return bounds_of(body.surface.points);
 }
 
 }  // namespace selvage::yarn

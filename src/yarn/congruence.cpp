@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/bounds.h"
 #include "yarn/rigid_fit.h"
 
 namespace selvage::yarn {
@@ -56,11 +57,7 @@ double basis_deviation(const Surface& a, const Surface& b) {
   double change = 0;
   for (std::size_t k = 0; k < a.weights.size(); ++k)
     change = std::max(change, std::abs(a.weights[k] / b.weights[k] - 1));
-  if (change > 0) {
-    Box3 box;
-    for (const Vec3& p : a.points) box.extend(p);
-    deviation += 2 * change * box.diagonal().norm();
-  }
+  if (change > 0) deviation += 2 * change * bounds_of(a.points).diagonal().norm();
   return deviation;
 }
 

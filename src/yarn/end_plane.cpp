@@ -2,6 +2,7 @@
 
 #include "nurbs/sweep.h"
 #include "yarn/ends.h"
+#include "yarn/rigid_fit.h"
 
 namespace selvage::yarn {
 
@@ -17,9 +18,7 @@ nurbs::Curve EndPlane::in_parameters(const nurbs::Curve& curve) const {
 EndPlane end_plane(const Body& body, const nurbs::Curve& end_curve, bool last) {
   EndPlane plane;
   // From the outline alone, so that a yarn that was read from a file has the same plane, to the bit.
-  plane.origin = Vec3::Zero();
-  for (std::size_t i = 1; i < end_curve.points.size(); ++i) plane.origin += end_curve.points[i];
-  plane.origin /= static_cast<double>(end_curve.points.size() - 1);
+  plane.origin = mean_of(std::span(end_curve.points).subspan(1));
   // Where u runs counter-clockwise seen along the path, the yarn's own direction is the normal for it.
   plane.inward = last == body.inward;
   plane.normal = area_vector(end_curve).normalized();

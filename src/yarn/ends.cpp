@@ -5,18 +5,11 @@
 #include <cmath>
 
 #include "nurbs/basis.h"
+#include "yarn/rigid_fit.h"
 
 namespace selvage::yarn {
 
 namespace {
-
-using Vec4 = Eigen::Vector4d;
-
-Vec4 homogeneous(const nurbs::Curve& curve, std::size_t i) {
-  const double w = curve.is_rational() ? curve.weights[i] : 1.0;
-  const Vec3& p = curve.points[i];
-  return {w * p.x(), w * p.y(), w * p.z(), w};
-}
 
 // The same curve over [0, 1].
 nurbs::Curve over_unit(nurbs::Curve curve) {
@@ -63,35 +56,25 @@ nurbs::Surface coons_patch(const std::array<nurbs::Curve, 4>& quarters) {
   const std::vector<double> t = nurbs::greville(patch.knots_v, patch.degree_v, patch.count_v);
   const bool rational = bottom.is_rational();
   const std::size_t nu = s.size(), nv = t.size();
-  const Vec4 c00 = homogeneous(bottom, 0), c10 = homogeneous(bottom, nu - 1);
-  const Vec4 c01 = homogeneous(top, 0), c11 = homogeneous(top, nu - 1);
+  const nurbs::Vec4 c00 = homogeneous(bottom, 0), c10 = homogeneous(bottom, nu - 1);
+  const nurbs::Vec4 c01 = homogeneous(top, 0), c11 = homogeneous(top, nu - 1);
   for (std::size_t j = 0; j < nv; ++j)
     for (std::size_t i = 0; i < nu; ++i) {
-      const double a = s[i], b = t[j];
-      Vec4 p;
-      // The four sides are taken as they are; only the inside is computed.
-      if (j == 0 || j == nv - 1) {
-        p = homogeneous(j == 0 ? bottom : top, i);
-      } else if (i == 0 || i == nu - 1) {
-        p = homogeneous(i == 0 ? left : right, j);
-      } else {
-        p = (1 - b) * homogeneous(bottom, i) + b * homogeneous(top, i) + (1 - a) * homogeneous(left, j) +
-            a * homogeneous(right, j) -
-            ((1 - a) * (1 - b) * c00 + a * (1 - b) * c10 + (1 - a) * b * c01 + a * b * c11);
+      // The four sides are taken as they are, to the bit; only the inside is computed.
+      const bool is_row = j == 0 || j == nv - 1;
+      if (is_row || i == 0 || i == nu - 1) {
+        const nurbs::Curve& side = is_row ? (j == 0 ? bottom : top) : i == 0 ? left : right;
+        patch.points.push_back(side.points[is_row ? i : j]);
+        if (rational) patch.weights.push_back(side.weight(is_row ? i : j));
+        continue;
       }
+      const double a = s[i], b = t[j];
+      const nurbs::Vec4 p = (1 - b) * homogeneous(bottom, i) + b * homogeneous(top, i) +
+                            (1 - a) * homogeneous(left, j) + a * homogeneous(right, j) -
+                            ((1 - a) * (1 - b) * c00 + a * (1 - b) * c10 + (1 - a) * b * c01 + a * b * c11);
       patch.points.emplace_back(rational ? Vec3(p.head<3>() / p.w()) : Vec3(p.head<3>()));
       if (rational) patch.weights.push_back(p.w());
     }
-  if (rational) {  // not even the division by the weight may move a side's points
-    for (int i = 0; i < patch.count_u; ++i) {
-      patch.point(i, 0) = bottom.points[static_cast<std::size_t>(i)];
-      patch.point(i, patch.count_v - 1) = top.points[static_cast<std::size_t>(i)];
-    }
-    for (int j = 1; j + 1 < patch.count_v; ++j) {
-      patch.point(0, j) = left.points[static_cast<std::size_t>(j)];
-      patch.point(patch.count_u - 1, j) = right.points[static_cast<std::size_t>(j)];
-    }
-  }
   return patch;
 }
 
@@ -159,21 +142,14 @@ double flatness(const nurbs::Curve& curve, const Vec3& origin, const Vec3& norma
 
 namespace {
 
-Message seal_message(const Body& body, bool last, Severity severity, std::string text) {
-  Message message = error(Kind::geometry, std::move(text));
-  message.severity = severity;
-  message.yarn = body.name;
-  message.place = body.place;
-  message.at = last ? body.end.origin : body.start.origin;
-  return message;
+Message at_end(const Body& body, bool last, const Message& message) {
+  return message.of_yarn(body.name, body.place).at_point((last ? body.end : body.start).origin);
 }
 
 // The centre of the end: of the section's outline.
 Vec3 end_centre(const Body& body, const nurbs::Curve& outline, bool last) {
   if (!body.axis.points.empty()) return last ? body.axis.points.back() : body.axis.points.front();
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i + 1 < outline.points.size(); ++i) sum += outline.points[i];
-  return sum / static_cast<double>(outline.points.size() - 1);
+  return mean_of(std::span(outline.points).first(outline.points.size() - 1));
 }
 
 bool has_same_points(const nurbs::Surface& a, const nurbs::Surface& b) {
@@ -215,24 +191,26 @@ Status seal_end(Body& body, bool last, const Sealing& sealing) {
   // The patch runs round as the outline does, so its normal is the outline's turning direction.
   if (style == EndStyle::patch && is_folded(face.surface, area_vector(outline).normalized())) {
     if (!is_flat)
-      return seal_message(
-          body, last, Severity::error,
-          fmt::format("the patch that shall seal the {} of yarn '{}' folds over itself, and the end is not "
-                      "flat (by {:.3g}), so that no plane can seal it either; use --ends fan",
-                      last ? "end" : "start", body.name, unflat));
+      return at_end(
+          body, last,
+          error(Kind::geometry,
+                fmt::format("the patch that shall seal the {} of yarn '{}' folds over itself, and the end is "
+                            "not flat (by {:.3g}), so that no plane can seal it either; use --ends fan",
+                            last ? "end" : "start", body.name, unflat)));
     face.style = EndStyle::planar;
     face.surface = {};
     face.inward = false;
-    body.messages.push_back(seal_message(body, last, Severity::warning,
-                                         fmt::format("the patch that shall seal the {} of yarn '{}' would "
-                                                     "fold over itself (the section is too long or "
-                                                     "concave): it is sealed by a trimmed plane instead",
-                                                     last ? "end" : "start", body.name)));
+    body.messages.push_back(
+        at_end(body, last,
+               warning(Kind::geometry, fmt::format("the patch that shall seal the {} of yarn '{}' would fold "
+                                                   "over itself (the section is too long or concave): it is "
+                                                   "sealed by a trimmed plane instead",
+                                                   last ? "end" : "start", body.name))));
   } else if (style == EndStyle::planar && !is_flat) {
-    return seal_message(
-        body, last, Severity::error,
-        fmt::format("the {} of yarn '{}' is not flat (by {:.3g}): a plane cannot seal it; use --ends patch",
-                    last ? "end" : "start", body.name, unflat));
+    return at_end(body, last,
+                  error(Kind::geometry, fmt::format("the {} of yarn '{}' is not flat (by {:.3g}): a plane "
+                                                    "cannot seal it; use --ends patch",
+                                                    last ? "end" : "start", body.name, unflat)));
   }
   return {};
 }
@@ -248,9 +226,9 @@ Status complete_end(Body& body, bool last) {
   const Vec3 turning = area_vector(outline);
   const double sign = (last != body.inward) ? 1.0 : -1.0;
   if (turning.norm() == 0.0)
-    return seal_message(
-        body, last, Severity::error,
-        fmt::format("the {} section of yarn '{}' has no area", last ? "last" : "first", body.name));
+    return at_end(body, last,
+                  error(Kind::geometry, fmt::format("the {} section of yarn '{}' has no area",
+                                                    last ? "last" : "first", body.name)));
   face.normal = sign * turning.normalized();
   // A patch keeps the outline's turning; a fan's u follows the outline and v runs inward: its normal is the
   // opposite one.
@@ -287,8 +265,12 @@ Status seal(Body& body, const Sealings& sealings) {
   return {};
 }
 
+Sealings both_ends(EndStyle style) {
+  return {Sealing{style, {}}, Sealing{style, {}}};
+}
+
 Status seal(Body& body, EndStyle style) {
-  return seal(body, Sealings{Sealing{style, {}}, Sealing{style, {}}});
+  return seal(body, both_ends(style));
 }
 
 }  // namespace selvage::yarn

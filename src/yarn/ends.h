@@ -36,6 +36,7 @@ struct Sealing {
   std::optional<Vec3> centre;  // where a fan's rows meet; none: the end of the body's axis
 };
 using Sealings = std::array<Sealing, 2>;  // of the start and of the end
+Sealings both_ends(EndStyle style);
 
 // Fills body.start and body.end from the finished surface. A patch that folds becomes planar where the end is
 // flat (with a warning in body.messages). Rings and `none` get no faces. Error (geometry): an end that none

@@ -13,11 +13,15 @@ namespace selvage::yarn {
 
 namespace {
 
-// The volume flux of one end as its outline says: as if a plane through its first point sealed it.
-double open_flux(const Body& body, bool last, const Vec3& origin) {
-  const nurbs::Curve outline = end_curve(body, last);
+// One third of the flux out of an end as its outline says: as if a plane through `foot` sealed it.
+double flat_flux(const Body& body, bool last, const Vec3& foot, const Vec3& origin) {
   const double sign = (last != body.inward) ? 1.0 : -1.0;
-  return sign * area_vector(outline).dot(outline.points.front() - origin) / 3.0;
+  return sign * area_vector(end_curve(body, last)).dot(foot - origin) / 3.0;
+}
+
+// As if there were no end faces yet.
+double open_flux(const Body& body, bool last, const Vec3& origin) {
+  return flat_flux(body, last, end_curve(body, last).points.front(), origin);
 }
 
 // How far the section at v reaches from the axis in the unit direction `toward`.
@@ -83,15 +87,14 @@ void find_bends(Body& body) {
   for (const Found& f : found) body.tight_bends.push_back(f.bend);
   if (found.empty()) return;
   const TightBend& bend = found.front().bend;
-  Message message = warning(
-      Kind::geometry,
-      fmt::format("yarn '{}' bends more tightly than its section allows: radius {:.4g} where the section "
-                  "reaches {:.4g} to the inside ({} such place{}); its surface folds over itself there",
-                  body.name, bend.radius, bend.needed, found.size(), found.size() == 1 ? "" : "s"));
-  message.yarn = body.name;
-  message.place = body.place;
-  message.at = bend.at;
-  body.messages.push_back(std::move(message));
+  body.messages.push_back(
+      warning(
+          Kind::geometry,
+          fmt::format("yarn '{}' bends more tightly than its section allows: radius {:.4g} where the section "
+                      "reaches {:.4g} to the inside ({} such place{}); its surface folds over itself there",
+                      body.name, bend.radius, bend.needed, found.size(), found.size() == 1 ? "" : "s"))
+          .of_yarn(body.name, body.place)
+          .at_point(bend.at));
 }
 
 // Finds which way the body's normals point, with open ends: S_u x S_v outward makes the flux positive.
@@ -102,12 +105,9 @@ Result<double> orient(Body& body) {
   const double side = nurbs::volume_flux(body.surface, origin);
   double flux = side;
   if (!body.closed_along) flux += open_flux(body, false, origin) + open_flux(body, true, origin);
-  if (!std::isfinite(flux) || flux == 0.0) {
-    Message message = error(Kind::geometry, fmt::format("yarn '{}' encloses no volume", body.name));
-    message.yarn = body.name;
-    message.place = body.place;
-    return message;
-  }
+  if (!std::isfinite(flux) || flux == 0.0)
+    return error(Kind::geometry, fmt::format("yarn '{}' encloses no volume", body.name))
+        .of_yarn(body.name, body.place);
   body.inward = flux < 0.0;
   return side;
 }
@@ -130,11 +130,8 @@ double end_flux(const Body& body, bool last, const Vec3& origin) {
     const double flux = nurbs::volume_flux(end.surface, origin);
     return end.inward ? -flux : flux;
   }
-  const nurbs::Curve outline = end_curve(body, last);
-  const Vec3 area = area_vector(outline);
-  const double sign = (last != body.inward) ? 1.0 : -1.0;
-  const Vec3 foot = end.style == EndStyle::none ? outline.points.front() : end.origin;
-  return sign * area.dot(foot - origin) / 3.0;
+  return end.style == EndStyle::none ? open_flux(body, last, origin)
+                                     : flat_flux(body, last, end.origin, origin);
 }
 
 Status finish(Body& body, const Sealings& ends) {
@@ -146,7 +143,7 @@ Status finish(Body& body, const Sealings& ends) {
 }
 
 Status finish(Body& body, EndStyle ends) {
-  return finish(body, Sealings{Sealing{ends, {}}, Sealing{ends, {}}});
+  return finish(body, both_ends(ends));
 }
 
 Status finish_as_sealed(Body& body) {

@@ -115,9 +115,7 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& 
   };
   Node first = node_at(path.first_parameter());
   const auto stopped = [](const Node& node) {
-    Message message = error(Kind::geometry, "the path stops or turns back on itself");
-    message.at = node.position;
-    return message;
+    return error(Kind::geometry, "the path stops or turns back on itself").at_point(node.position);
   };
   if (stops(first)) return stopped(first);
   if (is_free) {
@@ -152,14 +150,12 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& 
         Frame frame;
         frame.position = node.position;
         frame.tangent = node.tangent;
-        if (is_idle(guide, frame)) {
-          Message message = error(
-              Kind::geometry, guide.form == FrameGuide::Form::radial
-                                  ? "the path meets the axis about which its section is held"
-                                  : "the path runs within 6 degrees of the direction that holds its section");
-          message.at = node.position;
-          return message;
-        }
+        if (is_idle(guide, frame))
+          return error(Kind::geometry,
+                       guide.form == FrameGuide::Form::radial
+                           ? "the path meets the axis about which its section is held"
+                           : "the path runs within 6 degrees of the direction that holds its section")
+              .at_point(node.position);
       }
       if ((closed && is_free) || needs_lengths)
         node.length = before.length + nurbs::arc_length(path, before.t, t);

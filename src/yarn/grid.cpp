@@ -8,6 +8,7 @@
 
 #include "nurbs/basis.h"
 #include "nurbs/interpolate.h"
+#include "yarn/rigid_fit.h"
 
 namespace selvage::yarn {
 
@@ -15,32 +16,6 @@ namespace {
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
-}
-
-// A closed polygon as a clamped closed B-spline with uniform knots of `step`: degree 2 begins in the middle
-// of the edge from the last point to the first, degree 3 beside the first point, and so on.
-nurbs::Curve closed_uniform(const std::vector<Vec3>& points, const std::vector<double>& weights, int degree,
-                            double step) {
-  const int n = static_cast<int>(points.size());
-  nurbs::Curve periodic;
-  periodic.degree = degree;
-  for (int i = -degree; i <= n + degree; ++i) periodic.knots.push_back(i * step);
-  for (int i = 0; i < n + degree; ++i) {
-    const int k = ((i - degree / 2) % n + n) % n;
-    periodic.points.push_back(points[at(k)]);
-    if (!weights.empty()) periodic.weights.push_back(weights[at(k)]);
-  }
-  nurbs::Curve curve = nurbs::clamped(periodic);
-  curve.points.back() = curve.points.front();
-  if (curve.is_rational()) curve.weights.back() = curve.weights.front();
-  return curve;
-}
-
-std::vector<double> clamped_integer_knots(int count, int degree) {
-  std::vector<double> knots;
-  knots.reserve(at(count + degree + 1));
-  for (int i = 0; i < count + degree + 1; ++i) knots.push_back(std::clamp(i - degree, 0, count - degree));
-  return knots;
 }
 
 Message problem(std::string text) {
@@ -69,30 +44,44 @@ Status check_knots(const std::vector<double>& knots, int count, int degree, std:
   return {};
 }
 
-struct Lines {
-  std::vector<nurbs::Curve> curves;  // one a column of the control net
-};
+// A column of the net as a clamped curve along the yarn.
+Result<nurbs::Curve> along_column(const std::vector<Vec3>& points, const std::vector<double>& weights,
+                                  const GridNet& net, int degree) {
+  if (net.closed_along && net.knots_along.empty())
+    return nurbs::closed_uniform(points, weights, degree, [](int i) { return i; });
+  if (net.closed_along && points.front() != points.back())
+    return problem("a closed grid with its own knots has to end with its first section");
+  return nurbs::Curve{
+      degree, net.knots_along.empty() ? nurbs::clamped_integer_knots(net.sections, degree) : net.knots_along,
+      points, weights};
+}
 
-// The columns of the net as clamped curves along the yarn.
-Result<Lines> along_columns(const std::vector<std::vector<Vec3>>& columns,
-                            const std::vector<std::vector<double>>& weights, const GridNet& net, int degree) {
-  Lines lines;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    const std::vector<double> w = weights.empty() ? std::vector<double>{} : weights[c];
-    if (net.closed_along && net.knots_along.empty()) {
-      lines.curves.push_back(closed_uniform(columns[c], w, degree, 1.0));
-      continue;
-    }
-    nurbs::Curve curve;
-    curve.degree = degree;
-    curve.points = columns[c];
-    curve.weights = w;
-    curve.knots = net.knots_along.empty() ? clamped_integer_knots(net.sections, degree) : net.knots_along;
-    if (net.closed_along && curve.points.front() != curve.points.back())
-      return problem("a closed grid with its own knots has to end with its first section");
-    lines.curves.push_back(std::move(curve));
+// Row `number` of the net in clamped form.
+Result<nurbs::Curve> round_row(const GridNet& net, std::size_t number, int degree) {
+  const std::size_t n = at(net.per_section);
+  const auto of_row = [&](const auto& all) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(number * n);
+    return std::vector(first, first + net.per_section);
+  };
+  const std::vector<Vec3> points = of_row(net.points);
+  const std::vector<double> weights = net.weights.empty() ? std::vector<double>() : of_row(net.weights);
+  if (!net.open_round) {
+    nurbs::Curve row = nurbs::closed_uniform(points, weights, degree,
+                                             [step = 1.0 / net.per_section](int i) { return i * step; });
+    // i / n has no rounding left in it that the standard form 1/n, 2/n, .., 1 has not.
+    for (double& knot : row.knots) knot = std::round(knot * net.per_section) / net.per_section;
+    return row;
   }
-  return lines;
+  if (points.front() != points.back() || (!weights.empty() && weights.front() != weights.back()))
+    return problem(
+        fmt::format("section {} is not closed: with `open round` its last control point has to be its first",
+                    number + 1));
+  nurbs::Curve row{degree, net.knots_round, points, weights};
+  if (row.knots.empty()) {
+    row.knots = nurbs::clamped_integer_knots(net.per_section, degree);
+    for (double& knot : row.knots) knot /= net.per_section - degree;
+  }
+  return row;
 }
 
 Status check_counts(const GridNet& net, int degree_round, int degree_along) {
@@ -210,82 +199,39 @@ Status fill_from_grid(Body& body, const GridNet& net) {
   if (!counts) return counts;
 
   // Round: each row in clamped form, and its centre.
-  std::vector<std::vector<Vec3>> rows;
-  std::vector<std::vector<double>> row_weights;
+  std::vector<nurbs::Curve> rows;
   std::vector<Vec3> centres;
-  std::vector<double> knots_round;
-  const auto n = at(net.per_section);
+  const std::size_t distinct = at(net.open_round ? net.per_section - 1 : net.per_section);
   for (std::size_t s = 0; s < at(net.sections); ++s) {
-    const std::vector<Vec3> points(net.points.begin() + static_cast<std::ptrdiff_t>(s * n),
-                                   net.points.begin() + static_cast<std::ptrdiff_t>((s + 1) * n));
-    std::vector<double> weights;
-    if (!net.weights.empty())
-      weights.assign(net.weights.begin() + static_cast<std::ptrdiff_t>(s * n),
-                     net.weights.begin() + static_cast<std::ptrdiff_t>((s + 1) * n));
-    const std::size_t distinct = net.open_round ? n - 1 : n;
-    Vec3 centre = Vec3::Zero();
-    for (std::size_t i = 0; i < distinct; ++i) centre += points[i];
-    centres.push_back(centre / static_cast<double>(distinct));
-    if (net.open_round) {
-      if (points.front() != points.back() || (!weights.empty() && weights.front() != weights.back()))
-        return problem(fmt::format(
-            "section {} is not closed: with `open round` its last control point has to be its first", s + 1));
-      rows.push_back(points);
-      row_weights.push_back(weights);
-      if (knots_round.empty()) {
-        knots_round = net.knots_round;
-        if (knots_round.empty()) {
-          knots_round = clamped_integer_knots(net.per_section, degree_round);
-          const double spans = knots_round.back();
-          for (double& knot : knots_round) knot /= spans;
-        }
-      }
-    } else {
-      nurbs::Curve curve = closed_uniform(points, weights, degree_round, 1.0 / net.per_section);
-      // i / n has no rounding left in it that the standard form 1/n, 2/n, .., 1 has not.
-      for (double& knot : curve.knots) knot = std::round(knot * net.per_section) / net.per_section;
-      knots_round = curve.knots;
-      rows.push_back(std::move(curve.points));
-      row_weights.push_back(std::move(curve.weights));
-    }
+    Result<nurbs::Curve> row = round_row(net, s, degree_round);
+    if (!row) return row.error();
+    rows.push_back(std::move(*row));
+    centres.push_back(mean_of(std::span(net.points).subspan(s * at(net.per_section), distinct)));
   }
-  const std::size_t columns_count = rows.front().size();
-  if (Status s = check_knots(knots_round, static_cast<int>(columns_count), degree_round, "round"); !s)
-    return s;
-
+  const std::vector<double>& knots_round = rows.front().knots;
+  const std::size_t count_round = rows.front().points.size();
+  if (Status s = check_knots(knots_round, static_cast<int>(count_round), degree_round, "round"); !s) return s;
   // Along: every column, and the centres as one more.
-  std::vector<std::vector<Vec3>> columns(columns_count);
-  std::vector<std::vector<double>> column_weights(net.weights.empty() ? 0 : columns_count);
-  for (std::size_t s = 0; s < rows.size(); ++s)
-    for (std::size_t c = 0; c < columns_count; ++c) {
-      columns[c].push_back(rows[s][c]);
-      if (!net.weights.empty()) column_weights[c].push_back(row_weights[s][c]);
-    }
   if (!net.knots_along.empty())
     if (Status s = check_knots(net.knots_along, net.sections, degree_along, "along"); !s) return s;
-  Result<Lines> lines = along_columns(columns, column_weights, net, degree_along);
-  if (!lines) return lines.error();
-  Result<Lines> centre_line = along_columns({centres}, {}, net, degree_along);
-  if (!centre_line) return centre_line.error();
-
-  nurbs::Surface& surface = body.surface;
-  surface = {};
-  surface.degree_u = degree_round;
-  surface.degree_v = degree_along;
-  surface.knots_u = std::move(knots_round);
-  surface.knots_v = lines->curves.front().knots;
-  surface.count_u = static_cast<int>(columns_count);
-  surface.count_v = static_cast<int>(lines->curves.front().points.size());
-  surface.points.resize(at(surface.count_u) * at(surface.count_v));
-  if (!net.weights.empty()) surface.weights.resize(surface.points.size());
-  for (int i = 0; i < surface.count_u; ++i)
-    for (int j = 0; j < surface.count_v; ++j) {
-      surface.point(i, j) = lines->curves[at(i)].points[at(j)];
-      if (!net.weights.empty()) surface.weights[surface.index(i, j)] = lines->curves[at(i)].weights[at(j)];
+  std::vector<nurbs::Curve> columns;
+  for (std::size_t c = 0; c < count_round; ++c) {
+    std::vector<Vec3> points;
+    std::vector<double> weights;
+    for (const nurbs::Curve& row : rows) {
+      points.push_back(row.points[c]);
+      if (row.is_rational()) weights.push_back(row.weights[c]);
     }
-  body.axis = centre_line->curves.front();
+    Result<nurbs::Curve> column = along_column(points, weights, net, degree_along);
+    if (!column) return column.error();
+    columns.push_back(std::move(*column));
+  }
+  Result<nurbs::Curve> axis = along_column(centres, {}, net, degree_along);
+  if (!axis) return axis.error();
+  body.surface = nurbs::of_columns(degree_round, knots_round, columns);
+  body.axis = std::move(*axis);
   body.closed_along = net.closed_along;
-  body.quarters = quarters_of(surface);
+  body.quarters = quarters_of(body.surface);
   return set_corners(body, net);
 }
 

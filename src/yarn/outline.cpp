@@ -51,7 +51,7 @@ std::vector<Joint> ellipse_quarter(const SectionSize& size, int pieces) {
 
 std::vector<Joint> lens_quarter(const SectionSize& size, int pieces) {
   const double a = 0.5 * size.width, h = 0.5 * size.height;
-  const double radius = (a * a + h * h) / (2.0 * h), half_angle = 2.0 * std::atan2(h, a);
+  const auto [radius, half_angle] = lens_arc(size);
   std::vector<Joint> joints;
   add_arc(joints, Vec2(0.0, h - radius), radius, pi / 2 - half_angle, pi / 2, pieces);
   joints.front().point = Vec2(a, 0.0);
@@ -91,11 +91,10 @@ Vec2 power_tangent(double exponent, double a) {
 
 // Where the tangents at two joints meet; between parallel ones (a straight edge) the middle.
 Vec2 meeting_point(const Joint& a, const Joint& b) {
-  const double denominator = a.tangent.x() * b.tangent.y() - a.tangent.y() * b.tangent.x();
+  const double denominator = cross(a.tangent, b.tangent);
   const Vec2 step = b.point - a.point;
   if (std::abs(denominator) <= 1e-12 * a.tangent.norm() * b.tangent.norm()) return 0.5 * (a.point + b.point);
-  const double s = (step.x() * b.tangent.y() - step.y() * b.tangent.x()) / denominator;
-  return a.point + s * a.tangent;
+  return a.point + cross(step, b.tangent) / denominator * a.tangent;
 }
 
 // The distance from p to the power curve between two angles (size 2, 2), as the vector from the nearest
@@ -222,20 +221,10 @@ Outline assemble(const std::vector<Joint>& joints) {
   return outline;
 }
 
-nurbs::Curve as_curve(const Outline& outline) {
-  nurbs::Curve curve{outline.degree, outline.knots, {}, {}};
-  for (const Vec2& p : outline.points) curve.points.emplace_back(p.x(), p.y(), 0.0);
-  return curve;
-}
-
 Outline loop7_outline(const SectionSize& size) {
-  nurbs::Curve periodic;  // four different control points, 0 .. 270 degrees, written seven times round
-  for (int i = -3; i <= 7; ++i) periodic.knots.push_back(i / 4.0);
-  for (int i = 0; i < 7; ++i) {
-    const std::array<Vec3, 4> corners = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0)};
-    periodic.points.push_back(corners[static_cast<std::size_t>((i + 3) % 4)]);
-  }
-  const nurbs::Curve curve = nurbs::clamped(periodic);
+  // Four different control points, 0 .. 270 degrees.
+  const nurbs::Curve curve = nurbs::closed_uniform(
+      {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0)}, {}, 3, [](int i) { return i / 4.0; });
   // Mean radius over the angle, by the rectangle rule on a periodic function.
   constexpr int samples = 720;
   double sum = 0.0, turned = 0.0;
@@ -308,7 +297,7 @@ Vec2 from_shape(const Section& section, const SectionSize& size, const Vec2& p) 
                         [&](const Circle&) { return from_ellipse(); },
                         [&](const Ellipse&) { return from_ellipse(); },
                         [&](const Lenticular&) {
-                          const double radius = (a * a + h * h) / (2.0 * h);
+                          const double radius = lens_arc(size).radius;
                           return from_circle(p, Vec2(0.0, h - radius), radius);
                         },
                         [&](const Racetrack&) {
@@ -337,6 +326,17 @@ Outline ellipse_outline(const Section& section, const SectionSize& size, int pie
 }
 
 }  // namespace
+
+nurbs::Curve as_curve(const Outline& outline) {
+  nurbs::Curve curve{outline.degree, outline.knots, {}, {}};
+  for (const Vec2& p : outline.points) curve.points.emplace_back(p.x(), p.y(), 0.0);
+  return curve;
+}
+
+LensArc lens_arc(const SectionSize& size) {
+  const double a = 0.5 * size.width, h = 0.5 * size.height;
+  return {(a * a + h * h) / (2.0 * h), 2.0 * std::atan2(h, a)};
+}
 
 Outline make_outline(const Section& section, const SectionSize& size, int pieces, bool varying) {
   pieces = std::max(pieces, 1);

@@ -37,6 +37,15 @@ struct Outline {
   std::array<double, 4> quarters{0, 0.25, 0.5, 0.75};  // knots at the section's extremes
 };
 
+// In the plane z = 0.
+nurbs::Curve as_curve(const Outline& outline);
+
+// The two circular arcs of a lenticular section: their radius, and half of the angle seen from their centres.
+struct LensArc {
+  double radius, half_angle;
+};
+LensArc lens_arc(const SectionSize& size);
+
 // Sections of one yarn share their knots. Affine shapes (all but lenticular and racetrack) do so by nature:
 // the points of size (W, H) are those of size (2, 2) times W/2 and H/2. The others get knots that suit every
 // size when `varying`.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "nurbs/basis.h"
 #include "yarn/arcs.h"
 
 namespace selvage::yarn {
@@ -13,9 +14,7 @@ namespace selvage::yarn {
 namespace {
 
 Message at_row(std::size_t row, std::string text) {
-  Message message = error(Kind::geometry, std::move(text));
-  message.place.line = static_cast<int>(row) + 1;
-  return message;
+  return error(Kind::geometry, std::move(text)).placed({static_cast<int>(row) + 1, 0});
 }
 
 nurbs::Curve clamped_uniform(const std::vector<Vec3>& points) {
@@ -23,22 +22,15 @@ nurbs::Curve clamped_uniform(const std::vector<Vec3>& points) {
   curve.points = points;
   const int count = static_cast<int>(points.size());
   curve.degree = std::min(3, count - 1);
-  const int spans = count - curve.degree;
-  for (int i = 0; i < count + curve.degree + 1; ++i)
-    curve.knots.push_back(static_cast<double>(std::clamp(i - curve.degree, 0, spans)) / spans);
+  curve.knots = nurbs::clamped_integer_knots(count, curve.degree);
+  for (double& knot : curve.knots) knot /= count - curve.degree;
   return curve;
 }
 
 // The periodic uniform cubic, cut open where the first control point has its influence's middle.
 nurbs::Curve periodic_uniform(const std::vector<Vec3>& points) {
-  const int n = static_cast<int>(points.size());
-  nurbs::Curve periodic;
-  for (int i = -3; i <= n + 3; ++i) periodic.knots.push_back(static_cast<double>(i) / n);
-  for (int i = 0; i < n + 3; ++i)
-    periodic.points.push_back(points[static_cast<std::size_t>((i - 1 + n) % n)]);
-  nurbs::Curve curve = nurbs::clamped(periodic);
-  curve.points.back() = curve.points.front();
-  return curve;
+  const auto n = static_cast<double>(points.size());
+  return nurbs::closed_uniform(points, {}, 3, [n](int i) { return i / n; });
 }
 
 CentreLine through_points(const PathRows& rows, nurbs::Parameterization how) {
@@ -59,15 +51,10 @@ CentreLine from_control(const PathRows& rows) {
   CentreLine line;
   const std::size_t n = rows.points.size();
   line.curve = rows.closed ? periodic_uniform(rows.points) : clamped_uniform(rows.points);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (rows.closed) {
-      line.parameters.push_back(static_cast<double>(i) / static_cast<double>(n));
-    } else {  // the control point's Greville abscissa
-      double sum = 0.0;
-      for (int k = 1; k <= line.curve.degree; ++k) sum += line.curve.knots[i + static_cast<std::size_t>(k)];
-      line.parameters.push_back(sum / line.curve.degree);
-    }
-  }
+  if (!rows.closed)
+    line.parameters = nurbs::greville(line.curve.knots, line.curve.degree, static_cast<int>(n));
+  for (std::size_t i = 0; rows.closed && i < n; ++i)
+    line.parameters.push_back(static_cast<double>(i) / static_cast<double>(n));
   return line;
 }
 
@@ -181,6 +168,24 @@ Result<CentreLine> from_polyline(const PathRows& rows) {
   return line;
 }
 
+Result<CentreLine> line_of(const PathRows& rows) {
+  switch (rows.form) {
+    case PathForm::uniform:
+      return through_points(rows, nurbs::Parameterization::uniform);
+    case PathForm::chord:
+      return through_points(rows, nurbs::Parameterization::chord);
+    case PathForm::centripetal:
+      return through_points(rows, nurbs::Parameterization::centripetal);
+    case PathForm::control:
+      return from_control(rows);
+    case PathForm::loop:
+      return from_loop(rows);
+    case PathForm::polyline:
+      break;
+  }
+  return from_polyline(rows);
+}
+
 }  // namespace
 
 std::vector<Vec3> loop_control_points(const std::vector<Vec3>& rows, bool closed) {
@@ -208,31 +213,8 @@ Result<CentreLine> make_centre_line(const PathRows& rows) {
     if (rows.points[i] == rows.points[(i + 1) % n])
       return at_row((i + 1) % n,
                     fmt::format("points {} and {} of the path are equal", i + 1, (i + 1) % n + 1));
-  CentreLine line;
-  switch (rows.form) {
-    case PathForm::uniform:
-      line = through_points(rows, nurbs::Parameterization::uniform);
-      break;
-    case PathForm::chord:
-      line = through_points(rows, nurbs::Parameterization::chord);
-      break;
-    case PathForm::centripetal:
-      line = through_points(rows, nurbs::Parameterization::centripetal);
-      break;
-    case PathForm::control:
-      line = from_control(rows);
-      break;
-    case PathForm::loop:
-      line = from_loop(rows);
-      break;
-    case PathForm::polyline: {
-      Result<CentreLine> made = from_polyline(rows);
-      if (!made) return made;
-      line = std::move(*made);
-      break;
-    }
-  }
-  line.closed = rows.closed;
+  Result<CentreLine> line = line_of(rows);
+  if (line) line->closed = rows.closed;
   return line;
 }
 

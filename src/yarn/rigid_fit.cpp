@@ -4,7 +4,7 @@
 
 namespace selvage::yarn {
 
-Vec3 mean_of(const std::vector<Vec3>& points) {
+Vec3 mean_of(std::span<const Vec3> points) {
   Vec3 sum = Vec3::Zero();
   for (const Vec3& p : points) sum += p;
   return sum / static_cast<double>(points.size());

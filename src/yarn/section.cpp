@@ -17,15 +17,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// Half the angle and the radius of the circular arcs of a lenticular section, seen from the arc's centre.
-struct LensArc {
-  double radius, half_angle;
-};
-LensArc lens_arc(const SectionSize& size) {
-  const double a = 0.5 * size.width, h = 0.5 * size.height;
-  return {(a * a + h * h) / (2.0 * h), 2.0 * std::atan2(h, a)};
-}
-
 bool edges_cross(const std::vector<Vec2>& p) {
   const auto side = [](const Vec2& a, const Vec2& b, const Vec2& c) { return cross(b - a, c - a); };
   const std::size_t n = p.size();
@@ -67,12 +58,9 @@ SectionSize nominal_size(const Section& section) {
                           return SectionSize{s.diameter, s.diameter};
                         },
                         [](const Polygon& s) {
-                          Vec2 low = s.corners.front(), high = low;
-                          for (const Vec2& c : s.corners) {
-                            low = low.cwiseMin(c);
-                            high = high.cwiseMax(c);
-                          }
-                          return SectionSize{high.x() - low.x(), high.y() - low.y()};
+                          Eigen::AlignedBox2d box;
+                          for (const Vec2& c : s.corners) box.extend(c);
+                          return SectionSize{box.sizes().x(), box.sizes().y()};
                         },
                         [](const auto& s) {
                           return SectionSize{s.width, s.height};
@@ -83,35 +71,30 @@ SectionSize nominal_size(const Section& section) {
 
 double area(const Section& section, const SectionSize& size) {
   const double w = size.width, h = size.height;
-  return std::visit(Overloaded{
-                        [&](const Circle&) { return pi / 4.0 * w * h; },
-                        [&](const Ellipse&) { return pi / 4.0 * w * h; },
-                        [&](const Lenticular&) {
-                          const LensArc arc = lens_arc(size);
-                          return arc.radius * arc.radius *
-                                 (2.0 * arc.half_angle - std::sin(2.0 * arc.half_angle));
-                        },
-                        [&](const Racetrack&) {
-                          const double d = std::min(w, h), straight = std::max(w, h) - d;
-                          return pi / 4.0 * d * d + straight * d;
-                        },
-                        // 4 (w/2)(h/2) times the integral of sin^(n+1) over a quarter turn.
-                        [&](const Power& s) {
-                          return w * h * 0.5 * std::sqrt(pi) * std::tgamma(0.5 * s.exponent + 1.0) /
-                                 std::tgamma(0.5 * s.exponent + 1.5);
-                        },
-                        [&](const Loop7& s) {
-                          const Outline outline = make_outline(s, size, 1, false);
-                          nurbs::Curve curve{outline.degree, outline.knots, {}, {}};
-                          for (const Vec2& p : outline.points) curve.points.emplace_back(p.x(), p.y(), 0.0);
-                          return area_vector(curve).norm();
-                        },
-                        [&](const Polygon& s) {
-                          const SectionSize own = nominal_size(section);
-                          return 0.5 * std::abs(twice_area(s.corners)) * (w / own.width) * (h / own.height);
-                        },
-                    },
-                    section);
+  return std::visit(
+      Overloaded{
+          [&](const Circle&) { return pi / 4.0 * w * h; },
+          [&](const Ellipse&) { return pi / 4.0 * w * h; },
+          [&](const Lenticular&) {
+            const LensArc arc = lens_arc(size);
+            return arc.radius * arc.radius * (2.0 * arc.half_angle - std::sin(2.0 * arc.half_angle));
+          },
+          [&](const Racetrack&) {
+            const double d = std::min(w, h), straight = std::max(w, h) - d;
+            return pi / 4.0 * d * d + straight * d;
+          },
+          // 4 (w/2)(h/2) times the integral of sin^(n+1) over a quarter turn.
+          [&](const Power& s) {
+            return w * h * 0.5 * std::sqrt(pi) * std::tgamma(0.5 * s.exponent + 1.0) /
+                   std::tgamma(0.5 * s.exponent + 1.5);
+          },
+          [&](const Loop7& s) { return area_vector(as_curve(make_outline(s, size, 1, false))).norm(); },
+          [&](const Polygon& s) {
+            const SectionSize own = nominal_size(section);
+            return 0.5 * std::abs(twice_area(s.corners)) * (w / own.width) * (h / own.height);
+          },
+      },
+      section);
 }
 
 Status check_section(const Section& section, const SectionSize& size) {

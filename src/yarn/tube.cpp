@@ -247,6 +247,12 @@ class AdaptiveFit {
   Eigen::MatrixXd control_;
 };
 
+// Of so many parabolas to a quarter.
+double outline_error(const TubeSpec& spec, const SizeProfile& sizes, const SectionSize& size, int pieces) {
+  const bool varying = sizes.parameters().size() > 1 && !is_affine(spec.section);
+  return outline_error(spec.section, size, make_outline(spec.section, size, pieces, varying));
+}
+
 // How many parabolas to a quarter give the smallest net: fewer leave less of the tolerance to the sections,
 // whose number grows with the fourth root of its inverse.
 Result<int> choose_pieces(const TubeSpec& spec, const SizeProfile& sizes) {
@@ -272,10 +278,7 @@ Result<int> choose_pieces(const TubeSpec& spec, const SizeProfile& sizes) {
   int best = 0, worse = 0;
   for (int pieces = 2; pieces <= 4096 && worse < 3; pieces += pieces < 64 ? 1 : pieces / 16) {
     double error = 0.0;
-    for (const SectionSize& s : all)
-      error = std::max(
-          error, outline_error(spec.section, s,
-                               make_outline(spec.section, s, pieces, varying && !is_affine(spec.section))));
+    for (const SectionSize& s : all) error = std::max(error, outline_error(spec, sizes, s, pieces));
     if (error > 0.95 * spec.tolerance) continue;
     const double cost = pieces * std::pow(1.0 - error / spec.tolerance, -0.25);
     if (cost < best_cost) {
@@ -291,12 +294,6 @@ Result<int> choose_pieces(const TubeSpec& spec, const SizeProfile& sizes) {
         fmt::format("the tolerance {:.3g} would need more than 16000 control points round the section",
                     spec.tolerance));
   return best;
-}
-
-Message of_yarn(Message message, const Body& body) {
-  message.yarn = body.name;
-  if (message.place.line == 0) message.place = body.place;
-  return message;
 }
 
 // Sections must stand densely enough for samples to see every turn: no span turns by more than a quarter.
@@ -338,21 +335,20 @@ std::vector<double> first_breaks(const CentreLine& path, const FrameField& frame
 double whole_turns(double twist, const FrameField& frames, Body& body) {
   const double turns = twist * frames.length() / (2.0 * pi), whole = std::round(turns);
   if (std::abs(turns - whole) > 1e-9)
-    body.messages.push_back(of_yarn(
+    body.messages.push_back(
         warning(Kind::geometry,
                 fmt::format("yarn '{}' is closed: its twist of {:.4g} turns was brought to {} whole turns",
-                            body.name, turns, whole)),
-        body));
+                            body.name, turns, whole))
+            .of_yarn(body.name, body.place));
   return whole * 2.0 * pi / frames.length();
 }
 
-}  // namespace
-
-Status sweep(Body& body, const CentreLine& path, const TubeSpec& spec) {
+// sweep(), whose errors do not yet say of which yarn they are.
+Status swept(Body& body, const CentreLine& path, const TubeSpec& spec) {
   std::vector<double> at;
   std::vector<SizeProfile::Values> rows;
   for (const SizeAtParameter& s : spec.sizes) {
-    if (Status checked = check_section(spec.section, s.size); !checked) return of_yarn(checked.error(), body);
+    if (Status checked = check_section(spec.section, s.size); !checked) return checked;
     at.push_back(s.parameter);
     rows.push_back({s.size.width, s.size.height, s.angle});
   }
@@ -363,34 +359,27 @@ Status sweep(Body& body, const CentreLine& path, const TubeSpec& spec) {
   }
   const SizeProfile sizes(at, rows, path.closed);
   Result<FrameField> frames = FrameField::make(path.curve, spec.guide, path.closed, spec.twist != 0.0);
-  if (!frames) return of_yarn(frames.error(), body);
+  if (!frames) return frames.error();
   const double twist = path.closed && spec.twist != 0.0 ? whole_turns(spec.twist, *frames, body) : spec.twist;
   Result<int> pieces = choose_pieces(spec, sizes);
-  if (!pieces) return of_yarn(pieces.error(), body);
+  if (!pieces) return pieces.error();
   const Channels channels(*frames, sizes, spec, twist, *pieces);
   if (!channels.has_common_knots())
-    return of_yarn(error(Kind::unsupported,
-                         "a racetrack section that is wider than high in one place and higher than wide in "
-                         "another has no common B-spline; use `power` or `ellipse`"),
-                   body);
+    return error(Kind::unsupported,
+                 "a racetrack section that is wider than high in one place and higher than wide in another "
+                 "has no common B-spline; use `power` or `ellipse`");
   double section_error = 0.0;
   for (const SizeAtParameter& s : spec.sizes)
-    section_error =
-        std::max(section_error,
-                 outline_error(spec.section, s.size,
-                               make_outline(spec.section, s.size, *pieces,
-                                            !is_affine(spec.section) && sizes.parameters().size() > 1)));
+    section_error = std::max(section_error, outline_error(spec, sizes, s.size, *pieces));
   const std::size_t columns = channels.outline().points.size();
   const std::size_t most = spec.max_control_points / columns;
   const auto too_many = [&] {
-    return of_yarn(
-        error(
-            Kind::limit,
-            fmt::format("yarn '{}' would need more than {} sections of {} control points to stay within the "
-                        "tolerance of {:.3g}: raise the tolerance{}",
-                        body.name, most, columns, spec.tolerance,
-                        twist != 0.0 ? ", lower the twist, or drop `rotate`" : ", or split the yarn")),
-        body);
+    return error(
+        Kind::limit,
+        fmt::format("yarn '{}' would need more than {} sections of {} control points to stay within the "
+                    "tolerance of {:.3g}: raise the tolerance{}",
+                    body.name, most, columns, spec.tolerance,
+                    twist != 0.0 ? ", lower the twist, or drop `rotate`" : ", or split the yarn"));
   };
   const std::vector<double> breaks = first_breaks(path, *frames, sizes, twist, most);
   if (breaks.empty()) return too_many();
@@ -414,6 +403,14 @@ Status sweep(Body& body, const CentreLine& path, const TubeSpec& spec) {
   body.quarters = channels.outline().quarters;
   body.tube_error = section_error + fit.error();
   return {};
+}
+
+}  // namespace
+
+Status sweep(Body& body, const CentreLine& path, const TubeSpec& spec) {
+  Status made = swept(body, path, spec);
+  if (!made) return made.error().of_yarn(body.name, body.place);
+  return made;
 }
 
 }  // namespace selvage::yarn

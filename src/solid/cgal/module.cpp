@@ -1,4 +1,3 @@
-#include <mutex>
 
 #include "core/module.h"
 #include "core/parallel.h"
@@ -12,17 +11,13 @@ namespace selvage::solid {
 namespace {
 
 SolidCheck check_all(std::span<const yarn::Body> bodies, const CheckOptions& options) {
-  std::size_t done = 0;
-  std::mutex guard;
   SolidCheck result;
   result.yarns.resize(bodies.size());
-  for_each_index(bodies.size(), options.threads, [&](std::size_t i) {
+  const auto check_one = [&](std::size_t i) {
     const double chord = bodies[i].surface.is_empty() ? options.chord : chord_of(bodies[i], options);
     result.yarns[i] = check_yarn(bodies[i], chord);
-    if (!options.progress) return;
-    const std::lock_guard lock(guard);
-    options.progress(++done, bodies.size());
-  });
+  };
+  for_each_index(bodies.size(), options.threads, check_one, options.progress);
   return result;
 }
 

@@ -1,7 +1,6 @@
 #include "view/embree/render.h"
 
 #include <algorithm>
-#include <mutex>
 
 #include "core/parallel.h"
 #include "view/embree/shading.h"
@@ -186,15 +185,11 @@ Result<Picture> render_yarns(std::span<const yarn::Body> bodies, const PictureOp
     return static_cast<std::size_t>((pixels + tile_side - 1) / tile_side);
   };
   const std::size_t across = tiles(options.width), count = across * tiles(options.height);
-  std::size_t done = 0;
-  std::mutex guard;
-  for_each_index(count, options.threads, [&](std::size_t k) {
+  const auto draw = [&](std::size_t k) {
     renderer.draw_tile(static_cast<int>(k % across) * tile_side, static_cast<int>(k / across) * tile_side,
                        picture);
-    if (!options.progress) return;
-    const std::lock_guard lock(guard);
-    options.progress(++done, count);
-  });
+  };
+  for_each_index(count, options.threads, draw, options.progress);
   return picture;
 }
 

@@ -48,8 +48,7 @@ BuiltCell build(const std::string& name, double gap = 0) {
   fabric::BuildOptions options;
   options.gap = gap * fabric::smallest_section(*fabric).value_or(0);
   built.bodies = test::built(*fabric, options);
-  Result<cell::Cut> cut =
-      cell::cut(built.bodies, built.box, {.tolerance = fabric::tolerance_of(*fabric, options)});
+  Result<cell::Cut> cut = cell::cut(built.bodies, built.box, fabric::tolerance_of(*fabric, options));
   EXPECT_TRUE(cut.ok()) << to_string(cut.error());
   built.cut = std::move(*cut);
   const Result<cell::Division> division = cell::divide_faces(built.bodies, built.box, built.cut);

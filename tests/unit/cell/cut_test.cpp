@@ -23,7 +23,7 @@ yarn::Body along_x(const TubeForm& form = round, const Vec3& middle = Vec3::Zero
 }
 
 Cut cut_one(const yarn::Body& body, const Box3& box) {
-  Result<Cut> result = cut({&body, 1}, box, {.tolerance = 0.001});
+  Result<Cut> result = cut({&body, 1}, box, 0.001);
   EXPECT_TRUE(result.ok()) << (result.ok() ? "" : to_string(result.error()));
   return result.ok() ? *result : Cut{};
 }
@@ -175,7 +175,7 @@ TEST(Cut, EndsInsideOfTheBoxAreTheYarnsOwn) {
 TEST(Cut, AnEndAskewInAFaceIsRefused) {
   const Vec3 way = Vec3(1, 0.2, 0).normalized();
   const yarn::Body body = straight("slanted", round, 4 * way, way, {0, 0, 1}, 8);
-  const Result<Cut> result = cut({&body, 1}, Box3(Vec3(0, -4, -1), Vec3(2, 4, 1)), {.tolerance = 0.001});
+  const Result<Cut> result = cut({&body, 1}, Box3(Vec3(0, -4, -1), Vec3(2, 4, 1)), 0.001);
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().kind, Kind::geometry);
   EXPECT_EQ(result.error().yarn, "slanted");
@@ -183,14 +183,14 @@ TEST(Cut, AnEndAskewInAFaceIsRefused) {
 
 TEST(Cut, NoYarnInTheBox) {
   const yarn::Body body = along_x();
-  EXPECT_FALSE(cut({&body, 1}, Box3(Vec3(-1, 1, 1), Vec3(1, 2, 2)), {.tolerance = 0.001}).ok());
+  EXPECT_FALSE(cut({&body, 1}, Box3(Vec3(-1, 1, 1), Vec3(1, 2, 2)), 0.001).ok());
   // Its bounds reach the box, itself does not.
-  EXPECT_FALSE(cut({&body, 1}, Box3(Vec3(-1, 0.4, 0.4), Vec3(1, 2, 2)), {.tolerance = 0.001}).ok());
+  EXPECT_FALSE(cut({&body, 1}, Box3(Vec3(-1, 0.4, 0.4), Vec3(1, 2, 2)), 0.001).ok());
 }
 
 TEST(Cut, WhatOnlyGrazesTheBoxIsLeftOut) {
   const std::vector<yarn::Body> bodies = {along_x(), along_x(round, {0, 2, 0})};
-  const Result<Cut> result = cut(bodies, Box3(Vec3(-1, 0.4995, -1), Vec3(1, 3, 1)), {.tolerance = 0.001});
+  const Result<Cut> result = cut(bodies, Box3(Vec3(-1, 0.4995, -1), Vec3(1, 3, 1)), 0.001);
   ASSERT_TRUE(result.ok());
   ASSERT_EQ(result->pieces.size(), 1U);
   EXPECT_EQ(result->pieces[0].body, 1U);
@@ -201,12 +201,11 @@ TEST(Cut, WhatOnlyGrazesTheBoxIsLeftOut) {
 TEST(Cut, WhatReachesOutByAHairIsRefused) {
   const yarn::Body body = along_x();
   for (const double hair : {1e-9, 5e-4}) {
-    const Result<Cut> result =
-        cut({&body, 1}, Box3(Vec3(-1, -1, -1), Vec3(1, 0.5 - hair, 1)), {.tolerance = 0.001});
+    const Result<Cut> result = cut({&body, 1}, Box3(Vec3(-1, -1, -1), Vec3(1, 0.5 - hair, 1)), 0.001);
     ASSERT_FALSE(result.ok());
     EXPECT_NE(result.error().text.find("grazes the cell's face y high"), std::string::npos);
   }
-  EXPECT_TRUE(cut({&body, 1}, Box3(Vec3(-1, -1, -1), Vec3(1, 0.498, 1)), {.tolerance = 0.001}).ok());
+  EXPECT_TRUE(cut({&body, 1}, Box3(Vec3(-1, -1, -1), Vec3(1, 0.498, 1)), 0.001).ok());
 }
 
 TEST(Box, EdgesAndFacesKnowEachOther) {

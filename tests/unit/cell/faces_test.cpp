@@ -50,7 +50,7 @@ struct Divided {
 // Cuts and divides; the regions of every face must add up to it. Areas by (face, body).
 std::map<std::pair<int, std::size_t>, double> areas(const std::vector<yarn::Body>& bodies, const Box3& box,
                                                     int parts = 1000) {
-  Result<Cut> cut_up = cut(bodies, box, {.tolerance = 0.001});
+  Result<Cut> cut_up = cut(bodies, box, 0.001);
   EXPECT_TRUE(cut_up.ok()) << (cut_up.ok() ? "" : to_string(cut_up.error()));
   if (!cut_up) return {};
   const Result<Division> division = divide_faces(bodies, box, *cut_up);
@@ -126,7 +126,7 @@ TEST(Faces, AnyBox) {
   for (int k = 0; k < 60; ++k) {
     const Vec3 low(place(random), place(random), place(random) / 2);
     const Box3 box(low, low + Vec3(size(random), size(random), size(random)));
-    const Result<Cut> any = cut(bodies, box, {.tolerance = 0.001});
+    const Result<Cut> any = cut(bodies, box, 0.001);
     if (!any) continue;
     SCOPED_TRACE(k);
     ++cells;
@@ -139,7 +139,7 @@ TEST(Faces, OverlappingYarnsAreNamed) {
   const std::vector<yarn::Body> bodies = {straight("one", round, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 8),
                                           straight("two", round, {0, 0.8, 0}, {1, 0, 0}, {0, 1, 0}, 8)};
   const Box3 box(Vec3(-1, -2, -1), Vec3(1, 2, 1));
-  const Result<Cut> cut_up = cut(bodies, box, {.tolerance = 0.001});
+  const Result<Cut> cut_up = cut(bodies, box, 0.001);
   ASSERT_TRUE(cut_up.ok());
   const Result<Division> division = divide_faces(bodies, box, *cut_up);
   ASSERT_FALSE(division.ok());

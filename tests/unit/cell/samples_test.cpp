@@ -38,7 +38,7 @@ class CellSamples : public testing::TestWithParam<std::string> {};
 
 TEST_P(CellSamples, CutAndDivide) {
   const BuiltCell cell = build(std::filesystem::path(places::samples()) / (GetParam() + ".txt"));
-  const Result<Cut> cut_up = cut(cell.bodies, cell.box, {.tolerance = cell.tolerance});
+  const Result<Cut> cut_up = cut(cell.bodies, cell.box, cell.tolerance);
   ASSERT_TRUE(cut_up.ok()) << to_string(cut_up.error());
   const Result<Division> division = divide_faces(cell.bodies, cell.box, *cut_up);
   ASSERT_TRUE(division.ok()) << to_string(division.error());
@@ -58,7 +58,7 @@ TEST_P(CellSamples, CutAndDivide) {
 // A cell of one repeat holds as much of each warp, wherever the faces cut it.
 TEST(Samples, WarpsOfATwillAreEqual) {
   const BuiltCell cell = build(std::filesystem::path(places::samples()) / "twill_cell.txt");
-  const Result<Cut> cut_up = cut(cell.bodies, cell.box, {.tolerance = cell.tolerance});
+  const Result<Cut> cut_up = cut(cell.bodies, cell.box, cell.tolerance);
   ASSERT_TRUE(cut_up.ok());
   const Result<Division> division = divide_faces(cell.bodies, cell.box, *cut_up);
   ASSERT_TRUE(division.ok());

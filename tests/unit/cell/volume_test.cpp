@@ -17,7 +17,7 @@ constexpr double pi = std::numbers::pi;
 const TubeForm round{0.5, 0.5, 64, 4};
 
 std::vector<double> volumes(const std::vector<yarn::Body>& bodies, const Box3& box) {
-  Result<Cut> cut_up = cut(bodies, box, {.tolerance = 0.001});
+  Result<Cut> cut_up = cut(bodies, box, 0.001);
   EXPECT_TRUE(cut_up.ok()) << (cut_up.ok() ? "" : to_string(cut_up.error()));
   if (!cut_up) return {};
   const Result<Division> division = divide_faces(bodies, box, *cut_up);
