@@ -158,10 +158,9 @@ std::vector<Message> describe(const Improvement& improvement, double target, std
       if (is_worse) worst = &below;
     }
     if (worst == nullptr) continue;
-    const auto message = cause == Cause::geometry ? note : warning;
-    result.push_back(
-        message(Kind::geometry, text_of(*worst, how_many(improvement, cause), target, least_edge, unit))
-            .at_point(worst->at));
+    const std::string text = text_of(*worst, how_many(improvement, cause), target, least_edge, unit);
+    result.push_back((cause == Cause::geometry ? note(Kind::geometry, text) : warning(Kind::geometry, text))
+                         .at_point(worst->at));
   }
   return result;
 }
