@@ -21,7 +21,7 @@
 
 #include "core/output.h"
 #include "core/source.h"
-#include "formats/iges/iges.h"
+#include "formats/registry.h"
 #include "scripts/benchmarks/cloth.h"
 #include "scripts/benchmarks/measuring.h"
 

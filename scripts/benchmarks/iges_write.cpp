@@ -31,7 +31,7 @@
 #include <vector>
 
 #include "core/number_text.h"
-#include "formats/iges/iges.h"
+#include "formats/registry.h"
 #include "scripts/benchmarks/cloth.h"
 #include "scripts/benchmarks/measuring.h"
 

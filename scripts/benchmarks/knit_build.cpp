@@ -18,7 +18,7 @@
 
 #include "core/output.h"
 #include "fabric/build.h"
-#include "formats/iges/iges.h"
+#include "formats/registry.h"
 #include "nurbs/basis.h"
 #include "nurbs/interpolate.h"
 #include "scripts/benchmarks/measuring.h"

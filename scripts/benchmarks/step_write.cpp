@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/step/step.h"
+#include "formats/registry.h"
 #include "scripts/benchmarks/cloth.h"
 #include "scripts/benchmarks/measuring.h"
 

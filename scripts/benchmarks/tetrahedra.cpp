@@ -19,7 +19,7 @@
 #include "fabric/build.h"
 #include "fem/cell_mesher.h"
 #include "fem/sides.h"
-#include "formats/txt/txt.h"
+#include "formats/registry.h"
 #include "scripts/benchmarks/built.h"
 
 namespace {
