@@ -108,12 +108,16 @@ class Filler {
     for (const std::uint64_t key : keys) {
       if (std::binary_search(segments_.begin(), segments_.end(), key)) continue;
       const auto a = static_cast<std::uint32_t>(key >> 32U), b = static_cast<std::uint32_t>(key);
-      const double length = (mesh_.points[a] - mesh_.points[b]).norm();
-      // Beside a fixed edge that is too long itself there is no end to it.
-      if (length < too_long * std::min(wanted_[a], wanted_[b]) ||
-          length < beside_fixed * std::max(fixed_length(a), fixed_length(b)))
-        continue;
       const Vec2 middle = (mesh_.parameters[a] + mesh_.parameters[b]) / 2;
+      const double enough = too_long * std::min(wanted_[a], wanted_[b]);
+      double length = (mesh_.points[a] - mesh_.points[b]).norm();
+      // Both sides of a cut are one place in space: an edge from one to the other goes all the way round.
+      if (length < enough && (chart_[a] - chart_[b]).norm() > enough) {
+        const Vec3 between = support_.point(middle);
+        length = (mesh_.points[a] - between).norm() + (between - mesh_.points[b]).norm();
+      }
+      // Beside a fixed edge that is too long itself there is no end to it.
+      if (length < enough || length < beside_fixed * std::max(fixed_length(a), fixed_length(b))) continue;
       const double wanted = field_.at(support_.point(middle));
       if (length > too_long * wanted) result.push_back({length / wanted, wanted, a, b});
     }

@@ -54,6 +54,17 @@ TEST(Mesher, StraightTubeIsAreaTimesLength) {
   for (const std::size_t node : region.end_nodes) EXPECT_NEAR(mesh.nodes[node].x(), 5, 1e-12);
 }
 
+// Its surface was cut open: nowhere does an edge go from one side of the cut to the other.
+TEST(Mesher, AVeryLongTubeIsDividedAllAlong) {
+  const Mesh mesh = mesh_of({straight_tube(1, 1, 150)}, {.size = 0.5});
+  const Region& region = mesh.regions.front();
+  EXPECT_NEAR(region.volume, region.exact_volume, 1e-9 * region.exact_volume);
+  EXPECT_GE(mesh.quality.min_dihedral, 10);
+  for (const auto& face : region.side_faces)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_LT((mesh.nodes[face[k]] - mesh.nodes[face[(k + 1) % 3]]).norm(), 2 * 0.5);
+}
+
 // Straight elements have the volume at any size: their nodes stand so. With those of curved ones on the
 // surface halving the size divides the error by more than eight.
 TEST(Mesher, Volume) {
