@@ -241,7 +241,7 @@ std::optional<Curve> FlatMap::operator()(const Curve& flat, bool only_exact) con
     const int axis = constant(0) ? 1 : 0;
     if ((axis == 0 ? u_ : v_).angles.empty() || flat.degree == 1) return point_by_point();
     return nurbs::segment(at(cad::at_share(flat, 0)), at(cad::at_share(flat, 1)), flat.first_parameter(),
-                         flat.last_parameter());
+                          flat.last_parameter());
   }
   if (only_exact) return std::nullopt;
   const std::vector<double> parameters = nurbs::divided(flat.knots, flat.degree, 32);

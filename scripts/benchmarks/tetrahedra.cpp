@@ -107,7 +107,7 @@ void row(const fabric::Fabric& cloth, const std::vector<yarn::Body>& bodies, con
   bool is_filling = false;
   fem::CellMeshOptions options;
   options.size = one.size;
-  options.periodic = {cloth.cell->periodic_x, cloth.cell->periodic_y, cloth.cell->periodic_z};
+  options.periodic = cloth.cell->periodic;
   options.min_dihedral = one.target;
   options.timeout = 3600;
   options.memory = 16384;

@@ -192,8 +192,8 @@ Loop natural_border(const nurbs::Surface& given, double tolerance) {
   Loop loop;
   for (std::size_t i = 0; i < 4; ++i) {
     Edge& edge = loop.edges.emplace_back();
-    edge.flat =
-        nurbs::segment(corners[i], corners[(i + 1) % 4], sides[i].first_parameter(), sides[i].last_parameter());
+    edge.flat = nurbs::segment(corners[i], corners[(i + 1) % 4], sides[i].first_parameter(),
+                               sides[i].last_parameter());
     if (SampledCurve(sides[i]).length() > tolerance) edge.curve = std::move(sides[i]);
   }
   return loop;

@@ -51,10 +51,12 @@ double distance_to(const yarn::Body& body, const Vec3& point) {
       }
     }
   double step = (s.last_u() - s.first_u()) / 200, step_v = (s.last_v() - s.first_v()) / 200;
-  for (int round = 0; round < 60; ++round, step /= 1.6, step_v /= 1.6)
+  for (int turn = 0; turn < 60; ++turn, step /= 1.6, step_v /= 1.6)
     for (int i = -2; i <= 2; ++i)
       for (int j = -2; j <= 2; ++j) {
-        const Vec2 at = best + Vec2(i * step, j * step_v);
+        Vec2 at = best + Vec2(i * step, j * step_v);
+        const double round = s.last_u() - s.first_u();  // the search goes on beyond the seam
+        at.x() -= round * std::floor((at.x() - s.first_u()) / round);
         const double far = (nurbs::evaluate(s, at.x(), at.y()) - point).norm();
         if (far >= least) continue;
         least = far;
