@@ -1,7 +1,6 @@
 // The file of a unit cell, and what it shares with that of dry yarns.
 #pragma once
 
-#include <ranges>
 #include <string>
 #include <vector>
 
@@ -26,7 +25,7 @@ void write_volume(TextBuffer& text, std::size_t tag, const Box3& box, const std:
 template <class Nodes>
 void write_node_block(TextBuffer& text, const fem::Mesh& mesh, std::size_t dimension, std::size_t tag,
                       const Nodes& nodes) {
-  text << dimension << ' ' << tag << " 0 " << static_cast<std::size_t>(std::ranges::size(nodes)) << '\n';
+  text << dimension << ' ' << tag << " 0 " << nodes.size() << '\n';
   for (const std::size_t node : nodes) text << node + 1 << '\n';
   for (const std::size_t node : nodes) {
     const Vec3& p = mesh.nodes[node];

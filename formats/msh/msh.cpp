@@ -1,6 +1,7 @@
 #include "formats/registry.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/text_buffer.h"
 #include "fem/faces.h"
@@ -109,9 +110,12 @@ void write_entities(TextBuffer& text, const fem::Mesh& mesh, const std::vector<S
 // All nodes of a yarn are said to be in its volume: the triangles of its skin use them from there.
 void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   text << "$Nodes\n" << mesh.regions.size() << ' ' << mesh.nodes.size() << " 1 " << mesh.nodes.size() << '\n';
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
-    write_node_block(text, mesh, 3, i + 1,
-                     std::views::iota(mesh.regions[i].first_node, mesh.regions[i].last_node));
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+    const fem::Region& region = mesh.regions[i];
+    std::vector<std::size_t> nodes(region.last_node - region.first_node);
+    std::iota(nodes.begin(), nodes.end(), region.first_node);
+    write_node_block(text, mesh, 3, i + 1, nodes);
+  }
   text << "$EndNodes\n";
 }
 

@@ -28,8 +28,9 @@ std::vector<std::vector<std::size_t>> shells_of(const std::vector<Face>& faces) 
       if (!edge.curve.points.empty()) groups.join(first.try_emplace(edge.id, i).first->second, i);
   std::map<std::size_t, std::vector<std::size_t>> members;
   for (std::size_t i = 0; i < faces.size(); ++i) members[groups.of(i)].push_back(i);
-  const auto shells = std::views::values(members);
-  return {shells.begin(), shells.end()};
+  std::vector<std::vector<std::size_t>> shells;
+  for (auto& [leader, shell] : members) shells.push_back(std::move(shell));
+  return shells;
 }
 
 Box3 box_of(const std::vector<Vec3>& points) {

@@ -1,4 +1,4 @@
-#include "fabric/braid.h"
+#include "fabric/constructions.h"
 
 #include <fmt/format.h>
 

@@ -12,13 +12,10 @@
 #include <unordered_set>
 
 #include "core/overloaded.h"
-#include "fabric/braid.h"
+#include "fabric/constructions.h"
 #include "fabric/edits.h"
-#include "fabric/knit.h"
 #include "fabric/plies.h"
 #include "fabric/quantities.h"
-#include "fabric/warpknit.h"
-#include "fabric/weave.h"
 #include "fabric/yarn_spec.h"
 #include "yarn/finish.h"
 #include "yarn/grid.h"

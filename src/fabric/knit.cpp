@@ -1,4 +1,4 @@
-#include "fabric/knit.h"
+#include "fabric/constructions.h"
 
 #include <fmt/format.h>
 

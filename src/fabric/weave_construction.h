@@ -9,7 +9,7 @@
 #include "fabric/build.h"
 #include "fabric/draft.h"
 #include "fabric/interlacing.h"
-#include "fabric/weave.h"
+#include "fabric/constructions.h"
 #include "fabric/weave_fit.h"
 #include "fabric/weave_system.h"
 

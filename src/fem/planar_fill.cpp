@@ -11,7 +11,9 @@ namespace selvage::fem {
 
 namespace {
 
-constexpr int most_rounds = 60;
+// Points come in from the borders, a row a round, which divides most evenly; what they have not reached by
+// then, the middle of a long yarn, is divided all at once.
+constexpr int front_rounds = 60, most_rounds = 120;
 constexpr std::size_t most_triangles = 50'000'000;
 constexpr double too_long = 1.45;  // an edge, over the wanted length
 constexpr double too_near = 0.65;  // new points to each other, likewise
@@ -87,7 +89,7 @@ class Filler {
         return error(Kind::limit, fmt::format("the surfaces need more than {} triangles; choose a coarser "
                                               "--size",
                                               most_triangles));
-      if (round == most_rounds || !add_points()) return joined();
+      if (round == most_rounds || !add_points(round >= front_rounds)) return joined();
     }
   }
 
@@ -98,7 +100,7 @@ class Filler {
     return message;
   }
 
-  [[nodiscard]] std::vector<LongEdge> long_edges() const {
+  [[nodiscard]] std::vector<LongEdge> long_edges(bool goes_round) const {
     std::vector<std::uint64_t> keys;
     for (const auto& t : mesh_.triangles)
       for (std::size_t k = 0; k < 3; ++k) keys.push_back(edge_key(t[k], t[(k + 1) % 3]));
@@ -112,7 +114,7 @@ class Filler {
       const double enough = too_long * std::min(wanted_[a], wanted_[b]);
       double length = (mesh_.points[a] - mesh_.points[b]).norm();
       // Both sides of a cut are one place in space: an edge from one to the other goes all the way round.
-      if (length < enough && (chart_[a] - chart_[b]).norm() > enough) {
+      if (goes_round && length < enough && (chart_[a] - chart_[b]).norm() > enough) {
         const Vec3 between = support_.point(middle);
         length = (mesh_.points[a] - between).norm() + (between - mesh_.points[b]).norm();
       }
@@ -165,8 +167,8 @@ class Filler {
     return k < fixed_lengths_.size() ? fixed_lengths_[k] : 0;
   }
 
-  bool add_points() {
-    const std::vector<LongEdge> edges = long_edges();
+  bool add_points(bool goes_round) {
+    const std::vector<LongEdge> edges = long_edges(goes_round);
     const std::size_t before = chart_.size();
     Spread spread(too_near * field_.largest());
     for (const LongEdge& edge : edges) {

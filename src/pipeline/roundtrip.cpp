@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 #include "cad/compare.h"
 #include "core/readable.h"
@@ -278,7 +277,9 @@ std::vector<Trip> all_trips() {
 }
 
 std::string names_of(const std::vector<Trip>& trips) {
-  return fmt::format("{}", fmt::join(trips | std::views::transform(&Trip::name), ", "));
+  std::vector<std::string> names;
+  for (const Trip& trip : trips) names.push_back(trip.name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // Unit cells as STEP: OpenCASCADE finds valid solids, of which each yarn has the volume that is inside the
 // cell and all fill it; gmsh meshes them conformally by samples/cell.geo.
 #include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -20,6 +18,7 @@
 #include "nurbs/spline.h"
 #include "places.h"
 #include "reading.h"
+#include "unit/core/scratch_folder.h"
 
 namespace selvage {
 namespace {
@@ -59,13 +58,6 @@ BuiltCell build(const std::string& name, double gap = 0) {
 
 class StepFolder : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "selvage-cell-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::vector<cad::Part> write(const BuiltCell& built) const {
     Result<std::vector<cad::Part>> parts =
         cell::cad_parts(built.bodies, built.box, built.cut,
@@ -84,7 +76,8 @@ class StepFolder : public testing::Test {
     return std::move(*parts);
   }
 
-  fs::path folder_;
+  const test::ScratchFolder scratch_;
+  const fs::path& folder_ = scratch_.path();
 };
 
 class StepCell : public StepFolder, public testing::WithParamInterface<std::string> {};

@@ -1,8 +1,6 @@
 // STEP files in gmsh, as they are (no sewing): it must find every yarn as a volume of the right size and fill
 // it.
 #include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +11,7 @@
 #include "bodies.h"
 #include "formats/registry.h"
 #include "places.h"
+#include "unit/core/scratch_folder.h"
 
 namespace selvage {
 namespace {
@@ -30,13 +29,6 @@ struct Volume {
 
 class Gmsh : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "selvage-gmsh-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   void write(const std::vector<yarn::Body>& bodies, Unit unit = Unit::mm) const {
     Result<OutputFile> output = OutputFile::create(folder_ / "fabric.stp");
     ASSERT_TRUE(output.ok());
@@ -111,7 +103,8 @@ class Gmsh : public ::testing::Test {
     }
   }
 
-  fs::path folder_;
+  const test::ScratchFolder scratch_;
+  const fs::path& folder_ = scratch_.path();
 };
 
 TEST_F(Gmsh, EveryYarnIsFilled) {

@@ -1,8 +1,6 @@
 // STEP files through the module, read back by OpenCASCADE's reader: names, colours, units, validity, volumes.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
-
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +11,7 @@
 #include "formats/registry.h"
 #include "formats/step/options.h"
 #include "reading.h"
+#include "unit/core/scratch_folder.h"
 
 namespace selvage {
 namespace {
@@ -24,13 +23,6 @@ namespace fs = std::filesystem;
 
 class Step : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "selvage-step-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string path() const { return (folder_ / "fabric.stp").string(); }
 
   Result<WriteFacts> write(const std::vector<yarn::Body>& bodies, const SurfaceOptions& options = {}) {
@@ -54,7 +46,8 @@ class Step : public ::testing::Test {
     return source ? std::string(source->bytes()) : std::string();
   }
 
-  fs::path folder_;
+  const test::ScratchFolder scratch_;
+  const fs::path& folder_ = scratch_.path();
 };
 
 SurfaceOptions in_unit(Unit unit) {

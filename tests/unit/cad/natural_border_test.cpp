@@ -8,6 +8,7 @@
 
 #include "cad/sampled_curve.h"
 #include "nurbs/restrict.h"
+#include "unit/cad/surfaces.h"
 
 namespace selvage::test {
 
@@ -31,22 +32,9 @@ nurbs::Surface patch() {
   return surface;
 }
 
-// A cylinder of radius 1 and height 3, exact: u round it.
+// A cylinder of radius 1 and height 3, exact: u round it from 0 to 4.
 nurbs::Surface cylinder() {
-  nurbs::Surface surface;
-  surface.degree_u = 2;
-  surface.degree_v = 1;
-  surface.count_u = 9;
-  surface.count_v = 2;
-  surface.knots_u = {0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4};
-  surface.knots_v = {0, 0, 1, 1};
-  const double x[] = {1, 1, 0, -1, -1, -1, 0, 1, 1}, y[] = {0, 1, 1, 1, 0, -1, -1, -1, 0};
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 9; ++i) {
-      surface.points.emplace_back(x[i], y[i], 3.0 * j);
-      surface.weights.push_back(i % 2 == 0 ? 1 : std::sqrt(0.5));
-    }
-  return surface;
+  return stretched(test::cylinder(1, 3), 4, 0);
 }
 
 Loop without_flats(Loop loop) {

@@ -37,6 +37,20 @@ std::vector<double> clamped_uniform(int degree, int count) {
   return knots;
 }
 
+// A clamped bicubic surface, whose control point (i, j) is place(i, j).
+template <class Place>
+Surface bicubic(int count_u, int count_v, const Place& place) {
+  Surface s;
+  s.degree_u = s.degree_v = 3;
+  s.count_u = count_u;
+  s.count_v = count_v;
+  s.knots_u = clamped_uniform(3, count_u);
+  s.knots_v = clamped_uniform(3, count_v);
+  for (int j = 0; j < count_v; ++j)
+    for (int i = 0; i < count_u; ++i) s.points.push_back(place(i, j));
+  return s;
+}
+
 }  // namespace
 
 Surface cylinder(double radius, double height, double x, double y) {
@@ -57,32 +71,16 @@ Surface cylinder(double radius, double height, double x, double y) {
 }
 
 Surface wavy_tube(double y) {
-  Surface s;
-  s.degree_u = s.degree_v = 3;
-  s.count_u = 18;
-  s.count_v = 16;
-  s.knots_u = clamped_uniform(3, 18);
-  s.knots_v = clamped_uniform(3, 16);
-  for (int j = 0; j < 16; ++j)
-    for (int i = 0; i < 18; ++i) {
-      const double angle = 2 * std::numbers::pi * (i == 17 ? 0 : i) / 17.0;
-      s.points.emplace_back(j * 0.2, y + 0.2 * std::cos(angle) * (1 + 0.1 * std::sin(2.0 * j)),
-                            0.1 * std::sin(angle) + 0.3 * std::sin(0.5 * j));
-    }
-  return s;
+  return bicubic(18, 16, [&](int i, int j) {
+    const double angle = 2 * std::numbers::pi * (i == 17 ? 0 : i) / 17.0;
+    return Vec3(j * 0.2, y + 0.2 * std::cos(angle) * (1 + 0.1 * std::sin(2.0 * j)),
+                0.1 * std::sin(angle) + 0.3 * std::sin(0.5 * j));
+  });
 }
 
 Surface sheet() {
-  Surface s;
-  s.degree_u = s.degree_v = 3;
-  s.count_u = 7;
-  s.count_v = 6;
-  s.knots_u = clamped_uniform(3, 7);
-  s.knots_v = clamped_uniform(3, 6);
-  for (int j = 0; j < 6; ++j)
-    for (int i = 0; i < 7; ++i)
-      s.points.emplace_back(i / 6.0, j / 5.0, 0.2 * std::sin(1.3 * i) * std::cos(0.9 * j));
-  return s;
+  return bicubic(
+      7, 6, [](int i, int j) { return Vec3(i / 6.0, j / 5.0, 0.2 * std::sin(1.3 * i) * std::cos(0.9 * j)); });
 }
 
 Surface swapped(const Surface& surface) {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fabric/build.h"
-#include "fabric/knit.h"
+#include "fabric/constructions.h"
 #include "nurbs/measure.h"
 
 namespace selvage::fabric {

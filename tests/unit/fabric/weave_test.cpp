@@ -1,5 +1,4 @@
 // Woven centre lines against Peirce's geometry and what follows from it, and what cannot be woven.
-#include "fabric/weave.h"
 
 #include <fmt/format.h>
 

@@ -27,6 +27,11 @@ struct Tets {
   std::size_t fixed = 0;
 };
 
+// Its corners may not move.
+Tets one_tet(const std::array<Vec3, 4>& corners) {
+  return {{corners.begin(), corners.end()}, {{0, 1, 2, 3}}, {0}, 4};
+}
+
 ElementShape shape(const Tets& tets, const Cell& cell) {
   return shape_of({tets.points[cell[0]], tets.points[cell[1]], tets.points[cell[2]], tets.points[cell[3]]});
 }
@@ -297,11 +302,7 @@ TEST(Improve, SurfaceTooCoarseForItsGap) {
 
 TEST(Improve, WedgeOfTheGeometryIsNamed) {
   const double wedge = 4 * std::numbers::pi / 180;
-  Tets tets;
-  tets.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {std::cos(wedge), std::sin(wedge), 0.5}};
-  tets.cells = {{0, 1, 2, 3}};
-  tets.regions = {0};
-  tets.fixed = 4;
+  Tets tets = one_tet({{{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {std::cos(wedge), std::sin(wedge), 0.5}}});
   const Improvement result = improved(tets, 10);
   ASSERT_EQ(result.below.size(), 1U);
   EXPECT_EQ(result.below[0].cause, BelowTarget::Cause::geometry);
@@ -311,12 +312,10 @@ TEST(Improve, WedgeOfTheGeometryIsNamed) {
 
 TEST(Improve, WedgesAreToldInANote) {
   const double half = 2 * std::numbers::pi / 180;
-  Tets tets;
-  tets.points = {
-      {0, 0, 0}, {std::cos(half), -std::sin(half), 0}, {std::cos(half), std::sin(half), 0}, {0.5, 0, 0.7}};
-  tets.cells = {{0, 1, 2, 3}};
-  tets.regions = {0};
-  tets.fixed = 4;
+  Tets tets = one_tet({{{0, 0, 0},
+                        {std::cos(half), -std::sin(half), 0},
+                        {std::cos(half), std::sin(half), 0},
+                        {0.5, 0, 0.7}}});
   const Improvement result = improved(tets, 10);
   // Its edge to the top stands over a wedge of the geometry, 0-3 between the sides at the needle's tip.
   ASSERT_EQ(result.below.size(), 1U);
