@@ -104,6 +104,7 @@ Topology tube(const yarn::Body& body, const yarn::EndPlane* start, const yarn::E
 SolidLists write_lists(Records& records, const Common& common, const std::vector<Vec3>& vertices,
                        const std::vector<SolidEdge>& edges) {
   std::vector<int> curves;
+  curves.reserve(edges.size());
   for (const SolidEdge& edge : edges)
     curves.push_back(write_curve(records, common.entity(126, 0, dependent), edge.curve, edge.normal));
   SolidLists lists;
