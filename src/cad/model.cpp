@@ -29,6 +29,7 @@ std::vector<std::vector<std::size_t>> shells_of(const std::vector<Face>& faces) 
   std::map<std::size_t, std::vector<std::size_t>> members;
   for (std::size_t i = 0; i < faces.size(); ++i) members[groups.of(i)].push_back(i);
   std::vector<std::vector<std::size_t>> shells;
+  shells.reserve(members.size());
   for (auto& [leader, shell] : members) shells.push_back(std::move(shell));
   return shells;
 }
