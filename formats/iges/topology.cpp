@@ -37,7 +37,8 @@ void check_vertex(Reading& reading, const Use& use, Parameters& by) {
 // The curve of an edge: field 5 i + 1 of the 504. 0 after an error.
 int edge_curve(Reading& reading, const Use& use, Parameters& by) {
   const std::vector<int>* const curves = reading.edge_list(use.list, by);
-  if (curves != nullptr) check_index(use, "edge", curves->size(), by);
+  if (curves == nullptr) return 0;
+  check_index(use, "edge", curves->size(), by);
   return by.ok() ? (*curves)[static_cast<std::size_t>(use.index) - 1] : 0;
 }
 
