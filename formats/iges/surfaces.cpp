@@ -246,6 +246,7 @@ std::optional<Curve> FlatMap::operator()(const Curve& flat, bool only_exact) con
   if (only_exact) return std::nullopt;
   const std::vector<double> parameters = nurbs::divided(flat.knots, flat.degree, 32);
   std::vector<Vec3> points;
+  points.reserve(parameters.size());
   for (const double t : parameters) points.push_back(at(nurbs::evaluate(flat, t)));
   return nurbs::interpolate(points, parameters, nurbs::end_derivative(points, parameters, false),
                             nurbs::end_derivative(points, parameters, true));
