@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "fabric/build.h"
+#include "fabric/constructions.h"
 #include "fabric/draft.h"
 #include "fabric/interlacing.h"
-#include "fabric/constructions.h"
 #include "fabric/weave_fit.h"
 #include "fabric/weave_system.h"
 

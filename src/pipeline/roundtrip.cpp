@@ -278,6 +278,7 @@ std::vector<Trip> all_trips() {
 
 std::string names_of(const std::vector<Trip>& trips) {
   std::vector<std::string> names;
+  names.reserve(trips.size());
   for (const Trip& trip : trips) names.push_back(trip.name);
   return fmt::format("{}", fmt::join(names, ", "));
 }

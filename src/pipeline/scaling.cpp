@@ -25,7 +25,8 @@ struct Ratio {
 
 Ratio ratio(Unit from, Unit to) {
   const std::int64_t a = exact_size(from), b = exact_size(to), common = std::gcd(a, b);
-  return {static_cast<double>(a / common), static_cast<double>(b / common)};
+  const std::int64_t up = a / common, down = b / common;
+  return {static_cast<double>(up), static_cast<double>(down)};
 }
 
 }  // namespace
