@@ -141,7 +141,7 @@ void Mender::make_stiffness() {
     for (Eigen::Index i = 0; i < 3; ++i)
       for (Eigen::Index j = 0; j < 3; ++j) {
         const double value = free_a(i) * block(i, j) * free_b(j) + (a == b && i == j ? 1 - free_a(i) : 0.0);
-        if (value != 0.0) entries.emplace_back(3 * a + i, 3 * b + j, value);
+        if (value != 0.0) entries.emplace_back(Eigen::Index{3} * a + i, Eigen::Index{3} * b + j, value);
       }
   };
   constexpr double unused = 1e-9;  // of classes that no point has

@@ -185,6 +185,7 @@ Curve interpolate_closed(const std::vector<Vec3>& points, const std::vector<doub
 
 std::vector<double> clamped_integer_knots(int count, int degree) {
   std::vector<double> knots;
+  knots.reserve(static_cast<std::size_t>(count) + static_cast<std::size_t>(degree) + 1);
   for (int i = 0; i < count + degree + 1; ++i) knots.push_back(std::clamp(i - degree, 0, count - degree));
   return knots;
 }

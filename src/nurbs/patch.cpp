@@ -38,7 +38,7 @@ void extract(const std::vector<double>& knots, int degree, int count, double low
 const std::vector<double>& bernstein_table(int degree, int steps, std::vector<double>& scratch) {
   scratch.assign(at((steps + 1) * (degree + 1)), 0.0);
   for (int s = 0; s <= steps; ++s) {
-    double* row = scratch.data() + s * (degree + 1);
+    double* row = scratch.data() + static_cast<std::ptrdiff_t>(s) * (degree + 1);
     const double t = static_cast<double>(s) / steps;
     row[0] = 1.0;
     for (int k = 1; k <= degree; ++k) {
