@@ -125,6 +125,7 @@ fs::path loader() {
     for (int i = 0; i < program->dlpi_phnum; ++i)
       if (program->dlpi_phdr[i].p_type == PT_INTERP)
         *static_cast<std::string*>(found) =
+            // NOLINTNEXTLINE(performance-no-int-to-ptr): an address, as the loader tells it
             reinterpret_cast<const char*>(program->dlpi_addr + program->dlpi_phdr[i].p_vaddr);
     return 1;  // the first one is the program
   };
