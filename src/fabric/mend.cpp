@@ -186,7 +186,8 @@ void Mender::add_pulls(const MendLine& line, const State& state, std::size_t ind
   const std::size_t first = pulls.size();
   for (int j = 0; j <= curve.degree; ++j) {
     const double value = scale * rows[static_cast<std::size_t>(derivative)][static_cast<std::size_t>(j)];
-    for (const Share& share : shares[static_cast<std::size_t>(span - curve.degree) + static_cast<std::size_t>(j)]) {
+    for (const Share& share :
+         shares[static_cast<std::size_t>(span - curve.degree) + static_cast<std::size_t>(j)]) {
       const int c = line.classes[share.point];
       if (c < 0) continue;
       const auto same = std::find_if(pulls.begin() + static_cast<std::ptrdiff_t>(first), pulls.end(),
