@@ -97,10 +97,6 @@ class Numbers {
   int defects_ = 0;
 };
 
-double size_of(const std::vector<Vec3>& points) {
-  return largest_of(points).value_or(0);
-}
-
 // The flags PROP1 and PROP4 (PROP2 and PROP5) against the largest distance of the two opposite borders.
 void check_closed(Numbers& numbers, bool said, bool periodic, double gap, double size, double resolution,
                   std::string_view flag, std::string_view where, std::size_t value) {
@@ -163,7 +159,7 @@ void check_curve(const DirectoryEntry& entry, const Values& values, Bounds& boun
   numbers.check_weights(curve.weights, polynomial, weights, 5, "PROP3");
   numbers.check_range(first, end, curve.first_parameter(), curve.last_parameter(), "", range);
   if (!numbers.is_sound() || curve.degree > nurbs::max_degree) return;
-  const double size = size_of(curve.points);
+  const double size = largest_of(curve.points).value_or(0);
   const double gap = (nurbs::evaluate(curve, first) - nurbs::evaluate(curve, end)).norm();
   check_closed(numbers, closed, periodic, gap, size, entry.use == 5 ? 0 : bounds.resolution, "PROP2", "", 4);
   if (planar && normal.norm() > 0) {
@@ -209,7 +205,7 @@ void check_surface(const DirectoryEntry& entry, const Values& values, Bounds& bo
   numbers.check_knots(surface.knots_u, surface.degree_u, knots_u, " in u");
   numbers.check_knots(surface.knots_v, surface.degree_v, knots_v, " in v");
   numbers.check_weights(surface.weights, flags[2], weights, 7, "PROP3");
-  note_largest(entry, size_of(surface.points), bounds);
+  note_largest(entry, largest_of(surface.points).value_or(0), bounds);
   if (!numbers.is_sound()) return;
   const double first_u = surface.first_u(), last_u = surface.last_u(), first_v = surface.first_v(),
                last_v = surface.last_v();
@@ -222,7 +218,7 @@ void check_surface(const DirectoryEntry& entry, const Values& values, Bounds& bo
   numbers.check_range(range[0], range[1], first_u, last_u, " in u", range_at);
   numbers.check_range(range[2], range[3], first_v, last_v, " in v", range_at + 2);
   if (!numbers.is_sound() || std::max(surface.degree_u, surface.degree_v) > nurbs::max_degree) return;
-  const double size = size_of(surface.points);
+  const double size = largest_of(surface.points).value_or(0);
   check_closed(numbers, flags[0], flags[3], largest_gap(surface, true, range), size, bounds.resolution,
                "PROP1", " in u", 5);
   check_closed(numbers, flags[1], flags[4], largest_gap(surface, false, range), size, bounds.resolution,

@@ -60,7 +60,7 @@ Handle(TCollection_HAsciiString) text(const std::string& words) {
 // Below this two places are one for the reading system, mm. The solids' faces share their edges, so their
 // joints are as exact as doubles are; this is what OpenCASCADE takes for equal, and small against the finest
 // fibre.
-constexpr double uncertainty = 1e-7;
+constexpr double written_uncertainty = 1e-7;
 
 // A yarn's solid, a piece's shell, or what came from a CAD file.
 struct Part {
@@ -188,7 +188,7 @@ class StepBodyWriter : public BodyWriter {
         return finite;
     if (part.faces.empty()) return {};
     const double tolerance =
-        std::max(1e-6 * cad::box_of(part).diagonal().norm(), uncertainty / millimetres_per(options_.units));
+        std::max(1e-6 * cad::box_of(part).diagonal().norm(), written_uncertainty / millimetres_per(options_.units));
     const PartShape built = build_part(part, tolerance);
     if (const std::optional<std::string> flaw = flaw_of(built, part)) {
       Message refused = error(
@@ -243,7 +243,7 @@ class StepBodyWriter : public BodyWriter {
     const std::string title = options_.title.empty() ? "fabric" : options_.title;
     TDataStd_Name::Set(assembly_, TCollection_ExtendedString(title.c_str(), true));
     STEPCAFControl_Writer writer;
-    writer.ChangeWriter().SetTolerance(uncertainty / millimetres_per(options_.units));
+    writer.ChangeWriter().SetTolerance(written_uncertainty / millimetres_per(options_.units));
     writer.SetColorMode(
         false);  // add_styles: its own go in the order of memory addresses, so no two files are alike
     writer.SetNameMode(true);

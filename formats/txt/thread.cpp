@@ -55,7 +55,7 @@ std::optional<yarn::Section> read_polygon(Parser& p) {
 
 // What stands behind the word of a shape, by its members.
 template <class Shape>
-std::optional<yarn::Section> read_shape(Parser& p) {
+std::optional<yarn::Section> read_shape_of(Parser& p) {
   Shape shape;
   const auto read = [&](double& value, std::string_view what) {
     const std::optional<double> given = p.positive(what);
@@ -76,7 +76,7 @@ std::optional<yarn::Section> read_shape(Parser& p) {
 
 template <std::size_t... Kind>
 std::optional<yarn::Section> read_kind(Parser& p, std::size_t kind, std::index_sequence<Kind...>) {
-  constexpr std::array readers{&read_shape<std::variant_alternative_t<Kind, yarn::Section>>...};
+  constexpr std::array readers{&read_shape_of<std::variant_alternative_t<Kind, yarn::Section>>...};
   return readers[kind](p);
 }
 

@@ -22,15 +22,15 @@ std::vector<double> sample_parameters(const nurbs::Curve& curve, int least) {
 }
 
 // One side of the surface: u or v is fixed.
-struct Side {
-  Side(nurbs::Curve side, bool is_along_u, double at)
+struct BorderSide {
+  BorderSide(nurbs::Curve side, bool is_along_u, double at)
       : curve(std::move(side)),
         along_u(is_along_u),
         fixed(at),
         samples(curve, sample_parameters(curve, 16)) {}
   // The samples refer to the curve.
-  Side(const Side&) = delete;
-  Side& operator=(const Side&) = delete;
+  BorderSide(const BorderSide&) = delete;
+  BorderSide& operator=(const BorderSide&) = delete;
 
   [[nodiscard]] double first() const { return samples.parameters.front(); }
   [[nodiscard]] double last() const { return samples.parameters.back(); }
@@ -55,7 +55,7 @@ struct Coverage {
   }
 };
 
-std::optional<double> share_by_flat(const Side& side, const nurbs::Curve& flat,
+std::optional<double> share_by_flat(const BorderSide& side, const nurbs::Curve& flat,
                                     const nurbs::Surface& surface) {
   const int across = side.along_u ? 1 : 0;
   const double width =
@@ -71,7 +71,7 @@ std::optional<double> share_by_flat(const Side& side, const nurbs::Curve& flat,
 }
 
 // Nothing where the curve leaves the side, or does not run along it in one direction.
-std::optional<double> share_in_space(const Side& side, const std::vector<Vec3>& points, double tolerance) {
+std::optional<double> share_in_space(const BorderSide& side, const std::vector<Vec3>& points, double tolerance) {
   const double period = side.last() - side.first();
   const bool closed = side.is_closed(tolerance);
   const double slack = 1e-6 * period + period * tolerance / side.length;
@@ -101,9 +101,9 @@ bool is_near(double value, double wanted) {
   return std::abs(value - wanted) <= coverage_slack;
 }
 
-class Border {
+class NaturalBorder {
  public:
-  Border(const nurbs::Surface& surface, double tolerance) : Border(surface, tolerance, sides_of(surface)) {}
+  NaturalBorder(const nurbs::Surface& surface, double tolerance) : NaturalBorder(surface, tolerance, sides_of(surface)) {}
 
   // False where it leaves the border.
   bool add(const Edge& edge) {
@@ -144,13 +144,13 @@ class Border {
 
  private:
   // `sides` as of sides_of().
-  Border(const nurbs::Surface& surface, double tolerance, std::array<nurbs::Curve, 4> sides)
+  NaturalBorder(const nurbs::Surface& surface, double tolerance, std::array<nurbs::Curve, 4> sides)
       : surface_(surface),
         tolerance_(tolerance),
-        sides_{Side(std::move(sides[2]), true, surface.first_v()),
-               Side(std::move(sides[1]), false, surface.last_u()),
-               Side(std::move(sides[3]), true, surface.last_v()),
-               Side(std::move(sides[0]), false, surface.first_u())} {}
+        sides_{BorderSide(std::move(sides[2]), true, surface.first_v()),
+               BorderSide(std::move(sides[1]), false, surface.last_u()),
+               BorderSide(std::move(sides[3]), true, surface.last_v()),
+               BorderSide(std::move(sides[0]), false, surface.first_u())} {}
   // Do the opposite sides i and i + 2 coincide?
   [[nodiscard]] bool is_seam(std::size_t i) const {
     return sides_[i].length > tolerance_ &&
@@ -159,7 +159,7 @@ class Border {
 
   const nurbs::Surface& surface_;
   double tolerance_;
-  std::array<Side, 4> sides_;  // round the domain: first v, last u, last v, first u
+  std::array<BorderSide, 4> sides_;  // round the domain: first v, last u, last v, first u
   std::array<Coverage, 4> coverage_{};
 };
 
@@ -172,7 +172,7 @@ double border_tolerance(const Face& face, double resolution) {
 
 bool has_natural_border(const Face& face, double tolerance) {
   if (face.loops.empty()) return true;
-  Border border(face.surface, tolerance);
+  NaturalBorder border(face.surface, tolerance);
   for (const Edge& edge : edges_of(face))
     if (!border.add(edge)) return false;
   return border.is_covered();

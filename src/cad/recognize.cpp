@@ -85,7 +85,7 @@ bool replace_ends(yarn::Body& body, const std::array<bool, 2>& other) {
   return true;
 }
 
-Box3 box_of(const Polylines& outline) {
+Box3 box_of_outline(const Polylines& outline) {
   Box3 box;
   for (const std::vector<Vec3>& line : outline) box.extend(cad::box_of(line));
   return box;
@@ -256,7 +256,7 @@ class Recognizer {
       for (const bool last : {false, true}) {
         if (!is_free(t, last)) continue;
         const nurbs::Curve outline = yarn::end_curve(tubes_[t].body, last);
-        ends.push_back({box_of({SampledCurve(outline).points}), 2 * t + (last ? 1 : 0)});
+        ends.push_back({box_of_outline({SampledCurve(outline).points}), 2 * t + (last ? 1 : 0)});
       }
     const Places places(ends);
     std::vector<Fit> fits;
@@ -282,7 +282,7 @@ class Recognizer {
     const Face& face = clamped(part.faces[candidate.face], made);
     const Polylines border = border_of(face, 0);
     if (border.empty()) return true;
-    std::vector<std::size_t> near = places.near(box_of(border));
+    std::vector<std::size_t> near = places.near(box_of_outline(border));
     const auto distance = [&](std::size_t end) {
       const std::size_t order = tubes_[end / 2].order;
       return order > candidate.order ? order - candidate.order : candidate.order - order;

@@ -33,7 +33,7 @@ std::optional<Vec2> crossing(const std::vector<Vec2>& a, const std::vector<Vec2>
   return std::nullopt;
 }
 
-constexpr std::size_t nothing = FaceRegion::matrix - 1;  // outside of the box
+constexpr std::size_t outside = FaceRegion::matrix - 1;  // outside of the box
 
 class Divider {
  public:
@@ -185,7 +185,7 @@ std::size_t Divider::body_left_of(const Side& side, int face) const {
     return side.backward != body_of(edge).inward ? cut_.pieces[edge.piece].body : FaceRegion::matrix;
   const Vec2 from = flat(division_.corners[start_of(side)].at, face),
              to = flat(division_.corners[end_of(side)].at, face);
-  return cross(to - from, flat(box_.center(), face) - from) < 0 ? nothing : owners_[side.edge];
+  return cross(to - from, flat(box_.center(), face) - from) < 0 ? outside : owners_[side.edge];
 }
 
 // The points of an outline, in the face's coordinates.
@@ -260,7 +260,7 @@ Status Divider::trace_face(int face) {
     for (const bool backward : {false, true}) {
       const Side side{i, backward};
       const std::size_t owner = body_left_of(side, face);
-      if (owner == nothing) continue;
+      if (owner == outside) continue;
       if (edge.is_border())
         outlines[owner].push_back({side});
       else

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "nurbs/basis.h"
 
 namespace selvage::contact {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 constexpr double hold_stiffness = 1e5;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/index.h"
 #include "nurbs/basis.h"
 #include "nurbs/divided.h"
 #include "nurbs/restrict.h"
@@ -12,10 +13,6 @@
 namespace selvage::contact {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // psi = x^i y^j of each field.
 constexpr std::array<std::array<int, 2>, shape_modes> powers = {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/index.h"
 #include "nurbs/interpolate.h"
 #include "yarn/ends.h"
 #include "yarn/grid.h"
@@ -9,10 +10,6 @@
 namespace selvage::fabric {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // What the grid gives, and whether that is the body's surface.
 bool gives(const Grid& grid, const yarn::Body& body, yarn::Body& built) {

@@ -20,7 +20,7 @@ namespace selvage::fabric {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 // Crossing yarns keep this share of the braiders' thickness apart, and at least what the file's tolerance may
 // take from them.
 constexpr double clearance = 1.0 / 200.0;

@@ -13,7 +13,7 @@ namespace selvage::fabric {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::size_t most_pushed = 30;
 
 // Centres of symmetry of the hexagonal lattice with distance 1: a disc, the middle of two, of three.

@@ -11,7 +11,7 @@ namespace {
 // the name says `top`, from those of the course whose loop is drawn through this one), z for a knit loop.
 using Point = std::array<double, 3>;
 
-constexpr double middle = wale_spacing / 2;
+constexpr double wale_middle = wale_spacing / 2;
 constexpr double depth = 1.5;  // of legs, sinkers and heads before or behind the middle plane
 constexpr double sinker_y = -3;
 constexpr double head_over_top = 3;
@@ -204,7 +204,7 @@ void add_stitch_points(const KnitField& field, long long course, long long wale,
   const double left_sinker = sinker_z(field, course, wale);
   const double right_sinker = sinker_z(field, course, wale + 1);
   const auto add = [&](const Point& p, double mirror) {
-    points.emplace_back(middle + mirror * p[0], p[1], needle.side * p[2]);
+    points.emplace_back(wale_middle + mirror * p[0], p[1], needle.side * p[2]);
   };
   points.emplace_back(0, sinker_y, left_sinker);
   for (const Point& point : Half(needle, hold, left_sinker == 0.0)) add(point, 1);

@@ -15,7 +15,7 @@ namespace selvage::fabric {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double clearance = 0.005;  // of a part's diameter
 constexpr std::size_t most_plies = 1000, most_filaments = 100'000;
 constexpr double share_kept = 0.98;  // a share nearer to the packing than this needs no words

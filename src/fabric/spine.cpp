@@ -14,7 +14,7 @@ namespace selvage::fabric {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 // A helix through this many points a turn is 4e-5 of its radius away from the cubic through them at most.
 constexpr double points_a_turn = 20.0;
 constexpr double bend_between_points = 0.12;  // radians

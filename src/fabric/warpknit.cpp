@@ -38,8 +38,6 @@ namespace {
 
 // Courses by which yarns are continued on each side of a fabric with a unit cell.
 constexpr int continued_courses = 2;
-// Most data points of a course: a loop of eleven, an underlap of two.
-constexpr std::uint64_t points_of_a_course = 13;
 // Of a thickness, between the surfaces of yarns: less makes poor tetrahedra of what lies between.
 constexpr double gap_share = 0.01;
 

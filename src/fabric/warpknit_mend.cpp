@@ -12,7 +12,6 @@ namespace selvage::fabric {
 namespace {
 
 constexpr long long most_points = 30'000;
-constexpr long long points_of_a_course = 13;
 
 // Courses after which all lappings begin anew; none where it is longer than any piece.
 std::optional<long long> repeat_of(const std::vector<Bar>& bars) {

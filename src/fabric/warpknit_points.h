@@ -14,6 +14,8 @@ namespace selvage::fabric {
 
 // How much further the foot before a loop reaches down than the one after it, in yarns lying across.
 constexpr double low_foot = 0.4;
+// Most data points of a course: a loop of eleven, an underlap of two.
+constexpr int points_of_a_course = 13;
 
 struct Bar {
   Lapping lapping;

@@ -10,7 +10,7 @@ namespace selvage::fabric {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Message at_thread(const Fabric& fabric, const Yarn& yarn, const Message& message) {
   return message.placed(yarn.place, fabric.file).of_yarn(yarn.name);

@@ -12,7 +12,7 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-constexpr double too_long = 1.4, too_short = 0.7;  // edges, over the wanted length
+constexpr double longest = 1.4, shortest = 0.7;  // edges, over the wanted length
 constexpr double least_alignment = 0.5;            // cosine between a triangle and its support
 constexpr int rounds = 6, last_rounds = 6;
 constexpr double good_angle = 35;  // degrees: smoothing may take from angles above it
@@ -156,7 +156,7 @@ class Remesher {
 void Remesher::split_long() {
   std::vector<Rated> found = rated_edges();
   std::erase_if(found, [&](const Rated& edge) {
-    return !(edge.ratio > too_long) || fixed_.contains(edge_key(edge.a, edge.b));
+    return !(edge.ratio > longest) || fixed_.contains(edge_key(edge.a, edge.b));
   });
   std::stable_sort(found.begin(), found.end(),
                    [](const Rated& x, const Rated& y) { return x.ratio > y.ratio; });
@@ -199,11 +199,11 @@ bool Remesher::split(std::uint32_t a, std::uint32_t b) {
 
 void Remesher::collapse_short() {
   std::vector<Rated> found = rated_edges();
-  std::erase_if(found, [](const Rated& edge) { return !(edge.ratio < too_short); });
+  std::erase_if(found, [](const Rated& edge) { return !(edge.ratio < shortest); });
   std::stable_sort(found.begin(), found.end(),
                    [](const Rated& x, const Rated& y) { return x.ratio < y.ratio; });
   for (const auto& [ratio_before, a, b] : found) {
-    if (stars_[a].empty() || stars_[b].empty() || at_edge(a, b).size() != 2 || ratio(a, b) >= too_short)
+    if (stars_[a].empty() || stars_[b].empty() || at_edge(a, b).size() != 2 || ratio(a, b) >= shortest)
       continue;
     if (!is_fixed(b) && collapse(b, a)) continue;
     if (!is_fixed(a)) collapse(a, b);
@@ -223,7 +223,7 @@ bool Remesher::collapse(std::uint32_t gone, std::uint32_t kept) {
   for (const std::uint32_t c : around) {
     if (c == kept) continue;
     if (std::find(beside.begin(), beside.end(), c) != beside.end()) ++common;
-    if (ratio(c, kept) > too_long) return false;
+    if (ratio(c, kept) > longest) return false;
   }
   if (common != 2) return false;
   double before = 180, after = 180;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/index.h"
 #include "core/wrapped.h"
 #include "nurbs/basis.h"
 #include "nurbs/measure.h"
@@ -14,10 +15,6 @@
 namespace selvage::nurbs {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Positions nearer than this share of the control triangle's size are equal to move_joint_by_weight.
 constexpr double position_tolerance = 1e-9;

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "core/wrapped.h"
 #include "nurbs/basis.h"
 
 namespace selvage::nurbs {
 
 namespace {
-
-std::size_t at(Eigen::Index i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Solves the tridiagonal system low, diagonal, high for every column of `right`, in place (Thomas). B-spline
 // collocation matrices are totally positive, so no pivoting is needed (de Boor 1978).

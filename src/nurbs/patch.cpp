@@ -6,15 +6,12 @@
 #include <limits>
 #include <span>
 
+#include "core/index.h"
 #include "nurbs/basis.h"
 
 namespace selvage::nurbs {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Bezier control points over [low, high] as combinations of the degree + 1 control points of a knot span.
 struct Extraction {

@@ -4,15 +4,12 @@
 #include <iterator>
 #include <utility>
 
+#include "core/index.h"
 #include "nurbs/basis.h"
 
 namespace selvage::nurbs {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // One direction: the new knots, and each new control point as a combination of degree + 1 old ones.
 struct Restriction {

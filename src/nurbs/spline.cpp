@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "nurbs/basis.h"
 
 namespace selvage::nurbs {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 double clamp_to(const std::vector<double>& knots, int degree, int count, double t) {
   return std::clamp(t, knots[at(degree)], knots[at(count)]);

@@ -24,7 +24,7 @@ namespace {
 // The solid's volume may differ from the B-spline's by what quadrature leaves on rational surfaces.
 constexpr double volume_agreement = 1e-4;
 
-struct Findings {
+struct Examined {
   std::vector<yarn::Body> bodies;
   solid::SolidCheck solids;
   std::vector<solid::BrepCheck> breps;
@@ -37,7 +37,7 @@ std::string_view yes_no(bool yes) {
 }
 
 // What is wrong with yarn i, beside overlaps; empty: nothing.
-std::vector<Message> defects_of(const Findings& found, std::size_t i, Unit units) {
+std::vector<Message> defects_of(const Examined& found, std::size_t i, Unit units) {
   const yarn::Body& body = found.bodies[i];
   std::vector<Message> defects = found.solids.yarns[i].defects;
   const solid::BrepCheck& brep = found.breps[i];
@@ -66,7 +66,7 @@ std::string brep_word(const solid::BrepCheck& brep) {
   return brep.valid ? fmt::format("{} free edges", brep.free_edges) : "invalid";
 }
 
-std::string yarn_tables(const Findings& found, const Shown& shown) {
+std::string yarn_tables(const Examined& found, const Shown& shown) {
   const auto length = [&](double value) { return cell(shown.length(value)); };
   Table yarns({"yarn", "points", "length", "volume", "least bend radius", "tube error", "closed",
                "crosses itself", "B-rep", "defects"});
@@ -102,7 +102,7 @@ std::string yarn_tables(const Findings& found, const Shown& shown) {
   return text;
 }
 
-void print_tables(const Job& job, const Findings& found, const CadCheck& cad, std::size_t defects) {
+void print_tables(const Job& job, const Examined& found, const CadCheck& cad, std::size_t defects) {
   const Shown shown = job.shown();
   std::string text = fmt::format("{}: lengths in {}\n", readable(job.input.path), name_of(shown.unit)), sound;
   if (cad.has_model()) {
@@ -122,12 +122,12 @@ void print_tables(const Job& job, const Findings& found, const CadCheck& cad, st
   job.print(text);
 }
 
-std::optional<Findings> examine(Job& job, const fabric::Fabric& fabric) {
+std::optional<Examined> examine(Job& job, const fabric::Fabric& fabric) {
   const std::optional<fabric::YarnBuilder> builder = job.builder(fabric);
   if (!builder) return std::nullopt;
   std::optional<std::vector<yarn::Body>> bodies = job.build_all(*builder);
   if (!bodies) return std::nullopt;
-  Findings found;
+  Examined found;
   found.bodies = std::move(*bodies);
   std::optional<PieceFindings> pieces = examine_pieces(job, fabric);
   if (!pieces) return std::nullopt;
@@ -170,7 +170,7 @@ bool check(Job& job) {
   if (!fabric) return false;
   std::optional<OpenOutputs> outputs = open_outputs(job);
   if (!outputs) return false;
-  const std::optional<Findings> found = examine(job, *fabric);
+  const std::optional<Examined> found = examine(job, *fabric);
   if (!found) return false;
   // Without it, it has failed, and what was found is told all the same.
   for (OpenOutput& output : *outputs) take_facts(job, output, write_gap_map(job, found->bodies, output));

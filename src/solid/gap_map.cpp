@@ -18,7 +18,6 @@ namespace {
 constexpr double chord_share = 0.01;
 // The chord of this length on a circle as thick as the yarn has a height of about chord_share.
 constexpr double edge_share = 0.2;
-constexpr double max_triangles = 1e8;
 
 contact::SkinMesh skin_mesh(const yarn::Body& body, Tessellation&& from) {
   contact::SkinMesh skin;

@@ -17,7 +17,6 @@ namespace selvage::solid {
 namespace {
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-constexpr double max_triangles = 1e8;
 
 bool is_finite(const nurbs::Surface& surface) {
   return std::all_of(surface.points.begin(), surface.points.end(),

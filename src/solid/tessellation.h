@@ -11,6 +11,9 @@
 
 namespace selvage::solid {
 
+// Of a yarn or of a whole fabric.
+inline constexpr double max_triangles = 1e8;
+
 enum class Skin : std::uint8_t { side, start, end };
 
 // Triangles run counter-clockwise seen from outside. An end face shares its boundary vertices with the body
@@ -32,8 +35,8 @@ double sewing_gap(const yarn::Body& body);
 // Points so dense that no triangle is farther than `chord` (file units, > 0) from the surface: 1/8 (du^2
 // |S_uu| + 2 du dv |S_uv| + dv^2 |S_vv|) by Filip, Magedson and Markot (1986), with the second derivatives
 // from differences of surface points at four places a knot span. Every knot line is an edge line. Errors:
-// geometry (an empty or a non-finite surface, an end whose outline crosses itself), limit (more than 100
-// million triangles), and of the module where an end is flat. A yarn without ends (style none) that is not
+// geometry (an empty or a non-finite surface, an end whose outline crosses itself), limit (more than
+// max_triangles), and of the module where an end is flat. A yarn without ends (style none) that is not
 // closed is tessellated open. No edge on the side, but for diagonals, is longer than `longest`, to a few
 // percent.
 Result<Tessellation> tessellate(const yarn::Body& body, double chord,

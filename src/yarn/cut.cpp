@@ -6,15 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/index.h"
 #include "yarn/finish.h"
 
 namespace selvage::yarn {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // The part between two values of v that are knots of full multiplicity, or ends.
 nurbs::Surface part_between(const nurbs::Surface& surface, const std::vector<nurbs::Curve>& columns,

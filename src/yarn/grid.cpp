@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/index.h"
 #include "nurbs/basis.h"
 #include "nurbs/interpolate.h"
 #include "yarn/rigid_fit.h"
@@ -13,10 +14,6 @@
 namespace selvage::yarn {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 Message problem(std::string text) {
   return error(Kind::malformed, std::move(text));

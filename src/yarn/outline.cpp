@@ -15,7 +15,7 @@ namespace selvage::yarn {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // A knot of the outline's first quarter (from the +x extreme to the +y extreme): the shape's point and
 // tangent there.

@@ -15,7 +15,7 @@ namespace selvage::yarn {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 bool edges_cross(const std::vector<Vec2>& p) {
   const auto side = [](const Vec2& a, const Vec2& b, const Vec2& c) { return cross(b - a, c - a); };

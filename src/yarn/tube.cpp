@@ -15,7 +15,7 @@ namespace selvage::yarn {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 using Row = Eigen::RowVectorXd;
 
 // The exact surface, seen as a few vector-valued functions of t that are blended round the section with

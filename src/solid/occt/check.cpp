@@ -9,9 +9,7 @@
 #include <BRepCheck_ListIteratorOfListOfStatus.hxx>
 #include <BRepCheck_ListOfStatus.hxx>
 #include <BRepCheck_Result.hxx>
-#include <BRepGProp.hxx>
 #include <BRep_Tool.hxx>
-#include <GProp_GProps.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_Plane.hxx>
 #include <TopExp.hxx>
@@ -31,9 +29,6 @@
 namespace selvage::solid::occt {
 
 namespace {
-
-// Of the planar faces' areas, relative.
-constexpr double area_precision = 1e-9;
 
 // Gauss-Legendre on [0, 1]: with n points exact for polynomials up to degree 2n - 1.
 using Rule = std::vector<std::pair<double, double>>;  // place, weight
@@ -73,10 +68,8 @@ double flux_of(const Geom_BSplineSurface& surface) {
 
 // The same for a plane: its distance from the origin times its area.
 double flux_of_plane(const TopoDS_Face& face, const gp_Pln& plane) {
-  GProp_GProps properties;
-  BRepGProp::SurfaceProperties(face, properties, area_precision);
   const gp_Vec normal(plane.Axis().Direction().XYZ() * (plane.Direct() ? 1.0 : -1.0));
-  return gp_Vec(plane.Location().XYZ()).Dot(normal) * properties.Mass() / 3.0;
+  return gp_Vec(plane.Location().XYZ()).Dot(normal) * area_of(face) / 3.0;
 }
 
 // The volume that the faces of a solid enclose, by their own orientation; none for a face of another kind.

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <BRepCheck_Analyzer.hxx>
-#include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
-#include <GProp_GProps.hxx>
 #include <Geom_Line.hxx>
 #include <Geom_Plane.hxx>
 #include <Precision.hxx>
@@ -23,7 +21,6 @@ namespace selvage::solid::occt {
 
 namespace {
 
-constexpr double area_precision = 1e-9;  // relative
 
 Handle(Geom_Curve) spatial(const fabric::PieceEdge& edge, double scale) {
   if (!edge.is_line()) return spatial_curve(edge.curve, scale);
@@ -74,9 +71,7 @@ FaceCheck check_piece(const fabric::PieceShape& piece) {
   const double scale = unit_scale(piece);
   const TopoDS_Shape shape = build_piece(piece, scale);
   verdict.valid = BRepCheck_Analyzer(shape).IsValid();
-  GProp_GProps properties;
-  BRepGProp::SurfaceProperties(shape, properties, area_precision);
-  verdict.area = properties.Mass() / (scale * scale);
+  verdict.area = area_of(shape) / (scale * scale);
   if (!verdict.valid)
     verdict.defects.push_back(error(
         Kind::geometry, fmt::format("piece '{}': OpenCASCADE finds no valid face in its outline", piece.name),

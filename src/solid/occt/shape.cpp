@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <ElSLib.hxx>
+#include <GProp_GProps.hxx>
 #include <Geom2d_BSplineCurve.hxx>
 #include <Geom2d_Line.hxx>
 #include <Geom_BSplineCurve.hxx>
@@ -68,6 +70,12 @@ Knots different_knots(const std::vector<double>& knots) {
 
 gp_Pnt point(const Vec3& p, double scale) {
   return {scale * p.x(), scale * p.y(), scale * p.z()};
+}
+
+double area_of(const TopoDS_Shape& shape) {
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(shape, properties, 1e-9);
+  return properties.Mass();
 }
 
 Handle(Geom_BSplineCurve) spatial_curve(const Curve& curve, double scale) {

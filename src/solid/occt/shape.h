@@ -33,6 +33,8 @@ struct YarnShape {
 YarnShape build_shape(const yarn::Body& body, double scale);
 
 gp_Pnt point(const Vec3& p, double scale);
+// Of its faces, to 1e-9.
+double area_of(const TopoDS_Shape& shape);
 // The same numbers as OpenCASCADE's, all lengths multiplied by `scale`. Exceptions: Standard_Failure.
 Handle(Geom_BSplineCurve) spatial_curve(const nurbs::Curve& curve, double scale);
 Handle(Geom_BSplineSurface) spatial_surface(const nurbs::Surface& surface, double scale);
