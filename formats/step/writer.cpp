@@ -187,8 +187,8 @@ class StepBodyWriter : public BodyWriter {
       if (Status finite = check_finite(face.surface.points, "'" + part.name + "'"); !finite.ok())
         return finite;
     if (part.faces.empty()) return {};
-    const double tolerance =
-        std::max(1e-6 * cad::box_of(part).diagonal().norm(), written_uncertainty / millimetres_per(options_.units));
+    const double tolerance = std::max(1e-6 * cad::box_of(part).diagonal().norm(),
+                                      written_uncertainty / millimetres_per(options_.units));
     const PartShape built = build_part(part, tolerance);
     if (const std::optional<std::string> flaw = flaw_of(built, part)) {
       Message refused = error(

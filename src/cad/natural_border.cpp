@@ -71,7 +71,8 @@ std::optional<double> share_by_flat(const BorderSide& side, const nurbs::Curve& 
 }
 
 // Nothing where the curve leaves the side, or does not run along it in one direction.
-std::optional<double> share_in_space(const BorderSide& side, const std::vector<Vec3>& points, double tolerance) {
+std::optional<double> share_in_space(const BorderSide& side, const std::vector<Vec3>& points,
+                                     double tolerance) {
   const double period = side.last() - side.first();
   const bool closed = side.is_closed(tolerance);
   const double slack = 1e-6 * period + period * tolerance / side.length;
@@ -103,7 +104,8 @@ bool is_near(double value, double wanted) {
 
 class NaturalBorder {
  public:
-  NaturalBorder(const nurbs::Surface& surface, double tolerance) : NaturalBorder(surface, tolerance, sides_of(surface)) {}
+  NaturalBorder(const nurbs::Surface& surface, double tolerance)
+      : NaturalBorder(surface, tolerance, sides_of(surface)) {}
 
   // False where it leaves the border.
   bool add(const Edge& edge) {

@@ -34,7 +34,7 @@ std::optional<WarpknitPiece> piece_of(const WarpknitPiece& cloth, long long repe
   for (long long course = 0; course < repeat; ++course) held = std::max(held, hold_after(cloth.bars, course));
   WarpknitPiece piece = cloth;
   piece.guides = std::min(cloth.guides, high - low + 2);
-  const long long courses = cloth.last_course - cloth.first_course, least = repeat + 2 * (held + 2);
+  const long long courses = cloth.last_course - cloth.first_course, least = repeat + 2LL * (held + 2);
   if (courses > least) piece.last_course -= (courses - least) / repeat * repeat;
   const long long points = static_cast<long long>(cloth.bars.size()) * piece.guides * points_of_a_course;
   if (piece.last_course - piece.first_course > most_points / points) return std::nullopt;

@@ -17,6 +17,7 @@ namespace {
 nurbs::Surface part_between(const nurbs::Surface& surface, const std::vector<nurbs::Curve>& columns,
                             double v0, double v1) {
   std::vector<nurbs::Curve> parts;
+  parts.reserve(columns.size());
   for (const nurbs::Curve& column : columns) parts.push_back(nurbs::sub_curve(column, v0, v1));
   return nurbs::of_columns(surface.degree_u, surface.knots_u, parts);
 }

@@ -21,7 +21,6 @@ namespace selvage::solid::occt {
 
 namespace {
 
-
 Handle(Geom_Curve) spatial(const fabric::PieceEdge& edge, double scale) {
   if (!edge.is_line()) return spatial_curve(edge.curve, scale);
   const gp_Pnt first = point(edge.curve.points.front(), scale);
