@@ -38,17 +38,6 @@ void add_arc(std::vector<Joint>& joints, const Vec2& centre, double radius, doub
   }
 }
 
-std::vector<Joint> ellipse_quarter(const SectionSize& size, int pieces) {
-  std::vector<Joint> joints;
-  add_arc(joints, Vec2::Zero(), 1.0, 0.0, pi / 2, pieces);
-  for (Joint& j : joints) {
-    const Eigen::Array2d half(0.5 * size.width, 0.5 * size.height);
-    j.point = j.point.array() * half;
-    j.tangent = j.tangent.array() * half;
-  }
-  return joints;
-}
-
 std::vector<Joint> lens_quarter(const SectionSize& size, int pieces) {
   const double a = 0.5 * size.width, h = 0.5 * size.height;
   const auto [radius, half_angle] = lens_arc(size);
@@ -318,10 +307,28 @@ Vec2 from_shape(const Section& section, const SectionSize& size, const Vec2& p) 
                     section);
 }
 
+// The uniform periodic cubic of 4 `pieces` control points on a circle, cut open at the +x extreme, brought to
+// the exact area: of eight points it is round to 5.8e-4 of its radius.
 Outline ellipse_outline(const Section& section, const SectionSize& size, int pieces) {
-  Outline outline = assemble(ellipse_quarter(size, pieces));
-  const double scale = std::sqrt(area(section, size) / area_vector(as_curve(outline)).norm());
-  for (Vec2& p : outline.points) p *= scale;
+  const int count = 4 * pieces;
+  nurbs::Curve periodic;
+  for (int i = -3; i <= count + 3; ++i) periodic.knots.push_back(static_cast<double>(i) / count);
+  for (int i = -1; i <= count + 1; ++i) {
+    const double angle = 2.0 * pi * i / count;
+    periodic.points.emplace_back(std::cos(angle), std::sin(angle), 0.0);
+  }
+  Outline outline;
+  outline.degree = 3;
+  const nurbs::Curve curve = nurbs::clamped(periodic);
+  outline.knots = curve.knots;
+  for (const Vec3& p : curve.points) outline.points.emplace_back(p.x(), p.y());
+  // The same numbers on both sides of both axes.
+  const auto n = outline.points.size();
+  outline.points.front().y() = 0.0;
+  for (std::size_t i = 0; 2 * i < n; ++i) outline.points[n - 1 - i] = {outline.points[i].x(), -outline.points[i].y()};
+  if (n % 2 == 1) outline.points[n / 2].y() = 0.0;
+  const double scale = std::sqrt(area(section, size) / (0.25 * size.width * size.height * area_vector(as_curve(outline)).norm()));
+  for (Vec2& p : outline.points) p = p.array() * Eigen::Array2d(0.5 * size.width * scale, 0.5 * size.height * scale);
   return outline;
 }
 

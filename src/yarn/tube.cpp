@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
+#include <tuple>
 
 #include "nurbs/basis.h"
-#include "nurbs/interpolate.h"
+#include "nurbs/divided.h"
 #include "yarn/frame.h"
 #include "yarn/size_profile.h"
 
@@ -17,6 +21,15 @@ namespace {
 
 using std::numbers::pi;
 using Row = Eigen::RowVectorXd;
+
+// Exact values at one place, and what a deviation from them along the path may cost: a point that slides along
+// the surface has not left it.
+struct Sample {
+  Row values;
+  Vec3 tangent;      // of the path
+  double slip = 0;   // sine of the largest angle between the tangent and the surface, round the section
+  double bend = 0;   // the largest curvature of the surface along the path
+};
 
 // The exact surface, seen as a few vector-valued functions of t that are blended round the section with
 // constant coefficients: for an affine section C, a W/2 and b H/2; otherwise the path of every control point.
@@ -30,6 +43,15 @@ class Channels {
     unit_ = make_outline(spec.section, SectionSize{first[0], first[1]}, pieces, !affine_);
     if (affine_)
       for (Vec2& p : unit_.points) p = p.array() / Eigen::Array2d(0.5 * first[0], 0.5 * first[1]);
+    const std::vector<double> us = nurbs::divided(unit_.knots, unit_.degree, 2);
+    nurbs::Curve outline{unit_.degree, unit_.knots, {}, {}};
+    for (const Vec2& p : unit_.points) outline.points.emplace_back(p.x(), p.y(), 0.0);
+    constexpr double between = 1.02;  // what lies between them reaches further by less than this
+    for (const double u : us) round_.push_back(between * nurbs::evaluate(outline, u).head<2>());
+    is_round_ = std::holds_alternative<Circle>(spec.section) && sizes.parameters().size() == 1;
+    const Eigen::Array2d scale = affine_ ? Eigen::Array2d(0.5 * first[0], 0.5 * first[1]) : Eigen::Array2d::Ones();
+    for (const Vec2& p : unit_.points) reach_ = std::max(reach_, (p.array() * scale).matrix().norm());
+    reach_ /= std::max(first[0], first[1]);
   }
 
   [[nodiscard]] const Outline& outline() const { return unit_; }
@@ -37,8 +59,8 @@ class Channels {
     return affine_ ? 9 : 3 * static_cast<Eigen::Index>(unit_.points.size() - 1);
   }
 
-  // Values at t; `slope`, where wanted, gets the derivatives.
-  [[nodiscard]] Row at(double t, Row* slope = nullptr) const {
+  // Exact values at t; `slope`, where wanted, gets the derivatives.
+  [[nodiscard]] Sample sample(double t, Row* slope = nullptr) const {
     const Frame frame = frames_.at(t);
     const SizeProfile::Jet size = sizes_.at(t);
     double angle = size.value[2];
@@ -50,15 +72,25 @@ class Channels {
     const Vec3 a_dt = -frame.tangent_dt.dot(a) * frame.tangent + rate * b;
     const Vec3 b_dt = -frame.tangent_dt.dot(b) * frame.tangent - rate * a;
     const Vec3 c_dt = frame.speed * frame.tangent;
-    Row row(width());
+    Sample sample;
+    sample.tangent = frame.tangent;
+    const double w = 0.5 * size.value[0], h = 0.5 * size.value[1];
+    const double reach = reach_ * std::max(size.value[0], size.value[1]);
+    const double curvature = frame.tangent_dt.norm() / frame.speed;
+    const double least_speed = frame.speed * std::max(1.0 - curvature * reach, 0.1);
+    sample.bend = curvature * frame.speed / least_speed;
+    if (!is_round_)
+      sample.slip = std::min(
+          1.0, (reach * std::abs(rate) + 0.5 * std::hypot(size.slope[0], size.slope[1])) / least_speed);
+    Row& row = sample.values;
+    row.resize(width());
     if (slope != nullptr) slope->resize(width());
     if (affine_) {
-      const double w = 0.5 * size.value[0], h = 0.5 * size.value[1];
       row << frame.position.transpose(), (w * a).transpose(), (h * b).transpose();
       if (slope != nullptr)
         *slope << c_dt.transpose(), (w * a_dt + 0.5 * size.slope[0] * a).transpose(),
             (h * b_dt + 0.5 * size.slope[1] * b).transpose();
-      return row;
+      return sample;
     }
     const std::vector<Vec2> points = control_at(size.value);
     std::vector<Vec2> points_dt;
@@ -70,17 +102,17 @@ class Channels {
       const Vec2& q = points_dt[static_cast<std::size_t>(i)];
       slope->segment<3>(3 * i) = (c_dt + p.x() * a_dt + p.y() * b_dt + q.x() * a + q.y() * b).transpose();
     }
-    return row;
+    return sample;
   }
 
   // The largest length that a row of deviations has anywhere round the section.
   [[nodiscard]] double largest(const Row& deviation) const {
     double found = 0.0;
     if (affine_) {
-      // Round the section it is a convex blend of its values at the control points.
       const Vec3 c = deviation.segment<3>(0), a = deviation.segment<3>(3), b = deviation.segment<3>(6);
-      for (const Vec2& p : unit_.points) found = std::max(found, (c + p.x() * a + p.y() * b).squaredNorm());
+      for (const Vec2& p : round_) found = std::max(found, (c + p.x() * a + p.y() * b).squaredNorm());
     } else {
+      // Round the section it is a convex blend of its values at the control points.
       for (Eigen::Index i = 0; 3 * i < width(); ++i)
         found = std::max(found, deviation.segment<3>(3 * i).squaredNorm());
     }
@@ -131,118 +163,293 @@ class Channels {
   double twist_;
   int pieces_;
   bool affine_ = true;
+  bool is_round_ = false;  // a turn of the section does not move its surface
+  double reach_ = 0;       // of the section's control points from the path, by its larger size
   Outline unit_;
+  std::vector<Vec2> round_;  // points of it, two a span
 };
 
-// One span between neighbouring sections, with the exact values at samples inside, which outlive refits.
-struct Span {
-  double from = 0, to = 0;
-  std::vector<Row> samples;
-  double error = 0;
-};
-
-constexpr int samples_per_span = 7;  // at eighths
-
-class AdaptiveFit {
+// The cubic over a stretch of the path that is cut into equal spans: its ends have exact values and slopes,
+// between them it is the least-squares fit to samples at equal steps.
+class StretchSolver {
  public:
-  AdaptiveFit(const Channels& channels, bool closed, const std::vector<double>& breaks)
-      : channels_(channels), closed_(closed) {
-    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) spans_.push_back(make_span(breaks[k], breaks[k + 1]));
-    for (std::size_t k = 0; k < breaks.size(); ++k) sites_.push_back(channels_.at(breaks[k]));
+  StretchSolver(int spans, int steps) : spans_(spans) {
+    const int count = spans + 3;
+    std::vector<double> knots(4, 0.0);
+    for (int i = 1; i < spans; ++i) knots.push_back(static_cast<double>(i) / spans);
+    knots.insert(knots.end(), 4, 1.0);
+    basis_ = Eigen::MatrixXd::Zero(steps + 1, count);
+    for (int i = 0; i <= steps; ++i) {
+      const double s = static_cast<double>(i) / steps;
+      const int span = nurbs::find_span(knots, 3, count, s);
+      nurbs::BasisRow values{};
+      nurbs::basis(knots, 3, span, s, values);
+      for (int j = 0; j <= 3; ++j) basis_(i, span - 3 + j) = values[static_cast<std::size_t>(j)];
+    }
+    const Eigen::Index inner = count - 4;
+    if (inner == 0) return;
+    const auto free = basis_.middleCols(2, inner);
+    gain_ = (free.transpose() * free).ldlt().solve(free.transpose());
   }
 
-  // Halves spans until each is within `tolerance`; false when that would take more than `most` sections.
+  // `values`: one row a sample; slopes by the share of the stretch.
+  [[nodiscard]] Eigen::MatrixXd control(const Eigen::MatrixXd& values, const Row& first, const Row& last) const {
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(basis_.cols(), values.cols());
+    const Eigen::Index end = rows.rows() - 1;
+    rows.row(0) = values.row(0);
+    rows.row(1) = values.row(0) + first / (3.0 * spans_);
+    rows.row(end - 1) = values.row(values.rows() - 1) - last / (3.0 * spans_);
+    rows.row(end) = values.row(values.rows() - 1);
+    if (end > 3) rows.middleRows(2, end - 3) = gain_ * (values - basis_ * rows);
+    return rows;
+  }
+  [[nodiscard]] Eigen::MatrixXd at_samples(const Eigen::MatrixXd& control) const { return basis_ * control; }
+
+ private:
+  int spans_;
+  Eigen::MatrixXd basis_, gain_;
+};
+
+// The tube in the direction of the path: stretches between the knots of its centre line, at which the exact
+// surface is one derivative less smooth than that line. Each is fitted by itself, with as many spans as the
+// tolerance asks for; they meet in double knots.
+//
+// A path of arcs and straights is cut finer instead, and its sections slide along it, which leaves them on the
+// surface: slopes at the ends of an arc are as long as those of the cubic that is nearest to it, and a straight
+// takes what the arcs on both sides of it want.
+class StretchFit {
+ public:
+  // `breaks`: the stretches' ends; `least`: spans of each.
+  StretchFit(const Channels& channels, const CentreLine& path, const std::vector<double>& breaks,
+             const std::vector<int>& least)
+      : channels_(channels), closed_(path.closed), slides_(path.curve.is_rational()) {
+    for (const double t : breaks) joints_.push_back(joint_at(t));
+    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+      stretches_.emplace_back();
+      stretches_.back().spans = slides_ ? 1 : least[k];
+    }
+  }
+
+  // False when that would take more than `most` sections.
   bool refine(double tolerance, std::size_t most) {
     for (;;) {
-      if (spans_.size() + 3 > most) return false;
-      fit();
-      measure();
-      std::vector<Span> finer;
-      std::vector<Row> sites;
+      settle_slopes();
+      std::size_t rows = 2;
+      std::vector<Stretch> stretches;
+      std::vector<Joint> joints;
       bool is_done = true;
-      for (std::size_t k = 0; k < spans_.size(); ++k) {
-        sites.push_back(sites_[k]);
-        // An error of order four says how many halves it takes: one step a round keeps the count low.
-        if (spans_[k].error <= tolerance) {
-          finer.push_back(std::move(spans_[k]));
-          continue;
+      for (std::size_t k = 0; k < stretches_.size(); ++k) {
+        Stretch& stretch = stretches_[k];
+        const Joint &from = joints_[k], &to = joints_[k + 1];
+        joints.push_back(from);
+        fit(stretch, from, to);
+        while (!slides_ && stretch.error > tolerance) {
+          // The error falls with the fourth power of the spans' number; never more of them than are needed.
+          const double wanted = 0.6 * stretch.spans * std::sqrt(std::sqrt(stretch.error / tolerance));
+          stretch.spans = std::max(stretch.spans + 1, static_cast<int>(std::min(wanted, 1e6)));
+          if (rows + static_cast<std::size_t>(stretch.spans) + 1 > most) return false;
+          fit(stretch, from, to);
         }
-        is_done = false;
-        const double middle = 0.5 * (spans_[k].from + spans_[k].to);
-        if (!(middle > spans_[k].from && middle < spans_[k].to)) return false;
-        finer.push_back(make_span(spans_[k].from, middle));
-        finer.push_back(make_span(middle, spans_[k].to));
-        sites.push_back(channels_.at(middle));
+        rows += static_cast<std::size_t>(stretch.spans) + 1;
+        if (rows > most) return false;
+        const double middle = 0.5 * (from.t + to.t);
+        if (stretch.error > tolerance) {
+          if (!(middle > from.t && middle < to.t)) return false;
+          is_done = false;
+          stretches.resize(stretches.size() + 2);
+          joints.push_back(joint_at(middle));
+        } else {
+          stretches.push_back(std::move(stretch));
+        }
       }
-      sites.push_back(sites_.back());
-      spans_ = std::move(finer);
-      sites_ = std::move(sites);
-      if (is_done) return true;
+      joints.push_back(joints_.back());
+      stretches_ = std::move(stretches);
+      joints_ = std::move(joints);
+      if (is_done) break;
     }
+    join(tolerance);
+    assemble();
+    return true;
   }
 
   [[nodiscard]] double error() const {
     double largest = 0.0;
-    for (const Span& span : spans_) largest = std::max(largest, span.error);
+    for (const Stretch& stretch : stretches_) largest = std::max(largest, stretch.error);
     return largest;
   }
   [[nodiscard]] const Eigen::MatrixXd& control() const { return control_; }
   [[nodiscard]] const std::vector<double>& knots() const { return knots_; }
 
  private:
-  [[nodiscard]] Span make_span(double from, double to) const {
-    Span span{from, to, {}, 0.0};
-    for (int i = 1; i <= samples_per_span; ++i)
-      span.samples.push_back(channels_.at(from + (to - from) * i / (samples_per_span + 1)));
-    return span;
+  struct Joint {
+    double t = 0;
+    Sample exact;
+    Row before, after;  // the exact slopes on both sides
+    Row slope;          // the one that the fit has
+  };
+  struct Stretch {
+    int spans = 1;
+    std::vector<Sample> samples;  // at equal steps, ends included
+    double slide_from = 1, slide_to = 1;  // slopes at the ends by the exact ones, as the samples know them
+    Eigen::MatrixXd control;              // spans + 3 rows
+    double error = 0;
+  };
+
+  [[nodiscard]] Joint joint_at(double t) const {
+    Joint joint;
+    joint.t = t;
+    joint.exact = channels_.sample(t, &joint.after);
+    (void)channels_.sample(std::max(0.0, t - 1e-9), &joint.before);
+    // Only jumps of curvature count.
+    if (t >= 1.0)
+      joint.after = joint.before;
+    else if ((joint.after - joint.before).norm() <= 1e-5 * joint.after.norm())
+      joint.before = joint.after;
+    joint.slope = joint.after;
+    return joint;
   }
 
-  void fit() {
-    std::vector<double> t = {spans_.front().from};
-    for (const Span& span : spans_) t.push_back(span.to);
-    const auto rows = static_cast<Eigen::Index>(closed_ ? sites_.size() - 1 : sites_.size());
-    Eigen::MatrixXd data(rows, channels_.width());
-    for (Eigen::Index i = 0; i < rows; ++i) data.row(i) = sites_[static_cast<std::size_t>(i)];
-    knots_ = nurbs::clamped_knots(t);
-    if (closed_) {
-      control_ = nurbs::interpolate_periodic(t, data);
-      return;
+  // By how much longer slopes of the best cubic are than the exact ones of a circular arc (a straight: 0, it
+  // takes any): 4/3 tan(angle/4) of the radius for its control points.
+  [[nodiscard]] double wanted_slide(const Joint& from, const Joint& to, bool at_end) const {
+    const Vec3 chord = to.exact.values.segment<3>(0) - from.exact.values.segment<3>(0);
+    const double sine = from.exact.tangent.cross(to.exact.tangent).norm();
+    const double angle = std::atan2(sine, from.exact.tangent.dot(to.exact.tangent));
+    if (angle < 1e-6) return 0.0;
+    const double radius = chord.norm() / (2.0 * std::sin(angle / 2.0));
+    const Row& slope = at_end ? to.before : from.after;
+    return 4.0 * radius * std::tan(angle / 4.0) / (slope.segment<3>(0).norm() * (to.t - from.t));
+  }
+
+  void settle_slopes() {
+    const std::size_t last = joints_.size() - 1;
+    for (std::size_t k = 0; k <= last; ++k) {
+      Joint& joint = joints_[k];
+      joint.slope = 0.5 * (joint.before + joint.after);
+      if (!slides_) continue;
+      const std::size_t before = k > 0 ? k - 1 : last - 1, after = k < last ? k : 0;
+      const bool has_before = k > 0 || closed_, has_after = k < last || closed_;
+      const double a = has_before ? wanted_slide(joints_[before], joints_[before + 1], true) : 0.0,
+                   b = has_after ? wanted_slide(joints_[after], joints_[after + 1], false) : 0.0;
+      const Row &slope_a = has_before ? joints_[before + 1].before : joint.before,
+                &slope_b = has_after ? joints_[after].after : joint.after;
+      if (a > 0.0 && b > 0.0)
+        joint.slope = 0.5 * (a * slope_a + b * slope_b);
+      else if (a > 0.0)
+        joint.slope = a * slope_a;
+      else if (b > 0.0)
+        joint.slope = b * slope_b;
     }
-    Row first, last;
-    (void)channels_.at(t.front(), &first);
-    (void)channels_.at(t.back(), &last);
-    control_ = nurbs::interpolate_clamped(t, data, first, last);
   }
 
-  // The largest sampled deviation of each span and what can hide between the samples: half the distance of
-  // two samples holds at most an eighth of the second difference, taken twice for the change of curvature in
-  // between.
-  void measure() {
-    const int count = static_cast<int>(control_.rows());
-    std::vector<Row> deviations(samples_per_span + 2, Row::Zero(channels_.width()));
-    for (Span& span : spans_) {
-      double sampled = 0.0, hidden = 0.0;
-      for (int i = 1; i <= samples_per_span; ++i) {
-        const double t = span.from + (span.to - span.from) * i / (samples_per_span + 1);
-        const int k = nurbs::find_span(knots_, 3, count, t);
-        nurbs::BasisRow values{};
-        nurbs::basis(knots_, 3, k, t, values);
-        Row here = -span.samples[static_cast<std::size_t>(i - 1)];
-        for (int j = 0; j <= 3; ++j) here += values[static_cast<std::size_t>(j)] * control_.row(k - 3 + j);
-        sampled = std::max(sampled, channels_.largest(here));
-        deviations[static_cast<std::size_t>(i)] = std::move(here);
+  [[nodiscard]] const StretchSolver& solver(int spans, int steps) {
+    return solvers_.try_emplace(std::pair(spans, steps), spans, steps).first->second;
+  }
+
+  // Samples of the exact surface, in as many equal steps; those of fewer steps are used again. Where sections
+  // slide, they are taken where a cubic of the path's slopes has them.
+  void sample(Stretch& stretch, const Joint& from, const Joint& to, int steps) const {
+    const double first = from.slope.segment<3>(0).norm() / from.after.segment<3>(0).norm(),
+                 last = to.slope.segment<3>(0).norm() / to.before.segment<3>(0).norm();
+    if (first != stretch.slide_from || last != stretch.slide_to) stretch.samples.clear();
+    stretch.slide_from = first;
+    stretch.slide_to = last;
+    const std::size_t known = stretch.samples.empty() ? 0 : stretch.samples.size() - 1;
+    const auto count = static_cast<std::size_t>(steps);
+    if (known == count) return;
+    std::vector<Sample> finer(count + 1);
+    finer.front() = from.exact;
+    finer.back() = to.exact;
+    for (std::size_t i = 1; i < count; ++i) {
+      if (known > 0 && i * known % count == 0) {
+        finer[i] = std::move(stretch.samples[i * known / count]);
+        continue;
       }
-      for (std::size_t i = 1; i + 1 < deviations.size(); ++i)
-        hidden = std::max(
-            hidden, channels_.largest(deviations[i - 1] - 2.0 * deviations[i] + deviations[i + 1]) / 4.0);
-      span.error = sampled + hidden;
+      double share = static_cast<double>(i) / static_cast<double>(count);
+      if (slides_) {
+        const double rest = 1.0 - share;
+        share = share * rest * (rest * first - share * last) + share * share * (3.0 - 2.0 * share);
+      }
+      finer[i] = channels_.sample(from.t + (to.t - from.t) * share);
     }
+    stretch.samples = std::move(finer);
+  }
+
+  // The largest sampled deviation and what can hide between the samples: half the distance of two samples
+  // holds at most an eighth of the second difference, taken twice for the change of curvature in between.
+  void fit(Stretch& stretch, const Joint& from, const Joint& to) {
+    int steps = 16;
+    while (steps < 8 * stretch.spans) steps *= 2;
+    sample(stretch, from, to, steps);
+    Eigen::MatrixXd values(steps + 1, channels_.width());
+    for (Eigen::Index i = 0; i <= steps; ++i)
+      values.row(i) = stretch.samples[static_cast<std::size_t>(i)].values;
+    const StretchSolver& by = solver(stretch.spans, steps);
+    const double length = to.t - from.t;
+    stretch.control = by.control(values, length * from.slope, length * to.slope);
+    Eigen::MatrixXd deviations = by.at_samples(stretch.control) - values;
+    double sampled = 0.0, hidden = 0.0;
+    for (Eigen::Index i = 0; i <= steps; ++i) {
+      const Sample& here = stretch.samples[static_cast<std::size_t>(i)];
+      Row along(deviations.cols());
+      for (Eigen::Index c = 0; c < along.size(); c += 3)
+        along.segment<3>(c) =
+            deviations.row(i).segment<3>(c).dot(here.tangent) * here.tangent.transpose();
+      const double slid = channels_.largest(along);
+      deviations.row(i) -= along;
+      sampled = std::max(sampled, channels_.largest(deviations.row(i)) + here.slip * slid +
+                                      0.5 * here.bend * slid * slid);
+    }
+    for (Eigen::Index i = 1; i < steps; ++i)
+      hidden = std::max(hidden, channels_.largest(deviations.row(i - 1) - 2.0 * deviations.row(i) +
+                                                  deviations.row(i + 1)) /
+                                    4.0);
+    stretch.error = sampled + hidden;
+  }
+
+  // Neighbours of one span each that are far better than they have to be become one.
+  void join(double tolerance) {
+    for (bool joins = !slides_; joins;) {
+      joins = false;
+      for (std::size_t k = 0; k + 1 < stretches_.size(); ++k) {
+        const Stretch &a = stretches_[k], &b = stretches_[k + 1];
+        if (a.spans > 1 || b.spans > 1 || std::max(a.error, b.error) > 0.25 * tolerance) continue;
+        Stretch both;
+        fit(both, joints_[k], joints_[k + 2]);
+        if (both.error > tolerance) continue;
+        const auto at = static_cast<std::ptrdiff_t>(k);
+        stretches_[k] = std::move(both);
+        stretches_.erase(stretches_.begin() + at + 1);
+        joints_.erase(joints_.begin() + at + 1);
+        joins = true;
+      }
+    }
+  }
+
+  void assemble() {
+    Eigen::Index rows = 2;
+    for (const Stretch& stretch : stretches_) rows += stretch.spans + 1;
+    control_.resize(rows, channels_.width());
+    knots_.assign(4, joints_.front().t);
+    control_.row(0) = stretches_.front().control.row(0);
+    Eigen::Index next = 1;
+    for (std::size_t k = 0; k < stretches_.size(); ++k) {
+      const Stretch& stretch = stretches_[k];
+      const double from = joints_[k].t, to = joints_[k + 1].t;
+      control_.middleRows(next, stretch.spans + 1) = stretch.control.middleRows(1, stretch.spans + 1);
+      next += stretch.spans + 1;
+      for (int i = 1; i < stretch.spans; ++i) knots_.push_back(from + (to - from) * i / stretch.spans);
+      knots_.insert(knots_.end(), 2, to);
+    }
+    knots_.insert(knots_.end(), 2, joints_.back().t);
+    control_.row(next) = stretches_.back().control.row(stretches_.back().control.rows() - 1);
   }
 
   const Channels& channels_;
-  bool closed_;
-  std::vector<Span> spans_;
-  std::vector<Row> sites_;  // exact values at the spans' ends
+  bool closed_, slides_;
+  std::vector<Stretch> stretches_;
+  std::vector<Joint> joints_;
+  std::map<std::pair<int, int>, StretchSolver> solvers_;
   std::vector<double> knots_;
   Eigen::MatrixXd control_;
 };
@@ -296,37 +503,27 @@ Result<int> choose_pieces(const TubeSpec& spec, const SizeProfile& sizes) {
   return best;
 }
 
-// Sections must stand densely enough for samples to see every turn: no span turns by more than a quarter.
-std::vector<double> first_breaks(const CentreLine& path, const FrameField& frames, const SizeProfile& sizes,
-                                 double twist, std::size_t most) {
+// The ends of the stretches, and the spans that each of them has at least: samples have to see every turn, so
+// none turns by more than a quarter.
+struct Breaks {
+  std::vector<double> at;
+  std::vector<int> least;
+};
+Breaks breaks_of(const CentreLine& path, const FrameField& frames, const SizeProfile& sizes, double twist) {
   std::vector<double> marks = nurbs::breakpoints(path.curve.knots, path.curve.degree);
   for (double t : sizes.parameters())
     if (t > 0.0 && t < 1.0) marks.push_back(t);
   std::sort(marks.begin(), marks.end());
-  std::vector<double> distinct;
+  Breaks breaks;
   for (double t : marks)
-    if (distinct.empty() || t - distinct.back() > 1e-9) distinct.push_back(t);
-  distinct.back() = 1.0;
-  if (path.closed)  // a periodic cubic needs three sections
-    while (distinct.size() < 4) {
-      std::vector<double> halves;
-      for (std::size_t k = 0; k + 1 < distinct.size(); ++k) {
-        halves.push_back(distinct[k]);
-        halves.push_back(0.5 * (distinct[k] + distinct[k + 1]));
-      }
-      halves.push_back(distinct.back());
-      distinct = halves;
-    }
-  std::vector<double> breaks = {distinct.front()};
-  for (std::size_t k = 0; k + 1 < distinct.size(); ++k) {
-    const double from = distinct[k], to = distinct[k + 1];
+    if (breaks.at.empty() || t - breaks.at.back() > 1e-9) breaks.at.push_back(t);
+  breaks.at.back() = 1.0;
+  for (std::size_t k = 0; k + 1 < breaks.at.size(); ++k) {
+    const double from = breaks.at[k], to = breaks.at[k + 1];
     double turn = std::abs(sizes.at(to).value[2] - sizes.at(from).value[2]);
     if (twist != 0.0) turn += std::abs(twist) * (frames.length_at(to) - frames.length_at(from));
     turn += frames.turn_between(from, to);
-    const double steps = std::max(1.0, std::ceil(turn / (pi / 2)));
-    if (static_cast<double>(breaks.size()) + steps > static_cast<double>(most)) return {};
-    for (int i = 1; i <= static_cast<int>(steps); ++i)
-      breaks.push_back(i == static_cast<int>(steps) ? to : from + (to - from) * i / steps);
+    breaks.least.push_back(static_cast<int>(std::clamp(std::ceil(turn / (pi / 2)), 1.0, 1e9)));
   }
   return breaks;
 }
@@ -381,9 +578,8 @@ Status swept(Body& body, const CentreLine& path, const TubeSpec& spec) {
                     body.name, most, columns, spec.tolerance,
                     twist != 0.0 ? ", lower the twist, or drop `rotate`" : ", or split the yarn"));
   };
-  const std::vector<double> breaks = first_breaks(path, *frames, sizes, twist, most);
-  if (breaks.empty()) return too_many();
-  AdaptiveFit fit(channels, path.closed, breaks);
+  const Breaks breaks = breaks_of(path, *frames, sizes, twist);
+  StretchFit fit(channels, path, breaks.at, breaks.least);
   if (!fit.refine(spec.tolerance - section_error, most)) return too_many();
 
   nurbs::Surface& surface = body.surface;
