@@ -311,16 +311,14 @@ Vec2 from_shape(const Section& section, const SectionSize& size, const Vec2& p) 
 // the exact area: of eight points it is round to 5.8e-4 of its radius.
 Outline ellipse_outline(const Section& section, const SectionSize& size, int pieces) {
   const int count = 4 * pieces;
-  nurbs::Curve periodic;
-  for (int i = -3; i <= count + 3; ++i) periodic.knots.push_back(static_cast<double>(i) / count);
-  for (int i = -1; i <= count + 1; ++i) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < count; ++i) {
     const double angle = 2.0 * pi * i / count;
-    periodic.points.emplace_back(std::cos(angle), std::sin(angle), 0.0);
+    corners.emplace_back(std::cos(angle), std::sin(angle), 0.0);
   }
-  Outline outline;
-  outline.degree = 3;
-  const nurbs::Curve curve = nurbs::clamped(periodic);
-  outline.knots = curve.knots;
+  const nurbs::Curve curve =
+      nurbs::closed_uniform(corners, {}, 3, [count](int i) { return static_cast<double>(i) / count; });
+  Outline outline{curve.degree, curve.knots, {}};
   for (const Vec3& p : curve.points) outline.points.emplace_back(p.x(), p.y());
   // The same numbers on both sides of both axes.
   const auto n = outline.points.size();

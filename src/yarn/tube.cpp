@@ -442,7 +442,8 @@ class StretchFit {
       knots_.insert(knots_.end(), 2, to);
     }
     knots_.insert(knots_.end(), 2, joints_.back().t);
-    control_.row(next) = stretches_.back().control.row(stretches_.back().control.rows() - 1);
+    const Eigen::MatrixXd& last = stretches_.back().control;
+    control_.row(next) = closed_ ? Row(control_.row(0)) : Row(last.row(last.rows() - 1));
   }
 
   const Channels& channels_;
@@ -580,7 +581,8 @@ Status swept(Body& body, const CentreLine& path, const TubeSpec& spec) {
   };
   const Breaks breaks = breaks_of(path, *frames, sizes, twist);
   StretchFit fit(channels, path, breaks.at, breaks.least);
-  if (!fit.refine(spec.tolerance - section_error, most)) return too_many();
+  const double other_errors = section_error + spec.grid.reach();
+  if (!fit.refine(spec.tolerance - other_errors, most)) return too_many();
 
   nurbs::Surface& surface = body.surface;
   surface = {};
@@ -591,13 +593,22 @@ Status swept(Body& body, const CentreLine& path, const TubeSpec& spec) {
   surface.count_u = static_cast<int>(columns);
   surface.count_v = static_cast<int>(fit.control().rows());
   surface.points.reserve(columns * static_cast<std::size_t>(surface.count_v));
-  for (Eigen::Index j = 0; j < fit.control().rows(); ++j)
-    for (std::size_t i = 0; i < columns; ++i)
-      surface.points.push_back(channels.blend(fit.control().row(j), i));
+  // Rounded, an oblique end would no more be flat.
+  const auto is_oblique = [&](double t) {
+    return !path.closed && (frames->at(t).tangent.cwiseAbs().array() > 1e-12).count() > 1;
+  };
+  const Eigen::Index last = fit.control().rows() - 1;
+  const bool keeps_first = is_oblique(0.0), keeps_last = is_oblique(1.0);
+  for (Eigen::Index j = 0; j <= last; ++j)
+    for (std::size_t i = 0; i < columns; ++i) {
+      const Vec3 point = channels.blend(fit.control().row(j), i);
+      const bool keeps = (j == 0 && keeps_first) || (j == last && keeps_last);
+      surface.points.push_back(keeps ? point : spec.grid.rounded(point));
+    }
   body.axis = path.curve;
   body.closed_along = path.closed;
   body.quarters = channels.outline().quarters;
-  body.tube_error = section_error + fit.error();
+  body.tube_error = other_errors + fit.error();
   return {};
 }
 

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/decimal_grid.h"
 #include "core/diagnostics.h"
 #include "yarn/body.h"
 #include "yarn/frame.h"
@@ -33,6 +34,7 @@ struct TubeSpec {
   FrameGuide guide;                    // free: from the thickness direction of the first section
   double twist = 0;      // radians per file unit by which the section turns along the path; 0: none
   double tolerance = 0;  // > 0, file units
+  DecimalGrid grid;      // of the control points; the end rows of a path that ends obliquely are not on it
   std::size_t max_control_points = 50'000'000;
 };
 

@@ -83,27 +83,37 @@ TEST(TubeTest, RingHasPappusVolume) {
     EXPECT_EQ(body.surface.point(i, 0), body.surface.point(i, body.surface.count_v - 1));
   for (int j = 0; j < body.surface.count_v; ++j)
     EXPECT_EQ(body.surface.point(0, j), body.surface.point(body.surface.count_u - 1, j));
-  EXPECT_GE(body.surface.count_u, 24 + 2);
   EXPECT_LE(body.tube_error, 1e-5);
   // With many points the centre line is the circle.
   const Body fine = make(ring(5, 64), spec_of(Circle{}, {1, 1}, 1e-5));
   EXPECT_NEAR(fine.volume, pi / 4 * 2 * pi * 5, 1e-5 * fine.volume);
 }
 
-// The exact swept section by its definition: frames, sizes and outline evaluated directly.
+// The parameter near `t` at which `p` lies in the plane of the section.
+double foot_of(const FrameField& frames, const Vec3& p, double t) {
+  for (int i = 0; i < 8; ++i) {
+    const Frame frame = frames.at(t);
+    const Vec3 d = p - frame.position;
+    t = std::clamp(t + d.dot(frame.tangent) / (frame.speed - d.dot(frame.tangent_dt)), 0.0, 1.0);
+  }
+  return t;
+}
+
+// The distance to the exact swept section by its definition: frames, sizes and outline evaluated directly. A
+// section may slide along the sweep, which leaves its surface where it is.
 double measured_error(const Body& body, const PathRows& rows, const TubeSpec& spec) {
   const Result<CentreLine> line = make_centre_line(rows);
   const Result<FrameField> frames = FrameField::make(line->curve, spec.guide, rows.closed);
   double largest = 0.0;
   const int along = 40 * body.surface.count_v, round = 40;
   for (int j = 0; j <= along; ++j) {
-    const double t = static_cast<double>(j) / along;
-    const Frame frame = frames->at(t);
-    const double angle = spec.twist * frames->length_at(t) + spec.sizes.front().angle;
-    const Vec3 a = std::cos(angle) * frame.across + std::sin(angle) * frame.up, b = frame.tangent.cross(a);
     const double w = spec.sizes.front().size.width / 2, h = spec.sizes.front().size.height / 2;
     for (int i = 0; i < round; ++i) {
-      const Vec3 p = nurbs::evaluate(body.surface, (i + 0.37) / round, t);
+      const Vec3 p = nurbs::evaluate(body.surface, (i + 0.37) / round, static_cast<double>(j) / along);
+      const double t = foot_of(*frames, p, static_cast<double>(j) / along);
+      const Frame frame = frames->at(t);
+      const double angle = spec.twist * frames->length_at(t) + spec.sizes.front().angle;
+      const Vec3 a = std::cos(angle) * frame.across + std::sin(angle) * frame.up, b = frame.tangent.cross(a);
       // The nearest point of the ellipse in the section plane, by scanning.
       const Vec3 d = p - frame.position;
       const double x = d.dot(a), y = d.dot(b);
@@ -142,7 +152,7 @@ TEST(TubeTest, DenseSamplingConfirmsTheReportedBound) {
     const double measured = measured_error(body, jobs[k].rows, jobs[k].spec);
     EXPECT_LE(body.tube_error, jobs[k].spec.tolerance) << k;
     EXPECT_LE(measured, body.tube_error * (1 + 1e-9)) << k;
-    EXPECT_GT(measured, 0.1 * body.tube_error) << k;  // the bound is worth its name
+    EXPECT_GT(measured, 0.4 * body.tube_error) << k;  // the bound is worth its name
   }
 }
 
