@@ -210,6 +210,9 @@ class StretchSolver {
   Eigen::MatrixXd basis_, gain_;
 };
 
+// Of one stretch: solving takes their number's third power.
+constexpr int most_spans = 16;
+
 // The tube in the direction of the path: stretches between the knots of its centre line, at which the exact
 // surface is one derivative less smooth than that line. Each is fitted by itself, with as many spans as the
 // tolerance asks for; they meet in double knots.
@@ -219,10 +222,10 @@ class StretchSolver {
 // takes what the arcs on both sides of it want.
 class StretchFit {
  public:
-  // `breaks`: the stretches' ends; `least`: spans of each.
+  // `breaks`: the stretches' ends; `least`: spans of each; `grid`: of the knots.
   StretchFit(const Channels& channels, const CentreLine& path, const std::vector<double>& breaks,
-             const std::vector<int>& least)
-      : channels_(channels), closed_(path.closed), slides_(path.curve.is_rational()) {
+             const std::vector<int>& least, const DecimalGrid& grid)
+      : channels_(channels), closed_(path.closed), slides_(path.curve.is_rational()), grid_(grid) {
     for (const double t : breaks) joints_.push_back(joint_at(t));
     for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
       stretches_.emplace_back();
@@ -243,23 +246,30 @@ class StretchFit {
         const Joint &from = joints_[k], &to = joints_[k + 1];
         joints.push_back(from);
         fit(stretch, from, to);
-        while (!slides_ && stretch.error > tolerance) {
+        int parts = 1;
+        while (parts == 1 && stretch.error > tolerance) {
           // The error falls with the fourth power of the spans' number; never more of them than are needed.
           const double wanted = 0.6 * stretch.spans * std::sqrt(std::sqrt(stretch.error / tolerance));
-          stretch.spans = std::max(stretch.spans + 1, static_cast<int>(std::min(wanted, 1e6)));
-          if (rows + static_cast<std::size_t>(stretch.spans) + 1 > most) return false;
-          fit(stretch, from, to);
+          const int spans = std::max(stretch.spans + 1, static_cast<int>(std::min(wanted, 1e6)));
+          if (rows + static_cast<std::size_t>(spans) + 1 > most) return false;
+          if (slides_ || spans > most_spans) {
+            parts = std::max(2, slides_ ? 2 : (spans + most_spans - 1) / most_spans);
+          } else {
+            stretch.spans = spans;
+            fit(stretch, from, to);
+          }
         }
         rows += static_cast<std::size_t>(stretch.spans) + 1;
         if (rows > most) return false;
-        const double middle = 0.5 * (from.t + to.t);
-        if (stretch.error > tolerance) {
-          if (!(middle > from.t && middle < to.t)) return false;
-          is_done = false;
-          stretches.resize(stretches.size() + 2);
-          joints.push_back(joint_at(middle));
-        } else {
+        if (parts == 1) {
           stretches.push_back(std::move(stretch));
+          continue;
+        }
+        is_done = false;
+        stretches.resize(stretches.size() + static_cast<std::size_t>(parts));
+        for (int i = 1; i < parts; ++i) {
+          joints.push_back(joint_at(grid_.rounded(from.t + (to.t - from.t) * i / parts)));
+          if (!(joints.back().t > joints[joints.size() - 2].t && joints.back().t < to.t)) return false;
         }
       }
       joints.push_back(joints_.back());
@@ -298,8 +308,10 @@ class StretchFit {
   [[nodiscard]] Joint joint_at(double t) const {
     Joint joint;
     joint.t = t;
-    joint.exact = channels_.sample(t, &joint.after);
+    joint.exact = channels_.sample(t);
+    // Beside a knot of the path, which may have been rounded.
     (void)channels_.sample(std::max(0.0, t - 1e-9), &joint.before);
+    (void)channels_.sample(std::min(1.0, t + 1e-9), &joint.after);
     // Only jumps of curvature count.
     if (t >= 1.0)
       joint.after = joint.before;
@@ -438,7 +450,7 @@ class StretchFit {
       const double from = joints_[k].t, to = joints_[k + 1].t;
       control_.middleRows(next, stretch.spans + 1) = stretch.control.middleRows(1, stretch.spans + 1);
       next += stretch.spans + 1;
-      for (int i = 1; i < stretch.spans; ++i) knots_.push_back(from + (to - from) * i / stretch.spans);
+      for (int i = 1; i < stretch.spans; ++i) knots_.push_back(grid_.rounded(from + (to - from) * i / stretch.spans));
       knots_.insert(knots_.end(), 2, to);
     }
     knots_.insert(knots_.end(), 2, joints_.back().t);
@@ -448,6 +460,7 @@ class StretchFit {
 
   const Channels& channels_;
   bool closed_, slides_;
+  DecimalGrid grid_;
   std::vector<Stretch> stretches_;
   std::vector<Joint> joints_;
   std::map<std::pair<int, int>, StretchSolver> solvers_;
@@ -509,22 +522,32 @@ Result<int> choose_pieces(const TubeSpec& spec, const SizeProfile& sizes) {
 struct Breaks {
   std::vector<double> at;
   std::vector<int> least;
+  double rows = 2;  // of control points; no more breaks than for `most` of them
 };
-Breaks breaks_of(const CentreLine& path, const FrameField& frames, const SizeProfile& sizes, double twist) {
+Breaks breaks_of(const CentreLine& path, const FrameField& frames, const SizeProfile& sizes, double twist,
+                 const DecimalGrid& grid, double most) {
   std::vector<double> marks = nurbs::breakpoints(path.curve.knots, path.curve.degree);
   for (double t : sizes.parameters())
     if (t > 0.0 && t < 1.0) marks.push_back(t);
   std::sort(marks.begin(), marks.end());
   Breaks breaks;
+  std::vector<double> ends;
   for (double t : marks)
-    if (breaks.at.empty() || t - breaks.at.back() > 1e-9) breaks.at.push_back(t);
-  breaks.at.back() = 1.0;
-  for (std::size_t k = 0; k + 1 < breaks.at.size(); ++k) {
-    const double from = breaks.at[k], to = breaks.at[k + 1];
+    if (ends.empty() || t - ends.back() > 1e-9) ends.push_back(grid.rounded(t));
+  ends.back() = 1.0;
+  breaks.at = {ends.front()};
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    const double from = ends[k], to = ends[k + 1];
     double turn = std::abs(sizes.at(to).value[2] - sizes.at(from).value[2]);
     if (twist != 0.0) turn += std::abs(twist) * (frames.length_at(to) - frames.length_at(from));
     turn += frames.turn_between(from, to);
-    breaks.least.push_back(static_cast<int>(std::clamp(std::ceil(turn / (pi / 2)), 1.0, 1e9)));
+    const double spans = std::max(1.0, std::ceil(turn / (pi / 2))), parts = std::ceil(spans / most_spans);
+    breaks.rows += spans + parts;
+    if (breaks.rows > most) return breaks;
+    for (double i = 1; i <= parts; ++i) {
+      breaks.at.push_back(i < parts ? grid.rounded(from + (to - from) * i / parts) : to);
+      breaks.least.push_back(static_cast<int>(std::ceil(spans / parts)));
+    }
   }
   return breaks;
 }
@@ -579,8 +602,15 @@ Status swept(Body& body, const CentreLine& path, const TubeSpec& spec) {
                     body.name, most, columns, spec.tolerance,
                     twist != 0.0 ? ", lower the twist, or drop `rotate`" : ", or split the yarn"));
   };
-  const Breaks breaks = breaks_of(path, *frames, sizes, twist);
-  StretchFit fit(channels, path, breaks.at, breaks.least);
+  // Knots of few digits move rows along the tube by less than a hundred-thousandth of the tolerance.
+  double polygon = 0.0;
+  for (std::size_t i = 1; i < path.curve.points.size(); ++i)
+    polygon += (path.curve.points[i] - path.curve.points[i - 1]).norm();
+  const DecimalGrid knot_grid =
+      spec.grid.step() > 0.0 ? DecimalGrid(1e-5 * spec.tolerance / std::max(polygon, spec.tolerance)) : DecimalGrid();
+  const Breaks breaks = breaks_of(path, *frames, sizes, twist, knot_grid, static_cast<double>(most));
+  if (breaks.rows > static_cast<double>(most)) return too_many();
+  StretchFit fit(channels, path, breaks.at, breaks.least, knot_grid);
   const double other_errors = section_error + spec.grid.reach();
   if (!fit.refine(spec.tolerance - other_errors, most)) return too_many();
 

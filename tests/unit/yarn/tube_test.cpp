@@ -117,13 +117,13 @@ double measured_error(const Body& body, const PathRows& rows, const TubeSpec& sp
       // The nearest point of the ellipse in the section plane, by scanning.
       const Vec3 d = p - frame.position;
       const double x = d.dot(a), y = d.dot(b);
-      double best = 1e300;
-      const double guess = std::atan2(y / h, x / w);
-      for (int k = -20; k <= 20; ++k) {
-        const double s = guess + 0.002 * k;
-        best = std::min(best, std::hypot(x - w * std::cos(s), y - h * std::sin(s)));
+      double s = std::atan2(y / h, x / w);  // of the ellipse's nearest point, by Newton's method
+      for (int k = 0; k < 6; ++k) {
+        const double c = std::cos(s), sine = std::sin(s);
+        const double slope = (x - w * c) * w * sine - (y - h * sine) * h * c;
+        s -= slope / (w * w * sine * sine + h * h * c * c + (x - w * c) * w * c + (y - h * sine) * h * sine);
       }
-      largest = std::max(largest, std::hypot(best, d.dot(frame.tangent)));
+      largest = std::max(largest, Vec3(x - w * std::cos(s), y - h * std::sin(s), d.dot(frame.tangent)).norm());
     }
   }
   return largest;
