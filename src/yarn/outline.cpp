@@ -323,10 +323,13 @@ Outline ellipse_outline(const Section& section, const SectionSize& size, int pie
   // The same numbers on both sides of both axes.
   const auto n = outline.points.size();
   outline.points.front().y() = 0.0;
-  for (std::size_t i = 0; 2 * i < n; ++i) outline.points[n - 1 - i] = {outline.points[i].x(), -outline.points[i].y()};
+  for (std::size_t i = 0; 2 * i < n; ++i)
+    outline.points[n - 1 - i] = {outline.points[i].x(), -outline.points[i].y()};
   if (n % 2 == 1) outline.points[n / 2].y() = 0.0;
-  const double scale = std::sqrt(area(section, size) / (0.25 * size.width * size.height * area_vector(as_curve(outline)).norm()));
-  for (Vec2& p : outline.points) p = p.array() * Eigen::Array2d(0.5 * size.width * scale, 0.5 * size.height * scale);
+  const double scale = std::sqrt(area(section, size) /
+                                 (0.25 * size.width * size.height * area_vector(as_curve(outline)).norm()));
+  for (Vec2& p : outline.points)
+    p = p.array() * Eigen::Array2d(0.5 * size.width * scale, 0.5 * size.height * scale);
   return outline;
 }
 

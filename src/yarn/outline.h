@@ -51,9 +51,10 @@ LensArc lens_arc(const SectionSize& size);
 // size when `varying`.
 bool is_affine(const Section& section);
 
-// The outline with `pieces` parabolas to a quarter (ignored where the outline is exact anyway: polygon,
-// loop7). The control points are the meeting points of the shape's tangents at neighbouring knots; circles
-// and ellipses are then scaled to their exact area.
+// The outline with `pieces` parabolas to a quarter, whose control points are the meeting points of the
+// shape's tangents at neighbouring knots; circles and ellipses are uniform periodic cubics of `pieces`
+// control points to a quarter, scaled to their exact area (ignored where the outline is exact anyway:
+// polygon, loop7).
 Outline make_outline(const Section& section, const SectionSize& size, int pieces, bool varying);
 bool is_exact(const Section& section);
 

@@ -22,13 +22,13 @@ namespace {
 using std::numbers::pi;
 using Row = Eigen::RowVectorXd;
 
-// Exact values at one place, and what a deviation from them along the path may cost: a point that slides along
-// the surface has not left it.
+// Exact values at one place, and what a deviation from them along the path may cost: a point that slides
+// along the surface has not left it.
 struct Sample {
   Row values;
-  Vec3 tangent;      // of the path
-  double slip = 0;   // sine of the largest angle between the tangent and the surface, round the section
-  double bend = 0;   // the largest curvature of the surface along the path
+  Vec3 tangent;     // of the path
+  double slip = 0;  // sine of the largest angle between the tangent and the surface, round the section
+  double bend = 0;  // the largest curvature of the surface along the path
 };
 
 // The exact surface, seen as a few vector-valued functions of t that are blended round the section with
@@ -49,7 +49,8 @@ class Channels {
     constexpr double between = 1.02;  // what lies between them reaches further by less than this
     for (const double u : us) round_.push_back(between * nurbs::evaluate(outline, u).head<2>());
     is_round_ = std::holds_alternative<Circle>(spec.section) && sizes.parameters().size() == 1;
-    const Eigen::Array2d scale = affine_ ? Eigen::Array2d(0.5 * first[0], 0.5 * first[1]) : Eigen::Array2d::Ones();
+    const Eigen::Array2d scale =
+        affine_ ? Eigen::Array2d(0.5 * first[0], 0.5 * first[1]) : Eigen::Array2d::Ones();
     for (const Vec2& p : unit_.points) reach_ = std::max(reach_, (p.array() * scale).matrix().norm());
     reach_ /= std::max(first[0], first[1]);
   }
@@ -193,7 +194,8 @@ class StretchSolver {
   }
 
   // `values`: one row a sample; slopes by the share of the stretch.
-  [[nodiscard]] Eigen::MatrixXd control(const Eigen::MatrixXd& values, const Row& first, const Row& last) const {
+  [[nodiscard]] Eigen::MatrixXd control(const Eigen::MatrixXd& values, const Row& first,
+                                        const Row& last) const {
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(basis_.cols(), values.cols());
     const Eigen::Index end = rows.rows() - 1;
     rows.row(0) = values.row(0);
@@ -217,16 +219,19 @@ constexpr int most_spans = 16;
 // surface is one derivative less smooth than that line. Each is fitted by itself, with as many spans as the
 // tolerance asks for; they meet in double knots.
 //
-// A path of arcs and straights is cut finer instead, and its sections slide along it, which leaves them on the
-// surface: slopes at the ends of an arc are as long as those of the cubic that is nearest to it, and a straight
-// takes what the arcs on both sides of it want.
+// A path of arcs and straights is cut finer instead, and its sections slide along it, which leaves them on
+// the surface: slopes at the ends of an arc are as long as those of the cubic that is nearest to it, and a
+// straight takes what the arcs on both sides of it want.
 class StretchFit {
  public:
   // `breaks`: the stretches' ends; `least`: spans of each; `grid`: of the knots.
   StretchFit(const Channels& channels, const CentreLine& path, const std::vector<double>& breaks,
              const std::vector<int>& least, const DecimalGrid& grid)
       : channels_(channels), closed_(path.closed), slides_(path.curve.is_rational()), grid_(grid) {
-    for (const double t : breaks) joints_.push_back(joint_at(t));
+    for (std::size_t k = 0; k < breaks.size(); ++k)
+      joints_.push_back(
+          joint_at(breaks[k], std::min(k > 0 ? breaks[k] - breaks[k - 1] : 1.0,
+                                       k + 1 < breaks.size() ? breaks[k + 1] - breaks[k] : 1.0)));
     for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
       stretches_.emplace_back();
       stretches_.back().spans = slides_ ? 1 : least[k];
@@ -268,7 +273,8 @@ class StretchFit {
         is_done = false;
         stretches.resize(stretches.size() + static_cast<std::size_t>(parts));
         for (int i = 1; i < parts; ++i) {
-          joints.push_back(joint_at(grid_.rounded(from.t + (to.t - from.t) * i / parts)));
+          joints.push_back(
+              joint_at(grid_.rounded(from.t + (to.t - from.t) * i / parts), (to.t - from.t) / parts));
           if (!(joints.back().t > joints[joints.size() - 2].t && joints.back().t < to.t)) return false;
         }
       }
@@ -299,19 +305,21 @@ class StretchFit {
   };
   struct Stretch {
     int spans = 1;
-    std::vector<Sample> samples;  // at equal steps, ends included
+    std::vector<Sample> samples;          // at equal steps, ends included
     double slide_from = 1, slide_to = 1;  // slopes at the ends by the exact ones, as the samples know them
     Eigen::MatrixXd control;              // spans + 3 rows
     double error = 0;
   };
 
-  [[nodiscard]] Joint joint_at(double t) const {
+  // Between stretches that are at least `length` long.
+  [[nodiscard]] Joint joint_at(double t, double length) const {
     Joint joint;
     joint.t = t;
     joint.exact = channels_.sample(t);
     // Beside a knot of the path, which may have been rounded.
-    (void)channels_.sample(std::max(0.0, t - 1e-9), &joint.before);
-    (void)channels_.sample(std::min(1.0, t + 1e-9), &joint.after);
+    const double beside = 1e-6 * length;
+    (void)channels_.sample(std::max(0.0, t - beside), &joint.before);
+    (void)channels_.sample(std::min(1.0, t + beside), &joint.after);
     // Only jumps of curvature count.
     if (t >= 1.0)
       joint.after = joint.before;
@@ -405,37 +413,40 @@ class StretchFit {
       const Sample& here = stretch.samples[static_cast<std::size_t>(i)];
       Row along(deviations.cols());
       for (Eigen::Index c = 0; c < along.size(); c += 3)
-        along.segment<3>(c) =
-            deviations.row(i).segment<3>(c).dot(here.tangent) * here.tangent.transpose();
+        along.segment<3>(c) = deviations.row(i).segment<3>(c).dot(here.tangent) * here.tangent.transpose();
       const double slid = channels_.largest(along);
       deviations.row(i) -= along;
-      sampled = std::max(sampled, channels_.largest(deviations.row(i)) + here.slip * slid +
-                                      0.5 * here.bend * slid * slid);
+      sampled = std::max(
+          sampled, channels_.largest(deviations.row(i)) + here.slip * slid + 0.5 * here.bend * slid * slid);
     }
     for (Eigen::Index i = 1; i < steps; ++i)
-      hidden = std::max(hidden, channels_.largest(deviations.row(i - 1) - 2.0 * deviations.row(i) +
-                                                  deviations.row(i + 1)) /
-                                    4.0);
+      hidden = std::max(
+          hidden,
+          channels_.largest(deviations.row(i - 1) - 2.0 * deviations.row(i) + deviations.row(i + 1)) / 4.0);
     stretch.error = sampled + hidden;
   }
 
   // Neighbours of one span each that are far better than they have to be become one.
   void join(double tolerance) {
-    for (bool joins = !slides_; joins;) {
-      joins = false;
-      for (std::size_t k = 0; k + 1 < stretches_.size(); ++k) {
-        const Stretch &a = stretches_[k], &b = stretches_[k + 1];
-        if (a.spans > 1 || b.spans > 1 || std::max(a.error, b.error) > 0.25 * tolerance) continue;
+    if (slides_) return;
+    std::vector<Stretch> stretches;
+    std::vector<Joint> joints{std::move(joints_.front())};
+    for (std::size_t k = 0; k < stretches_.size(); ++k) {
+      stretches.push_back(std::move(stretches_[k]));
+      joints.push_back(std::move(joints_[k + 1]));
+      while (stretches.size() > 1) {
+        const Stretch &a = stretches[stretches.size() - 2], &b = stretches.back();
+        if (a.spans > 1 || b.spans > 1 || std::max(a.error, b.error) > 0.25 * tolerance) break;
         Stretch both;
-        fit(both, joints_[k], joints_[k + 2]);
-        if (both.error > tolerance) continue;
-        const auto at = static_cast<std::ptrdiff_t>(k);
-        stretches_[k] = std::move(both);
-        stretches_.erase(stretches_.begin() + at + 1);
-        joints_.erase(joints_.begin() + at + 1);
-        joins = true;
+        fit(both, joints[joints.size() - 3], joints.back());
+        if (both.error > tolerance) break;
+        stretches.pop_back();
+        stretches.back() = std::move(both);
+        joints.erase(joints.end() - 2);
       }
     }
+    stretches_ = std::move(stretches);
+    joints_ = std::move(joints);
   }
 
   void assemble() {
@@ -450,7 +461,8 @@ class StretchFit {
       const double from = joints_[k].t, to = joints_[k + 1].t;
       control_.middleRows(next, stretch.spans + 1) = stretch.control.middleRows(1, stretch.spans + 1);
       next += stretch.spans + 1;
-      for (int i = 1; i < stretch.spans; ++i) knots_.push_back(grid_.rounded(from + (to - from) * i / stretch.spans));
+      for (int i = 1; i < stretch.spans; ++i)
+        knots_.push_back(grid_.rounded(from + (to - from) * i / stretch.spans));
       knots_.insert(knots_.end(), 2, to);
     }
     knots_.insert(knots_.end(), 2, joints_.back().t);
@@ -468,13 +480,13 @@ class StretchFit {
   Eigen::MatrixXd control_;
 };
 
-// Of so many parabolas to a quarter.
+// Of so many pieces to a quarter.
 double outline_error(const TubeSpec& spec, const SizeProfile& sizes, const SectionSize& size, int pieces) {
   const bool varying = sizes.parameters().size() > 1 && !is_affine(spec.section);
   return outline_error(spec.section, size, make_outline(spec.section, size, pieces, varying));
 }
 
-// How many parabolas to a quarter give the smallest net: fewer leave less of the tolerance to the sections,
+// How many pieces to a quarter give the smallest net: fewer leave less of the tolerance to the sections,
 // whose number grows with the fourth root of its inverse.
 Result<int> choose_pieces(const TubeSpec& spec, const SizeProfile& sizes) {
   if (is_exact(spec.section)) return 1;
@@ -606,8 +618,9 @@ Status swept(Body& body, const CentreLine& path, const TubeSpec& spec) {
   double polygon = 0.0;
   for (std::size_t i = 1; i < path.curve.points.size(); ++i)
     polygon += (path.curve.points[i] - path.curve.points[i - 1]).norm();
-  const DecimalGrid knot_grid =
-      spec.grid.step() > 0.0 ? DecimalGrid(1e-5 * spec.tolerance / std::max(polygon, spec.tolerance)) : DecimalGrid();
+  const DecimalGrid knot_grid = spec.grid.step() > 0.0
+                                    ? DecimalGrid(1e-5 * spec.tolerance / std::max(polygon, spec.tolerance))
+                                    : DecimalGrid();
   const Breaks breaks = breaks_of(path, *frames, sizes, twist, knot_grid, static_cast<double>(most));
   if (breaks.rows > static_cast<double>(most)) return too_many();
   StretchFit fit(channels, path, breaks.at, breaks.least, knot_grid);

@@ -3,10 +3,14 @@
 //
 // The exact surface is C(t) + x(u, t) a(t) + y(u, t) b(t): C the centre line, (x, y) the section's outline of
 // the size that holds at t, a and b the frame (yarn/frame.h) turned by the section's angle and by twist.
-// The outline is replaced by a closed quadratic B-spline (yarn/outline.h), and C, a, b (times the size) by
-// cubics through their values at sections that are placed where they are needed: spans are halved until the
-// deviation, with what can hide between its samples, is within the tolerance. Basis functions are positive
-// and sum to one, so the two deviations add up to a bound.
+// The outline is replaced by a closed B-spline (yarn/outline.h), and C, a, b (times the size) by cubics. The
+// exact surface is one derivative less smooth than the centre line at that line's knots: between two of them
+// each cubic has as many equal spans as the tolerance asks for, with exact values and slopes at both ends and
+// least squares over samples in between; they meet in double knots. Sections may slide along the path, as far
+// as they stay on the surface. The deviation is what samples show, with what can hide between them. Basis
+// functions are positive and sum to one, so the deviations of outline and sweep add up to a bound; with them
+// comes the half step of the decimal grid to which control points are rounded, so that their texts are short
+// and still the same numbers.
 #pragma once
 
 #include <cstddef>

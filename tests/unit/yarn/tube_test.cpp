@@ -123,7 +123,8 @@ double measured_error(const Body& body, const PathRows& rows, const TubeSpec& sp
         const double slope = (x - w * c) * w * sine - (y - h * sine) * h * c;
         s -= slope / (w * w * sine * sine + h * h * c * c + (x - w * c) * w * c + (y - h * sine) * h * sine);
       }
-      largest = std::max(largest, Vec3(x - w * std::cos(s), y - h * std::sin(s), d.dot(frame.tangent)).norm());
+      largest =
+          std::max(largest, Vec3(x - w * std::cos(s), y - h * std::sin(s), d.dot(frame.tangent)).norm());
     }
   }
   return largest;
