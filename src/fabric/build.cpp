@@ -444,7 +444,7 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
     yarn::TubeSpec& spec = made->spec;
     body.section_turns = spec.twist != 0.0;
     spec.tolerance = spec.tolerance > 0.0 ? std::min(spec.tolerance, tolerance_) : tolerance_;
-    spec.grid = DecimalGrid(1e-4 * spec.tolerance);
+    if (!options_.full_digits) spec.grid = DecimalGrid(1e-4 * spec.tolerance);
     spec.max_control_points = options_.max_control_points;
     if (Status swept = yarn::sweep(body, made->line, spec); !swept) return placed(swept.error(), entry);
   }

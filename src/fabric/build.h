@@ -20,6 +20,9 @@ namespace selvage::fabric {
 struct BuildOptions {
   std::optional<yarn::EndStyle> ends;  // none: as the file has them; where it does not say, patch
   double tolerance = 0;  // file units; 0: the file's, or 1/1000 of the smallest section size in the file
+  // Control points of tubes with all digits of the computation; else on a decimal grid of at most 1e-4 of the
+  // tolerance, so that texts of them are short.
+  bool full_digits = false;
   Detail detail = Detail::filaments;  // yarns are taken apart into plies and filaments as their threads say
   // Constructions exactly as their paper gives them, overlaps and all; else mended so that no yarns overlap.
   bool as_published = false;

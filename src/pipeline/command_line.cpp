@@ -220,6 +220,10 @@ void of_yarns(OptionTable& t) {
            "yarn plies filaments", &Options::detail,
            {fabric::Detail::yarn, fabric::Detail::plies, fabric::Detail::filaments})
       .with_preset("filaments");
+  t.choice(on_yarns, "--digits",
+           "of the tubes' control points: as few as the tolerance needs, or all that the computation has",
+           "short full", &Options::full_digits, {false, true})
+      .with_preset("short");
   t.flag(on_yarns, "--as-published", "constructions exactly as their paper gives them, overlaps and all",
          &Options::as_published);
   t.flag(on_yarns, "--strict", "a warning fails its input", &Options::strict);

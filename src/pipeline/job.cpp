@@ -103,6 +103,7 @@ fabric::BuildOptions Job::build_options() const {
   fabric::BuildOptions build;
   build.ends = options.ends;
   build.tolerance = options.tolerance;
+  build.full_digits = options.full_digits;
   build.detail = options.detail;
   build.as_published = options.as_published;
   build.gap = gap;

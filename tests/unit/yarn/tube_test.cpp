@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <numbers>
 
 #include "yarn/finish.h"
@@ -148,6 +150,16 @@ TEST(TubeTest, DenseSamplingConfirmsTheReportedBound) {
                            {ring(5, 8), spec_of(Circle{}, {1, 1}, 1e-5)}};
   jobs.push_back(jobs[3]);
   jobs.back().spec.twist = 2.0;  // radians per unit
+  // Arcs of radius 2.1 and straights, along which sections slide.
+  PathRows corners;
+  corners.form = PathForm::polyline;
+  corners.points = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {10, 10, 10}, {20, 15, 10}};
+  corners.half_sizes.assign(corners.points.size(), 2.0);
+  jobs.push_back({corners, spec_of(Circle{}, {1, 1}, 1e-3)});
+  jobs.push_back({corners, spec_of(Ellipse{}, {1.6, 0.9}, 1e-3)});
+  // On a grid that is coarse beside the tolerance.
+  jobs.push_back(jobs[2]);
+  jobs.back().spec.grid = DecimalGrid(1e-3);
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     const Body body = make(jobs[k].rows, jobs[k].spec);
     const double measured = measured_error(body, jobs[k].rows, jobs[k].spec);
@@ -155,6 +167,37 @@ TEST(TubeTest, DenseSamplingConfirmsTheReportedBound) {
     EXPECT_LE(measured, body.tube_error * (1 + 1e-9)) << k;
     EXPECT_GT(measured, 0.4 * body.tube_error) << k;  // the bound is worth its name
   }
+}
+
+// Every control point is a text of so many decimals, but for the rows at oblique ends, which stay flat.
+TEST(TubeTest, ControlPointsStandOnTheGrid) {
+  PathRows rows = ring(5, 8);
+  rows.closed = false;
+  rows.tangent_start = Vec3(0, 1, 0);
+  TubeSpec spec = spec_of(Ellipse{}, {1.6, 0.9}, 1e-3);
+  spec.grid = DecimalGrid(1e-7);
+  const Body body = make(rows, spec);
+  const auto has_decimals = [](double x) {
+    char text[64];
+    (void)std::snprintf(text, sizeof text, "%.7f", x);
+    return std::strtod(text, nullptr) == x;
+  };
+  const nurbs::Surface& surface = body.surface;
+  int free = 0;
+  for (int j = 0; j < surface.count_v; ++j)
+    for (int i = 0; i < surface.count_u; ++i) {
+      const Vec3& p = surface.point(i, j);
+      const bool is_short = has_decimals(p.x()) && has_decimals(p.y()) && has_decimals(p.z());
+      if (j + 1 < surface.count_v)
+        EXPECT_TRUE(is_short) << i << ' ' << j;
+      else
+        free += is_short ? 0 : 1;
+    }
+  EXPECT_GT(free, 0);
+  const Vec3 normal = body.axis.points.back() - body.axis.points[body.axis.points.size() - 2];
+  for (int i = 0; i < surface.count_u; ++i)
+    EXPECT_NEAR((surface.point(i, surface.count_v - 1) - body.axis.points.back()).dot(normal.normalized()),
+                0.0, 1e-14);
 }
 
 TEST(TubeTest, FinerTolerancesConvergeWithOrderFour) {
