@@ -16,6 +16,7 @@
 #include "fabric/edits.h"
 #include "fabric/plies.h"
 #include "fabric/quantities.h"
+#include "fabric/shape_memo.h"
 #include "fabric/yarn_spec.h"
 #include "yarn/finish.h"
 #include "yarn/grid.h"
@@ -297,6 +298,7 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
   builder.fabric_ = &fabric;
   builder.options_ = options;
   builder.last_bundle_ = std::make_shared<LastBundle>();
+  builder.shapes_ = std::make_shared<ShapeMemo>();
   builder.names_ = std::make_shared<NameIndex>();
   const int errors_before = diagnostics.error_count();
   builder.tolerance_ = tolerance_of(fabric, options);
@@ -355,8 +357,11 @@ Result<YarnPlan> YarnBuilder::whole_plan(const Entry& entry) const {
                                                 : entry.made->construction->plan(entry.index);
   if (!plan) return plan;
   if (entry.made != nullptr) plan->name = name_of(entry);
-  if (!fabric_->edits.empty())
+  const auto is_of_it = [&](const Edit& edit) { return edit.yarn == plan->name; };
+  if (std::any_of(fabric_->edits.begin(), fabric_->edits.end(), is_of_it)) {
+    tell_from_origin(*plan);
     if (Status edited = apply_edits(*fabric_, plan->name, plan->line); !edited) return edited.error();
+  }
   return plan;
 }
 
@@ -388,10 +393,15 @@ Result<YarnPlan> YarnBuilder::part_plan(const Entry& entry) const {
   return bundle->part(entry.part);
 }
 
-Result<YarnPlan> YarnBuilder::plan(std::size_t index) const {
-  const Entry& entry = entries_[index];
+Result<YarnPlan> YarnBuilder::plan_of(const Entry& entry) const {
   Result<YarnPlan> plan = entry.parts > 1 ? part_plan(entry) : whole_plan(entry);
   if (!plan) return placed(plan.error(), entry);
+  return plan;
+}
+
+Result<YarnPlan> YarnBuilder::plan(std::size_t index) const {
+  Result<YarnPlan> plan = plan_of(entries_[index]);
+  if (plan) tell_from_origin(*plan);
   return plan;
 }
 
@@ -434,24 +444,43 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
     Result<yarn::Body> filled = build_grid(*entry.yarn);
     if (!filled) return placed(filled.error(), entry);
     body = std::move(*filled);
+    if (Status finished = yarn::finish(body, sealings_of(entry.yarn, options_)); !finished)
+      return placed(finished.error(), entry);
   } else {
-    Result<YarnPlan> made = plan(index);
+    Result<YarnPlan> made = plan_of(entry);
     if (!made) return made.error();
-    describe(body, made->name, made->thread_name, made->thread, fabric_->units, made->role, made->place);
-    body.group = made->group;
-    body.messages = made->messages;
-    body.path_miss = made->line.largest_miss;
-    yarn::TubeSpec& spec = made->spec;
-    body.section_turns = spec.twist != 0.0;
-    spec.tolerance = spec.tolerance > 0.0 ? std::min(spec.tolerance, tolerance_) : tolerance_;
-    if (!options_.full_digits) spec.grid = DecimalGrid(1e-4 * spec.tolerance);
-    spec.max_control_points = options_.max_control_points;
-    if (Status swept = yarn::sweep(body, made->line, spec); !swept) return placed(swept.error(), entry);
+    Result<yarn::Body> swept = build_swept(entry, std::move(*made));
+    if (!swept) return placed(swept.error(), entry);
+    body = std::move(*swept);
   }
-  if (entry.yarn != nullptr && body.group.empty()) body.group = entry.yarn->group;
-  if (Status finished = yarn::finish(body, sealings_of(entry.yarn, options_)); !finished)
-    return placed(finished.error(), entry);
   for (Message& message : body.messages) message = placed(message, entry);
+  return body;
+}
+
+Result<yarn::Body> YarnBuilder::build_swept(const Entry& entry, YarnPlan plan) const {
+  yarn::Body body;
+  describe(body, plan.name, plan.thread_name, plan.thread, fabric_->units, plan.role, plan.place);
+  body.group = plan.group.empty() && entry.yarn != nullptr ? entry.yarn->group : plan.group;
+  yarn::TubeSpec& spec = plan.spec;
+  body.section_turns = spec.twist != 0.0;
+  spec.tolerance = spec.tolerance > 0.0 ? std::min(spec.tolerance, tolerance_) : tolerance_;
+  if (!options_.full_digits) spec.grid = DecimalGrid(1e-4 * spec.tolerance);
+  spec.max_control_points = options_.max_control_points;
+  const ShapeMemo::Plan shape{std::move(plan.line), std::move(plan.spec), sealings_of(entry.yarn, options_)};
+  // A yarn of the text is planned once.
+  std::shared_ptr<const yarn::Body> known = entry.yarn == nullptr ? shapes_->find(shape) : nullptr;
+  if (known != nullptr) {
+    const yarn::BodyLabel label = std::move(body);
+    body = *known;
+    static_cast<yarn::BodyLabel&>(body) = label;
+  } else {
+    body.messages = std::move(plan.messages);
+    body.path_miss = shape.line.largest_miss;
+    if (Status swept = yarn::sweep(body, shape.line, shape.spec); !swept) return swept.error();
+    if (Status finished = yarn::finish(body, shape.sealings); !finished) return finished.error();
+    if (entry.yarn == nullptr) shapes_->keep(shape, body);
+  }
+  if (plan.at != Vec3::Zero()) yarn::move(body, plan.at, shape.spec.grid);
   return body;
 }
 

@@ -17,6 +17,8 @@
 
 namespace selvage::fabric {
 
+class ShapeMemo;
+
 struct BuildOptions {
   std::optional<yarn::EndStyle> ends;  // none: as the file has them; where it does not say, patch
   double tolerance = 0;  // file units; 0: the file's, or 1/1000 of the smallest section size in the file
@@ -40,9 +42,9 @@ std::optional<double> smallest_section(const Fabric& fabric);
 // The tolerance in force, file units.
 double tolerance_of(const Fabric& fabric, const BuildOptions& options);
 
-// Builds the yarns one at a time, in file order; nothing is kept between calls, so that a million yarns need
-// the memory of one (of a yarn that is taken apart: of its centre lines). A yarn of plies or filaments is
-// built as its parts, in their order.
+// Builds the yarns one at a time, in file order; between calls a few shapes are kept (fabric/shape_memo.h),
+// so that a million yarns need the memory of those. A yarn of plies or filaments is built as its parts, in
+// their order.
 class YarnBuilder {
  public:
   // Errors: geometry (a thread without a size, a construction that cannot be, an edit of a yarn that is not
@@ -62,10 +64,11 @@ class YarnBuilder {
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
   // Of all constructions together; none where yarns stand in the text, or there are no constructions.
   [[nodiscard]] std::optional<Repeat> repeat() const;
-  // The yarn's plan, edits applied; a part's own where the yarn has parts. Error (unsupported): a grid has
-  // none.
+  // The yarn's plan, told from the origin, edits applied; a part's own where the yarn has parts. Error
+  // (unsupported): a grid has none.
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const;
-  // Errors: geometry, limit; with the yarn, its file and line. Warnings are in Body::messages.
+  // Errors: geometry, limit; with the yarn, its file and line. Warnings are in Body::messages. Yarns of a
+  // construction that are planned alike are swept once, and moved.
   [[nodiscard]] Result<yarn::Body> build(std::size_t index) const;
 
  private:
@@ -87,6 +90,8 @@ class YarnBuilder {
   void check_edited_names(Diagnostics& diagnostics) const;
   [[nodiscard]] std::string name_of(const Entry& entry) const;
   [[nodiscard]] Result<YarnPlan> whole_plan(const Entry& entry) const;
+  [[nodiscard]] Result<YarnPlan> plan_of(const Entry& entry) const;  // told from where the yarn stands
+  [[nodiscard]] Result<yarn::Body> build_swept(const Entry& entry, YarnPlan plan) const;
   [[nodiscard]] Result<YarnPlan> part_plan(const Entry& entry) const;
   [[nodiscard]] Result<yarn::Body> build_grid(const Yarn& yarn) const;
   [[nodiscard]] Result<yarn::Body> as_read(yarn::Body body, const Entry& entry) const;
@@ -111,6 +116,7 @@ class YarnBuilder {
   // The yarn taken apart last: its parts are mostly asked for one after the other.
   struct LastBundle;
   std::shared_ptr<LastBundle> last_bundle_;
+  std::shared_ptr<ShapeMemo> shapes_;
 };
 
 }  // namespace selvage::fabric

@@ -79,14 +79,14 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
   Result<YarnPlan> plan = start_plan(fabric_, thread_, name(index), Role::course, knit_.place);
   if (!plan) return plan;
   const double r = half_.x();
-  const auto at_course = static_cast<double>(course(index));
+  plan->at.y() = static_cast<double>(course(index)) * (course_spacing * r);
   std::vector<Vec3>& points = plan->points;
   points.reserve(8 * wales() + 1);
   const auto place_from = [&](std::size_t first, long long wale) {
     for (std::size_t i = first; i < points.size(); ++i) {
       const Vec3 base = points[i];
-      points[i] = {std::fma(static_cast<double>(wale), wale_spacing * r, base.x() * r),
-                   std::fma(at_course, course_spacing * r, base.y() * r), base.z() * half_.y()};
+      points[i] = {std::fma(static_cast<double>(wale), wale_spacing * r, base.x() * r), base.y() * r,
+                   base.z() * half_.y()};
     }
   };
   for (long long wale = field_.first_wale; wale <= field_.last_wale; ++wale) {

@@ -9,6 +9,12 @@
 
 namespace selvage::fabric {
 
+void tell_from_origin(YarnPlan& plan) {
+  for (Vec3& p : plan.points) p += plan.at;
+  for (Vec3& p : plan.line.curve.points) p += plan.at;
+  plan.at = Vec3::Zero();
+}
+
 std::uint64_t sum_of(std::uint64_t a, std::uint64_t b) {
   constexpr auto most = std::numeric_limits<std::uint64_t>::max();
   return a > most - b ? most : a + b;
@@ -31,8 +37,8 @@ Work in_parts(const Work& work, std::uint64_t parts) {
 }
 
 Status check_work(const Work& work, const WorkLimits& limits) {
-  // What a data point of a jersey costs at the default tolerance: some 100 control points, 9 kB of IGES.
-  constexpr double gigabytes_a_point = 9e-6;
+  // What a data point of a jersey costs at the default tolerance: some 52 control points, 3 kB of IGES.
+  constexpr double gigabytes_a_point = 3e-6;
   const std::uint64_t points = std::max(work.points, product_of(work.yarns, least_points_of_a_yarn));
   if (points > limits.points)
     return error(

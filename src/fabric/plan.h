@@ -21,8 +21,10 @@ struct YarnPlan {
   std::string group;  // of a ply or a filament: the yarn that it is part of; else empty
   Role role = Role::other;
   TextPlace place;
-  std::string thread_name;   // may be empty
-  Thread thread;             // with the yarn's own statements over it
+  std::string thread_name;  // may be empty
+  Thread thread;            // with the yarn's own statements over it
+  // Where the yarn stands: points and line are told from there, so that yarns of one shape are planned alike.
+  Vec3 at = Vec3::Zero();
   std::vector<Vec3> points;  // the data points of the centre line; empty where it was not made from points
   yarn::CentreLine line;
   yarn::TubeSpec spec;  // its tolerance and limit are the builder's; a tolerance above 0 is an upper bound
@@ -31,8 +33,7 @@ struct YarnPlan {
 
 // The yarns of one fabric by construction, known by number and name before any of them is computed, and
 // planned one at a time: nothing is kept, so that a cloth of a million loops needs the memory of one yarn.
-// Exactly periodic: yarn i + repeat has the data points of yarn i moved, each coordinate being base + n *
-// pitch with one rounding.
+// Exactly periodic: yarn i + repeat has the plan of yarn i at another place, n * pitch away.
 class Construction {
  public:
   virtual ~Construction() = default;
@@ -49,6 +50,9 @@ class Construction {
   // Of the endless cloth, exact.
   [[nodiscard]] virtual Repeat repeat() const = 0;
 };
+
+// The same plan, told from the origin.
+void tell_from_origin(YarnPlan& plan);
 
 // Counts that end at the largest that there is instead of beginning anew.
 std::uint64_t sum_of(std::uint64_t a, std::uint64_t b);

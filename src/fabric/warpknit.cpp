@@ -91,7 +91,8 @@ Result<YarnPlan> WarpknitConstruction::plan(std::size_t index) const {
   const Result<YarnPoints> points = points_of_bar(piece_.bars, bar_of(index), piece_.measures, moves_,
                                                   piece_.first_course, piece_.last_course);
   if (!points) return points.error();
-  plan->points = points->of_guide(guide_of(index));
+  plan->points = points->of_guide(0);
+  plan->at.x() = static_cast<double>(guide_of(index)) * piece_.measures.wale_pitch;
   if (Status made = interpolate(*plan, yarn::PathForm::loop, Vec3::UnitY(), Vec3::UnitY()); !made)
     return made.error();
   // Legs of loops run along the cloth's normal in places, where it says nothing about their sections.

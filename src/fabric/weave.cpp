@@ -269,7 +269,7 @@ std::vector<Pass> WeaveConstruction::passes_of(const Place& place) const {
       const bool on_top = is_weft ? !drawdown_.warp_on_top(yarn, k) : drawdown_.warp_on_top(k, yarn);
       const double height =
           weave_.amplitude.value_or(is_weft ? heights_.weft(thickness) : heights_.warp(thickness));
-      pass.z = layer_shift(block->layer) + (on_top ? height : -height);
+      pass.z = on_top ? height : -height;
       pass.below = pass.above = obstacle_of((is_weft ? weft_bend_ : warp_bend_).value_or(Bend::round),
                                             crossed.thread(k).size, thickness, heights_.clearance);
     }
@@ -280,12 +280,12 @@ std::vector<Pass> WeaveConstruction::passes_of(const Place& place) const {
 
 // Half waves of a cosine from crossing to crossing, level over floats: a cubic through eight points a pitch.
 Status WeaveConstruction::plan_sine(YarnPlan& plan, const std::vector<Pass>& passes, const Reach& reach,
-                                    bool is_weft, double across) const {
+                                    bool is_weft) const {
   const System& crossed = is_weft ? warp_ : weft_;
   const auto place = is_weft ? along_weft : along_warp;
   constexpr int steps = points_a_wave;
   const auto add = [&](double crossing, double z) {
-    plan.points.push_back(place(crossed.at(crossing), z, across));
+    plan.points.push_back(place(crossed.at(crossing), z, 0.0));
   };
   for (int i = 0; i < steps / 2; ++i)
     add(static_cast<double>(reach.first) - 0.5 + static_cast<double>(i) / steps, passes.front().z);
@@ -317,18 +317,18 @@ Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
   const double across =
       is_binder ? static_cast<double>(binder_gap(weave_.binders[block->set], yarn)) * warp_.text->pitch
                 : (is_weft ? weft_ : warp_).at(static_cast<double>(yarn));
+  const auto to_place = is_weft ? along_weft : along_warp;
+  plan->at = to_place(0.0, is_straight() || is_binder ? 0.0 : layer_shift(block->layer), across);
   const std::vector<Pass> passes = passes_of(place);
   plan->spec.guide = yarn::FrameGuide::with_across(is_weft ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitY()));
   if (is_sine(is_weft)) {
-    if (Status made = plan_sine(*plan, passes, reach, is_weft, across); !made) return made.error();
+    if (Status made = plan_sine(*plan, passes, reach, is_weft); !made) return made.error();
     return plan;
   }
-  Result<yarn::CentreLine> line =
-      bridge_passes(passes, reach.from, reach.to, is_weft ? along_weft : along_warp, across);
+  Result<yarn::CentreLine> line = bridge_passes(passes, reach.from, reach.to, to_place, 0.0);
   if (!line) return line.error();
   plan->line = std::move(*line);
-  for (const Pass& pass : passes)
-    plan->points.push_back((is_weft ? along_weft : along_warp)(pass.s, pass.z, across));
+  for (const Pass& pass : passes) plan->points.push_back(to_place(pass.s, pass.z, 0.0));
   return plan;
 }
 

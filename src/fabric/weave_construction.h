@@ -106,8 +106,7 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] long long repeat_of_levels() const;
   [[nodiscard]] std::vector<Pass> passes_of(const Place& place) const;
   [[nodiscard]] double layer_shift(int layer) const { return (layer - 0.5 * (layers() - 1)) * layer_pitch_; }
-  Status plan_sine(YarnPlan& plan, const std::vector<Pass>& passes, const Reach& reach, bool is_weft,
-                   double across) const;
+  Status plan_sine(YarnPlan& plan, const std::vector<Pass>& passes, const Reach& reach, bool is_weft) const;
 
   const Fabric& fabric_;
   const Weave& weave_;

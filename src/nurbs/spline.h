@@ -21,6 +21,8 @@ struct Curve {
   [[nodiscard]] double weight(std::size_t i) const { return weights.empty() ? 1.0 : weights[i]; }
   [[nodiscard]] double first_parameter() const { return knots[static_cast<std::size_t>(degree)]; }
   [[nodiscard]] double last_parameter() const { return knots[points.size()]; }
+
+  bool operator==(const Curve&) const = default;
 };
 
 // A tensor-product B-spline surface of count_u x count_v control points; u runs fastest: the point (i, j) is

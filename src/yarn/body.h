@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -83,6 +84,11 @@ struct Body : BodyLabel {
   // The centre line over the same parameter v as the surface (the exact path, or for a grid the centres of
   // its sections).
   nurbs::Curve axis;
+
+  // Bodies of one shape (a number above 0) are the same surface, moved by the difference of their places to
+  // the last digit of what was built.
+  std::uint64_t shape = 0;
+  Vec3 at = Vec3::Zero();
 
   double length = 0;      // of the centre line
   double volume = 0;      // enclosed, of the B-spline itself; with ends `none` as if the ends were planar

@@ -34,6 +34,7 @@ double flatness(const nurbs::Curve& curve, const Vec3& origin, const Vec3& norma
 struct Sealing {
   EndStyle style = EndStyle::patch;
   std::optional<Vec3> centre;  // where a fan's rows meet; none: the end of the body's axis
+  bool operator==(const Sealing&) const = default;
 };
 using Sealings = std::array<Sealing, 2>;  // of the start and of the end
 Sealings both_ends(EndStyle style);

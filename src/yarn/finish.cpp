@@ -134,6 +134,28 @@ double end_flux(const Body& body, bool last, const Vec3& origin) {
                                      : flat_flux(body, last, end.origin, origin);
 }
 
+void move(Body& body, const Vec3& by, const DecimalGrid& grid) {
+  const Vec3 step = grid.rounded(by);
+  nurbs::Surface& surface = body.surface;
+  const auto columns = static_cast<std::size_t>(surface.count_u);
+  const auto moved = [&](const Vec3& p) { return grid.rounded(Vec3(p + step)); };
+  for (std::size_t i = 0; i < surface.points.size(); ++i) {
+    Vec3& p = surface.points[i];
+    // A row at an oblique end stands on its plane, on no grid.
+    const bool is_end = i < columns || i + columns >= surface.points.size();
+    p = is_end && grid.rounded(p) != p ? Vec3(p + step) : moved(p);
+  }
+  for (Vec3& p : body.axis.points) p += by;
+  for (const bool last : {false, true}) {
+    (last ? body.end : body.start).origin += step;
+    renew_end(body, last);
+  }
+  for (TightBend& bend : body.tight_bends) bend.at += by;
+  for (Message& message : body.messages)
+    if (message.at) *message.at += by;
+  body.at += by;
+}
+
 Status finish(Body& body, const Sealings& ends) {
   const Result<double> side = orient(body);
   if (!side) return side.error();

@@ -1,6 +1,7 @@
 // The last step of building a yarn, the same for paths and grids.
 #pragma once
 
+#include "core/decimal_grid.h"
 #include "yarn/body.h"
 #include "yarn/ends.h"
 
@@ -14,6 +15,10 @@ Status finish(Body& body, EndStyle ends);
 
 // The same for a body that has its end faces (style and surface) already, and keeps them.
 Status finish_as_sealed(Body& body);
+
+// Moves a finished body whose tube stands on the grid by `by`, its surface to the nearest place at which it
+// stands on the grid again. End faces are made anew.
+void move(Body& body, const Vec3& by, const DecimalGrid& grid);
 
 // One third of the flux of (position - origin) out of the yarn through one of its ends. Planar and open ends
 // are what their outline says.

@@ -24,6 +24,7 @@ struct FrameGuide {
   Form form = Form::free;
   std::optional<Vec3> direction;  // any length but zero; required but for `free`
   Vec3 origin = Vec3::Zero();     // radial: a point of the axis
+  bool operator==(const FrameGuide&) const = default;
 
   static FrameGuide free_from(const std::optional<Vec3>& up) { return {Form::free, up, Vec3::Zero()}; }
   static FrameGuide with_up(const Vec3& up) { return {Form::up, up, Vec3::Zero()}; }

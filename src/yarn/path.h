@@ -30,6 +30,7 @@ struct CentreLine {
   std::vector<double>
       parameters;  // one a row: where it is met, comes nearest (loop), or has its largest share (control)
   double largest_miss = 0;  // loop: the largest distance of the curve from a row's point; 0 for the others
+  bool operator==(const CentreLine&) const = default;
 };
 
 // uniform, chord, centripetal: the cubic through the rows (nurbs/interpolate.h). control: the rows are

@@ -624,7 +624,8 @@ Status swept(Body& body, const CentreLine& path, const TubeSpec& spec) {
   const Breaks breaks = breaks_of(path, *frames, sizes, twist, knot_grid, static_cast<double>(most));
   if (breaks.rows > static_cast<double>(most)) return too_many();
   StretchFit fit(channels, path, breaks.at, breaks.least, knot_grid);
-  const double other_errors = section_error + spec.grid.reach();
+  // A step's half by the rounding of points, another by that of the place that they are moved to.
+  const double other_errors = section_error + 2.0 * spec.grid.reach();
   if (!fit.refine(spec.tolerance - other_errors, most)) return too_many();
 
   nurbs::Surface& surface = body.surface;

@@ -30,6 +30,7 @@ struct SizeAtParameter {
   double parameter = 0;
   SectionSize size;
   double angle = 0;  // radians, about the tangent
+  bool operator==(const SizeAtParameter&) const = default;
 };
 
 struct TubeSpec {
@@ -40,11 +41,13 @@ struct TubeSpec {
   double tolerance = 0;  // > 0, file units
   DecimalGrid grid;      // of the control points; the end rows of a path that ends obliquely are not on it
   std::size_t max_control_points = 50'000'000;
+  bool operator==(const TubeSpec&) const = default;
 };
 
 // Fills surface, axis, closed_along, quarters and tube_error of `body` (its name is used in messages;
 // warnings go to body.messages). Errors: geometry (a section without size, an `up` along the path, a path
 // that turns back), limit (more control points than allowed, which twist or a tight tolerance can ask for).
+// The tolerance holds wherever the tube is moved to (yarn/finish.h).
 Status sweep(Body& body, const CentreLine& path, const TubeSpec& spec);
 
 }  // namespace selvage::yarn
