@@ -45,6 +45,15 @@ std::optional<Message> find_fault(std::span<const yarn::Body> bodies) {
   return std::nullopt;
 }
 
+Contact moved(Contact contact, const Vec3& by) {
+  for (Vec3* p : {&contact.on_a, &contact.on_b, &contact.at}) *p += by;
+  for (Minimum& spot : contact.spots) {
+    spot.on_a += by;
+    spot.on_b += by;
+  }
+  return contact;
+}
+
 class Search {
  public:
   Search(std::span<const yarn::Body> bodies, const ContactOptions& options)
@@ -155,9 +164,56 @@ class Search {
     }
   }
 
+  using BodyPair = std::pair<std::size_t, std::size_t>;
+
+  // Pairs of bodies that are two shapes in one position to each other, by the first of them: one is looked
+  // at.
+  using Alike = std::map<BodyPair, std::vector<BodyPair>>;
+
+  // Leaves the pairs of pieces of bodies that are the first of their kind.
+  [[nodiscard]] Alike drop_copies(std::vector<PiecePair>& pairs) const {
+    const auto bodies_of = [&](const PiecePair& pair) {
+      return BodyPair(model_.pieces()[pair.a].body, model_.pieces()[pair.b].body);
+    };
+    const double quantum = 0.1 * resolution();
+    using Kind = std::tuple<std::uint64_t, std::uint64_t, double, double, double>;
+    std::map<Kind, BodyPair> first;
+    std::map<BodyPair, bool> is_first;
+    Alike alike;
+    std::erase_if(pairs, [&](const PiecePair& pair) {
+      const BodyPair bodies = bodies_of(pair);
+      const auto [known, is_new] = is_first.try_emplace(bodies, true);
+      if (!is_new) return !known->second;
+      const yarn::Body &a = model_.bodies()[bodies.first], &b = model_.bodies()[bodies.second];
+      if (a.shape == 0 || b.shape == 0) return false;
+      const Vec3 way = ((b.at - a.at) / quantum).array().round();
+      const auto [found, is_new_kind] =
+          first.try_emplace(Kind(a.shape, b.shape, way.x(), way.y(), way.z()), bodies);
+      if (is_new_kind) return false;
+      alike[found->second].push_back(bodies);
+      known->second = false;
+      return true;
+    });
+    return alike;
+  }
+
+  void add_copies(const Alike& alike, std::vector<Contact>& list) const {
+    const std::size_t count = list.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto copies = alike.find({list[k].a, list[k].b});
+      if (copies == alike.end()) continue;
+      for (const BodyPair& copy : copies->second) {
+        Contact contact = moved(list[k], model_.bodies()[copy.first].at - model_.bodies()[list[k].a].at);
+        std::tie(contact.a, contact.b) = copy;
+        list.push_back(std::move(contact));
+      }
+    }
+  }
+
   // Near pairs by bodies, in a fixed order.
-  [[nodiscard]] std::vector<Cluster> clusters(double reach) const {
-    const std::vector<PiecePair> pieces = piece_pairs(reach);
+  [[nodiscard]] std::vector<Cluster> clusters(double reach, Alike& alike) const {
+    std::vector<PiecePair> pieces = piece_pairs(reach);
+    alike = drop_copies(pieces);
     constexpr std::size_t chunk = 64;
     std::vector<std::vector<NearPair>> found((pieces.size() + chunk - 1) / chunk);
     for_each_index(found.size(), options_.threads, [&](std::size_t c) {
@@ -215,7 +271,8 @@ class Search {
   }
 
   [[nodiscard]] std::vector<Contact> contacts_within(double reach, double& unsettled) const {
-    const std::vector<Cluster> places = clusters(reach);
+    Alike alike;
+    const std::vector<Cluster> places = clusters(reach, alike);
     std::vector<Measured> found(places.size());
     for_each_index(
         places.size(), options_.threads,
@@ -226,10 +283,9 @@ class Search {
       unsettled = std::max(unsettled, part.unsettled);
       for (Contact& contact : part.contacts) all.push_back(std::move(contact));
     }
+    add_copies(alike, all);
     return all;
   }
-
-  using BodyPair = std::pair<std::size_t, std::size_t>;
 
   [[nodiscard]] static std::vector<BodyPair> overlapping(const std::vector<Contact>& list) {
     std::vector<BodyPair> pairs;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <unordered_map>
 
 #include "core/readable.h"
 #include "core/words.h"
@@ -95,22 +96,43 @@ std::string other_tables(const Job& job, const fabric::Fabric& fabric) {
   return text;
 }
 
-// Control points stand up to a half of the section off the surface.
-void extend(Box3& box, const yarn::Body& body) {
+// Of the body's faces: control points stand up to a half of the section off the surface.
+Box3 box_of(const yarn::Body& body) {
+  Box3 box;
   const double tolerance = 1e-9 * yarn::bounds(body).diagonal().norm();
-  if (!std::isfinite(tolerance)) return;
+  if (!std::isfinite(tolerance)) return box;
   nurbs::extend(box, body.surface, tolerance);
   for (const yarn::EndFace* end : {&body.start, &body.end})
     if (end->style != yarn::EndStyle::planar && !end->surface.is_empty())
       nurbs::extend(box, end->surface, tolerance);
+  return box;
 }
+
+// The box of all bodies; one shape is looked at once.
+class BoxOfBodies {
+ public:
+  void extend(const yarn::Body& body) {
+    if (body.shape == 0) {
+      box_.extend(box_of(body));
+      return;
+    }
+    const auto [known, is_new] = shapes_.try_emplace(body.shape);
+    if (is_new) known->second = box_of(body).translated(Vec3(-body.at));
+    if (!known->second.isEmpty()) box_.extend(known->second.translated(body.at));
+  }
+  [[nodiscard]] const Box3& box() const { return box_; }
+
+ private:
+  Box3 box_;
+  std::unordered_map<std::uint64_t, Box3> shapes_;
+};
 
 std::string yarn_table(Job& job, const fabric::YarnBuilder& builder) {
   const Shown shown = job.shown();
   const auto length = [&](double value) { return shown.length(value); };
   Table table({"yarn", "role", "points", "length", "volume", "least bend radius", "tube error", "ends"});
   double total_length = 0, total_volume = 0, largest_miss = 0;
-  Box3 box;
+  BoxOfBodies boxes;
   std::map<std::string, int> groups;  // yarns of plies or filaments
   job.for_each_yarn(builder, "building yarn", [&](yarn::Body&& body) {
     const double volume = shown.volume(body.volume);
@@ -122,7 +144,7 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder) {
     total_length += length(body.length);
     total_volume += volume;
     largest_miss = std::max(largest_miss, length(body.path_miss));
-    extend(box, body);
+    boxes.extend(body);
     return true;
   });
   std::string text = fmt::format("  lengths in {}\n{}", name_of(shown.unit), table.text());
@@ -135,7 +157,7 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder) {
   text += fmt::format("  together: length {}, volume {}\n", cell(total_length), cell(total_volume));
   if (largest_miss > 0)
     text += fmt::format("  loop paths miss their points by up to {}\n", cell(largest_miss));
-  if (!box.isEmpty()) {
+  if (const Box3& box = boxes.box(); !box.isEmpty()) {
     const Vec3 low = box.min().unaryExpr(length), high = box.max().unaryExpr(length);
     text += fmt::format("  within ({:.6g}, {:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})\n", low.x(), low.y(),
                         low.z(), high.x(), high.y(), high.z());

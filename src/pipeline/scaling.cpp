@@ -46,6 +46,7 @@ void convert_lengths(yarn::Body& body, Unit from, Unit to) {
   scale.apply_to_all(body.axis.points);
   for (const bool last : {false, true})
     if (standard[last ? 1 : 0]) yarn::renew_end(body, last);
+  scale.apply(body.at);
   scale.apply(body.start.origin);
   scale.apply(body.end.origin);
   for (double* length : {&body.length, &body.tube_error, &body.min_bend_radius, &body.resolution})

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "core/bounds.h"
@@ -125,6 +126,14 @@ double narrowest_section(const Body& body) {
 
 Box3 bounds(const Body& body) {
   return bounds_of(body.surface.points);
+}
+
+std::vector<std::size_t> first_of_shape(std::span<const Body> bodies) {
+  std::vector<std::size_t> first(bodies.size());
+  std::unordered_map<std::uint64_t, std::size_t> known;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    first[i] = bodies[i].shape == 0 ? i : known.try_emplace(bodies[i].shape, i).first->second;
+  return first;
 }
 
 }  // namespace selvage::yarn

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -100,6 +101,9 @@ struct Body : BodyLabel {
   std::vector<TightBend> tight_bends;  // worst first
   std::vector<Message> messages;       // warnings made while building: a fold that made an end planar, ...
 };
+
+// For each body the first that is its shape, itself where none is before it.
+std::vector<std::size_t> first_of_shape(std::span<const Body> bodies);
 
 // What a message about it says of it.
 inline About about(const BodyLabel& body, const std::optional<Vec3>& at = {}) {

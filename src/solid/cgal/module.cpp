@@ -17,7 +17,25 @@ SolidCheck check_all(std::span<const yarn::Body> bodies, const CheckOptions& opt
     const double chord = bodies[i].surface.is_empty() ? options.chord : chord_of(bodies[i], options);
     result.yarns[i] = check_yarn(bodies[i], chord);
   };
-  for_each_index(bodies.size(), options.threads, check_one, options.progress);
+  // What is sound is sound wherever it stands; defects are told of each yarn.
+  const std::vector<std::size_t> first = yarn::first_of_shape(bodies);
+  std::vector<std::size_t> distinct, copies;
+  for (std::size_t i = 0; i < bodies.size(); ++i) (first[i] == i ? distinct : copies).push_back(i);
+  const auto step = [&](std::size_t before) {
+    return [&options, before, total = bodies.size()](std::size_t done, std::size_t /*of*/) {
+      if (options.progress) options.progress(before + done, total);
+    };
+  };
+  for_each_index(
+      distinct.size(), options.threads, [&](std::size_t k) { check_one(distinct[k]); }, step(0));
+  const auto take_over = [&](std::size_t k) {
+    const YarnCheck& known = result.yarns[first[copies[k]]];
+    if (known.defects.empty())
+      result.yarns[copies[k]] = known;
+    else
+      check_one(copies[k]);
+  };
+  for_each_index(copies.size(), options.threads, take_over, step(distinct.size()));
   return result;
 }
 

@@ -268,7 +268,12 @@ BrepCheck judged(const yarn::Body& body, bool with_volume) {
 Result<std::vector<BrepCheck>> check(std::span<const yarn::Body> bodies) {
   std::vector<BrepCheck> verdicts;
   verdicts.reserve(bodies.size());
-  for (const yarn::Body& body : bodies) verdicts.push_back(judged(body, true));
+  // What is sound is sound wherever it stands; defects are told of each yarn.
+  const std::vector<std::size_t> first = yarn::first_of_shape(bodies);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const bool is_known = first[i] != i && verdicts[first[i]].defects.empty();
+    verdicts.push_back(is_known ? verdicts[first[i]] : judged(bodies[i], true));
+  }
   return verdicts;
 }
 
