@@ -70,6 +70,41 @@ TEST(Published, JerseyOverlapsAsStated) {
   }
 }
 
+// What is known of shapes finds what looking at every yarn finds: jersey, a twill, two wefts of unlike
+// threads.
+TEST(Published, ContactsOfCopiesAreThoseThatAreFoundOneByOne) {
+  const std::string weave =
+      "fabric 1\nunits mm\nthread t\n  section ellipse 0.8 0.2\nend\nthread f\n  section circle 0.3\nend\n"
+      "weave\n  warp t 8 pitch 0.7\n  weft t f 7 pitch 0.9\n  draft twill 2 2\n  profile sine 0.1\nend\n";
+  const std::string knit =
+      "fabric 1\nunits mm\nthread t\n  section circle 2\nend\n"
+      "knit jersey\n  thread t\n  courses 6\n  wales 4\nend\n";
+  for (const std::string& text : {knit, weave}) {
+    SCOPED_TRACE(text);
+    std::vector<yarn::Body> bodies = bodies_of(text, true);
+    const std::vector<std::size_t> first = yarn::first_of_shape(bodies);
+    std::size_t copies = 0;
+    for (std::size_t i = 0; i < bodies.size(); ++i) copies += first[i] != i ? 1 : 0;
+    EXPECT_GE(copies, 4U);
+    const Contacts known = contacts_of(bodies, 2);
+    for (yarn::Body& body : bodies) body.shape = 0;
+    const Contacts each = contacts_of(bodies);
+    ASSERT_EQ(known.list.size(), each.list.size());
+    EXPECT_GE(each.list.size(), 10U);
+    double size = 0.0;
+    for (const yarn::Body& body : bodies) size = std::max(size, yarn::bounds(body).diagonal().norm());
+    // Lists are sorted by depths, which agree up to rounding: each is looked for among the others'.
+    for (const Contact& contact : each.list) {
+      const bool is_there = std::any_of(known.list.begin(), known.list.end(), [&](const Contact& other) {
+        return other.a == contact.a && other.b == contact.b && (other.at - contact.at).norm() < 1e-4 * size &&
+               std::abs(other.gap - contact.gap) < 1e-3 * std::abs(contact.gap) &&
+               other.spots.size() == contact.spots.size();
+      });
+      EXPECT_TRUE(is_there) << contact.a << ' ' << contact.b << ' ' << contact.gap;
+    }
+  }
+}
+
 // 4 x 4 yarns with sections of 0.8 x 0.2, pitch 1: the waves are whole between the outermost crossings.
 std::vector<yarn::Body> sine_weave(double amplitude) {
   return bodies_of(
