@@ -227,7 +227,10 @@ class StretchFit {
   // `breaks`: the stretches' ends; `least`: spans of each; `grid`: of the knots.
   StretchFit(const Channels& channels, const CentreLine& path, const std::vector<double>& breaks,
              const std::vector<int>& least, const DecimalGrid& grid)
-      : channels_(channels), closed_(path.closed), slides_(path.curve.is_rational()), grid_(grid) {
+      : channels_(channels),
+        closed_(path.closed),
+        slides_(path.curve.is_rational() && path.curve.degree == 2),
+        grid_(grid) {
     for (std::size_t k = 0; k < breaks.size(); ++k)
       joints_.push_back(
           joint_at(breaks[k], std::min(k > 0 ? breaks[k] - breaks[k - 1] : 1.0,

@@ -21,7 +21,7 @@ SolidCheck check_all(std::span<const yarn::Body> bodies, const CheckOptions& opt
   const std::vector<std::size_t> first = yarn::first_of_shape(bodies);
   std::vector<std::size_t> distinct, copies;
   for (std::size_t i = 0; i < bodies.size(); ++i) (first[i] == i ? distinct : copies).push_back(i);
-  const auto step = [&](std::size_t before) {
+  const auto step = [&](std::size_t before) -> std::function<void(std::size_t, std::size_t)> {
     return [&options, before, total = bodies.size()](std::size_t done, std::size_t /*of*/) {
       if (options.progress) options.progress(before + done, total);
     };

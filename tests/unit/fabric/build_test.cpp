@@ -56,7 +56,9 @@ TEST(BuildTest, DiameterOfThirtyTexCottonIsThePublishedOneInEveryUnit) {
     const double mm = millimetres_per(unit);
     const Fabric fabric = fabric_of(cotton(), straight("y", 10 / mm), unit);
     Diagnostics diagnostics;
-    const Result<yarn::Body> body = build(fabric, diagnostics);
+    BuildOptions options;
+    options.full_digits = true;
+    const Result<yarn::Body> body = build(fabric, diagnostics, options);
     ASSERT_TRUE(body.ok()) << to_string(body.error());
     // tex over density and packing is the section's area in 1/1000 mm2.
     EXPECT_NEAR(body->volume * mm * mm * mm, 10 * 30 / (1000 * 1.52 * 0.75), 1e-12);

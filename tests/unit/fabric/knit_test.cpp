@@ -50,6 +50,7 @@ YarnPlan plan_of(const Fabric& fabric, std::size_t course, bool as_published = t
   EXPECT_TRUE(made.ok());
   Result<YarnPlan> plan = (*made)->plan(course);
   EXPECT_TRUE(plan.ok());
+  tell_from_origin(*plan);
   return std::move(*plan);
 }
 
