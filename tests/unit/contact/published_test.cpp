@@ -75,7 +75,7 @@ TEST(Published, JerseyOverlapsAsStated) {
 TEST(Published, ContactsOfCopiesAreThoseThatAreFoundOneByOne) {
   const std::string weave =
       "fabric 1\nunits mm\nthread t\n  section ellipse 0.8 0.2\nend\nthread f\n  section circle 0.3\nend\n"
-      "weave\n  warp t 8 pitch 0.7\n  weft f 7 pitch 0.9\n  draft twill 2 2\n  profile sine 0.1\nend\n";
+      "weave\n  warp t 8 pitch 0.7\n  weft f 7 pitch 0.9\n  draft twill 2/2\n  profile sine 0.1\nend\n";
   const std::string knit =
       "fabric 1\nunits mm\nthread t\n  section circle 2\nend\n"
       "knit jersey\n  thread t\n  courses 6\n  wales 4\nend\n";
