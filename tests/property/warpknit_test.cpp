@@ -559,7 +559,7 @@ TEST(WarpknitPeriodicity, GuidesAreMovedCopies) {
       const YarnPlan& first = plans[i / wales * wales];
       ASSERT_EQ(plans[i].points.size(), first.points.size());
       for (std::size_t k = 0; k < first.points.size(); ++k) {
-        const Vec3 moved(std::fma(static_cast<double>(i % wales), knit.wale_pitch, first.points[k].x()),
+        const Vec3 moved(first.points[k].x() + static_cast<double>(i % wales) * knit.wale_pitch,
                          first.points[k].y(), first.points[k].z());
         ASSERT_EQ(plans[i].points[k], moved) << fabric->name << ' ' << plans[i].name << " point " << k;
       }

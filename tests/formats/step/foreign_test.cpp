@@ -28,6 +28,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <math.hxx>
+#include <math_Vector.hxx>
 #include <sstream>
 
 #include "built.h"
@@ -99,6 +101,32 @@ struct Facts {
   std::vector<double> volumes;  // of its solids
 };
 
+// A third of the flux of (p - centre) through a face that is a whole B-spline surface, by Gauss's rule in
+// every span on what OpenCASCADE evaluates. (Its own quadratures are off by up to 2e-5 of a knit's volume.)
+// None for other faces.
+std::optional<double> flux_through(const TopoDS_Face& face, const gp_Pnt& centre) {
+  const Handle(Geom_BSplineSurface) surface = Handle(Geom_BSplineSurface)::DownCast(BRep_Tool::Surface(face));
+  if (surface.IsNull()) return std::nullopt;
+  constexpr int nodes = 8;
+  math_Vector at(1, nodes), weight(1, nodes);
+  math::GaussPoints(nodes, at);
+  math::GaussWeights(nodes, weight);
+  double sum = 0.0;
+  for (int i = 1; i < surface->NbUKnots(); ++i)
+    for (int j = 1; j < surface->NbVKnots(); ++j) {
+      const double u0 = surface->UKnot(i), du = 0.5 * (surface->UKnot(i + 1) - u0);
+      const double v0 = surface->VKnot(j), dv = 0.5 * (surface->VKnot(j + 1) - v0);
+      for (int k = 1; k <= nodes; ++k)
+        for (int l = 1; l <= nodes; ++l) {
+          gp_Pnt p;
+          gp_Vec along_u, along_v;
+          surface->D1(u0 + du * (1.0 + at(k)), v0 + dv * (1.0 + at(l)), p, along_u, along_v);
+          sum += du * dv * weight(k) * weight(l) * gp_Vec(centre, p).Dot(along_u.Crossed(along_v));
+        }
+    }
+  return (face.Orientation() == TopAbs_REVERSED ? -sum : sum) / 3.0;
+}
+
 Facts facts_of(const TopoDS_Shape& shape) {
   Facts facts;
   for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) ++facts.faces;
@@ -107,9 +135,16 @@ Facts facts_of(const TopoDS_Shape& shape) {
     const gp_Pnt centre =
         BRep_Tool::Pnt(TopoDS::Vertex(TopExp_Explorer(it.Current(), TopAbs_VERTEX).Current()));
     GProp_GProps properties(centre);
-    // Span by span: its other quadratures, the adaptive one too, are off by up to 3e-6 on knits and braids.
     BRepGProp::VolumePropertiesGK(it.Current(), properties, 1e-12, false, true);
-    facts.volumes.push_back(properties.Mass());
+    double volume = 0.0;
+    for (TopExp_Explorer face(it.Current(), TopAbs_FACE); face.More(); face.Next()) {
+      const std::optional<double> flux = flux_through(TopoDS::Face(face.Current()), centre);
+      volume += flux.value_or(0.0);
+      if (flux) continue;
+      volume = properties.Mass();  // with trimmed planes: its quadrature, span by span
+      break;
+    }
+    facts.volumes.push_back(volume);
   }
   return facts;
 }
@@ -290,7 +325,12 @@ class FreeCad : public ::testing::TestWithParam<const char*> {
     EXPECT_EQ(static_cast<int>(reading.model->face_count()), faces_);
     EXPECT_EQ(solids_in(*reading.model), solids ? solids_ : 0);
     ASSERT_EQ(static_cast<int>(reading.yarns.size()), solids_);
-    EXPECT_LT(deviation(volumes_of(reading.yarns), volumes_of(bodies_)), 1e-6);
+    // FreeCAD was given tubes of before, which stood within the tolerance of the same yarns; a grid is what
+    // it is.
+    double allowed = 1e-6;
+    for (const yarn::Body& body : bodies_)
+      allowed = std::max(allowed, 2.0 * 4.0 * body.tube_error / yarn::narrowest_section(body));
+    EXPECT_LT(deviation(volumes_of(reading.yarns), volumes_of(bodies_)), allowed);
     // Of FreeCAD's own volumes some are off by 4e-3: it takes OpenCASCADE's coarsest quadrature.
     const double from_occt =
         deviation(volumes_of(reading.yarns), facts_of(occt_read(path_ + ".step")).volumes);
