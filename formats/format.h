@@ -56,6 +56,7 @@ struct SurfaceOptions {
   double tolerance = 0;               // of the modelled tubes, file units; 0: unknown
   bool yarns_are_solids = false;      // in the file of this format that they come from (fabric::Fabric)
   OptionValues own;                   // of Descriptor::options
+  int threads = 1;                    // that may format text
   // For formats whose files have a largest size: opens file `number` (2, 3, ...) of the fabric. What it gives
   // outlives the writer. Null: there can be one file only.
   std::function<Result<OutputFile*>(int number)> next_part;

@@ -54,7 +54,7 @@ FileWriter::FileWriter(OutputFile& output, const SurfaceOptions& options, Record
               .units = options.units,
               .time = options.date.empty() ? iges_timestamp() : options.date,
               .part = {}},
-      records_(output, header_text(header_).bytes.size(), limits) {}
+      records_(output, header_text(header_).bytes.size(), limits, options.threads) {}
 
 Status FileWriter::whole_or_nothing(const std::string& yarn, TextPlace place,
                                     const std::function<Status()>& work) {

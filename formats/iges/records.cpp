@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/parallel.h"
+
 namespace selvage::formats::iges {
 
 namespace {
@@ -29,9 +31,10 @@ void right_justified(char* field, std::size_t width, std::int64_t value) {
 
 }  // namespace
 
-Records::Records(OutputFile& output, std::uint64_t offset, Limits limits)
+Records::Records(OutputFile& output, std::uint64_t offset, Limits limits, int threads)
     : output_(&output),
       limits_(limits),
+      threads_(threads),
       buffer_(std::make_unique_for_overwrite<char[]>(limits.buffer_lines * line_length + spare)),
       line_(buffer_.get()),
       cursor_(line_),
@@ -89,7 +92,49 @@ void Records::list(std::span<const int> values) {
   for (const int value : values) integer(value);
 }
 
+void Records::Tokens::format(const double* values, std::size_t count) {
+  text.resize(count * (max_number_length + 1));
+  lengths.resize(count);
+  char* at = text.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    char* end = write_pointed(at, values[i]);
+    *end++ = ',';
+    lengths[i] = static_cast<std::uint8_t>(end - at);
+    at = end;
+  }
+}
+
+// What fits on a line is copied at once.
+void Records::put(const Tokens& tokens) {
+  const char* from = tokens.text.data();
+  for (std::size_t i = 0; i < tokens.lengths.size();) {
+    const auto room = static_cast<std::size_t>(line_ + data_columns - cursor_);
+    std::size_t run = 0;
+    while (i < tokens.lengths.size() && run + tokens.lengths[i] <= room) run += tokens.lengths[i++];
+    std::memcpy(cursor_, from, run);
+    cursor_ += run;
+    from += run;
+    if (i == tokens.lengths.size()) return;
+    close_line(cursor_);
+    cursor_ = line_;
+  }
+}
+
+void Records::reals_by_threads(const double* values, std::size_t count) {
+  constexpr std::size_t chunk = 8192;
+  tokens_.resize(4 * static_cast<std::size_t>(threads_));
+  for (std::size_t first = 0; first < count; first += chunk * tokens_.size()) {
+    const std::size_t rest = count - first, chunks = std::min(tokens_.size(), (rest + chunk - 1) / chunk);
+    for_each_index(chunks, threads_, [&](std::size_t k) {
+      tokens_[k].format(values + first + k * chunk, std::min(chunk, rest - k * chunk));
+    });
+    for (std::size_t k = 0; k < chunks; ++k) put(tokens_[k]);
+  }
+}
+
 void Records::reals(const double* values, std::size_t count) {
+  constexpr std::size_t many = 20'000;  // to start a thread takes as long as to format a thousand
+  if (threads_ > 1 && count >= many) return reals_by_threads(values, count);
   char* at = cursor_;
   const char* limit = line_ + data_columns;
   for (std::size_t i = 0; i < count; ++i) {

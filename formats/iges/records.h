@@ -49,8 +49,9 @@ class Records {
     std::size_t directory_lines = 3'200;
   };
 
-  // The directory begins at byte `offset` of `output`, which outlives this.
-  Records(OutputFile& output, std::uint64_t offset, Limits limits);
+  // The directory begins at byte `offset` of `output`, which outlives this. Long lists of numbers are
+  // formatted by `threads`.
+  Records(OutputFile& output, std::uint64_t offset, Limits limits, int threads = 1);
 
   // One entity: begin(), its values in order, end(). begin() returns its directory pointer, which is what
   // next() said.
@@ -94,6 +95,15 @@ class Records {
     std::uint64_t offset = 0, size = 0;
   };
 
+  // Texts of numbers, each with its comma.
+  struct Tokens {
+    std::vector<char> text;
+    std::vector<std::uint8_t> lengths;
+    void format(const double* values, std::size_t count);
+  };
+  void put(const Tokens& tokens);
+  void reals_by_threads(const double* values, std::size_t count);
+
   char* next_line(char* token, const char* token_end);
   void close_line(char* at);
   void number_line();
@@ -107,6 +117,8 @@ class Records {
 
   OutputFile* output_;
   Limits limits_;
+  int threads_;
+  std::vector<Tokens> tokens_;  // reused
   Status status_;
   bool measuring_ = false;
   Lines before_measuring_;

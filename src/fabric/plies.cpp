@@ -152,6 +152,7 @@ struct Bundle::Content {
   [[nodiscard]] YarnPlan strand(const YarnPlan& from, const Spine& spine, const Vec2& place,
                                 double diameter_of_part) const {
     YarnPlan plan;
+    plan.at = parent.at;
     plan.group = parent.name;
     plan.role = parent.role;
     plan.place = parent.place;

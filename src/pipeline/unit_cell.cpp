@@ -392,7 +392,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
             "--relax --gap {:.2g} moves them apart where they have room, --force meshes them as they are",
             who, default_gap_share * thin),
         {.at = nearest->at}));
-  constexpr double rounding = 1e-3;
+  constexpr double rounding = 5e-3;  // what the tolerance of tubes leaves of a thickness
   if (nearest->gap < (1.0 - rounding) * wanted)
     job.say(warning(Kind::geometry,
                     fmt::format("{}, nearer than the gap of {:.3g} {} that is wanted", who, wanted,

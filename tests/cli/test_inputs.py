@@ -78,7 +78,7 @@ class Bad(Case):
                   "piece_flat": r":3:1: error: .*no area",
                   "weave_pitch": r":7:3: error: .*smallest pitch is 0.866025", "weave_ragged": r":10:5: error: .*3 signs",
                   "lapping_open": r":6:17: error: .*does not close",
-                  "loops_1e9": r":5:1: error: .*31623 yarns .*8e\+09 data points, about 7.2e\+04 GB",
+                  "loops_1e9": r":5:1: error: .*31623 yarns .*8e\+09 data points, about 2.4e\+04 GB",
                   "empty": r":1:1: error: "}
         self.assertEqual(sorted(places), sorted(path.stem for path in BAD.glob("*.txt")))
         for name, pattern in places.items():

@@ -76,6 +76,25 @@ TEST(Header, ResolutionIsUsefulToReaders) {
   EXPECT_GT(resolution_for(0, 0), 0);
 }
 
+// Lists that are long enough for them, in one block of several rounds and with a rest; small buffers move in between.
+TEST(Writer, ThreadsChangeNoByte) {
+  std::vector<yarn::Body> bodies = {wave("long", {.sections = 3000}, EndStyle::patch),
+                                    wave("short", {.y = 1}, EndStyle::patch),
+                                    wave("longest", {.y = 2, .sections = 9001}, EndStyle::fan)};
+  std::mt19937_64 random(16);
+  std::uniform_real_distribution<double> any(-12.0, 3.0);
+  for (Vec3& p : bodies.back().surface.points) p.z() = std::pow(10.0, any(random));  // texts of all lengths
+  for (const std::size_t lines : {std::size_t{13'000}, std::size_t{100}}) {
+    SurfaceOptions options;
+    const std::string one = iges_bytes(bodies, options, {.buffer_lines = lines});
+    EXPECT_GT(one.size(), 5'000'000U);
+    for (const int threads : {2, 3, 8}) {
+      options.threads = threads;
+      EXPECT_TRUE(iges_bytes(bodies, options, {.buffer_lines = lines}) == one) << threads;
+    }
+  }
+}
+
 TEST(Descriptor, SniffsTheStartSection) {
   const auto& descriptor = formats::iges::descriptor();
   EXPECT_EQ(descriptor.extensions.front(), ".igs");
