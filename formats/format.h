@@ -55,6 +55,7 @@ struct SurfaceOptions {
   std::string date;                   // YYYYMMDD.HHNNSS for headers; empty: now
   double tolerance = 0;               // of the modelled tubes, file units; 0: unknown
   bool yarns_are_solids = false;      // in the file of this format that they come from (fabric::Fabric)
+  bool has_others = false;            // pieces, parts or curves will be added, not yarns alone
   OptionValues own;                   // of Descriptor::options
   int threads = 1;                    // that may format text
   // For formats whose files have a largest size: opens file `number` (2, 3, ...) of the fabric. What it gives

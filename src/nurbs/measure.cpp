@@ -73,12 +73,12 @@ struct Node {
 };
 
 std::vector<Node> gauss_nodes(const std::vector<double>& knots, int degree, int count, int order,
-                              bool rational) {
+                              int parts) {
   std::vector<double> breaks = breakpoints(knots, degree);
-  if (rational) {  // no polynomial rule is exact: four parts to a span bring the error down to rounding
+  if (parts > 1) {
     std::vector<double> finer = {breaks.front()};
     for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
-      for (int i = 1; i <= 4; ++i) finer.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / 4.0);
+      for (int i = 1; i <= parts; ++i) finer.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / parts);
     breaks = std::move(finer);
   }
   const GaussRule& rule = gauss_rule(order);
@@ -94,6 +94,53 @@ std::vector<Node> gauss_nodes(const std::vector<double>& knots, int degree, int 
     }
   }
   return nodes;
+}
+
+// Of a rational surface no polynomial rule is exact: four parts to a span bring the error down to rounding.
+int parts_of(const Surface& surface) {
+  return surface.is_rational() ? 4 : 1;
+}
+
+// take(position - origin, S_u, S_v, weight) at every Gauss node of the surface, each span in `parts` parts.
+template <class Take>
+void at_gauss_nodes(const Surface& surface, const Vec3& origin, int order_u, int order_v, int parts,
+                    const Take& take) {
+  const std::vector<Node> nodes_u =
+      gauss_nodes(surface.knots_u, surface.degree_u, surface.count_u, order_u, parts);
+  const std::vector<Node> nodes_v =
+      gauss_nodes(surface.knots_v, surface.degree_v, surface.count_v, order_v, parts);
+  std::vector<Vec4> line(static_cast<std::size_t>(surface.count_u)), slope_line(line.size());
+  for (const Node& v : nodes_v) {
+    // At one v the control net collapses to a row of points and a row of derivatives along v.
+    for (int i = 0; i < surface.count_u; ++i) {
+      Vec4 position = Vec4::Zero(), slope = Vec4::Zero();
+      for (int j = 0; j <= surface.degree_v; ++j) {
+        const double w = surface.weight(i, v.first + j);
+        const Vec3 p = w * (surface.point(i, v.first + j) - origin);
+        const Vec4 h(p.x(), p.y(), p.z(), w);  // faster than homogeneous(), whose product is not vectorized
+        position += v.value[static_cast<std::size_t>(j)] * h;
+        slope += v.slope[static_cast<std::size_t>(j)] * h;
+      }
+      line[static_cast<std::size_t>(i)] = position;
+      slope_line[static_cast<std::size_t>(i)] = slope;
+    }
+    for (const Node& u : nodes_u) {
+      Vec4 p = Vec4::Zero(), du = Vec4::Zero(), dv = Vec4::Zero();
+      for (int i = 0; i <= surface.degree_u; ++i) {
+        const auto k = static_cast<std::size_t>(u.first) + static_cast<std::size_t>(i);
+        p += u.value[static_cast<std::size_t>(i)] * line[k];
+        du += u.slope[static_cast<std::size_t>(i)] * line[k];
+        dv += u.value[static_cast<std::size_t>(i)] * slope_line[k];
+      }
+      Vec3 position = p.head<3>(), along_u = du.head<3>(), along_v = dv.head<3>();
+      if (surface.is_rational()) {
+        position /= p.w();
+        along_u = (along_u - du.w() * position) / p.w();
+        along_v = (along_v - dv.w() * position) / p.w();
+      }
+      take(position, along_u, along_v, u.weight * v.weight);
+    }
+  }
 }
 
 }  // namespace
@@ -125,44 +172,46 @@ double volume_flux(const Surface& surface, const Vec3& origin) {
   const auto order = [&](int degree) {
     return surface.is_rational() ? 8 : std::min(8, (3 * degree + 1) / 2);
   };
-  const std::vector<Node> nodes_u = gauss_nodes(surface.knots_u, surface.degree_u, surface.count_u,
-                                                order(surface.degree_u), surface.is_rational());
-  const std::vector<Node> nodes_v = gauss_nodes(surface.knots_v, surface.degree_v, surface.count_v,
-                                                order(surface.degree_v), surface.is_rational());
-  std::vector<Vec4> line(static_cast<std::size_t>(surface.count_u)), slope_line(line.size());
   double sum = 0.0;
-  for (const Node& v : nodes_v) {
-    // At one v the control net collapses to a row of points and a row of derivatives along v.
-    for (int i = 0; i < surface.count_u; ++i) {
-      Vec4 position = Vec4::Zero(), slope = Vec4::Zero();
-      for (int j = 0; j <= surface.degree_v; ++j) {
-        const double w = surface.weight(i, v.first + j);
-        const Vec3 p = w * (surface.point(i, v.first + j) - origin);
-        const Vec4 h(p.x(), p.y(), p.z(), w);  // faster than homogeneous(), whose product is not vectorized
-        position += v.value[static_cast<std::size_t>(j)] * h;
-        slope += v.slope[static_cast<std::size_t>(j)] * h;
-      }
-      line[static_cast<std::size_t>(i)] = position;
-      slope_line[static_cast<std::size_t>(i)] = slope;
-    }
-    for (const Node& u : nodes_u) {
-      Vec4 p = Vec4::Zero(), du = Vec4::Zero(), dv = Vec4::Zero();
-      for (int i = 0; i <= surface.degree_u; ++i) {
-        const auto k = static_cast<std::size_t>(u.first) + static_cast<std::size_t>(i);
-        p += u.value[static_cast<std::size_t>(i)] * line[k];
-        du += u.slope[static_cast<std::size_t>(i)] * line[k];
-        dv += u.value[static_cast<std::size_t>(i)] * slope_line[k];
-      }
-      Vec3 position = p.head<3>(), along_u = du.head<3>(), along_v = dv.head<3>();
-      if (surface.is_rational()) {
-        position /= p.w();
-        along_u = (along_u - du.w() * position) / p.w();
-        along_v = (along_v - dv.w() * position) / p.w();
-      }
-      sum += u.weight * v.weight * position.dot(along_u.cross(along_v));
-    }
-  }
+  at_gauss_nodes(surface, origin, order(surface.degree_u), order(surface.degree_v), parts_of(surface),
+                 [&](const Vec3& position, const Vec3& along_u, const Vec3& along_v, double weight) {
+                   sum += weight * position.dot(along_u.cross(along_v));
+                 });
   return sum / 3.0;
+}
+
+Moments& Moments::operator+=(const Moments& other) {
+  area += other.area;
+  area_vector += other.area_vector;
+  volume += other.volume;
+  first += other.first;
+  return *this;
+}
+
+Moments moments(const Surface& surface, const Vec3& origin, double area_error) {
+  constexpr int most_halvings = 5;
+  const auto by_gauss = [&](int order, int parts) {
+    Moments sum;
+    at_gauss_nodes(surface, origin, order, order, parts,
+                   [&](const Vec3& position, const Vec3& along_u, const Vec3& along_v, double weight) {
+                     const Vec3 normal = weight * along_u.cross(along_v);
+                     const double flux = position.dot(normal);
+                     sum.area += normal.norm();
+                     sum.area_vector += normal;
+                     sum.volume += flux / 3.0;
+                     sum.first += flux / 4.0 * position;
+                   });
+    return sum;
+  };
+  int parts = parts_of(surface);
+  Moments coarse = by_gauss(6, parts), fine = by_gauss(8, parts);
+  for (int i = 0; i < most_halvings && std::abs(fine.area - coarse.area) > std::max(area_error, 1e-11 * fine.area);
+       ++i) {
+    parts *= 2;
+    coarse = fine;
+    fine = by_gauss(8, parts);
+  }
+  return fine;
 }
 
 }  // namespace selvage::nurbs

@@ -106,6 +106,8 @@ Status write(const Job& job, const Original& original, const Trip& trip, const s
   surface.units = original.fabric.units;
   surface.expected_bodies = original.bodies.size();
   surface.date = original.fabric.date;
+  surface.has_others =
+      !original.pieces.empty() || !original.fabric.parts.empty() || !original.fabric.curves.empty();
   surface.tolerance = fabric::tolerance_of(original.fabric, job.build_options());
   if (trip.form != nullptr) surface.own.set(*trip.form);
   Result<std::unique_ptr<formats::BodyWriter>> writer = trip.format->open_bodies(*output, surface);
