@@ -24,9 +24,9 @@ std::array<double, 3> coordinates(const Vec3& at) {
 
 Products::Products(EntityText& text, Schema schema, Unit units, double uncertainty) : text_(text) {
   const bool is_242 = schema == Schema::ap242;
-  const Id application =
-      text_.put("APPLICATION_CONTEXT", Quoted{is_242 ? "managed model based 3d engineering"
-                                                     : "core data for automotive mechanical design processes"});
+  const Id application = text_.put("APPLICATION_CONTEXT",
+                                   Quoted{is_242 ? "managed model based 3d engineering"
+                                                 : "core data for automotive mechanical design processes"});
   text_.put("APPLICATION_PROTOCOL_DEFINITION", "'international standard'",
             Quoted{is_242 ? "ap242_managed_model_based_3d_engineering" : "automotive_design"},
             is_242 ? 2013 : 2000, application);
@@ -42,7 +42,8 @@ void Products::write_units(Unit units, double uncertainty) {
     return [this, name, attributes...] { text_.part(name, attributes...); };
   };
   const auto metres = [&](const char* prefix) {
-    return put_complex(text_, part("LENGTH_UNIT"), part("NAMED_UNIT", "*"), part("SI_UNIT", prefix, ".METRE."));
+    return put_complex(text_, part("LENGTH_UNIT"), part("NAMED_UNIT", "*"),
+                       part("SI_UNIT", prefix, ".METRE."));
   };
   if (units == Unit::inch) {
     const Id exponents = text_.put("DIMENSIONAL_EXPONENTS", 1., 0., 0., 0., 0., 0., 0.);
@@ -55,8 +56,8 @@ void Products::write_units(Unit units, double uncertainty) {
     constexpr std::array<const char*, 4> prefixes = {"$", ".CENTI.", ".MILLI.", ".MICRO."};
     length_ = metres(prefixes[static_cast<std::size_t>(units)]);
   }
-  const Id angle = put_complex(text_, part("NAMED_UNIT", "*"), part("PLANE_ANGLE_UNIT"),
-                               part("SI_UNIT", "$", ".RADIAN."));
+  const Id angle =
+      put_complex(text_, part("NAMED_UNIT", "*"), part("PLANE_ANGLE_UNIT"), part("SI_UNIT", "$", ".RADIAN."));
   const Id solid_angle = put_complex(text_, part("NAMED_UNIT", "*"), part("SI_UNIT", "$", ".STERADIAN."),
                                      part("SOLID_ANGLE_UNIT"));
   const auto power = [&](double exponent) {
@@ -64,8 +65,8 @@ void Products::write_units(Unit units, double uncertainty) {
   };
   area_ = power(2);
   volume_ = power(3);
-  const Id exactness = text_.put("UNCERTAINTY_MEASURE_WITH_UNIT", Measure{"LENGTH_MEASURE", uncertainty}, length_,
-                                 "'distance_accuracy_value'", "'confusion accuracy'");
+  const Id exactness = text_.put("UNCERTAINTY_MEASURE_WITH_UNIT", Measure{"LENGTH_MEASURE", uncertainty},
+                                 length_, "'distance_accuracy_value'", "'confusion accuracy'");
   context_ = put_complex(text_, part("GEOMETRIC_REPRESENTATION_CONTEXT", 3),
                          part("GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT", std::array{exactness}),
                          part("GLOBAL_UNIT_ASSIGNED_CONTEXT", std::array{length_, angle, solid_angle}),
@@ -74,7 +75,8 @@ void Products::write_units(Unit units, double uncertainty) {
 
 Id Products::axes(const Vec3& origin, const Vec3& z, const Vec3& x) {
   const Id at = text_.put("CARTESIAN_POINT", "''", coordinates(origin));
-  const Id axis = text_.put("DIRECTION", "''", coordinates(z)), first = text_.put("DIRECTION", "''", coordinates(x));
+  const Id axis = text_.put("DIRECTION", "''", coordinates(z)),
+           first = text_.put("DIRECTION", "''", coordinates(x));
   return text_.put("AXIS2_PLACEMENT_3D", "''", at, axis, first);
 }
 
@@ -124,8 +126,10 @@ Id Products::style_of(const yarn::Color& color) {
   Id& style = styles_[{color.red, color.green, color.blue}];
   if (style.number != 0) return style;
   const Id rgb = text_.put("COLOUR_RGB", "''", color.red / 255.0, color.green / 255.0, color.blue / 255.0);
-  const Id fill = text_.put("FILL_AREA_STYLE", "''", std::array{text_.put("FILL_AREA_STYLE_COLOUR", "''", rgb)});
-  const Id side = text_.put("SURFACE_SIDE_STYLE", "''", std::array{text_.put("SURFACE_STYLE_FILL_AREA", fill)});
+  const Id fill =
+      text_.put("FILL_AREA_STYLE", "''", std::array{text_.put("FILL_AREA_STYLE_COLOUR", "''", rgb)});
+  const Id side =
+      text_.put("SURFACE_SIDE_STYLE", "''", std::array{text_.put("SURFACE_STYLE_FILL_AREA", fill)});
   const Id usage = text_.put("SURFACE_STYLE_USAGE", ".BOTH.", side);
   return style = text_.put("PRESENTATION_STYLE_ASSIGNMENT", std::array{usage});
 }

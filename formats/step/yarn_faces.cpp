@@ -129,8 +129,7 @@ void YarnFaces::face(Id surface, const std::vector<Use>& loop, bool is_inward) {
   std::vector<Id> uses;
   for (const Use& use : loop)
     uses.push_back(text_.put("ORIENTED_EDGE", "''", "*", "*", use.edge, Flag{use.is_forward}));
-  const Id bound =
-      text_.put("FACE_OUTER_BOUND", "''", text_.put("EDGE_LOOP", "''", uses), Flag{!is_inward});
+  const Id bound = text_.put("FACE_OUTER_BOUND", "''", text_.put("EDGE_LOOP", "''", uses), Flag{!is_inward});
   faces_.push_back(text_.put("ADVANCED_FACE", "''", std::array{bound}, surface, Flag{!is_inward}));
 }
 

@@ -44,9 +44,13 @@ class YarnFaces {
     bool is_forward;
   };
 
-  Id new_point(const Vec3& at) { return text_.put("CARTESIAN_POINT", "''", std::array{at.x(), at.y(), at.z()}); }
+  Id new_point(const Vec3& at) {
+    return text_.put("CARTESIAN_POINT", "''", std::array{at.x(), at.y(), at.z()});
+  }
   Id point(const Vec3& at);
-  Id direction(const Vec3& along) { return text_.put("DIRECTION", "''", std::array{along.x(), along.y(), along.z()}); }
+  Id direction(const Vec3& along) {
+    return text_.put("DIRECTION", "''", std::array{along.x(), along.y(), along.z()});
+  }
   Id vertex(const Vec3& at) { return text_.put("VERTEX_POINT", "''", point(at)); }
   Id curve(const nurbs::Curve& curve);
   Id surface(const nurbs::Surface& surface, bool is_closed_u, bool is_closed_v);

@@ -22,7 +22,8 @@ constexpr double same_direction = 1e-5;
 
 bool is_number(const nurbs::Surface& surface) {
   const auto finite = [](double value) { return std::isfinite(value); };
-  return std::all_of(surface.points.begin(), surface.points.end(), [](const Vec3& p) { return p.allFinite(); }) &&
+  return std::all_of(surface.points.begin(), surface.points.end(),
+                     [](const Vec3& p) { return p.allFinite(); }) &&
          std::all_of(surface.weights.begin(), surface.weights.end(), finite) &&
          std::all_of(surface.knots_u.begin(), surface.knots_u.end(), finite) &&
          std::all_of(surface.knots_v.begin(), surface.knots_v.end(), finite);
@@ -73,7 +74,8 @@ Result<YarnMeasures> measured(const yarn::Body& body) {
   };
   for (const nurbs::Surface* surface : {&body.surface, &body.start.surface, &body.end.surface})
     if (!is_number(*surface))
-      return error(Kind::geometry, fmt::format("yarn '{}' has a control point, knot or weight that is no number", body.name),
+      return error(Kind::geometry,
+                   fmt::format("yarn '{}' has a control point, knot or weight that is no number", body.name),
                    about(body));
   YarnMeasures measures;
   measures.is_closed = true;
@@ -90,23 +92,26 @@ Result<YarnMeasures> measured(const yarn::Body& body) {
       continue;
     }
     if (const double gap = yarn::end_gap(body, last); !(gap <= same_place * thickness_of(body)))
-      return refused(fmt::format(": its {} face stands {:.3g} off the body's {} curve, so it does not close the yarn; "
-                                 "build the ends anew from the body, or check the points of that end",
-                                 which, gap, which),
-                     end.origin);
+      return refused(
+          fmt::format(": its {} face stands {:.3g} off the body's {} curve, so it does not close the yarn; "
+                      "build the ends anew from the body, or check the points of that end",
+                      which, gap, which),
+          end.origin);
     sum += moments_of_end(body, last, origin, area_error);
   }
   measures.area = sum.area;
   if (!measures.is_closed) return measures;
   if (!(sum.area_vector.norm() <= same_direction * sum.area))
-    return refused(": a face is turned inside out against its neighbour; let the sections of the grid run round all "
-                   "in one direction",
-                   body.start.origin);
+    return refused(
+        ": a face is turned inside out against its neighbour; let the sections of the grid run round all "
+        "in one direction",
+        body.start.origin);
   if (!(sum.volume > 0))
-    return refused(fmt::format(" is inside out: its volume is {:.6g}; let the sections run round the path the other "
-                               "way",
-                               sum.volume),
-                   body.start.origin);
+    return refused(
+        fmt::format(" is inside out: its volume is {:.6g}; let the sections run round the path the other "
+                    "way",
+                    sum.volume),
+        body.start.origin);
   measures.volume = sum.volume;
   measures.centre = origin + sum.first / sum.volume;
   return measures;

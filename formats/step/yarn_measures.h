@@ -7,14 +7,14 @@
 namespace selvage::formats::step {
 
 struct YarnMeasures {
-  bool is_closed = false;            // it has all its end faces; else only the area is known
-  double area = 0, volume = 0;       // file units
-  Vec3 centre = Vec3::Zero();        // of the volume
+  bool is_closed = false;       // it has all its end faces; else only the area is known
+  double area = 0, volume = 0;  // file units
+  Vec3 centre = Vec3::Zero();   // of the volume
 };
 
-// Errors (geometry), with the yarn and the place: a coordinate, knot or weight that is no number, an end face that
-// stands off the body's end curve by more than 1e-7 of the yarn's thickness, faces whose normals do not agree,
-// a solid that is inside out.
+// Errors (geometry), with the yarn and the place: a coordinate, knot or weight that is no number, an end face
+// that stands off the body's end curve by more than 1e-7 of the yarn's thickness, faces whose normals do not
+// agree, a solid that is inside out.
 Result<YarnMeasures> measured(const yarn::Body& body);
 
 }  // namespace selvage::formats::step

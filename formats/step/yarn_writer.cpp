@@ -41,8 +41,8 @@ Properties properties_of(const YarnMeasures& measures) {
 }
 
 Properties properties_of(const Sum& sum) {
-  return properties_of(
-      YarnMeasures{sum.is_closed, sum.area, sum.volume, sum.volume > 0 ? Vec3(sum.first / sum.volume) : Vec3::Zero()});
+  return properties_of(YarnMeasures{sum.is_closed, sum.area, sum.volume,
+                                    sum.volume > 0 ? Vec3(sum.first / sum.volume) : Vec3::Zero()});
 }
 
 void write_head(EntityText& text, Schema schema, const SurfaceOptions& options) {
@@ -56,8 +56,9 @@ void write_head(EntityText& text, Schema schema, const SurfaceOptions& options) 
   line("FILE_NAME", Quoted{options.file_name}, Quoted{iso_timestamp()}, nobody, nobody, Quoted{program},
        Quoted{program}, "''");
   line("FILE_SCHEMA",
-       std::array{Quoted{schema == Schema::ap242 ? "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }"
-                                                 : "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }"}});
+       std::array{Quoted{schema == Schema::ap242
+                             ? "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }"
+                             : "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }"}});
   text.token("ENDSEC;\nDATA;\n");
 }
 
@@ -121,11 +122,12 @@ class YarnWriter : public BodyWriter {
     const YarnFaces::Shape shape = faces_.write(body);
     ++facts_.entities[shape.is_solid ? "MANIFOLD_SOLID_BREP" : "SHELL_BASED_SURFACE_MODEL"];
     if (!shape.is_solid)
-      facts_.messages.push_back(warning(Kind::geometry,
-                                        fmt::format("yarn '{}' has no end faces: it is written as an open shell, "
-                                                    "not as a solid; --ends patch closes it",
-                                                    body.name),
-                                        about(body)));
+      facts_.messages.push_back(
+          warning(Kind::geometry,
+                  fmt::format("yarn '{}' has no end faces: it is written as an open shell, "
+                              "not as a solid; --ends patch closes it",
+                              body.name),
+                  about(body)));
     products_.represent(
         part.product,
         shape.is_solid ? "ADVANCED_BREP_SHAPE_REPRESENTATION" : "MANIFOLD_SURFACE_SHAPE_REPRESENTATION",

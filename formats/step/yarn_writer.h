@@ -1,5 +1,5 @@
-// Writes yarns as STEP solids, each when it comes: nothing but numbers of entities is kept, so memory does not
-// grow with what is written. What is no yarn is written by the module's writer (writer.h).
+// Writes yarns as STEP solids, each when it comes: nothing but numbers of entities is kept, so memory does
+// not grow with what is written. What is no yarn is written by the module's writer (writer.h).
 #pragma once
 
 #include <memory>

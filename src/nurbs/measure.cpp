@@ -72,8 +72,7 @@ struct Node {
   BasisRow value, slope;
 };
 
-std::vector<Node> gauss_nodes(const std::vector<double>& knots, int degree, int count, int order,
-                              int parts) {
+std::vector<Node> gauss_nodes(const std::vector<double>& knots, int degree, int count, int order, int parts) {
   std::vector<double> breaks = breakpoints(knots, degree);
   if (parts > 1) {
     std::vector<double> finer = {breaks.front()};
@@ -205,7 +204,8 @@ Moments moments(const Surface& surface, const Vec3& origin, double area_error) {
   };
   int parts = parts_of(surface);
   Moments coarse = by_gauss(6, parts), fine = by_gauss(8, parts);
-  for (int i = 0; i < most_halvings && std::abs(fine.area - coarse.area) > std::max(area_error, 1e-11 * fine.area);
+  for (int i = 0;
+       i < most_halvings && std::abs(fine.area - coarse.area) > std::max(area_error, 1e-11 * fine.area);
        ++i) {
     parts *= 2;
     coarse = fine;

@@ -26,7 +26,8 @@ struct Moments {
   double area = 0;
   Vec3 area_vector = Vec3::Zero();  // of a closed body's faces the sum is 0
   double volume = 0;                // volume_flux(surface, origin)
-  Vec3 first = Vec3::Zero();        // of the volume: the sum over a body's faces is (centroid - origin) times its volume
+  Vec3 first =
+      Vec3::Zero();  // of the volume: the sum over a body's faces is (centroid - origin) times its volume
 
   Moments& operator+=(const Moments& other);
   // Of the same face with its normal turned over.

@@ -33,8 +33,7 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
   surface.tolerance =
       converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, surface.units);
   surface.yarns_are_solids = fabric.yarns_are_solids;
-  surface.has_others =
-      !fabric::pieces_of(fabric).empty() || !fabric.parts.empty() || !fabric.curves.empty();
+  surface.has_others = !fabric::pieces_of(fabric).empty() || !fabric.parts.empty() || !fabric.curves.empty();
   surface.own = job.options.of_formats;
   surface.threads = static_cast<int>(job.threads);
   return surface;

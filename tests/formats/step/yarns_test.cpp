@@ -1,4 +1,5 @@
-// STEP files of yarns as our own writer has them: what they say of themselves, computed anew from what is read.
+// STEP files of yarns as our own writer has them: what they say of themselves, computed anew from what is
+// read.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -47,7 +48,8 @@ std::vector<Vec3> centres(std::string text) {
 
 TEST(StepYarns, SayTheirVolumes) {
   for (const EndStyle style : {EndStyle::patch, EndStyle::fan, EndStyle::planar}) {
-    const std::vector<yarn::Body> bodies = {tests::wave("wave", style), tests::tube("tube", style, 2.0, {3, 4, 5})};
+    const std::vector<yarn::Body> bodies = {tests::wave("wave", style),
+                                            tests::tube("tube", style, 2.0, {3, 4, 5})};
     const std::string text = written(bodies);
     const std::vector<double> volumes = measures(text, "VOLUME_MEASURE");
     ASSERT_EQ(volumes.size(), 3U) << text.substr(0, 300);
@@ -66,7 +68,8 @@ TEST(StepYarns, SayTheirVolumes) {
 TEST(StepYarns, ARingHasThePappusArea) {
   const std::string text = written({tests::ring("ring", 1.0, 5.0)});
   const double square = std::numbers::pi * std::numbers::pi;
-  const std::vector<double> areas = measures(text, "AREA_MEASURE"), volumes = measures(text, "VOLUME_MEASURE");
+  const std::vector<double> areas = measures(text, "AREA_MEASURE"),
+                            volumes = measures(text, "VOLUME_MEASURE");
   ASSERT_EQ(areas.size(), 2U) << text.substr(0, 300);
   EXPECT_NEAR(areas[0] / (4 * square * 5 * 0.5), 1.0, 2e-3);
   EXPECT_NEAR(volumes[0] / (2 * square * 5 * 0.25), 1.0, 2e-3);
@@ -92,7 +95,8 @@ TEST(StepYarns, ADiskOfTheUnitCircleHasItsMoments) {
   const Vec3 at(1, 2, 3);
   for (const double radius : {0.0, 1.0})
     for (int i = 0; i < 9; ++i) {
-      const double angle = std::numbers::pi / 4 * i, reach = i % 2 == 0 ? radius : radius * std::numbers::sqrt2;
+      const double angle = std::numbers::pi / 4 * i,
+                   reach = i % 2 == 0 ? radius : radius * std::numbers::sqrt2;
       disc.points.push_back(at + reach * Vec3(std::cos(angle), std::sin(angle), 0));
       disc.weights.push_back(i % 2 == 0 ? 1.0 : std::numbers::sqrt2 / 2);
     }
