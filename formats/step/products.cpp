@@ -139,6 +139,34 @@ void Products::color(Id item, const yarn::Color& color) {
   text_.put("MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION", "''", std::array{styled}, context_);
 }
 
+void Products::made_of(const Product& part, std::string_view material, double density) {
+  const auto property = [&](std::string_view name, Id item) {
+    const Id definition = text_.put("PROPERTY_DEFINITION", "'material property'", Quoted{name}, part.definition);
+    const Id representation = text_.put("REPRESENTATION", Quoted{name}, std::array{item}, context_);
+    text_.put("PROPERTY_DEFINITION_REPRESENTATION", definition, representation);
+  };
+  if (!material.empty())
+    property("material name", text_.put("DESCRIPTIVE_REPRESENTATION_ITEM", Quoted{material}, Quoted{material}));
+  if (!(density > 0)) return;
+  if (density_.number == 0) {
+    const auto unit = [this](std::string_view kind, const char* prefix, const char* name) {
+      return put_complex(
+          text_, [&] { text_.part(kind); }, [&] { text_.part("NAMED_UNIT", "*"); },
+          [&] { text_.part("SI_UNIT", prefix, name); });
+    };
+    const Id gram = unit("MASS_UNIT", "$", ".GRAM."), centimetre = unit("LENGTH_UNIT", ".CENTI.", ".METRE.");
+    density_ = text_.put("DERIVED_UNIT", std::array{text_.put("DERIVED_UNIT_ELEMENT", gram, 1.),
+                                                    text_.put("DERIVED_UNIT_ELEMENT", centimetre, -3.)});
+  }
+  property("density", text_.put("MEASURE_REPRESENTATION_ITEM", "'density measure'",
+                                Measure{"POSITIVE_RATIO_MEASURE", density}, density_));
+}
+
+void Products::write_layers() {
+  for (const auto& [name, items] : layers_)
+    text_.put("PRESENTATION_LAYER_ASSIGNMENT", Quoted{name}, "''", items);
+}
+
 void Products::validate(const Product& product, const Properties& properties) {
   std::vector<Id> items;
   if (properties.volume)

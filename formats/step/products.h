@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <string>
 
 #include "core/units.h"
 #include "formats/step/entity_text.h"
@@ -45,6 +46,11 @@ class Products {
 
   // The colour of a solid or a shell.
   void color(Id item, const yarn::Color& color);
+  // What the part is made of: the material's name, may be empty, and its density, g/cm3, 0: not known.
+  void made_of(const Product& part, std::string_view material, double density);
+  // A part's solid or shell is on the layer of this name; write_layers() writes all layers.
+  void on_layer(std::string_view name, Id item) { layers_[std::string(name)].push_back(item); }
+  void write_layers();
   // Volume, area and centre, by the CAx-IF's recommended practice for validation properties.
   void validate(const Product& product, const Properties& properties);
 
@@ -56,9 +62,11 @@ class Products {
   EntityText& text_;
   Id product_context_, definition_context_;
   Id length_, area_, volume_;  // units
+  Id density_;                 // of grams and centimetres; written when the first part has one
   Id context_;                 // of all representations
   Id modelled_, unmoved_;      // the axes in which parts are modelled, and those in which they are placed
   std::map<std::array<int, 3>, Id> styles_;
+  std::map<std::string, std::vector<Id>> layers_;
   int placed_ = 0;
 };
 

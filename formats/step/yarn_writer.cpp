@@ -94,6 +94,7 @@ class YarnWriter : public BodyWriter {
     if (count_ == 0) return error(Kind::geometry, "there is neither a yarn nor a piece to write");
     for (const auto& [name, group] : groups_) complete(group);
     complete(whole_);
+    products_.write_layers();
     text_.token("ENDSEC;\nEND-ISO-10303-21;\n");
     if (Status status = text_.finish(); !status.ok()) return status.error();
     return std::move(facts_);
@@ -116,7 +117,7 @@ class YarnWriter : public BodyWriter {
   }
 
   Result<Part> write_part(const yarn::Body& body) {
-    const Result<YarnMeasures> measures = measured(body);
+    const Result<YarnMeasures> measures = measures_.of(body);
     if (!measures) return measures.error();
     Part part{products_.add(body.name), *measures};
     const YarnFaces::Shape shape = faces_.write(body);
@@ -133,6 +134,8 @@ class YarnWriter : public BodyWriter {
         shape.is_solid ? "ADVANCED_BREP_SHAPE_REPRESENTATION" : "MANIFOLD_SURFACE_SHAPE_REPRESENTATION",
         shape.item);
     products_.color(shape.item, body.color);
+    products_.on_layer(yarn::name_of(body.role), shape.item);
+    products_.made_of(part.product, body.material, shape.is_solid ? body.density : 0);
     products_.validate(part.product, properties_of(*measures));
     return part;
   }
@@ -166,6 +169,7 @@ class YarnWriter : public BodyWriter {
   EntityText text_;
   Products products_;
   YarnFaces faces_;
+  MeasuredYarns measures_;
   Assembly whole_;
   std::map<std::string, Assembly> groups_;  // by the yarn's name
   std::map<std::size_t, Part> shapes_;      // that stand in several places, by their number

@@ -11,7 +11,8 @@
 namespace selvage::benchmarks {
 
 // A yarn of 18 x 16 control points that waves through a cloth: coordinates with all their digits, knots as
-// methods.md has them, two patch ends. Yarn k differs from its neighbours in place and phase.
+// methods.md has them, two patch ends. Yarn k differs from its neighbours in place and phase, and in
+// the height of its waves where one is given.
 class Cloth {
  public:
   Cloth() {
@@ -27,11 +28,11 @@ class Cloth {
     body_.quarters = {0, 0.25, 0.5, 0.75};
   }
 
-  const yarn::Body& yarn(int k) {
+  const yarn::Body& yarn(int k, double height = 0.1317) {
     const bool weft = k % 2 == 1;
     const double place = 0.5137 * (k / 2 + 0.5), phase = std::numbers::pi * (k / 2 % 2);
     for (int j = 0; j < 16; ++j) {
-      const double along = 8.2193 * j / 15, z = 0.1317 * std::cos(along * 6.1152 + phase);
+      const double along = 8.2193 * j / 15, z = height * std::cos(along * 6.1152 + phase);
       for (int i = 0; i < 18; ++i) {
         // The clamped form of 16 points round: the seam is the midpoint of an edge.
         const double turn = i == 0 || i == 17 ? -0.5 : i - 1.0;

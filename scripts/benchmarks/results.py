@@ -88,9 +88,11 @@ def step_write(bin_folder, folder, quick):
     command = [f"{bin_folder}/step_write", "--folder", folder] + (["--repeats", "1"] if quick else [])
     command += ["--sizes", "64,512" if quick else "64,512,2048"]
     rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
-    return table(["yarns", "s", "ms a yarn", "MB", "memory, MiB"],
-                 [[str(row["yarns"]), f"{row['seconds']:.2f}", f"{1e3 * row['seconds'] / row['yarns']:.2f}",
-                   f"{row['bytes'] / 1e6:.1f}", f"{row['peak_rss_growth_mib']:.0f}"] for row in rows])
+    return table(["writer", "yarns", "s", "processor's s", "ms a yarn", "MB", "memory, MiB", "times OpenCASCADE's speed"],
+                 [[row["writer"], str(row["yarns"]), f"{row['seconds']:.3f}", f"{row['cpu_seconds']:.3f}",
+                   f"{1e3 * row['seconds'] / row['yarns']:.2f}", f"{row['bytes'] / 1e6:.1f}",
+                   f"{row['peak_rss_growth_mib']:.1f}", f"{row['times_occt']:.0f}" if "times_occt" in row else ""]
+                  for row in rows])
 
 
 # Chang et al. (methods.md, 1): mean time of one drawing of the centre lines of 50 x 50 loops, s. On their machine, with its

@@ -1,7 +1,8 @@
 // How STEP writing grows with the number of yarns, each size in a process of its own so that the peak memory
-// is that job's. Medians of several repeats; one JSON object to standard output.
+// is that job's: by our writer, of yarns that repeat as a weave's do and of yarns that are all different, and
+// by OpenCASCADE. Medians of several repeats; one JSON object to standard output.
 //
-//   step_write [--repeats N] [--sizes N,N,...] [--folder DIR]
+//   step_write [--repeats N] [--sizes N,N,...] [--folder DIR] [--no-occt]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,6 +27,7 @@ void require(const Status& status) {
 struct Job {
   int yarns;
   std::string path;
+  bool by_occt = false, repeats = true;
 };
 
 struct Outcome {
@@ -41,7 +43,7 @@ double clock_seconds(clockid_t clock) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-Outcome ours(const Job& job) {
+Outcome write(const Job& job) {
   Outcome outcome;
   benchmarks::Cloth cloth;
   double wall = 0, cpu = 0;
@@ -56,11 +58,13 @@ Outcome ours(const Job& job) {
   start();
   Result<OutputFile> output = OutputFile::create(job.path);
   if (!output) fail(to_string(output.error()));
-  auto writer = formats::step::descriptor().open_bodies(*output, {});
+  formats::SurfaceOptions options;
+  options.has_others = job.by_occt;
+  auto writer = formats::step::descriptor().open_bodies(*output, options);
   if (!writer) fail(to_string(writer.error()));
   stop();
   for (int k = 0; k < job.yarns; ++k) {
-    const yarn::Body& body = cloth.yarn(k);
+    const yarn::Body& body = cloth.yarn(k, job.repeats ? 0.1317 : 0.1317 * (1 + 1e-4 * k));
     start();
     require((*writer)->add(body));
     stop();
@@ -83,14 +87,28 @@ int main(int count, char** words) {
   std::vector<std::string> rows;
   for (const int yarns : given.sizes) {
     const Job job{yarns, given.folder + "/cloth.stp"};
-    std::vector<Measured> all;
-    for (int k = 0; k < given.repeats; ++k)
-      all.push_back(measure(ours, Job{std::min(yarns, 8), job.path}, job));
-    const Measured m = median(all);
-    rows.push_back(fmt::format(
-        R"(  {{"yarns": {}, "seconds": {:.6g}, "cpu_seconds": {:.6g}, "bytes": {}, "yarns_per_s": {:.0f}, "peak_rss_growth_mib": {:.1f}}})",
-        yarns, m.outcome.seconds, m.outcome.cpu_seconds, m.outcome.bytes, yarns / m.outcome.seconds,
-        m.peak_mib));
+    Job occt = job, all_different = job;
+    occt.by_occt = true;
+    all_different.repeats = false;
+    std::vector<Measured> by_occt;
+    for (const auto& [writer, its] : {std::pair{"OpenCASCADE", occt}, std::pair{"selvage", job},
+                                      std::pair{"selvage, all different", all_different}}) {
+      if (its.by_occt && !given.with_occt) continue;
+      Job small = its;
+      small.yarns = std::min(yarns, 8);
+      std::vector<Measured> all;
+      for (int k = 0; k < given.repeats; ++k) all.push_back(measure(write, small, its));
+      const Measured m = median(all);
+      if (its.by_occt) by_occt = all;
+      const std::string ratio =
+          its.by_occt || by_occt.empty()
+              ? ""
+              : fmt::format(R"(, "times_occt": {:.1f})", benchmarks::median_ratio(by_occt, all));
+      rows.push_back(fmt::format(
+          R"(  {{"writer": "{}", "yarns": {}, "seconds": {:.6g}, "cpu_seconds": {:.6g}, "bytes": {}, "yarns_per_s": {:.0f}, "peak_rss_growth_mib": {:.1f}{}}})",
+          writer, yarns, m.outcome.seconds, m.outcome.cpu_seconds, m.outcome.bytes, yarns / m.outcome.seconds,
+          m.peak_mib, ratio));
+    }
   }
   benchmarks::print_rows("step_write", "", given.repeats, rows);
 }

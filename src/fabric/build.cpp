@@ -118,6 +118,16 @@ void describe(yarn::Body& body, const std::string& name, const std::string& thre
   body.place = place;
 }
 
+// What its material has, else by the mass along it, else by what the thread says of its section.
+double density_of(const Fabric& fabric, const Thread& thread, const yarn::Body& body) {
+  if (const Material* const material = fabric.find_material(body.material))
+    if (material->density) return *material->density;
+  if (thread.linear_density && body.volume > 0)  // g/km by mm2 is 1e-3 g/cm3
+    return 1e-3 * thread.linear_density->tex() * body.length /
+           (body.volume * std::pow(millimetres_per(fabric.units), 2));
+  return thread.density && thread.packing ? *thread.density * *thread.packing : 0;
+}
+
 }  // namespace
 
 std::optional<double> smallest_section(const Fabric& fabric) {
@@ -440,12 +450,14 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
     if (const auto* read = std::get_if<std::shared_ptr<const yarn::Body>>(&entry.yarn->shape))
       return as_read(**read, entry);
   yarn::Body body;
+  Thread thread;
   if (entry.yarn != nullptr && std::holds_alternative<Grid>(entry.yarn->shape)) {
     Result<yarn::Body> filled = build_grid(*entry.yarn);
     if (!filled) return placed(filled.error(), entry);
     body = std::move(*filled);
     if (Status finished = yarn::finish(body, sealings_of(entry.yarn, options_)); !finished)
       return placed(finished.error(), entry);
+    body.density = density_of(*fabric_, resolved_thread(*fabric_, *entry.yarn), body);
   } else {
     Result<YarnPlan> made = plan_of(entry);
     if (!made) return made.error();
@@ -480,6 +492,7 @@ Result<yarn::Body> YarnBuilder::build_swept(const Entry& entry, YarnPlan plan) c
     if (Status finished = yarn::finish(body, shape.sealings); !finished) return finished.error();
     if (entry.yarn == nullptr) shapes_->keep(shape, body);
   }
+  body.density = density_of(*fabric_, plan.thread, body);
   if (plan.at != Vec3::Zero()) yarn::move(body, plan.at, shape.spec.grid);
   return body;
 }

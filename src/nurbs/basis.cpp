@@ -131,10 +131,10 @@ GaussRule make_rule(int n) {
 const GaussRule& gauss_rule(int n) {
   static const std::vector<GaussRule> rules = [] {
     std::vector<GaussRule> all;
-    for (int i = 1; i <= 8; ++i) all.push_back(i == 1 ? GaussRule{{0.0}, {2.0}} : make_rule(i));
+    for (int i = 1; i <= 10; ++i) all.push_back(i == 1 ? GaussRule{{0.0}, {2.0}} : make_rule(i));
     return all;
   }();
-  return rules[static_cast<std::size_t>(std::clamp(n, 1, 8) - 1)];
+  return rules[static_cast<std::size_t>(std::clamp(n, 1, 10) - 1)];
 }
 
 }  // namespace selvage::nurbs

@@ -32,7 +32,7 @@ void polar_form(const std::vector<double>& knots, int degree, int span, const do
 // coefficients.
 std::vector<double> greville(const std::vector<double>& knots, int degree, int count);
 
-// Gauss-Legendre nodes and weights on [-1, 1], n = 1..8: exact for polynomials of degree 2n - 1.
+// Gauss-Legendre nodes and weights on [-1, 1], n = 1..10: exact for polynomials of degree 2n - 1.
 struct GaussRule {
   std::vector<double> nodes, weights;
 };

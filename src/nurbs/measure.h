@@ -34,10 +34,10 @@ struct Moments {
   [[nodiscard]] Moments turned() const { return {area, -area_vector, -volume, -first}; }
 };
 
-// All but the area is exact for polynomial surfaces of degrees to 4, to rounding. The area is exact to
-// `area_error` (or 1e-11 of itself, where that is more): spans are halved until two rules agree so far, five
-// times at most. One third and one quarter of the flux of (position - origin) and of its tensor square:
-// divergence theorem.
+// All but the area is exact for polynomial surfaces, to rounding. The area is exact to `area_error` or 1e-10
+// of itself, whichever is more, by estimate: spans are halved until two rules agree so far, five times at
+// most. One third and one quarter of the flux of (position - origin) and of its tensor square: divergence
+// theorem.
 Moments moments(const Surface& surface, const Vec3& origin, double area_error = 0);
 
 }  // namespace selvage::nurbs

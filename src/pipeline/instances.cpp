@@ -1,6 +1,7 @@
 #include "pipeline/instances.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace selvage::pipeline {
 
@@ -25,7 +26,8 @@ InstanceFinder::Kind InstanceFinder::kind_of(const yarn::Body& body) {
           static_cast<int>(body.role),
           body.color.red,
           body.color.green,
-          body.color.blue};
+          body.color.blue,
+          std::llround(1e6 * body.density)};
 }
 
 double InstanceFinder::tolerance_of(const yarn::Body& body) const {

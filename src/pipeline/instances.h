@@ -29,8 +29,8 @@ class InstanceFinder {
   [[nodiscard]] const Found& found() const { return found_; }
 
  private:
-  // What must be the same, role and colour among it: a copy has those of its shape.
-  using Kind = std::tuple<int, int, int, int, bool, bool, int, int, int, int, int, int>;
+  // What must be the same, role, colour and density (to six places) among it: a copy has those of its shape.
+  using Kind = std::tuple<int, int, int, int, bool, bool, int, int, int, int, int, int, long long>;
   static Kind kind_of(const yarn::Body& body);
   [[nodiscard]] double tolerance_of(const yarn::Body& body) const;
 

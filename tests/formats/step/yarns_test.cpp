@@ -83,6 +83,68 @@ TEST(StepYarns, AnOpenYarnHasAnAreaOnly) {
   EXPECT_NE(text.find("SHELL_BASED_SURFACE_MODEL('sleeve'"), std::string::npos);
 }
 
+// Each after the other, and each in a file of its own.
+TEST(StepYarns, CopiesMeasureAsTheyDoAlone) {
+  const yarn::Body first = tests::wave("first", EndStyle::patch);
+  const Eigen::AngleAxisd turn(0.7, Vec3(1, 2, 3).normalized());
+  const auto moved = [&](const Vec3& p) { return Vec3(turn * p + Vec3(30, -20, 10)); };
+  yarn::Body copy = first, other = tests::wave("other", EndStyle::patch, 1.001);
+  copy.name = "copy";
+  for (nurbs::Surface* surface : {&copy.surface, &copy.start.surface, &copy.end.surface})
+    for (Vec3& p : surface->points) p = moved(p);
+  const std::string text = written({first, copy, other});
+  const std::vector<double> volumes = measures(text, "VOLUME_MEASURE"), areas = measures(text, "AREA_MEASURE");
+  ASSERT_EQ(volumes.size(), 4U) << text.substr(0, 300);
+  std::size_t i = 0;
+  for (const yarn::Body* const body : std::initializer_list<const yarn::Body*>{&first, &copy, &other}) {
+    const std::string alone = written({*body});
+    EXPECT_NEAR(volumes[i] / measures(alone, "VOLUME_MEASURE").at(0), 1.0, 1e-12) << body->name;
+    EXPECT_NEAR(areas[i] / measures(alone, "AREA_MEASURE").at(0), 1.0, 1e-12) << body->name;
+    EXPECT_LT((centres(text).at(i) - centres(alone).at(0)).norm(), 1e-12) << body->name;
+    ++i;
+  }
+  EXPECT_LT((centres(text)[1] - moved(centres(text)[0])).norm(), 1e-12);
+  EXPECT_GT(volumes[2] / volumes[0], 1.002);
+}
+
+TEST(StepYarns, APlaneEndThatCrossesItselfIsRefused) {
+  // A section with two lobes, one smaller than the other, run round in opposite directions.
+  const auto eight = [](double waist) {
+    return tests::grid_body("eight", EndStyle::planar, 24, 6, false, [&](double round, double along) -> Vec3 {
+      const double angle = 2 * std::numbers::pi * round, x = std::cos(angle);
+      return {x + 0.3 * x * x, waist * std::sin(2 * angle) * (1.2 + x) + (1 - waist) * std::sin(angle), 5 * along};
+    });
+  };
+  const std::string crossing = written({eight(1.0)}), round = written({eight(0.1)});
+  EXPECT_NE(crossing.find("yarn 'eight': the outline at its start crosses itself"), std::string::npos)
+      << crossing.substr(0, 300);
+  EXPECT_TRUE(round.starts_with("ISO-10303-21;")) << round.substr(0, 300);
+}
+
+// The paraboloid z = (x^2 + y^2) / 2 over the unit square: its area is known in closed form.
+TEST(StepYarns, AParaboloidHasItsArea) {
+  nurbs::Surface bowl;
+  bowl.degree_u = bowl.degree_v = 2;
+  bowl.count_u = bowl.count_v = 3;
+  bowl.knots_u = bowl.knots_v = {0, 0, 0, 1, 1, 1};
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) bowl.points.emplace_back(0.5 * i, 0.5 * j, (i == 2 ? 0.5 : 0) + (j == 2 ? 0.5 : 0));
+  // Inner integral by hand, the outer one by Simpson's rule on 2000 steps.
+  const auto inner = [](double x) {
+    const double a = 1 + x * x, root = std::sqrt(a + 1);
+    return 0.5 * (root + a * std::asinh(1 / std::sqrt(a)));
+  };
+  double area = 0;
+  const int steps = 2000;
+  for (int k = 0; k <= steps; ++k)
+    area += inner(1.0 * k / steps) * (k == 0 || k == steps ? 1 : k % 2 == 1 ? 4 : 2) / (3.0 * steps);
+  const nurbs::Moments moments = nurbs::moments(bowl, Vec3::Zero());
+  EXPECT_NEAR(moments.area, area, 2e-10);
+  EXPECT_LT((moments.area_vector - Vec3(-0.5, -0.5, 1)).norm(), 1e-14);
+  // (x, y, z) . (-x, -y, 1) = -z, whose integral is 1/3.
+  EXPECT_NEAR(moments.volume, -1.0 / 9, 1e-15);
+}
+
 TEST(StepYarns, ADiskOfTheUnitCircleHasItsMoments) {
   // A rational quarter turn after the other: exact.
   nurbs::Surface disc;
