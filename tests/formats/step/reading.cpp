@@ -12,17 +12,22 @@
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <ShapeAnalysis_ShapeTolerance.hxx>
+#include <TColStd_HSequenceOfExtendedString.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_AsciiString.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDataStd_Name.hxx>
+#include <TDataStd_TreeNode.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <TopoDS.hxx>
+#include <XCAFDoc.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_LayerTool.hxx>
+#include <XCAFDoc_MaterialTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <cmath>
 
@@ -81,6 +86,8 @@ ReadFile read_step(const std::string& path, bool into_groups) {
   STEPCAFControl_Reader reader;
   reader.SetColorMode(true);
   reader.SetNameMode(true);
+  reader.SetMatMode(true);
+  reader.SetLayerMode(true);
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) return file;
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
@@ -88,6 +95,7 @@ ReadFile read_step(const std::string& path, bool into_groups) {
   Handle(TDocStd_Document) document = new TDocStd_Document("BinXCAF");
   if (!reader.Transfer(document)) return file;
   const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  const Handle(XCAFDoc_LayerTool) layers = XCAFDoc_DocumentTool::LayerTool(document->Main());
   const Handle(XCAFDoc_ColorTool) colors = XCAFDoc_DocumentTool::ColorTool(document->Main());
   TDF_LabelSequence roots;
   shapes->GetFreeShapes(roots);
@@ -119,6 +127,16 @@ ReadFile read_step(const std::string& path, bool into_groups) {
       const auto byte = [](double share) { return static_cast<int>(std::lround(255 * share)); };
       part.color = {byte(red), byte(green), byte(blue)};
     }
+    Handle(TDataStd_TreeNode) made_of;
+    if (label.FindAttribute(XCAFDoc::MaterialRefGUID(), made_of) && made_of->HasFather()) {
+      Handle(TCollection_HAsciiString) name, description, density_name, density_type;
+      XCAFDoc_DocumentTool::MaterialTool(document->Main())
+          ->GetMaterial(made_of->Father()->Label(), name, description, part.density, density_name, density_type);
+      part.material = name->ToCString();
+    }
+    Handle(TColStd_HSequenceOfExtendedString) its_layers;
+    if (layers->GetLayers(shape, its_layers) && its_layers->Length() == 1)
+      part.layer = TCollection_AsciiString(its_layers->Value(1)).ToCString();
     file.parts.push_back(std::move(part));
   }
   file.ok = true;

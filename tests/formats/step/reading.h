@@ -17,6 +17,8 @@ struct ReadPart {
   int faces = 0;
   int free_edges = 0;
   double volume = 0;     // mm^3
+  std::string material, layer;
+  double density = 0;    // g/cm3
   double tolerance = 0;  // the largest of its edges and vertices, mm
   Box3 box;              // of its control points, mm
 };

@@ -112,6 +112,24 @@ TEST_F(Step, EveryUnitKeepsLengthsAndBits) {
     }
 }
 
+TEST_F(Step, MaterialsAndLayersAreRead) {
+  for (Unit unit : all_units) {
+    yarn::Body warp = tests::tube("warp", EndStyle::patch), weft = tests::tube("weft", EndStyle::fan, 1.0, {3, 0, 0});
+    warp.role = yarn::Role::warp;
+    warp.material = "E-glass";
+    warp.density = 1.875;
+    weft.role = yarn::Role::weft;
+    ASSERT_TRUE(write({warp, weft}, in_unit(unit)).ok());
+    const tests::ReadFile read = tests::read_step(path());
+    ASSERT_EQ(read.parts.size(), 2U);
+    EXPECT_EQ(read.parts[0].material, "E-glass");
+    EXPECT_NEAR(read.parts[0].density, 1.875, 1e-12) << name_of(unit);
+    EXPECT_EQ(read.parts[0].layer, "warp");
+    EXPECT_EQ(read.parts[1].density, 0);
+    EXPECT_EQ(read.parts[1].layer, "weft");
+  }
+}
+
 TEST_F(Step, FineFibreInMetres) {
   const yarn::Body body = tests::wave("fibre", EndStyle::patch, 1e-5);  // 8 micrometres wide
   ASSERT_TRUE(write({body}, in_unit(Unit::m)).ok());
