@@ -96,17 +96,6 @@ class Shapes:
         return p, (dh[:, :3] - dh[:, 3:] * p) / h[:, 3:] * rule[:, None], polygon[0], polygon[-1]
 
     def spline_face(self, parts):
-        """The area of a surface with a crease inside a span converges slowly: parts are halved until it stands."""
-        measured, finer = self.spline_face_in(parts, 1), 2
-        while True:
-            before, measured = measured, self.spline_face_in(parts, finer)
-            if abs(before[0].area - measured[0].area) < 1e-10 * measured[0].area:
-                return measured
-            finer *= 2
-            if finer > 64:
-                raise Wrong("the area of a face does not converge")
-
-    def spline_face_in(self, parts, finer):
         if len(parts) == 1:
             _, degree_u, degree_v, rows, _, _, _, _, many_u, many_v, values_u, values_v, _ = parts["B_SPLINE_SURFACE_WITH_KNOTS"]
             weights = np.ones((len(rows), len(rows[0])))
@@ -118,16 +107,38 @@ class Shapes:
         v = full(many_v, values_v, degree_v, len(rows[0]))
         net = np.array([[self.point(p) for p in row] for row in rows])
         net = np.concatenate([weights[..., None] * net, weights[..., None]], axis=2)
-        us, rule_u = nodes(u, finer)
-        vs, rule_v = nodes(v, finer)
-        over = lambda of_u, of_v: np.einsum("ai,ijk,bj->abk", of_u, net, of_v, optimize=True)
-        bu, bv = basis(u, degree_u, us), basis(v, degree_v, vs)
-        h, hu, hv = over(bu, bv), over(slopes(u, degree_u, us), bv), over(bu, slopes(v, degree_v, vs))
-        p = h[..., :3] / h[..., 3:]
-        normals = np.cross((hu[..., :3] - hu[..., 3:] * p) / h[..., 3:], (hv[..., :3] - hv[..., 3:] * p) / h[..., 3:])
-        normals *= (rule_u[:, None] * rule_v)[..., None]
-        flux = np.einsum("abk,abk->ab", p, normals)
-        return Sums(np.linalg.norm(normals, axis=2).sum(), flux.sum() / 3, np.einsum("ab,abk->k", flux, p) / 4), normals.sum((0, 1))
+        breaks_u, breaks_v = np.unique(u), np.unique(v)
+
+        def over(ends_u, ends_v, finer):
+            """Sums, area vector and the areas of all spans between these ends, each in finer x finer parts."""
+            us, rule_u = nodes(ends_u, finer)
+            vs, rule_v = nodes(ends_v, finer)
+            bu, bv = basis(u, degree_u, us), basis(v, degree_v, vs)
+            at = lambda of_u, of_v: np.einsum("ai,ijk,bj->abk", of_u, net, of_v, optimize=True)
+            h, hu, hv = at(bu, bv), at(slopes(u, degree_u, us), bv), at(bu, slopes(v, degree_v, vs))
+            p, dw = h[..., :3] / h[..., 3:], h[..., 3:]
+            normals = np.cross((hu[..., :3] - hu[..., 3:] * p) / dw, (hv[..., :3] - hv[..., 3:] * p) / dw)
+            normals *= (rule_u[:, None] * rule_v)[..., None]
+            flux = np.einsum("abk,abk->ab", p, normals)
+            areas = np.linalg.norm(normals, axis=2)
+            spans = areas.reshape(len(ends_u) - 1, NODES * finer, len(ends_v) - 1, NODES * finer).sum((1, 3))
+            return Sums(areas.sum(), flux.sum() / 3, np.einsum("ab,abk->k", flux, p) / 4), normals.sum((0, 1)), spans
+
+        coarse = over(breaks_u, breaks_v, 1)[2]
+        sums, vector, areas = over(breaks_u, breaks_v, 2)
+        # Where a surface has a crease inside a span, its area converges slowly: parts of that span are halved until it stands.
+        enough = 1e-11 * sums.area
+        for i, j in np.argwhere(np.abs(areas - coarse) > enough):
+            area, finer, change = areas[i, j], 2, np.inf
+            while change > enough:
+                finer *= 2
+                if finer > 64:
+                    raise Wrong("the area of a face does not converge")
+                before, area = area, over(breaks_u[i:i + 2], breaks_v[j:j + 2], finer)[0].area
+                change = abs(area - before)
+            areas[i, j] = area
+        sums.area = areas.sum()
+        return sums, vector
 
     def plane_face(self, plane, loop):
         """A fan from a point of the plane to the outline; positive where that runs counter-clockwise."""
