@@ -65,7 +65,7 @@ struct SurfaceOptions {
 
 // A yarn that is another one in another place.
 struct Instance {
-  std::size_t shape = 0;                   // the same for all copies of one shape, in one colour, role and density
+  std::size_t shape = 0;  // the same for all copies of one shape, in one colour, role and density
   std::shared_ptr<const yarn::Body> body;  // the shape, where it was modelled: the first copy
   yarn::RigidMotion motion;                // from there to this copy
 };

@@ -141,12 +141,14 @@ void Products::color(Id item, const yarn::Color& color) {
 
 void Products::made_of(const Product& part, std::string_view material, double density) {
   const auto property = [&](std::string_view name, Id item) {
-    const Id definition = text_.put("PROPERTY_DEFINITION", "'material property'", Quoted{name}, part.definition);
+    const Id definition =
+        text_.put("PROPERTY_DEFINITION", "'material property'", Quoted{name}, part.definition);
     const Id representation = text_.put("REPRESENTATION", Quoted{name}, std::array{item}, context_);
     text_.put("PROPERTY_DEFINITION_REPRESENTATION", definition, representation);
   };
   if (!material.empty())
-    property("material name", text_.put("DESCRIPTIVE_REPRESENTATION_ITEM", Quoted{material}, Quoted{material}));
+    property("material name",
+             text_.put("DESCRIPTIVE_REPRESENTATION_ITEM", Quoted{material}, Quoted{material}));
   if (!(density > 0)) return;
   if (density_.number == 0) {
     const auto unit = [this](std::string_view kind, const char* prefix, const char* name) {

@@ -177,8 +177,7 @@ class MomentIntegrals {
     std::vector<Areas> strips;
     for (std::size_t strip = 0; strip < along_.spans(); ++strip) strips.push_back(all_of(strip, sum));
     for (const Areas& areas : strips) sum.area += total(areas);
-    const double enough =
-        std::max(area_error, 1e-10 * sum.area) / static_cast<double>(along_.spans());
+    const double enough = std::max(area_error, 1e-10 * sum.area) / static_cast<double>(along_.spans());
     for (std::size_t strip = 0; strip < strips.size(); ++strip)
       sum.area += refined(strip, strips[strip], enough) - total(strips[strip]);
     return sum;

@@ -65,8 +65,8 @@ struct BodyLabel {
   bool is_named = true, is_colored = true;
   double twist = 0;  // of the fibres, turns per file unit along the centre line; > 0: Z, < 0: S
   double fibre_area =
-      0;  // of the fibres in a section: tex / (1000 density), file units squared; 0: not known
-  double density = 0;          // of the solid, g/cm3: its mass by its volume, air and all; 0: not known
+      0;               // of the fibres in a section: tex / (1000 density), file units squared; 0: not known
+  double density = 0;  // of the solid, g/cm3: its mass by its volume, air and all; 0: not known
   bool section_turns = false;  // with the twist: the fibres follow the lines of constant u
   TextPlace place;             // in the file that it came from
   // Of a CAD file: the distance below which it calls two points one; 0: only rounding is none.

@@ -131,7 +131,8 @@ ReadFile read_step(const std::string& path, bool into_groups) {
     if (label.FindAttribute(XCAFDoc::MaterialRefGUID(), made_of) && made_of->HasFather()) {
       Handle(TCollection_HAsciiString) name, description, density_name, density_type;
       XCAFDoc_DocumentTool::MaterialTool(document->Main())
-          ->GetMaterial(made_of->Father()->Label(), name, description, part.density, density_name, density_type);
+          ->GetMaterial(made_of->Father()->Label(), name, description, part.density, density_name,
+                        density_type);
       part.material = name->ToCString();
     }
     Handle(TColStd_HSequenceOfExtendedString) its_layers;

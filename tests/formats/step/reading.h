@@ -16,7 +16,7 @@ struct ReadPart {
   bool valid = false;  // BRepCheck_Analyzer
   int faces = 0;
   int free_edges = 0;
-  double volume = 0;     // mm^3
+  double volume = 0;  // mm^3
   std::string material, layer;
   double density = 0;    // g/cm3
   double tolerance = 0;  // the largest of its edges and vertices, mm

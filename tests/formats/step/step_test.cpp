@@ -114,7 +114,8 @@ TEST_F(Step, EveryUnitKeepsLengthsAndBits) {
 
 TEST_F(Step, MaterialsAndLayersAreRead) {
   for (Unit unit : all_units) {
-    yarn::Body warp = tests::tube("warp", EndStyle::patch), weft = tests::tube("weft", EndStyle::fan, 1.0, {3, 0, 0});
+    yarn::Body warp = tests::tube("warp", EndStyle::patch),
+               weft = tests::tube("weft", EndStyle::fan, 1.0, {3, 0, 0});
     warp.role = yarn::Role::warp;
     warp.material = "E-glass";
     warp.density = 1.875;

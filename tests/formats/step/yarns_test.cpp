@@ -93,7 +93,8 @@ TEST(StepYarns, CopiesMeasureAsTheyDoAlone) {
   for (nurbs::Surface* surface : {&copy.surface, &copy.start.surface, &copy.end.surface})
     for (Vec3& p : surface->points) p = moved(p);
   const std::string text = written({first, copy, other});
-  const std::vector<double> volumes = measures(text, "VOLUME_MEASURE"), areas = measures(text, "AREA_MEASURE");
+  const std::vector<double> volumes = measures(text, "VOLUME_MEASURE"),
+                            areas = measures(text, "AREA_MEASURE");
   ASSERT_EQ(volumes.size(), 4U) << text.substr(0, 300);
   std::size_t i = 0;
   for (const yarn::Body* const body : std::initializer_list<const yarn::Body*>{&first, &copy, &other}) {
@@ -112,7 +113,8 @@ TEST(StepYarns, APlaneEndThatCrossesItselfIsRefused) {
   const auto eight = [](double waist) {
     return tests::grid_body("eight", EndStyle::planar, 24, 6, false, [&](double round, double along) -> Vec3 {
       const double angle = 2 * std::numbers::pi * round, x = std::cos(angle);
-      return {x + 0.3 * x * x, waist * std::sin(2 * angle) * (1.2 + x) + (1 - waist) * std::sin(angle), 5 * along};
+      return {x + 0.3 * x * x, waist * std::sin(2 * angle) * (1.2 + x) + (1 - waist) * std::sin(angle),
+              5 * along};
     });
   };
   const std::string crossing = written({eight(1.0)}), round = written({eight(0.1)});
@@ -128,7 +130,8 @@ TEST(StepYarns, AParaboloidHasItsArea) {
   bowl.count_u = bowl.count_v = 3;
   bowl.knots_u = bowl.knots_v = {0, 0, 0, 1, 1, 1};
   for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i) bowl.points.emplace_back(0.5 * i, 0.5 * j, (i == 2 ? 0.5 : 0) + (j == 2 ? 0.5 : 0));
+    for (int i = 0; i < 3; ++i)
+      bowl.points.emplace_back(0.5 * i, 0.5 * j, (i == 2 ? 0.5 : 0) + (j == 2 ? 0.5 : 0));
   // Inner integral by hand, the outer one by Simpson's rule on 2000 steps.
   const auto inner = [](double x) {
     const double a = 1 + x * x, root = std::sqrt(a + 1);
