@@ -127,6 +127,7 @@ YarnFaces::Outline YarnFaces::outline(const yarn::Body& body, bool last) {
 // A loop runs counter-clockwise about the normal of its face, which is the surface's or points against it.
 void YarnFaces::face(Id surface, const std::vector<Use>& loop, bool is_inward) {
   std::vector<Id> uses;
+  uses.reserve(loop.size());
   for (const Use& use : loop)
     uses.push_back(text_.put("ORIENTED_EDGE", "''", "*", "*", use.edge, Flag{use.is_forward}));
   const Id bound = text_.put("FACE_OUTER_BOUND", "''", text_.put("EDGE_LOOP", "''", uses), Flag{!is_inward});

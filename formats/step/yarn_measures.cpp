@@ -195,7 +195,7 @@ Result<YarnMeasures> MeasuredYarns::of(const yarn::Body& body) {
       return measures;
     }
   }
-  const Result<YarnMeasures> measures = measured(body);
+  Result<YarnMeasures> measures = measured(body);
   const std::size_t points = body.surface.points.size();
   if (!measures || points > most_points) return measures;
   for (; points_ + points > most_points; known_.pop_front())
