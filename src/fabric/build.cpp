@@ -450,7 +450,6 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
     if (const auto* read = std::get_if<std::shared_ptr<const yarn::Body>>(&entry.yarn->shape))
       return as_read(**read, entry);
   yarn::Body body;
-  Thread thread;
   if (entry.yarn != nullptr && std::holds_alternative<Grid>(entry.yarn->shape)) {
     Result<yarn::Body> filled = build_grid(*entry.yarn);
     if (!filled) return placed(filled.error(), entry);

@@ -76,7 +76,8 @@ TEST(Header, ResolutionIsUsefulToReaders) {
   EXPECT_GT(resolution_for(0, 0), 0);
 }
 
-// Lists that are long enough for them, in one block of several rounds and with a rest; small buffers move in between.
+// Lists that are long enough for them, in one block of several rounds and with a rest; small buffers move in
+// between.
 TEST(Writer, ThreadsChangeNoByte) {
   std::vector<yarn::Body> bodies = {wave("long", {.sections = 3000}, EndStyle::patch),
                                     wave("short", {.y = 1}, EndStyle::patch),
