@@ -101,11 +101,33 @@ yarn::CentreLine course_line(const std::vector<Vec3>& points, nurbs::Parameteriz
   return line;
 }
 
-LoopTies::LoopTies(long long first, long long last, int repeat, int border, int range)
+nurbs::Curve periodic_course(const std::vector<Vec3>& points, const Vec3& period,
+                             nurbs::Parameterization how) {
+  const std::vector<double> t = nurbs::parameters(points, how);
+  nurbs::Curve curve;
+  curve.degree = 3;
+  curve.knots = nurbs::clamped_knots(t);
+  // What the line goes forward is a straight line of its own, whose control points lie at the means of knots.
+  const auto forward = [&](double parameter) { return parameter * period.transpose(); };
+  Eigen::MatrixXd data(static_cast<Eigen::Index>(points.size()) - 1, 3);
+  for (Eigen::Index i = 0; i < data.rows(); ++i)
+    data.row(i) =
+        points[static_cast<std::size_t>(i)].transpose() - forward(t[static_cast<std::size_t>(i)]);
+  const Eigen::MatrixXd control = nurbs::interpolate_periodic(t, data);
+  for (Eigen::Index i = 0; i < control.rows(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double mean = (curve.knots[k + 1] + curve.knots[k + 2] + curve.knots[k + 3]) / 3.0;
+    curve.points.emplace_back((control.row(i) + forward(mean)).transpose());
+  }
+  return curve;
+}
+
+LoopTies::LoopTies(long long first, long long last, long long repeat, int border, int range)
     : first_(first), count_(last - first + 1), reduced_(count_), repeat_(repeat), border_(border) {
-  const long long inner = count_ - 2LL * border, least = static_cast<long long>(repeat) + range;
+  if (is_periodic()) border_ = range = 0;
+  const long long inner = count_ - 2LL * border_, least = repeat + range;
   tied_ = inner >= least;
-  if (tied_) reduced_ = 2LL * border + least + (inner - least) % repeat;
+  if (tied_) reduced_ = 2LL * border_ + least + (inner - least) % repeat;
 }
 
 long long LoopTies::of_offset(long long offset, long long count) const {
@@ -118,9 +140,10 @@ namespace {
 
 std::vector<LoopTies> ties_of(const KnitField& field) {
   const int hold = field.chart.longest_hold();
-  return {LoopTies(field.first_course, field.last_course, field.chart.courses(), border_courses(field.chart),
-                   hold + 2),
-          LoopTies(field.first_wale, field.last_wale, field.chart.wales(), border_wales, range_wales)};
+  return {LoopTies(field.first_course, field.last_course, field.chart.repeat_of_courses(),
+                   border_courses(field.chart), hold + 2),
+          LoopTies(field.first_wale, field.last_wale, field.chart.repeat_of_wales(), border_wales,
+                   range_wales)};
 }
 
 // The class that each one is the mirror image of, if every course is its own image; else nothing.
@@ -161,8 +184,11 @@ KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_
   for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitZ())})
     radius = std::max(radius, reach(Vec3::UnitY(), direction));
   MendProblem problem;
+  if (ties_[0].is_periodic()) problem.repeat = {0, course_spacing, 0};
+  const bool goes_on = ties_[1].is_periodic();
   for (long long c = 0; c < courses; ++c) {
     MendLine line;
+    if (goes_on) line.period = {wale_spacing, 0, 0};
     for (long long w = 0; w <= wales; ++w) {
       const std::size_t first = line.points.size();
       const long long course = field.first_course + c, wale = field.first_wale + w;
@@ -171,7 +197,7 @@ KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_
       else
         line.points.push_back(last_sinker_point(reduced, course));
       const std::size_t own = loop(c, w);
-      const std::size_t like = loop(ties_[0].of_reduced(c), w < wales ? ties_[1].of_reduced(w) : wales);
+      const std::size_t like = loop(ties_[0].of_reduced(c), w < wales ? ties_[1].of_reduced(w) : end_wale());
       if (like == own) {
         first_class_[own] = problem.freedom.size();
         problem.freedom.resize(problem.freedom.size() + line.points.size() - first, Vec3::Ones());
@@ -184,13 +210,16 @@ KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_
             Vec3(wale_spacing * static_cast<double>(wale), course_spacing * static_cast<double>(course), 0);
       }
     }
-    line.curve = [scale, how = yarn.how](const std::vector<Vec3>& points) {
-      nurbs::Curve curve = course_line(scaled(points, scale), how).curve;
+    line.curve = [scale, period = line.period, how = yarn.how, goes_on](const std::vector<Vec3>& points) {
+      const std::vector<Vec3> true_points = scaled(points, scale);
+      nurbs::Curve curve = goes_on ? periodic_course(true_points, period, how)
+                                   : course_line(true_points, how).curve;
       curve.points = scaled(std::move(curve.points), scale.cwiseInverse());
       return curve;
     };
-    line.shares = [scale, how = yarn.how](const std::vector<Vec3>& points) {
-      return interpolation_shares(nurbs::parameters(scaled(points, scale), how));
+    line.shares = [scale, how = yarn.how, goes_on](const std::vector<Vec3>& points) {
+      const std::vector<double> t = nurbs::parameters(scaled(points, scale), how);
+      return goes_on ? periodic_shares(t) : interpolation_shares(t);
     };
     line.radius = radius;
     line.reach = reach;
@@ -200,10 +229,14 @@ KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_
   mending_ = mend(problem);
 }
 
+long long KnitMoves::end_wale() const {
+  return ties_[1].is_periodic() ? 0 : ties_[1].reduced_count();
+}
+
 std::size_t KnitMoves::loop_index(long long course, long long wale) const {
-  const long long wales = ties_[1].reduced_count();
   const bool is_end = wale > ties_[1].last();
-  return static_cast<std::size_t>(ties_[0].of(course) * (wales + 1) + (is_end ? wales : ties_[1].of(wale)));
+  return static_cast<std::size_t>(ties_[0].of(course) * (ties_[1].reduced_count() + 1) +
+                                  (is_end ? end_wale() : ties_[1].of(wale)));
 }
 
 void KnitMoves::apply(long long course, long long wale, std::vector<Vec3>& points, std::size_t first) const {

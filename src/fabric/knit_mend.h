@@ -28,11 +28,13 @@ struct KnitYarn {
 
 // Which loops move alike along one direction of the cloth: near its edges every one for itself, inside those
 // that are a whole number of repeats apart. What is solved is a reduced cloth, in which all loops of a class
-// have the neighbours that they have in the whole one.
+// have the neighbours that they have in the whole one. Where all loops are alike it is a single one, with its
+// own copies for neighbours: at the edges some of them are missing, so that nothing there is nearer.
 class LoopTies {
  public:
   // `range`: how many loops further one can touch.
-  LoopTies(long long first, long long last, int repeat, int border, int range);
+  LoopTies(long long first, long long last, long long repeat, int border, int range);
+  [[nodiscard]] bool is_periodic() const { return repeat_ == 1; }
   [[nodiscard]] long long last() const { return first_ + count_ - 1; }
   [[nodiscard]] long long reduced_count() const { return reduced_; }
   // The loop of the reduced cloth (counted from 0) that this one moves like.
@@ -43,10 +45,14 @@ class LoopTies {
  private:
   [[nodiscard]] long long of_offset(long long offset, long long count) const;
 
-  long long first_, count_, reduced_;
-  int repeat_, border_;
+  long long first_, count_, reduced_, repeat_;
+  int border_;
   bool tied_ = false;
 };
+
+// One repeat of a course that goes on as its own copies, `period` apart; the last point is the first one of
+// the next copy.
+nurbs::Curve periodic_course(const std::vector<Vec3>& points, const Vec3& period, nurbs::Parameterization how);
 
 // Loops beyond which the influence of an edge is not looked for.
 inline constexpr int border_wales = 2;
@@ -70,6 +76,8 @@ class KnitMoves {
 
  private:
   [[nodiscard]] std::size_t loop_index(long long course, long long wale) const;
+  // The loop of the reduced cloth whose first point moves like the last point of its course.
+  [[nodiscard]] long long end_wale() const;
 
   std::vector<LoopTies> ties_;            // of courses, of wales
   std::vector<std::size_t> first_class_;  // of each loop of the reduced cloth

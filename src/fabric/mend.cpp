@@ -1,5 +1,6 @@
 #include "fabric/mend.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -95,7 +96,7 @@ State Mender::state_at(Vector moves) const {
     for (std::size_t i = 0; i < points.size(); ++i)
       if (line.classes[i] >= 0) points[i] += state.moves.segment<3>(3 * Eigen::Index{line.classes[i]});
     state.curves.push_back(line.curve(points));
-    state.paths.emplace_back(state.curves.back());
+    state.paths.emplace_back(state.curves.back(), line.period);
     state.points.push_back(std::move(points));
   }
   return state;
@@ -106,7 +107,8 @@ void Mender::for_tight_bends(const State& state, const Each& each) const {
   for (std::size_t l = 0; l < state.paths.size(); ++l) {
     const CubicPath& path = state.paths[l];
     const double radius = problem_.lines[l].radius;
-    for (std::size_t i = 0; i <= path.spans() * looks; ++i) {  // most bends are sharpest at a data point
+    const std::size_t end = path.spans() * looks + (path.is_periodic() ? 0 : 1);
+    for (std::size_t i = 0; i < end; ++i) {  // most bends are sharpest at a data point
       const double place = static_cast<double>(i) / looks;
       const CubicPath::Jet jet = path.at(place);
       const double curvature = curvature_of(jet), lack = radius * curvature - 1 / problem_.bend;
@@ -148,10 +150,14 @@ void Mender::make_stiffness() {
   for (std::size_t c = 0; c < problem_.freedom.size(); ++c)
     add(static_cast<int>(c), static_cast<int>(c), unused * Eigen::Matrix3d::Identity());
   for (const MendLine& line : problem_.lines) {
-    const std::vector<int>& c = line.classes;
-    for (std::size_t i = 0; i < c.size(); ++i) {
+    std::vector<int> c = line.classes;
+    const bool is_periodic = line.period != Vec3::Zero();
+    // Each point of a periodic line counts once, with those that follow it in the next copy.
+    const std::size_t own = is_periodic ? c.size() - 1 : c.size();
+    if (is_periodic) c.push_back(c[1]);
+    for (std::size_t i = 0; i < own; ++i) {
       add(c[i], c[i], hold * Eigen::Matrix3d::Identity());
-      if (i + 1 < c.size()) {
+      if (i + 1 < line.points.size()) {
         const Vec3 along = (line.points[i + 1] - line.points[i]).normalized();
         const Eigen::Matrix3d block = stretching * along * along.transpose();
         add(c[i], c[i], block);
@@ -288,6 +294,20 @@ class Linear {
     for (Eigen::Matrix3d& block : blocks) block = block.inverse().eval();
     return blocks;
   }
+  // All of it as one matrix, of which the lower half is filled.
+  [[nodiscard]] Eigen::MatrixXd matrix() const {
+    Eigen::MatrixXd sum = stiffness_;
+    for (const std::size_t row : rows_) {
+      const std::vector<Pull>& pulls = residuals_[row].pulls;  // by increasing class
+      for (std::size_t b = 0; b < pulls.size(); ++b) {
+        const Eigen::RowVector3d right = residuals_[row].weight * pulls[b].along.transpose();
+        for (std::size_t a = b; a < pulls.size(); ++a)
+          sum.block<3, 3>(3 * Eigen::Index{pulls[a].index}, 3 * Eigen::Index{pulls[b].index}) +=
+              pulls[a].along * right;
+      }
+    }
+    return sum;
+  }
   static double change(const Residual& residual, const Vector& x) {
     double sum = 0;
     for (const Pull& pull : residual.pulls) sum += pull.along.dot(x.segment<3>(3 * Eigen::Index{pull.index}));
@@ -305,8 +325,13 @@ class Linear {
   std::vector<std::size_t> rows_;
 };
 
-// Conjugate gradients from `x` on.
+// By Cholesky's method where that is quick; else by conjugate gradients from `x` on.
 void solve(const Linear& linear, const Vector& right, Vector& x) {
+  constexpr Eigen::Index most_dense = 500;
+  if (right.size() <= most_dense) {
+    x = linear.matrix().selfadjointView<Eigen::Lower>().llt().solve(right);
+    return;
+  }
   constexpr int most = 300;
   constexpr double enough = 1e-3;  // of the right side; the next step takes up the rest
   const std::vector<Eigen::Matrix3d> inverses = linear.diagonal_inverses();
@@ -380,7 +405,7 @@ bool keeps_sides(const State& before, const State& after) {
   constexpr double least_share = 0.3;  // of the distance that has to be left
   return std::all_of(before.touches.begin(), before.touches.end(), [&](const Touch& touch) {
     const Vec3 apart = after.paths[touch.line_a].at(touch.place_a).position -
-                       after.paths[touch.line_b].at(touch.place_b).position;
+                       after.paths[touch.line_b].at(touch.place_b).position - touch.shift;
     return touch.normal.dot(apart) > least_share * (touch.on_a - touch.on_b).norm();
   });
 }
@@ -436,6 +461,17 @@ Mending Mender::run() {
   return mending;
 }
 
+// Shares of the data rows in the control rows that interpolation makes of the unit matrix.
+std::vector<std::vector<Share>> shares_in(const Eigen::MatrixXd& control) {
+  std::vector<std::vector<Share>> shares(static_cast<std::size_t>(control.rows()));
+  for (Eigen::Index row = 0; row < control.rows(); ++row)
+    for (Eigen::Index point = 0; point < control.cols(); ++point)
+      if (std::abs(control(row, point)) > 1e-3)
+        shares[static_cast<std::size_t>(row)].push_back(
+            {static_cast<std::size_t>(point), control(row, point)});
+  return shares;
+}
+
 }  // namespace
 
 Mending mend(const MendProblem& problem) {
@@ -464,6 +500,11 @@ std::vector<std::vector<Share>> interpolation_shares(const std::vector<double>& 
     }
   }
   return shares;
+}
+
+std::vector<std::vector<Share>> periodic_shares(const std::vector<double>& parameters) {
+  const auto count = static_cast<Eigen::Index>(parameters.size()) - 1;
+  return shares_in(nurbs::interpolate_periodic(parameters, Eigen::MatrixXd::Identity(count, count)));
 }
 
 }  // namespace selvage::fabric

@@ -31,6 +31,9 @@ struct Share {
 struct MendLine {
   std::vector<Vec3> points;  // data points, at least two
   std::vector<int> classes;  // of each data point; -1: it does not move
+  // Not zero: the line goes on at both ends as its own copies, each shifted by this. Its last data point is
+  // the first one of the next copy, of the same class.
+  Vec3 period = Vec3::Zero();
   // The centre line through (or near) data points: a polynomial cubic, C1 or smoother. Called with points
   // that are moved; deterministic.
   std::function<nurbs::Curve(const std::vector<Vec3>&)> curve;
@@ -51,6 +54,8 @@ struct MendProblem {
   // Where the lines are their own mirror image in a plane x = const: the class that each is the image of, one
   // a class. The moves then keep to it. Else empty.
   std::vector<int> images;
+  // Not zero: the lines stand again at all multiples of this, and their copies move like them.
+  Vec3 repeat = Vec3::Zero();
   // Two places of one line count when they are farther apart along it than this, in radii.
   double apart = 3;
   // Bends tighter than this, in radii, are opened to about it.
@@ -71,5 +76,7 @@ Mending mend(const MendProblem& problem);
 // The shares of the clamped cubic through data at these parameters (nurbs/interpolate.h), its derivatives at
 // the ends held.
 std::vector<std::vector<Share>> interpolation_shares(const std::vector<double>& parameters);
+// The same for the periodic cubic; the last parameter is that of the return to the first data point.
+std::vector<std::vector<Share>> periodic_shares(const std::vector<double>& parameters);
 
 }  // namespace selvage::fabric

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 
 namespace selvage::fabric {
@@ -67,17 +68,25 @@ class Cubes {
 void approach(const CubicPath& path_a, const CellPoint& a, const CubicPath& path_b, const CellPoint& b,
               Touch& touch) {
   const double low_a = a.place - 0.5 * a.width, high_a = a.place + 0.5 * a.width;
-  const double low_b = std::max(0.0, b.place - 1.5 * b.width),
-               high_b = std::min(static_cast<double>(path_b.spans()), b.place + 1.5 * b.width);
+  double low_b = b.place - 1.5 * b.width, high_b = b.place + 1.5 * b.width;
+  if (!path_b.is_periodic()) {
+    low_b = std::max(0.0, low_b);
+    high_b = std::min(static_cast<double>(path_b.spans()), high_b);
+  }
+  const auto jet_on_b = [&](double place) {
+    CubicPath::Jet jet = path_b.at(place);
+    jet.position += touch.shift;
+    return jet;
+  };
   double s = a.place, t = b.place;
-  CubicPath::Jet at_a = path_a.at(s), at_b = path_b.at(t);
+  CubicPath::Jet at_a = path_a.at(s), at_b = jet_on_b(t);
   const auto nearest_on_b = [&] {
     for (int i = 0; i < 3; ++i) {
       const Vec3 apart = at_b.position - at_a.position;
       const double slope = apart.dot(at_b.d1);
       const double bend = std::max(at_b.d1.squaredNorm() + apart.dot(at_b.d2), 0.2 * at_b.d1.squaredNorm());
       t = std::clamp(t - slope / bend, low_b, high_b);
-      at_b = path_b.at(t);
+      at_b = jet_on_b(t);
     }
   };
   nearest_on_b();
@@ -106,7 +115,10 @@ void approach(const CubicPath& path_a, const CellPoint& a, const CubicPath& path
 
 }  // namespace
 
-CubicPath::CubicPath(const nurbs::Curve& curve) : breaks_(nurbs::breakpoints(curve.knots, curve.degree)) {
+CubicPath::CubicPath(const nurbs::Curve& curve, Vec3 period)
+    : breaks_(nurbs::breakpoints(curve.knots, curve.degree)),
+      period_(std::move(period)),
+      is_periodic_(period_ != Vec3::Zero()) {
   std::vector<nurbs::CurveJet> jets;
   jets.reserve(breaks_.size());
   for (const double t : breaks_) jets.push_back(nurbs::evaluate_jet(curve, t));
@@ -118,25 +130,34 @@ CubicPath::CubicPath(const nurbs::Curve& curve) : breaks_(nurbs::breakpoints(cur
   }
 }
 
+double CubicPath::turns_before(double place) const {
+  const auto count = static_cast<double>(pieces_.size());
+  if (!is_periodic_ || (place >= 0.0 && place <= count)) return 0;
+  return std::floor(place / count);
+}
+
 std::size_t CubicPath::span_of(double place) const {
-  return std::min(static_cast<std::size_t>(std::max(place, 0.0)), pieces_.size() - 1);
+  const double own = place - turns_before(place) * static_cast<double>(pieces_.size());
+  return std::min(static_cast<std::size_t>(std::max(own, 0.0)), pieces_.size() - 1);
 }
 
 CubicPath::Jet CubicPath::at(double place) const {
-  const std::size_t span = span_of(place);
-  const double f = place - static_cast<double>(span);
+  const double turns = turns_before(place), own = place - turns * static_cast<double>(pieces_.size());
+  const std::size_t span = std::min(static_cast<std::size_t>(std::max(own, 0.0)), pieces_.size() - 1);
+  const double f = own - static_cast<double>(span);
   const std::array<Vec3, 4>& c = pieces_[span];
-  return {c[0] + f * (c[1] + f * (c[2] + f * c[3])), c[1] + f * (2 * c[2] + 3 * f * c[3]),
+  return {c[0] + f * (c[1] + f * (c[2] + f * c[3])) + turns * period_, c[1] + f * (2 * c[2] + 3 * f * c[3]),
           2 * c[2] + 6 * f * c[3]};
 }
 
 double CubicPath::parameter(double place) const {
-  const std::size_t span = span_of(place);
-  return breaks_[span] + step(span) * (place - static_cast<double>(span));
+  const double own = place - turns_before(place) * static_cast<double>(pieces_.size());
+  const std::size_t span = span_of(own);
+  return breaks_[span] + step(span) * (own - static_cast<double>(span));
 }
 
 TouchFinder::TouchFinder(const MendProblem& problem, const std::vector<CubicPath>& paths)
-    : problem_(problem) {
+    : problem_(problem), cells_(paths.size()) {
   for (std::size_t line = 0; line < paths.size(); ++line)
     for (std::size_t span = 0; span < paths[line].spans(); ++span) {
       const auto start = static_cast<double>(span);
@@ -145,36 +166,68 @@ TouchFinder::TouchFinder(const MendProblem& problem, const std::vector<CubicPath
           (paths[line].at(start + 1.0).position - paths[line].at(start + 0.5).position).norm();
       const int count =
           std::clamp(static_cast<int>(std::ceil(chord / (cell_length * problem.lines[line].radius))), 2, 400);
-      for (int i = 0; i < count; ++i) cells_.push_back({line, start + (i + 0.5) / count, 1.0 / count});
+      for (int i = 0; i < count; ++i) cells_[line].push_back({start + (i + 0.5) / count, 1.0 / count});
     }
 }
 
-std::vector<CellPoint> TouchFinder::points_of(const std::vector<CubicPath>& paths) const {
+namespace {
+
+// Of things that repeat by a shift: those so many shifts away or farther are farther than `look` apart.
+int copies_within(const Vec3& shift, const std::vector<std::vector<Vec3>>& positions, double look) {
+  if (shift == Vec3::Zero()) return 0;
+  const Vec3 along = shift.normalized();
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const std::vector<Vec3>& line : positions)
+    for (const Vec3& position : line) {
+      low = std::min(low, position.dot(along));
+      high = std::max(high, position.dot(along));
+    }
+  return static_cast<int>((high - low + look) / shift.norm());
+}
+
+}  // namespace
+
+std::vector<CellPoint> TouchFinder::points_of(const std::vector<CubicPath>& paths, double look) const {
+  std::vector<std::vector<Vec3>> positions(paths.size());
+  for (std::size_t line = 0; line < paths.size(); ++line)
+    for (const Cell& cell : cells_[line]) positions[line].push_back(paths[line].at(cell.place).position);
   std::vector<CellPoint> points;
-  points.reserve(cells_.size());
-  for (const Cell& cell : cells_) {
-    CellPoint point{cell.line, cell.place, cell.width, 0, paths[cell.line].at(cell.place).position};
-    if (!points.empty() && points.back().line == cell.line)
-      point.along = points.back().along + (point.position - points.back().position).norm();
-    points.push_back(point);
-  }
+  const int copies = copies_within(problem_.repeat, positions, look);
+  for (int copy = -copies; copy <= copies; ++copy)
+    for (std::size_t line = 0; line < paths.size(); ++line) {
+      const int turns = copies_within(paths[line].period(), positions, look);
+      double along = 0;
+      for (int turn = -turns; turn <= turns; ++turn) {
+        const Vec3 shift = copy * problem_.repeat + turn * paths[line].period();
+        const double first = static_cast<double>(turn) * static_cast<double>(paths[line].spans());
+        for (std::size_t i = 0; i < cells_[line].size(); ++i) {
+          const Cell& cell = cells_[line][i];
+          const Vec3 position = positions[line][i] + shift;
+          if (turn > -turns || i > 0) along += (position - points.back().position).norm();
+          points.push_back(
+              {line, copy, copy == 0 && turn == 0, first + cell.place, cell.width, along, position});
+        }
+      }
+    }
   return points;
 }
 
 std::vector<Touch> TouchFinder::find(const std::vector<CubicPath>& paths, double band) const {
-  const std::vector<CellPoint> points = points_of(paths);
   double widest = 0;
   for (const MendLine& line : problem_.lines) widest = std::max(widest, line.radius);
   // Half a cell may lie between the nearest place and each of the middles.
   const double look = 2.1 * widest + band + 1.5 * cell_length * widest;
+  const std::vector<CellPoint> points = points_of(paths, look);
   const Cubes cubes(points, look);
   std::vector<Touch> touches;
   std::vector<std::uint32_t> near;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const CellPoint& a = points[i];
+    if (!a.is_own) continue;
     const double own = problem_.apart * problem_.lines[a.line].radius;
     const auto is_apart = [&](std::size_t j) {
-      return points[j].line != a.line || std::abs(points[j].along - a.along) > own;
+      return points[j].line != a.line || points[j].copy != a.copy ||
+             std::abs(points[j].along - a.along) > own;
     };
     cubes.near(a.position, near);
     // Cells that follow each other are one part of a line: its nearest one counts, if it is nearer than those
@@ -183,7 +236,7 @@ std::vector<Touch> TouchFinder::find(const std::vector<CubicPath>& paths, double
       const double distance = (points[j].position - a.position).squaredNorm();
       if (distance > look * look || !is_apart(j)) continue;
       const auto is_nearer = [&](std::size_t k, bool also_equal) {
-        if (points[k].line != points[j].line) return false;
+        if (points[k].line != points[j].line || points[k].copy != points[j].copy) return false;
         const double other = (points[k].position - a.position).squaredNorm();
         return also_equal ? other <= distance : other < distance;
       };
@@ -192,6 +245,7 @@ std::vector<Touch> TouchFinder::find(const std::vector<CubicPath>& paths, double
       Touch touch;
       touch.line_a = a.line;
       touch.line_b = points[j].line;
+      touch.shift = points[j].copy * problem_.repeat;
       const CubicPath &path_a = paths[a.line], &path_b = paths[touch.line_b];
       approach(path_a, a, path_b, points[j], touch);
       const Vec3 apart = touch.on_a - touch.on_b;

@@ -1,7 +1,6 @@
 #include "fabric/warpknit_mend.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <numeric>
 
@@ -23,20 +22,14 @@ std::optional<long long> repeat_of(const std::vector<Bar>& bars) {
   return repeat;
 }
 
-// The smallest piece that shows every repeat with all that touches it: fewer courses, fewer guides.
+// The smallest piece that shows every repeat with all that touches it: fewer courses.
 std::optional<WarpknitPiece> piece_of(const WarpknitPiece& cloth, long long repeat) {
-  int low = std::numeric_limits<int>::max(), high = 0, held = 1;
-  for (const Bar& bar : cloth.bars)
-    for (const Overlap& overlap : bar.lapping) {
-      low = std::min({low, overlap.from, overlap.to});
-      high = std::max({high, overlap.from, overlap.to});
-    }
+  int held = 1;
   for (long long course = 0; course < repeat; ++course) held = std::max(held, hold_after(cloth.bars, course));
   WarpknitPiece piece = cloth;
-  piece.guides = std::min(cloth.guides, high - low + 2);
   const long long courses = cloth.last_course - cloth.first_course, least = repeat + 2LL * (held + 2);
   if (courses > least) piece.last_course -= (courses - least) / repeat * repeat;
-  const long long points = static_cast<long long>(cloth.bars.size()) * piece.guides * points_of_a_course;
+  const long long points = static_cast<long long>(cloth.bars.size()) * points_of_a_course;
   if (piece.last_course - piece.first_course > most_points / points) return std::nullopt;
   return piece;
 }
@@ -74,6 +67,7 @@ Result<std::optional<LoopMending>> mend_loops(const WarpknitPiece& cloth, double
   if (!piece) return std::optional<LoopMending>();
   LoopMending result{LoopMoves(cloth.bars.size(), *repeat), {}};
   MendProblem problem;
+  problem.repeat = {cloth.measures.wale_pitch, 0, 0};  // all guides of a bar move alike
   std::map<std::size_t, int> classes;  // of numbers of moves
   std::vector<std::size_t> numbers;
   for (std::size_t bar = 0; bar < piece->bars.size(); ++bar) {
@@ -95,10 +89,8 @@ Result<std::optional<LoopMending>> mend_loops(const WarpknitPiece& cloth, double
     line.curve = loop_curve;
     line.shares = loop_shares;
     line.radius = 0.5 * (piece->bars[bar].thickness + gap);
-    for (int guide = 0; guide < piece->guides; ++guide) {
-      line.points = points->of_guide(static_cast<std::size_t>(guide));
-      problem.lines.push_back(line);
-    }
+    line.points = points->of_guide(0);
+    problem.lines.push_back(std::move(line));
   }
   result.mending = mend(problem);
   for (std::size_t c = 0; c < numbers.size(); ++c) result.moves.set(numbers[c], result.mending.moves[c]);
