@@ -122,9 +122,10 @@ nurbs::Curve periodic_course(const std::vector<Vec3>& points, const Vec3& period
   return curve;
 }
 
-LoopTies::LoopTies(long long first, long long last, long long repeat, int border, int range)
+LoopTies::LoopTies(long long first, long long last, long long repeat, int border, int range, bool as_one)
     : first_(first), count_(last - first + 1), reduced_(count_), repeat_(repeat), border_(border) {
-  if (is_periodic()) border_ = range = 0;
+  is_periodic_ = as_one && repeat == 1;
+  if (is_periodic_) border_ = range = 0;
   const long long inner = count_ - 2LL * border_, least = repeat + range;
   tied_ = inner >= least;
   if (tied_) reduced_ = 2LL * border_ + least + (inner - least) % repeat;
@@ -138,12 +139,15 @@ long long LoopTies::of_offset(long long offset, long long count) const {
 
 namespace {
 
-std::vector<LoopTies> ties_of(const KnitField& field) {
+// Wales are solved as one only in a cloth wide enough to have an inside: a narrow one stays symmetric.
+std::vector<LoopTies> ties_of(const KnitField& field, bool as_one) {
   const int hold = field.chart.longest_hold();
+  const long long wales = field.last_wale - field.first_wale + 1;
+  const bool is_wide = wales > 2 * border_wales + range_wales;
   return {LoopTies(field.first_course, field.last_course, field.chart.repeat_of_courses(),
-                   border_courses(field.chart), hold + 2),
+                   border_courses(field.chart), hold + 2, as_one),
           LoopTies(field.first_wale, field.last_wale, field.chart.repeat_of_wales(), border_wales,
-                   range_wales)};
+                   range_wales, as_one && is_wide)};
 }
 
 // The class that each one is the mirror image of, if every course is its own image; else nothing.
@@ -166,11 +170,20 @@ std::vector<int> images_of(const MendProblem& problem) {
 }  // namespace
 
 long long KnitMoves::loops_solved(const KnitField& field) {
-  const std::vector<LoopTies> ties = ties_of(field);
+  const std::vector<LoopTies> ties = ties_of(field, false);
   return ties[0].reduced_count() * ties[1].reduced_count();
 }
 
-KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_of(field)) {
+KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_of(field, true)) {
+  solve(field, yarn);
+  const bool was_periodic = ties_[0].is_periodic() || ties_[1].is_periodic();
+  if (mending_.is_solved() || !was_periodic) return;
+  // At its edges and from loop to loop the cloth may give way where a single loop cannot.
+  ties_ = ties_of(field, false);
+  solve(field, yarn);
+}
+
+void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
   KnitField reduced = field;
   reduced.last_course = field.first_course + ties_[0].reduced_count() - 1;
   reduced.last_wale = field.first_wale + ties_[1].reduced_count() - 1;
@@ -225,7 +238,13 @@ KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_
     line.reach = reach;
     problem.lines.push_back(std::move(line));
   }
-  problem.images = images_of(problem);
+  if (goes_on) {
+    // Symmetric loops between their like have no room; they lean to one side.
+    constexpr double lean = 0.02;
+    for (const Vec3& freedom : problem.freedom) problem.start.emplace_back(lean * freedom.x(), 0, 0);
+  } else {
+    problem.images = images_of(problem);
+  }
   mending_ = mend(problem);
 }
 

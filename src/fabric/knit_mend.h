@@ -32,9 +32,9 @@ struct KnitYarn {
 // own copies for neighbours: at the edges some of them are missing, so that nothing there is nearer.
 class LoopTies {
  public:
-  // `range`: how many loops further one can touch.
-  LoopTies(long long first, long long last, long long repeat, int border, int range);
-  [[nodiscard]] bool is_periodic() const { return repeat_ == 1; }
+  // `range`: how many loops further one can touch. `as_one`: a repeat of one loop is solved with its copies.
+  LoopTies(long long first, long long last, long long repeat, int border, int range, bool as_one);
+  [[nodiscard]] bool is_periodic() const { return is_periodic_; }
   [[nodiscard]] long long last() const { return first_ + count_ - 1; }
   [[nodiscard]] long long reduced_count() const { return reduced_; }
   // The loop of the reduced cloth (counted from 0) that this one moves like.
@@ -47,7 +47,7 @@ class LoopTies {
 
   long long first_, count_, reduced_, repeat_;
   int border_;
-  bool tied_ = false;
+  bool is_periodic_ = false, tied_ = false;
 };
 
 // One repeat of a course that goes on as its own copies, `period` apart; the last point is the first one of
@@ -75,6 +75,7 @@ class KnitMoves {
   static long long loops_solved(const KnitField& field);
 
  private:
+  void solve(const KnitField& field, const KnitYarn& yarn);
   [[nodiscard]] std::size_t loop_index(long long course, long long wale) const;
   // The loop of the reduced cloth whose first point moves like the last point of its course.
   [[nodiscard]] long long end_wale() const;

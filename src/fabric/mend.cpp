@@ -264,6 +264,16 @@ class Linear {
 
   void count_only(std::vector<std::size_t> rows) { rows_ = std::move(rows); }
 
+  // After a step of x from these moves, with all penalties that lack then.
+  [[nodiscard]] double energy(const Vector& moves, const Vector& x) const {
+    const Vector after = moves + x;
+    double sum = 0.5 * after.dot(stiffness_ * after);
+    for (const Residual& residual : residuals_) {
+      const double lack = std::max(residual.lack - change(residual, x), 0.0);
+      sum += 0.5 * residual.weight * lack * lack;
+    }
+    return sum;
+  }
   [[nodiscard]] Vector times(const Vector& x) const {
     Vector image = stiffness_ * x;
     for (const std::size_t row : rows_) {
@@ -364,7 +374,7 @@ Vector Mender::step(const State& state, double more) const {
   Linear linear(stiffness_, found);
   Vector step = Vector::Zero(size_);
   std::vector<bool> counts(found.size());
-  constexpr int most_rounds = 8;
+  constexpr int most_rounds = 12;
   for (int round = 0; round < most_rounds; ++round) {
     std::vector<std::size_t> rows;
     std::size_t changes = 0;
@@ -376,7 +386,13 @@ Vector Mender::step(const State& state, double more) const {
     }
     if (round > 0 && 200 * changes <= rows.size()) break;
     linear.count_only(std::move(rows));
-    solve(linear, linear.force() - stiffness_ * state.moves, step);
+    Vector next = step;
+    solve(linear, linear.force() - stiffness_ * state.moves, next);
+    // Not so far that what begins to lack outweighs what is gained.
+    const double before = linear.energy(state.moves, step);
+    for (int half = 0; half < most_halves && linear.energy(state.moves, next) > before; ++half)
+      next = (0.5 * (step + next)).eval();
+    step = std::move(next);
   }
   return mirrored_mean(step);
 }
@@ -422,6 +438,13 @@ Mending Mender::run() {
   int stalls = 0;
   State best = state;
   const bool is_needed = state.missing > 0;
+  if (is_needed && !problem_.start.empty()) {
+    Vector start(size_);
+    for (std::size_t c = 0; c < problem_.start.size(); ++c)
+      start.segment<3>(3 * static_cast<Eigen::Index>(c)) = problem_.start[c];
+    state = state_at(std::move(start));
+    look(state, more);
+  }
   for (int steps = 0; is_needed && steps < problem_.max_steps; ++steps) {
     Vector step = this->step(state, more);
     const double longest = largest_of(step);

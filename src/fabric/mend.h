@@ -54,6 +54,8 @@ struct MendProblem {
   // Where the lines are their own mirror image in a plane x = const: the class that each is the image of, one
   // a class. The moves then keep to it. Else empty.
   std::vector<int> images;
+  // Moves to begin with where any are needed, one a class; empty: none.
+  std::vector<Vec3> start;
   // Not zero: the lines stand again at all multiples of this, and their copies move like them.
   Vec3 repeat = Vec3::Zero();
   // Two places of one line count when they are farther apart along it than this, in radii.
