@@ -99,7 +99,9 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
   moves_.apply(course(index), field_.last_wale + 1, points, points.size() - 1);
   place_from(points.size() - 1, field_.last_wale + 1);
   plan->spec.guide = yarn::FrameGuide::with_up(Vec3::UnitZ());
-  plan->line = course_line(points, knit_.method.value_or(nurbs::Parameterization::chord));
+  Onward onward;  // loops that move alike are all of one form
+  if (moves_.wales_go_on()) onward = {(points.size() - 1) / wales(), {wale_spacing * r, 0, 0}};
+  plan->line = course_line(points, knit_.method.value_or(nurbs::Parameterization::chord), onward);
   return plan;
 }
 

@@ -36,6 +36,17 @@ Vec3 mirrored_derivative(const std::vector<Vec3>& points, const std::vector<doub
   return {scale * nurbs::evaluate_jet(curve, t[count]).d1.x(), 0, 0};
 }
 
+// The derivative at an end of a course that goes on as copies of its outermost points.
+Vec3 onward_derivative(const std::vector<Vec3>& points, const std::vector<double>& parameters, bool last,
+                       nurbs::Parameterization how, const Onward& onward) {
+  const std::size_t begin = last ? points.size() - 1 - onward.points : 0, end = begin + onward.points;
+  const auto at = [&](std::size_t i) { return points.begin() + static_cast<std::ptrdiff_t>(i); };
+  const nurbs::Curve curve = periodic_course({at(begin), at(end + 1)}, onward.period, how);
+  const double scale =
+      (curve.last_parameter() - curve.first_parameter()) / (parameters[end] - parameters[begin]);
+  return scale * nurbs::evaluate_jet(curve, curve.first_parameter()).d1;
+}
+
 // From units of r and half thicknesses to lengths, and back.
 std::vector<Vec3> scaled(std::vector<Vec3> points, const Vec3& by) {
   for (Vec3& point : points) point = point.cwiseProduct(by);
@@ -92,12 +103,15 @@ class Reach {
 
 }  // namespace
 
-yarn::CentreLine course_line(const std::vector<Vec3>& points, nurbs::Parameterization how) {
+yarn::CentreLine course_line(const std::vector<Vec3>& points, nurbs::Parameterization how,
+                             const Onward& onward) {
   yarn::CentreLine line;
   line.parameters = nurbs::parameters(points, how);
-  line.curve =
-      nurbs::interpolate(points, line.parameters, mirrored_derivative(points, line.parameters, false, how),
-                         mirrored_derivative(points, line.parameters, true, how));
+  const auto derivative = [&](bool last) {
+    return onward.points > 0 ? onward_derivative(points, line.parameters, last, how, onward)
+                             : mirrored_derivative(points, line.parameters, last, how);
+  };
+  line.curve = nurbs::interpolate(points, line.parameters, derivative(false), derivative(true));
   return line;
 }
 

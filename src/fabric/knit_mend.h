@@ -14,9 +14,17 @@
 
 namespace selvage::fabric {
 
-// The centre line of a course through its data points. Its ends are mirror planes: it goes on as its own
-// image in the planes x = const through its first and its last point.
-yarn::CentreLine course_line(const std::vector<Vec3>& points, nurbs::Parameterization how);
+// How a course goes on beyond its ends.
+struct Onward {
+  // As its outermost points again and again, so many of them, each time this far on. 0: as its own image in
+  // the planes x = const through its first and its last point.
+  std::size_t points = 0;
+  Vec3 period = Vec3::Zero();
+};
+
+// The centre line of a course through its data points.
+yarn::CentreLine course_line(const std::vector<Vec3>& points, nurbs::Parameterization how,
+                             const Onward& onward = {});
 
 struct KnitYarn {
   nurbs::Parameterization how = nurbs::Parameterization::chord;
@@ -69,6 +77,8 @@ class KnitMoves {
 
   // Adds to the points of one stitch (add_stitch_points), or to the last one of a course (wale = last + 1).
   void apply(long long course, long long wale, std::vector<Vec3>& points, std::size_t first) const;
+  // Do all wales move alike, up to the sides of the cloth?
+  [[nodiscard]] bool wales_go_on() const { return !ties_.empty() && ties_[1].is_periodic(); }
   // In units of r; z in half thicknesses.
   [[nodiscard]] const Mending& mending() const { return mending_; }
   // Loops that are solved for.

@@ -337,7 +337,7 @@ class Linear {
 
 // By Cholesky's method where that is quick; else by conjugate gradients from `x` on.
 void solve(const Linear& linear, const Vector& right, Vector& x) {
-  constexpr Eigen::Index most_dense = 500;
+  constexpr Eigen::Index most_dense = 200;
   if (right.size() <= most_dense) {
     x = linear.matrix().selfadjointView<Eigen::Lower>().llt().solve(right);
     return;
@@ -384,7 +384,7 @@ Vector Mender::step(const State& state, double more) const {
       if (is_lacking != counts[row]) ++changes;
       counts[row] = is_lacking;
     }
-    if (round > 0 && 200 * changes <= rows.size()) break;
+    if (round > 0 && 20 * changes <= rows.size()) break;
     linear.count_only(std::move(rows));
     Vector next = step;
     solve(linear, linear.force() - stiffness_ * state.moves, next);
