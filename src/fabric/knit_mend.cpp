@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <variant>
 
 #include "fabric/clearance.h"
@@ -253,9 +254,13 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
     problem.lines.push_back(std::move(line));
   }
   if (goes_on) {
-    // Symmetric loops between their like have no room; they lean to one side.
-    constexpr double lean = 0.02;
-    for (const Vec3& freedom : problem.freedom) problem.start.emplace_back(lean * freedom.x(), 0, 0);
+    // Symmetric loops between their like have no room: they turn about the wale, one leg to the face.
+    constexpr double turn = 0.5;
+    problem.start.assign(problem.freedom.size(), Vec3::Zero());
+    for (const MendLine& line : problem.lines)
+      for (std::size_t i = 0; i < line.points.size(); ++i)
+        problem.start[static_cast<std::size_t>(line.classes[i])].z() =
+            turn * std::sin(2.0 * std::numbers::pi / wale_spacing * line.points[i].x());
   } else {
     problem.images = images_of(problem);
   }
