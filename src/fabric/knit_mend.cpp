@@ -126,8 +126,7 @@ nurbs::Curve periodic_course(const std::vector<Vec3>& points, const Vec3& period
   const auto forward = [&](double parameter) { return parameter * period.transpose(); };
   Eigen::MatrixXd data(static_cast<Eigen::Index>(points.size()) - 1, 3);
   for (Eigen::Index i = 0; i < data.rows(); ++i)
-    data.row(i) =
-        points[static_cast<std::size_t>(i)].transpose() - forward(t[static_cast<std::size_t>(i)]);
+    data.row(i) = points[static_cast<std::size_t>(i)].transpose() - forward(t[static_cast<std::size_t>(i)]);
   const Eigen::MatrixXd control = nurbs::interpolate_periodic(t, data);
   for (Eigen::Index i = 0; i < control.rows(); ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -240,8 +239,8 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
     }
     line.curve = [scale, period = line.period, how = yarn.how, goes_on](const std::vector<Vec3>& points) {
       const std::vector<Vec3> true_points = scaled(points, scale);
-      nurbs::Curve curve = goes_on ? periodic_course(true_points, period, how)
-                                   : course_line(true_points, how).curve;
+      nurbs::Curve curve =
+          goes_on ? periodic_course(true_points, period, how) : course_line(true_points, how).curve;
       curve.points = scaled(std::move(curve.points), scale.cwiseInverse());
       return curve;
     };

@@ -60,7 +60,8 @@ class LoopTies {
 
 // One repeat of a course that goes on as its own copies, `period` apart; the last point is the first one of
 // the next copy.
-nurbs::Curve periodic_course(const std::vector<Vec3>& points, const Vec3& period, nurbs::Parameterization how);
+nurbs::Curve periodic_course(const std::vector<Vec3>& points, const Vec3& period,
+                             nurbs::Parameterization how);
 
 // Loops beyond which the influence of an edge is not looked for.
 inline constexpr int border_wales = 2;

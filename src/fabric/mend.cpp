@@ -374,7 +374,7 @@ Vector Mender::step(const State& state, double more) const {
   Linear linear(stiffness_, found);
   Vector step = Vector::Zero(size_);
   std::vector<bool> counts(found.size());
-  constexpr int most_rounds = 12;
+  constexpr int most_rounds = 8;
   for (int round = 0; round < most_rounds; ++round) {
     std::vector<std::size_t> rows;
     std::size_t changes = 0;

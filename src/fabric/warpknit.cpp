@@ -242,7 +242,6 @@ Result<std::unique_ptr<Construction>> make_warpknit(const Fabric& fabric, const 
   piece.bars = std::move(*bars);
   piece.measures = *measures;
   piece.last_course = warpknit.courses;
-  piece.guides = warpknit.wales;
   if (fabric.cell) {
     piece.first_course -= continued_courses;
     piece.last_course += continued_courses;

@@ -68,7 +68,7 @@ Result<std::optional<LoopMending>> mend_loops(const WarpknitPiece& cloth, double
   LoopMending result{LoopMoves(cloth.bars.size(), *repeat), {}};
   MendProblem problem;
   problem.repeat = {cloth.measures.wale_pitch, 0, 0};  // all guides of a bar move alike
-  std::map<std::size_t, int> classes;  // of numbers of moves
+  std::map<std::size_t, int> classes;                  // of numbers of moves
   std::vector<std::size_t> numbers;
   for (std::size_t bar = 0; bar < piece->bars.size(); ++bar) {
     const Result<YarnPoints> points = points_of_bar(piece->bars, bar, piece->measures, result.moves,

@@ -14,7 +14,6 @@ struct WarpknitPiece {
   std::vector<Bar> bars;
   Measures measures;
   long long first_course = 0, last_course = 0;  // the last one is the first that is not knitted
-  int guides = 1;                               // of every bar
 };
 
 struct LoopMending {

@@ -16,6 +16,7 @@
 #include <random>
 
 #include "fabric/yarn_spec.h"
+#include "nurbs/measure.h"
 #include "nurbs/spline.h"
 #include "property/zoo.h"
 
@@ -326,6 +327,30 @@ TEST(KnitClearance, LargeClothsAreFreeAndPeriodic) {
       }
     }
   }
+}
+
+// The loops at the sides and in the first and last course are as free as those inside, whatever the cloth's
+// size: few wales are solved with their edges, many as one. Yarn that is longer than as published by more
+// than a little would be another cloth.
+TEST(KnitClearance, JerseysOfAllSizesAreFree) {
+  for (const std::string method : {"chord", "uniform", "centripetal"})
+    for (const auto& [courses, wales] : std::vector<std::pair<int, int>>{
+             {1, 1}, {2, 1}, {1, 2}, {3, 2}, {2, 6}, {1, 7}, {2, 7}, {4, 8}, {12, 20}}) {
+      const std::string what = fmt::format("{} {} x {}", method, courses, wales);
+      const fabric::Fabric fabric = charted("K", courses, wales, method);
+      const std::vector<nurbs::Curve> lines = courses_of(fabric);
+      EXPECT_GE(least_distance(lines, 1.6, 1.5), 1.01) << what;
+      EXPECT_TRUE(faults_of(knit_of(fabric), lines).empty()) << what;
+      double longest = 0, shortest = 1e9;
+      const std::vector<nurbs::Curve> published = courses_of(fabric, true);
+      for (std::size_t c = 0; c < lines.size(); ++c) {
+        const double ratio = nurbs::arc_length(lines[c]) / nurbs::arc_length(published[c]);
+        longest = std::max(longest, ratio);
+        shortest = std::min(shortest, ratio);
+      }
+      EXPECT_LT(longest, 1.05) << what;
+      EXPECT_GT(shortest, 0.97) << what;
+    }
 }
 
 // The oracle sees what is wrong.

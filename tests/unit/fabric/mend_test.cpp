@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "fabric/knit_mend.h"
 #include "fabric/mend_touch.h"
 #include "nurbs/interpolate.h"
 
@@ -206,6 +207,117 @@ TEST(Mend, TouchesAreNearestPlaces) {
                          (paths[0].at(16.0 * i / 3200).position - paths[1].at(8 + 0.02 * j).position).norm());
   EXPECT_NEAR(least, sampled, 1e-4);
   EXPECT_LE(least, sampled + 1e-12);
+}
+
+// The periodic cubic through points and what follows them a period on.
+nurbs::Curve periodic_through(const std::vector<Vec3>& points, const Vec3& period) {
+  const std::vector<double> t = nurbs::parameters(points, uniform);
+  // Long before and long after, so that the ends do not count.
+  constexpr int copies = 6;
+  std::vector<Vec3> all;
+  for (int turn = -copies; turn <= copies; ++turn)
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) all.emplace_back(points[i] + turn * period);
+  all.emplace_back(points.front() + (copies + 1) * period);
+  return through(all, uniform);
+}
+
+std::vector<Vec3> wave_points() {
+  std::vector<Vec3> points;
+  for (int i = 0; i <= 8; ++i)
+    points.emplace_back(i + 0.2 * std::sin(2.1 * (i % 8)), std::cos(1.7 * (i % 8)), std::sin(0.9 * (i % 8)));
+  return points;
+}
+const Vec3 wave_period(8, 0, 0);
+
+TEST(Mend, AKnitCourseGoesOnAsItsCopies) {
+  const std::vector<Vec3> points = wave_points();
+  const nurbs::Curve endless = periodic_through(points, wave_period);
+  const CubicPath path(periodic_course(points, wave_period, uniform), wave_period);
+  ASSERT_TRUE(path.is_periodic());
+  ASSERT_EQ(path.spans(), 8U);
+  constexpr int spans = 8 * 13;  // of the endless curve; the path's first one is its 48th
+  for (int i = -160; i <= 240; ++i) {
+    const double place = i / 10.0;
+    const Vec3 expected = nurbs::evaluate(endless, (48 + place) / spans);
+    EXPECT_LT((path.at(place).position - expected).norm(), 1e-9) << place;
+  }
+  // Of a course that is cut out of it, ends and all.
+  std::vector<Vec3> cut = points;
+  for (std::size_t i = 1; i < points.size(); ++i) cut.emplace_back(points[i] + wave_period);
+  for (const auto how : {uniform, nurbs::Parameterization::chord, nurbs::Parameterization::centripetal}) {
+    const nurbs::Curve line = course_line(cut, how, {8, wave_period}).curve;
+    const CubicPath whole(periodic_course(points, wave_period, how), wave_period), part(line);
+    ASSERT_EQ(part.spans(), 16U);
+    for (int i = 0; i <= 160; ++i)
+      EXPECT_LT((part.at(i / 10.0).position - whole.at(i / 10.0).position).norm(), 1e-12) << i;
+  }
+}
+
+TEST(Mend, PeriodicSharesAreTheDerivativesOfTheControlPoints) {
+  const std::vector<Vec3> points = wave_points();
+  const auto control = [](std::vector<Vec3> p) {
+    p.back() = p.front() + wave_period;
+    return periodic_course(p, wave_period, uniform).points;
+  };
+  const std::vector<Vec3> base = control(points);
+  const std::vector<std::vector<Share>> shares = periodic_shares(nurbs::parameters(points, uniform));
+  ASSERT_EQ(shares.size(), base.size());
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    std::vector<Vec3> moved = points;
+    moved[i].z() += 1;
+    const std::vector<Vec3> now = control(moved);
+    for (std::size_t j = 0; j < now.size(); ++j) {
+      double share = 0;
+      for (const Share& s : shares[j])
+        if (s.point == i) share += s.weight;
+      EXPECT_NEAR(now[j].z() - base[j].z(), share, 2e-3) << i << " " << j;
+    }
+  }
+}
+
+// An endless line over the copies of an endless line across it: one repeat is looked at, all of it is parted.
+TEST(Mend, CopiesAreParted) {
+  const auto across = [](const Vec3& from, const Vec3& period, int first) {
+    MendLine line = line_through(straight(from, from + period, 9), first);
+    line.classes.back() = first;
+    line.period = period;
+    line.curve = [period](const std::vector<Vec3>& p) { return periodic_course(p, period, uniform); };
+    line.shares = [](const std::vector<Vec3>& p) { return periodic_shares(nurbs::parameters(p, uniform)); };
+    return line;
+  };
+  MendProblem problem;
+  // They cross where no point of the first one's own repeat is, and copies stand beside them.
+  problem.lines = {across({1, 3, 0.8}, {6, 0, 0}, 0), across({0, 0, -0.8}, {0, 6, 0}, 8)};
+  problem.freedom.assign(16, Vec3::Ones());
+  const Mending mending = mend(problem);
+  ASSERT_TRUE(mending.is_solved());
+  EXPECT_NEAR(missing_before(problem), 0.4, 1e-9);
+  std::vector<CubicPath> paths;
+  for (const MendLine& line : problem.lines) {
+    std::vector<Vec3> points = line.points;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      points[i] += mending.moves[static_cast<std::size_t>(line.classes[i])];
+    paths.emplace_back(line.curve(points), line.period);
+  }
+  double least = 1e9;
+  for (int i = -800; i <= 1600; ++i)
+    for (int j = -400; j <= 800; ++j)
+      least = std::min(least, (paths[0].at(i / 100.0).position - paths[1].at(j / 50.0).position).norm());
+  EXPECT_GE(least, 2.0);
+  EXPECT_LT(least, 2.02);
+}
+
+// A line between copies of itself that move like it has no room: that is told, and how much is missing.
+TEST(Mend, CopiesThatMoveAlikeStayAsNearAsTheyAre) {
+  MendProblem problem;
+  problem.lines = {line_through(straight({-10, 0, 0}, {10, 0, 0}, 9), 0)};
+  problem.freedom.assign(9, Vec3::Ones());
+  problem.repeat = {0, 0, 1.7};
+  const Mending mending = mend(problem);
+  EXPECT_FALSE(mending.is_solved());
+  EXPECT_NEAR(mending.missing, 0.3, 1e-3);
+  problem.repeat = {0, 0, 2.1};
+  EXPECT_TRUE(mend(problem).is_solved());
 }
 
 }  // namespace
