@@ -392,7 +392,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
             "--relax --gap {:.2g} moves them apart where they have room, --force meshes them as they are",
             who, default_gap_share * thin),
         {.at = nearest->at}));
-  constexpr double rounding = 5e-3;  // what the tolerance of tubes leaves of a thickness
+  constexpr double rounding = 1e-3;
   if (nearest->gap < (1.0 - rounding) * wanted)
     job.say(warning(Kind::geometry,
                     fmt::format("{}, nearer than the gap of {:.3g} {} that is wanted", who, wanted,
@@ -424,7 +424,7 @@ std::vector<double> sizes_of(const Options& options, std::span<const yarn::Body>
 // Edges on a yarn are at most as long as it is thick: longer ones would not follow its surface.
 void keep_to_thickness(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
                        std::vector<double>& sizes) {
-  constexpr double rounding = 1e-3;
+  constexpr double rounding = 5e-3;  // what the tolerance of tubes leaves of a thickness
   std::size_t count = 0, worst = 0;
   double least = infinity;
   for (std::size_t b = 0; b < bodies.size(); ++b) {

@@ -15,9 +15,9 @@ namespace selvage::solid {
 
 namespace {
 
-constexpr double chord_share = 0.01;
+constexpr double chord_share = 0.005;
 // The chord of this length on a circle as thick as the yarn has a height of about chord_share.
-constexpr double edge_share = 0.2;
+constexpr double edge_share = 0.14;
 
 contact::SkinMesh skin_mesh(const yarn::Body& body, Tessellation&& from) {
   contact::SkinMesh skin;

@@ -66,7 +66,7 @@ class Instances(Case):
         for seen in self.totals(files["short", "igs"], files["short", "stp"]):
             self.assertEqual((seen["solids"], seen["valid"]), (128, 128))
             # OpenCASCADE's integral is no better; test_the_same_as_in_full compares it with itself.
-            self.assertAlmostEqual(seen["volume"], self.volume(), delta=2e-4 * self.volume())
+            self.assertAlmostEqual(seen["volume"], self.volume(), delta=1e-3 * self.volume())
 
     def test_the_same_as_in_full(self):
         for options in ([], ["--iges-solid"], ["--ends", "planar"]):
@@ -129,13 +129,13 @@ class Instances(Case):
         self.write(weave(6), "--to", "iges")
         source = self.folder / "w.txt"
         report = self.folder / "r.json"
-        self.succeeds("convert", source, "-o", self.folder / "s.igs", "--instances", "--iges-lines", 1500, "--report", report)
+        self.succeeds("convert", source, "-o", self.folder / "s.igs", "--instances", "--iges-lines", 600, "--report", report)
         outputs = json.loads(report.read_text())["inputs"][0]["outputs"]
         self.assertGreater(len(outputs), 1)
         self.assertEqual(sum(output["entities"].get("408", 0) for output in outputs), 12)
         totals = self.totals(*(output["path"] for output in outputs))
         self.assertEqual(sum(total["solids"] for total in totals), 12)
-        self.assertAlmostEqual(sum(total["volume"] for total in totals), self.volume(), delta=2e-4 * self.volume())
+        self.assertAlmostEqual(sum(total["volume"] for total in totals), self.volume(), delta=1e-3 * self.volume())
 
 
 if __name__ == "__main__":

@@ -74,7 +74,11 @@ class Plates(Case):
 
     def test_a_symmetric_plate_is_not_coupled(self):
         found = self.stiffness(self.deck(plate_text())[0])
-        self.assertLess(scaled(found, found)[:3, 3:].max(), 1e-4)
+        # Free meshes are not symmetric: what is left falls with the edges' length.
+        coarse = scaled(found, found)[:3, 3:].max()
+        self.assertLess(coarse, 5e-4)
+        fine = self.stiffness(self.deck(plate_text(), "--size", "0.1")[0])
+        self.assertLess(scaled(fine, fine)[:3, 3:].max(), 0.5 * coarse)
 
     def test_what_cannot_be_is_not_told(self):
         """Two four-node tetrahedra over the thickness: above Voigt's bound in twisting."""
