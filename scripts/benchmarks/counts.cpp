@@ -1,0 +1,174 @@
+// One hot path by name, for counting its instructions (scripts/counts): what it works on is made first, then it
+// runs once inside `measured`, which callgrind watches. One thread; nothing depends on the clock.
+//
+//   counts PATH FOLDER    files are written to FOLDER
+//   counts --list
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "contact/contact.h"
+#include "core/output.h"
+#include "core/source.h"
+#include "formats/registry.h"
+#include "scripts/benchmarks/built.h"
+#include "scripts/benchmarks/cloth.h"
+#include "solid/check.h"
+
+using Work = std::function<void()>;
+
+// Callgrind is told this name, and counts from its beginning to its end.
+extern "C" [[gnu::noinline]] void measured(const Work& work) {
+  work();
+  asm volatile("" ::: "memory");  // the call is no jump, so that the function ends after it
+}
+
+namespace {
+
+using namespace selvage;
+using benchmarks::fail;
+
+template <class T>
+T required(Result<T> result) {
+  if (!result) fail(to_string(result.error()));
+  return std::move(*result);
+}
+
+void require(const Status& status) {
+  if (!status.ok()) fail(to_string(status.error()));
+}
+
+fabric::Fabric jersey(int size) {
+  fabric::Fabric cloth;
+  fabric::Thread thread;
+  thread.name = "cotton30";
+  thread.diameter = 0.2;
+  cloth.threads = {thread};
+  fabric::Knit knit;
+  knit.thread = thread.name;
+  knit.courses = knit.wales = size;
+  cloth.items = {knit};
+  return cloth;
+}
+
+fabric::Fabric weave(int size) {
+  fabric::Fabric cloth;
+  fabric::Thread thread;
+  thread.name = "cotton30";
+  thread.section = yarn::Circle{0.2};
+  cloth.threads = {thread};
+  fabric::Weave item;
+  item.warp.threads = item.weft.threads = {thread.name};
+  item.warp.count = item.weft.count = size;
+  item.warp.pitch = item.weft.pitch = 0.5;
+  cloth.items = {item};
+  return cloth;
+}
+
+fabric::BuildOptions published() {
+  fabric::BuildOptions options;
+  options.as_published = true;
+  return options;
+}
+
+Work building(fabric::Fabric cloth, fabric::BuildOptions options) {
+  return [cloth = std::move(cloth), options = std::move(options)] { benchmarks::built(cloth, options); };
+}
+
+// All of a file but the making of its yarns.
+void write(const formats::Descriptor& format, const std::vector<yarn::Body>& bodies, const std::string& path) {
+  OutputFile output = required(OutputFile::create(path));
+  formats::SurfaceOptions options;
+  options.file_name = "cloth";
+  options.expected_bodies = bodies.size();
+  options.date = "19700101.000000";
+  auto writer = required(format.open_bodies(output, options));
+  for (const yarn::Body& body : bodies) require(writer->add(body));
+  required(writer->finish());
+  require(output.commit());
+}
+
+std::vector<yarn::Body> cloth_of(int yarns) {
+  benchmarks::Cloth cloth;
+  std::vector<yarn::Body> bodies;
+  for (int k = 0; k < yarns; ++k) bodies.push_back(cloth.yarn(k));
+  return bodies;
+}
+
+Work writing(const formats::Descriptor& format, const std::string& path, int yarns) {
+  write(format, cloth_of(1), path);  // opens the module where the format has one
+  return [&format, path, bodies = cloth_of(yarns)] { write(format, bodies, path); };
+}
+
+Work reading(const formats::Descriptor& format, const std::string& path, int yarns) {
+  write(format, cloth_of(yarns), path);
+  return [&format, path, yarns] {
+    const Source source = required(Source::open(path));
+    Diagnostics diagnostics;
+    const std::optional<cad::Model> model = format.read_model(source, diagnostics);
+    if (!model) fail(to_string(*diagnostics.first_error()));
+    if (model->face_count() != 3 * static_cast<std::size_t>(yarns)) fail("not all surfaces were read");
+  };
+}
+
+Work searching() {
+  return [bodies = benchmarks::built(jersey(6), published())] {
+    if (required(contact::find_contacts(bodies, {})).list.empty()) fail("loops of the raw jersey overlap");
+  };
+}
+
+Work checking() {
+  const auto check = [](const std::vector<yarn::Body>& bodies) {
+    for (const solid::YarnCheck& yarn : required(solid::check_solids(bodies, {})).yarns)
+      if (!yarn.defects.empty()) fail(to_string(yarn.defects.front()));
+  };
+  check(benchmarks::built(weave(1), {}));  // opens the module
+  return [check, bodies = benchmarks::built(weave(4), {})] { check(bodies); };
+}
+
+using Maker = std::function<Work(const std::string& folder)>;
+
+const std::map<std::string, Maker>& paths() {
+  static const std::map<std::string, Maker> all = {
+      {"build-jersey", [](const std::string&) { return building(jersey(24), published()); }},
+      {"build-weave", [](const std::string&) { return building(weave(40), {}); }},
+      {"mend-knit", [](const std::string&) { return building(jersey(8), {}); }},
+      {"iges-write",
+       [](const std::string& folder) {
+         return writing(formats::iges::descriptor(), folder + "/written.igs", 256);
+       }},
+      {"iges-read",
+       [](const std::string& folder) {
+         return reading(formats::iges::descriptor(), folder + "/read.igs", 256);
+       }},
+      {"step-write",
+       [](const std::string& folder) {
+         return writing(formats::step::descriptor(), folder + "/written.stp", 16);
+       }},
+      {"contact", [](const std::string&) { return searching(); }},
+      {"check", [](const std::string&) { return checking(); }},
+  };
+  return all;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  const std::vector<std::string> given(words + 1, words + count);
+  if (given == std::vector<std::string>{"--list"}) {
+    for (const auto& [name, maker] : paths()) fmt::print("{}\n", name);
+    return 0;
+  }
+  if (given.size() != 2) fail("usage: counts PATH FOLDER, or counts --list");
+  const auto found = paths().find(given[0]);
+  if (found == paths().end()) fail("no path '" + given[0] + "': counts --list names them");
+  measured(found->second(given[1]));
+  return 0;
+}
