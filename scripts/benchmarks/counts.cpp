@@ -1,5 +1,5 @@
-// One hot path by name, for counting its instructions (scripts/counts): what it works on is made first, then it
-// runs once inside `measured`, which callgrind watches. One thread; nothing depends on the clock.
+// One hot path by name, for counting its instructions (scripts/counts): what it works on is made first, then
+// it runs once inside `measured`, which callgrind watches. One thread; nothing depends on the clock.
 //
 //   counts PATH FOLDER    files are written to FOLDER
 //   counts --list
@@ -83,7 +83,8 @@ Work building(fabric::Fabric cloth, fabric::BuildOptions options) {
 }
 
 // All of a file but the making of its yarns.
-void write(const formats::Descriptor& format, const std::vector<yarn::Body>& bodies, const std::string& path) {
+void write(const formats::Descriptor& format, const std::vector<yarn::Body>& bodies,
+           const std::string& path) {
   OutputFile output = required(OutputFile::create(path));
   formats::SurfaceOptions options;
   options.file_name = "cloth";
@@ -137,8 +138,8 @@ using Maker = std::function<Work(const std::string& folder)>;
 
 const std::map<std::string, Maker>& paths() {
   static const std::map<std::string, Maker> all = {
-      {"build-jersey", [](const std::string&) { return building(jersey(24), published()); }},
-      {"build-weave", [](const std::string&) { return building(weave(40), {}); }},
+      {"build-jersey", [](const std::string&) { return building(jersey(16), published()); }},
+      {"build-weave", [](const std::string&) { return building(weave(12), {}); }},
       {"mend-knit", [](const std::string&) { return building(jersey(8), {}); }},
       {"iges-write",
        [](const std::string& folder) {

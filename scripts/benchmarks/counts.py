@@ -24,8 +24,8 @@ BOUND = 0.05
 
 # What each path is. Those that the program `counts` does not have are whole processes.
 PATHS = {
-    "build-jersey": "jersey of 24 x 24 loops, as published: centre lines and tubes",
-    "build-weave": "plain weave of 40 x 40 yarns: centre lines and tubes",
+    "build-jersey": "jersey of 16 x 16 loops, as published: centre lines and tubes",
+    "build-weave": "plain weave of 12 x 12 yarns: centre lines and tubes",
     "mend-knit": "jersey of 8 x 8 loops of 0.2 mm, mended so that none overlap, and built",
     "iges-write": "256 yarns of 18 x 16 control points",
     "iges-read": "the same file, to surfaces",
