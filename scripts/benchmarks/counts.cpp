@@ -17,6 +17,7 @@
 #include "contact/contact.h"
 #include "core/output.h"
 #include "core/source.h"
+#include "fem/cell_mesher.h"
 #include "formats/registry.h"
 #include "scripts/benchmarks/built.h"
 #include "scripts/benchmarks/cloth.h"
@@ -134,6 +135,24 @@ Work checking() {
   return [check, bodies = benchmarks::built(weave(4), {})] { check(bodies); };
 }
 
+// One crossing of elliptic tows in a matrix. TetGen is a process of its own, and counts nothing.
+Work meshing() {
+  fabric::Fabric cloth = weave(1);
+  cloth.threads.front().section = yarn::Ellipse{0.8, 0.3};
+  auto& item = std::get<fabric::Weave>(cloth.items.front());
+  item.profile = fabric::Weave::Profile::sine;
+  item.warp.pitch = item.weft.pitch = 1.5;
+  fabric::Cell& cell = cloth.cell.emplace();
+  cell.low = Vec3(0, 0, -0.36);
+  cell.high = Vec3(1.5, 1.5, 0.36);
+  return [cloth, bodies = benchmarks::built(cloth, {})] {
+    fem::CellMeshOptions options;
+    options.size = 0.3;
+    Diagnostics diagnostics;
+    if (required(fem::mesh_cell(cloth, bodies, options, diagnostics)).elements.empty()) fail("no mesh");
+  };
+}
+
 using Maker = std::function<Work(const std::string& folder)>;
 
 const std::map<std::string, Maker>& paths() {
@@ -155,6 +174,7 @@ const std::map<std::string, Maker>& paths() {
        }},
       {"contact", [](const std::string&) { return searching(); }},
       {"check", [](const std::string&) { return checking(); }},
+      {"mesh-cell", [](const std::string&) { return meshing(); }},
   };
   return all;
 }

@@ -12,7 +12,6 @@ import os
 import pathlib
 import platform
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -22,7 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # A path that became dearer by more than this has to be looked at.
 BOUND = 0.05
 
-# What each path is. Those that the program `counts` does not have are whole processes.
+# What each path is. What the program `counts` does not have is a whole process.
 PATHS = {
     "build-jersey": "jersey of 16 x 16 loops, as published: centre lines and tubes",
     "build-weave": "plain weave of 12 x 12 yarns: centre lines and tubes",
@@ -32,7 +31,7 @@ PATHS = {
     "step-write": "16 yarns of 18 x 16 control points",
     "contact": "overlaps in a raw jersey of 6 x 6 loops",
     "check": "plain weave of 4 x 4 yarns: closed? overlapping?",
-    "mesh-cell": "the whole of `selvage mesh samples/cell_plain.txt --size 0.3`, TetGen's process included",
+    "mesh-cell": "one crossing of elliptic tows in a matrix, edges of 0.3 mm, without TetGen's own process",
     "start-up": "the whole of `selvage --version`",
 }
 
@@ -58,10 +57,6 @@ def command_of(path, bin_folder, folder):
     """What callgrind runs, and its own options: only what happens within `measured` counts, or all of it."""
     if path == "start-up":
         return [], [f"{bin_folder}/selvage", "--version"]
-    if path == "mesh-cell":
-        shutil.copy(ROOT / "samples" / "cell_plain.txt", folder)
-        words = "--size 0.3 -j 1 --timeout 3600 --sandbox off --no-progress".split()
-        return ["--trace-children=yes"], [f"{bin_folder}/selvage", "mesh", "cell_plain.txt", "-o", "cell.inp"] + words
     return ["--toggle-collect=measured"], [f"{bin_folder}/counts", path, folder]
 
 
