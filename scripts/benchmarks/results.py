@@ -12,6 +12,8 @@ import sys
 import tempfile
 import time
 
+import trend
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 GRID = ROOT / "samples" / "plain4_grid.txt"
 
@@ -243,6 +245,22 @@ def rods(count):
     return f"fabric 1\nunits mm\nthread t\n  tex 100\n  density 1.5\n  section circle 0.3\nend\n{yarns}"
 
 
+def jersey(count):
+    """So many loops, of a loop's repeat."""
+    side = round(count ** 0.5)
+    return f"fabric 1\nunits mm\nthread t\n  section circle 0.2\nend\nknit jersey\n  thread t\n  courses {side}\n  wales {side}\nend\n"
+
+
+def draft(count):
+    """A weave of so many crossings of a draft of 16 shafts, which repeats nowhere along its yarns."""
+    side, heads = round(count ** 0.5), []
+    for pick in range(16):
+        heads.append("".join("1" if (end * end + 3 * pick * end + pick) % 5 < 2 else "0" for end in range(min(side, 97))))
+    rows = "".join(f"    {row}\n" for row in heads)
+    return ("fabric 1\nunits mm\nthread t\n  section circle 0.3\nend\n"
+            f"weave\n  warp t {side} pitch 1\n  weft t {side} pitch 1\n  draft\n{rows}  end\nend\n")
+
+
 def edited(count):
     """The same, each one edited by its name."""
     return rods(count) + "".join(f"edit y{k} point 2 to 1 {k} 0.1\n" for k in reversed(range(count)))
@@ -252,6 +270,11 @@ def edited(count):
 GROWING = [
     ("overlaps, `check`", (16, 64, 256), lambda n: lattice(n, 0.1), None, ["check"]),
     ("crossings without contact, `check`", (16, 64, 256), lambda n: lattice(n, 1), None, ["check"]),
+    ("loops of a jersey, `convert` to IGES", (2500, 10000, 40000), jersey, None, ["convert", "--to", "iges"]),
+    ("loops of a jersey, `check`", (100, 400, 1600), jersey, None, ["check"]),
+    ("crossings of a draft, `info`", (4096, 16384, 65536), draft, None, ["info"]),
+    ("crossings of a draft, `convert --instances` to IGES", (4096, 16384, 65536), draft, None,
+     ["convert", "--instances", "--to", "iges"]),
     ("yarns edited by name, `convert` to IGES", (256, 1024, 4096), edited, None, ["convert", "--to", "iges"]),
     ("yarns of an IGES file, `check`", (64, 256, 1024), rods, "igs", ["check"]),
     ("yarns of a STEP file, `info`", (64, 256, 1024), rods, "stp", ["info"]),
@@ -334,8 +357,18 @@ def main():
             "of what came back, of the points put in and of the improvement to 12 degrees, which is just above what gmsh reaches, "
             "or 15; gmsh's is what it says of its own meshing and optimizing of the volumes, as it does both by itself. Processor "
             "time is that of all threads and of the worker.\n\n" + tetrahedra(given.bin, folder, given.quick))
-    pathlib.Path(given.out).write_text(text)
+    # The committed page, against which a row may not have become worse unseen.
+    page = pathlib.Path(given.out)
+    shown = subprocess.run(["git", "-C", ROOT, "show", f"HEAD:./{page.resolve().relative_to(ROOT)}"], capture_output=True, text=True)
+    before = shown.stdout if shown.returncode == 0 else ""
+    of = re.search(r"commit (\w+)", before)
+    title, rest = text.split("\n\n## ", 1)
+    summary = trend.summary(before, of[1] if of else "", text)
+    text = f"{title}\n\n{summary}\n## {rest}"
+    page.write_text(text)
+    trend.plot(text, page.with_suffix(".svg"))
     print(text)
+    print(summary)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,81 @@
+"""What the benchmark's page says of the page before: nothing that became worse goes unseen."""
+
+import pathlib
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts" / "benchmarks"))
+import trend  # noqa: E402
+
+PAGE = """# Benchmarks
+
+## Writing: of yarns
+
+| writer | yarns | ms | MB/s | memory, MiB | times the bare loop's time | times OpenCASCADE's speed |
+|---|---|---|---|---|---|---|
+| selvage | 8 | 1.00 | 400 | 3.0 | 1.00 | 10 |
+| bare loop | 8 | 1.00 | 300 | 2.0 |  |  |
+| selvage | 64 | 8.00 | 400 | 3.0 | 1.00 | 10 |
+| selvage | 512 | 64.00 | 400 | 3.0 | 1.00 | 10 |
+
+## Overlaps
+
+| cloth | loops or crossings | overlaps found | ours, s | to the first | CGAL, s |
+|---|---|---|---|---|---|
+| jersey 4 x 4 | 16 | 99 | 1.0 | 1.00 | 5 |
+| jersey 8 x 8 | 64 | 455 | 16.0 | 4.00 | 20 |
+
+## Meshes
+
+| size, mm | triangles | mesher | threads | tetrahedra | s |
+|---|---|---|---|---|---|
+| 0.1 | 500 | selvage | 1 | 5000 | 2.0 |
+| 0.1 | 500 | selvage | 2 | 5000 | 1.0 |
+"""
+
+
+class Trend(unittest.TestCase):
+    def worse(self, *changes):
+        now = PAGE
+        for old, new in changes:
+            self.assertIn(old, now)
+            now = now.replace(old, new)
+        return trend.worse_rows(PAGE, now)
+
+    def test_the_same_page_is_not_worse(self):
+        self.assertEqual(self.worse(), ([], 7))
+
+    def test_a_tenth_more_is_told(self):
+        found, _ = self.worse(("| selvage | 64 | 8.00 |", "| selvage | 64 | 8.90 |"))
+        self.assertEqual(found, [("Writing: of yarns", ("selvage", "64"), "ms", 8.0, 8.9)])
+        self.assertEqual(self.worse(("| selvage | 64 | 8.00 |", "| selvage | 64 | 8.70 |"))[0], [])
+
+    def test_less_speed_is_worse_and_more_is_not(self):
+        found, _ = self.worse(("| 64.00 | 400 |", "| 64.00 | 300 |"), ("| 8.00 | 400 |", "| 8.00 | 500 |"))
+        self.assertEqual([row[1:3] for row in found], [(("selvage", "512"), "MB/s")])
+
+    def test_peers_are_not_ours(self):
+        self.assertEqual(self.worse(("| bare loop | 8 | 1.00 |", "| bare loop | 8 | 9.00 |"), ("4.00 | 20 |", "4.00 | 90 |"))[0], [])
+
+    def test_what_a_run_finds_does_not_hide_a_row(self):
+        found, compared = self.worse(("| 455 | 16.0 |", "| 456 | 20.0 |"), ("| 2 | 5000 | 1.0 |", "| 2 | 5100 | 1.5 |"))
+        self.assertEqual(compared, 7)
+        self.assertEqual([(row[1], row[2]) for row in found],
+                         [(("jersey 8 x 8",), "ours, s"), (("0.1", "selvage", "threads 2", "500"), "s")])
+
+    def test_exponents(self):
+        found = {what: trend.exponent(points) for _, what, points in trend.curves(PAGE)}
+        self.assertAlmostEqual(found["selvage, ms"], 1.0)
+        self.assertAlmostEqual(found["jersey, ours, s"], 2.0)
+
+    def test_the_page_begins_with_what_is_worse(self):
+        summary = trend.summary(PAGE, "abc", PAGE.replace("| 16.0 |", "| 32.0 |"))
+        self.assertIn("1 of 7 rows are worse than in abc by more than 10%:", summary)
+        self.assertIn("ours, s 16 -> 32", summary)
+        self.assertIn("Overlaps, jersey, ours, s: 2.50", summary)
+        self.assertIn("There are no results to compare with.", trend.summary("", "", PAGE))
+
+
+if __name__ == "__main__":
+    unittest.main()
