@@ -253,7 +253,8 @@ class StretchFit {
         Stretch& stretch = stretches_[k];
         const Joint &from = joints_[k], &to = joints_[k + 1];
         joints.push_back(from);
-        fit(stretch, from, to);
+        const bool is_settled = !slides_ && stretch.control.size() > 0 && stretch.error <= tolerance;
+        if (!is_settled) fit(stretch, from, to);
         int parts = 1;
         while (parts == 1 && stretch.error > tolerance) {
           // The error falls with the fourth power of the spans' number; never more of them than are needed.
@@ -270,6 +271,7 @@ class StretchFit {
         rows += static_cast<std::size_t>(stretch.spans) + 1;
         if (rows > most) return false;
         if (parts == 1) {
+          if (!slides_) stretch.samples = {};  // nothing moves its ends any more
           stretches.push_back(std::move(stretch));
           continue;
         }
