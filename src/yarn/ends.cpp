@@ -230,6 +230,11 @@ Status complete_end(Body& body, bool last) {
                   error(Kind::geometry, fmt::format("the {} section of yarn '{}' has no area",
                                                     last ? "last" : "first", body.name)));
   face.normal = sign * turning.normalized();
+  // The outline stands on a grid that the path knows nothing of: the plane is the outline's.
+  if (face.style != EndStyle::fan) {
+    const Vec3 middle = mean_of(std::span(outline.points).first(outline.points.size() - 1));
+    face.origin += (middle - face.origin).dot(face.normal) * face.normal;
+  }
   // A patch keeps the outline's turning; a fan's u follows the outline and v runs inward: its normal is the
   // opposite one.
   if (face.style == EndStyle::patch) face.inward = face.normal.dot(turning) < 0.0;

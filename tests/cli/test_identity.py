@@ -68,6 +68,8 @@ class Identity(unittest.TestCase):
             for unit in UNITS:
                 changed = self.folder / sample.name
                 changed.write_text(with_unit(text, unit), encoding="utf-8")
+                if "far outside of what exists" in run("info", str(changed)).stderr:
+                    continue  # glass fibres in um: no section is so small
                 self.trip(changed)
 
     def test_every_end_and_solids(self):
