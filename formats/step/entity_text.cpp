@@ -14,22 +14,12 @@ namespace {
 // Leaves room for the brackets that may follow the last token.
 constexpr std::size_t filled_to = 72;
 
-// The first character of a text in UTF-8, taken off it; a byte that is none stands for itself (Latin-1).
-char32_t first_character(std::string_view& text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const std::size_t length = character_length(text);
-  char32_t code = length > 1 ? byte(0) & (0xFFU >> (length + 1)) : byte(0);
-  for (std::size_t i = 1; i < length; ++i) code = code << 6U | (byte(i) & 0x3FU);
-  text.remove_prefix(std::max<std::size_t>(length, 1));
-  return code;
-}
-
 }  // namespace
 
 std::string encoded(std::string_view text) {
   std::string quoted = "'";
   while (!text.empty()) {
-    const char32_t code = first_character(text);
+    const char32_t code = take_character(text);
     if (code == U'\'')
       quoted += "''";
     else if (code >= 0x20 && code < 0x7F && code != U'\\')

@@ -7,6 +7,7 @@
 
 #include "core/pointed_number.h"
 #include "core/readable.h"
+#include "formats/step/character.h"
 
 namespace selvage::formats::step {
 
@@ -32,16 +33,6 @@ std::size_t length_while(std::string_view text, Belongs belongs) {
   std::size_t n = 0;
   while (n < text.size() && belongs(text[n])) ++n;
   return n;
-}
-
-// The first character of a text in UTF-8, taken off it; a byte that is none stands for itself (Latin-1).
-char32_t take_character(std::string_view& text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const std::size_t length = character_length(text);
-  char32_t code = length > 1 ? byte(0) & (0xFFU >> (length + 1)) : byte(0);
-  for (std::size_t i = 1; i < length; ++i) code = code << 6U | (byte(i) & 0x3FU);
-  text.remove_prefix(std::max<std::size_t>(length, 1));
-  return code;
 }
 
 }  // namespace

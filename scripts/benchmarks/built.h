@@ -12,6 +12,20 @@
 
 namespace selvage::benchmarks {
 
+// Of size x size loops of yarn of 0.2 mm.
+inline fabric::Fabric jersey(int size) {
+  fabric::Fabric cloth;
+  fabric::Thread thread;
+  thread.name = "cotton30";
+  thread.diameter = 0.2;
+  cloth.threads = {thread};
+  fabric::Knit knit;
+  knit.thread = thread.name;
+  knit.courses = knit.wales = size;
+  cloth.items = {knit};
+  return cloth;
+}
+
 inline std::vector<yarn::Body> built(const fabric::Fabric& cloth, const fabric::BuildOptions& options) {
   Diagnostics diagnostics;
   const std::optional<fabric::YarnBuilder> builder = fabric::YarnBuilder::create(cloth, options, diagnostics);

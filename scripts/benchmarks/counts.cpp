@@ -46,19 +46,6 @@ void require(const Status& status) {
   if (!status.ok()) fail(to_string(status.error()));
 }
 
-fabric::Fabric jersey(int size) {
-  fabric::Fabric cloth;
-  fabric::Thread thread;
-  thread.name = "cotton30";
-  thread.diameter = 0.2;
-  cloth.threads = {thread};
-  fabric::Knit knit;
-  knit.thread = thread.name;
-  knit.courses = knit.wales = size;
-  cloth.items = {knit};
-  return cloth;
-}
-
 fabric::Fabric weave(int size) {
   fabric::Fabric cloth;
   fabric::Thread thread;
@@ -121,7 +108,7 @@ Work reading(const formats::Descriptor& format, const std::string& path, int yar
 }
 
 Work searching() {
-  return [bodies = benchmarks::built(jersey(6), published())] {
+  return [bodies = benchmarks::built(benchmarks::jersey(6), published())] {
     if (required(contact::find_contacts(bodies, {})).list.empty()) fail("loops of the raw jersey overlap");
   };
 }
@@ -157,9 +144,9 @@ using Maker = std::function<Work(const std::string& folder)>;
 
 const std::map<std::string, Maker>& paths() {
   static const std::map<std::string, Maker> all = {
-      {"build-jersey", [](const std::string&) { return building(jersey(16), published()); }},
+      {"build-jersey", [](const std::string&) { return building(benchmarks::jersey(16), published()); }},
       {"build-weave", [](const std::string&) { return building(weave(12), {}); }},
-      {"mend-knit", [](const std::string&) { return building(jersey(8), {}); }},
+      {"mend-knit", [](const std::string&) { return building(benchmarks::jersey(8), {}); }},
       {"iges-write",
        [](const std::string& folder) {
          return writing(formats::iges::descriptor(), folder + "/written.igs", 256);

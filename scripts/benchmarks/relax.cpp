@@ -23,18 +23,9 @@ using namespace selvage;
 using benchmarks::fail;
 
 std::vector<yarn::Body> published_jersey(int size) {
-  fabric::Fabric cloth;
-  fabric::Thread thread;
-  thread.name = "cotton30";
-  thread.diameter = 0.2;
-  cloth.threads = {thread};
-  fabric::Knit knit;
-  knit.thread = thread.name;
-  knit.courses = knit.wales = size;
-  cloth.items = {knit};
   fabric::BuildOptions options;
   options.as_published = true;
-  return benchmarks::built(cloth, options);
+  return benchmarks::built(benchmarks::jersey(size), options);
 }
 
 double largest(const std::vector<contact::YarnChange>& changes, double contact::YarnChange::*value) {
