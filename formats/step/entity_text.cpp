@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/pointed_number.h"
-#include "core/readable.h"
+#include "formats/step/character.h"
 
 namespace selvage::formats::step {
 
@@ -19,7 +19,7 @@ constexpr std::size_t filled_to = 72;
 std::string encoded(std::string_view text) {
   std::string quoted = "'";
   while (!text.empty()) {
-    const char32_t code = take_character(text);
+    const char32_t code = take_code(text);
     if (code == U'\'')
       quoted += "''";
     else if (code >= 0x20 && code < 0x7F && code != U'\\')

@@ -6,7 +6,6 @@
 #include <charconv>
 
 #include "core/pointed_number.h"
-#include "core/readable.h"
 #include "formats/step/character.h"
 
 namespace selvage::formats::step {
@@ -138,7 +137,7 @@ void StepStream::convert_string(std::string_view piece) {
 void StepStream::put_encoded() {
   std::string_view rest = encoded_;
   while (!rest.empty()) {
-    const char32_t code = take_character(rest);
+    const char32_t code = take_code(rest);
     put(code < 0x10000 ? fmt::format("\\X2\\{:04X}\\X0\\", static_cast<unsigned>(code))
                        : fmt::format("\\X4\\{:08X}\\X0\\", static_cast<unsigned>(code)));
   }
