@@ -561,7 +561,7 @@ Breaks breaks_of(const CentreLine& path, const FrameField& frames, const SizePro
     const double spans = std::max(1.0, std::ceil(turn / (pi / 2))), parts = std::ceil(spans / most_spans);
     breaks.rows += spans + parts;
     if (breaks.rows > most) return breaks;
-    for (double i = 1; i <= parts; ++i) {
+    for (int i = 1; i <= static_cast<int>(parts); ++i) {
       breaks.at.push_back(i < parts ? grid.rounded(from + (to - from) * i / parts) : to);
       breaks.least.push_back(static_cast<int>(std::ceil(spans / parts)));
     }
