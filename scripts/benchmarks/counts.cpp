@@ -113,7 +113,8 @@ Work searching() {
   };
 }
 
-// What `check` asks but for CGAL's part: valgrind knows no directed rounding, without which CGAL's predicates err.
+// What `check` asks but for CGAL's part: valgrind knows no directed rounding, without which CGAL's predicates
+// err.
 Work checking() {
   const auto check = [](const std::vector<yarn::Body>& bodies) {
     for (const solid::BrepCheck& yarn : required(solid::check_breps(bodies)))
