@@ -87,8 +87,8 @@ struct Body : BodyLabel {
   // its sections).
   nurbs::Curve axis;
 
-  // Bodies of one shape (a number above 0) are the same surface, moved by the difference of their places to
-  // the last digit of what was built.
+  // Of a finished body 0, until somebody knows better. Bodies of one shape (a number above 0) are the same
+  // surface, moved by the difference of their places to the last digit of what was built.
   std::uint64_t shape = 0;
   Vec3 at = Vec3::Zero();
 

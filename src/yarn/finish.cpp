@@ -100,6 +100,8 @@ void find_bends(Body& body) {
 // Finds which way the body's normals point, with open ends: S_u x S_v outward makes the flux positive.
 // Returns the flux of the side alone.
 Result<double> orient(Body& body) {
+  body.shape = 0;  // whatever it was made of
+  body.at = Vec3::Zero();
   const Vec3 origin = body.axis.points.front();
   body.inward = false;
   const double side = nurbs::volume_flux(body.surface, origin);

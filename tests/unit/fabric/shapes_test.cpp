@@ -3,6 +3,7 @@
 
 #include "fabric/build.h"
 #include "yarn/ends.h"
+#include "yarn/finish.h"
 
 namespace selvage::fabric {
 namespace {
@@ -75,6 +76,19 @@ TEST(Shapes, WhatIsKeptChangesNoBody) {
     EXPECT_EQ(known->start.origin, alone->start.origin) << i;
     EXPECT_EQ(known->volume, alone->volume) << i;
   }
+}
+
+// As `relax` does it with what it has moved.
+TEST(Shapes, ABodyThatIsFinishedAnewIsAShapeOfItsOwn) {
+  const Fabric fabric = jersey(3, 2);
+  const YarnBuilder builder = builder_of(fabric, {});
+  Result<yarn::Body> body = builder.build(1);
+  ASSERT_TRUE(body.ok());
+  ASSERT_NE(body->shape, 0U);
+  body->surface.points[body->surface.points.size() / 2].z() += 0.01;
+  ASSERT_TRUE(yarn::finish(*body, yarn::EndStyle::patch).ok());
+  EXPECT_EQ(body->shape, 0U);
+  EXPECT_EQ(body->at, Vec3(Vec3::Zero()));
 }
 
 TEST(Shapes, MovedEndsAreTheStandardOnes) {
