@@ -22,7 +22,7 @@ std::vector<Part> parts_about(const CellModel& model, std::uint32_t index, const
   const nurbs::Surface& s = *face.surface;
   const double period_u = s.last_u() - s.first_u(), period_v = s.last_v() - s.first_v();
   std::vector<Part> parts;
-  for (std::uint32_t k = face.first_cell; k < face.first_cell + face.count_u * face.count_v; ++k)
+  for (std::uint32_t k = face.rows.front(); k < face.rows.back() + face.count_u; ++k)
     for (int i = face.round_u ? -1 : 0; i <= (face.round_u ? 1 : 0); ++i)
       for (int j = face.round_v ? -1 : 0; j <= (face.round_v ? 1 : 0); ++j) {
         const Vec2 middle = site + Vec2(i * period_u, j * period_v);

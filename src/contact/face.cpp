@@ -79,39 +79,52 @@ std::vector<int> cuts_round(const nurbs::Surface& s, const std::vector<double>& 
   return parts;
 }
 
-}  // namespace
-
-struct CellModel::Made {
-  std::vector<Face> faces;  // their first_cell: within `cells`
-  std::vector<std::unique_ptr<const nurbs::Surface>> flat_ends;
-  std::vector<Cell> cells;    // their face: index into `faces`
-  std::vector<Piece> pieces;  // their first_cell: within `cells`
-  double thickness = 0, length = 0, touching = 0;
-};
-
-namespace {
-
-void add_cells(const nurbs::Surface& s, bool inward, const std::vector<double>& us,
-               const std::vector<double>& vs, std::uint32_t face, std::vector<Cell>& cells) {
-  for (std::uint32_t j = 0; j + 1 < vs.size(); ++j)
-    for (std::uint32_t i = 0; i + 1 < us.size(); ++i) {
+// The cells of rows [first, last) of a face, to those of its body.
+void add_cells(std::span<const double> us, std::span<const double> vs, std::uint32_t first,
+               std::uint32_t last, std::uint32_t number, BodyCells& body) {
+  Face& face = body.faces[number];
+  for (std::uint32_t j = first; j < last; ++j) {
+    face.rows[j] = static_cast<std::uint32_t>(body.cells.size());
+    for (std::uint32_t i = 0; i < face.count_u; ++i) {
       Cell cell;
-      cell.face = face;
+      cell.face = number;
       cell.i = i;
       cell.j = j;
       cell.low = {us[i], vs[j]};
       cell.high = {us[i + 1], vs[j + 1]};
-      const nurbs::Patch patch = patch_of(s, cell.low, cell.high);
+      const nurbs::Patch patch = patch_of(*face.surface, cell.low, cell.high);
       for (const Vec3& p : patch.points) cell.box.extend(p);
-      cell.normal = middle_normal(patch, inward);
-      cells.push_back(cell);
+      cell.normal = middle_normal(patch, face.inward);
+      body.cells.push_back(cell);
     }
+  }
+}
+
+void set_size(Face& face, std::size_t breaks_u, std::size_t breaks_v) {
+  face.count_u = static_cast<std::uint32_t>(breaks_u - 1);
+  face.count_v = static_cast<std::uint32_t>(breaks_v - 1);
+  face.rows.assign(face.count_v, Face::no_cells);
+}
+
+// The cells of rows [first, last) of a face as the body's next piece, if they are wanted.
+void add_piece(Piece piece, std::span<const double> us, std::span<const double> vs, std::uint32_t first,
+               std::uint32_t last, std::uint32_t number, const std::vector<bool>& wanted, BodyCells& body) {
+  piece.count = (last - first) * body.faces[number].count_u;
+  piece.first_cell = Face::no_cells;
+  if (wanted.empty() || wanted[body.pieces.size()]) {
+    piece.first_cell = static_cast<std::uint32_t>(body.cells.size());
+    add_cells(us, vs, first, last, number, body);
+    for (std::uint32_t k = 0; k < piece.count; ++k) piece.box.extend(body.cells[piece.first_cell + k].box);
+  } else {
+    body.is_whole = false;
+  }
+  body.pieces.push_back(piece);
 }
 
 }  // namespace
 
-CellModel::Made CellModel::make(const yarn::Body& body) {
-  Made made;
+BodyCells cells_of(const yarn::Body& body, const std::vector<bool>& wanted) {
+  BodyCells made;
   const nurbs::Surface& s = body.surface;
   if (s.is_empty()) return made;
   // Sections at the knots along the yarn.
@@ -151,29 +164,30 @@ CellModel::Made CellModel::make(const yarn::Body& body) {
   side.inward = body.inward;
   side.round_u = true;
   side.round_v = body.closed_along;
-  side.count_u = static_cast<std::uint32_t>(us.size() - 1);
-  side.count_v = static_cast<std::uint32_t>(vs.size() - 1);
+  set_size(side, us.size(), vs.size());
   made.faces.push_back(side);
-  add_cells(s, body.inward, us, vs, 0, made.cells);
   // Pieces: rows together while they are short.
-  std::uint32_t row = 0;
+  std::uint32_t row = 0, first_row = 0;
   double begun = 0.0;
   Piece piece;
   for (std::size_t j = 0; j + 1 < breaks.size(); ++j)
     for (int k = 0; k < parts[j]; ++k, ++row) {
-      if (piece.count == 0) begun = along[j] + (along[j + 1] - along[j]) * k / parts[j];
+      const bool is_first = row == first_row;
+      if (is_first) begun = along[j] + (along[j + 1] - along[j]) * k / parts[j];
       piece.width = std::max({piece.width, sections[j].width, sections[j + 1].width});
       const double thin = std::min(sections[j].thickness, sections[j + 1].thickness);
-      piece.thickness = piece.count == 0 ? thin : std::min(piece.thickness, thin);
-      piece.count += side.count_u;
+      piece.thickness = is_first ? thin : std::min(piece.thickness, thin);
       const double end = along[j] + (along[j + 1] - along[j]) * (k + 1) / parts[j];
       piece.place = 0.5 * (begun + end);
       if (end - begun < 0.3 * piece.width && row + 1 < side.count_v) continue;
-      made.pieces.push_back(piece);
+      piece.first_v = vs[first_row];
+      piece.last_v = vs[row + 1];
+      add_piece(piece, us, vs, first_row, row + 1, 0, wanted, made);
       piece = Piece();
-      piece.first_cell = (row + 1) * side.count_u;
+      first_row = row + 1;
     }
   if (body.closed_along) return made;
+  const std::size_t sides = made.pieces.size();
   for (const bool last : {false, true}) {
     const yarn::EndFace& end = last ? body.end : body.start;
     if (end.style == yarn::EndStyle::none) continue;
@@ -193,37 +207,45 @@ CellModel::Made CellModel::make(const yarn::Body& body) {
     const std::vector<double> eu = nurbs::breakpoints(surface.knots_u, surface.degree_u),
                               ev = nurbs::breakpoints(surface.knots_v, surface.degree_v);
     face.round_u = end.style != yarn::EndStyle::patch;
-    face.count_u = static_cast<std::uint32_t>(eu.size() - 1);
-    face.count_v = static_cast<std::uint32_t>(ev.size() - 1);
-    face.first_cell = static_cast<std::uint32_t>(made.cells.size());
-    add_cells(surface, face.inward, eu, ev, static_cast<std::uint32_t>(made.faces.size()), made.cells);
-    Piece whole = last ? made.pieces.back() : made.pieces.front();
-    whole.place = last ? made.length : 0.0;
-    whole.first_cell = face.first_cell;
-    whole.count = face.count_u * face.count_v;
-    made.pieces.push_back(whole);
+    set_size(face, eu.size(), ev.size());
     made.faces.push_back(face);
+    Piece whole = made.pieces[last ? sides - 1 : 0];
+    whole.place = last ? made.length : 0.0;
+    whole.first_v = whole.last_v = last ? s.last_v() : s.first_v();
+    whole.box.setEmpty();
+    add_piece(whole, eu, ev, 0, face.count_v, static_cast<std::uint32_t>(made.faces.size() - 1), wanted,
+              made);
   }
   return made;
 }
 
+namespace {
+
+std::vector<BodyCells> cells_of_all(std::span<const yarn::Body> bodies, int threads) {
+  std::vector<BodyCells> made(bodies.size());
+  for_each_index(bodies.size(), threads, [&](std::size_t i) { made[i] = cells_of(bodies[i]); });
+  return made;
+}
+
+}  // namespace
+
 CellModel::CellModel(std::span<const yarn::Body> bodies, int threads)
-    : bodies_(bodies),
-      thickness_(bodies.size(), 0.0),
-      length_(bodies.size(), 0.0),
-      touching_(bodies.size(), 0.0) {
-  std::vector<Made> made(bodies.size());
-  for_each_index(bodies.size(), threads, [&](std::size_t i) { made[i] = make(bodies[i]); });
+    : CellModel(bodies, cells_of_all(bodies, threads)) {}
+
+CellModel::CellModel(std::span<const yarn::Body> bodies, std::vector<BodyCells> made) : bodies_(bodies) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const auto first_face = static_cast<std::uint32_t>(faces_.size()),
                first_cell = static_cast<std::uint32_t>(cells_.size());
     sides_.push_back(first_face);
-    thickness_[b] = made[b].thickness;
-    length_[b] = made[b].length;
-    touching_[b] = made[b].touching;
+    first_pieces_.push_back(static_cast<std::uint32_t>(pieces_.size()));
+    thickness_.push_back(made[b].thickness);
+    length_.push_back(made[b].length);
+    touching_.push_back(made[b].touching);
+    is_whole_.push_back(made[b].is_whole);
     for (Face& face : made[b].faces) {
       face.body = static_cast<std::uint32_t>(b);
-      face.first_cell += first_cell;
+      for (std::uint32_t& row : face.rows)
+        if (row != Face::no_cells) row += first_cell;
       faces_.push_back(face);
     }
     std::ranges::move(made[b].flat_ends, std::back_inserter(flat_ends_));
@@ -234,10 +256,10 @@ CellModel::CellModel(std::span<const yarn::Body> bodies, int threads)
     piece_of_.resize(cells_.size());
     for (Piece& piece : made[b].pieces) {
       piece.body = static_cast<std::uint32_t>(b);
-      piece.first_cell += first_cell;
-      for (std::uint32_t k = 0; k < piece.count; ++k) {
-        piece.box.extend(cells_[piece.first_cell + k].box);
-        piece_of_[piece.first_cell + k] = static_cast<std::uint32_t>(pieces_.size());
+      if (piece.first_cell != Face::no_cells) {
+        piece.first_cell += first_cell;
+        for (std::uint32_t k = 0; k < piece.count; ++k)
+          piece_of_[piece.first_cell + k] = static_cast<std::uint32_t>(pieces_.size());
       }
       pieces_.push_back(piece);
     }

@@ -12,8 +12,6 @@ namespace selvage::contact {
 
 namespace {
 
-// As in contact.cpp: nearer along a yarn than this many widths is the same place.
-constexpr double self_distance = 1.5;
 // A point inside a yarn is nearer to its skin than half its thickness; sections change between pieces.
 constexpr double depth_share = 0.75;
 
@@ -68,7 +66,7 @@ class GapField {
     std::vector<std::uint32_t> ids;
     std::vector<double> ends;  // the last v of each
     const Face& side = model_.faces()[model_.side(b)];
-    for (std::uint32_t cell = side.first_cell; cell < side.first_cell + side.count_u * side.count_v;) {
+    for (std::uint32_t cell = side.rows.front(); cell < side.rows.back() + side.count_u;) {
       const Piece& piece = model_.piece_of_cell(cell);
       ids.push_back(static_cast<std::uint32_t>(&piece - model_.pieces().data()));
       cell += piece.count;

@@ -11,6 +11,7 @@
 #include "contact/deep.h"
 #include "contact/least_shift.h"
 #include "contact/overlay.h"
+#include "core/bounds.h"
 
 namespace selvage::contact {
 
@@ -18,7 +19,6 @@ namespace {
 
 constexpr int raster_lines = 48;
 constexpr std::size_t max_peaks = 32;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // The cells of a face's closed range of columns (or rows) that covers all used ones; round it goes the
 // shorter way.
@@ -68,9 +68,11 @@ class Measurer {
     if (n.squaredNorm() > 0.0) look_along(n);
     if (!is_deep_ && (contacts_.empty() || !unsettled_pairs_.empty())) look_at_nearest(unsettled_pairs_);
     if (!is_deep_) prove();
+    // With all of their cells.
+    if (is_deep_ && !(model_.is_whole(body_a_) && model_.is_whole(body_b_))) return {{}, 0.0, true};
     if (is_deep_) look_deep();
     if (contacts_.empty()) look_at_nearest({});
-    return {std::move(contacts_), unsettled_};
+    return {std::move(contacts_), unsettled_, is_deep_};
   }
 
  private:
@@ -119,7 +121,7 @@ class Measurer {
       widest = std::max({widest, columns.size(), rows.size()});
       for (const std::uint32_t j : rows)
         for (const std::uint32_t i : columns) {
-          const std::uint32_t k = face.first_cell + j * face.count_u + i;
+          const std::uint32_t k = face.rows[j] + i;
           parts.push_back({k, cell(k).low, cell(k).high});
         }
     }
@@ -555,7 +557,7 @@ class Measurer {
       rows.insert(face.is_side ? c.j : face.is_last ? side.count_v - 1 : 0U);
     }
     const std::vector<std::uint32_t> range = covering_range(rows, side.count_v, side.round_v);
-    const auto row = [&](std::uint32_t j) -> const Cell& { return cell(side.first_cell + j * side.count_u); };
+    const auto row = [&](std::uint32_t j) -> const Cell& { return cell(side.rows[j]); };
     const nurbs::Surface& s = *side.surface;
     Stretch out{row(range.front()).low.y(), row(range.back()).high.y()};
     if (out.last <= out.first) out.last += s.last_v() - s.first_v();

@@ -20,6 +20,7 @@ using Cluster = std::vector<NearPair>;
 struct Measured {
   std::vector<Contact> contacts;
   double unsettled = 0;  // an overlap up to this depth may have been missed
+  bool is_deep = false;  // more of the yarns was looked at than is near: see measure_deep()
 };
 
 // Every contact in the cluster: overlaps, and gaps up to `reach`. Overlaps deeper than `resolution` are not

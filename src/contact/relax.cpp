@@ -15,6 +15,7 @@
 #include "contact/section_shape.h"
 #include "contact/strand.h"
 #include "contact/ties.h"
+#include "core/bounds.h"
 #include "core/parallel.h"
 #include "nurbs/divided.h"
 #include "nurbs/measure.h"
@@ -24,8 +25,6 @@
 namespace selvage::contact {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Of the smaller thickness: the gap that is made where none is asked for.
 constexpr double default_gap = 0.01;

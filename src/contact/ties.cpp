@@ -5,13 +5,13 @@
 #include <limits>
 #include <optional>
 
+#include "core/bounds.h"
 #include "nurbs/spline.h"
 
 namespace selvage::contact {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int probes = 13;
 
 // A strand's centre line as a polygon over its arc length.

@@ -1,11 +1,14 @@
-// The box of some points.
+// The box of some points, and what has no bound.
 #pragma once
 
+#include <limits>
 #include <ranges>
 
 #include "core/vec.h"
 
 namespace selvage {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <class Points>
 auto bounds_of(const Points& points) {

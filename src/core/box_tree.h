@@ -34,6 +34,11 @@ class BoxTree {
   template <class Visit>
   void near_pairs(double reach, const Visit& visit) const;
 
+  // The same of a box of this tree and one of another, which is moved by `shift` first: visit(i, j), each
+  // pair once.
+  template <class Visit>
+  void near_pairs(const BoxTree& other, const Vec3& shift, double reach, const Visit& visit) const;
+
   // Calls visit(i) for each box that holds `point`, and for each that the ray from it along +x meets.
   template <class Visit>
   void along_ray(const Vec3& point, const Visit& visit) const;
@@ -89,6 +94,34 @@ void BoxTree::near_pairs(double reach, const Visit& visit) const {
           const auto [x, y] = std::minmax(order_[i], order_[j]);
           if (near(boxes_[x], boxes_[y], reach)) visit(x, y);
         }
+    } else if (b.count > 0 ||
+               (a.count == 0 && a.box.diagonal().squaredNorm() >= b.box.diagonal().squaredNorm())) {
+      stack.push_back({a.first, n});
+      stack.push_back({a.first + 1, n});
+    } else {
+      stack.push_back({m, b.first});
+      stack.push_back({m, b.first + 1});
+    }
+  }
+}
+
+template <class Visit>
+void BoxTree::near_pairs(const BoxTree& other, const Vec3& shift, double reach, const Visit& visit) const {
+  if (nodes_.empty() || other.nodes_.empty()) return;
+  const auto is_near = [&](const Box3& a, const Box3& b) {
+    return near(a, {Vec3(b.min() + shift), Vec3(b.max() + shift)}, reach);
+  };
+  thread_local std::vector<std::pair<std::uint32_t, std::uint32_t>> stack;
+  stack.assign(1, {0U, 0U});
+  while (!stack.empty()) {
+    const auto [m, n] = stack.back();
+    stack.pop_back();
+    const Node &a = nodes_[m], &b = other.nodes_[n];
+    if (!is_near(a.box, b.box)) continue;
+    if (a.count > 0 && b.count > 0) {
+      for (std::uint32_t i = a.first; i < a.first + a.count; ++i)
+        for (std::uint32_t j = b.first; j < b.first + b.count; ++j)
+          if (is_near(boxes_[order_[i]], other.boxes_[other.order_[j]])) visit(order_[i], other.order_[j]);
     } else if (b.count > 0 ||
                (a.count == 0 && a.box.diagonal().squaredNorm() >= b.box.diagonal().squaredNorm())) {
       stack.push_back({a.first, n});

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <random>
+
 #include "built.h"
 #include "contact/contact.h"
 #include "formats/registry.h"
@@ -70,34 +72,67 @@ TEST(Published, JerseyOverlapsAsStated) {
   }
 }
 
-// What is known of shapes finds what looking at every yarn finds: jersey, a twill, two wefts of unlike
-// threads.
-TEST(Published, ContactsOfCopiesAreThoseThatAreFoundOneByOne) {
+// Each section of each yarn by its own way, so that no place is any more like another one.
+void shake(std::vector<yarn::Body>& bodies, double by) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> way(-by, by);
+  for (yarn::Body& body : bodies) {
+    body.shape = 0;
+    nurbs::Surface& s = body.surface;
+    for (int j = 0; j < s.count_v; ++j) {
+      const Vec3 shift(way(random), way(random), way(random));
+      for (int i = 0; i < s.count_u; ++i) s.point(i, j) += shift;
+    }
+  }
+}
+
+// The places of contacts are points of the surfaces.
+void expect_sites(const Contact& contact, const std::vector<yarn::Body>& bodies, double size) {
+  for (const Minimum& spot : contact.spots) {
+    if (spot.site_a) {
+      const Vec3 there = nurbs::evaluate(bodies[contact.a].surface, spot.site_a->x(), spot.site_a->y());
+      EXPECT_LT((there - spot.on_a).norm(), 1e-6 * size);
+    }
+    if (spot.site_b) {
+      const Vec3 there = nurbs::evaluate(bodies[contact.b].surface, spot.site_b->x(), spot.site_b->y());
+      EXPECT_LT((there - spot.on_b).norm(), 1e-6 * size);
+    }
+  }
+}
+
+// What is known of places that are alike finds what looking at every place finds: jersey, a twill, two wefts
+// of unlike threads, and wefts that run through the warps (measured as wholes).
+TEST(Published, ContactsOfPlacesThatAreAlikeAreThoseThatAreFoundOneByOne) {
+  const std::string head =
+      "fabric 1\nunits mm\nthread t\n  section ellipse 0.8 0.2\nend\nthread f\n  section circle 0.3\nend\n";
   const std::string weave =
-      "fabric 1\nunits mm\nthread t\n  section ellipse 0.8 0.2\nend\nthread f\n  section circle 0.3\nend\n"
-      "weave\n  warp t 8 pitch 0.7\n  weft f 7 pitch 0.9\n  draft twill 2/2\n  profile sine 0.1\nend\n";
+      head +
+      "weave\n  warp t 8 pitch 0.7\n  weft f 7 pitch 0.9\n  draft twill 2/2\n  profile sine 0.22\nend\n";
+  const std::string through =
+      head + "weave\n  warp f 1 pitch 1.1\n  weft f 3 pitch 0.9\n  draft plain\n  profile sine 0.02\nend\n";
   const std::string knit =
       "fabric 1\nunits mm\nthread t\n  section circle 2\nend\n"
-      "knit jersey\n  thread t\n  courses 6\n  wales 4\nend\n";
-  for (const std::string& text : {knit, weave}) {
+      "knit jersey\n  thread t\n  courses 5\n  wales 12\nend\n";
+  for (const std::string& text : {knit, weave, through}) {
     SCOPED_TRACE(text);
     std::vector<yarn::Body> bodies = bodies_of(text, true);
     const std::vector<std::size_t> first = yarn::first_of_shape(bodies);
     std::size_t copies = 0;
     for (std::size_t i = 0; i < bodies.size(); ++i) copies += first[i] != i ? 1 : 0;
-    EXPECT_GE(copies, 4U);
+    EXPECT_GE(copies, 1U);
     const Contacts known = contacts_of(bodies, 2);
-    for (yarn::Body& body : bodies) body.shape = 0;
-    const Contacts each = contacts_of(bodies);
-    ASSERT_EQ(known.list.size(), each.list.size());
-    EXPECT_GE(each.list.size(), 10U);
     double size = 0.0;
     for (const yarn::Body& body : bodies) size = std::max(size, yarn::bounds(body).diagonal().norm());
+    for (const Contact& contact : known.list) expect_sites(contact, bodies, size);
+    shake(bodies, 2e-7);
+    const Contacts each = contacts_of(bodies);
+    ASSERT_EQ(known.list.size(), each.list.size());
+    EXPECT_GE(each.list.size(), 2U);
     // Lists are sorted by depths, which agree up to rounding: each is looked for among the others'.
     for (const Contact& contact : each.list) {
       const bool is_there = std::any_of(known.list.begin(), known.list.end(), [&](const Contact& other) {
-        return other.a == contact.a && other.b == contact.b && (other.at - contact.at).norm() < 1e-4 * size &&
-               std::abs(other.gap - contact.gap) < 1e-3 * std::abs(contact.gap) &&
+        return other.a == contact.a && other.b == contact.b && (other.at - contact.at).norm() < 1e-3 * size &&
+               std::abs(other.gap - contact.gap) < 5e-3 * std::abs(contact.gap) + 8e-6 &&
                other.spots.size() == contact.spots.size();
       });
       EXPECT_TRUE(is_there) << contact.a << ' ' << contact.b << ' ' << contact.gap;
