@@ -5,7 +5,7 @@
 // points of the distance), found by Newton's method from every local minimum of the pieces; at creases and
 // rims, where there are none, by refinement. What is left between two pieces is bounded from below (a
 // B-spline lies in the hull of its control points), so that nothing deeper than Contacts::resolution is
-// missed.
+// missed. Places in which the same two pieces of surface stand alike are measured once.
 #pragma once
 
 #include <cstddef>

@@ -61,13 +61,12 @@ class BoxTree {
     std::uint32_t count = 0;  // 0: not a leaf
   };
   void split(std::uint32_t node);
+  template <bool alone, class Visit>
+  void descend(const BoxTree& other, const Vec3& shift, double reach, const Visit& visit) const;
   template <class Meets, class Visit>
   void walk(const Meets& meets, const Visit& visit) const;
   // Halves of halves: no deeper than the number of boxes has bits.
   static constexpr std::size_t most_deep = 72;
-  [[nodiscard]] bool near(const Box3& a, const Box3& b, double reach) const {
-    return a.squaredExteriorDistance(b) <= reach * reach;
-  }
 
   std::vector<Box3> boxes_;
   std::uint32_t leaf_size_;
@@ -77,58 +76,48 @@ class BoxTree {
 
 template <class Visit>
 void BoxTree::near_pairs(double reach, const Visit& visit) const {
-  if (nodes_.empty()) return;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> stack = {{0U, 0U}};
-  while (!stack.empty()) {
-    const auto [m, n] = stack.back();
-    stack.pop_back();
-    const Node &a = nodes_[m], &b = nodes_[n];
-    if (m != n && !near(a.box, b.box, reach)) continue;
-    if (m == n && a.count == 0) {
-      stack.push_back({a.first, a.first});
-      stack.push_back({a.first + 1, a.first + 1});
-      stack.push_back({a.first, a.first + 1});
-    } else if (a.count > 0 && b.count > 0) {
-      for (std::uint32_t i = a.first; i < a.first + a.count; ++i)
-        for (std::uint32_t j = m == n ? i + 1 : b.first; j < b.first + b.count; ++j) {
-          const auto [x, y] = std::minmax(order_[i], order_[j]);
-          if (near(boxes_[x], boxes_[y], reach)) visit(x, y);
-        }
-    } else if (b.count > 0 ||
-               (a.count == 0 && a.box.diagonal().squaredNorm() >= b.box.diagonal().squaredNorm())) {
-      stack.push_back({a.first, n});
-      stack.push_back({a.first + 1, n});
-    } else {
-      stack.push_back({m, b.first});
-      stack.push_back({m, b.first + 1});
-    }
-  }
+  descend<true>(*this, Vec3::Zero(), reach, [&](std::uint32_t i, std::uint32_t j) {
+    const auto [x, y] = std::minmax(i, j);
+    visit(x, y);
+  });
 }
 
 template <class Visit>
 void BoxTree::near_pairs(const BoxTree& other, const Vec3& shift, double reach, const Visit& visit) const {
+  descend<false>(other, shift, reach, visit);
+}
+
+// `alone`: the other tree is this one, and each pair of its boxes is met once.
+template <bool alone, class Visit>
+void BoxTree::descend(const BoxTree& other, const Vec3& shift, double reach, const Visit& visit) const {
   if (nodes_.empty() || other.nodes_.empty()) return;
   const auto is_near = [&](const Box3& a, const Box3& b) {
-    return near(a, {Vec3(b.min() + shift), Vec3(b.max() + shift)}, reach);
+    return a.squaredExteriorDistance(Box3(b.min() + shift, b.max() + shift)) <= reach * reach;
   };
   thread_local std::vector<std::pair<std::uint32_t, std::uint32_t>> stack;
-  stack.assign(1, {0U, 0U});
-  while (!stack.empty()) {
+  const std::size_t bottom = stack.size();  // what is visited may ask another tree
+  stack.emplace_back(0U, 0U);
+  while (stack.size() > bottom) {
     const auto [m, n] = stack.back();
     stack.pop_back();
     const Node &a = nodes_[m], &b = other.nodes_[n];
-    if (!is_near(a.box, b.box)) continue;
-    if (a.count > 0 && b.count > 0) {
+    const bool is_same = alone && m == n;
+    if (!is_same && !is_near(a.box, b.box)) continue;
+    if (is_same && a.count == 0) {
+      stack.emplace_back(a.first, a.first);
+      stack.emplace_back(a.first + 1, a.first + 1);
+      stack.emplace_back(a.first, a.first + 1);
+    } else if (a.count > 0 && b.count > 0) {
       for (std::uint32_t i = a.first; i < a.first + a.count; ++i)
-        for (std::uint32_t j = b.first; j < b.first + b.count; ++j)
+        for (std::uint32_t j = is_same ? i + 1 : b.first; j < b.first + b.count; ++j)
           if (is_near(boxes_[order_[i]], other.boxes_[other.order_[j]])) visit(order_[i], other.order_[j]);
     } else if (b.count > 0 ||
                (a.count == 0 && a.box.diagonal().squaredNorm() >= b.box.diagonal().squaredNorm())) {
-      stack.push_back({a.first, n});
-      stack.push_back({a.first + 1, n});
+      stack.emplace_back(a.first, n);
+      stack.emplace_back(a.first + 1, n);
     } else {
-      stack.push_back({m, b.first});
-      stack.push_back({m, b.first + 1});
+      stack.emplace_back(m, b.first);
+      stack.emplace_back(m, b.first + 1);
     }
   }
 }

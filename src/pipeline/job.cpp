@@ -170,7 +170,10 @@ std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {
 
 void Job::build_each(const fabric::YarnBuilder& builder, std::string_view verb,
                      const std::function<bool(std::size_t index, Result<yarn::Body>&&)>& take) {
-  const std::size_t most = 2 * threads;  // more would only cost memory
+  // As many at once as there are threads, of small ones more: to start threads takes as long as to build
+  // some.
+  constexpr std::size_t enough = std::size_t{4} << 20;  // bytes
+  std::size_t most = threads;
   std::vector<std::optional<Result<yarn::Body>>> ready;
   bool goes_on = true;
   for (std::size_t taken = 0; goes_on && taken < builder.count();) {
@@ -188,6 +191,10 @@ void Job::build_each(const fabric::YarnBuilder& builder, std::string_view verb,
       }
     });
     ready = std::move(next);
+    std::size_t largest = 1;
+    for (const std::optional<Result<yarn::Body>>& body : ready)
+      if (body && *body) largest = std::max(largest, (*body)->surface.points.size() * sizeof(Vec3));
+    most = std::clamp<std::size_t>(enough / largest, threads, 8 * threads);
   }
 }
 
