@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/index.h"
 #include "nurbs/basis.h"
 
 namespace selvage::nurbs {
@@ -66,6 +67,27 @@ double length_rounding(const Curve& curve, double t) {
   return std::max(1e-13 * polygon, 32 * DBL_EPSILON * largest);
 }
 
+// Of a cubic within one of its spans: the slope is a parabola, known from three places.
+class SpeedOfCubic {
+ public:
+  SpeedOfCubic(const Curve& curve, double from, double to)
+      : middle_(0.5 * (from + to)), quarter_(0.25 * (to - from)) {
+    const auto slope = [&](double t) { return evaluate_jet(curve, t).d1; };
+    const Vec3 before = slope(middle_ - quarter_), after = slope(middle_ + quarter_);
+    slope_ = slope(middle_);
+    change_ = 0.5 * (after - before);
+    bend_ = 0.5 * (after + before) - slope_;
+  }
+  double operator()(double t) const {
+    const double x = (t - middle_) / quarter_;
+    return (slope_ + x * (change_ + x * bend_)).norm();
+  }
+
+ private:
+  double middle_, quarter_;
+  Vec3 slope_, change_, bend_;
+};
+
 // The basis functions' values and first derivatives at the Gauss nodes of every span.
 struct Node {
   int first;  // index of the first control point that counts here
@@ -112,29 +134,62 @@ std::vector<Node> gauss_nodes(const Direction& direction, int order, int parts) 
   return gauss_nodes(direction, order, parts, 0, direction.spans());
 }
 
+// Gauss nodes that integrate the product of two functions of a basis and the slope of a third.
+int flux_order(int degree) {
+  return std::min(8, (3 * degree + 1) / 2);
+}
+
 // Of a rational surface no polynomial rule is exact: four parts to a span bring the error down to rounding.
 int parts_of(const Surface& surface) {
   return surface.is_rational() ? 4 : 1;
 }
 
+// At one v the control net collapses to a line of points and one of derivatives along v, homogeneous and told
+// from the origin.
+class Lines {
+ public:
+  Lines(const Surface& surface, const Vec3& origin)
+      : surface_(surface), origin_(origin), points_(at(surface.count_u)), slopes_(points_.size()) {}
+
+  void move_to(const Node& v) {
+    if (v.first != first_) load(v.first);
+    const std::size_t columns = points_.size();
+    for (std::size_t i = 0; i < columns; ++i) {
+      Vec4 position = v.value[0] * net_[i], slope = v.slope[0] * net_[i];
+      for (std::size_t j = 1; j <= at(surface_.degree_v); ++j) {
+        position += v.value[j] * net_[j * columns + i];
+        slope += v.slope[j] * net_[j * columns + i];
+      }
+      points_[i] = position;
+      slopes_[i] = slope;
+    }
+  }
+  [[nodiscard]] const std::vector<Vec4>& points() const { return points_; }
+  [[nodiscard]] const std::vector<Vec4>& slopes() const { return slopes_; }
+
+ private:
+  // The rows of the net that count from the row `first` on.
+  void load(int first) {
+    first_ = first;
+    net_.clear();
+    for (int j = first; j <= first + surface_.degree_v; ++j)
+      for (int i = 0; i < surface_.count_u; ++i)
+        net_.push_back(homogeneous(surface_.point(i, j) - origin_, surface_.weight(i, j)));
+  }
+
+  const Surface& surface_;
+  Vec3 origin_;
+  int first_ = -1;
+  std::vector<Vec4> net_, points_, slopes_;
+};
+
 template <bool is_rational, class Take>
 void at_nodes_of(const Surface& surface, const Vec3& origin, const std::vector<Node>& nodes_u,
                  const std::vector<Node>& nodes_v, const Take& take) {
-  std::vector<Vec4> line(static_cast<std::size_t>(surface.count_u)), slope_line(line.size());
+  Lines lines(surface, origin);
+  const std::vector<Vec4>&line = lines.points(), &slope_line = lines.slopes();
   for (const Node& v : nodes_v) {
-    // At one v the control net collapses to a row of points and a row of derivatives along v.
-    for (int i = 0; i < surface.count_u; ++i) {
-      Vec4 position = Vec4::Zero(), slope = Vec4::Zero();
-      for (int j = 0; j <= surface.degree_v; ++j) {
-        const double w = surface.weight(i, v.first + j);
-        const Vec3 p = w * (surface.point(i, v.first + j) - origin);
-        const Vec4 h(p.x(), p.y(), p.z(), w);  // faster than homogeneous(), whose product is not vectorized
-        position += v.value[static_cast<std::size_t>(j)] * h;
-        slope += v.slope[static_cast<std::size_t>(j)] * h;
-      }
-      line[static_cast<std::size_t>(i)] = position;
-      slope_line[static_cast<std::size_t>(i)] = slope;
-    }
+    lines.move_to(v);
     for (std::size_t n = 0; n < nodes_u.size(); ++n) {
       const Node& u = nodes_u[n];
       Vec4 p = Vec4::Zero(), du = Vec4::Zero(), dv = Vec4::Zero();
@@ -164,6 +219,48 @@ void at_nodes(const Surface& surface, const Vec3& origin, const std::vector<Node
   else
     at_nodes_of<false>(surface, origin, nodes_u, nodes_v, take);
 }
+
+// At one v a polynomial surface is a curve P = sum N_i p_i over u with the derivatives Q = sum N_k q_k by v, and
+// the flux of P through it, the integral of P . (P' x Q), is the sum of the volumes (p_i x p_j) . q_k, i < j,
+// times the integrals of (N_i N_j' - N_j N_i') N_k.
+class FluxRound {
+ public:
+  explicit FluxRound(const Direction& round)
+      : degree_(round.degree), count_(round.count), integrals_(pair(count_, 1)) {
+    for (const Node& node : gauss_nodes(round, flux_order(degree_), 1))
+      for (int a = 0; a <= degree_; ++a)
+        for (int b = a + 1; b <= degree_; ++b) {
+          double* const of_pair = integrals_.data() + pair(node.first + a, b - a);
+          const double turn = node.value[at(a)] * node.slope[at(b)] - node.value[at(b)] * node.slope[at(a)];
+          // The first k that goes with i is i - degree.
+          for (int c = 0; c <= degree_; ++c)
+            of_pair[c - a + degree_] += node.weight * turn * node.value[at(c)];
+        }
+  }
+
+  [[nodiscard]] double operator()(const std::vector<Vec4>& points, const std::vector<Vec4>& slopes) const {
+    double flux = 0.0;
+    for (int i = 0; i + 1 < count_; ++i)
+      for (int step = 1; step <= std::min(degree_, count_ - 1 - i); ++step) {
+        const double* const of_pair = integrals_.data() + pair(i, step) + degree_ - i;
+        const Vec4* const slope = slopes.data();
+        Vec4 sum = Vec4::Zero();
+        const int last = std::min(count_ - 1, i + degree_);
+        for (int k = std::max(0, i + step - degree_); k <= last; ++k) sum += of_pair[k] * slope[k];
+        const Vec3 p = points[at(i)].head<3>(), q = points[at(i + step)].head<3>();
+        flux += p.cross(q).dot(sum.head<3>());
+      }
+    return flux;
+  }
+
+ private:
+  [[nodiscard]] int width() const { return 2 * degree_ + 1; }
+  // Where the integrals of i and j = i + step begin.
+  [[nodiscard]] std::size_t pair(int i, int step) const { return (at(i) * at(degree_) + at(step - 1)) * at(width()); }
+
+  int degree_, count_;
+  std::vector<double> integrals_;
+};
 
 // The integrals of moments(), strip by strip: a span of v, all round. Rule 0 is exact for all but the area,
 // for which rule 1 has two nodes more, and rules 2, 3, .. are rule 1 on halves, quarters, .. of the spans.
@@ -267,12 +364,17 @@ double adaptive_integral(const std::function<double(double)>& f, double t0, doub
 double arc_length(const Curve& curve, double t0, double t1) {
   // Knot by knot from the one after t0: a short piece of a long curve costs no more than its own spans.
   auto knot = std::upper_bound(curve.knots.begin(), curve.knots.end(), t0);
-  const std::function<double(double)> speed = [&](double t) { return evaluate_jet(curve, t).d1.norm(); };
+  const bool is_cubic = curve.degree <= 3 && !curve.is_rational();
   double sum = 0.0, from = t0;
   while (from < t1) {
     while (knot != curve.knots.end() && *knot <= from) ++knot;
     const double to = knot == curve.knots.end() ? t1 : std::min(*knot, t1);
-    sum += adaptive_integral(speed, from, to, length_rounding(curve, 0.5 * (from + to)));
+    const auto integral = [&](const auto& speed) {
+      return adaptive_integral([&](double t) { return speed(t); }, from, to,
+                               length_rounding(curve, 0.5 * (from + to)));
+    };
+    sum += is_cubic ? integral(SpeedOfCubic(curve, from, to))
+                    : integral([&](double t) { return evaluate_jet(curve, t).d1.norm(); });
     from = to;
   }
   return sum;
@@ -283,16 +385,24 @@ double arc_length(const Curve& curve) {
 }
 
 double volume_flux(const Surface& surface, const Vec3& origin) {
-  // S . (S_u x S_v) has degree 3 p - 1 in each direction.
-  const auto nodes = [&](const Direction& direction) {
-    const int order = surface.is_rational() ? 8 : std::min(8, (3 * direction.degree + 1) / 2);
-    return gauss_nodes(direction, order, parts_of(surface));
-  };
+  const Direction round = round_of(surface), along = along_of(surface);
   double sum = 0.0;
-  at_nodes(surface, origin, nodes(round_of(surface)), nodes(along_of(surface)),
-           [&](std::size_t /*node*/, const Vec3& position, const Vec3& normal, double weight) {
-             sum += weight * position.dot(normal);
-           });
+  if (surface.is_rational()) {
+    at_nodes(surface, origin, gauss_nodes(round, 8, parts_of(surface)),
+             gauss_nodes(along, 8, parts_of(surface)),
+             [&](std::size_t /*node*/, const Vec3& position, const Vec3& normal, double weight) {
+               sum += weight * position.dot(normal);
+             });
+    return sum / 3.0;
+  }
+  // S . (S_u x S_v) has degree 3 p - 1 in each direction.
+  const FluxRound flux(round);
+  Lines lines(surface, origin);
+  for (std::size_t span = 0; span < along.spans(); ++span)
+    for (const Node& node : gauss_nodes(along, flux_order(along.degree), 1, span, span + 1)) {
+      lines.move_to(node);
+      sum += node.weight * flux(lines.points(), lines.slopes());
+    }
   return sum / 3.0;
 }
 

@@ -52,23 +52,36 @@ Result<Vec3> first_up(const Vec3& tangent, const std::optional<Vec3>& wanted) {
   return Vec3((up - up.dot(tangent) * tangent).normalized());
 }
 
-// The direction that a guide asks of the frame at a place, and its derivative by t.
+// The direction that a guide, a unit vector, asks of the frame at a place, and its derivative by t.
 struct Wanted {
   Vec3 direction, slope;
 };
 
 Wanted wanted_at(const FrameGuide& guide, const Frame& frame) {
-  if (guide.form != FrameGuide::Form::radial) return {guide.direction->normalized(), Vec3::Zero()};
-  const Vec3 axis = guide.direction->normalized(), from = frame.position - guide.origin,
+  if (guide.form != FrameGuide::Form::radial) return {*guide.direction, Vec3::Zero()};
+  const Vec3 &axis = *guide.direction, from = frame.position - guide.origin,
              step = frame.speed * frame.tangent;
   return {from - from.dot(axis) * axis, step - step.dot(axis) * axis};
 }
 
+// The angle between what a guide asks for and the tangent's line; 0 where it asks for nothing.
+double angle_held(const FrameGuide& guide, const Frame& frame) {
+  const double angle = angle_between(frame.tangent, wanted_at(guide, frame).direction);
+  return std::min(angle, std::numbers::pi - angle);
+}
+
 // Too near to the tangent to say anything?
 bool is_idle(const FrameGuide& guide, const Frame& frame) {
-  const Vec3 wanted = wanted_at(guide, frame).direction;
-  const double angle = angle_between(frame.tangent, wanted);
-  return !(wanted.norm() > 0.0) || std::min(angle, std::numbers::pi - angle) < six_degrees;
+  return !(angle_held(guide, frame) >= six_degrees);
+}
+
+// Between two near places of a path that turns by little from one to the other, the guide is nowhere idle.
+bool holds_between(const FrameGuide& guide, const Frame& from, const Frame& to) {
+  constexpr double little = 0.5;  // radians: a path that stops in between turns by more
+  const double turn =
+      angle_between(from.tangent, to.tangent) +
+      angle_between(wanted_at(guide, from).direction, wanted_at(guide, to).direction);
+  return turn < little && angle_held(guide, from) - turn > six_degrees;
 }
 
 }  // namespace
@@ -99,6 +112,7 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& 
   FrameField field;
   field.path_ = path;
   field.guide_ = guide;
+  if (guide.direction) field.guide_.direction = guide.direction->normalized();
   for (const Vec3& point : path.points)
     field.shortest_chord_ = std::max(field.shortest_chord_, 1e-8 * point.cwiseAbs().maxCoeff());
   const bool is_free = guide.form == FrameGuide::Form::free;
@@ -109,6 +123,12 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& 
     node.position = jet.position;
     node.tangent = jet.d1.normalized();
     return node;
+  };
+  const auto frame_of = [](const Node& node) {
+    Frame frame;
+    frame.position = node.position;
+    frame.tangent = node.tangent;
+    return frame;
   };
   const auto stops = [](const Node& node) {
     return !node.tangent.allFinite() || node.tangent.squaredNorm() < 0.5;
@@ -129,13 +149,19 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& 
     // Turning of the span, from a coarse look, decides its number of steps; a hidden turn is caught by
     // halving.
     double turning = 0.0;
-    Vec3 previous = field.nodes_.back().tangent;
+    bool needs_nodes = is_free || needs_lengths;
+    Node look = field.nodes_.back();
     constexpr int looks = 8;
     for (int i = 1; i <= looks; ++i) {
-      const Node node = node_at(breaks[k] + (breaks[k + 1] - breaks[k]) * i / looks);
-      if (stops(node)) return stopped(node);
-      turning += angle_between(previous, node.tangent);
-      previous = node.tangent;
+      const Node previous = look;
+      look = node_at(breaks[k] + (breaks[k + 1] - breaks[k]) * i / looks);
+      if (stops(look)) return stopped(look);
+      turning += angle_between(previous.tangent, look.tangent);
+      needs_nodes = needs_nodes || !holds_between(field.guide_, frame_of(previous), frame_of(look));
+    }
+    if (!needs_nodes) {
+      field.nodes_.push_back(look);
+      continue;
     }
     const int steps = std::clamp(static_cast<int>(std::ceil(turning / largest_turn)), 1, 100000);
     for (int i = 1; i <= steps; ++i) {
@@ -147,10 +173,7 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& 
         node.up = reflected(before.up, before.position, before.tangent, node.position, node.tangent,
                             field.shortest_chord_);
       } else {
-        Frame frame;
-        frame.position = node.position;
-        frame.tangent = node.tangent;
-        if (is_idle(guide, frame))
+        if (is_idle(field.guide_, frame_of(node)))
           return error(Kind::geometry,
                        guide.form == FrameGuide::Form::radial
                            ? "the path meets the axis about which its section is held"
@@ -194,7 +217,6 @@ double FrameField::turn_between(double from, double to) const {
 }
 
 Frame FrameField::at(double t) const {
-  const Node& node = node_before(t);
   const nurbs::CurveJet jet = nurbs::evaluate_jet(path_, t);
   Frame frame;
   frame.position = jet.position;
@@ -206,6 +228,7 @@ Frame FrameField::at(double t) const {
     return frame;
   }
   frame.turn_dt = spread_rate_ * frame.speed;
+  const Node& node = node_before(t);
   frame.up = t <= node.t ? node.up
                          : reflected(node.up, node.position, node.tangent, frame.position, frame.tangent,
                                      shortest_chord_);

@@ -69,8 +69,8 @@ class FrameField {
   void hold(Frame& frame) const;
 
   nurbs::Curve path_;
-  FrameGuide guide_;
-  std::vector<Node> nodes_;
+  FrameGuide guide_;         // of unit direction
+  std::vector<Node> nodes_;  // of a held frame without lengths the path's knots may be enough
   double spread_rate_ = 0;
   double shortest_chord_ = 0;  // file units; up to there a chord's direction is rounding
 };
