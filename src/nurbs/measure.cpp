@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "core/index.h"
 #include "nurbs/basis.h"
@@ -121,9 +122,9 @@ std::vector<Node> gauss_nodes(const Direction& direction, int order, int parts, 
     for (int part = 0; part < parts; ++part) {
       const double length = (direction.breaks[k + 1] - direction.breaks[k]) / parts;
       const double half = 0.5 * length, middle = direction.breaks[k] + (part + 0.5) * length;
+      const int span = find_span(direction.knots, direction.degree, direction.count, middle);
       for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
         const double t = middle + half * rule.nodes[g];
-        const int span = find_span(direction.knots, direction.degree, direction.count, t);
         basis_derivatives(direction.knots, direction.degree, span, t, rows);
         nodes.push_back({span - direction.degree, half * rule.weights[g], rows[0], rows[1]});
       }
@@ -220,9 +221,18 @@ void at_nodes(const Surface& surface, const Vec3& origin, const std::vector<Node
     at_nodes_of<false>(surface, origin, nodes_u, nodes_v, take);
 }
 
-// At one v a polynomial surface is a curve P = sum N_i p_i over u with the derivatives Q = sum N_k q_k by v, and
-// the flux of P through it, the integral of P . (P' x Q), is the sum of the volumes (p_i x p_j) . q_k, i < j,
-// times the integrals of (N_i N_j' - N_j N_i') N_k.
+// What is between a few neighbouring lines of constant v of a polynomial surface: at each of these v the net
+// collapses to the control points p of a line and their derivatives q by v.
+struct Ribbons {
+  static constexpr int most = 6;  // Gauss's rule takes 5 for a cubic's span
+  using Scalars = Eigen::Array<double, most, 1>;
+  using Vectors = Eigen::Array<double, most, 3>;
+  Scalars weights;
+  std::vector<Vectors> points, slopes;
+};
+
+// Through a line P = sum N_i p_i over u, moving by Q = sum N_k q_k, the flux of P is the integral of
+// P . (P' x Q): the sum of the volumes (p_i x p_j) . q_k, i < j, times the integrals of (N_i N_j' - N_j N_i') N_k.
 class FluxRound {
  public:
   explicit FluxRound(const Direction& round)
@@ -238,19 +248,22 @@ class FluxRound {
         }
   }
 
-  [[nodiscard]] double operator()(const std::vector<Vec4>& points, const std::vector<Vec4>& slopes) const {
-    double flux = 0.0;
+  // The sum of the fluxes through the ribbons at several v, each times its weight.
+  [[nodiscard]] double operator()(const Ribbons& ribbons) const {
+    Ribbons::Scalars flux = Ribbons::Scalars::Zero();
+    const Ribbons::Vectors *const points = ribbons.points.data(), *const slopes = ribbons.slopes.data();
     for (int i = 0; i + 1 < count_; ++i)
       for (int step = 1; step <= std::min(degree_, count_ - 1 - i); ++step) {
-        const double* const of_pair = integrals_.data() + pair(i, step) + degree_ - i;
-        const Vec4* const slope = slopes.data();
-        Vec4 sum = Vec4::Zero();
+        const double* const of_pair = integrals_.data() + pair(i, step) + (degree_ - i);
         const int last = std::min(count_ - 1, i + degree_);
-        for (int k = std::max(0, i + step - degree_); k <= last; ++k) sum += of_pair[k] * slope[k];
-        const Vec3 p = points[at(i)].head<3>(), q = points[at(i + step)].head<3>();
-        flux += p.cross(q).dot(sum.head<3>());
+        Ribbons::Vectors sum = Ribbons::Vectors::Zero();
+        for (int k = std::max(0, i + step - degree_); k <= last; ++k) sum += of_pair[k] * slopes[k];
+        const Ribbons::Vectors &p = points[i], &q = points[i + step];
+        flux += (p.col(1) * q.col(2) - p.col(2) * q.col(1)) * sum.col(0) +
+                (p.col(2) * q.col(0) - p.col(0) * q.col(2)) * sum.col(1) +
+                (p.col(0) * q.col(1) - p.col(1) * q.col(0)) * sum.col(2);
       }
-    return flux;
+    return (flux * ribbons.weights).sum();
   }
 
  private:
@@ -261,6 +274,35 @@ class FluxRound {
   int degree_, count_;
   std::vector<double> integrals_;
 };
+
+// At nodes of one span.
+void lay(Ribbons& ribbons, const Surface& surface, const Vec3& origin, std::span<const Node> nodes) {
+  using Scalars = Ribbons::Scalars;
+  ribbons.weights.setZero();
+  std::array<Scalars, max_degree + 1> values, slopes;
+  for (std::size_t j = 0; j <= at(surface.degree_v); ++j) {
+    values[j].setZero();
+    slopes[j].setZero();
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const auto lane = static_cast<Eigen::Index>(n);
+      values[j][lane] = nodes[n].value[j];
+      slopes[j][lane] = nodes[n].slope[j];
+      ribbons.weights[lane] = nodes[n].weight;
+    }
+  }
+  for (int i = 0; i < surface.count_u; ++i) {
+    Ribbons::Vectors point = Ribbons::Vectors::Zero(), slope = point;
+    for (int j = 0; j <= surface.degree_v; ++j) {
+      const Vec3 p = surface.point(i, nodes.front().first + j) - origin;
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        point.col(axis) += p[axis] * values[at(j)];
+        slope.col(axis) += p[axis] * slopes[at(j)];
+      }
+    }
+    ribbons.points[at(i)] = point;
+    ribbons.slopes[at(i)] = slope;
+  }
+}
 
 // The integrals of moments(), strip by strip: a span of v, all round. Rule 0 is exact for all but the area,
 // for which rule 1 has two nodes more, and rules 2, 3, .. are rule 1 on halves, quarters, .. of the spans.
@@ -397,12 +439,19 @@ double volume_flux(const Surface& surface, const Vec3& origin) {
   }
   // S . (S_u x S_v) has degree 3 p - 1 in each direction.
   const FluxRound flux(round);
-  Lines lines(surface, origin);
-  for (std::size_t span = 0; span < along.spans(); ++span)
-    for (const Node& node : gauss_nodes(along, flux_order(along.degree), 1, span, span + 1)) {
-      lines.move_to(node);
-      sum += node.weight * flux(lines.points(), lines.slopes());
+  const std::size_t columns = at(surface.count_u);
+  Ribbons ribbons;
+  ribbons.points.resize(columns);
+  ribbons.slopes.resize(columns);
+  for (std::size_t span = 0; span < along.spans(); ++span) {
+    const std::vector<Node> nodes = gauss_nodes(along, flux_order(along.degree), 1, span, span + 1);
+    for (std::size_t done = 0; done < nodes.size(); done += Ribbons::most) {
+      const std::span<const Node> some =
+          std::span(nodes).subspan(done, std::min<std::size_t>(Ribbons::most, nodes.size() - done));
+      lay(ribbons, surface, origin, some);
+      sum += flux(ribbons);
     }
+  }
   return sum / 3.0;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "nurbs/basis.h"
+#include "nurbs/jets.h"
 #include "nurbs/measure.h"
 #include "yarn/ends.h"
 
@@ -65,6 +66,7 @@ void find_bends(Body& body) {
   body.min_bend_radius = std::numeric_limits<double>::infinity();
   // No section reaches farther than the control net does from the axis: most places need no closer look.
   const double widest = widest_section(body);
+  const nurbs::Jets axis(body.axis);
   const std::vector<double> breaks = nurbs::breakpoints(body.axis.knots, body.axis.degree);
   constexpr int samples = 8;
   struct Found {
@@ -76,7 +78,7 @@ void find_bends(Body& body) {
     std::optional<Found> worst;  // of this span
     for (int i = 0; i <= samples; ++i) {
       const double t = breaks[k] + (breaks[k + 1] - breaks[k]) * i / samples;
-      const nurbs::CurveJet jet = nurbs::evaluate_jet(body.axis, t);
+      const nurbs::CurveJet jet = axis.at(t);
       const double speed = jet.d1.squaredNorm();
       if (speed == 0.0) continue;
       const Vec3 curvature = (jet.d2 - jet.d1 * (jet.d2.dot(jet.d1) / speed)) / speed;

@@ -64,24 +64,33 @@ Wanted wanted_at(const FrameGuide& guide, const Frame& frame) {
   return {from - from.dot(axis) * axis, step - step.dot(axis) * axis};
 }
 
-// The angle between what a guide asks for and the tangent's line; 0 where it asks for nothing.
-double angle_held(const FrameGuide& guide, const Frame& frame) {
-  const double angle = angle_between(frame.tangent, wanted_at(guide, frame).direction);
-  return std::min(angle, std::numbers::pi - angle);
-}
-
 // Too near to the tangent to say anything?
 bool is_idle(const FrameGuide& guide, const Frame& frame) {
-  return !(angle_held(guide, frame) >= six_degrees);
+  const Vec3 wanted = wanted_at(guide, frame).direction;
+  const double angle = angle_between(frame.tangent, wanted);
+  return !(wanted.norm() > 0.0) || std::min(angle, std::numbers::pi - angle) < six_degrees;
 }
 
-// Between two near places of a path that turns by little from one to the other, the guide is nowhere idle.
-bool holds_between(const FrameGuide& guide, const Frame& from, const Frame& to) {
-  constexpr double little = 0.5;  // radians: a path that stops in between turns by more
-  const double turn =
-      angle_between(from.tangent, to.tangent) +
-      angle_between(wanted_at(guide, from).direction, wanted_at(guide, to).direction);
-  return turn < little && angle_held(guide, from) - turn > six_degrees;
+// Is the guide nowhere idle in a span, and stops the path nowhere? True only where a few looks tell: between two
+// of them path and guide turn by less than they are apart.
+bool holds_along(const FrameGuide& guide, const nurbs::Jets& path, double from, double to) {
+  constexpr int looks = 8;
+  constexpr double largest_step = 0.5;  // radians, which are hardly more than the chord
+  Vec3 tangent = Vec3::Zero(), wanted = Vec3::Zero();
+  for (int i = 0; i <= looks; ++i) {
+    const nurbs::CurveJet jet = path.at(from + (to - from) * i / looks);
+    Frame frame;
+    frame.position = jet.position;
+    frame.speed = jet.d1.norm();
+    frame.tangent = jet.d1 / frame.speed;
+    const Vec3 here = wanted_at(guide, frame).direction.normalized();
+    const double step = i == 0 ? 0.0 : 1.02 * ((frame.tangent - tangent).norm() + (here - wanted).norm());
+    // The sine is less than the angle.
+    if (!(step < largest_step && frame.tangent.cross(here).norm() - step > six_degrees)) return false;
+    tangent = frame.tangent;
+    wanted = here;
+  }
+  return true;
 }
 
 }  // namespace
@@ -109,26 +118,19 @@ void FrameField::hold(Frame& frame) const {
 
 Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& guide, bool closed,
                                     bool needs_lengths) {
-  FrameField field;
-  field.path_ = path;
+  FrameField field(path);
   field.guide_ = guide;
   if (guide.direction) field.guide_.direction = guide.direction->normalized();
   for (const Vec3& point : path.points)
     field.shortest_chord_ = std::max(field.shortest_chord_, 1e-8 * point.cwiseAbs().maxCoeff());
   const bool is_free = guide.form == FrameGuide::Form::free;
   const auto node_at = [&](double t) {
-    const nurbs::CurveJet jet = nurbs::evaluate_jet(path, t);
+    const nurbs::CurveJet jet = field.path_.at(t);
     Node node;
     node.t = t;
     node.position = jet.position;
     node.tangent = jet.d1.normalized();
     return node;
-  };
-  const auto frame_of = [](const Node& node) {
-    Frame frame;
-    frame.position = node.position;
-    frame.tangent = node.tangent;
-    return frame;
   };
   const auto stops = [](const Node& node) {
     return !node.tangent.allFinite() || node.tangent.squaredNorm() < 0.5;
@@ -146,22 +148,20 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& 
   field.nodes_.push_back(first);
   const std::vector<double> breaks = nurbs::breakpoints(path.knots, path.degree);
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+    if (!is_free && !needs_lengths && holds_along(field.guide_, field.path_, breaks[k], breaks[k + 1])) {
+      field.nodes_.push_back(node_at(breaks[k + 1]));
+      continue;
+    }
     // Turning of the span, from a coarse look, decides its number of steps; a hidden turn is caught by
     // halving.
     double turning = 0.0;
-    bool needs_nodes = is_free || needs_lengths;
-    Node look = field.nodes_.back();
+    Vec3 previous = field.nodes_.back().tangent;
     constexpr int looks = 8;
     for (int i = 1; i <= looks; ++i) {
-      const Node previous = look;
-      look = node_at(breaks[k] + (breaks[k + 1] - breaks[k]) * i / looks);
-      if (stops(look)) return stopped(look);
-      turning += angle_between(previous.tangent, look.tangent);
-      needs_nodes = needs_nodes || !holds_between(field.guide_, frame_of(previous), frame_of(look));
-    }
-    if (!needs_nodes) {
-      field.nodes_.push_back(look);
-      continue;
+      const Node node = node_at(breaks[k] + (breaks[k + 1] - breaks[k]) * i / looks);
+      if (stops(node)) return stopped(node);
+      turning += angle_between(previous, node.tangent);
+      previous = node.tangent;
     }
     const int steps = std::clamp(static_cast<int>(std::ceil(turning / largest_turn)), 1, 100000);
     for (int i = 1; i <= steps; ++i) {
@@ -173,7 +173,10 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& 
         node.up = reflected(before.up, before.position, before.tangent, node.position, node.tangent,
                             field.shortest_chord_);
       } else {
-        if (is_idle(field.guide_, frame_of(node)))
+        Frame frame;
+        frame.position = node.position;
+        frame.tangent = node.tangent;
+        if (is_idle(field.guide_, frame))
           return error(Kind::geometry,
                        guide.form == FrameGuide::Form::radial
                            ? "the path meets the axis about which its section is held"
@@ -203,7 +206,7 @@ const FrameField::Node& FrameField::node_before(double t) const {
 
 double FrameField::length_at(double t) const {
   const Node& node = node_before(t);
-  return t <= node.t ? node.length : node.length + nurbs::arc_length(path_, node.t, t);
+  return t <= node.t ? node.length : node.length + nurbs::arc_length(path_.curve(), node.t, t);
 }
 
 double FrameField::turn_between(double from, double to) const {
@@ -217,7 +220,7 @@ double FrameField::turn_between(double from, double to) const {
 }
 
 Frame FrameField::at(double t) const {
-  const nurbs::CurveJet jet = nurbs::evaluate_jet(path_, t);
+  const nurbs::CurveJet jet = path_.at(t);
   Frame frame;
   frame.position = jet.position;
   frame.speed = jet.d1.norm();

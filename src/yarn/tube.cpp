@@ -27,16 +27,16 @@ using Row = std::vector<Vec3>;
 class RowTable {
  public:
   RowTable() = default;
-  RowTable(std::size_t rows, std::size_t columns)
-      : columns_(columns), vectors_(rows * columns, Vec3(Vec3::Zero())) {}
+  RowTable(std::size_t rows, std::size_t columns) { resize(rows, columns); }
+  // What it holds is lost.
+  void resize(std::size_t rows, std::size_t columns) {
+    columns_ = columns;
+    vectors_.resize(rows * columns);
+  }
   [[nodiscard]] std::size_t rows() const { return columns_ == 0 ? 0 : vectors_.size() / columns_; }
   [[nodiscard]] std::size_t columns() const { return columns_; }
-  [[nodiscard]] std::span<const Vec3> row(std::size_t i) const {
-    return std::span(vectors_).subspan(i * columns_, columns_);
-  }
-  [[nodiscard]] std::span<Vec3> row(std::size_t i) {
-    return std::span(vectors_).subspan(i * columns_, columns_);
-  }
+  [[nodiscard]] std::span<const Vec3> row(std::size_t i) const { return {&vectors_[i * columns_], columns_}; }
+  [[nodiscard]] std::span<Vec3> row(std::size_t i) { return {&vectors_[i * columns_], columns_}; }
 
  private:
   std::size_t columns_ = 0;
@@ -254,17 +254,13 @@ class StretchSolver {
     }
     return control;
   }
-  // Of the fit from the values, one row a sample.
-  [[nodiscard]] RowTable deviations(const RowTable& control, const RowTable& values) const {
-    RowTable deviations(values.rows(), values.columns());
-    for (std::size_t i = 0; i < values.rows(); ++i) {
-      const auto& [first, shares] = at_[i];
-      for (std::size_t c = 0; c < values.columns(); ++c)
-        deviations.row(i)[c] = shares[0] * control.row(first)[c] + shares[1] * control.row(first + 1)[c] +
-                               shares[2] * control.row(first + 2)[c] +
-                               shares[3] * control.row(first + 3)[c] - values.row(i)[c];
-    }
-    return deviations;
+  // Of the fit from a sample's values.
+  void deviation(const RowTable& control, const RowTable& values, std::size_t sample, std::span<Vec3> out) const {
+    const auto& [first, shares] = at_[sample];
+    const auto a = control.row(first), b = control.row(first + 1), c = control.row(first + 2),
+               d = control.row(first + 3), value = values.row(sample);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = shares[0] * a[i] + shares[1] * b[i] + shares[2] * c[i] + shares[3] * d[i] - value[i];
   }
 
  private:
@@ -501,24 +497,25 @@ class StretchFit {
     for (Row* slope : {&first, &last})
       for (Vec3& v : *slope) v *= length;
     stretch.control = by.control(values, first, last);
-    RowTable across = by.deviations(stretch.control, values), along(values.rows(), values.columns()),
-             bent = along;
+    for (RowTable* table : {&across_, &along_, &bent_}) table->resize(values.rows(), values.columns());
     for (std::size_t i = 0; i < values.rows(); ++i) {
+      const std::span<Vec3> across = across_.row(i), along = along_.row(i);
+      by.deviation(stretch.control, values, i, across);
       const Vec3& tangent = stretch.samples.slides[i].tangent;
-      for (std::size_t c = 0; c < values.columns(); ++c) {
-        along.row(i)[c] = across.row(i)[c].dot(tangent) * tangent;
-        across.row(i)[c] -= along.row(i)[c];
+      for (std::size_t c = 0; c < across.size(); ++c) {
+        along[c] = across[c].dot(tangent) * tangent;
+        across[c] -= along[c];
       }
+      if (i < 2) continue;
+      const std::span<Vec3> before = across_.row(i - 2), middle = across_.row(i - 1), bent = bent_.row(i - 1);
+      for (std::size_t c = 0; c < bent.size(); ++c) bent[c] = before[c] - 2.0 * middle[c] + across[c];
     }
-    for (std::size_t i = 1; i + 1 < values.rows(); ++i)
-      for (std::size_t c = 0; c < values.columns(); ++c)
-        bent.row(i)[c] = across.row(i - 1)[c] - 2.0 * across.row(i)[c] + across.row(i + 1)[c];
     const auto deviation = [&](std::size_t i, const auto& length_of) {
       const Slide& slide = stretch.samples.slides[i];
-      const double slid = length_of(along.row(i));
-      return length_of(across.row(i)) + slide.slip * slid + 0.5 * slide.bend * slid * slid;
+      const double slid = length_of(along_.row(i));
+      return length_of(across_.row(i)) + slide.slip * slid + 0.5 * slide.bend * slid * slid;
     };
-    const auto bend = [&](std::size_t i, const auto& length_of) { return length_of(bent.row(i)) / 4.0; };
+    const auto bend = [&](std::size_t i, const auto& length_of) { return length_of(bent_.row(i)) / 4.0; };
     stretch.error = largest(0, values.rows(), deviation) + largest(1, values.rows() - 1, bend);
   }
 
@@ -591,7 +588,9 @@ class StretchFit {
   std::map<std::pair<int, int>, StretchSolver> solvers_;
   std::vector<double> knots_;
   RowTable control_;
-  std::vector<double> bounds_;  // of largest()
+  // What fit() works with: deviations across and along the path, second differences, bounds of them.
+  RowTable across_, along_, bent_;
+  std::vector<double> bounds_;
 };
 
 // Of so many pieces to a quarter.
