@@ -290,18 +290,19 @@ void lay(Ribbons& ribbons, const Surface& surface, const Vec3& origin, std::span
       ribbons.weights[lane] = nodes[n].weight;
     }
   }
-  for (int i = 0; i < surface.count_u; ++i) {
-    Ribbons::Vectors point = Ribbons::Vectors::Zero(), slope = point;
-    for (int j = 0; j <= surface.degree_v; ++j) {
-      const Vec3 p = surface.point(i, nodes.front().first + j) - origin;
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        point.col(axis) += p[axis] * values[at(j)];
-        slope.col(axis) += p[axis] * slopes[at(j)];
+  const std::size_t columns = at(surface.count_u), rows = at(surface.degree_v) + 1;
+  const Vec3* const net = surface.points.data() + at(nodes.front().first) * columns;
+  for (std::size_t i = 0; i < columns; ++i)
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      Scalars point = Scalars::Zero(), slope = point;
+      for (std::size_t j = 0; j < rows; ++j) {
+        const double p = net[j * columns + i][axis] - origin[axis];
+        point += p * values[j];
+        slope += p * slopes[j];
       }
+      ribbons.points[i].col(axis) = point;
+      ribbons.slopes[i].col(axis) = slope;
     }
-    ribbons.points[at(i)] = point;
-    ribbons.slopes[at(i)] = slope;
-  }
 }
 
 // The integrals of moments(), strip by strip: a span of v, all round. Rule 0 is exact for all but the area,

@@ -83,12 +83,13 @@ void extend(Box3& box, const Patch& patch, double tolerance) {
 struct Height {
   int count_u = 0, count_v = 0;
   std::vector<double> values;
+  double bound = 0;  // the largest of them
 
+  void find_bound() { bound = *std::max_element(values.begin(), values.end()); }
   [[nodiscard]] double corner() const {
     const std::size_t last = values.size() - 1, row = at(count_u) - 1;
     return std::max({values[0], values[row], values[last - row], values[last]});
   }
-  [[nodiscard]] double bound() const { return *std::max_element(values.begin(), values.end()); }
   [[nodiscard]] double bend(std::size_t step, std::size_t steps, std::size_t other, std::size_t lines) const {
     double most = 0.0;
     for (std::size_t l = 0; l < lines; ++l)
@@ -110,6 +111,8 @@ struct Height {
         for (std::size_t k = 0; k < r; ++k) line[k * step] = 0.5 * (line[k * step] + line[(k + 1) * step]);
       }
     }
+    find_bound();
+    upper.find_bound();
   }
 };
 
@@ -119,14 +122,14 @@ void raise(double& highest, std::vector<Height>& stack, double tolerance) {
   for (std::size_t count = 1; count > 0;) {
     Height& height = stack[count - 1];
     highest = std::max(highest, height.corner());
-    if (!(height.bound() > highest + tolerance)) {
+    if (!(height.bound > highest + tolerance)) {
       --count;
       continue;
     }
     if (count == stack.size()) stack.emplace_back();
     stack[count - 1].halve(stack[count]);
     // The more promising half first.
-    if (stack[count].bound() < stack[count - 1].bound()) std::swap(stack[count], stack[count - 1]);
+    if (stack[count].bound < stack[count - 1].bound) std::swap(stack[count], stack[count - 1]);
     ++count;
   }
 }
@@ -137,7 +140,10 @@ class Reach {
   explicit Reach(const Surface& surface)
       : surface_(surface),
         us_(breakpoints(surface.knots_u, surface.degree_u)),
-        vs_(breakpoints(surface.knots_v, surface.degree_v)) {}
+        vs_(breakpoints(surface.knots_v, surface.degree_v)) {
+    for (std::size_t j = 0; j + 1 < vs_.size(); ++j)
+      rows_.push_back(at(find_span(surface.knots_v, surface.degree_v, surface.count_v, vs_[j]) - surface.degree_v));
+  }
 
   // Along an axis (`sign`: 1 or -1): `known` or more, exact but for `tolerance`. Strips between two knots of v are
   // looked at in the order of what they promise.
@@ -147,10 +153,9 @@ class Reach {
     strips_.clear();
     const auto rows = at(surface_.degree_v) + 1, columns = at(surface_.count_u);
     for (std::size_t j = 0; j + 1 < vs_.size(); ++j) {
-      const auto last = at(find_span(surface_.knots_v, surface_.degree_v, surface_.count_v, vs_[j]));
-      const auto first = heights_.begin() + static_cast<std::ptrdiff_t>((last + 1 - rows) * columns);
+      const auto first = heights_.begin() + static_cast<std::ptrdiff_t>(rows_[j] * columns);
       const double bound = *std::max_element(first, first + static_cast<std::ptrdiff_t>(rows * columns));
-      if (bound > known + tolerance) strips_.push_back({bound, j, last + 1 - rows});
+      if (bound > known + tolerance) strips_.push_back({bound, j});
     }
     std::sort(strips_.begin(), strips_.end(),
               [](const Strip& a, const Strip& b) { return a.bound > b.bound; });
@@ -162,7 +167,7 @@ class Reach {
  private:
   struct Strip {
     double bound;
-    std::size_t number, row;  // the first row of control points that counts there
+    std::size_t number;
   };
 
   void look_at(const Strip& strip, double& known, double tolerance) {
@@ -174,7 +179,7 @@ class Reach {
     for (std::size_t l = 0; l < rows; ++l)
       for (std::size_t j = 0; j < rows; ++j)
         for (std::size_t i = 0; i < columns; ++i)
-          lines_[l * columns + i] += along_.rows[l][j] * heights_[(strip.row + j) * columns + i];
+          lines_[l * columns + i] += along_.rows[l][j] * heights_[(rows_[strip.number] + j) * columns + i];
     for (std::size_t i = 0; i + 1 < us_.size(); ++i) {
       const std::size_t column =
           at(find_span(surface_.knots_u, surface_.degree_u, surface_.count_u, us_[i])) + 1 - width;
@@ -193,12 +198,14 @@ class Reach {
         for (std::size_t k = 0; k < width; ++k)
           for (std::size_t c = 0; c < width; ++c)
             patch.values[l * width + k] += round->second.rows[k][c] * lines_[l * columns + column + c];
+      patch.find_bound();
       raise(known, stack_, tolerance);
     }
   }
 
   const Surface& surface_;
   std::vector<double> us_, vs_, heights_, lines_;  // lines: control points by u of the strip's Bernstein rows by v
+  std::vector<std::size_t> rows_;  // of each strip the first row of control points that counts there
   std::vector<Strip> strips_;
   Extraction along_;
   std::map<std::size_t, Extraction> round_;  // of the spans of u that were needed
