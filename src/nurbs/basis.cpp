@@ -76,6 +76,16 @@ void basis(const std::vector<double>& knots, int degree, int span, double t, Bas
   for (int j = 1; j <= degree; ++j) raise_to(j, knot, t, values.data());
 }
 
+void basis_slopes(const std::vector<double>& knots, int degree, int span, double t, BasisRow& values,
+                  BasisRow& slopes) {
+  const double* const knot = knots.data() + span;
+  basis(knots, std::max(degree - 1, 0), span, t, values);
+  slopes[0] = 0.0;
+  if (degree == 0) return;
+  raise_derivative_to(degree, knot, values.data(), slopes.data());
+  raise_to(degree, knot, t, values.data());
+}
+
 void basis_derivatives(const std::vector<double>& knots, int degree, int span, double t,
                        std::array<BasisRow, 3>& rows) {
   const double* const knot = knots.data() + span;

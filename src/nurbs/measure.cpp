@@ -4,7 +4,7 @@
 #include <cfloat>
 #include <cmath>
 #include <numeric>
-#include <span>
+#include <type_traits>
 
 #include "core/index.h"
 #include "nurbs/basis.h"
@@ -91,9 +91,10 @@ class SpeedOfCubic {
 
 // The basis functions' values and first derivatives at the Gauss nodes of every span.
 struct Node {
+  Node(int first_point, double its_weight) : first(first_point), weight(its_weight) {}
   int first;  // index of the first control point that counts here
   double weight;
-  BasisRow value, slope;
+  BasisRow value, slope;  // as many as the degree wants
 };
 
 // One of the two directions of a surface, with the ends of its spans.
@@ -117,7 +118,6 @@ std::vector<Node> gauss_nodes(const Direction& direction, int order, int parts, 
   const GaussRule& rule = gauss_rule(order);
   std::vector<Node> nodes;
   nodes.reserve((last - first) * rule.nodes.size() * static_cast<std::size_t>(parts));
-  std::array<BasisRow, 3> rows;
   for (std::size_t k = first; k < last; ++k)
     for (int part = 0; part < parts; ++part) {
       const double length = (direction.breaks[k + 1] - direction.breaks[k]) / parts;
@@ -125,8 +125,8 @@ std::vector<Node> gauss_nodes(const Direction& direction, int order, int parts, 
       const int span = find_span(direction.knots, direction.degree, direction.count, middle);
       for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
         const double t = middle + half * rule.nodes[g];
-        basis_derivatives(direction.knots, direction.degree, span, t, rows);
-        nodes.push_back({span - direction.degree, half * rule.weights[g], rows[0], rows[1]});
+        Node& node = nodes.emplace_back(span - direction.degree, half * rule.weights[g]);
+        basis_slopes(direction.knots, direction.degree, span, t, node.value, node.slope);
       }
     }
   return nodes;
@@ -145,73 +145,163 @@ int parts_of(const Surface& surface) {
   return surface.is_rational() ? 4 : 1;
 }
 
-// At one v the control net collapses to a line of points and one of derivatives along v, homogeneous and told
-// from the origin.
+// work(degree), as a number that the compiler knows where it is that of most splines.
+template <class Work>
+void with_degree(int degree, const Work& work) {
+  if (degree == 3)
+    work(std::integral_constant<int, 3>());
+  else if (degree == 2)
+    work(std::integral_constant<int, 2>());
+  else
+    work(degree);
+}
+
+// Numbers at two places: one register of any processor, with the operators of a number.
+using Pair [[gnu::vector_size(16)]] = double;
+double sum_of(Pair pair) {
+  return pair[0] + pair[1];
+}
+
+// Vectors at two places.
+struct TwoVectors {
+  Pair x{}, y{}, z{};
+
+  [[nodiscard]] Pair dot(const TwoVectors& v) const { return x * v.x + y * v.y + z * v.z; }
+  [[nodiscard]] TwoVectors cross(const TwoVectors& v) const {
+    return {y * v.z - z * v.y, z * v.x - x * v.z, x * v.y - y * v.x};
+  }
+  [[nodiscard]] double length() const {
+    const Pair square = dot(*this);
+    return std::sqrt(square[0]) + std::sqrt(square[1]);
+  }
+  [[nodiscard]] Vec3 sum() const { return {sum_of(x), sum_of(y), sum_of(z)}; }
+  TwoVectors& operator+=(const TwoVectors& v) {
+    x += v.x;
+    y += v.y;
+    z += v.z;
+    return *this;
+  }
+};
+TwoVectors operator*(Pair shares, const TwoVectors& v) {
+  return {shares * v.x, shares * v.y, shares * v.z};
+}
+TwoVectors operator*(double share, const TwoVectors& v) {
+  return Pair{share, share} * v;
+}
+TwoVectors operator*(Pair shares, const Vec3& v) {
+  return {shares * v.x(), shares * v.y(), shares * v.z()};
+}
+
+// A surface at two neighbouring v at once: at each of them the net collapses to a line of control points over u and
+// one of their derivatives by v, told from the origin.
 class Lines {
  public:
   Lines(const Surface& surface, const Vec3& origin)
       : surface_(surface), origin_(origin), points_(at(surface.count_u)), slopes_(points_.size()) {}
 
-  void move_to(const Node& v) {
-    if (v.first != first_) load(v.first);
-    const std::size_t columns = points_.size();
-    for (std::size_t i = 0; i < columns; ++i) {
-      Vec4 position = v.value[0] * net_[i], slope = v.slope[0] * net_[i];
-      for (std::size_t j = 1; j <= at(surface_.degree_v); ++j) {
-        position += v.value[j] * net_[j * columns + i];
-        slope += v.slope[j] * net_[j * columns + i];
-      }
-      points_[i] = position;
-      slopes_[i] = slope;
+  // To nodes of one span of v; the last may be alone.
+  void move_to(const Node& one, const Node* other) {
+    const Node& next = other != nullptr ? *other : one;
+    shares_ = Pair{one.weight, other != nullptr ? other->weight : 0.0};
+    first_ = at(one.first) * points_.size();
+    for (std::size_t j = 0; j <= at(surface_.degree_v); ++j) {
+      values_[j] = Pair{one.value[j], next.value[j]};
+      changes_[j] = Pair{one.slope[j], next.slope[j]};
     }
+    if (surface_.is_rational())
+      collapse<true>();
+    else
+      collapse<false>();
   }
-  [[nodiscard]] const std::vector<Vec4>& points() const { return points_; }
-  [[nodiscard]] const std::vector<Vec4>& slopes() const { return slopes_; }
+
+  [[nodiscard]] const TwoVectors* points() const { return points_.data(); }
+  [[nodiscard]] const TwoVectors* slopes() const { return slopes_.data(); }
+  // What the nodes count.
+  [[nodiscard]] Pair shares() const { return shares_; }
 
  private:
-  // The rows of the net that count from the row `first` on.
-  void load(int first) {
-    first_ = first;
-    net_.clear();
-    for (int j = first; j <= first + surface_.degree_v; ++j)
-      for (int i = 0; i < surface_.count_u; ++i)
-        net_.push_back(homogeneous(surface_.point(i, j) - origin_, surface_.weight(i, j)));
+  template <bool is_rational>
+  void collapse() {
+    with_degree(surface_.degree_v, [this](auto degree) {
+      const std::size_t columns = points_.size();
+      for (std::size_t i = 0; i < columns; ++i) {
+        TwoVectors point, slope;
+        for (std::size_t j = 0; j <= at(int{degree}); ++j) {
+          const std::size_t k = first_ + j * columns + i;
+          Vec3 p = surface_.points[k] - origin_;
+          if constexpr (is_rational) p *= surface_.weights[k];
+          point += values_[j] * p;
+          slope += changes_[j] * p;
+        }
+        points_[i] = point;
+        slopes_[i] = slope;
+      }
+    });
   }
 
   const Surface& surface_;
   Vec3 origin_;
-  int first_ = -1;
-  std::vector<Vec4> net_, points_, slopes_;
+  std::size_t first_ = 0;
+  Pair shares_{};
+  std::array<Pair, max_degree + 1> values_, changes_;
+  std::vector<TwoVectors> points_, slopes_;
 };
 
+// The weights of a rational surface as the first coordinate of one.
+Surface weights_of(const Surface& surface) {
+  Surface weights = surface;
+  weights.weights.clear();
+  for (std::size_t k = 0; k < surface.weights.size(); ++k) weights.points[k] = {surface.weights[k], 0, 0};
+  return weights;
+}
+
+// From those of the homogeneous surface (Piegl and Tiller 4.20).
+void divide(TwoVectors& position, TwoVectors& along_u, TwoVectors& along_v, const Lines& weights, const Node& u,
+            int degree) {
+  Pair w{}, w_u{}, w_v{};
+  for (std::size_t i = 0; i <= at(degree); ++i) {
+    const std::size_t k = at(u.first) + i;
+    w += u.value[i] * weights.points()[k].x;
+    w_u += u.slope[i] * weights.points()[k].x;
+    w_v += u.value[i] * weights.slopes()[k].x;
+  }
+  position = (1.0 / w) * position;
+  along_u = (1.0 / w) * (along_u += -w_u * position);
+  along_v = (1.0 / w) * (along_v += -w_v * position);
+}
+
+// take(number of the node in nodes_u, position - origin, S_u x S_v times the weight) for nodes of one span of v, two
+// at once. What takes no position gets none.
 template <bool is_rational, class Take>
 void at_nodes_of(const Surface& surface, const Vec3& origin, const std::vector<Node>& nodes_u,
                  const std::vector<Node>& nodes_v, const Take& take) {
-  Lines lines(surface, origin);
-  const std::vector<Vec4>&line = lines.points(), &slope_line = lines.slopes();
-  for (const Node& v : nodes_v) {
-    lines.move_to(v);
-    for (std::size_t n = 0; n < nodes_u.size(); ++n) {
-      const Node& u = nodes_u[n];
-      Vec4 p = Vec4::Zero(), du = Vec4::Zero(), dv = Vec4::Zero();
-      for (int i = 0; i <= surface.degree_u; ++i) {
-        const auto k = static_cast<std::size_t>(u.first) + static_cast<std::size_t>(i);
-        p += u.value[static_cast<std::size_t>(i)] * line[k];
-        du += u.slope[static_cast<std::size_t>(i)] * line[k];
-        dv += u.value[static_cast<std::size_t>(i)] * slope_line[k];
+  constexpr bool takes_position = std::is_invocable_v<Take, std::size_t, TwoVectors, TwoVectors>;
+  const Surface weights = is_rational ? weights_of(surface) : Surface();
+  Lines lines(surface, origin), weight_lines(weights, Vec3::Zero());
+  with_degree(surface.degree_u, [&](auto degree) {
+    for (std::size_t done = 0; done < nodes_v.size(); done += 2) {
+      const Node* const other = done + 1 < nodes_v.size() ? &nodes_v[done + 1] : nullptr;
+      lines.move_to(nodes_v[done], other);
+      if constexpr (is_rational) weight_lines.move_to(nodes_v[done], other);
+      for (std::size_t n = 0; n < nodes_u.size(); ++n) {
+        const Node& u = nodes_u[n];
+        TwoVectors position, along_u, along_v;
+        const TwoVectors *const point = lines.points() + u.first, *const slope = lines.slopes() + u.first;
+        for (std::size_t i = 0; i <= at(int{degree}); ++i) {
+          if constexpr (takes_position || is_rational) position += u.value[i] * point[i];
+          along_u += u.slope[i] * point[i];
+          along_v += u.value[i] * slope[i];
+        }
+        if constexpr (is_rational) divide(position, along_u, along_v, weight_lines, u, surface.degree_u);
+        const TwoVectors normal = u.weight * lines.shares() * along_u.cross(along_v);
+        if constexpr (takes_position)
+          take(n, position, normal);
+        else
+          take(n, normal);
       }
-      Vec3 position = p.head<3>(), along_u = du.head<3>(), along_v = dv.head<3>();
-      if constexpr (is_rational) {
-        position /= p.w();
-        along_u = (along_u - du.w() * position) / p.w();
-        along_v = (along_v - dv.w() * position) / p.w();
-      }
-      take(n, position, along_u.cross(along_v), u.weight * v.weight);
     }
-  }
+  });
 }
-
-// take(number of the node in nodes_u, position - origin, S_u x S_v, weight) at every node.
 template <class Take>
 void at_nodes(const Surface& surface, const Vec3& origin, const std::vector<Node>& nodes_u,
               const std::vector<Node>& nodes_v, const Take& take) {
@@ -220,16 +310,6 @@ void at_nodes(const Surface& surface, const Vec3& origin, const std::vector<Node
   else
     at_nodes_of<false>(surface, origin, nodes_u, nodes_v, take);
 }
-
-// What is between a few neighbouring lines of constant v of a polynomial surface: at each of these v the net
-// collapses to the control points p of a line and their derivatives q by v.
-struct Ribbons {
-  static constexpr int most = 6;  // Gauss's rule takes 5 for a cubic's span
-  using Scalars = Eigen::Array<double, most, 1>;
-  using Vectors = Eigen::Array<double, most, 3>;
-  Scalars weights;
-  std::vector<Vectors> points, slopes;
-};
 
 // Through a line P = sum N_i p_i over u, moving by Q = sum N_k q_k, the flux of P is the integral of
 // P . (P' x Q): the sum of the volumes (p_i x p_j) . q_k, i < j, times the integrals of (N_i N_j' - N_j N_i') N_k.
@@ -248,22 +328,18 @@ class FluxRound {
         }
   }
 
-  // The sum of the fluxes through the ribbons at several v, each times its weight.
-  [[nodiscard]] double operator()(const Ribbons& ribbons) const {
-    Ribbons::Scalars flux = Ribbons::Scalars::Zero();
-    const Ribbons::Vectors *const points = ribbons.points.data(), *const slopes = ribbons.slopes.data();
+  // The sum of the fluxes at two v, each times its share.
+  [[nodiscard]] double operator()(const Lines& lines) const {
+    Pair flux{};
     for (int i = 0; i + 1 < count_; ++i)
       for (int step = 1; step <= std::min(degree_, count_ - 1 - i); ++step) {
         const double* const of_pair = integrals_.data() + pair(i, step) + (degree_ - i);
         const int last = std::min(count_ - 1, i + degree_);
-        Ribbons::Vectors sum = Ribbons::Vectors::Zero();
-        for (int k = std::max(0, i + step - degree_); k <= last; ++k) sum += of_pair[k] * slopes[k];
-        const Ribbons::Vectors &p = points[i], &q = points[i + step];
-        flux += (p.col(1) * q.col(2) - p.col(2) * q.col(1)) * sum.col(0) +
-                (p.col(2) * q.col(0) - p.col(0) * q.col(2)) * sum.col(1) +
-                (p.col(0) * q.col(1) - p.col(1) * q.col(0)) * sum.col(2);
+        TwoVectors sum;
+        for (int k = std::max(0, i + step - degree_); k <= last; ++k) sum += of_pair[k] * lines.slopes()[k];
+        flux += lines.points()[i].cross(lines.points()[i + step]).dot(sum);
       }
-    return (flux * ribbons.weights).sum();
+    return sum_of(flux * lines.shares());
   }
 
  private:
@@ -274,36 +350,6 @@ class FluxRound {
   int degree_, count_;
   std::vector<double> integrals_;
 };
-
-// At nodes of one span.
-void lay(Ribbons& ribbons, const Surface& surface, const Vec3& origin, std::span<const Node> nodes) {
-  using Scalars = Ribbons::Scalars;
-  ribbons.weights.setZero();
-  std::array<Scalars, max_degree + 1> values, slopes;
-  for (std::size_t j = 0; j <= at(surface.degree_v); ++j) {
-    values[j].setZero();
-    slopes[j].setZero();
-    for (std::size_t n = 0; n < nodes.size(); ++n) {
-      const auto lane = static_cast<Eigen::Index>(n);
-      values[j][lane] = nodes[n].value[j];
-      slopes[j][lane] = nodes[n].slope[j];
-      ribbons.weights[lane] = nodes[n].weight;
-    }
-  }
-  const std::size_t columns = at(surface.count_u), rows = at(surface.degree_v) + 1;
-  const Vec3* const net = surface.points.data() + at(nodes.front().first) * columns;
-  for (std::size_t i = 0; i < columns; ++i)
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      Scalars point = Scalars::Zero(), slope = point;
-      for (std::size_t j = 0; j < rows; ++j) {
-        const double p = net[j * columns + i][axis] - origin[axis];
-        point += p * values[j];
-        slope += p * slopes[j];
-      }
-      ribbons.points[i].col(axis) = point;
-      ribbons.slopes[i].col(axis) = slope;
-    }
-}
 
 // The integrals of moments(), strip by strip: a span of v, all round. Rule 0 is exact for all but the area,
 // for which rule 1 has two nodes more, and rules 2, 3, .. are rule 1 on halves, quarters, .. of the spans.
@@ -343,7 +389,8 @@ class MomentIntegrals {
     return whole << (rule > 1 ? rule - 1 : 0);
   }
 
-  // take(span of u, position - origin, S_u x S_v times the weight) at every node of a strip.
+  // take(span of u, position - origin, S_u x S_v times the weight) at the nodes of a strip, two at once, without the
+  // position where it takes none.
   template <class Take>
   void at_strip(std::size_t strip, std::size_t rule, const Take& take) {
     std::vector<Node>& nodes_u = nodes_u_[rule];
@@ -351,29 +398,31 @@ class MomentIntegrals {
     const std::vector<Node> nodes_v =
         gauss_nodes(along_, order(along_.degree, rule), parts(rule), strip, strip + 1);
     const std::size_t of_span = nodes_u.size() / round_.spans();
-    at_nodes(surface_, origin_, nodes_u, nodes_v,
-             [&](std::size_t node, const Vec3& position, const Vec3& normal, double weight) {
-               take(node / of_span, position, Vec3(weight * normal));
-             });
+    at_nodes(surface_, origin_, nodes_u, nodes_v, [&](std::size_t node, const auto&... vectors)
+               requires std::is_invocable_v<Take, std::size_t, decltype(vectors)...>
+             { take(node / of_span, vectors...); });
   }
 
   // Adds all but the area to the sum.
   Areas all_of(std::size_t strip, Moments& sum) {
     Areas areas(round_.spans());
-    at_strip(strip, 0, [&](std::size_t span, const Vec3& position, const Vec3& normal) {
-      const double flux = position.dot(normal);
-      areas[span] += normal.norm();
-      sum.area_vector += normal;
-      sum.volume += flux / 3.0;
-      sum.first += flux / 4.0 * position;
+    TwoVectors area_vector, first;
+    Pair volume{};
+    at_strip(strip, 0, [&](std::size_t span, const TwoVectors& position, const TwoVectors& normal) {
+      const Pair flux = position.dot(normal);
+      areas[span] += normal.length();
+      area_vector += normal;
+      volume += flux;
+      first += flux * position;
     });
+    sum.area_vector += area_vector.sum();
+    sum.volume += sum_of(volume) / 3.0;
+    sum.first += first.sum() / 4.0;
     return areas;
   }
   Areas areas_of(std::size_t strip, std::size_t rule) {
     Areas areas(round_.spans());
-    at_strip(strip, rule, [&](std::size_t span, const Vec3& /*position*/, const Vec3& normal) {
-      areas[span] += normal.norm();
-    });
+    at_strip(strip, rule, [&](std::size_t span, const TwoVectors& normal) { areas[span] += normal.length(); });
     return areas;
   }
 
@@ -431,26 +480,22 @@ double volume_flux(const Surface& surface, const Vec3& origin) {
   const Direction round = round_of(surface), along = along_of(surface);
   double sum = 0.0;
   if (surface.is_rational()) {
-    at_nodes(surface, origin, gauss_nodes(round, 8, parts_of(surface)),
-             gauss_nodes(along, 8, parts_of(surface)),
-             [&](std::size_t /*node*/, const Vec3& position, const Vec3& normal, double weight) {
-               sum += weight * position.dot(normal);
-             });
+    const std::vector<Node> nodes_u = gauss_nodes(round, 8, parts_of(surface));
+    for (std::size_t span = 0; span < along.spans(); ++span)
+      at_nodes(surface, origin, nodes_u, gauss_nodes(along, 8, parts_of(surface), span, span + 1),
+               [&](std::size_t /*node*/, const TwoVectors& position, const TwoVectors& normal) {
+                 sum += sum_of(position.dot(normal));
+               });
     return sum / 3.0;
   }
-  // S . (S_u x S_v) has degree 3 p - 1 in each direction.
+  // S . (S_u x S_v) has degree 3 p - 1 in each direction: of a cubic's span five nodes are exact.
   const FluxRound flux(round);
-  const std::size_t columns = at(surface.count_u);
-  Ribbons ribbons;
-  ribbons.points.resize(columns);
-  ribbons.slopes.resize(columns);
+  Lines lines(surface, origin);
   for (std::size_t span = 0; span < along.spans(); ++span) {
     const std::vector<Node> nodes = gauss_nodes(along, flux_order(along.degree), 1, span, span + 1);
-    for (std::size_t done = 0; done < nodes.size(); done += Ribbons::most) {
-      const std::span<const Node> some =
-          std::span(nodes).subspan(done, std::min<std::size_t>(Ribbons::most, nodes.size() - done));
-      lay(ribbons, surface, origin, some);
-      sum += flux(ribbons);
+    for (std::size_t n = 0; n < nodes.size(); n += 2) {
+      lines.move_to(nodes[n], n + 1 < nodes.size() ? &nodes[n + 1] : nullptr);
+      sum += flux(lines);
     }
   }
   return sum / 3.0;
