@@ -24,7 +24,8 @@ CurveJet Jets::at(double t) const {
   const auto k = static_cast<std::size_t>(next - starts_.begin()) - 1;
   const auto& [position, d1, d2, d3] = pieces_[k];
   const double s = t - starts_[k];
-  return {position + s * (d1 + (0.5 * s) * (d2 + (s / 3.0) * d3)), d1 + s * (d2 + (0.5 * s) * d3), d2 + s * d3};
+  return {position + s * (d1 + (0.5 * s) * (d2 + (s / 3.0) * d3)), d1 + s * (d2 + (0.5 * s) * d3),
+          d2 + s * d3};
 }
 
 }  // namespace selvage::nurbs

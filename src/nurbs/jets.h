@@ -7,8 +7,9 @@
 
 namespace selvage::nurbs {
 
-// evaluate_jet() of one curve again and again: of a polynomial curve up to degree 3 each span is kept as its Taylor
-// polynomial about its start, which gives the same jets but for rounding (none at the ends of the curve).
+// evaluate_jet() of one curve again and again: of a polynomial curve up to degree 3 each span is kept as its
+// Taylor polynomial about its start, which gives the same jets but for rounding (none at the ends of the
+// curve).
 class Jets {
  public:
   explicit Jets(Curve curve);

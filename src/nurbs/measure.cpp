@@ -192,8 +192,8 @@ TwoVectors operator*(Pair shares, const Vec3& v) {
   return {shares * v.x(), shares * v.y(), shares * v.z()};
 }
 
-// A surface at two neighbouring v at once: at each of them the net collapses to a line of control points over u and
-// one of their derivatives by v, told from the origin.
+// A surface at two neighbouring v at once: at each of them the net collapses to a line of control points over
+// u and one of their derivatives by v, told from the origin.
 class Lines {
  public:
   Lines(const Surface& surface, const Vec3& origin)
@@ -256,8 +256,8 @@ Surface weights_of(const Surface& surface) {
 }
 
 // From those of the homogeneous surface (Piegl and Tiller 4.20).
-void divide(TwoVectors& position, TwoVectors& along_u, TwoVectors& along_v, const Lines& weights, const Node& u,
-            int degree) {
+void divide(TwoVectors& position, TwoVectors& along_u, TwoVectors& along_v, const Lines& weights,
+            const Node& u, int degree) {
   Pair w{}, w_u{}, w_v{};
   for (std::size_t i = 0; i <= at(degree); ++i) {
     const std::size_t k = at(u.first) + i;
@@ -270,8 +270,8 @@ void divide(TwoVectors& position, TwoVectors& along_u, TwoVectors& along_v, cons
   along_v = (1.0 / w) * (along_v += -w_v * position);
 }
 
-// take(number of the node in nodes_u, position - origin, S_u x S_v times the weight) for nodes of one span of v, two
-// at once. What takes no position gets none.
+// take(number of the node in nodes_u, position - origin, S_u x S_v times the weight) for nodes of one span of
+// v, two at once. What takes no position gets none.
 template <bool is_rational, class Take>
 void at_nodes_of(const Surface& surface, const Vec3& origin, const std::vector<Node>& nodes_u,
                  const std::vector<Node>& nodes_v, const Take& take) {
@@ -312,7 +312,8 @@ void at_nodes(const Surface& surface, const Vec3& origin, const std::vector<Node
 }
 
 // Through a line P = sum N_i p_i over u, moving by Q = sum N_k q_k, the flux of P is the integral of
-// P . (P' x Q): the sum of the volumes (p_i x p_j) . q_k, i < j, times the integrals of (N_i N_j' - N_j N_i') N_k.
+// P . (P' x Q): the sum of the volumes (p_i x p_j) . q_k, i < j, times the integrals of (N_i N_j' - N_j N_i')
+// N_k.
 class FluxRound {
  public:
   explicit FluxRound(const Direction& round)
@@ -331,21 +332,24 @@ class FluxRound {
   // The sum of the fluxes at two v, each times its share.
   [[nodiscard]] double operator()(const Lines& lines) const {
     Pair flux{};
-    for (int i = 0; i + 1 < count_; ++i)
-      for (int step = 1; step <= std::min(degree_, count_ - 1 - i); ++step) {
-        const double* const of_pair = integrals_.data() + pair(i, step) + (degree_ - i);
-        const int last = std::min(count_ - 1, i + degree_);
+    for (int i = 0; i + 1 < count_; ++i) {
+      const int last = std::min(count_ - 1, i + degree_);
+      for (int j = i + 1; j <= last; ++j) {
+        const double* const of_pair = integrals_.data() + pair(i, j - i) + (degree_ - i);
         TwoVectors sum;
-        for (int k = std::max(0, i + step - degree_); k <= last; ++k) sum += of_pair[k] * lines.slopes()[k];
-        flux += lines.points()[i].cross(lines.points()[i + step]).dot(sum);
+        for (int k = std::max(0, j - degree_); k <= last; ++k) sum += of_pair[k] * lines.slopes()[k];
+        flux += lines.points()[i].cross(lines.points()[j]).dot(sum);
       }
+    }
     return sum_of(flux * lines.shares());
   }
 
  private:
   [[nodiscard]] int width() const { return 2 * degree_ + 1; }
   // Where the integrals of i and j = i + step begin.
-  [[nodiscard]] std::size_t pair(int i, int step) const { return (at(i) * at(degree_) + at(step - 1)) * at(width()); }
+  [[nodiscard]] std::size_t pair(int i, int step) const {
+    return (at(i) * at(degree_) + at(step - 1)) * at(width());
+  }
 
   int degree_, count_;
   std::vector<double> integrals_;
@@ -389,8 +393,8 @@ class MomentIntegrals {
     return whole << (rule > 1 ? rule - 1 : 0);
   }
 
-  // take(span of u, position - origin, S_u x S_v times the weight) at the nodes of a strip, two at once, without the
-  // position where it takes none.
+  // take(span of u, position - origin, S_u x S_v times the weight) at the nodes of a strip, two at once,
+  // without the position where it takes none.
   template <class Take>
   void at_strip(std::size_t strip, std::size_t rule, const Take& take) {
     std::vector<Node>& nodes_u = nodes_u_[rule];
@@ -398,9 +402,12 @@ class MomentIntegrals {
     const std::vector<Node> nodes_v =
         gauss_nodes(along_, order(along_.degree, rule), parts(rule), strip, strip + 1);
     const std::size_t of_span = nodes_u.size() / round_.spans();
-    at_nodes(surface_, origin_, nodes_u, nodes_v, [&](std::size_t node, const auto&... vectors)
-               requires std::is_invocable_v<Take, std::size_t, decltype(vectors)...>
-             { take(node / of_span, vectors...); });
+    at_nodes(
+        surface_, origin_, nodes_u, nodes_v,
+        [&](std::size_t node,
+            const auto&... vectors) requires std::is_invocable_v<Take, std::size_t, decltype(vectors)...> {
+          take(node / of_span, vectors...);
+        });
   }
 
   // Adds all but the area to the sum.
@@ -422,7 +429,8 @@ class MomentIntegrals {
   }
   Areas areas_of(std::size_t strip, std::size_t rule) {
     Areas areas(round_.spans());
-    at_strip(strip, rule, [&](std::size_t span, const TwoVectors& normal) { areas[span] += normal.length(); });
+    at_strip(strip, rule,
+             [&](std::size_t span, const TwoVectors& normal) { areas[span] += normal.length(); });
     return areas;
   }
 

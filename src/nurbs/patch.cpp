@@ -116,8 +116,8 @@ struct Height {
   }
 };
 
-// Grows `highest` to the patch's maximum, but for `tolerance`. Of the stack of patches the first is taken, and
-// the rest is room to work in.
+// Grows `highest` to the patch's maximum, but for `tolerance`. Of the stack of patches the first is taken,
+// and the rest is room to work in.
 void raise(double& highest, std::vector<Height>& stack, double tolerance) {
   for (std::size_t count = 1; count > 0;) {
     Height& height = stack[count - 1];
@@ -142,19 +142,24 @@ class Reach {
         us_(breakpoints(surface.knots_u, surface.degree_u)),
         vs_(breakpoints(surface.knots_v, surface.degree_v)) {
     for (std::size_t j = 0; j + 1 < vs_.size(); ++j)
-      rows_.push_back(at(find_span(surface.knots_v, surface.degree_v, surface.count_v, vs_[j]) - surface.degree_v));
+      rows_.push_back(
+          at(find_span(surface.knots_v, surface.degree_v, surface.count_v, vs_[j]) - surface.degree_v));
   }
 
-  // Along an axis (`sign`: 1 or -1): `known` or more, exact but for `tolerance`. Strips between two knots of v are
-  // looked at in the order of what they promise.
+  // Along an axis (`sign`: 1 or -1): `known` or more, exact but for `tolerance`. Strips between two knots of
+  // v are looked at in the order of what they promise.
   double operator()(Eigen::Index axis, double sign, double known, double tolerance) {
-    heights_.clear();
-    for (const Vec3& p : surface_.points) heights_.push_back(sign * p[axis]);
-    strips_.clear();
     const auto rows = at(surface_.degree_v) + 1, columns = at(surface_.count_u);
+    heights_.resize(surface_.points.size());
+    highest_.assign(at(surface_.count_v), -std::numeric_limits<double>::infinity());
+    for (std::size_t j = 0, k = 0; j < highest_.size(); ++j)
+      for (std::size_t i = 0; i < columns; ++i, ++k) {
+        heights_[k] = sign * surface_.points[k][axis];
+        highest_[j] = std::max(highest_[j], heights_[k]);
+      }
+    strips_.clear();
     for (std::size_t j = 0; j + 1 < vs_.size(); ++j) {
-      const auto first = heights_.begin() + static_cast<std::ptrdiff_t>(rows_[j] * columns);
-      const double bound = *std::max_element(first, first + static_cast<std::ptrdiff_t>(rows * columns));
+      const double bound = *std::max_element(&highest_[rows_[j]], &highest_[rows_[j]] + rows);
       if (bound > known + tolerance) strips_.push_back({bound, j});
     }
     std::sort(strips_.begin(), strips_.end(),
@@ -175,11 +180,14 @@ class Reach {
                rows = at(surface_.degree_v) + 1;
     extract(surface_.knots_v, surface_.degree_v, surface_.count_v, vs_[strip.number], vs_[strip.number + 1],
             along_);
-    lines_.assign(rows * columns, 0.0);
+    lines_.resize(rows * columns);
+    const double* const heights = &heights_[rows_[strip.number] * columns];
     for (std::size_t l = 0; l < rows; ++l)
-      for (std::size_t j = 0; j < rows; ++j)
-        for (std::size_t i = 0; i < columns; ++i)
-          lines_[l * columns + i] += along_.rows[l][j] * heights_[(rows_[strip.number] + j) * columns + i];
+      for (std::size_t i = 0; i < columns; ++i) {
+        double sum = 0.0;
+        for (std::size_t j = 0; j < rows; ++j) sum += along_.rows[l][j] * heights[j * columns + i];
+        lines_[l * columns + i] = sum;
+      }
     for (std::size_t i = 0; i + 1 < us_.size(); ++i) {
       const std::size_t column =
           at(find_span(surface_.knots_u, surface_.degree_u, surface_.count_u, us_[i])) + 1 - width;
@@ -193,19 +201,24 @@ class Reach {
       Height& patch = stack_.front();
       patch.count_u = surface_.degree_u + 1;
       patch.count_v = surface_.degree_v + 1;
-      patch.values.assign(rows * width, 0.0);
+      patch.values.clear();
       for (std::size_t l = 0; l < rows; ++l)
-        for (std::size_t k = 0; k < width; ++k)
+        for (std::size_t k = 0; k < width; ++k) {
+          double sum = 0.0;
           for (std::size_t c = 0; c < width; ++c)
-            patch.values[l * width + k] += round->second.rows[k][c] * lines_[l * columns + column + c];
+            sum += round->second.rows[k][c] * lines_[l * columns + column + c];
+          patch.values.push_back(sum);
+        }
       patch.find_bound();
       raise(known, stack_, tolerance);
     }
   }
 
   const Surface& surface_;
-  std::vector<double> us_, vs_, heights_, lines_;  // lines: control points by u of the strip's Bernstein rows by v
-  std::vector<std::size_t> rows_;  // of each strip the first row of control points that counts there
+  std::vector<double> us_, vs_;
+  std::vector<double> heights_, highest_;  // of the control points, and of each row the highest
+  std::vector<double> lines_;              // of a strip: B-splines over u, Bernstein polynomials over v
+  std::vector<std::size_t> rows_;          // of each strip the first row of control points that counts there
   std::vector<Strip> strips_;
   Extraction along_;
   std::map<std::size_t, Extraction> round_;  // of the spans of u that were needed

@@ -71,8 +71,8 @@ bool is_idle(const FrameGuide& guide, const Frame& frame) {
   return !(wanted.norm() > 0.0) || std::min(angle, std::numbers::pi - angle) < six_degrees;
 }
 
-// Is the guide nowhere idle in a span, and stops the path nowhere? True only where a few looks tell: between two
-// of them path and guide turn by less than they are apart.
+// Is the guide nowhere idle in a span, and stops the path nowhere? True only where a few looks tell: between
+// two of them path and guide turn by less than they are apart.
 bool holds_along(const FrameGuide& guide, const nurbs::Jets& path, double from, double to) {
   constexpr int looks = 8;
   constexpr double largest_step = 0.5;  // radians, which are hardly more than the chord

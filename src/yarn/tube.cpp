@@ -69,7 +69,8 @@ class Channels {
     constexpr double between = 1.02;  // what lies between them reaches further by less than this
     round_.resize(static_cast<Eigen::Index>(us.size()), 2);
     for (Eigen::Index i = 0; i < round_.rows(); ++i)
-      round_.row(i) = between * nurbs::evaluate(outline, us[static_cast<std::size_t>(i)]).head<2>().transpose();
+      round_.row(i) =
+          between * nurbs::evaluate(outline, us[static_cast<std::size_t>(i)]).head<2>().transpose();
     extent_ = std::sqrt(round_.square().rowwise().sum().maxCoeff());
     is_round_ = std::holds_alternative<Circle>(spec.section) && sizes.parameters().size() == 1;
     const Eigen::Array2d scale =
@@ -134,15 +135,15 @@ class Channels {
     if (!affine_) return bound(deviation);
     const Vec3 &c = deviation[0], &a = deviation[1], &b = deviation[2];
     const auto x = round_.col(0), y = round_.col(1);
-    return std::sqrt(
-        ((c.x() + x * a.x() + y * b.x()).square() + (c.y() + x * a.y() + y * b.y()).square() +
-         (c.z() + x * a.z() + y * b.z()).square())
-            .maxCoeff());
+    return std::sqrt(((c.x() + x * a.x() + y * b.x()).square() + (c.y() + x * a.y() + y * b.y()).square() +
+                      (c.z() + x * a.z() + y * b.z()).square())
+                         .maxCoeff());
   }
   // No less, and sooner known.
   [[nodiscard]] double bound(std::span<const Vec3> deviation) const {
     if (affine_)
-      return deviation[0].norm() + extent_ * std::sqrt(deviation[1].squaredNorm() + deviation[2].squaredNorm());
+      return deviation[0].norm() +
+             extent_ * std::sqrt(deviation[1].squaredNorm() + deviation[2].squaredNorm());
     // Round the section it is a convex blend of its values at the control points.
     double found = 0.0;
     for (const Vec3& at_point : deviation) found = std::max(found, at_point.squaredNorm());
@@ -255,7 +256,8 @@ class StretchSolver {
     return control;
   }
   // Of the fit from a sample's values.
-  void deviation(const RowTable& control, const RowTable& values, std::size_t sample, std::span<Vec3> out) const {
+  void deviation(const RowTable& control, const RowTable& values, std::size_t sample,
+                 std::span<Vec3> out) const {
     const auto& [first, shares] = at_[sample];
     const auto a = control.row(first), b = control.row(first + 1), c = control.row(first + 2),
                d = control.row(first + 3), value = values.row(sample);
