@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <type_traits>
 
 #include "core/index.h"
@@ -188,30 +189,41 @@ TwoVectors operator*(Pair shares, const TwoVectors& v) {
 TwoVectors operator*(double share, const TwoVectors& v) {
   return Pair{share, share} * v;
 }
-TwoVectors operator*(Pair shares, const Vec3& v) {
-  return {shares * v.x(), shares * v.y(), shares * v.z()};
-}
 
-// A surface at two neighbouring v at once: at each of them the net collapses to a line of control points over
-// u and one of their derivatives by v, told from the origin.
+// What Lines are made of: control points, of a rational surface times their weights, or these alone (as x).
+enum class Net { points, weighted_points, weights };
+
+// A surface at two v at once: at each of them the net collapses to a line of control points over u and one of
+// their derivatives by v, told from the origin.
+template <Net net>
 class Lines {
  public:
   Lines(const Surface& surface, const Vec3& origin)
       : surface_(surface), origin_(origin), points_(at(surface.count_u)), slopes_(points_.size()) {}
 
-  // To nodes of one span of v; the last may be alone.
-  void move_to(const Node& one, const Node* other) {
-    const Node& next = other != nullptr ? *other : one;
-    shares_ = Pair{one.weight, other != nullptr ? other->weight : 0.0};
-    first_ = at(one.first) * points_.size();
+  // To a node and the one behind it, or the last of all alone.
+  void move_to(const std::vector<Node>& nodes, std::size_t n) {
+    const bool is_last = n + 1 == nodes.size();
+    const Node &one = nodes[n], &other = nodes[is_last ? n : n + 1];
+    shares_ = Pair{one.weight, is_last ? 0.0 : other.weight};
     for (std::size_t j = 0; j <= at(surface_.degree_v); ++j) {
-      values_[j] = Pair{one.value[j], next.value[j]};
-      changes_[j] = Pair{one.slope[j], next.slope[j]};
+      values_[j] = Pair{one.value[j], other.value[j]};
+      changes_[j] = Pair{one.slope[j], other.slope[j]};
     }
-    if (surface_.is_rational())
-      collapse<true>();
-    else
-      collapse<false>();
+    with_degree(surface_.degree_v, [&](auto degree) {
+      const std::size_t columns = points_.size();
+      for (std::size_t i = 0; i < columns; ++i) {
+        TwoVectors point, slope;
+        for (std::size_t j = 0; j <= at(int{degree}); ++j) {
+          const Vec3 p = at_net(one.first, i, j), q = at_net(other.first, i, j);
+          const TwoVectors both = {Pair{p.x(), q.x()}, Pair{p.y(), q.y()}, Pair{p.z(), q.z()}};
+          point += values_[j] * both;
+          slope += changes_[j] * both;
+        }
+        points_[i] = point;
+        slopes_[i] = slope;
+      }
+    });
   }
 
   [[nodiscard]] const TwoVectors* points() const { return points_.data(); }
@@ -220,44 +232,24 @@ class Lines {
   [[nodiscard]] Pair shares() const { return shares_; }
 
  private:
-  template <bool is_rational>
-  void collapse() {
-    with_degree(surface_.degree_v, [this](auto degree) {
-      const std::size_t columns = points_.size();
-      for (std::size_t i = 0; i < columns; ++i) {
-        TwoVectors point, slope;
-        for (std::size_t j = 0; j <= at(int{degree}); ++j) {
-          const std::size_t k = first_ + j * columns + i;
-          Vec3 p = surface_.points[k] - origin_;
-          if constexpr (is_rational) p *= surface_.weights[k];
-          point += values_[j] * p;
-          slope += changes_[j] * p;
-        }
-        points_[i] = point;
-        slopes_[i] = slope;
-      }
-    });
+  [[nodiscard]] Vec3 at_net(int first, std::size_t i, std::size_t j) const {
+    const std::size_t k = (at(first) + j) * points_.size() + i;
+    if constexpr (net == Net::weights) return {surface_.weights[k], 0, 0};
+    const Vec3 p = surface_.points[k] - origin_;
+    if constexpr (net == Net::weighted_points) return surface_.weights[k] * p;
+    return p;
   }
 
   const Surface& surface_;
   Vec3 origin_;
-  std::size_t first_ = 0;
   Pair shares_{};
   std::array<Pair, max_degree + 1> values_, changes_;
   std::vector<TwoVectors> points_, slopes_;
 };
 
-// The weights of a rational surface as the first coordinate of one.
-Surface weights_of(const Surface& surface) {
-  Surface weights = surface;
-  weights.weights.clear();
-  for (std::size_t k = 0; k < surface.weights.size(); ++k) weights.points[k] = {surface.weights[k], 0, 0};
-  return weights;
-}
-
 // From those of the homogeneous surface (Piegl and Tiller 4.20).
-void divide(TwoVectors& position, TwoVectors& along_u, TwoVectors& along_v, const Lines& weights,
-            const Node& u, int degree) {
+void divide(TwoVectors& position, TwoVectors& along_u, TwoVectors& along_v,
+            const Lines<Net::weights>& weights, const Node& u, int degree) {
   Pair w{}, w_u{}, w_v{};
   for (std::size_t i = 0; i <= at(degree); ++i) {
     const std::size_t k = at(u.first) + i;
@@ -276,13 +268,13 @@ template <bool is_rational, class Take>
 void at_nodes_of(const Surface& surface, const Vec3& origin, const std::vector<Node>& nodes_u,
                  const std::vector<Node>& nodes_v, const Take& take) {
   constexpr bool takes_position = std::is_invocable_v<Take, std::size_t, TwoVectors, TwoVectors>;
-  const Surface weights = is_rational ? weights_of(surface) : Surface();
-  Lines lines(surface, origin), weight_lines(weights, Vec3::Zero());
+  Lines<is_rational ? Net::weighted_points : Net::points> lines(surface, origin);
+  std::optional<Lines<Net::weights>> weights;
+  if constexpr (is_rational) weights.emplace(surface, origin);
   with_degree(surface.degree_u, [&](auto degree) {
     for (std::size_t done = 0; done < nodes_v.size(); done += 2) {
-      const Node* const other = done + 1 < nodes_v.size() ? &nodes_v[done + 1] : nullptr;
-      lines.move_to(nodes_v[done], other);
-      if constexpr (is_rational) weight_lines.move_to(nodes_v[done], other);
+      lines.move_to(nodes_v, done);
+      if constexpr (is_rational) weights->move_to(nodes_v, done);
       for (std::size_t n = 0; n < nodes_u.size(); ++n) {
         const Node& u = nodes_u[n];
         TwoVectors position, along_u, along_v;
@@ -292,7 +284,7 @@ void at_nodes_of(const Surface& surface, const Vec3& origin, const std::vector<N
           along_u += u.slope[i] * point[i];
           along_v += u.value[i] * slope[i];
         }
-        if constexpr (is_rational) divide(position, along_u, along_v, weight_lines, u, surface.degree_u);
+        if constexpr (is_rational) divide(position, along_u, along_v, *weights, u, surface.degree_u);
         const TwoVectors normal = u.weight * lines.shares() * along_u.cross(along_v);
         if constexpr (takes_position)
           take(n, position, normal);
@@ -330,7 +322,7 @@ class FluxRound {
   }
 
   // The sum of the fluxes at two v, each times its share.
-  [[nodiscard]] double operator()(const Lines& lines) const {
+  [[nodiscard]] double operator()(const Lines<Net::points>& lines) const {
     Pair flux{};
     for (int i = 0; i + 1 < count_; ++i) {
       const int last = std::min(count_ - 1, i + degree_);
@@ -498,11 +490,12 @@ double volume_flux(const Surface& surface, const Vec3& origin) {
   }
   // S . (S_u x S_v) has degree 3 p - 1 in each direction: of a cubic's span five nodes are exact.
   const FluxRound flux(round);
-  Lines lines(surface, origin);
-  for (std::size_t span = 0; span < along.spans(); ++span) {
-    const std::vector<Node> nodes = gauss_nodes(along, flux_order(along.degree), 1, span, span + 1);
+  Lines<Net::points> lines(surface, origin);
+  for (std::size_t span = 0; span < along.spans(); span += 2) {
+    const std::vector<Node> nodes =
+        gauss_nodes(along, flux_order(along.degree), 1, span, std::min(span + 2, along.spans()));
     for (std::size_t n = 0; n < nodes.size(); n += 2) {
-      lines.move_to(nodes[n], n + 1 < nodes.size() ? &nodes[n + 1] : nullptr);
+      lines.move_to(nodes, n);
       sum += flux(lines);
     }
   }
