@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 namespace selvage::nurbs {
 
@@ -18,59 +19,88 @@ int find_span(const std::vector<double>& knots, int degree, int count, double t)
   return static_cast<int>(found - knots.begin()) - 1;
 }
 
-void basis(const std::vector<double>& knots, int degree, int span, double t, BasisRow& values) {
-  BasisRow left, right;  // only the first degree + 1 are used
-  values[0] = 1.0;
-  const auto knot = [&](int i) { return knots[static_cast<std::size_t>(i)]; };
-  for (int j = 1; j <= degree; ++j) {
-    const auto uj = static_cast<std::size_t>(j);
-    left[uj] = t - knot(span + 1 - j);
-    right[uj] = knot(span + j) - t;
-    double saved = 0.0;
-    for (int r = 0; r < j; ++r) {
-      const auto ur = static_cast<std::size_t>(r);
-      const double part = values[ur] / (right[ur + 1] + left[uj - ur]);
-      values[ur] = saved + right[ur + 1] * part;
-      saved = left[uj - ur] * part;
-    }
-    values[uj] = saved;
-  }
-}
-
 namespace {
+
+// Degree is an int, or a number that the compiler knows: most splines are quadratic or cubic.
+template <int degree>
+using Known = std::integral_constant<int, degree>;
+
+// The basis of degree j on a span, whose first knot is *knot, in place of that of degree j - 1.
+template <class Degree>
+inline void raise_to(Degree j, const double* knot, double t, double* values) {
+  double saved = 0.0;
+  for (int r = 0; r < j; ++r) {
+    const double left = t - knot[r + 1 - j], right = knot[r + 1] - t;
+    const double part = values[r] / (right + left);
+    values[r] = saved + right * part;
+    saved = left * part;
+  }
+  values[j] = saved;
+}
 
 // Derivative of the degree-p basis from the values of the degree-(p-1) basis on the same span:
 // N'_{i,p} = p (N_{i,p-1} / (u_{i+p} - u_i) - N_{i+1,p-1} / (u_{i+p+1} - u_{i+1})).
-void raise_derivative(const std::vector<double>& knots, int degree, int span, const BasisRow& lower,
-                      BasisRow& out) {
-  const auto knot = [&](int i) { return knots[static_cast<std::size_t>(i)]; };
-  for (int j = 0; j <= degree; ++j) {
-    const int i = span - degree + j;  // the control point
-    double value = 0.0;
-    if (j > 0) value += lower[static_cast<std::size_t>(j - 1)] / (knot(i + degree) - knot(i));
-    if (j < degree) value -= lower[static_cast<std::size_t>(j)] / (knot(i + degree + 1) - knot(i + 1));
-    out[static_cast<std::size_t>(j)] = degree * value;
+template <class Degree>
+inline void raise_derivative_to(Degree degree, const double* knot, const double* lower, double* out) {
+  double before = 0.0;
+  for (int j = 0; j < degree; ++j) {
+    const double after = lower[j] / (knot[j + 1] - knot[j + 1 - degree]);
+    out[j] = degree * (before - after);
+    before = after;
   }
+  out[degree] = degree * before;
+}
+
+// With the derivatives of degree 2 and more from the basis of two degrees less.
+template <class Before, class Last>
+inline void differentiate(Before before, Last degree, const double* knot, double t,
+                          std::array<BasisRow, 3>& rows) {
+  raise_derivative_to(before, knot, rows[0].data(), rows[1].data());
+  raise_derivative_to(degree, knot, rows[1].data(), rows[2].data());
+  raise_to(before, knot, t, rows[0].data());
+  raise_derivative_to(degree, knot, rows[0].data(), rows[1].data());
+  raise_to(degree, knot, t, rows[0].data());
 }
 
 }  // namespace
 
+void basis(const std::vector<double>& knots, int degree, int span, double t, BasisRow& values) {
+  const double* const knot = knots.data() + span;
+  values[0] = 1.0;
+  if (degree <= 3) {
+    if (degree > 0) raise_to(Known<1>(), knot, t, values.data());
+    if (degree > 1) raise_to(Known<2>(), knot, t, values.data());
+    if (degree > 2) raise_to(Known<3>(), knot, t, values.data());
+    return;
+  }
+  for (int j = 1; j <= degree; ++j) raise_to(j, knot, t, values.data());
+}
+
+void basis_slopes(const std::vector<double>& knots, int degree, int span, double t, BasisRow& values,
+                  BasisRow& slopes) {
+  const double* const knot = knots.data() + span;
+  basis(knots, std::max(degree - 1, 0), span, t, values);
+  slopes[0] = 0.0;
+  if (degree == 0) return;
+  raise_derivative_to(degree, knot, values.data(), slopes.data());
+  raise_to(degree, knot, t, values.data());
+}
+
 void basis_derivatives(const std::vector<double>& knots, int degree, int span, double t,
                        std::array<BasisRow, 3>& rows) {
-  for (std::size_t k = 1; k < 3; ++k) std::fill_n(rows[k].begin(), degree + 1, 0.0);
-  BasisRow lower;
+  const double* const knot = knots.data() + span;
   if (degree >= 2) {
-    BasisRow lowest;
-    basis(knots, degree - 2, span, t, lowest);
-    BasisRow slope;
-    raise_derivative(knots, degree - 1, span, lowest, slope);
-    raise_derivative(knots, degree, span, slope, rows[2]);
+    basis(knots, degree - 2, span, t, rows[0]);
+    if (degree == 3) return differentiate(Known<2>(), Known<3>(), knot, t, rows);
+    if (degree == 2) return differentiate(Known<1>(), Known<2>(), knot, t, rows);
+    return differentiate(degree - 1, degree, knot, t, rows);
   }
-  if (degree >= 1) {
-    basis(knots, degree - 1, span, t, lower);
-    raise_derivative(knots, degree, span, lower, rows[1]);
-  }
-  basis(knots, degree, span, t, rows[0]);
+  std::fill_n(rows[1].begin(), degree + 1, 0.0);
+  std::fill_n(rows[2].begin(), degree + 1, 0.0);
+  basis(knots, 0, span, t, rows[0]);
+  if (degree == 0) return;
+  raise_derivative_to(Known<1>(), knot, rows[0].data(), rows[1].data());
+  raise_to(Known<1>(), knot, t, rows[0].data());
 }
 
 void polar_form(const std::vector<double>& knots, int degree, int span, const double* arguments,

@@ -19,6 +19,10 @@ int find_span(const std::vector<double>& knots, int degree, int count, double t)
 // The degree + 1 basis functions that do not vanish on span k, for control points k - degree .. k. A2.2.
 void basis(const std::vector<double>& knots, int degree, int span, double t, BasisRow& values);
 
+// Values and first derivatives.
+void basis_slopes(const std::vector<double>& knots, int degree, int span, double t, BasisRow& values,
+                  BasisRow& slopes);
+
 // Values, first and second derivatives (rows 0, 1, 2). A2.3.
 void basis_derivatives(const std::vector<double>& knots, int degree, int span, double t,
                        std::array<BasisRow, 3>& rows);

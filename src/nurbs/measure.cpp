@@ -4,7 +4,10 @@
 #include <cfloat>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <type_traits>
 
+#include "core/index.h"
 #include "nurbs/basis.h"
 
 namespace selvage::nurbs {
@@ -66,11 +69,33 @@ double length_rounding(const Curve& curve, double t) {
   return std::max(1e-13 * polygon, 32 * DBL_EPSILON * largest);
 }
 
+// Of a cubic within one of its spans: the slope is a parabola, known from three places.
+class SpeedOfCubic {
+ public:
+  SpeedOfCubic(const Curve& curve, double from, double to)
+      : middle_(0.5 * (from + to)), quarter_(0.25 * (to - from)) {
+    const auto slope = [&](double t) { return evaluate_jet(curve, t).d1; };
+    const Vec3 before = slope(middle_ - quarter_), after = slope(middle_ + quarter_);
+    slope_ = slope(middle_);
+    change_ = 0.5 * (after - before);
+    bend_ = 0.5 * (after + before) - slope_;
+  }
+  double operator()(double t) const {
+    const double x = (t - middle_) / quarter_;
+    return (slope_ + x * (change_ + x * bend_)).norm();
+  }
+
+ private:
+  double middle_, quarter_;
+  Vec3 slope_, change_, bend_;
+};
+
 // The basis functions' values and first derivatives at the Gauss nodes of every span.
 struct Node {
+  Node(int first_point, double its_weight) : first(first_point), weight(its_weight) {}
   int first;  // index of the first control point that counts here
   double weight;
-  BasisRow value, slope;
+  BasisRow value, slope;  // as many as the degree wants
 };
 
 // One of the two directions of a surface, with the ends of its spans.
@@ -94,16 +119,15 @@ std::vector<Node> gauss_nodes(const Direction& direction, int order, int parts, 
   const GaussRule& rule = gauss_rule(order);
   std::vector<Node> nodes;
   nodes.reserve((last - first) * rule.nodes.size() * static_cast<std::size_t>(parts));
-  std::array<BasisRow, 3> rows;
   for (std::size_t k = first; k < last; ++k)
     for (int part = 0; part < parts; ++part) {
       const double length = (direction.breaks[k + 1] - direction.breaks[k]) / parts;
       const double half = 0.5 * length, middle = direction.breaks[k] + (part + 0.5) * length;
+      const int span = find_span(direction.knots, direction.degree, direction.count, middle);
       for (std::size_t g = 0; g < rule.nodes.size(); ++g) {
         const double t = middle + half * rule.nodes[g];
-        const int span = find_span(direction.knots, direction.degree, direction.count, t);
-        basis_derivatives(direction.knots, direction.degree, span, t, rows);
-        nodes.push_back({span - direction.degree, half * rule.weights[g], rows[0], rows[1]});
+        Node& node = nodes.emplace_back(span - direction.degree, half * rule.weights[g]);
+        basis_slopes(direction.knots, direction.degree, span, t, node.value, node.slope);
       }
     }
   return nodes;
@@ -112,50 +136,164 @@ std::vector<Node> gauss_nodes(const Direction& direction, int order, int parts) 
   return gauss_nodes(direction, order, parts, 0, direction.spans());
 }
 
+// Gauss nodes that integrate the product of two functions of a basis and the slope of a third.
+int flux_order(int degree) {
+  return std::min(8, (3 * degree + 1) / 2);
+}
+
 // Of a rational surface no polynomial rule is exact: four parts to a span bring the error down to rounding.
 int parts_of(const Surface& surface) {
   return surface.is_rational() ? 4 : 1;
 }
 
+// work(degree), as a number that the compiler knows where it is that of most splines.
+template <class Work>
+void with_degree(int degree, const Work& work) {
+  if (degree == 3)
+    work(std::integral_constant<int, 3>());
+  else if (degree == 2)
+    work(std::integral_constant<int, 2>());
+  else
+    work(degree);
+}
+
+// Numbers at two places: one register of any processor, with the operators of a number.
+using Pair [[gnu::vector_size(16)]] = double;
+double sum_of(Pair pair) {
+  return pair[0] + pair[1];
+}
+
+// Vectors at two places.
+struct TwoVectors {
+  Pair x{}, y{}, z{};
+
+  [[nodiscard]] Pair dot(const TwoVectors& v) const { return x * v.x + y * v.y + z * v.z; }
+  [[nodiscard]] TwoVectors cross(const TwoVectors& v) const {
+    return {y * v.z - z * v.y, z * v.x - x * v.z, x * v.y - y * v.x};
+  }
+  [[nodiscard]] double length() const {
+    const Pair square = dot(*this);
+    return std::sqrt(square[0]) + std::sqrt(square[1]);
+  }
+  [[nodiscard]] Vec3 sum() const { return {sum_of(x), sum_of(y), sum_of(z)}; }
+  TwoVectors& operator+=(const TwoVectors& v) {
+    x += v.x;
+    y += v.y;
+    z += v.z;
+    return *this;
+  }
+};
+TwoVectors operator*(Pair shares, const TwoVectors& v) {
+  return {shares * v.x, shares * v.y, shares * v.z};
+}
+TwoVectors operator*(double share, const TwoVectors& v) {
+  return Pair{share, share} * v;
+}
+
+// What Lines are made of: control points, of a rational surface times their weights, or these alone (as x).
+enum class Net { points, weighted_points, weights };
+
+// A surface at two v at once: at each of them the net collapses to a line of control points over u and one of
+// their derivatives by v, told from the origin.
+template <Net net>
+class Lines {
+ public:
+  Lines(const Surface& surface, const Vec3& origin)
+      : surface_(surface), origin_(origin), points_(at(surface.count_u)), slopes_(points_.size()) {}
+
+  // To a node and the one behind it, or the last of all alone.
+  void move_to(const std::vector<Node>& nodes, std::size_t n) {
+    const bool is_last = n + 1 == nodes.size();
+    const Node &one = nodes[n], &other = nodes[is_last ? n : n + 1];
+    shares_ = Pair{one.weight, is_last ? 0.0 : other.weight};
+    for (std::size_t j = 0; j <= at(surface_.degree_v); ++j) {
+      values_[j] = Pair{one.value[j], other.value[j]};
+      changes_[j] = Pair{one.slope[j], other.slope[j]};
+    }
+    with_degree(surface_.degree_v, [&](auto degree) {
+      const std::size_t columns = points_.size();
+      for (std::size_t i = 0; i < columns; ++i) {
+        TwoVectors point, slope;
+        for (std::size_t j = 0; j <= at(int{degree}); ++j) {
+          const Vec3 p = at_net(one.first, i, j), q = at_net(other.first, i, j);
+          const TwoVectors both = {Pair{p.x(), q.x()}, Pair{p.y(), q.y()}, Pair{p.z(), q.z()}};
+          point += values_[j] * both;
+          slope += changes_[j] * both;
+        }
+        points_[i] = point;
+        slopes_[i] = slope;
+      }
+    });
+  }
+
+  [[nodiscard]] const TwoVectors* points() const { return points_.data(); }
+  [[nodiscard]] const TwoVectors* slopes() const { return slopes_.data(); }
+  // What the nodes count.
+  [[nodiscard]] Pair shares() const { return shares_; }
+
+ private:
+  [[nodiscard]] Vec3 at_net(int first, std::size_t i, std::size_t j) const {
+    const std::size_t k = (at(first) + j) * points_.size() + i;
+    if constexpr (net == Net::weights) return {surface_.weights[k], 0, 0};
+    const Vec3 p = surface_.points[k] - origin_;
+    if constexpr (net == Net::weighted_points) return surface_.weights[k] * p;
+    return p;
+  }
+
+  const Surface& surface_;
+  Vec3 origin_;
+  Pair shares_{};
+  std::array<Pair, max_degree + 1> values_, changes_;
+  std::vector<TwoVectors> points_, slopes_;
+};
+
+// From those of the homogeneous surface (Piegl and Tiller 4.20).
+void divide(TwoVectors& position, TwoVectors& along_u, TwoVectors& along_v,
+            const Lines<Net::weights>& weights, const Node& u, int degree) {
+  Pair w{}, w_u{}, w_v{};
+  for (std::size_t i = 0; i <= at(degree); ++i) {
+    const std::size_t k = at(u.first) + i;
+    w += u.value[i] * weights.points()[k].x;
+    w_u += u.slope[i] * weights.points()[k].x;
+    w_v += u.value[i] * weights.slopes()[k].x;
+  }
+  position = (1.0 / w) * position;
+  along_u = (1.0 / w) * (along_u += -w_u * position);
+  along_v = (1.0 / w) * (along_v += -w_v * position);
+}
+
+// take(number of the node in nodes_u, position - origin, S_u x S_v times the weight) for nodes of one span of
+// v, two at once. What takes no position gets none.
 template <bool is_rational, class Take>
 void at_nodes_of(const Surface& surface, const Vec3& origin, const std::vector<Node>& nodes_u,
                  const std::vector<Node>& nodes_v, const Take& take) {
-  std::vector<Vec4> line(static_cast<std::size_t>(surface.count_u)), slope_line(line.size());
-  for (const Node& v : nodes_v) {
-    // At one v the control net collapses to a row of points and a row of derivatives along v.
-    for (int i = 0; i < surface.count_u; ++i) {
-      Vec4 position = Vec4::Zero(), slope = Vec4::Zero();
-      for (int j = 0; j <= surface.degree_v; ++j) {
-        const double w = surface.weight(i, v.first + j);
-        const Vec3 p = w * (surface.point(i, v.first + j) - origin);
-        const Vec4 h(p.x(), p.y(), p.z(), w);  // faster than homogeneous(), whose product is not vectorized
-        position += v.value[static_cast<std::size_t>(j)] * h;
-        slope += v.slope[static_cast<std::size_t>(j)] * h;
+  constexpr bool takes_position = std::is_invocable_v<Take, std::size_t, TwoVectors, TwoVectors>;
+  Lines<is_rational ? Net::weighted_points : Net::points> lines(surface, origin);
+  std::optional<Lines<Net::weights>> weights;
+  if constexpr (is_rational) weights.emplace(surface, origin);
+  with_degree(surface.degree_u, [&](auto degree) {
+    for (std::size_t done = 0; done < nodes_v.size(); done += 2) {
+      lines.move_to(nodes_v, done);
+      if constexpr (is_rational) weights->move_to(nodes_v, done);
+      for (std::size_t n = 0; n < nodes_u.size(); ++n) {
+        const Node& u = nodes_u[n];
+        TwoVectors position, along_u, along_v;
+        const TwoVectors *const point = lines.points() + u.first, *const slope = lines.slopes() + u.first;
+        for (std::size_t i = 0; i <= at(int{degree}); ++i) {
+          if constexpr (takes_position || is_rational) position += u.value[i] * point[i];
+          along_u += u.slope[i] * point[i];
+          along_v += u.value[i] * slope[i];
+        }
+        if constexpr (is_rational) divide(position, along_u, along_v, *weights, u, surface.degree_u);
+        const TwoVectors normal = u.weight * lines.shares() * along_u.cross(along_v);
+        if constexpr (takes_position)
+          take(n, position, normal);
+        else
+          take(n, normal);
       }
-      line[static_cast<std::size_t>(i)] = position;
-      slope_line[static_cast<std::size_t>(i)] = slope;
     }
-    for (std::size_t n = 0; n < nodes_u.size(); ++n) {
-      const Node& u = nodes_u[n];
-      Vec4 p = Vec4::Zero(), du = Vec4::Zero(), dv = Vec4::Zero();
-      for (int i = 0; i <= surface.degree_u; ++i) {
-        const auto k = static_cast<std::size_t>(u.first) + static_cast<std::size_t>(i);
-        p += u.value[static_cast<std::size_t>(i)] * line[k];
-        du += u.slope[static_cast<std::size_t>(i)] * line[k];
-        dv += u.value[static_cast<std::size_t>(i)] * slope_line[k];
-      }
-      Vec3 position = p.head<3>(), along_u = du.head<3>(), along_v = dv.head<3>();
-      if constexpr (is_rational) {
-        position /= p.w();
-        along_u = (along_u - du.w() * position) / p.w();
-        along_v = (along_v - dv.w() * position) / p.w();
-      }
-      take(n, position, along_u.cross(along_v), u.weight * v.weight);
-    }
-  }
+  });
 }
-
-// take(number of the node in nodes_u, position - origin, S_u x S_v, weight) at every node.
 template <class Take>
 void at_nodes(const Surface& surface, const Vec3& origin, const std::vector<Node>& nodes_u,
               const std::vector<Node>& nodes_v, const Take& take) {
@@ -164,6 +302,50 @@ void at_nodes(const Surface& surface, const Vec3& origin, const std::vector<Node
   else
     at_nodes_of<false>(surface, origin, nodes_u, nodes_v, take);
 }
+
+// Through a line P = sum N_i p_i over u, moving by Q = sum N_k q_k, the flux of P is the integral of
+// P . (P' x Q): the sum of the volumes (p_i x p_j) . q_k, i < j, times the integrals of (N_i N_j' - N_j N_i')
+// N_k.
+class FluxRound {
+ public:
+  explicit FluxRound(const Direction& round)
+      : degree_(round.degree), count_(round.count), integrals_(pair(count_, 1)) {
+    for (const Node& node : gauss_nodes(round, flux_order(degree_), 1))
+      for (int a = 0; a <= degree_; ++a)
+        for (int b = a + 1; b <= degree_; ++b) {
+          double* const of_pair = integrals_.data() + pair(node.first + a, b - a);
+          const double turn = node.value[at(a)] * node.slope[at(b)] - node.value[at(b)] * node.slope[at(a)];
+          // The first k that goes with i is i - degree.
+          for (int c = 0; c <= degree_; ++c)
+            of_pair[c - a + degree_] += node.weight * turn * node.value[at(c)];
+        }
+  }
+
+  // The sum of the fluxes at two v, each times its share.
+  [[nodiscard]] double operator()(const Lines<Net::points>& lines) const {
+    Pair flux{};
+    for (int i = 0; i + 1 < count_; ++i) {
+      const int last = std::min(count_ - 1, i + degree_);
+      for (int j = i + 1; j <= last; ++j) {
+        const double* const of_pair = integrals_.data() + pair(i, j - i) + (degree_ - i);
+        TwoVectors sum;
+        for (int k = std::max(0, j - degree_); k <= last; ++k) sum += of_pair[k] * lines.slopes()[k];
+        flux += lines.points()[i].cross(lines.points()[j]).dot(sum);
+      }
+    }
+    return sum_of(flux * lines.shares());
+  }
+
+ private:
+  [[nodiscard]] int width() const { return 2 * degree_ + 1; }
+  // Where the integrals of i and j = i + step begin.
+  [[nodiscard]] std::size_t pair(int i, int step) const {
+    return (at(i) * at(degree_) + at(step - 1)) * at(width());
+  }
+
+  int degree_, count_;
+  std::vector<double> integrals_;
+};
 
 // The integrals of moments(), strip by strip: a span of v, all round. Rule 0 is exact for all but the area,
 // for which rule 1 has two nodes more, and rules 2, 3, .. are rule 1 on halves, quarters, .. of the spans.
@@ -203,7 +385,8 @@ class MomentIntegrals {
     return whole << (rule > 1 ? rule - 1 : 0);
   }
 
-  // take(span of u, position - origin, S_u x S_v times the weight) at every node of a strip.
+  // take(span of u, position - origin, S_u x S_v times the weight) at the nodes of a strip, two at once,
+  // without the position where it takes none.
   template <class Take>
   void at_strip(std::size_t strip, std::size_t rule, const Take& take) {
     std::vector<Node>& nodes_u = nodes_u_[rule];
@@ -211,29 +394,35 @@ class MomentIntegrals {
     const std::vector<Node> nodes_v =
         gauss_nodes(along_, order(along_.degree, rule), parts(rule), strip, strip + 1);
     const std::size_t of_span = nodes_u.size() / round_.spans();
-    at_nodes(surface_, origin_, nodes_u, nodes_v,
-             [&](std::size_t node, const Vec3& position, const Vec3& normal, double weight) {
-               take(node / of_span, position, Vec3(weight * normal));
-             });
+    at_nodes(
+        surface_, origin_, nodes_u, nodes_v,
+        [&](std::size_t node,
+            const auto&... vectors) requires std::is_invocable_v<Take, std::size_t, decltype(vectors)...> {
+          take(node / of_span, vectors...);
+        });
   }
 
   // Adds all but the area to the sum.
   Areas all_of(std::size_t strip, Moments& sum) {
     Areas areas(round_.spans());
-    at_strip(strip, 0, [&](std::size_t span, const Vec3& position, const Vec3& normal) {
-      const double flux = position.dot(normal);
-      areas[span] += normal.norm();
-      sum.area_vector += normal;
-      sum.volume += flux / 3.0;
-      sum.first += flux / 4.0 * position;
+    TwoVectors area_vector, first;
+    Pair volume{};
+    at_strip(strip, 0, [&](std::size_t span, const TwoVectors& position, const TwoVectors& normal) {
+      const Pair flux = position.dot(normal);
+      areas[span] += normal.length();
+      area_vector += normal;
+      volume += flux;
+      first += flux * position;
     });
+    sum.area_vector += area_vector.sum();
+    sum.volume += sum_of(volume) / 3.0;
+    sum.first += first.sum() / 4.0;
     return areas;
   }
   Areas areas_of(std::size_t strip, std::size_t rule) {
     Areas areas(round_.spans());
-    at_strip(strip, rule, [&](std::size_t span, const Vec3& /*position*/, const Vec3& normal) {
-      areas[span] += normal.norm();
-    });
+    at_strip(strip, rule,
+             [&](std::size_t span, const TwoVectors& normal) { areas[span] += normal.length(); });
     return areas;
   }
 
@@ -267,12 +456,17 @@ double adaptive_integral(const std::function<double(double)>& f, double t0, doub
 double arc_length(const Curve& curve, double t0, double t1) {
   // Knot by knot from the one after t0: a short piece of a long curve costs no more than its own spans.
   auto knot = std::upper_bound(curve.knots.begin(), curve.knots.end(), t0);
-  const std::function<double(double)> speed = [&](double t) { return evaluate_jet(curve, t).d1.norm(); };
+  const bool is_cubic = curve.degree <= 3 && !curve.is_rational();
   double sum = 0.0, from = t0;
   while (from < t1) {
     while (knot != curve.knots.end() && *knot <= from) ++knot;
     const double to = knot == curve.knots.end() ? t1 : std::min(*knot, t1);
-    sum += adaptive_integral(speed, from, to, length_rounding(curve, 0.5 * (from + to)));
+    const auto integral = [&](const auto& speed) {
+      return adaptive_integral([&](double t) { return speed(t); }, from, to,
+                               length_rounding(curve, 0.5 * (from + to)));
+    };
+    sum += is_cubic ? integral(SpeedOfCubic(curve, from, to))
+                    : integral([&](double t) { return evaluate_jet(curve, t).d1.norm(); });
     from = to;
   }
   return sum;
@@ -283,16 +477,28 @@ double arc_length(const Curve& curve) {
 }
 
 double volume_flux(const Surface& surface, const Vec3& origin) {
-  // S . (S_u x S_v) has degree 3 p - 1 in each direction.
-  const auto nodes = [&](const Direction& direction) {
-    const int order = surface.is_rational() ? 8 : std::min(8, (3 * direction.degree + 1) / 2);
-    return gauss_nodes(direction, order, parts_of(surface));
-  };
+  const Direction round = round_of(surface), along = along_of(surface);
   double sum = 0.0;
-  at_nodes(surface, origin, nodes(round_of(surface)), nodes(along_of(surface)),
-           [&](std::size_t /*node*/, const Vec3& position, const Vec3& normal, double weight) {
-             sum += weight * position.dot(normal);
-           });
+  if (surface.is_rational()) {
+    const std::vector<Node> nodes_u = gauss_nodes(round, 8, parts_of(surface));
+    for (std::size_t span = 0; span < along.spans(); ++span)
+      at_nodes(surface, origin, nodes_u, gauss_nodes(along, 8, parts_of(surface), span, span + 1),
+               [&](std::size_t /*node*/, const TwoVectors& position, const TwoVectors& normal) {
+                 sum += sum_of(position.dot(normal));
+               });
+    return sum / 3.0;
+  }
+  // S . (S_u x S_v) has degree 3 p - 1 in each direction: of a cubic's span five nodes are exact.
+  const FluxRound flux(round);
+  Lines<Net::points> lines(surface, origin);
+  for (std::size_t span = 0; span < along.spans(); span += 2) {
+    const std::vector<Node> nodes =
+        gauss_nodes(along, flux_order(along.degree), 1, span, std::min(span + 2, along.spans()));
+    for (std::size_t n = 0; n < nodes.size(); n += 2) {
+      lines.move_to(nodes, n);
+      sum += flux(lines);
+    }
+  }
   return sum / 3.0;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <span>
 
 #include "core/index.h"
@@ -77,6 +78,152 @@ void extend(Box3& box, const Patch& patch, double tolerance) {
   const int axis = bend(patch, 0) >= bend(patch, 1) ? 0 : 1;
   for (const bool upper : {false, true}) extend(box, half_of(patch, axis, upper), tolerance);
 }
+
+// One coordinate of a polynomial patch: Bernstein coefficients, u fastest.
+struct Height {
+  int count_u = 0, count_v = 0;
+  std::vector<double> values;
+  double bound = 0;  // the largest of them
+
+  void find_bound() { bound = *std::max_element(values.begin(), values.end()); }
+  [[nodiscard]] double corner() const {
+    const std::size_t last = values.size() - 1, row = at(count_u) - 1;
+    return std::max({values[0], values[row], values[last - row], values[last]});
+  }
+  [[nodiscard]] double bend(std::size_t step, std::size_t steps, std::size_t other, std::size_t lines) const {
+    double most = 0.0;
+    for (std::size_t l = 0; l < lines; ++l)
+      for (std::size_t k = l * other + step; k < l * other + (steps - 1) * step; k += step)
+        most = std::max(most, std::abs(values[k - step] - 2.0 * values[k] + values[k + step]));
+    return most;
+  }
+  // Leaves the lower half here, and the upper one there (de Casteljau).
+  void halve(Height& upper) {
+    const std::size_t nu = at(count_u), nv = at(count_v);
+    const bool is_along_u = bend(1, nu, nu, nv) >= bend(nu, nv, 1, nu);
+    const std::size_t step = is_along_u ? 1 : nu, steps = is_along_u ? nu : nv, other = is_along_u ? nu : 1,
+                      lines = is_along_u ? nv : nu;
+    upper = *this;
+    for (std::size_t l = 0; l < lines; ++l) {
+      double* const line = upper.values.data() + l * other;
+      for (std::size_t r = steps; r-- > 0;) {
+        values[l * other + (steps - 1 - r) * step] = line[0];
+        for (std::size_t k = 0; k < r; ++k) line[k * step] = 0.5 * (line[k * step] + line[(k + 1) * step]);
+      }
+    }
+    find_bound();
+    upper.find_bound();
+  }
+};
+
+// Grows `highest` to the patch's maximum, but for `tolerance`. Of the stack of patches the first is taken,
+// and the rest is room to work in.
+void raise(double& highest, std::vector<Height>& stack, double tolerance) {
+  for (std::size_t count = 1; count > 0;) {
+    Height& height = stack[count - 1];
+    highest = std::max(highest, height.corner());
+    if (!(height.bound > highest + tolerance)) {
+      --count;
+      continue;
+    }
+    if (count == stack.size()) stack.emplace_back();
+    stack[count - 1].halve(stack[count]);
+    // The more promising half first.
+    if (stack[count].bound < stack[count - 1].bound) std::swap(stack[count], stack[count - 1]);
+    ++count;
+  }
+}
+
+// How far a polynomial surface reaches.
+class Reach {
+ public:
+  explicit Reach(const Surface& surface)
+      : surface_(surface),
+        us_(breakpoints(surface.knots_u, surface.degree_u)),
+        vs_(breakpoints(surface.knots_v, surface.degree_v)) {
+    for (std::size_t j = 0; j + 1 < vs_.size(); ++j)
+      rows_.push_back(
+          at(find_span(surface.knots_v, surface.degree_v, surface.count_v, vs_[j]) - surface.degree_v));
+  }
+
+  // Along an axis (`sign`: 1 or -1): `known` or more, exact but for `tolerance`. Strips between two knots of
+  // v are looked at in the order of what they promise.
+  double operator()(Eigen::Index axis, double sign, double known, double tolerance) {
+    const auto rows = at(surface_.degree_v) + 1, columns = at(surface_.count_u);
+    heights_.resize(surface_.points.size());
+    highest_.assign(at(surface_.count_v), -std::numeric_limits<double>::infinity());
+    for (std::size_t j = 0, k = 0; j < highest_.size(); ++j)
+      for (std::size_t i = 0; i < columns; ++i, ++k) {
+        heights_[k] = sign * surface_.points[k][axis];
+        highest_[j] = std::max(highest_[j], heights_[k]);
+      }
+    strips_.clear();
+    for (std::size_t j = 0; j + 1 < vs_.size(); ++j) {
+      const double bound = *std::max_element(&highest_[rows_[j]], &highest_[rows_[j]] + rows);
+      if (bound > known + tolerance) strips_.push_back({bound, j});
+    }
+    std::sort(strips_.begin(), strips_.end(),
+              [](const Strip& a, const Strip& b) { return a.bound > b.bound; });
+    for (const Strip& strip : strips_)
+      if (strip.bound > known + tolerance) look_at(strip, known, tolerance);
+    return known;
+  }
+
+ private:
+  struct Strip {
+    double bound;
+    std::size_t number;
+  };
+
+  void look_at(const Strip& strip, double& known, double tolerance) {
+    const auto columns = at(surface_.count_u), width = at(surface_.degree_u) + 1,
+               rows = at(surface_.degree_v) + 1;
+    extract(surface_.knots_v, surface_.degree_v, surface_.count_v, vs_[strip.number], vs_[strip.number + 1],
+            along_);
+    lines_.resize(rows * columns);
+    const double* const heights = &heights_[rows_[strip.number] * columns];
+    for (std::size_t l = 0; l < rows; ++l)
+      for (std::size_t i = 0; i < columns; ++i) {
+        double sum = 0.0;
+        for (std::size_t j = 0; j < rows; ++j) sum += along_.rows[l][j] * heights[j * columns + i];
+        lines_[l * columns + i] = sum;
+      }
+    for (std::size_t i = 0; i + 1 < us_.size(); ++i) {
+      const std::size_t column =
+          at(find_span(surface_.knots_u, surface_.degree_u, surface_.count_u, us_[i])) + 1 - width;
+      double bound = lines_[column];
+      for (std::size_t l = 0; l < rows; ++l)
+        for (std::size_t k = 0; k < width; ++k) bound = std::max(bound, lines_[l * columns + column + k]);
+      if (!(bound > known + tolerance)) continue;
+      const auto [round, is_new] = round_.try_emplace(i);
+      if (is_new)
+        extract(surface_.knots_u, surface_.degree_u, surface_.count_u, us_[i], us_[i + 1], round->second);
+      Height& patch = stack_.front();
+      patch.count_u = surface_.degree_u + 1;
+      patch.count_v = surface_.degree_v + 1;
+      patch.values.clear();
+      for (std::size_t l = 0; l < rows; ++l)
+        for (std::size_t k = 0; k < width; ++k) {
+          double sum = 0.0;
+          for (std::size_t c = 0; c < width; ++c)
+            sum += round->second.rows[k][c] * lines_[l * columns + column + c];
+          patch.values.push_back(sum);
+        }
+      patch.find_bound();
+      raise(known, stack_, tolerance);
+    }
+  }
+
+  const Surface& surface_;
+  std::vector<double> us_, vs_;
+  std::vector<double> heights_, highest_;  // of the control points, and of each row the highest
+  std::vector<double> lines_;              // of a strip: B-splines over u, Bernstein polynomials over v
+  std::vector<std::size_t> rows_;          // of each strip the first row of control points that counts there
+  std::vector<Strip> strips_;
+  Extraction along_;
+  std::map<std::size_t, Extraction> round_;  // of the spans of u that were needed
+  std::vector<Height> stack_{1};
+};
 
 }  // namespace
 
@@ -181,6 +328,14 @@ void sample(const Patch& patch, int cells_u, int cells_v, std::vector<Vec3>& out
 }
 
 void extend(Box3& box, const Surface& surface, double tolerance) {
+  if (!surface.is_rational()) {
+    Reach reach(surface);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      box.min()[axis] = -reach(axis, -1.0, -box.min()[axis], tolerance);
+      box.max()[axis] = reach(axis, 1.0, box.max()[axis], tolerance);
+    }
+    return;
+  }
   const std::vector<double> us = breakpoints(surface.knots_u, surface.degree_u),
                             vs = breakpoints(surface.knots_v, surface.degree_v);
   for (const Vec3& p : evaluate_grid(surface, us, vs)) box.extend(p);

@@ -31,6 +31,16 @@ CurveJet evaluate_jet(const Curve& curve, double t) {
   const int span = find_span(curve.knots, curve.degree, count, t);
   std::array<BasisRow, 3> rows;
   basis_derivatives(curve.knots, curve.degree, span, t, rows);
+  if (!curve.is_rational()) {
+    const Vec3* const points = &curve.points[at(span - curve.degree)];
+    CurveJet jet{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+    for (std::size_t j = 0; j <= at(curve.degree); ++j) {
+      jet.position += rows[0][j] * points[j];
+      jet.d1 += rows[1][j] * points[j];
+      jet.d2 += rows[2][j] * points[j];
+    }
+    return jet;
+  }
   std::array<Vec3, 3> sums = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   std::array<double, 3> weights = {0.0, 0.0, 0.0};
   for (int j = 0; j <= curve.degree; ++j) {
@@ -41,7 +51,6 @@ CurveJet evaluate_jet(const Curve& curve, double t) {
       weights[k] += share;
     }
   }
-  if (!curve.is_rational()) return {sums[0], sums[1], sums[2]};
   return quotient(sums, weights);
 }
 

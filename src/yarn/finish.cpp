@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "nurbs/basis.h"
+#include "nurbs/jets.h"
 #include "nurbs/measure.h"
 #include "yarn/ends.h"
 
@@ -22,6 +24,16 @@ double flat_flux(const Body& body, bool last, const Vec3& foot, const Vec3& orig
 // As if there were no end faces yet.
 double open_flux(const Body& body, bool last, const Vec3& origin) {
   return flat_flux(body, last, end_curve(body, last).points.front(), origin);
+}
+
+// No section at v reaches farther: it lies in the hull of the rows of the control net that count there.
+double widest_reach(const Body& body, const Vec3& centre, const Vec3& toward, double v) {
+  const nurbs::Surface& s = body.surface;
+  const int last = nurbs::find_span(s.knots_v, s.degree_v, s.count_v, v);
+  double largest = 0.0;
+  for (std::size_t k = s.index(0, last - s.degree_v); k < s.index(0, last + 1); ++k)
+    largest = std::max(largest, (s.points[k] - centre).dot(toward));
+  return largest;
 }
 
 // How far the section at v reaches from the axis in the unit direction `toward`.
@@ -54,6 +66,7 @@ void find_bends(Body& body) {
   body.min_bend_radius = std::numeric_limits<double>::infinity();
   // No section reaches farther than the control net does from the axis: most places need no closer look.
   const double widest = widest_section(body);
+  const nurbs::Jets axis(body.axis);
   const std::vector<double> breaks = nurbs::breakpoints(body.axis.knots, body.axis.degree);
   constexpr int samples = 8;
   struct Found {
@@ -65,7 +78,7 @@ void find_bends(Body& body) {
     std::optional<Found> worst;  // of this span
     for (int i = 0; i <= samples; ++i) {
       const double t = breaks[k] + (breaks[k + 1] - breaks[k]) * i / samples;
-      const nurbs::CurveJet jet = nurbs::evaluate_jet(body.axis, t);
+      const nurbs::CurveJet jet = axis.at(t);
       const double speed = jet.d1.squaredNorm();
       if (speed == 0.0) continue;
       const Vec3 curvature = (jet.d2 - jet.d1 * (jet.d2.dot(jet.d1) / speed)) / speed;
@@ -73,6 +86,7 @@ void find_bends(Body& body) {
       // What rounding makes of a straight line is no bend.
       if (kappa * body.length > 1e-9) body.min_bend_radius = std::min(body.min_bend_radius, 1.0 / kappa);
       if (kappa * widest <= 1.0) continue;
+      if (kappa * widest_reach(body, jet.position, curvature / kappa, t) < 1.0 - 1e-9) continue;
       const double needed = reach(body, jet.position, curvature / kappa, t);
       if (needed * kappa >= 1.0 && (!worst || needed * kappa > worst->ratio) && goes_backwards(body, t))
         worst = Found{{t, jet.position, 1.0 / kappa, needed}, needed * kappa};

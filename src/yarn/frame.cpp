@@ -52,14 +52,14 @@ Result<Vec3> first_up(const Vec3& tangent, const std::optional<Vec3>& wanted) {
   return Vec3((up - up.dot(tangent) * tangent).normalized());
 }
 
-// The direction that a guide asks of the frame at a place, and its derivative by t.
+// The direction that a guide, a unit vector, asks of the frame at a place, and its derivative by t.
 struct Wanted {
   Vec3 direction, slope;
 };
 
 Wanted wanted_at(const FrameGuide& guide, const Frame& frame) {
-  if (guide.form != FrameGuide::Form::radial) return {guide.direction->normalized(), Vec3::Zero()};
-  const Vec3 axis = guide.direction->normalized(), from = frame.position - guide.origin,
+  if (guide.form != FrameGuide::Form::radial) return {*guide.direction, Vec3::Zero()};
+  const Vec3 &axis = *guide.direction, from = frame.position - guide.origin,
              step = frame.speed * frame.tangent;
   return {from - from.dot(axis) * axis, step - step.dot(axis) * axis};
 }
@@ -69,6 +69,28 @@ bool is_idle(const FrameGuide& guide, const Frame& frame) {
   const Vec3 wanted = wanted_at(guide, frame).direction;
   const double angle = angle_between(frame.tangent, wanted);
   return !(wanted.norm() > 0.0) || std::min(angle, std::numbers::pi - angle) < six_degrees;
+}
+
+// Is the guide nowhere idle in a span, and stops the path nowhere? True only where a few looks tell: between
+// two of them path and guide turn by less than they are apart.
+bool holds_along(const FrameGuide& guide, const nurbs::Jets& path, double from, double to) {
+  constexpr int looks = 8;
+  constexpr double largest_step = 0.5;  // radians, which are hardly more than the chord
+  Vec3 tangent = Vec3::Zero(), wanted = Vec3::Zero();
+  for (int i = 0; i <= looks; ++i) {
+    const nurbs::CurveJet jet = path.at(from + (to - from) * i / looks);
+    Frame frame;
+    frame.position = jet.position;
+    frame.speed = jet.d1.norm();
+    frame.tangent = jet.d1 / frame.speed;
+    const Vec3 here = wanted_at(guide, frame).direction.normalized();
+    const double step = i == 0 ? 0.0 : 1.02 * ((frame.tangent - tangent).norm() + (here - wanted).norm());
+    // The sine is less than the angle.
+    if (!(step < largest_step && frame.tangent.cross(here).norm() - step > six_degrees)) return false;
+    tangent = frame.tangent;
+    wanted = here;
+  }
+  return true;
 }
 
 }  // namespace
@@ -96,14 +118,14 @@ void FrameField::hold(Frame& frame) const {
 
 Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& guide, bool closed,
                                     bool needs_lengths) {
-  FrameField field;
-  field.path_ = path;
+  FrameField field(path);
   field.guide_ = guide;
+  if (guide.direction) field.guide_.direction = guide.direction->normalized();
   for (const Vec3& point : path.points)
     field.shortest_chord_ = std::max(field.shortest_chord_, 1e-8 * point.cwiseAbs().maxCoeff());
   const bool is_free = guide.form == FrameGuide::Form::free;
   const auto node_at = [&](double t) {
-    const nurbs::CurveJet jet = nurbs::evaluate_jet(path, t);
+    const nurbs::CurveJet jet = field.path_.at(t);
     Node node;
     node.t = t;
     node.position = jet.position;
@@ -126,6 +148,10 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& 
   field.nodes_.push_back(first);
   const std::vector<double> breaks = nurbs::breakpoints(path.knots, path.degree);
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+    if (!is_free && !needs_lengths && holds_along(field.guide_, field.path_, breaks[k], breaks[k + 1])) {
+      field.nodes_.push_back(node_at(breaks[k + 1]));
+      continue;
+    }
     // Turning of the span, from a coarse look, decides its number of steps; a hidden turn is caught by
     // halving.
     double turning = 0.0;
@@ -150,7 +176,7 @@ Result<FrameField> FrameField::make(const nurbs::Curve& path, const FrameGuide& 
         Frame frame;
         frame.position = node.position;
         frame.tangent = node.tangent;
-        if (is_idle(guide, frame))
+        if (is_idle(field.guide_, frame))
           return error(Kind::geometry,
                        guide.form == FrameGuide::Form::radial
                            ? "the path meets the axis about which its section is held"
@@ -180,7 +206,7 @@ const FrameField::Node& FrameField::node_before(double t) const {
 
 double FrameField::length_at(double t) const {
   const Node& node = node_before(t);
-  return t <= node.t ? node.length : node.length + nurbs::arc_length(path_, node.t, t);
+  return t <= node.t ? node.length : node.length + nurbs::arc_length(path_.curve(), node.t, t);
 }
 
 double FrameField::turn_between(double from, double to) const {
@@ -194,8 +220,7 @@ double FrameField::turn_between(double from, double to) const {
 }
 
 Frame FrameField::at(double t) const {
-  const Node& node = node_before(t);
-  const nurbs::CurveJet jet = nurbs::evaluate_jet(path_, t);
+  const nurbs::CurveJet jet = path_.at(t);
   Frame frame;
   frame.position = jet.position;
   frame.speed = jet.d1.norm();
@@ -206,6 +231,7 @@ Frame FrameField::at(double t) const {
     return frame;
   }
   frame.turn_dt = spread_rate_ * frame.speed;
+  const Node& node = node_before(t);
   frame.up = t <= node.t ? node.up
                          : reflected(node.up, node.position, node.tangent, frame.position, frame.tangent,
                                      shortest_chord_);

@@ -9,7 +9,7 @@
 
 #include "core/diagnostics.h"
 #include "core/vec.h"
-#include "nurbs/spline.h"
+#include "nurbs/jets.h"
 
 namespace selvage::yarn {
 
@@ -61,6 +61,7 @@ class FrameField {
   [[nodiscard]] double length() const { return nodes_.back().length; }
 
  private:
+  explicit FrameField(const nurbs::Curve& path) : path_(path) {}
   struct Node {
     double t = 0, length = 0;
     Vec3 position, tangent, up;
@@ -68,9 +69,9 @@ class FrameField {
   const Node& node_before(double t) const;
   void hold(Frame& frame) const;
 
-  nurbs::Curve path_;
-  FrameGuide guide_;
-  std::vector<Node> nodes_;
+  nurbs::Jets path_;
+  FrameGuide guide_;         // of unit direction
+  std::vector<Node> nodes_;  // of a held frame without lengths the path's knots may be enough
   double spread_rate_ = 0;
   double shortest_chord_ = 0;  // file units; up to there a chord's direction is rounding
 };

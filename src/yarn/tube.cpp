@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <span>
 #include <tuple>
 
 #include "nurbs/basis.h"
@@ -20,12 +21,31 @@ namespace selvage::yarn {
 namespace {
 
 using std::numbers::pi;
-using Row = Eigen::RowVectorXd;
+using Row = std::vector<Vec3>;
 
-// Exact values at one place, and what a deviation from them along the path may cost: a point that slides
-// along the surface has not left it.
-struct Sample {
-  Row values;
+// Rows of equally many vectors, one after the other.
+class RowTable {
+ public:
+  RowTable() = default;
+  RowTable(std::size_t rows, std::size_t columns) { resize(rows, columns); }
+  // What it holds is lost.
+  void resize(std::size_t rows, std::size_t columns) {
+    columns_ = columns;
+    vectors_.resize(rows * columns);
+  }
+  [[nodiscard]] std::size_t rows() const { return columns_ == 0 ? 0 : vectors_.size() / columns_; }
+  [[nodiscard]] std::size_t columns() const { return columns_; }
+  [[nodiscard]] std::span<const Vec3> row(std::size_t i) const { return {&vectors_[i * columns_], columns_}; }
+  [[nodiscard]] std::span<Vec3> row(std::size_t i) { return {&vectors_[i * columns_], columns_}; }
+
+ private:
+  std::size_t columns_ = 0;
+  std::vector<Vec3> vectors_;
+};
+
+// What a deviation along the path may cost at one place: a point that slides along the surface has not left
+// it.
+struct Slide {
   Vec3 tangent;     // of the path
   double slip = 0;  // sine of the largest angle between the tangent and the surface, round the section
   double bend = 0;  // the largest curvature of the surface along the path
@@ -47,7 +67,11 @@ class Channels {
     nurbs::Curve outline{unit_.degree, unit_.knots, {}, {}};
     for (const Vec2& p : unit_.points) outline.points.emplace_back(p.x(), p.y(), 0.0);
     constexpr double between = 1.02;  // what lies between them reaches further by less than this
-    for (const double u : us) round_.push_back(between * nurbs::evaluate(outline, u).head<2>());
+    round_.resize(static_cast<Eigen::Index>(us.size()), 2);
+    for (Eigen::Index i = 0; i < round_.rows(); ++i)
+      round_.row(i) =
+          between * nurbs::evaluate(outline, us[static_cast<std::size_t>(i)]).head<2>().transpose();
+    extent_ = std::sqrt(round_.square().rowwise().sum().maxCoeff());
     is_round_ = std::holds_alternative<Circle>(spec.section) && sizes.parameters().size() == 1;
     const Eigen::Array2d scale =
         affine_ ? Eigen::Array2d(0.5 * first[0], 0.5 * first[1]) : Eigen::Array2d::Ones();
@@ -56,12 +80,11 @@ class Channels {
   }
 
   [[nodiscard]] const Outline& outline() const { return unit_; }
-  [[nodiscard]] Eigen::Index width() const {
-    return affine_ ? 9 : 3 * static_cast<Eigen::Index>(unit_.points.size() - 1);
-  }
+  // Vectors of a row of values.
+  [[nodiscard]] std::size_t width() const { return affine_ ? 3 : unit_.points.size() - 1; }
 
-  // Exact values at t; `slope`, where wanted, gets the derivatives.
-  [[nodiscard]] Sample sample(double t, Row* slope = nullptr) const {
+  // Exact values at t, as many as `width`; `slopes`, where wanted, get the derivatives.
+  Slide sample(double t, std::span<Vec3> values, std::span<Vec3> slopes = {}) const {
     const Frame frame = frames_.at(t);
     const SizeProfile::Jet size = sizes_.at(t);
     double angle = size.value[2];
@@ -70,63 +93,68 @@ class Channels {
     const Vec3 a = c * frame.across + s * frame.up, b = -s * frame.across + c * frame.up;
     // a' and b' of a frame that turns at `rate` against the rotation-minimizing one.
     const double rate = size.slope[2] + twist_ * frame.speed + frame.turn_dt;
-    const Vec3 a_dt = -frame.tangent_dt.dot(a) * frame.tangent + rate * b;
-    const Vec3 b_dt = -frame.tangent_dt.dot(b) * frame.tangent - rate * a;
-    const Vec3 c_dt = frame.speed * frame.tangent;
-    Sample sample;
-    sample.tangent = frame.tangent;
+    Slide slide;
+    slide.tangent = frame.tangent;
     const double w = 0.5 * size.value[0], h = 0.5 * size.value[1];
     const double reach = reach_ * std::max(size.value[0], size.value[1]);
     const double curvature = frame.tangent_dt.norm() / frame.speed;
     const double least_speed = frame.speed * std::max(1.0 - curvature * reach, 0.1);
-    sample.bend = curvature * frame.speed / least_speed;
+    slide.bend = curvature * frame.speed / least_speed;
     if (!is_round_)
-      sample.slip = std::min(
+      slide.slip = std::min(
           1.0, (reach * std::abs(rate) + 0.5 * std::hypot(size.slope[0], size.slope[1])) / least_speed);
-    Row& row = sample.values;
-    row.resize(width());
-    if (slope != nullptr) slope->resize(width());
+    const std::vector<Vec2> points = affine_ ? std::vector<Vec2>() : control_at(size.value);
     if (affine_) {
-      row << frame.position.transpose(), (w * a).transpose(), (h * b).transpose();
-      if (slope != nullptr)
-        *slope << c_dt.transpose(), (w * a_dt + 0.5 * size.slope[0] * a).transpose(),
-            (h * b_dt + 0.5 * size.slope[1] * b).transpose();
-      return sample;
+      values[0] = frame.position;
+      values[1] = w * a;
+      values[2] = h * b;
+    } else {
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = frame.position + points[i].x() * a + points[i].y() * b;
     }
-    const std::vector<Vec2> points = control_at(size.value);
-    std::vector<Vec2> points_dt;
-    if (slope != nullptr) points_dt = control_slope(size);
-    for (Eigen::Index i = 0; 3 * i < width(); ++i) {
-      const Vec2& p = points[static_cast<std::size_t>(i)];
-      row.segment<3>(3 * i) = (frame.position + p.x() * a + p.y() * b).transpose();
-      if (slope == nullptr) continue;
-      const Vec2& q = points_dt[static_cast<std::size_t>(i)];
-      slope->segment<3>(3 * i) = (c_dt + p.x() * a_dt + p.y() * b_dt + q.x() * a + q.y() * b).transpose();
+    if (slopes.empty()) return slide;
+    const Vec3 a_dt = -frame.tangent_dt.dot(a) * frame.tangent + rate * b;
+    const Vec3 b_dt = -frame.tangent_dt.dot(b) * frame.tangent - rate * a;
+    const Vec3 c_dt = frame.speed * frame.tangent;
+    if (affine_) {
+      slopes[0] = c_dt;
+      slopes[1] = w * a_dt + 0.5 * size.slope[0] * a;
+      slopes[2] = h * b_dt + 0.5 * size.slope[1] * b;
+      return slide;
     }
-    return sample;
+    const std::vector<Vec2> points_dt = control_slope(size);
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+      const Vec2 &p = points[i], &q = points_dt[i];
+      slopes[i] = c_dt + p.x() * a_dt + p.y() * b_dt + q.x() * a + q.y() * b;
+    }
+    return slide;
   }
 
   // The largest length that a row of deviations has anywhere round the section.
-  [[nodiscard]] double largest(const Row& deviation) const {
+  [[nodiscard]] double largest(std::span<const Vec3> deviation) const {
+    if (!affine_) return bound(deviation);
+    const Vec3 &c = deviation[0], &a = deviation[1], &b = deviation[2];
+    const auto x = round_.col(0), y = round_.col(1);
+    return std::sqrt(((c.x() + x * a.x() + y * b.x()).square() + (c.y() + x * a.y() + y * b.y()).square() +
+                      (c.z() + x * a.z() + y * b.z()).square())
+                         .maxCoeff());
+  }
+  // No less, and sooner known.
+  [[nodiscard]] double bound(std::span<const Vec3> deviation) const {
+    if (affine_)
+      return deviation[0].norm() +
+             extent_ * std::sqrt(deviation[1].squaredNorm() + deviation[2].squaredNorm());
+    // Round the section it is a convex blend of its values at the control points.
     double found = 0.0;
-    if (affine_) {
-      const Vec3 c = deviation.segment<3>(0), a = deviation.segment<3>(3), b = deviation.segment<3>(6);
-      for (const Vec2& p : round_) found = std::max(found, (c + p.x() * a + p.y() * b).squaredNorm());
-    } else {
-      // Round the section it is a convex blend of its values at the control points.
-      for (Eigen::Index i = 0; 3 * i < width(); ++i)
-        found = std::max(found, deviation.segment<3>(3 * i).squaredNorm());
-    }
+    for (const Vec3& at_point : deviation) found = std::max(found, at_point.squaredNorm());
     return std::sqrt(found);
   }
 
   // The control point of column i (the last column is the first) from a row of control values.
-  [[nodiscard]] Vec3 blend(const Eigen::Ref<const Row>& control, std::size_t i) const {
-    if (!affine_)
-      return control.segment<3>(3 * static_cast<Eigen::Index>(i % (unit_.points.size() - 1))).transpose();
+  [[nodiscard]] Vec3 blend(std::span<const Vec3> control, std::size_t i) const {
+    if (!affine_) return control[i % control.size()];
     const Vec2& p = unit_.points[i];
-    return (control.segment<3>(0) + p.x() * control.segment<3>(3) + p.y() * control.segment<3>(6))
-        .transpose();
+    return control[0] + p.x() * control[1] + p.y() * control[2];
   }
 
   // Do sections of every size on the way have the same knots?
@@ -167,7 +195,8 @@ class Channels {
   bool is_round_ = false;  // a turn of the section does not move its surface
   double reach_ = 0;       // of the section's control points from the path, by its larger size
   Outline unit_;
-  std::vector<Vec2> round_;  // points of it, two a span
+  Eigen::ArrayX2d round_;  // points of it, two a span
+  double extent_ = 0;      // their largest distance from the middle
 };
 
 // The cubic over a stretch of the path that is cut into equal spans: its ends have exact values and slopes,
@@ -179,37 +208,77 @@ class StretchSolver {
     std::vector<double> knots(4, 0.0);
     for (int i = 1; i < spans; ++i) knots.push_back(static_cast<double>(i) / spans);
     knots.insert(knots.end(), 4, 1.0);
-    basis_ = Eigen::MatrixXd::Zero(steps + 1, count);
+    Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(steps + 1, count);
     for (int i = 0; i <= steps; ++i) {
       const double s = static_cast<double>(i) / steps;
       const int span = nurbs::find_span(knots, 3, count, s);
       nurbs::BasisRow values{};
       nurbs::basis(knots, 3, span, s, values);
-      for (int j = 0; j <= 3; ++j) basis_(i, span - 3 + j) = values[static_cast<std::size_t>(j)];
+      Blend& blend = at_.emplace_back();
+      blend.first = static_cast<std::size_t>(span - 3);
+      std::copy_n(values.begin(), 4, blend.shares.begin());
+      for (int j = 0; j <= 3; ++j) basis(i, span - 3 + j) = values[static_cast<std::size_t>(j)];
     }
     const Eigen::Index inner = count - 4;
     if (inner == 0) return;
-    const auto free = basis_.middleCols(2, inner);
-    gain_ = (free.transpose() * free).ldlt().solve(free.transpose());
+    const auto free = basis.middleCols(2, inner);
+    const Eigen::MatrixXd of_samples = (free.transpose() * free).ldlt().solve(free.transpose());
+    Eigen::MatrixXd of_ends(inner, 4);
+    of_ends << of_samples * basis.leftCols(2), of_samples * basis.rightCols(2);
+    for (Eigen::Index k = 0; k < inner; ++k) {
+      Gain& gain = gains_.emplace_back();
+      for (int i = 0; i <= steps; ++i) gain.of_samples.push_back(of_samples(k, i));
+      for (Eigen::Index i = 0; i < 4; ++i) gain.of_ends[static_cast<std::size_t>(i)] = of_ends(k, i);
+    }
   }
 
   // `values`: one row a sample; slopes by the share of the stretch.
-  [[nodiscard]] Eigen::MatrixXd control(const Eigen::MatrixXd& values, const Row& first,
-                                        const Row& last) const {
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(basis_.cols(), values.cols());
-    const Eigen::Index end = rows.rows() - 1;
-    rows.row(0) = values.row(0);
-    rows.row(1) = values.row(0) + first / (3.0 * spans_);
-    rows.row(end - 1) = values.row(values.rows() - 1) - last / (3.0 * spans_);
-    rows.row(end) = values.row(values.rows() - 1);
-    if (end > 3) rows.middleRows(2, end - 3) = gain_ * (values - basis_ * rows);
-    return rows;
+  [[nodiscard]] RowTable control(const RowTable& values, std::span<const Vec3> first,
+                                 std::span<const Vec3> last) const {
+    RowTable control(static_cast<std::size_t>(spans_) + 3, values.columns());
+    const std::size_t end = control.rows() - 1;
+    for (std::size_t c = 0; c < values.columns(); ++c) {
+      const Vec3 &from = values.row(0)[c], &to = values.row(values.rows() - 1)[c];
+      const std::array<Vec3, 4> ends = {from, from + first[c] / (3.0 * spans_), to - last[c] / (3.0 * spans_),
+                                        to};
+      control.row(0)[c] = ends[0];
+      control.row(1)[c] = ends[1];
+      control.row(end - 1)[c] = ends[2];
+      control.row(end)[c] = ends[3];
+      for (std::size_t k = 2; k + 2 <= end; ++k) {
+        const Gain& gain = gains_[k - 2];
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t i = 0; i < values.rows(); ++i) sum += gain.of_samples[i] * values.row(i)[c];
+        for (std::size_t i = 0; i < ends.size(); ++i) sum -= gain.of_ends[i] * ends[i];
+        control.row(k)[c] = sum;
+      }
+    }
+    return control;
   }
-  [[nodiscard]] Eigen::MatrixXd at_samples(const Eigen::MatrixXd& control) const { return basis_ * control; }
+  // Of the fit from a sample's values.
+  void deviation(const RowTable& control, const RowTable& values, std::size_t sample,
+                 std::span<Vec3> out) const {
+    const auto& [first, shares] = at_[sample];
+    const auto a = control.row(first), b = control.row(first + 1), c = control.row(first + 2),
+               d = control.row(first + 3), value = values.row(sample);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = shares[0] * a[i] + shares[1] * b[i] + shares[2] * c[i] + shares[3] * d[i] - value[i];
+  }
 
  private:
+  // The four control rows that count at a sample.
+  struct Blend {
+    std::size_t first = 0;
+    std::array<double, 4> shares{};
+  };
+  // What an inner control row takes of the samples, and gives for the two rows at either end.
+  struct Gain {
+    std::vector<double> of_samples;
+    std::array<double, 4> of_ends{};
+  };
   int spans_;
-  Eigen::MatrixXd basis_, gain_;
+  std::vector<Blend> at_;
+  std::vector<Gain> gains_;
 };
 
 // Of one stretch: solving takes their number's third power.
@@ -253,7 +322,7 @@ class StretchFit {
         Stretch& stretch = stretches_[k];
         const Joint &from = joints_[k], &to = joints_[k + 1];
         joints.push_back(from);
-        const bool is_settled = !slides_ && stretch.control.size() > 0 && stretch.error <= tolerance;
+        const bool is_settled = !slides_ && stretch.control.rows() > 0 && stretch.error <= tolerance;
         if (!is_settled) fit(stretch, from, to);
         int parts = 1;
         while (parts == 1 && stretch.error > tolerance) {
@@ -298,21 +367,27 @@ class StretchFit {
     for (const Stretch& stretch : stretches_) largest = std::max(largest, stretch.error);
     return largest;
   }
-  [[nodiscard]] const Eigen::MatrixXd& control() const { return control_; }
+  [[nodiscard]] const RowTable& control() const { return control_; }
   [[nodiscard]] const std::vector<double>& knots() const { return knots_; }
 
  private:
   struct Joint {
     double t = 0;
-    Sample exact;
+    Row exact;
+    Slide slide;
     Row before, after;  // the exact slopes on both sides
     Row slope;          // the one that the fit has
   };
+  // Of the exact surface, at equal steps, ends included.
+  struct Samples {
+    RowTable values;
+    std::vector<Slide> slides;
+  };
   struct Stretch {
     int spans = 1;
-    std::vector<Sample> samples;          // at equal steps, ends included
+    Samples samples;
     double slide_from = 1, slide_to = 1;  // slopes at the ends by the exact ones, as the samples know them
-    Eigen::MatrixXd control;              // spans + 3 rows
+    RowTable control;                     // spans + 3 rows
     double error = 0;
   };
 
@@ -320,15 +395,21 @@ class StretchFit {
   [[nodiscard]] Joint joint_at(double t, double length) const {
     Joint joint;
     joint.t = t;
-    joint.exact = channels_.sample(t);
+    joint.before = joint.after = joint.exact = Row(channels_.width());
     // Beside a knot of the path, which may have been rounded.
     const double beside = 1e-6 * length;
-    (void)channels_.sample(std::max(0.0, t - beside), &joint.before);
-    (void)channels_.sample(std::min(1.0, t + beside), &joint.after);
+    channels_.sample(std::max(0.0, t - beside), joint.exact, joint.before);
+    channels_.sample(std::min(1.0, t + beside), joint.exact, joint.after);
+    joint.slide = channels_.sample(t, joint.exact);
     // Only jumps of curvature count.
+    double jump = 0.0, whole = 0.0;
+    for (std::size_t i = 0; i < joint.after.size(); ++i) {
+      jump += (joint.after[i] - joint.before[i]).squaredNorm();
+      whole += joint.after[i].squaredNorm();
+    }
     if (t >= 1.0)
       joint.after = joint.before;
-    else if ((joint.after - joint.before).norm() <= 1e-5 * joint.after.norm())
+    else if (std::sqrt(jump) <= 1e-5 * std::sqrt(whole))
       joint.before = joint.after;
     joint.slope = joint.after;
     return joint;
@@ -337,20 +418,23 @@ class StretchFit {
   // By how much longer slopes of the best cubic are than the exact ones of a circular arc (a straight: 0, it
   // takes any): 4/3 tan(angle/4) of the radius for its control points.
   [[nodiscard]] double wanted_slide(const Joint& from, const Joint& to, bool at_end) const {
-    const Vec3 chord = to.exact.values.segment<3>(0) - from.exact.values.segment<3>(0);
-    const double sine = from.exact.tangent.cross(to.exact.tangent).norm();
-    const double angle = std::atan2(sine, from.exact.tangent.dot(to.exact.tangent));
+    const Vec3 chord = to.exact[0] - from.exact[0];
+    const double sine = from.slide.tangent.cross(to.slide.tangent).norm();
+    const double angle = std::atan2(sine, from.slide.tangent.dot(to.slide.tangent));
     if (angle < 1e-6) return 0.0;
     const double radius = chord.norm() / (2.0 * std::sin(angle / 2.0));
     const Row& slope = at_end ? to.before : from.after;
-    return 4.0 * radius * std::tan(angle / 4.0) / (slope.segment<3>(0).norm() * (to.t - from.t));
+    return 4.0 * radius * std::tan(angle / 4.0) / (slope[0].norm() * (to.t - from.t));
   }
 
   void settle_slopes() {
     const std::size_t last = joints_.size() - 1;
     for (std::size_t k = 0; k <= last; ++k) {
       Joint& joint = joints_[k];
-      joint.slope = 0.5 * (joint.before + joint.after);
+      const auto blend = [&](double a, const Row& slope_a, double b, const Row& slope_b) {
+        for (std::size_t i = 0; i < joint.slope.size(); ++i) joint.slope[i] = a * slope_a[i] + b * slope_b[i];
+      };
+      blend(0.5, joint.before, 0.5, joint.after);
       if (!slides_) continue;
       const std::size_t before = k > 0 ? k - 1 : last - 1, after = k < last ? k : 0;
       const bool has_before = k > 0 || closed_, has_after = k < last || closed_;
@@ -358,12 +442,8 @@ class StretchFit {
                    b = has_after ? wanted_slide(joints_[after], joints_[after + 1], false) : 0.0;
       const Row &slope_a = has_before ? joints_[before + 1].before : joint.before,
                 &slope_b = has_after ? joints_[after].after : joint.after;
-      if (a > 0.0 && b > 0.0)
-        joint.slope = 0.5 * (a * slope_a + b * slope_b);
-      else if (a > 0.0)
-        joint.slope = a * slope_a;
-      else if (b > 0.0)
-        joint.slope = b * slope_b;
+      const double share = a > 0.0 && b > 0.0 ? 0.5 : 1.0;
+      if (a > 0.0 || b > 0.0) blend(share * a, slope_a, share * b, slope_b);
     }
   }
 
@@ -374,20 +454,26 @@ class StretchFit {
   // Samples of the exact surface, in as many equal steps; those of fewer steps are used again. Where sections
   // slide, they are taken where a cubic of the path's slopes has them.
   void sample(Stretch& stretch, const Joint& from, const Joint& to, int steps) const {
-    const double first = from.slope.segment<3>(0).norm() / from.after.segment<3>(0).norm(),
-                 last = to.slope.segment<3>(0).norm() / to.before.segment<3>(0).norm();
-    if (first != stretch.slide_from || last != stretch.slide_to) stretch.samples.clear();
+    const double first = from.slope[0].norm() / from.after[0].norm(),
+                 last = to.slope[0].norm() / to.before[0].norm();
+    if (first != stretch.slide_from || last != stretch.slide_to) stretch.samples = {};
     stretch.slide_from = first;
     stretch.slide_to = last;
-    const std::size_t known = stretch.samples.empty() ? 0 : stretch.samples.size() - 1;
+    const Samples& known = stretch.samples;
+    const std::size_t known_count = known.slides.empty() ? 0 : known.slides.size() - 1;
     const auto count = static_cast<std::size_t>(steps);
-    if (known == count) return;
-    std::vector<Sample> finer(count + 1);
-    finer.front() = from.exact;
-    finer.back() = to.exact;
+    if (known_count == count) return;
+    Samples finer{RowTable(count + 1, channels_.width()), std::vector<Slide>(count + 1)};
+    const auto take = [&](std::size_t i, std::span<const Vec3> values, const Slide& slide) {
+      std::copy(values.begin(), values.end(), finer.values.row(i).begin());
+      finer.slides[i] = slide;
+    };
+    take(0, from.exact, from.slide);
+    take(count, to.exact, to.slide);
     for (std::size_t i = 1; i < count; ++i) {
-      if (known > 0 && i * known % count == 0) {
-        finer[i] = std::move(stretch.samples[i * known / count]);
+      if (known_count > 0 && i * known_count % count == 0) {
+        const std::size_t same = i * known_count / count;
+        take(i, known.values.row(same), known.slides[same]);
         continue;
       }
       double share = static_cast<double>(i) / static_cast<double>(count);
@@ -395,7 +481,7 @@ class StretchFit {
         const double rest = 1.0 - share;
         share = share * rest * (rest * first - share * last) + share * share * (3.0 - 2.0 * share);
       }
-      finer[i] = channels_.sample(from.t + (to.t - from.t) * share);
+      finer.slides[i] = channels_.sample(from.t + (to.t - from.t) * share, finer.values.row(i));
     }
     stretch.samples = std::move(finer);
   }
@@ -406,29 +492,48 @@ class StretchFit {
     int steps = 16;
     while (steps < 8 * stretch.spans) steps *= 2;
     sample(stretch, from, to, steps);
-    Eigen::MatrixXd values(steps + 1, channels_.width());
-    for (Eigen::Index i = 0; i <= steps; ++i)
-      values.row(i) = stretch.samples[static_cast<std::size_t>(i)].values;
+    const RowTable& values = stretch.samples.values;
     const StretchSolver& by = solver(stretch.spans, steps);
     const double length = to.t - from.t;
-    stretch.control = by.control(values, length * from.slope, length * to.slope);
-    Eigen::MatrixXd deviations = by.at_samples(stretch.control) - values;
-    double sampled = 0.0, hidden = 0.0;
-    for (Eigen::Index i = 0; i <= steps; ++i) {
-      const Sample& here = stretch.samples[static_cast<std::size_t>(i)];
-      Row along(deviations.cols());
-      for (Eigen::Index c = 0; c < along.size(); c += 3)
-        along.segment<3>(c) = deviations.row(i).segment<3>(c).dot(here.tangent) * here.tangent.transpose();
-      const double slid = channels_.largest(along);
-      deviations.row(i) -= along;
-      sampled = std::max(
-          sampled, channels_.largest(deviations.row(i)) + here.slip * slid + 0.5 * here.bend * slid * slid);
+    Row first = from.slope, last = to.slope;
+    for (Row* slope : {&first, &last})
+      for (Vec3& v : *slope) v *= length;
+    stretch.control = by.control(values, first, last);
+    for (RowTable* table : {&across_, &along_, &bent_}) table->resize(values.rows(), values.columns());
+    for (std::size_t i = 0; i < values.rows(); ++i) {
+      const std::span<Vec3> across = across_.row(i), along = along_.row(i);
+      by.deviation(stretch.control, values, i, across);
+      const Vec3& tangent = stretch.samples.slides[i].tangent;
+      for (std::size_t c = 0; c < across.size(); ++c) {
+        along[c] = across[c].dot(tangent) * tangent;
+        across[c] -= along[c];
+      }
+      if (i < 2) continue;
+      const std::span<Vec3> before = across_.row(i - 2), middle = across_.row(i - 1), bent = bent_.row(i - 1);
+      for (std::size_t c = 0; c < bent.size(); ++c) bent[c] = before[c] - 2.0 * middle[c] + across[c];
     }
-    for (Eigen::Index i = 1; i < steps; ++i)
-      hidden = std::max(
-          hidden,
-          channels_.largest(deviations.row(i - 1) - 2.0 * deviations.row(i) + deviations.row(i + 1)) / 4.0);
-    stretch.error = sampled + hidden;
+    const auto deviation = [&](std::size_t i, const auto& length_of) {
+      const Slide& slide = stretch.samples.slides[i];
+      const double slid = length_of(along_.row(i));
+      return length_of(across_.row(i)) + slide.slip * slid + 0.5 * slide.bend * slid * slid;
+    };
+    const auto bend = [&](std::size_t i, const auto& length_of) { return length_of(bent_.row(i)) / 4.0; };
+    stretch.error = largest(0, values.rows(), deviation) + largest(1, values.rows() - 1, bend);
+  }
+
+  // Of what `measure(i, length_of)` says of the rows from `first` to before `last`: those that cannot have
+  // more than the most promising one are not looked at closely.
+  template <class Measure>
+  [[nodiscard]] double largest(std::size_t first, std::size_t last, const Measure& measure) {
+    const auto bound = [&](std::span<const Vec3> row) { return channels_.bound(row); };
+    const auto exact = [&](std::span<const Vec3> row) { return channels_.largest(row); };
+    bounds_.clear();
+    for (std::size_t i = first; i < last; ++i) bounds_.push_back(measure(i, bound));
+    const auto best = std::max_element(bounds_.begin(), bounds_.end()) - bounds_.begin();
+    double found = measure(first + static_cast<std::size_t>(best), exact);
+    for (std::size_t i = first; i < last; ++i)
+      if (bounds_[i - first] > found) found = std::max(found, measure(i, exact));
+    return found;
   }
 
   // Neighbours of one span each that are far better than they have to be become one.
@@ -455,24 +560,26 @@ class StretchFit {
   }
 
   void assemble() {
-    Eigen::Index rows = 2;
-    for (const Stretch& stretch : stretches_) rows += stretch.spans + 1;
-    control_.resize(rows, channels_.width());
+    std::size_t rows = 2;
+    for (const Stretch& stretch : stretches_) rows += static_cast<std::size_t>(stretch.spans) + 1;
+    control_ = RowTable(rows, channels_.width());
     knots_.assign(4, joints_.front().t);
-    control_.row(0) = stretches_.front().control.row(0);
-    Eigen::Index next = 1;
+    const auto set = [&](std::size_t row, std::span<const Vec3> values) {
+      std::copy(values.begin(), values.end(), control_.row(row).begin());
+    };
+    set(0, stretches_.front().control.row(0));
+    std::size_t next = 1;
     for (std::size_t k = 0; k < stretches_.size(); ++k) {
       const Stretch& stretch = stretches_[k];
       const double from = joints_[k].t, to = joints_[k + 1].t;
-      control_.middleRows(next, stretch.spans + 1) = stretch.control.middleRows(1, stretch.spans + 1);
-      next += stretch.spans + 1;
+      for (std::size_t i = 1; i + 1 < stretch.control.rows(); ++i) set(next++, stretch.control.row(i));
       for (int i = 1; i < stretch.spans; ++i)
         knots_.push_back(grid_.rounded(from + (to - from) * i / stretch.spans));
       knots_.insert(knots_.end(), 2, to);
     }
     knots_.insert(knots_.end(), 2, joints_.back().t);
-    const Eigen::MatrixXd& last = stretches_.back().control;
-    control_.row(next) = closed_ ? Row(control_.row(0)) : Row(last.row(last.rows() - 1));
+    const RowTable& last = stretches_.back().control;
+    set(next, closed_ ? control_.row(0) : last.row(last.rows() - 1));
   }
 
   const Channels& channels_;
@@ -482,7 +589,10 @@ class StretchFit {
   std::vector<Joint> joints_;
   std::map<std::pair<int, int>, StretchSolver> solvers_;
   std::vector<double> knots_;
-  Eigen::MatrixXd control_;
+  RowTable control_;
+  // What fit() works with: deviations across and along the path, second differences, bounds of them.
+  RowTable across_, along_, bent_;
+  std::vector<double> bounds_;
 };
 
 // Of so many pieces to a quarter.
@@ -646,9 +756,9 @@ Status swept(Body& body, const CentreLine& path, const TubeSpec& spec) {
   const auto is_oblique = [&](double t) {
     return !path.closed && (frames->at(t).tangent.cwiseAbs().array() > 1e-12).count() > 1;
   };
-  const Eigen::Index last = fit.control().rows() - 1;
+  const std::size_t last = fit.control().rows() - 1;
   const bool keeps_first = is_oblique(0.0), keeps_last = is_oblique(1.0);
-  for (Eigen::Index j = 0; j <= last; ++j)
+  for (std::size_t j = 0; j <= last; ++j)
     for (std::size_t i = 0; i < columns; ++i) {
       const Vec3 point = channels.blend(fit.control().row(j), i);
       const bool keeps = (j == 0 && keeps_first) || (j == last && keeps_last);

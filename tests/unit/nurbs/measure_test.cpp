@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "nurbs/interpolate.h"
+
 namespace selvage::nurbs {
 namespace {
 
@@ -66,6 +68,58 @@ TEST(ArcLength, NoiseAndInfinitiesCostABoundedEffort) {
 TEST(ArcLength, SmoothIntegralsAreExact) {
   EXPECT_NEAR(adaptive_integral([](double t) { return std::exp(t); }, 0, 1, 0), std::exp(1.0) - 1, 1e-14);
   EXPECT_NEAR(adaptive_integral([](double t) { return std::sqrt(t); }, 0, 1, 0), 2.0 / 3, 1e-12);
+}
+
+Surface wavy(int degree_u, int degree_v, bool is_rational) {
+  Surface s;
+  s.degree_u = degree_u;
+  s.degree_v = degree_v;
+  s.count_u = degree_u + 4;
+  s.count_v = degree_v + 5;
+  s.knots_u = clamped_integer_knots(s.count_u, degree_u);
+  s.knots_v = clamped_integer_knots(s.count_v, degree_v);
+  for (int j = 0; j < s.count_v; ++j)
+    for (int i = 0; i < s.count_u; ++i) {
+      s.points.emplace_back(i + 0.3 * std::sin(5.0 * j), j + 0.2 * std::cos(3.0 * i),
+                            std::sin(1.0 + 7.0 * i * j));
+      if (is_rational) s.weights.push_back(1.0 + 0.3 * std::sin(i + 2.0 * j));
+    }
+  return s;
+}
+
+// The same integrals from two places in each direction of many cells, which no knot divides: of fourth order.
+Moments summed(const Surface& s, const Vec3& origin) {
+  constexpr int cells = 80;
+  Moments sum;
+  const double side_u = s.last_u() / cells, side_v = s.last_v() / cells;
+  const auto place = [](int k) { return k / 2 + 0.5 + (k % 2 == 0 ? -0.5 : 0.5) / std::sqrt(3.0); };
+  for (int j = 0; j < 2 * cells; ++j)
+    for (int i = 0; i < 2 * cells; ++i) {
+      const SurfaceJet jet = evaluate_jet(s, side_u * place(i), side_v * place(j));
+      const Vec3 position = jet.position - origin, normal = 0.25 * side_u * side_v * jet.du.cross(jet.dv);
+      const double flux = position.dot(normal);
+      sum += {normal.norm(), normal, flux / 3, flux / 4 * position};
+    }
+  return sum;
+}
+
+TEST(MomentsOfAFace, AreThoseOfADenseSum) {
+  const Vec3 origin(0.5, -2, 1);
+  for (const bool is_rational : {false, true})
+    for (const int degree_u : {2, 3, 4})
+      for (const int degree_v : {1, 2, 3, 5}) {
+        const Surface s = wavy(degree_u, degree_v, is_rational);
+        const Moments ours = moments(s, origin), dense = summed(s, origin);
+        const auto what = [&] {
+          return testing::Message() << degree_u << " x " << degree_v << (is_rational ? " rational" : "");
+        };
+        const double near = 1e-5 * dense.area;
+        EXPECT_NEAR(ours.area, dense.area, near) << what();
+        EXPECT_NEAR((ours.area_vector - dense.area_vector).norm(), 0, near) << what();
+        EXPECT_NEAR(ours.volume, dense.volume, 5 * near) << what();
+        EXPECT_NEAR((ours.first - dense.first).norm(), 0, 20 * near) << what();
+        EXPECT_NEAR(volume_flux(s, origin), ours.volume, 1e-9 * dense.area) << what();
+      }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "nurbs/basis.h"
+#include "nurbs/jets.h"
 #include "nurbs/restrict.h"
 
 namespace selvage::nurbs {
@@ -95,6 +96,21 @@ TEST(CurveTest, DerivativesAgreeWithFiniteDifferences) {
       EXPECT_LT((jet.d2 - (after - 2 * here + before) / (h * h)).norm(), 1e-4 * (1 + jet.d2.norm()));
     }
   }
+}
+
+TEST(CurveTest, JetsOfManyPlacesAreThoseOfOne) {
+  for (bool rational : {false, true})
+    for (int degree = 1; degree <= 5; ++degree) {
+      const Curve curve = wild_curve(degree, rational);
+      const Jets jets(curve);
+      for (double t = 0.0; t <= 4.3; t += 0.05) {
+        const CurveJet jet = jets.at(t), one = evaluate_jet(curve, t);
+        EXPECT_LT((jet.position - one.position).norm(), 1e-13) << degree << " at " << t;
+        EXPECT_LT((jet.d1 - one.d1).norm(), 1e-12 * (1 + one.d1.norm())) << degree << " at " << t;
+        EXPECT_LT((jet.d2 - one.d2).norm(), 1e-11 * (1 + one.d2.norm())) << degree << " at " << t;
+      }
+      for (const double end : {0.25, 4.0}) EXPECT_EQ(jets.at(end).position, evaluate(curve, end));
+    }
 }
 
 TEST(CurveTest, KnotInsertionLeavesTheCurve) {

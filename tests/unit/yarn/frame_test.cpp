@@ -147,5 +147,26 @@ TEST(FrameTest, AGuideAlongThePathIsRefused) {
   EXPECT_FALSE(FrameField::make(curve, FrameGuide::with_across(along), false).ok());
 }
 
+// A straight way up with a short bow in one span, steepest in its middle, between the places that are looked
+// at first: refused or not as the steepest place says.
+TEST(FrameTest, AGuideThatIsIdleBetweenTheKnotsIsRefused) {
+  for (const bool needs_lengths : {false, true})
+    for (const double rise : {1.0, 10.0, 14.0, 14.2, 14.35, 14.6, 30.0}) {
+      nurbs::Curve curve;
+      curve.degree = 3;
+      curve.knots = {0, 0, 0, 0, 1, 1, 1, 1};
+      curve.points = {{0, 0, 0}, {1, 0, 0}, {1.5, 0, rise}, {2.5, 0, rise}};
+      double steepest = 0;  // degrees
+      for (int i = 0; i <= 4000; ++i) {
+        const Vec3 way = nurbs::evaluate_jet(curve, i / 4000.0).d1;
+        steepest = std::max(steepest, std::atan2(way.z(), way.x()) * 180 / pi);
+      }
+      const bool is_held =
+          FrameField::make(curve, FrameGuide::with_up(Vec3::UnitZ()), false, needs_lengths).ok();
+      if (std::abs(steepest - 84) < 0.01) continue;
+      EXPECT_EQ(is_held, steepest < 84) << rise << ", " << steepest;
+    }
+}
+
 }  // namespace
 }  // namespace selvage::yarn
