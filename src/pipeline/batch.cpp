@@ -241,7 +241,7 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
 
 // Hidden files of workers that were killed, in this run or an earlier one.
 void Batch::remove_leftovers() const {
-  std::vector<std::filesystem::path> targets;
+  std::vector<std::string> targets;
   for (const std::string* place : {&options_.report, &options_.junit})
     if (!place->empty() && *place != "-") targets.emplace_back(*place);
   for (const std::vector<PlannedOutput>& outputs : outputs_)
