@@ -42,20 +42,23 @@ void solve_band(const Eigen::MatrixXd& band, Eigen::Ref<Eigen::VectorXd> x) {
 
 }  // namespace
 
-DisplacementSystem::DisplacementSystem(std::span<const Strand> strands, std::vector<std::size_t> lattices,
+DisplacementSystem::DisplacementSystem(std::span<const Strand> strands, Lattices lattices,
                                        const Stiffness& stiffness, int modes)
     : strands_(strands),
       stiffness_(stiffness),
       modes_(modes),
-      lattices_(std::move(lattices)),
+      lattices_(std::move(lattices.of)),
+      weights_(std::move(lattices.weights)),
       stations_(strands.size()),
       held_(strands.size()) {
+  weights_.resize(strands.size(), 1.0);
   for (std::size_t y = 0; y < strands.size(); ++y) {
     if (lattices_[y] == members_.size()) {
       members_.emplace_back();
       offsets_.push_back(size_);
       size_ += static_cast<Eigen::Index>(strands[y].nodes()) * modes;
     }
+    if (weights_[y] == 0.0) continue;
     members_[lattices_[y]].push_back(y);
     const int count =
         2 * std::max(2, static_cast<int>(std::lround(strands[y].length() / strands[y].spacing())));
@@ -74,7 +77,7 @@ DisplacementSystem::DisplacementSystem(std::span<const Strand> strands, std::vec
       for (double& t : turn) t *= strands[y].spacing();
       const auto hold_along = [&](const std::array<double, 4>& factors, const Vec3& direction, double stiff) {
         Hold held;
-        held.stiffness = stiff;
+        held.stiffness = weights_[y] * stiff;
         for (int k = 0; k < 4; ++k)
           for (int c = 0; c < 3; ++c)
             held.parts.emplace_back(column(y, end.first + k) + c, factors[at(k)] * direction[c]);
@@ -106,7 +109,7 @@ void DisplacementSystem::hold(std::size_t strand, double v) {
   nurbs::basis(s.knots_v, s.degree_v, span, v, shares);
   for (int m = 0; m < modes_; ++m) {
     Hold held;
-    held.stiffness = hold_stiffness;
+    held.stiffness = weights_[strand] * hold_stiffness;
     for (int r = 0; r <= s.degree_v; ++r) {
       const Stencil& stencil = one.row_stencil(span - s.degree_v + r);
       for (int k = 0; k < 4; ++k)
@@ -149,7 +152,7 @@ void DisplacementSystem::apply_energy(const Eigen::VectorXd& x, Eigen::VectorXd&
   for_each_strand(threads, [&](std::size_t s) {
     const double h = strands_[s].spacing();
     for (const Station& station : stations_[s]) {
-      const double share = station.length / h;
+      const double share = weights_[s] * station.length / h;
       for (int m = 0; m < modes_; ++m) {
         double value = 0.0, bend = 0.0;
         for (int k = 0; k < 4; ++k) {
@@ -188,7 +191,7 @@ void DisplacementSystem::gradient(Eigen::VectorXd& g) const {
   for (std::size_t s = 0; s < strands_.size(); ++s) {
     const double h = strands_[s].spacing();
     for (const Station& station : stations_[s]) {
-      const double pull = station.strain * (station.length / h) * stiffness_.stretch * h * h;
+      const double pull = weights_[s] * station.strain * (station.length / h) * stiffness_.stretch * h * h;
       for (int k = 0; k < 4; ++k)
         g.segment<3>(column(s, station.stencil.first + k)) +=
             pull * station.stencil.slope[at(k)] * station.along;
@@ -223,11 +226,11 @@ void DisplacementSystem::factor(std::span<const Demand> demands, const std::vect
   bands_.resize(members_.size());
   for (std::size_t lattice = 0; lattice < members_.size(); ++lattice)
     bands_[lattice] = Band::Zero(width, length(members_[lattice].front()));
-  std::vector<std::vector<const Demand::Side*>> sides(strands_.size());
+  std::vector<std::vector<const Demand::Side*>> sides(members_.size());
   for (std::size_t k = 0; k < demands.size(); ++k) {
     if (!active[k]) continue;
     for (const Demand::Side* side : {&demands[k].plus, &demands[k].minus})
-      sides[side->strand].push_back(side);
+      sides[lattices_[side->strand]].push_back(side);
   }
   for_each_strand(threads, [&](std::size_t s) {
     const Strand& strand = strands_[s];
@@ -240,7 +243,7 @@ void DisplacementSystem::factor(std::span<const Demand> demands, const std::vect
       if (i >= j && i - j < width) band(i - j, j) += value;
     };
     for (const Station& station : stations_[s]) {
-      const double share = station.length / h;
+      const double share = weights_[s] * station.length / h;
       for (int k = 0; k < 4; ++k)
         for (int l = 0; l < 4; ++l) {
           const int node_k = station.stencil.first + k, node_l = station.stencil.first + l;
@@ -268,12 +271,15 @@ void DisplacementSystem::factor(std::span<const Demand> demands, const std::vect
       for (const auto& [i, share] : held.parts)
         band(0, i - offset(s)) += held.stiffness * std::abs(share) * sum;
     }
-    for (const Demand::Side* side : sides[s]) {
-      const Eigen::Index first = offset(s);
+  });
+  for_each_index(bands_.size(), threads, [&](std::size_t lattice) {
+    Band& band = bands_[lattice];
+    const Eigen::Index first = offsets_[lattice];
+    for (const Demand::Side* side : sides[lattice]) {
       for (int l = 0; l < 4; ++l) {
-        const Eigen::Index left = column(s, side->first + l) - first;
+        const Eigen::Index left = column(side->strand, side->first + l) - first;
         for (int k = 0; k < 4; ++k) {
-          const Eigen::Index below = column(s, side->first + k) - first - left;
+          const Eigen::Index below = column(side->strand, side->first + k) - first - left;
           if (below < 0 || below + modes_ > width) continue;
           for (int c = 0; c < modes_; ++c) {
             const double factor = stiffness_.contact * side->form[l * modes_ + c];
@@ -284,8 +290,8 @@ void DisplacementSystem::factor(std::span<const Demand> demands, const std::vect
         }
       }
     }
+    factor_band(band);
   });
-  for_each_index(bands_.size(), threads, [&](std::size_t lattice) { factor_band(bands_[lattice]); });
 }
 
 void DisplacementSystem::precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z, int threads) const {

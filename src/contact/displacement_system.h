@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contact/strand.h"
+#include "contact/ties.h"
 
 namespace selvage::contact {
 
@@ -37,9 +38,8 @@ struct Demand {
 class DisplacementSystem {
  public:
   // Every step starts from the shape that it finds: only lengths are remembered from the beginning.
-  // `lattices`: of each strand, as tie_strands() numbers them.
-  DisplacementSystem(std::span<const Strand> strands, std::vector<std::size_t> lattices,
-                     const Stiffness& stiffness, int modes);
+  DisplacementSystem(std::span<const Strand> strands, Lattices lattices, const Stiffness& stiffness,
+                     int modes);
 
   [[nodiscard]] Eigen::Index size() const { return size_; }
   [[nodiscard]] Eigen::Index offset(std::size_t strand) const { return offsets_[lattices_[strand]]; }
@@ -80,6 +80,7 @@ class DisplacementSystem {
   Stiffness stiffness_;
   int modes_;
   std::vector<std::size_t> lattices_;
+  std::vector<double> weights_;                    // of each strand's energy
   std::vector<std::vector<std::size_t>> members_;  // strands of each lattice
   std::vector<Eigen::Index> offsets_;              // of each lattice
   Eigen::Index size_ = 0;

@@ -33,7 +33,11 @@ void fill(Facing& facing, const SurfacePoint& p, const SurfacePoint& q) {
 
 }  // namespace
 
-NearSkins::NearSkins(std::span<const Strand> strands) : strands_(strands), skins_(strands.size()), tree_({}) {
+NearSkins::NearSkins(std::span<const Strand> strands,
+                     const std::function<bool(std::size_t, std::size_t)>& wanted)
+    : strands_(strands), skins_(strands.size()), tree_({}) {
+  for (std::size_t a = 0; a < strands.size(); ++a)
+    for (std::size_t b = 0; b < strands.size(); ++b) wanted_.push_back(wanted(a, b) ? 1 : 0);
   for (std::size_t y = 0; y < strands.size(); ++y) {
     const Strand& strand = strands[y];
     const nurbs::Surface& s = strand.body().surface;
@@ -92,6 +96,10 @@ bool NearSkins::are_neighbours(const Leaf& a, const Leaf& b) const {
   double apart = std::abs(skin.arcs[a.row] - skin.arcs[b.row]);
   if (strand.is_cyclic()) apart = std::min(apart, strand.length() - apart);
   return apart < 1.5 * strand.width();
+}
+
+bool NearSkins::is_wanted(const Leaf& a, const Leaf& b) const {
+  return wanted_[a.strand * strands_.size() + b.strand] != 0;
 }
 
 void NearSkins::cast(const Leaf& from, const Leaf& onto, const Box3& box, double reach,
@@ -159,7 +167,8 @@ void NearSkins::look_from(std::uint32_t leaf, double reach, std::vector<Facing>&
   box.min().array() -= margin;
   box.max().array() += margin;
   tree_.meeting(box, [&](std::uint32_t other) {
-    if (!are_neighbours(from, leaves_[other])) cast(from, leaves_[other], tree_.box(other), reach, found);
+    if (!are_neighbours(from, leaves_[other]) && is_wanted(from, leaves_[other]))
+      cast(from, leaves_[other], tree_.box(other), reach, found);
   });
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -25,8 +26,9 @@ struct Facing {
 
 class NearSkins {
  public:
-  // `strands` outlives this. The tree's structure is made from their present shape.
-  explicit NearSkins(std::span<const Strand> strands);
+  // `strands` outlives this. The tree's structure is made from their present shape. `wanted`: whether
+  // these two strands (or this one with itself) are looked at.
+  NearSkins(std::span<const Strand> strands, const std::function<bool(std::size_t, std::size_t)>& wanted);
 
   // Samples the present surfaces anew and gives all facings with a gap up to `reach` (of each strand: by its
   // index), as seen from the samples. Overlaps are seen down to a good third of the thickness.
@@ -53,8 +55,10 @@ class NearSkins {
             std::vector<Facing>& found) const;
   [[nodiscard]] std::vector<Vec2> hits(const Leaf& leaf, const Ray& ray) const;
   [[nodiscard]] bool are_neighbours(const Leaf& a, const Leaf& b) const;
+  [[nodiscard]] bool is_wanted(const Leaf& a, const Leaf& b) const;
 
   std::span<const Strand> strands_;
+  std::vector<char> wanted_;  // strands x strands
   std::vector<Skin> skins_;
   std::vector<Leaf> leaves_;
   BoxTree tree_;  // of the leaves

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 
+#include "contact/alike.h"
 #include "contact/contact.h"
 #include "contact/displacement_system.h"
 #include "contact/near_skins.h"
@@ -104,8 +105,13 @@ class Relaxer {
       : options_(options),
         originals_(std::move(bodies)),
         modes_(options.stiff_section ? translation_modes : all_modes) {
-    for (const yarn::Body& body : originals_) extents_.push_back(extents_of(body.surface));
-    for (const yarn::Body& body : originals_) is_affine_.push_back(has_flat_sides(body.surface) ? 1 : 0);
+    const std::vector<std::size_t> first = yarn::first_of_shape(originals_);
+    for (std::size_t y = 0; y < originals_.size(); ++y) {
+      const nurbs::Surface& surface = originals_[y].surface;
+      const bool is_new = first[y] == y;
+      extents_.push_back(is_new ? extents_of(surface) : extents_[first[y]]);
+      is_affine_.push_back(is_new ? (has_flat_sides(surface) ? 1 : 0) : is_affine_[first[y]]);
+    }
     for (const Extents& extents : extents_) thinnest_ = std::min(thinnest_, extents.least);
   }
 
@@ -115,6 +121,8 @@ class Relaxer {
     out_.before = state_of(*contacts);
     if (is_hopeless(*contacts)) return give_up(*contacts);
     if (!options_.make_contact && !has_narrow_gap(*contacts)) return unchanged();
+    if (Status alike = move_alike(); !alike) return alike.error();
+    if (out_.solved) return std::move(out_);
     Stiffness stiffness;
     // A bound that was passed is held more stiffly in another run.
     for (int attempt = 0;; ++attempt) {
@@ -147,6 +155,9 @@ class Relaxer {
     return default_gap * most;
   }
 
+  // Surfaces that are so near are kept apart.
+  [[nodiscard]] double reach() const { return reach_share * thinnest_ + std::max(0.0, largest_wanted()); }
+
   [[nodiscard]] Result<Contacts> survey(std::span<const yarn::Body> bodies) const {
     ContactOptions options;
     options.reach = std::max(0.0, largest_wanted());
@@ -174,6 +185,11 @@ class Relaxer {
       return true;
     }
     return false;
+  }
+
+  // Nearer than the exact search may find two yarns in the end.
+  [[nodiscard]] bool is_too_near(const Contact& contact) const {
+    return contact.gap < (1.0 - 1e-3) * wanted(contact.a, contact.b);
   }
 
   [[nodiscard]] bool has_narrow_gap(const Contacts& contacts) const {
@@ -211,6 +227,61 @@ class Relaxer {
     for (const auto& [pair, jam] : worst) out_.jams.push_back(jam);
     std::stable_sort(out_.jams.begin(), out_.jams.end(),
                      [](const Jam& x, const Jam& y) { return x.gap < y.gap; });
+  }
+
+  // Of each yarn what else than shape and neighbours says how it moves: its places that do not.
+  [[nodiscard]] std::vector<std::size_t> marks() const {
+    std::vector<std::vector<double>> held(originals_.size());
+    for (const FixedPoint& point : options_.fixed) held[point.yarn].push_back(point.parameter);
+    std::map<std::vector<double>, std::size_t> numbers;
+    std::vector<std::size_t> marks;
+    for (std::vector<double>& places : held)
+      marks.push_back(numbers.try_emplace(std::move(places), numbers.size()).first->second);
+    return marks;
+  }
+
+  // Where most yarns are copies with the same neighbours: moves a few for all. What comes of it is looked at
+  // in the whole cloth; where anything is still too near nothing is done.
+  Status move_alike() {
+    if (!alike_.first.empty() || !options_.periods.empty()) return {};
+    const Alike alike = find_alike(originals_, reach(), marks());
+    if (3 * alike.few.size() > 2 * originals_.size()) return {};
+    std::vector<std::size_t> places(originals_.size());  // of each yarn that stands for others, among the few
+    std::vector<yarn::Body> bodies;
+    RelaxOptions options = options_;
+    options.fixed.clear();
+    for (std::size_t k = 0; k < alike.few.size(); ++k) {
+      places[alike.few[k]] = k;
+      bodies.push_back(originals_[alike.few[k]]);
+      for (FixedPoint point : options_.fixed)
+        if (point.yarn == alike.few[k]) options.fixed.push_back({k, point.parameter});
+    }
+    Relaxer relaxer(std::move(bodies), options);
+    for (const std::size_t y : alike.few) relaxer.alike_.first.push_back(places[alike.first[y]]);
+    for (const auto& [pair, count] : alike.neighbours)
+      relaxer.alike_.neighbours[{places[pair.first], places[pair.second]}] = count;
+    Result<Relaxation> few = relaxer.run();
+    if (!few || !few->solved) return {};
+    std::vector<yarn::Body> moved;
+    moved.reserve(originals_.size());
+    for (std::size_t y = 0; y < originals_.size(); ++y) {
+      const std::size_t first = alike.first[y], k = places[first];
+      if (!few->bodies[k].messages.empty()) return {};  // it names the yarn
+      moved.push_back(few->bodies[k]);
+      static_cast<yarn::BodyLabel&>(moved[y]) = originals_[y];
+      moved[y].shape = first + 1;
+      if (y != first) yarn::move(moved[y], originals_[y].at - originals_[first].at, {});
+      out_.changes.push_back(few->changes[k]);
+    }
+    out_.bodies = std::move(moved);
+    Result<Contacts> contacts = survey(out_.bodies);
+    if (!contacts) return contacts.error();
+    out_.after = state_of(*contacts);
+    out_.iterations = few->iterations;
+    out_.solved = std::none_of(contacts->list.begin(), contacts->list.end(),
+                               [&](const Contact& contact) { return is_too_near(contact); });
+    if (!out_.solved) out_.iterations = 0;
+    return {};
   }
 
   // Which bound the result does not keep; empty: it keeps them all.
@@ -270,8 +341,10 @@ class Relaxer {
       if (is_affine_[y] != 0) strands_.back().allowed_fields = affine_fields;
     }
     first_ = present();
-    DisplacementSystem system(strands_, tie_strands(strands_, options_.periods), stiffness, modes_);
-    NearSkins skins(strands_);
+    DisplacementSystem system(strands_, lattices(), stiffness, modes_);
+    NearSkins skins(strands_, [&](std::size_t a, std::size_t b) {
+      return alike_.first.empty() || alike_.neighbours.contains(std::minmax(a, b));
+    });
     for (const FixedPoint& point : options_.fixed) system.hold(point.yarn, point.parameter);
     double least_missing = infinity;
     int best = 0, verdicts = 0;
@@ -301,6 +374,24 @@ class Relaxer {
     }
   }
 
+  Lattices lattices() {
+    if (alike_.first.empty()) return {tie_strands(strands_, options_.periods), {}};
+    Lattices lattices;
+    std::size_t count = 0;
+    for (std::size_t y = 0; y < alike_.first.size(); ++y) {
+      const std::size_t first = alike_.first[y];
+      lattices.of.push_back(first == y ? count++ : lattices.of[first]);
+      lattices.weights.push_back(first == y ? weight(y, y) : 0.0);
+    }
+    return lattices;
+  }
+
+  // How many pairs of neighbours two strands stand for.
+  [[nodiscard]] double weight(std::size_t a, std::size_t b) const {
+    if (alike_.first.empty()) return 1.0;
+    return static_cast<double>(alike_.neighbours.at(std::minmax(a, b)));
+  }
+
   void make_step(DisplacementSystem& system, const std::vector<Facing>& facings, double aim) {
     system.update(options_.threads);
     const Eigen::VectorXd x = system.solve(demands_of(facings, aim), options_.threads);
@@ -323,8 +414,7 @@ class Relaxer {
   }
 
   std::vector<Facing> find(NearSkins& skins) const {
-    const double reach = reach_share * thinnest_ + std::max(0.0, largest_wanted());
-    std::vector<Facing> facings = skins.find(reach, options_.threads);
+    std::vector<Facing> facings = skins.find(reach(), options_.threads);
     // The places where two surfaces are nearest lie between samples: one for each small cube of space.
     const double cube = 0.25 * thinnest_;
     std::map<std::array<long long, 5>, std::size_t> places;
@@ -374,6 +464,10 @@ class Relaxer {
       demand.is_equal = f.is_pulled;
       const double goal = wanted(f.a, f.b);
       demand.missing = goal + (f.is_pulled ? 0.0 : aim * std::abs(goal)) - f.gap;
+      const double scale = std::sqrt(weight(f.a, f.b));
+      demand.plus.form *= scale;
+      demand.minus.form *= scale;
+      demand.missing *= scale;
     });
     return demands;
   }
@@ -394,7 +488,7 @@ class Relaxer {
     if (!contacts) return contacts.error();
     std::vector<Facing> left;
     for (const Contact& contact : contacts->list) {
-      if (contact.gap >= (1.0 - 1e-3) * wanted(contact.a, contact.b)) continue;
+      if (!is_too_near(contact)) continue;
       Facing f;
       f.a = static_cast<std::uint32_t>(contact.a);
       f.b = static_cast<std::uint32_t>(contact.b);
@@ -471,6 +565,7 @@ class Relaxer {
 
   RelaxOptions options_;
   std::vector<yarn::Body> originals_;
+  Alike alike_;  // of the originals, where these are few that stand for many; else empty
   std::vector<Extents> extents_;
   std::vector<char> is_affine_;  // one a yarn: its sections change by affine fields only
   std::vector<Strand> strands_;

@@ -331,9 +331,9 @@ Status OutputFile::commit(std::span<OutputFile* const> files) {
   return {};
 }
 
-void OutputFile::remove_leftovers(const std::vector<fs::path>& targets) {
+void OutputFile::remove_leftovers(const std::vector<std::string>& targets) {
   std::set<fs::path> folders;
-  for (const fs::path& target : targets)
+  for (const std::string& target : targets)
     if (const std::optional<fs::path> place = followed(target)) folders.insert(folder_of(*place));
   for (const fs::path& folder : folders)
     for (const fs::path& hidden : abandoned_in(folder, hidden_begin, hidden_end)) ::unlink(hidden.c_str());

@@ -74,7 +74,7 @@ class OutputFile {
 
   // Removes the hidden files that killed processes left in the folders of these targets; those of running
   // ones stay. Folders that cannot be read are left alone.
-  static void remove_leftovers(const std::vector<std::filesystem::path>& targets);
+  static void remove_leftovers(const std::vector<std::string>& targets);
 
  private:
   enum class Form { file, standard_output, memory };

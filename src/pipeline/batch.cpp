@@ -1,6 +1,7 @@
 #include "pipeline/batch.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sched.h>
 #include <unistd.h>
 
@@ -241,7 +242,7 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
 
 // Hidden files of workers that were killed, in this run or an earlier one.
 void Batch::remove_leftovers() const {
-  std::vector<std::filesystem::path> targets;
+  std::vector<std::string> targets;
   for (const std::string* place : {&options_.report, &options_.junit})
     if (!place->empty() && *place != "-") targets.emplace_back(*place);
   for (const std::vector<PlannedOutput>& outputs : outputs_)
@@ -321,6 +322,8 @@ int Batch::run(const std::vector<Message>& missing) {
   for (const std::vector<PlannedOutput>& outputs : outputs_)
     for (const PlannedOutput& output : outputs)
       if (!output.to_standard_output) folders.expect(output.path);
+  // Each input's process begins as a copy of this one: what the plan took and gave back would be copied, too.
+  ::malloc_trim(0);
   JobPool pool;
   pool.count = inputs_.size();
   pool.at_once = available_cores(options_);

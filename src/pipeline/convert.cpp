@@ -22,8 +22,7 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
                                         const PlannedOutput& output, std::uint64_t count) {
   formats::SurfaceOptions surface;
   surface.title = fabric.title.value_or("");
-  surface.file_name =
-      output.to_standard_output ? job.input.stem.filename().string() : output.path.filename().string();
+  surface.file_name = fs::path(output.to_standard_output ? job.input.stem : output.path).filename().string();
   // A file that is read and written again stays the same to the byte, under whatever name.
   for (const std::string_view extension : output.format->extensions)
     if (fabric.file_name.ends_with(extension)) surface.file_name = fabric.file_name;

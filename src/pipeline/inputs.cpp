@@ -151,7 +151,7 @@ Result<InputList> inputs_of(const Options& options) {
   const std::vector<std::string>& given = options.inputs;
   const std::string& first = given.front();
   if (options.command == Command::edit)
-    return InputList{{{first, first == "-" ? "stdin" : fs::path(first).stem()}}, {}, true};
+    return InputList{{{first, first == "-" ? "stdin" : fs::path(first).stem().string()}}, {}, true};
   if (options.command == Command::diff) {
     if (first == "-" && given[1] == "-")
       return error(Kind::usage, "standard input can be only one of the two");

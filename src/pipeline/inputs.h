@@ -12,9 +12,9 @@
 namespace selvage::pipeline {
 
 struct Input {
-  std::string path;            // as the user would name it; "-": standard input
-  std::filesystem::path stem;  // of its outputs, below the output folder, without an extension: "a/plain"
-  std::string other{};         // of `diff`: the path of what it is compared with; else empty
+  std::string path;     // as the user would name it; "-": standard input
+  std::string stem;     // of its outputs, below the output folder, without an extension: "a/plain"
+  std::string other{};  // of `diff`: the path of what it is compared with; else empty
 };
 
 struct InputList {

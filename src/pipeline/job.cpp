@@ -244,8 +244,8 @@ bool may_be_skipped(Job& job, const std::string& earlier) {
   if (!now.ok()) return false;
   std::vector<std::string> paths, without_companions;
   for (const PlannedOutput& output : job.outputs) {
-    paths.push_back(output.path.string());
-    if (!output.is_companion) without_companions.push_back(output.path.string());
+    paths.push_back(output.path);
+    if (!output.is_companion) without_companions.push_back(output.path);
   }
   return is_still_valid(earlier, *now, job.report.settings, paths) ||
          is_still_valid(earlier, *now, job.report.settings, without_companions);

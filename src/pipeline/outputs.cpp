@@ -195,14 +195,14 @@ Status check_names(const Options& options, const InputList& list,
       if (const auto found = input_of.find(name); found != input_of.end())
         return error(Kind::usage,
                      fmt::format("the output '{}' would replace the input '{}'; name another place with -o",
-                                 output.path.string(), list.inputs[found->second].path));
+                                 output.path, list.inputs[found->second].path));
       if (const auto [found, is_new] = writer_of.emplace(name, i); !is_new)
         return error(
             Kind::usage,
             fmt::format(
                 "'{}' and '{}' would both write '{}'; nothing was done (the files of a folder keep their "
                 "subfolders: name the folder above them as the input)",
-                list.inputs[found->second].path, list.inputs[i].path, output.path.string()));
+                list.inputs[found->second].path, list.inputs[i].path, output.path));
       note_part(output.path);
     }
   }

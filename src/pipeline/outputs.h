@@ -17,7 +17,7 @@ const formats::Descriptor& picture_format();
 
 struct PlannedOutput {
   const formats::Descriptor* format = nullptr;
-  std::filesystem::path path;
+  std::string path;  // as text: a run may have 100,000, and each is kept to its end
   bool to_standard_output = false;
   // Names that inputs and other outputs have, of those that this one may need where it takes several files.
   std::vector<std::filesystem::path> taken{};

@@ -32,7 +32,7 @@ Result<OutputFile*> open_part(OpenOutput& output, int number) {
     return error(Kind::usage,
                  fmt::format("'{}' does not fit into one file, and its file {}, '{}', would replace "
                              "an input or another output; name another place with -o",
-                             output.plan->path.string(), part, path.string()));
+                             output.plan->path, part, path.string()));
   }
   Result<OutputFile> file = OutputFile::create(part_path(output.plan->path, number));
   if (!file) return file.error();
@@ -46,7 +46,7 @@ bool report_file(Job& job, const OpenOutput& output, const OutputFile& file,
                  const formats::EntityCounts& entities, Json& written) {
   const Result<std::string> digest = job.wants_report() ? sha256_of(file) : std::string();
   if (!digest) return job.fail(digest.error());
-  written.push_back({{"path", (output.plan->to_standard_output ? output.plan->path : file.target()).string()},
+  written.push_back({{"path", output.plan->to_standard_output ? output.plan->path : file.target().string()},
                      {"format", output.plan->format->name},
                      {"bytes", file.size()},
                      {"sha256", *digest},

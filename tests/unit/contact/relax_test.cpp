@@ -6,9 +6,11 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 
+#include "contact/alike.h"
 #include "contact/interlacing.h"
 #include "solid/check.h"
 #include "solid/tessellation.h"
@@ -151,6 +153,28 @@ TEST(Relax, TheWantedGap) {
   ASSERT_TRUE(relaxed.after.min_gap.has_value());
   // No farther than needed.
   EXPECT_LT(*relaxed.after.min_gap, 0.12);
+}
+
+// Of parallel yarns that are one shape the first and the last have neighbours on one side only.
+TEST(Relax, YarnsWithTheSameNeighboursAreAlike) {
+  constexpr std::size_t count = 8;
+  std::vector<yarn::Body> bodies;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 at = 2.1 * static_cast<double>(k) * Vec3::UnitY();
+    bodies.push_back(straight("yarn", {}, at, Vec3::UnitX(), Vec3::UnitY(), 6.0));
+    bodies.back().shape = 1;
+    bodies.back().at = at;
+  }
+  const std::vector<std::size_t> marks(count, 0);
+  const Alike alike = find_alike(bodies, 0.5, marks);
+  EXPECT_EQ(alike.first, (std::vector<std::size_t>{0, 1, 1, 1, 1, 1, 1, 7}));
+  EXPECT_EQ(alike.few, (std::vector<std::size_t>{0, 1, 2, 6, 7}));
+  using Pair = std::pair<std::size_t, std::size_t>;
+  const std::map<Pair, std::size_t> expected = {{{0, 0}, 1}, {{0, 1}, 1}, {{1, 1}, 6},
+                                                {{1, 2}, 5}, {{6, 7}, 1}, {{7, 7}, 1}};
+  EXPECT_EQ(alike.neighbours, expected);
+  bodies[3].shape = 0;  // nobody knows what it is
+  EXPECT_EQ(find_alike(bodies, 0.5, marks).first, (std::vector<std::size_t>{0, 1, 2, 3, 4, 1, 1, 7}));
 }
 
 TEST(Relax, WhatIsFreeIsNotTouched) {
