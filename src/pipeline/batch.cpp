@@ -17,9 +17,11 @@
 #include "core/process.h"
 #include "core/progress.h"
 #include "core/readable.h"
+#include "core/shared_text.h"
 #include "core/standard_output.h"
 #include "core/temporary.h"
 #include "core/words.h"
+#include "pipeline/batch_plan.h"
 #include "pipeline/edit.h"
 #include "pipeline/inputs.h"
 #include "pipeline/job.h"
@@ -52,21 +54,19 @@ constexpr std::size_t most_kept = 1U << 20;
 
 class Batch {
  public:
-  Batch(const Options& options, std::vector<Input> inputs, std::vector<std::vector<PlannedOutput>> outputs,
-        std::map<std::string, std::string> earlier)
+  Batch(const Options& options, const BatchPlan& plan, std::map<std::string, std::string> earlier)
       : options_(options),
-        inputs_(std::move(inputs)),
-        outputs_(std::move(outputs)),
+        plan_(plan),
         earlier_(std::move(earlier)),
-        work_(inputs_.size()),
-        progress_(!options.quiet && !options.no_progress, inputs_.size()) {}
+        reports_(options.wants_report() ? plan.size() : 0),
+        progress_(!options.quiet && !options.no_progress, plan.size()) {}
 
   int run(const std::vector<Message>& missing);
 
  private:
   // What came from one input so far.
   struct Work {
-    std::string messages, results, report;
+    std::string messages, results;
     std::size_t left_out = 0;  // messages beyond what is kept
     bool ended = false;
     std::string reader;  // the format whose library reads the input now; empty: none
@@ -76,6 +76,7 @@ class Batch {
   void receive(std::size_t job, char kind, std::string_view bytes);
   void finish(std::size_t job, const JobEnd& end);
   void fail(std::size_t job, Message message);
+  void keep_report(std::size_t job, std::string_view text);
   void flush_results();
   void show(std::string& text);
   double tick();
@@ -89,10 +90,11 @@ class Batch {
   void summarize() const;
 
   const Options& options_;
-  std::vector<Input> inputs_;
-  std::vector<std::vector<PlannedOutput>> outputs_;
+  const BatchPlan& plan_;
   std::map<std::string, std::string> earlier_;  // entries of the report that --resume goes by
-  std::vector<Work> work_;
+  std::map<std::size_t, Work> work_;            // of inputs that began, until their results are printed
+  SharedText report_texts_;
+  std::vector<std::string_view> reports_;  // of each input, where they are wanted
   std::vector<std::string> missing_reports_;
   ProgressDisplay progress_;
   std::string doing_;
@@ -124,14 +126,15 @@ Status write_whole(const std::string& place, const std::string& text) {
 }
 
 int Batch::run_one(std::size_t index, const Channel& channel) const {
-  Job job(options_, inputs_[index], outputs_[index], channel);
+  const PlannedInput planned = plan_.at(index);
+  const Input& input = planned.input;
+  Job job(options_, input, planned.outputs, channel);
   job.number = index;
   const std::size_t workers = available_cores(options_);
-  job.threads = std::max<std::size_t>(1, workers / std::min(workers, inputs_.size()));
+  job.threads = std::max<std::size_t>(1, workers / std::min(workers, plan_.size()));
   std::vector<fs::path> places;
-  for (const PlannedOutput& output : outputs_[index])
+  for (const PlannedOutput& output : planned.outputs)
     if (!output.to_standard_output) places.push_back(output.path);
-  const Input& input = inputs_[index];
   if (const Status contained = contain_job(options_, std::array{input.path, input.other}, places);
       !contained) {
     job.say(contained.error());
@@ -157,7 +160,7 @@ void Batch::receive(std::size_t job, char kind, std::string_view bytes) {
   } else if (kind == packet::result) {
     work.results += bytes;
   } else if (kind == packet::report) {
-    work.report = bytes;
+    keep_report(job, bytes);
   } else if (kind == packet::files) {
     std::size_t count = 0;
     std::from_chars(bytes.data(), bytes.data() + bytes.size(), count);
@@ -178,22 +181,29 @@ void Batch::show(std::string& text) {
 }
 
 void Batch::flush_results() {
-  for (; next_result_ < work_.size() && work_[next_result_].ended; ++next_result_) {
-    std::string& results = work_[next_result_].results;
-    if (results.empty()) continue;
-    progress_.clear();
-    if (printed_) printed_ = write_to_standard_output(results);
-    results = {};
+  for (auto next = work_.find(next_result_); next != work_.end() && next->second.ended;
+       next = work_.find(++next_result_)) {
+    const std::string& results = next->second.results;
+    if (!results.empty()) {
+      progress_.clear();
+      if (printed_) printed_ = write_to_standard_output(results);
+    }
+    work_.erase(next);
   }
 }
 
+void Batch::keep_report(std::size_t job, std::string_view text) {
+  if (!reports_.empty()) reports_[job] = report_texts_.keep(text);
+}
+
 void Batch::fail(std::size_t job, Message message) {
-  message.file = inputs_[job].path == "-" ? "<stdin>" : inputs_[job].path;
+  const std::string path(plan_.path(job));
+  message.file = path == "-" ? "<stdin>" : path;
   work_[job].messages += to_string(message) + "\n";
   if (!options_.wants_report()) return;
-  InputReport report(inputs_[job].path);
+  InputReport report(path);
   report.messages.push_back(std::move(message));
-  work_[job].report = report.text();
+  keep_report(job, report.text());
 }
 
 // The signals of a library that goes astray, not of somebody who ends a process.
@@ -211,8 +221,9 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
                          end.status, memory_limit(options_));
   }
   if (!reason.empty()) {
+    const bool is_alone = plan_.at(job).input.other.empty();
     const bool is_killed = end.how == JobEnd::How::signalled && is_crash(end.status);
-    if (is_killed && !work.reader.empty() && inputs_[job].other.empty())
+    if (is_killed && !work.reader.empty() && is_alone)
       fail(job,
            error(Kind::malformed,
                  fmt::format(
@@ -221,7 +232,7 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
                      work.reader, ::strsignal(end.status))));
     else
       fail(job, error(end.how == JobEnd::How::timed_out ? Kind::limit : Kind::internal,
-                      (inputs_[job].other.empty() ? "this input " : "the comparison ") + reason));
+                      (is_alone ? "this input " : "the comparison ") + reason));
     has_lost_workers_ = true;
   }
   const auto verdict = reason.empty() ? static_cast<Verdict>(end.status) : Verdict::failed;
@@ -234,7 +245,7 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
     ++counts_.failed;
   }
   if (work.left_out > 0)
-    work.messages += fmt::format("{}: and {} further messages\n", readable(inputs_[job].path), work.left_out);
+    work.messages += fmt::format("{}: and {} further messages\n", readable(plan_.path(job)), work.left_out);
   show(work.messages);
   flush_results();
   progress_.set(counts_.done + counts_.failed + counts_.skipped, counts_.failed, doing_);
@@ -245,9 +256,9 @@ void Batch::remove_leftovers() const {
   std::vector<std::string> targets;
   for (const std::string* place : {&options_.report, &options_.junit})
     if (!place->empty() && *place != "-") targets.emplace_back(*place);
-  for (const std::vector<PlannedOutput>& outputs : outputs_)
-    for (const PlannedOutput& output : outputs)
-      if (!output.to_standard_output) targets.push_back(output.path);
+  for (std::size_t i = 0; i < plan_.size(); ++i)
+    for (PlannedOutput& output : plan_.at(i).outputs)
+      if (!output.to_standard_output) targets.push_back(std::move(output.path));
   OutputFile::remove_leftovers(targets);
 }
 
@@ -267,9 +278,10 @@ double Batch::tick() {
 
 std::string Batch::report_text(bool ok) const {
   std::vector<std::string> entries;
-  for (std::size_t i = 0; i < work_.size(); ++i) {
+  for (std::size_t i = 0; i < reports_.size(); ++i) {
     // An input that was not reached keeps what an earlier run knew of it.
-    entries.push_back(work_[i].report.empty() ? entry_of_earlier(inputs_[i].path) : work_[i].report);
+    entries.push_back(reports_[i].empty() ? entry_of_earlier(std::string(plan_.path(i)))
+                                          : std::string(reports_[i]));
   }
   entries.insert(entries.end(), missing_reports_.begin(), missing_reports_.end());
   return whole_report(started_, seconds_since(start_), ok, counts_, entries);
@@ -283,7 +295,8 @@ Status Batch::write_report(bool ok) const {
 Status Batch::write_junit(const std::vector<Message>& missing) const {
   if (options_.junit.empty()) return {};
   std::vector<JunitInput> all;
-  for (std::size_t i = 0; i < work_.size(); ++i) all.push_back({inputs_[i].path, work_[i].report});
+  for (std::size_t i = 0; i < reports_.size(); ++i)
+    all.push_back({std::string(plan_.path(i)), std::string(reports_[i])});
   for (std::size_t i = 0; i < missing.size(); ++i) all.push_back({missing[i].file, missing_reports_[i]});
   return write_whole(options_.junit, junit_text(all, started_, seconds_since(start_)));
 }
@@ -307,7 +320,7 @@ void Batch::summarize() const {
 }
 
 int Batch::run(const std::vector<Message>& missing) {
-  counts_.inputs = inputs_.size() + missing.size();
+  counts_.inputs = plan_.size() + missing.size();
   for (const Message& message : missing) {
     std::string text = to_string(message) + "\n";
     show(text);
@@ -319,13 +332,13 @@ int Batch::run(const std::vector<Message>& missing) {
   remove_leftovers();
 
   NewFolders folders;
-  for (const std::vector<PlannedOutput>& outputs : outputs_)
-    for (const PlannedOutput& output : outputs)
+  for (std::size_t i = 0; i < plan_.size(); ++i)
+    for (const PlannedOutput& output : plan_.at(i).outputs)
       if (!output.to_standard_output) folders.expect(output.path);
   // Each input's process begins as a copy of this one: what the plan took and gave back would be copied, too.
   ::malloc_trim(0);
   JobPool pool;
-  pool.count = inputs_.size();
+  pool.count = plan_.size();
   pool.at_once = available_cores(options_);
   pool.seconds = options_.timeout;
   pool.mebibytes = options_.memory;
@@ -415,7 +428,10 @@ int run(const Options& wanted) {
   keep_part(list->inputs, options.part, options.parts);
   keep_part(*plan, options.part, options.parts);
   if (options.part > 0) list->missing.clear();
-  return Batch(options, std::move(list->inputs), std::move(*plan), std::move(*earlier)).run(list->missing);
+  const BatchPlan kept(list->inputs, *plan);
+  list->inputs = {};
+  *plan = {};
+  return Batch(options, kept, std::move(*earlier)).run(list->missing);
 }
 
 }  // namespace selvage::pipeline

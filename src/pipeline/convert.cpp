@@ -16,6 +16,8 @@
 
 namespace selvage::pipeline {
 
+namespace fs = std::filesystem;
+
 namespace {
 
 formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fabric,

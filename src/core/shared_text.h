@@ -1,0 +1,30 @@
+// Text that is kept for long where processes are forked often: in memory that they share. Of other memory
+// each fork copies what describes its pages, in proportion to their number.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace selvage {
+
+class SharedText {
+ public:
+  SharedText() = default;
+  SharedText(const SharedText&) = delete;
+  SharedText& operator=(const SharedText&) = delete;
+  ~SharedText();
+
+  // A copy that lives as long as this. Throws std::bad_alloc.
+  std::string_view keep(std::string_view text);
+
+ private:
+  struct Block {
+    char* begin = nullptr;
+    std::size_t size = 0;
+  };
+  std::vector<Block> blocks_;
+  std::size_t used_ = 0;  // of the last block
+};
+
+}  // namespace selvage
