@@ -21,7 +21,7 @@ namespace {
 // degrees), it does not face itself, however far one looks.
 constexpr double detour = 1.25;
 // Pieces to either side that are alike too where a piece is: further away nothing is looked at.
-constexpr int pieces_beside = 2;
+constexpr std::int64_t pieces_beside = 2;
 constexpr std::uint32_t nothing = std::numeric_limits<std::uint32_t>::max();
 
 // What is looked up before two are compared; coordinates are rounded so that few that are alike are missed.
@@ -207,8 +207,8 @@ void PieceModel::find_kinds() {
       auto middle = static_cast<std::int64_t>(k);
       if (middle >= count)
         middle = shape.cells.faces[shape.cells.cells[shape.pieces[k].first_cell].face].is_last ? count : -1;
-      for (int d = -pieces_beside; d <= pieces_beside; ++d)
-        around[static_cast<std::size_t>(d + pieces_beside)] = kind_at(middle + d);
+      for (std::size_t i = 0; i < around.size(); ++i)
+        around[i] = kind_at(middle + static_cast<std::int64_t>(i) - pieces_beside);
       kinds.push_back(
           surrounded.try_emplace(around, static_cast<std::uint32_t>(surrounded.size())).first->second);
     }

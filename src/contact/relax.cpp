@@ -235,6 +235,7 @@ class Relaxer {
     for (const FixedPoint& point : options_.fixed) held[point.yarn].push_back(point.parameter);
     std::map<std::vector<double>, std::size_t> numbers;
     std::vector<std::size_t> marks;
+    marks.reserve(held.size());
     for (std::vector<double>& places : held)
       marks.push_back(numbers.try_emplace(std::move(places), numbers.size()).first->second);
     return marks;
