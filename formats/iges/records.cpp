@@ -120,15 +120,22 @@ void Records::put(const Tokens& tokens) {
   }
 }
 
+// While what is formatted is put on its lines, what comes next is formatted.
 void Records::reals_by_threads(const double* values, std::size_t count) {
   constexpr std::size_t chunk = 8192;
-  tokens_.resize(4 * static_cast<std::size_t>(threads_));
-  for (std::size_t first = 0; first < count; first += chunk * tokens_.size()) {
-    const std::size_t rest = count - first, chunks = std::min(tokens_.size(), (rest + chunk - 1) / chunk);
-    for_each_index(chunks, threads_, [&](std::size_t k) {
-      tokens_[k].format(values + first + k * chunk, std::min(chunk, rest - k * chunk));
+  const std::size_t at_once = 2 * static_cast<std::size_t>(threads_);
+  tokens_.resize(2 * at_once);
+  std::span<Tokens> ready, next = std::span(tokens_).first(at_once), other = std::span(tokens_).last(at_once);
+  for (std::size_t first = 0; first < count || !ready.empty(); first += chunk * at_once) {
+    const std::size_t rest = first < count ? count - first : 0, chunks = std::min(at_once, (rest + chunk - 1) / chunk);
+    for_each_index(chunks + 1, threads_, [&](std::size_t k) {
+      if (k > 0)
+        next[k - 1].format(values + first + (k - 1) * chunk, std::min(chunk, rest - (k - 1) * chunk));
+      else
+        for (const Tokens& tokens : ready) put(tokens);
     });
-    for (std::size_t k = 0; k < chunks; ++k) put(tokens_[k]);
+    ready = next.first(chunks);
+    std::swap(next, other);
   }
 }
 
