@@ -127,7 +127,8 @@ void Records::reals_by_threads(const double* values, std::size_t count) {
   tokens_.resize(2 * at_once);
   std::span<Tokens> ready, next = std::span(tokens_).first(at_once), other = std::span(tokens_).last(at_once);
   for (std::size_t first = 0; first < count || !ready.empty(); first += chunk * at_once) {
-    const std::size_t rest = first < count ? count - first : 0, chunks = std::min(at_once, (rest + chunk - 1) / chunk);
+    const std::size_t rest = first < count ? count - first : 0,
+                      chunks = std::min(at_once, (rest + chunk - 1) / chunk);
     for_each_index(chunks + 1, threads_, [&](std::size_t k) {
       if (k > 0)
         next[k - 1].format(values + first + (k - 1) * chunk, std::min(chunk, rest - (k - 1) * chunk));
