@@ -24,7 +24,8 @@ constexpr double detour = 1.25;
 constexpr std::int64_t pieces_beside = 2;
 constexpr std::uint32_t nothing = std::numeric_limits<std::uint32_t>::max();
 
-// What is looked up before two are compared; coordinates are rounded so that few that are alike are missed.
+// What is looked up before two are compared: coordinates are rounded to steps, coarse enough that few that
+// are alike are missed.
 class Key {
  public:
   explicit Key(double step) : step_(step) {}
@@ -44,9 +45,10 @@ class Key {
   std::uint64_t value_ = 0;
 };
 
-// Numbers things that are alike; `step`: how coarse what is looked up is, against the difference that makes
-// two things unlike.
+// A key's step against the difference that makes two things unlike.
 constexpr double coarseness = 1000.0;
+
+// Numbers things that are alike.
 class Kinds {
  public:
   // The number of the kind that is_same(its number) says it is; else `fresh`, which is kept for it.

@@ -24,7 +24,7 @@ struct Encounter {
   std::vector<PiecePair> pairs;  // of a body with itself: the one that comes first along it is the first
 };
 
-// A place of a encounter: both bodies' pieces, and two more along them to either side, are moved by one
+// A place of an encounter: both bodies' pieces, and two more along them to either side, are moved by one
 // vector.
 struct EncounterPlace {
   std::uint32_t kind = 0;      // into Encounters::kinds

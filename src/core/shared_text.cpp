@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cstring>
-#include <new>
 
 namespace selvage {
 
 SharedText::~SharedText() {
-  for (const Block& block : blocks_) ::munmap(block.begin, block.size);
+  for (const Block& block : blocks_)
+    if (block.ordinary.empty()) ::munmap(block.begin, block.size);
 }
 
 std::string_view SharedText::keep(std::string_view text) {
@@ -17,10 +17,12 @@ std::string_view SharedText::keep(std::string_view text) {
   if (blocks_.empty() || blocks_.back().size - used_ < text.size()) {
     constexpr std::size_t usual = std::size_t{1} << 20;
     const std::size_t size = std::max(usual, text.size());
-    blocks_.reserve(blocks_.size() + 1);
+    blocks_.emplace_back();
+    Block& block = blocks_.back();
     void* place = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (place == MAP_FAILED) throw std::bad_alloc();
-    blocks_.push_back({static_cast<char*>(place), size});
+    if (place == MAP_FAILED) block.ordinary.resize(size);
+    block.begin = block.ordinary.empty() ? static_cast<char*>(place) : block.ordinary.data();
+    block.size = size;
     used_ = 0;
   }
   char* place = blocks_.back().begin + used_;

@@ -1,8 +1,10 @@
 // Text that is kept for long where processes are forked often: in memory that they share. Of other memory
-// each fork copies what describes its pages, in proportion to their number.
+// each fork copies what describes its pages, in proportion to their number. Where the system shares none,
+// ordinary memory does.
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <string_view>
 #include <vector>
 
@@ -22,8 +24,9 @@ class SharedText {
   struct Block {
     char* begin = nullptr;
     std::size_t size = 0;
+    std::vector<char> ordinary;  // where it stands, unless it is shared
   };
-  std::vector<Block> blocks_;
+  std::deque<Block> blocks_;
   std::size_t used_ = 0;  // of the last block
 };
 

@@ -402,8 +402,9 @@ int refuse(const Message& message) {
   return exit_code::usage;
 }
 
-int run(const Options& wanted) {
-  Options options = wanted;
+namespace {
+
+int run_all(Options options) {
   if (Status status = check_sandbox(options.sandbox, this_kernel()); !status) return refuse(status.error());
   std::optional<TemporaryFolder> scratch;
   if (options.command == Command::roundtrip) {
@@ -432,6 +433,15 @@ int run(const Options& wanted) {
   list->inputs = {};
   *plan = {};
   return Batch(options, kept, std::move(*earlier)).run(list->missing);
+}
+
+}  // namespace
+
+int run(const Options& options) {
+  int code = exit_code::failed;
+  if (const Status done = guarded(options, [&] { code = run_all(options); }); !done)
+    (void)refuse(done.error());
+  return code;
 }
 
 }  // namespace selvage::pipeline
