@@ -114,6 +114,11 @@ struct Descriptor {
   // error.
   std::optional<fabric::Fabric> (*read_fabric)(const Source& source, Diagnostics& diagnostics) = nullptr;
 
+  // The same with other values of its params. Null: a format without params.
+  std::optional<fabric::Fabric> (*read_with)(const Source& source,
+                                             const std::vector<fabric::Setting>& settings,
+                                             Diagnostics& diagnostics) = nullptr;
+
   // A CAD file as it stands; fabric/from_cad.h makes a fabric of it. A format has this or read_fabric.
   std::optional<cad::Model> (*read_model)(const Source& source, Diagnostics& diagnostics) = nullptr;
   // Does the file keep to its format in every respect? Defects and warnings that the reader puts up with.

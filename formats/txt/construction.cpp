@@ -22,8 +22,8 @@ using fabric::WeaveSystem;
 
 void read_extent(Parser& p, std::string_view what, int& count, double& pitch) {
   const auto number = p.count(what);
-  p.expect("pitch");
-  const auto distance = p.positive("the pitch");
+  if (same_word(p.peek_word(), "pitch")) p.take_word();
+  const auto distance = p.positive("the pitch", Measure::pitch);
   if (!p.finish()) return;
   count = *number;
   pitch = *distance;
@@ -129,7 +129,7 @@ void read_draft(Parser& p, WeaveBlock& weave, std::string_view) {
 
 void read_profile(Parser& p, WeaveBlock& weave, std::string_view) {
   const auto profile = p.choice("profile", profile_words);
-  if (profile == Weave::Profile::sine && p.more()) weave.amplitude = p.positive("the amplitude");
+  if (profile == Weave::Profile::sine && p.more()) weave.amplitude = p.positive("the amplitude", Measure::length);
   if (p.finish()) weave.profile = *profile;
 }
 
@@ -237,7 +237,7 @@ void read_pattern(Parser& p, BraidBlock& braid, std::string_view) {
 }
 
 void read_radius(Parser& p, BraidBlock& braid, std::string_view) {
-  const auto value = p.positive("the radius");
+  const auto value = p.positive("the radius", Measure::length);
   if (!p.finish()) return;
   braid.radius = *value;
   braid.radius_place = p.last().place();
@@ -247,12 +247,12 @@ void read_flat(Parser& p, BraidBlock& braid, std::string_view) {
   braid.flat = true;
   braid.radius_place = p.statement().place();
   if (!p.more()) return;
-  const auto value = p.positive("the width");
+  const auto value = p.positive("the width", Measure::length);
   if (p.finish()) braid.width = *value;
 }
 
 void read_angle(Parser& p, BraidBlock& braid, std::string_view) {
-  const auto value = p.number("the angle");
+  const auto value = p.number("the angle", Measure::angle);
   if (value && !(*value > 0.0 && *value < 90.0))
     p.error(p.last(), "the angle between yarn and axis lies between 0 and 90 degrees, both excluded");
   if (p.finish()) braid.angle = *value;
@@ -363,7 +363,7 @@ void read_braid(Parser& p, fabric::Fabric& fabric, std::string_view word) {
        {"radius", read_radius, Times::once},
        {"flat", read_flat, Times::once, "radius"},
        {"angle", read_angle, Times::once},
-       {"length", into(&Braid::length, a_positive("the length")), Times::once},
+       {"length", into(&Braid::length, a_length("the length")), Times::once},
        {"axial", read_axial}});
   BraidBlock braid;
   const Spot opened = p.statement();

@@ -273,20 +273,39 @@ std::nullopt_t Cursor::explain_number(std::string_view what) {
   return fail(last(), fmt::format("{}: {}", what, reason));
 }
 
-std::optional<double> Cursor::number(std::string_view what) {
+// An expression is a word, but for blanks within brackets.
+std::string_view Cursor::expression_at(const char* p) const {
+  int depth = 0;
+  const char* stop = p;
+  for (; !ends_line(stop) && (depth > 0 || !is_blank(*stop)); ++stop) depth += (*stop == '(') - (*stop == ')');
+  while (stop != p && is_blank(stop[-1])) --stop;
+  return {p, static_cast<std::size_t>(stop - p)};
+}
+
+std::optional<double> Cursor::other_number(std::string_view what, Measure measure) {
+  const std::string_view text = expression_at(at_);
+  if (text_prefix(text) != text.size()) return explain_number(what);
+  const std::optional<Result<double>> value = scope_.value(text, measure);
+  if (!value) return explain_number(what);
+  token_ = at_;
+  at_ += text.size();
+  if (value->ok()) return **value;
+  return fail(last(), fmt::format("{}: {}", what, value->error().text));
+}
+
+std::optional<double> Cursor::number(std::string_view what, Measure measure) {
   if (failed_) return std::nullopt;
   if (!more()) return fail(here(), fmt::format("{} is missing", what));
   token_ = at_;
   double value = 0.0;
-  if (parse_number(value)) return value;
-  return explain_number(what);
+  return parse_number(value) ? value : other_number(what, measure);
 }
 
 std::optional<int> Cursor::integer(std::string_view what, int least, int most) {
   const std::string_view word = peek_word();
   const std::optional<double> value = number(what);
   if (!value) return std::nullopt;
-  if (*value != std::floor(*value) || word.find_first_of(".eE") != word.npos)
+  if (*value != std::floor(*value) || (is_number(word) && word.find_first_of(".eE") != word.npos))
     return fail(last(), fmt::format("{}: {} is not a whole number", what, in_quotes(word)));
   if (*value >= least && *value <= most) return static_cast<int>(*value);
   std::string range = fmt::format("from {} to {}", least, most);
@@ -294,18 +313,20 @@ std::optional<int> Cursor::integer(std::string_view what, int least, int most) {
   return fail(last(), fmt::format("{}: {} has to be {}", what, in_quotes(word), range));
 }
 
-int Cursor::row(double* values, int most, std::string_view what, std::string_view word) {
+int Cursor::row(double* values, int most, std::string_view what, std::string_view word, Measure last_one) {
   for (int count = 0;; ++count) {
     if (!has_token()) return count;
     token_ = at_;
     const bool is_number = count < most && parse_number(values[count]);
     if (is_number) continue;
     if (!word.empty() && same_word(word_at(at_), word)) return count;
-    if (count == most)
+    if (count == most) {
       report_.error(last(), fmt::format("{}: more than {} values", what, most));
-    else
-      explain_number(what);
-    return -1;
+      return -1;
+    }
+    const std::optional<double> value = other_number(what, count + 1 == most ? last_one : Measure::length);
+    if (!value) return -1;
+    values[count] = *value;
   }
 }
 

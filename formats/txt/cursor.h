@@ -7,6 +7,7 @@
 
 #include "core/source.h"
 #include "core/text_report.h"
+#include "formats/txt/scope.h"
 
 namespace selvage::formats::txt {
 
@@ -54,17 +55,23 @@ class Cursor {
   std::optional<std::string_view> name(std::string_view what, bool may_be_empty = false);
   // The comma of a list of names, with blanks round it, if it comes next.
   bool comma();
-  std::optional<double> number(std::string_view what);
+  std::optional<double> number(std::string_view what, Measure measure = Measure::plain);
   std::optional<int> integer(std::string_view what, int least, int most);
   // The numbers up to the end of the line, or up to the word `word` where one may follow them, at most `most`
-  // of them; returns how many. An error gives -1.
-  int row(double* values, int most, std::string_view what, std::string_view word = {});
+  // of them; returns how many. An error gives -1. `last_one`: what the most-th one measures; the
+  // others are lengths.
+  int row(double* values, int most, std::string_view what, std::string_view word = {},
+          Measure last_one = Measure::length);
   // Reports what is left on the line. True when there is nothing, and no value was wrong.
   bool finish();
   // A value was wrong: no further one of the statement is looked at.
   [[nodiscard]] bool has_failed() const { return failed_; }
   // Further ones are.
   void go_on() { failed_ = false; }
+
+  // Units and params that numbers may name.
+  [[nodiscard]] Scope& scope() { return scope_; }
+  [[nodiscard]] const Scope& scope() const { return scope_; }
 
  protected:
   std::nullopt_t fail(const Spot& spot, std::string text) {
@@ -80,6 +87,9 @@ class Cursor {
   bool has_token();
   bool parse_number(double& value);
   bool parse_tiny_number(double& value);
+  [[nodiscard]] std::string_view expression_at(const char* p) const;
+  // What is no bare number: with a unit, or an expression; else says what is wrong with it.
+  std::optional<double> other_number(std::string_view what, Measure measure);
   std::nullopt_t explain_number(std::string_view what);
   std::optional<std::string_view> quoted_name(std::string_view what, bool may_be_empty);
   void skip_comment();
@@ -87,6 +97,7 @@ class Cursor {
   bool refuse_foreign(std::string_view token);
 
   TextReport& report_;
+  Scope scope_;
   const char* at_;
   const char* end_;
   const char* line_begin_;

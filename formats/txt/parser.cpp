@@ -29,6 +29,7 @@ std::string Block::title() const {
 bool Parser::at_row(const Block& block) const {
   if (!starts_name(first_character())) return true;
   const std::string_view word = statement_word();
+  if (scope().begins_with_param(word)) return true;
   if (same_word(word, "nan") || same_word(word, "inf") || same_word(word, "infinity")) return true;
   if (!block.table->rows_of_letters || same_word(word, "end")) return false;
   for (const Block* open = &block; open != nullptr; open = open->outer)
@@ -143,22 +144,27 @@ int Parser::missing_end(const Block& block) {
 // ---------------------------------------------------------------------------------------------------------
 
 std::optional<double> Parser::number_of(const fabric::Quantity& quantity, std::string_view what) {
-  const std::optional<double> value = number(what);
+  const std::optional<double> value = number(what, quantity.measure);
   if (value) check(quantity, *value);
   return value;
 }
 
-std::optional<double> Parser::positive(std::string_view what, const fabric::Quantity* quantity) {
-  const std::optional<double> value = number(what);
+std::optional<double> Parser::positive(std::string_view what, Measure measure) {
+  const std::optional<double> value = number(what, measure);
   if (value && !(*value > 0.0)) return fail(last(), fmt::format("{} has to be larger than 0", what));
-  if (value && quantity != nullptr) check(*quantity, *value);
   return value;
 }
 
-std::optional<double> Parser::not_negative(std::string_view what, const fabric::Quantity* quantity) {
-  const std::optional<double> value = number(what);
+std::optional<double> Parser::positive(std::string_view what, const fabric::Quantity& quantity) {
+  const std::optional<double> value = positive(what, quantity.measure);
+  if (value) check(quantity, *value);
+  return value;
+}
+
+std::optional<double> Parser::not_negative(std::string_view what, const fabric::Quantity& quantity) {
+  const std::optional<double> value = number(what, quantity.measure);
   if (value && !(*value >= 0.0)) return fail(last(), fmt::format("{} has to be 0 or larger", what));
-  if (value && quantity != nullptr) check(*quantity, *value);
+  if (value) check(quantity, *value);
   return value;
 }
 
@@ -173,7 +179,7 @@ std::optional<int> Parser::count(std::string_view what, int least) {
 
 std::optional<Vec3> Parser::point(std::string_view what) {
   Vec3 point;
-  for (double& x : point) x = number(what).value_or(0.0);
+  for (double& x : point) x = number(what, Measure::length).value_or(0.0);
   return has_failed() ? std::nullopt : std::optional(point);
 }
 

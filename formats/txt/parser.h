@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -106,8 +107,9 @@ class Parser : public Cursor {
   // -----------------------
   // Of a quantity: one far outside of what exists is reported, too.
   std::optional<double> number_of(const fabric::Quantity& quantity, std::string_view what);
-  std::optional<double> positive(std::string_view what, const fabric::Quantity* quantity = nullptr);
-  std::optional<double> not_negative(std::string_view what, const fabric::Quantity* quantity = nullptr);
+  std::optional<double> positive(std::string_view what, Measure measure = Measure::plain);
+  std::optional<double> positive(std::string_view what, const fabric::Quantity& quantity);
+  std::optional<double> not_negative(std::string_view what, const fabric::Quantity& quantity);
   void check(const fabric::Quantity& quantity, double value);
   std::optional<int> count(std::string_view what, int least = 1);
   std::optional<Vec3> point(std::string_view what);
@@ -130,6 +132,7 @@ class Parser : public Cursor {
   void check_references();
 
   TextReport& report;
+  std::span<const fabric::Setting> settings;  // of params, from outside
   fabric::Fabric fabric;
   Names threads{"thread"}, materials{"material"}, yarns{"yarn"}, pieces{"piece"};
 
@@ -204,8 +207,11 @@ auto into(Value T::*member, const Read& read) {
 inline auto a_count(std::string_view what) {
   return [what](Parser& p) { return p.count(what); };
 }
-inline auto a_positive(std::string_view what, const fabric::Quantity* quantity = nullptr) {
-  return [what, quantity](Parser& p) { return p.positive(what, quantity); };
+inline auto a_length(std::string_view what) {
+  return [what](Parser& p) { return p.positive(what, Measure::length); };
+}
+inline auto a_positive(std::string_view what, const fabric::Quantity& quantity) {
+  return [what, &quantity](Parser& p) { return p.positive(what, quantity); };
 }
 inline auto a_reference(const Names Parser::*names) {
   return [names](Parser& p) { return p.reference(p.*names); };

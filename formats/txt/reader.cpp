@@ -1,6 +1,7 @@
 #include "formats/txt/reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -26,8 +27,62 @@ void read_repeated_version(Parser& p, Fabric&, std::string_view) {
 void read_units(Parser& p, Fabric& fabric, std::string_view) {
   const auto units = p.choice("unit", unit_words);
   if (!p.finish()) return;
+  if (!p.scope().set_unit(*units))
+    return p.error(p.statement(), "numbers above this line have units or are expressions, and need to know the "
+                                  "file's unit: move this line above them");
   fabric.units = *units;
   fabric.units_given = true;
+}
+
+// --- params
+// ---------------------------------------------------------------------------------------------------------
+
+// The value that is set from outside instead of the text's own.
+std::optional<double> value_of_setting(Parser& p, const fabric::Setting& setting, const Spot& spot) {
+  std::optional<Result<double>> value = p.scope().value(setting.value, Measure::any);
+  if (value && value->ok()) return **value;
+  const std::string why = value ? value->error().text : in_quotes(setting.value) + " is not a number";
+  p.error(spot, fmt::format("--set {}: {}", setting.name, why));
+  return std::nullopt;
+}
+
+void read_param(Parser& p, Fabric&, std::string_view) {
+  const auto name = p.name("the param's name");
+  const Spot spot = p.last();
+  if (name && !is_identifier(*name))
+    return p.error(spot, fmt::format("{} cannot stand in an expression: a param's name consists of letters, "
+                                     "digits and '_'",
+                                     in_quotes(*name)));
+  if (name && is_reserved(*name))
+    return p.error(spot, fmt::format("{} is a word of the language or a unit: the param needs another name, "
+                                     "such as {}_1",
+                                     in_quotes(*name), *name));
+  std::string_view text = p.peek_word();
+  std::optional<double> value = p.number("the param's value", Measure::any);
+  p.finish();
+  if (!name) return;
+  for (const fabric::Setting& setting : p.settings) {
+    if (setting.name != *name) continue;
+    text = setting.value;
+    value = value_of_setting(p, setting, spot);
+  }
+  // One that is wrong is known nevertheless: that was told.
+  if (const auto line = p.scope().define(*name, value.value_or(1.0), p.scope().is_count(text), spot.line))
+    p.error(spot, fmt::format("the param {} is there twice; first on line {}", in_quotes(*name), *line));
+}
+
+void check_settings(Parser& p, const Source& source) {
+  if (p.is_stopped() || p.report.errors() > 0) return;
+  const std::vector<std::string_view> known = p.scope().names();
+  for (const fabric::Setting& setting : p.settings) {
+    if (std::find(known.begin(), known.end(), setting.name) != known.end()) continue;
+    std::string hint = did_you_mean(setting.name, known);
+    if (hint.empty())
+      hint = known.empty() ? "; it has none (param NAME VALUE)"
+                           : fmt::format("; it has: {}", fmt::join(known, ", "));
+    p.error({source.bytes().data(), 1, 1},
+            fmt::format("--set {}: the text has no such param{}", setting.name, hint));
+  }
 }
 
 // --- cell
@@ -51,7 +106,8 @@ const Table<Fabric>& file_table() {
   static const Table<Fabric> table(
       {{"title", into(&Fabric::title, [](Parser& p) { return p.name("the title", true); })},
        {"units", read_units},
-       {"tolerance", into(&Fabric::tolerance, a_positive("the tolerance"))},
+       {"param", read_param, Times::any},
+       {"tolerance", into(&Fabric::tolerance, a_length("the tolerance"))},
        {"thread", read_thread, Times::any},
        {"material", read_material, Times::any},
        {"yarn", read_yarn, Times::any},
@@ -135,7 +191,7 @@ void read_edit(Parser& p, fabric::Fabric& fabric, std::string_view) {
   edit.form = p.choice("edit", edit_words).value_or(Edit::Form::point);
   const bool is_length = edit.form == Edit::Form::length;
   if (is_length) {
-    edit.length = p.positive("the length").value_or(0.0);
+    edit.length = p.positive("the length", Measure::length).value_or(0.0);
     p.expect("point");
   }
   const auto joint = p.count("the number of the joint");
@@ -168,9 +224,11 @@ void read_cell(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 
 namespace {
 
-std::optional<Fabric> read(const Source& source, TextReport& report) {
+std::optional<Fabric> read(const Source& source, std::span<const fabric::Setting> settings,
+                           TextReport& report) {
   if (refuse_binary(source, report)) return std::nullopt;
   Parser p(source, report);
+  p.settings = settings;
   p.fabric.file = source.name();
   if (!p.next_statement()) {
     if (report.errors() == 0)
@@ -179,6 +237,7 @@ std::optional<Fabric> read(const Source& source, TextReport& report) {
   } else if (read_version(p)) {
     p.read_block("", "", p.statement(), file_table(), p.fabric);
     p.check_references();
+    check_settings(p, source);
   }
   return std::move(p.fabric);
 }
@@ -186,7 +245,13 @@ std::optional<Fabric> read(const Source& source, TextReport& report) {
 }  // namespace
 
 std::optional<Fabric> read_fabric(const Source& source, Diagnostics& diagnostics) {
-  return reported(source, diagnostics, read);
+  return read_fabric_with(source, {}, diagnostics);
+}
+
+std::optional<Fabric> read_fabric_with(const Source& source, const std::vector<fabric::Setting>& settings,
+                                       Diagnostics& diagnostics) {
+  return reported(source, diagnostics,
+                  [&](const Source& text, TextReport& report) { return read(text, settings, report); });
 }
 
 bool is_fabric_txt(std::string_view head) {

@@ -88,7 +88,7 @@ bool is_good_row(Parser& p, const PathRows& rows, const std::array<double, 6>& r
 
 void read_path_row(Parser& p, PathRows& rows) {
   std::array<double, 6> row{};
-  const int count = p.row(row.data(), 6, "a row of the path", fixed_word);
+  const int count = p.row(row.data(), 6, "a row of the path", fixed_word, Measure::angle);
   ++rows.seen;
   const bool good = is_good_row(p, rows, row, count);
   rows.reading.good = rows.reading.good && good;
@@ -318,7 +318,7 @@ void read_grid_row(Parser& p, GridRows& rows) {
     return;
   }
   std::array<double, 4> row{};
-  const int count = p.row(row.data(), 4, "a row of the grid");
+  const int count = p.row(row.data(), 4, "a row of the grid", {}, Measure::plain);
   if (count >= 0 && count < 3)
     p.error(p.here(), fmt::format("a row of a grid is x y z or x y z WEIGHT; this one has {}",
                                   counted(static_cast<std::size_t>(count), "value")));

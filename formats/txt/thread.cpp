@@ -57,8 +57,8 @@ std::optional<yarn::Section> read_polygon(Parser& p) {
 template <class Shape>
 std::optional<yarn::Section> read_shape_of(Parser& p) {
   Shape shape;
-  const auto read = [&](double& value, std::string_view what) {
-    const std::optional<double> given = p.positive(what);
+  const auto read = [&](double& value, std::string_view what, Measure measure = Measure::length) {
+    const std::optional<double> given = p.positive(what, measure);
     value = given.value_or(0.0);
     return given.has_value();
   };
@@ -69,7 +69,7 @@ std::optional<yarn::Section> read_shape_of(Parser& p) {
     good = !p.more() || read(shape.diameter, "the section's diameter");
   } else {
     good = read(shape.width, "the section's width") && read(shape.height, "the section's height");
-    if constexpr (requires { shape.exponent; }) good = good && read(shape.exponent, "the section's exponent");
+    if constexpr (requires { shape.exponent; }) good = good && read(shape.exponent, "the section's exponent", Measure::plain);
   }
   return good && p.finish() ? std::optional<yarn::Section>(shape) : std::nullopt;
 }
@@ -89,7 +89,7 @@ void read_section(Parser& p, Thread& thread, std::string_view) {
 
 void read_twist(Parser& p, Thread& thread, std::string_view) {
   const auto turns =
-      p.not_negative("the twist (its direction is the letter Z or S)", &fabric::twist_quantity);
+      p.not_negative("the twist (its direction is the letter Z or S)", fabric::twist_quantity);
   const auto hand = p.choice("twist direction", hand_words);
   const bool rotates = p.more() && p.expect("rotate");
   if (p.finish()) thread.twist = {*turns, *hand, rotates};
@@ -98,7 +98,7 @@ void read_twist(Parser& p, Thread& thread, std::string_view) {
 void read_plies(Parser& p, Thread& thread, std::string_view) {
   const auto count = p.count("the number of plies");
   const auto turns =
-      p.not_negative("the ply twist (its direction is the letter Z or S)", &fabric::twist_quantity);
+      p.not_negative("the ply twist (its direction is the letter Z or S)", fabric::twist_quantity);
   const auto hand = p.choice("twist direction", hand_words);
   if (p.finish()) thread.plies = {*count, *turns, *hand};
 }
@@ -114,7 +114,7 @@ void read_color(Parser& p, Thread& thread, std::string_view) {
 // -------------------------------------------------------------------------------------------------------
 
 void read_isotropic(Parser& p, Material& material) {
-  const auto modulus = p.positive("Young's modulus", &fabric::modulus_quantity);
+  const auto modulus = p.positive("Young's modulus", fabric::modulus_quantity);
   const auto poisson = p.number("Poisson's ratio");
   if (poisson && (*poisson <= -1.0 || *poisson >= 0.5))
     p.error(p.last(), "Poisson's ratio of an isotropic material lies between -1 and 0.5, both excluded");
@@ -131,7 +131,7 @@ void read_transverse(Parser& p, Material& material) {
                                                     "Poisson's ratio nu23"};
   for (std::size_t i = 0; i < value.size(); ++i) {
     const bool is_ratio = i == 2 || i == 4;
-    const auto number = is_ratio ? p.number(what[i]) : p.positive(what[i], &fabric::modulus_quantity);
+    const auto number = is_ratio ? p.number(what[i]) : p.positive(what[i], fabric::modulus_quantity);
     if (!number) return;
     value[i] = *number;
     spot[i] = p.last();
@@ -166,9 +166,9 @@ const std::vector<Statement<Thread>>& thread_statements() {
       {"tex", read_linear_density},
       {"denier", read_linear_density, Times::at_most_once, "tex"},
       {"Ne", read_linear_density, Times::at_most_once, "tex"},
-      {"density", into(&Thread::density, a_positive("the fibre density", &fabric::density_quantity))},
+      {"density", into(&Thread::density, a_positive("the fibre density", fabric::density_quantity))},
       {"packing", read_packing},
-      {"diameter", into(&Thread::diameter, a_positive("the diameter"))},
+      {"diameter", into(&Thread::diameter, a_length("the diameter"))},
       {"section", read_section},
       {"twist", read_twist},
       {"plies", read_plies},
@@ -199,7 +199,7 @@ void read_thread(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 
 void read_material(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   static const Table<Material> table(
-      {{"density", into(&Material::density, a_positive("the density", &fabric::density_quantity))},
+      {{"density", into(&Material::density, a_positive("the density", fabric::density_quantity))},
        {"elastic", read_elastic},
        {"expansion", read_expansion}});
   read_named(p, table, p.materials, word, fabric.materials);

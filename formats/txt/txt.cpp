@@ -12,6 +12,7 @@ const Descriptor& descriptor() {
                                   .extensions = {".txt"},
                                   .sniff = is_fabric_txt,
                                   .read_fabric = read_fabric,
+                                  .read_with = read_fabric_with,
                                   .write_fabric = write_fabric,
                                   .insert_edit = insert_edit,
                                   .is_own = true};

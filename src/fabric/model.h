@@ -290,6 +290,12 @@ struct Fabric {
   [[nodiscard]] const Material* find_material(std::string_view name) const;
 };
 
+// What is asked of a text from outside: another value of one of its params.
+struct Setting {
+  std::string name, value;
+  bool operator==(const Setting&) const = default;
+};
+
 // Null: none has that name.
 template <class T>
 const T* find_named(const std::vector<T>& list, std::string_view name) {

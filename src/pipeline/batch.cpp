@@ -27,6 +27,7 @@
 #include "pipeline/job.h"
 #include "pipeline/junit.h"
 #include "pipeline/limits.h"
+#include "pipeline/sweep_table.h"
 #include "pipeline/outputs.h"
 #include "pipeline/report.h"
 #include "pipeline/roundtrip.h"
@@ -85,6 +86,7 @@ class Batch {
   [[nodiscard]] std::string report_text(bool ok) const;
   Status write_report(bool ok) const;
   Status write_junit(const std::vector<Message>& missing) const;
+  Status write_table() const;
   [[nodiscard]] std::string entry_of_earlier(const std::string& path) const;
   [[nodiscard]] int exit_code() const;
   void summarize() const;
@@ -140,7 +142,7 @@ int Batch::run_one(std::size_t index, const Channel& channel) const {
     job.say(contained.error());
     return static_cast<int>(Verdict::failed);
   }
-  return static_cast<int>(run_job(job, entry_of_earlier(input.path), channel));
+  return static_cast<int>(run_job(job, entry_of_earlier(input.name()), channel));
 }
 
 std::string Batch::entry_of_earlier(const std::string& path) const {
@@ -158,7 +160,7 @@ void Batch::receive(std::size_t job, char kind, std::string_view bytes) {
       work.messages += '\n';
     }
   } else if (kind == packet::result) {
-    work.results += bytes;
+    if (!options_.sweep.wanted) work.results += bytes;  // the table has them
   } else if (kind == packet::report) {
     keep_report(job, bytes);
   } else if (kind == packet::files) {
@@ -201,7 +203,7 @@ void Batch::fail(std::size_t job, Message message) {
   message.file = path == "-" ? "<stdin>" : path;
   work_[job].messages += to_string(message) + "\n";
   if (!options_.wants_report()) return;
-  InputReport report(path);
+  InputReport report(plan_.at(job).input);
   report.messages.push_back(std::move(message));
   keep_report(job, report.text());
 }
@@ -254,7 +256,7 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
 // Hidden files of workers that were killed, in this run or an earlier one.
 void Batch::remove_leftovers() const {
   std::vector<std::string> targets;
-  for (const std::string* place : {&options_.report, &options_.junit})
+  for (const std::string* place : {&options_.report, &options_.junit, &options_.sweep.csv})
     if (!place->empty() && *place != "-") targets.emplace_back(*place);
   for (std::size_t i = 0; i < plan_.size(); ++i)
     for (PlannedOutput& output : plan_.at(i).outputs)
@@ -280,7 +282,7 @@ std::string Batch::report_text(bool ok) const {
   std::vector<std::string> entries;
   for (std::size_t i = 0; i < reports_.size(); ++i) {
     // An input that was not reached keeps what an earlier run knew of it.
-    entries.push_back(reports_[i].empty() ? entry_of_earlier(std::string(plan_.path(i)))
+    entries.push_back(reports_[i].empty() ? entry_of_earlier(plan_.name(i))
                                           : std::string(reports_[i]));
   }
   entries.insert(entries.end(), missing_reports_.begin(), missing_reports_.end());
@@ -292,11 +294,22 @@ Status Batch::write_report(bool ok) const {
   return write_whole(options_.report, report_text(ok));
 }
 
+// Of a sweep: a row for each variant.
+Status Batch::write_table() const {
+  if (!options_.sweep.wanted) return {};
+  SweepTable table;
+  for (std::size_t i = 0; i < plan_.size(); ++i) {
+    const Input input = plan_.at(i).input;
+    table.add(input, reports_[i].empty() ? entry_of_earlier(input.name()) : std::string(reports_[i]));
+  }
+  return write_whole(options_.sweep.csv, table.text());
+}
+
 Status Batch::write_junit(const std::vector<Message>& missing) const {
   if (options_.junit.empty()) return {};
   std::vector<JunitInput> all;
   for (std::size_t i = 0; i < reports_.size(); ++i)
-    all.push_back({std::string(plan_.path(i)), std::string(reports_[i])});
+    all.push_back({plan_.name(i), std::string(reports_[i])});
   for (std::size_t i = 0; i < missing.size(); ++i) all.push_back({missing[i].file, missing_reports_[i]});
   return write_whole(options_.junit, junit_text(all, started_, seconds_since(start_)));
 }
@@ -307,6 +320,14 @@ int Batch::exit_code() const {
 }
 
 void Batch::summarize() const {
+  if (options_.sweep.wanted && !options_.quiet && options_.sweep.csv != "-") {
+    std::string text = fmt::format("selvage: {}: {} ok", counted(counts_.inputs, "variant"),
+                                   counts_.done + counts_.skipped - std::min(defects_, counts_.done));
+    if (defects_ > 0) text += fmt::format(", {} with defects", defects_);
+    if (counts_.failed > 0) text += fmt::format(", {} failed", counts_.failed);
+    text += fmt::format("; parameters and results are in '{}'\n", readable(options_.sweep.csv));
+    std::fwrite(text.data(), 1, text.size(), stderr);
+  }
   const bool writes = options_.command == Command::convert || options_.command == Command::relax ||
                       options_.command == Command::mesh || options_.command == Command::view;
   if (options_.quiet || !writes || options_.output == "-") return;
@@ -325,7 +346,7 @@ int Batch::run(const std::vector<Message>& missing) {
     std::string text = to_string(message) + "\n";
     show(text);
     ++counts_.failed;
-    InputReport report(message.file);
+    InputReport report({message.file, {}});
     report.messages.push_back(message);
     if (options_.wants_report()) missing_reports_.push_back(report.text());
   }
@@ -361,7 +382,7 @@ int Batch::run(const std::vector<Message>& missing) {
                stderr);
   if (options_.json && options_.command == Command::info && printed_)
     printed_ = write_to_standard_output(report_text(code == exit_code::well));
-  for (const Status& status : {printed_, write_report(code == exit_code::well), write_junit(missing)}) {
+  for (const Status& status : {printed_, write_report(code == exit_code::well), write_junit(missing), write_table()}) {
     if (status.ok()) continue;
     std::fprintf(stderr, "%s\n", to_string(status.error()).c_str());
     if (complete) code = exit_code::failed;
@@ -379,7 +400,7 @@ Result<std::map<std::string, std::string>> earlier_entries(const Options& option
 
 // A report that cannot be written is better known before the work than after it.
 Status check_report_places(const Options& options) {
-  for (const std::string* place : {&options.report, &options.junit}) {
+  for (const std::string* place : {&options.report, &options.junit, &options.sweep.csv}) {
     if (place->empty() || *place == "-") continue;
     if (const Result<OutputFile> trial = OutputFile::create(*place); !trial) return trial.error();
   }

@@ -46,6 +46,11 @@ BatchPlan::BatchPlan(const std::vector<Input>& inputs,
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     record.clear();
     for (const std::string* field : {&inputs[i].path, &inputs[i].stem, &inputs[i].other}) add(record, *field);
+    add(record, inputs[i].settings.size());
+    for (const fabric::Setting& setting : inputs[i].settings) {
+      add(record, setting.name);
+      add(record, setting.value);
+    }
     add(record, outputs[i].size());
     for (const PlannedOutput& output : outputs[i]) {
       const auto format = std::find(formats_.begin(), formats_.end(), output.format);
@@ -64,11 +69,20 @@ std::string_view BatchPlan::path(std::size_t index) const {
   return Fields(records_[index]).next();
 }
 
+std::string BatchPlan::name(std::size_t index) const {
+  return at(index).input.name();
+}
+
 PlannedInput BatchPlan::at(std::size_t index) const {
   Fields fields(records_[index]);
   PlannedInput planned;
   for (std::string* field : {&planned.input.path, &planned.input.stem, &planned.input.other})
     *field = fields.next();
+  planned.input.settings.resize(fields.number());
+  for (fabric::Setting& setting : planned.input.settings) {
+    setting.name = fields.next();
+    setting.value = fields.next();
+  }
   planned.outputs.resize(fields.number());
   for (PlannedOutput& output : planned.outputs) {
     output.format = formats_[fields.number()];

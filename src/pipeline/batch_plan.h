@@ -25,6 +25,8 @@ class BatchPlan {
   [[nodiscard]] PlannedInput at(std::size_t index) const;
   // Input::path of it.
   [[nodiscard]] std::string_view path(std::size_t index) const;
+  // Input::name() of it.
+  [[nodiscard]] std::string name(std::size_t index) const;
 
  private:
   SharedText text_;

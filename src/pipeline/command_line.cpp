@@ -13,6 +13,7 @@
 #include "pipeline/limits.h"
 #include "pipeline/outputs.h"
 #include "pipeline/roundtrip.h"
+#include "pipeline/variants.h"
 #include "view/picture.h"
 
 namespace selvage::pipeline {
@@ -35,6 +36,8 @@ constexpr std::array commands = {
     Subcommand{info, "info", "what is in a file: yarns, sizes, units, lengths"},
     Subcommand{edit, "edit", "move a point of a yarn: adds an `edit` line to a text"},
     Subcommand{view, "view", "a picture of the yarns, ray-traced (PNG)"},
+    Subcommand{sweep, "sweep",
+               "check, convert or mesh an input with many values of its params, and make a table of the results"},
     Subcommand{formats, "formats", "the formats that can be read and written"}};
 
 const Commands on_batch = {convert, check, relax, mesh, roundtrip, info, view};
@@ -194,8 +197,34 @@ void inputs_and_outputs(OptionTable& t) {
            file, &Options::gap_map);
   t.option(on_batch, "--report", "write a JSON report to this file", file, &Options::report);
   t.option({roundtrip}, "--junit", "write the results as JUnit XML to this file", file, &Options::junit);
-  t.flag(writing, "--resume", "skip inputs that --report says are done, if their outputs are whole",
+  t.option(on_batch, "--set", "another value of a param of the input (more than one: selvage sweep)",
+           Argument::texts("NAME=VALUE"), into(&Options::sweep, &SweepWords::sets))
+      .is_of_run = false;
+  t.flag({convert, relax, mesh, view, check}, "--resume", "skip inputs that --report says are done, if their outputs are whole",
          &Options::resume);
+}
+
+void of_a_sweep(OptionTable& t) {
+  t.begin("The sweep", true);
+  t.option({sweep}, "--do", "what is done with each variant; its own options go with it",
+           Argument::one_of("check convert mesh"), [](Options&, const std::string&) { return Status(); })
+      .with_preset("check");
+  t.option({sweep}, "--set",
+           "values of a param: V, or V1,V2,..., or LOW:HIGH:STEP; LOW:HIGH with --lhs (several: all combinations)",
+           Argument::texts("NAME=VALUES"), into(&Options::sweep, &SweepWords::sets));
+  t.option({sweep}, "--table", "a CSV file: its columns are params, and each row is a variant",
+           Argument::text("FILE"), into(&Options::sweep, &SweepWords::table))
+      .goes_with("lists variants", "", "--lhs");
+  t.option({sweep}, "--lhs", "so many variants, a Latin hypercube of the ranges that --set gives",
+           Argument::whole(1, static_cast<std::int64_t>(most_variants)),
+           into(&Options::sweep, &SweepWords::samples));
+  t.option({sweep}, "--seed", "another hypercube", Argument::whole(0, std::numeric_limits<int>::max()),
+           into(&Options::sweep, &SweepWords::seed))
+      .with_preset("1")
+      .goes_with("is of a hypercube", "--lhs", "");
+  t.option({sweep}, "--csv", "the table of parameters and results", Argument::text("FILE"),
+           into(&Options::sweep, &SweepWords::csv))
+      .with_preset("sweep.csv");
 }
 
 void of_yarns(OptionTable& t) {
@@ -401,7 +430,7 @@ void of_formats(OptionTable& t) {
 const std::deque<Row>& all_rows() {
   static const std::deque<Row> rows = [] {
     OptionTable table;
-    for (auto* const part : {inputs_and_outputs, of_an_edit, of_a_picture, of_yarns, of_relaxing, of_a_mesh,
+    for (auto* const part : {inputs_and_outputs, of_a_sweep, of_an_edit, of_a_picture, of_yarns, of_relaxing, of_a_mesh,
                              of_a_cell, of_formats, of_running})
       part(table);
     return table.take();
@@ -469,18 +498,62 @@ std::span<const Subcommand> all_commands() {
   return commands;
 }
 
+// What a sweep may do with each variant.
+constexpr std::array swept = {Command::check, Command::convert, Command::mesh};
+
+static bool is_of(const Row& row, Command command) {
+  return std::find(row.commands.begin(), row.commands.end(), command) != row.commands.end();
+}
+
 std::vector<const Row*> rows_of(Command command) {
   std::vector<const Row*> rows;
-  for (const Row& row : all_rows())
-    if (std::find(row.commands.begin(), row.commands.end(), command) != row.commands.end())
-      rows.push_back(&row);
+  for (const Row& row : all_rows()) {
+    const auto is_done = [&](Command done) { return is_of(row, done); };
+    const auto is_own = [&](const Row& own) {
+      return own.option.name == row.option.name && is_of(own, command);
+    };
+    const bool is_swept = command == Command::sweep && std::any_of(swept.begin(), swept.end(), is_done) &&
+                          std::none_of(all_rows().begin(), all_rows().end(), is_own);
+    if (is_of(row, command) || is_swept) rows.push_back(&row);
+  }
   return rows;
+}
+
+// The rows of what a sweep does, and its own. Errors (usage): an option of another command.
+static Result<std::vector<const Row*>> rows_of_sweep(Command done, const Given& given) {
+  std::vector<const Row*> rows;
+  for (const Row* row : rows_of(Command::sweep)) {
+    if (is_of(*row, Command::sweep) || is_of(*row, done))
+      rows.push_back(row);
+    else if (given.contains(row->option.name))
+      return error(Kind::usage, fmt::format("{} does not go with a sweep that does '{}' (--do)",
+                                            row->option.long_name(), name_of(done)));
+  }
+  return rows;
+}
+
+// What a sweep does with each variant.
+static Result<Command> done_by_sweep(const Given& given) {
+  const auto found = given.find("--do");
+  if (found == given.end()) return Command::check;
+  for (const Command command : swept)
+    if (name_of(command) == found->second.back()) return command;
+  return error(Kind::usage, fmt::format("--do: '{}' is not one of check, convert, mesh", found->second.back()));
 }
 
 Result<Options> understand(Command command, const Given& given) {
   Options options;
   options.command = command;
-  const std::vector<const Row*> rows = rows_of(command);
+  std::vector<const Row*> rows = rows_of(command);
+  if (command == Command::sweep) {
+    const Result<Command> done = done_by_sweep(given);
+    if (!done) return done.error();
+    Result<std::vector<const Row*>> own = rows_of_sweep(*done, given);
+    if (!own) return own.error();
+    rows = std::move(*own);
+    options.command = *done;
+    options.sweep.wanted = true;
+  }
   Line line;
   for (const Row* row : rows) {
     const Option& option = row->option;

@@ -13,6 +13,7 @@
 #include "core/words.h"
 #include "pipeline/detect.h"
 #include "pipeline/parts.h"
+#include "pipeline/variants.h"
 
 namespace selvage::pipeline {
 
@@ -147,6 +148,43 @@ class Expansion {
 
 }  // namespace
 
+std::string Input::name() const {
+  std::string name = path;
+  for (const fabric::Setting& setting : settings)
+    name += fmt::format("{}{}={}", name.size() == path.size() ? '?' : '&', setting.name, setting.value);
+  return name;
+}
+
+namespace {
+
+// Every input with every variant.
+Status vary(InputList& list, const Options& options) {
+  Result<Variants> variants = variants_of(options);
+  if (!variants) return variants.error();
+  if (variants->size() == 1 && !options.sweep.wanted) {
+    for (Input& input : list.inputs) input.settings = variants->front();
+    return {};
+  }
+  if (Status few = check_number(static_cast<double>(variants->size()) *
+                                     static_cast<double>(list.inputs.size()));
+      !few)
+    return few;
+  const std::size_t digits = std::max<std::size_t>(4, std::to_string(variants->size()).size());
+  std::vector<Input> all;
+  all.reserve(list.inputs.size() * variants->size());
+  for (const Input& input : list.inputs)
+    for (std::size_t i = 0; i < variants->size(); ++i) {
+      all.push_back(input);
+      all.back().stem += fmt::format("_{:0{}}", i + 1, digits);
+      all.back().settings = (*variants)[i];
+    }
+  list.inputs = std::move(all);
+  list.one_file = false;
+  return {};
+}
+
+}  // namespace
+
 Result<InputList> inputs_of(const Options& options) {
   const std::vector<std::string>& given = options.inputs;
   const std::string& first = given.front();
@@ -164,6 +202,7 @@ Result<InputList> inputs_of(const Options& options) {
   expansion.list.one_file = expansion.is_one_file();
   if (expansion.list.inputs.empty() && expansion.list.missing.empty())
     return error(Kind::usage, "no input: the list is empty");
+  if (Status varied = vary(expansion.list, options); !varied) return varied.error();
   return std::move(expansion.list);
 }
 

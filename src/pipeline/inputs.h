@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/diagnostics.h"
+#include "fabric/model.h"
 #include "pipeline/options.h"
 
 namespace selvage::pipeline {
@@ -15,6 +16,10 @@ struct Input {
   std::string path;     // as the user would name it; "-": standard input
   std::string stem;     // of its outputs, below the output folder, without an extension: "a/plain"
   std::string other{};  // of `diff`: the path of what it is compared with; else empty
+  std::vector<fabric::Setting> settings{};  // of its params
+
+  // As reports call it: the path, of a variant `PATH?pitch=0.9&turns=200`.
+  [[nodiscard]] std::string name() const;
 };
 
 struct InputList {

@@ -43,7 +43,7 @@ std::vector<std::filesystem::path> further_files(const std::string& path) {
 
 Job::Job(const Options& options_in, const Input& input_in, const std::vector<PlannedOutput>& outputs_in,
          const Channel& channel)
-    : options(options_in), input(input_in), outputs(outputs_in), report(input.path), channel_(channel) {}
+    : options(options_in), input(input_in), outputs(outputs_in), report(input), channel_(channel) {}
 
 void Job::say(Message message, double badness) {
   if (says_once && message.severity != Severity::error && !said_.insert(to_string(message)).second) return;
@@ -62,6 +62,7 @@ void Job::say_rest() {
 
 void Job::show(Message message, double badness) {
   if (message.file.empty()) message.file = input.path == "-" ? "<stdin>" : input.path;
+  if (options.sweep.wanted) message.text += fmt::format(" [{}]", input.name().substr(input.path.size() + 1));
   if (tally_.take(message, badness)) tell(std::move(message));
 }
 
@@ -131,7 +132,12 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
   // Libraries die of some files: that is a defect of the file, not of ours.
   const std::string_view library = (*format)->foreign_reader;
   if (!library.empty()) channel_.send(packet::reader, library);
-  if ((*format)->read_fabric != nullptr) {
+  if (!input.settings.empty()) {
+    if ((*format)->read_with == nullptr)
+      return fail(error(Kind::unsupported,
+                        fmt::format("this is {} ({}), which has no params to set", (*format)->name, (*format)->title)));
+    fabric = (*format)->read_with(*source, input.settings, diagnostics);
+  } else if ((*format)->read_fabric != nullptr) {
     fabric = (*format)->read_fabric(*source, diagnostics);
   } else if (std::optional<cad::Model> model = read_whole_model(**format, *source, diagnostics)) {
     if (look.model) look.model(*model, **format);
@@ -279,8 +285,9 @@ Verdict work(Job& job, const std::string& earlier) {
     case Command::edit:
       edit(job);
       break;
+    case Command::sweep:
     case Command::formats:
-      break;  // no job
+      break;  // no jobs
   }
   if (job.has_failed()) return Verdict::failed;
   return defective || job.unsolved ? Verdict::defect : Verdict::done;
@@ -290,16 +297,21 @@ Verdict work(Job& job, const std::string& earlier) {
 
 Verdict run_job(Job& job, const std::string& earlier, const Channel& channel) {
   const Clock::time_point start = Clock::now();
-  if (job.wants_report()) job.report.settings = settings_of(job.options);
+  if (job.wants_report()) {
+    job.report.settings = settings_of(job.options);
+    for (const fabric::Setting& setting : job.input.settings)
+      job.report.settings += fmt::format(" {}={}", setting.name, setting.value);
+  }
   Verdict verdict = Verdict::failed;
   if (Status whole = guarded(job.options, [&] { verdict = work(job, earlier); }); !whole)
     job.say(whole.error());
   job.say_rest();
   if (!job.wants_report()) return verdict;
   job.report["ok"] = verdict == Verdict::done;
+  if (verdict == Verdict::defect) job.report["defect"] = true;
   job.report["seconds"] = std::chrono::duration<double>(Clock::now() - start).count();
   channel.send(packet::report, verdict == Verdict::skipped ? marked_skipped(earlier) : job.report.text());
-  return verdict;
+  return verdict == Verdict::skipped && has_defect(earlier) ? Verdict::defect : verdict;
 }
 
 }  // namespace selvage::pipeline

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,7 +18,7 @@
 
 namespace selvage::pipeline {
 
-enum class Command { convert, check, relax, mesh, roundtrip, diff, info, edit, view, formats };
+enum class Command { convert, check, relax, mesh, roundtrip, diff, info, edit, view, sweep, formats };
 std::string_view name_of(Command command);
 
 // --relax and what goes with it; lengths in the input's unit.
@@ -33,6 +34,16 @@ struct RelaxSettings {
 struct EditWords {
   std::string yarn, to, by, length, along;
   int point = 0;  // from 1
+};
+
+// Variants of inputs with other values of their params, as given: `--set` of all commands, the rest of `sweep`.
+struct SweepWords {
+  bool wanted = false;
+  std::vector<std::string> sets;  // NAME=VALUE, NAME=LOW:HIGH:STEP, NAME=LOW:HIGH, NAME=V1,V2,...
+  std::string table;              // a CSV file
+  std::size_t samples = 0;        // of a Latin hypercube
+  std::uint64_t seed = 1;
+  std::string csv;  // where parameters and results go
 };
 
 struct Options {
@@ -101,12 +112,13 @@ struct Options {
   bool all = false;                 // every difference, not only the first ones
 
   EditWords edit;
+  SweepWords sweep;
 
   bool json = false;   // info, diff: JSON instead of text
   bool table = false;  // info: the fixed points and control points of garment curves
 
   [[nodiscard]] bool wants_report() const {
-    return !report.empty() || !junit.empty() || (json && command == Command::info);
+    return !report.empty() || !junit.empty() || sweep.wanted || (json && command == Command::info);
   }
 };
 

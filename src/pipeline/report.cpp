@@ -46,12 +46,12 @@ std::string text_at(const Json& object, const char* key) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-InputReport::InputReport(std::string_view path)
-    : entries_(Json::object({{"path", path}, {"ok", false}, {"seconds", 0.0}})) {
+InputReport::InputReport(const Input& input)
+    : entries_(Json::object({{"path", input.name()}, {"ok", false}, {"seconds", 0.0}})) {
   // In the order in which they are written.
   for (const char* key : {"sha256", "settings", "units", "yarn_count", "yarns", "pieces", "overlaps",
                           "contacts", "entities", "not_understood", "min_gap", "creo_absolute_accuracy",
-                          "outputs", "instances", "relax", "mesh", "roundtrips"})
+                          "outputs", "instances", "relax", "mesh", "roundtrips", "defect"})
     entries_[key] = nullptr;
 }
 
@@ -102,10 +102,12 @@ Result<std::map<std::string, std::string>> read_entries(const std::string& repor
 bool is_still_valid(const std::string& entry, const std::string& input_sha256, const std::string& settings,
                     const std::vector<std::string>& output_paths) {
   const Json earlier = Json::parse(entry, nullptr, false);
-  if (!earlier.is_object() || !earlier.contains("ok") || earlier["ok"] != true) return false;
+  if (!earlier.is_object()) return false;
+  const bool has_ended = earlier.value("ok", false) || (output_paths.empty() && earlier.value("defect", false));
+  if (!has_ended) return false;
   if (text_at(earlier, "sha256") != input_sha256 || text_at(earlier, "settings") != settings) return false;
   const auto outputs = earlier.find("outputs");
-  if (outputs == earlier.end() || !outputs->is_array()) return false;
+  if (outputs == earlier.end() || !outputs->is_array()) return output_paths.empty();
   std::size_t matched = 0;
   const auto is_whole = [&](const std::string& path) {
     const auto found = std::find_if(outputs->begin(), outputs->end(),
@@ -124,6 +126,11 @@ bool is_still_valid(const std::string& entry, const std::string& input_sha256, c
     if (number == 1) return false;
   }
   return matched == outputs->size();
+}
+
+bool has_defect(const std::string& entry) {
+  const Json earlier = Json::parse(entry, nullptr, false);
+  return earlier.is_object() && earlier.value("defect", false);
 }
 
 std::string marked_skipped(const std::string& entry) {

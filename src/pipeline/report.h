@@ -13,6 +13,7 @@
 #include "core/diagnostics.h"
 #include "core/units.h"
 #include "core/vec.h"
+#include "pipeline/inputs.h"
 
 namespace selvage::pipeline {
 
@@ -22,7 +23,7 @@ using Json = nlohmann::ordered_json;
 // the parent.
 class InputReport {
  public:
-  explicit InputReport(std::string_view path);
+  explicit InputReport(const Input& input);
 
   std::string settings;       // what the outputs depend on beside the input: `--resume` compares it
   std::optional<Unit> units;  // of the input, when it was read
@@ -82,9 +83,13 @@ std::string whole_report(const std::string& started, double seconds, bool ok, co
 Result<std::map<std::string, std::string>> read_entries(const std::string& report_path);
 
 // True when `entry` (JSON text of an earlier run) says that this input, with these settings, gave whole
-// outputs at `output_paths` that are still there, byte for byte.
+// outputs at `output_paths` that are still there, byte for byte; of a command without outputs: that it came to
+// its end.
 bool is_still_valid(const std::string& entry, const std::string& input_sha256, const std::string& settings,
                     const std::vector<std::string>& output_paths);
+
+// Did it find a defect?
+bool has_defect(const std::string& entry);
 
 // The entry of an earlier run with `"skipped": true`.
 std::string marked_skipped(const std::string& entry);
