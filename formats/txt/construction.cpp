@@ -1,8 +1,7 @@
 // The fabrics by construction: `weave`, `knit`, `warpknit`, `braid`.
 #include <fmt/format.h>
 
-#include <numeric>
-
+#include "fabric/draft.h"
 #include "fabric/lapping.h"
 #include "formats/txt/blocks.h"
 
@@ -22,7 +21,11 @@ using fabric::WeaveSystem;
 
 void read_extent(Parser& p, std::string_view what, int& count, double& pitch) {
   const auto number = p.count(what);
-  if (same_word(p.peek_word(), "pitch")) p.take_word();
+  // The word may be left out before a number.
+  const std::string_view word = p.peek_word();
+  const bool is_number = word.empty() || !is_letter(word.front()) || p.scope().begins_with_param(word) ||
+                         word.find('(') != std::string_view::npos;
+  if (!is_number || same_word(word, "pitch")) p.expect("pitch");
   const auto distance = p.positive("the pitch", Measure::pitch);
   if (!p.finish()) return;
   count = *number;
@@ -31,11 +34,21 @@ void read_extent(Parser& p, std::string_view what, int& count, double& pitch) {
 
 void read_system(Parser& p, WeaveSystem& system) {
   system.place = p.statement().place();
-  do
-    if (const auto thread = p.reference(p.threads)) system.threads.emplace_back(*thread);
-  while (p.comma());
+  constexpr std::size_t most = 1'000'000;
+  do {
+    const Spot spot = p.here();
+    const std::size_t times = p.leading_count();
+    const auto thread = p.reference(p.threads);
+    if (!thread) continue;
+    if (times < 1 || times > most - system.threads.size())
+      return p.error(spot, fmt::format("a list of threads has from 1 to {} of them", most));
+    system.threads.insert(system.threads.end(), times, std::string(*thread));
+  } while (p.comma());
   read_extent(p, "the number of yarns", system.count, system.pitch);
 }
+
+// Of larger drafts the builder tells what is wrong with them.
+constexpr int most_shafts_checked = 1000;
 
 // A weave's statements, and where its draft stands: only the whole block tells whether there has to be one.
 struct WeaveBlock : Weave {
@@ -95,6 +108,28 @@ void read_draft_rows(Parser& p, Draft& draft) {
   read_sign_rows(p, {"draft", "01", "0 and 1 (1: warp on top)", draft.rows});
 }
 
+void read_draft_numbers(Parser& p, Draft& draft) {
+  const std::string what = fmt::format("the {}", word_of(draft_words, draft.form));
+  const bool is_twill = draft.form == Draft::Form::twill, is_satin = draft.form == Draft::Form::satin;
+  const auto numbers = p.counts(what, '/');
+  if (!numbers) return;
+  const Spot spot = p.last();
+  const std::size_t least = is_satin ? 1 : 2, most = is_twill ? numbers->size() : 2;
+  if (numbers->size() < least || numbers->size() > most)
+    return p.error(spot, fmt::format("{}: {} whole numbers joined by '/' are expected, as in 2/1", what,
+                                     is_satin ? "one or two" : "two"));
+  draft.a = numbers->front();
+  draft.b = numbers->size() > 1 ? (*numbers)[1] : 0;
+  if (is_twill && numbers->size() > 2) draft.further.assign(numbers->begin() + 2, numbers->end());
+  if (is_twill && p.more()) draft.hand = p.choice("direction of the twill", hand_words).value_or(Hand::z);
+  if (is_satin && p.more()) draft.warp_faced = p.choice("face of the satin", face_words).value_or(false);
+  // What cannot be is told where it stands.
+  if (p.finish() && draft.a <= most_shafts_checked)
+    if (const Result<fabric::Drawdown> made = fabric::drawdown_of(draft);
+        !made && made.error().kind == Kind::malformed)
+      p.error(spot, made.error().text);
+}
+
 void read_draft(Parser& p, WeaveBlock& weave, std::string_view) {
   Draft& draft = weave.draft;
   weave.draft_place = p.statement();
@@ -112,17 +147,8 @@ void read_draft(Parser& p, WeaveBlock& weave, std::string_view) {
       return;
     }
   } else if (*form != Draft::Form::plain) {
-    const auto numbers = p.pair(fmt::format("the {}", word_of(draft_words, *form)), '/');
-    if (!numbers) return;
-    draft.a = (*numbers)[0];
-    draft.b = (*numbers)[1];
-    if (*form == Draft::Form::satin &&
-        (draft.b < 2 || draft.b > draft.a - 2 || std::gcd(draft.a, draft.b) != 1))
-      p.error(
-          p.last(),
-          fmt::format("a satin {}/{} does not exist: the step lies between 1 and {} and has no divisor in "
-                      "common with {}",
-                      draft.a, draft.b, draft.a - 1, draft.a));
+    read_draft_numbers(p, draft);
+    return;
   }
   p.finish();
 }

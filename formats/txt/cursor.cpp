@@ -150,6 +150,17 @@ std::string_view Cursor::take_word() {
   return word;
 }
 
+std::string_view Cursor::take_color_code() {
+  constexpr std::size_t length = 7;
+  if (has_token() || bytes_left() < length || *at_ != '#') return {};
+  const std::string_view code(at_, length);
+  constexpr std::string_view digits = "0123456789abcdefABCDEF";
+  if (code.find_first_not_of(digits, 1) != std::string_view::npos || !ends_token(at_ + length)) return {};
+  token_ = at_;
+  at_ += length;
+  return code;
+}
+
 std::string_view Cursor::take_rest() {
   if (!has_token()) return {};
   token_ = at_;
@@ -208,6 +219,16 @@ std::optional<std::string_view> Cursor::name(std::string_view what, bool may_be_
   return fail(last(), fmt::format("{}: {} is not a name (letters, digits, '_', '.', '-', a letter first; "
                                   "anything else stands in double quotes)",
                                   what, in_quotes(word)));
+}
+
+std::size_t Cursor::leading_count() {
+  if (!more()) return 1;
+  std::size_t count = 0;
+  const auto [stop, failure] = std::from_chars(at_, end_, count);
+  if (stop == at_ || stop == end_ || (!starts_name(*stop) && *stop != '"')) return 1;
+  token_ = at_;
+  at_ = stop;
+  return failure == std::errc{} ? count : 0;
 }
 
 bool Cursor::comma() {

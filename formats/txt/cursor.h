@@ -47,12 +47,16 @@ class Cursor {
   // The next word, up to a blank; empty at the end of the line. Taking leaves it behind, peeking does not.
   std::string_view peek_word();
   std::string_view take_word();
+  // `#RRGGBB`, which elsewhere would be a comment; empty where the next token is none.
+  std::string_view take_color_code();
   // The text up to a comment or the end of the line, without blanks round it.
   std::string_view take_rest();
 
   // The following report what is wrong, calling the value `what`, and give nothing then, nor for what follows
   // it in the statement: that is not looked at. A name, or text in quotes; `may_be_empty`: "" is allowed.
   std::optional<std::string_view> name(std::string_view what, bool may_be_empty = false);
+  // The 4 of `4a`, a name so many times; 1 where a name stands alone, 0 where there are too many.
+  std::size_t leading_count();
   // The comma of a list of names, with blanks round it, if it comes next.
   bool comma();
   std::optional<double> number(std::string_view what, Measure measure = Measure::plain);

@@ -7,6 +7,9 @@
 #include <charconv>
 #include <limits>
 
+#include "core/words.h"
+#include "fabric/fibres.h"
+
 namespace selvage::formats::txt {
 
 namespace {
@@ -89,7 +92,12 @@ int Parser::note_given(Block& block, int index, std::string_view word) {
   for (const Block* outer = block.outer; outer != nullptr; outer = outer->outer)
     if (find_word(outer->table->words, word) >= 0) return missing_end_step;
   const std::string there = block.outer == nullptr ? "this file" : block.title();
-  error(statement(), fmt::format("{} is given twice in {}; first on line {}", in_quotes(word), there, line));
+  std::vector<std::string_view> words;
+  for (std::size_t j = 0; j < block.table->words.size(); ++j)
+    if (block.table->slots[j] == slot) words.push_back(block.table->words[j]);
+  error(statement(), fmt::format("{} is given twice in {}; first on line {}{}", in_quotes(word), there, line,
+                                 words.size() > 1 ? fmt::format(" (of {} one may stand)", fmt::join(words, ", "))
+                                                  : std::string()));
   return index;
 }
 
@@ -213,6 +221,24 @@ bool Parser::expect(std::string_view word) {
   return !has_failed();
 }
 
+std::optional<std::vector<int>> Parser::counts(std::string_view what, char sign) {
+  if (has_failed()) return std::nullopt;
+  const Spot spot = here();
+  const std::string_view word = take_word();
+  if (word.empty()) return fail(spot, fmt::format("{} is missing", what));
+  std::vector<int> values;
+  constexpr std::size_t most = 1000;
+  for (const std::string_view part : split(word, sign)) {
+    int value = 0;
+    const auto [stop, failure] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (failure != std::errc{} || stop != part.data() + part.size() || value < 1 || values.size() == most)
+      return fail(spot, fmt::format("{}: whole numbers joined by '{}' are expected, as in 2{}1, found {}", what,
+                                    sign, sign, in_quotes(word)));
+    values.push_back(value);
+  }
+  return values;
+}
+
 std::optional<std::array<int, 2>> Parser::pair(std::string_view what, char sign) {
   if (has_failed()) return std::nullopt;
   const Spot spot = here();
@@ -262,9 +288,12 @@ void Parser::check_references() {
   for (const Reference& reference : references_) {
     const Names& names = *reference.names;
     if (names.lines.contains(reference.name) || (&names == &yarns && !are_yarns_known)) continue;
+    if (&names == &materials && fabric::find_fibre(reference.name) != nullptr) continue;
     if (is_stopped()) return;
     std::vector<std::string_view> known;
     for (const auto& [name, line] : names.lines) known.push_back(name);
+    if (&names == &materials)
+      for (const fabric::Fibre& fibre : fabric::all_fibres()) known.push_back(fibre.material.name);
     std::sort(known.begin(), known.end());
     error(reference.spot, fmt::format("unknown {} {}{}", names.kind, in_quotes(reference.name),
                                       known.empty() ? fmt::format("; this file defines no {}", names.kind)

@@ -121,6 +121,8 @@ class Parser : public Cursor {
   bool expect(std::string_view word);
   // Two counts joined by a sign: "2/1", "1x1".
   std::optional<std::array<int, 2>> pair(std::string_view what, char sign);
+  // As many as there are, at most 1000.
+  std::optional<std::vector<int>> counts(std::string_view what, char sign);
 
   // --- names
   // ----------------------------------------------------------------------------------------------------- The

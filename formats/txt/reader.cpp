@@ -237,6 +237,7 @@ std::optional<Fabric> read(const Source& source, std::span<const fabric::Setting
   } else if (read_version(p)) {
     p.read_block("", "", p.statement(), file_table(), p.fabric);
     p.check_references();
+    p.fabric.tell_threads_their_materials();
     check_settings(p, source);
   }
   return std::move(p.fabric);

@@ -216,6 +216,20 @@ Result<double> Scope::expression(std::string_view text, Measure measure) {
   return value.ok() || value.error().kind != Kind::malformed ? value : wrong(text, value.error().text);
 }
 
+// What is more than one number: with brackets, an operator behind a value, or a name where there are params.
+bool Scope::is_expression(std::string_view text) const {
+  if (text.find('(') != std::string_view::npos) return true;
+  if (text.find(',') != std::string_view::npos) return false;
+  const std::string_view unsigned_text = text.substr(text.front() == '-' || text.front() == '+' ? 1 : 0);
+  if (is_identifier(unsigned_text)) return !values_.empty();
+  double number = 0;
+  std::size_t i = leading_number(text, number);
+  for (i = std::max<std::size_t>(i, 1); i < text.size(); ++i)
+    if (std::string_view("+-*/^<>=!?:&|").find(text[i]) != std::string_view::npos)
+      return continues_identifier(text[i - 1]) || text[i - 1] == '.';
+  return false;
+}
+
 std::optional<Result<double>> Scope::value(std::string_view text, Measure measure) {
   if (double number = 0; leading_number(text, number) == text.size()) return number;
   if (std::optional<Result<double>> number = with_unit(text, measure)) return number;
@@ -230,11 +244,7 @@ std::optional<Result<double>> Scope::value(std::string_view text, Measure measur
     if (!(*number > 0.0)) return wrong(text, "so many on a length have to be more than 0");
     return count->length / *number;
   }
-  constexpr std::string_view operators = "+-*/^()<>=!?:&|";
-  const bool has_operator = text.find_first_of(operators, 1) != std::string_view::npos || text.front() == '(';
-  const bool has_name = starts_name(text.front()) || (text.size() > 1 && starts_name(text[1]));
-  if (!has_operator && !(has_name && !values_.empty() && is_identifier(text.substr(starts_name(text[0]) ? 0 : 1))))
-    return std::nullopt;
+  if (!is_expression(text)) return std::nullopt;
   return expression(text, measure);
 }
 

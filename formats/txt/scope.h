@@ -66,6 +66,7 @@ class Scope {
   [[nodiscard]] double in_file_units(const NumberUnit& unit) const;
   std::optional<Result<double>> with_unit(std::string_view text, Measure measure);
   [[nodiscard]] std::optional<Count> count_on_length(std::string_view text);
+  [[nodiscard]] bool is_expression(std::string_view text) const;
   Result<double> expression(std::string_view text, Measure measure);
   [[nodiscard]] Status check_names(std::string_view text, Measure measure) const;
 

@@ -5,6 +5,7 @@
 
 #include "core/plane.h"
 #include "formats/txt/blocks.h"
+#include "formats/txt/colors.h"
 
 namespace selvage::formats::txt {
 
@@ -21,18 +22,20 @@ void read_linear_density(Parser& p, Thread& thread, std::string_view word) {
   if (!value) return;
   fabric::LinearDensity density;
   for (const auto& measure : density_words)
-    if (measure.text == word) density = {*value, measure.value};
+    if (same_word(measure.text, word)) density = {*value, measure.value};
+  if (same_word(word, "Td")) density = {*value, LinearDensity::Measure::denier};
   p.check(fabric::linear_density_quantity, density.tex());
   if (p.finish()) thread.linear_density = density;
 }
 
-void read_packing(Parser& p, Thread& thread, std::string_view) {
+template <class Owner>
+void read_packing(Parser& p, Owner& owner, std::string_view) {
   const auto value = p.positive("the packing");
   if (value && *value > 1.0)
     p.error(p.last(), "the packing is a share of the section: it cannot be larger than 1");
   else if (value)
     p.check(fabric::packing_quantity, *value);
-  if (p.finish()) thread.packing = *value;
+  if (p.finish()) owner.packing = *value;
 }
 
 std::optional<yarn::Section> read_polygon(Parser& p) {
@@ -105,6 +108,16 @@ void read_plies(Parser& p, Thread& thread, std::string_view) {
 
 void read_color(Parser& p, Thread& thread, std::string_view) {
   fabric::Color color;
+  const std::string_view word = p.peek_word(), code = p.take_color_code();
+  if (!code.empty() || (!word.empty() && is_letter(word.front()))) {
+    const std::string_view given = code.empty() ? p.take_word() : code;
+    const std::optional<fabric::Color> named = color_named(given);
+    if (!named)
+      return p.error(p.last(), fmt::format("unknown colour {}{} (or #RRGGBB, or three numbers from 0 to 255)",
+                                           in_quotes(given), did_you_mean(given, color_names())));
+    if (p.finish()) thread.color = named;
+    return;
+  }
   for (int* part : {&color.red, &color.green, &color.blue})
     *part = p.integer("a colour's red, green or blue", 0, 255).value_or(0);
   if (p.finish()) thread.color = color;
@@ -164,10 +177,13 @@ void read_expansion(Parser& p, Material& material, std::string_view) {
 const std::vector<Statement<Thread>>& thread_statements() {
   static const std::vector<Statement<Thread>> list = {
       {"tex", read_linear_density},
+      {"dtex", read_linear_density, Times::at_most_once, "tex"},
       {"denier", read_linear_density, Times::at_most_once, "tex"},
+      {"Td", read_linear_density, Times::at_most_once, "tex"},
+      {"Nm", read_linear_density, Times::at_most_once, "tex"},
       {"Ne", read_linear_density, Times::at_most_once, "tex"},
       {"density", into(&Thread::density, a_positive("the fibre density", fabric::density_quantity))},
-      {"packing", read_packing},
+      {"packing", read_packing<Thread>},
       {"diameter", into(&Thread::diameter, a_length("the diameter"))},
       {"section", read_section},
       {"twist", read_twist},
@@ -200,6 +216,7 @@ void read_thread(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 void read_material(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   static const Table<Material> table(
       {{"density", into(&Material::density, a_positive("the density", fabric::density_quantity))},
+       {"packing", read_packing<Material>},
        {"elastic", read_elastic},
        {"expansion", read_expansion}});
   read_named(p, table, p.materials, word, fabric.materials);

@@ -27,9 +27,11 @@ using fabric::Weave;
 
 // All are compared ignoring case and written as they stand here.
 inline constexpr std::array<Word<Hand>, 2> hand_words{{{"Z", Hand::z}, {"S", Hand::s}}};
-inline constexpr std::array<Word<LinearDensity::Measure>, 3> density_words{
+inline constexpr std::array<Word<LinearDensity::Measure>, 5> density_words{
     {{"tex", LinearDensity::Measure::tex},
+     {"dtex", LinearDensity::Measure::dtex},
      {"denier", LinearDensity::Measure::denier},
+     {"Nm", LinearDensity::Measure::nm},
      {"Ne", LinearDensity::Measure::ne}}};
 inline constexpr std::array<Word<Unit>, 5> unit_words{
     {{"m", Unit::m}, {"cm", Unit::cm}, {"mm", Unit::mm}, {"um", Unit::um}, {"inch", Unit::inch}}};
@@ -54,6 +56,7 @@ inline constexpr std::array<Word<Draft::Form>, 5> draft_words{{{"plain", Draft::
                                                                {"satin", Draft::Form::satin},
                                                                {"basket", Draft::Form::basket},
                                                                {"file", Draft::Form::file}}};
+inline constexpr std::array<Word<bool>, 2> face_words{{{"warp-faced", true}, {"weft-faced", false}}};
 inline constexpr std::array<Word<Weave::Profile>, 5> profile_words{
     {{"peirce", Weave::Profile::peirce},
      {"sine", Weave::Profile::sine},

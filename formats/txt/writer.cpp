@@ -121,6 +121,7 @@ void write_material(Lines& out, const fabric::Material& material) {
   out.blank_line();
   out.line(0, "material").name(material.name);
   if (material.density) out.line(1, "density").value(*material.density);
+  if (material.packing) out.line(1, "packing").value(*material.packing);
   if (const auto* isotropic = std::get_if<fabric::IsotropicElastic>(&material.elastic))
     out.line(1, "elastic isotropic").value(isotropic->modulus).value(isotropic->poisson);
   if (const auto* e = std::get_if<fabric::TransverseElastic>(&material.elastic))
@@ -226,8 +227,13 @@ void write_draft(Lines& out, const fabric::Draft& draft) {
   out.word(word_of(draft_words, draft.form));
   if (draft.form == Draft::Form::file)
     out.name(draft.file);
+  else if (draft.form == Draft::Form::satin && draft.b == 0)
+    out.value(draft.a);
   else if (draft.form != Draft::Form::plain)
     write_pair(out, draft.a, "/", draft.b);
+  for (const int count : draft.further) out.raw(fmt::format("/{}", count));
+  if (draft.hand != Hand::z) out.word(word_of(hand_words, draft.hand));
+  if (draft.warp_faced) out.word(word_of(face_words, draft.warp_faced));
 }
 
 void write_item(Lines& out, const fabric::Weave& weave) {

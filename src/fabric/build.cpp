@@ -112,20 +112,20 @@ void describe(yarn::Body& body, const std::string& name, const std::string& thre
   body.role = role;
   body.color = thread.color.value_or(Color{});
   body.twist = fibre_twist(thread, units);
-  if (thread.linear_density && thread.density)
+  if (thread.linear_density && thread.fibre_density())
     body.fibre_area =
-        thread.linear_density->tex() / (1000 * *thread.density) / std::pow(millimetres_per(units), 2);
+        thread.linear_density->tex() / (1000 * *thread.fibre_density()) / std::pow(millimetres_per(units), 2);
   body.place = place;
 }
 
-// What its material has, else by the mass along it, else by what the thread says of its section.
+// By the mass along it, else what its material has, else by what the thread says of its section.
 double density_of(const Fabric& fabric, const Thread& thread, const yarn::Body& body) {
-  if (const Material* const material = fabric.find_material(body.material))
-    if (material->density) return *material->density;
   if (thread.linear_density && body.volume > 0)  // g/km by mm2 is 1e-3 g/cm3
     return 1e-3 * thread.linear_density->tex() * body.length /
            (body.volume * std::pow(millimetres_per(fabric.units), 2));
-  return thread.density && thread.packing ? *thread.density * *thread.packing : 0;
+  if (const Material* const material = fabric.find_material(body.material))
+    if (material->density) return *material->density * thread.size_packing().value_or(1.0);
+  return thread.fibre_density() && thread.size_packing() ? *thread.fibre_density() * *thread.size_packing() : 0;
 }
 
 }  // namespace

@@ -42,13 +42,55 @@ Result<Drawdown> from_rows(const std::vector<std::string>& rows) {
                 });
 }
 
-Result<Drawdown> satin(long long n, long long step) {
+// Which end each pick of an irregular satin has on top; empty: it is a regular one.
+std::vector<long long> irregular_satin(long long n) {
+  if (n == 4) return {0, 1, 3, 2};
+  if (n == 6) return {0, 2, 4, 1, 5, 3};
+  return {};
+}
+
+long long usual_step(long long n) {
+  long long step = 2;
+  while (step <= n - 2 && std::gcd(n, step) != 1) ++step;
+  return step;
+}
+
+Result<Drawdown> satin(long long n, long long step, bool warp_faced) {
+  const std::vector<long long> order = step == 0 ? irregular_satin(n) : std::vector<long long>();
+  if (!order.empty())
+    return filled(n, n, [&](long long pick, long long end) {
+      return (order[static_cast<std::size_t>(pick)] == end) != warp_faced;
+    });
+  if (step == 0 && n < 5)
+    return error(Kind::malformed, fmt::format("a satin {} does not exist: the smallest is 4", n));
+  if (step == 0) step = usual_step(n);
   if (step < 2 || step > n - 2 || std::gcd(n, step) != 1)
     return error(Kind::malformed,
                  fmt::format("a satin {}/{} does not exist: the step lies between 1 and {} and has "
                              "no divisor in common with {}",
                              n, step, n - 1, n));
-  return filled(n, n, [&](long long pick, long long end) { return (end + step * pick) % n == 0; });
+  return filled(n, n, [&](long long pick, long long end) {
+    return ((end + step * pick) % n == 0) != warp_faced;
+  });
+}
+
+Result<Drawdown> twill(const Draft& draft) {
+  std::vector<int> runs = {draft.a, draft.b};
+  runs.insert(runs.end(), draft.further.begin(), draft.further.end());
+  if (runs.size() % 2 != 0)
+    return error(Kind::malformed, "a twill goes over and under in turn: an even number of counts");
+  std::string one_pick;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i] < 1) return error(Kind::malformed, "the counts of a twill are 1 or more");
+    if (runs[i] > most_crossings) return error(Kind::limit, "the counts of the twill are too large");
+    one_pick.append(static_cast<std::size_t>(runs[i]), i % 2 == 0 ? '1' : '0');
+    if (one_pick.size() > most_crossings) return error(Kind::limit, "the counts of the twill are too large");
+  }
+  const auto period = static_cast<long long>(one_pick.size());
+  const long long move = draft.hand == Hand::z ? 1 : -1;
+  return filled(period, period, [&](long long pick, long long end) {
+    return one_pick[static_cast<std::size_t>(wrapped(end + move * pick, period))] == '1';
+  });
 }
 
 }  // namespace
@@ -69,8 +111,7 @@ long long Drawdown::repeat_of_ends() const {
 Result<Drawdown> drawdown_of(const Draft& draft) {
   const long long a = draft.a;
   const long long b = draft.b;
-  const bool is_pair = draft.form == Draft::Form::twill || draft.form == Draft::Form::basket;
-  if (is_pair && (a < 1 || b < 1))
+  if (draft.form == Draft::Form::basket && (a < 1 || b < 1))
     return error(Kind::malformed,
                  fmt::format("a draft {}/{} does not exist: both numbers are 1 or more", a, b));
   switch (draft.form) {
@@ -79,9 +120,9 @@ Result<Drawdown> drawdown_of(const Draft& draft) {
     case Draft::Form::plain:
       return filled(2, 2, [](long long pick, long long end) { return pick == end; });
     case Draft::Form::twill:
-      return filled(a + b, a + b, [&](long long pick, long long end) { return (pick + end) % (a + b) < a; });
+      return twill(draft);
     case Draft::Form::satin:
-      return satin(a, b);
+      return satin(a, b, draft.warp_faced);
     case Draft::Form::basket:
       return filled(a + b, a + b, [&](long long pick, long long end) { return (pick < a) == (end < a); });
     case Draft::Form::file:

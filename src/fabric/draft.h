@@ -32,12 +32,15 @@ struct Drawdown {
 };
 
 // plain       10 / 01
-// twill a/b   over a, under b; from a pick to the next one end to the left: a Z twill. Period a + b both
-// ways. satin n/s   weft-faced: one warp on top a pick, s ends further to the left from pick to pick. basket
-// a/b  blocks: warps 1..a over picks 1..a and under the next b, the next b warps the other way round.
+// twill a/b/...  over a, under b, over ...; from a pick to the next one end to the left: a Z twill; to the
+// right: S. Period their sum both ways. satin n/s   weft-faced: one warp on top a pick, s ends further to the
+// left from pick to pick; warp-faced: one weft on top. Without s the smallest step that there is; 4 and 6,
+// which have none, are the irregular satins of the trade (crowfoot; 1 3 5 2 6 4). basket a/b  blocks: warps
+// 1..a over picks 1..a and under the next b, the next b warps the other way round.
 //
-// Fails (malformed) on rows that are empty, ragged or hold other signs, on counts below 1 and on a satin
-// whose step does not lie within 2..n-2 or has a divisor in common with n; (limit) on a repeat of more than
+// Fails (malformed) on rows that are empty, ragged or hold other signs, on counts below 1, an odd number of
+// them, and on a satin whose step does not lie within 2..n-2 or has a divisor in common with n, or that has
+// none; (limit) on a repeat of more than
 // 100 million crossings; (unsupported) on a draft that is still the name of a file: whoever reads files puts
 // its rows in.
 Result<Drawdown> drawdown_of(const Draft& draft);

@@ -2,14 +2,20 @@
 
 #include <algorithm>
 
+#include "fabric/fibres.h"
+
 namespace selvage::fabric {
 
 double LinearDensity::tex() const {
   switch (measure) {
     case Measure::tex:
       return value;
+    case Measure::dtex:
+      return value / 10.0;
     case Measure::denier:
       return value / 9.0;
+    case Measure::nm:
+      return 1000.0 / value;
     // English cotton count: 840-yard hanks a pound; 1000 g/km over (840 * 0.9144 m / 453.59237 g).
     case Measure::ne:
       return 453.59237e3 / (840.0 * 0.9144) / value;
@@ -39,7 +45,22 @@ const Thread* Fabric::find_thread(std::string_view name) const {
   return find_named(threads, name);
 }
 const Material* Fabric::find_material(std::string_view name) const {
-  return find_named(materials, name);
+  const Material* const own = find_named(materials, name);
+  return own != nullptr ? own : find_fibre(name);
+}
+
+namespace {
+
+void take_from_material(Thread& thread, const Fabric& fabric) {
+  const Material* const material = thread.material ? fabric.find_material(*thread.material) : nullptr;
+  thread.material_density = material != nullptr ? material->density : std::nullopt;
+  thread.material_packing = material != nullptr ? material->packing : std::nullopt;
+}
+
+}  // namespace
+
+void Fabric::tell_threads_their_materials() {
+  for (Thread& thread : threads) take_from_material(thread, *this);
 }
 
 Thread resolved_thread(const Fabric& fabric, const Yarn& yarn) {
@@ -56,6 +77,7 @@ Thread resolved_thread(const Fabric& fabric, const Yarn& yarn) {
   override_with(thread.filaments, own.filaments);
   override_with(thread.color, own.color);
   override_with(thread.material, own.material);
+  take_from_material(thread, fabric);
   return thread;
 }
 

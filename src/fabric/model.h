@@ -26,10 +26,10 @@ using yarn::Color;
 using yarn::Role;
 
 struct LinearDensity {
-  enum class Measure { tex, denier, ne };
+  enum class Measure { tex, dtex, denier, nm, ne };
   double value = 0;
   Measure measure = Measure::tex;
-  [[nodiscard]] double tex() const;  // g/km; denier / 9, 590.5412... / Ne
+  [[nodiscard]] double tex() const;  // g/km; dtex / 10, denier / 9, 1000 / Nm, 590.5412... / Ne
   bool operator==(const LinearDensity&) const = default;
 };
 
@@ -63,6 +63,15 @@ struct Thread {
   std::optional<int> filaments;
   std::optional<Color> color;
   std::optional<std::string> material;
+
+  // What its material says where the thread does not; of the fibres.
+  std::optional<double> material_density, material_packing;
+  [[nodiscard]] std::optional<double> fibre_density() const { return density ? density : material_density; }
+  // Of a monofilament all of the section is fibre.
+  [[nodiscard]] std::optional<double> size_packing() const {
+    if (packing) return packing;
+    return filaments == 1 ? std::optional(1.0) : material_packing;
+  }
 };
 
 struct IsotropicElastic {
@@ -87,6 +96,7 @@ struct Material {
   std::string name;
   TextPlace place;
   std::optional<double> density;  // g/cm3
+  std::optional<double> packing;  // share of a yarn's section that such fibres fill, 0 < packing <= 1
   std::variant<std::monostate, IsotropicElastic, TransverseElastic> elastic;
   std::optional<Expansion> expansion;
 };
@@ -153,7 +163,10 @@ struct Draft {
   Form form = Form::plain;
   TextPlace place;
   std::vector<std::string> rows;  // of '0' and '1', top row = weft 1
-  int a = 0, b = 0;               // twill a/b, satin a/b, basket a/b
+  int a = 0, b = 0;               // twill a/b/..., satin a/b (0: the trade's step), basket a/b
+  std::vector<int> further;       // of a twill: over, under, ... behind the first two
+  Hand hand = Hand::z;            // of a twill: which way its diagonal rises
+  bool warp_faced = false;        // satin
   std::string file;
 };
 
@@ -287,7 +300,10 @@ struct Fabric {
   bool yarns_are_solids = false;  // IGES: 186s, not groups of 128s
 
   [[nodiscard]] const Thread* find_thread(std::string_view name) const;
+  // One of the text's own, else a fibre of the trade (fibres.h).
   [[nodiscard]] const Material* find_material(std::string_view name) const;
+  // Tells the threads what their materials say. To be called once all are there.
+  void tell_threads_their_materials();
 };
 
 // What is asked of a text from outside: another value of one of its params.

@@ -39,9 +39,9 @@ bool is_round(const yarn::Section& section) {
 // The share of a yarn's section that its filaments are to fill; none: as much as they can.
 std::optional<double> wanted_share(const Thread& thread, double area, Unit units) {
   if (thread.packing) return thread.packing;
-  if (!thread.linear_density || !thread.density) return std::nullopt;
+  if (!thread.linear_density || !thread.fibre_density()) return std::nullopt;
   const double mm = millimetres_per(units);
-  return std::min(thread.linear_density->tex() / (1000.0 * *thread.density * area * mm * mm), 1.0);
+  return std::min(thread.linear_density->tex() / (1000.0 * *thread.fibre_density() * area * mm * mm), 1.0);
 }
 
 // Discs in the section of a yarn: where they lie, and whether they are spread over it.

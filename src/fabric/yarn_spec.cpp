@@ -49,14 +49,14 @@ Result<yarn::Section> section_of(const Thread& thread, Unit units, bool rows_giv
   if (diameter == nullptr || *diameter > 0.0) return section;
   if (thread.diameter) {
     *diameter = *thread.diameter;
-  } else if (thread.linear_density && thread.density && thread.packing) {
-    *diameter = yarn_diameter(thread.linear_density->tex(), *thread.density, *thread.packing) /
+  } else if (thread.linear_density && thread.fibre_density() && thread.size_packing()) {
+    *diameter = yarn_diameter(thread.linear_density->tex(), *thread.fibre_density(), *thread.size_packing()) /
                 millimetres_per(units);
   } else if (!rows_give_sizes) {
     std::string missing;
     for (const auto& [word, is_there] : {std::pair{"`tex`", thread.linear_density.has_value()},
-                                         std::pair{"`density`", thread.density.has_value()},
-                                         std::pair{"`packing`", thread.packing.has_value()}})
+                                         std::pair{"`density`", thread.fibre_density().has_value()},
+                                         std::pair{"`packing`", thread.size_packing().has_value()}})
       if (!is_there) missing += (missing.empty() ? "" : ", ") + std::string(word);
     return error(
         Kind::geometry,
@@ -165,7 +165,7 @@ std::string share_oddity(const Thread& thread, const yarn::Section& section,
   for (const yarn::SectionSize& size : sizes) {
     if (!yarn::check_section(section, size).ok()) return {};  // reported where the yarn is built
     const double share =
-        thread.linear_density->tex() / (1000.0 * *thread.density * yarn::area(section, size) * mm * mm);
+        thread.linear_density->tex() / (1000.0 * *thread.fibre_density() * yarn::area(section, size) * mm * mm);
     low = std::min(low, share);
     high = std::max(high, share);
   }
@@ -174,7 +174,7 @@ std::string share_oddity(const Thread& thread, const yarn::Section& section,
         "the fibres would fill {:.3g} times the section ({:.4g} tex of {:.4g} g/cm3): is the diameter in "
         "truth a "
         "radius?",
-        high, thread.linear_density->tex(), *thread.density);
+        high, thread.linear_density->tex(), *thread.fibre_density());
   const auto differs = [&](double share) {
     return std::abs(share - *thread.packing) > 0.05 * *thread.packing;
   };
@@ -191,7 +191,7 @@ std::string share_oddity(const Thread& thread, const yarn::Section& section,
 
 std::optional<Message> fibre_share_warning(const Fabric& fabric, const Yarn& yarn, const Thread& thread) {
   const auto* path = std::get_if<Path>(&yarn.shape);
-  if (path == nullptr || !thread.linear_density || !thread.density) return std::nullopt;
+  if (path == nullptr || !thread.linear_density || !thread.fibre_density()) return std::nullopt;
   const Result<yarn::Section> section = section_of(thread, fabric.units, every_row_has_a_size(*path));
   if (!section) return std::nullopt;  // reported where the yarn is built
   const std::string oddity = share_oddity(thread, *section, row_sizes(*path, *section), fabric.units);
@@ -203,7 +203,7 @@ std::optional<Message> fibre_share_warning(const Fabric& fabric, const Yarn& yar
 }
 
 std::optional<Message> fibre_share_warning(const Fabric& fabric, const Thread& thread, TextPlace place) {
-  if (!thread.linear_density || !thread.density) return std::nullopt;
+  if (!thread.linear_density || !thread.fibre_density()) return std::nullopt;
   const Result<yarn::Section> section = section_of(thread, fabric.units, false);
   if (!section) return std::nullopt;
   const std::string oddity = share_oddity(thread, *section, {yarn::nominal_size(*section)}, fabric.units);

@@ -148,7 +148,7 @@ const std::vector<Case> number_cases = {
     {"inf_in_row", in_path("0 0 0\n1 inf 0\n2 0 0"), {{8, 3, "not a finite number"}}},
     {"overflow", in_thread("diameter 1e999"), {{3, 10, "too large"}}},
     {"overflow_long", in_thread("diameter 1" + std::string(400, '0')), {{3, 10, "too large"}}},
-    {"unit_glued", in_thread("diameter 0.2mm"), {{3, 10, "'0.2mm' is not a number"}}},
+    {"unit_glued", in_thread("diameter 0.2furlong"), {{3, 10, "'furlong' is no unit"}}},
     {"two_signs", in_thread("diameter +-1"), {{3, 10, "not a number"}}},
     {"plus_alone", in_thread("diameter +"), {{3, 10, "not a number"}}},
     {"hex", in_thread("diameter 0x1p3"), {{3, 10, "not a number"}}},
@@ -163,7 +163,7 @@ const std::vector<Case> number_cases = {
 const std::vector<Case> thread_cases = {
     {"misspelt", in_thread("diametr 0.2"), {{3, 1, "did you mean 'diameter'"}}},
     {"misspelt_and_wrong", in_thread("diametr 0,2"), {{3, 1, "did you mean"}, {3, 9, "decimal comma"}}},
-    {"unknown", in_thread("xyzzy 0.2"), {{3, 1, "known: tex, denier"}}},
+    {"unknown", in_thread("xyzzy 0.2"), {{3, 1, "known: tex, dtex"}}},
     {"given_twice", in_thread("tex 1\ntex 2"), {{4, 1, "given twice in thread 't'; first on line 3"}}},
     {"two_densities", in_thread("tex 1\nNe 2"), {{4, 1, "given twice"}}},
     {"tex_negative", in_thread("tex -3"), {{3, 5, "larger than 0"}}},
@@ -197,7 +197,7 @@ const std::vector<Case> thread_cases = {
     {"color_256", in_thread("color 0 256 0"), {{3, 9, "from 0 to 255"}}},
     {"color_negative", in_thread("color -1 0 0"), {{3, 7, "from 0 to 255"}}},
     {"color_two", in_thread("color 1 2"), {{3, 10, "missing"}}},
-    {"unknown_material", in_thread("material cotton"), {{3, 10, "unknown material 'cotton'"}}},
+    {"unknown_material", in_thread("material unobtainium"), {{3, 10, "unknown material 'unobtainium'"}}},
     {"near_material",
      in_material("density 1") +
          "thread t\n  material n\nend\nmaterial nylon\nend\nthread u\n material nylom\nend\n",

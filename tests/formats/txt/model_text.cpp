@@ -120,6 +120,7 @@ class Flat {
   void add(const std::string& path, const Material& v) {
     add(path + ".name", v.name);
     add(path + ".density", v.density);
+    add(path + ".packing", v.packing);
     add(path + ".elastic", v.elastic);
     add(path + ".expansion", v.expansion);
   }
@@ -168,6 +169,9 @@ class Flat {
     add(path + ".rows", v.rows);
     add(path + ".a", v.a);
     add(path + ".b", v.b);
+    add(path + ".further", v.further);
+    add(path + ".hand", v.hand);
+    add(path + ".warp_faced", v.warp_faced);
     add(path + ".file", v.file);
   }
   void add(const std::string& path, const Binder& v) {

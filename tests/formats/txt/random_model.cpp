@@ -105,6 +105,7 @@ class Maker {
     material.name = new_name();
     materials_.push_back(material.name);
     maybe(material.density, [&] { return some(density_quantity); });
+    maybe(material.packing, [&] { return 1.0 - between(0.0, 0.99); });
     const int law = up_to(2);
     if (law == 1) material.elastic = IsotropicElastic{some(modulus_quantity), between(-0.99, 0.499)};
     if (law == 2) {
@@ -141,7 +142,7 @@ class Maker {
     return polygon;
   }
   void fill(Thread& thread) {
-    if (coin()) thread.linear_density = {between(1e-3, 1e3), static_cast<LinearDensity::Measure>(up_to(2))};
+    if (coin()) thread.linear_density = {between(1e-3, 1e3), static_cast<LinearDensity::Measure>(up_to(4))};
     maybe(thread.density, [&] { return some(density_quantity); });
     maybe(thread.packing, [&] { return 1.0 - between(0.0, 0.99); });
     maybe(thread.diameter, [&] { return positive(); });
@@ -255,11 +256,17 @@ class Maker {
       const int ends = 5 + up_to(1) * 3;
       draft.a = ends;
       draft.b = ends == 5 ? 2 + up_to(1) : 3 + 2 * up_to(1);
+      if (coin()) draft.b = 0;
+      draft.warp_faced = coin();
     } else if (draft.form == Draft::Form::file) {
       draft.file = coin() ? "drafts/a b.wif" : "twill.wif";
     } else if (draft.form != Draft::Form::plain) {
       draft.a = count();
       draft.b = count();
+      if (draft.form == Draft::Form::twill) {
+        draft.hand = coin() ? Hand::z : Hand::s;
+        for (int i = 2 * up_to(2); i > 0; --i) draft.further.push_back(count());
+      }
     }
     return draft;
   }
