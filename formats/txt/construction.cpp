@@ -155,7 +155,8 @@ void read_draft(Parser& p, WeaveBlock& weave, std::string_view) {
 
 void read_profile(Parser& p, WeaveBlock& weave, std::string_view) {
   const auto profile = p.choice("profile", profile_words);
-  if (profile == Weave::Profile::sine && p.more()) weave.amplitude = p.positive("the amplitude", Measure::length);
+  if (profile == Weave::Profile::sine && p.more())
+    weave.amplitude = p.positive("the amplitude", Measure::length);
   if (p.finish()) weave.profile = *profile;
 }
 
@@ -382,15 +383,14 @@ void read_warpknit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 }
 
 void read_braid(Parser& p, fabric::Fabric& fabric, std::string_view word) {
-  static const Table<BraidBlock> table(
-      {{"thread", read_construction_thread<BraidBlock>, Times::once},
-       {"carriers", read_carriers, Times::once},
-       {"pattern", read_pattern, Times::once},
-       {"radius", read_radius, Times::once},
-       {"flat", read_flat, Times::once, "radius"},
-       {"angle", read_angle, Times::once},
-       {"length", into(&Braid::length, a_length("the length")), Times::once},
-       {"axial", read_axial}});
+  static const Table<BraidBlock> table({{"thread", read_construction_thread<BraidBlock>, Times::once},
+                                        {"carriers", read_carriers, Times::once},
+                                        {"pattern", read_pattern, Times::once},
+                                        {"radius", read_radius, Times::once},
+                                        {"flat", read_flat, Times::once, "radius"},
+                                        {"angle", read_angle, Times::once},
+                                        {"length", into(&Braid::length, a_length("the length")), Times::once},
+                                        {"axial", read_axial}});
   BraidBlock braid;
   const Spot opened = p.statement();
   braid.place = opened.place();

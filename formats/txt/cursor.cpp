@@ -298,7 +298,8 @@ std::nullopt_t Cursor::explain_number(std::string_view what) {
 std::string_view Cursor::expression_at(const char* p) const {
   int depth = 0;
   const char* stop = p;
-  for (; !ends_line(stop) && (depth > 0 || !is_blank(*stop)); ++stop) depth += (*stop == '(') - (*stop == ')');
+  for (; !ends_line(stop) && (depth > 0 || !is_blank(*stop)); ++stop)
+    depth += (*stop == '(') - (*stop == ')');
   while (stop != p && is_blank(stop[-1])) --stop;
   return {p, static_cast<std::size_t>(stop - p)};
 }

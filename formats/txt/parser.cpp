@@ -95,9 +95,10 @@ int Parser::note_given(Block& block, int index, std::string_view word) {
   std::vector<std::string_view> words;
   for (std::size_t j = 0; j < block.table->words.size(); ++j)
     if (block.table->slots[j] == slot) words.push_back(block.table->words[j]);
-  error(statement(), fmt::format("{} is given twice in {}; first on line {}{}", in_quotes(word), there, line,
-                                 words.size() > 1 ? fmt::format(" (of {} one may stand)", fmt::join(words, ", "))
-                                                  : std::string()));
+  error(statement(),
+        fmt::format("{} is given twice in {}; first on line {}{}", in_quotes(word), there, line,
+                    words.size() > 1 ? fmt::format(" (of {} one may stand)", fmt::join(words, ", "))
+                                     : std::string()));
   return index;
 }
 
@@ -232,8 +233,8 @@ std::optional<std::vector<int>> Parser::counts(std::string_view what, char sign)
     int value = 0;
     const auto [stop, failure] = std::from_chars(part.data(), part.data() + part.size(), value);
     if (failure != std::errc{} || stop != part.data() + part.size() || value < 1 || values.size() == most)
-      return fail(spot, fmt::format("{}: whole numbers joined by '{}' are expected, as in 2{}1, found {}", what,
-                                    sign, sign, in_quotes(word)));
+      return fail(spot, fmt::format("{}: whole numbers joined by '{}' are expected, as in 2{}1, found {}",
+                                    what, sign, sign, in_quotes(word)));
     values.push_back(value);
   }
   return values;

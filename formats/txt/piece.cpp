@@ -43,7 +43,8 @@ void read_line(Parser& p, PieceReading& reading, std::string_view) {
   line.is_line = true;
   const auto name = p.new_name(reading.curves);
   std::array<double, 4> xy{};
-  for (double& value : xy) value = p.number("a coordinate of the line (it has four: x y x y)", Measure::length).value_or(0.0);
+  for (double& value : xy)
+    value = p.number("a coordinate of the line (it has four: x y x y)", Measure::length).value_or(0.0);
   if (p.has_failed()) return;
   line.name = *name;
   line.points = {{xy[0], xy[1]}, {xy[2], xy[3]}};

@@ -28,8 +28,9 @@ void read_units(Parser& p, Fabric& fabric, std::string_view) {
   const auto units = p.choice("unit", unit_words);
   if (!p.finish()) return;
   if (!p.scope().set_unit(*units))
-    return p.error(p.statement(), "numbers above this line have units or are expressions, and need to know the "
-                                  "file's unit: move this line above them");
+    return p.error(p.statement(),
+                   "numbers above this line have units or are expressions, and need to know the "
+                   "file's unit: move this line above them");
   fabric.units = *units;
   fabric.units_given = true;
 }

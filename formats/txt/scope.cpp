@@ -18,20 +18,22 @@ namespace {
 constexpr std::size_t longest_expression = 1000;  // characters
 
 // Those of muParser, and what it gives besides.
-constexpr std::array functions = {"sin",  "cos",  "tan",  "asin", "acos", "atan", "atan2", "sinh", "cosh",
-                                  "tanh", "log2", "log",  "ln",   "exp",  "sqrt", "sign",  "rint", "abs",
-                                  "min",  "max",  "sum",  "avg",  "asinh", "acosh", "atanh", "log10"};
+constexpr std::array functions = {"sin",  "cos",  "tan", "asin", "acos",  "atan",  "atan2", "sinh", "cosh",
+                                  "tanh", "log2", "log", "ln",   "exp",   "sqrt",  "sign",  "rint", "abs",
+                                  "min",  "max",  "sum", "avg",  "asinh", "acosh", "atanh", "log10"};
 constexpr std::string_view circle_number = "pi";
 
 // Words that begin statements, and those of units that stand alone.
 constexpr std::array keywords = {
-    "fabric", "title", "units", "tolerance", "thread", "material", "yarn", "weave", "knit", "warpknit",
-    "braid", "piece", "edit", "cell", "param", "end", "tex", "dtex", "denier", "Td", "Nm", "Ne", "density",
-    "packing", "diameter", "section", "twist", "plies", "filaments", "color", "elastic", "expansion", "role",
-    "path", "grid", "group", "ends", "closed", "tangent", "up", "degree", "knots", "open", "corners",
-    "centre", "warp", "weft", "draft", "profile", "crimp", "layers", "binder", "courses", "wales", "method",
-    "chart", "bar", "stitch", "carriers", "pattern", "radius", "flat", "angle", "length", "axial", "line",
-    "curve", "matrix", "periodic", "K", "fixed", "nan", "inf", "infinity"};
+    "fabric",   "title",     "units",   "tolerance", "thread",    "material", "yarn",     "weave",   "knit",
+    "warpknit", "braid",     "piece",   "edit",      "cell",      "param",    "end",      "tex",     "dtex",
+    "denier",   "Td",        "Nm",      "Ne",        "density",   "packing",  "diameter", "section", "twist",
+    "plies",    "filaments", "color",   "elastic",   "expansion", "role",     "path",     "grid",    "group",
+    "ends",     "closed",    "tangent", "up",        "degree",    "knots",    "open",     "corners", "centre",
+    "warp",     "weft",      "draft",   "profile",   "crimp",     "layers",   "binder",   "courses", "wales",
+    "method",   "chart",     "bar",     "stitch",    "carriers",  "pattern",  "radius",   "flat",    "angle",
+    "length",   "axial",     "line",    "curve",     "matrix",    "periodic", "K",        "fixed",   "nan",
+    "inf",      "infinity"};
 
 bool continues_identifier(char c) {
   return starts_name(c) || (c >= '0' && c <= '9');
@@ -66,8 +68,8 @@ std::string units_of(Measure measure) {
   return list;
 }
 
-// Calls visit(name) for the names of an expression that are no functions and no units behind numbers, until it
-// says false.
+// Calls visit(name) for the names of an expression that are no functions and no units behind numbers, until
+// it says false.
 template <class Visit>
 void for_each_name(std::string_view text, const Visit& visit) {
   for (std::size_t i = 0; i < text.size();) {
@@ -189,10 +191,12 @@ Status Scope::check_names(std::string_view text, Measure measure) const {
       if (hint.empty() && known.empty()) hint = "; a line 'param NAME VALUE' above would define it";
       if (hint.empty()) hint = fmt::format("; above this line there are: {}", fmt::join(known, ", "));
       status = wrong(text, fmt::format("there is no param {}{}", in_quotes(name), hint));
-    } else if (measure == Measure::twist && params_[static_cast<std::size_t>(found - values_.begin())].is_count) {
-      status = wrong(text, fmt::format("{} is a distance, since it was given as so many on a length: for turns "
-                                       "give the number alone",
-                                       in_quotes(name)));
+    } else if (measure == Measure::twist &&
+               params_[static_cast<std::size_t>(found - values_.begin())].is_count) {
+      status =
+          wrong(text, fmt::format("{} is a distance, since it was given as so many on a length: for turns "
+                                  "give the number alone",
+                                  in_quotes(name)));
     }
     return status.ok();
   });
@@ -233,14 +237,12 @@ bool Scope::is_expression(std::string_view text) const {
 std::optional<Result<double>> Scope::value(std::string_view text, Measure measure) {
   if (double number = 0; leading_number(text, number) == text.size()) return number;
   if (std::optional<Result<double>> number = with_unit(text, measure)) return number;
-  const bool may_be_count =
-      measure == Measure::pitch || measure == Measure::twist || measure == Measure::any;
+  const bool may_be_count = measure == Measure::pitch || measure == Measure::twist || measure == Measure::any;
   const std::optional<Count> count = may_be_count ? count_on_length(text) : std::nullopt;
   if (count) {
     Result<double> number = expression(count->number, Measure::plain);
     if (!number) return number;
-    if (measure == Measure::twist)
-      return *number / count->length * (1000.0 / millimetres_per(unit_));
+    if (measure == Measure::twist) return *number / count->length * (1000.0 / millimetres_per(unit_));
     if (!(*number > 0.0)) return wrong(text, "so many on a length have to be more than 0");
     return count->length / *number;
   }

@@ -72,7 +72,8 @@ std::optional<yarn::Section> read_shape_of(Parser& p) {
     good = !p.more() || read(shape.diameter, "the section's diameter");
   } else {
     good = read(shape.width, "the section's width") && read(shape.height, "the section's height");
-    if constexpr (requires { shape.exponent; }) good = good && read(shape.exponent, "the section's exponent", Measure::plain);
+    if constexpr (requires { shape.exponent; })
+      good = good && read(shape.exponent, "the section's exponent", Measure::plain);
   }
   return good && p.finish() ? std::optional<yarn::Section>(shape) : std::nullopt;
 }
@@ -91,8 +92,7 @@ void read_section(Parser& p, Thread& thread, std::string_view) {
 }
 
 void read_twist(Parser& p, Thread& thread, std::string_view) {
-  const auto turns =
-      p.not_negative("the twist (its direction is the letter Z or S)", fabric::twist_quantity);
+  const auto turns = p.not_negative("the twist (its direction is the letter Z or S)", fabric::twist_quantity);
   const auto hand = p.choice("twist direction", hand_words);
   const bool rotates = p.more() && p.expect("rotate");
   if (p.finish()) thread.twist = {*turns, *hand, rotates};

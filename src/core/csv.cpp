@@ -67,8 +67,7 @@ class Rows {
   Status quoted(std::vector<std::string>& row, std::size_t i) {
     std::string value;
     for (;; ++i) {
-      if (i >= text_.size())
-        return error(Kind::malformed, "a quote is not closed").placed({begin_, 1});
+      if (i >= text_.size()) return error(Kind::malformed, "a quote is not closed").placed({begin_, 1});
       if (text_[i] == '"' && (i + 1 >= text_.size() || text_[++i] != '"')) break;
       if (text_[i] == '\n') ++line_;
       value += text_[i];
@@ -108,7 +107,8 @@ Result<CsvTable> read_csv(std::string_view text) {
       table.columns = std::move(*row);
       for (std::size_t i = 0; i < table.columns.size(); ++i) {
         const std::string& name = table.columns[i];
-        if (name.empty()) return error(Kind::malformed, fmt::format("column {} has no name", i + 1)).placed(place);
+        if (name.empty())
+          return error(Kind::malformed, fmt::format("column {} has no name", i + 1)).placed(place);
         if (std::find(table.columns.begin(), table.columns.begin() + static_cast<std::ptrdiff_t>(i), name) !=
             table.columns.begin() + static_cast<std::ptrdiff_t>(i))
           return error(Kind::malformed, fmt::format("the column '{}' is there twice", name)).placed(place);
@@ -116,8 +116,8 @@ Result<CsvTable> read_csv(std::string_view text) {
       continue;
     }
     if (row->size() != table.columns.size())
-      return error(Kind::malformed, fmt::format("this row has {} values, and there are {} columns", row->size(),
-                                                table.columns.size()))
+      return error(Kind::malformed, fmt::format("this row has {} values, and there are {} columns",
+                                                row->size(), table.columns.size()))
           .placed(place);
     table.rows.push_back(std::move(*row));
     table.lines.push_back(place.line);

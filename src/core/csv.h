@@ -1,5 +1,5 @@
-// Comma-separated values (RFC 4180): a row of column names, and rows of as many values. A file whose first row
-// has no comma may have semicolons or tabs instead.
+// Comma-separated values (RFC 4180): a row of column names, and rows of as many values. A file whose first
+// row has no comma may have semicolons or tabs instead.
 #pragma once
 
 #include <string>
@@ -16,8 +16,9 @@ struct CsvTable {
   std::vector<int> lines;  // where each row begins, from 1
 };
 
-// Blanks round values and empty lines mean nothing; lines that begin with `#` are comments. Errors (malformed,
-// with the line): no column, one without a name or twice there, a row of another length, an open quote.
+// Blanks round values and empty lines mean nothing; lines that begin with `#` are comments. Errors
+// (malformed, with the line): no column, one without a name or twice there, a row of another length, an open
+// quote.
 Result<CsvTable> read_csv(std::string_view text);
 
 // A value as it stands in a row: in quotes where it has to be.

@@ -20,8 +20,8 @@ std::int64_t exact_size(Unit unit);
 // Millimetres in one unit: 1000, 10, 1, 0.001, 25.4.
 double millimetres_per(Unit unit);
 
-// What a number in a text measures. `plain`: nothing that has a unit; `pitch`: a distance, or how many stand on
-// a length; `any`: what it is used for tells.
+// What a number in a text measures. `plain`: nothing that has a unit; `pitch`: a distance, or how many stand
+// on a length; `any`: what it is used for tells.
 enum class Measure { plain, length, pitch, angle, density, modulus, twist, expansion, any };
 
 }  // namespace selvage

@@ -125,7 +125,8 @@ double density_of(const Fabric& fabric, const Thread& thread, const yarn::Body& 
            (body.volume * std::pow(millimetres_per(fabric.units), 2));
   if (const Material* const material = fabric.find_material(body.material))
     if (material->density) return *material->density * thread.size_packing().value_or(1.0);
-  return thread.fibre_density() && thread.size_packing() ? *thread.fibre_density() * *thread.size_packing() : 0;
+  return thread.fibre_density() && thread.size_packing() ? *thread.fibre_density() * *thread.size_packing()
+                                                         : 0;
 }
 
 }  // namespace

@@ -69,9 +69,8 @@ Result<Drawdown> satin(long long n, long long step, bool warp_faced) {
                  fmt::format("a satin {}/{} does not exist: the step lies between 1 and {} and has "
                              "no divisor in common with {}",
                              n, step, n - 1, n));
-  return filled(n, n, [&](long long pick, long long end) {
-    return ((end + step * pick) % n == 0) != warp_faced;
-  });
+  return filled(n, n,
+                [&](long long pick, long long end) { return ((end + step * pick) % n == 0) != warp_faced; });
 }
 
 Result<Drawdown> twill(const Draft& draft) {

@@ -15,7 +15,8 @@ namespace {
 constexpr std::string_view textile = "Morton and Hearle, Physical Properties of Textile Fibres, table 5.1";
 // Elastic constants and expansion of fibres for composites.
 constexpr std::string_view exercise =
-    "P. D. Soden, M. J. Hinton, A. S. Kaddour, Composites Science and Technology 58 (1998) 1011-1022, table 1";
+    "P. D. Soden, M. J. Hinton, A. S. Kaddour, Composites Science and Technology 58 (1998) 1011-1022, table "
+    "1";
 constexpr double staple = 0.6, filament = 0.75, wire = 1.0;
 
 Fibre fibre(std::string_view name, double density, double packing, std::string_view source) {
@@ -59,8 +60,8 @@ std::vector<Fibre> make_fibres() {
             "expansion: DuPont, Kevlar technical guide",
             TransverseElastic{84'620, 1'340, 0.6, 24'400, 0.24}, Expansion{-4.9e-6, 66e-6}),
       fibre("glass-E", 2.55, filament, exercise, IsotropicElastic{74'000, 0.2}, Expansion{4.9e-6, 4.9e-6}),
-      fibre("carbon-T300", 1.76, filament, exercise, TransverseElastic{230'000, 15'000, 0.2, 15'000, 1.0 / 14},
-            Expansion{-0.7e-6, 12e-6}),
+      fibre("carbon-T300", 1.76, filament, exercise,
+            TransverseElastic{230'000, 15'000, 0.2, 15'000, 1.0 / 14}, Expansion{-0.7e-6, 12e-6}),
       fibre("carbon-AS4", 1.79, filament, exercise, TransverseElastic{225'000, 15'000, 0.2, 15'000, 1.0 / 14},
             Expansion{-0.5e-6, 15e-6}),
       fibre("steel", 7.85, wire, "EN 1993-1-1, 3.2.6", IsotropicElastic{210'000, 0.3},

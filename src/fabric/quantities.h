@@ -18,12 +18,14 @@ struct Quantity {
   Measure measure = Measure::plain;
 };
 
-inline constexpr Quantity density_quantity = {"a density", "g/cm3", 0.001, 25, "kg/m3", 1e-3, Measure::density};
+inline constexpr Quantity density_quantity = {"a density", "g/cm3", 0.001,           25,
+                                              "kg/m3",     1e-3,    Measure::density};
 inline constexpr Quantity linear_density_quantity = {"a linear density", "g/km (tex)", 1e-6, 1e9};
 inline constexpr Quantity packing_quantity = {"a packing", "of the section", 0.01, 1};
 inline constexpr Quantity twist_quantity = {"a twist", "turns per metre", 0, 1e6, {}, 1, Measure::twist};
 inline constexpr Quantity modulus_quantity = {"a modulus", "MPa", 1e-9, 1e7, "Pa", 1e-6, Measure::modulus};
-inline constexpr Quantity expansion_quantity = {"an expansion", "1/K", -0.01, 0.01, "1e-6/K", 1e-6, Measure::expansion};
+inline constexpr Quantity expansion_quantity = {"an expansion",    "1/K", -0.01, 0.01, "1e-6/K", 1e-6,
+                                                Measure::expansion};
 inline constexpr Quantity size_quantity = {"a section's size", "mm", 1e-4, 1e5};
 inline constexpr Quantity place_quantity = {"a coordinate", "mm", -1e9, 1e9};
 inline constexpr Quantity ratio_quantity = {"a ratio", "times the yarn's size", 0.01, 1e5};

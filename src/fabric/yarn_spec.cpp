@@ -164,8 +164,8 @@ std::string share_oddity(const Thread& thread, const yarn::Section& section,
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
   for (const yarn::SectionSize& size : sizes) {
     if (!yarn::check_section(section, size).ok()) return {};  // reported where the yarn is built
-    const double share =
-        thread.linear_density->tex() / (1000.0 * *thread.fibre_density() * yarn::area(section, size) * mm * mm);
+    const double share = thread.linear_density->tex() /
+                         (1000.0 * *thread.fibre_density() * yarn::area(section, size) * mm * mm);
     low = std::min(low, share);
     high = std::max(high, share);
   }

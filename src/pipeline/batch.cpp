@@ -27,10 +27,10 @@
 #include "pipeline/job.h"
 #include "pipeline/junit.h"
 #include "pipeline/limits.h"
-#include "pipeline/sweep_table.h"
 #include "pipeline/outputs.h"
 #include "pipeline/report.h"
 #include "pipeline/roundtrip.h"
+#include "pipeline/sweep_table.h"
 
 namespace selvage::pipeline {
 
@@ -282,8 +282,7 @@ std::string Batch::report_text(bool ok) const {
   std::vector<std::string> entries;
   for (std::size_t i = 0; i < reports_.size(); ++i) {
     // An input that was not reached keeps what an earlier run knew of it.
-    entries.push_back(reports_[i].empty() ? entry_of_earlier(plan_.name(i))
-                                          : std::string(reports_[i]));
+    entries.push_back(reports_[i].empty() ? entry_of_earlier(plan_.name(i)) : std::string(reports_[i]));
   }
   entries.insert(entries.end(), missing_reports_.begin(), missing_reports_.end());
   return whole_report(started_, seconds_since(start_), ok, counts_, entries);
@@ -308,8 +307,7 @@ Status Batch::write_table() const {
 Status Batch::write_junit(const std::vector<Message>& missing) const {
   if (options_.junit.empty()) return {};
   std::vector<JunitInput> all;
-  for (std::size_t i = 0; i < reports_.size(); ++i)
-    all.push_back({plan_.name(i), std::string(reports_[i])});
+  for (std::size_t i = 0; i < reports_.size(); ++i) all.push_back({plan_.name(i), std::string(reports_[i])});
   for (std::size_t i = 0; i < missing.size(); ++i) all.push_back({missing[i].file, missing_reports_[i]});
   return write_whole(options_.junit, junit_text(all, started_, seconds_since(start_)));
 }
@@ -382,7 +380,8 @@ int Batch::run(const std::vector<Message>& missing) {
                stderr);
   if (options_.json && options_.command == Command::info && printed_)
     printed_ = write_to_standard_output(report_text(code == exit_code::well));
-  for (const Status& status : {printed_, write_report(code == exit_code::well), write_junit(missing), write_table()}) {
+  for (const Status& status :
+       {printed_, write_report(code == exit_code::well), write_junit(missing), write_table()}) {
     if (status.ok()) continue;
     std::fprintf(stderr, "%s\n", to_string(status.error()).c_str());
     if (complete) code = exit_code::failed;

@@ -36,8 +36,9 @@ constexpr std::array commands = {
     Subcommand{info, "info", "what is in a file: yarns, sizes, units, lengths"},
     Subcommand{edit, "edit", "move a point of a yarn: adds an `edit` line to a text"},
     Subcommand{view, "view", "a picture of the yarns, ray-traced (PNG)"},
-    Subcommand{sweep, "sweep",
-               "check, convert or mesh an input with many values of its params, and make a table of the results"},
+    Subcommand{
+        sweep, "sweep",
+        "check, convert or mesh an input with many values of its params, and make a table of the results"},
     Subcommand{formats, "formats", "the formats that can be read and written"}};
 
 const Commands on_batch = {convert, check, relax, mesh, roundtrip, info, view};
@@ -200,8 +201,8 @@ void inputs_and_outputs(OptionTable& t) {
   t.option(on_batch, "--set", "another value of a param of the input (more than one: selvage sweep)",
            Argument::texts("NAME=VALUE"), into(&Options::sweep, &SweepWords::sets))
       .is_of_run = false;
-  t.flag({convert, relax, mesh, view, check}, "--resume", "skip inputs that --report says are done, if their outputs are whole",
-         &Options::resume);
+  t.flag({convert, relax, mesh, view, check}, "--resume",
+         "skip inputs that --report says are done, if their outputs are whole", &Options::resume);
 }
 
 void of_a_sweep(OptionTable& t) {
@@ -209,9 +210,10 @@ void of_a_sweep(OptionTable& t) {
   t.option({sweep}, "--do", "what is done with each variant; its own options go with it",
            Argument::one_of("check convert mesh"), [](Options&, const std::string&) { return Status(); })
       .with_preset("check");
-  t.option({sweep}, "--set",
-           "values of a param: V, or V1,V2,..., or LOW:HIGH:STEP; LOW:HIGH with --lhs (several: all combinations)",
-           Argument::texts("NAME=VALUES"), into(&Options::sweep, &SweepWords::sets));
+  t.option(
+      {sweep}, "--set",
+      "values of a param: V, or V1,V2,..., or LOW:HIGH:STEP; LOW:HIGH with --lhs (several: all combinations)",
+      Argument::texts("NAME=VALUES"), into(&Options::sweep, &SweepWords::sets));
   t.option({sweep}, "--table", "a CSV file: its columns are params, and each row is a variant",
            Argument::text("FILE"), into(&Options::sweep, &SweepWords::table))
       .goes_with("lists variants", "", "--lhs");
@@ -430,8 +432,8 @@ void of_formats(OptionTable& t) {
 const std::deque<Row>& all_rows() {
   static const std::deque<Row> rows = [] {
     OptionTable table;
-    for (auto* const part : {inputs_and_outputs, of_a_sweep, of_an_edit, of_a_picture, of_yarns, of_relaxing, of_a_mesh,
-                             of_a_cell, of_formats, of_running})
+    for (auto* const part : {inputs_and_outputs, of_a_sweep, of_an_edit, of_a_picture, of_yarns, of_relaxing,
+                             of_a_mesh, of_a_cell, of_formats, of_running})
       part(table);
     return table.take();
   }();
@@ -538,7 +540,8 @@ static Result<Command> done_by_sweep(const Given& given) {
   if (found == given.end()) return Command::check;
   for (const Command command : swept)
     if (name_of(command) == found->second.back()) return command;
-  return error(Kind::usage, fmt::format("--do: '{}' is not one of check, convert, mesh", found->second.back()));
+  return error(Kind::usage,
+               fmt::format("--do: '{}' is not one of check, convert, mesh", found->second.back()));
 }
 
 Result<Options> understand(Command command, const Given& given) {

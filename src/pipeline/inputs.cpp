@@ -165,8 +165,8 @@ Status vary(InputList& list, const Options& options) {
     for (Input& input : list.inputs) input.settings = variants->front();
     return {};
   }
-  if (Status few = check_number(static_cast<double>(variants->size()) *
-                                     static_cast<double>(list.inputs.size()));
+  if (Status few =
+          check_number(static_cast<double>(variants->size()) * static_cast<double>(list.inputs.size()));
       !few)
     return few;
   const std::size_t digits = std::max<std::size_t>(4, std::to_string(variants->size()).size());

@@ -134,8 +134,8 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
   if (!library.empty()) channel_.send(packet::reader, library);
   if (!input.settings.empty()) {
     if ((*format)->read_with == nullptr)
-      return fail(error(Kind::unsupported,
-                        fmt::format("this is {} ({}), which has no params to set", (*format)->name, (*format)->title)));
+      return fail(error(Kind::unsupported, fmt::format("this is {} ({}), which has no params to set",
+                                                       (*format)->name, (*format)->title)));
     fabric = (*format)->read_with(*source, input.settings, diagnostics);
   } else if ((*format)->read_fabric != nullptr) {
     fabric = (*format)->read_fabric(*source, diagnostics);

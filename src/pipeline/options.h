@@ -36,7 +36,8 @@ struct EditWords {
   int point = 0;  // from 1
 };
 
-// Variants of inputs with other values of their params, as given: `--set` of all commands, the rest of `sweep`.
+// Variants of inputs with other values of their params, as given: `--set` of all commands, the rest of
+// `sweep`.
 struct SweepWords {
   bool wanted = false;
   std::vector<std::string> sets;  // NAME=VALUE, NAME=LOW:HIGH:STEP, NAME=LOW:HIGH, NAME=V1,V2,...

@@ -103,7 +103,8 @@ bool is_still_valid(const std::string& entry, const std::string& input_sha256, c
                     const std::vector<std::string>& output_paths) {
   const Json earlier = Json::parse(entry, nullptr, false);
   if (!earlier.is_object()) return false;
-  const bool has_ended = earlier.value("ok", false) || (output_paths.empty() && earlier.value("defect", false));
+  const bool has_ended =
+      earlier.value("ok", false) || (output_paths.empty() && earlier.value("defect", false));
   if (!has_ended) return false;
   if (text_at(earlier, "sha256") != input_sha256 || text_at(earlier, "settings") != settings) return false;
   const auto outputs = earlier.find("outputs");

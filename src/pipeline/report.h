@@ -83,8 +83,8 @@ std::string whole_report(const std::string& started, double seconds, bool ok, co
 Result<std::map<std::string, std::string>> read_entries(const std::string& report_path);
 
 // True when `entry` (JSON text of an earlier run) says that this input, with these settings, gave whole
-// outputs at `output_paths` that are still there, byte for byte; of a command without outputs: that it came to
-// its end.
+// outputs at `output_paths` that are still there, byte for byte; of a command without outputs: that it came
+// to its end.
 bool is_still_valid(const std::string& entry, const std::string& input_sha256, const std::string& settings,
                     const std::vector<std::string>& output_paths);
 

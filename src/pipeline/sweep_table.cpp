@@ -18,12 +18,11 @@ struct Summary {
   const char *column, *list, *member;
   How how;
 };
-constexpr std::array summaries = {
-    Summary{"length", "yarns", "length", Summary::How::sum},
-    Summary{"volume", "yarns", "volume", Summary::How::sum},
-    Summary{"min_bend_radius", "yarns", "min_bend_radius", Summary::How::least},
-    Summary{"overlaps", "overlaps", nullptr, Summary::How::count},
-    Summary{"depth", "overlaps", "depth", Summary::How::largest}};
+constexpr std::array summaries = {Summary{"length", "yarns", "length", Summary::How::sum},
+                                  Summary{"volume", "yarns", "volume", Summary::How::sum},
+                                  Summary{"min_bend_radius", "yarns", "min_bend_radius", Summary::How::least},
+                                  Summary{"overlaps", "overlaps", nullptr, Summary::How::count},
+                                  Summary{"depth", "overlaps", "depth", Summary::How::largest}};
 
 // Null: the list is not there, or empty.
 Json summary_of(const Json& report, const Summary& summary) {

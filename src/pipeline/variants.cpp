@@ -70,7 +70,8 @@ Result<Axis> axis_of(const std::string& given, bool is_sweep) {
   Axis axis;
   axis.name = given.substr(0, equals);
   const std::string_view value = std::string_view(given).substr(equals + 1);
-  const bool is_call = value.find('(') != std::string_view::npos;  // its commas and colons are an expression's
+  const bool is_call =
+      value.find('(') != std::string_view::npos;  // its commas and colons are an expression's
   const std::vector<std::string_view> parts = split(value, ':'), list = split(value, ',');
   const bool is_range = parts.size() > 1 && !is_call, is_list = list.size() > 1 && !is_call;
   if ((is_range || is_list) && !is_sweep)

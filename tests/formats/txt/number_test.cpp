@@ -66,8 +66,9 @@ TEST(Numbers, AreExpressions) {
   // A param of the name of an inner word.
   EXPECT_EQ(pitch_of(pitch("pitch pitch", "param pitch 0.9\n")), 0.9);
   // Counts and rows, a row that begins with a param too.
-  const Reading reading = read("fabric 1\nparam n 3\nparam r 0.5\nyarn y\n diameter 0.1\n path\n 0 0 0\n r*2 0 0\n"
-                               " r/cos(0)+1 1mm 0 2*r .2 0.5rad\n end\nend\nthread t\nfilaments n*2+1\nend\n");
+  const Reading reading = read(
+      "fabric 1\nparam n 3\nparam r 0.5\nyarn y\n diameter 0.1\n path\n 0 0 0\n r*2 0 0\n"
+      " r/cos(0)+1 1mm 0 2*r .2 0.5rad\n end\nend\nthread t\nfilaments n*2+1\nend\n");
   ASSERT_TRUE(reading.fabric) << reading.text();
   const Path& path = std::get<Path>(std::get<Yarn>(reading.fabric->items[0]).shape);
   EXPECT_EQ(path.points[1], Vec3(1, 0, 0));
@@ -78,8 +79,9 @@ TEST(Numbers, AreExpressions) {
 }
 
 TEST(Numbers, CarryOtherUnits) {
-  const Reading reading = read("fabric 1\nthread t\ntwist 20/in Z\nplies 2 450/m S\ndensity 1520kg/m3\nend\n"
-                               "material m\nelastic isotropic 72.4GPa 0.22\nexpansion 5e-6/K 5e-6\nend\n");
+  const Reading reading = read(
+      "fabric 1\nthread t\ntwist 20/in Z\nplies 2 450/m S\ndensity 1520kg/m3\nend\n"
+      "material m\nelastic isotropic 72.4GPa 0.22\nexpansion 5e-6/K 5e-6\nend\n");
   const Thread& thread = only_thread(reading);
   EXPECT_NEAR(thread.twist->turns, 20 / 0.0254, 1e-10);
   EXPECT_NEAR(thread.plies->turns, 450, 1e-12);
@@ -109,15 +111,16 @@ TEST(Numbers, TellWhatIsWrong) {
   expect(pitch("1", "param a 1\nparam a 2\n"), "the param 'a' is there twice; first on line 2");
   expect(pitch("1", "param a 1mm\nunits cm\n"), "move this line above them");
   expect("fabric 1\nparam t 800/m\nthread y\ntwist t Z\nend\n", "'t' is a distance");
-  expect("fabric 1\nthread y\ntex 20\ndtex 200\nend\n", "'dtex' is given twice in thread 'y'; first on line 3 (of tex, dtex");
+  expect("fabric 1\nthread y\ntex 20\ndtex 200\nend\n",
+         "'dtex' is given twice in thread 'y'; first on line 3 (of tex, dtex");
   expect("fabric 1\nthread y\nfilaments 2.5*3\nend\n", "is not a whole number");
 }
 
 // Every word that begins a statement is refused as the name of a param.
 TEST(Numbers, KeywordsAreReserved) {
   const std::vector<std::string> openings = {
-      "",         "thread t\n",   "material m\n",     "yarn y\n", "weave\n",       "knit jersey\n",
-      "warpknit\n", "braid\n", "piece p\n", "cell 0 0 0 1 1 1\n", "yarn y\ngrid 2 3\n"};
+      "",           "thread t\n", "material m\n", "yarn y\n",           "weave\n",           "knit jersey\n",
+      "warpknit\n", "braid\n",    "piece p\n",    "cell 0 0 0 1 1 1\n", "yarn y\ngrid 2 3\n"};
   int words = 0;
   for (const std::string& opening : openings) {
     const std::string text = messages("fabric 1\n" + opening + "qqqqqqqqqqqq 1\n");
@@ -157,8 +160,9 @@ TEST(Trade, MaterialsSizeAYarn) {
   const double d = yarn::nominal_size(*wire).width;
   EXPECT_NEAR(d * d * std::acos(-1.0) / 4 * 1.39, 0.01, 1e-12);  // mm2 g/cm3 = g/m
   // The file's own block wins.
-  const Reading own = read("fabric 1\nthread t\ntex 10\nmaterial cotton\nend\nmaterial cotton\ndensity 1\npacking "
-                           "0.5\nend\n");
+  const Reading own = read(
+      "fabric 1\nthread t\ntex 10\nmaterial cotton\nend\nmaterial cotton\ndensity 1\npacking "
+      "0.5\nend\n");
   EXPECT_EQ(only_thread(own).fibre_density(), 1.0);
   EXPECT_EQ(only_thread(own).size_packing(), 0.5);
   EXPECT_NE(messages("fabric 1\nthread t\nmaterial coton\nend\n").find("did you mean 'cotton'?"),
@@ -186,13 +190,14 @@ TEST(Trade, Colors) {
   EXPECT_EQ(color("#ff8801"), (Color{255, 136, 1}));
   EXPECT_EQ(color("#FF8801 # a comment"), (Color{255, 136, 1}));
   EXPECT_EQ(color("1 2 3 #ff8801"), (Color{1, 2, 3}));
-  EXPECT_NE(messages("fabric 1\nthread t\ncolor indgo\nend\n").find("did you mean 'indigo'?"), std::string::npos);
+  EXPECT_NE(messages("fabric 1\nthread t\ncolor indgo\nend\n").find("did you mean 'indigo'?"),
+            std::string::npos);
 }
 
 TEST(Trade, ListsOfThreads) {
-  const Reading reading =
-      read("fabric 1\nthread a\nend\nthread b\nend\nweave\nwarp 4a,2b 12 26/cm\nweft 2\"a\",b 6 pitch 1\ndraft "
-           "plain\nend\n");
+  const Reading reading = read(
+      "fabric 1\nthread a\nend\nthread b\nend\nweave\nwarp 4a,2b 12 26/cm\nweft 2\"a\",b 6 pitch 1\ndraft "
+      "plain\nend\n");
   ASSERT_TRUE(reading.fabric) << reading.text();
   EXPECT_EQ(reading.weave().warp.threads, (std::vector<std::string>{"a", "a", "a", "a", "b", "b"}));
   EXPECT_EQ(reading.weave().weft.threads, (std::vector<std::string>{"a", "a", "b"}));
@@ -202,7 +207,8 @@ TEST(Trade, ListsOfThreads) {
 
 TEST(Trade, Drafts) {
   const auto rows = [](const std::string& words) {
-    const Reading reading = read("fabric 1\nthread a\nend\nweave\nwarp a 2 1\nweft a 2 1\ndraft " + words + "\nend\n");
+    const Reading reading =
+        read("fabric 1\nthread a\nend\nweave\nwarp a 2 1\nweft a 2 1\ndraft " + words + "\nend\n");
     EXPECT_TRUE(reading.fabric) << reading.text();
     std::vector<std::string> all;
     if (!reading.fabric) return all;
@@ -229,7 +235,8 @@ TEST(Trade, Drafts) {
     std::vector<int> ends;
     for (const std::string& row : satin) ends.push_back(static_cast<int>(row.find('1')));
     for (int i = 0; i < n; ++i) {
-      const int step = std::abs(ends[static_cast<std::size_t>(i)] - ends[static_cast<std::size_t>((i + 1) % n)]);
+      const int step =
+          std::abs(ends[static_cast<std::size_t>(i)] - ends[static_cast<std::size_t>((i + 1) % n)]);
       if (n != 4) {  // crowfoot: two pairs touch
         EXPECT_GT(std::min(step, n - step), 1) << n;
       }
