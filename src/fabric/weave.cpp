@@ -27,6 +27,9 @@ namespace {
 constexpr int most_layers = 100'000;
 // Of a thickness, between the surfaces of yarns that cross: less makes poor tetrahedra of what lies between.
 constexpr double clearance_share = 0.01;
+// Of half of both thicknesses: yarns whose axes lie further apart at their crossings are lifted off each
+// other by their flanks.
+constexpr double most_lift = 0.1;
 
 // With a unit cell the cloth goes on beyond it by so many pitches. What is different at a spline's end falls
 // by 2 + sqrt(3) from section to section: faces of the cell that are a repeat apart cut yarns that agree to
@@ -59,18 +62,6 @@ std::pair<long long, long long> numbers_of(const Row& row, bool is_periodic, dou
   };
   return {std::min(0LL, number(low - 0.5 * row.width) + 1),
           std::max(row.count, -number(2.0 * row.first - high - 0.5 * row.width))};
-}
-
-// Does any yarn of the draft change sides from one crossing to the next? {warps, wefts}
-std::pair<bool, bool> changes_of(const Drawdown& drawdown) {
-  bool warps = false, wefts = false;
-  for (int pick = 0; pick < drawdown.picks; ++pick)
-    for (int end = 0; end < drawdown.ends; ++end) {
-      const bool here = drawdown.warp_on_top(pick, end);
-      warps = warps || here != drawdown.warp_on_top(pick + 1, end);
-      wefts = wefts || here != drawdown.warp_on_top(pick, end + 1);
-    }
-  return {warps, wefts};
 }
 
 }  // namespace
@@ -109,10 +100,13 @@ void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, 
 Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
   // A sine has room for any height over any pitch.
   const auto [warps_change, wefts_change] = changes_of(drawdown_);
+  const auto formula = [](const std::optional<AnyBend>& bend) {
+    return bend ? std::get<Bend>(*bend) : Bend::round;
+  };
   const SystemPair pair{&warp_,
                         &weft_,
-                        warp_bend_.value_or(Bend::round),
-                        weft_bend_.value_or(Bend::round),
+                        formula(warp_bend_),
+                        formula(weft_bend_),
                         warps_change && warp_bend_,
                         wefts_change && weft_bend_};
   const auto heights_at = [&](double clearance) { return share_crimp(pair, weave_.crimp, clearance); };
@@ -122,14 +116,27 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
   }
   Result<WeaveFit> fit =
       fit_weave({&warp_, &weft_, &drawdown_, warp_bend_, weft_bend_}, clearance_, heights_at);
+  const std::string_view unit = name_of(fabric_.units);
+  std::string remedies = "a larger pitch or narrower sections give it";
+  const LooseCloth loose{warp_, weft_, &drawdown_, weave_.crimp, clearance_, fabric_.units};
+  // With `profile` a formula is asked for.
+  if (!has_room(fit) && !weave_.profile && can_press(loose)) {
+    if (std::optional<PressedCloth> pressed = press_cloth(loose))
+      return take(std::move(*pressed), diagnostics);
+    if (!fit)
+      return error(Kind::geometry,
+                   fmt::format("the cloth is jammed: its yarns, pressed as flat and as close as they "
+                               "go, have no room to pass each other; {}",
+                               remedies_for(loose)))
+          .placed(fit.error().place);
+    if (fit->gap <= 0.0) remedies = remedies_for(loose);
+  }
   if (!fit) return fit.error();
   thinner_ = fit->thinner;
-  const std::string_view unit = name_of(fabric_.units);
   if (fit->gap <= 0.0)
     warn(weave_.place,
-         fmt::format("yarns that cross have no room to pass each other and overlap, by about {:.2g} {}: a "
-                     "larger pitch or narrower sections give it",
-                     -fit->gap, unit),
+         fmt::format("yarns that cross have no room to pass each other and overlap, by about {:.2g} {}: {}",
+                     -fit->gap, unit, remedies),
          diagnostics);
   else if (thinner_ > 0.0)
     warn(weave_.place,
@@ -139,12 +146,48 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
   return fit->heights;
 }
 
+// Yarns neither overlap nor are lifted off each other by their flanks.
+bool WeaveConstruction::has_room(const Result<WeaveFit>& fit) const {
+  return fit && fit->gap > 0.0 &&
+         fit->heights.clearance <= 0.5 * most_lift * (warp_.thickest + weft_.thickest) &&
+         warp_.widest <= warp_.text->pitch && weft_.widest <= weft_.text->pitch;
+}
+
+Heights WeaveConstruction::take(PressedCloth pressed, Diagnostics& diagnostics) {
+  std::set<const Thread*> told;
+  const auto tell = [&](const System& loose, const System& now, std::string_view system) {
+    for (std::size_t i = 0; i < loose.threads.size(); ++i) {
+      const Thread& thread = *loose.threads[i].thread;
+      if (!told.insert(&thread).second) continue;
+      std::string text =
+          fmt::format("the {} has no room for thread '{}' as it is: it is {}", system, thread.name,
+                      pressing_of(loose.threads[i], now.threads[i], fabric_.units));
+      // A size that the text gives is not kept; one that follows from the linear density is round by default.
+      const bool has_size = thread.section || thread.diameter;
+      diagnostics.add(
+          (has_size ? warning(Kind::geometry, std::move(text)) : note(Kind::geometry, std::move(text)))
+              .placed(thread.place, fabric_.file));
+    }
+  };
+  tell(warp_, pressed.warp, "warp");
+  tell(weft_, pressed.weft, "weft");
+  warp_ = std::move(pressed.warp);
+  weft_ = std::move(pressed.weft);
+  warp_bend_ = pressed.warp_bend;
+  weft_bend_ = pressed.weft_bend;
+  is_pressed_ = true;
+  return pressed.heights;
+}
+
 Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   Result<Drawdown> drawdown = drawdown_of(weave_.draft);
   if (!drawdown) return drawdown.error().placed(weave_.draft.place);
   drawdown_ = std::move(*drawdown);
-  const auto bend_over = [&](const System& crossed) -> std::optional<Bend> {
-    if (!weave_.profile) return natural_bend(crossed);
+  const auto bend_over = [&](const System& crossed) -> std::optional<AnyBend> {
+    if (!weave_.profile) {
+      const std::optional<Bend> bend = natural_bend(crossed);
+      return bend ? std::optional<AnyBend>(*bend) : std::nullopt;
+    }
     switch (*weave_.profile) {
       case Weave::Profile::lenticular:
         return Bend::lens;
@@ -270,8 +313,9 @@ std::vector<Pass> WeaveConstruction::passes_of(const Place& place) const {
       const double height =
           weave_.amplitude.value_or(is_weft ? heights_.weft(thickness) : heights_.warp(thickness));
       pass.z = on_top ? height : -height;
-      pass.below = pass.above = obstacle_of((is_weft ? weft_bend_ : warp_bend_).value_or(Bend::round),
-                                            crossed.thread(k).size, thickness, heights_.clearance);
+      pass.below = pass.above =
+          obstacle_of((is_weft ? weft_bend_ : warp_bend_).value_or(AnyBend(Bend::round)),
+                      crossed.thread(k).size, thickness, heights_.clearance);
     }
     passes.push_back(pass);
   }
@@ -309,6 +353,12 @@ Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
   const TextPlace text = is_binder ? weave_.binders[block->set].place : weave_.place;
   Result<YarnPlan> plan = start_plan(fabric_, thread(index), name(index), role, text);
   if (!plan) return plan;
+  if (is_pressed_ && !is_binder) {
+    const WovenThread& woven = (is_weft ? weft_ : warp_).thread(yarn);
+    plan->spec.section = woven.section;
+    plan->thread.section = woven.section;
+    plan->spec.sizes = {{0.0, woven.size, 0.0}};
+  }
   for (yarn::SizeAtParameter& at : plan->spec.sizes) {
     const double share = 1.0 - (is_binder ? 0.0 : thinner_) / at.size.height;
     at.size = {share * at.size.width, share * at.size.height};
