@@ -275,6 +275,7 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                         {"draft", read_draft},
                                         {"profile", read_profile},
                                         {"crimp", read_crimp},
+                                        {"thickness", into(&Weave::thickness, a_positive("the thickness"))},
                                         {"layers", into(&Weave::layers, a_count("the number of layers"))},
                                         {"binder", read_binder, Times::any}});
   WeaveBlock weave;
@@ -291,6 +292,8 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     if (!is_straight && !weave.binders.empty())
       p.error(opened, "a binder goes through straight layers: it needs 'profile straight'");
     if (is_straight && weave.crimp) p.error(opened, "straight yarns have no crimp to share");
+    if (weave.profile && weave.thickness)
+      p.error(opened, "with a profile its formula makes the thickness: leave out the profile, or the thickness");
   }
   fabric.items.emplace_back(static_cast<Weave&&>(weave));
 }

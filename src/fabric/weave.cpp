@@ -118,16 +118,17 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
       fit_weave({&warp_, &weft_, &drawdown_, warp_bend_, weft_bend_}, clearance_, heights_at);
   const std::string_view unit = name_of(fabric_.units);
   std::string remedies = "a larger pitch or narrower sections give it";
-  const LooseCloth loose{warp_, weft_, &drawdown_, weave_.crimp, clearance_, fabric_.units};
+  const bool is_thin =
+      fit && (!weave_.thickness || thickness_of(warp_, weft_, fit->heights) <= *weave_.thickness);
+  LooseCloth loose{warp_, weft_, &drawdown_, weave_.crimp, weave_.thickness, clearance_, fabric_.units};
   // With `profile` a formula is asked for.
-  if (!has_room(fit) && !weave_.profile && can_press(loose)) {
-    if (std::optional<PressedCloth> pressed = press_cloth(loose))
-      return take(std::move(*pressed), diagnostics);
+  if (!(has_room(fit) && is_thin) && !weave_.profile && can_press(loose)) {
+    if (std::optional<PressedCloth> pressed = press_cloth(loose)) return take(std::move(*pressed), diagnostics);
+    if (weave_.thickness) return too_thick(std::move(loose));
     if (!fit)
-      return error(Kind::geometry,
-                   fmt::format("the cloth is jammed: its yarns, pressed as flat and as close as they "
-                               "go, have no room to pass each other; {}",
-                               remedies_for(loose)))
+      return error(Kind::geometry, fmt::format("the cloth is jammed: its yarns, pressed as flat and as close as they "
+                                               "go, have no room to pass each other; {}",
+                                               remedies_for(loose)))
           .placed(fit.error().place);
     if (fit->gap <= 0.0) remedies = remedies_for(loose);
   }
@@ -151,6 +152,18 @@ bool WeaveConstruction::has_room(const Result<WeaveFit>& fit) const {
   return fit && fit->gap > 0.0 &&
          fit->heights.clearance <= 0.5 * most_lift * (warp_.thickest + weft_.thickest) &&
          warp_.widest <= warp_.text->pitch && weft_.widest <= weft_.text->pitch;
+}
+
+Message WeaveConstruction::too_thick(LooseCloth loose) const {
+  const double wanted = *std::exchange(loose.thickness, std::nullopt);
+  const std::optional<PressedCloth> pressed = press_cloth(loose);
+  const std::string what =
+      pressed ? fmt::format("pressed by no more than they need its yarns make a cloth {:.3g} {} thick",
+                            pressed->thickness(), name_of(fabric_.units))
+              : remedies_for(loose);
+  return error(Kind::geometry, fmt::format("no cloth of these yarns is {:.6g} {} thick: {}", wanted,
+                                           name_of(fabric_.units), what))
+      .placed(weave_.place);
 }
 
 Heights WeaveConstruction::take(PressedCloth pressed, Diagnostics& diagnostics) {
@@ -206,13 +219,10 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   Result<Heights> heights = fit_heights(diagnostics);
   if (!heights) return heights.error();
   heights_ = *heights;
-  double top = 0.0;
-  for (const WovenThread& woven : warp_.threads)
-    top = std::max(top, heights_.warp(woven.size.height) + 0.5 * woven.size.height);
-  for (const WovenThread& woven : weft_.threads)
-    top = std::max(top, heights_.weft(woven.size.height) + 0.5 * woven.size.height);
-  if (weave_.amplitude) top = *weave_.amplitude + 0.5 * std::max(warp_.thickest, weft_.thickest);
-  layer_pitch_ = 2.0 * top + clearance_;
+  const double thickness = weave_.amplitude
+                               ? 2.0 * *weave_.amplitude + std::max(warp_.thickest, weft_.thickest)
+                               : thickness_of(warp_, weft_, heights_);
+  layer_pitch_ = thickness + clearance_;
   for (int layer = 0; layer < layers(); ++layer) {
     add_block(Block::Kind::warp, layer, 0, row_of(warp_));
     add_block(Block::Kind::weft, layer, 0, row_of(weft_));

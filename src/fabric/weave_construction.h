@@ -88,6 +88,7 @@ class WeaveConstruction final : public Construction {
   Status prepare_interlacing(Diagnostics& diagnostics);
   [[nodiscard]] Result<Heights> fit_heights(Diagnostics& diagnostics);
   [[nodiscard]] bool has_room(const Result<WeaveFit>& fit) const;
+  [[nodiscard]] Message too_thick(LooseCloth loose) const;
   [[nodiscard]] Heights take(PressedCloth pressed, Diagnostics& diagnostics);
   Status prepare_binders(Diagnostics& diagnostics);
   [[nodiscard]] Status check_binder(const Block& block) const;

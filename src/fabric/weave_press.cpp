@@ -167,6 +167,9 @@ class Energy {
     r.push_back(std::sqrt(lift_weight) * lift / scale_);
     if (systems_.warp_share)
       r.push_back(2.0 * stiff * (states[0].height - *systems_.warp_share * rise) / scale_);
+    if (systems_.thickness)
+      for (const State& state : states)
+        forbid((2.0 * state.height + state.size.height - *systems_.thickness) / scale_);
     constexpr int looks = 9;
     for_gaps(systems_, states[0], states[1], looks,
              [&](double gap) { forbid((systems_.clearance - gap) / scale_); });

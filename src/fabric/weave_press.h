@@ -34,6 +34,7 @@ struct PressedSystems {
   bool change_together = true;
   double clearance = 0;
   std::optional<double> warp_share;  // of the height by which both systems rise: as asked for
+  std::optional<double> thickness;   // of the cloth, at most
 };
 
 // What becomes of the yarns of a system.

@@ -98,6 +98,7 @@ std::optional<PressedCloth> press_cloth(const LooseCloth& cloth) {
   // Of half of both thicknesses: what lies further apart at its crossings is no cloth that anything holds
   // together.
   constexpr double most_lift = 0.25;
+  constexpr double thickness_slack = 1.01;
   PressedSystems systems;
   systems.warp = pressed_system(cloth.warp, cloth.units);
   systems.weft = pressed_system(cloth.weft, cloth.units);
@@ -105,12 +106,14 @@ std::optional<PressedCloth> press_cloth(const LooseCloth& cloth) {
   systems.change_together = change_together(*cloth.drawdown);
   systems.clearance = cloth.clearance;
   systems.warp_share = cloth.crimp;
+  systems.thickness = cloth.thickness;
   std::optional<PressedCloth> best;
   for (int attempt = 0; attempt < most_tries; ++attempt) {
     const Pressed pressed = press(systems);
     if (!pressed.is_sound) break;
     PressedCloth result = built(cloth, pressed);
     const double gap = result.gap;
+    if (cloth.thickness && result.thickness() > thickness_slack * *cloth.thickness) break;
     if (result.heights.clearance > 0.5 * most_lift * (result.warp.thickest + result.weft.thickest)) break;
     if (gap >= least * cloth.clearance && (!best || gap > best->gap)) best = std::move(result);
     if (gap >= near * cloth.clearance) break;

@@ -16,7 +16,8 @@ struct LooseCloth {
   System warp, weft;
   const Drawdown* drawdown = nullptr;
   std::optional<double> crimp;  // the warp's share that the text asks for
-  double clearance = 0;         // of yarns that cross
+  std::optional<double> thickness;  // of the cloth, at most
+  double clearance = 0;             // of yarns that cross
   Unit units = Unit::mm;
 };
 
@@ -26,12 +27,14 @@ struct PressedCloth {
   PressedBend warp_bend, weft_bend;
   Heights heights;
   double gap = 0;  // of yarns that cross, measured
+  [[nodiscard]] double thickness() const { return thickness_of(warp, weft, heights); }
 };
 
 // False: a section cannot be pressed (a polygon).
 bool can_press(const LooseCloth& cloth);
 
-// None: however its yarns are pressed, they keep less than half of the clearance.
+// None: however its yarns are pressed, they keep less than half of the clearance, or the cloth is thicker than
+// asked for.
 std::optional<PressedCloth> press_cloth(const LooseCloth& cloth);
 
 // What the yarns of a thread have become: `pressed from 0.343 x 0.343 mm to 0.382 x 0.254 mm, its packing

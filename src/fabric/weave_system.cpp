@@ -93,6 +93,15 @@ std::pair<double, double> worst_pair(const System& own, const System& crossed, B
 
 }  // namespace
 
+double thickness_of(const System& warp, const System& weft, const Heights& heights) {
+  double top = 0.0;
+  for (const WovenThread& woven : warp.threads)
+    top = std::max(top, heights.warp(woven.size.height) + 0.5 * woven.size.height);
+  for (const WovenThread& woven : weft.threads)
+    top = std::max(top, heights.weft(woven.size.height) + 0.5 * woven.size.height);
+  return 2.0 * top;
+}
+
 double most_height(const System& own, const System& crossed, Bend bend, bool changes_sides,
                    double clearance) {
   if (!changes_sides) return std::numeric_limits<double>::infinity();

@@ -45,6 +45,9 @@ struct Heights {
   [[nodiscard]] double weft(double thickness) const { return 0.5 * (thickness + clearance) + shift; }
 };
 
+// From the lowest to the highest place of the cloth.
+double thickness_of(const System& warp, const System& weft, const Heights& heights);
+
 // What the axes of one system may rise by from crossing to crossing, at most: infinity where they never
 // change sides.
 double most_height(const System& own, const System& crossed, Bend bend, bool changes_sides, double clearance);
