@@ -293,7 +293,8 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
       p.error(opened, "a binder goes through straight layers: it needs 'profile straight'");
     if (is_straight && weave.crimp) p.error(opened, "straight yarns have no crimp to share");
     if (weave.profile && weave.thickness)
-      p.error(opened, "with a profile its formula makes the thickness: leave out the profile, or the thickness");
+      p.error(opened,
+              "with a profile its formula makes the thickness: leave out the profile, or the thickness");
   }
   fabric.items.emplace_back(static_cast<Weave&&>(weave));
 }

@@ -123,12 +123,14 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
   LooseCloth loose{warp_, weft_, &drawdown_, weave_.crimp, weave_.thickness, clearance_, fabric_.units};
   // With `profile` a formula is asked for.
   if (!(has_room(fit) && is_thin) && !weave_.profile && can_press(loose)) {
-    if (std::optional<PressedCloth> pressed = press_cloth(loose)) return take(std::move(*pressed), diagnostics);
+    if (std::optional<PressedCloth> pressed = press_cloth(loose))
+      return take(std::move(*pressed), diagnostics);
     if (weave_.thickness) return too_thick(std::move(loose));
     if (!fit)
-      return error(Kind::geometry, fmt::format("the cloth is jammed: its yarns, pressed as flat and as close as they "
-                                               "go, have no room to pass each other; {}",
-                                               remedies_for(loose)))
+      return error(Kind::geometry,
+                   fmt::format("the cloth is jammed: its yarns, pressed as flat and as close as they "
+                               "go, have no room to pass each other; {}",
+                               remedies_for(loose)))
           .placed(fit.error().place);
     if (fit->gap <= 0.0) remedies = remedies_for(loose);
   }
@@ -365,6 +367,10 @@ Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
   if (!plan) return plan;
   if (is_pressed_ && !is_binder) {
     const WovenThread& woven = (is_weft ? weft_ : warp_).thread(yarn);
+    const double area = yarn::area(plan->spec.section, plan->spec.sizes.front().size);
+    if (plan->thread.packing)
+      *plan->thread.packing =
+          std::min(1.0, *plan->thread.packing * area / yarn::area(woven.section, woven.size));
     plan->spec.section = woven.section;
     plan->thread.section = woven.section;
     plan->spec.sizes = {{0.0, woven.size, 0.0}};

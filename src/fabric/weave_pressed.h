@@ -15,7 +15,7 @@ namespace selvage::fabric {
 struct LooseCloth {
   System warp, weft;
   const Drawdown* drawdown = nullptr;
-  std::optional<double> crimp;  // the warp's share that the text asks for
+  std::optional<double> crimp;      // the warp's share that the text asks for
   std::optional<double> thickness;  // of the cloth, at most
   double clearance = 0;             // of yarns that cross
   Unit units = Unit::mm;
@@ -33,8 +33,8 @@ struct PressedCloth {
 // False: a section cannot be pressed (a polygon).
 bool can_press(const LooseCloth& cloth);
 
-// None: however its yarns are pressed, they keep less than half of the clearance, or the cloth is thicker than
-// asked for.
+// None: however its yarns are pressed, they keep less than half of the clearance, or the cloth is thicker
+// than asked for.
 std::optional<PressedCloth> press_cloth(const LooseCloth& cloth);
 
 // What the yarns of a thread have become: `pressed from 0.343 x 0.343 mm to 0.382 x 0.254 mm, its packing

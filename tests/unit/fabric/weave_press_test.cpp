@@ -1,5 +1,5 @@
-// Dense weaves: sections that are pressed, as they stand in the built cloth, against areas, distances and lengths
-// found by other means than the construction's; and the remedies for a jammed cloth, tried.
+// Dense weaves: sections that are pressed, as they stand in the built cloth, against areas, distances and
+// lengths found by other means than the construction's; and the remedies for a jammed cloth, tried.
 #include <fmt/format.h>
 
 #include <gtest/gtest.h>
@@ -113,8 +113,8 @@ std::vector<Station> stations_of(const YarnPlan& plan, bool is_weft, int count) 
   return stations;
 }
 
-// How deep points of the surface of `a` lie in the sections of `b`, at most; negative: outside. The sections are
-// ellipses or power sections: 1 - |x|^2 - |y|^(2/n) in half axes.
+// How deep points of the surface of `a` lie in the sections of `b`, at most; negative: outside. The sections
+// are ellipses or power sections: 1 - |x|^2 - |y|^(2/n) in half axes.
 double deepest(const YarnPlan& a, bool a_is_weft, const YarnPlan& b, bool b_is_weft) {
   const auto exponent = [](const YarnPlan& plan) {
     const auto* power = std::get_if<yarn::Power>(&plan.spec.section);
@@ -161,8 +161,8 @@ double thickness_of_built(const YarnBuilder& builder) {
   return high - low;
 }
 
-// Pressed sections keep their area until the fibres have to come nearer to each other, and never lie denser than
-// hexagons.
+// Pressed sections keep their area until the fibres have to come nearer to each other, and never lie denser
+// than hexagons.
 TEST(PressedWeave, SectionsKeepTheirAreaOrTheirFibresComeCloser) {
   const Fabric square = round(0.5, 0.84), twill = denim();
   const YarnPlan round_yarn = planned(building(square), "warp_2");
