@@ -153,18 +153,24 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
 bool WeaveConstruction::has_room(const Result<WeaveFit>& fit) const {
   return fit && fit->gap > 0.0 &&
          fit->heights.clearance <= 0.5 * most_lift * (warp_.thickest + weft_.thickest) &&
-         warp_.widest <= warp_.text->pitch && weft_.widest <= weft_.text->pitch;
+         warp_.widest <= warp_.closest && weft_.widest <= weft_.closest;
 }
 
 Message WeaveConstruction::too_thick(LooseCloth loose) const {
   const double wanted = *std::exchange(loose.thickness, std::nullopt);
-  const std::optional<PressedCloth> pressed = press_cloth(loose);
-  const std::string what =
-      pressed ? fmt::format("pressed by no more than they need its yarns make a cloth {:.3g} {} thick",
-                            pressed->thickness(), name_of(fabric_.units))
-              : remedies_for(loose);
-  return error(Kind::geometry, fmt::format("no cloth of these yarns is {:.6g} {} thick: {}", wanted,
-                                           name_of(fabric_.units), what))
+  std::string what;
+  if (std::optional<PressedCloth> pressed = press_cloth(loose)) {
+    double thick = pressed->thickness(), thin = wanted;
+    for (int step = 0; step < 6; ++step) {
+      loose.thickness = 0.5 * (thin + thick);
+      (press_cloth(loose) ? thick : thin) = *loose.thickness;
+    }
+    what = fmt::format("they are pressed to {:.3g} {} at the least", thick, name_of(fabric_.units));
+  } else {
+    what = remedies_for(loose);
+  }
+  return error(Kind::geometry,
+               fmt::format("no cloth of these yarns is {:.6g} {} thick: {}", wanted, name_of(fabric_.units), what))
       .placed(weave_.place);
 }
 
@@ -198,6 +204,11 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   Result<Drawdown> drawdown = drawdown_of(weave_.draft);
   if (!drawdown) return drawdown.error().placed(weave_.draft.place);
   drawdown_ = std::move(*drawdown);
+  if (weave_.spacing == Weave::Spacing::relaxed) {
+    const auto [picks, ends] = changes_between(drawdown_);
+    relax_spacing(weft_, picks, weft_.widest + clearance_);
+    relax_spacing(warp_, ends, warp_.widest + clearance_);
+  }
   const auto bend_over = [&](const System& crossed) -> std::optional<AnyBend> {
     if (!weave_.profile) {
       const std::optional<Bend> bend = natural_bend(crossed);
@@ -238,10 +249,10 @@ void WeaveConstruction::warn(TextPlace place, std::string text, Diagnostics& dia
 
 void WeaveConstruction::warn_of_widths(Diagnostics& diagnostics) const {
   for (const System* system : {&warp_, &weft_})
-    if (system->widest > system->text->pitch)
+    if (system->widest > system->closest)
       warn(system->text->place,
            fmt::format("yarns {:.6g} wide at a pitch of {:.6g} overlap their neighbours", system->widest,
-                       system->text->pitch),
+                       system->closest),
            diagnostics);
   for (std::size_t set = 0; set < binders_.size(); ++set)
     if (const double gap = warp_.text->pitch - warp_.widest; binders_[set].size.width > gap)

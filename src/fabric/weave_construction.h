@@ -83,7 +83,10 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] int layers() const { return weave_.layers.value_or(1); }
   void add_block(Block::Kind kind, int layer, std::size_t set, const Row& row);
   [[nodiscard]] static Row row_of(const System& system) {
-    return {system.text->count, system.at(0.0), system.text->pitch, system.widest};
+    // Yarns off their even places reach further.
+    double off = 0.0;
+    for (const double offset : system.offsets) off = std::max(off, std::abs(offset));
+    return {system.text->count, 0.5 * system.text->pitch, system.text->pitch, system.widest + 2.0 * off};
   }
   Status prepare_interlacing(Diagnostics& diagnostics);
   [[nodiscard]] Result<Heights> fit_heights(Diagnostics& diagnostics);

@@ -245,7 +245,7 @@ double gap_of(const WovenPair& pair, const Crossing& crossing, const Heights& he
   const WovenThread &warp = *crossing.warps[1], &weft = *crossing.wefts[1];
   std::array<bool, 3> weft_on_top{};
   for (std::size_t i = 0; i < 3; ++i) weft_on_top[i] = !crossing.along_weft[i];
-  const double warp_pitch = pair.warp->text->pitch, weft_pitch = pair.weft->text->pitch;
+  const double warp_pitch = pair.warp->room, weft_pitch = pair.weft->room;
   const PlanePath warp_path = path_of(pair.warp_bend, warp, crossing.wefts, crossing.along_warp,
                                       heights.warp(warp.size.height), weft_pitch, heights.clearance),
                   weft_path = path_of(pair.weft_bend, weft, crossing.warps, weft_on_top,

@@ -147,10 +147,10 @@ class Energy {
       : systems_(systems), scale_(0.5 * (systems.warp.size.height + systems.weft.size.height)) {}
 
   [[nodiscard]] State warp(const VectorXd& x) const {
-    return state_of(systems_.warp, systems_.weft.pitch, x.data());
+    return state_of(systems_.warp, systems_.weft.room, x.data());
   }
   [[nodiscard]] State weft(const VectorXd& x) const {
-    return state_of(systems_.weft, systems_.warp.pitch, x.data() + per_system);
+    return state_of(systems_.weft, systems_.warp.room, x.data() + per_system);
   }
   [[nodiscard]] double scale() const { return scale_; }
 
@@ -319,8 +319,8 @@ Pressed press(const PressedSystems& systems) {
   }
   Pressed pressed{pressed_yarn(systems.warp, energy.warp(best), best.data()),
                   pressed_yarn(systems.weft, energy.weft(best), best.data() + per_system), false};
-  const State warp = state_of(systems.warp, systems.weft.pitch, pressed.warp),
-              weft = state_of(systems.weft, systems.warp.pitch, pressed.weft);
+  const State warp = state_of(systems.warp, systems.weft.room, pressed.warp),
+              weft = state_of(systems.weft, systems.warp.room, pressed.weft);
   pressed.is_sound = is_sound(systems.warp, warp) && is_sound(systems.weft, weft);
   return pressed;
 }

@@ -23,7 +23,8 @@ namespace selvage::fabric {
 struct PressedSystem {
   yarn::Section section;   // not a polygon
   yarn::SectionSize size;  // its size
-  double pitch = 0;        // of its yarns
+  double pitch = 0;        // of its yarns, the least
+  double room = 0;         // the least between yarns between which the other system changes sides
   double least_area = 1;  // of a section, as a share of what it is: where its fibres lie as close as they can
   bool changes = true;    // do its yarns change sides
 };

@@ -47,7 +47,8 @@ PressedSystem pressed_system(const System& system, Unit units) {
   };
   pressed.section = std::max_element(system.threads.begin(), system.threads.end(), narrower)->section;
   pressed.size = {system.widest, system.thickest};
-  pressed.pitch = system.text->pitch;
+  pressed.pitch = system.closest;
+  pressed.room = system.room;
   double densest = 0.0;
   for (const WovenThread& woven : system.threads)
     densest = std::max(densest, packing_of(woven, units).value_or(densest_packing));
@@ -170,6 +171,10 @@ bool has_room(const LooseCloth& cloth, const Easier& easier) {
   LooseCloth changed = cloth;
   changed.warp.text = &warp_text;
   changed.weft.text = &weft_text;
+  changed.warp.room *= easier.warp_pitch;
+  changed.warp.closest *= easier.warp_pitch;
+  changed.weft.room *= easier.weft_pitch;
+  changed.weft.closest *= easier.weft_pitch;
   for (System* system : {&changed.warp, &changed.weft})
     change_sections(*system, [&](const WovenThread& woven) { return scaled(woven.section, easier.yarns); });
   return press_cloth(changed).has_value();
