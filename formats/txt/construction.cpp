@@ -298,7 +298,8 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     if (!is_straight && !weave.binders.empty())
       p.error(opened, "a binder goes through straight layers: it needs 'profile straight'");
     if (is_straight && weave.crimp) p.error(opened, "straight yarns have no crimp to share");
-    if (is_straight && weave.spacing) p.error(opened, "straight yarns have no intersections to make room for");
+    if (is_straight && weave.spacing)
+      p.error(opened, "straight yarns have no intersections to make room for");
     if (weave.profile && weave.thickness)
       p.error(opened,
               "with a profile its formula makes the thickness: leave out the profile, or the thickness");

@@ -114,9 +114,10 @@ consteval bool says_all(const std::array<Word<Enum>, N>&, std::size_t without = 
   return N + without == enumerators<Enum>();
 }
 static_assert(says_all(hand_words) && says_all(density_words) && says_all(unit_words) &&
-              says_all(role_words) && says_all(path_words) && says_all(profile_words) && says_all(spacing_words) &&
-              says_all(knit_method_words) && says_all(stitch_words) && says_all(end_words) &&
-              says_all(edit_words) && section_words.size() == std::variant_size_v<yarn::Section>);
+              says_all(role_words) && says_all(path_words) && says_all(profile_words) &&
+              says_all(spacing_words) && says_all(knit_method_words) && says_all(stitch_words) &&
+              says_all(end_words) && says_all(edit_words) &&
+              section_words.size() == std::variant_size_v<yarn::Section>);
 static_assert(says_all(draft_words, 1) && says_all(knit_words, 1) && says_all(curve_words, 1));
 
 template <class T, std::size_t N>

@@ -32,8 +32,8 @@ struct Drawdown {
   bool operator==(const Drawdown&) const = default;
 };
 
-// How many of a repeat's warps change sides between each pick and the next one, and how many wefts between each
-// end and the next one.
+// How many of a repeat's warps change sides between each pick and the next one, and how many wefts between
+// each end and the next one.
 std::pair<std::vector<int>, std::vector<int>> changes_between(const Drawdown& drawdown);
 
 // plain       10 / 01

@@ -169,8 +169,8 @@ Message WeaveConstruction::too_thick(LooseCloth loose) const {
   } else {
     what = remedies_for(loose);
   }
-  return error(Kind::geometry,
-               fmt::format("no cloth of these yarns is {:.6g} {} thick: {}", wanted, name_of(fabric_.units), what))
+  return error(Kind::geometry, fmt::format("no cloth of these yarns is {:.6g} {} thick: {}", wanted,
+                                           name_of(fabric_.units), what))
       .placed(weave_.place);
 }
 
@@ -204,11 +204,6 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   Result<Drawdown> drawdown = drawdown_of(weave_.draft);
   if (!drawdown) return drawdown.error().placed(weave_.draft.place);
   drawdown_ = std::move(*drawdown);
-  if (weave_.spacing == Weave::Spacing::relaxed) {
-    const auto [picks, ends] = changes_between(drawdown_);
-    relax_spacing(weft_, picks, weft_.widest + clearance_);
-    relax_spacing(warp_, ends, warp_.widest + clearance_);
-  }
   const auto bend_over = [&](const System& crossed) -> std::optional<AnyBend> {
     if (!weave_.profile) {
       const std::optional<Bend> bend = natural_bend(crossed);
@@ -229,7 +224,23 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   };
   warp_bend_ = bend_over(weft_);
   weft_bend_ = bend_over(warp_);
+  const bool is_relaxed = weave_.spacing == Weave::Spacing::relaxed;
+  if (is_relaxed) {
+    const auto [picks, ends] = changes_between(drawdown_);
+    relax_spacing(weft_, picks, weft_.widest + clearance_);
+    relax_spacing(warp_, ends, warp_.widest + clearance_);
+  }
   Result<Heights> heights = fit_heights(diagnostics);
+  if (!heights && is_relaxed) {
+    // Wider than their own sections, pressed ones may need the places that floats would give away.
+    space_evenly(weft_);
+    space_evenly(warp_);
+    heights = fit_heights(diagnostics);
+    if (heights)
+      warn(weave_.place,
+           "the spacing is even: yarns that are pressed have no room to move together under floats",
+           diagnostics);
+  }
   if (!heights) return heights.error();
   heights_ = *heights;
   const double thickness = weave_.amplitude

@@ -34,6 +34,11 @@ double System::at(double yarn) const {
   return even + (1.0 - beyond) * offset(number) + (beyond > 0.0 ? beyond * offset(number + 1.0) : 0.0);
 }
 
+void space_evenly(System& system) {
+  system.offsets.clear();
+  system.room = system.closest = system.text->pitch;
+}
+
 void relax_spacing(System& system, const std::vector<int>& changes, double closest) {
   const double pitch = system.text->pitch;
   const auto floats = static_cast<double>(std::count(changes.begin(), changes.end(), 0));
@@ -85,7 +90,7 @@ Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, 
 Result<System> system_of(const Fabric& fabric, const WeaveSystem& text) {
   System system;
   system.text = &text;
-  system.room = system.closest = text.pitch;
+  space_evenly(system);
   for (const std::string& name : text.threads) {
     Result<WovenThread> woven = woven_thread(fabric, name, text.place);
     if (!woven) return woven.error();

@@ -29,8 +29,8 @@ struct System {
   [[nodiscard]] const WovenThread& thread(long long yarn) const;
   // Yarns after which the threads come again.
   [[nodiscard]] long long repeat_of_threads() const;
-  // Where a yarn lies, one rounding: (yarn + 1/2) pitch; where spacing is not even, beside it. Between yarns in
-  // proportion.
+  // Where a yarn lies, one rounding: (yarn + 1/2) pitch; where spacing is not even, beside it. Between yarns
+  // in proportion.
   [[nodiscard]] double at(double yarn) const;
 };
 
@@ -39,10 +39,12 @@ Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, 
 Result<System> system_of(const Fabric& fabric, const WeaveSystem& text);
 
 // Yarns of a system move together under floats and apart where yarns of the other system change sides between
-// them. `changes`: how many do, between yarn i and the next one, over a repeat. Neighbours without any come as
-// near as `closest` (no further apart than the pitch); what that frees the others share, so that the energy of
-// bending, changes / distance^3 of each gap, is least. Nothing moves where all gaps are alike.
+// them. `changes`: how many do, between yarn i and the next one, over a repeat. Neighbours without any come
+// as near as `closest` (no further apart than the pitch); what that frees the others share, so that the
+// energy of bending, changes / distance^3 of each gap, is least. Nothing moves where all gaps are alike.
 void relax_spacing(System& system, const std::vector<int>& changes, double closest);
+
+void space_evenly(System& system);
 
 // The bend that yarns make over these threads where the text does not say it: by the form of their sections.
 // None for sections whose arc would be too flat to be used (ellipse, power, polygon): sines cross those.

@@ -359,6 +359,7 @@ const std::vector<Case> construction_cases = {
      with_thread("weave\n warp t 4 pich 1\n weft t 4 pitch 0\n draft plain\nend\n"),
      {{6, 11, "'pitch' is expected"}, {7, 17, "larger than 0"}}},
     {"weave_thickness", weave("draft plain\nthickness 0"), {{9, 11, "larger than 0"}}},
+    {"weave_spacing", weave("draft plain\nspacing loose"), {{9, 9, "relaxed"}}},
     {"weave_thickness_of_a_formula",
      weave("draft plain\nthickness 1\nprofile peirce"),
      {{5, 1, "leave out the profile"}}},

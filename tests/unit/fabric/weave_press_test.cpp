@@ -122,10 +122,10 @@ double deepest(const YarnPlan& a, bool a_is_weft, const YarnPlan& b, bool b_is_w
   };
   const yarn::SectionSize a_size = a.spec.sizes.front().size, b_size = b.spec.sizes.front().size;
   double most = -1e9;
-  const std::vector<Station> others = stations_of(b, b_is_weft, 4000);
-  for (const Station& s : stations_of(a, a_is_weft, 600))
-    for (int k = 0; k < 48; ++k) {
-      const double t = 2.0 * pi * k / 48, sine = std::sin(t);
+  const std::vector<Station> others = stations_of(b, b_is_weft, 1500);
+  for (const Station& s : stations_of(a, a_is_weft, 300))
+    for (int k = 0; k < 32; ++k) {
+      const double t = 2.0 * pi * k / 32, sine = std::sin(t);
       const Vec3 p = s.centre + 0.5 * a_size.width * std::cos(t) * s.across +
                      0.5 * a_size.height * std::copysign(std::pow(std::abs(sine), exponent(a)), sine) * s.up;
       // The section of b in whose plane p lies, near it.
@@ -267,6 +267,40 @@ TEST(PressedWeave, AShareOfTheCrimpIsKept) {
   const double warp = std::abs(planned(builder, "warp_2").points[2].z()),
                weft = std::abs(planned(builder, "weft_2").points[2].z());
   EXPECT_NEAR(warp / (warp + weft), 0.5, 1e-3);
+}
+
+// A basket 2/2: pairs of yarns a clearance apart, pairs two pitches apart; and in a draft with gaps of one
+// and of two changes each, more room for two: bending energy c / g^3 is the same at the margin, g^4 : c.
+TEST(PressedWeave, RelaxedSpacingKeepsTheRepeatAndMovesYarnsTogetherUnderFloats) {
+  Fabric fabric = round(0.3, 0.5);
+  dense(fabric).draft.form = Draft::Form::basket;
+  dense(fabric).draft.a = dense(fabric).draft.b = 2;
+  const auto places = [](const Fabric& of) {
+    const YarnBuilder builder = building(of);
+    std::vector<double> at;
+    for (const char* name : {"warp_1", "warp_2", "warp_3", "warp_4", "warp_5"})
+      at.push_back(planned(builder, name).points.front().y());
+    return at;
+  };
+  const std::vector<double> even = places(fabric);
+  for (std::size_t i = 0; i < even.size(); ++i) EXPECT_EQ(even[i], (static_cast<double>(i) + 0.5) * 0.5);
+  dense(fabric).spacing = Weave::Spacing::relaxed;
+  const std::vector<double> at = places(fabric);
+  EXPECT_NEAR(at[1] - at[0], 0.3 * 1.01 + 2.0 * 0.3e-3, 1e-9);  // and twice the tolerance
+  EXPECT_NEAR(at[2] - at[0], 1.0, 1e-12);
+  EXPECT_NEAR(at[4] - at[0], 2.0, 1e-12);
+
+  // Wefts of four: 1100 / 1100 / 0011 / 1011: of four warps four, one, three and none change between them.
+  dense(fabric).draft.form = Draft::Form::rows;
+  dense(fabric).draft.rows = {"1100", "1100", "0011", "1011"};
+  const YarnBuilder builder = building(fabric);
+  std::vector<double> wefts;
+  for (const char* name : {"weft_1", "weft_2", "weft_3", "weft_4", "weft_5"})
+    wefts.push_back(planned(builder, name).points.front().x());
+  EXPECT_NEAR(wefts[4] - wefts[0], 2.0, 1e-12);
+  EXPECT_LT(wefts[1] - wefts[0], 0.31);
+  EXPECT_NEAR(std::pow((wefts[2] - wefts[1]) / (wefts[4] - wefts[3]), 4.0), 4.0 / 3.0, 1e-6);
+  EXPECT_NEAR(wefts[3] - wefts[2], 0.5, 1e-9);  // one change: at the pitch, no less
 }
 
 // Each of the three remedies that a jammed cloth's error names, tried as it stands there.
