@@ -77,6 +77,7 @@ struct State {
   double exponent = 1;
   double height = 0, flat = 0, radius = 0;  // as of PressedYarn
   double angle = 0, straight = 0;           // of the way between two crossings
+  double sine = 0, cosine = 1;              // of the angle
   double pitch = 0;                         // of what it crosses
 };
 
@@ -99,9 +100,10 @@ State state_of(const PressedSystem& system, double crossed_pitch, const double* 
   state.flat = x[flat];
   state.radius = x[radius];
   state.angle = x[angle];
-  state.straight =
-      (crossed_pitch - 2.0 * state.flat - 2.0 * state.radius * std::sin(state.angle)) / std::cos(state.angle);
-  state.height = state.radius * (1.0 - std::cos(state.angle)) + 0.5 * state.straight * std::sin(state.angle);
+  state.sine = std::sin(state.angle);
+  state.cosine = std::cos(state.angle);
+  state.straight = (crossed_pitch - 2.0 * state.flat - 2.0 * state.radius * state.sine) / state.cosine;
+  state.height = state.radius * (1.0 - state.cosine) + 0.5 * state.straight * state.sine;
   return state;
 }
 
@@ -109,14 +111,13 @@ State state_of(const PressedSystem& system, double crossed_pitch, const double* 
 // parallel curve of the axis.
 double lower_side(const State& state, bool changes, double s, double depth) {
   if (!changes || s <= state.flat) return state.height - depth;
-  const double inner = state.radius - depth, sine = std::sin(state.angle);
+  const double inner = state.radius - depth, sine = state.sine;
   const double arc_end = state.flat + inner * sine;
   const auto over = [](double r, double d) { return std::sqrt(std::max(0.0, r * r - d * d)); };
   if (s <= arc_end) return state.height - state.radius + over(inner, s - state.flat);
   const double outer = state.radius + depth, next_arc = state.pitch - state.flat - outer * sine;
   if (s <= next_arc)
-    return state.height - state.radius + inner * std::cos(state.angle) -
-           (s - arc_end) * std::tan(state.angle);
+    return state.height - state.radius + inner * state.cosine - (s - arc_end) * sine / state.cosine;
   return -state.height + state.radius - over(outer, state.pitch - state.flat - s);
 }
 
@@ -127,18 +128,26 @@ std::vector<std::array<bool, 2>> crossings_of(const PressedSystems& systems) {
   return {{systems.warp.changes, false}, {false, systems.weft.changes}};
 }
 
+// The gaps of yarns that cross, through the cloth, at looks x looks places of a quarter of each crossing;
+// closest to one another at the edges, where sections end steeply.
 template <class Use>
-void for_gaps(const PressedSystems& systems, const State& warp, const State& weft, int looks, Use&& use) {
-  // Closest at the edges, where sections end steeply.
-  std::vector<double> sines;
-  for (int i = 0; i <= looks; ++i) sines.push_back(std::sin(0.5 * pi * i / looks));
+void for_gaps(const PressedSystems& systems, const State& warp, const State& weft, Use&& use) {
+  constexpr std::size_t looks = 10;
+  // Distances from the crossing along the warp and along the weft, and half the weft's and the warp's
+  // thickness there.
+  std::array<double, looks> s{}, y{}, weft_half{}, warp_half{};
+  for (std::size_t i = 0; i < looks; ++i) {
+    const double share = 0.5 * std::sin(0.5 * pi * static_cast<double>(i) / (looks - 1));
+    s[i] = share * weft.size.width;
+    y[i] = share * warp.size.width;
+    weft_half[i] = half_thickness(*weft.section, weft.size, weft.exponent, s[i]);
+    warp_half[i] = half_thickness(*warp.section, warp.size, warp.exponent, y[i]);
+  }
   for (const auto& [warp_changes, weft_changes] : crossings_of(systems))
-    for (const double along_warp : sines)
-      for (const double along_weft : sines) {
-        const double s = 0.5 * weft.size.width * along_warp, y = 0.5 * warp.size.width * along_weft;
-        use(lower_side(warp, warp_changes, s, half_thickness(*warp.section, warp.size, warp.exponent, y)) +
-            lower_side(weft, weft_changes, y, half_thickness(*weft.section, weft.size, weft.exponent, s)));
-      }
+    for (std::size_t i = 0; i < looks; ++i)
+      for (std::size_t k = 0; k < looks; ++k)
+        use(lower_side(warp, warp_changes, s[i], warp_half[k]) +
+            lower_side(weft, weft_changes, y[k], weft_half[i]));
 }
 
 class Energy {
@@ -170,8 +179,7 @@ class Energy {
     if (systems_.thickness)
       for (const State& state : states)
         forbid((2.0 * state.height + state.size.height - *systems_.thickness) / scale_);
-    constexpr int looks = 9;
-    for_gaps(systems_, states[0], states[1], looks,
+    for_gaps(systems_, states[0], states[1],
              [&](double gap) { forbid((systems_.clearance - gap) / scale_); });
     return Eigen::Map<const VectorXd>(r.data(), static_cast<Eigen::Index>(r.size()));
   }
