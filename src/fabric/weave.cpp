@@ -192,6 +192,10 @@ Heights WeaveConstruction::take(PressedCloth pressed, Diagnostics& diagnostics) 
   };
   tell(warp_, pressed.warp, "warp");
   tell(weft_, pressed.weft, "weft");
+  diagnostics.add(note(Kind::geometry, fmt::format("with its yarns pressed {} is {:.3g} {} thick",
+                                                   layers() > 1 ? "a layer of the cloth" : "the cloth",
+                                                   pressed.thickness(), name_of(fabric_.units)))
+                      .placed(weave_.place, fabric_.file));
   warp_ = std::move(pressed.warp);
   weft_ = std::move(pressed.weft);
   warp_bend_ = pressed.warp_bend;
