@@ -1,8 +1,8 @@
 // The construction `weave` (formats/txt/README.md): warp i along x at y = (i - 1/2) pitch(warp), weft j along
 // y at x = (j - 1/2) pitch(weft), about z = 0. Yarns that cross keep 1 % of their thickness (or
 // BuildOptions::gap) and twice the tolerance apart; in a jammed cloth, which has no room for that, they are
-// made thinner (weave_fit.h). As published: they are twice the tolerance apart at the crossing itself, and
-// touch in a jammed cloth.
+// made thinner (weave_fit.h), and pressed flat in a denser one (weave_pressed.h). As published: they are
+// twice the tolerance apart at the crossing itself, and touch in a jammed cloth.
 #include "fabric/constructions.h"
 
 #include <fmt/format.h>

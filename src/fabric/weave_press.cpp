@@ -26,7 +26,7 @@ constexpr double least_radius = 0.55;                        // of an arc, by th
 constexpr double most_pointed = 1.0;  // exponents above the own: the ellipse may become a lens
 
 // What is looked for, system after system.
-constexpr int per_system = 6;
+constexpr Eigen::Index per_system = 6;
 enum Unknown { flatter, closer, pointed, angle, flat, radius };
 
 bool has_power(const yarn::Section& section) {
@@ -220,7 +220,7 @@ class Energy {
 VectorXd descend(const Energy& energy, VectorXd x) {
   constexpr int most_steps = 40, most_tries = 10;
   constexpr double nudge = 1e-6;
-  for (double stiffness = 10.0; stiffness < 2e5; stiffness *= 10.0) {
+  for (const double stiffness : {1e1, 1e2, 1e3, 1e4, 1e5}) {
     double damping = 1e-2;
     VectorXd r = energy.residuals(x, stiffness);
     for (int step = 0; step < most_steps; ++step) {
@@ -314,7 +314,7 @@ Pressed press(const PressedSystems& systems) {
   double least = std::numeric_limits<double>::infinity();
   for (const double start : {0.3, 0.7, 1.1}) {
     VectorXd x = VectorXd::Zero(2 * per_system);
-    for (const int system : {0, per_system}) {
+    for (const Eigen::Index system : {Eigen::Index{0}, per_system}) {
       x[system + angle] = start;
       x[system + radius] = energy.scale();
     }
