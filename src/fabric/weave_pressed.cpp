@@ -180,9 +180,9 @@ bool has_room(const LooseCloth& cloth, const Easier& easier) {
   return press_cloth(changed).has_value();
 }
 
-// The smallest factor from 1 on, to 1 %, at which the cloth has room; none up to 4.
-std::optional<double> least_factor(const std::function<bool(double)>& has_room_at) {
-  double low = 1.0, high = 1.1;
+// The smallest factor from `low` on, to 1 %, at which the cloth has room; none up to 4.
+std::optional<double> least_factor(double low, const std::function<bool(double)>& has_room_at) {
+  double high = 1.1 * low;
   while (!has_room_at(high)) {
     low = high;
     high *= 1.25;
@@ -222,7 +222,7 @@ std::string thinner_threads(const LooseCloth& cloth, double by) {
 std::string remedies_for(const LooseCloth& cloth) {
   const double warp_pitch = cloth.warp.text->pitch, weft_pitch = cloth.weft.text->pitch;
   const auto up = [](double value, double by) { return rounded(value * by, true) / value; };
-  const std::optional<double> wider = least_factor([&](double by) {
+  const std::optional<double> wider = least_factor(1.0, [&](double by) {
     return has_room(cloth, {up(warp_pitch, by), up(weft_pitch, by), 1.0});
   });
   if (!wider) return "no pitch up to four times as large gives it: its yarns are too thick";
@@ -231,11 +231,11 @@ std::string remedies_for(const LooseCloth& cloth) {
       "weft; or {}",
       100.0 * (*wider - 1.0), rounded(*wider * warp_pitch, true), rounded(*wider * weft_pitch, true),
       thinner_threads(cloth, 1.0 / *wider));
-  if (const auto picks = least_factor([&](double by) {
+  if (const auto picks = least_factor(*wider, [&](double by) {
         return has_room(cloth, {1.0, up(weft_pitch, by), 1.0});
       }))
     text += fmt::format("; or `pitch {:.6g}` for the weft alone", rounded(*picks * weft_pitch, true));
-  else if (const auto ends = least_factor([&](double by) {
+  else if (const auto ends = least_factor(*wider, [&](double by) {
              return has_room(cloth, {up(warp_pitch, by), 1.0, 1.0});
            }))
     text += fmt::format("; or `pitch {:.6g}` for the warp alone", rounded(*ends * warp_pitch, true));
