@@ -160,6 +160,11 @@ void read_profile(Parser& p, WeaveBlock& weave, std::string_view) {
   if (p.finish()) weave.profile = *profile;
 }
 
+void read_spacing(Parser& p, WeaveBlock& weave, std::string_view) {
+  const auto spacing = p.choice("spacing", spacing_words);
+  if (p.finish()) weave.spacing = *spacing;
+}
+
 void read_crimp(Parser& p, WeaveBlock& weave, std::string_view) {
   const auto share = p.number("the warp's share of the crimp");
   if (share && !(*share >= 0.0 && *share <= 1.0)) p.error(p.last(), "a share lies between 0 and 1");
@@ -302,6 +307,8 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                         {"draft", read_draft},
                                         {"profile", read_profile},
                                         {"crimp", read_crimp},
+                                        {"spacing", read_spacing},
+                                        {"thickness", into(&Weave::thickness, a_positive("the thickness"))},
                                         {"layers", into(&Weave::layers, a_count("the number of layers"))},
                                         {"binder", read_binder, Times::any}});
   WeaveBlock weave;
@@ -318,6 +325,11 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     if (!is_straight && !weave.binders.empty())
       p.error(opened, "a binder goes through straight layers: it needs 'profile straight'");
     if (is_straight && weave.crimp) p.error(opened, "straight yarns have no crimp to share");
+    if (is_straight && weave.spacing)
+      p.error(opened, "straight yarns have no intersections to make room for");
+    if (weave.profile && weave.thickness)
+      p.error(opened,
+              "with a profile its formula makes the thickness: leave out the profile, or the thickness");
   }
   fabric.items.emplace_back(static_cast<Weave&&>(weave));
 }

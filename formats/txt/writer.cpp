@@ -244,6 +244,8 @@ void write_item(Lines& out, const fabric::Weave& weave) {
   if (weave.profile) out.line(1, "profile").word(word_of(profile_words, *weave.profile));
   if (weave.amplitude) out.value(*weave.amplitude);
   if (weave.crimp) out.line(1, "crimp").value(*weave.crimp);
+  if (weave.spacing) out.line(1, "spacing").word(word_of(spacing_words, *weave.spacing));
+  if (weave.thickness) out.line(1, "thickness").value(*weave.thickness);
   if (weave.layers) out.line(1, "layers").value(*weave.layers);
   for (const fabric::Binder& binder : weave.binders) {
     out.line(1, "binder").name(binder.thread).word("every").value(binder.every);

@@ -131,4 +131,16 @@ Result<Drawdown> drawdown_of(const Draft& draft) {
                fmt::format("the draft stands in the file '{}', which was not read", draft.file));
 }
 
+std::pair<std::vector<int>, std::vector<int>> changes_between(const Drawdown& drawdown) {
+  const long long picks = drawdown.repeat_of_picks(), ends = drawdown.repeat_of_ends();
+  std::vector<int> of_picks(static_cast<std::size_t>(picks)), of_ends(static_cast<std::size_t>(ends));
+  for (long long pick = 0; pick < picks; ++pick)
+    for (long long end = 0; end < ends; ++end) {
+      const bool here = drawdown.warp_on_top(pick, end);
+      of_picks[static_cast<std::size_t>(pick)] += here != drawdown.warp_on_top(pick + 1, end) ? 1 : 0;
+      of_ends[static_cast<std::size_t>(end)] += here != drawdown.warp_on_top(pick, end + 1) ? 1 : 0;
+    }
+  return {of_picks, of_ends};
+}
+
 }  // namespace selvage::fabric

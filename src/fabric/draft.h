@@ -8,6 +8,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/diagnostics.h"
@@ -30,6 +31,10 @@ struct Drawdown {
   [[nodiscard]] long long repeat_of_ends() const;
   bool operator==(const Drawdown&) const = default;
 };
+
+// How many of a repeat's warps change sides between each pick and the next one, and how many wefts between
+// each end and the next one.
+std::pair<std::vector<int>, std::vector<int>> changes_between(const Drawdown& drawdown);
 
 // plain       10 / 01
 // twill a/b/...  over a, under b, over ...; from a pick to the next one end to the left: a Z twill; to the

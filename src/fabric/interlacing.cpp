@@ -34,9 +34,12 @@ double largest_height(double pitch, double spread) {
   return pitch <= 0.0 ? 0.0 : spread - std::sqrt(spread * spread - pitch * pitch);
 }
 
-Obstacle obstacle_of(Bend bend, const yarn::SectionSize& other, double own_thickness, double clearance) {
+Obstacle obstacle_of(const AnyBend& bend, const yarn::SectionSize& other, double own_thickness,
+                     double clearance) {
+  if (const auto* pressed = std::get_if<PressedBend>(&bend))
+    return {pressed->flat_share * other.width, pressed->radius};
   const double own = 0.5 * own_thickness + clearance;
-  switch (bend) {
+  switch (std::get<Bend>(bend)) {
     case Bend::round:
       break;
     case Bend::lens:

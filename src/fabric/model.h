@@ -188,6 +188,9 @@ struct Weave {
   std::optional<Profile> profile;
   std::optional<double> amplitude;  // sine: of both systems, file units
   std::optional<double> crimp;      // the warp's share of the crimp height, 0 .. 1
+  std::optional<double> thickness;  // of the cloth (of a layer), at most; file units
+  enum class Spacing { even, relaxed };
+  std::optional<Spacing> spacing;
   std::optional<int> layers;
   std::vector<Binder> binders;
 };

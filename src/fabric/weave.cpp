@@ -1,8 +1,8 @@
 // The construction `weave` (formats/txt/README.md): warp i along x at y = (i - 1/2) pitch(warp), weft j along
 // y at x = (j - 1/2) pitch(weft), about z = 0. Yarns that cross keep 1 % of their thickness (or
 // BuildOptions::gap) and twice the tolerance apart; in a jammed cloth, which has no room for that, they are
-// made thinner (weave_fit.h). As published: they are twice the tolerance apart at the crossing itself, and
-// touch in a jammed cloth.
+// made thinner (weave_fit.h), and pressed flat in a denser one (weave_pressed.h). As published: they are
+// twice the tolerance apart at the crossing itself, and touch in a jammed cloth.
 #include "fabric/constructions.h"
 
 #include <fmt/format.h>
@@ -27,6 +27,9 @@ namespace {
 constexpr int most_layers = 100'000;
 // Of a thickness, between the surfaces of yarns that cross: less makes poor tetrahedra of what lies between.
 constexpr double clearance_share = 0.01;
+// Of half of both thicknesses: yarns whose axes lie further apart at their crossings are lifted off each
+// other by their flanks.
+constexpr double most_lift = 0.1;
 
 // With a unit cell the cloth goes on beyond it by so many pitches. What is different at a spline's end falls
 // by 2 + sqrt(3) from section to section: faces of the cell that are a repeat apart cut yarns that agree to
@@ -59,18 +62,6 @@ std::pair<long long, long long> numbers_of(const Row& row, bool is_periodic, dou
   };
   return {std::min(0LL, number(low - 0.5 * row.width) + 1),
           std::max(row.count, -number(2.0 * row.first - high - 0.5 * row.width))};
-}
-
-// Does any yarn of the draft change sides from one crossing to the next? {warps, wefts}
-std::pair<bool, bool> changes_of(const Drawdown& drawdown) {
-  bool warps = false, wefts = false;
-  for (int pick = 0; pick < drawdown.picks; ++pick)
-    for (int end = 0; end < drawdown.ends; ++end) {
-      const bool here = drawdown.warp_on_top(pick, end);
-      warps = warps || here != drawdown.warp_on_top(pick + 1, end);
-      wefts = wefts || here != drawdown.warp_on_top(pick, end + 1);
-    }
-  return {warps, wefts};
 }
 
 }  // namespace
@@ -109,10 +100,13 @@ void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, 
 Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
   // A sine has room for any height over any pitch.
   const auto [warps_change, wefts_change] = changes_of(drawdown_);
+  const auto formula = [](const std::optional<AnyBend>& bend) {
+    return bend ? std::get<Bend>(*bend) : Bend::round;
+  };
   const SystemPair pair{&warp_,
                         &weft_,
-                        warp_bend_.value_or(Bend::round),
-                        weft_bend_.value_or(Bend::round),
+                        formula(warp_bend_),
+                        formula(weft_bend_),
                         warps_change && warp_bend_,
                         wefts_change && weft_bend_};
   const auto heights_at = [&](double clearance) { return share_crimp(pair, weave_.crimp, clearance); };
@@ -122,14 +116,30 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
   }
   Result<WeaveFit> fit =
       fit_weave({&warp_, &weft_, &drawdown_, warp_bend_, weft_bend_}, clearance_, heights_at);
+  const std::string_view unit = name_of(fabric_.units);
+  std::string remedies = "a larger pitch or narrower sections give it";
+  const bool is_thin =
+      fit && (!weave_.thickness || thickness_of(warp_, weft_, fit->heights) <= *weave_.thickness);
+  LooseCloth loose{warp_, weft_, &drawdown_, weave_.crimp, weave_.thickness, clearance_, fabric_.units};
+  // With `profile` a formula is asked for.
+  if (!(has_room(fit) && is_thin) && !weave_.profile && can_press(loose)) {
+    if (std::optional<PressedCloth> pressed = press_cloth(loose))
+      return take(std::move(*pressed), diagnostics);
+    if (weave_.thickness) return too_thick(std::move(loose));
+    if (!fit)
+      return error(Kind::geometry,
+                   fmt::format("the cloth is jammed: its yarns, pressed as flat and as close as they "
+                               "go, have no room to pass each other; {}",
+                               remedies_for(loose)))
+          .placed(fit.error().place);
+    if (fit->gap <= 0.0) remedies = remedies_for(loose);
+  }
   if (!fit) return fit.error();
   thinner_ = fit->thinner;
-  const std::string_view unit = name_of(fabric_.units);
   if (fit->gap <= 0.0)
     warn(weave_.place,
-         fmt::format("yarns that cross have no room to pass each other and overlap, by about {:.2g} {}: a "
-                     "larger pitch or narrower sections give it",
-                     -fit->gap, unit),
+         fmt::format("yarns that cross have no room to pass each other and overlap, by about {:.2g} {}: {}",
+                     -fit->gap, unit, remedies),
          diagnostics);
   else if (thinner_ > 0.0)
     warn(weave_.place,
@@ -139,12 +149,70 @@ Result<Heights> WeaveConstruction::fit_heights(Diagnostics& diagnostics) {
   return fit->heights;
 }
 
+// Yarns neither overlap nor are lifted off each other by their flanks.
+bool WeaveConstruction::has_room(const Result<WeaveFit>& fit) const {
+  return fit && fit->gap > 0.0 &&
+         fit->heights.clearance <= 0.5 * most_lift * (warp_.thickest + weft_.thickest) &&
+         warp_.widest <= warp_.closest && weft_.widest <= weft_.closest;
+}
+
+Message WeaveConstruction::too_thick(LooseCloth loose) const {
+  const double wanted = *std::exchange(loose.thickness, std::nullopt);
+  std::string what;
+  if (std::optional<PressedCloth> pressed = press_cloth(loose)) {
+    double thick = pressed->thickness(), thin = wanted;
+    for (int step = 0; step < 6; ++step) {
+      loose.thickness = 0.5 * (thin + thick);
+      (press_cloth(loose) ? thick : thin) = *loose.thickness;
+    }
+    what = fmt::format("they are pressed to {:.3g} {} at the least", thick, name_of(fabric_.units));
+  } else {
+    what = remedies_for(loose);
+  }
+  return error(Kind::geometry, fmt::format("no cloth of these yarns is {:.6g} {} thick: {}", wanted,
+                                           name_of(fabric_.units), what))
+      .placed(weave_.place);
+}
+
+Heights WeaveConstruction::take(PressedCloth pressed, Diagnostics& diagnostics) {
+  std::set<const Thread*> told;
+  const auto tell = [&](const System& loose, const System& now, std::string_view system) {
+    for (std::size_t i = 0; i < loose.threads.size(); ++i) {
+      const Thread& thread = *loose.threads[i].thread;
+      if (!told.insert(&thread).second) continue;
+      std::string text =
+          fmt::format("the {} has no room for thread '{}' as it is: it is {}", system, thread.name,
+                      pressing_of(loose.threads[i], now.threads[i], fabric_.units));
+      // A size that the text gives is not kept; one that follows from the linear density is round by default.
+      const bool has_size = thread.section || thread.diameter;
+      diagnostics.add(
+          (has_size ? warning(Kind::geometry, std::move(text)) : note(Kind::geometry, std::move(text)))
+              .placed(thread.place, fabric_.file));
+    }
+  };
+  tell(warp_, pressed.warp, "warp");
+  tell(weft_, pressed.weft, "weft");
+  diagnostics.add(note(Kind::geometry, fmt::format("with its yarns pressed {} is {:.3g} {} thick",
+                                                   layers() > 1 ? "a layer of the cloth" : "the cloth",
+                                                   pressed.thickness(), name_of(fabric_.units)))
+                      .placed(weave_.place, fabric_.file));
+  warp_ = std::move(pressed.warp);
+  weft_ = std::move(pressed.weft);
+  warp_bend_ = pressed.warp_bend;
+  weft_bend_ = pressed.weft_bend;
+  is_pressed_ = true;
+  return pressed.heights;
+}
+
 Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   Result<Drawdown> drawdown = drawdown_of(weave_.draft);
   if (!drawdown) return drawdown.error().placed(weave_.draft.place);
   drawdown_ = std::move(*drawdown);
-  const auto bend_over = [&](const System& crossed) -> std::optional<Bend> {
-    if (!weave_.profile) return natural_bend(crossed);
+  const auto bend_over = [&](const System& crossed) -> std::optional<AnyBend> {
+    if (!weave_.profile) {
+      const std::optional<Bend> bend = natural_bend(crossed);
+      return bend ? std::optional<AnyBend>(*bend) : std::nullopt;
+    }
     switch (*weave_.profile) {
       case Weave::Profile::lenticular:
         return Bend::lens;
@@ -160,16 +228,29 @@ Status WeaveConstruction::prepare_interlacing(Diagnostics& diagnostics) {
   };
   warp_bend_ = bend_over(weft_);
   weft_bend_ = bend_over(warp_);
+  const bool is_relaxed = weave_.spacing == Weave::Spacing::relaxed;
+  if (is_relaxed) {
+    const auto [picks, ends] = changes_between(drawdown_);
+    relax_spacing(weft_, picks, weft_.widest + clearance_);
+    relax_spacing(warp_, ends, warp_.widest + clearance_);
+  }
   Result<Heights> heights = fit_heights(diagnostics);
+  if (!heights && is_relaxed) {
+    // Wider than their own sections, pressed ones may need the places that floats would give away.
+    space_evenly(weft_);
+    space_evenly(warp_);
+    heights = fit_heights(diagnostics);
+    if (heights)
+      warn(weave_.place,
+           "the spacing is even: yarns that are pressed have no room to move together under floats",
+           diagnostics);
+  }
   if (!heights) return heights.error();
   heights_ = *heights;
-  double top = 0.0;
-  for (const WovenThread& woven : warp_.threads)
-    top = std::max(top, heights_.warp(woven.size.height) + 0.5 * woven.size.height);
-  for (const WovenThread& woven : weft_.threads)
-    top = std::max(top, heights_.weft(woven.size.height) + 0.5 * woven.size.height);
-  if (weave_.amplitude) top = *weave_.amplitude + 0.5 * std::max(warp_.thickest, weft_.thickest);
-  layer_pitch_ = 2.0 * top + clearance_;
+  const double thickness = weave_.amplitude
+                               ? 2.0 * *weave_.amplitude + std::max(warp_.thickest, weft_.thickest)
+                               : thickness_of(warp_, weft_, heights_);
+  layer_pitch_ = thickness + clearance_;
   for (int layer = 0; layer < layers(); ++layer) {
     add_block(Block::Kind::warp, layer, 0, row_of(warp_));
     add_block(Block::Kind::weft, layer, 0, row_of(weft_));
@@ -183,10 +264,10 @@ void WeaveConstruction::warn(TextPlace place, std::string text, Diagnostics& dia
 
 void WeaveConstruction::warn_of_widths(Diagnostics& diagnostics) const {
   for (const System* system : {&warp_, &weft_})
-    if (system->widest > system->text->pitch)
+    if (system->widest > system->closest)
       warn(system->text->place,
            fmt::format("yarns {:.6g} wide at a pitch of {:.6g} overlap their neighbours", system->widest,
-                       system->text->pitch),
+                       system->closest),
            diagnostics);
   for (std::size_t set = 0; set < binders_.size(); ++set)
     if (const double gap = warp_.text->pitch - warp_.widest; binders_[set].size.width > gap)
@@ -270,8 +351,9 @@ std::vector<Pass> WeaveConstruction::passes_of(const Place& place) const {
       const double height =
           weave_.amplitude.value_or(is_weft ? heights_.weft(thickness) : heights_.warp(thickness));
       pass.z = on_top ? height : -height;
-      pass.below = pass.above = obstacle_of((is_weft ? weft_bend_ : warp_bend_).value_or(Bend::round),
-                                            crossed.thread(k).size, thickness, heights_.clearance);
+      pass.below = pass.above =
+          obstacle_of((is_weft ? weft_bend_ : warp_bend_).value_or(AnyBend(Bend::round)),
+                      crossed.thread(k).size, thickness, heights_.clearance);
     }
     passes.push_back(pass);
   }
@@ -309,6 +391,16 @@ Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
   const TextPlace text = is_binder ? weave_.binders[block->set].place : weave_.place;
   Result<YarnPlan> plan = start_plan(fabric_, thread(index), name(index), role, text);
   if (!plan) return plan;
+  if (is_pressed_ && !is_binder) {
+    const WovenThread& woven = (is_weft ? weft_ : warp_).thread(yarn);
+    const double area = yarn::area(plan->spec.section, plan->spec.sizes.front().size);
+    if (plan->thread.packing)
+      *plan->thread.packing =
+          std::min(1.0, *plan->thread.packing * area / yarn::area(woven.section, woven.size));
+    plan->spec.section = woven.section;
+    plan->thread.section = woven.section;
+    plan->spec.sizes = {{0.0, woven.size, 0.0}};
+  }
   for (yarn::SizeAtParameter& at : plan->spec.sizes) {
     const double share = 1.0 - (is_binder ? 0.0 : thinner_) / at.size.height;
     at.size = {share * at.size.width, share * at.size.height};

@@ -11,6 +11,7 @@
 #include "fabric/draft.h"
 #include "fabric/interlacing.h"
 #include "fabric/weave_fit.h"
+#include "fabric/weave_pressed.h"
 #include "fabric/weave_system.h"
 
 namespace selvage::fabric {
@@ -82,10 +83,16 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] int layers() const { return weave_.layers.value_or(1); }
   void add_block(Block::Kind kind, int layer, std::size_t set, const Row& row);
   [[nodiscard]] static Row row_of(const System& system) {
-    return {system.text->count, system.at(0.0), system.text->pitch, system.widest};
+    // Yarns off their even places reach further.
+    double off = 0.0;
+    for (const double offset : system.offsets) off = std::max(off, std::abs(offset));
+    return {system.text->count, 0.5 * system.text->pitch, system.text->pitch, system.widest + 2.0 * off};
   }
   Status prepare_interlacing(Diagnostics& diagnostics);
   [[nodiscard]] Result<Heights> fit_heights(Diagnostics& diagnostics);
+  [[nodiscard]] bool has_room(const Result<WeaveFit>& fit) const;
+  [[nodiscard]] Message too_thick(LooseCloth loose) const;
+  [[nodiscard]] Heights take(PressedCloth pressed, Diagnostics& diagnostics);
   Status prepare_binders(Diagnostics& diagnostics);
   [[nodiscard]] Status check_binder(const Block& block) const;
   void warn_of_widths(Diagnostics& diagnostics) const;
@@ -119,9 +126,10 @@ class WeaveConstruction final : public Construction {
   Reach along_x_, along_y_;
   Drawdown drawdown_;
   Heights heights_;
-  std::optional<Bend> warp_bend_, weft_bend_;  // none: sine
-  double clearance_ = 0;                       // between yarns that cross
-  double thinner_ = 0;                         // by which warps and wefts are less thick than their threads
+  std::optional<AnyBend> warp_bend_, weft_bend_;  // none: sine
+  bool is_pressed_ = false;                       // sections are not those of the threads
+  double clearance_ = 0;                          // between yarns that cross
+  double thinner_ = 0;  // by which warps and wefts are less thick than their threads
   double layer_pitch_ = 0;
   std::vector<Block> blocks_;
   std::uint64_t data_points_ = 0;

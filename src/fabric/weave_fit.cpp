@@ -220,7 +220,7 @@ class DifferentCrossings {
 };
 
 // A yarn through three crossings. `crossed`: the threads there; on_top: its own place.
-PlanePath path_of(const std::optional<Bend>& bend, const WovenThread& own,
+PlanePath path_of(const std::optional<AnyBend>& bend, const WovenThread& own,
                   const std::array<const WovenThread*, 3>& crossed, const std::array<bool, 3>& on_top,
                   double height, double pitch, double clearance) {
   std::array<Pass, 3> passes;
@@ -228,7 +228,7 @@ PlanePath path_of(const std::optional<Bend>& bend, const WovenThread& own,
     passes[i].s = (static_cast<double>(i) - 1.0) * pitch;
     passes[i].z = on_top[i] ? height : -height;
     passes[i].below = passes[i].above =
-        obstacle_of(bend.value_or(Bend::round), crossed[i]->size, own.size.height, clearance);
+        obstacle_of(bend.value_or(AnyBend(Bend::round)), crossed[i]->size, own.size.height, clearance);
   }
   return bend ? PlanePath::bent(passes[0], passes[1], passes[2])
               : PlanePath::sine(passes[0], passes[1], passes[2], points_a_wave);
@@ -245,7 +245,7 @@ double gap_of(const WovenPair& pair, const Crossing& crossing, const Heights& he
   const WovenThread &warp = *crossing.warps[1], &weft = *crossing.wefts[1];
   std::array<bool, 3> weft_on_top{};
   for (std::size_t i = 0; i < 3; ++i) weft_on_top[i] = !crossing.along_weft[i];
-  const double warp_pitch = pair.warp->text->pitch, weft_pitch = pair.weft->text->pitch;
+  const double warp_pitch = pair.warp->room, weft_pitch = pair.weft->room;
   const PlanePath warp_path = path_of(pair.warp_bend, warp, crossing.wefts, crossing.along_warp,
                                       heights.warp(warp.size.height), weft_pitch, heights.clearance),
                   weft_path = path_of(pair.weft_bend, weft, crossing.warps, weft_on_top,
@@ -257,10 +257,22 @@ double gap_of(const WovenPair& pair, const Crossing& crossing, const Heights& he
 
 }  // namespace
 
+// Does any yarn of the draft change sides from one crossing to the next? {warps, wefts}
+std::pair<bool, bool> changes_of(const Drawdown& drawdown) {
+  bool warps = false, wefts = false;
+  for (int pick = 0; pick < drawdown.picks; ++pick)
+    for (int end = 0; end < drawdown.ends; ++end) {
+      const bool here = drawdown.warp_on_top(pick, end);
+      warps = warps || here != drawdown.warp_on_top(pick + 1, end);
+      wefts = wefts || here != drawdown.warp_on_top(pick, end + 1);
+    }
+  return {warps, wefts};
+}
+
 double crossing_gap(const WovenPair& pair, const Heights& heights, double thinner) {
   // Arcs about round sections of round yarns: nowhere nearer than at the crossing.
-  if (pair.warp_bend == Bend::round && pair.weft_bend == Bend::round && is_round(*pair.warp) &&
-      is_round(*pair.weft))
+  const std::optional<AnyBend> round = Bend::round;
+  if (pair.warp_bend == round && pair.weft_bend == round && is_round(*pair.warp) && is_round(*pair.weft))
     return heights.clearance + thinner;
   double gap = infinity;
   const DifferentCrossings crossings(pair);

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "fabric/clearance.h"
 #include "fabric/draft.h"
@@ -51,11 +52,14 @@ SweptYarn swept_in_plane(const PlanePath& path, bool is_weft, double across, con
 
 inline constexpr int points_a_wave = 8;  // of a sine, from crossing to crossing
 
+// Does any yarn of the draft change sides from one crossing to the next? {warps, wefts}
+std::pair<bool, bool> changes_of(const Drawdown& drawdown);
+
 // What a weave's yarns do where they cross.
 struct WovenPair {
   const System *warp, *weft;
   const Drawdown* drawdown;
-  std::optional<Bend> warp_bend, weft_bend;  // none: sine
+  std::optional<AnyBend> warp_bend, weft_bend;  // none: sine
 };
 
 // The least gap of yarns that cross at these heights, by samples; negative: they overlap. `thinner`: the

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -20,6 +21,54 @@ long long System::repeat_of_threads() const {
 
 const WovenThread& System::thread(long long yarn) const {
   return threads[static_cast<std::size_t>(wrapped(yarn, static_cast<long long>(threads.size())))];
+}
+
+double System::at(double yarn) const {
+  const double even = (yarn + 0.5) * text->pitch;
+  if (offsets.empty()) return even;
+  const double number = std::floor(yarn), beyond = yarn - number;
+  const auto offset = [&](double of) {
+    const auto count = static_cast<long long>(offsets.size());
+    return offsets[static_cast<std::size_t>(wrapped(static_cast<long long>(of), count))];
+  };
+  return even + (1.0 - beyond) * offset(number) + (beyond > 0.0 ? beyond * offset(number + 1.0) : 0.0);
+}
+
+void space_evenly(System& system) {
+  system.offsets.clear();
+  system.room = system.closest = system.text->pitch;
+}
+
+void relax_spacing(System& system, const std::vector<int>& changes, double closest) {
+  const double pitch = system.text->pitch;
+  const auto floats = static_cast<double>(std::count(changes.begin(), changes.end(), 0));
+  const double near = std::min(closest, pitch), freed = floats * (pitch - near);
+  if (freed <= 0.0 || floats == static_cast<double>(changes.size())) return;
+  const auto gap = [&](int count, double scale) {
+    return count == 0 ? near : std::max(pitch, scale * std::pow(count, 0.25));
+  };
+  const auto together = [&](double scale) {
+    double sum = 0.0;
+    for (const int count : changes) sum += gap(count, scale);
+    return sum;
+  };
+  const double wanted = static_cast<double>(changes.size()) * pitch;
+  double low = 0.0, high = wanted;
+  for (int step = 0; step < 200 && low < high; ++step) {
+    const double middle = 0.5 * (low + high);
+    (together(middle) < wanted ? low : high) = middle;
+  }
+  system.offsets = {0.0};
+  double mean = 0.0;
+  system.room = system.closest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const double here = gap(changes[i], low);
+    system.closest = std::min(system.closest, here);
+    if (changes[i] > 0) system.room = std::min(system.room, here);
+    if (i + 1 < changes.size()) system.offsets.push_back(system.offsets.back() + here - pitch);
+    mean += system.offsets[i] / static_cast<double>(changes.size());
+  }
+  for (double& offset : system.offsets) offset -= mean;
 }
 
 Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, TextPlace place) {
@@ -41,6 +90,7 @@ Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, 
 Result<System> system_of(const Fabric& fabric, const WeaveSystem& text) {
   System system;
   system.text = &text;
+  space_evenly(system);
   for (const std::string& name : text.threads) {
     Result<WovenThread> woven = woven_thread(fabric, name, text.place);
     if (!woven) return woven.error();
@@ -82,7 +132,7 @@ std::pair<double, double> worst_pair(const System& own, const System& crossed, B
     const Obstacle first = obstacle_of(bend, a.size, own.thickest, clearance),
                    last = obstacle_of(bend, b.size, own.thickest, clearance);
     const std::pair<double, double> pair{first.flat + last.flat, first.radius + last.radius};
-    const double room = largest_height(crossed.text->pitch - pair.first, pair.second);
+    const double room = largest_height(crossed.room - pair.first, pair.second);
     if (room < least_room || worst.second == 0.0) {
       least_room = room;
       worst = pair;
@@ -93,11 +143,20 @@ std::pair<double, double> worst_pair(const System& own, const System& crossed, B
 
 }  // namespace
 
+double thickness_of(const System& warp, const System& weft, const Heights& heights) {
+  double top = 0.0;
+  for (const WovenThread& woven : warp.threads)
+    top = std::max(top, heights.warp(woven.size.height) + 0.5 * woven.size.height);
+  for (const WovenThread& woven : weft.threads)
+    top = std::max(top, heights.weft(woven.size.height) + 0.5 * woven.size.height);
+  return 2.0 * top;
+}
+
 double most_height(const System& own, const System& crossed, Bend bend, bool changes_sides,
                    double clearance) {
   if (!changes_sides) return std::numeric_limits<double>::infinity();
   const auto [flats, spread] = worst_pair(own, crossed, bend, clearance);
-  return largest_height(crossed.text->pitch - flats, spread);
+  return largest_height(crossed.room - flats, spread);
 }
 
 Result<Heights> share_crimp(const SystemPair& pair, const std::optional<double>& wanted, double clearance) {
@@ -113,7 +172,7 @@ Result<Heights> share_crimp(const SystemPair& pair, const std::optional<double>&
                  fmt::format(
                      "the pitch {:.6g} is too small: no yarn fits over and under these at a crimp height of "
                      "{:.6g}; the smallest pitch is {:.6g}",
-                     crossed.text->pitch, height, flats + smallest_pitch(height, spread)))
+                     crossed.room, height, flats + smallest_pitch(height, spread)))
         .placed(crossed.text->place);
   };
   double warp_height = wanted.value_or(0.5) * both;

@@ -20,17 +20,31 @@ struct System {
   std::vector<WovenThread> threads;  // used in turn, as the text lists them
   double thickest = 0, widest = 0;
 
+  // Where spacing is not even: by how much the yarns of a repeat lie off their even places.
+  std::vector<double> offsets;
+  // Least distances of neighbours: of those between which the other system changes sides, and of all.
+  double room = 0, closest = 0;
+
   // Yarns are numbered from 0 and go on in both directions.
   [[nodiscard]] const WovenThread& thread(long long yarn) const;
   // Yarns after which the threads come again.
   [[nodiscard]] long long repeat_of_threads() const;
-  // Where a yarn lies, one rounding: (yarn + 1/2) pitch.
-  [[nodiscard]] double at(double yarn) const { return (yarn + 0.5) * text->pitch; }
+  // Where a yarn lies, one rounding: (yarn + 1/2) pitch; where spacing is not even, beside it. Between yarns
+  // in proportion.
+  [[nodiscard]] double at(double yarn) const;
 };
 
 // Errors (geometry): a thread without a size, at the system's line.
 Result<WovenThread> woven_thread(const Fabric& fabric, const std::string& name, TextPlace place);
 Result<System> system_of(const Fabric& fabric, const WeaveSystem& text);
+
+// Yarns of a system move together under floats and apart where yarns of the other system change sides between
+// them. `changes`: how many do, between yarn i and the next one, over a repeat. Neighbours without any come
+// as near as `closest` (no further apart than the pitch); what that frees the others share, so that the
+// energy of bending, changes / distance^3 of each gap, is least. Nothing moves where all gaps are alike.
+void relax_spacing(System& system, const std::vector<int>& changes, double closest);
+
+void space_evenly(System& system);
 
 // The bend that yarns make over these threads where the text does not say it: by the form of their sections.
 // None for sections whose arc would be too flat to be used (ellipse, power, polygon): sines cross those.
@@ -44,6 +58,9 @@ struct Heights {
   [[nodiscard]] double warp(double thickness) const { return 0.5 * (thickness + clearance) - shift; }
   [[nodiscard]] double weft(double thickness) const { return 0.5 * (thickness + clearance) + shift; }
 };
+
+// From the lowest to the highest place of the cloth.
+double thickness_of(const System& warp, const System& weft, const Heights& heights);
 
 // What the axes of one system may rise by from crossing to crossing, at most: infinity where they never
 // change sides.

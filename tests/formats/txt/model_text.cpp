@@ -187,6 +187,8 @@ class Flat {
     add(path + ".profile", v.profile);
     add(path + ".amplitude", v.amplitude);
     add(path + ".crimp", v.crimp);
+    add(path + ".spacing", v.spacing);
+    add(path + ".thickness", v.thickness);
     add(path + ".layers", v.layers);
     add(path + ".binders", v.binders);
   }

@@ -291,6 +291,8 @@ class Maker {
         } else {
           weave.draft = draft();
           maybe(weave.crimp, [&] { return up_to(8) / 8.0; });
+          maybe(weave.spacing, [&] { return static_cast<Weave::Spacing>(up_to(1)); });
+          if (!weave.profile) maybe(weave.thickness, [&] { return (1 + up_to(8)) / 8.0; });
         }
         return weave;
       }

@@ -160,7 +160,9 @@ TEST(Weave, AJammedSquareClothHasPeircesCrimpAndIsTheTightest) {
   EXPECT_NEAR(between / pitch - 1.0, 0.2092, 1e-4);
   EXPECT_NEAR(steepest(warp.line.curve), pi / 3.0, 1e-6);
 
-  const Message message = refusal_of(square(0.5, 0.86));
+  Fabric tighter = square(0.5, 0.86);
+  weave_of(tighter).profile = Weave::Profile::peirce;
+  const Message message = refusal_of(tighter);
   EXPECT_EQ(message.kind, Kind::geometry);
   EXPECT_EQ(message.place.line, 6);
   EXPECT_NE(message.text.find("0.866025"), std::string::npos) << message.text;
@@ -177,6 +179,7 @@ TEST(Weave, ATightSystemTakesTheNearestShareThatItHasRoomFor) {
 
   Fabric wanted = fabric;
   weave_of(wanted).crimp = 0.5;
+  weave_of(wanted).profile = Weave::Profile::peirce;
   EXPECT_EQ(refusal_of(wanted).place.line, 6);
 }
 
@@ -382,7 +385,8 @@ TEST(Weave, ThreadsAreUsedInTurn) {
 }
 
 TEST(Weave, YarnsWiderThanTheirPitchAreWarnedOf) {
-  const Fabric fabric = woven(yarn::Lenticular{1.2, 0.1}, 1.1, yarn::Lenticular{1.0, 0.1}, 2.0);
+  Fabric fabric = woven(yarn::Lenticular{1.2, 0.1}, 1.1, yarn::Lenticular{1.0, 0.1}, 2.0);
+  weave_of(fabric).profile = Weave::Profile::lenticular;
   Diagnostics diagnostics;
   EXPECT_TRUE(YarnBuilder::create(fabric, {}, diagnostics).has_value());
   ASSERT_EQ(diagnostics.messages().size(), 1U);

@@ -1,0 +1,245 @@
+#include "fabric/weave_pressed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "core/overloaded.h"
+#include "fabric/weave_press.h"
+
+namespace selvage::fabric {
+
+namespace {
+
+// Is there a crossing beside which both yarns change sides, on one of its four quarters.
+bool change_together(const Drawdown& drawdown) {
+  for (int pick = 0; pick < drawdown.picks; ++pick)
+    for (int end = 0; end < drawdown.ends; ++end) {
+      const bool here = drawdown.warp_on_top(pick, end);
+      const bool along_warp =
+          drawdown.warp_on_top(pick - 1LL, end) != here || drawdown.warp_on_top(pick + 1LL, end) != here;
+      if (along_warp &&
+          (drawdown.warp_on_top(pick, end - 1LL) != here || drawdown.warp_on_top(pick, end + 1LL) != here))
+        return true;
+    }
+  return false;
+}
+
+// The share of a section that is fibre; none where the thread does not say it.
+std::optional<double> packing_of(const WovenThread& woven, Unit units) {
+  const Thread& thread = *woven.thread;
+  if (!thread.linear_density || !thread.density) return std::nullopt;
+  const double mm = millimetres_per(units), area = yarn::area(woven.section, woven.size) * mm * mm;
+  return thread.linear_density->tex() / (1000.0 * *thread.density * area);
+}
+
+// A system as it presses: the widest of its threads, as thick as the thickest.
+PressedSystem pressed_system(const System& system, Unit units) {
+  PressedSystem pressed;
+  const auto narrower = [](const WovenThread& a, const WovenThread& b) {
+    return a.size.width < b.size.width;
+  };
+  pressed.section = std::max_element(system.threads.begin(), system.threads.end(), narrower)->section;
+  pressed.size = {system.widest, system.thickest};
+  pressed.pitch = system.closest;
+  pressed.room = system.room;
+  double densest = 0.0;
+  for (const WovenThread& woven : system.threads)
+    densest = std::max(densest, packing_of(woven, units).value_or(densest_packing));
+  pressed.least_area = std::min(1.0, densest / densest_packing);
+  return pressed;
+}
+
+void change_sections(System& system, const std::function<yarn::Section(const WovenThread&)>& change) {
+  system.thickest = system.widest = 0.0;
+  for (WovenThread& woven : system.threads) {
+    woven.section = change(woven);
+    woven.size = yarn::nominal_size(woven.section);
+    system.thickest = std::max(system.thickest, woven.size.height);
+    system.widest = std::max(system.widest, woven.size.width);
+  }
+}
+
+PressedCloth built(const LooseCloth& cloth, const Pressed& pressed) {
+  PressedCloth result{cloth.warp, cloth.weft, {}, {}, {}, 0.0};
+  const auto press_sections = [](System& system, const PressedYarn& yarn) {
+    change_sections(
+        system, [&](const WovenThread& woven) { return pressed_section(woven.section, woven.size, yarn); });
+  };
+  press_sections(result.warp, pressed.warp);
+  press_sections(result.weft, pressed.weft);
+  result.warp_bend = {pressed.warp.flat / result.weft.widest, pressed.warp.radius};
+  result.weft_bend = {pressed.weft.flat / result.warp.widest, pressed.weft.radius};
+  const double rise = pressed.warp.height + pressed.weft.height;
+  result.heights.clearance = rise - 0.5 * (result.warp.thickest + result.weft.thickest);
+  result.heights.shift = 0.5 * (result.warp.thickest + result.heights.clearance) - pressed.warp.height;
+  const WovenPair pair{&result.warp, &result.weft, cloth.drawdown, result.warp_bend, result.weft_bend};
+  result.gap = crossing_gap(pair, result.heights, 0.0);
+  return result;
+}
+
+}  // namespace
+
+bool can_press(const LooseCloth& cloth) {
+  for (const System* system : {&cloth.warp, &cloth.weft})
+    for (const WovenThread& woven : system->threads)
+      if (!can_be_pressed(woven.section)) return false;
+  return true;
+}
+
+std::optional<PressedCloth> press_cloth(const LooseCloth& cloth) {
+  constexpr int most_tries = 6;
+  constexpr double near = 0.9, least = 0.5;  // of the clearance
+  // Of half of both thicknesses: what lies further apart at its crossings is no cloth that anything holds
+  // together.
+  constexpr double most_lift = 0.25;
+  constexpr double thickness_slack = 1.01;
+  PressedSystems systems;
+  systems.warp = pressed_system(cloth.warp, cloth.units);
+  systems.weft = pressed_system(cloth.weft, cloth.units);
+  std::tie(systems.warp.changes, systems.weft.changes) = changes_of(*cloth.drawdown);
+  systems.change_together = change_together(*cloth.drawdown);
+  systems.clearance = cloth.clearance;
+  systems.warp_share = cloth.crimp;
+  systems.thickness = cloth.thickness;
+  std::optional<PressedCloth> best;
+  for (int attempt = 0; attempt < most_tries; ++attempt) {
+    const Pressed pressed = press(systems);
+    if (!pressed.is_sound) break;
+    PressedCloth result = built(cloth, pressed);
+    const double gap = result.gap;
+    if (cloth.thickness && result.thickness() > thickness_slack * *cloth.thickness) break;
+    if (result.heights.clearance > 0.5 * most_lift * (result.warp.thickest + result.weft.thickest)) break;
+    if (gap >= least * cloth.clearance && (!best || gap > best->gap)) best = std::move(result);
+    if (gap >= near * cloth.clearance) break;
+    // Through the cloth it is more than from surface to surface, by the slopes.
+    systems.clearance *= std::clamp(cloth.clearance / std::max(gap, 0.01 * cloth.clearance), 1.05, 2.5);
+  }
+  return best;
+}
+
+std::string pressing_of(const WovenThread& loose, const WovenThread& pressed, Unit units) {
+  std::string text = fmt::format("pressed from {:.4g} x {:.4g} to {:.4g} x {:.4g} {}", loose.size.width,
+                                 loose.size.height, pressed.size.width, pressed.size.height, name_of(units));
+  const double before = yarn::area(loose.section, loose.size),
+               after = yarn::area(pressed.section, pressed.size);
+  if (after > 0.999 * before) return text + ", of the same area";
+  if (const std::optional<double> packing = packing_of(loose, units))
+    text += fmt::format(", the packing of its fibres rises from {:.3g} to {:.3g}", *packing,
+                        *packing * before / after);
+  return text;
+}
+
+namespace {
+
+yarn::Section scaled(const yarn::Section& section, double by) {
+  return std::visit(
+      Overloaded{
+          [](const yarn::Polygon& polygon) -> yarn::Section { return polygon; },
+          [&](const yarn::Circle& circle) -> yarn::Section { return yarn::Circle{by * circle.diameter}; },
+          [&](const yarn::Loop7& loop) -> yarn::Section { return yarn::Loop7{by * loop.diameter}; },
+          [&](auto flat) -> yarn::Section {
+            flat.width *= by;
+            flat.height *= by;
+            return flat;
+          },
+      },
+      section);
+}
+
+// Three digits, not less than the value (or not more).
+double rounded(double value, bool up) {
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
+  return (up ? std::ceil(value / step - 1e-9) : std::floor(value / step + 1e-9)) * step;
+}
+
+// A cloth with other pitches or thinner yarns.
+struct Easier {
+  double warp_pitch = 1, weft_pitch = 1, yarns = 1;  // factors
+};
+
+bool has_room(const LooseCloth& cloth, const Easier& easier) {
+  WeaveSystem warp_text = *cloth.warp.text, weft_text = *cloth.weft.text;
+  warp_text.pitch *= easier.warp_pitch;
+  weft_text.pitch *= easier.weft_pitch;
+  LooseCloth changed = cloth;
+  changed.warp.text = &warp_text;
+  changed.weft.text = &weft_text;
+  changed.warp.room *= easier.warp_pitch;
+  changed.warp.closest *= easier.warp_pitch;
+  changed.weft.room *= easier.weft_pitch;
+  changed.weft.closest *= easier.weft_pitch;
+  for (System* system : {&changed.warp, &changed.weft})
+    change_sections(*system, [&](const WovenThread& woven) { return scaled(woven.section, easier.yarns); });
+  return press_cloth(changed).has_value();
+}
+
+// The smallest factor from `low` on, to 1 %, at which the cloth has room; none up to 4.
+std::optional<double> least_factor(double low, const std::function<bool(double)>& has_room_at) {
+  double high = 1.1 * low;
+  while (!has_room_at(high)) {
+    low = high;
+    high *= 1.25;
+    if (high > 4.0) return std::nullopt;
+  }
+  while (high - low > 0.01) {
+    const double middle = 0.5 * (low + high);
+    (has_room_at(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+std::string thinner_threads(const LooseCloth& cloth, double by) {
+  std::string text;
+  std::set<const Thread*> seen;
+  for (const System* system : {&cloth.warp, &cloth.weft})
+    for (const WovenThread& woven : system->threads) {
+      const Thread& thread = *woven.thread;
+      if (!seen.insert(&thread).second) continue;
+      const auto size = [&](double value) { return rounded(by * value, false); };
+      const bool has_size = thread.diameter || (thread.section && woven.size.width > 0.0 &&
+                                                yarn::nominal_size(*thread.section).width > 0.0);
+      std::string now;
+      if (!has_size && thread.linear_density)
+        now = fmt::format("`tex {:.6g}`", rounded(by * by * thread.linear_density->tex(), false));
+      else if (std::holds_alternative<yarn::Circle>(woven.section))
+        now = fmt::format("`diameter {:.6g}`", size(woven.size.height));
+      else
+        now = fmt::format("a section of {:.6g} x {:.6g}", size(woven.size.width), size(woven.size.height));
+      text += fmt::format("{}{} for thread '{}'", text.empty() ? "" : " and ", now, thread.name);
+    }
+  return text;
+}
+
+}  // namespace
+
+std::string remedies_for(const LooseCloth& cloth) {
+  const double warp_pitch = cloth.warp.text->pitch, weft_pitch = cloth.weft.text->pitch;
+  const auto up = [](double value, double by) { return rounded(value * by, true) / value; };
+  const std::optional<double> wider = least_factor(1.0, [&](double by) {
+    return has_room(cloth, {up(warp_pitch, by), up(weft_pitch, by), 1.0});
+  });
+  if (!wider) return "no pitch up to four times as large gives it: its yarns are too thick";
+  std::string text = fmt::format(
+      "both ways it is {:.2g} % too dense. Remedies: `pitch {:.6g}` for the warp and `pitch {:.6g}` for the "
+      "weft; or {}",
+      100.0 * (*wider - 1.0), rounded(*wider * warp_pitch, true), rounded(*wider * weft_pitch, true),
+      thinner_threads(cloth, 1.0 / *wider));
+  if (const auto picks = least_factor(*wider, [&](double by) {
+        return has_room(cloth, {1.0, up(weft_pitch, by), 1.0});
+      }))
+    text += fmt::format("; or `pitch {:.6g}` for the weft alone", rounded(*picks * weft_pitch, true));
+  else if (const auto ends = least_factor(*wider, [&](double by) {
+             return has_room(cloth, {up(warp_pitch, by), 1.0, 1.0});
+           }))
+    text += fmt::format("; or `pitch {:.6g}` for the warp alone", rounded(*ends * warp_pitch, true));
+  return text;
+}
+
+}  // namespace selvage::fabric
