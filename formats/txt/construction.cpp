@@ -169,6 +169,33 @@ void read_construction_thread(Parser& p, T& construction, std::string_view) {
   construction.thread_place = p.last().place();
 }
 
+// N [[pitch] P]
+void read_knit_extent(Parser& p, std::string_view what, int& count, double& pitch) {
+  const auto number = p.count(what);
+  std::optional<double> distance;
+  if (p.more()) {
+    const char first = p.peek_word().front();
+    if ((first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z')) p.expect("pitch");
+    distance = p.positive("the pitch");
+  }
+  if (!p.finish()) return;
+  count = *number;
+  pitch = distance.value_or(0.0);
+}
+
+void read_knit_courses(Parser& p, Knit& knit, std::string_view) {
+  read_knit_extent(p, "the number of courses", knit.courses, knit.course_pitch);
+}
+
+void read_knit_wales(Parser& p, Knit& knit, std::string_view) {
+  read_knit_extent(p, "the number of wales", knit.wales, knit.wale_pitch);
+}
+
+void read_loop(Parser& p, Knit& knit, std::string_view) {
+  const auto length = p.positive("the length of a loop");
+  if (p.finish()) knit.loop = *length;
+}
+
 void read_chart(Parser& p, Knit& knit, std::string_view) {
   if (!p.finish()) return;
   knit.chart_place = p.statement().place();
@@ -298,8 +325,9 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   static const Table<Knit> table(
       {{"thread", read_construction_thread<Knit>, Times::once},
-       {"courses", into(&Knit::courses, a_count("the number of courses")), Times::once},
-       {"wales", into(&Knit::wales, a_count("the number of wales")), Times::once},
+       {"courses", read_knit_courses, Times::once},
+       {"wales", read_knit_wales, Times::once},
+       {"loop", read_loop},
        {"method", into(&Knit::method, one_of("method", knit_method_words))},
        {"chart", read_chart}});
   Knit knit;

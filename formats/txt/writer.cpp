@@ -253,8 +253,13 @@ void write_item(Lines& out, const fabric::Knit& knit) {
   if (knit.form != Knit::Form::chart) out.word(word_of(knit_words, knit.form));
   if (knit.form == Knit::Form::rib) write_pair(out, knit.rib_a, "x", knit.rib_b);
   out.line(1, "thread").name(knit.thread);
-  out.line(1, "courses").value(knit.courses);
-  out.line(1, "wales").value(knit.wales);
+  const auto extent = [&](std::string_view what, int count, double pitch) {
+    out.line(1, what).value(count);
+    if (pitch > 0) out.word("pitch").value(pitch);
+  };
+  extent("courses", knit.courses, knit.course_pitch);
+  extent("wales", knit.wales, knit.wale_pitch);
+  if (knit.loop) out.line(1, "loop").value(*knit.loop);
   if (knit.method) out.line(1, "method").word(word_of(knit_method_words, *knit.method));
   if (knit.form == Knit::Form::chart) {
     out.line(1, "chart");

@@ -8,8 +8,10 @@
 
 #include "fabric/build.h"
 #include "fabric/knit_chart.h"
+#include "fabric/knit_density.h"
 #include "fabric/knit_loop.h"
 #include "fabric/knit_mend.h"
+#include "fabric/quantities.h"
 #include "fabric/yarn_spec.h"
 #include "nurbs/interpolate.h"
 
@@ -36,7 +38,9 @@ class KnitConstruction final : public Construction {
         thread_(thread),
         field_(std::move(field)),
         moves_(std::move(moves)),
-        half_(std::move(half)) {}
+        half_(std::move(half)),
+        pitch_(knit.wale_pitch > 0 ? knit.wale_pitch : wale_spacing * half_.x(),
+               knit.course_pitch > 0 ? knit.course_pitch : course_spacing * half_.x()) {}
 
   [[nodiscard]] std::size_t count() const override {
     return static_cast<std::size_t>(field_.last_course - field_.first_course + 1);
@@ -55,8 +59,8 @@ class KnitConstruction final : public Construction {
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
   [[nodiscard]] Repeat repeat() const override {
     const StitchChart& chart = field_.chart;
-    return {static_cast<double>(chart.repeat_of_wales()) * wale_spacing * half_.x(),
-            static_cast<double>(chart.repeat_of_courses()) * course_spacing * half_.x(), std::nullopt};
+    return {static_cast<double>(chart.repeat_of_wales()) * pitch_.x(),
+            static_cast<double>(chart.repeat_of_courses()) * pitch_.y(), std::nullopt};
   }
 
  private:
@@ -72,20 +76,21 @@ class KnitConstruction final : public Construction {
   const Thread& thread_;
   KnitField field_;
   KnitMoves moves_;
-  Vec2 half_;  // of the section: r across, and r through the thickness
+  Vec2 half_;   // of the section: r across, and r through the thickness
+  Vec2 pitch_;  // of wales and courses, file units
 };
 
 Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
   Result<YarnPlan> plan = start_plan(fabric_, thread_, name(index), Role::course, knit_.place);
   if (!plan) return plan;
   const double r = half_.x();
-  plan->at.y() = static_cast<double>(course(index)) * (course_spacing * r);
+  plan->at.y() = static_cast<double>(course(index)) * pitch_.y();
   std::vector<Vec3>& points = plan->points;
   points.reserve(8 * wales() + 1);
   const auto place_from = [&](std::size_t first, long long wale) {
     for (std::size_t i = first; i < points.size(); ++i) {
       const Vec3 base = points[i];
-      points[i] = {std::fma(static_cast<double>(wale), wale_spacing * r, base.x() * r), base.y() * r,
+      points[i] = {std::fma(static_cast<double>(wale), pitch_.x(), base.x() * r), base.y() * r,
                    base.z() * half_.y()};
     }
   };
@@ -100,40 +105,112 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
   place_from(points.size() - 1, field_.last_wale + 1);
   plan->spec.guide = yarn::FrameGuide::with_up(Vec3::UnitZ());
   Onward onward;  // loops that move alike are all of one form
-  if (moves_.wales_go_on()) onward = {(points.size() - 1) / wales(), {wale_spacing * r, 0, 0}};
+  if (moves_.wales_go_on()) onward = {(points.size() - 1) / wales(), {pitch_.x(), 0, 0}};
   plan->line = course_line(points, knit_.method.value_or(nurbs::Parameterization::chord), onward);
   return plan;
 }
 
+// A hundredth of the thickness (or the wanted gap) is left between two yarns, or twice the tolerance where that
+// is more.
+double gap_of(const Fabric& fabric, const yarn::SectionSize& size, const BuildOptions& options) {
+  const double share = options.gap > 0.0 ? options.gap : least_gap_share * std::min(size.width, size.height);
+  return std::max(share, 2.0 * tolerance_of(fabric, {}));
+}
+
+KnitYarn knit_yarn_of(const Fabric& fabric, const Knit& knit, const yarn::Section& section,
+                      const BuildOptions& options) {
+  const yarn::SectionSize size = yarn::nominal_size(section);
+  KnitYarn yarn;
+  yarn.how = knit.method.value_or(nurbs::Parameterization::chord);
+  yarn.section = section;
+  yarn.half = Vec2(size.width / 2, size.height / 2);
+  yarn.turns = section_twist(*fabric.find_thread(knit.thread), fabric.units) != 0.0 &&
+               !std::holds_alternative<yarn::Circle>(section);
+  // Each surface may lie outside of its yarn by the tolerance.
+  yarn.gap = gap_of(fabric, size, options) + 2.0 * tolerance_of(fabric, {});
+  yarn.keeps_length = knit.loop.has_value();
+  return yarn;
+}
+
+// The loops that the statement asks for, were all its lengths so many times larger.
+Result<LoopShape> shape_of(const Knit& knit, const KnitField& field, const Vec2& half, double larger) {
+  KnitField spaced = field;
+  if (knit.wale_pitch > 0) spaced.shape.wale = larger * knit.wale_pitch / half.x();
+  if (knit.course_pitch > 0) spaced.shape.course = larger * knit.course_pitch / half.x();
+  if (!knit.loop) return spaced.shape;
+  return shape_of_length(spaced, knit.method.value_or(nurbs::Parameterization::chord), half,
+                         larger * *knit.loop);
+}
+
+// Published loops are what they are; loops of given densities have to have room.
+bool has_densities(const Knit& knit) {
+  return knit.wale_pitch > 0 || knit.course_pitch > 0 || knit.loop;
+}
+
+// How many times larger the cloth has to be for its yarn, about. None where eight times does not help.
+std::optional<double> least_enlargement(const Knit& knit, KnitField field, const KnitYarn& yarn) {
+  const auto fits = [&](double larger) {
+    const Result<LoopShape> shape = shape_of(knit, field, yarn.half, larger);
+    if (!shape) return false;
+    KnitField tried = field;
+    tried.shape = *shape;
+    return KnitMoves(tried, yarn).mending().missing * yarn.half.x() <= yarn.gap;
+  };
+  double low = 1, high = 1.25;
+  constexpr double most = 8, enough = 1.01;
+  while (!fits(high)) {
+    if (high > most) return std::nullopt;
+    low = high;
+    high *= 1.25;
+  }
+  while (high > enough * low) {
+    const double middle = std::sqrt(low * high);
+    (fits(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+Message no_room(const Fabric& fabric, const Knit& knit, const KnitField& field, const KnitYarn& yarn) {
+  const std::string_view unit = name_of(fabric.units);
+  const double across = 2 * yarn.half.x();
+  std::string text = fmt::format("a yarn of {:.4g} {} has no room in loops of these courses and wales", across, unit);
+  if (const std::optional<double> larger = least_enlargement(knit, field, yarn)) {
+    const LoopShape& shape = field.shape;
+    text += fmt::format(": a yarn of {:.3g} at most has (a tex or a packing {:.3g} times that), or courses {:.4g} "
+                        "and wales {:.4g} apart",
+                        across / *larger, 1 / (*larger * *larger), shape.course * yarn.half.x() * *larger,
+                        shape.wale * yarn.half.x() * *larger);
+    if (knit.loop) text += fmt::format(" with loops of {:.4g}", *knit.loop * *larger);
+  }
+  return error(Kind::geometry, std::move(text));
+}
+
 // The moves that part the loops. A warning where they cannot.
-KnitMoves moves_of(const Fabric& fabric, const Knit& knit, const yarn::Section& section,
+Result<KnitMoves> moves_of(const Fabric& fabric, const Knit& knit, const yarn::Section& section,
                    const KnitField& field, const BuildOptions& options, Diagnostics& diagnostics) {
   const auto warn = [&](std::string text) {
     diagnostics.add(warning(Kind::geometry, std::move(text)).placed(knit.place, fabric.file));
   };
   const yarn::SectionSize size = yarn::nominal_size(section);
-  if (!(size.width > 0.0) || !(size.height > 0.0)) return {};
+  if (!(size.width > 0.0) || !(size.height > 0.0)) return KnitMoves();
   if (const long long loops = KnitMoves::loops_solved(field); loops > most_solved) {
     warn(
         fmt::format("the chart's repeat is too large for its loops to be moved apart ({} loops that differ, "
                     "at most {}): they are as published, and overlap",
                     loops, most_solved));
-    return {};
+    return KnitMoves();
   }
-  // A hundredth of the thickness (or the wanted gap) is left between two yarns, or twice the tolerance where
-  // that is more; each surface may lie outside of its yarn by the tolerance.
-  const double tolerance = tolerance_of(fabric, {});
-  const double share = options.gap > 0.0 ? options.gap : least_gap_share * std::min(size.width, size.height);
-  const double gap = std::max(share, 2.0 * tolerance);
-  KnitMoves moves(field, {.how = knit.method.value_or(nurbs::Parameterization::chord),
-                          .section = section,
-                          .half = Vec2(size.width / 2, size.height / 2),
-                          .turns = section_twist(*fabric.find_thread(knit.thread), fabric.units) != 0.0 &&
-                                   !std::holds_alternative<yarn::Circle>(section),
-                          .gap = gap + 2.0 * tolerance});
+  const KnitYarn yarn = knit_yarn_of(fabric, knit, section, options);
+  KnitMoves moves(field, yarn);
   const Mending& mending = moves.mending();
+  constexpr double most_stretch = 0.01;
+  if (mending.stretch > most_stretch)
+    warn(fmt::format("the loops of this knit become {:.2g} % longer or shorter than is said where they are moved "
+                     "apart", 100 * mending.stretch));
   if (mending.is_solved()) return moves;
-  const double left = gap + 2.0 * tolerance - 0.5 * mending.missing * size.width;
+  const double gap = gap_of(fabric, size, options);
+  const double left = yarn.gap - 0.5 * mending.missing * size.width;
+  if (left <= 0.0 && has_densities(knit)) return no_room(fabric, knit, field, yarn);
   const std::string near = fmt::format("near ({:.4g}, {:.4g}, {:.4g})", mending.at.x() * size.width / 2,
                                        mending.at.y() * size.width / 2, mending.at.z() * size.height / 2);
   warn(left > 0.0 ? fmt::format("the loops of this knit come nearer to each other than is wanted: {} about "
@@ -143,6 +220,24 @@ KnitMoves moves_of(const Fabric& fabric, const Knit& knit, const yarn::Section& 
                                 "{:.2g} {}",
                                 near, -left, name_of(fabric.units)));
   return moves;
+}
+
+// Courses and wales that a loop's length is worth in a relaxed jersey, from dry to fully relaxed: D. L. Munden,
+// The geometry and dimensional properties of plain-knit fabrics, J. Text. Inst. 50 (1959) T448, and after him.
+// A warning where a cloth is farther off than stretching and finishing bring it.
+void tell_of_constants(const Fabric& fabric, const Knit& knit, Diagnostics& diagnostics) {
+  if (knit.form != Knit::Form::jersey || !knit.loop || !(knit.course_pitch > 0) || !(knit.wale_pitch > 0)) return;
+  constexpr std::array<double, 2> of_courses = {5.0, 5.6}, of_wales = {3.8, 4.3};
+  constexpr double stretched = 1.15;
+  const double kc = *knit.loop / knit.course_pitch, kw = *knit.loop / knit.wale_pitch;
+  const auto is_near = [](double k, const std::array<double, 2>& range) {
+    return k >= range[0] / stretched && k <= range[1] * stretched;
+  };
+  if (is_near(kc, of_courses) && is_near(kw, of_wales)) return;
+  diagnostics.add(warning(Kind::geometry, fmt::format("a loop's length is {:.3g} courses and {:.3g} wales here; in "
+                                  "a relaxed jersey it is {} to {} and {} to {} (Munden)",
+                                  kc, kw, of_courses[0], of_courses[1], of_wales[0], of_wales[1]))
+                      .placed(knit.place, fabric.file));
 }
 
 }  // namespace
@@ -163,8 +258,21 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
   const long long beyond = fabric.cell ? chart->longest_hold() + 2 + border_courses(*chart) : 0;
   KnitField field{std::move(*chart), -beyond, knit.courses - 1 + beyond, -beside, knit.wales - 1 + beside};
   const Vec2 half(size.width / 2, size.height / 2);
+  for (const auto& [what, pitch] :
+       {std::pair("a wale pitch", knit.wale_pitch), std::pair("a course pitch", knit.course_pitch)})
+    if (pitch > 0)
+      if (Status fits = check_proportion(what, pitch, size.width, fabric.units, knit.place); !fits)
+        return fits.error();
+  Result<LoopShape> shape = shape_of(knit, field, half, 1);
+  if (!shape) return shape.error().placed(knit.place);
+  field.shape = *shape;
+  tell_of_constants(fabric, knit, diagnostics);
   KnitMoves moves;
-  if (!options.as_published) moves = moves_of(fabric, knit, *section, field, options, diagnostics);
+  if (!options.as_published) {
+    Result<KnitMoves> found = moves_of(fabric, knit, *section, field, options, diagnostics);
+    if (!found) return found.error().placed(knit.place);
+    moves = std::move(*found);
+  }
   return std::unique_ptr<Construction>(
       std::make_unique<KnitConstruction>(fabric, knit, *thread, std::move(field), std::move(moves), half));
 }

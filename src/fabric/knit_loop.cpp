@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace selvage::fabric {
 
@@ -11,7 +12,6 @@ namespace {
 // the name says `top`, from those of the course whose loop is drawn through this one), z for a knit loop.
 using Point = std::array<double, 3>;
 
-constexpr double wale_middle = wale_spacing / 2;
 constexpr double depth = 1.5;  // of legs, sinkers and heads before or behind the middle plane
 constexpr double sinker_y = -3;
 constexpr double head_over_top = 3;
@@ -34,6 +34,17 @@ constexpr Point tuck_leg = {-1, 2.45, 1};
 constexpr Point tuck_shoulder_top = {-3.15, 0.2, -1.15};
 constexpr double tuck_head_over_top = 3.5, tuck_head = -5;
 constexpr double float_y = -2, float_z = -2.5;
+
+// A point of the published loop where the shape has it: x from the loop's middle.
+Vec3 shaped(const LoopShape& shape, const Point& p, double top) {
+  // Foot and shoulder of the published loop are at 1 and 3, the leg's middle at 2, a sinker's at 4.
+  const double across = std::abs(p[0]);
+  const double out = across < 1 ? -across : across < 3 ? across - 2 : 4 - across;
+  const double x = std::copysign(across + (shape.bulge - 1) * out, p[0]);
+  const double beyond = std::min(p[1], 0.0) + std::max(p[1] - top, 0.0);
+  return {x * (shape.wale / wale_spacing),
+          (p[1] + (shape.overlap - 1) * beyond) * (shape.course / course_spacing), p[2] * shape.depth};
+}
 
 // What one needle does in one course.
 struct Needle {
@@ -116,6 +127,12 @@ double sinker_z(const KnitField& field, long long course, long long wale) {
   const Needle right = needle_at(field, course, std::min(wale, field.last_wale));
   if (left.side != right.side) return 0.0;
   return -right.side * (depth + room_for(std::max(left.behind, right.behind)));
+}
+
+// A sinker's middle, above the side of its wale.
+Vec3 sinker_at(const KnitField& field, double z) {
+  const Vec3 at = shaped(field.shape, {0, sinker_y, z}, course_spacing);
+  return {0, at.y(), at.z()};
 }
 
 // The points of one half of a stitch, from its sinker to before its head.
@@ -204,9 +221,10 @@ void add_stitch_points(const KnitField& field, long long course, long long wale,
   const double left_sinker = sinker_z(field, course, wale);
   const double right_sinker = sinker_z(field, course, wale + 1);
   const auto add = [&](const Point& p, double mirror) {
-    points.emplace_back(wale_middle + mirror * p[0], p[1], needle.side * p[2]);
+    const Vec3 at = shaped(field.shape, p, hold.top);
+    points.emplace_back(field.shape.wale / 2 + mirror * at.x(), at.y(), needle.side * at.z());
   };
-  points.emplace_back(0, sinker_y, left_sinker);
+  points.push_back(sinker_at(field, left_sinker));
   for (const Point& point : Half(needle, hold, left_sinker == 0.0)) add(point, 1);
   add(head_of(needle, hold), 1);
   const Half right(needle, hold, right_sinker == 0.0);
@@ -214,7 +232,7 @@ void add_stitch_points(const KnitField& field, long long course, long long wale,
 }
 
 Vec3 last_sinker_point(const KnitField& field, long long course) {
-  return {0, sinker_y, sinker_z(field, course, field.last_wale + 1)};
+  return sinker_at(field, sinker_z(field, course, field.last_wale + 1));
 }
 
 }  // namespace selvage::fabric

@@ -211,11 +211,12 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
   for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitZ())})
     radius = std::max(radius, reach(Vec3::UnitY(), direction));
   MendProblem problem;
-  if (ties_[0].is_periodic()) problem.repeat = {0, course_spacing, 0};
+  problem.measure = scale;
+  if (ties_[0].is_periodic()) problem.repeat = {0, field.shape.course, 0};
   const bool goes_on = ties_[1].is_periodic();
   for (long long c = 0; c < courses; ++c) {
     MendLine line;
-    if (goes_on) line.period = {wale_spacing, 0, 0};
+    if (goes_on) line.period = {field.shape.wale, 0, 0};
     for (long long w = 0; w <= wales; ++w) {
       const std::size_t first = line.points.size();
       const long long course = field.first_course + c, wale = field.first_wale + w;
@@ -234,7 +235,7 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
       for (std::size_t i = first; i < line.points.size(); ++i) {
         line.classes.push_back(static_cast<int>(first_class_[like] + i - first));
         line.points[i] +=
-            Vec3(wale_spacing * static_cast<double>(wale), course_spacing * static_cast<double>(course), 0);
+            Vec3(field.shape.wale * static_cast<double>(wale), field.shape.course * static_cast<double>(course), 0);
       }
     }
     line.curve = [scale, period = line.period, how = yarn.how, goes_on](const std::vector<Vec3>& points) {
@@ -248,6 +249,7 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
       const std::vector<double> t = nurbs::parameters(scaled(points, scale), how);
       return goes_on ? periodic_shares(t) : interpolation_shares(t);
     };
+    line.keeps_length = yarn.keeps_length;
     line.radius = radius;
     line.reach = reach;
     problem.lines.push_back(std::move(line));
@@ -259,7 +261,7 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
     for (const MendLine& line : problem.lines)
       for (std::size_t i = 0; i < line.points.size(); ++i)
         problem.start[static_cast<std::size_t>(line.classes[i])].z() =
-            turn * std::sin(2.0 * std::numbers::pi / wale_spacing * line.points[i].x());
+            turn * std::sin(2.0 * std::numbers::pi / field.shape.wale * line.points[i].x());
   } else {
     problem.images = images_of(problem);
   }

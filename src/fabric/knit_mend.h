@@ -32,6 +32,7 @@ struct KnitYarn {
   Vec2 half = Vec2::Ones();  // of the section: across, and through the thickness; file units
   bool turns = false;        // the section turns along the path
   double gap = 0;            // wanted between two surfaces, file units
+  bool keeps_length = false;  // courses become neither longer nor shorter
 };
 
 // Which loops move alike along one direction of the cloth: near its edges every one for itself, inside those

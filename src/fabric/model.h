@@ -187,6 +187,8 @@ struct Knit {
   std::string thread;
   TextPlace thread_place;
   int courses = 0, wales = 0;
+  double course_pitch = 0, wale_pitch = 0;  // 0: as they follow from the yarn
+  std::optional<double> loop;               // the length of a stitch
   std::optional<nurbs::Parameterization> method;
   std::vector<std::string>
       chart;  // of 'K', 'P', 'T', 'M', top row = last course; empty unless `form` says so
