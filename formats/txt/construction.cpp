@@ -196,11 +196,34 @@ void read_loop(Parser& p, Knit& knit, std::string_view) {
   if (p.finish()) knit.loop = *length;
 }
 
+void read_knit_threads(Parser& p, Knit& knit, std::string_view) {
+  knit.thread_place = p.here().place();
+  do
+    if (const auto thread = p.reference(p.threads)) knit.threads.emplace_back(*thread);
+  while (p.comma());
+  p.finish();
+}
+
+void read_gating(Parser& p, Knit& knit, std::string_view) {
+  const auto gating = p.choice("gating", gating_words);
+  std::optional<double> distance;
+  if (gating == Knit::Gating::opposite && p.more()) distance = p.positive("the distance of the beds");
+  if (!p.finish()) return;
+  knit.gating = *gating;
+  knit.bed_distance = distance;
+}
+
 void read_chart(Parser& p, Knit& knit, std::string_view) {
   if (!p.finish()) return;
   knit.chart_place = p.statement().place();
-  read_sign_rows(
-      p, {"chart", "KPTM", "K (knit), P (purl), T (tuck) and M (miss)", knit.chart, &knit.chart_lines});
+  SignRows rows{"chart", "KPTUM",
+                "K (knit), P (purl), T (tuck) and M (miss); U (tuck of the back bed) with 'gating opposite'",
+                knit.chart, &knit.chart_lines};
+  if (knit.form == Knit::Form::jacquard) {
+    rows.signs = "123456";
+    rows.meaning = "1 to 6: which of the threads knits";
+  }
+  read_sign_rows(p, rows);
 }
 
 // --- warpknit
@@ -323,13 +346,14 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 }
 
 void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
-  static const Table<Knit> table(
-      {{"thread", read_construction_thread<Knit>, Times::once},
-       {"courses", read_knit_courses, Times::once},
-       {"wales", read_knit_wales, Times::once},
-       {"loop", read_loop},
-       {"method", into(&Knit::method, one_of("method", knit_method_words))},
-       {"chart", read_chart}});
+  static const Table<Knit> table({{"thread", read_knit_threads, Times::once},
+                                  {"courses", read_knit_courses, Times::once},
+                                  {"wales", read_knit_wales, Times::once},
+                                  {"loop", read_loop},
+                                  {"feeds", into(&Knit::feeds, a_count("the rows of the chart in a course"))},
+                                  {"gating", read_gating},
+                                  {"method", into(&Knit::method, one_of("method", knit_method_words))},
+                                  {"chart", read_chart}});
   Knit knit;
   const Spot opened = p.statement();
   knit.place = opened.place();
@@ -344,11 +368,20 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   p.finish();
   const int errors = p.report.errors();
   if (p.read_block(word, "", opened, table, knit) && p.report.errors() == errors && form) {
-    if (has_form && !knit.chart.empty())
+    const bool has_chart = !has_form || form == Knit::Form::jacquard;
+    if (!has_chart && !knit.chart.empty())
       p.error(opened, fmt::format("a knit '{}' has its own stitches: leave out either the word or the chart",
                                   word_of(knit_words, *form)));
     if (!has_form && knit.chart.empty())
-      p.error(p.last(), "'knit' ends without its 'chart'; or, behind the word 'knit': jersey, purl or rib");
+      p.error(
+          p.last(),
+          "'knit' ends without its 'chart'; or, behind the word 'knit': jersey, purl, rib, interlock, ...");
+    if (has_form && has_chart && knit.chart.empty())
+      p.error(p.last(), "a jacquard ends without its 'chart': rows of 1, 2, ..., which of the threads knits");
+    if (has_form && knit.feeds)
+      p.error(opened, "'feeds' goes with a chart: leave out either the word or 'feeds'");
+    if (has_form && form != Knit::Form::interlock && knit.gating)
+      p.error(opened, "'gating' goes with a chart or an interlock");
   }
   fabric.items.emplace_back(std::move(knit));
 }

@@ -49,7 +49,7 @@ std::vector<std::string> threads_of(const Item& item) {
                           for (const Binder& binder : weave.binders) names.push_back(binder.thread);
                           return names;
                         },
-                        [](const Knit& knit) { return Names{knit.thread}; },
+                        [](const Knit& knit) { return knit.threads; },
                         [](const Warpknit& warpknit) {
                           Names names = {warpknit.thread};
                           for (const WarpknitBar& bar : warpknit.bars) names.push_back(bar.thread);

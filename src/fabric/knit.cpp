@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <variant>
 
+#include "core/wrapped.h"
 #include "fabric/build.h"
 #include "fabric/knit_chart.h"
 #include "fabric/knit_density.h"
@@ -31,11 +33,11 @@ constexpr long long most_solved = 10'000;
 
 class KnitConstruction final : public Construction {
  public:
-  KnitConstruction(const Fabric& fabric, const Knit& knit, const Thread& thread, KnitField field,
-                   KnitMoves moves, Vec2 half)
+  KnitConstruction(const Fabric& fabric, const Knit& knit, std::vector<const Thread*> threads,
+                   KnitField field, KnitMoves moves, Vec2 half)
       : fabric_(fabric),
         knit_(knit),
-        thread_(thread),
+        threads_(std::move(threads)),
         field_(std::move(field)),
         moves_(std::move(moves)),
         half_(std::move(half)),
@@ -46,9 +48,14 @@ class KnitConstruction final : public Construction {
     return static_cast<std::size_t>(field_.last_course - field_.first_course + 1);
   }
   [[nodiscard]] std::string name(std::size_t index) const override {
-    return fmt::format("course_{}", course(index) + 1);
+    const long long row = course(index), feeds = field_.chart.feeds(), feed = wrapped(row, feeds);
+    const long long number = (row - feed) / feeds + 1;
+    return feeds == 1 ? fmt::format("course_{}", number) : fmt::format("course_{}_{}", number, feed + 1);
   }
-  [[nodiscard]] const Thread& thread(std::size_t /*index*/) const override { return thread_; }
+  [[nodiscard]] const Thread& thread(std::size_t index) const override {
+    return *threads_[static_cast<std::size_t>(
+        wrapped(course(index), static_cast<long long>(threads_.size())))];
+  }
   [[nodiscard]] std::uint64_t data_points() const override {
     return count() * longest();  // below 2^64: counts are below 2^31
   }
@@ -59,11 +66,18 @@ class KnitConstruction final : public Construction {
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
   [[nodiscard]] Repeat repeat() const override {
     const StitchChart& chart = field_.chart;
-    return {static_cast<double>(chart.repeat_of_wales()) * pitch_.x(),
-            static_cast<double>(chart.repeat_of_courses()) * pitch_.y(), std::nullopt};
+    const long long of_threads =
+        smallest_shift(static_cast<long long>(threads_.size()), [&](long long i, long long k) {
+          return threads_[static_cast<std::size_t>(i)] == threads_[static_cast<std::size_t>(k)];
+        });
+    return {
+        static_cast<double>(chart.repeat_of_wales()) * pitch_.x(),
+        chart.height(std::lcm(std::lcm(chart.repeat_of_courses(), of_threads), chart.feeds())) * pitch_.y(),
+        std::nullopt};
   }
 
  private:
+  // The row of the chart, from 0.
   [[nodiscard]] long long course(std::size_t index) const {
     return field_.first_course + static_cast<long long>(index);
   }
@@ -73,7 +87,7 @@ class KnitConstruction final : public Construction {
 
   const Fabric& fabric_;
   const Knit& knit_;
-  const Thread& thread_;
+  std::vector<const Thread*> threads_;  // in turn
   KnitField field_;
   KnitMoves moves_;
   Vec2 half_;   // of the section: r across, and r through the thickness
@@ -81,10 +95,10 @@ class KnitConstruction final : public Construction {
 };
 
 Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
-  Result<YarnPlan> plan = start_plan(fabric_, thread_, name(index), Role::course, knit_.place);
+  Result<YarnPlan> plan = start_plan(fabric_, thread(index), name(index), Role::course, knit_.place);
   if (!plan) return plan;
   const double r = half_.x();
-  plan->at.y() = static_cast<double>(course(index)) * pitch_.y();
+  plan->at.y() = field_.chart.height(course(index)) * pitch_.y();
   std::vector<Vec3>& points = plan->points;
   points.reserve(8 * wales() + 1);
   const auto place_from = [&](std::size_t first, long long wale) {
@@ -103,29 +117,37 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
   points.push_back(last_sinker_point(field_, course(index)));
   moves_.apply(course(index), field_.last_wale + 1, points, points.size() - 1);
   place_from(points.size() - 1, field_.last_wale + 1);
-  plan->spec.guide = yarn::FrameGuide::with_up(Vec3::UnitZ());
+  // What goes from bed to bed runs along the cloth's normal, which says nothing about its sections there.
+  plan->spec.guide = knit_.bed_distance ? yarn::FrameGuide::free_from(Vec3::UnitZ())
+                                        : yarn::FrameGuide::with_up(Vec3::UnitZ());
   Onward onward;  // loops that move alike are all of one form
   if (moves_.wales_go_on()) onward = {(points.size() - 1) / wales(), {pitch_.x(), 0, 0}};
   plan->line = course_line(points, knit_.method.value_or(nurbs::Parameterization::chord), onward);
   return plan;
 }
 
-// A hundredth of the thickness (or the wanted gap) is left between two yarns, or twice the tolerance where that
-// is more.
+// A hundredth of the thickness (or the wanted gap) is left between two yarns, or twice the tolerance where
+// that is more.
 double gap_of(const Fabric& fabric, const yarn::SectionSize& size, const BuildOptions& options) {
   const double share = options.gap > 0.0 ? options.gap : least_gap_share * std::min(size.width, size.height);
   return std::max(share, 2.0 * tolerance_of(fabric, {}));
 }
 
-KnitYarn knit_yarn_of(const Fabric& fabric, const Knit& knit, const yarn::Section& section,
+// Its thickest thread is that of all loops.
+struct Thickest {
+  const Thread* thread = nullptr;
+  yarn::Section section;
+};
+
+KnitYarn knit_yarn_of(const Fabric& fabric, const Knit& knit, const Thickest& thickest,
                       const BuildOptions& options) {
-  const yarn::SectionSize size = yarn::nominal_size(section);
+  const yarn::SectionSize size = yarn::nominal_size(thickest.section);
   KnitYarn yarn;
   yarn.how = knit.method.value_or(nurbs::Parameterization::chord);
-  yarn.section = section;
+  yarn.section = thickest.section;
   yarn.half = Vec2(size.width / 2, size.height / 2);
-  yarn.turns = section_twist(*fabric.find_thread(knit.thread), fabric.units) != 0.0 &&
-               !std::holds_alternative<yarn::Circle>(section);
+  yarn.turns = section_twist(*thickest.thread, fabric.units) != 0.0 &&
+               !std::holds_alternative<yarn::Circle>(thickest.section);
   // Each surface may lie outside of its yarn by the tolerance.
   yarn.gap = gap_of(fabric, size, options) + 2.0 * tolerance_of(fabric, {});
   yarn.keeps_length = knit.loop.has_value();
@@ -137,6 +159,8 @@ Result<LoopShape> shape_of(const Knit& knit, const KnitField& field, const Vec2&
   KnitField spaced = field;
   if (knit.wale_pitch > 0) spaced.shape.wale = larger * knit.wale_pitch / half.x();
   if (knit.course_pitch > 0) spaced.shape.course = larger * knit.course_pitch / half.x();
+  if (field.chart.is_opposite())
+    spaced.shape.bed = knit.bed_distance ? larger * *knit.bed_distance / 2 / half.y() : least_bed;
   if (!knit.loop) return spaced.shape;
   return shape_of_length(spaced, knit.method.value_or(nurbs::Parameterization::chord), half,
                          larger * *knit.loop);
@@ -147,17 +171,17 @@ bool has_densities(const Knit& knit) {
   return knit.wale_pitch > 0 || knit.course_pitch > 0 || knit.loop;
 }
 
-// How many times larger the cloth has to be for its yarn, about. None where eight times does not help.
+// How many times larger the cloth has to be for its yarn, surely. None where eight times does not help.
 std::optional<double> least_enlargement(const Knit& knit, KnitField field, const KnitYarn& yarn) {
   const auto fits = [&](double larger) {
     const Result<LoopShape> shape = shape_of(knit, field, yarn.half, larger);
     if (!shape) return false;
     KnitField tried = field;
     tried.shape = *shape;
-    return KnitMoves(tried, yarn).mending().missing * yarn.half.x() <= yarn.gap;
+    return KnitMoves(tried, yarn).mending().is_solved();
   };
   double low = 1, high = 1.25;
-  constexpr double most = 8, enough = 1.01;
+  constexpr double most = 8, enough = 1.02, surely = 1.02;
   while (!fits(high)) {
     if (high > most) return std::nullopt;
     low = high;
@@ -167,31 +191,33 @@ std::optional<double> least_enlargement(const Knit& knit, KnitField field, const
     const double middle = std::sqrt(low * high);
     (fits(middle) ? high : low) = middle;
   }
-  return high;
+  return surely * high;
 }
 
 Message no_room(const Fabric& fabric, const Knit& knit, const KnitField& field, const KnitYarn& yarn) {
   const std::string_view unit = name_of(fabric.units);
   const double across = 2 * yarn.half.x();
-  std::string text = fmt::format("a yarn of {:.4g} {} has no room in loops of these courses and wales", across, unit);
+  std::string text =
+      fmt::format("a yarn of {:.4g} {} has no room in loops of these courses and wales", across, unit);
   if (const std::optional<double> larger = least_enlargement(knit, field, yarn)) {
     const LoopShape& shape = field.shape;
-    text += fmt::format(": a yarn of {:.3g} at most has (a tex or a packing {:.3g} times that), or courses {:.4g} "
-                        "and wales {:.4g} apart",
-                        across / *larger, 1 / (*larger * *larger), shape.course * yarn.half.x() * *larger,
-                        shape.wale * yarn.half.x() * *larger);
+    text += fmt::format(
+        ": a yarn of {:.3g} at most has (a tex or a packing {:.3g} times that), or courses {:.4g} "
+        "and wales {:.4g} apart",
+        across / *larger, 1 / (*larger * *larger), shape.course * yarn.half.x() * *larger,
+        shape.wale * yarn.half.x() * *larger);
     if (knit.loop) text += fmt::format(" with loops of {:.4g}", *knit.loop * *larger);
   }
   return error(Kind::geometry, std::move(text));
 }
 
 // The moves that part the loops. A warning where they cannot.
-Result<KnitMoves> moves_of(const Fabric& fabric, const Knit& knit, const yarn::Section& section,
-                   const KnitField& field, const BuildOptions& options, Diagnostics& diagnostics) {
+Result<KnitMoves> moves_of(const Fabric& fabric, const Knit& knit, const Thickest& thickest,
+                           const KnitField& field, const BuildOptions& options, Diagnostics& diagnostics) {
   const auto warn = [&](std::string text) {
     diagnostics.add(warning(Kind::geometry, std::move(text)).placed(knit.place, fabric.file));
   };
-  const yarn::SectionSize size = yarn::nominal_size(section);
+  const yarn::SectionSize size = yarn::nominal_size(thickest.section);
   if (!(size.width > 0.0) || !(size.height > 0.0)) return KnitMoves();
   if (const long long loops = KnitMoves::loops_solved(field); loops > most_solved) {
     warn(
@@ -200,13 +226,15 @@ Result<KnitMoves> moves_of(const Fabric& fabric, const Knit& knit, const yarn::S
                     loops, most_solved));
     return KnitMoves();
   }
-  const KnitYarn yarn = knit_yarn_of(fabric, knit, section, options);
+  const KnitYarn yarn = knit_yarn_of(fabric, knit, thickest, options);
   KnitMoves moves(field, yarn);
   const Mending& mending = moves.mending();
   constexpr double most_stretch = 0.01;
   if (mending.stretch > most_stretch)
-    warn(fmt::format("the loops of this knit become {:.2g} % longer or shorter than is said where they are moved "
-                     "apart", 100 * mending.stretch));
+    warn(fmt::format(
+        "the loops of this knit become {:.2g} % longer or shorter than is said where they are moved "
+        "apart",
+        100 * mending.stretch));
   if (mending.is_solved()) return moves;
   const double gap = gap_of(fabric, size, options);
   const double left = yarn.gap - 0.5 * mending.missing * size.width;
@@ -222,11 +250,12 @@ Result<KnitMoves> moves_of(const Fabric& fabric, const Knit& knit, const yarn::S
   return moves;
 }
 
-// Courses and wales that a loop's length is worth in a relaxed jersey, from dry to fully relaxed: D. L. Munden,
-// The geometry and dimensional properties of plain-knit fabrics, J. Text. Inst. 50 (1959) T448, and after him.
-// A warning where a cloth is farther off than stretching and finishing bring it.
+// Courses and wales that a loop's length is worth in a relaxed jersey, from dry to fully relaxed: D. L.
+// Munden, The geometry and dimensional properties of plain-knit fabrics, J. Text. Inst. 50 (1959) T448, and
+// after him. A warning where a cloth is farther off than stretching and finishing bring it.
 void tell_of_constants(const Fabric& fabric, const Knit& knit, Diagnostics& diagnostics) {
-  if (knit.form != Knit::Form::jersey || !knit.loop || !(knit.course_pitch > 0) || !(knit.wale_pitch > 0)) return;
+  if (knit.form != Knit::Form::jersey || !knit.loop || !(knit.course_pitch > 0) || !(knit.wale_pitch > 0))
+    return;
   constexpr std::array<double, 2> of_courses = {5.0, 5.6}, of_wales = {3.8, 4.3};
   constexpr double stretched = 1.15;
   const double kc = *knit.loop / knit.course_pitch, kw = *knit.loop / knit.wale_pitch;
@@ -234,10 +263,11 @@ void tell_of_constants(const Fabric& fabric, const Knit& knit, Diagnostics& diag
     return k >= range[0] / stretched && k <= range[1] * stretched;
   };
   if (is_near(kc, of_courses) && is_near(kw, of_wales)) return;
-  diagnostics.add(warning(Kind::geometry, fmt::format("a loop's length is {:.3g} courses and {:.3g} wales here; in "
-                                  "a relaxed jersey it is {} to {} and {} to {} (Munden)",
-                                  kc, kw, of_courses[0], of_courses[1], of_wales[0], of_wales[1]))
-                      .placed(knit.place, fabric.file));
+  diagnostics.add(
+      warning(Kind::geometry, fmt::format("a loop's length is {:.3g} courses and {:.3g} wales here; in "
+                                          "a relaxed jersey it is {} to {} and {} to {} (Munden)",
+                                          kc, kw, of_courses[0], of_courses[1], of_wales[0], of_wales[1]))
+          .placed(knit.place, fabric.file));
 }
 
 }  // namespace
@@ -246,17 +276,26 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
                                                 const BuildOptions& options, Diagnostics& diagnostics) {
   Result<StitchChart> chart = StitchChart::of(knit);
   if (!chart) return chart.error().placed(knit.place);
-  const Thread* thread = fabric.find_thread(knit.thread);
-  if (thread == nullptr)
-    return error(Kind::geometry, fmt::format("there is no thread '{}'", knit.thread))
-        .placed(knit.thread_place);
-  Result<yarn::Section> section = centred_section_of(*thread, fabric.units);
-  if (!section) return section.error().placed(knit.thread_place);
-  const yarn::SectionSize size = yarn::nominal_size(*section);
+  std::vector<const Thread*> threads;
+  Thickest thickest;
+  for (const std::string& name : knit.threads) {
+    const Thread* thread = fabric.find_thread(name);
+    if (thread == nullptr)
+      return error(Kind::geometry, fmt::format("there is no thread '{}'", name)).placed(knit.thread_place);
+    Result<yarn::Section> section = centred_section_of(*thread, fabric.units);
+    if (!section) return section.error().placed(knit.thread_place);
+    threads.push_back(thread);
+    if (thickest.thread == nullptr ||
+        yarn::nominal_size(*section).width > yarn::nominal_size(thickest.section).width)
+      thickest = {thread, std::move(*section)};
+  }
+  if (threads.empty()) return error(Kind::geometry, "this knit has no thread").placed(knit.place);
+  const yarn::SectionSize size = yarn::nominal_size(thickest.section);
   const long long beside = fabric.cell ? margin_wales : 0;
   // The loops of courses below reach up into the cell as far as they are held, and one course further.
   const long long beyond = fabric.cell ? chart->longest_hold() + 2 + border_courses(*chart) : 0;
-  KnitField field{std::move(*chart), -beyond, knit.courses - 1 + beyond, -beside, knit.wales - 1 + beside};
+  const long long rows = static_cast<long long>(knit.courses) * chart->feeds();
+  KnitField field{std::move(*chart), -beyond, rows - 1 + beyond, -beside, knit.wales - 1 + beside};
   const Vec2 half(size.width / 2, size.height / 2);
   for (const auto& [what, pitch] :
        {std::pair("a wale pitch", knit.wale_pitch), std::pair("a course pitch", knit.course_pitch)})
@@ -269,12 +308,12 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
   tell_of_constants(fabric, knit, diagnostics);
   KnitMoves moves;
   if (!options.as_published) {
-    Result<KnitMoves> found = moves_of(fabric, knit, *section, field, options, diagnostics);
+    Result<KnitMoves> found = moves_of(fabric, knit, thickest, field, options, diagnostics);
     if (!found) return found.error().placed(knit.place);
     moves = std::move(*found);
   }
-  return std::unique_ptr<Construction>(
-      std::make_unique<KnitConstruction>(fabric, knit, *thread, std::move(field), std::move(moves), half));
+  return std::unique_ptr<Construction>(std::make_unique<KnitConstruction>(
+      fabric, knit, std::move(threads), std::move(field), std::move(moves), half));
 }
 
 }  // namespace selvage::fabric

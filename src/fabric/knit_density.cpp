@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
 
 #include "fabric/knit_mend.h"
 #include "nurbs/measure.h"
@@ -16,7 +19,10 @@ constexpr double published_overlap = 3;  // of head and sinker beyond the line a
 constexpr double least_overlap = 1.2;    // in r: a head that just lies behind the legs of the next loop
 constexpr double deepest = 2;            // loops that stand out of the cloth, of the published depth
 
-// The loops of the way, -1 ... 2; at 0 the published one between the field's spacings.
+constexpr double shortest = -1, longest = 2;
+
+// The loops of the way, from the shortest to the longest; at 0 the published one between the field's
+// spacings.
 LoopShape shape_at(const LoopShape& spaced, double way) {
   LoopShape shape = spaced;
   // Yarns lie side by side where a head holds two feet, and need a thickness each.
@@ -37,7 +43,7 @@ LoopShape shape_at(const LoopShape& spaced, double way) {
 double stitch_length(const KnitField& field, nurbs::Parameterization how, const Vec2& half) {
   KnitField endless = field;
   const long long courses = field.chart.repeat_of_courses(), wales = field.chart.repeat_of_wales();
-  constexpr long long far = 4LL * max_held;
+  const long long far = 2LL * max_held * field.chart.feeds();
   endless.first_course = endless.first_wale = -far;
   endless.last_course = courses + far;
   endless.last_wale = wales + far;
@@ -61,6 +67,59 @@ double stitch_length(const KnitField& field, nurbs::Parameterization how, const 
   return length / static_cast<double>(std::max(stitches, 1LL));
 }
 
+LengthBounds length_bounds(const KnitField& field, nurbs::Parameterization how, const Vec2& half) {
+  KnitField tried = field;
+  const auto length_at = [&](double way) {
+    tried.shape = shape_at(field.shape, way);
+    return stitch_length(tried, how, half);
+  };
+  return {length_at(shortest), length_at(longest)};
+}
+
+namespace {
+
+// The nearest value to 1 (found by halving, to a hundredth) for which something holds that does not for 1.
+std::optional<double> nearest_factor(double step, const std::function<bool(double)>& holds) {
+  double without = 1, with = step;
+  constexpr double farthest = 20, enough = 1.005;
+  while (!holds(with)) {
+    if (with > farthest || with < 1 / farthest) return std::nullopt;
+    without = with;
+    with *= step;
+  }
+  while (std::max(with / without, without / with) > enough) {
+    const double middle = std::sqrt(with * without);
+    (holds(middle) ? with : without) = middle;
+  }
+  return with;
+}
+
+Message out_of_bounds(const KnitField& field, nurbs::Parameterization how, const Vec2& half, double length,
+                      const LengthBounds& bounds) {
+  const bool is_short = length < bounds.least;
+  const auto fits = [&](double spacing, double thickness) {
+    KnitField tried = field;
+    tried.shape.wale *= spacing / thickness;
+    tried.shape.course *= spacing / thickness;
+    const LengthBounds b = length_bounds(tried, how, thickness * half);
+    return is_short ? length >= b.least : length <= b.most;
+  };
+  std::string text =
+      fmt::format("loops of {:.6g} are too {} for these courses and wales: {} {:.4g} at {}", length,
+                  is_short ? "short" : "long", is_short ? "with this yarn they have" : "they fold; they have",
+                  is_short ? bounds.least : bounds.most, is_short ? "least" : "most");
+  const double r = half.x();
+  if (const auto spacing = nearest_factor(is_short ? 0.8 : 1.25, [&](double f) { return fits(f, 1); }))
+    text += fmt::format(", or with courses {:.3g} and wales {:.3g} apart take {:.6g}",
+                        field.shape.course * r * *spacing, field.shape.wale * r * *spacing, length);
+  if (const auto thickness = nearest_factor(is_short ? 0.8 : 1.25, [&](double f) { return fits(1, f); }))
+    text +=
+        fmt::format(", and so they do with a yarn of {:.3g} instead of {:.3g}", 2 * r * *thickness, 2 * r);
+  return error(Kind::geometry, std::move(text));
+}
+
+}  // namespace
+
 Result<LoopShape> shape_of_length(const KnitField& field, nurbs::Parameterization how, const Vec2& half,
                                   double length) {
   KnitField tried = field;
@@ -68,12 +127,9 @@ Result<LoopShape> shape_of_length(const KnitField& field, nurbs::Parameterizatio
     tried.shape = shape_at(field.shape, way);
     return stitch_length(tried, how, half) - length;
   };
-  double low = -1, high = 2, below = excess(low), above = excess(high);
+  double low = shortest, high = longest, below = excess(low), above = excess(high);
   if (below > 0 || above < 0)
-    return error(Kind::geometry,
-                 fmt::format("loops of {:.6g} are too {} for these courses and wales: with this yarn they "
-                             "can have {:.4g} to {:.4g}",
-                             length, below > 0 ? "short" : "long", below + length, above + length));
+    return out_of_bounds(field, how, half, length, {below + length, above + length});
   // The method of Illinois: regula falsi that halves what stands at an end for twice.
   constexpr double enough = 1e-9;
   constexpr int most = 100;

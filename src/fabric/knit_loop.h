@@ -24,9 +24,12 @@ inline constexpr double course_spacing = 7;  // in r
 // points are spread to the spacings, and what then is free changes the length.
 struct LoopShape {
   double wale = wale_spacing, course = course_spacing;  // in r
-  // Of the published one: how far feet and shoulders lie from the middle of the leg, how far heads and sinkers
-  // reach beyond the line at which loops hold each other, and how far all lies from the middle plane.
+  // Of the published one: how far feet and shoulders lie from the middle of the leg, how far heads and
+  // sinkers reach beyond the line at which loops hold each other, and how far all lies from the middle plane.
   double bulge = 1, overlap = 1, depth = 1;
+  // Of the middle planes of both beds' loops from the cloth's, where needles stand opposite each other; in
+  // half thicknesses.
+  double bed = 0;
 };
 
 // The needles and courses of a chart, counted from 0, that a cloth uses; bounds inclusive. What lies outside
@@ -38,6 +41,9 @@ struct KnitField {
   long long first_wale = 0, last_wale = 0;
   LoopShape shape = {};
 };
+
+// Heads of opposite beds pass each other.
+inline constexpr double least_bed = 2.5;
 
 // Appends the points that one needle gives to one course, from the sinker on its left to the last point
 // before the sinker on its right, which is the next needle's first point. x from the left side of the wale

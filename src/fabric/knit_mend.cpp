@@ -212,7 +212,7 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
     radius = std::max(radius, reach(Vec3::UnitY(), direction));
   MendProblem problem;
   problem.measure = scale;
-  if (ties_[0].is_periodic()) problem.repeat = {0, field.shape.course, 0};
+  if (ties_[0].is_periodic()) problem.repeat = {0, field.shape.course * field.chart.height(1), 0};
   const bool goes_on = ties_[1].is_periodic();
   for (long long c = 0; c < courses; ++c) {
     MendLine line;
@@ -234,8 +234,8 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
       }
       for (std::size_t i = first; i < line.points.size(); ++i) {
         line.classes.push_back(static_cast<int>(first_class_[like] + i - first));
-        line.points[i] +=
-            Vec3(field.shape.wale * static_cast<double>(wale), field.shape.course * static_cast<double>(course), 0);
+        line.points[i] += Vec3(field.shape.wale * static_cast<double>(wale),
+                               field.shape.course * field.chart.height(course), 0);
       }
     }
     line.curve = [scale, period = line.period, how = yarn.how, goes_on](const std::vector<Vec3>& points) {

@@ -29,9 +29,9 @@ yarn::CentreLine course_line(const std::vector<Vec3>& points, nurbs::Parameteriz
 struct KnitYarn {
   nurbs::Parameterization how = nurbs::Parameterization::chord;
   yarn::Section section;
-  Vec2 half = Vec2::Ones();  // of the section: across, and through the thickness; file units
-  bool turns = false;        // the section turns along the path
-  double gap = 0;            // wanted between two surfaces, file units
+  Vec2 half = Vec2::Ones();   // of the section: across, and through the thickness; file units
+  bool turns = false;         // the section turns along the path
+  double gap = 0;             // wanted between two surfaces, file units
   bool keeps_length = false;  // courses become neither longer nor shorter
 };
 

@@ -27,7 +27,7 @@ constexpr double longest_step = 0.25, least_ahead = 0.05;
 constexpr double stalled = 1e-3;
 constexpr int most_halves = 12;  // of a step
 constexpr int most_stalls = 4;
-constexpr double settled = 0.02;  // share of the energy that a step gains
+constexpr double settled = 0.02;        // share of the energy that a step gains
 constexpr double least_stretch = 1e-4;  // of a line that keeps its length
 
 // What a class contributes to a residual: a vector along which its move counts.
@@ -137,7 +137,8 @@ template <class Each>
 void Mender::for_pieces(const CubicPath& path, const Each& each) {
   // Gauss' three points in a half of each span.
   const double off = std::sqrt(0.15);
-  const std::array<std::array<double, 2>, 3> nodes = {{{0.5 - off, 5.0 / 18}, {0.5, 4.0 / 9}, {0.5 + off, 5.0 / 18}}};
+  const std::array<std::array<double, 2>, 3> nodes = {
+      {{0.5 - off, 5.0 / 18}, {0.5, 4.0 / 9}, {0.5 + off, 5.0 / 18}}};
   for (std::size_t half = 0; half < 2 * path.spans(); ++half)
     for (const auto& [node, weight] : nodes) {
       const double place = 0.5 * (static_cast<double>(half) + node);
@@ -533,7 +534,8 @@ Mending Mender::run() {
     state = std::move(next);
     // What is left to gain is the slow sliding of yarns along each other, which parts nothing.
     const bool is_settled = gain < settled * state.energy;
-    if (state.missing < best.missing || (state.missing == best.missing && stretch_of(state) < stretch_of(best)))
+    if (state.missing < best.missing ||
+        (state.missing == best.missing && stretch_of(state) < stretch_of(best)))
       best = state;
     if (stalls > most_stalls) break;
     if (!is_settled) continue;

@@ -8,7 +8,8 @@
 // reach out there, and for bends that are no tighter than a yarn can take. Sums over the cells of a fine
 // division of all lines, the nearest place of a cell found by Newton's method; minimised by the Gauss-Newton
 // method with steps that do not jump over a yarn, so that the interlacing stays what it was. Where the
-// penalties leave something missing (or a line that keeps its length longer or shorter), more is asked for, until it is there.
+// penalties leave something missing (or a line that keeps its length longer or shorter), more is asked for,
+// until it is there.
 //
 // The result is a function of the input alone: one thread, no clock.
 #pragma once
@@ -74,7 +75,7 @@ struct Mending {
   double missing = 0;       // the largest lack of distance that is left; 0: every pair has what it needs
   Vec3 at = Vec3::Zero();   // where most is missing
 
-  double stretch = 0;       // the largest that is left of a line that keeps its length, a share of it
+  double stretch = 0;  // the largest that is left of a line that keeps its length, a share of it
 
   [[nodiscard]] bool is_solved() const { return missing == 0; }
 };
