@@ -178,10 +178,10 @@ std::optional<double> least_enlargement(const Knit& knit, KnitField field, const
     if (!shape) return false;
     KnitField tried = field;
     tried.shape = *shape;
-    return KnitMoves(tried, yarn).mending().is_solved();
+    return KnitMoves::come_apart(tried, yarn);
   };
   double low = 1, high = 1.25;
-  constexpr double most = 8, enough = 1.02, surely = 1.02;
+  constexpr double most = 8, enough = 1.04, surely = 1.02;
   while (!fits(high)) {
     if (high > most) return std::nullopt;
     low = high;

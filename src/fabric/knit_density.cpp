@@ -17,7 +17,8 @@ namespace {
 
 constexpr double published_overlap = 3;  // of head and sinker beyond the line at which loops hold each other
 constexpr double least_overlap = 1.2;    // in r: a head that just lies behind the legs of the next loop
-constexpr double deepest = 2;            // loops that stand out of the cloth, of the published depth
+constexpr double head_room = 2;          // in r: from a head to the line at which the next but one is held
+constexpr double deepest = 3;            // loops that stand out of the cloth, of the published depth
 
 constexpr double shortest = -1, longest = 2;
 
@@ -33,8 +34,8 @@ LoopShape shape_at(const LoopShape& spaced, double way) {
     return share < 0 ? 1 + share * (1 - std::min(least, 1.0)) : 1 + share * (std::max(most, 1.0) - 1);
   };
   shape.bulge = between(crowded, 2 - crowded);
-  shape.overlap = between(least_overlap / overlap, (spaced.course - 1) / overlap);
-  shape.depth = 1 + std::max(way - 1, 0.0) * (deepest - 1);
+  shape.overlap = between(least_overlap / overlap, (spaced.course - head_room) / overlap);
+  shape.depth = 1 + (0.25 * std::max(way, 0.0) + 0.75 * std::max(way - 1, 0.0)) * (deepest - 1) / 1.25;
   return shape;
 }
 

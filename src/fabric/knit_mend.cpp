@@ -197,7 +197,19 @@ KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_
   solve(field, yarn);
 }
 
-void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
+bool KnitMoves::come_apart(const KnitField& field, const KnitYarn& yarn) {
+  constexpr long long wide = 2 * border_wales + range_wales + 1;
+  constexpr int few_steps = 40;
+  KnitField endless = field;
+  endless.last_course = endless.first_course + field.chart.repeat_of_courses() + border_courses(field.chart);
+  endless.last_wale = endless.first_wale + std::max(wide, field.chart.repeat_of_wales()) - 1;
+  KnitMoves moves;
+  moves.ties_ = ties_of(endless, true);
+  moves.solve(endless, yarn, few_steps);
+  return moves.mending_.is_solved();
+}
+
+void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn, int max_steps) {
   KnitField reduced = field;
   reduced.last_course = field.first_course + ties_[0].reduced_count() - 1;
   reduced.last_wale = field.first_wale + ties_[1].reduced_count() - 1;
@@ -212,6 +224,7 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
     radius = std::max(radius, reach(Vec3::UnitY(), direction));
   MendProblem problem;
   problem.measure = scale;
+  problem.max_steps = max_steps;
   if (ties_[0].is_periodic()) problem.repeat = {0, field.shape.course * field.chart.height(1), 0};
   const bool goes_on = ties_[1].is_periodic();
   for (long long c = 0; c < courses; ++c) {

@@ -76,6 +76,8 @@ class KnitMoves {
   KnitMoves() = default;
   // Moves after which nothing overlaps; how far that came is in mending().
   KnitMoves(const KnitField& field, const KnitYarn& yarn);
+  // Do the loops of an endless cloth come apart, each like its copies? Sooner told than how they do.
+  static bool come_apart(const KnitField& field, const KnitYarn& yarn);
 
   // Adds to the points of one stitch (add_stitch_points), or to the last one of a course (wale = last + 1).
   void apply(long long course, long long wale, std::vector<Vec3>& points, std::size_t first) const;
@@ -87,7 +89,7 @@ class KnitMoves {
   static long long loops_solved(const KnitField& field);
 
  private:
-  void solve(const KnitField& field, const KnitYarn& yarn);
+  void solve(const KnitField& field, const KnitYarn& yarn, int max_steps = MendProblem().max_steps);
   [[nodiscard]] std::size_t loop_index(long long course, long long wale) const;
   // The loop of the reduced cloth whose first point moves like the last point of its course.
   [[nodiscard]] long long end_wale() const;
