@@ -204,6 +204,19 @@ void read_knit_threads(Parser& p, Knit& knit, std::string_view) {
   p.finish();
 }
 
+void read_plating(Parser& p, Knit& knit, std::string_view) {
+  const auto thread = p.reference(p.threads);
+  if (p.finish()) knit.plating = *thread;
+}
+
+void read_pile(Parser& p, Knit& knit, std::string_view) {
+  const auto height = p.positive("the height of the pile");
+  const bool is_cut = p.more() && p.expect("cut");
+  if (!p.finish()) return;
+  knit.pile = *height;
+  knit.pile_is_cut = is_cut;
+}
+
 void read_gating(Parser& p, Knit& knit, std::string_view) {
   const auto gating = p.choice("gating", gating_words);
   std::optional<double> distance;
@@ -352,6 +365,8 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                   {"loop", read_loop},
                                   {"feeds", into(&Knit::feeds, a_count("the rows of the chart in a course"))},
                                   {"gating", read_gating},
+                                  {"plating", read_plating},
+                                  {"pile", read_pile},
                                   {"method", into(&Knit::method, one_of("method", knit_method_words))},
                                   {"chart", read_chart}});
   Knit knit;
@@ -380,6 +395,10 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
       p.error(p.last(), "a jacquard ends without its 'chart': rows of 1, 2, ..., which of the threads knits");
     if (has_form && knit.feeds)
       p.error(opened, "'feeds' goes with a chart: leave out either the word or 'feeds'");
+    if (form != Knit::Form::jersey && !knit.plating.empty())
+      p.error(opened, "'plating' goes with 'knit jersey'");
+    if (knit.pile && knit.plating.empty())
+      p.error(opened, "a pile takes a thread of its own: add 'plating THREAD'");
     if (has_form && form != Knit::Form::interlock && knit.gating)
       p.error(opened, "'gating' goes with a chart or an interlock");
   }

@@ -265,6 +265,9 @@ void write_item(Lines& out, const fabric::Knit& knit) {
   extent("wales", knit.wales, knit.wale_pitch);
   if (knit.loop) out.line(1, "loop").value(*knit.loop);
   if (knit.method) out.line(1, "method").word(word_of(knit_method_words, *knit.method));
+  if (!knit.plating.empty()) out.line(1, "plating").name(knit.plating);
+  if (knit.pile) out.line(1, "pile").value(*knit.pile);
+  if (knit.pile_is_cut) out.word("cut");
   if (knit.feeds) out.line(1, "feeds").value(*knit.feeds);
   if (knit.gating) {
     out.line(1, "gating").word(word_of(gating_words, *knit.gating));

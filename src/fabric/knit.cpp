@@ -45,22 +45,28 @@ class KnitConstruction final : public Construction {
                knit.course_pitch > 0 ? knit.course_pitch : course_spacing * half_.x()) {}
 
   [[nodiscard]] std::size_t count() const override {
-    return static_cast<std::size_t>(field_.last_course - field_.first_course + 1);
+    return static_cast<std::size_t>(field_.last_course - field_.first_course + 1) * yarns_of_a_course();
   }
   [[nodiscard]] std::string name(std::size_t index) const override {
     const long long row = course(index), feeds = field_.chart.feeds(), feed = wrapped(row, feeds);
     const long long number = (row - feed) / feeds + 1;
-    return feeds == 1 ? fmt::format("course_{}", number) : fmt::format("course_{}_{}", number, feed + 1);
+    const std::string of_course =
+        feeds == 1 ? fmt::format("course_{}", number) : fmt::format("course_{}_{}", number, feed + 1);
+    if (end(index) == 0) return of_course;
+    if (knit_.pile_is_cut) return fmt::format("{}_tuft_{}", of_course, tuft(index) + 1);
+    return of_course + (knit_.pile ? "_pile" : "_plating");
   }
   [[nodiscard]] const Thread& thread(std::size_t index) const override {
+    if (end(index) == 1) return *fabric_.find_thread(knit_.plating);
     return *threads_[static_cast<std::size_t>(
         wrapped(course(index), static_cast<long long>(threads_.size())))];
   }
   [[nodiscard]] std::uint64_t data_points() const override {
-    return count() * longest();  // below 2^64: counts are below 2^31
+    const auto rows = static_cast<std::uint64_t>(field_.last_course - field_.first_course + 1);
+    return product_of(rows * static_cast<std::uint64_t>(field_.ends), longest());
   }
   [[nodiscard]] std::uint64_t longest() const override {
-    constexpr std::uint64_t points_a_loop = 8;
+    const std::uint64_t points_a_loop = field_.pile > 0 ? 12 : 8;
     return points_a_loop * wales() + 1;
   }
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
@@ -79,7 +85,15 @@ class KnitConstruction final : public Construction {
  private:
   // The row of the chart, from 0.
   [[nodiscard]] long long course(std::size_t index) const {
-    return field_.first_course + static_cast<long long>(index);
+    return field_.first_course + static_cast<long long>(index / yarns_of_a_course());
+  }
+  // The first one is the ground's.
+  [[nodiscard]] std::size_t yarns_of_a_course() const {
+    return knit_.pile_is_cut ? 1 + static_cast<std::size_t>(wales()) : static_cast<std::size_t>(field_.ends);
+  }
+  [[nodiscard]] int end(std::size_t index) const { return index % yarns_of_a_course() == 0 ? 0 : 1; }
+  [[nodiscard]] long long tuft(std::size_t index) const {  // the wale in which it is knitted
+    return field_.first_wale + static_cast<long long>(index % yarns_of_a_course()) - 1;
   }
   [[nodiscard]] std::uint64_t wales() const {
     return static_cast<std::uint64_t>(field_.last_wale - field_.first_wale + 1);
@@ -108,18 +122,30 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
                    base.z() * half_.y()};
     }
   };
-  for (long long wale = field_.first_wale; wale <= field_.last_wale; ++wale) {
+  const bool is_tuft = knit_.pile_is_cut && end(index) == 1;
+  const long long first_wale = is_tuft ? tuft(index) : field_.first_wale;
+  const long long last_wale = is_tuft ? tuft(index) : field_.last_wale;
+  for (long long wale = first_wale; wale <= last_wale; ++wale) {
     const std::size_t first = points.size();
-    add_stitch_points(field_, course(index), wale, points);
-    moves_.apply(course(index), wale, points, first);
+    add_stitch_points(field_, course(index), wale, points, end(index));
+    moves_.apply(course(index), wale, points, first, end(index));
     place_from(first, wale);
   }
-  points.push_back(last_sinker_point(field_, course(index)));
-  moves_.apply(course(index), field_.last_wale + 1, points, points.size() - 1);
+  // What goes from bed to bed, and a pile, runs along the cloth's normal, which says nothing about its
+  // sections there.
+  const bool stands_out = knit_.bed_distance || (knit_.pile && end(index) == 1);
+  if (is_tuft) {  // without the sinker that is cut
+    points.erase(points.begin());
+    plan->spec.guide = yarn::FrameGuide::free_from(Vec3::UnitX());
+    if (Status made = interpolate(*plan, yarn::PathForm::chord, Vec3::UnitZ(), -Vec3::UnitZ()); !made)
+      return made.error();
+    return plan;
+  }
+  points.push_back(last_sinker_point(field_, course(index), end(index)));
+  moves_.apply(course(index), field_.last_wale + 1, points, points.size() - 1, end(index));
   place_from(points.size() - 1, field_.last_wale + 1);
-  // What goes from bed to bed runs along the cloth's normal, which says nothing about its sections there.
-  plan->spec.guide = knit_.bed_distance ? yarn::FrameGuide::free_from(Vec3::UnitZ())
-                                        : yarn::FrameGuide::with_up(Vec3::UnitZ());
+  plan->spec.guide =
+      stands_out ? yarn::FrameGuide::free_from(Vec3::UnitZ()) : yarn::FrameGuide::with_up(Vec3::UnitZ());
   Onward onward;  // loops that move alike are all of one form
   if (moves_.wales_go_on()) onward = {(points.size() - 1) / wales(), {pitch_.x(), 0, 0}};
   plan->line = course_line(points, knit_.method.value_or(nurbs::Parameterization::chord), onward);
@@ -289,13 +315,30 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
         yarn::nominal_size(*section).width > yarn::nominal_size(thickest.section).width)
       thickest = {thread, std::move(*section)};
   }
+  KnitField field;
+  if (!knit.plating.empty()) {
+    const Thread* thread = fabric.find_thread(knit.plating);
+    if (thread == nullptr)
+      return error(Kind::geometry, fmt::format("there is no thread '{}'", knit.plating)).placed(knit.place);
+    Result<yarn::Section> section = centred_section_of(*thread, fabric.units);
+    if (!section) return section.error().placed(knit.place);
+    if (thickest.thread == nullptr ||
+        yarn::nominal_size(*section).width > yarn::nominal_size(thickest.section).width)
+      thickest = {thread, std::move(*section)};
+    field.ends = 2;
+    field.shape.depth = plated_depth;
+  }
   if (threads.empty()) return error(Kind::geometry, "this knit has no thread").placed(knit.place);
   const yarn::SectionSize size = yarn::nominal_size(thickest.section);
   const long long beside = fabric.cell ? margin_wales : 0;
   // The loops of courses below reach up into the cell as far as they are held, and one course further.
   const long long beyond = fabric.cell ? chart->longest_hold() + 2 + border_courses(*chart) : 0;
   const long long rows = static_cast<long long>(knit.courses) * chart->feeds();
-  KnitField field{std::move(*chart), -beyond, rows - 1 + beyond, -beside, knit.wales - 1 + beside};
+  field.chart = std::move(*chart);
+  field.first_course = -beyond;
+  field.last_course = rows - 1 + beyond;
+  field.first_wale = -beside;
+  field.last_wale = knit.wales - 1 + beside;
   const Vec2 half(size.width / 2, size.height / 2);
   for (const auto& [what, pitch] :
        {std::pair("a wale pitch", knit.wale_pitch), std::pair("a course pitch", knit.course_pitch)})
@@ -305,6 +348,16 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
   Result<LoopShape> shape = shape_of(knit, field, half, 1);
   if (!shape) return shape.error().placed(knit.place);
   field.shape = *shape;
+  if (knit.pile) {
+    field.pile = plated_back(field.shape) + *knit.pile / half.y() - 1;
+    if (const double least = (least_pile(field.shape) - plated_back(field.shape) + 1) * half.y();
+        *knit.pile < least)
+      return error(Kind::geometry,
+                   fmt::format("a pile of {:.6g} is lower than its loops can be: {:.4g} at least, or "
+                               "leave out 'pile' for a plated cloth",
+                               *knit.pile, least))
+          .placed(knit.place);
+  }
   tell_of_constants(fabric, knit, diagnostics);
   KnitMoves moves;
   if (!options.as_published) {

@@ -35,7 +35,8 @@ LoopShape shape_at(const LoopShape& spaced, double way) {
   };
   shape.bulge = between(crowded, 2 - crowded);
   shape.overlap = between(least_overlap / overlap, (spaced.course - head_room) / overlap);
-  shape.depth = 1 + (0.25 * std::max(way, 0.0) + 0.75 * std::max(way - 1, 0.0)) * (deepest - 1) / 1.25;
+  shape.depth =
+      spaced.depth + (0.25 * std::max(way, 0.0) + 0.75 * std::max(way - 1, 0.0)) * (deepest - 1) / 1.25;
   return shape;
 }
 

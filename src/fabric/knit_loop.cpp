@@ -46,6 +46,10 @@ Vec3 shaped(const LoopShape& shape, const Point& p, double top) {
           (p[1] + (shape.overlap - 1) * beyond) * (shape.course / course_spacing), p[2] * shape.depth};
 }
 
+// A pile's loop, in half thicknesses: its limbs beside its middle, where they end below its top and behind
+// the cloth's back, there so much of the sinkers' way below the line at which loops hold each other.
+constexpr double pile_limb_x = 1.35, pile_top = 1.6, pile_foot = 0.2, pile_foot_y = 0.9;
+
 // What one needle does in one course.
 struct Needle {
   Stitch stitch = Stitch::knit;
@@ -152,9 +156,27 @@ Sinker sinker_of(const KnitField& field, long long course, long long wale) {
   return {right.middle - right.side * (back * field.shape.depth), false};
 }
 
+// How much before the middle of all yarns of a course one of them lies.
+double offset_of(const KnitField& field, int end) {
+  if (field.ends == 1) return 0;
+  return end == 0 ? 1 : -1;
+}
+
+bool is_pile(const KnitField& field, int end) {
+  return end == 1 && field.pile > 0;
+}
+
 // A sinker's middle, above the side of its wale.
-Vec3 sinker_at(const KnitField& field, const Sinker& sinker) {
-  return {0, shaped(field.shape, {0, sinker_y, 0}, course_spacing).y(), sinker.z};
+Vec3 sinker_at(const KnitField& field, const Sinker& sinker, int end) {
+  return {0, shaped(field.shape, {0, sinker_y, 0}, course_spacing).y(),
+          is_pile(field, end) ? -field.pile : sinker.z + offset_of(field, end)};
+}
+
+// The limb of a pile's loop, from its sinker to the cloth: x from the sinker.
+std::array<Vec3, 2> pile_limb(const KnitField& field) {
+  const double y = shaped(field.shape, {0, sinker_y, 0}, course_spacing).y();
+  return {{{pile_limb_x, y, -(field.pile - pile_top)},
+           {pile_limb_x, pile_foot_y * y, -(plated_back(field.shape) + pile_foot)}}};
 }
 
 // The points of one half of a stitch, from its sinker to before its head.
@@ -238,26 +260,41 @@ Point head_of(const Needle& needle, const Hold& hold) {
 
 }  // namespace
 
-void add_stitch_points(const KnitField& field, long long course, long long wale, std::vector<Vec3>& points) {
+double plated_back(const LoopShape& shape) {
+  return depth * shape.depth + 2;
+}
+
+double least_pile(const LoopShape& shape) {
+  return plated_back(shape) + pile_foot + pile_top + 1;
+}
+
+void add_stitch_points(const KnitField& field, long long course, long long wale, std::vector<Vec3>& points,
+                       int end) {
   const Needle needle = needle_at(field, course, wale);
   const Hold hold = hold_of(field, course, wale, needle.side);
   const Sinker left_sinker = sinker_of(field, course, wale);
   const Sinker right_sinker = sinker_of(field, course, wale + 1);
   const auto add = [&](const Point& p, double mirror) {
     const Vec3 at = shaped(field.shape, p, hold.top);
-    points.emplace_back(field.shape.wale / 2 + mirror * at.x(), at.y(), needle.middle + needle.side * at.z());
+    points.emplace_back(field.shape.wale / 2 + mirror * at.x(), at.y(),
+                        needle.middle + needle.side * (at.z() + offset_of(field, end)));
   };
-  points.push_back(sinker_at(field, left_sinker));
+  points.push_back(sinker_at(field, left_sinker, end));
+  const std::array<Vec3, 2> limb = pile_limb(field);
+  if (is_pile(field, end)) points.insert(points.end(), limb.begin(), limb.end());
   for (const Point& point : Half(needle, hold, left_sinker.crosses)) add(point, 1);
   Point head = head_of(needle, hold);
   if (field.chart.is_opposite() && needle.stitch == Stitch::miss) head[2] = 0;
   add(head, 1);
   const Half right(needle, hold, right_sinker.crosses);
   for (const Point* point = right.end(); point != right.begin();) add(*--point, -1);
+  if (is_pile(field, end))
+    for (auto at = limb.rbegin(); at != limb.rend(); ++at)
+      points.emplace_back(field.shape.wale - at->x(), at->y(), at->z());
 }
 
-Vec3 last_sinker_point(const KnitField& field, long long course) {
-  return sinker_at(field, sinker_of(field, course, field.last_wale + 1));
+Vec3 last_sinker_point(const KnitField& field, long long course, int end) {
+  return sinker_at(field, sinker_of(field, course, field.last_wale + 1), end);
 }
 
 }  // namespace selvage::fabric

@@ -40,6 +40,10 @@ struct KnitField {
   long long first_course = 0, last_course = 0;
   long long first_wale = 0, last_wale = 0;
   LoopShape shape = {};
+  // Yarns that are knitted together: 2 is a plated jersey, the second yarn behind the first one.
+  int ends = 1;
+  // Not 0: how far behind the middle plane the sinkers of the second yarn stand, in half thicknesses.
+  double pile = 0;
 };
 
 // Heads of opposite beds pass each other.
@@ -48,9 +52,17 @@ inline constexpr double least_bed = 2.5;
 // Appends the points that one needle gives to one course, from the sinker on its left to the last point
 // before the sinker on its right, which is the next needle's first point. x from the left side of the wale
 // (0 .. shape.wale), y from the course's lower crossings, z from the middle plane.
-void add_stitch_points(const KnitField& field, long long course, long long wale, std::vector<Vec3>& points);
+void add_stitch_points(const KnitField& field, long long course, long long wale, std::vector<Vec3>& points,
+                       int end = 0);
 
 // The last point of a course: x from the right side of the last wale.
-Vec3 last_sinker_point(const KnitField& field, long long course);
+Vec3 last_sinker_point(const KnitField& field, long long course, int end = 0);
+
+// Loops of two yarns are so much deeper than those of one.
+inline constexpr double plated_depth = 2;
+// The least that a pile's sinkers can stand behind the middle plane, and where the cloth's back is; half
+// thicknesses.
+double least_pile(const LoopShape& shape);
+double plated_back(const LoopShape& shape);
 
 }  // namespace selvage::fabric

@@ -80,7 +80,8 @@ class KnitMoves {
   static bool come_apart(const KnitField& field, const KnitYarn& yarn);
 
   // Adds to the points of one stitch (add_stitch_points), or to the last one of a course (wale = last + 1).
-  void apply(long long course, long long wale, std::vector<Vec3>& points, std::size_t first) const;
+  void apply(long long course, long long wale, std::vector<Vec3>& points, std::size_t first,
+             int end = 0) const;
   // Do all wales move alike, up to the sides of the cloth?
   [[nodiscard]] bool wales_go_on() const { return !ties_.empty() && ties_[1].is_periodic(); }
   // In units of r; z in half thicknesses.
@@ -90,12 +91,13 @@ class KnitMoves {
 
  private:
   void solve(const KnitField& field, const KnitYarn& yarn, int max_steps = MendProblem().max_steps);
-  [[nodiscard]] std::size_t loop_index(long long course, long long wale) const;
+  [[nodiscard]] std::size_t loop_index(long long course, long long wale, int end) const;
   // The loop of the reduced cloth whose first point moves like the last point of its course.
   [[nodiscard]] long long end_wale() const;
 
   std::vector<LoopTies> ties_;            // of courses, of wales
   std::vector<std::size_t> first_class_;  // of each loop of the reduced cloth
+  int ends_ = 1;
   Mending mending_;
 };
 

@@ -205,6 +205,9 @@ struct Knit {
   std::optional<int> feeds;                 // rows of the chart in a course
   std::optional<Gating> gating;
   std::optional<double> bed_distance;  // between the middle planes of both beds' loops
+  std::string plating;                 // a second thread, knitted behind the others; empty: none
+  std::optional<double> pile;          // its sinkers stand out of the back by this
+  bool pile_is_cut = false;
   std::optional<nurbs::Parameterization> method;
   std::vector<std::string>
       chart;  // of 'K', 'P', 'T', 'U', 'M', top row = last course, or of a jacquard '1', '2', ...; else empty

@@ -199,6 +199,9 @@ class Flat {
     add(path + ".feeds", v.feeds);
     add(path + ".gating", v.gating);
     add(path + ".bed_distance", v.bed_distance);
+    add(path + ".plating", v.plating);
+    add(path + ".pile", v.pile);
+    add(path + ".pile_is_cut", v.pile_is_cut);
     add(path + ".method", v.method);
     add(path + ".chart", v.chart);
   }

@@ -301,6 +301,11 @@ class Maker {
         knit.courses = count();
         knit.wales = count();
         maybe(knit.method, [&] { return static_cast<nurbs::Parameterization>(up_to(2)); });
+        if (knit.form == Knit::Form::jersey && up_to(1) == 0) {
+          knit.plating = one_of(threads_);
+          maybe(knit.pile, [&] { return positive(); });
+          knit.pile_is_cut = knit.pile && up_to(1) == 0;
+        }
         const bool is_jacquard = knit.form == Knit::Form::jacquard;
         if (knit.form == Knit::Form::chart) maybe(knit.feeds, [&] { return count(); });
         if (knit.form == Knit::Form::chart || knit.form == Knit::Form::interlock)

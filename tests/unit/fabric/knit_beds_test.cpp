@@ -191,5 +191,68 @@ TEST(KnitBeds, ASpacerHasTwoFacesAndAYarnBetween) {
     }
 }
 
+// The plating yarn goes with the ground, behind it everywhere, through the loops of both.
+TEST(KnitBeds, APlatedJerseyShowsOneYarnOnEachSide) {
+  Knit knit = named(Knit::Form::jersey, 5, 5);
+  knit.plating = "t";
+  knit.course_pitch = 8.5 * r;
+  knit.wale_pitch = 10 * r;
+  for (const bool has_pile : {false, true}) {
+    if (has_pile) knit.pile = 14 * r;
+    const std::vector<YarnPlan> plans = plans_of(knit);
+    ASSERT_EQ(plans.size(), 10U);
+    EXPECT_EQ(plans[3].name, has_pile ? "course_2_pile" : "course_2_plating");
+    for (std::size_t course = 1; course < 5; ++course)
+      for (int wale = 0; wale < 5; ++wale) {
+        const double x = 10 * r * wale, end = x + 10 * r;
+        const YarnPlan &ground = plans[2 * course], &plating = plans[2 * course + 1];
+        for (const YarnPlan* upper : {&ground, &plating})
+          for (const YarnPlan* lower : {&plans[2 * course - 2], &plans[2 * course - 1]}) {
+            // Limbs of the pile add crossings of their own, behind everything.
+            if (has_pile && (upper == &plating || lower == &plans[2 * course - 1])) continue;
+            EXPECT_EQ(stitch_of(*upper, *lower, x, end), Shows::face) << course << " " << wale;
+          }
+        for (const Crossing& c : crossings(strip(ground, x, end), strip(plating, x, end)))
+          EXPECT_GT(c.height, 1.8 * r);
+      }
+  }
+}
+
+TEST(KnitBeds, PileStandsOutOfTheBack) {
+  Knit knit = named(Knit::Form::jersey, 5, 5);
+  knit.plating = "t";
+  knit.course_pitch = 8.5 * r;
+  knit.wale_pitch = 10 * r;
+  knit.pile = 14 * r;
+  const auto lowest_of = [](const YarnPlan& plan) {
+    const std::vector<Vec3> points = strip(plan, -1e9, 1e9);
+    return std::min_element(points.begin(), points.end(),
+                            [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); })
+        ->z();
+  };
+  const std::vector<YarnPlan> terry = plans_of(knit);
+  knit.pile.reset();
+  const std::vector<YarnPlan> plain = plans_of(knit);
+  knit.pile = 14 * r;
+  knit.pile_is_cut = true;
+  const std::vector<YarnPlan> cut = plans_of(knit);
+  ASSERT_EQ(cut.size(), 5U * 6U);
+  EXPECT_EQ(cut[8].name, "course_2_tuft_2");
+  for (std::size_t course = 1; course < 4; ++course) {
+    // The height is that above the published back of the two yarns, of which loops move by less than a yarn.
+    EXPECT_NEAR(lowest_of(plain[2 * course + 1]) - lowest_of(terry[2 * course + 1]), 14 * r, 2 * r);
+    EXPECT_NEAR(lowest_of(terry[2 * course]), lowest_of(plain[2 * course]), r);
+    for (std::size_t tuft = 0; tuft < 5; ++tuft) {
+      // A tuft is one stitch: both ends below, the middle over the head of the loop below.
+      const YarnPlan& plan = cut[6 * course + 1 + tuft];
+      EXPECT_NEAR(plan.points.front().z(), plan.points.back().z(), r);
+      EXPECT_LT(plan.points.front().z(), lowest_of(plain[2 * course + 1]) - 10 * r);
+      EXPECT_EQ(stitch_of(plan, cut[6 * (course - 1)], 10 * r * static_cast<double>(tuft),
+                          10 * r * static_cast<double>(tuft + 1)),
+                Shows::face);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace selvage::fabric
