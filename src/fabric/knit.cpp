@@ -220,6 +220,31 @@ std::optional<double> least_enlargement(const Knit& knit, KnitField field, const
   return surely * high;
 }
 
+// What no way of moving loops apart undercuts: two legs lie side by side in a wale, and heads above each
+// other.
+Status check_pitches(const Fabric& fabric, const Knit& knit, const yarn::SectionSize& size) {
+  struct Pitch {
+    std::string_view what;
+    double value, least;  // in widths of the yarn
+  };
+  for (const Pitch& pitch : {Pitch{"wale", knit.wale_pitch, 2}, Pitch{"course", knit.course_pitch, 1}}) {
+    if (!(pitch.value > 0)) continue;
+    if (Status fits = check_proportion(fmt::format("a {} pitch", pitch.what), pitch.value, size.width,
+                                       fabric.units, knit.place);
+        !fits)
+      return fits;
+    if (const double least = pitch.least * size.width; pitch.value < least)
+      return error(
+                 Kind::geometry,
+                 fmt::format(
+                     "a {} pitch of {:.6g} has no room for a yarn of {:.4g}: it takes {:.4g} at least, most "
+                     "loops twice that; or a yarn of {:.4g} at most, half of which is better",
+                     pitch.what, pitch.value, size.width, least, pitch.value / pitch.least))
+          .placed(knit.place);
+  }
+  return {};
+}
+
 Message no_room(const Fabric& fabric, const Knit& knit, const KnitField& field, const KnitYarn& yarn) {
   const std::string_view unit = name_of(fabric.units);
   const double across = 2 * yarn.half.x();
@@ -340,11 +365,7 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
   field.first_wale = -beside;
   field.last_wale = knit.wales - 1 + beside;
   const Vec2 half(size.width / 2, size.height / 2);
-  for (const auto& [what, pitch] :
-       {std::pair("a wale pitch", knit.wale_pitch), std::pair("a course pitch", knit.course_pitch)})
-    if (pitch > 0)
-      if (Status fits = check_proportion(what, pitch, size.width, fabric.units, knit.place); !fits)
-        return fits.error();
+  if (Status fits = check_pitches(fabric, knit, size); !fits) return fits.error();
   Result<LoopShape> shape = shape_of(knit, field, half, 1);
   if (!shape) return shape.error().placed(knit.place);
   field.shape = *shape;

@@ -189,6 +189,16 @@ TEST(KnitDensity, YarnsThatAreTooThickAreRefusedWithWhatFits) {
   EXPECT_EQ(error_of(fabric), "");
 }
 
+TEST(KnitDensity, PitchesThatNoLoopHasAreRefused) {
+  Knit knit = jersey(3);
+  knit.loop.reset();
+  knit.wale_pitch = 0.33;
+  EXPECT_NE(error_of(fabric_of(knit)).find("wale pitch of 0.33"), std::string::npos);
+  knit.wale_pitch = 0.8;
+  knit.course_pitch = 0.16;
+  EXPECT_NE(error_of(fabric_of(knit)).find("course pitch of 0.16"), std::string::npos);
+}
+
 TEST(KnitDensity, AClothFarFromMundensConstantsIsToldSo) {
   EXPECT_TRUE(built(fabric_of(jersey(2.8))).diagnostics.messages().empty());
   Knit open = jersey(4);
