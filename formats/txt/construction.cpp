@@ -201,11 +201,74 @@ void read_construction_thread(Parser& p, T& construction, std::string_view) {
   construction.thread_place = p.last().place();
 }
 
+// N [[pitch] P]
+void read_knit_extent(Parser& p, std::string_view what, int& count, double& pitch) {
+  const auto number = p.count(what);
+  std::optional<double> distance;
+  if (p.more()) {
+    const char first = p.peek_word().front();
+    if ((first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z')) p.expect("pitch");
+    distance = p.positive("the pitch");
+  }
+  if (!p.finish()) return;
+  count = *number;
+  pitch = distance.value_or(0.0);
+}
+
+void read_knit_courses(Parser& p, Knit& knit, std::string_view) {
+  read_knit_extent(p, "the number of courses", knit.courses, knit.course_pitch);
+}
+
+void read_knit_wales(Parser& p, Knit& knit, std::string_view) {
+  read_knit_extent(p, "the number of wales", knit.wales, knit.wale_pitch);
+}
+
+void read_loop(Parser& p, Knit& knit, std::string_view) {
+  const auto length = p.positive("the length of a loop");
+  if (p.finish()) knit.loop = *length;
+}
+
+void read_knit_threads(Parser& p, Knit& knit, std::string_view) {
+  knit.thread_place = p.here().place();
+  do
+    if (const auto thread = p.reference(p.threads)) knit.threads.emplace_back(*thread);
+  while (p.comma());
+  p.finish();
+}
+
+void read_plating(Parser& p, Knit& knit, std::string_view) {
+  const auto thread = p.reference(p.threads);
+  if (p.finish()) knit.plating = *thread;
+}
+
+void read_pile(Parser& p, Knit& knit, std::string_view) {
+  const auto height = p.positive("the height of the pile");
+  const bool is_cut = p.more() && p.expect("cut");
+  if (!p.finish()) return;
+  knit.pile = *height;
+  knit.pile_is_cut = is_cut;
+}
+
+void read_gating(Parser& p, Knit& knit, std::string_view) {
+  const auto gating = p.choice("gating", gating_words);
+  std::optional<double> distance;
+  if (gating == Knit::Gating::opposite && p.more()) distance = p.positive("the distance of the beds");
+  if (!p.finish()) return;
+  knit.gating = *gating;
+  knit.bed_distance = distance;
+}
+
 void read_chart(Parser& p, Knit& knit, std::string_view) {
   if (!p.finish()) return;
   knit.chart_place = p.statement().place();
-  read_sign_rows(
-      p, {"chart", "KPTM", "K (knit), P (purl), T (tuck) and M (miss)", knit.chart, &knit.chart_lines});
+  SignRows rows{"chart", "KPTUM",
+                "K (knit), P (purl), T (tuck) and M (miss); U (tuck of the back bed) with 'gating opposite'",
+                knit.chart, &knit.chart_lines};
+  if (knit.form == Knit::Form::jacquard) {
+    rows.signs = "123456";
+    rows.meaning = "1 to 6: which of the threads knits";
+  }
+  read_sign_rows(p, rows);
 }
 
 // --- warpknit
@@ -335,12 +398,16 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 }
 
 void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
-  static const Table<Knit> table(
-      {{"thread", read_construction_thread<Knit>, Times::once},
-       {"courses", into(&Knit::courses, a_count("the number of courses")), Times::once},
-       {"wales", into(&Knit::wales, a_count("the number of wales")), Times::once},
-       {"method", into(&Knit::method, one_of("method", knit_method_words))},
-       {"chart", read_chart}});
+  static const Table<Knit> table({{"thread", read_knit_threads, Times::once},
+                                  {"courses", read_knit_courses, Times::once},
+                                  {"wales", read_knit_wales, Times::once},
+                                  {"loop", read_loop},
+                                  {"feeds", into(&Knit::feeds, a_count("the rows of the chart in a course"))},
+                                  {"gating", read_gating},
+                                  {"plating", read_plating},
+                                  {"pile", read_pile},
+                                  {"method", into(&Knit::method, one_of("method", knit_method_words))},
+                                  {"chart", read_chart}});
   Knit knit;
   const Spot opened = p.statement();
   knit.place = opened.place();
@@ -355,11 +422,24 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   p.finish();
   const int errors = p.report.errors();
   if (p.read_block(word, "", opened, table, knit) && p.report.errors() == errors && form) {
-    if (has_form && !knit.chart.empty())
+    const bool has_chart = !has_form || form == Knit::Form::jacquard;
+    if (!has_chart && !knit.chart.empty())
       p.error(opened, fmt::format("a knit '{}' has its own stitches: leave out either the word or the chart",
                                   word_of(knit_words, *form)));
     if (!has_form && knit.chart.empty())
-      p.error(p.last(), "'knit' ends without its 'chart'; or, behind the word 'knit': jersey, purl or rib");
+      p.error(
+          p.last(),
+          "'knit' ends without its 'chart'; or, behind the word 'knit': jersey, purl, rib, interlock, ...");
+    if (has_form && has_chart && knit.chart.empty())
+      p.error(p.last(), "a jacquard ends without its 'chart': rows of 1, 2, ..., which of the threads knits");
+    if (has_form && knit.feeds)
+      p.error(opened, "'feeds' goes with a chart: leave out either the word or 'feeds'");
+    if (form != Knit::Form::jersey && !knit.plating.empty())
+      p.error(opened, "'plating' goes with 'knit jersey'");
+    if (knit.pile && knit.plating.empty())
+      p.error(opened, "a pile takes a thread of its own: add 'plating THREAD'");
+    if (has_form && form != Knit::Form::interlock && knit.gating)
+      p.error(opened, "'gating' goes with a chart or an interlock");
   }
   fabric.items.emplace_back(std::move(knit));
 }

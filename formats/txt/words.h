@@ -66,8 +66,17 @@ inline constexpr std::array<Word<Weave::Profile>, 5> profile_words{
      {"racetrack", Weave::Profile::racetrack},
      {"straight", Weave::Profile::straight}}};
 inline constexpr std::array<Word<bool>, 2> binder_words{{{"first", true}, {"levels", false}}};
-inline constexpr std::array<Word<Knit::Form>, 3> knit_words{
-    {{"jersey", Knit::Form::jersey}, {"purl", Knit::Form::purl}, {"rib", Knit::Form::rib}}};
+inline constexpr std::array<Word<Knit::Form>, 9> knit_words{{{"jersey", Knit::Form::jersey},
+                                                             {"purl", Knit::Form::purl},
+                                                             {"rib", Knit::Form::rib},
+                                                             {"interlock", Knit::Form::interlock},
+                                                             {"full-cardigan", Knit::Form::full_cardigan},
+                                                             {"half-cardigan", Knit::Form::half_cardigan},
+                                                             {"milano", Knit::Form::milano},
+                                                             {"half-milano", Knit::Form::half_milano},
+                                                             {"jacquard", Knit::Form::jacquard}}};
+inline constexpr std::array<Word<Knit::Gating>, 2> gating_words{
+    {{"rib", Knit::Gating::rib}, {"opposite", Knit::Gating::opposite}}};
 inline constexpr std::array<Word<nurbs::Parameterization>, 3> knit_method_words{
     {{"uniform", nurbs::Parameterization::uniform},
      {"chord", nurbs::Parameterization::chord},
@@ -118,7 +127,8 @@ consteval bool says_all(const std::array<Word<Enum>, N>&, std::size_t without = 
 }
 static_assert(says_all(hand_words) && says_all(density_words) && says_all(unit_words) &&
               says_all(role_words) && says_all(path_words) && says_all(profile_words) &&
-              says_all(spacing_words) && says_all(knit_method_words) && says_all(stitch_words) &&
+              says_all(spacing_words) && says_all(knit_method_words) && says_all(gating_words) &&
+              says_all(stitch_words) &&
               says_all(end_words) && says_all(edit_words) &&
               section_words.size() == std::variant_size_v<yarn::Section>);
 static_assert(says_all(draft_words, 1) && says_all(knit_words, 1) && says_all(curve_words, 1));

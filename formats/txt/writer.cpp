@@ -206,10 +206,14 @@ void write_item(Lines& out, const fabric::Yarn& yarn) {
 // --- constructions
 // --------------------------------------------------------------------------------------------------
 
-void write_system(Lines& out, std::string_view word, const fabric::WeaveSystem& system) {
+// Used in turn.
+void write_threads(Lines& out, std::string_view word, const std::vector<std::string>& threads) {
   out.line(1, word).raw(" ");
-  for (std::size_t i = 0; i < system.threads.size(); ++i)
-    out.raw(i > 0 ? "," : "").bare_name(system.threads[i]);
+  for (std::size_t i = 0; i < threads.size(); ++i) out.raw(i > 0 ? "," : "").bare_name(threads[i]);
+}
+
+void write_system(Lines& out, std::string_view word, const fabric::WeaveSystem& system) {
+  write_threads(out, word, system.threads);
   out.value(system.count).word("pitch").value(system.pitch);
 }
 
@@ -260,11 +264,24 @@ void write_item(Lines& out, const fabric::Knit& knit) {
   out.line(0, "knit");
   if (knit.form != Knit::Form::chart) out.word(word_of(knit_words, knit.form));
   if (knit.form == Knit::Form::rib) write_pair(out, knit.rib_a, "x", knit.rib_b);
-  out.line(1, "thread").name(knit.thread);
-  out.line(1, "courses").value(knit.courses);
-  out.line(1, "wales").value(knit.wales);
+  write_threads(out, "thread", knit.threads);
+  const auto extent = [&](std::string_view what, int count, double pitch) {
+    out.line(1, what).value(count);
+    if (pitch > 0) out.word("pitch").value(pitch);
+  };
+  extent("courses", knit.courses, knit.course_pitch);
+  extent("wales", knit.wales, knit.wale_pitch);
+  if (knit.loop) out.line(1, "loop").value(*knit.loop);
   if (knit.method) out.line(1, "method").word(word_of(knit_method_words, *knit.method));
-  if (knit.form == Knit::Form::chart) {
+  if (!knit.plating.empty()) out.line(1, "plating").name(knit.plating);
+  if (knit.pile) out.line(1, "pile").value(*knit.pile);
+  if (knit.pile_is_cut) out.word("cut");
+  if (knit.feeds) out.line(1, "feeds").value(*knit.feeds);
+  if (knit.gating) {
+    out.line(1, "gating").word(word_of(gating_words, *knit.gating));
+    if (knit.bed_distance) out.value(*knit.bed_distance);
+  }
+  if (knit.form == Knit::Form::chart || knit.form == Knit::Form::jacquard) {
     out.line(1, "chart");
     for (const std::string& row : knit.chart) out.line(2, row);
     out.line(1, "end");

@@ -20,7 +20,7 @@ inline fabric::Fabric jersey(int size) {
   thread.diameter = 0.2;
   cloth.threads = {thread};
   fabric::Knit knit;
-  knit.thread = thread.name;
+  knit.threads = {thread.name};
   knit.courses = knit.wales = size;
   cloth.items = {knit};
   return cloth;

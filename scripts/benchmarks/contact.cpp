@@ -66,7 +66,7 @@ std::vector<yarn::Body> cloth_of(bool weave, int size) {
     cloth.items = {item};
   } else {
     fabric::Knit item;
-    item.thread = thread.name;
+    item.threads = {thread.name};
     item.courses = item.wales = size;
     cloth.items = {item};
   }

@@ -44,7 +44,7 @@ fabric::Fabric jersey(int size, nurbs::Parameterization method) {
   thread.packing = 0.75;
   cloth.threads = {thread};
   fabric::Knit knit;
-  knit.thread = thread.name;
+  knit.threads = {thread.name};
   knit.courses = knit.wales = size;
   knit.method = method;
   cloth.items = {knit};

@@ -49,7 +49,11 @@ std::vector<std::string> threads_of(const Item& item) {
                           for (const Binder& binder : weave.binders) names.push_back(binder.thread);
                           return names;
                         },
-                        [](const Knit& knit) { return Names{knit.thread}; },
+                        [](const Knit& knit) {
+                          Names names = knit.threads;
+                          if (!knit.plating.empty()) names.push_back(knit.plating);
+                          return names;
+                        },
                         [](const Warpknit& warpknit) {
                           Names names = {warpknit.thread};
                           for (const WarpknitBar& bar : warpknit.bars) names.push_back(bar.thread);

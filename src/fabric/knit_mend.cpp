@@ -185,7 +185,7 @@ std::vector<int> images_of(const MendProblem& problem) {
 
 long long KnitMoves::loops_solved(const KnitField& field) {
   const std::vector<LoopTies> ties = ties_of(field, false);
-  return ties[0].reduced_count() * ties[1].reduced_count();
+  return ties[0].reduced_count() * ties[1].reduced_count() * field.ends;
 }
 
 KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_of(field, true)) {
@@ -197,34 +197,54 @@ KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_
   solve(field, yarn);
 }
 
-void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
+bool KnitMoves::come_apart(const KnitField& field, const KnitYarn& yarn) {
+  constexpr long long wide = 2 * border_wales + range_wales + 1;
+  constexpr int few_steps = 40;
+  KnitField endless = field;
+  endless.last_course = endless.first_course + field.chart.repeat_of_courses() + border_courses(field.chart);
+  endless.last_wale = endless.first_wale + std::max(wide, field.chart.repeat_of_wales()) - 1;
+  KnitMoves moves;
+  moves.ties_ = ties_of(endless, true);
+  moves.solve(endless, yarn, few_steps);
+  return moves.mending_.is_solved();
+}
+
+void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn, int max_steps) {
   KnitField reduced = field;
   reduced.last_course = field.first_course + ties_[0].reduced_count() - 1;
   reduced.last_wale = field.first_wale + ties_[1].reduced_count() - 1;
   const long long courses = ties_[0].reduced_count(), wales = ties_[1].reduced_count();
-  const auto loop = [&](long long c, long long w) { return static_cast<std::size_t>(c * (wales + 1) + w); };
+  ends_ = field.ends;
+  const auto loop = [&](long long line, long long w) {
+    return static_cast<std::size_t>(line * (wales + 1) + w);
+  };
   constexpr auto none = static_cast<std::size_t>(-1);
-  first_class_.assign(static_cast<std::size_t>(courses * (wales + 1)), none);
+  first_class_.assign(static_cast<std::size_t>(courses * ends_ * (wales + 1)), none);
   const Vec3 scale(1, 1, yarn.half.y() / yarn.half.x());
   const Reach reach(yarn);
   double radius = 1;  // the farthest that the yarn reaches, about
   for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitZ())})
     radius = std::max(radius, reach(Vec3::UnitY(), direction));
   MendProblem problem;
-  if (ties_[0].is_periodic()) problem.repeat = {0, course_spacing, 0};
+  problem.measure = scale;
+  problem.max_steps = max_steps;
+  if (ties_[0].is_periodic()) problem.repeat = {0, field.shape.course * field.chart.height(1), 0};
   const bool goes_on = ties_[1].is_periodic();
-  for (long long c = 0; c < courses; ++c) {
+  for (long long l = 0; l < courses * ends_; ++l) {
+    const long long c = l / ends_;
+    const int end = static_cast<int>(l % ends_);
     MendLine line;
-    if (goes_on) line.period = {wale_spacing, 0, 0};
+    if (goes_on) line.period = {field.shape.wale, 0, 0};
     for (long long w = 0; w <= wales; ++w) {
       const std::size_t first = line.points.size();
       const long long course = field.first_course + c, wale = field.first_wale + w;
       if (w < wales)
-        add_stitch_points(reduced, course, wale, line.points);
+        add_stitch_points(reduced, course, wale, line.points, end);
       else
-        line.points.push_back(last_sinker_point(reduced, course));
-      const std::size_t own = loop(c, w);
-      const std::size_t like = loop(ties_[0].of_reduced(c), w < wales ? ties_[1].of_reduced(w) : end_wale());
+        line.points.push_back(last_sinker_point(reduced, course, end));
+      const std::size_t own = loop(l, w);
+      const std::size_t like =
+          loop(ties_[0].of_reduced(c) * ends_ + end, w < wales ? ties_[1].of_reduced(w) : end_wale());
       if (like == own) {
         first_class_[own] = problem.freedom.size();
         problem.freedom.resize(problem.freedom.size() + line.points.size() - first, Vec3::Ones());
@@ -233,8 +253,8 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
       }
       for (std::size_t i = first; i < line.points.size(); ++i) {
         line.classes.push_back(static_cast<int>(first_class_[like] + i - first));
-        line.points[i] +=
-            Vec3(wale_spacing * static_cast<double>(wale), course_spacing * static_cast<double>(course), 0);
+        line.points[i] += Vec3(field.shape.wale * static_cast<double>(wale),
+                               field.shape.course * field.chart.height(course), 0);
       }
     }
     line.curve = [scale, period = line.period, how = yarn.how, goes_on](const std::vector<Vec3>& points) {
@@ -248,6 +268,7 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
       const std::vector<double> t = nurbs::parameters(scaled(points, scale), how);
       return goes_on ? periodic_shares(t) : interpolation_shares(t);
     };
+    line.keeps_length = yarn.keeps_length;
     line.radius = radius;
     line.reach = reach;
     problem.lines.push_back(std::move(line));
@@ -259,7 +280,7 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn) {
     for (const MendLine& line : problem.lines)
       for (std::size_t i = 0; i < line.points.size(); ++i)
         problem.start[static_cast<std::size_t>(line.classes[i])].z() =
-            turn * std::sin(2.0 * std::numbers::pi / wale_spacing * line.points[i].x());
+            turn * std::sin(2.0 * std::numbers::pi / field.shape.wale * line.points[i].x());
   } else {
     problem.images = images_of(problem);
   }
@@ -270,15 +291,16 @@ long long KnitMoves::end_wale() const {
   return ties_[1].is_periodic() ? 0 : ties_[1].reduced_count();
 }
 
-std::size_t KnitMoves::loop_index(long long course, long long wale) const {
+std::size_t KnitMoves::loop_index(long long course, long long wale, int end) const {
   const bool is_end = wale > ties_[1].last();
-  return static_cast<std::size_t>(ties_[0].of(course) * (ties_[1].reduced_count() + 1) +
+  return static_cast<std::size_t>((ties_[0].of(course) * ends_ + end) * (ties_[1].reduced_count() + 1) +
                                   (is_end ? end_wale() : ties_[1].of(wale)));
 }
 
-void KnitMoves::apply(long long course, long long wale, std::vector<Vec3>& points, std::size_t first) const {
+void KnitMoves::apply(long long course, long long wale, std::vector<Vec3>& points, std::size_t first,
+                      int end) const {
   if (mending_.moves.empty()) return;
-  const std::size_t start = first_class_[loop_index(course, wale)];
+  const std::size_t start = first_class_[loop_index(course, wale, end)];
   for (std::size_t i = first; i < points.size(); ++i) points[i] += mending_.moves[start + i - first];
 }
 

@@ -29,9 +29,10 @@ yarn::CentreLine course_line(const std::vector<Vec3>& points, nurbs::Parameteriz
 struct KnitYarn {
   nurbs::Parameterization how = nurbs::Parameterization::chord;
   yarn::Section section;
-  Vec2 half = Vec2::Ones();  // of the section: across, and through the thickness; file units
-  bool turns = false;        // the section turns along the path
-  double gap = 0;            // wanted between two surfaces, file units
+  Vec2 half = Vec2::Ones();   // of the section: across, and through the thickness; file units
+  bool turns = false;         // the section turns along the path
+  double gap = 0;             // wanted between two surfaces, file units
+  bool keeps_length = false;  // courses become neither longer nor shorter
 };
 
 // Which loops move alike along one direction of the cloth: near its edges every one for itself, inside those
@@ -75,9 +76,12 @@ class KnitMoves {
   KnitMoves() = default;
   // Moves after which nothing overlaps; how far that came is in mending().
   KnitMoves(const KnitField& field, const KnitYarn& yarn);
+  // Do the loops of an endless cloth come apart, each like its copies? Sooner told than how they do.
+  static bool come_apart(const KnitField& field, const KnitYarn& yarn);
 
   // Adds to the points of one stitch (add_stitch_points), or to the last one of a course (wale = last + 1).
-  void apply(long long course, long long wale, std::vector<Vec3>& points, std::size_t first) const;
+  void apply(long long course, long long wale, std::vector<Vec3>& points, std::size_t first,
+             int end = 0) const;
   // Do all wales move alike, up to the sides of the cloth?
   [[nodiscard]] bool wales_go_on() const { return !ties_.empty() && ties_[1].is_periodic(); }
   // In units of r; z in half thicknesses.
@@ -86,13 +90,14 @@ class KnitMoves {
   static long long loops_solved(const KnitField& field);
 
  private:
-  void solve(const KnitField& field, const KnitYarn& yarn);
-  [[nodiscard]] std::size_t loop_index(long long course, long long wale) const;
+  void solve(const KnitField& field, const KnitYarn& yarn, int max_steps = MendProblem().max_steps);
+  [[nodiscard]] std::size_t loop_index(long long course, long long wale, int end) const;
   // The loop of the reduced cloth whose first point moves like the last point of its course.
   [[nodiscard]] long long end_wale() const;
 
   std::vector<LoopTies> ties_;            // of courses, of wales
   std::vector<std::size_t> first_class_;  // of each loop of the reduced cloth
+  int ends_ = 1;
   Mending mending_;
 };
 

@@ -20,14 +20,15 @@ using Vector = Eigen::VectorXd;
 
 // Stiffnesses, for a radius of 1: of moves, of their bending and stretching along a line; of what keeps yarns
 // apart and bends open. The last two are so large that little is missing in the first balance.
-constexpr double hold = 1, bending = 1, stretching = 1, pressing = 8e2, opening = 1e3;
+constexpr double hold = 1, bending = 1, stretching = 1, pressing = 8e2, opening = 1e3, lengthening = 1e3;
 constexpr double negligible = 1e-2;  // shares in a place that steps leave out
 // In radii:
 constexpr double longest_step = 0.25, least_ahead = 0.05;
 constexpr double stalled = 1e-3;
 constexpr int most_halves = 12;  // of a step
 constexpr int most_stalls = 4;
-constexpr double settled = 0.02;  // share of the energy that a step gains
+constexpr double settled = 0.02;        // share of the energy that a step gains
+constexpr double least_stretch = 1e-4;  // of a line that keeps its length
 
 // What a class contributes to a residual: a vector along which its move counts.
 struct Pull {
@@ -35,10 +36,15 @@ struct Pull {
   Vec3 along;
 };
 
-// One penalty: weight / 2 (lack - sum pulls . moves)^2
+// One penalty: weight / 2 (lack - sum pulls . moves)^2, where that is lacking; or whatever it is.
 struct Residual {
   double weight = 0, lack = 0;
   std::vector<Pull> pulls;
+  bool counts_always = false;
+
+  [[nodiscard]] double left(double change) const {
+    return counts_always ? lack - change : std::max(lack - change, 0.0);
+  }
 };
 
 struct State {
@@ -49,6 +55,7 @@ struct State {
   std::vector<Touch> touches;
   double energy = 0, missing = 0;
   Vec3 at = Vec3::Zero();
+  std::vector<double> lengths;  // of those lines that keep theirs; else 0
 };
 
 class Mender {
@@ -69,6 +76,13 @@ class Mender {
                  const Vec3& along, const std::vector<std::vector<Share>>& shares,
                  std::vector<Pull>& pulls) const;
   [[nodiscard]] std::vector<Residual> residuals(const State& state, double more) const;
+  // Calls each(place, weight, jet): a length is the sum of weight |measure d1|.
+  template <class Each>
+  static void for_pieces(const CubicPath& path, const Each& each);
+  [[nodiscard]] std::vector<double> lengths_of(const State& state) const;
+  [[nodiscard]] Residual length_residual(const State& state, std::size_t line,
+                                         const std::vector<std::vector<Share>>& shares) const;
+  [[nodiscard]] double stretch_of(const State& state) const;
   // Calls each(line, place, jet, curvature, lack) wherever a bend is too tight.
   template <class Each>
   void for_tight_bends(const State& state, const Each& each) const;
@@ -76,6 +90,8 @@ class Mender {
   const MendProblem& problem_;
   Eigen::Index size_;
   double radius_ = 0;
+  // Of each line that keeps its length: what it has to be, and what is asked for, that it may become that.
+  std::vector<double> lengths_, asked_lengths_;
   double ahead_ = 0;  // what is nearer than this may be lacking after a step
   Matrix stiffness_;
   std::optional<TouchFinder> finder_;
@@ -117,11 +133,59 @@ void Mender::for_tight_bends(const State& state, const Each& each) const {
   }
 }
 
+template <class Each>
+void Mender::for_pieces(const CubicPath& path, const Each& each) {
+  // Gauss' three points in a half of each span.
+  const double off = std::sqrt(0.15);
+  const std::array<std::array<double, 2>, 3> nodes = {
+      {{0.5 - off, 5.0 / 18}, {0.5, 4.0 / 9}, {0.5 + off, 5.0 / 18}}};
+  for (std::size_t half = 0; half < 2 * path.spans(); ++half)
+    for (const auto& [node, weight] : nodes) {
+      const double place = 0.5 * (static_cast<double>(half) + node);
+      each(place, 0.5 * weight, path.at(place));
+    }
+}
+
+std::vector<double> Mender::lengths_of(const State& state) const {
+  std::vector<double> lengths(state.paths.size(), 0.0);
+  for (std::size_t l = 0; l < lengths.size(); ++l)
+    if (problem_.lines[l].keeps_length)
+      for_pieces(state.paths[l], [&](double, double weight, const CubicPath::Jet& jet) {
+        lengths[l] += weight * jet.d1.cwiseProduct(problem_.measure).norm();
+      });
+  return lengths;
+}
+
+double Mender::stretch_of(const State& state) const {
+  double most = 0;
+  for (std::size_t l = 0; l < lengths_.size(); ++l)
+    if (lengths_[l] > 0) most = std::max(most, std::abs(state.lengths[l] / lengths_[l] - 1));
+  return most;
+}
+
+Residual Mender::length_residual(const State& state, std::size_t line,
+                                 const std::vector<std::vector<Share>>& shares) const {
+  Residual residual{lengthening, asked_lengths_[line] - state.lengths[line], {}, true};
+  std::vector<Pull> pulls;
+  for_pieces(state.paths[line], [&](double place, double weight, const CubicPath::Jet& jet) {
+    const Vec3 tangent = jet.d1.cwiseProduct(problem_.measure).normalized();
+    pulls.clear();
+    // A pull takes away from what is lacking.
+    add_pulls(problem_.lines[line], state, line, place, 1, weight * tangent.cwiseProduct(problem_.measure),
+              shares, pulls);
+    residual.pulls.insert(residual.pulls.end(), pulls.begin(), pulls.end());
+  });
+  return residual;
+}
+
 // Finds the touches of a state and its energy when `more` than the needed distance is asked for.
 void Mender::look(State& state, double more) const {
   state.touches = finder_->find(state.paths, more + ahead_);
   state.energy = 0.5 * state.moves.dot(stiffness_ * state.moves);
   state.missing = 0;
+  state.lengths = lengths_of(state);
+  for (std::size_t l = 0; l < asked_lengths_.size(); ++l)
+    state.energy += 0.5 * lengthening * std::pow(asked_lengths_[l] - state.lengths[l], 2);
   for (const Touch& touch : state.touches) {
     const double lack = std::max(more - touch.slack, 0.0);
     state.energy += 0.5 * pressing * lack * lack;
@@ -237,6 +301,8 @@ std::vector<Residual> Mender::residuals(const State& state, double more) const {
         add_pulls(problem_.lines[l], state, l, place, 1, scale * by_d1, shares[l], residual.pulls);
         found.push_back(std::move(residual));
       });
+  for (std::size_t l = 0; l < lengths_.size(); ++l)
+    if (lengths_[l] > 0) found.push_back(length_residual(state, l, shares[l]));
   for (Residual& residual : found) {
     // Classes that stand in it twice (both places are of one class) count once.
     std::stable_sort(residual.pulls.begin(), residual.pulls.end(),
@@ -269,7 +335,7 @@ class Linear {
     const Vector after = moves + x;
     double sum = 0.5 * after.dot(stiffness_ * after);
     for (const Residual& residual : residuals_) {
-      const double lack = std::max(residual.lack - change(residual, x), 0.0);
+      const double lack = residual.left(change(residual, x));
       sum += 0.5 * residual.weight * lack * lack;
     }
     return sum;
@@ -379,7 +445,7 @@ Vector Mender::step(const State& state, double more) const {
     std::vector<std::size_t> rows;
     std::size_t changes = 0;
     for (std::size_t row = 0; row < found.size(); ++row) {
-      const bool is_lacking = found[row].lack > Linear::change(found[row], step);
+      const bool is_lacking = found[row].left(Linear::change(found[row], step)) != 0;
       if (is_lacking) rows.push_back(row);
       if (is_lacking != counts[row]) ++changes;
       counts[row] = is_lacking;
@@ -435,6 +501,7 @@ Mending Mender::run() {
   double more = margin;
   ahead_ = 2 * longest_step * radius_;
   look(state, more);
+  lengths_ = asked_lengths_ = state.lengths;
   int stalls = 0;
   State best = state;
   const bool is_needed = state.missing > 0;
@@ -467,18 +534,22 @@ Mending Mender::run() {
     state = std::move(next);
     // What is left to gain is the slow sliding of yarns along each other, which parts nothing.
     const bool is_settled = gain < settled * state.energy;
-    if (state.missing < best.missing) best = state;
+    if (state.missing < best.missing ||
+        (state.missing == best.missing && stretch_of(state) < stretch_of(best)))
+      best = state;
     if (stalls > most_stalls) break;
     if (!is_settled) continue;
-    if (state.missing == 0) {
+    const bool has_lengths = stretch_of(state) <= least_stretch;
+    if (state.missing == 0 && has_lengths) {
       best = std::move(state);
       break;
     }
-    more += 1.1 * state.missing + 0.1 * margin;
+    if (state.missing > 0) more += 1.1 * state.missing + 0.1 * margin;
     if (more > 0.5 * radius_) break;
+    for (std::size_t l = 0; l < lengths_.size(); ++l) asked_lengths_[l] += lengths_[l] - state.lengths[l];
     look(state, more);
   }
-  Mending mending{{}, best.missing, best.at};
+  Mending mending{{}, best.missing, best.at, stretch_of(best)};
   for (std::size_t c = 0; c < problem_.freedom.size(); ++c)
     mending.moves.emplace_back(best.moves.segment<3>(3 * static_cast<Eigen::Index>(c)));
   return mending;

@@ -8,7 +8,8 @@
 // reach out there, and for bends that are no tighter than a yarn can take. Sums over the cells of a fine
 // division of all lines, the nearest place of a cell found by Newton's method; minimised by the Gauss-Newton
 // method with steps that do not jump over a yarn, so that the interlacing stays what it was. Where the
-// penalties leave something missing, more is asked for, until it is there.
+// penalties leave something missing (or a line that keeps its length longer or shorter), more is asked for,
+// until it is there.
 //
 // The result is a function of the input alone: one thread, no clock.
 #pragma once
@@ -41,6 +42,8 @@ struct MendLine {
   // at their present values (a constant part, of directions given at ends, is left out). Shares below 1e-3
   // may be left out as well.
   std::function<std::vector<std::vector<Share>>(const std::vector<Vec3>&)> shares;
+  // Its length stays what it is at the given points (see MendProblem::measure).
+  bool keeps_length = false;
   double radius = 1;  // of the yarn, about: the scale of steps and searches
   // How far the yarn reaches from its centre line in a direction (unit), half of the wanted gap included.
   // Empty: `radius`.
@@ -58,6 +61,8 @@ struct MendProblem {
   std::vector<Vec3> start;
   // Not zero: the lines stand again at all multiples of this, and their copies move like them.
   Vec3 repeat = Vec3::Zero();
+  // True lengths are those of all points times this.
+  Vec3 measure = Vec3::Ones();
   // Two places of one line count when they are farther apart along it than this, in radii.
   double apart = 3;
   // Bends tighter than this, in radii, are opened to about it.
@@ -69,6 +74,8 @@ struct Mending {
   std::vector<Vec3> moves;  // one a class
   double missing = 0;       // the largest lack of distance that is left; 0: every pair has what it needs
   Vec3 at = Vec3::Zero();   // where most is missing
+
+  double stretch = 0;  // the largest that is left of a line that keeps its length, a share of it
 
   [[nodiscard]] bool is_solved() const { return missing == 0; }
 };

@@ -196,16 +196,37 @@ struct Weave {
 };
 
 struct Knit {
-  enum class Form { jersey, purl, rib, chart };
+  enum class Form {
+    jersey,
+    purl,
+    rib,
+    interlock,
+    full_cardigan,
+    half_cardigan,
+    milano,
+    half_milano,
+    jacquard,
+    chart
+  };
+  // Where the needles of the back bed stand: each in a wale of its own, or opposite those of the front bed.
+  enum class Gating { rib, opposite };
   TextPlace place;
   Form form = Form::jersey;
   int rib_a = 0, rib_b = 0;
-  std::string thread;
+  std::vector<std::string> threads;  // in turn, a row of the chart each
   TextPlace thread_place;
   int courses = 0, wales = 0;
+  double course_pitch = 0, wale_pitch = 0;  // 0: as they follow from the yarn
+  std::optional<double> loop;               // the length of a stitch
+  std::optional<int> feeds;                 // rows of the chart in a course
+  std::optional<Gating> gating;
+  std::optional<double> bed_distance;  // between the middle planes of both beds' loops
+  std::string plating;                 // a second thread, knitted behind the others; empty: none
+  std::optional<double> pile;          // its sinkers stand out of the back by this
+  bool pile_is_cut = false;
   std::optional<nurbs::Parameterization> method;
   std::vector<std::string>
-      chart;  // of 'K', 'P', 'T', 'M', top row = last course; empty unless `form` says so
+      chart;  // of 'K', 'P', 'T', 'U', 'M', top row = last course, or of a jacquard '1', '2', ...; else empty
   TextPlace chart_place;
   std::vector<int> chart_lines;  // source line of each row; may be empty
 };

@@ -114,20 +114,29 @@ class Writer {
     line("end");
   }
   void knit() {
-    const int form = choice(4);
-    line("knit {}\n thread {}\n courses {}\n wales {}",
+    const int form = choice(6);
+    const bool has_pitches = choice(3) == 1;
+    line("knit {}\n thread {}\n courses {}{}\n wales {}{}",
          form == 0   ? "jersey"
          : form == 1 ? "purl"
          : form == 2 ? fmt::format("rib {}x{}", 1 + choice(2), 1 + choice(2))
+         : form == 4 ? one_of({"interlock", "full-cardigan", "half-cardigan", "milano", "half-milano"})
+         : form == 5 ? "jacquard"
                      : "",
-         one_of({"a", "b"}), 1 + choice(3), 1 + choice(4));
+         form == 5 ? "a,b" : one_of({"a", "b", "a,b"}), 1 + choice(3),
+         has_pitches ? fmt::format(" pitch {}", number(0.2, 2)) : "", 1 + choice(4),
+         has_pitches ? fmt::format(" pitch {}", number(0.2, 2)) : "");
+    if (choice(4) == 1) line(" loop {}", number(0.5, 8));
     if (choice(3) == 1) line(" method {}", one_of({"uniform", "chord", "centripetal"}));
-    if (form == 3) {
+    const bool is_opposite = form == 3 && choice(3) == 1;
+    if (is_opposite) line(" gating opposite{}\n feeds {}", choice(2) == 1 ? " 2" : "", 1 + choice(3));
+    if (form == 3 || form == 5) {
       const int width = 1 + choice(3);
       line(" chart");
       for (int row = 1 + choice(3); row > 0; --row) {
         std::string signs;
-        for (int i = 0; i < width; ++i) signs += "KPTM"[choice(4)];
+        for (int i = 0; i < width; ++i)
+          signs += form == 5 ? "12"[choice(2)] : "KPTMU"[choice(is_opposite ? 5 : 4)];
         line("  {}", signs);
       }
       line(" end");

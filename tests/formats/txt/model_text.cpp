@@ -196,9 +196,18 @@ class Flat {
     add(path + ".form", v.form);
     add(path + ".rib_a", v.rib_a);
     add(path + ".rib_b", v.rib_b);
-    add(path + ".thread", v.thread);
+    add(path + ".threads", v.threads);
     add(path + ".courses", v.courses);
     add(path + ".wales", v.wales);
+    add(path + ".course_pitch", v.course_pitch);
+    add(path + ".wale_pitch", v.wale_pitch);
+    add(path + ".loop", v.loop);
+    add(path + ".feeds", v.feeds);
+    add(path + ".gating", v.gating);
+    add(path + ".bed_distance", v.bed_distance);
+    add(path + ".plating", v.plating);
+    add(path + ".pile", v.pile);
+    add(path + ".pile_is_cut", v.pile_is_cut);
     add(path + ".method", v.method);
     add(path + ".chart", v.chart);
   }

@@ -298,20 +298,33 @@ class Maker {
       }
       case 1: {
         Knit knit;
-        knit.form = static_cast<Knit::Form>(up_to(3));
+        knit.form = static_cast<Knit::Form>(up_to(static_cast<int>(Knit::Form::chart)));
         if (knit.form == Knit::Form::rib) {
           knit.rib_a = count();
           knit.rib_b = count();
         }
-        knit.thread = one_of(threads_);
+        for (int i = up_to(2); i >= 0; --i) knit.threads.push_back(one_of(threads_));
+        if (up_to(1) == 0) knit.course_pitch = positive();
+        if (up_to(1) == 0) knit.wale_pitch = positive();
+        maybe(knit.loop, [&] { return positive(); });
         knit.courses = count();
         knit.wales = count();
         maybe(knit.method, [&] { return static_cast<nurbs::Parameterization>(up_to(2)); });
-        if (knit.form == Knit::Form::chart) {
+        if (knit.form == Knit::Form::jersey && up_to(1) == 0) {
+          knit.plating = one_of(threads_);
+          maybe(knit.pile, [&] { return positive(); });
+          knit.pile_is_cut = knit.pile && up_to(1) == 0;
+        }
+        const bool is_jacquard = knit.form == Knit::Form::jacquard;
+        if (knit.form == Knit::Form::chart) maybe(knit.feeds, [&] { return count(); });
+        if (knit.form == Knit::Form::chart || knit.form == Knit::Form::interlock)
+          maybe(knit.gating, [&] { return static_cast<Knit::Gating>(up_to(1)); });
+        if (knit.gating == Knit::Gating::opposite) maybe(knit.bed_distance, [&] { return positive(); });
+        if (knit.form == Knit::Form::chart || is_jacquard) {
           const int rows = 1 + up_to(3), wales = 1 + up_to(4);
           for (int i = 0; i < rows; ++i) {
             std::string& row = knit.chart.emplace_back();
-            for (int j = 0; j < wales; ++j) row += "KPTM"[up_to(3)];
+            for (int j = 0; j < wales; ++j) row += is_jacquard ? "123456"[up_to(5)] : "KPTUM"[up_to(4)];
           }
         }
         return knit;

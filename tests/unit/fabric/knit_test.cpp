@@ -20,7 +20,7 @@ Fabric knitted(Knit knit) {
   thread.diameter = 2 * r;
   fabric.threads = {thread};
   knit.place = {5, 1};
-  knit.thread = "t";
+  knit.threads = {"t"};
   fabric.items = {std::move(knit)};
   return fabric;
 }
@@ -151,7 +151,7 @@ TEST(Knit, RepeatsAreTheSameToTheLastBit) {
   whole.threads.front().diameter = 2;
   const YarnPlan low = plan_of(knitted(jersey(3, 4)), 0);
   whole.items = {jersey(1000, 1000)};
-  std::get<Knit>(whole.items.front()).thread = "t";
+  std::get<Knit>(whole.items.front()).threads = {"t"};
   const YarnPlan far = plan_of(whole, 999);
   for (std::size_t i = 0; i + 8 < far.points.size(); ++i)
     EXPECT_EQ(far.points[i + 8], far.points[i] + Vec3(8, 0, 0)) << i;

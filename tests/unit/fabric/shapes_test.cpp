@@ -17,7 +17,7 @@ Fabric jersey(int courses, int wales) {
   fabric.threads = {thread};
   Knit knit;
   knit.place = {5, 1};
-  knit.thread = "t";
+  knit.threads = {"t"};
   knit.courses = courses;
   knit.wales = wales;
   fabric.items = {std::move(knit)};
