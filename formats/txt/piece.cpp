@@ -15,14 +15,23 @@ struct PieceReading {
   Names curves{"curve"};
 };
 
+// Those behind the name of the curve.
+void read_curve_words(Parser& p, PieceCurve& curve) {
+  if (p.more() && !same_word(p.peek_word(), "by"))
+    curve.shape = p.choice("shape of curve", curve_words).value_or(PieceCurve::Shape::found);
+  if (!p.more()) return;
+  if (p.expect("by")) curve.by = p.choice("way to place points on a curve", curve_method_words);
+  if (curve.by && curve.shape == PieceCurve::Shape::control)
+    p.error(p.last(), "a curve by its control points has no points to place: leave 'by' out");
+}
+
 void read_curve(Parser& p, PieceReading& reading, std::string_view word) {
   PieceCurve curve;
   const Spot opened = p.statement();
   curve.place = opened.place();
   const auto name = p.new_name(reading.curves);
   curve.name = name.value_or("");
-  if (name && p.more())
-    curve.shape = p.choice("shape of curve", curve_words).value_or(PieceCurve::Shape::found);
+  if (name) read_curve_words(p, curve);
   if (name) p.go_on();  // what stands behind a wrong shape is told, too
   p.finish();
   PointRows rows{"point", "a point of the curve", curve.shape == PieceCurve::Shape::control};

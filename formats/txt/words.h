@@ -78,6 +78,10 @@ inline constexpr std::array<Word<std::string_view>, 7> classic_words{{{"tricot",
                                                                       {"cord", "cord"}}};
 inline constexpr std::array<Word<PieceCurve::Shape>, 3> curve_words{
     {{"C", PieceCurve::Shape::c}, {"S", PieceCurve::Shape::s}, {"control", PieceCurve::Shape::control}}};
+inline constexpr std::array<Word<nurbs::PointParameters>, 3> curve_method_words{
+    {{"uniform", nurbs::PointParameters::uniform},
+     {"chord", nurbs::PointParameters::chord},
+     {"distance", nurbs::PointParameters::distance}}};
 inline constexpr std::array<Word<yarn::EndStyle>, 4> end_words{{{"patch", yarn::EndStyle::patch},
                                                                 {"fan", yarn::EndStyle::fan},
                                                                 {"planar", yarn::EndStyle::planar},
@@ -115,7 +119,8 @@ static_assert(says_all(hand_words) && says_all(density_words) && says_all(unit_w
               says_all(role_words) && says_all(path_words) && says_all(profile_words) &&
               says_all(knit_method_words) && says_all(stitch_words) && says_all(end_words) &&
               says_all(edit_words) && section_words.size() == std::variant_size_v<yarn::Section>);
-static_assert(says_all(draft_words, 1) && says_all(knit_words, 1) && says_all(curve_words, 1));
+static_assert(says_all(draft_words, 1) && says_all(knit_words, 1) && says_all(curve_words, 1) &&
+              says_all(curve_method_words));
 
 template <class T, std::size_t N>
 constexpr std::string_view word_of(const std::array<Word<T>, N>& words, const T& value) {

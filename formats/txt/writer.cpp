@@ -305,6 +305,7 @@ void write_item(Lines& out, const fabric::Piece& piece) {
       continue;
     }
     if (curve.shape != PieceCurve::Shape::found) out.word(word_of(curve_words, curve.shape));
+    if (curve.by) out.word("by").word(word_of(curve_method_words, *curve.by));
     for (const Vec2& point : curve.points) out.row(2, point.x()).value(point.y());
     out.line(1, "end");
   }

@@ -15,6 +15,7 @@
 #include "core/diagnostics.h"
 #include "core/units.h"
 #include "core/vec.h"
+#include "nurbs/bezier_fit.h"
 #include "yarn/body.h"
 #include "yarn/grid.h"
 #include "yarn/path.h"
@@ -237,7 +238,9 @@ struct PieceCurve {
   TextPlace place;
   bool is_line = false;
   Shape shape = Shape::found;
-  std::vector<Vec2> points;  // a line has two
+  std::optional<nurbs::PointParameters> by;  // none: `distance` where a curve cannot meet all points, else
+                                             // `uniform`
+  std::vector<Vec2> points;                  // a line has two
 };
 
 struct Piece {

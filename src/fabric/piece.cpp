@@ -15,11 +15,14 @@ namespace {
 
 using nurbs::Bezier;
 using nurbs::Box2;
+using nurbs::PointParameters;
 using nurbs::TurningShape;
 
 constexpr std::size_t most_edges = 50'000;
 constexpr double default_tolerance = 1e-6;  // of the extent
 constexpr double no_area = 1e-12;           // of the extent's square
+constexpr double least_run_back = 1e-6;     // of the extent
+constexpr std::size_t met_points = 4;       // that a cubic meets at any parameters
 // Squares and their sums must stay within the range of doubles.
 constexpr double largest_extent = 1e100, smallest_extent = 1e-100;
 
@@ -41,21 +44,38 @@ nurbs::Curve curve_of(const std::vector<Vec2>& control) {
   return curve;
 }
 
-CurveFit fit_of(const std::vector<Vec2>& points) {
+CurveFit fit_of(const std::vector<Vec2>& points, nurbs::PointParameters by) {
   CurveFit fit;
-  fit.bezier = nurbs::fit_bezier(points);
-  fit.shape = nurbs::turning_shape(points);
+  fit.by = by;
+  fit.bezier = nurbs::fit_bezier(points, by);
   const Bezier& curve = fit.bezier.solved;
+  fit.shape = nurbs::turning_shape(curve);
   for (std::size_t i = 0; i < points.size(); ++i) {
     FixedPoint fixed;
     fixed.at = points[i];
-    fixed.parameter = static_cast<double>(i) / static_cast<double>(points.size() - 1);
+    fixed.parameter = fit.bezier.parameters[i];
     fixed.error = (nurbs::evaluate(curve, fixed.parameter) - points[i]).norm();
     fixed.distance = std::min(
         fixed.error, (nurbs::evaluate(curve, nurbs::nearest_parameter(curve, points[i])) - points[i]).norm());
     fit.points.push_back(fixed);
   }
   return fit;
+}
+
+// Where the curve runs back the farthest between two of its points.
+struct RunBack {
+  std::size_t row = 0;  // and the next one, from 0
+  double length = 0;
+};
+
+RunBack run_back(const CurveFit& fit) {
+  RunBack most;
+  for (std::size_t i = 1; i < fit.points.size(); ++i) {
+    const double length =
+        nurbs::run_back(fit.bezier.solved, fit.points[i - 1].parameter, fit.points[i].parameter);
+    if (length > most.length) most = {i - 1, length};
+  }
+  return most;
 }
 
 class Builder {
@@ -152,19 +172,60 @@ class Builder {
       edge.curve = curve_of(rows_[i]);
       return edge;
     }
-    edge.fit = fit_of(rows_[i]);
+    const std::vector<Vec2>& points = rows_[i];
+    edge.fit = fit_of(points, source.by.value_or(points.size() > met_points ? PointParameters::distance
+                                                                            : PointParameters::uniform));
     const Bezier& solved = edge.fit->bezier.solved;
     edge.curve = curve_of({solved.begin(), solved.end()});
-    const TurningShape said = source.shape == PieceCurve::Shape::s ? TurningShape::s : TurningShape::c;
-    if (source.shape != PieceCurve::Shape::found && said != edge.fit->shape)
-      say(warning(
-              Kind::geometry,
-              fmt::format("curve '{}' is called {}, but its points {}", source.name, fabric::name_of(said),
-                          edge.fit->shape == TurningShape::straight ? "lie on a straight line"
-                          : edge.fit->shape == TurningShape::c      ? "turn one way only, as a C does"
-                                                                    : "turn both ways, as an S does")),
+    if (!std::ranges::all_of(solved, [](const Vec2& p) { return p.allFinite(); }))
+      say(error(Kind::geometry,
+                fmt::format("{} is given by points that stand too near each other", title_of(source))),
           source.place);
+    else
+      judge(source, points, *edge.fit);
     return edge;
+  }
+
+  // Does the curve do what its word and its points say?
+  void judge(const PieceCurve& source, const std::vector<Vec2>& points, const CurveFit& fit) {
+    const auto turns = [](TurningShape shape) {
+      return shape == TurningShape::straight ? "is straight"
+             : shape == TurningShape::c      ? "turns one way only, as a C does"
+                                             : "turns both ways, as an S does";
+    };
+    const TurningShape polygon = nurbs::turning_shape(points);
+    const TurningShape said = source.shape == PieceCurve::Shape::s ? TurningShape::s : TurningShape::c;
+    if (source.shape != PieceCurve::Shape::found && said != fit.shape)
+      say(warning(Kind::geometry,
+                  fmt::format("curve '{}' is called {}, but {}{}", source.name, fabric::name_of(said),
+                              turns(fit.shape),
+                              polygon == said ? remedy(points, fit, polygon) : ", and so do its points")),
+          source.place);
+    else if (source.shape == PieceCurve::Shape::found && polygon == TurningShape::c &&
+             fit.shape == TurningShape::s)
+      say(warning(Kind::geometry, fmt::format("curve '{}' {}, but its points turn one way only{}", source.name,
+                                              turns(fit.shape), remedy(points, fit, polygon))),
+          source.place);
+    if (const RunBack back = run_back(fit); back.length > least_run_back * extent_)
+      say(warning(Kind::geometry,
+                  fmt::format("curve '{}' doubles back: between its rows {} and {} it runs {:.3g} {} against "
+                              "the direction from one to the other{}",
+                              source.name, back.row + 1, back.row + 2, back.length,
+                              selvage::name_of(fabric_.units), remedy(points, fit, polygon))),
+          source.place);
+  }
+
+  // Another way to place the points by which the curve turns as the polygon does, and does not run back.
+  [[nodiscard]] std::string remedy(const std::vector<Vec2>& points, const CurveFit& fit,
+                                   TurningShape polygon) const {
+    for (const PointParameters by :
+         {PointParameters::distance, PointParameters::chord, PointParameters::uniform}) {
+      if (by == fit.by || (by == PointParameters::distance && points.size() <= met_points)) continue;
+      const CurveFit other = fit_of(points, by);
+      if (other.shape == polygon && run_back(other).length <= least_run_back * extent_)
+        return fmt::format("; 'by {}' does not", fabric::name_of(by));
+    }
+    return "; one row more where it strays holds it, or two curves instead of one";
   }
 
   void check_outline(const PieceShape& shape) {
@@ -226,6 +287,11 @@ class Builder {
 std::string_view name_of(TurningShape shape) {
   constexpr std::array<std::string_view, 3> names = {"straight", "C", "S"};
   return names[static_cast<std::size_t>(shape)];
+}
+
+std::string_view name_of(PointParameters by) {
+  constexpr std::array<std::string_view, 3> names = {"uniform", "chord", "distance"};
+  return names[static_cast<std::size_t>(by)];
 }
 
 double CurveFit::largest_error() const {

@@ -1,5 +1,6 @@
 #include "nurbs/bezier.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/plane.h"
@@ -63,6 +64,41 @@ double swept_area(const Bezier& curve, const Vec2& origin) {
     sum += 0.5 * rule.weights[g] * cross(p, d);
   }
   return 0.5 * sum;
+}
+
+Turning turning(const Bezier& curve) {
+  constexpr int steps = 16;  // of less than half a turn each
+  const Vec2 d0 = curve[1] - curve[0], d1 = curve[2] - curve[1], d2 = curve[3] - curve[2];
+  // B' x B'' / 18 = c01 s^2 + c02 s t + c12 t^2
+  const double c01 = cross(d0, d1), c02 = cross(d0, d2), c12 = cross(d1, d2);
+  std::vector<double> ends = inner_roots(c01 - c02 + c12, c02 - 2.0 * c01, c01);
+  ends.push_back(0.0);
+  ends.push_back(1.0);
+  std::ranges::sort(ends);
+  Turning sum;
+  for (std::size_t k = 1; k < ends.size(); ++k)
+    for (int i = 0; i < steps; ++i) {
+      const auto at = [&](int step) { return ends[k - 1] + (ends[k] - ends[k - 1]) * step / steps; };
+      const Vec2 before = derivative(curve, at(i)), after = derivative(curve, at(i + 1));
+      const double turn = std::atan2(cross(before, after), before.dot(after));
+      (turn > 0.0 ? sum.left : sum.right) += std::abs(turn);
+    }
+  return sum;
+}
+
+double run_back(const Bezier& curve, double from, double to) {
+  const Vec2 start = evaluate(curve, from), along = (evaluate(curve, to) - start).normalized();
+  const double e0 = along.dot(curve[1] - curve[0]), e1 = along.dot(curve[2] - curve[1]),
+               e2 = along.dot(curve[3] - curve[2]);
+  std::vector<double> ends = inner_roots(e0 - 2.0 * e1 + e2, 2.0 * (e1 - e0), e0);
+  std::erase_if(ends, [&](double t) { return !(t > from && t < to); });
+  ends.push_back(from);
+  ends.push_back(to);
+  std::ranges::sort(ends);
+  double sum = 0.0;
+  for (std::size_t k = 1; k < ends.size(); ++k)
+    sum += std::max(0.0, along.dot(evaluate(curve, ends[k - 1]) - evaluate(curve, ends[k])));
+  return sum;
 }
 
 double nearest_parameter(const Bezier& curve, const Vec2& target) {

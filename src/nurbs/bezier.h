@@ -26,6 +26,16 @@ Box2 bounds(const Bezier& curve);
 // degree 5, three Gauss nodes integrate it.
 double swept_area(const Bezier& curve, const Vec2& origin);
 
+// How far the tangent turns to the left and to the right between the curve's ends, radians, both at least 0.
+// What lies between is exact: a cubic changes sides at the roots of a quadratic.
+struct Turning {
+  double left = 0, right = 0;
+};
+Turning turning(const Bezier& curve);
+
+// How far the curve runs against the direction from B(from) to B(to) between these two, 0 where it never does.
+double run_back(const Bezier& curve, double from, double to);
+
 // The parameter of the curve's point nearest to `target`, to the last bits where the curve is regular.
 double nearest_parameter(const Bezier& curve, const Vec2& target);
 

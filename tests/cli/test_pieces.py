@@ -26,13 +26,13 @@ def bezier(p, t):
     return tuple(s**3 * a + 3 * s * s * t * b + 3 * s * t * t * c + t**3 * d for a, b, c, d in zip(*p))
 
 
-def least_squares(points):
-    """The inner control points by Cramer's rule on the normal equations."""
+def least_squares(points, at):
+    """The inner control points by Cramer's rule on the normal equations, with the points at these parameters."""
     n = len(points) - 1
     aa = ab = bb = 0.0
     ra, rb = [0.0, 0.0], [0.0, 0.0]
     for i in range(1, n):
-        t = i / n
+        t = at[i]
         a, b = 3 * t * (1 - t)**2, 3 * t * t * (1 - t)
         aa, ab, bb = aa + a * a, ab + a * b, bb + b * b
         for k in (0, 1):
@@ -104,11 +104,16 @@ class Pieces(Case):
                     fit = edge["fit"]
                     points = [p["point"] for p in fit["points"]]
                     size = max(math.dist(points[0], p) for p in points)
-                    expected = [points[0], *least_squares(points), points[-1]]
+                    at = [p["parameter"] for p in fit["points"]]
+                    if fit["by"] == "uniform":
+                        self.assertEqual(at, [i / (len(points) - 1) for i in range(len(points))])
+                    expected = [points[0], *least_squares(points, at), points[-1]]
                     for kind in ("control_points", "control_points_by_descent"):
                         for a, b in zip(fit[kind], expected):
                             self.assertLess(math.dist(a, b), 1e-11 * size, (sample.name, edge["name"], kind))
-                    errors = [math.dist(bezier(expected, i / (len(points) - 1)), p) for i, p in enumerate(points)]
+                    errors = [math.dist(bezier(expected, t), p) for t, p in zip(at, points)]
+                    if fit["by"] == "distance":  # the samples' points are met
+                        self.assertLess(max(errors), 1e-9 * size)
                     for point, error in zip(fit["points"], errors):
                         self.assertAlmostEqual(point["error"], error, delta=1e-11 * size)
                         nearest = min(math.dist(bezier(expected, i / 5000), point["point"]) for i in range(5001))
@@ -118,8 +123,9 @@ class Pieces(Case):
         self.assertGreaterEqual(curves, 12)
 
     def test_table_as_text(self):
-        table = self.succeeds("info", SAMPLES / "back_piece.txt", "--table").stdout
-        self.assertRegex(table, r"curve 'side' of piece 'back': S, largest error 0\.945, \d+ steps of descent")
+        back = (SAMPLES / "back_piece.txt").read_text().replace("curve side S", "curve side S by uniform")
+        table = self.succeeds("info", self.text(back), "--table").stdout
+        self.assertRegex(table, r"curve 'side' of piece 'back': S, points by uniform, largest error 0\.945, \d+ steps of descent")
         self.assertRegex(table, r"(?m)^ +3 +0\.5 +23\.6 +28 +0\.945 +0\.453$")
         self.assertRegex(table, r"(?m)^  B1 +20\.7935 +35\.3856 +20\.7935 +35\.3856 +\S+$")
 
@@ -271,7 +277,7 @@ class Pieces(Case):
 
     def test_word_that_says_otherwise(self):
         sample = self.text("fabric 1\npiece p\ncurve arc S\n0 0\n1 1\n2 0\nend\nline l 2 0 0 0\nend\n")
-        warning = f"{sample}:3:1: warning: curve 'arc' is called S, but its points turn one way only"
+        warning = f"{sample}:3:1: warning: curve 'arc' is called S, but turns one way only, as a C does, and so do its points"
         self.assertIn(warning, self.succeeds("info", sample).stderr)
         self.assertIn(warning, self.fails(1, "info", sample, "--strict"))
 

@@ -228,6 +228,7 @@ class Flat {
     add(path + ".name", v.name);
     add(path + ".is_line", v.is_line);
     add(path + ".shape", v.shape);
+    add(path + ".by", v.by);
     add(path + ".points", v.points);
   }
   void add(const std::string& path, const Piece& v) {

@@ -364,6 +364,7 @@ class Maker {
       curve.name = new_name();
       curve.is_line = coin();
       if (!curve.is_line) curve.shape = static_cast<PieceCurve::Shape>(up_to(2));
+      if (!curve.is_line && coin()) curve.by = static_cast<nurbs::PointParameters>(up_to(2));
       const int points = curve.is_line ? 2 : 3 + up_to(5);
       for (int k = 0; k < points; ++k) curve.points.emplace_back(number(), k);
     }

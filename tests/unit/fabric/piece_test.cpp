@@ -1,6 +1,7 @@
 // Garment pieces from text: outlines, areas, what is refused and where.
 #include "fabric/piece.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,7 +69,7 @@ TEST(Piece, ParabolaSegment) {
 
 TEST(Piece, ErrorTable) {
   // Four inner points, three of them in line: the cubic cannot meet them all.
-  const Built built = build("curve c\n0 0\n1 1\n2 1\n3 1\n4 2\n5 0\nend\nline l 5 0 0 0\n");
+  const Built built = build("curve c by uniform\n0 0\n1 1\n2 1\n3 1\n4 2\n5 0\nend\nline l 5 0 0 0\n");
   ASSERT_TRUE(built.shape);
   for (const PieceEdge& edge : built.shape->edges) {
     if (!edge.fit) continue;
@@ -95,11 +96,50 @@ TEST(Piece, WordThatSaysOtherwiseIsAWarningAtItsLine) {
   ASSERT_TRUE(built.shape);
   ASSERT_EQ(built.diagnostics.messages().size(), 1U);
   EXPECT_EQ(to_string(built.diagnostics.messages()[0]),
-            "p.txt:4:1: warning: curve 'arc' is called S, but its points turn one way only, as a C does");
+            "p.txt:4:1: warning: curve 'arc' is called S, but turns one way only, as a C does, and so do "
+            "its points");
   const Built straight = build("curve arc C\n0 0\n1 0\n2 0\nend\nline b 2 0 2 2\nline c 2 2 0 0\n");
   ASSERT_TRUE(straight.shape);
   ASSERT_EQ(straight.diagnostics.messages().size(), 1U);
-  EXPECT_NE(straight.diagnostics.messages()[0].text.find("straight line"), std::string::npos);
+  EXPECT_NE(straight.diagnostics.messages()[0].text.find("is straight"), std::string::npos);
+}
+
+TEST(Piece, CurveThatDoublesBackIsTold) {
+  const Built built = build("curve a\n0 0\n1 0.1\n2 0.4\n20 12\nend\nline b 20 12 25 0\nline c 25 0 25 -9\n"
+                            "line d 25 -9 0 -9\nline e 0 -9 0 0\n");
+  ASSERT_TRUE(built.shape);
+  ASSERT_EQ(built.diagnostics.messages().size(), 2U);
+  EXPECT_NE(built.diagnostics.messages()[0].text.find("turns both ways, as an S does, but its points turn one"),
+            std::string::npos);
+  const std::string& text = built.diagnostics.messages()[1].text;
+  EXPECT_NE(text.find("doubles back: between its rows 2 and 3 it runs 0.7"), std::string::npos) << text;
+  // Another way to place the points holds it, and is named; so it does.
+  const std::string armhole = "\n21.5 70.4\n20.2 64\n20.6 57.5\n26 49\nend\nline b 26 49 50 49\nline c 50 49 21.5 70.4\n";
+  const Built uniform = build("curve a C" + armhole);
+  ASSERT_EQ(uniform.diagnostics.messages().size(), 1U);
+  EXPECT_EQ(uniform.diagnostics.messages()[0].text,
+            "curve 'a' is called C, but turns both ways, as an S does; 'by chord' does not");
+  EXPECT_TRUE(build("curve a C by chord" + armhole).diagnostics.messages().empty());
+}
+
+// More points than a cubic meets anywhere are met where it can be.
+TEST(Piece, SevenPointsOfACubicAreMet) {
+  const nurbs::Bezier cubic = {Vec2(0, 0), Vec2(2, 6), Vec2(9, 7), Vec2(12, 0)};
+  std::string rows;
+  for (const double t : {0.0, 0.05, 0.3, 0.38, 0.7, 0.96, 1.0}) {
+    const Vec2 p = nurbs::evaluate(cubic, t);
+    rows += fmt::format("{} {}\n", p.x(), p.y());
+  }
+  const auto largest = [&](const std::string& word) {
+    const Built built = build("curve c" + word + "\n" + rows + "end\nline l 12 0 0 0\n");
+    return built.shape ? built.shape->edges.front().fit ? built.shape->edges.front().fit->largest_error()
+                                                        : built.shape->edges.back().fit->largest_error()
+                       : -1.0;
+  };
+  EXPECT_GT(largest(" by uniform"), 1);
+  EXPECT_LT(largest(" by chord"), largest(" by uniform"));
+  EXPECT_LT(largest(""), 1e-9);
+  EXPECT_EQ(largest(""), largest(" by distance"));
 }
 
 TEST(Piece, GapsAreErrorsAtTheLineOfTheNextStart) {
