@@ -29,7 +29,10 @@ fabric::Grid read_grid(Parser& p, ShapeReading& reading);
 struct PointRows {
   std::string_view noun, what;  // "corner", "a corner"
   bool may_repeat = false;      // a point may equal the one before it
+  bool is_spline = false;       // a row may have a weight, and `knots` may stand among them
   std::vector<Vec2> points{};
+  std::vector<double> weights{};  // empty: none was given; else one a point
+  std::vector<double> knots{};
   Spot last{};  // of the last row
   bool good = true;
 };

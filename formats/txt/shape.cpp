@@ -113,17 +113,27 @@ bool all_equal(const std::vector<Vec3>& points) {
 
 void read_point_row(Parser& p, PointRows& rows) {
   rows.last = p.statement();
-  std::array<double, 2> xy{};
-  const int count = p.row(xy.data(), 2, rows.what);
+  std::array<double, 3> xy{};
+  const int count = p.row(xy.data(), rows.is_spline ? 3 : 2, rows.what);
   if (count == 0 || count == 1) p.error(p.here(), fmt::format("{} has two coordinates: x y", rows.what));
-  rows.good = rows.good && count == 2;
-  if (count != 2) return;
+  const bool good = count == 2 || (count == 3 && xy[2] > 0.0);
+  if (count == 3 && !good) p.error(p.last(), "a weight has to be larger than 0");
+  rows.good = rows.good && good;
+  if (!good) return;
+  if (count == 3 && rows.weights.empty()) rows.weights.assign(rows.points.size(), 1.0);
+  if (count == 3 || !rows.weights.empty()) rows.weights.push_back(count == 3 ? xy[2] : 1.0);
   const Vec2 point(xy[0], xy[1]);
   if (!rows.may_repeat && !rows.points.empty() && rows.points.back() == point) {
     p.error(rows.last, fmt::format("this {} equals the one before it", rows.noun));
     rows.good = false;
   }
   rows.points.push_back(point);
+}
+
+void read_point_knots(Parser& p, PointRows& rows, std::string_view) {
+  while (p.more())
+    if (const auto knot = p.number("a knot")) rows.knots.push_back(*knot);
+  rows.good = p.finish() && rows.good;
 }
 
 // --- grid
@@ -354,8 +364,9 @@ void read_grid_line(Parser& p, GridRows& rows) {
 
 bool read_points(Parser& p, std::string_view kind, std::string_view name, const Spot& opened,
                  PointRows& rows) {
-  static const Table<PointRows> table({}, read_point_row);
-  return p.read_block(kind, name, opened, table, rows) && rows.good;
+  static const Table<PointRows> plain({}, read_point_row);
+  static const Table<PointRows> spline({{"knots", read_point_knots}}, read_point_row);
+  return p.read_block(kind, name, opened, rows.is_spline ? spline : plain, rows) && rows.good;
 }
 
 fabric::Path read_path(Parser& p, ShapeReading& reading) {

@@ -76,8 +76,10 @@ inline constexpr std::array<Word<std::string_view>, 7> classic_words{{{"tricot",
                                                                       {"atlas", "atlas"},
                                                                       {"velvet", "velvet"},
                                                                       {"cord", "cord"}}};
-inline constexpr std::array<Word<PieceCurve::Shape>, 3> curve_words{
-    {{"C", PieceCurve::Shape::c}, {"S", PieceCurve::Shape::s}, {"control", PieceCurve::Shape::control}}};
+inline constexpr std::array<Word<PieceCurve::Shape>, 4> curve_words{{{"C", PieceCurve::Shape::c},
+                                                                     {"S", PieceCurve::Shape::s},
+                                                                     {"control", PieceCurve::Shape::control},
+                                                                     {"spline", PieceCurve::Shape::spline}}};
 inline constexpr std::array<Word<nurbs::PointParameters>, 3> curve_method_words{
     {{"uniform", nurbs::PointParameters::uniform},
      {"chord", nurbs::PointParameters::chord},

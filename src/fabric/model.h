@@ -16,6 +16,7 @@
 #include "core/units.h"
 #include "core/vec.h"
 #include "nurbs/bezier_fit.h"
+#include "nurbs/interpolate.h"
 #include "yarn/body.h"
 #include "yarn/grid.h"
 #include "yarn/path.h"
@@ -131,7 +132,8 @@ struct Yarn {
   TextPlace thread_place;
   Thread own;  // inline statements; its name is empty
   std::optional<Role> role;
-  std::optional<Vec3> tangent_start, tangent_end, up;
+  std::optional<yarn::EndTangent> tangent_start, tangent_end;
+  std::optional<Vec3> up;
   TextPlace up_place;
   bool closed = false;
   std::optional<std::array<yarn::EndStyle, 2>> ends;  // of its start and its end; none: not said
@@ -233,31 +235,45 @@ struct Braid {
 };
 
 struct PieceCurve {
-  enum class Shape { found, c, s, control };  // control: the points are the curve's four control points
+  // c, s, found: a Bezier near its fixed points. control: the points are the control points of the clamped
+  // uniform cubic; spline: the clamped cubic goes through them.
+  enum class Shape { found, c, s, control, spline };
   std::string name;
   TextPlace place;
   bool is_line = false;
   Shape shape = Shape::found;
   std::optional<nurbs::PointParameters> by;  // none: `distance` where a curve cannot meet all points, else
                                              // `uniform`
-  std::vector<Vec2> points;                  // a line has two
+  std::optional<nurbs::Parameterization> method;  // of a spline; none: chord
+  std::vector<Vec2> points;                       // a line has two
+  std::vector<double> weights;                    // of control and spline: one a point; empty: all are 1
+  std::vector<double> knots;                      // of control: points + 4 over [0, 1]; empty: uniform
+};
+
+// The length of curves of a piece together, and what is added to it.
+struct LengthOf {
+  std::string piece;
+  std::vector<std::string> curves;
+  double ease = 0;
+};
+
+struct Edit {
+  enum class Form { point, weight, length };
+  TextPlace place;
+  std::string yarn;  // in a piece: the curve
+  Form form = Form::point;
+  int joint = 0;                  // 1-based
+  Vec3 target = Vec3::Zero();     // point, weight: goes there
+  double length = 0;              // length
+  std::optional<LengthOf> like;   // in a piece, instead of `length`
+  Vec3 direction = Vec3::Zero();  // length: along
 };
 
 struct Piece {
   std::string name;
   TextPlace place;
   std::vector<PieceCurve> curves;
-};
-
-struct Edit {
-  enum class Form { point, weight, length };
-  TextPlace place;
-  std::string yarn;
-  Form form = Form::point;
-  int joint = 0;                  // 1-based
-  Vec3 target = Vec3::Zero();     // point, weight: goes there
-  double length = 0;              // length
-  Vec3 direction = Vec3::Zero();  // length: along
+  std::vector<Edit> edits;  // of its curves, in the plane
 };
 
 struct Cell {

@@ -1,4 +1,4 @@
-// Pieces of a garment pattern as geometry: closed plane outlines of lines and cubic Beziers.
+// Pieces of a garment pattern as geometry: closed plane outlines of lines and cubic B-splines.
 #pragma once
 
 #include <optional>
@@ -37,10 +37,9 @@ struct CurveFit {
 struct PieceEdge {
   std::string name;
   TextPlace place;
-  nurbs::Curve curve;           // over [0, 1] in z = 0, without weights; degree 1: a line, 3: a Bezier
-  std::optional<CurveFit> fit;  // none for a line
+  nurbs::Curve curve;           // over [0, 1] in z = 0; degree 1: a line, 3: a cubic, clamped
+  std::optional<CurveFit> fit;  // of a Bezier near fixed points
   [[nodiscard]] bool is_line() const { return curve.degree == 1; }
-  [[nodiscard]] nurbs::Bezier bezier() const;  // of a line: with inner points on its thirds
 };
 
 struct PieceShape {
@@ -66,8 +65,8 @@ std::vector<const Piece*> pieces_of(const Fabric& fabric);
 // and then there is no shape: malformed (an end that does not meet the next start, an outline that is not
 // closed), geometry (it crosses or touches itself, encloses no area, or is too large or small for the
 // arithmetic; a curve whose points crowd so that no cubic is found), limit (over 50,000 lines and curves).
-// Warnings: a curve that does not turn as its word (C or S) or its points do, or that runs back between two of
-// them.
+// Warnings: a curve that does not turn as its word (C or S) or its points do, or that runs back between two
+// of them.
 std::optional<PieceShape> build_piece(const Fabric& fabric, const Piece& piece, double tolerance,
                                       Diagnostics& diagnostics);
 

@@ -26,6 +26,26 @@ std::vector<double> inner_roots(double a, double b, double c) {
   return roots;
 }
 
+// Of a span: the cubic with its ends and end derivatives between two parameters, or halves of it.
+void add_cubics(const Curve& span, double t0, double t1, double tolerance, int halvings,
+                std::vector<Bezier>& cubics) {
+  constexpr int most_halvings = 16;
+  const CurveJet from = evaluate_jet(span, t0), to = evaluate_jet(span, t1);
+  const Vec2 p0 = from.position.head<2>(), p3 = to.position.head<2>();
+  const Bezier made = {p0, p0 + (t1 - t0) / 3.0 * from.d1.head<2>(), p3 - (t1 - t0) / 3.0 * to.d1.head<2>(),
+                       p3};
+  double off = 0.0;
+  for (const double share : {0.25, 0.5, 0.75}) {
+    const Vec2 there = evaluate(span, t0 + share * (t1 - t0)).head<2>();
+    off = std::max(off, (evaluate(made, share) - there).norm());
+  }
+  const bool is_exact = !span.is_rational() && span.degree <= 3;
+  if (is_exact || off <= tolerance || halvings == most_halvings) return cubics.push_back(made);
+  const double middle = 0.5 * (t0 + t1);
+  add_cubics(span, t0, middle, tolerance, halvings + 1, cubics);
+  add_cubics(span, middle, t1, tolerance, halvings + 1, cubics);
+}
+
 }  // namespace
 
 Bezier straight_bezier(const Vec2& from, const Vec2& to) {
@@ -64,6 +84,25 @@ double swept_area(const Bezier& curve, const Vec2& origin) {
     sum += 0.5 * rule.weights[g] * cross(p, d);
   }
   return 0.5 * sum;
+}
+
+std::vector<Bezier> cubics_of(const Curve& curve, double tolerance) {
+  const auto at = [](const Curve& of, std::size_t i) -> Vec2 { return of.points[i].head<2>(); };
+  const std::vector<double> knots = breakpoints(curve.knots, curve.degree);
+  std::vector<Bezier> cubics;
+  for (std::size_t k = 1; k < knots.size(); ++k) {
+    const Curve span = knots.size() == 2 ? curve : sub_curve(curve, knots[k - 1], knots[k]);
+    if (curve.degree == 1 && !curve.is_rational())
+      cubics.push_back(straight_bezier(at(span, 0), at(span, 1)));
+    else if (curve.degree == 3 && !curve.is_rational())
+      cubics.push_back({at(span, 0), at(span, 1), at(span, 2), at(span, 3)});
+    else
+      add_cubics(span, knots[k - 1], knots[k], tolerance, 0, cubics);
+  }
+  for (std::size_t k = 1; k < cubics.size(); ++k) cubics[k].front() = cubics[k - 1].back();
+  cubics.front().front() = at(curve, 0);
+  cubics.back().back() = at(curve, curve.points.size() - 1);
+  return cubics;
 }
 
 Turning turning(const Bezier& curve) {

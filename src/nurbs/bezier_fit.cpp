@@ -102,7 +102,8 @@ Bezier solved_at(const std::vector<Vec2>& points, const std::vector<double>& par
 }
 
 // The squared distances between inner points and their places on the curve.
-double sum_of_squares(const std::vector<Vec2>& points, const Bezier& curve, const std::vector<double>& parameters) {
+double sum_of_squares(const std::vector<Vec2>& points, const Bezier& curve,
+                      const std::vector<double>& parameters) {
   double sum = 0.0;
   for (std::size_t i = 1; i + 1 < points.size(); ++i)
     sum += (evaluate(curve, parameters[i]) - points[i]).squaredNorm();

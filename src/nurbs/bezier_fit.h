@@ -38,12 +38,12 @@ struct BezierFit {
 // One inner point leaves a family of solutions: both methods take the degree-elevated parabola through the
 // three. No inner point: the straight line.
 //
-// `distance`: the parameters are unknowns, too. Levenberg's and Marquardt's steps on all of them, from those by
-// chord, until nothing changes: the sum is least among curves near that one, and the error at each inner point
-// is its distance from the curve (Hoschek 1988, doi:10.1016/0167-8396(88)90026-1, has parameters corrected
-// like this). Where that does not meet the points, centripetal and uniform beginnings are tried, too, and the
-// best of those is taken that have the points in their order. Two inner points or fewer are met by the first
-// curve; three are met by many, of which this one is near to that by chord.
+// `distance`: the parameters are unknowns, too. Levenberg's and Marquardt's steps on all of them, from those
+// by chord, until nothing changes: the sum is least among curves near that one, and the error at each inner
+// point is its distance from the curve (Hoschek 1988, doi:10.1016/0167-8396(88)90026-1, has parameters
+// corrected like this). Where that does not meet the points, centripetal and uniform beginnings are tried,
+// too, and the best of those is taken that have the points in their order. Two inner points or fewer are met
+// by the first curve; three are met by many, of which this one is near to that by chord.
 BezierFit fit_bezier(const std::vector<Vec2>& points, PointParameters how = PointParameters::uniform);
 
 }  // namespace selvage::nurbs

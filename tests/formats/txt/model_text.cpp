@@ -60,6 +60,10 @@ class Flat {
     add(path + ".value", v.value);
     add(path + ".measure", v.measure);
   }
+  void add(const std::string& path, const yarn::EndTangent& v) {
+    add(path + ".vector", v.vector);
+    add(path + ".is_derivative", v.is_derivative);
+  }
   void add(const std::string& path, const Twist& v) {
     add(path + ".turns", v.turns);
     add(path + ".hand", v.hand);
@@ -229,11 +233,20 @@ class Flat {
     add(path + ".is_line", v.is_line);
     add(path + ".shape", v.shape);
     add(path + ".by", v.by);
+    add(path + ".method", v.method);
     add(path + ".points", v.points);
+    add(path + ".weights", v.weights);
+    add(path + ".knots", v.knots);
   }
   void add(const std::string& path, const Piece& v) {
     add(path + ".name", v.name);
     add(path + ".curves", v.curves);
+    add(path + ".edits", v.edits);
+  }
+  void add(const std::string& path, const LengthOf& v) {
+    add(path + ".piece", v.piece);
+    add(path + ".curves", v.curves);
+    add(path + ".ease", v.ease);
   }
   void add(const std::string& path, const Edit& v) {
     add(path + ".yarn", v.yarn);
@@ -241,6 +254,7 @@ class Flat {
     add(path + ".joint", v.joint);
     add(path + ".target", v.target);
     add(path + ".length", v.length);
+    add(path + ".like", v.like);
     add(path + ".direction", v.direction);
   }
   void add(const std::string& path, const Cell& v) {

@@ -222,8 +222,8 @@ class Maker {
     if (coin()) yarn.thread = one_of(threads_);
     fill(yarn.own);
     maybe(yarn.role, [&] { return static_cast<Role>(up_to(7)); });
-    maybe(yarn.tangent_start, [&] { return direction(); });
-    maybe(yarn.tangent_end, [&] { return direction(); });
+    for (auto* tangent : {&yarn.tangent_start, &yarn.tangent_end})
+      maybe(*tangent, [&] { return yarn::EndTangent(direction(), coin()); });
     maybe(yarn.up, [&] { return direction(); });
     yarn.closed = coin();
     if (coin())
@@ -356,6 +356,24 @@ class Maker {
     maybe(warpknit.stitch, [&] { return static_cast<Warpknit::Stitch>(up_to(1)); });
     return warpknit;
   }
+  Edit curve_edit() {
+    Edit edit;
+    edit.yarn = new_name();
+    edit.form = static_cast<Edit::Form>(up_to(2));
+    edit.joint = 1 + up_to(9);
+    const Vec3 vector(number(), 1.0, 0.0);
+    if (edit.form != Edit::Form::length) {
+      edit.target = vector;
+      return edit;
+    }
+    edit.direction = vector;
+    if (coin())
+      edit.like = LengthOf{new_name(), {new_name(), new_name()}, coin() ? number() : 0.0};
+    else
+      edit.length = positive();
+    return edit;
+  }
+
   Piece piece() {
     Piece piece;
     piece.name = new_name();
@@ -363,11 +381,26 @@ class Maker {
       PieceCurve& curve = piece.curves.emplace_back();
       curve.name = new_name();
       curve.is_line = coin();
-      if (!curve.is_line) curve.shape = static_cast<PieceCurve::Shape>(up_to(2));
-      if (!curve.is_line && coin()) curve.by = static_cast<nurbs::PointParameters>(up_to(2));
-      const int points = curve.is_line ? 2 : 3 + up_to(5);
+      if (curve.is_line) {
+        for (int k = 0; k < 2; ++k) curve.points.emplace_back(number(), k);
+        continue;
+      }
+      using Shape = PieceCurve::Shape;
+      curve.shape = static_cast<Shape>(up_to(4));
+      const bool is_spline = curve.shape == Shape::control || curve.shape == Shape::spline;
+      if (!is_spline && coin()) curve.by = static_cast<nurbs::PointParameters>(up_to(2));
+      if (curve.shape == Shape::spline && coin())
+        curve.method = static_cast<nurbs::Parameterization>(up_to(2));
+      const int points = 4 + up_to(5);
       for (int k = 0; k < points; ++k) curve.points.emplace_back(number(), k);
+      if (is_spline && coin())
+        for (int k = 0; k < points; ++k) curve.weights.push_back(positive());
+      if (curve.shape != Shape::control || coin()) continue;
+      curve.knots.assign(4, 0.0);
+      for (int k = 4; k < points; ++k) curve.knots.push_back((k - 3.0) / (points - 3.0));
+      curve.knots.insert(curve.knots.end(), 4, 1.0);
     }
+    for (int i = up_to(2); i > 0; --i) piece.edits.push_back(curve_edit());
     return piece;
   }
 
