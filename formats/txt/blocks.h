@@ -40,6 +40,9 @@ struct PointRows {
 bool read_points(Parser& p, std::string_view kind, std::string_view name, const Spot& opened,
                  PointRows& rows);
 
+// thread.cpp, too: the block `outline`.
+void read_outline(Parser& p, fabric::Fabric& fabric, std::string_view word);
+
 // construction.cpp
 void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word);
 void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word);

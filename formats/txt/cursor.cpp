@@ -294,13 +294,15 @@ std::optional<int> Cursor::integer(std::string_view what, int least, int most) {
   return fail(last(), fmt::format("{}: {} has to be {}", what, in_quotes(word), range));
 }
 
-int Cursor::row(double* values, int most, std::string_view what, std::string_view word) {
+int Cursor::row(double* values, int most, std::string_view what, std::string_view word,
+                std::string_view other) {
   for (int count = 0;; ++count) {
     if (!has_token()) return count;
     token_ = at_;
     const bool is_number = count < most && parse_number(values[count]);
     if (is_number) continue;
     if (!word.empty() && same_word(word_at(at_), word)) return count;
+    if (!other.empty() && same_word(word_at(at_), other)) return count;
     if (count == most)
       report_.error(last(), fmt::format("{}: more than {} values", what, most));
     else

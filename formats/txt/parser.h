@@ -131,7 +131,7 @@ class Parser : public Cursor {
 
   TextReport& report;
   fabric::Fabric fabric;
-  Names threads{"thread"}, materials{"material"}, yarns{"yarn"}, pieces{"piece"};
+  Names threads{"thread"}, materials{"material"}, yarns{"yarn"}, pieces{"piece"}, outlines{"outline"};
 
  private:
   struct Reference {

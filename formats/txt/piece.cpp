@@ -109,8 +109,9 @@ void read_wanted_length(Parser& p, fabric::Edit& edit) {
   p.take_word();
   fabric::LengthOf like;
   like.piece = p.name("the name of the piece").value_or("");
-  do like.curves.emplace_back(p.name("the name of a curve").value_or(""));
-  while (p.comma());
+  do {
+    like.curves.emplace_back(p.name("the name of a curve").value_or(""));
+  } while (p.comma());
   if (p.more() && same_word(p.peek_word(), "ease")) {
     p.take_word();
     like.ease = p.number("the ease").value_or(0.0);

@@ -55,9 +55,38 @@ void note_line(const Parser& p, Path& path, int line) {
   path.lines.push_back(line);
 }
 
-// The word behind the numbers of a row.
+// `outline A [B SHARE] [weight W]`, behind the numbers of a row.
+void read_outline_at(Parser& p, Path& path) {
+  if (!p.more() || !same_word(p.peek_word(), outline_word)) {
+    if (!path.outlines.empty()) path.outlines.emplace_back();
+    return;
+  }
+  p.take_word();
+  fabric::OutlineAt at;
+  at.place = p.here().place();
+  at.from = p.reference(p.outlines).value_or("");
+  const auto is_word = [&](std::string_view word) { return same_word(p.peek_word(), word); };
+  if (p.more() && !is_word("weight") && !is_word(fixed_word)) {
+    at.to = p.reference(p.outlines).value_or("");
+    at.share = p.number("the share of the second outline").value_or(0.0);
+    if (!p.has_failed() && !(at.share >= 0.0 && at.share <= 1.0))
+      p.error(p.last(), "a share lies between 0, the first outline, and 1, the second");
+  }
+  if (p.more() && is_word("weight")) {
+    p.take_word();
+    at.weight = p.positive("the weight").value_or(1.0);
+  }
+  path.outlines.resize(path.points.size() - 1);
+  path.outlines.emplace_back(std::move(at));
+}
+
+// The word at the end of a row.
 void read_fixed(Parser& p, Path& path) {
   if (!p.more()) return;
+  if (!same_word(p.peek_word(), fixed_word)) {
+    p.finish();
+    return;
+  }
   p.take_word();
   if (!p.finish()) return;
   path.fixed.resize(path.points.size() - 1, false);
@@ -88,7 +117,7 @@ bool is_good_row(Parser& p, const PathRows& rows, const std::array<double, 6>& r
 
 void read_path_row(Parser& p, PathRows& rows) {
   std::array<double, 6> row{};
-  const int count = p.row(row.data(), 6, "a row of the path", fixed_word);
+  const int count = p.row(row.data(), 6, "a row of the path", fixed_word, outline_word);
   ++rows.seen;
   const bool good = is_good_row(p, rows, row, count);
   rows.reading.good = rows.reading.good && good;
@@ -99,6 +128,7 @@ void read_path_row(Parser& p, PathRows& rows) {
   if (!good) return;
   rows.reading.last_row = p.statement();
   add_size(p, path, row, count);
+  read_outline_at(p, path);
   read_fixed(p, path);
   note_line(p, path, rows.reading.last_row.line);
 }

@@ -49,6 +49,7 @@ inline constexpr std::array<Word<yarn::PathForm>, 6> path_words{{{"chord", yarn:
                                                                  {"loop", yarn::PathForm::loop}}};
 // Behind a row of a path.
 inline constexpr std::string_view fixed_word = "fixed";
+inline constexpr std::string_view outline_word = "outline";
 inline constexpr std::array<Word<Draft::Form>, 5> draft_words{{{"plain", Draft::Form::plain},
                                                                {"twill", Draft::Form::twill},
                                                                {"satin", Draft::Form::satin},

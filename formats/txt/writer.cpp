@@ -133,6 +133,13 @@ void write_material(Lines& out, const fabric::Material& material) {
 // --- yarns
 // ----------------------------------------------------------------------------------------------------------
 
+void write_outline(Lines& out, const fabric::Outline& outline) {
+  out.blank_line();
+  out.line(0, "outline").name(outline.name);
+  for (const Vec2& point : outline.points) out.row(1, point.x()).value(point.y());
+  out.line(0, "end");
+}
+
 void write_path(Lines& out, const fabric::Path& path) {
   out.line(1, "path").word(word_of(path_words, path.form));
   for (std::size_t i = 0; i < path.points.size(); ++i) {
@@ -141,6 +148,12 @@ void write_path(Lines& out, const fabric::Path& path) {
     if (!path.sizes.empty() && path.sizes[i]) {
       out.value(path.sizes[i]->width).value(path.sizes[i]->height);
       if (path.sizes[i]->angle) out.value(*path.sizes[i]->angle);
+    }
+    if (!path.outlines.empty() && path.outlines[i]) {
+      const fabric::OutlineAt& at = *path.outlines[i];
+      out.word(outline_word).name(at.from);
+      if (!at.to.empty()) out.name(at.to).value(at.share);
+      if (at.weight != 1.0) out.word("weight").value(at.weight);
     }
     if (!path.fixed.empty() && path.fixed[i]) out.word(fixed_word);
   }
@@ -399,6 +412,7 @@ Result<WriteFacts> write_fabric(const fabric::Fabric& fabric, OutputFile& output
     out.line(0, "units").word(word_of(unit_words, fabric.units));
   if (fabric.tolerance) out.line(0, "tolerance").value(*fabric.tolerance);
   for (const fabric::Material& material : fabric.materials) write_material(out, material);
+  for (const fabric::Outline& outline : fabric.outlines) write_outline(out, outline);
   for (const Thread& thread : fabric.threads) write_thread(out, thread);
   WriteFacts facts;
   constexpr std::array<std::string_view, 6> kinds = {"yarn", "weave", "knit", "warpknit", "braid", "piece"};

@@ -100,12 +100,29 @@ struct SizeAt {
   bool operator==(const SizeAt&) const = default;
 };
 
+// A section by its control points, round the path; a file has them by name.
+struct Outline {
+  std::string name;
+  TextPlace place;
+  std::vector<Vec2> points;
+};
+
+// The section at one path point: on the way between two outlines of as many points.
+struct OutlineAt {
+  std::string from, to;  // `to` is empty: `from` alone
+  TextPlace place;
+  double share = 0;   // of `to`, 0 .. 1
+  double weight = 1;  // of its control points
+};
+
 struct Path {
   yarn::PathForm form = yarn::PathForm::chord;
   TextPlace place;
   std::vector<Vec3> points;
   // Empty when no row carries a size; else one entry a point (a row without a size has nullopt).
   std::vector<std::optional<SizeAt>> sizes;
+  // Empty when no row names an outline; else one entry a point. Such a yarn is lofted (fabric/loft.h).
+  std::vector<std::optional<OutlineAt>> outlines;
   // Empty when no row has the word `fixed`; else one entry a point: it stays where it is when yarns are moved
   // apart.
   std::vector<bool> fixed;
@@ -294,6 +311,7 @@ struct Fabric {
   std::optional<double> tolerance;
   std::vector<Thread> threads;
   std::vector<Material> materials;
+  std::vector<Outline> outlines;
   std::vector<Item> items;     // in file order
   std::vector<int> item_ends;  // the last line of each item, where they come from a text; else empty
   std::vector<Edit> edits;

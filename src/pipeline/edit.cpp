@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/number_text.h"
+#include "fabric/loft.h"
 #include "fabric/piece.h"
 #include "pipeline/detect.h"
 #include "pipeline/drafts.h"
@@ -141,6 +142,7 @@ void edit(Job& job) {
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
   if (fabric) resolve_drafts(*fabric, *source, job.options.allow_outside, diagnostics);
+  if (fabric) fabric::loft(*fabric, diagnostics);
   job.say_all(diagnostics.messages());
   if (!fabric || diagnostics.has_errors()) return;
   const std::optional<int> line = line_of_edit(job, *fabric, *added);

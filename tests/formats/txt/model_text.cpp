@@ -131,10 +131,21 @@ class Flat {
     add_size(path, v.width, v.height);
     add(path + ".angle", v.angle);
   }
+  void add(const std::string& path, const Outline& v) {
+    add(path + ".name", v.name);
+    add(path + ".points", v.points);
+  }
+  void add(const std::string& path, const OutlineAt& v) {
+    add(path + ".from", v.from);
+    add(path + ".to", v.to);
+    add(path + ".share", v.share);
+    add(path + ".weight", v.weight);
+  }
   void add(const std::string& path, const Path& v) {
     add(path + ".form", v.form);
     add(path + ".points", v.points);
     add(path + ".sizes", v.sizes);
+    add(path + ".outlines", v.outlines);
     for (std::size_t i = 0; i < v.fixed.size(); ++i) add(path + ".fixed", static_cast<int>(v.fixed[i]));
   }
   void add(const std::string& path, const Grid& v) {
@@ -277,6 +288,7 @@ std::vector<std::string> flattened(const Fabric& fabric) {
   flat.add("tolerance", fabric.tolerance);
   flat.add("threads", fabric.threads);
   flat.add("materials", fabric.materials);
+  flat.add("outlines", fabric.outlines);
   flat.add("items", fabric.items);
   flat.add("edits", fabric.edits);
   flat.add("cell", fabric.cell);

@@ -27,6 +27,7 @@ class Maker {
     }
     maybe(fabric.tolerance, [&] { return positive(); });
     for (int i = up_to(3); i > 0; --i) fabric.materials.push_back(material());
+    for (int i = up_to(2); i > 0; --i) fabric.outlines.push_back(outline());
     for (int i = 1 + up_to(3); i > 0; --i) fabric.threads.push_back(thread());
     for (int i = up_to(8); i > 0; --i) fabric.items.push_back(item());
     if (!yarns_.empty())
@@ -178,7 +179,26 @@ class Maker {
     }
     if (coin())
       for (int i = 0; i < rows; ++i) path.fixed.push_back(i == 1 || coin());
+    if (!outlines_.empty() && coin())
+      for (int i = 0; i < rows; ++i) {
+        std::optional<OutlineAt>& at = path.outlines.emplace_back();
+        if (i != 1 && coin()) continue;
+        at.emplace().from = one_of(outlines_);
+        if (coin()) {
+          at->to = one_of(outlines_);
+          at->share = between(0.0, 1.0);
+        }
+        if (coin()) at->weight = positive();
+      }
     return path;
+  }
+  Outline outline() {
+    Outline outline;
+    outline.name = new_name();
+    outlines_.push_back(outline.name);
+    outline.points = {Vec2(1.0, number()), Vec2(0.0, 1.0), Vec2(-1.0, 0.0)};
+    outline.points[0].y() = between(-0.5, 0.5);
+    return outline;
   }
   std::vector<double> knots(int count, int degree) {
     std::vector<double> knots;
@@ -430,7 +450,7 @@ class Maker {
 
   std::mt19937_64 engine_;
   int names_ = 0;
-  std::vector<std::string> threads_, materials_, yarns_;
+  std::vector<std::string> threads_, materials_, outlines_, yarns_;
 };
 
 }  // namespace

@@ -87,7 +87,7 @@ TEST(Samples, APlaneSealsEndsThatAreFlatToTheirDigits) {
     EXPECT_LT(yarn::flatness(yarn::end_curve(*planar, last), end.origin, end.normal), 1e-15);
   }
 
-  std::get<fabric::Grid>(std::get<fabric::Yarn>(grid.items[0]).shape).points[3].y() += 1e-4;
+  std::get<fabric::Grid>(std::get<fabric::Yarn>(grid.items[0]).shape).points[3].x() += 1e-4;
   const Result<yarn::Body> bent = built(EndStyle::planar);
   ASSERT_FALSE(bent.ok());
   EXPECT_NE(bent.error().text.find("is not flat"), std::string::npos) << to_string(bent.error());
