@@ -441,7 +441,7 @@ Result<yarn::Body> YarnBuilder::build_grid(const Yarn& yarn) const {
   for (const Edit& edit : fabric_->edits)
     if (edit.yarn == yarn.name)
       return error(Kind::unsupported,
-                   fmt::format("yarn '{}' is a grid: it has no centre line to edit", yarn.name))
+                   fmt::format("yarn '{}' is a grid: it has no centre line to edit (rows that name outlines make one)", yarn.name))
           .placed(edit.place, fabric_->file);
   body.group = yarn.group;
   // Its rows are as they are; the word `rotate` says that the fibres keep to their columns.
