@@ -56,8 +56,8 @@ class Cursor {
   bool comma();
   std::optional<double> number(std::string_view what);
   std::optional<int> integer(std::string_view what, int least, int most);
-  // The numbers up to the end of the line, or up to the word `word` or `other` where one may follow them, at most `most`
-  // of them; returns how many. An error gives -1.
+  // The numbers up to the end of the line, or up to the word `word` or `other` where one may follow them, at
+  // most `most` of them; returns how many. An error gives -1.
   int row(double* values, int most, std::string_view what, std::string_view word = {},
           std::string_view other = {});
   // Reports what is left on the line. True when there is nothing, and no value was wrong.

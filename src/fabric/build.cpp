@@ -440,8 +440,11 @@ Result<yarn::Body> YarnBuilder::build_grid(const Yarn& yarn) const {
            yarn.role.value_or(Role::other), yarn.place);
   for (const Edit& edit : fabric_->edits)
     if (edit.yarn == yarn.name)
-      return error(Kind::unsupported,
-                   fmt::format("yarn '{}' is a grid: it has no centre line to edit (rows that name outlines make one)", yarn.name))
+      return error(
+                 Kind::unsupported,
+                 fmt::format(
+                     "yarn '{}' is a grid: it has no centre line to edit (rows that name outlines make one)",
+                     yarn.name))
           .placed(edit.place, fabric_->file);
   body.group = yarn.group;
   // Its rows are as they are; the word `rotate` says that the fibres keep to their columns.

@@ -15,6 +15,8 @@ namespace selvage::fabric {
 
 namespace {
 
+constexpr std::size_t most_points = 10'000'000;
+
 // The section of a row, before it is placed.
 struct Section {
   std::vector<Vec2> points;
@@ -31,13 +33,15 @@ Section between(const Section& a, const Section& b, double share) {
 
 class Loft {
  public:
-  Loft(const Fabric& fabric, const Yarn& yarn) : fabric_(fabric), yarn_(yarn), path_(std::get<Path>(yarn.shape)) {}
+  Loft(const Fabric& fabric, const Yarn& yarn)
+      : fabric_(fabric), yarn_(yarn), path_(std::get<Path>(yarn.shape)) {}
 
   Result<Grid> grid() {
     using Form = yarn::PathForm;
     if (path_.form != Form::chord && path_.form != Form::uniform && path_.form != Form::centripetal)
-      return error(Kind::malformed,
-                   "outlines stand at data points: 'path chord', 'uniform' or 'centripetal' goes through them")
+      return error(
+                 Kind::malformed,
+                 "outlines stand at data points: 'path chord', 'uniform' or 'centripetal' goes through them")
           .placed(path_.place);
     Result<yarn::PathRows> rows = path_rows_of(fabric_, yarn_, resolved_thread(fabric_, yarn_));
     if (!rows) return rows.error();
@@ -48,6 +52,12 @@ class Loft {
         yarn::FrameField::make(line_.curve, yarn::FrameGuide::free_from(yarn_.up), yarn_.closed, false);
     if (!frames) return frames.error().placed(path_.place);
     if (Status found = find_sections(); !found) return found.error();
+    if (sections_.size() * round_ > most_points)
+      return error(Kind::limit,
+                   fmt::format("a yarn of {} rows with outlines of {} points is too large: at most "
+                               "{} control points are made",
+                               sections_.size(), round_, most_points))
+          .placed(path_.place);
     place_sections(*frames);
     return interpolated();
   }
@@ -64,7 +74,8 @@ class Loft {
                                  "points go from outline to outline, so give all as many",
                                  outline->name, outline->points.size(), round_))
             .placed(at.place);
-    Section section = between({counter_clockwise(from->points), 1.0}, {counter_clockwise(to->points), 1.0}, at.share);
+    Section section =
+        between({counter_clockwise(from->points), 1.0}, {counter_clockwise(to->points), 1.0}, at.share);
     section.weight = at.weight;
     return section;
   }
@@ -76,7 +87,9 @@ class Loft {
   }
 
   Status find_sections() {
-    const auto given = [&](std::size_t i) { return i < path_.outlines.size() && path_.outlines[i].has_value(); };
+    const auto given = [&](std::size_t i) {
+      return i < path_.outlines.size() && path_.outlines[i].has_value();
+    };
     std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < path_.points.size(); ++i)
       if (given(i)) rows.push_back(i);
@@ -145,8 +158,7 @@ class Loft {
     const double of_weight = parabola([&](std::size_t i) { return Vec3(sections_[i].weight, 0, 0); }).x();
     Eigen::RowVectorXd row(static_cast<Eigen::Index>(3 * round_ + 1));
     for (std::size_t k = 0; k < round_; ++k) {
-      const Vec3 of_offset =
-          parabola([&](std::size_t i) { return Vec3(placed_[i][k] - path_.points[i]); });
+      const Vec3 of_offset = parabola([&](std::size_t i) { return Vec3(placed_[i][k] - path_.points[i]); });
       row.segment<3>(static_cast<Eigen::Index>(3 * k)) =
           (weight * (of_line + of_offset) + of_weight * placed_[end][k]).transpose();
     }
@@ -157,9 +169,9 @@ class Loft {
   Result<Grid> interpolated() const {
     std::vector<double> parameters = line_.parameters;
     if (yarn_.closed) parameters.push_back(1.0);
-    const Eigen::MatrixXd rows = yarn_.closed
-                                     ? nurbs::interpolate_periodic(parameters, data())
-                                     : nurbs::interpolate_clamped(parameters, data(), derivative(false), derivative(true));
+    const Eigen::MatrixXd rows =
+        yarn_.closed ? nurbs::interpolate_periodic(parameters, data())
+                     : nurbs::interpolate_clamped(parameters, data(), derivative(false), derivative(true));
     Grid grid;
     grid.place = path_.place;
     grid.closed_along = yarn_.closed;
@@ -178,7 +190,8 @@ class Loft {
                                  weight))
             .placed(path_.place);
       for (std::size_t k = 0; k < round_; ++k) {
-        grid.points.emplace_back(rows.row(i).segment<3>(static_cast<Eigen::Index>(3 * k)).transpose() / weight);
+        grid.points.emplace_back(rows.row(i).segment<3>(static_cast<Eigen::Index>(3 * k)).transpose() /
+                                 weight);
         if (is_rational) grid.weights.push_back(weight);
       }
     }

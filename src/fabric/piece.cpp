@@ -184,8 +184,7 @@ class Builder {
       return edge;
     }
     const std::vector<Vec2>& points = rows_[i];
-    edge.fit = fit_of(points, source.by.value_or(points.size() > met_points ? PointParameters::distance
-                                                                            : PointParameters::uniform));
+    edge.fit = source.by ? fit_of(points, *source.by) : best_fit(points);
     const Bezier& solved = edge.fit->bezier.solved;
     edge.curve = curve_of({solved.begin(), solved.end()});
     if (!std::ranges::all_of(solved, [](const Vec2& p) { return p.allFinite(); }))
@@ -195,6 +194,16 @@ class Builder {
     else
       judge(source, points, *edge.fit);
     return edge;
+  }
+
+  // Points that a cubic cannot meet at any parameters are met as nearly as it can, unless that takes turns
+  // that they do not ask for.
+  [[nodiscard]] CurveFit best_fit(const std::vector<Vec2>& points) const {
+    if (points.size() <= met_points) return fit_of(points, PointParameters::uniform);
+    CurveFit by_distance = fit_of(points, PointParameters::distance);
+    if (run_back(by_distance).length <= least_run_back * extent_) return by_distance;
+    CurveFit by_chord = fit_of(points, PointParameters::chord);
+    return run_back(by_chord).length <= least_run_back * extent_ ? by_chord : by_distance;
   }
 
   // Does the curve do what its word and its points say?

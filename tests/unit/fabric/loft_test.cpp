@@ -75,9 +75,10 @@ std::vector<Vec2> blended(const std::vector<Vec2>& a, const std::vector<Vec2>& b
 // Straight, one outline, sizes that grow in proportion: a cone's frustum.
 TEST(Loft, Cone) {
   const std::vector<Vec2> points = ellipse(1, 0.4);
-  const Lofted cone = loft_of(outline("o", points) +
-                              "yarn y t\n path\n 0 0 0 1 0.4 outline o\n 1.5 0 0 2 0.8 outline o\n 3 0 0 3 1.2 outline o\n"
-                              " end\nend\n");
+  const Lofted cone =
+      loft_of(outline("o", points) +
+              "yarn y t\n path\n 0 0 0 1 0.4 outline o\n 1.5 0 0 2 0.8 outline o\n 3 0 0 3 1.2 outline o\n"
+              " end\nend\n");
   ASSERT_EQ(cone.bodies.size(), 1U) << cone.told;
 
   EXPECT_NEAR(cone.bodies[0].volume, area(points) * 3 * (1 + 3 + 9) / 3.0, 1e-12);
@@ -88,9 +89,10 @@ TEST(Loft, MorphsFromOutlineToOutline) {
   const std::vector<Vec2> a = ellipse(1, 0.5), b = kidney();
   const std::string blocks = outline("a", a) + outline("b", b);
   const double volume = 2 * (area(a) + 4 * area(blended(a, b, 0.5)) + area(b)) / 6;
-  for (const char* rows : {" 0 0 0 outline a\n 2 0 0 outline b\n", " 0 0 0 outline a\n 0.5 0 0\n 2 0 0 outline b\n",
-                           " 0 0 0 outline a\n 0.5 0 0 outline a b 0.25\n 2 0 0 outline b\n",
-                           " 0 0 0 outline a weight 2\n 2 0 0 outline b weight 2\n"}) {
+  for (const char* rows :
+       {" 0 0 0 outline a\n 2 0 0 outline b\n", " 0 0 0 outline a\n 0.5 0 0\n 2 0 0 outline b\n",
+        " 0 0 0 outline a\n 0.5 0 0 outline a b 0.25\n 2 0 0 outline b\n",
+        " 0 0 0 outline a weight 2\n 2 0 0 outline b weight 2\n"}) {
     const Lofted made = loft_of(blocks + "yarn y t\n path\n" + rows + " end\nend\n");
     ASSERT_EQ(made.bodies.size(), 1U) << made.told;
     EXPECT_NEAR(made.bodies[0].volume, volume, 1e-12) << rows;
@@ -100,9 +102,10 @@ TEST(Loft, MorphsFromOutlineToOutline) {
 // On a bent path with weights the surface still goes through the section of each row.
 TEST(Loft, PassesThroughTheSectionOfEachRow) {
   const std::vector<Vec2> a = ellipse(0.5, 0.2), b = ellipse(0.3, 0.3);
-  const Lofted made = loft_of(outline("a", a) + outline("b", b) +
-                              "yarn y t\n path\n 0 0 0 outline a\n 1 1 0 outline b weight 1.5\n 2 0 0.5 outline a b 0.4\n"
-                              " 4 0 0 0.6 0.2 30 outline a weight 0.8\n end\nend\n");
+  const Lofted made =
+      loft_of(outline("a", a) + outline("b", b) +
+              "yarn y t\n path\n 0 0 0 outline a\n 1 1 0 outline b weight 1.5\n 2 0 0.5 outline a b 0.4\n"
+              " 4 0 0 0.6 0.2 30 outline a weight 0.8\n end\nend\n");
   ASSERT_EQ(made.bodies.size(), 1U) << made.told;
   const nurbs::Surface& surface = made.bodies[0].surface;
   ASSERT_FALSE(surface.weights.empty());
@@ -129,8 +132,7 @@ TEST(Loft, PassesThroughTheSectionOfEachRow) {
         const double t = k / 40.0;
         const Vec2 &p = outline[i], &q = outline[(i + 1) % 12], &r = outline[(i + 2) % 12];
         expected = std::max(
-            expected,
-            Vec2(0.5 * (1 - t) * (1 - t) * p + (0.5 + t * (1 - t)) * q + 0.5 * t * t * r).norm());
+            expected, Vec2(0.5 * (1 - t) * (1 - t) * p + (0.5 + t * (1 - t)) * q + 0.5 * t * t * r).norm());
       }
     EXPECT_NEAR(widest, expected, 1e-4) << row;
   }
@@ -141,10 +143,13 @@ TEST(Loft, BadInput) {
   EXPECT_NE(loft_of(a + b + "yarn y t\n path\n 0 0 0 outline a\n 2 0 0 outline b\n end\nend\n")
                 .told.find("outline 'b' has 9 points, and the first one of this yarn has 12"),
             std::string::npos);
-  EXPECT_NE(loft_of(a + "yarn y t\n path\n 0 0 0 outline c\n 2 0 0\n end\nend\n").told.find("'c'"), std::string::npos);
-  EXPECT_NE(loft_of(a + "yarn y t\n path control\n 0 0 0 outline a\n 2 0 0\n end\nend\n").told.find("data points"),
+  EXPECT_NE(loft_of(a + "yarn y t\n path\n 0 0 0 outline c\n 2 0 0\n end\nend\n").told.find("'c'"),
             std::string::npos);
-  EXPECT_NE(loft_of(a + "yarn y t\n path\n 0 0 0 outline a a 2\n 2 0 0\n end\nend\n").told.find("a share lies between"),
+  EXPECT_NE(
+      loft_of(a + "yarn y t\n path control\n 0 0 0 outline a\n 2 0 0\n end\nend\n").told.find("data points"),
+      std::string::npos);
+  EXPECT_NE(loft_of(a + "yarn y t\n path\n 0 0 0 outline a a 2\n 2 0 0\n end\nend\n")
+                .told.find("a share lies between"),
             std::string::npos);
   EXPECT_NE(loft_of("outline a\n 0 0\n 1 0\nend\n").told.find("at least 3 points"), std::string::npos);
   EXPECT_NE(loft_of(a + "yarn y t\n path\n 0 0 0 outline a weight 1000\n 1 0 0 outline a weight 0.001\n"

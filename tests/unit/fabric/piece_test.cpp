@@ -128,6 +128,21 @@ TEST(Piece, CurveThatDoublesBackIsTold) {
   EXPECT_TRUE(build("curve a C by chord" + armhole).diagnostics.messages().empty());
 }
 
+// What meets these best runs to and fro far outside of them: without a word that is not taken.
+TEST(Piece, ZigzagsAreNotMetAtAnyPrice) {
+  const std::string rows = "0 0\n1 1\n0 2\n1 3\n0 4\n1 5\n0 6\nend\nline b 0 6 -3 0\nline c -3 0 0 0\n";
+  const Built built = build("curve a\n" + rows), met = build("curve a by distance\n" + rows);
+  ASSERT_TRUE(built.shape && met.shape);
+  EXPECT_TRUE(built.diagnostics.messages().empty());
+  EXPECT_FALSE(met.diagnostics.messages().empty());
+  EXPECT_LT(built.shape->perimeter, 20);
+  for (const PieceEdge& edge : built.shape->edges) {
+    if (edge.fit) {
+      EXPECT_EQ(edge.fit->by, nurbs::PointParameters::chord);
+    }
+  }
+}
+
 // More points than a cubic meets anywhere are met where it can be.
 TEST(Piece, SevenPointsOfACubicAreMet) {
   const nurbs::Bezier cubic = {Vec2(0, 0), Vec2(2, 6), Vec2(9, 7), Vec2(12, 0)};
