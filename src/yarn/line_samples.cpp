@@ -39,9 +39,12 @@ void divide(const nurbs::Curve& axis, double tolerance, double t0, double t1, in
 // Of the section at one v.
 class SectionAt {
  public:
-  SectionAt(const nurbs::Surface& surface, double v, LineSample& sample) : surface_(surface), v_(v) {
-    const std::vector<double> knots = nurbs::breakpoints(surface.knots_u, surface.degree_u);
-    const Vec3 first = nurbs::evaluate(surface, knots.front(), v) - sample.position;
+  SectionAt(const nurbs::Surface& surface, double v) : surface_(surface), v_(v) {}
+
+  // The frame across the tangent, and the section's sizes.
+  void measure(LineSample& sample) {
+    const std::vector<double> knots = nurbs::breakpoints(surface_.knots_u, surface_.degree_u);
+    const Vec3 first = nurbs::evaluate(surface_, knots.front(), v_) - sample.position;
     sample.side = first - first.dot(sample.tangent) * sample.tangent;
     // A yarn may run to a point: any direction across does there.
     sample.side = sample.side.squaredNorm() > 0.0 ? Vec3(sample.side.normalized())
@@ -96,7 +99,7 @@ std::vector<LineSample> line_samples(const Body& body, double tolerance) {
     const double speed = jet.d1.norm();
     sample.tangent = jet.d1.normalized();
     if (speed > 0.0) sample.curvature = jet.d1.cross(jet.d2).norm() / (speed * speed * speed);
-    SectionAt(body.surface, t, sample);
+    SectionAt(body.surface, t).measure(sample);
     samples.push_back(sample);
   }
   return samples;
