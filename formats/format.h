@@ -71,7 +71,8 @@ struct Instance {
 };
 
 // Takes the yarns and pieces of one file, one after the other, in the order in which they shall stand there.
-// A format that carries only one of the two (Descriptor) is never given the other.
+// A format that carries only one of the two (Descriptor) is never given the other; of a yarn it is given the
+// surface, or the centre line.
 class BodyWriter {
  public:
   virtual ~BodyWriter() = default;
@@ -81,6 +82,14 @@ class BodyWriter {
   // `body` is what the copy is by itself: its name and group are the copy's. A format that repeats nothing
   // writes it in full.
   virtual Status add_instance(const yarn::Body& body, const Instance& /*instance*/) { return add(body); }
+  // The yarn's centre line instead of its surface.
+  virtual Status add_line(const yarn::Body& body) {
+    cad::NamedCurve line;
+    line.name = body.name;
+    if (body.is_colored) line.color = body.color;
+    line.curve = body.axis;
+    return add_curve(line);
+  }
   // Geometry of a CAD file that is neither a yarn nor a piece.
   virtual Status add_part(const cad::Part& part) {
     return error(Kind::unsupported, "this format holds no free surfaces, such as '" + part.name + "'");
@@ -98,6 +107,7 @@ class BodyWriter {
 // An `edit` to be added to a text, its numbers spelt as they shall stand there.
 struct NewEdit {
   fabric::Edit edit;                    // its place means nothing
+  std::string piece;                    // whose curve it edits, in the plane; empty: a yarn
   std::string length;                   // length
   std::array<std::string, 3> vector{};  // target or direction
 };
@@ -140,6 +150,8 @@ struct Descriptor {
                                                      const SurfaceOptions& options) = nullptr;
   bool carries_surfaces = true;
   bool carries_curves = false;
+  bool carries_lines =
+      false;  // centre lines of yarns; a format without surfaces is given nothing else of them
   Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output) = nullptr;
   // The format of a second file of the same stem that goes with each file of this one, of meshes that have
   // load cases.
@@ -153,6 +165,11 @@ struct Descriptor {
   // Lengths in mm.
   Result<WriteFacts> (*write_gap_map)(const solid::GapMap& map, OutputFile& output) = nullptr;
 };
+
+// How far polygons of a centre line may be from it: as far as tubes from theirs.
+inline double line_tolerance(const SurfaceOptions& options, const yarn::Body& body) {
+  return options.tolerance > 0.0 ? options.tolerance : 1e-3 * yarn::narrowest_section(body);
+}
 
 // Descriptor::open_bodies of a writer that is made of its arguments.
 template <class Writer>

@@ -17,10 +17,16 @@ const Descriptor& descriptor();
 namespace step {  // STEP AP242 or AP214: each yarn a manifold solid with its name and colour
 const Descriptor& descriptor();
 }
-namespace svg {  // SVG 1.1: garment pieces as a drawing at true scale
+namespace svg {  // SVG 1.1: garment pieces and centre lines as a drawing at true scale
 const Descriptor& descriptor();
 }
-namespace dxf {  // DXF of AutoCAD 2000 (AC1015), ASCII: garment pieces as blocks
+namespace dxf {  // DXF of AutoCAD 2000 (AC1015), ASCII: garment pieces and centre lines as blocks
+const Descriptor& descriptor();
+}
+namespace vtp {  // VTK polygonal data: centre lines as points
+const Descriptor& descriptor();
+}
+namespace csv {  // comma-separated values: centre lines as points
 const Descriptor& descriptor();
 }
 namespace inp {  // Abaqus and CalculiX input deck

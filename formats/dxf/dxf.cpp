@@ -46,10 +46,16 @@ class Writer final : public BodyWriter {
  public:
   Writer(OutputFile& output, const SurfaceOptions& options) : output_(&output), options_(options) {}
 
+  Status add_curve(const cad::NamedCurve& curve) override {
+    Block block = new_block(curve.name, curve.origin.place, "centre line");
+    put_spline(block, layer::boundary, curve.curve, false);
+    for (const Vec3& p : curve.curve.points) box_.extend(Vec2(p.head<2>()));
+    blocks_.push_back(std::move(block));
+    return {};
+  }
+
   Status add_piece(const PieceShape& piece) override {
-    Block block;
-    block.name = new_name(piece);
-    for (Handle* handle : {&block.record, &block.begin, &block.end, &block.insert}) *handle = next_++;
+    Block block = new_block(piece.name, piece.place, "piece");
     for (const PieceEdge& edge : piece.edges) put_edge(block, edge);
     for (const PieceEdge& edge : piece.edges) {
       put_point(block, layer::turn_points, edge.curve.points.front());
@@ -65,7 +71,8 @@ class Writer final : public BodyWriter {
   }
 
   Result<WriteFacts> finish() override {
-    if (blocks_.empty()) return error(Kind::geometry, "there is no garment piece to draw");
+    if (blocks_.empty())
+      return error(Kind::geometry, "there is nothing to draw: no garment piece and no yarn");
     const Tags file = drawing(blocks_, box_, options_.units, next_);
     if (Status status = output_->write(file.bytes()); !status.ok()) return status.error();
     facts_.entities["BLOCK"] = blocks_.size();
@@ -86,12 +93,20 @@ class Writer final : public BodyWriter {
           .point(11, curve.points[1]);
       return;
     }
-    Tags& tags = entity(block, "SPLINE", layer::boundary, "AcDbSpline");
-    tags.point(210, Vec3::UnitZ()).integer(70, 8).integer(71, curve.degree);  // 8: planar
+    put_spline(block, layer::boundary, curve, true);
+  }
+
+  void put_spline(Block& block, std::string_view layer, const nurbs::Curve& curve, bool planar) {
+    constexpr int rational = 4, in_a_plane = 8;
+    Tags& tags = entity(block, "SPLINE", layer, "AcDbSpline");
+    if (planar) tags.point(210, Vec3::UnitZ());
+    tags.integer(70, (planar ? in_a_plane : 0) + (curve.weights.empty() ? 0 : rational));
+    tags.integer(71, curve.degree);
     tags.integer(72, static_cast<long long>(curve.knots.size()));
     tags.integer(73, static_cast<long long>(curve.points.size())).integer(74, 0);
     tags.real(42, 1e-9).real(43, 1e-10);  // tolerances of knots and points: the usual ones
     for (const double knot : curve.knots) tags.real(40, knot);
+    for (const double weight : curve.weights) tags.real(41, weight);
     for (const Vec3& p : curve.points) tags.point(10, p);
   }
 
@@ -114,8 +129,15 @@ class Writer final : public BodyWriter {
         .integer(73, 2);
   }
 
-  std::string new_name(const PieceShape& piece) {
-    const std::string wanted = block_name(piece.name);
+  Block new_block(const std::string& name, TextPlace place, std::string_view kind) {
+    Block block;
+    block.name = new_name(name, place, kind);
+    for (Handle* handle : {&block.record, &block.begin, &block.end, &block.insert}) *handle = next_++;
+    return block;
+  }
+
+  std::string new_name(const std::string& given, TextPlace place, std::string_view kind) {
+    const std::string wanted = block_name(given);
     std::string name = wanted;
     const auto folded = [](std::string text) {  // block names ignore case
       std::ranges::transform(text, text.begin(), lower);
@@ -123,12 +145,12 @@ class Writer final : public BodyWriter {
     };
     for (int number = 2; !names_.insert(folded(name)).second; ++number)
       name = fmt::format("{}_{}", wanted, number);
-    if (name != string_value(piece.name))
+    if (name != string_value(given))
       facts_.messages.push_back(
           warning(Kind::unsupported,
-                  fmt::format("DXF does not admit the name '{}': the block of this piece is named '{}'",
-                              piece.name, name),
-                  {.place = piece.place}));
+                  fmt::format("DXF does not admit the name '{}': the block of this {} is named '{}'", given,
+                              kind, name),
+                  {.place = place}));
     return name;
   }
 
@@ -146,12 +168,13 @@ class Writer final : public BodyWriter {
 const Descriptor& descriptor() {
   static const Descriptor self = {
       .name = "dxf",
-      .title = "DXF of AutoCAD 2000, garment pieces as blocks",
+      .title = "DXF of AutoCAD 2000, garment pieces and centre lines as blocks",
       .extensions = {".dxf"},
       .sniff = looks_like_dxf,
       .open_bodies = open_by<Writer>,
       .carries_surfaces = false,
       .carries_curves = true,
+      .carries_lines = true,
   };
   return self;
 }

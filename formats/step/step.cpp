@@ -93,6 +93,7 @@ const Descriptor& descriptor() {
       .foreign_reader = "STEP",
       .open_bodies = open_bodies,
       .carries_curves = true,
+      .carries_lines = true,
       .options = option::all(),
       .is_usual = true};
   return self;

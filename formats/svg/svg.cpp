@@ -1,5 +1,7 @@
 #include "formats/registry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <set>
@@ -8,6 +10,8 @@
 #include "core/readable.h"
 #include "core/text_buffer.h"
 #include "core/xml_text.h"
+#include "nurbs/bezier.h"
+#include "yarn/line_samples.h"
 
 namespace selvage::formats::svg {
 
@@ -30,18 +34,37 @@ double clean(double value) {
 }
 
 // y points up in the fabric and down in SVG: the sign is turned, which costs no bits.
-void put_point(std::string& path, const Vec3& p) {
+void put_point(std::string& path, const Vec2& p) {
   path += number_text(clean(p.x())) + ' ' + number_text(clean(-p.y()));
 }
 
-std::string path_data(const PieceShape& piece) {
-  std::string path = "M";
-  put_point(path, piece.edges.front().curve.points.front());
-  for (const PieceEdge& edge : piece.edges) {
-    path += edge.is_line() ? "L" : "C";
-    for (std::size_t i = 1; i < edge.curve.points.size(); ++i) {
+void put_curve(std::string& path, const nurbs::Curve& curve, double tolerance) {
+  for (const nurbs::Bezier& cubic : nurbs::cubics_of(curve, tolerance)) {
+    path += 'C';
+    for (std::size_t i = 1; i < cubic.size(); ++i) {
       if (i > 1) path += ' ';
-      put_point(path, edge.curve.points[i]);
+      put_point(path, cubic[i]);
+    }
+  }
+}
+
+std::string path_data(const nurbs::Curve& curve, double tolerance) {
+  std::string path = "M";
+  put_point(path, curve.points.front().head<2>());
+  put_curve(path, curve, tolerance);
+  return path;
+}
+
+std::string path_data(const PieceShape& piece) {
+  constexpr double rational_error = 1e-9;  // of the extent
+  std::string path = "M";
+  put_point(path, piece.edges.front().curve.points.front().head<2>());
+  for (const PieceEdge& edge : piece.edges) {
+    if (edge.is_line()) {
+      path += 'L';
+      put_point(path, edge.curve.points.back().head<2>());
+    } else {
+      put_curve(path, edge.curve, rational_error * piece.box.diagonal().norm());
     }
   }
   return path + "Z";
@@ -63,8 +86,20 @@ class Writer final : public BodyWriter {
     return {};
   }
 
+  Status add_line(const yarn::Body& body) override {
+    const double tolerance = line_tolerance(options_, body);
+    for (const yarn::LineSample& sample : yarn::line_samples(body, tolerance))
+      box_.extend(Vec2(sample.position.head<2>()));
+    ++pieces_;
+    const yarn::Color& c = body.color;
+    paths_ += "<path id=\"" + new_id(body.name) + "\" stroke=\"" +
+              fmt::format("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue) + "\" d=\"" +
+              path_data(body.axis, tolerance) + "\"><title>" + xml_text(body.name) + "</title></path>\n";
+    return {};
+  }
+
   Result<WriteFacts> finish() override {
-    if (pieces_ == 0) return error(Kind::geometry, "there is no garment piece to draw");
+    if (pieces_ == 0) return error(Kind::geometry, "there is nothing to draw: no garment piece and no yarn");
     const double edge = margin / mm_;
     const Vec2 size = box_.sizes() + Vec2(2 * edge, 2 * edge);
     TextBuffer text(*output_);
@@ -111,12 +146,13 @@ class Writer final : public BodyWriter {
 const Descriptor& descriptor() {
   static const Descriptor self = {
       .name = "svg",
-      .title = "SVG 1.1, garment pieces drawn at true scale",
+      .title = "SVG 1.1, garment pieces and centre lines drawn at true scale",
       .extensions = {".svg"},
       .sniff = looks_like_svg,
       .open_bodies = open_by<Writer>,
       .carries_surfaces = false,
       .carries_curves = true,
+      .carries_lines = true,
   };
   return self;
 }

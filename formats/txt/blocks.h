@@ -29,13 +29,19 @@ fabric::Grid read_grid(Parser& p, ShapeReading& reading);
 struct PointRows {
   std::string_view noun, what;  // "corner", "a corner"
   bool may_repeat = false;      // a point may equal the one before it
+  bool is_spline = false;       // a row may have a weight, and `knots` may stand among them
   std::vector<Vec2> points{};
+  std::vector<double> weights{};  // empty: none was given; else one a point
+  std::vector<double> knots{};
   Spot last{};  // of the last row
   bool good = true;
 };
 // Up to the `end` of the block; false when a row is wrong, or the `end` missing.
 bool read_points(Parser& p, std::string_view kind, std::string_view name, const Spot& opened,
                  PointRows& rows);
+
+// thread.cpp, too: the block `outline`.
+void read_outline(Parser& p, fabric::Fabric& fabric, std::string_view word);
 
 // construction.cpp
 void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word);

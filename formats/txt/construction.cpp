@@ -19,14 +19,32 @@ using fabric::WeaveSystem;
 // --- weave
 // ----------------------------------------------------------------------------------------------------------
 
-void read_extent(Parser& p, std::string_view what, int& count, double& pitch) {
-  const auto number = p.count(what);
-  // The word may be left out before a number.
+// [pitch] P: the word may be left out before a number.
+std::optional<double> read_pitch(Parser& p) {
   const std::string_view word = p.peek_word();
   const bool is_number = word.empty() || !is_letter(word.front()) || p.scope().begins_with_param(word) ||
                          word.find('(') != std::string_view::npos;
   if (!is_number || same_word(word, "pitch")) p.expect("pitch");
-  const auto distance = p.positive("the pitch", Measure::pitch);
+  return p.positive("the pitch", Measure::pitch);
+}
+
+// Names used in turn, `a,b`; `4a,2b`: four times one, twice the other.
+void read_threads(Parser& p, std::vector<std::string>& threads) {
+  constexpr std::size_t most = 1'000'000;
+  do {
+    const Spot spot = p.here();
+    const std::size_t times = p.leading_count();
+    const auto thread = p.reference(p.threads);
+    if (!thread) continue;
+    if (times < 1 || times > most - threads.size())
+      return p.error(spot, fmt::format("a list of threads has from 1 to {} of them", most));
+    threads.insert(threads.end(), times, std::string(*thread));
+  } while (p.comma());
+}
+
+void read_extent(Parser& p, std::string_view what, int& count, double& pitch) {
+  const auto number = p.count(what);
+  const auto distance = read_pitch(p);
   if (!p.finish()) return;
   count = *number;
   pitch = *distance;
@@ -34,16 +52,7 @@ void read_extent(Parser& p, std::string_view what, int& count, double& pitch) {
 
 void read_system(Parser& p, WeaveSystem& system) {
   system.place = p.statement().place();
-  constexpr std::size_t most = 1'000'000;
-  do {
-    const Spot spot = p.here();
-    const std::size_t times = p.leading_count();
-    const auto thread = p.reference(p.threads);
-    if (!thread) continue;
-    if (times < 1 || times > most - system.threads.size())
-      return p.error(spot, fmt::format("a list of threads has from 1 to {} of them", most));
-    system.threads.insert(system.threads.end(), times, std::string(*thread));
-  } while (p.comma());
+  read_threads(p, system.threads);
   read_extent(p, "the number of yarns", system.count, system.pitch);
 }
 
@@ -205,11 +214,7 @@ void read_construction_thread(Parser& p, T& construction, std::string_view) {
 void read_knit_extent(Parser& p, std::string_view what, int& count, double& pitch) {
   const auto number = p.count(what);
   std::optional<double> distance;
-  if (p.more()) {
-    const char first = p.peek_word().front();
-    if ((first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z')) p.expect("pitch");
-    distance = p.positive("the pitch");
-  }
+  if (p.more()) distance = read_pitch(p);
   if (!p.finish()) return;
   count = *number;
   pitch = distance.value_or(0.0);
@@ -224,15 +229,13 @@ void read_knit_wales(Parser& p, Knit& knit, std::string_view) {
 }
 
 void read_loop(Parser& p, Knit& knit, std::string_view) {
-  const auto length = p.positive("the length of a loop");
+  const auto length = p.positive("the length of a loop", Measure::length);
   if (p.finish()) knit.loop = *length;
 }
 
 void read_knit_threads(Parser& p, Knit& knit, std::string_view) {
   knit.thread_place = p.here().place();
-  do
-    if (const auto thread = p.reference(p.threads)) knit.threads.emplace_back(*thread);
-  while (p.comma());
+  read_threads(p, knit.threads);
   p.finish();
 }
 
@@ -242,7 +245,7 @@ void read_plating(Parser& p, Knit& knit, std::string_view) {
 }
 
 void read_pile(Parser& p, Knit& knit, std::string_view) {
-  const auto height = p.positive("the height of the pile");
+  const auto height = p.positive("the height of the pile", Measure::length);
   const bool is_cut = p.more() && p.expect("cut");
   if (!p.finish()) return;
   knit.pile = *height;
@@ -252,7 +255,7 @@ void read_pile(Parser& p, Knit& knit, std::string_view) {
 void read_gating(Parser& p, Knit& knit, std::string_view) {
   const auto gating = p.choice("gating", gating_words);
   std::optional<double> distance;
-  if (gating == Knit::Gating::opposite && p.more()) distance = p.positive("the distance of the beds");
+  if (gating == Knit::Gating::opposite && p.more()) distance = p.positive("the distance of the beds", Measure::length);
   if (!p.finish()) return;
   knit.gating = *gating;
   knit.bed_distance = distance;
@@ -371,7 +374,7 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                         {"profile", read_profile},
                                         {"crimp", read_crimp},
                                         {"spacing", read_spacing},
-                                        {"thickness", into(&Weave::thickness, a_positive("the thickness"))},
+                                        {"thickness", into(&Weave::thickness, a_length("the thickness"))},
                                         {"layers", into(&Weave::layers, a_count("the number of layers"))},
                                         {"binder", read_binder, Times::any}});
   WeaveBlock weave;

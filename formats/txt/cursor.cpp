@@ -335,13 +335,16 @@ std::optional<int> Cursor::integer(std::string_view what, int least, int most) {
   return fail(last(), fmt::format("{}: {} has to be {}", what, in_quotes(word), range));
 }
 
-int Cursor::row(double* values, int most, std::string_view what, std::string_view word, Measure last_one) {
+int Cursor::row(double* values, int most, std::string_view what, Measure last_one,
+                std::initializer_list<std::string_view> words) {
   for (int count = 0;; ++count) {
     if (!has_token()) return count;
     token_ = at_;
     const bool is_number = count < most && parse_number(values[count]);
     if (is_number) continue;
-    if (!word.empty() && same_word(word_at(at_), word)) return count;
+    const std::string_view next = word_at(at_);
+    if (std::any_of(words.begin(), words.end(), [&](std::string_view word) { return same_word(next, word); }))
+      return count;
     if (count == most) {
       report_.error(last(), fmt::format("{}: more than {} values", what, most));
       return -1;

@@ -2,6 +2,7 @@
 // and nothing is allocated but for messages.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <string_view>
 
@@ -61,11 +62,11 @@ class Cursor {
   bool comma();
   std::optional<double> number(std::string_view what, Measure measure = Measure::plain);
   std::optional<int> integer(std::string_view what, int least, int most);
-  // The numbers up to the end of the line, or up to the word `word` where one may follow them, at most `most`
-  // of them; returns how many. An error gives -1. `last_one`: what the most-th one measures; the
-  // others are lengths.
-  int row(double* values, int most, std::string_view what, std::string_view word = {},
-          Measure last_one = Measure::length);
+  // The numbers up to the end of the line, or up to one of `words` where they may follow them, at most `most`
+  // of them; returns how many. An error gives -1. `last_one`: what the most-th one measures; the others are
+  // lengths.
+  int row(double* values, int most, std::string_view what, Measure last_one = Measure::length,
+          std::initializer_list<std::string_view> words = {});
   // Reports what is left on the line. True when there is nothing, and no value was wrong.
   bool finish();
   // A value was wrong: no further one of the statement is looked at.

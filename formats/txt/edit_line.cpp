@@ -12,10 +12,15 @@ namespace {
 std::string line_of(const NewEdit& added) {
   const fabric::Edit& edit = added.edit;
   const std::string yarn = is_plain_name(edit.yarn) ? edit.yarn : fmt::format("\"{}\"", edit.yarn);
-  const std::string vector = fmt::format("{}", fmt::join(added.vector, " "));
+  const bool in_plane = !added.piece.empty();
+  const std::string_view indent = in_plane ? "  " : "";
+  const std::string vector = in_plane ? fmt::format("{} {}", added.vector[0], added.vector[1])
+                                      : fmt::format("{}", fmt::join(added.vector, " "));
   if (edit.form == fabric::Edit::Form::length)
-    return fmt::format("edit {} length {} point {} along {}", yarn, added.length, edit.joint, vector);
-  return fmt::format("edit {} {} {} to {}", yarn, word_of(edit_words, edit.form), edit.joint, vector);
+    return fmt::format("{}edit {} length {} point {} along {}", indent, yarn, added.length, edit.joint,
+                       vector);
+  return fmt::format("{}edit {} {} {} to {}", indent, yarn, word_of(edit_words, edit.form), edit.joint,
+                     vector);
 }
 
 }  // namespace

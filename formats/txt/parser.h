@@ -136,7 +136,7 @@ class Parser : public Cursor {
   TextReport& report;
   std::span<const fabric::Setting> settings;  // of params, from outside
   fabric::Fabric fabric;
-  Names threads{"thread"}, materials{"material"}, yarns{"yarn"}, pieces{"piece"};
+  Names threads{"thread"}, materials{"material"}, yarns{"yarn"}, pieces{"piece"}, outlines{"outline"};
 
  private:
   struct Reference {

@@ -111,6 +111,7 @@ const Table<Fabric>& file_table() {
        {"tolerance", into(&Fabric::tolerance, a_length("the tolerance"))},
        {"thread", read_thread, Times::any},
        {"material", read_material, Times::any},
+       {"outline", read_outline, Times::any},
        {"yarn", read_yarn, Times::any},
        {"weave", read_weave, Times::any},
        {"knit", read_knit, Times::any},

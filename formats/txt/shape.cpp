@@ -55,9 +55,38 @@ void note_line(const Parser& p, Path& path, int line) {
   path.lines.push_back(line);
 }
 
-// The word behind the numbers of a row.
+// `outline A [B SHARE] [weight W]`, behind the numbers of a row.
+void read_outline_at(Parser& p, Path& path) {
+  if (!p.more() || !same_word(p.peek_word(), outline_word)) {
+    if (!path.outlines.empty()) path.outlines.emplace_back();
+    return;
+  }
+  p.take_word();
+  fabric::OutlineAt at;
+  at.place = p.here().place();
+  at.from = p.reference(p.outlines).value_or("");
+  const auto is_word = [&](std::string_view word) { return same_word(p.peek_word(), word); };
+  if (p.more() && !is_word("weight") && !is_word(fixed_word)) {
+    at.to = p.reference(p.outlines).value_or("");
+    at.share = p.number("the share of the second outline").value_or(0.0);
+    if (!p.has_failed() && !(at.share >= 0.0 && at.share <= 1.0))
+      p.error(p.last(), "a share lies between 0, the first outline, and 1, the second");
+  }
+  if (p.more() && is_word("weight")) {
+    p.take_word();
+    at.weight = p.positive("the weight").value_or(1.0);
+  }
+  path.outlines.resize(path.points.size() - 1);
+  path.outlines.emplace_back(std::move(at));
+}
+
+// The word at the end of a row.
 void read_fixed(Parser& p, Path& path) {
   if (!p.more()) return;
+  if (!same_word(p.peek_word(), fixed_word)) {
+    p.finish();
+    return;
+  }
   p.take_word();
   if (!p.finish()) return;
   path.fixed.resize(path.points.size() - 1, false);
@@ -88,7 +117,8 @@ bool is_good_row(Parser& p, const PathRows& rows, const std::array<double, 6>& r
 
 void read_path_row(Parser& p, PathRows& rows) {
   std::array<double, 6> row{};
-  const int count = p.row(row.data(), 6, "a row of the path", fixed_word, Measure::angle);
+  const int count =
+      p.row(row.data(), 6, "a row of the path", Measure::angle, {fixed_word, outline_word});
   ++rows.seen;
   const bool good = is_good_row(p, rows, row, count);
   rows.reading.good = rows.reading.good && good;
@@ -99,6 +129,7 @@ void read_path_row(Parser& p, PathRows& rows) {
   if (!good) return;
   rows.reading.last_row = p.statement();
   add_size(p, path, row, count);
+  read_outline_at(p, path);
   read_fixed(p, path);
   note_line(p, path, rows.reading.last_row.line);
 }
@@ -113,17 +144,28 @@ bool all_equal(const std::vector<Vec3>& points) {
 
 void read_point_row(Parser& p, PointRows& rows) {
   rows.last = p.statement();
-  std::array<double, 2> xy{};
-  const int count = p.row(xy.data(), 2, rows.what);
+  std::array<double, 3> xy{};
+  const int count = p.row(xy.data(), rows.is_spline ? 3 : 2, rows.what,
+                          rows.is_spline ? Measure::plain : Measure::length);
   if (count == 0 || count == 1) p.error(p.here(), fmt::format("{} has two coordinates: x y", rows.what));
-  rows.good = rows.good && count == 2;
-  if (count != 2) return;
+  const bool good = count == 2 || (count == 3 && xy[2] > 0.0);
+  if (count == 3 && !good) p.error(p.last(), "a weight has to be larger than 0");
+  rows.good = rows.good && good;
+  if (!good) return;
+  if (count == 3 && rows.weights.empty()) rows.weights.assign(rows.points.size(), 1.0);
+  if (count == 3 || !rows.weights.empty()) rows.weights.push_back(count == 3 ? xy[2] : 1.0);
   const Vec2 point(xy[0], xy[1]);
   if (!rows.may_repeat && !rows.points.empty() && rows.points.back() == point) {
     p.error(rows.last, fmt::format("this {} equals the one before it", rows.noun));
     rows.good = false;
   }
   rows.points.push_back(point);
+}
+
+void read_point_knots(Parser& p, PointRows& rows, std::string_view) {
+  while (p.more())
+    if (const auto knot = p.number("a knot")) rows.knots.push_back(*knot);
+  rows.good = p.finish() && rows.good;
 }
 
 // --- grid
@@ -318,7 +360,7 @@ void read_grid_row(Parser& p, GridRows& rows) {
     return;
   }
   std::array<double, 4> row{};
-  const int count = p.row(row.data(), 4, "a row of the grid", {}, Measure::plain);
+  const int count = p.row(row.data(), 4, "a row of the grid", Measure::plain);
   if (count >= 0 && count < 3)
     p.error(p.here(), fmt::format("a row of a grid is x y z or x y z WEIGHT; this one has {}",
                                   counted(static_cast<std::size_t>(count), "value")));
@@ -354,8 +396,9 @@ void read_grid_line(Parser& p, GridRows& rows) {
 
 bool read_points(Parser& p, std::string_view kind, std::string_view name, const Spot& opened,
                  PointRows& rows) {
-  static const Table<PointRows> table({}, read_point_row);
-  return p.read_block(kind, name, opened, table, rows) && rows.good;
+  static const Table<PointRows> plain({}, read_point_row);
+  static const Table<PointRows> spline({{"knots", read_point_knots}}, read_point_row);
+  return p.read_block(kind, name, opened, rows.is_spline ? spline : plain, rows) && rows.good;
 }
 
 fabric::Path read_path(Parser& p, ShapeReading& reading) {

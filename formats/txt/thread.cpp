@@ -222,4 +222,22 @@ void read_material(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   read_named(p, table, p.materials, word, fabric.materials);
 }
 
+void read_outline(Parser& p, fabric::Fabric& fabric, std::string_view word) {
+  fabric::Outline outline;
+  const Spot opened = p.statement();
+  outline.place = opened.place();
+  const auto name = p.new_name(p.outlines);
+  p.finish();
+  outline.name = name.value_or("");
+  PointRows rows{"point", "a point of the outline"};
+  if (read_points(p, word, outline.name, opened, rows)) {
+    if (rows.points.size() < 3)
+      p.error(p.last(), fmt::format("an outline has at least 3 points; this one has {}", rows.points.size()));
+    else if (twice_area(rows.points) == 0.0)
+      p.error(opened, "the outline's area is 0");
+  }
+  outline.points = std::move(rows.points);
+  fabric.outlines.push_back(std::move(outline));
+}
+
 }  // namespace selvage::formats::txt

@@ -51,6 +51,7 @@ inline constexpr std::array<Word<yarn::PathForm>, 6> path_words{{{"chord", yarn:
                                                                  {"loop", yarn::PathForm::loop}}};
 // Behind a row of a path.
 inline constexpr std::string_view fixed_word = "fixed";
+inline constexpr std::string_view outline_word = "outline";
 inline constexpr std::array<Word<Draft::Form>, 5> draft_words{{{"plain", Draft::Form::plain},
                                                                {"twill", Draft::Form::twill},
                                                                {"satin", Draft::Form::satin},
@@ -90,8 +91,14 @@ inline constexpr std::array<Word<std::string_view>, 7> classic_words{{{"tricot",
                                                                       {"atlas", "atlas"},
                                                                       {"velvet", "velvet"},
                                                                       {"cord", "cord"}}};
-inline constexpr std::array<Word<PieceCurve::Shape>, 3> curve_words{
-    {{"C", PieceCurve::Shape::c}, {"S", PieceCurve::Shape::s}, {"control", PieceCurve::Shape::control}}};
+inline constexpr std::array<Word<PieceCurve::Shape>, 4> curve_words{{{"C", PieceCurve::Shape::c},
+                                                                     {"S", PieceCurve::Shape::s},
+                                                                     {"control", PieceCurve::Shape::control},
+                                                                     {"spline", PieceCurve::Shape::spline}}};
+inline constexpr std::array<Word<nurbs::PointParameters>, 3> curve_method_words{
+    {{"uniform", nurbs::PointParameters::uniform},
+     {"chord", nurbs::PointParameters::chord},
+     {"distance", nurbs::PointParameters::distance}}};
 inline constexpr std::array<Word<yarn::EndStyle>, 4> end_words{{{"patch", yarn::EndStyle::patch},
                                                                 {"fan", yarn::EndStyle::fan},
                                                                 {"planar", yarn::EndStyle::planar},
@@ -128,10 +135,10 @@ consteval bool says_all(const std::array<Word<Enum>, N>&, std::size_t without = 
 static_assert(says_all(hand_words) && says_all(density_words) && says_all(unit_words) &&
               says_all(role_words) && says_all(path_words) && says_all(profile_words) &&
               says_all(spacing_words) && says_all(knit_method_words) && says_all(gating_words) &&
-              says_all(stitch_words) &&
-              says_all(end_words) && says_all(edit_words) &&
+              says_all(stitch_words) && says_all(end_words) && says_all(edit_words) &&
               section_words.size() == std::variant_size_v<yarn::Section>);
-static_assert(says_all(draft_words, 1) && says_all(knit_words, 1) && says_all(curve_words, 1));
+static_assert(says_all(draft_words, 1) && says_all(knit_words, 1) && says_all(curve_words, 1) &&
+              says_all(curve_method_words));
 
 template <class T, std::size_t N>
 constexpr std::string_view word_of(const std::array<Word<T>, N>& words, const T& value) {

@@ -134,6 +134,13 @@ void write_material(Lines& out, const fabric::Material& material) {
 // --- yarns
 // ----------------------------------------------------------------------------------------------------------
 
+void write_outline(Lines& out, const fabric::Outline& outline) {
+  out.blank_line();
+  out.line(0, "outline").name(outline.name);
+  for (const Vec2& point : outline.points) out.row(1, point.x()).value(point.y());
+  out.line(0, "end");
+}
+
 void write_path(Lines& out, const fabric::Path& path) {
   out.line(1, "path").word(word_of(path_words, path.form));
   for (std::size_t i = 0; i < path.points.size(); ++i) {
@@ -142,6 +149,12 @@ void write_path(Lines& out, const fabric::Path& path) {
     if (!path.sizes.empty() && path.sizes[i]) {
       out.value(path.sizes[i]->width).value(path.sizes[i]->height);
       if (path.sizes[i]->angle) out.value(*path.sizes[i]->angle);
+    }
+    if (!path.outlines.empty() && path.outlines[i]) {
+      const fabric::OutlineAt& at = *path.outlines[i];
+      out.word(outline_word).name(at.from);
+      if (!at.to.empty()) out.name(at.to).value(at.share);
+      if (at.weight != 1.0) out.word("weight").value(at.weight);
     }
     if (!path.fixed.empty() && path.fixed[i]) out.word(fixed_word);
   }
@@ -191,8 +204,10 @@ void write_item(Lines& out, const fabric::Yarn& yarn) {
     out.line(1, "ends").word(word_of(end_words, start));
     if (end != start) out.word(word_of(end_words, end));
   }
-  if (yarn.tangent_start) out.line(1, "tangent start").values(*yarn.tangent_start);
-  if (yarn.tangent_end) out.line(1, "tangent end").values(*yarn.tangent_end);
+  for (const auto& [end, tangent] :
+       {std::pair("start", &yarn.tangent_start), std::pair("end", &yarn.tangent_end)})
+    if (*tangent)
+      out.line(1, (*tangent)->is_derivative ? "derivative" : "tangent").word(end).values((*tangent)->vector);
   if (yarn.up) out.line(1, "up").values(*yarn.up);
   if (const auto* path = std::get_if<fabric::Path>(&yarn.shape))
     write_path(out, *path);
@@ -321,6 +336,24 @@ void write_item(Lines& out, const fabric::Braid& braid) {
   out.line(0, "end");
 }
 
+void write_curve_edit(Lines& out, const fabric::Edit& edit) {
+  const bool is_length = edit.form == fabric::Edit::Form::length;
+  out.line(1, "edit").name(edit.yarn).word(word_of(edit_words, edit.form));
+  if (edit.like) {
+    out.word("of").name(edit.like->piece);
+    for (std::size_t i = 0; i < edit.like->curves.size(); ++i) {
+      if (i > 0) out.raw(",");
+      out.name(edit.like->curves[i]);
+    }
+    if (edit.like->ease != 0.0 || std::signbit(edit.like->ease)) out.word("ease").value(edit.like->ease);
+  } else if (is_length) {
+    out.value(edit.length);
+  }
+  if (is_length) out.word("point");
+  const Vec3& vector = is_length ? edit.direction : edit.target;
+  out.value(edit.joint).word(is_length ? "along" : "to").value(vector.x()).value(vector.y());
+}
+
 void write_item(Lines& out, const fabric::Piece& piece) {
   out.line(0, "piece").name(piece.name);
   for (const fabric::PieceCurve& curve : piece.curves) {
@@ -330,9 +363,19 @@ void write_item(Lines& out, const fabric::Piece& piece) {
       continue;
     }
     if (curve.shape != PieceCurve::Shape::found) out.word(word_of(curve_words, curve.shape));
-    for (const Vec2& point : curve.points) out.row(2, point.x()).value(point.y());
+    if (curve.by) out.word("by").word(word_of(curve_method_words, *curve.by));
+    if (curve.method) out.word("by").word(word_of(knit_method_words, *curve.method));
+    if (!curve.knots.empty()) {
+      out.line(2, "knots");
+      for (const double knot : curve.knots) out.value(knot);
+    }
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+      out.row(2, curve.points[i].x()).value(curve.points[i].y());
+      if (!curve.weights.empty()) out.value(curve.weights[i]);
+    }
     out.line(1, "end");
   }
+  for (const fabric::Edit& edit : piece.edits) write_curve_edit(out, edit);
   out.line(0, "end");
 }
 
@@ -394,6 +437,7 @@ Result<WriteFacts> write_fabric(const fabric::Fabric& fabric, OutputFile& output
     out.line(0, "units").word(word_of(unit_words, fabric.units));
   if (fabric.tolerance) out.line(0, "tolerance").value(*fabric.tolerance);
   for (const fabric::Material& material : fabric.materials) write_material(out, material);
+  for (const fabric::Outline& outline : fabric.outlines) write_outline(out, outline);
   for (const Thread& thread : fabric.threads) write_thread(out, thread);
   WriteFacts facts;
   constexpr std::array<std::string_view, 6> kinds = {"yarn", "weave", "knit", "warpknit", "braid", "piece"};

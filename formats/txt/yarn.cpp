@@ -40,17 +40,18 @@ void read_up(Parser& p, YarnBlock& yarn, std::string_view) {
   p.finish();
 }
 
-void read_tangent(Parser& p, YarnBlock& yarn, std::string_view) {
+// `tangent`: its direction; `derivative`: its length counts, too.
+void read_tangent(Parser& p, YarnBlock& yarn, std::string_view word) {
   constexpr std::array<Word<bool>, 2> ends{{{"start", true}, {"end", false}}};
   const Spot spot = p.statement();
   const auto at_start = p.choice("end of the path", ends);
   if (!at_start) return;
-  std::optional<Vec3>& tangent = *at_start ? yarn.tangent_start : yarn.tangent_end;
+  std::optional<yarn::EndTangent>& tangent = *at_start ? yarn.tangent_start : yarn.tangent_end;
   if (tangent)
     return p.error(spot, fmt::format("the tangent at the {} is given twice", *at_start ? "start" : "end"));
-  const auto direction = p.direction("the tangent");
+  const auto direction = p.direction(fmt::format("the {}", word));
   if (!p.finish()) return;
-  tangent = *direction;
+  tangent = yarn::EndTangent(*direction, word == "derivative");
   if (!yarn.tangent_spot) yarn.tangent_spot = spot;
 }
 
@@ -93,6 +94,7 @@ Table<YarnBlock> make_yarn_table() {
       {"closed", read_closed},
       {"group", into(&Yarn::group, [](Parser& p) { return p.name("the name of the group"); })},
       {"tangent", read_tangent, Times::any},
+      {"derivative", read_tangent, Times::any},
       {"up", read_up},
       {"ends", read_ends}};
   for (const auto& own : thread_statements())

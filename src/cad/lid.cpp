@@ -115,7 +115,7 @@ bool is_plane_of(const Surface& surface, const nurbs::Curve& outline, double tol
     size = std::max(size, (p - origin).norm());
     largest = std::max(largest, p.cwiseAbs().maxCoeff());
   }
-  if (yarn::flatness(outline, origin, normal) > 1e-9 * std::max(size, largest)) return false;
+  if (yarn::flatness(outline, origin, normal) > yarn::flat_enough(size, largest)) return false;
   return std::all_of(surface.points.begin(), surface.points.end(),
                      [&](const Vec3& p) { return std::abs((p - origin).dot(normal)) <= tolerance; });
 }

@@ -18,13 +18,17 @@ std::uint64_t key_of(const Curve& curve) {
   return key;
 }
 
-// A line or cubic over [0, 1] in z = 0.
+// A line or a clamped cubic, without corners, over [0, 1] in z = 0.
 bool is_side(const Curve& curve) {
-  if (curve.is_rational() || (curve.degree != 1 && curve.degree != 3)) return false;
+  if (curve.degree != 1 && curve.degree != 3) return false;
   const auto order = static_cast<std::size_t>(curve.degree) + 1;
-  if (curve.points.size() != order) return false;
-  for (std::size_t i = 0; i < 2 * order; ++i)
-    if (curve.knots[i] != (i < order ? 0 : 1)) return false;
+  if (curve.degree == 1 && (curve.is_rational() || curve.points.size() != order)) return false;
+  const std::vector<double>& k = curve.knots;
+  if (k.size() < 2 * order) return false;
+  for (std::size_t i = 0; i < order; ++i)
+    if (k[i] != 0 || k[k.size() - 1 - i] != 1) return false;
+  for (std::size_t i = order; i + order < k.size(); ++i)
+    if (!(k[i] > 0 && k[i] < 1 && k[i] < k[i + 2])) return false;
   return std::all_of(curve.points.begin(), curve.points.end(), [](const Vec3& p) { return p.z() == 0; });
 }
 
@@ -74,7 +78,9 @@ class Curves {
     std::vector<std::size_t>& list = place->second;
     while (!list.empty() && used_[list.back()]) list.pop_back();
     for (auto i = list.rbegin(); i != list.rend(); ++i)
-      if (!used_[*i] && curves_[*i].curve.points == curve.points) return *i;
+      if (!used_[*i] && curves_[*i].curve.points == curve.points &&
+          curves_[*i].curve.weights == curve.weights && curves_[*i].curve.knots == curve.knots)
+        return *i;
     return std::nullopt;
   }
 

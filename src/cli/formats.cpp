@@ -25,6 +25,7 @@ std::string table_of_formats() {
     if (format->write_fabric != nullptr) append(write, "fabric");
     if (format->open_bodies != nullptr && format->carries_surfaces) append(write, "surfaces");
     if (format->open_bodies != nullptr && format->carries_curves) append(write, "curves");
+    if (format->open_bodies != nullptr && format->carries_lines) append(write, "lines");
     if (format->write_mesh != nullptr) append(write, "mesh");
     table.add({std::string(format->name), extensions, read_word(*format), write.empty() ? "-" : write,
                std::string(format->title)});

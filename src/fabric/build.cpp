@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <set>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -18,6 +19,7 @@
 #include "fabric/quantities.h"
 #include "fabric/shape_memo.h"
 #include "fabric/yarn_spec.h"
+#include "yarn/ends.h"
 #include "yarn/finish.h"
 #include "yarn/grid.h"
 #include "yarn/tube.h"
@@ -26,14 +28,30 @@ namespace selvage::fabric {
 
 namespace {
 
+// How well a section of a grid is known: to the last digit that it is given with, as far as that is no more
+// than a thousandth of its size, and to a tolerance that somebody asks for.
+double resolution_of(const Fabric& fabric, const Grid& grid, bool last, const BuildOptions& options) {
+  const auto count = std::min(static_cast<std::size_t>(grid.per_section), grid.points.size());
+  const std::span<const Vec3> points(grid.points);
+  const std::span<const Vec3> row = last ? points.last(count) : points.first(count);
+  Box3 section;
+  for (const Vec3& p : row) section.extend(p);
+  // Each coordinate is off by half a digit, and so is the plane.
+  const double digits = std::sqrt(3.0) * yarn::last_digit(row);
+  const double asked = options.tolerance > 0.0 ? options.tolerance : fabric.tolerance.value_or(0.0);
+  return std::max(std::min(digits, 1e-3 * section.sizes().maxCoeff()), asked);
+}
+
 // How a yarn of the text is sealed: as the options say, or the yarn itself.
-yarn::Sealings sealings_of(const Yarn* yarn, const BuildOptions& options) {
+yarn::Sealings sealings_of(const Fabric& fabric, const Yarn* yarn, const BuildOptions& options) {
   yarn::Sealings sealings;
   const Grid* grid = yarn != nullptr ? std::get_if<Grid>(&yarn->shape) : nullptr;
   for (std::size_t end = 0; end < 2; ++end) {
     if (yarn != nullptr && yarn->ends) sealings[end].style = (*yarn->ends)[end];
     if (options.ends) sealings[end].style = *options.ends;
-    if (grid != nullptr) sealings[end].centre = grid->fan_centres[end];
+    if (grid == nullptr) continue;
+    sealings[end].centre = grid->fan_centres[end];
+    sealings[end].resolution = resolution_of(fabric, *grid, end == 1, options);
   }
   return sealings;
 }
@@ -427,8 +445,11 @@ Result<yarn::Body> YarnBuilder::build_grid(const Yarn& yarn) const {
            yarn.role.value_or(Role::other), yarn.place);
   for (const Edit& edit : fabric_->edits)
     if (edit.yarn == yarn.name)
-      return error(Kind::unsupported,
-                   fmt::format("yarn '{}' is a grid: it has no centre line to edit", yarn.name))
+      return error(
+                 Kind::unsupported,
+                 fmt::format(
+                     "yarn '{}' is a grid: it has no centre line to edit (rows that name outlines make one)",
+                     yarn.name))
           .placed(edit.place, fabric_->file);
   body.group = yarn.group;
   // Its rows are as they are; the word `rotate` says that the fibres keep to their columns.
@@ -459,7 +480,7 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
     Result<yarn::Body> filled = build_grid(*entry.yarn);
     if (!filled) return placed(filled.error(), entry);
     body = std::move(*filled);
-    if (Status finished = yarn::finish(body, sealings_of(entry.yarn, options_)); !finished)
+    if (Status finished = yarn::finish(body, sealings_of(*fabric_, entry.yarn, options_)); !finished)
       return placed(finished.error(), entry);
     body.density = density_of(*fabric_, resolved_thread(*fabric_, *entry.yarn), body);
   } else {
@@ -482,7 +503,8 @@ Result<yarn::Body> YarnBuilder::build_swept(const Entry& entry, YarnPlan plan) c
   spec.tolerance = spec.tolerance > 0.0 ? std::min(spec.tolerance, tolerance_) : tolerance_;
   if (!options_.full_digits) spec.grid = DecimalGrid(1e-4 * spec.tolerance);
   spec.max_control_points = options_.max_control_points;
-  const ShapeMemo::Plan shape{std::move(plan.line), std::move(plan.spec), sealings_of(entry.yarn, options_)};
+  const ShapeMemo::Plan shape{std::move(plan.line), std::move(plan.spec),
+                              sealings_of(*fabric_, entry.yarn, options_)};
   // A yarn of the text is planned once.
   std::shared_ptr<const yarn::Body> known = entry.yarn == nullptr ? shapes_->find(shape) : nullptr;
   if (known != nullptr) {

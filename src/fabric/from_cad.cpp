@@ -49,6 +49,10 @@ Piece piece_of(const cad::Outline& outline, Names& names) {
     curve.place = piece.place;
     curve.is_line = side.curve.degree == 1;
     if (!curve.is_line) curve.shape = PieceCurve::Shape::control;
+    if (!curve.is_line) {
+      curve.weights = side.curve.weights;
+      if (side.curve.points.size() > 4) curve.knots = side.curve.knots;
+    }
     for (const Vec3& p : side.curve.points) curve.points.emplace_back(p.x(), p.y());
     piece.curves.push_back(std::move(curve));
   }

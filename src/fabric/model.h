@@ -15,6 +15,8 @@
 #include "core/diagnostics.h"
 #include "core/units.h"
 #include "core/vec.h"
+#include "nurbs/bezier_fit.h"
+#include "nurbs/interpolate.h"
 #include "yarn/body.h"
 #include "yarn/grid.h"
 #include "yarn/path.h"
@@ -108,12 +110,29 @@ struct SizeAt {
   bool operator==(const SizeAt&) const = default;
 };
 
+// A section by its control points, round the path; a file has them by name.
+struct Outline {
+  std::string name;
+  TextPlace place;
+  std::vector<Vec2> points;
+};
+
+// The section at one path point: on the way between two outlines of as many points.
+struct OutlineAt {
+  std::string from, to;  // `to` is empty: `from` alone
+  TextPlace place;
+  double share = 0;   // of `to`, 0 .. 1
+  double weight = 1;  // of its control points
+};
+
 struct Path {
   yarn::PathForm form = yarn::PathForm::chord;
   TextPlace place;
   std::vector<Vec3> points;
   // Empty when no row carries a size; else one entry a point (a row without a size has nullopt).
   std::vector<std::optional<SizeAt>> sizes;
+  // Empty when no row names an outline; else one entry a point. Such a yarn is lofted (fabric/loft.h).
+  std::vector<std::optional<OutlineAt>> outlines;
   // Empty when no row has the word `fixed`; else one entry a point: it stays where it is when yarns are moved
   // apart.
   std::vector<bool> fixed;
@@ -140,7 +159,8 @@ struct Yarn {
   TextPlace thread_place;
   Thread own;  // inline statements; its name is empty
   std::optional<Role> role;
-  std::optional<Vec3> tangent_start, tangent_end, up;
+  std::optional<yarn::EndTangent> tangent_start, tangent_end;
+  std::optional<Vec3> up;
   TextPlace up_place;
   bool closed = false;
   std::optional<std::array<yarn::EndStyle, 2>> ends;  // of its start and its end; none: not said
@@ -269,29 +289,45 @@ struct Braid {
 };
 
 struct PieceCurve {
-  enum class Shape { found, c, s, control };  // control: the points are the curve's four control points
+  // c, s, found: a Bezier near its fixed points. control: the points are the control points of the clamped
+  // uniform cubic; spline: the clamped cubic goes through them.
+  enum class Shape { found, c, s, control, spline };
   std::string name;
   TextPlace place;
   bool is_line = false;
   Shape shape = Shape::found;
-  std::vector<Vec2> points;  // a line has two
+  std::optional<nurbs::PointParameters> by;  // none: `distance` where a curve cannot meet all points, else
+                                             // `uniform`
+  std::optional<nurbs::Parameterization> method;  // of a spline; none: chord
+  std::vector<Vec2> points;                       // a line has two
+  std::vector<double> weights;                    // of control and spline: one a point; empty: all are 1
+  std::vector<double> knots;                      // of control: points + 4 over [0, 1]; empty: uniform
+};
+
+// The length of curves of a piece together, and what is added to it.
+struct LengthOf {
+  std::string piece;
+  std::vector<std::string> curves;
+  double ease = 0;
+};
+
+struct Edit {
+  enum class Form { point, weight, length };
+  TextPlace place;
+  std::string yarn;  // in a piece: the curve
+  Form form = Form::point;
+  int joint = 0;                  // 1-based
+  Vec3 target = Vec3::Zero();     // point, weight: goes there
+  double length = 0;              // length
+  std::optional<LengthOf> like;   // in a piece, instead of `length`
+  Vec3 direction = Vec3::Zero();  // length: along
 };
 
 struct Piece {
   std::string name;
   TextPlace place;
   std::vector<PieceCurve> curves;
-};
-
-struct Edit {
-  enum class Form { point, weight, length };
-  TextPlace place;
-  std::string yarn;
-  Form form = Form::point;
-  int joint = 0;                  // 1-based
-  Vec3 target = Vec3::Zero();     // point, weight: goes there
-  double length = 0;              // length
-  Vec3 direction = Vec3::Zero();  // length: along
+  std::vector<Edit> edits;  // of its curves, in the plane
 };
 
 struct Cell {
@@ -312,6 +348,7 @@ struct Fabric {
   std::optional<double> tolerance;
   std::vector<Thread> threads;
   std::vector<Material> materials;
+  std::vector<Outline> outlines;
   std::vector<Item> items;     // in file order
   std::vector<int> item_ends;  // the last line of each item, where they come from a text; else empty
   std::vector<Edit> edits;

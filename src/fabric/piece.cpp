@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "core/plane.h"
+#include "fabric/piece_curve.h"
 #include "nurbs/measure.h"
 
 namespace selvage::fabric {
@@ -15,11 +17,15 @@ namespace {
 
 using nurbs::Bezier;
 using nurbs::Box2;
+using nurbs::PointParameters;
 using nurbs::TurningShape;
 
 constexpr std::size_t most_edges = 50'000;
 constexpr double default_tolerance = 1e-6;  // of the extent
 constexpr double no_area = 1e-12;           // of the extent's square
+constexpr double rational_error = 1e-10;    // of the extent: of the cubics that stand for a rational curve
+constexpr double least_run_back = 1e-6;     // of the extent
+constexpr std::size_t met_points = 4;       // that a cubic meets at any parameters
 // Squares and their sums must stay within the range of doubles.
 constexpr double largest_extent = 1e100, smallest_extent = 1e-100;
 
@@ -41,15 +47,16 @@ nurbs::Curve curve_of(const std::vector<Vec2>& control) {
   return curve;
 }
 
-CurveFit fit_of(const std::vector<Vec2>& points) {
+CurveFit fit_of(const std::vector<Vec2>& points, nurbs::PointParameters by) {
   CurveFit fit;
-  fit.bezier = nurbs::fit_bezier(points);
-  fit.shape = nurbs::turning_shape(points);
+  fit.by = by;
+  fit.bezier = nurbs::fit_bezier(points, by);
   const Bezier& curve = fit.bezier.solved;
+  fit.shape = nurbs::turning_shape(curve);
   for (std::size_t i = 0; i < points.size(); ++i) {
     FixedPoint fixed;
     fixed.at = points[i];
-    fixed.parameter = static_cast<double>(i) / static_cast<double>(points.size() - 1);
+    fixed.parameter = fit.bezier.parameters[i];
     fixed.error = (nurbs::evaluate(curve, fixed.parameter) - points[i]).norm();
     fixed.distance = std::min(
         fixed.error, (nurbs::evaluate(curve, nurbs::nearest_parameter(curve, points[i])) - points[i]).norm());
@@ -58,10 +65,29 @@ CurveFit fit_of(const std::vector<Vec2>& points) {
   return fit;
 }
 
+// Where the curve runs back the farthest between two of its points.
+struct RunBack {
+  std::size_t row = 0;  // and the next one, from 0
+  double length = 0;
+};
+
+RunBack run_back(const CurveFit& fit) {
+  RunBack most;
+  for (std::size_t i = 1; i < fit.points.size(); ++i) {
+    const double length =
+        nurbs::run_back(fit.bezier.solved, fit.points[i - 1].parameter, fit.points[i].parameter);
+    if (length > most.length) most = {i - 1, length};
+  }
+  return most;
+}
+
 class Builder {
  public:
-  Builder(const Fabric& fabric, const Piece& piece, Diagnostics& diagnostics)
-      : fabric_(fabric), piece_(piece), diagnostics_(diagnostics) {
+  // Other pieces whose lengths were asked for; none: it is being built, or could not be.
+  using Others = std::map<const Piece*, std::optional<PieceShape>>;
+
+  Builder(const Fabric& fabric, const Piece& piece, Diagnostics& diagnostics, Others& others)
+      : fabric_(fabric), piece_(piece), diagnostics_(diagnostics), others_(others) {
     for (const PieceCurve& curve : piece.curves) rows_.push_back(curve.points);
   }
 
@@ -74,6 +100,8 @@ class Builder {
     shape.name = piece_.name;
     shape.place = piece_.place;
     for (std::size_t i = 0; i < rows_.size(); ++i) shape.edges.push_back(edge(i));
+    if (diagnostics_.error_count() == errors) apply_edits(shape);
+    if (diagnostics_.error_count() > errors) return std::nullopt;
     check_outline(shape);
     if (diagnostics_.error_count() > errors) return std::nullopt;
     orient(shape);
@@ -148,28 +176,141 @@ class Builder {
       edge.curve = curve_of({rows_[i].front(), rows_[i].back()});
       return edge;
     }
-    if (source.shape == PieceCurve::Shape::control) {
-      edge.curve = curve_of(rows_[i]);
+    if (source.shape == PieceCurve::Shape::control || source.shape == PieceCurve::Shape::spline) {
+      if (Result<nurbs::Curve> curve = spline_of(source, rows_[i]); curve.ok())
+        edge.curve = std::move(*curve);
+      else
+        say(error(Kind::geometry, fmt::format("{}: {}", title_of(source), curve.error().text)), source.place);
       return edge;
     }
-    edge.fit = fit_of(rows_[i]);
+    const std::vector<Vec2>& points = rows_[i];
+    edge.fit = source.by ? fit_of(points, *source.by) : best_fit(points);
     const Bezier& solved = edge.fit->bezier.solved;
     edge.curve = curve_of({solved.begin(), solved.end()});
-    const TurningShape said = source.shape == PieceCurve::Shape::s ? TurningShape::s : TurningShape::c;
-    if (source.shape != PieceCurve::Shape::found && said != edge.fit->shape)
-      say(warning(
-              Kind::geometry,
-              fmt::format("curve '{}' is called {}, but its points {}", source.name, fabric::name_of(said),
-                          edge.fit->shape == TurningShape::straight ? "lie on a straight line"
-                          : edge.fit->shape == TurningShape::c      ? "turn one way only, as a C does"
-                                                                    : "turn both ways, as an S does")),
+    if (!std::ranges::all_of(solved, [](const Vec2& p) { return p.allFinite(); }))
+      say(error(Kind::geometry,
+                fmt::format("{} is given by points that stand too near each other", title_of(source))),
           source.place);
+    else
+      judge(source, points, *edge.fit);
     return edge;
+  }
+
+  // Points that a cubic cannot meet at any parameters are met as nearly as it can, unless that takes turns
+  // that they do not ask for.
+  [[nodiscard]] CurveFit best_fit(const std::vector<Vec2>& points) const {
+    if (points.size() <= met_points) return fit_of(points, PointParameters::uniform);
+    CurveFit by_distance = fit_of(points, PointParameters::distance);
+    if (run_back(by_distance).length <= least_run_back * extent_) return by_distance;
+    CurveFit by_chord = fit_of(points, PointParameters::chord);
+    return run_back(by_chord).length <= least_run_back * extent_ ? by_chord : by_distance;
+  }
+
+  // Does the curve do what its word and its points say?
+  void judge(const PieceCurve& source, const std::vector<Vec2>& points, const CurveFit& fit) {
+    const auto turns = [](TurningShape shape) {
+      return shape == TurningShape::straight ? "is straight"
+             : shape == TurningShape::c      ? "turns one way only, as a C does"
+                                             : "turns both ways, as an S does";
+    };
+    const TurningShape polygon = nurbs::turning_shape(points);
+    const TurningShape said = source.shape == PieceCurve::Shape::s ? TurningShape::s : TurningShape::c;
+    if (source.shape != PieceCurve::Shape::found && said != fit.shape)
+      say(warning(Kind::geometry,
+                  fmt::format("curve '{}' is called {}, but {}{}", source.name, fabric::name_of(said),
+                              turns(fit.shape),
+                              polygon == said ? remedy(points, fit, polygon) : ", and so do its points")),
+          source.place);
+    else if (source.shape == PieceCurve::Shape::found && polygon == TurningShape::c &&
+             fit.shape == TurningShape::s)
+      say(warning(Kind::geometry, fmt::format("curve '{}' {}, but its points turn one way only{}",
+                                              source.name, turns(fit.shape), remedy(points, fit, polygon))),
+          source.place);
+    if (const RunBack back = run_back(fit); back.length > least_run_back * extent_)
+      say(warning(Kind::geometry,
+                  fmt::format("curve '{}' doubles back: between its rows {} and {} it runs {:.3g} {} against "
+                              "the direction from one to the other{}",
+                              source.name, back.row + 1, back.row + 2, back.length,
+                              selvage::name_of(fabric_.units), remedy(points, fit, polygon))),
+          source.place);
+  }
+
+  // Another way to place the points by which the curve turns as the polygon does, and does not run back.
+  [[nodiscard]] std::string remedy(const std::vector<Vec2>& points, const CurveFit& fit,
+                                   TurningShape polygon) const {
+    for (const PointParameters by :
+         {PointParameters::distance, PointParameters::chord, PointParameters::uniform}) {
+      if (by == fit.by || (by == PointParameters::distance && points.size() <= met_points)) continue;
+      const CurveFit other = fit_of(points, by);
+      if (other.shape == polygon && run_back(other).length <= least_run_back * extent_)
+        return fmt::format("; 'by {}' does not", fabric::name_of(by));
+    }
+    return "; one row more where it strays holds it, or two curves instead of one";
+  }
+
+  void apply_edits(PieceShape& shape) {
+    for (const Edit& edit : piece_.edits) {
+      const auto edge = std::ranges::find(shape.edges, edit.yarn, &PieceEdge::name);
+      if (edge == shape.edges.end()) {
+        say(error(Kind::geometry,
+                  fmt::format("there is no curve '{}' in piece '{}'", edit.yarn, piece_.name)),
+            edit.place);
+        continue;
+      }
+      Result<double> length = edit.like ? length_like(*edit.like, shape) : edit.length;
+      if (!length) return say(length.error(), edit.place);
+      Result<nurbs::Curve> curve = edited(edge->curve, edit, *length);
+      if (!curve) return say(curve.error(), edit.place);
+      edge->curve = std::move(*curve);
+    }
+  }
+
+  // What an edit by the length of other curves asks for. Pieces are built for that once, with the edits of
+  // their own.
+  Result<double> length_like(const LengthOf& like, const PieceShape& own) {
+    const PieceShape* shape = &own;
+    if (like.piece != piece_.name) {
+      const auto pieces = pieces_of(fabric_);
+      const auto other = std::ranges::find(pieces, like.piece, [](const Piece* p) { return p->name; });
+      if (other == pieces.end())
+        return error(Kind::geometry, fmt::format("there is no piece '{}'", like.piece));
+      const auto [known, is_new] = others_.try_emplace(*other);
+      if (is_new) {
+        Diagnostics unsaid;
+        known->second = Builder(fabric_, **other, unsaid, others_).build(fabric_.tolerance.value_or(0.0));
+      }
+      if (!known->second)
+        return error(Kind::geometry,
+                     fmt::format("the length of piece '{}' is not known: it could not be built, or its own "
+                                 "lengths follow from this piece",
+                                 like.piece));
+      shape = &*known->second;
+    }
+    double sum = like.ease;
+    for (const std::string& name : like.curves) {
+      const auto edge = std::ranges::find(shape->edges, name, &PieceEdge::name);
+      if (edge == shape->edges.end())
+        return error(Kind::geometry, fmt::format("there is no curve '{}' in piece '{}'", name, like.piece));
+      sum += nurbs::arc_length(edge->curve);
+    }
+    if (!(sum > 0.0))
+      return error(Kind::geometry, fmt::format("the length {:.6g}, with the ease, is not above 0", sum));
+    return sum;
   }
 
   void check_outline(const PieceShape& shape) {
     std::vector<Bezier> outline;
-    for (const PieceEdge& edge : shape.edges) outline.push_back(edge.bezier());
+    std::vector<std::size_t> edge_of;  // each of these cubics
+    for (std::size_t i = 0; i < shape.edges.size(); ++i)
+      for (const Bezier& cubic : nurbs::cubics_of(shape.edges[i].curve, rational_error * extent_)) {
+        outline.push_back(cubic);
+        edge_of.push_back(i);
+      }
+    if (outline.size() > most_edges)
+      return say(error(Kind::limit, fmt::format("the outline of piece '{}' consists of {} cubics; at most {} "
+                                                "can be checked",
+                                                piece_.name, outline.size(), most_edges)),
+                 piece_.place);
     if (is_flat(outline))
       return say(
           error(Kind::geometry, fmt::format("piece '{}' encloses no area: all of its outline lies on one "
@@ -178,10 +319,9 @@ class Builder {
           piece_.place);
     const std::optional<nurbs::Crossing> crossing = nurbs::find_crossing(outline);
     if (!crossing) return;
-    const PieceCurve &a = piece_.curves[crossing->a], &b = piece_.curves[crossing->b];
-    const std::string where = crossing->a == crossing->b
-                                  ? fmt::format("{} meets itself", title_of(a))
-                                  : fmt::format("{} and {} meet", title_of(a), title_of(b));
+    const PieceCurve &a = piece_.curves[edge_of[crossing->a]], &b = piece_.curves[edge_of[crossing->b]];
+    const std::string where = &a == &b ? fmt::format("{} meets itself", title_of(a))
+                                       : fmt::format("{} and {} meet", title_of(a), title_of(b));
     say(error(Kind::geometry, fmt::format("the outline of piece '{}' crosses or touches itself: {} at {}",
                                           piece_.name, where, words(crossing->at))),
         b.place);
@@ -200,16 +340,17 @@ class Builder {
     return true;
   }
 
-  static void orient(PieceShape& shape) {
-    const Vec2 origin = shape.edges.front().bezier().front();
+  void orient(PieceShape& shape) const {
+    const Vec2 origin = shape.edges.front().curve.points.front().head<2>();
     for (const PieceEdge& edge : shape.edges) {
-      shape.area += nurbs::swept_area(edge.bezier(), origin);
+      for (const Bezier& cubic : nurbs::cubics_of(edge.curve, rational_error * extent_))
+        shape.area += nurbs::swept_area(cubic, origin);
       shape.perimeter += nurbs::arc_length(edge.curve);
     }
     if (shape.area <= 0.0) {
       shape.area = -shape.area;
       std::reverse(shape.edges.begin() + 1, shape.edges.end());
-      for (PieceEdge& edge : shape.edges) std::reverse(edge.curve.points.begin(), edge.curve.points.end());
+      for (PieceEdge& edge : shape.edges) edge.curve = nurbs::reversed(edge.curve);
     }
     shape.box = box_of(shape.edges);
   }
@@ -217,6 +358,7 @@ class Builder {
   const Fabric& fabric_;
   const Piece& piece_;
   Diagnostics& diagnostics_;
+  Others& others_;
   std::vector<std::vector<Vec2>> rows_;  // of each line and curve, joined
   double extent_ = 0;
 };
@@ -228,6 +370,11 @@ std::string_view name_of(TurningShape shape) {
   return names[static_cast<std::size_t>(shape)];
 }
 
+std::string_view name_of(PointParameters by) {
+  constexpr std::array<std::string_view, 3> names = {"uniform", "chord", "distance"};
+  return names[static_cast<std::size_t>(by)];
+}
+
 double CurveFit::largest_error() const {
   return std::ranges::max(points, {}, &FixedPoint::error).error;
 }
@@ -236,14 +383,14 @@ double CurveFit::largest_distance() const {
   return std::ranges::max(points, {}, &FixedPoint::distance).distance;
 }
 
-Bezier PieceEdge::bezier() const {
-  const auto at = [this](std::size_t i) -> Vec2 { return curve.points[i].head<2>(); };
-  return is_line() ? nurbs::straight_bezier(at(0), at(1)) : Bezier{at(0), at(1), at(2), at(3)};
-}
-
 nurbs::Box2 box_of(const std::vector<PieceEdge>& edges) {
   nurbs::Box2 box;
-  for (const PieceEdge& edge : edges) box.extend(nurbs::bounds(edge.bezier()));
+  nurbs::Box2 control;
+  for (const PieceEdge& edge : edges)
+    for (const Vec3& p : edge.curve.points) control.extend(Vec2(p.head<2>()));
+  for (const PieceEdge& edge : edges)
+    for (const Bezier& cubic : nurbs::cubics_of(edge.curve, rational_error * control.diagonal().norm()))
+      box.extend(nurbs::bounds(cubic));
   return box;
 }
 
@@ -257,7 +404,9 @@ std::vector<const Piece*> pieces_of(const Fabric& fabric) {
 std::optional<PieceShape> build_piece(const Fabric& fabric, const Piece& piece, double tolerance,
                                       Diagnostics& diagnostics) {
   if (!(tolerance > 0.0)) tolerance = fabric.tolerance.value_or(0.0);
-  return Builder(fabric, piece, diagnostics).build(tolerance);
+  Builder::Others others;
+  others[&piece] = std::nullopt;
+  return Builder(fabric, piece, diagnostics, others).build(tolerance);
 }
 
 }  // namespace selvage::fabric

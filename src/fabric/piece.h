@@ -1,4 +1,4 @@
-// Pieces of a garment pattern as geometry: closed plane outlines of lines and cubic Beziers.
+// Pieces of a garment pattern as geometry: closed plane outlines of lines and cubic B-splines.
 #pragma once
 
 #include <optional>
@@ -16,17 +16,19 @@ namespace selvage::fabric {
 // One fixed point of a curve and how far the curve passes from it.
 struct FixedPoint {
   Vec2 at = Vec2::Zero();
-  double parameter = 0;  // t_i = i / n
+  double parameter = 0;  // t_i
   double error = 0;      // distance to B(t_i)
   double distance = 0;   // distance to the nearest point of the curve
 };
 
 std::string_view name_of(nurbs::TurningShape shape);  // "straight", "C", "S"
+std::string_view name_of(nurbs::PointParameters by);  // "uniform", "chord", "distance"
 
 // How a curve was found from its fixed points, which keep their order in the file.
 struct CurveFit {
   nurbs::BezierFit bezier;
-  nurbs::TurningShape shape = nurbs::TurningShape::straight;
+  nurbs::PointParameters by = nurbs::PointParameters::uniform;
+  nurbs::TurningShape shape = nurbs::TurningShape::straight;  // of the curve
   std::vector<FixedPoint> points;
   [[nodiscard]] double largest_error() const;
   [[nodiscard]] double largest_distance() const;
@@ -35,10 +37,9 @@ struct CurveFit {
 struct PieceEdge {
   std::string name;
   TextPlace place;
-  nurbs::Curve curve;           // over [0, 1] in z = 0, without weights; degree 1: a line, 3: a Bezier
-  std::optional<CurveFit> fit;  // none for a line
+  nurbs::Curve curve;           // over [0, 1] in z = 0; degree 1: a line, 3: a cubic, clamped
+  std::optional<CurveFit> fit;  // of a Bezier near fixed points
   [[nodiscard]] bool is_line() const { return curve.degree == 1; }
-  [[nodiscard]] nurbs::Bezier bezier() const;  // of a line: with inner points on its thirds
 };
 
 struct PieceShape {
@@ -63,8 +64,9 @@ std::vector<const Piece*> pieces_of(const Fabric& fabric);
 // `tolerance`, or 1e-6 of the piece's extent. Everything that is wrong goes to `diagnostics`, at its line,
 // and then there is no shape: malformed (an end that does not meet the next start, an outline that is not
 // closed), geometry (it crosses or touches itself, encloses no area, or is too large or small for the
-// arithmetic), limit (over 50,000 lines and curves). Warnings: a curve whose points do not turn as its word
-// (C or S) says.
+// arithmetic; a curve whose points crowd so that no cubic is found), limit (over 50,000 lines and curves).
+// Warnings: a curve that does not turn as its word (C or S) or its points do, or that runs back between two
+// of them.
 std::optional<PieceShape> build_piece(const Fabric& fabric, const Piece& piece, double tolerance,
                                       Diagnostics& diagnostics);
 

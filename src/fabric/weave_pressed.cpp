@@ -34,9 +34,9 @@ bool change_together(const Drawdown& drawdown) {
 // The share of a section that is fibre; none where the thread does not say it.
 std::optional<double> packing_of(const WovenThread& woven, Unit units) {
   const Thread& thread = *woven.thread;
-  if (!thread.linear_density || !thread.density) return std::nullopt;
+  if (!thread.linear_density || !thread.fibre_density()) return std::nullopt;
   const double mm = millimetres_per(units), area = yarn::area(woven.section, woven.size) * mm * mm;
-  return thread.linear_density->tex() / (1000.0 * *thread.density * area);
+  return thread.linear_density->tex() / (1000.0 * *thread.fibre_density() * area);
 }
 
 // A system as it presses: the widest of its threads, as thick as the thickest.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "nurbs/spline.h"
 
 namespace selvage::nurbs {
 
@@ -26,8 +27,23 @@ Box2 bounds(const Bezier& curve);
 // degree 5, three Gauss nodes integrate it.
 double swept_area(const Bezier& curve, const Vec2& origin);
 
+// How far the tangent turns to the left and to the right between the curve's ends, radians, both at least 0.
+// What lies between is exact: a cubic changes sides at the roots of a quadratic.
+struct Turning {
+  double left = 0, right = 0;
+};
+Turning turning(const Bezier& curve);
+
+// How far the curve runs against the direction from B(from) to B(to) between these two, 0 where it never
+// does.
+double run_back(const Bezier& curve, double from, double to);
+
 // The parameter of the curve's point nearest to `target`, to the last bits where the curve is regular.
 double nearest_parameter(const Bezier& curve, const Vec2& target);
+
+// A curve, seen from +z, as cubics one after the other, one's end the next one's start to the bit: the curve
+// itself where it is a polynomial of degree 3 at most, else within `tolerance` of it, as samples tell.
+std::vector<Bezier> cubics_of(const Curve& curve, double tolerance);
 
 // Two places of an outline that meet although they should not, on curves a <= b (a == b: it crosses itself).
 struct Crossing {

@@ -466,11 +466,10 @@ Result<Curve> move_joint_to_length(const Curve& curve, bool closed, int number, 
   if (least <= wanted) return reached(slide.solve(wanted, 0.0, turn));
   Slide opposite(curve, closed, number, -direction);
   const double other_way = opposite.length(opposite.shortest(opposite.beyond(present, scale)));
-  return error(
-      Kind::geometry,
-      fmt::format("joint {} moved along {} makes the centre line {:.9g} long at the shortest, and {:.9g} "
-                  "is asked for; the other way it can be {:.9g} at the shortest",
-                  number, text_of(direction), least, wanted, other_way));
+  return error(Kind::geometry,
+               fmt::format("joint {} moved along {} makes it {:.9g} long at the shortest, and {:.9g} "
+                           "is asked for; the other way it can be {:.9g} at the shortest",
+                           number, text_of(direction), least, wanted, other_way));
 }
 
 }  // namespace selvage::nurbs

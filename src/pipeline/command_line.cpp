@@ -263,6 +263,11 @@ void of_yarns(OptionTable& t) {
          "system reads such references)",
          &Options::instances)
       .goes_with("repeats yarns that are whole", "", "--cut --matrix");
+  t.flag({convert}, "--lines",
+         "the yarns' centre lines instead of their surfaces, as curves (svg: seen from above), or as points "
+         "where the format has these",
+         &Options::lines)
+      .goes_with("writes centre lines, not solids", "", "--cut --matrix --instances");
   t.option({check}, "--reach", "list near contacts, too: gaps between yarns up to this, in the input's unit",
            Argument::positive(), &Options::reach);
   t.flag({info}, "--table",
@@ -271,18 +276,21 @@ void of_yarns(OptionTable& t) {
 
 void of_an_edit(OptionTable& t) {
   t.begin("The edit");
-  t.option({edit}, "--yarn", "the yarn's name", Argument::text("NAME"),
-           into(&Options::edit, &EditWords::yarn))
-      .required();
-  t.option({edit}, "--point", "which joint of its centre line, from 1",
+  t.option({edit}, "--yarn", "the name of the yarn whose centre line is edited", Argument::text("NAME"),
+           into(&Options::edit, &EditWords::yarn));
+  t.option({edit}, "--piece", "instead of --yarn: the garment piece whose --curve is edited",
+           Argument::text("NAME"), into(&Options::edit, &EditWords::piece));
+  t.option({edit}, "--curve", "the name of the curve in the outline of --piece", Argument::text("NAME"),
+           into(&Options::edit, &EditWords::curve));
+  t.option({edit}, "--point", "which joint of the curve, from 1",
            Argument::whole(1, std::numeric_limits<int>::max()), into(&Options::edit, &EditWords::point))
       .required();
-  t.option({edit}, "--to", "where the joint goes, in the file's unit", Argument::text("X,Y,Z"),
-           into(&Options::edit, &EditWords::to));
+  t.option({edit}, "--to", "where the joint goes, in the file's unit (of a --piece X,Y)",
+           Argument::text("X,Y,Z"), into(&Options::edit, &EditWords::to));
   t.option({edit}, "--by", "what moves it: a control point, or a weight", Argument::one_of("control weight"),
            into(&Options::edit, &EditWords::by))
       .with_preset("control");
-  t.option({edit}, "--length", "instead of --to: the length that the centre line gets", Argument::text("L"),
+  t.option({edit}, "--length", "instead of --to: the length that the curve gets", Argument::text("L"),
            into(&Options::edit, &EditWords::length));
   t.option({edit}, "--along", "the direction in which the joint moves for --length", Argument::text("X,Y,Z"),
            into(&Options::edit, &EditWords::along));

@@ -34,7 +34,8 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
   surface.tolerance =
       converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, surface.units);
   surface.yarns_are_solids = fabric.yarns_are_solids;
-  surface.has_others = !fabric::pieces_of(fabric).empty() || !fabric.parts.empty() || !fabric.curves.empty();
+  surface.has_others = job.options.lines || !fabric::pieces_of(fabric).empty() || !fabric.parts.empty() ||
+                       !fabric.curves.empty();
   surface.own = job.options.of_formats;
   surface.threads = static_cast<int>(job.threads);
   return surface;
@@ -62,12 +63,17 @@ std::string formats_with(bool formats::Descriptor::*what) {
 }
 
 // False: a writer failed, which was said.
-bool add_to_all(Job& job, OpenOutputs& outputs, const std::function<Status(formats::BodyWriter&)>& add) {
+bool add_to_all(Job& job, OpenOutputs& outputs, const std::function<Status(OpenOutput&)>& add) {
   for (OpenOutput& output : outputs) {
     if (!output.writer) continue;
-    if (Status status = add(*output.writer); !status) return job.fail(status.error());
+    if (Status status = add(output); !status) return job.fail(status.error());
   }
   return true;
+}
+
+// What this output gets of a yarn: its centre line, where that is asked for or nothing else is held.
+bool takes_lines(const Job& job, const formats::Descriptor& format) {
+  return format.carries_lines && (job.options.lines || (!format.carries_surfaces && !format.carries_curves));
 }
 
 // What a format cannot hold is said before anything is written: yarns in a drawing, pieces where none can be.
@@ -76,10 +82,10 @@ bool can_carry(Job& job, const fabric::Fabric& fabric, std::size_t yarns, const 
   for (const OpenOutput& output : outputs) {
     const formats::Descriptor& format = *output.plan->format;
     if (format.open_bodies == nullptr || format.write_fabric != nullptr) continue;
-    if (yarns > 0 && !format.carries_surfaces)
+    if (yarns > 0 && !format.carries_surfaces && !takes_lines(job, format))
       job.say(
           error(Kind::unsupported, fmt::format("{} holds garment pieces (`piece`) only, and this input has "
-                                               "{}: write it as {}",
+                                               "{}: write it as {}, or their centre lines by --lines",
                                                format.name, counted(yarns, "yarn"),
                                                formats_with(&formats::Descriptor::carries_surfaces))));
     if (!pieces.empty() && !format.carries_curves)
@@ -97,17 +103,17 @@ void write_others(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) 
     std::optional<fabric::PieceShape> shape = job.build_piece(fabric, *piece);
     if (!shape || job.has_failed()) continue;  // the others are tried, so that every error is told
     convert_lengths(*shape, fabric.units, units);
-    add_to_all(job, outputs, [&](formats::BodyWriter& writer) { return writer.add_piece(*shape); });
+    add_to_all(job, outputs, [&](OpenOutput& output) { return output.writer->add_piece(*shape); });
   }
   for (cad::Part part : fabric.parts) {
     if (job.has_failed()) return;
     convert_lengths(part, fabric.units, units);
-    add_to_all(job, outputs, [&](formats::BodyWriter& writer) { return writer.add_part(part); });
+    add_to_all(job, outputs, [&](OpenOutput& output) { return output.writer->add_part(part); });
   }
   for (cad::NamedCurve curve : fabric.curves) {
     if (job.has_failed()) return;
     convert_lengths(curve, fabric.units, units);
-    add_to_all(job, outputs, [&](formats::BodyWriter& writer) { return writer.add_curve(curve); });
+    add_to_all(job, outputs, [&](OpenOutput& output) { return output.writer->add_curve(curve); });
   }
 }
 
@@ -121,7 +127,7 @@ void write_cell(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
     cad::Part& part = (*parts)[i];
     job.progress("writing solid", i + 1, parts->size());
     convert_lengths(part, fabric.units, job.shown().unit);
-    if (!add_to_all(job, outputs, [&](formats::BodyWriter& writer) { return writer.add_part(part); })) return;
+    if (!add_to_all(job, outputs, [&](OpenOutput& output) { return output.writer->add_part(part); })) return;
   }
   for (OpenOutput& output : outputs)
     if (!take_facts(job, output, output.writer->finish())) return;
@@ -136,6 +142,17 @@ bool holds_solids(Job& job, const OpenOutputs& outputs) {
                                            job.options.matrix ? "--matrix" : "--cut",
                                            formats_with(&formats::Descriptor::carries_surfaces))));
   }
+  return !job.has_failed();
+}
+
+// So are centre lines, where they are asked for.
+bool holds_lines(Job& job, const OpenOutputs& outputs) {
+  if (!job.options.lines) return true;
+  for (const OpenOutput& output : outputs)
+    if (!output.plan->format->carries_lines)
+      job.say(error(Kind::usage, fmt::format("{} holds no centre lines, which --lines makes: write {}",
+                                             output.plan->format->name,
+                                             formats_with(&formats::Descriptor::carries_lines))));
   return !job.has_failed();
 }
 
@@ -181,8 +198,9 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
     convert_lengths(body, fabric.units, units);
     if (job.has_failed()) return true;
     const std::optional<formats::Instance> instance = finder ? finder->place(body) : std::nullopt;
-    return is_written = add_to_all(job, outputs, [&](formats::BodyWriter& writer) {
-             return instance ? writer.add_instance(body, *instance) : writer.add(body);
+    return is_written = add_to_all(job, outputs, [&](OpenOutput& output) {
+             if (takes_lines(job, *output.plan->format)) return output.writer->add_line(body);
+             return instance ? output.writer->add_instance(body, *instance) : output.writer->add(body);
            });
   });
   if (!is_written) return;
@@ -216,6 +234,7 @@ void convert(Job& job) {
     if (holds_solids(job, *outputs)) write_cell(job, *fabric, *outputs);
     return commit_all(job, *outputs);
   }
+  if (!holds_lines(job, *outputs)) return;
   bool has_surfaces = false;
   for (OpenOutput& output : *outputs) {
     if (output.plan->format->write_fabric == nullptr)

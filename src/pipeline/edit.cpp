@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "core/number_text.h"
+#include "fabric/loft.h"
+#include "fabric/piece.h"
 #include "pipeline/detect.h"
 #include "pipeline/drafts.h"
 #include "pipeline/writing.h"
@@ -13,22 +15,23 @@ namespace selvage::pipeline {
 
 namespace {
 
-// Three numbers joined by commas, kept as they are written.
+// Three numbers, of a garment curve two, joined by commas, kept as they are written.
 Status take_vector(const std::string& option, std::string_view text, formats::NewEdit& edit, Vec3& vector) {
   const auto refused = [&] {
-    return error(
-        Kind::usage,
-        fmt::format("{} {}: three numbers joined by commas are expected, as in 1,0.2,-0.5", option, text));
+    return error(Kind::usage, fmt::format("{} {}: {} joined by commas are expected, as in {}", option, text,
+                                          edit.piece.empty() ? "three numbers" : "two numbers",
+                                          edit.piece.empty() ? "1,0.2,-0.5" : "1,-0.5"));
   };
+  const std::size_t count = edit.piece.empty() ? 3 : 2;
   std::string_view rest = text;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t comma = i < 2 ? rest.find(',') : rest.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t comma = i + 1 < count ? rest.find(',') : rest.size();
     if (comma == rest.npos) return refused();
     const std::optional<double> value = read_number(rest.substr(0, comma));
     if (!value) return refused();
     vector[static_cast<Eigen::Index>(i)] = *value;
     edit.vector[i] = rest.substr(0, comma);
-    if (i < 2) rest.remove_prefix(comma + 1);
+    if (i + 1 < count) rest.remove_prefix(comma + 1);
   }
   return {};
 }
@@ -38,7 +41,12 @@ Status take_vector(const std::string& option, std::string_view text, formats::Ne
 Result<formats::NewEdit> wanted_edit(const EditWords& words) {
   formats::NewEdit added;
   fabric::Edit& edit = added.edit;
-  edit.yarn = words.yarn;
+  if (words.piece.empty() != words.curve.empty())
+    return error(Kind::usage, "--piece NAME and --curve NAME go together");
+  if (words.yarn.empty() == words.piece.empty())
+    return error(Kind::usage, "name either --yarn NAME, or --piece NAME with --curve NAME");
+  added.piece = words.piece;
+  edit.yarn = words.piece.empty() ? words.yarn : words.curve;
   edit.joint = words.point;
   added.length = words.length;
   if (words.along.empty() != words.length.empty())
@@ -95,6 +103,30 @@ std::optional<TextPlace> try_edit(Job& job, const fabric::Fabric& before, const 
   return body->place;
 }
 
+// The line behind which an edit of a piece's curve belongs, the last one before the piece's `end`, if the
+// edit is possible; nothing when it is not (it was said why).
+std::optional<int> try_piece_edit(Job& job, const fabric::Fabric& before, const formats::NewEdit& added) {
+  fabric::Fabric after = before;
+  for (std::size_t i = 0; i < after.items.size(); ++i) {
+    auto* piece = std::get_if<fabric::Piece>(&after.items[i]);
+    if (piece == nullptr || piece->name != added.piece) continue;
+    piece->edits.push_back(added.edit);
+    piece->edits.back().place = piece->place;
+    Diagnostics diagnostics;
+    const bool is_built = fabric::build_piece(after, *piece, 0, diagnostics).has_value();
+    job.say_all(diagnostics.messages());
+    return is_built ? std::optional(after.item_ends[i] - 1) : std::nullopt;
+  }
+  return job.fail(error(Kind::geometry, fmt::format("there is no piece '{}'", added.piece)));
+}
+
+std::optional<int> line_of_edit(Job& job, const fabric::Fabric& fabric, const formats::NewEdit& added) {
+  if (!added.piece.empty()) return try_piece_edit(job, fabric, added);
+  const std::optional<TextPlace> place = try_edit(job, fabric, added.edit);
+  if (!place) return std::nullopt;
+  return line_before(fabric, *place);
+}
+
 }  // namespace
 
 void edit(Job& job) {
@@ -110,13 +142,14 @@ void edit(Job& job) {
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
   if (fabric) resolve_drafts(*fabric, *source, job.options.allow_outside, diagnostics);
+  if (fabric) fabric::loft(*fabric, diagnostics);
   job.say_all(diagnostics.messages());
   if (!fabric || diagnostics.has_errors()) return;
-  const std::optional<TextPlace> place = try_edit(job, *fabric, added->edit);
-  if (!place) return;
+  const std::optional<int> line = line_of_edit(job, *fabric, *added);
+  if (!line) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);
   if (!outputs) return;
-  const std::string text = (*format)->insert_edit(source->bytes(), line_before(*fabric, *place), *added);
+  const std::string text = (*format)->insert_edit(source->bytes(), *line, *added);
   if (Status written = outputs->front().file.write(text); !written) return job.say(written.error());
   commit_all(job, *outputs);
 }

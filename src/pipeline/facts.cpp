@@ -45,6 +45,7 @@ namespace {
 Json fit_json(const fabric::CurveFit& fit, double mm) {
   const auto in_mm = [&](const Vec2& p) { return point_json(p * mm); };
   return {{"shape", fabric::name_of(fit.shape)},
+          {"by", fabric::name_of(fit.by)},
           {"points", list_json(fit.points,
                                [&](const fabric::FixedPoint& point) {
                                  return Json{{"parameter", point.parameter},

@@ -9,6 +9,7 @@
 #include "core/source.h"
 #include "core/words.h"
 #include "fabric/from_cad.h"
+#include "fabric/loft.h"
 #include "pipeline/detect.h"
 #include "pipeline/drafts.h"
 #include "pipeline/facts.h"
@@ -159,6 +160,7 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
 void Job::take_drafts(fabric::Fabric& fabric, const Source& source, Diagnostics& diagnostics) {
   for (const std::string& file : resolve_drafts(fabric, source, options.allow_outside, diagnostics))
     if (wants_report()) report.settings += " draft=" + file;
+  fabric::loft(fabric, diagnostics);
 }
 
 std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {

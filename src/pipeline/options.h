@@ -32,7 +32,7 @@ struct RelaxSettings {
 
 // Of `edit`, as given.
 struct EditWords {
-  std::string yarn, to, by, length, along;
+  std::string yarn, piece, curve, to, by, length, along;
   int point = 0;  // from 1
 };
 
@@ -74,6 +74,7 @@ struct Options {
   bool as_published = false;           // constructions as their paper gives them, overlaps and all
   std::optional<yarn::EndStyle> ends;  // none: as the input has them, or patch
   bool instances = false;              // repeat equal yarns by reference
+  bool lines = false;                  // centre lines instead of surfaces
   OptionValues of_formats;             // what formats declare for themselves
 
   double size = 0;          // wanted edge length, input's unit; 0: the mesher's choice

@@ -68,9 +68,10 @@ std::string curve_tables(const PieceShape& piece, const Shown& shown) {
   std::string text;
   for (const PieceEdge& edge : converted_piece.edges) {
     if (!edge.fit) continue;
-    text += fmt::format("\n  curve {} of piece {}: {}, largest error {}, {} steps of descent\n",
+    text += fmt::format("\n  curve {} of piece {}: {}, points by {}, largest error {}, {} steps of descent\n",
                         in_quotes(edge.name), in_quotes(piece.name), fabric::name_of(edge.fit->shape),
-                        small(edge.fit->largest_error()), edge.fit->bezier.iterations);
+                        fabric::name_of(edge.fit->by), small(edge.fit->largest_error()),
+                        edge.fit->bezier.iterations);
     text += point_table(*edge.fit) + control_table(edge.fit->bezier);
   }
   return text;

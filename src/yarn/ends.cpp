@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
+#include "core/number_text.h"
 #include "nurbs/basis.h"
 #include "yarn/rigid_fit.h"
 
@@ -140,6 +144,20 @@ double flatness(const nurbs::Curve& curve, const Vec3& origin, const Vec3& norma
   return largest;
 }
 
+double last_digit(std::span<const Vec3> points) {
+  int decimals = std::numeric_limits<int>::min();
+  for (const Vec3& p : points)
+    for (const double value : p) {
+      // "12.345", "1e-07", "1.5e+20"
+      const std::string text = number_text(value);
+      const std::size_t power = std::min(text.find('e'), text.size()), point = text.find('.');
+      const int shift = power < text.size() ? std::stoi(text.substr(power + 1)) : 0;
+      const int behind = point < power ? static_cast<int>(power - point) - 1 : 0;
+      if (value != 0.0) decimals = std::max(decimals, behind - shift);
+    }
+  return points.empty() ? 0.0 : std::pow(10.0, -decimals);
+}
+
 namespace {
 
 Message at_end(const Body& body, bool last, const Message& message) {
@@ -173,6 +191,30 @@ nurbs::Surface standard_surface(const Body& body, bool last) {
   return fan(end_curve(body, last), centre_of_fan(face.surface));
 }
 
+double flat_enough_for(const nurbs::Curve& outline, const EndFace& face) {
+  double size = 0.0;
+  for (const Vec3& p : outline.points) size = std::max(size, (p - face.origin).norm());
+  return flat_enough(size, face.origin.cwiseAbs().maxCoeff());
+}
+
+// Moves the points of this end into its plane.
+Status flatten_end(Body& body, bool last, double unflat) {
+  const EndFace& face = last ? body.end : body.start;
+  const Vec3 origin = face.origin, normal = face.normal;
+  const auto flatten = [&](Vec3& p) { p -= (p - origin).dot(normal) * normal; };
+  nurbs::Surface& surface = body.surface;
+  const auto round = static_cast<std::size_t>(surface.count_u);
+  const std::size_t first = last ? surface.points.size() - round : 0;
+  for (Vec3& p : std::span(surface.points).subspan(first, round)) flatten(p);
+  if (!body.axis.points.empty()) flatten(last ? body.axis.points.back() : body.axis.points.front());
+  Message note = warning(Kind::geometry, fmt::format("the {} of yarn '{}' is brought into its plane, {:.3g} "
+                                                     "away at most: its numbers say no more",
+                                                     last ? "end" : "start", body.name, unflat));
+  note.severity = Severity::note;
+  body.messages.push_back(at_end(body, last, note));
+  return complete_end(body, last);
+}
+
 Status seal_end(Body& body, bool last, const Sealing& sealing) {
   EndFace& face = last ? body.end : body.start;
   const nurbs::Curve outline = end_curve(body, last);
@@ -182,15 +224,12 @@ Status seal_end(Body& body, bool last, const Sealing& sealing) {
   if (style == EndStyle::fan)
     face.surface = fan(outline, sealing.centre.value_or(end_centre(body, outline, last)));
   if (Status completed = complete_end(body, last); !completed) return completed;
-  double size = 0.0;
-  for (const Vec3& p : outline.points) size = std::max(size, (p - face.origin).norm());
-  // Rounding of the coordinates aside; the trimmed plane is only as good as the outline is flat.
-  const double scale = std::max(size, face.origin.cwiseAbs().maxCoeff());
   const double unflat = flatness(outline, face.origin, face.normal);
-  const bool is_flat = unflat <= 1e-9 * scale;
+  const bool is_flat = unflat <= flat_enough_for(outline, face);
+  const bool can_be_planar = is_flat || unflat <= sealing.resolution;
   // The patch runs round as the outline does, so its normal is the outline's turning direction.
   if (style == EndStyle::patch && is_folded(face.surface, area_vector(outline).normalized())) {
-    if (!is_flat)
+    if (!can_be_planar)
       return at_end(
           body, last,
           error(Kind::geometry,
@@ -206,13 +245,14 @@ Status seal_end(Body& body, bool last, const Sealing& sealing) {
                                                    "over itself (the section is too long or concave): it is "
                                                    "sealed by a trimmed plane instead",
                                                    last ? "end" : "start", body.name))));
-  } else if (style == EndStyle::planar && !is_flat) {
-    return at_end(body, last,
-                  error(Kind::geometry, fmt::format("the {} of yarn '{}' is not flat (by {:.3g}): a plane "
-                                                    "cannot seal it; use --ends patch",
-                                                    last ? "end" : "start", body.name, unflat)));
   }
-  return {};
+  if (face.style != EndStyle::planar || is_flat) return {};
+  if (can_be_planar) return flatten_end(body, last, unflat);
+  return at_end(body, last,
+                error(Kind::geometry,
+                      fmt::format("the {} of yarn '{}' is not flat (by {:.3g}): a plane cannot seal it; use "
+                                  "--ends patch, or a `tolerance` that is larger than that",
+                                  last ? "end" : "start", body.name, unflat)));
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 // 002).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 
 #include "yarn/body.h"
 
@@ -30,18 +32,31 @@ Vec3 area_vector(const nurbs::Curve& closed);
 // `normal`.
 double flatness(const nurbs::Curve& curve, const Vec3& origin, const Vec3& normal);
 
+// How far from its plane an outline counts as flat: the rounding of its coordinates. `size`: its largest
+// distance from a point in it; `largest`: of its coordinates.
+inline double flat_enough(double size, double largest) {
+  return 1e-9 * std::max(size, largest);
+}
+
+// The value of the last decimal digit that any of the coordinates has in its shortest text: 1e-6 for numbers
+// that were given to six decimals.
+double last_digit(std::span<const Vec3> points);
+
 // What is asked of one end.
 struct Sealing {
   EndStyle style = EndStyle::patch;
   std::optional<Vec3> centre;  // where a fan's rows meet; none: the end of the body's axis
+  // How well the surface is known: where a plane shall seal an outline that is as flat as this, but not flat
+  // enough, its points are moved into the plane.
+  double resolution = 0;
   bool operator==(const Sealing&) const = default;
 };
 using Sealings = std::array<Sealing, 2>;  // of the start and of the end
 Sealings both_ends(EndStyle style);
 
 // Fills body.start and body.end from the finished surface. A patch that folds becomes planar where the end is
-// flat (with a warning in body.messages). Rings and `none` get no faces. Error (geometry): an end that none
-// of the styles asked for can seal.
+// flat (with a warning in body.messages; points that are moved into the plane are a note). Rings and `none`
+// get no faces. Error (geometry): an end that none of the styles asked for can seal.
 Status seal(Body& body, const Sealings& sealings);
 Status seal(Body& body, EndStyle style);
 

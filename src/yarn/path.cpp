@@ -40,8 +40,12 @@ CentreLine through_points(const PathRows& rows, nurbs::Parameterization how) {
     line.curve = nurbs::interpolate_closed(rows.points, line.parameters);
     line.parameters.pop_back();
   } else {
-    const Vec3 first = nurbs::end_derivative(rows.points, line.parameters, false, rows.tangent_start);
-    const Vec3 last = nurbs::end_derivative(rows.points, line.parameters, true, rows.tangent_end);
+    const auto at_end = [&](bool last, const std::optional<EndTangent>& tangent) {
+      if (tangent && tangent->is_derivative) return tangent->vector;
+      return nurbs::end_derivative(rows.points, line.parameters, last,
+                                   tangent ? std::optional(tangent->vector) : std::nullopt);
+    };
+    const Vec3 first = at_end(false, rows.tangent_start), last = at_end(true, rows.tangent_end);
     line.curve = nurbs::interpolate(rows.points, line.parameters, first, last);
   }
   return line;

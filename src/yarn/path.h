@@ -14,11 +14,20 @@ namespace selvage::yarn {
 
 enum class PathForm { uniform, chord, centripetal, polyline, control, loop };
 
+// At an end of the line: its direction there, or the derivative by the parameter over [0, 1] itself.
+struct EndTangent {
+  Vec3 vector = Vec3::Zero();
+  bool is_derivative = false;
+  EndTangent() = default;
+  EndTangent(const Vec3& given, bool derivative = false) : vector(given), is_derivative(derivative) {}
+  friend bool operator==(const EndTangent& a, const EndTangent& b) = default;
+};
+
 struct PathRows {
   PathForm form = PathForm::chord;
   std::vector<Vec3> points;
-  bool closed = false;                             // the first point follows the last
-  std::optional<Vec3> tangent_start, tangent_end;  // directions
+  bool closed = false;  // the first point follows the last
+  std::optional<EndTangent> tangent_start, tangent_end;
   // polyline: half the section's size in the plane of the bend at row i; corners are rounded by an arc
   // of 1.05 times it.
   std::vector<double> half_sizes;

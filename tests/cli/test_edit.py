@@ -170,7 +170,7 @@ class Refusals(Editing):
     def test_the_command_line(self):
         at = ("--yarn", "a", "--point", "4")
         for pattern, *arguments in (
-                (r"--output is required", *MOVE), ("--yarn is required", "--point", "4", "--to", "1,1,1", "-o", self.out),
+                (r"--output is required", *MOVE), ("name either --yarn NAME, or --piece NAME", "--point", "4", "--to", "1,1,1", "-o", self.out),
                 ("--point", "--yarn", "a", "--point", "0", "--to", "1,1,1", "-o", self.out),
                 ("--point", "--yarn", "a", "--point", "1.5", "--to", "1,1,1", "-o", self.out),
                 ("either --to", *at, "-o", self.out),

@@ -1,5 +1,6 @@
 """Garment pieces through every format and command, before gmsh, ezdxf, an XML parser and the judge of IGES files."""
 
+import itertools
 import json
 import math
 import os
@@ -26,13 +27,13 @@ def bezier(p, t):
     return tuple(s**3 * a + 3 * s * s * t * b + 3 * s * t * t * c + t**3 * d for a, b, c, d in zip(*p))
 
 
-def least_squares(points):
-    """The inner control points by Cramer's rule on the normal equations."""
+def least_squares(points, at):
+    """The inner control points by Cramer's rule on the normal equations, with the points at these parameters."""
     n = len(points) - 1
     aa = ab = bb = 0.0
     ra, rb = [0.0, 0.0], [0.0, 0.0]
     for i in range(1, n):
-        t = i / n
+        t = at[i]
         a, b = 3 * t * (1 - t)**2, 3 * t * t * (1 - t)
         aa, ab, bb = aa + a * a, ab + a * b, bb + b * b
         for k in (0, 1):
@@ -97,18 +98,23 @@ class Pieces(Case):
         for sample in PIECES:
             for piece in self.facts(sample, "--table")[0]:
                 for edge in piece["edges"]:
-                    if edge["kind"] == "line":
+                    if edge["kind"] == "line" or "spline" in sample.read_text():
                         self.assertNotIn("fit", edge)
                         continue
                     curves += 1
                     fit = edge["fit"]
                     points = [p["point"] for p in fit["points"]]
                     size = max(math.dist(points[0], p) for p in points)
-                    expected = [points[0], *least_squares(points), points[-1]]
+                    at = [p["parameter"] for p in fit["points"]]
+                    if fit["by"] == "uniform":
+                        self.assertEqual(at, [i / (len(points) - 1) for i in range(len(points))])
+                    expected = [points[0], *least_squares(points, at), points[-1]]
                     for kind in ("control_points", "control_points_by_descent"):
                         for a, b in zip(fit[kind], expected):
                             self.assertLess(math.dist(a, b), 1e-11 * size, (sample.name, edge["name"], kind))
-                    errors = [math.dist(bezier(expected, i / (len(points) - 1)), p) for i, p in enumerate(points)]
+                    errors = [math.dist(bezier(expected, t), p) for t, p in zip(at, points)]
+                    if fit["by"] == "distance":  # the samples' points are met
+                        self.assertLess(max(errors), 1e-9 * size)
                     for point, error in zip(fit["points"], errors):
                         self.assertAlmostEqual(point["error"], error, delta=1e-11 * size)
                         nearest = min(math.dist(bezier(expected, i / 5000), point["point"]) for i in range(5001))
@@ -118,8 +124,9 @@ class Pieces(Case):
         self.assertGreaterEqual(curves, 12)
 
     def test_table_as_text(self):
-        table = self.succeeds("info", SAMPLES / "back_piece.txt", "--table").stdout
-        self.assertRegex(table, r"curve 'side' of piece 'back': S, largest error 0\.945, \d+ steps of descent")
+        back = (SAMPLES / "back_piece.txt").read_text().replace("curve side S", "curve side S by uniform")
+        table = self.succeeds("info", self.text(back), "--table").stdout
+        self.assertRegex(table, r"curve 'side' of piece 'back': S, points by uniform, largest error 0\.945, \d+ steps of descent")
         self.assertRegex(table, r"(?m)^ +3 +0\.5 +23\.6 +28 +0\.945 +0\.453$")
         self.assertRegex(table, r"(?m)^  B1 +20\.7935 +35\.3856 +20\.7935 +35\.3856 +\S+$")
 
@@ -138,7 +145,10 @@ class Pieces(Case):
                 for path, piece in zip(paths, facts):
                     runs = segments(path.get("d"))
                     kinds = ["line" if len(r) == 2 else "curve" for r in runs]
-                    self.assertEqual(kinds, [e["kind"] for e in piece["edges"]])
+                    # A spline is a curve a span.
+                    alike = [[kind for kind, _ in itertools.groupby(k)] for k in (kinds, [e["kind"] for e in piece["edges"]])]
+                    self.assertEqual(*alike)
+                    self.assertEqual(kinds.count("line"), [e["kind"] for e in piece["edges"]].count("line"))
                     self.assertEqual(path.find(f"{space}desc").text, ", ".join(e["name"] for e in piece["edges"]))
                     self.assertEqual(runs[0][0], runs[-1][-1])
                     points = polygon_of(runs)
@@ -162,7 +172,7 @@ class Pieces(Case):
         self.assertEqual([p[0].text for p in paths], ["a <c> & \u00e9", "a (c) & \u00e9"])
         self.assertEqual([p.get("id") for p in paths], ["a__c_____", "a__c______2"])
 
-    def judge_cad(self, sample, file):
+    def judge_cad(self, sample, file, several_spans=False):
         """The areas of gmsh's CAD, and those that its triangles fill, in mm2."""
         facts, _ = self.facts(sample)
         script = self.folder / "piece.geo"
@@ -173,15 +183,16 @@ class Pieces(Case):
         areas = [float(m) for m in re.findall(r"mass (\S+)", read.stdout)]
         self.assertEqual(len(areas), len(facts), read.stdout)
         for theirs, piece in zip(areas, facts):
-            self.assertAlmostEqual(theirs / piece["area"], 1, delta=1e-9)
-        total = sum(areas)
+            # gmsh does not ask OpenCASCADE for an integral that is exact where a curve has several spans, or weights.
+            self.assertAlmostEqual(theirs / piece["area"], 1, delta=2e-2 if several_spans else 1e-9)
+        total = sum(piece["area"] for piece in facts)
         for size in (math.sqrt(total) / k for k in (4, 16)):
             subprocess.run([GMSH, file.name, "-2", "-format", "msh2", "-clmax", str(size), "-clmin", str(size), "-o", "p.msh"],
                            cwd=self.folder, capture_output=True, check=True, timeout=300)
             count, area = triangles(self.folder / "p.msh")
             self.assertGreater(count, 4)
             # Chords of curves: of second order in their length.
-            self.assertLess(abs(area / total - 1), 0.4 * size**2 / total)
+            self.assertLess(abs(area / total - 1), (1.2 if several_spans else 0.4) * size**2 / total)
 
     def test_gmsh_reads_and_meshes_step_and_iges(self):
         self.assertTrue(GMSH, "gmsh is not installed")
@@ -190,7 +201,7 @@ class Pieces(Case):
                 with self.subTest(sample=sample.name, suffix=suffix):
                     file = self.folder / f"p{suffix}"
                     self.succeeds("convert", sample, "-o", file)
-                    self.judge_cad(sample, file)
+                    self.judge_cad(sample, file, several_spans="spline" in sample.read_text())
 
     def test_iges_is_right(self):
         for sample in PIECES:
@@ -237,7 +248,8 @@ class Pieces(Case):
                             theirs = [[x * mm for x in p] for p in theirs]
                             gaps = [max(map(math.dist, order, ours["control_points"])) for order in (theirs, theirs[::-1])]
                             self.assertLess(min(gaps), 1e-9 * math.sqrt(piece["area"]))
-                        self.assertEqual(block["layers"], {"2": len(piece["edges"]), "3": sum(len(f["points"]) - 2 for f in fits)})
+                        layers = {"2": len(piece["edges"]), "3": sum(len(f["points"]) - 2 for f in fits)}
+                        self.assertEqual(block["layers"], layers)
                         self.assertEqual(block["texts"], ["Piece Name: " + piece["name"]])
                     for k in (0, 1):
                         low = min(b["box"][0][k] for b in read["blocks"])
@@ -271,7 +283,7 @@ class Pieces(Case):
 
     def test_word_that_says_otherwise(self):
         sample = self.text("fabric 1\npiece p\ncurve arc S\n0 0\n1 1\n2 0\nend\nline l 2 0 0 0\nend\n")
-        warning = f"{sample}:3:1: warning: curve 'arc' is called S, but its points turn one way only"
+        warning = f"{sample}:3:1: warning: curve 'arc' is called S, but turns one way only, as a C does, and so do its points"
         self.assertIn(warning, self.succeeds("info", sample).stderr)
         self.assertIn(warning, self.fails(1, "info", sample, "--strict"))
 
@@ -289,6 +301,62 @@ class Pieces(Case):
         self.assertEqual(outputs[0]["entities"]["144"], 1)
         self.assertEqual(outputs[1]["entities"], {"MANIFOLD_SOLID_BREP": 4, "SHELL_BASED_SURFACE_MODEL": 1})
         self.succeeds("check", both)
+
+    def test_armhole_follows_its_sleeve(self):
+        """Lengths by sums of chords along what the drawing has."""
+        self.succeeds("convert", SAMPLES / "sleeve_and_armhole.txt", "-o", self.folder / "p.svg")
+        root = xml.etree.ElementTree.parse(self.folder / "p.svg").getroot()
+        lengths = {}
+        for path in root.iter("{http://www.w3.org/2000/svg}path"):
+            curves = [run for run in segments(path.get("d")) if len(run) == 4]
+            points = [bezier(run, i / 2000) for run in curves for i in range(2001)]
+            lengths[path[0].text] = sum(map(math.dist, points, points[1:]))
+        self.assertAlmostEqual(lengths["body"], lengths["sleeve"] - 2, delta=1e-5)
+        # Wherever the sleeve goes, the armhole follows.
+        text = (SAMPLES / "sleeve_and_armhole.txt").read_text().replace("18.0  56.0", "18.0  56.7")
+        facts, mm = self.facts(self.text(text))
+        by_name = {edge["name"]: edge["length"] / mm for piece in facts for edge in piece["edges"]}
+        self.assertGreater(by_name["cap"], lengths["sleeve"] + 0.3)
+        self.assertAlmostEqual(by_name["armhole"], by_name["cap"] - 2, delta=1e-10)
+
+    def test_edit_of_a_curve(self):
+        source = SAMPLES / "sleeve_and_armhole.txt"
+        edit = ("edit", source, "--piece", "sleeve", "--curve", "cap", "-o", self.folder / "e.txt")
+        self.succeeds(*edit, "--point", "5", "--to", "18,56.5")
+        before, after = source.read_text(), (self.folder / "e.txt").read_text()
+        line = "  edit cap point 5 to 18 56.5\n"
+        self.assertIn(line, after)
+        self.assertEqual(after.replace(line, ""), before)
+        facts, _ = self.facts(self.folder / "e.txt")
+        self.assertEqual(len(facts), 2)
+        self.assertIn("where the outline would open", self.fails(1, *edit, "--point", "1", "--to", "0,1"))
+        self.assertIn("two numbers", self.fails(2, *edit, "--point", "2", "--to", "0,1,2"))
+        self.assertIn("either --yarn NAME, or --piece", self.fails(2, "edit", source, "--point", "1", "--to", "0,1", "-o", "-"))
+        self.assertIn("no piece 'x'", self.fails(1, "edit", source, "--piece", "x", "--curve", "cap", "--point", "2", "--to", "0,1",
+                                                 "-o", "-"))
+
+    def test_rational_curves_in_files(self):
+        """A disc of four rational cubics, and a half of one B-spline with weights and knots, before gmsh and ezdxf."""
+        w, a = (1 + math.sqrt(2)) / 3, math.sqrt(2) / (1 + math.sqrt(2))
+        text, (x, y) = "fabric 1\nunits cm\npiece disc\n", (2, 0)
+        for quarter in range(4):
+            text += (f"curve q{quarter} control\n{x} {y}\n{x - a * y} {y + a * x} {w}\n{-y + a * x} {x + a * y} {w}\n"
+                     f"{-y} {x}\nend\n")
+            x, y = -y, x
+        text += ("end\npiece half\ncurve c control\nknots 0 0 0 0 0.3 0.3 0.7 1 1 1 1\n5 0\n6 0 2\n7 1\n7 2 0.5\n6 3\n5 3 3\n4 1\nend\n"
+                 "line l 4 1 5 0\nend\n")
+        sample = self.text(text, "disc.txt")
+        facts, _ = self.facts(sample)
+        self.assertAlmostEqual(facts[0]["area"], 400 * math.pi, delta=1e-5)
+        for suffix in (".stp", ".igs"):
+            self.succeeds("convert", sample, "-o", self.folder / f"p{suffix}")
+            self.judge_cad(sample, self.folder / f"p{suffix}", several_spans=True)
+        read, _ = self.dxf(sample)
+        self.assertEqual((read["errors"], read["fixes"]), (0, 0))
+        self.assertAlmostEqual(read["blocks"][0]["area"], 4 * math.pi, delta=1e-5)
+        self.assertAlmostEqual(read["blocks"][1]["area"] * 100 / facts[1]["area"], 1, delta=1e-6)
+        self.assertIn("sound", self.succeeds("check", sample, self.folder / "p.igs").stdout)
+        self.assertNotIn("different", self.succeeds("roundtrip", sample).stdout)
 
     def test_text_written_and_read_is_the_same_piece(self):
         for sample in PIECES:

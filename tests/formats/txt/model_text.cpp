@@ -60,6 +60,10 @@ class Flat {
     add(path + ".value", v.value);
     add(path + ".measure", v.measure);
   }
+  void add(const std::string& path, const yarn::EndTangent& v) {
+    add(path + ".vector", v.vector);
+    add(path + ".is_derivative", v.is_derivative);
+  }
   void add(const std::string& path, const Twist& v) {
     add(path + ".turns", v.turns);
     add(path + ".hand", v.hand);
@@ -128,10 +132,21 @@ class Flat {
     add_size(path, v.width, v.height);
     add(path + ".angle", v.angle);
   }
+  void add(const std::string& path, const Outline& v) {
+    add(path + ".name", v.name);
+    add(path + ".points", v.points);
+  }
+  void add(const std::string& path, const OutlineAt& v) {
+    add(path + ".from", v.from);
+    add(path + ".to", v.to);
+    add(path + ".share", v.share);
+    add(path + ".weight", v.weight);
+  }
   void add(const std::string& path, const Path& v) {
     add(path + ".form", v.form);
     add(path + ".points", v.points);
     add(path + ".sizes", v.sizes);
+    add(path + ".outlines", v.outlines);
     for (std::size_t i = 0; i < v.fixed.size(); ++i) add(path + ".fixed", static_cast<int>(v.fixed[i]));
   }
   void add(const std::string& path, const Grid& v) {
@@ -243,11 +258,21 @@ class Flat {
     add(path + ".name", v.name);
     add(path + ".is_line", v.is_line);
     add(path + ".shape", v.shape);
+    add(path + ".by", v.by);
+    add(path + ".method", v.method);
     add(path + ".points", v.points);
+    add(path + ".weights", v.weights);
+    add(path + ".knots", v.knots);
   }
   void add(const std::string& path, const Piece& v) {
     add(path + ".name", v.name);
     add(path + ".curves", v.curves);
+    add(path + ".edits", v.edits);
+  }
+  void add(const std::string& path, const LengthOf& v) {
+    add(path + ".piece", v.piece);
+    add(path + ".curves", v.curves);
+    add(path + ".ease", v.ease);
   }
   void add(const std::string& path, const Edit& v) {
     add(path + ".yarn", v.yarn);
@@ -255,6 +280,7 @@ class Flat {
     add(path + ".joint", v.joint);
     add(path + ".target", v.target);
     add(path + ".length", v.length);
+    add(path + ".like", v.like);
     add(path + ".direction", v.direction);
   }
   void add(const std::string& path, const Cell& v) {
@@ -277,6 +303,7 @@ std::vector<std::string> flattened(const Fabric& fabric) {
   flat.add("tolerance", fabric.tolerance);
   flat.add("threads", fabric.threads);
   flat.add("materials", fabric.materials);
+  flat.add("outlines", fabric.outlines);
   flat.add("items", fabric.items);
   flat.add("edits", fabric.edits);
   flat.add("cell", fabric.cell);

@@ -27,6 +27,7 @@ class Maker {
     }
     maybe(fabric.tolerance, [&] { return positive(); });
     for (int i = up_to(3); i > 0; --i) fabric.materials.push_back(material());
+    for (int i = up_to(2); i > 0; --i) fabric.outlines.push_back(outline());
     for (int i = 1 + up_to(3); i > 0; --i) fabric.threads.push_back(thread());
     for (int i = up_to(8); i > 0; --i) fabric.items.push_back(item());
     if (!yarns_.empty())
@@ -179,7 +180,26 @@ class Maker {
     }
     if (coin())
       for (int i = 0; i < rows; ++i) path.fixed.push_back(i == 1 || coin());
+    if (!outlines_.empty() && coin())
+      for (int i = 0; i < rows; ++i) {
+        std::optional<OutlineAt>& at = path.outlines.emplace_back();
+        if (i != 1 && coin()) continue;
+        at.emplace().from = one_of(outlines_);
+        if (coin()) {
+          at->to = one_of(outlines_);
+          at->share = between(0.0, 1.0);
+        }
+        if (coin()) at->weight = positive();
+      }
     return path;
+  }
+  Outline outline() {
+    Outline outline;
+    outline.name = new_name();
+    outlines_.push_back(outline.name);
+    outline.points = {Vec2(1.0, number()), Vec2(0.0, 1.0), Vec2(-1.0, 0.0)};
+    outline.points[0].y() = between(-0.5, 0.5);
+    return outline;
   }
   std::vector<double> knots(int count, int degree) {
     std::vector<double> knots;
@@ -223,8 +243,8 @@ class Maker {
     if (coin()) yarn.thread = one_of(threads_);
     fill(yarn.own);
     maybe(yarn.role, [&] { return static_cast<Role>(up_to(7)); });
-    maybe(yarn.tangent_start, [&] { return direction(); });
-    maybe(yarn.tangent_end, [&] { return direction(); });
+    for (auto* tangent : {&yarn.tangent_start, &yarn.tangent_end})
+      maybe(*tangent, [&] { return yarn::EndTangent(direction(), coin()); });
     maybe(yarn.up, [&] { return direction(); });
     yarn.closed = coin();
     if (coin())
@@ -378,6 +398,24 @@ class Maker {
     maybe(warpknit.stitch, [&] { return static_cast<Warpknit::Stitch>(up_to(1)); });
     return warpknit;
   }
+  Edit curve_edit() {
+    Edit edit;
+    edit.yarn = new_name();
+    edit.form = static_cast<Edit::Form>(up_to(2));
+    edit.joint = 1 + up_to(9);
+    const Vec3 vector(number(), 1.0, 0.0);
+    if (edit.form != Edit::Form::length) {
+      edit.target = vector;
+      return edit;
+    }
+    edit.direction = vector;
+    if (coin())
+      edit.like = LengthOf{new_name(), {new_name(), new_name()}, coin() ? number() : 0.0};
+    else
+      edit.length = positive();
+    return edit;
+  }
+
   Piece piece() {
     Piece piece;
     piece.name = new_name();
@@ -385,10 +423,26 @@ class Maker {
       PieceCurve& curve = piece.curves.emplace_back();
       curve.name = new_name();
       curve.is_line = coin();
-      if (!curve.is_line) curve.shape = static_cast<PieceCurve::Shape>(up_to(2));
-      const int points = curve.is_line ? 2 : 3 + up_to(5);
+      if (curve.is_line) {
+        for (int k = 0; k < 2; ++k) curve.points.emplace_back(number(), k);
+        continue;
+      }
+      using Shape = PieceCurve::Shape;
+      curve.shape = static_cast<Shape>(up_to(4));
+      const bool is_spline = curve.shape == Shape::control || curve.shape == Shape::spline;
+      if (!is_spline && coin()) curve.by = static_cast<nurbs::PointParameters>(up_to(2));
+      if (curve.shape == Shape::spline && coin())
+        curve.method = static_cast<nurbs::Parameterization>(up_to(2));
+      const int points = 4 + up_to(5);
       for (int k = 0; k < points; ++k) curve.points.emplace_back(number(), k);
+      if (is_spline && coin())
+        for (int k = 0; k < points; ++k) curve.weights.push_back(positive());
+      if (curve.shape != Shape::control || coin()) continue;
+      curve.knots.assign(4, 0.0);
+      for (int k = 4; k < points; ++k) curve.knots.push_back((k - 3.0) / (points - 3.0));
+      curve.knots.insert(curve.knots.end(), 4, 1.0);
     }
+    for (int i = up_to(2); i > 0; --i) piece.edits.push_back(curve_edit());
     return piece;
   }
 
@@ -418,7 +472,7 @@ class Maker {
 
   std::mt19937_64 engine_;
   int names_ = 0;
-  std::vector<std::string> threads_, materials_, yarns_;
+  std::vector<std::string> threads_, materials_, outlines_, yarns_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -112,6 +113,118 @@ TEST(BezierFit, CoincidentPointsAreNoTrouble) {
   const BezierFit fit = fit_bezier(loop);
   EXPECT_LT(apart(fit.solved, dense_fit(loop)), 1e-13);
   EXPECT_LT(apart(fit.solved, fit.descended), 1e-11);
+}
+
+double largest_error(const BezierFit& fit, const std::vector<Vec2>& points) {
+  double largest = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    largest = std::max(largest, (evaluate(fit.solved, fit.parameters[i]) - points[i]).norm());
+  return largest;
+}
+
+// Shares of the polygon's length, and the dense solve with them.
+TEST(BezierFit, ByChord) {
+  const std::vector<Vec2> points = {{0, 0}, {3, 4}, {3, 6}, {4, 6}, {8, 9}};
+  const BezierFit fit = fit_bezier(points, PointParameters::chord);
+  const std::vector<double> shares = {0, 5.0 / 13, 7.0 / 13, 8.0 / 13, 1};
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(fit.parameters[i], shares[i], 1e-15);
+  Eigen::MatrixXd a(3, 2), b(3, 2);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double t = shares[static_cast<std::size_t>(i) + 1];
+    a.row(i) << 3 * t * std::pow(1 - t, 2), 3 * t * t * (1 - t);
+    b.row(i) = (points[static_cast<std::size_t>(i) + 1] - std::pow(t, 3) * points.back()).transpose();
+  }
+  const Eigen::MatrixXd inner = a.colPivHouseholderQr().solve(b);
+  EXPECT_LT((fit.solved[1] - Vec2(inner.row(0))).norm() + (fit.solved[2] - Vec2(inner.row(1))).norm(), 1e-12);
+  EXPECT_LT(apart(fit.solved, fit.descended), 1e-10);
+  // One inner point: the parabola that is there at its share. Here B(3/4) = (3, 0).
+  const BezierFit three = fit_bezier({{0, 0}, {3, 0}, {3, 1}}, PointParameters::chord);
+  EXPECT_LT((evaluate(three.solved, 0.75) - Vec2(3, 0)).norm(), 1e-14);
+  EXPECT_LT((three.solved[3] - 3 * three.solved[2] + 3 * three.solved[1] - three.solved[0]).norm(), 1e-13);
+  EXPECT_LT(apart(three.solved, three.descended), 1e-12);
+}
+
+// Seven points of a known cubic at uneven parameters: with parameters as unknowns the cubic itself is found.
+TEST(BezierFit, ByDistanceFindsTheCubicOfUnevenPoints) {
+  const Bezier armhole = {Vec2(21.5, 70.4), Vec2(18.8, 61), Vec2(18.4, 52.5), Vec2(26, 49)};
+  std::vector<Vec2> points;
+  for (const double t : {0.0, 0.06, 0.1, 0.45, 0.6, 0.93, 1.0}) points.push_back(evaluate(armhole, t));
+  EXPECT_GT(largest_error(fit_bezier(points), points), 1);
+  const BezierFit fit = fit_bezier(points, PointParameters::distance);
+  EXPECT_LT(largest_error(fit, points), 1e-12);
+  EXPECT_LT(apart(fit.solved, armhole), 1e-10);
+
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int trial = 0; trial < 300; ++trial) {
+    // Ten wide, of C and S shape.
+    const auto off = [&] { return 12 * share(random) - 6; };
+    const Bezier curve = {Vec2(0, 0), Vec2(1 + 3 * share(random), off()), Vec2(6 + 3 * share(random), off()),
+                          Vec2(10, 0)};
+    std::vector<double> at = {0, 1};
+    for (int i = 0; i < 5; ++i) at.push_back(share(random));
+    std::ranges::sort(at);
+    std::vector<Vec2> taken;
+    taken.reserve(at.size());
+    for (const double t : at) taken.push_back(evaluate(curve, t));
+    const BezierFit found = fit_bezier(taken, PointParameters::distance);
+    EXPECT_LT(largest_error(found, taken), 1e-9) << trial;
+    EXPECT_TRUE(std::ranges::is_sorted(found.parameters));
+  }
+}
+
+// What no cubic meets: no small change of the control points brings the curve nearer to the points.
+TEST(BezierFit, ByDistanceIsLeast) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, 0.3);
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<Vec2> points;
+    for (int i = 0; i <= 20; ++i)
+      points.emplace_back(i + 0.2 * noise(random), 3 * std::sin(0.25 * i) + noise(random));
+    const auto sum = [&](const Bezier& curve) {
+      double squares = 0;
+      for (std::size_t i = 1; i + 1 < points.size(); ++i)
+        squares += (evaluate(curve, nearest_parameter(curve, points[i])) - points[i]).squaredNorm();
+      return squares;
+    };
+    const BezierFit fit = fit_bezier(points, PointParameters::distance);
+    const double least = sum(fit.solved);
+    EXPECT_LE(least, sum(fit_bezier(points).solved));
+    EXPECT_LE(least, sum(fit_bezier(points, PointParameters::chord).solved));
+    constexpr double step = 1e-5;
+    for (const std::size_t k : {1U, 2U})
+      for (const Eigen::Index axis : {0, 1}) {
+        Bezier more = fit.solved, less = fit.solved;
+        more[k][axis] += step;
+        less[k][axis] -= step;
+        EXPECT_NEAR((sum(more) - sum(less)) / (2 * step), 0, 1e-7 * (1 + least));
+        EXPECT_GT(sum(more) + sum(less), 2 * least);
+      }
+    EXPECT_LT(apart(fit.solved, fit.descended), 1e-9);
+  }
+}
+
+TEST(TurningShape, OfTheCurveItself) {
+  // y = x^3 about the middle turns by atan 3 each way, seen from its inflection; a parabola one way.
+  const Bezier cubic = {Vec2(-1, -1), Vec2(-1.0 / 3, 1), Vec2(1.0 / 3, -1), Vec2(1, 1)};
+  EXPECT_NEAR(turning(cubic).left, std::atan(3.0), 1e-14);
+  EXPECT_NEAR(turning(cubic).right, std::atan(3.0), 1e-14);
+  EXPECT_EQ(turning_shape(cubic), TurningShape::s);
+  const Bezier parabola = fit_bezier({{0, 0}, {1, 1}, {2, 0}}).solved;
+  EXPECT_EQ(turning(parabola).left, 0);
+  EXPECT_NEAR(turning(parabola).right, 2 * std::atan(2.0), 1e-14);
+  EXPECT_EQ(turning_shape(parabola), TurningShape::c);
+  EXPECT_EQ(turning_shape(straight_bezier({0, 0}, {3, 1})), TurningShape::straight);
+}
+
+TEST(Bezier, RunsBack) {
+  // Control points 0 4 -3 1: x' = 12 - 66 t + 66 t^2.
+  const Bezier curve = {Vec2(0, 0), Vec2(4, 0), Vec2(-3, 0), Vec2(1, 0)};
+  const double half = std::sqrt(0.25 - 12.0 / 66);
+  const auto x = [](double t) { return 12 * t - 33 * t * t + 22 * t * t * t; };
+  EXPECT_NEAR(run_back(curve, 0, 1), x(0.5 - half) - x(0.5 + half), 1e-14);
+  EXPECT_EQ(run_back(curve, 0, 0.2), 0);
+  EXPECT_EQ(run_back(straight_bezier({0, 0}, {3, 1}), 0, 1), 0);
 }
 
 TEST(TurningShape, ByTheSignOfTheTurning) {

@@ -400,7 +400,7 @@ TEST(MoveJointToLength, ShortensOnlyTheWayThatShortens) {
   const Result<Curve> least = move_joint_to_length(curve, false, 3, 5.5, Vec3(0, 0, -1));
   ASSERT_FALSE(least.ok());
   EXPECT_NE(least.error().text.find("long at the shortest"), std::string::npos);
-  EXPECT_NE(least.error().text.find("makes the centre line 6 long"), std::string::npos) << least.error().text;
+  EXPECT_NE(least.error().text.find("makes it 6 long"), std::string::npos) << least.error().text;
   const Result<Curve> wrong = move_joint_to_length(curve, false, 3, 6.2, Vec3(0, 0, 1));
   ASSERT_FALSE(wrong.ok());
   EXPECT_NE(wrong.error().text.find("the other way it can be 6 at the shortest"), std::string::npos)

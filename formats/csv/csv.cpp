@@ -1,0 +1,74 @@
+#include <string>
+
+#include "core/text_buffer.h"
+#include "formats/registry.h"
+#include "yarn/line_samples.h"
+
+namespace selvage::formats::csv {
+
+namespace {
+
+// RFC 4180: a field with a comma, a quote or the end of a line in it stands in quotes, and its quotes twice.
+std::string field(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += c;
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+class Writer final : public BodyWriter {
+ public:
+  Writer(OutputFile& output, const SurfaceOptions& options) : options_(options), text_(output) {
+    const std::string unit(name_of(options.units));
+    text_ << "yarn,point,parameter,arc_length_" << unit;
+    for (const std::string_view axis : {"x", "y", "z"}) text_ << ',' << axis << '_' << unit;
+    text_ << ",tangent_x,tangent_y,tangent_z,side_x,side_y,side_z,up_x,up_y,up_z";
+    for (const std::string_view size : {"width", "height", "radius"}) text_ << ',' << size << '_' << unit;
+    text_ << ",curvature_per_" << unit << '\n';
+  }
+
+  Status add_line(const yarn::Body& body) override {
+    const std::string name = field(body.name);
+    std::size_t number = 0;
+    for (const yarn::LineSample& sample : yarn::line_samples(body, line_tolerance(options_, body))) {
+      text_ << name << ',' << ++number << ',' << sample.parameter << ',' << sample.arc_length;
+      for (const Vec3& vector : {sample.position, sample.tangent, sample.side, sample.up})
+        for (const double value : vector) text_ << ',' << value + 0.0;
+      for (const double value : {sample.width, sample.height, sample.radius, sample.curvature})
+        text_ << ',' << value;
+      text_ << '\n';
+    }
+    points_ += number;
+    ++lines_;
+    return {};
+  }
+
+  Result<WriteFacts> finish() override {
+    if (lines_ == 0) return error(Kind::geometry, "there is no yarn, whose centre line could be written");
+    return finished(text_, {{"lines", lines_}, {"points", points_}});
+  }
+
+ private:
+  SurfaceOptions options_;
+  TextBuffer text_;
+  std::uint64_t lines_ = 0, points_ = 0;
+};
+
+}  // namespace
+
+const Descriptor& descriptor() {
+  static const Descriptor self = {
+      .name = "csv",
+      .title = "CSV, centre lines as points with frame, section and arc length",
+      .extensions = {".csv"},
+      .open_bodies = open_by<Writer>,
+      .carries_surfaces = false,
+      .carries_lines = true,
+  };
+  return self;
+}
+
+}  // namespace selvage::formats::csv
