@@ -255,7 +255,8 @@ void read_pile(Parser& p, Knit& knit, std::string_view) {
 void read_gating(Parser& p, Knit& knit, std::string_view) {
   const auto gating = p.choice("gating", gating_words);
   std::optional<double> distance;
-  if (gating == Knit::Gating::opposite && p.more()) distance = p.positive("the distance of the beds", Measure::length);
+  if (gating == Knit::Gating::opposite && p.more())
+    distance = p.positive("the distance of the beds", Measure::length);
   if (!p.finish()) return;
   knit.gating = *gating;
   knit.bed_distance = distance;

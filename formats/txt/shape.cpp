@@ -117,8 +117,7 @@ bool is_good_row(Parser& p, const PathRows& rows, const std::array<double, 6>& r
 
 void read_path_row(Parser& p, PathRows& rows) {
   std::array<double, 6> row{};
-  const int count =
-      p.row(row.data(), 6, "a row of the path", Measure::angle, {fixed_word, outline_word});
+  const int count = p.row(row.data(), 6, "a row of the path", Measure::angle, {fixed_word, outline_word});
   ++rows.seen;
   const bool good = is_good_row(p, rows, row, count);
   rows.reading.good = rows.reading.good && good;
@@ -145,8 +144,8 @@ bool all_equal(const std::vector<Vec3>& points) {
 void read_point_row(Parser& p, PointRows& rows) {
   rows.last = p.statement();
   std::array<double, 3> xy{};
-  const int count = p.row(xy.data(), rows.is_spline ? 3 : 2, rows.what,
-                          rows.is_spline ? Measure::plain : Measure::length);
+  const int count =
+      p.row(xy.data(), rows.is_spline ? 3 : 2, rows.what, rows.is_spline ? Measure::plain : Measure::length);
   if (count == 0 || count == 1) p.error(p.here(), fmt::format("{} has two coordinates: x y", rows.what));
   const bool good = count == 2 || (count == 3 && xy[2] > 0.0);
   if (count == 3 && !good) p.error(p.last(), "a weight has to be larger than 0");

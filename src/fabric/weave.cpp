@@ -395,8 +395,7 @@ Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
     const WovenThread& woven = (is_weft ? weft_ : warp_).thread(yarn);
     const double area = yarn::area(plan->spec.section, plan->spec.sizes.front().size);
     if (const std::optional<double> packing = plan->thread.size_packing())
-      plan->thread.packing =
-          std::min(1.0, *packing * area / yarn::area(woven.section, woven.size));
+      plan->thread.packing = std::min(1.0, *packing * area / yarn::area(woven.section, woven.size));
     plan->spec.section = woven.section;
     plan->thread.section = woven.section;
     plan->spec.sizes = {{0.0, woven.size, 0.0}};

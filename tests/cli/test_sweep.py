@@ -10,14 +10,14 @@ import unittest
 from program import Case, children_of, run, start
 
 CLOTH = """fabric 1
-param spacing 1.0
+param distance 1.0
 param d 0.3mm
 thread y
   diameter d
 end
 weave
-  warp y 4 spacing
-  weft y 4 spacing
+  warp y 4 distance
+  weft y 4 distance
   draft plain
 end
 """
@@ -37,38 +37,38 @@ class Sweep(Case):
             return result, list(csv.DictReader(file))
 
     def test_one_value(self):
-        result = self.succeeds("convert", self.cloth, "--set", "d=spacing/4", "--set", "spacing=2", "--to", "txt", "-o", "-")
+        result = self.succeeds("convert", self.cloth, "--set", "d=distance/4", "--set", "distance=2", "--to", "txt", "-o", "-")
         self.assertIn("pitch 2\n", result.stdout)
         self.assertIn("diameter 0.5\n", result.stdout)
 
     def test_grid(self):
-        result, rows = self.sweep("--set", "spacing=0.9:1.1:0.1", "--set", "d=0.2,0.3mm")
-        self.assertEqual([(row["spacing"], row["d"]) for row in rows],
+        result, rows = self.sweep("--set", "distance=0.9:1.1:0.1", "--set", "d=0.2,0.3mm")
+        self.assertEqual([(row["distance"], row["d"]) for row in rows],
                          [(p, d) for p in ("0.9", "1", "1.1") for d in ("0.2", "0.3mm")])
         self.assertIn("6 variants: 6 ok", result.stderr)
         self.assertEqual(result.stdout, "")
         for row in rows:
             # 8 yarns over 4 pitches each; a bent one is longer.
             self.assertEqual(row["result"], "ok")
-            self.assertGreater(float(row["length"]), 8 * 4 * float(row["spacing"]))
-            self.assertLess(float(row["length"]), 8 * 4 * float(row["spacing"]) * 1.2)
+            self.assertGreater(float(row["length"]), 8 * 4 * float(row["distance"]))
+            self.assertLess(float(row["length"]), 8 * 4 * float(row["distance"]) * 1.2)
             self.assertEqual(row["overlaps"], "0")
 
     def test_hypercube(self):
-        words = ("--set", "spacing=0.9:1.4", "--set", "d=0.2:0.3mm", "--lhs", 10)
+        words = ("--set", "distance=0.9:1.4", "--set", "d=0.2:0.3mm", "--lhs", 10)
         _, rows = self.sweep(*words)
-        for name, low, high in (("spacing", 0.9, 1.4), ("d", 0.2, 0.3)):
+        for name, low, high in (("distance", 0.9, 1.4), ("d", 0.2, 0.3)):
             parts = sorted(int((float(row[name].removesuffix("mm")) - low) / (high - low) * 10) for row in rows)
             self.assertEqual(parts, list(range(10)), "each tenth of the range has one sample")
         again = self.sweep(*words)[1]
         other = self.sweep(*words, "--seed", 2)[1]
-        values = [[(row["spacing"], row["d"]) for row in run] for run in (rows, again, other)]
+        values = [[(row["distance"], row["d"]) for row in run] for run in (rows, again, other)]
         self.assertEqual(values[0], values[1])
         self.assertNotEqual(values[0], values[2])
 
     def test_table(self):
         given = self.folder / "given.csv"
-        given.write_text("d;spacing\n0.2mm;1\n# a comment\n\"0.25\";1.2\n")
+        given.write_text("d;distance\n0.2mm;1\n# a comment\n\"0.25\";1.2\n")
         _, rows = self.sweep("--table", given, "--do", "convert", "--to", "iges,txt", "-o", self.out)
         self.assertEqual([row["d"] for row in rows], ["0.2mm", "0.25"])
         self.assertEqual(sorted(path.name for path in self.out.iterdir()),
@@ -77,43 +77,43 @@ class Sweep(Case):
         self.assertIn("diameter 0.25", (self.out / "cloth_0002.txt").read_text())
 
     def test_variants_that_fail_have_a_row(self):
-        result, rows = self.sweep("--set", "spacing=0.1,1", code=1)
+        result, rows = self.sweep("--set", "distance=0.1,1", code=1)
         self.assertEqual([row["result"] for row in rows], ["failed", "ok"])
         self.assertIn("too small", rows[0]["message"])
-        self.assertIn("[spacing=0.1]", result.stderr)
+        self.assertIn("[distance=0.1]", result.stderr)
 
     def test_wrong_words(self):
         for words, part in (
-            (("--set", "spacing=0:1e9:1"), "1000000001 variants are more than the 1000000"),
-            (("--set", "spacing"), "it is NAME=VALUE"),
-            (("--set", "spacing=2:1:0.1"), "from the smaller number to the larger one"),
-            (("--set", "spacing=1:2:0"), "a step is larger than 0"),
-            (("--set", "spacing=1:2:x"), "'x' is not a number"),
-            (("--set", "spacing=1:2"), "is for --lhs"),
-            (("--set", "spacing=1", "--set", "spacing=2"), "set twice"),
+            (("--set", "distance=0:1e9:1"), "1000000001 variants are more than the 1000000"),
+            (("--set", "distance"), "it is NAME=VALUE"),
+            (("--set", "distance=2:1:0.1"), "from the smaller number to the larger one"),
+            (("--set", "distance=1:2:0"), "a step is larger than 0"),
+            (("--set", "distance=1:2:x"), "'x' is not a number"),
+            (("--set", "distance=1:2"), "is for --lhs"),
+            (("--set", "distance=1", "--set", "distance=2"), "set twice"),
             (("--lhs", 3), "--lhs samples ranges"),
             (("--table", self.folder / "none.csv"), "none.csv"),
-            (("--size", "0.1", "--set", "spacing=1"), "does not go with a sweep that does 'check'"),
+            (("--size", "0.1", "--set", "distance=1"), "does not go with a sweep that does 'check'"),
         ):
             result = run("sweep", self.cloth, *words, "--csv", self.table)
             self.assertEqual(result.returncode, 2, words)
             self.assertIn(part, result.stderr)
             self.assertFalse(self.table.exists())
-        result = run("check", self.cloth, "--set", "spacing=1:2:1")
+        result = run("check", self.cloth, "--set", "distance=1:2:1")
         self.assertEqual(result.returncode, 2)
         self.assertIn("selvage sweep", result.stderr)
-        result = run("check", self.cloth, "--set", "spacin=1")
+        result = run("check", self.cloth, "--set", "distanc=1")
         self.assertEqual(result.returncode, 1)
-        self.assertIn("no such param; did you mean 'spacing'?", result.stderr)
+        self.assertIn("no such param; did you mean 'distance'?", result.stderr)
         iges = self.folder / "cloth.igs"
         self.succeeds("convert", self.cloth, "-o", iges)
-        self.assertIn("has no params to set", run("check", iges, "--set", "spacing=1").stderr)
+        self.assertIn("has no params to set", run("check", iges, "--set", "distance=1").stderr)
 
     def test_bad_tables(self):
         given = self.folder / "given.csv"
         for text, part in (("", "is empty"), ("d,\n1,2\n", "column 2 has no name"), ("d,d\n1,2\n", "twice"),
-                           ("d,spacing\n0.2\n", "given.csv:2:1: error: this row has 1 values"),
-                           ("d\n\"0.2\n", "a quote is not closed"), ("d,spacing\n,2\n", "the value of d is missing")):
+                           ("d,distance\n0.2\n", "given.csv:2:1: error: this row has 1 values"),
+                           ("d\n\"0.2\n", "a quote is not closed"), ("d,distance\n,2\n", "the value of d is missing")):
             given.write_text(text)
             result = run("sweep", self.cloth, "--table", given, "--csv", self.table)
             self.assertEqual(result.returncode, 2, text)
@@ -121,7 +121,7 @@ class Sweep(Case):
 
     def test_killed_and_resumed(self):
         report = self.folder / "report.json"
-        words = ("sweep", self.cloth, "--set", "spacing=0.9:1.5", "--set", "d=0.2:0.3", "--lhs", 60, "--csv", self.table,
+        words = ("sweep", self.cloth, "--set", "distance=0.9:1.5", "--set", "d=0.2:0.3", "--lhs", 60, "--csv", self.table,
                  "--report", report)
         process = start(*words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         # Ended by Ctrl-C, once some are done: it leaves its report.
