@@ -79,7 +79,7 @@ class Sweep(Case):
     def test_variants_that_fail_have_a_row(self):
         result, rows = self.sweep("--set", "distance=0.1,1", code=1)
         self.assertEqual([row["result"] for row in rows], ["failed", "ok"])
-        self.assertIn("too small", rows[0]["message"])
+        self.assertIn("jammed", rows[0]["message"])
         self.assertIn("[distance=0.1]", result.stderr)
 
     def test_wrong_words(self):
