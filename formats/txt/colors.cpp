@@ -46,6 +46,7 @@ std::optional<fabric::Color> color_named(std::string_view text) {
 
 std::vector<std::string_view> color_names() {
   std::vector<std::string_view> names;
+  names.reserve(colors.size());
   for (const Named& named : colors) names.push_back(named.name);
   return names;
 }

@@ -11,13 +11,17 @@ namespace selvage::fabric {
 
 namespace {
 
+Status check_size(long long picks, long long ends) {
+  if (picks <= most_crossings / ends) return {};
+  return error(Kind::limit,
+               fmt::format("a draft of {} x {} crossings is larger than the {} that are possible", picks, ends,
+                           most_crossings));
+}
+
 // The square or oblong repeat whose crossings `is_on_top(pick, end)` tells.
 template <class Rule>
 Result<Drawdown> filled(long long picks, long long ends, Rule is_on_top) {
-  if (picks > most_crossings / ends)
-    return error(Kind::limit,
-                 fmt::format("a draft of {} x {} crossings is larger than the {} that are possible", picks,
-                             ends, most_crossings));
+  if (Status fits = check_size(picks, ends); !fits) return fits.error();
   Drawdown drawdown{static_cast<int>(picks), static_cast<int>(ends), {}};
   drawdown.bits.reserve(static_cast<std::size_t>(picks * ends));
   for (long long pick = 0; pick < picks; ++pick)
@@ -78,14 +82,15 @@ Result<Drawdown> twill(const Draft& draft) {
   runs.insert(runs.end(), draft.further.begin(), draft.further.end());
   if (runs.size() % 2 != 0)
     return error(Kind::malformed, "a twill goes over and under in turn: an even number of counts");
-  std::string one_pick;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i] < 1) return error(Kind::malformed, "the counts of a twill are 1 or more");
-    if (runs[i] > most_crossings) return error(Kind::limit, "the counts of the twill are too large");
-    one_pick.append(static_cast<std::size_t>(runs[i]), i % 2 == 0 ? '1' : '0');
-    if (one_pick.size() > most_crossings) return error(Kind::limit, "the counts of the twill are too large");
+  long long period = 0;
+  for (const int run : runs) {
+    if (run < 1) return error(Kind::malformed, "the counts of a twill are 1 or more");
+    period += run;
   }
-  const auto period = static_cast<long long>(one_pick.size());
+  if (Status fits = check_size(period, period); !fits) return fits.error();
+  std::string one_pick;
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    one_pick.append(static_cast<std::size_t>(runs[i]), i % 2 == 0 ? '1' : '0');
   const long long move = draft.hand == Hand::z ? 1 : -1;
   return filled(period, period, [&](long long pick, long long end) {
     return one_pick[static_cast<std::size_t>(wrapped(end + move * pick, period))] == '1';
