@@ -14,8 +14,8 @@ namespace {
 Status check_size(long long picks, long long ends) {
   if (picks <= most_crossings / ends) return {};
   return error(Kind::limit,
-               fmt::format("a draft of {} x {} crossings is larger than the {} that are possible", picks, ends,
-                           most_crossings));
+               fmt::format("a draft of {} x {} crossings is larger than the {} that are possible", picks,
+                           ends, most_crossings));
 }
 
 // The square or oblong repeat whose crossings `is_on_top(pick, end)` tells.
