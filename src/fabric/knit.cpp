@@ -50,7 +50,7 @@ class KnitConstruction final : public Construction {
   [[nodiscard]] std::string name(std::size_t index) const override {
     const long long row = course(index), feeds = field_.chart.feeds(), feed = wrapped(row, feeds);
     const long long number = (row - feed) / feeds + 1;
-    const std::string of_course =
+    std::string of_course =
         feeds == 1 ? fmt::format("course_{}", number) : fmt::format("course_{}_{}", number, feed + 1);
     if (end(index) == 0) return of_course;
     if (knit_.pile_is_cut) return fmt::format("{}_tuft_{}", of_course, tuft(index) + 1);

@@ -157,7 +157,8 @@ Stitch StitchChart::at(long long course, long long wale) const {
 
 double StitchChart::height(long long row) const {
   const long long feed = wrapped<long long>(row, feeds_);
-  return static_cast<double>((row - feed) / feeds_) + static_cast<double>(feed) * feed_step_;
+  const long long course = (row - feed) / feeds_;
+  return static_cast<double>(course) + static_cast<double>(feed) * feed_step_;
 }
 
 Stitch StitchChart::at(long long course, long long wale, int bed) const {
