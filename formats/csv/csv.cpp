@@ -1,5 +1,6 @@
 #include <string>
 
+#include "core/csv.h"
 #include "core/text_buffer.h"
 #include "formats/registry.h"
 #include "yarn/line_samples.h"
@@ -7,17 +8,6 @@
 namespace selvage::formats::csv {
 
 namespace {
-
-// RFC 4180: a field with a comma, a quote or the end of a line in it stands in quotes, and its quotes twice.
-std::string field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += c;
-    quoted += c;
-  }
-  return quoted + '"';
-}
 
 class Writer final : public BodyWriter {
  public:
@@ -31,7 +21,7 @@ class Writer final : public BodyWriter {
   }
 
   Status add_line(const yarn::Body& body) override {
-    const std::string name = field(body.name);
+    const std::string name = csv_value(body.name);
     std::size_t number = 0;
     for (const yarn::LineSample& sample : yarn::line_samples(body, line_tolerance(options_, body))) {
       text_ << name << ',' << ++number << ',' << sample.parameter << ',' << sample.arc_length;

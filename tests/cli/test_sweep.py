@@ -4,10 +4,9 @@ import csv
 import json
 import signal
 import subprocess
-import time
 import unittest
 
-from program import Case, children_of, run, start
+from program import Case, run, start
 
 CLOTH = """fabric 1
 param distance 1.0
@@ -33,8 +32,11 @@ class Sweep(Case):
     def sweep(self, *words, code=0):
         result = run("sweep", self.cloth, *words, "--csv", self.table)
         self.assertEqual(result.returncode, code, result.stderr)
+        return result, self.rows()
+
+    def rows(self):
         with open(self.table, newline="") as file:
-            return result, list(csv.DictReader(file))
+            return list(csv.DictReader(file))
 
     def test_one_value(self):
         result = self.succeeds("convert", self.cloth, "--set", "d=distance/4", "--set", "distance=2", "--to", "txt", "-o", "-")
@@ -119,29 +121,34 @@ class Sweep(Case):
             self.assertEqual(result.returncode, 2, text)
             self.assertIn(part, result.stderr)
 
-    def test_killed_and_resumed(self):
+    def test_stopped_and_resumed(self):
         report = self.folder / "report.json"
-        words = ("sweep", self.cloth, "--set", "distance=0.9:1.5", "--set", "d=0.2:0.3", "--lhs", 60, "--csv", self.table,
-                 "--report", report)
+        words = ("sweep", self.cloth, "--set", "distance=0.9:1.5", "--set", "d=0.2:0.3", "--lhs", 400, "--csv", self.table,
+                 "--do", "convert", "--to", "iges", "-o", self.out, "--report", report)
         process = start(*words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        # Ended by Ctrl-C, once some are done: it leaves its report.
-        while process.poll() is None and not children_of(process.pid):
-            time.sleep(0.01)
-        time.sleep(1)
+        # Ended by Ctrl-C once the first file is there: it leaves its report.
+        while process.poll() is None and not (self.out.is_dir() and any(self.out.glob("*.igs"))):
+            pass
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(), 130)
         done = len(json.loads(report.read_text())["inputs"])
         self.assertGreater(done, 0)
-        self.assertLess(done, 60)
+        self.assertLess(done, 400)
+        self.assertEqual(sum(row["result"] == "ok" for row in self.rows()), done)
         result = run(*words, "--resume")
         self.assertEqual(result.returncode, 0, result.stderr)
         counts = json.loads(report.read_text())["counts"]
-        self.assertEqual(counts["skipped"] + counts["done"], 60)
-        self.assertGreater(counts["skipped"], 0)
-        with open(self.table, newline="") as file:
-            rows = list(csv.DictReader(file))
-        self.assertEqual(len(rows), 60)
-        self.assertTrue(all(row["result"] == "ok" and row["volume"] for row in rows))
+        self.assertEqual((counts["skipped"], counts["done"]), (done, 400 - done))
+        self.assertEqual(len(list(self.out.iterdir())), 400)
+        self.assertTrue(all(row["result"] == "ok" and row["volume"] for row in self.rows()))
+
+    def test_what_was_checked_is_not_checked_again(self):
+        words = ("sweep", self.cloth, "--csv", self.table, "--report", self.folder / "report.json")
+        self.succeeds(*words, "--set", "distance=1,1.1")
+        self.succeeds(*words, "--set", "distance=1,1.1,1.2", "--resume")
+        counts = json.loads((self.folder / "report.json").read_text())["counts"]
+        self.assertEqual((counts["skipped"], counts["done"]), (2, 1))
+        self.assertEqual([row["result"] for row in self.rows()], ["ok", "ok", "ok"])
 
 
 if __name__ == "__main__":
