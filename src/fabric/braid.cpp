@@ -53,6 +53,11 @@ class BraidConstruction : public Construction {
 
   [[nodiscard]] std::size_t count() const override { return braiders() + axials(); }
 
+  [[nodiscard]] Vec2 unit() const override { return Vec2::Zero(); }
+  [[nodiscard]] std::string system(std::size_t index) const override {
+    return index < braiders() ? "braider" : "axial";
+  }
+
   [[nodiscard]] std::string name(std::size_t index) const override {
     return index < braiders() ? fmt::format("braider_{}", index + 1)
                               : fmt::format("axial_{}", index - braiders() + 1);

@@ -126,7 +126,7 @@ Result<YarnPlan> plan_of_path(const Fabric& fabric, const Yarn& yarn, const Buil
   return plan;
 }
 
-void describe(yarn::Body& body, const std::string& name, const std::string& thread_name, const Thread& thread,
+void describe(yarn::BodyLabel& body, const std::string& name, const std::string& thread_name, const Thread& thread,
               Unit units, Role role, TextPlace place) {
   body.name = name;
   body.thread = thread_name;
@@ -239,7 +239,16 @@ std::optional<Repeat> YarnBuilder::repeat() const {
 }
 
 YarnBuilder::Origin YarnBuilder::origin(std::size_t index) const {
-  return {entries_[index].yarn, entries_[index].parts > 1};
+  const Entry& entry = entries_[index];
+  return {entry.yarn, entry.parts > 1, entry.made != nullptr ? entry.made->construction.get() : nullptr,
+          entry.index};
+}
+
+std::vector<const Construction*> YarnBuilder::constructions() const {
+  std::vector<const Construction*> all;
+  all.reserve(constructions_.size());
+  for (const auto& made : constructions_) all.push_back(made->construction.get());
+  return all;
 }
 
 struct YarnBuilder::NameIndex {
@@ -494,33 +503,70 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
   return body;
 }
 
-Result<yarn::Body> YarnBuilder::build_swept(const Entry& entry, YarnPlan plan) const {
-  yarn::Body body;
-  describe(body, plan.name, plan.thread_name, plan.thread, fabric_->units, plan.role, plan.place);
-  body.group = plan.group.empty() && entry.yarn != nullptr ? entry.yarn->group : plan.group;
+yarn::BodyLabel YarnBuilder::label_of(const Entry& entry, const YarnPlan& plan) const {
+  yarn::BodyLabel label;
+  describe(label, plan.name, plan.thread_name, plan.thread, fabric_->units, plan.role, plan.place);
+  label.group = plan.group.empty() && entry.yarn != nullptr ? entry.yarn->group : plan.group;
+  label.section_turns = plan.spec.twist != 0.0;
+  return label;
+}
+
+// Takes the plan's line.
+ShapeMemo::Plan YarnBuilder::shape_plan(const Entry& entry, YarnPlan& plan) const {
   yarn::TubeSpec& spec = plan.spec;
-  body.section_turns = spec.twist != 0.0;
   spec.tolerance = spec.tolerance > 0.0 ? std::min(spec.tolerance, tolerance_) : tolerance_;
   if (!options_.full_digits) spec.grid = DecimalGrid(1e-4 * spec.tolerance);
   spec.max_control_points = options_.max_control_points;
-  const ShapeMemo::Plan shape{std::move(plan.line), std::move(plan.spec),
-                              sealings_of(*fabric_, entry.yarn, options_)};
-  // A yarn of the text is planned once.
-  std::shared_ptr<const yarn::Body> known = entry.yarn == nullptr ? shapes_->find(shape) : nullptr;
-  if (known != nullptr) {
-    const yarn::BodyLabel label = std::move(body);
+  return {std::move(plan.line), spec, sealings_of(*fabric_, entry.yarn, options_)};
+}
+
+// A yarn of the text is planned once.
+std::shared_ptr<const yarn::Body> YarnBuilder::known_shape(const Entry& entry,
+                                                           const ShapeMemo::Plan& shape) const {
+  return entry.yarn == nullptr ? shapes_->find(shape) : nullptr;
+}
+
+Status YarnBuilder::sweep(yarn::Body& body, const Entry& entry, const ShapeMemo::Plan& shape,
+                          const YarnPlan& plan) const {
+  body.messages = plan.messages;
+  body.path_miss = shape.line.largest_miss;
+  if (Status swept = yarn::sweep(body, shape.line, shape.spec); !swept) return swept;
+  if (Status finished = yarn::finish(body, shape.sealings); !finished) return finished;
+  if (entry.yarn == nullptr) shapes_->keep(shape, body);
+  return {};
+}
+
+Result<yarn::Body> YarnBuilder::build_swept(const Entry& entry, YarnPlan plan) const {
+  yarn::Body body;
+  yarn::BodyLabel label = label_of(entry, plan);
+  const ShapeMemo::Plan shape = shape_plan(entry, plan);
+  if (const std::shared_ptr<const yarn::Body> known = known_shape(entry, shape)) {
     body = *known;
-    static_cast<yarn::BodyLabel&>(body) = label;
+    static_cast<yarn::BodyLabel&>(body) = std::move(label);
   } else {
-    body.messages = std::move(plan.messages);
-    body.path_miss = shape.line.largest_miss;
-    if (Status swept = yarn::sweep(body, shape.line, shape.spec); !swept) return swept.error();
-    if (Status finished = yarn::finish(body, shape.sealings); !finished) return finished.error();
-    if (entry.yarn == nullptr) shapes_->keep(shape, body);
+    static_cast<yarn::BodyLabel&>(body) = std::move(label);
+    if (Status swept = sweep(body, entry, shape, plan); !swept) return swept.error();
   }
   body.density = density_of(*fabric_, plan.thread, body);
   if (plan.at != Vec3::Zero()) yarn::move(body, plan.at, shape.spec.grid);
   return body;
+}
+
+Result<YarnBuilder::Shaped> YarnBuilder::shape(std::size_t index) const {
+  const Entry& entry = entries_[index];
+  Result<YarnPlan> plan = plan_of(entry);
+  if (!plan) return plan.error();
+  Shaped shaped{nullptr, label_of(entry, *plan), plan->at};
+  const ShapeMemo::Plan shape = shape_plan(entry, *plan);
+  shaped.body = known_shape(entry, shape);
+  if (shaped.body == nullptr) {
+    auto body = std::make_shared<yarn::Body>();
+    static_cast<yarn::BodyLabel&>(*body) = shaped.label;
+    if (Status swept = sweep(*body, entry, shape, *plan); !swept) return placed(swept.error(), entry);
+    shaped.body = std::move(body);
+  }
+  shaped.label.density = density_of(*fabric_, plan->thread, *shaped.body);
+  return shaped;
 }
 
 }  // namespace selvage::fabric

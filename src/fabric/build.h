@@ -13,11 +13,10 @@
 #include "fabric/model.h"
 #include "fabric/plan.h"
 #include "fabric/plies.h"
+#include "fabric/shape_memo.h"
 #include "yarn/body.h"
 
 namespace selvage::fabric {
-
-class ShapeMemo;
 
 struct BuildOptions {
   std::optional<yarn::EndStyle> ends;  // none: as the file has them; where it does not say, patch
@@ -58,8 +57,12 @@ class YarnBuilder {
   struct Origin {
     const Yarn* yarn = nullptr;
     bool is_part = false;
+    const Construction* construction = nullptr;  // null: it stands in the text
+    std::size_t index = 0;                       // of the construction's yarns
   };
   [[nodiscard]] Origin origin(std::size_t index) const;
+  // In file order.
+  [[nodiscard]] std::vector<const Construction*> constructions() const;
   // The first yarn (or part of a yarn) of this name; none where there is no such yarn.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
   // Of all constructions together; none where yarns stand in the text, or there are no constructions.
@@ -70,6 +73,14 @@ class YarnBuilder {
   // Errors: geometry, limit; with the yarn, its file and line. Warnings are in Body::messages. Yarns of a
   // construction that are planned alike are swept once, and moved.
   [[nodiscard]] Result<yarn::Body> build(std::size_t index) const;
+  // A yarn of a construction as it was swept, `at` away from its place. Bodies of one shape (yarn::Body) are
+  // one body, with the label of the first. Errors: as build.
+  struct Shaped {
+    std::shared_ptr<const yarn::Body> body;
+    yarn::BodyLabel label;
+    Vec3 at = Vec3::Zero();
+  };
+  [[nodiscard]] Result<Shaped> shape(std::size_t index) const;
 
  private:
   struct Made;
@@ -91,6 +102,12 @@ class YarnBuilder {
   [[nodiscard]] std::string name_of(const Entry& entry) const;
   [[nodiscard]] Result<YarnPlan> whole_plan(const Entry& entry) const;
   [[nodiscard]] Result<YarnPlan> plan_of(const Entry& entry) const;  // told from where the yarn stands
+  [[nodiscard]] yarn::BodyLabel label_of(const Entry& entry, const YarnPlan& plan) const;
+  [[nodiscard]] ShapeMemo::Plan shape_plan(const Entry& entry, YarnPlan& plan) const;
+  [[nodiscard]] std::shared_ptr<const yarn::Body> known_shape(const Entry& entry,
+                                                              const ShapeMemo::Plan& shape) const;
+  [[nodiscard]] Status sweep(yarn::Body& body, const Entry& entry, const ShapeMemo::Plan& shape,
+                             const YarnPlan& plan) const;
   [[nodiscard]] Result<yarn::Body> build_swept(const Entry& entry, YarnPlan plan) const;
   [[nodiscard]] Result<YarnPlan> part_plan(const Entry& entry) const;
   [[nodiscard]] Result<yarn::Body> build_grid(const Yarn& yarn) const;

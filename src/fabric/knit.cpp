@@ -56,6 +56,11 @@ class KnitConstruction final : public Construction {
     if (knit_.pile_is_cut) return fmt::format("{}_tuft_{}", of_course, tuft(index) + 1);
     return of_course + (knit_.pile ? "_pile" : "_plating");
   }
+  [[nodiscard]] Vec2 unit() const override { return pitch_; }
+  [[nodiscard]] std::string system(std::size_t index) const override {
+    if (end(index) == 0) return "course";
+    return knit_.pile ? "pile" : "plating";
+  }
   [[nodiscard]] const Thread& thread(std::size_t index) const override {
     if (end(index) == 1) return *fabric_.find_thread(knit_.plating);
     return *threads_[static_cast<std::size_t>(

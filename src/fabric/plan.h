@@ -49,6 +49,10 @@ class Construction {
   [[nodiscard]] virtual Result<YarnPlan> plan(std::size_t index) const = 0;
   // Of the endless cloth, exact.
   [[nodiscard]] virtual Repeat repeat() const = 0;
+  // What the cloth counts: from crossing to crossing or loop to loop, along x and y; of a braid 0.
+  [[nodiscard]] virtual Vec2 unit() const = 0;
+  // What yarns that do the same are called together: warp, course, bar1, braider.
+  [[nodiscard]] virtual std::string system(std::size_t index) const = 0;
 };
 
 // The same plan, told from the origin.

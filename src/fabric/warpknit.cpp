@@ -61,6 +61,10 @@ class WarpknitConstruction final : public Construction {
   [[nodiscard]] std::string name(std::size_t index) const override {
     return fmt::format("bar{}_{}", bar_of(index) + 1, guide_of(index) + 1);
   }
+  [[nodiscard]] Vec2 unit() const override { return {warpknit_.wale_pitch, warpknit_.course_pitch}; }
+  [[nodiscard]] std::string system(std::size_t index) const override {
+    return fmt::format("bar{}", bar_of(index) + 1);
+  }
   [[nodiscard]] const Thread& thread(std::size_t index) const override {
     return *piece_.bars[bar_of(index)].thread;
   }

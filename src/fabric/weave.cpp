@@ -296,6 +296,12 @@ WeaveConstruction::Place WeaveConstruction::place_of(std::size_t index) const {
   return {&block, block.begin + static_cast<long long>(index - block.first)};
 }
 
+std::string WeaveConstruction::system(std::size_t index) const {
+  const Block::Kind kind = place_of(index).block->kind;
+  if (kind == Block::Kind::binder) return "binder";
+  return kind == Block::Kind::warp ? "warp" : "weft";
+}
+
 std::string WeaveConstruction::name(std::size_t index) const {
   const auto [block, yarn] = place_of(index);
   if (block->kind == Block::Kind::binder) {

@@ -63,6 +63,8 @@ class WeaveConstruction final : public Construction {
   [[nodiscard]] std::uint64_t longest() const override { return std::max(points_of(false), points_of(true)); }
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
   [[nodiscard]] Repeat repeat() const override;
+  [[nodiscard]] Vec2 unit() const override { return {weft_.text->pitch, warp_.text->pitch}; }
+  [[nodiscard]] std::string system(std::size_t index) const override;
 
  private:
   struct Place {

@@ -15,6 +15,7 @@
 #include "pipeline/facts.h"
 #include "pipeline/job.h"
 #include "pipeline/pieces.h"
+#include "pipeline/sheet_report.h"
 #include "pipeline/table.h"
 
 namespace selvage::pipeline {
@@ -165,6 +166,17 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder) {
   return text;
 }
 
+// What the cloths of the text are, by the numbers of the trade.
+std::string data_sheets(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilder& builder) {
+  if (builder.constructions().empty()) return {};
+  const fabric::SheetResult result = fabric::sheets_of(fabric, builder, job.build_options());
+  job.say_all(result.missing);
+  job.report["sheets"] = if_true(!result.sheets.empty(), sheets_json(result.sheets));
+  std::string text;
+  for (const fabric::Sheet& sheet : result.sheets) text += sheet_text(sheet);
+  return text;
+}
+
 std::string piece_tables(Job& job, const fabric::Fabric& fabric) {
   std::vector<fabric::PieceShape> shapes;
   for (const fabric::Piece* piece : fabric::pieces_of(fabric))
@@ -192,7 +204,7 @@ void info(Job& job) {
   const std::string head = heading(job, *fabric) + of_file;
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
   std::string tables;
-  if (builder && builder->count() > 0) tables = yarn_table(job, *builder);
+  if (builder && builder->count() > 0) tables = data_sheets(job, *fabric, *builder) + yarn_table(job, *builder);
   if (builder) tables += piece_tables(job, *fabric) + other_tables(job, *fabric);
   if (!job.options.json) job.print(head + tables);
 }

@@ -1,0 +1,498 @@
+#include "fabric/sheet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "core/overloaded.h"
+#include "core/plane.h"
+#include "fabric/lapping.h"
+#include "fabric/warpknit_points.h"
+#include "fabric/yarn_spec.h"
+#include "nurbs/basis.h"
+#include "nurbs/measure.h"
+#include "nurbs/patch.h"
+#include "nurbs/restrict.h"
+#include "nurbs/roots.h"
+#include "yarn/ends.h"
+
+namespace selvage::fabric {
+
+namespace {
+
+using std::numbers::pi;
+
+// Where the curve first reaches a plane across an axis from below; none where it does not.
+std::optional<double> first_crossing(const nurbs::Curve& curve, int axis, double plane) {
+  const auto beyond = [&](double t) { return nurbs::evaluate(curve, t)[axis] >= plane; };
+  constexpr int looks = 16, halvings = 60;
+  const auto degree = static_cast<std::size_t>(curve.degree);
+  for (std::size_t span = degree; span < curve.points.size(); ++span) {
+    const double from = curve.knots[span], to = curve.knots[span + 1];
+    const auto reaches = [&](const Vec3& point) { return point[axis] >= plane; };
+    const auto points = std::span(curve.points).subspan(span - degree, degree + 1);
+    if (!(to > from) || std::ranges::none_of(points, reaches)) continue;
+    double low = from;
+    for (int i = 1; i <= looks; ++i) {
+      double high = i == looks ? to : from + (to - from) * i / looks;
+      if (beyond(high)) {
+        nurbs::halve_between(low, high, halvings, [&](double t) { return !beyond(t); });
+        return high;
+      }
+      low = high;
+    }
+  }
+  return std::nullopt;
+}
+
+// A yarn from a plane to the one a repeat on; file units.
+struct Stretch {
+  double begin = 0, end = 0;  // parameters
+  double length = 0, forward = 0, volume = 0;
+  Vec3 start = Vec3::Zero();
+  Box3 box;
+  double inner = 0, outer = 0;  // distances from the z axis
+  double turn = 0;              // about it, radians
+};
+
+// Distances from the z axis, and the turn about it.
+void look_round(const YarnBuilder::Shaped& yarn, Stretch& piece) {
+  constexpr int across = 64, along = 512;
+  const nurbs::Surface& surface = yarn.body->surface;
+  std::vector<double> us, vs;
+  for (int i = 0; i < across; ++i)
+    us.push_back(std::lerp(surface.first_u(), surface.last_u(), 1.0 * i / across));
+  for (int i = 0; i <= along; ++i) vs.push_back(std::lerp(piece.begin, piece.end, 1.0 * i / along));
+  piece.inner = std::numeric_limits<double>::infinity();
+  for (const Vec3& point : nurbs::evaluate_grid(surface, us, vs)) {
+    const double distance = (point + yarn.at).head<2>().norm();
+    piece.inner = std::min(piece.inner, distance);
+    piece.outer = std::max(piece.outer, distance);
+  }
+  const auto place = [&](double v) { return Vec2((nurbs::evaluate(yarn.body->axis, v) + yarn.at).head<2>()); };
+  for (std::size_t i = 1; i < vs.size(); ++i) {
+    const Vec2 from = place(vs[i - 1]), to = place(vs[i]);
+    piece.turn += std::atan2(cross(from, to), from.dot(to));
+  }
+}
+
+std::optional<Stretch> piece_of(const yarn::Body& body, int axis, double from, double to) {
+  const std::optional<double> begin = first_crossing(body.axis, axis, from);
+  const std::optional<double> end = first_crossing(body.axis, axis, to);
+  if (!begin || !end || !(*begin < *end)) return std::nullopt;
+  Stretch piece;
+  piece.forward = to - from;
+  piece.begin = *begin;
+  piece.end = *end;
+  piece.length = nurbs::arc_length(body.axis, *begin, *end);
+  piece.start = nurbs::evaluate(body.axis, *begin);
+  const Vec3 stop = nurbs::evaluate(body.axis, *end);
+  yarn::Body part;
+  part.surface =
+      nurbs::restricted(body.surface, body.surface.first_u(), body.surface.last_u(), *begin, *end);
+  // A plane seals each end; the one through the start sees nothing of it.
+  const double sealed = yarn::area_vector(yarn::end_curve(part, true)).dot(stop - piece.start) / 3.0;
+  piece.volume = std::abs(nurbs::volume_flux(part.surface, piece.start) + (body.inward ? -sealed : sealed));
+  nurbs::extend(piece.box, part.surface, 1e-9 * yarn::bounds(part).diagonal().norm());
+  return piece;
+}
+
+// The share of a period that these lanes (middle, width) hide.
+double hidden_share(std::vector<std::pair<double, double>> lanes, double period) {
+  std::vector<std::pair<double, double>> parts;  // from, to, within the period
+  for (const auto& [middle, width] : lanes) {
+    if (width >= period) return 1;
+    const double from = middle - 0.5 * width - period * std::floor((middle - 0.5 * width) / period);
+    parts.emplace_back(from, std::min(from + width, period));
+    if (from + width > period) parts.emplace_back(0.0, from + width - period);
+  }
+  std::ranges::sort(parts);
+  double hidden = 0, reached = 0;
+  for (const auto& [from, to] : parts) {
+    hidden += std::max(0.0, to - std::max(from, reached));
+    reached = std::max(reached, to);
+  }
+  return hidden / period;
+}
+
+// One repeat of a construction as a cloth of its own, with a cell so that it goes on beyond it.
+struct Sample {
+  Fabric fabric;
+  int axis_of_braid = -1;  // 0: a strip, 2: a tube; -1: no braid
+  Vec3 low = Vec3::Zero(), size = Vec3::Zero();  // file units; of a braid one number
+};
+
+std::string kind_of(const Item& item) {
+  return std::visit(Overloaded{[](const Weave&) { return "weave"; }, [](const Knit&) { return "knit"; },
+                               [](const Warpknit&) { return "warpknit"; },
+                               [](const Braid&) { return "braid"; }, [](const auto&) { return ""; }},
+                    item);
+}
+
+// Why there is none, else.
+Result<Sample> sample_of(const Fabric& fabric, const Item& item, const Repeat& repeat, const Vec2& unit) {
+  Sample sample;
+  Fabric& made = sample.fabric;
+  made.file = fabric.file;
+  made.units = fabric.units;
+  made.units_given = fabric.units_given;
+  made.tolerance = fabric.tolerance;
+  made.threads = fabric.threads;
+  made.materials = fabric.materials;
+  made.outlines = fabric.outlines;
+  made.items = {item};
+  if (auto* const braid = std::get_if<Braid>(&made.items.front())) {
+    const int axis = braid->flat ? 0 : 2;
+    if (!repeat[static_cast<std::size_t>(axis)])
+      return error(Kind::unsupported, "the braid does not repeat along its axis");
+    sample.axis_of_braid = axis;
+    sample.size[axis] = *repeat[static_cast<std::size_t>(axis)];
+    braid->length = sample.size[axis];
+  } else {
+    if (!repeat[0] || !repeat[1])
+      return error(Kind::unsupported, fmt::format("the {} does not repeat", kind_of(item)));
+    // Where any translation will do, one pitch.
+    for (int axis : {0, 1}) {
+      const double along = *repeat[static_cast<std::size_t>(axis)];
+      sample.size[axis] = along > 0 ? along : unit[axis];
+    }
+    const auto counted = [&](int axis) { return static_cast<int>(std::lround(sample.size[axis] / unit[axis])); };
+    if (auto* const weave = std::get_if<Weave>(&made.items.front())) {
+      // Binders lie in gaps that the cloth of the text has.
+      const bool is_bound = !weave->binders.empty();
+      weave->warp.count = std::max(counted(1), is_bound ? weave->warp.count : 0);
+      weave->weft.count = std::max(counted(0), is_bound ? weave->weft.count : 0);
+    } else if (auto* const knit = std::get_if<Knit>(&made.items.front())) {
+      knit->wales = counted(0);
+      knit->courses = counted(1);
+    } else if (auto* const warpknit = std::get_if<Warpknit>(&made.items.front())) {
+      // Loops may reach as far up as they are held.
+      const int courses = counted(1), before = (longest_hold + 1) / courses + 1;
+      warpknit->wales = counted(0);
+      warpknit->courses = (1 + 2 * before) * courses;
+      sample.low.y() = before * sample.size.y();
+    }
+  }
+  Cell cell;
+  cell.low = sample.low;
+  cell.high = sample.low + sample.size;
+  cell.periodic = {true, true, false};
+  made.cell = cell;
+  return sample;
+}
+
+double tex_of(double mass, double length) {  // g, mm
+  return length > 0 ? 1e6 * mass / length : 0;
+}
+double cotton_count(double tex) {
+  return LinearDensity{1, LinearDensity::Measure::ne}.tex() / tex;
+}
+constexpr double inch = 25.4;
+
+// Sums over the yarns of a repeat.
+class Measuring {
+ public:
+  Measuring(const Fabric& fabric, const Sample& sample, const Vec2& unit)
+      : fabric_(fabric), sample_(sample), unit_(unit), mm_(millimetres_per(fabric.units)) {}
+
+  void add(const YarnBuilder::Shaped& yarn, const Construction& construction, std::size_t index);
+  [[nodiscard]] Sheet sheet(const Item& item) const;
+
+ private:
+  struct Sum {
+    double forward = 0, length = 0, volume = 0, fibres = 0, mass = 0;  // mm, mm3, g
+    bool has_mass = true, has_fibres = true;
+    int yarns = 0;
+  };
+  using Sums = std::vector<std::pair<std::string, Sum>>;  // in the order of their first yarns
+
+  [[nodiscard]] bool is_braid() const { return sample_.axis_of_braid >= 0; }
+  [[nodiscard]] bool is_tube() const { return sample_.axis_of_braid == 2; }
+  [[nodiscard]] int axis_of(const yarn::Body& body) const;
+  [[nodiscard]] Stretch measured(const yarn::Body& body, int axis, double at) const;
+  [[nodiscard]] Stretch piece_in_repeat(const YarnBuilder::Shaped& yarn, int axis);
+  [[nodiscard]] bool is_known(const std::string& system, int axis, const Stretch& piece);
+  void add_to(Sums& sums, const std::string& name, const Stretch& piece, const yarn::BodyLabel& label,
+              const Thread& thread) const;
+  // Of the repeat, mm2; of a braid the length, mm.
+  [[nodiscard]] double extent() const {
+    return is_braid() ? mm_ * sample_.size[sample_.axis_of_braid]
+                      : mm_ * mm_ * sample_.size.x() * sample_.size.y();
+  }
+  [[nodiscard]] double per_m() const { return is_braid() ? 1e3 / extent() : 1e6 / extent(); }
+  [[nodiscard]] SystemSheet system_sheet(const Item& item, const std::string& name, const Sum& sum) const;
+  [[nodiscard]] ThreadSheet thread_sheet(const std::string& name, const Sum& sum) const;
+  void set_braid(const Braid& braid, Sheet& sheet) const;
+
+  const Fabric& fabric_;
+  const Sample& sample_;
+  Vec2 unit_;
+  double mm_;
+  Sums systems_, threads_;
+  std::map<std::pair<std::string, int>, std::vector<Vec3>> starts_;
+  std::map<std::tuple<std::uint64_t, int, double>, Stretch> pieces_;  // by shape, axis, and where along it
+  std::array<std::vector<std::pair<double, double>>, 2> lanes_;  // of yarns along x, along y
+  Box3 box_;
+  double inner_ = std::numeric_limits<double>::infinity(), outer_ = 0;
+  double turn_ = 0, width_ = 0;  // of braiders, summed: radians a mm, and mm
+  int braiders_ = 0;
+};
+
+// The one that it goes forward along.
+int Measuring::axis_of(const yarn::Body& body) const {
+  if (is_braid()) return sample_.axis_of_braid;
+  const Vec3 forward = nurbs::evaluate(body.axis, body.axis.last_parameter()) -
+                       nurbs::evaluate(body.axis, body.axis.first_parameter());
+  return std::abs(forward.x()) >= std::abs(forward.y()) ? 0 : 1;
+}
+
+// Of a body that stands `at` away from its place along the axis. What lies in the cloth by itself, such as a
+// tuft, is taken whole.
+Stretch Measuring::measured(const yarn::Body& body, int axis, double at) const {
+  // Beside a crossing or the middle of a loop, where places tie.
+  const double beside = is_braid() ? 0.0 : 0.137 * unit_[axis];
+  const double from = sample_.low[axis] + beside - at;
+  if (const auto piece = piece_of(body, axis, from, from + sample_.size[axis])) return *piece;
+  Stretch whole;
+  whole.length = body.length;
+  whole.volume = body.volume;
+  whole.start = nurbs::evaluate(body.axis, body.axis.first_parameter());
+  nurbs::extend(whole.box, body.surface, 1e-9 * yarn::bounds(body).diagonal().norm());
+  return whole;
+}
+
+// Of one shape one is measured, wherever it lies across.
+Stretch Measuring::piece_in_repeat(const YarnBuilder::Shaped& yarn, int axis) {
+  const double at = yarn.at[axis];
+  Stretch piece;
+  if (yarn.body->shape == 0) {
+    piece = measured(*yarn.body, axis, at);
+  } else {
+    const auto [known, is_new] = pieces_.try_emplace({yarn.body->shape, axis, at});
+    if (is_new) known->second = measured(*yarn.body, axis, at);
+    piece = known->second;
+  }
+  piece.start += yarn.at;
+  piece.box.translate(yarn.at);
+  if (is_tube()) look_round(yarn, piece);
+  return piece;
+}
+
+// Another one, whole repeats beside it, was there.
+bool Measuring::is_known(const std::string& system, int axis, const Stretch& piece) {
+  if (is_braid()) return false;
+  constexpr double same = 1e-6;
+  const auto is_beside = [&](const Vec3& start, int k) {
+    const double apart = (piece.start[k] - start[k]) / sample_.size[k];
+    return std::abs(apart - std::round(apart)) * sample_.size[k] <= same * unit_[k];
+  };
+  std::vector<Vec3>& starts = starts_[{system, axis}];
+  for (const Vec3& start : starts)
+    if (is_beside(start, 0) && is_beside(start, 1) &&
+        std::abs(piece.start.z() - start.z()) <= same * unit_.minCoeff())
+      return true;
+  starts.push_back(piece.start);
+  return false;
+}
+
+void Measuring::add_to(Sums& sums, const std::string& name, const Stretch& piece,
+                       const yarn::BodyLabel& label, const Thread& thread) const {
+  auto found = std::ranges::find(sums, name, &Sums::value_type::first);
+  if (found == sums.end()) found = sums.insert(sums.end(), {name, Sum{}});
+  Sum& sum = found->second;
+  const double length = mm_ * piece.length, volume = mm_ * mm_ * mm_ * piece.volume;
+  const double mass =
+      thread.linear_density ? 1e-6 * thread.linear_density->tex() * length : 1e-3 * label.density * volume;
+  std::optional<double> fibres;
+  if (label.fibre_area > 0)
+    fibres = label.fibre_area * mm_ * mm_ * length;
+  else if (const std::optional<double> packing = thread.size_packing())
+    fibres = *packing * volume;
+  ++sum.yarns;
+  sum.forward += mm_ * piece.forward;
+  sum.length += length;
+  sum.volume += volume;
+  sum.mass += mass;
+  sum.has_mass = sum.has_mass && mass > 0;
+  sum.fibres += fibres.value_or(0);
+  sum.has_fibres = sum.has_fibres && fibres;
+}
+
+void Measuring::add(const YarnBuilder::Shaped& yarn, const Construction& construction, std::size_t index) {
+  const int axis = axis_of(*yarn.body);
+  const Stretch piece = piece_in_repeat(yarn, axis);
+  const std::string system = construction.system(index);
+  const Thread& thread = construction.thread(index);
+  if (is_known(system, axis, piece)) return;
+  add_to(systems_, system, piece, yarn.label, thread);
+  add_to(threads_, thread.name, piece, yarn.label, thread);
+  box_.extend(piece.box);
+  if (!is_braid()) {
+    const double low = piece.box.min()[1 - axis], high = piece.box.max()[1 - axis];
+    lanes_[static_cast<std::size_t>(axis)].emplace_back(0.5 * (low + high), high - low);
+  }
+  if (!is_tube()) return;
+  inner_ = std::min(inner_, piece.inner);
+  outer_ = std::max(outer_, piece.outer);
+  if (yarn.label.role != Role::braider) return;
+  ++braiders_;
+  turn_ += std::abs(piece.turn) / (mm_ * piece.forward);
+  if (const Result<yarn::Section> section = centred_section_of(thread, fabric_.units))
+    width_ += mm_ * yarn::nominal_size(*section).width;
+}
+
+SystemSheet Measuring::system_sheet(const Item& item, const std::string& name, const Sum& sum) const {
+  SystemSheet system;
+  system.name = name;
+  if (sum.forward > 0) {
+    system.per_mm = is_braid() ? sum.yarns : sum.forward / extent();
+    system.crimp = sum.length / sum.forward - 1;
+  }
+  system.length = 1e-3 * sum.length * per_m();
+  if (sum.has_mass) system.mass = sum.mass * per_m();
+  const double tex = sum.has_mass ? tex_of(sum.mass, sum.length) : 0;
+  if (std::holds_alternative<Weave>(item) && tex > 0 && system.per_mm)
+    system.cover_factor = inch * *system.per_mm / std::sqrt(cotton_count(tex));
+  if (std::holds_alternative<Knit>(item)) {
+    const double needles = mm_ * sample_.size.x() / (mm_ * unit_.x());
+    system.loop_length = sum.length / (sum.forward > 0 ? sum.yarns * needles : sum.yarns);
+    if (tex > 0) system.tightness = std::sqrt(tex) / (0.1 * *system.loop_length);
+  }
+  if (std::holds_alternative<Warpknit>(item)) {
+    constexpr double courses_a_rack = 480;
+    system.run_in = courses_a_rack * sum.length * unit_.y() / (sum.yarns * sample_.size.y());
+  }
+  return system;
+}
+
+ThreadSheet Measuring::thread_sheet(const std::string& name, const Sum& sum) const {
+  ThreadSheet sheet;
+  sheet.name = name;
+  sheet.length = 1e-3 * sum.length * per_m();
+  if (sum.has_mass) {
+    sheet.tex = tex_of(sum.mass, sum.length);
+    sheet.mass = sum.mass * per_m();
+  }
+  if (sum.has_fibres) sheet.fibre_fraction = sum.fibres / sum.volume;
+  const Thread* const thread = fabric_.find_thread(name);
+  if (thread == nullptr || !thread->twist || thread->twist->turns == 0 || !(sheet.tex > 0)) return sheet;
+  const double turns = std::abs(thread->twist->turns);  // a metre
+  sheet.twist_factor = turns * std::sqrt(sheet.tex);
+  sheet.cotton_twist_factor = 1e-3 * inch * turns / std::sqrt(cotton_count(sheet.tex));
+  return sheet;
+}
+
+void Measuring::set_braid(const Braid& braid, Sheet& sheet) const {
+  sheet.repeat_y = 0;
+  if (braid.flat) return;
+  const double radius = mm_ * braid.radius, angle = std::atan(radius * turn_ / braiders_);
+  const double filled = std::min(1.0, width_ / (4 * pi * radius * std::cos(angle)));
+  sheet.thickness = mm_ * (outer_ - inner_);
+  sheet.braid_angle = angle * 180 / pi;
+  sheet.cover = filled * (2 - filled);
+}
+
+Sheet Measuring::sheet(const Item& item) const {
+  Sheet sheet;
+  sheet.kind = kind_of(item);
+  sheet.thickness = mm_ * box_.sizes().z();
+  sheet.repeat_x = is_braid() ? extent() : mm_ * sample_.size.x();
+  sheet.repeat_y = mm_ * sample_.size.y();
+  double area = extent();  // mm2
+  if (const auto* const braid = std::get_if<Braid>(&item)) {
+    set_braid(*braid, sheet);
+    area *= braid->flat ? mm_ * box_.sizes().y() : 2 * pi * mm_ * braid->radius;
+  }
+  bool has_mass = true, has_fibres = true;
+  double volume = 0, fibres = 0, mass = 0;
+  for (const auto& [name, sum] : systems_) {
+    volume += sum.volume;
+    fibres += sum.fibres;
+    mass += sum.mass;
+    has_mass = has_mass && sum.has_mass;
+    has_fibres = has_fibres && sum.has_fibres;
+    sheet.systems.push_back(system_sheet(item, name, sum));
+  }
+  for (const auto& [name, sum] : threads_) sheet.threads.push_back(thread_sheet(name, sum));
+  sheet.yarn_fraction = volume / (area * sheet.thickness);
+  if (has_fibres) sheet.fibre_fraction = fibres / (area * sheet.thickness);
+  if (has_mass) {
+    sheet.mass = 1e6 * mass / area;
+    if (is_braid()) sheet.linear_mass = 1e3 * mass / extent();
+  }
+  if (std::holds_alternative<Weave>(item)) {
+    std::array<double, 2> hidden{};
+    for (const int axis : {0, 1})
+      hidden[static_cast<std::size_t>(axis)] =
+          hidden_share(lanes_[static_cast<std::size_t>(axis)], sample_.size[1 - axis]);
+    sheet.cover = hidden[0] + hidden[1] - hidden[0] * hidden[1];
+  }
+  if (std::holds_alternative<Knit>(item) || std::holds_alternative<Warpknit>(item)) {
+    sheet.wales_per_mm = 1 / (mm_ * unit_.x());
+    sheet.courses_per_mm = 1 / (mm_ * unit_.y());
+  }
+  return sheet;
+}
+
+TextPlace place_of(const Item& item) {
+  return std::visit([](const auto& statement) { return statement.place; }, item);
+}
+
+// A sample may cost as much as the cloth itself several times, or this many data points.
+bool is_worth(const Construction& sample, const Construction& cloth) {
+  constexpr std::uint64_t always = 200'000, times = 3;
+  return sample.data_points() <= std::max(always, product_of(times, cloth.data_points()));
+}
+
+Result<Sheet> sheet_of(const Fabric& fabric, const Item& item, const Construction& cloth,
+                       BuildOptions options) {
+  Result<Sample> sample = sample_of(fabric, item, cloth.repeat(), cloth.unit());
+  if (!sample) return sample.error();
+  options.detail = Detail::yarn;
+  options.ends = yarn::EndStyle::none;
+  Diagnostics told;  // of the cloth already
+  const std::optional<YarnBuilder> builder = YarnBuilder::create(sample->fabric, options, told);
+  if (!builder) return error(Kind::geometry, "its repeat cannot be built by itself");
+  if (!is_worth(*builder->origin(0).construction, cloth))
+    return error(Kind::limit, "its repeat is far larger than the cloth of the text");
+  Measuring measuring(sample->fabric, *sample, cloth.unit());
+  for (std::size_t i = 0; i < builder->count(); ++i) {
+    const Result<YarnBuilder::Shaped> yarn = builder->shape(i);
+    if (!yarn) return yarn.error();
+    const YarnBuilder::Origin origin = builder->origin(i);
+    measuring.add(*yarn, *origin.construction, origin.index);
+  }
+  Sheet sheet = measuring.sheet(item);
+  sheet.place = place_of(item);
+  return sheet;
+}
+
+}  // namespace
+
+SheetResult sheets_of(const Fabric& fabric, const YarnBuilder& builder, const BuildOptions& options) {
+  SheetResult result;
+  std::size_t next = 0;
+  const std::vector<const Construction*> constructions = builder.constructions();
+  for (const Item& item : fabric.items) {
+    if (std::holds_alternative<Yarn>(item) || std::holds_alternative<Piece>(item)) continue;
+    Result<Sheet> sheet = sheet_of(fabric, item, *constructions[next++], options);
+    if (sheet)
+      result.sheets.push_back(std::move(*sheet));
+    else
+      result.missing.push_back(
+          note(Kind::unsupported, fmt::format("no data sheet of this {}: {}", kind_of(item), sheet.error().text))
+              .placed(place_of(item), fabric.file));
+  }
+  return result;
+}
+
+}  // namespace selvage::fabric

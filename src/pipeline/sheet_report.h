@@ -1,0 +1,18 @@
+// The data sheet of a cloth (fabric/sheet.h) as text and in the report.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "fabric/sheet.h"
+#include "pipeline/report.h"
+
+namespace selvage::pipeline {
+
+// g, m2, mm, threads a cm and an inch, per cent.
+std::string sheet_text(const fabric::Sheet& sheet);
+
+// By the kind of construction, the second weave as weave_2; systems and threads by their names.
+Json sheets_json(std::span<const fabric::Sheet> sheets);
+
+}  // namespace selvage::pipeline
