@@ -101,7 +101,7 @@ std::optional<Stretch> piece_of(const yarn::Body& body, int axis, double from, d
       nurbs::restricted(body.surface, body.surface.first_u(), body.surface.last_u(), *begin, *end);
   // A plane seals each end; the one through the start sees nothing of it.
   const double sealed = yarn::area_vector(yarn::end_curve(part, true)).dot(stop - piece.start) / 3.0;
-  piece.volume = std::abs(nurbs::volume_flux(part.surface, piece.start) + (body.inward ? -sealed : sealed));
+  piece.volume = std::abs(nurbs::volume_flux(part.surface, piece.start) + sealed);
   nurbs::extend(piece.box, part.surface, 1e-9 * yarn::bounds(part).diagonal().norm());
   return piece;
 }
@@ -138,8 +138,23 @@ std::string kind_of(const Item& item) {
                     item);
 }
 
+// Wales from a guide's first needle space to the farthest that it goes to, in any bar.
+int widest_way(const Construction& warpknit) {
+  double most = 0;
+  std::string system;
+  for (std::size_t i = 0; i < warpknit.count(); ++i) {
+    if (warpknit.system(i) == system) continue;
+    system = warpknit.system(i);
+    if (const Result<YarnPlan> plan = warpknit.plan(i))
+      for (const Vec3& point : plan->points) most = std::max(most, std::abs(point.x()));
+  }
+  return static_cast<int>(std::ceil(most / warpknit.unit().x())) + 1;
+}
+
 // Why there is none, else.
-Result<Sample> sample_of(const Fabric& fabric, const Item& item, const Repeat& repeat, const Vec2& unit) {
+Result<Sample> sample_of(const Fabric& fabric, const Item& item, const Construction& cloth) {
+  const Repeat repeat = cloth.repeat();
+  const Vec2 unit = cloth.unit();
   Sample sample;
   Fabric& made = sample.fabric;
   made.file = fabric.file;
@@ -177,9 +192,11 @@ Result<Sample> sample_of(const Fabric& fabric, const Item& item, const Repeat& r
     } else if (auto* const warpknit = std::get_if<Warpknit>(&made.items.front())) {
       // Loops may reach as far up as they are held.
       const int courses = counted(1), before = (longest_hold + 1) / courses + 1;
-      warpknit->wales = counted(0);
       warpknit->courses = (1 + 2 * before) * courses;
       sample.low.y() = before * sample.size.y();
+      const int beside = widest_way(cloth);
+      warpknit->wales = (1 + 2 * beside) * counted(0);
+      sample.low.x() = beside * sample.size.x();
     }
   }
   Cell cell;
@@ -220,7 +237,7 @@ class Measuring {
   [[nodiscard]] int axis_of(const yarn::Body& body) const;
   [[nodiscard]] Stretch measured(const yarn::Body& body, int axis, double at) const;
   [[nodiscard]] Stretch piece_in_repeat(const YarnBuilder::Shaped& yarn, int axis);
-  [[nodiscard]] bool is_known(const std::string& system, int axis, const Stretch& piece);
+  [[nodiscard]] bool is_in_repeat(const Stretch& piece, int axis) const;
   void add_to(Sums& sums, const std::string& name, const Stretch& piece, const yarn::BodyLabel& label,
               const Thread& thread) const;
   // Of the repeat, mm2; of a braid the length, mm.
@@ -238,7 +255,6 @@ class Measuring {
   Vec2 unit_;
   double mm_;
   Sums systems_, threads_;
-  std::map<std::pair<std::string, int>, std::vector<Vec3>> starts_;
   std::map<std::tuple<std::uint64_t, int, double>, Stretch> pieces_;  // by shape, axis, and where along it
   std::array<std::vector<std::pair<double, double>>, 2> lanes_;  // of yarns along x, along y
   Box3 box_;
@@ -287,21 +303,15 @@ Stretch Measuring::piece_in_repeat(const YarnBuilder::Shaped& yarn, int axis) {
   return piece;
 }
 
-// Another one, whole repeats beside it, was there.
-bool Measuring::is_known(const std::string& system, int axis, const Stretch& piece) {
-  if (is_braid()) return false;
-  constexpr double same = 1e-6;
-  const auto is_beside = [&](const Vec3& start, int k) {
-    const double apart = (piece.start[k] - start[k]) / sample_.size[k];
-    return std::abs(apart - std::round(apart)) * sample_.size[k] <= same * unit_[k];
+// Of yarns that are whole repeats apart one is.
+bool Measuring::is_in_repeat(const Stretch& piece, int axis) const {
+  if (is_braid()) return true;
+  const auto is_within = [&](int k) {
+    constexpr double beside = 0.0731;  // of the places where yarns stand
+    const double along = piece.start[k] - sample_.low[k] - beside * unit_[k];
+    return along >= 0 && along < sample_.size[k];
   };
-  std::vector<Vec3>& starts = starts_[{system, axis}];
-  for (const Vec3& start : starts)
-    if (is_beside(start, 0) && is_beside(start, 1) &&
-        std::abs(piece.start.z() - start.z()) <= same * unit_.minCoeff())
-      return true;
-  starts.push_back(piece.start);
-  return false;
+  return is_within(1 - axis) && (piece.forward > 0 || is_within(axis));
 }
 
 void Measuring::add_to(Sums& sums, const std::string& name, const Stretch& piece,
@@ -330,10 +340,9 @@ void Measuring::add_to(Sums& sums, const std::string& name, const Stretch& piece
 void Measuring::add(const YarnBuilder::Shaped& yarn, const Construction& construction, std::size_t index) {
   const int axis = axis_of(*yarn.body);
   const Stretch piece = piece_in_repeat(yarn, axis);
-  const std::string system = construction.system(index);
+  if (!is_in_repeat(piece, axis)) return;
   const Thread& thread = construction.thread(index);
-  if (is_known(system, axis, piece)) return;
-  add_to(systems_, system, piece, yarn.label, thread);
+  add_to(systems_, construction.system(index), piece, yarn.label, thread);
   add_to(threads_, thread.name, piece, yarn.label, thread);
   box_.extend(piece.box);
   if (!is_braid()) {
@@ -455,7 +464,7 @@ bool is_worth(const Construction& sample, const Construction& cloth) {
 
 Result<Sheet> sheet_of(const Fabric& fabric, const Item& item, const Construction& cloth,
                        BuildOptions options) {
-  Result<Sample> sample = sample_of(fabric, item, cloth.repeat(), cloth.unit());
+  Result<Sample> sample = sample_of(fabric, item, cloth);
   if (!sample) return sample.error();
   options.detail = Detail::yarn;
   options.ends = yarn::EndStyle::none;
