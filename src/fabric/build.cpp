@@ -126,8 +126,8 @@ Result<YarnPlan> plan_of_path(const Fabric& fabric, const Yarn& yarn, const Buil
   return plan;
 }
 
-void describe(yarn::BodyLabel& body, const std::string& name, const std::string& thread_name, const Thread& thread,
-              Unit units, Role role, TextPlace place) {
+void describe(yarn::BodyLabel& body, const std::string& name, const std::string& thread_name,
+              const Thread& thread, Unit units, Role role, TextPlace place) {
   body.name = name;
   body.thread = thread_name;
   body.material = thread.material.value_or("");

@@ -78,7 +78,9 @@ void look_round(const YarnBuilder::Shaped& yarn, Stretch& piece) {
     piece.inner = std::min(piece.inner, distance);
     piece.outer = std::max(piece.outer, distance);
   }
-  const auto place = [&](double v) { return Vec2((nurbs::evaluate(yarn.body->axis, v) + yarn.at).head<2>()); };
+  const auto place = [&](double v) {
+    return Vec2((nurbs::evaluate(yarn.body->axis, v) + yarn.at).head<2>());
+  };
   for (std::size_t i = 1; i < vs.size(); ++i) {
     const Vec2 from = place(vs[i - 1]), to = place(vs[i]);
     piece.turn += std::atan2(cross(from, to), from.dot(to));
@@ -97,8 +99,7 @@ std::optional<Stretch> piece_of(const yarn::Body& body, int axis, double from, d
   piece.start = nurbs::evaluate(body.axis, *begin);
   const Vec3 stop = nurbs::evaluate(body.axis, *end);
   yarn::Body part;
-  part.surface =
-      nurbs::restricted(body.surface, body.surface.first_u(), body.surface.last_u(), *begin, *end);
+  part.surface = nurbs::restricted(body.surface, body.surface.first_u(), body.surface.last_u(), *begin, *end);
   // A plane seals each end; the one through the start sees nothing of it.
   const double sealed = yarn::area_vector(yarn::end_curve(part, true)).dot(stop - piece.start) / 3.0;
   piece.volume = std::abs(nurbs::volume_flux(part.surface, piece.start) + sealed);
@@ -127,7 +128,7 @@ double hidden_share(std::vector<std::pair<double, double>> lanes, double period)
 // One repeat of a construction as a cloth of its own, with a cell so that it goes on beyond it.
 struct Sample {
   Fabric fabric;
-  int axis_of_braid = -1;  // 0: a strip, 2: a tube; -1: no braid
+  int axis_of_braid = -1;                        // 0: a strip, 2: a tube; -1: no braid
   Vec3 low = Vec3::Zero(), size = Vec3::Zero();  // file units; of a braid one number
 };
 
@@ -180,7 +181,9 @@ Result<Sample> sample_of(const Fabric& fabric, const Item& item, const Construct
       const double along = *repeat[static_cast<std::size_t>(axis)];
       sample.size[axis] = along > 0 ? along : unit[axis];
     }
-    const auto counted = [&](int axis) { return static_cast<int>(std::lround(sample.size[axis] / unit[axis])); };
+    const auto counted = [&](int axis) {
+      return static_cast<int>(std::lround(sample.size[axis] / unit[axis]));
+    };
     if (auto* const weave = std::get_if<Weave>(&made.items.front())) {
       // Binders lie in gaps that the cloth of the text has.
       const bool is_bound = !weave->binders.empty();
@@ -256,7 +259,7 @@ class Measuring {
   double mm_;
   Sums systems_, threads_;
   std::map<std::tuple<std::uint64_t, int, double>, Stretch> pieces_;  // by shape, axis, and where along it
-  std::array<std::vector<std::pair<double, double>>, 2> lanes_;  // of yarns along x, along y
+  std::array<std::vector<std::pair<double, double>>, 2> lanes_;       // of yarns along x, along y
   Box3 box_;
   double inner_ = std::numeric_limits<double>::infinity(), outer_ = 0;
   double turn_ = 0, width_ = 0;  // of braiders, summed: radians a mm, and mm
@@ -497,9 +500,9 @@ SheetResult sheets_of(const Fabric& fabric, const YarnBuilder& builder, const Bu
     if (sheet)
       result.sheets.push_back(std::move(*sheet));
     else
-      result.missing.push_back(
-          note(Kind::unsupported, fmt::format("no data sheet of this {}: {}", kind_of(item), sheet.error().text))
-              .placed(place_of(item), fabric.file));
+      result.missing.push_back(note(Kind::unsupported, fmt::format("no data sheet of this {}: {}",
+                                                                   kind_of(item), sheet.error().text))
+                                   .placed(place_of(item), fabric.file));
   }
   return result;
 }

@@ -6,8 +6,8 @@
 //   threads        of a system, on a length across them: what its yarns go forward, together, by w
 //   crimp          length by what the yarn goes forward, less one (ISO 7211-3; run-in of a knit)
 //   mass           sum of length times linear density, by w (ISO 3801)
-//   thickness      from the lowest to the highest place of the yarns; of a tube from its inside to its outside
-//   cover          share of w that yarns hide, where they run straight when seen from above: of one
+//   thickness      from the lowest to the highest place of the yarns; of a tube from its inside to its
+//   outside cover          share of w that yarns hide, where they run straight when seen from above: of one
 //                  direction k the share of its yarns' lanes, of both k1 + k2 - k1 k2 (Peirce 1937)
 //   cover factor   of a system: threads an inch by the root of the cotton count (Peirce 1937)
 //   yarn fraction  volume of the yarns by that of the cloth, w times the thickness
@@ -15,8 +15,8 @@
 //   loop length    of a weft knit: yarn for a needle in a row of the chart
 //   tightness      root of tex by the loop length in cm (Munden 1962, Doyle)
 //   run-in         of a warp knit: mm of yarn for a rack, 480 courses
-//   braid angle    of a tube, by the turns about its axis at the radius of its middle surface; of a strip
-//                  none. Its cover: with f the share that the yarns of one direction fill, 2 f - f^2
+//   braid angle    of a tube, by the turns about its axis at the radius of its middle surface. Its cover:
+//   with f the share that the yarns of one direction fill, 2 f - f^2
 //                  (Brunnschweiler 1954)
 //   twist factor   turns a metre times the root of tex; and turns an inch by the root of the cotton count
 #pragma once
@@ -32,9 +32,9 @@ namespace selvage::fabric {
 
 // Yarns that do the same: all warps, all ends of a bar.
 struct SystemSheet {
-  std::string name;  // warp, weft, binder, course, plating, pile, bar1, braider, axial
-  double length = 0;  // m of yarn in a square metre; of a braid in a metre
-  double mass = 0;    // g in a square metre (a metre); 0: not known
+  std::string name;                    // warp, weft, binder, course, plating, pile, bar1, braider, axial
+  double length = 0;                   // m of yarn in a square metre; of a braid in a metre
+  double mass = 0;                     // g in a square metre (a metre); 0: not known
   std::optional<double> per_mm;        // threads on a length across them; of a braid: how many there are
   std::optional<double> crimp;         // 0: straight; none of tufts
   std::optional<double> cover_factor;  // of a weave
@@ -45,10 +45,10 @@ struct SystemSheet {
 
 struct ThreadSheet {
   std::string name;
-  double tex = 0;             // 0: not known
-  double length = 0;          // m in a square metre; of a braid in a metre
-  double mass = 0;            // g; 0: not known
-  double fibre_fraction = 0;  // of its section as built; 0: not known
+  double tex = 0;                      // 0: not known
+  double length = 0;                   // m in a square metre; of a braid in a metre
+  double mass = 0;                     // g; 0: not known
+  double fibre_fraction = 0;           // of its section as built; 0: not known
   std::optional<double> twist_factor;  // of a thread with a twist: sqrt(tex) / m
   std::optional<double> cotton_twist_factor;
 };

@@ -160,7 +160,7 @@ void Batch::receive(std::size_t job, char kind, std::string_view bytes) {
       work.messages += '\n';
     }
   } else if (kind == packet::result) {
-    if (!options_.sweep.wanted) work.results += bytes;  // the table has them
+    if (!options_.sweep.wanted && options_.csv != "-") work.results += bytes;  // the table has them
   } else if (kind == packet::report) {
     keep_report(job, bytes);
   } else if (kind == packet::files) {
@@ -256,7 +256,7 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
 // Hidden files of workers that were killed, in this run or an earlier one.
 void Batch::remove_leftovers() const {
   std::vector<std::string> targets;
-  for (const std::string* place : {&options_.report, &options_.junit, &options_.sweep.csv})
+  for (const std::string* place : {&options_.report, &options_.junit, &options_.csv})
     if (!place->empty() && *place != "-") targets.emplace_back(*place);
   for (std::size_t i = 0; i < plan_.size(); ++i)
     for (PlannedOutput& output : plan_.at(i).outputs)
@@ -293,15 +293,15 @@ Status Batch::write_report(bool ok) const {
   return write_whole(options_.report, report_text(ok));
 }
 
-// Of a sweep: a row for each variant.
+// A row for each input, or variant of a sweep.
 Status Batch::write_table() const {
-  if (!options_.sweep.wanted) return {};
-  SweepTable table;
+  if (options_.csv.empty()) return {};
+  SweepTable table(options_.sweep.wanted ? "variant" : "input");
   for (std::size_t i = 0; i < plan_.size(); ++i) {
     const Input input = plan_.at(i).input;
     table.add(input, reports_[i].empty() ? entry_of_earlier(input.name()) : std::string(reports_[i]));
   }
-  return write_whole(options_.sweep.csv, table.text());
+  return write_whole(options_.csv, table.text());
 }
 
 Status Batch::write_junit(const std::vector<Message>& missing) const {
@@ -318,12 +318,12 @@ int Batch::exit_code() const {
 }
 
 void Batch::summarize() const {
-  if (options_.sweep.wanted && !options_.quiet && options_.sweep.csv != "-") {
+  if (options_.sweep.wanted && !options_.quiet && options_.csv != "-") {
     std::string text = fmt::format("selvage: {}: {} ok", counted(counts_.inputs, "variant"),
                                    counts_.done + counts_.skipped - std::min(defects_, counts_.done));
     if (defects_ > 0) text += fmt::format(", {} with defects", defects_);
     if (counts_.failed > 0) text += fmt::format(", {} failed", counts_.failed);
-    text += fmt::format("; parameters and results are in '{}'\n", readable(options_.sweep.csv));
+    text += fmt::format("; parameters and results are in '{}'\n", readable(options_.csv));
     std::fwrite(text.data(), 1, text.size(), stderr);
   }
   const bool writes = options_.command == Command::convert || options_.command == Command::relax ||
@@ -399,7 +399,7 @@ Result<std::map<std::string, std::string>> earlier_entries(const Options& option
 
 // A report that cannot be written is better known before the work than after it.
 Status check_report_places(const Options& options) {
-  for (const std::string* place : {&options.report, &options.junit, &options.sweep.csv}) {
+  for (const std::string* place : {&options.report, &options.junit, &options.csv}) {
     if (place->empty() || *place == "-") continue;
     if (const Result<OutputFile> trial = OutputFile::create(*place); !trial) return trial.error();
   }

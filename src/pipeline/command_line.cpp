@@ -197,6 +197,8 @@ void inputs_and_outputs(OptionTable& t) {
                             extension_of_gap_maps())),
            file, &Options::gap_map);
   t.option(on_batch, "--report", "write a JSON report to this file", file, &Options::report);
+  t.option({info}, "--csv", "write a table of the data sheets to this file, a row an input", file,
+           &Options::csv);
   t.option({roundtrip}, "--junit", "write the results as JUnit XML to this file", file, &Options::junit);
   t.option(on_batch, "--set", "another value of a param of the input (more than one: selvage sweep)",
            Argument::texts("NAME=VALUE"), into(&Options::sweep, &SweepWords::sets))
@@ -208,7 +210,7 @@ void inputs_and_outputs(OptionTable& t) {
 void of_a_sweep(OptionTable& t) {
   t.begin("The sweep", true);
   t.option({sweep}, "--do", "what is done with each variant; its own options go with it",
-           Argument::one_of("check convert mesh"), [](Options&, const std::string&) { return Status(); })
+           Argument::one_of("check convert mesh info"), [](Options&, const std::string&) { return Status(); })
       .with_preset("check");
   t.option(
       {sweep}, "--set",
@@ -224,8 +226,7 @@ void of_a_sweep(OptionTable& t) {
            into(&Options::sweep, &SweepWords::seed))
       .with_preset("1")
       .goes_with("is of a hypercube", "--lhs", "");
-  t.option({sweep}, "--csv", "the table of parameters and results", Argument::text("FILE"),
-           into(&Options::sweep, &SweepWords::csv))
+  t.option({sweep}, "--csv", "the table of parameters and results", Argument::text("FILE"), &Options::csv)
       .with_preset("sweep.csv");
 }
 
@@ -509,7 +510,7 @@ std::span<const Subcommand> all_commands() {
 }
 
 // What a sweep may do with each variant.
-constexpr std::array swept = {Command::check, Command::convert, Command::mesh};
+constexpr std::array swept = {Command::check, Command::convert, Command::mesh, Command::info};
 
 static bool is_of(const Row& row, Command command) {
   return std::find(row.commands.begin(), row.commands.end(), command) != row.commands.end();
@@ -549,7 +550,7 @@ static Result<Command> done_by_sweep(const Given& given) {
   for (const Command command : swept)
     if (name_of(command) == found->second.back()) return command;
   return error(Kind::usage,
-               fmt::format("--do: '{}' is not one of check, convert, mesh", found->second.back()));
+               fmt::format("--do: '{}' is not one of check, convert, mesh, info", found->second.back()));
 }
 
 Result<Options> understand(Command command, const Given& given) {

@@ -204,7 +204,8 @@ void info(Job& job) {
   const std::string head = heading(job, *fabric) + of_file;
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
   std::string tables;
-  if (builder && builder->count() > 0) tables = data_sheets(job, *fabric, *builder) + yarn_table(job, *builder);
+  if (builder && builder->count() > 0)
+    tables = data_sheets(job, *fabric, *builder) + yarn_table(job, *builder);
   if (builder) tables += piece_tables(job, *fabric) + other_tables(job, *fabric);
   if (!job.options.json) job.print(head + tables);
 }

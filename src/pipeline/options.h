@@ -44,7 +44,6 @@ struct SweepWords {
   std::string table;              // a CSV file
   std::size_t samples = 0;        // of a Latin hypercube
   std::uint64_t seed = 1;
-  std::string csv;  // where parameters and results go
 };
 
 struct Options {
@@ -109,6 +108,7 @@ struct Options {
 
   // roundtrip, diff
   double difference_tolerance = 0;  // the first input's unit; distances up to it are no difference
+  std::string csv;                  // sweep, info: a table of the results, a row an input or variant
   std::string junit;                // JUnit XML goes to this file; empty: nowhere
   std::string scratch;              // a folder that is there while the run is
   bool all = false;                 // every difference, not only the first ones
@@ -120,7 +120,7 @@ struct Options {
   bool table = false;  // info: the fixed points and control points of garment curves
 
   [[nodiscard]] bool wants_report() const {
-    return !report.empty() || !junit.empty() || sweep.wanted || (json && command == Command::info);
+    return !report.empty() || !junit.empty() || !csv.empty() || (json && command == Command::info);
   }
 };
 

@@ -27,12 +27,15 @@ std::string line(std::string_view what, std::string_view value) {
   return fmt::format("    {:<18}{}\n", what, value);
 }
 
-Json system_json(const fabric::SystemSheet& system) {
+Json system_json(const fabric::SystemSheet& system, bool is_braid) {
   Json json;
   const auto put = [&](const char* key, const std::optional<double>& value, double times = 1) {
     if (value) json[key] = times * *value;
   };
-  put("per_cm", system.per_mm, per_cm);
+  if (is_braid)
+    put("yarns", system.per_mm);
+  else
+    put("per_cm", system.per_mm, per_cm);
   put("crimp", system.crimp);
   put("length", system.length);
   put("mass", known(system.mass));
@@ -74,7 +77,8 @@ Json sheet_json(const fabric::Sheet& sheet) {
   put("braid_angle", sheet.braid_angle);
   put("repeat_x", sheet.repeat_x);
   put("repeat_y", known(sheet.repeat_y));
-  for (const fabric::SystemSheet& system : sheet.systems) json["systems"][system.name] = system_json(system);
+  for (const fabric::SystemSheet& system : sheet.systems)
+    json["systems"][system.name] = system_json(system, sheet.kind == "braid");
   for (const fabric::ThreadSheet& thread : sheet.threads) json["threads"][thread.name] = thread_json(thread);
   return json;
 }
@@ -134,9 +138,9 @@ std::string sheet_text(const fabric::Sheet& sheet) {
     return value ? fmt::format("{:.4g} {}", *value, unit) : "not known" + without_mass(sheet);
   };
   std::string text = fmt::format("  data sheet of the {} at line {}", sheet.kind, sheet.place.line);
-  text += sheet.repeat_y > 0 ? fmt::format(", endless, by a repeat of {:.6g} x {:.6g} mm\n", sheet.repeat_x,
-                                           sheet.repeat_y)
-                             : fmt::format(", endless, by a repeat of {:.6g} mm\n", sheet.repeat_x);
+  text += sheet.repeat_y > 0
+              ? fmt::format(", endless, by a repeat of {:.6g} x {:.6g} mm\n", sheet.repeat_x, sheet.repeat_y)
+              : fmt::format(", endless, by a repeat of {:.6g} mm\n", sheet.repeat_x);
   text += line("mass", with(known(sheet.mass), "g/m2"));
   if (sheet.linear_mass > 0) text += line("", with(sheet.linear_mass, "g/m"));
   text += line("thickness", with(sheet.thickness, "mm"));

@@ -10,7 +10,7 @@ namespace selvage::pipeline {
 
 namespace {
 
-constexpr const char *variant_column = "variant", *result_column = "result", *message_column = "message";
+constexpr const char *result_column = "result", *message_column = "message";
 
 // What lists of a report come to.
 struct Summary {
@@ -68,7 +68,7 @@ void SweepTable::set(Row& row, std::vector<std::string>& columns, const std::str
 
 void SweepTable::add(const Input& input, std::string_view entry) {
   Row& row = rows_.emplace_back();
-  row.values[variant_column] = std::filesystem::path(input.stem).filename().string();
+  row.values[subject_] = std::filesystem::path(input.stem).filename().string();
   for (const fabric::Setting& setting : input.settings) set(row, params_, setting.name, setting.value);
   const Json report = Json::parse(entry, nullptr, false);
   row.values[result_column] = result_of(report);
@@ -88,7 +88,7 @@ void SweepTable::add(const Input& input, std::string_view entry) {
 }
 
 std::string SweepTable::text() const {
-  std::vector<std::string> columns = {variant_column};
+  std::vector<std::string> columns = {subject_};
   columns.insert(columns.end(), params_.begin(), params_.end());
   columns.emplace_back(result_column);
   columns.insert(columns.end(), results_.begin(), results_.end());

@@ -1,4 +1,4 @@
-// The table of a sweep: parameters and results, a row for each variant.
+// The table of a sweep: parameters and results, a row for each variant; of `info` one for each input.
 #pragma once
 
 #include <map>
@@ -13,10 +13,12 @@ namespace selvage::pipeline {
 
 class SweepTable {
  public:
+  // `subject`: the head of the first column.
+  explicit SweepTable(std::string subject) : subject_(std::move(subject)) {}
   // `entry`: what the variant's report says, as JSON text; empty: it was not reached.
   void add(const Input& input, std::string_view entry);
-  // CSV: variant, the params, result (ok, defect, failed, not done), numbers of the report (lengths in mm) in
-  // the order in which they first come, and the first error.
+  // CSV: the variant or input, the params, result (ok, defect, failed, not done), numbers of the report
+  // (lengths in mm) in the order in which they first come, and the first error.
   [[nodiscard]] std::string text() const;
 
  private:
@@ -25,6 +27,7 @@ class SweepTable {
   };
   void set(Row& row, std::vector<std::string>& columns, const std::string& column, std::string value);
 
+  std::string subject_;
   std::vector<std::string> params_, results_;  // columns
   std::vector<Row> rows_;
 };
