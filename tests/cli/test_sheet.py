@@ -1,6 +1,7 @@
 """The data sheet of `info` against the written IGES: each number is calculated anew here, from points of the surfaces of a
 larger piece of the cloth, away from its edges. Needs the system's Python with numpy."""
 
+import csv
 import json
 import math
 import re
@@ -195,6 +196,34 @@ end
         self.assertAlmostEqual(thread["cotton_twist_factor"], 400 * 0.0254 / math.sqrt(590.5412 / 100), delta=1e-5)
         self.assertAlmostEqual(thread["fibre_fraction"], 0.05 / (0.25 * math.pi * 0.25 + 1.5 * 0.5), delta=1e-5)
         self.assertAlmostEqual(thread["length"], 650, delta=1e-9)
+
+    def test_table(self):
+        table = self.folder / "sheets.csv"
+        self.succeeds("info", SAMPLES / "weave_denim.txt", SAMPLES / "jersey.txt", SAMPLES / "ring.txt", "--csv", table)
+        rows = list(csv.DictReader(table.read_text().splitlines()))
+        self.assertEqual([row["input"] for row in rows], ["weave_denim", "jersey", "ring"])
+        self.assertEqual([row["result"] for row in rows], ["ok"] * 3)
+        sheet = json.loads(self.succeeds("info", SAMPLES / "weave_denim.txt", "--json").stdout)["inputs"][0]["sheets"]
+        self.assertEqual(float(rows[0]["sheets.weave.mass"]), sheet["weave"]["mass"])
+        self.assertEqual(float(rows[0]["sheets.weave.systems.warp.crimp"]), sheet["weave"]["systems"]["warp"]["crimp"])
+        self.assertEqual(rows[2]["sheets.weave.mass"] + rows[2]["sheets.knit.mass"] + rows[1]["sheets.weave.mass"], "")
+
+    # At the same yarn twice the density is more than twice the mass: crimp grows.
+    def test_sweep(self):
+        table = self.folder / "sweep.csv"
+        self.succeeds("sweep", SAMPLES / "plain_by_params.txt", "--do", "info", "--set", "sett=10,20", "--csv", table)
+        light, dense = (float(row["sheets.weave.mass"]) for row in csv.DictReader(table.read_text().splitlines()))
+        self.assertGreater(dense, 2 * light)
+        self.assertLess(dense, 2.2 * light)
+
+    # What cannot have one is told.
+    def test_repeat_beyond_reason(self):
+        path = self.folder / "cloth.txt"
+        path.write_text("fabric 1\nthread t\n  diameter 0.2\nend\nweave\n  warp t 4 pitch 0.5\n  weft t 4 pitch 0.5\n"
+                        "  draft basket 500/500\nend\n")
+        told = self.succeeds("info", path)
+        self.assertIn("no data sheet of this weave: its repeat is far larger", told.stderr)
+        self.assertNotIn("data sheet of the", told.stdout)
 
 
 if __name__ == "__main__":
