@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <numbers>
 #include <span>
 #include <tuple>
 #include <utility>
 
 #include "core/overloaded.h"
+#include "core/parallel.h"
 #include "core/plane.h"
 #include "fabric/lapping.h"
 #include "fabric/warpknit_points.h"
@@ -224,7 +226,14 @@ class Measuring {
   Measuring(const Fabric& fabric, const Sample& sample, const Vec2& unit)
       : fabric_(fabric), sample_(sample), unit_(unit), mm_(millimetres_per(fabric.units)) {}
 
-  void add(const YarnBuilder::Shaped& yarn, const Construction& construction, std::size_t index);
+  struct Measured {
+    yarn::BodyLabel label;
+    int axis = 0;  // along which it goes forward
+    Stretch piece;
+  };
+  // From several threads.
+  [[nodiscard]] Measured measured(YarnBuilder::Shaped yarn);
+  void add(const Measured& yarn, const Construction& construction, std::size_t index);
   [[nodiscard]] Sheet sheet(const Item& item) const;
 
  private:
@@ -238,7 +247,7 @@ class Measuring {
   [[nodiscard]] bool is_braid() const { return sample_.axis_of_braid >= 0; }
   [[nodiscard]] bool is_tube() const { return sample_.axis_of_braid == 2; }
   [[nodiscard]] int axis_of(const yarn::Body& body) const;
-  [[nodiscard]] Stretch measured(const yarn::Body& body, int axis, double at) const;
+  [[nodiscard]] Stretch stretch_of(const yarn::Body& body, int axis, double at) const;
   [[nodiscard]] Stretch piece_in_repeat(const YarnBuilder::Shaped& yarn, int axis);
   [[nodiscard]] bool is_in_repeat(const Stretch& piece, int axis) const;
   void add_to(Sums& sums, const std::string& name, const Stretch& piece, const yarn::BodyLabel& label,
@@ -257,9 +266,10 @@ class Measuring {
   const Sample& sample_;
   Vec2 unit_;
   double mm_;
-  Sums systems_, threads_;
+  std::mutex mutex_;                                                  // of pieces_
   std::map<std::tuple<std::uint64_t, int, double>, Stretch> pieces_;  // by shape, axis, and where along it
-  std::array<std::vector<std::pair<double, double>>, 2> lanes_;       // of yarns along x, along y
+  Sums systems_, threads_;
+  std::array<std::vector<std::pair<double, double>>, 2> lanes_;  // of yarns along x, along y
   Box3 box_;
   double inner_ = std::numeric_limits<double>::infinity(), outer_ = 0;
   double turn_ = 0, width_ = 0;  // of braiders, summed: radians a mm, and mm
@@ -276,7 +286,7 @@ int Measuring::axis_of(const yarn::Body& body) const {
 
 // Of a body that stands `at` away from its place along the axis. What lies in the cloth by itself, such as a
 // tuft, is taken whole.
-Stretch Measuring::measured(const yarn::Body& body, int axis, double at) const {
+Stretch Measuring::stretch_of(const yarn::Body& body, int axis, double at) const {
   // Beside a crossing or the middle of a loop, where places tie.
   const double beside = is_braid() ? 0.0 : 0.137 * unit_[axis];
   const double from = sample_.low[axis] + beside - at;
@@ -292,18 +302,27 @@ Stretch Measuring::measured(const yarn::Body& body, int axis, double at) const {
 // Of one shape one is measured, wherever it lies across.
 Stretch Measuring::piece_in_repeat(const YarnBuilder::Shaped& yarn, int axis) {
   const double at = yarn.at[axis];
-  Stretch piece;
-  if (yarn.body->shape == 0) {
-    piece = measured(*yarn.body, axis, at);
-  } else {
-    const auto [known, is_new] = pieces_.try_emplace({yarn.body->shape, axis, at});
-    if (is_new) known->second = measured(*yarn.body, axis, at);
-    piece = known->second;
+  const std::uint64_t shape = yarn.body->shape;
+  std::optional<Stretch> piece;
+  if (shape > 0) {
+    const std::lock_guard lock(mutex_);
+    if (const auto known = pieces_.find({shape, axis, at}); known != pieces_.end()) piece = known->second;
   }
-  piece.start += yarn.at;
-  piece.box.translate(yarn.at);
-  if (is_tube()) look_round(yarn, piece);
-  return piece;
+  if (!piece) {
+    piece = stretch_of(*yarn.body, axis, at);
+    const std::lock_guard lock(mutex_);
+    if (shape > 0) pieces_.try_emplace({shape, axis, at}, *piece);
+  }
+  piece->start += yarn.at;
+  piece->box.translate(yarn.at);
+  if (is_tube()) look_round(yarn, *piece);
+  return *piece;
+}
+
+Measuring::Measured Measuring::measured(YarnBuilder::Shaped yarn) {
+  const int axis = axis_of(*yarn.body);
+  const Stretch piece = piece_in_repeat(yarn, axis);
+  return {std::move(yarn.label), axis, piece};
 }
 
 // Of yarns that are whole repeats apart one is.
@@ -340,13 +359,12 @@ void Measuring::add_to(Sums& sums, const std::string& name, const Stretch& piece
   sum.has_fibres = sum.has_fibres && fibres;
 }
 
-void Measuring::add(const YarnBuilder::Shaped& yarn, const Construction& construction, std::size_t index) {
-  const int axis = axis_of(*yarn.body);
-  const Stretch piece = piece_in_repeat(yarn, axis);
+void Measuring::add(const Measured& yarn, const Construction& construction, std::size_t index) {
+  const auto& [label, axis, piece] = yarn;
   if (!is_in_repeat(piece, axis)) return;
   const Thread& thread = construction.thread(index);
-  add_to(systems_, construction.system(index), piece, yarn.label, thread);
-  add_to(threads_, thread.name, piece, yarn.label, thread);
+  add_to(systems_, construction.system(index), piece, label, thread);
+  add_to(threads_, thread.name, piece, label, thread);
   box_.extend(piece.box);
   if (!is_braid()) {
     const double low = piece.box.min()[1 - axis], high = piece.box.max()[1 - axis];
@@ -355,7 +373,7 @@ void Measuring::add(const YarnBuilder::Shaped& yarn, const Construction& constru
   if (!is_tube()) return;
   inner_ = std::min(inner_, piece.inner);
   outer_ = std::max(outer_, piece.outer);
-  if (yarn.label.role != Role::braider) return;
+  if (label.role != Role::braider) return;
   ++braiders_;
   turn_ += std::abs(piece.turn) / (mm_ * piece.forward);
   if (const Result<yarn::Section> section = centred_section_of(thread, fabric_.units))
@@ -466,7 +484,7 @@ bool is_worth(const Construction& sample, const Construction& cloth) {
 }
 
 Result<Sheet> sheet_of(const Fabric& fabric, const Item& item, const Construction& cloth,
-                       BuildOptions options) {
+                       BuildOptions options, int threads) {
   Result<Sample> sample = sample_of(fabric, item, cloth);
   if (!sample) return sample.error();
   options.detail = Detail::yarn;
@@ -477,11 +495,15 @@ Result<Sheet> sheet_of(const Fabric& fabric, const Item& item, const Constructio
   if (!is_worth(*builder->origin(0).construction, cloth))
     return error(Kind::limit, "its repeat is far larger than the cloth of the text");
   Measuring measuring(sample->fabric, *sample, cloth.unit());
-  for (std::size_t i = 0; i < builder->count(); ++i) {
-    const Result<YarnBuilder::Shaped> yarn = builder->shape(i);
-    if (!yarn) return yarn.error();
+  std::vector<std::optional<Result<Measuring::Measured>>> yarns(builder->count());
+  for_each_index(yarns.size(), threads, [&](std::size_t i) {
+    Result<YarnBuilder::Shaped> yarn = builder->shape(i);
+    yarns[i] = yarn ? Result(measuring.measured(std::move(*yarn))) : yarn.error();
+  });
+  for (std::size_t i = 0; i < yarns.size(); ++i) {
+    if (!*yarns[i]) return yarns[i]->error();
     const YarnBuilder::Origin origin = builder->origin(i);
-    measuring.add(*yarn, *origin.construction, origin.index);
+    measuring.add(**yarns[i], *origin.construction, origin.index);
   }
   Sheet sheet = measuring.sheet(item);
   sheet.place = place_of(item);
@@ -490,13 +512,14 @@ Result<Sheet> sheet_of(const Fabric& fabric, const Item& item, const Constructio
 
 }  // namespace
 
-SheetResult sheets_of(const Fabric& fabric, const YarnBuilder& builder, const BuildOptions& options) {
+SheetResult sheets_of(const Fabric& fabric, const YarnBuilder& builder, const BuildOptions& options,
+                      int threads) {
   SheetResult result;
   std::size_t next = 0;
   const std::vector<const Construction*> constructions = builder.constructions();
   for (const Item& item : fabric.items) {
     if (std::holds_alternative<Yarn>(item) || std::holds_alternative<Piece>(item)) continue;
-    Result<Sheet> sheet = sheet_of(fabric, item, *constructions[next++], options);
+    Result<Sheet> sheet = sheet_of(fabric, item, *constructions[next++], options, threads);
     if (sheet)
       result.sheets.push_back(std::move(*sheet));
     else

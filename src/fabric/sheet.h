@@ -79,7 +79,9 @@ struct SheetResult {
   std::vector<Message> missing;  // notes: no repeat, or one far larger than the cloth
 };
 
-// Of all constructions of the fabric, in file order; `builder` is the fabric's.
-SheetResult sheets_of(const Fabric& fabric, const YarnBuilder& builder, const BuildOptions& options);
+// Of all constructions of the fabric, in file order; `builder` is the fabric's. The numbers do not
+// depend on the number of threads.
+SheetResult sheets_of(const Fabric& fabric, const YarnBuilder& builder, const BuildOptions& options,
+                      int threads);
 
 }  // namespace selvage::fabric

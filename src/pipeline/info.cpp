@@ -169,7 +169,8 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder) {
 // What the cloths of the text are, by the numbers of the trade.
 std::string data_sheets(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilder& builder) {
   if (builder.constructions().empty()) return {};
-  const fabric::SheetResult result = fabric::sheets_of(fabric, builder, job.build_options());
+  const fabric::SheetResult result =
+      fabric::sheets_of(fabric, builder, job.build_options(), static_cast<int>(job.threads));
   job.say_all(result.missing);
   job.report["sheets"] = if_true(!result.sheets.empty(), sheets_json(result.sheets));
   std::string text;
