@@ -110,7 +110,7 @@ std::optional<Stretch> piece_of(const yarn::Body& body, int axis, double from, d
 }
 
 // The share of a period that these lanes (middle, width) hide.
-double hidden_share(std::vector<std::pair<double, double>> lanes, double period) {
+double hidden_share(const std::vector<std::pair<double, double>>& lanes, double period) {
   std::vector<std::pair<double, double>> parts;  // from, to, within the period
   for (const auto& [middle, width] : lanes) {
     if (width >= period) return 1;
