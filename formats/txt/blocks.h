@@ -52,7 +52,13 @@ void read_braid(Parser& p, fabric::Fabric& fabric, std::string_view word);
 // piece.cpp
 void read_piece(Parser& p, fabric::Fabric& fabric, std::string_view word);
 
+// use.cpp
+void read_use(Parser& p, fabric::Fabric& fabric, std::string_view word);
+void read_repeats_of_cell(Parser& p, fabric::Cell& cell);
+void read_margin_of_cell(Parser& p, fabric::Cell& cell, std::string_view word);
+
 // reader.cpp
+void read_block_of_yarns(Parser& p, fabric::Fabric& fabric, std::string_view word);
 void read_edit(Parser& p, fabric::Fabric& fabric, std::string_view word);
 void read_cell(Parser& p, fabric::Fabric& fabric, std::string_view word);
 

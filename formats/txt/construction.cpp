@@ -453,7 +453,8 @@ void read_warpknit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                       {"bar", read_bar, Times::any},
                                       {"wales", read_warpknit_wales, Times::once},
                                       {"courses", read_warpknit_courses, Times::once},
-                                      {"stitch", into(&Warpknit::stitch, one_of("stitch", stitch_words))}});
+                                      {"stitch", into(&Warpknit::stitch, one_of("stitch", stitch_words))},
+                                      {"substrate", into(&Warpknit::substrate, a_length("the substrate"))}});
   Warpknit warpknit;
   const Spot opened = p.statement();
   warpknit.place = opened.place();

@@ -279,6 +279,21 @@ std::optional<std::string_view> Parser::reference(const Names& names) {
   return found;
 }
 
+void Parser::with_own_names(const std::function<void()>& read) {
+  const std::array<Names*, 6> kinds = {&threads, &materials, &yarns, &pieces, &outlines, &blocks};
+  std::array<decltype(Names::lines), 6> around;
+  for (std::size_t i = 0; i < kinds.size(); ++i) around[i].swap(kinds[i]->lines);
+  std::vector<Reference> references;
+  references.swap(references_);
+  read();
+  // The yarns of a block are its own: those of an edit are looked for when it is built.
+  for (const Reference& reference : references_)
+    if (reference.names != &yarns && !reference.names->lines.contains(reference.name))
+      references.push_back(reference);
+  references_ = std::move(references);
+  for (std::size_t i = 0; i < kinds.size(); ++i) around[i].swap(kinds[i]->lines);
+}
+
 void Parser::check_references() {
   if (is_stopped()) return;  // what was not read may define them
   // The yarns of a construction get their names when it is built.

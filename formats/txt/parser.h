@@ -132,11 +132,13 @@ class Parser : public Cursor {
   // check_references().
   std::optional<std::string_view> reference(const Names& names);
   void check_references();
+  // What `read` defines is known only to what it reads, which knows what stands round it as well.
+  void with_own_names(const std::function<void()>& read);
 
   TextReport& report;
   std::span<const fabric::Setting> settings;  // of params, from outside
   fabric::Fabric fabric;
-  Names threads{"thread"}, materials{"material"}, yarns{"yarn"}, pieces{"piece"}, outlines{"outline"};
+  Names threads{"thread"}, materials{"material"}, yarns{"yarn"}, pieces{"piece"}, outlines{"outline"}, blocks{"block"};
 
  private:
   struct Reference {

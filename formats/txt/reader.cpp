@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "fabric/inside.h"
 #include "formats/txt/blocks.h"
 
 namespace selvage::formats::txt {
@@ -90,11 +91,10 @@ void check_settings(Parser& p, const Source& source) {
 // -----------------------------------------------------------------------------------------------------------
 
 void read_periodic(Parser& p, Cell& cell, std::string_view) {
-  constexpr std::array<Word<std::size_t>, 3> axes{{{"x", 0}, {"y", 1}, {"z", 2}}};
   do {
-    const auto axis = p.choice("axis", axes);
+    const auto axis = p.choice("axis", axis_words);
     if (!axis) return;
-    bool& is_periodic = cell.periodic[*axis];
+    bool& is_periodic = cell.periodic[static_cast<std::size_t>(*axis)];
     if (is_periodic) p.error(p.last(), "this axis is named twice");
     is_periodic = true;
   } while (p.more());
@@ -118,6 +118,8 @@ const Table<Fabric>& file_table() {
        {"warpknit", read_warpknit, Times::any},
        {"braid", read_braid, Times::any},
        {"piece", read_piece, Times::any},
+       {"block", read_block_of_yarns, Times::any},
+       {"use", read_use, Times::any},
        {"edit", read_edit, Times::any},
        {"cell", read_cell},
        {"fabric", read_repeated_version, Times::any}});
@@ -206,12 +208,46 @@ void read_edit(Parser& p, fabric::Fabric& fabric, std::string_view) {
   fabric.edits.push_back(std::move(edit));
 }
 
+void read_block_of_yarns(Parser& p, fabric::Fabric& fabric, std::string_view word) {
+  static const Table<Fabric> table({{"tolerance", into(&Fabric::tolerance, a_length("the tolerance"))},
+                                    {"thread", read_thread, Times::any},
+                                    {"material", read_material, Times::any},
+                                    {"outline", read_outline, Times::any},
+                                    {"yarn", read_yarn, Times::any},
+                                    {"weave", read_weave, Times::any},
+                                    {"knit", read_knit, Times::any},
+                                    {"warpknit", read_warpknit, Times::any},
+                                    {"braid", read_braid, Times::any},
+                                    {"block", read_block_of_yarns, Times::any},
+                                    {"use", read_use, Times::any},
+                                    {"edit", read_edit, Times::any}});
+  fabric::NamedBlock block;
+  const Spot opened = p.statement();
+  block.place = opened.place();
+  block.name = p.new_name(p.blocks).value_or("");
+  p.finish();
+  block.fabric = std::make_shared<Fabric>();
+  const int errors = p.report.errors();
+  bool is_closed = false;
+  p.with_own_names([&] { is_closed = p.read_block(word, block.name, opened, table, *block.fabric); });
+  if (is_closed && p.report.errors() == errors && block.fabric->items.empty())
+    p.error(p.last(), fmt::format("the block {} is empty: it has no yarns", in_quotes(block.name)));
+  fabric.blocks.push_back(std::move(block));
+}
+
 void read_cell(Parser& p, fabric::Fabric& fabric, std::string_view word) {
-  static const Table<Cell> table(
-      {{"matrix", into(&Cell::matrix, a_reference(&Parser::materials))}, {"periodic", read_periodic}});
+  static const Table<Cell> table({{"matrix", into(&Cell::matrix, a_reference(&Parser::materials))},
+                                  {"periodic", read_periodic},
+                                  {"margin", read_margin_of_cell}});
   Cell cell;
   const Spot opened = p.statement();
   cell.place = opened.place();
+  if (same_word(p.peek_word(), "repeat")) {
+    read_repeats_of_cell(p, cell);
+    p.read_block(word, "", opened, table, cell);
+    fabric.cell = std::move(cell);
+    return;
+  }
   const auto one = p.point("a corner of the cell");
   const auto other = p.point("the opposite corner of the cell");
   if (other) {
@@ -241,6 +277,9 @@ std::optional<Fabric> read(const Source& source, std::span<const fabric::Setting
     p.check_references();
     p.fabric.tell_threads_their_materials();
     check_settings(p, source);
+    if (report.errors() == 0)
+      if (const Status fits = fabric::check_uses(p.fabric); !fits)
+        report.error(spot_at(source, fits.error().place), fits.error().text, fits.error().kind);
   }
   return std::move(p.fabric);
 }

@@ -35,7 +35,8 @@ constexpr std::array keywords = {
     "bar",      "stitch",   "carriers", "pattern",    "radius",    "flat",      "angle",   "length",
     "axial",    "line",     "curve",    "matrix",     "periodic",  "K",         "fixed",   "nan",
     "inf",      "infinity", "outline",  "derivative", "spacing",   "thickness", "loop",    "feeds",
-    "gating",   "plating",  "pile"};
+    "gating",   "plating",  "pile",     "block",      "use",       "place",     "rotate",  "mirror",
+    "shear",    "repeat",   "margin",   "substrate"};
 
 bool continues_identifier(char c) {
   return starts_name(c) || (c >= '0' && c <= '9');

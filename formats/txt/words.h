@@ -104,6 +104,12 @@ inline constexpr std::array<Word<yarn::EndStyle>, 4> end_words{{{"patch", yarn::
                                                                 {"planar", yarn::EndStyle::planar},
                                                                 {"none", yarn::EndStyle::none}}};
 
+inline constexpr std::array<Word<int>, 3> axis_words{{{"x", 0}, {"y", 1}, {"z", 2}}};
+inline constexpr std::array<Word<fabric::Move::Form>, 4> move_words{{{"place", fabric::Move::Form::place},
+                                                                     {"rotate", fabric::Move::Form::rotate},
+                                                                     {"mirror", fabric::Move::Form::mirror},
+                                                                     {"shear", fabric::Move::Form::shear}}};
+
 // The sections, by their index in yarn::Section.
 inline constexpr std::array<Word<std::size_t>, 7> section_words{{{"circle", 0},
                                                                  {"ellipse", 1},
@@ -135,7 +141,7 @@ consteval bool says_all(const std::array<Word<Enum>, N>&, std::size_t without = 
 static_assert(says_all(hand_words) && says_all(density_words) && says_all(unit_words) &&
               says_all(role_words) && says_all(path_words) && says_all(profile_words) &&
               says_all(spacing_words) && says_all(knit_method_words) && says_all(gating_words) &&
-              says_all(stitch_words) && says_all(end_words) && says_all(edit_words) &&
+              says_all(stitch_words) && says_all(end_words) && says_all(edit_words) && says_all(move_words) &&
               section_words.size() == std::variant_size_v<yarn::Section>);
 static_assert(says_all(draft_words, 1) && says_all(knit_words, 1) && says_all(curve_words, 1) &&
               says_all(curve_method_words));

@@ -315,6 +315,7 @@ void write_item(Lines& out, const fabric::Warpknit& warpknit) {
   out.line(1, "wales").value(warpknit.wales).word("pitch").value(warpknit.wale_pitch);
   out.line(1, "courses").value(warpknit.courses).word("pitch").value(warpknit.course_pitch);
   if (warpknit.stitch) out.line(1, "stitch").word(word_of(stitch_words, *warpknit.stitch));
+  if (warpknit.substrate) out.line(1, "substrate").value(*warpknit.substrate);
   out.line(0, "end");
 }
 
@@ -379,6 +380,32 @@ void write_item(Lines& out, const fabric::Piece& piece) {
   out.line(0, "end");
 }
 
+// --- placing
+// --------------------------------------------------------------------------------------------------------
+
+void write_item(Lines& out, const fabric::Use& use) {
+  out.line(0, "use");
+  if (use.is_file) out.word("file");
+  out.name(use.what);
+  if (!use.as.empty()) out.word("as").name(use.as);
+  if (use.repeats != std::array{1, 1} || use.steps) {
+    out.line(1, "repeat").value(use.repeats[0]).value(use.repeats[1]);
+    if (use.steps) out.word("step").value((*use.steps)[0]).value((*use.steps)[1]);
+  }
+  for (const fabric::Move& move : use.moves) {
+    using Form = fabric::Move::Form;
+    out.line(1, word_of(move_words, move.form));
+    if (move.form == Form::place) {
+      out.values(move.by);
+      continue;
+    }
+    out.word(word_of(axis_words, move.axis));
+    if (move.form == Form::shear) out.word(word_of(axis_words, move.across));
+    if (move.form != Form::mirror) out.value(move.angle);
+  }
+  out.line(0, "end");
+}
+
 // --- file
 // -----------------------------------------------------------------------------------------------------------
 
@@ -391,7 +418,12 @@ void write_edit(Lines& out, const fabric::Edit& edit) {
 
 void write_cell(Lines& out, const fabric::Cell& cell) {
   out.blank_line();
-  out.line(0, "cell").values(cell.low).raw(" ").values(cell.high);
+  if (cell.of_repeats) {
+    out.line(0, "cell repeat").value(cell.of_repeats->counts[0]).word("x").value(cell.of_repeats->counts[1]);
+    if (cell.of_repeats->margin) out.line(1, "margin").value(*cell.of_repeats->margin);
+  } else {
+    out.line(0, "cell").values(cell.low).raw(" ").values(cell.high);
+  }
   if (!cell.matrix.empty()) out.line(1, "matrix").name(cell.matrix);
   if (cell.names_axes()) out.line(1, "periodic");
   for (const std::size_t axis : {0U, 1U, 2U})
@@ -427,22 +459,22 @@ void warn_of_losses(const fabric::Fabric& fabric, const EndsChanged& changed, Wr
                      counted(fabric.curves.size(), "curve"), fabric.curves.front().name));
 }
 
-}  // namespace
-
-Result<WriteFacts> write_fabric(const fabric::Fabric& fabric, OutputFile& output) {
-  Lines out(output);
-  out.line(0, "fabric").value(1);
-  if (fabric.title) out.line(0, "title").raw(" ").quoted_text(*fabric.title);
-  if (fabric.units_given || fabric.units != Unit::mm)
-    out.line(0, "units").word(word_of(unit_words, fabric.units));
+// What a text and a block of it have alike.
+void write_content(Lines& out, const fabric::Fabric& fabric, WriteFacts& facts, EndsChanged& changed) {
   if (fabric.tolerance) out.line(0, "tolerance").value(*fabric.tolerance);
   for (const fabric::Material& material : fabric.materials) write_material(out, material);
   for (const fabric::Outline& outline : fabric.outlines) write_outline(out, outline);
   for (const Thread& thread : fabric.threads) write_thread(out, thread);
-  WriteFacts facts;
-  constexpr std::array<std::string_view, 6> kinds = {"yarn", "weave", "knit", "warpknit", "braid", "piece"};
+  for (const fabric::NamedBlock& block : fabric.blocks) {
+    out.blank_line();
+    out.line(0, "block").name(block.name);
+    WriteFacts of_block;  // its yarns are those of its uses
+    write_content(out, *block.fabric, of_block, changed);
+    out.line(0, "end");
+  }
+  constexpr std::array<std::string_view, 7> kinds = {"yarn",  "weave", "knit", "warpknit",
+                                                     "braid", "piece", "use"};
   static_assert(kinds.size() == std::variant_size_v<fabric::Item>);
-  EndsChanged changed;
   for (const fabric::Item& item : fabric.items) {
     out.blank_line();
     const auto* yarn = std::get_if<fabric::Yarn>(&item);
@@ -454,6 +486,19 @@ Result<WriteFacts> write_fabric(const fabric::Fabric& fabric, OutputFile& output
   }
   if (!fabric.edits.empty()) out.blank_line();
   for (const fabric::Edit& edit : fabric.edits) write_edit(out, edit);
+}
+
+}  // namespace
+
+Result<WriteFacts> write_fabric(const fabric::Fabric& fabric, OutputFile& output) {
+  Lines out(output);
+  out.line(0, "fabric").value(1);
+  if (fabric.title) out.line(0, "title").raw(" ").quoted_text(*fabric.title);
+  if (fabric.units_given || fabric.units != Unit::mm)
+    out.line(0, "units").word(word_of(unit_words, fabric.units));
+  WriteFacts facts;
+  EndsChanged changed;
+  write_content(out, fabric, facts, changed);
   if (fabric.cell) write_cell(out, *fabric.cell);
   if (Status status = out.finish(); !status) return status.error();
   warn_of_losses(fabric, changed, facts);

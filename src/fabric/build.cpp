@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <set>
 #include <span>
 #include <unordered_map>
@@ -81,6 +82,7 @@ std::vector<std::string> threads_of(const Item& item) {
                           return Names{braid.thread, braid.axial_thread};
                         },
                         [](const Piece&) { return Names(); },
+                        [](const Use&) { return Names(); },
                     },
                     item);
 }
@@ -153,8 +155,10 @@ double density_of(const Fabric& fabric, const Thread& thread, const yarn::Body& 
 
 }  // namespace
 
-std::optional<double> smallest_section(const Fabric& fabric) {
-  double smallest = std::numeric_limits<double>::infinity();
+namespace {
+
+// Blocks that were looked into are not looked into again.
+void look_for_smallest(const Fabric& fabric, std::set<const Fabric*>& seen, double& smallest) {
   const auto look = [&](const std::optional<double>& size) {
     if (size) smallest = std::min(smallest, *size);
   };
@@ -162,7 +166,19 @@ std::optional<double> smallest_section(const Fabric& fabric) {
     if (const auto* yarn = std::get_if<Yarn>(&item)) look(smallest_size(fabric, *yarn));
     for (const std::string& name : threads_of(item))
       if (const Thread* thread = fabric.find_thread(name)) look(smallest_size(fabric, *thread));
+    const auto* use = std::get_if<Use>(&item);
+    const NamedBlock* block = use != nullptr && !use->is_file ? find_block(fabric, use->what) : nullptr;
+    if (block != nullptr && seen.insert(block->fabric.get()).second)
+      look_for_smallest(inside(fabric, *block), seen, smallest);
   }
+}
+
+}  // namespace
+
+std::optional<double> smallest_section(const Fabric& fabric) {
+  double smallest = std::numeric_limits<double>::infinity();
+  std::set<const Fabric*> seen;
+  look_for_smallest(fabric, seen, smallest);
   return std::isfinite(smallest) ? std::optional(smallest) : std::nullopt;
 }
 
@@ -225,23 +241,36 @@ void YarnBuilder::add_construction(std::string_view kind, Result<std::unique_ptr
 }
 
 std::string YarnBuilder::name_of(const Entry& entry) const {
+  if (entry.placed != nullptr)
+    return entry.placed->where.prefix + entry.placed->builder->name(entry.index);
   return entry.yarn != nullptr ? entry.yarn->name
                                : entry.made->prefix + entry.made->construction->name(entry.index);
 }
 
 std::optional<Repeat> YarnBuilder::repeat() const {
-  if (constructions_.empty()) return std::nullopt;
   for (const Entry& entry : entries_)
     if (entry.yarn != nullptr) return std::nullopt;
-  Repeat all = constructions_.front()->construction->repeat();
-  for (const auto& made : constructions_) all = common_repeat(all, made->construction->repeat());
-  return all;
+  std::vector<Repeat> all;
+  for (const auto& made : constructions_) all.push_back(made->construction->repeat());
+  for (const std::optional<Repeat>& of_use : repeats_of_uses_) {
+    if (!of_use) return std::nullopt;
+    all.push_back(*of_use);
+  }
+  if (all.empty()) return std::nullopt;
+  return std::accumulate(all.begin() + 1, all.end(), all.front(), common_repeat);
 }
 
 YarnBuilder::Origin YarnBuilder::origin(std::size_t index) const {
   const Entry& entry = entries_[index];
-  return {entry.yarn, entry.parts > 1, entry.made != nullptr ? entry.made->construction.get() : nullptr,
-          entry.index};
+  if (entry.placed != nullptr) {
+    Origin origin = entry.placed->builder->origin(entry.index);
+    origin.is_placed = true;
+    return origin;
+  }
+  Origin origin{entry.yarn, entry.parts > 1};
+  if (entry.made != nullptr) origin.construction = entry.made->construction.get();
+  origin.index = entry.index;
+  return origin;
 }
 
 std::vector<const Construction*> YarnBuilder::constructions() const {
@@ -270,6 +299,12 @@ void YarnBuilder::make_names_unique(Diagnostics& diagnostics) {
   std::unordered_set<std::string> taken;
   for (const Entry& entry : entries_)
     if (entry.yarn != nullptr) taken.insert(entry.yarn->name);
+  for (const Entry& entry : entries_)
+    if (entry.placed != nullptr && taken.contains(name_of(entry)))
+      diagnostics.add(error(Kind::geometry, fmt::format("a yarn of this file has the name '{}' of a yarn that is "
+                                                        "used here: 'as' gives these other names",
+                                                        name_of(entry)))
+                          .placed(entry.placed->place, fabric_->file));
   if (taken.empty() && constructions_.size() < 2) return;
   std::map<std::string_view, int> numbers;  // of constructions of a kind
   for (const auto& made : constructions_) {
@@ -301,7 +336,7 @@ void YarnBuilder::check_part_names(Diagnostics& diagnostics) const {
       const std::size_t end = name.find(mark);
       const std::optional<std::size_t> whole =
           end == name.npos ? std::nullopt : find(std::string_view(name).substr(0, end));
-      if (!whole || entries_[*whole].parts == 1) continue;
+      if (!whole || entries_[*whole].parts == 1 || entries_[*whole].placed != nullptr) continue;
       const Entry& other = entries_[*whole];
       const Thread thread = other.yarn != nullptr ? resolved_thread(*fabric_, *other.yarn)
                                                   : other.made->construction->thread(other.index);
@@ -320,7 +355,14 @@ void YarnBuilder::check_edited_names(Diagnostics& diagnostics) const {
   std::vector<std::string_view> names;
   for (const Edit& edit : fabric_->edits) {
     if (diagnostics.is_full()) return;
-    if (find(edit.yarn)) continue;
+    if (const std::optional<std::size_t> found = find(edit.yarn)) {
+      if (entries_[*found].placed != nullptr)
+        diagnostics.add(error(Kind::geometry, fmt::format("yarn '{}' is one of a block: what edits it stands in that "
+                                                          "block, with its name there",
+                                                          edit.yarn))
+                            .placed(edit.place, fabric_->file));
+      continue;
+    }
     if (names.empty()) {
       for (const auto& [name, entry] : names_->first) names.push_back(name);
       std::sort(names.begin(), names.end());
@@ -336,11 +378,17 @@ void YarnBuilder::check_edited_names(Diagnostics& diagnostics) const {
 
 std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const BuildOptions& options,
                                                Diagnostics& diagnostics) {
+  return make(fabric, options, diagnostics, share_among_blocks());
+}
+
+std::optional<YarnBuilder> YarnBuilder::make(const Fabric& fabric, const BuildOptions& options,
+                                             Diagnostics& diagnostics, const std::shared_ptr<Shared>& shared) {
   YarnBuilder builder;
   builder.fabric_ = &fabric;
   builder.options_ = options;
   builder.last_bundle_ = std::make_shared<LastBundle>();
-  builder.shapes_ = std::make_shared<ShapeMemo>();
+  builder.shared_ = shared;
+  builder.shapes_ = memo_of(*shared);
   builder.names_ = std::make_shared<NameIndex>();
   const int errors_before = diagnostics.error_count();
   builder.tolerance_ = tolerance_of(fabric, options);
@@ -351,24 +399,12 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
     if (warning && warned.insert(warning->text).second) diagnostics.add(std::move(*warning));
   };
   for (const Item& item : fabric.items) {
-    const auto construct = [&](std::string_view kind, const auto& construction, const auto& make) {
-      builder.add_construction(kind, make(fabric, construction, options, diagnostics), construction.place,
-                               diagnostics);
-    };
-    std::visit(Overloaded{
-                   [&](const Yarn& yarn) {
-                     const Thread thread = resolved_thread(fabric, yarn);
-                     builder.add_yarn(yarn, diagnostics);
-                     warn(fibre_share_warning(fabric, yarn, thread));
-                     warn(roundness_note(fabric, thread, yarn.place));
-                   },
-                   [&](const Weave& weave) { construct("weave", weave, make_weave); },
-                   [&](const Knit& knit) { construct("knit", knit, make_knit); },
-                   [&](const Warpknit& warpknit) { construct("warpknit", warpknit, make_warpknit); },
-                   [&](const Braid& braid) { construct("braid", braid, make_braid); },
-                   [](const Piece&) {},
-               },
-               item);
+    builder.add_item(item, diagnostics);
+    if (const auto* yarn = std::get_if<Yarn>(&item)) {
+      const Thread thread = resolved_thread(fabric, *yarn);
+      warn(fibre_share_warning(fabric, *yarn, thread));
+      warn(roundness_note(fabric, thread, yarn->place));
+    }
     for (const std::string& name : threads_of(item))
       if (const Thread* thread = fabric.find_thread(name)) {
         warn(fibre_share_warning(fabric, *thread, thread->place));
@@ -385,14 +421,46 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
   return builder;
 }
 
+void YarnBuilder::add_item(const Item& item, Diagnostics& diagnostics) {
+  const auto construct = [&](std::string_view kind, const auto& construction, const auto& make) {
+    add_construction(kind, make(*fabric_, construction, options_, diagnostics), construction.place, diagnostics);
+  };
+  std::visit(Overloaded{
+                 [&](const Yarn& yarn) { add_yarn(yarn, diagnostics); },
+                 [&](const Weave& weave) { construct("weave", weave, make_weave); },
+                 [&](const Knit& knit) { construct("knit", knit, make_knit); },
+                 [&](const Warpknit& warpknit) { construct("warpknit", warpknit, make_warpknit); },
+                 [&](const Braid& braid) { construct("braid", braid, make_braid); },
+                 [&](const Use& use) { add_use(use, diagnostics); },
+                 [](const Piece&) {},
+             },
+             item);
+}
+
 Message YarnBuilder::placed(Message message, const Entry& entry) const {
   message.file = fabric_->file;
+  if (message.place.line == 0 && entry.placed != nullptr) message.place = entry.placed->place;
   if (message.place.line == 0 && entry.yarn != nullptr) message.place = entry.yarn->place;
   if (message.yarn.empty()) message.yarn = name_of(entry);
   return message;
 }
 
-Result<YarnPlan> YarnBuilder::whole_plan(const Entry& entry) const {
+// Its line sheared, and all that holds its sections: a normal stays one of what it is normal to.
+void YarnBuilder::move_to(const Where& where, YarnPlan& plan) {
+  const Eigen::Matrix3d& linear = where.line.linear;
+  plan.name = where.prefix + plan.name;
+  plan.at = where.line.of(plan.at);
+  if (linear == Eigen::Matrix3d::Identity()) return;
+  for (Vec3& p : plan.points) p = linear * p;
+  for (Vec3& p : plan.line.curve.points) p = linear * p;
+  yarn::FrameGuide& guide = plan.spec.guide;
+  const bool is_axis = guide.form == yarn::FrameGuide::Form::radial;
+  if (is_axis) guide.origin = linear * guide.origin;
+  const Eigen::Matrix3d of_guide = is_axis ? linear : Eigen::Matrix3d(linear.inverse().transpose());
+  if (guide.direction) guide.direction = of_guide * *guide.direction;
+}
+
+Result<YarnPlan> YarnBuilder::whole_plan(const Entry& entry, const Where* where) const {
   if (entry.yarn != nullptr && !std::holds_alternative<Path>(entry.yarn->shape))
     return error(Kind::geometry, fmt::format("yarn '{}' has neither a path nor a grid", entry.yarn->name));
   Result<YarnPlan> plan = entry.yarn != nullptr ? plan_of_path(*fabric_, *entry.yarn, options_)
@@ -404,6 +472,7 @@ Result<YarnPlan> YarnBuilder::whole_plan(const Entry& entry) const {
     tell_from_origin(*plan);
     if (Status edited = apply_edits(*fabric_, plan->name, plan->line); !edited) return edited.error();
   }
+  if (where != nullptr) move_to(*where, *plan);
   return plan;
 }
 
@@ -411,18 +480,19 @@ Result<YarnPlan> YarnBuilder::whole_plan(const Entry& entry) const {
 struct YarnBuilder::LastBundle {
   std::mutex mutex;
   std::size_t first_entry = 0;
+  const Where* where = nullptr;
   std::shared_ptr<const Bundle> bundle;
 };
 
-Result<YarnPlan> YarnBuilder::part_plan(const Entry& entry) const {
+Result<YarnPlan> YarnBuilder::part_plan(const Entry& entry, const Where* where) const {
   const auto first = static_cast<std::size_t>(&entry - entries_.data()) - entry.part;
   std::shared_ptr<const Bundle> bundle;
   {
     const std::lock_guard lock(last_bundle_->mutex);
-    if (last_bundle_->first_entry == first) bundle = last_bundle_->bundle;
+    if (last_bundle_->first_entry == first && last_bundle_->where == where) bundle = last_bundle_->bundle;
   }
   if (bundle == nullptr) {
-    Result<YarnPlan> parent = whole_plan(entry);
+    Result<YarnPlan> parent = whole_plan(entry, where);
     if (!parent) return parent;
     const bool own_tolerance = options_.tolerance <= 0.0 && !fabric_->tolerance;
     Result<Bundle> made = Bundle::make(std::move(*parent), fabric_->units, options_.detail, own_tolerance);
@@ -430,13 +500,16 @@ Result<YarnPlan> YarnBuilder::part_plan(const Entry& entry) const {
     bundle = std::make_shared<const Bundle>(std::move(*made));
     const std::lock_guard lock(last_bundle_->mutex);
     last_bundle_->first_entry = first;
+    last_bundle_->where = where;
     last_bundle_->bundle = bundle;
   }
   return bundle->part(entry.part);
 }
 
-Result<YarnPlan> YarnBuilder::plan_of(const Entry& entry) const {
-  Result<YarnPlan> plan = entry.parts > 1 ? part_plan(entry) : whole_plan(entry);
+Result<YarnPlan> YarnBuilder::plan_of(const Entry& entry, const Where* where) const {
+  if (entry.placed != nullptr) return entry.placed->builder->plan_of(
+        entry.placed->builder->entries_[entry.index]);
+  Result<YarnPlan> plan = entry.parts > 1 ? part_plan(entry, where) : whole_plan(entry, where);
   if (!plan) return placed(plan.error(), entry);
   return plan;
 }
@@ -481,32 +554,51 @@ Result<yarn::Body> YarnBuilder::as_read(yarn::Body body, const Entry& entry) con
 
 Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
   const Entry& entry = entries_[index];
-  if (entry.yarn != nullptr)
-    if (const auto* read = std::get_if<std::shared_ptr<const yarn::Body>>(&entry.yarn->shape))
-      return as_read(**read, entry);
-  yarn::Body body;
-  if (entry.yarn != nullptr && std::holds_alternative<Grid>(entry.yarn->shape)) {
-    Result<yarn::Body> filled = build_grid(*entry.yarn);
-    if (!filled) return placed(filled.error(), entry);
-    body = std::move(*filled);
-    if (Status finished = yarn::finish(body, sealings_of(*fabric_, entry.yarn, options_)); !finished)
-      return placed(finished.error(), entry);
-    body.density = density_of(*fabric_, resolved_thread(*fabric_, *entry.yarn), body);
-  } else {
-    Result<YarnPlan> made = plan_of(entry);
-    if (!made) return made.error();
-    Result<yarn::Body> swept = build_swept(entry, std::move(*made));
-    if (!swept) return placed(swept.error(), entry);
-    body = std::move(*swept);
+  return entry.placed != nullptr ? build_placed(entry) : build_here(entry, nullptr);
+}
+
+Result<yarn::Body> YarnBuilder::build_here(const Entry& entry, const Where* where) const {
+  if (entry.yarn != nullptr && !std::holds_alternative<Path>(entry.yarn->shape)) {
+    Result<yarn::Body> body = build_surface(entry);
+    if (body && where != nullptr) {
+      if (where->line.linear != Eigen::Matrix3d::Identity())
+        return placed(error(Kind::unsupported,
+                            fmt::format("yarn '{}' is a grid, which has no centre line to shear: a path has one",
+                                        entry.yarn->name)),
+                      entry);
+      yarn::map_rigidly(*body, where->line.linear, where->line.shift);
+      body->name = where->prefix + body->name;
+    }
+    return body;
   }
-  for (Message& message : body.messages) message = placed(message, entry);
+  Result<YarnPlan> made = plan_of(entry, where);
+  if (!made) return made.error();
+  Result<yarn::Body> body = build_swept(entry, std::move(*made), where);
+  if (!body) return placed(body.error(), entry);
+  for (Message& message : body->messages) message = placed(message, entry);
   return body;
 }
 
-yarn::BodyLabel YarnBuilder::label_of(const Entry& entry, const YarnPlan& plan) const {
+// Of a yarn that has its surface.
+Result<yarn::Body> YarnBuilder::build_surface(const Entry& entry) const {
+  if (const auto* read = std::get_if<std::shared_ptr<const yarn::Body>>(&entry.yarn->shape))
+    return as_read(**read, entry);
+  if (!std::holds_alternative<Grid>(entry.yarn->shape)) return plan_of(entry).error();  // it has no shape
+  Result<yarn::Body> body = build_grid(*entry.yarn);
+  if (!body) return placed(body.error(), entry);
+  if (Status finished = yarn::finish(*body, sealings_of(*fabric_, entry.yarn, options_)); !finished)
+    return placed(finished.error(), entry);
+  body->density = density_of(*fabric_, resolved_thread(*fabric_, *entry.yarn), *body);
+  for (Message& message : body->messages) message = placed(message, entry);
+  return body;
+}
+
+yarn::BodyLabel YarnBuilder::label_of(const Entry& entry, const YarnPlan& plan, const Where* where) const {
   yarn::BodyLabel label;
   describe(label, plan.name, plan.thread_name, plan.thread, fabric_->units, plan.role, plan.place);
-  label.group = plan.group.empty() && entry.yarn != nullptr ? entry.yarn->group : plan.group;
+  label.group = plan.group;
+  if (plan.group.empty() && entry.yarn != nullptr && !entry.yarn->group.empty())
+    label.group = (where != nullptr ? where->prefix : std::string()) + entry.yarn->group;
   label.section_turns = plan.spec.twist != 0.0;
   return label;
 }
@@ -520,32 +612,26 @@ ShapeMemo::Plan YarnBuilder::shape_plan(const Entry& entry, YarnPlan& plan) cons
   return {std::move(plan.line), spec, sealings_of(*fabric_, entry.yarn, options_)};
 }
 
-// A yarn of the text is planned once.
-std::shared_ptr<const yarn::Body> YarnBuilder::known_shape(const Entry& entry,
-                                                           const ShapeMemo::Plan& shape) const {
-  return entry.yarn == nullptr ? shapes_->find(shape) : nullptr;
-}
-
-Status YarnBuilder::sweep(yarn::Body& body, const Entry& entry, const ShapeMemo::Plan& shape,
-                          const YarnPlan& plan) const {
+Status YarnBuilder::sweep(yarn::Body& body, const ShapeMemo::Plan& shape, const YarnPlan& plan) const {
   body.messages = plan.messages;
   body.path_miss = shape.line.largest_miss;
   if (Status swept = yarn::sweep(body, shape.line, shape.spec); !swept) return swept;
-  if (Status finished = yarn::finish(body, shape.sealings); !finished) return finished;
-  if (entry.yarn == nullptr) shapes_->keep(shape, body);
-  return {};
+  return yarn::finish(body, shape.sealings);
 }
 
-Result<yarn::Body> YarnBuilder::build_swept(const Entry& entry, YarnPlan plan) const {
+Result<yarn::Body> YarnBuilder::build_swept(const Entry& entry, YarnPlan plan, const Where* where) const {
   yarn::Body body;
-  yarn::BodyLabel label = label_of(entry, plan);
+  yarn::BodyLabel label = label_of(entry, plan, where);
   const ShapeMemo::Plan shape = shape_plan(entry, plan);
-  if (const std::shared_ptr<const yarn::Body> known = known_shape(entry, shape)) {
+  // A yarn of the text is planned once, but for one that is placed.
+  const bool may_be_known = entry.yarn == nullptr || where != nullptr;
+  if (const auto known = may_be_known ? shapes_->find(shape) : nullptr) {
     body = *known;
     static_cast<yarn::BodyLabel&>(body) = std::move(label);
   } else {
     static_cast<yarn::BodyLabel&>(body) = std::move(label);
-    if (Status swept = sweep(body, entry, shape, plan); !swept) return swept.error();
+    if (Status swept = sweep(body, shape, plan); !swept) return swept.error();
+    if (may_be_known) shapes_->keep(shape, body);
   }
   body.density = density_of(*fabric_, plan.thread, body);
   if (plan.at != Vec3::Zero()) yarn::move(body, plan.at, shape.spec.grid);
@@ -556,13 +642,14 @@ Result<YarnBuilder::Shaped> YarnBuilder::shape(std::size_t index) const {
   const Entry& entry = entries_[index];
   Result<YarnPlan> plan = plan_of(entry);
   if (!plan) return plan.error();
-  Shaped shaped{nullptr, label_of(entry, *plan), plan->at};
+  Shaped shaped{nullptr, label_of(entry, *plan, nullptr), plan->at};
   const ShapeMemo::Plan shape = shape_plan(entry, *plan);
-  shaped.body = known_shape(entry, shape);
+  shaped.body = shapes_->find(shape);
   if (shaped.body == nullptr) {
     auto body = std::make_shared<yarn::Body>();
     static_cast<yarn::BodyLabel&>(*body) = shaped.label;
-    if (Status swept = sweep(*body, entry, shape, *plan); !swept) return placed(swept.error(), entry);
+    if (Status swept = sweep(*body, shape, *plan); !swept) return placed(swept.error(), entry);
+    shapes_->keep(shape, *body);
     shaped.body = std::move(body);
   }
   shaped.label.density = density_of(*fabric_, plan->thread, *shaped.body);

@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/diagnostics.h"
+#include "fabric/inside.h"
 #include "fabric/model.h"
 #include "fabric/plan.h"
 #include "fabric/plies.h"
@@ -57,18 +59,21 @@ class YarnBuilder {
   struct Origin {
     const Yarn* yarn = nullptr;
     bool is_part = false;
+    bool is_placed = false;  // by a `use`: its thread may be one of its block
     const Construction* construction = nullptr;  // null: it stands in the text
     std::size_t index = 0;                       // of the construction's yarns
   };
   [[nodiscard]] Origin origin(std::size_t index) const;
-  // In file order.
+  // Of a ply or a filament: the whole yarn's.
+  [[nodiscard]] std::string name(std::size_t index) const { return name_of(entries_[index]); }
+  // In file order, but for those of used blocks.
   [[nodiscard]] std::vector<const Construction*> constructions() const;
   // The first yarn (or part of a yarn) of this name; none where there is no such yarn.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
   // Of all constructions together; none where yarns stand in the text, or there are no constructions.
   [[nodiscard]] std::optional<Repeat> repeat() const;
-  // The yarn's plan, told from the origin, edits applied; a part's own where the yarn has parts. Error
-  // (unsupported): a grid has none.
+  // The yarn's plan, told from the origin, edits applied; a part's own where the yarn has parts; of a yarn that a
+  // `use` places the one in its block. Error (unsupported): a grid has none.
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const;
   // Errors: geometry, limit; with the yarn, its file and line. Warnings are in Body::messages. Yarns of a
   // construction that are planned alike are swept once, and moved.
@@ -84,32 +89,53 @@ class YarnBuilder {
 
  private:
   struct Made;
-  // One yarn to build: a yarn block, or part `part` of yarn `index` of a construction.
+  struct Placed;
+  struct Shared;
+  // One yarn to build: a yarn block, part `part` of yarn `index` of a construction, or entry `index` of a block's
+  // builder.
   struct Entry {
     const Yarn* yarn = nullptr;
     const Made* made = nullptr;
+    const Placed* placed = nullptr;
     std::uint32_t index = 0, part = 0, parts = 1;
   };
+  // Where an entry is asked to be by the `use` of its block; null: where it is.
+  struct Where {
+    Placement line;
+    std::string prefix;  // of its name
+  };
+  static std::optional<YarnBuilder> make(const Fabric& fabric, const BuildOptions& options, Diagnostics& diagnostics,
+                                         const std::shared_ptr<Shared>& shared);
+  // build_uses.cpp
+  void add_use(const Use& use, Diagnostics& diagnostics);
+  void add_copy(const Use& use, const YarnBuilder& within, const Placement& placement, const std::string& prefix);
+  std::shared_ptr<const YarnBuilder> builder_inside(const NamedBlock& block, const Placement* goes_on, Diagnostics& diagnostics);
+  [[nodiscard]] std::optional<Repeat> repeat_inside() const;
+  [[nodiscard]] Result<yarn::Body> build_placed(const Entry& entry) const;
+  [[nodiscard]] Result<yarn::Body> build_here(const Entry& entry, const Where* where) const;
+  [[nodiscard]] Result<yarn::Body> build_surface(const Entry& entry) const;
+  static void move_to(const Where& where, YarnPlan& plan);
+  static std::shared_ptr<Shared> share_among_blocks();
+  static std::shared_ptr<ShapeMemo> memo_of(const Shared& shared);
   void add_construction(std::string_view kind, Result<std::unique_ptr<Construction>> made, TextPlace place,
                         Diagnostics& diagnostics);
   // False, with the error, when it is too much together with what there is already.
   bool take_on(const Work& work, TextPlace place, Diagnostics& diagnostics);
   void add_entries(Entry entry, std::uint64_t parts);
   void add_yarn(const Yarn& yarn, Diagnostics& diagnostics);
+  void add_item(const Item& item, Diagnostics& diagnostics);
   void make_names_unique(Diagnostics& diagnostics);
   void check_part_names(Diagnostics& diagnostics) const;
   void check_edited_names(Diagnostics& diagnostics) const;
   [[nodiscard]] std::string name_of(const Entry& entry) const;
-  [[nodiscard]] Result<YarnPlan> whole_plan(const Entry& entry) const;
-  [[nodiscard]] Result<YarnPlan> plan_of(const Entry& entry) const;  // told from where the yarn stands
-  [[nodiscard]] yarn::BodyLabel label_of(const Entry& entry, const YarnPlan& plan) const;
+  [[nodiscard]] Result<YarnPlan> whole_plan(const Entry& entry, const Where* where) const;
+  // Told from where the yarn stands.
+  [[nodiscard]] Result<YarnPlan> plan_of(const Entry& entry, const Where* where = nullptr) const;
+  [[nodiscard]] yarn::BodyLabel label_of(const Entry& entry, const YarnPlan& plan, const Where* where) const;
   [[nodiscard]] ShapeMemo::Plan shape_plan(const Entry& entry, YarnPlan& plan) const;
-  [[nodiscard]] std::shared_ptr<const yarn::Body> known_shape(const Entry& entry,
-                                                              const ShapeMemo::Plan& shape) const;
-  [[nodiscard]] Status sweep(yarn::Body& body, const Entry& entry, const ShapeMemo::Plan& shape,
-                             const YarnPlan& plan) const;
-  [[nodiscard]] Result<yarn::Body> build_swept(const Entry& entry, YarnPlan plan) const;
-  [[nodiscard]] Result<YarnPlan> part_plan(const Entry& entry) const;
+  [[nodiscard]] Status sweep(yarn::Body& body, const ShapeMemo::Plan& shape, const YarnPlan& plan) const;
+  [[nodiscard]] Result<yarn::Body> build_swept(const Entry& entry, YarnPlan plan, const Where* where) const;
+  [[nodiscard]] Result<YarnPlan> part_plan(const Entry& entry, const Where* where) const;
   [[nodiscard]] Result<yarn::Body> build_grid(const Yarn& yarn) const;
   [[nodiscard]] Result<yarn::Body> as_read(yarn::Body body, const Entry& entry) const;
   [[nodiscard]] Message placed(Message message, const Entry& entry) const;
@@ -127,6 +153,14 @@ class YarnBuilder {
   std::vector<std::unique_ptr<Made>> constructions_;  // entries point to them
   std::vector<Entry> entries_;
   Work work_;
+  // A yarn of a block, or of one within that: how it comes from where its own builder has it.
+  struct Placed {
+    const YarnBuilder* builder = nullptr;
+    Placement placement;
+    Where where;
+    Placement body;   // what is done to it when it is built
+    TextPlace place;  // of the `use`
+  };
   // The first entry of each name; made when it is first asked for.
   struct NameIndex;
   std::shared_ptr<NameIndex> names_;
@@ -134,6 +168,13 @@ class YarnBuilder {
   struct LastBundle;
   std::shared_ptr<LastBundle> last_bundle_;
   std::shared_ptr<ShapeMemo> shapes_;
+  // Of blocks: their builders, and the copies of each.
+  std::shared_ptr<Shared> shared_;
+  std::shared_ptr<const Fabric> own_fabric_;
+  std::vector<std::shared_ptr<const YarnBuilder>> insides_;
+  std::vector<std::unique_ptr<Placed>> placed_;
+  std::set<std::string> prefixes_;
+  std::vector<std::optional<Repeat>> repeats_of_uses_;
 };
 
 }  // namespace selvage::fabric

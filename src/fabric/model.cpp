@@ -51,6 +51,24 @@ const Material* Fabric::find_material(std::string_view name) const {
 
 namespace {
 
+const Material* find_in_blocks(const Fabric& fabric, std::string_view name) {
+  for (const NamedBlock& block : fabric.blocks) {
+    if (const Material* const own = find_named(block.fabric->materials, name)) return own;
+    if (const Material* const deeper = find_in_blocks(*block.fabric, name)) return deeper;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+const Material* Fabric::find_material_anywhere(std::string_view name) const {
+  if (const Material* const own = find_named(materials, name)) return own;
+  if (const Material* const inside = find_in_blocks(*this, name)) return inside;
+  return find_fibre(name);
+}
+
+namespace {
+
 void take_from_material(Thread& thread, const Fabric& fabric) {
   const Material* const material = thread.material ? fabric.find_material(*thread.material) : nullptr;
   thread.material_density = material != nullptr ? material->density : std::nullopt;

@@ -269,6 +269,7 @@ struct Warpknit {
   int wales = 0, courses = 0;
   double wale_pitch = 0, course_pitch = 0;
   std::optional<Stitch> stitch;
+  std::optional<double> substrate;  // thickness of the layers that it stitches together
 };
 
 struct Braid {
@@ -330,15 +331,54 @@ struct Piece {
   std::vector<Edit> edits;  // of its curves, in the plane
 };
 
+// One step on the way of a used block to its place.
+struct Move {
+  enum class Form { place, rotate, mirror, shear };
+  Form form = Form::place;
+  Vec3 by = Vec3::Zero();  // place
+  int axis = 2;            // rotate: about it; mirror: across it; shear: along it
+  int across = 1;          // shear: the farther along this axis, the farther along `axis`
+  double angle = 0;        // rotate, shear: degrees
+};
+
+// The yarns of a block, or of another text, at another place.
+struct Use {
+  TextPlace place;
+  std::string what;      // the block's name, or the file's
+  bool is_file = false;  // not yet read
+  std::string as;        // what its yarns' names begin with; empty: the block's name
+  // Copies side by side, along the block's own x and y, before it is moved.
+  std::array<int, 2> repeats{1, 1};
+  std::optional<std::array<double, 2>> steps;  // from copy to copy; none: the block's own repeat
+  std::vector<Move> moves;                     // one after the other
+};
+
+struct Fabric;
+
+// A fabric by name, to be used. What it does not define itself it has from the text round it.
+struct NamedBlock {
+  std::string name;
+  TextPlace place;
+  std::shared_ptr<Fabric> fabric;
+  std::shared_ptr<const Fabric> home;  // where it was defined; null: in the fabric that it is in
+};
+
+// So many of the smallest repeats of the cloth, as high as its yarns.
+struct CellOfRepeats {
+  std::array<int, 2> counts{1, 1};
+  std::optional<double> margin;  // beyond the yarns; none: a tenth of the thinnest one's thickness
+};
+
 struct Cell {
   TextPlace place;
+  std::optional<CellOfRepeats> of_repeats;  // says the corners, which settle_cell() finds
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   std::string matrix;              // a material; empty: none
   std::array<bool, 3> periodic{};  // along x, y, z, as its text says
   [[nodiscard]] bool names_axes() const { return periodic[0] || periodic[1] || periodic[2]; }
 };
 
-using Item = std::variant<Yarn, Weave, Knit, Warpknit, Braid, Piece>;
+using Item = std::variant<Yarn, Weave, Knit, Warpknit, Braid, Piece, Use>;
 
 struct Fabric {
   std::string file;  // as messages name it
@@ -349,6 +389,7 @@ struct Fabric {
   std::vector<Thread> threads;
   std::vector<Material> materials;
   std::vector<Outline> outlines;
+  std::vector<NamedBlock> blocks;
   std::vector<Item> items;     // in file order
   std::vector<int> item_ends;  // the last line of each item, where they come from a text; else empty
   std::vector<Edit> edits;
@@ -363,6 +404,8 @@ struct Fabric {
   [[nodiscard]] const Thread* find_thread(std::string_view name) const;
   // One of the text's own, else a fibre of the trade (fibres.h).
   [[nodiscard]] const Material* find_material(std::string_view name) const;
+  // The same, of the text's blocks as well: of a body that any of them made.
+  [[nodiscard]] const Material* find_material_anywhere(std::string_view name) const;
   // Tells the threads what their materials say. To be called once all are there.
   void tell_threads_their_materials();
 };

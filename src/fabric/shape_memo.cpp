@@ -39,6 +39,16 @@ std::shared_ptr<const yarn::Body> ShapeMemo::find(const Plan& plan) {
   return known != nullptr ? known->body : nullptr;
 }
 
+std::uint64_t ShapeMemo::mapped(std::uint64_t shape, const Eigen::Matrix3d& linear) {
+  if (shape == 0) return 0;
+  std::array<double, 9> numbers{};
+  std::copy(linear.data(), linear.data() + numbers.size(), numbers.begin());
+  const std::lock_guard lock(mutex_);
+  const auto [known, is_new] = mapped_.try_emplace({shape, numbers}, 0);
+  if (is_new) known->second = ++last_shape_;
+  return known->second;
+}
+
 void ShapeMemo::keep(const Plan& plan, yarn::Body& body) {
   if (!body.messages.empty()) return;
   Known known{hash_of(plan), bytes_of(plan, body), plan, nullptr};

@@ -1,9 +1,11 @@
 // Shapes of yarns that were swept lately. A cloth's yarns are mostly one of a few, each at many places.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 
@@ -31,6 +33,8 @@ class ShapeMemo {
   // Gives the body its number of a shape. One with messages, which name their yarn, is not kept. The shapes
   // that were not asked for for longest are forgotten where all take too much memory.
   void keep(const Plan& plan, yarn::Body& body);
+  // The number of a shape that was mapped rigidly: 0 stays 0.
+  [[nodiscard]] std::uint64_t mapped(std::uint64_t shape, const Eigen::Matrix3d& linear);
 
  private:
   struct Known {
@@ -45,6 +49,7 @@ class ShapeMemo {
   std::list<Known> known_;
   std::size_t bytes_ = 0;
   std::uint64_t last_shape_ = 0;
+  std::map<std::pair<std::uint64_t, std::array<double, 9>>, std::uint64_t> mapped_;
 };
 
 }  // namespace selvage::fabric

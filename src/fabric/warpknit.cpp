@@ -204,6 +204,7 @@ Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, std::ve
   m.along = warpknit.course_pitch / along;
   m.layer = 1.12 * thickest;  // the loop path misses its points by a few per cent of a yarn
   m.deepest_foot = (0.5 + most_feet_before) * m.along;
+  m.substrate = warpknit.substrate.value_or(0.0);
   return m;
 }
 

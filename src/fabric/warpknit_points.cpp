@@ -85,6 +85,10 @@ void YarnPoints::loop(long long course, const Overlap& overlap, int hold) {
   const double foot = m_.foot_x(bar_), wide = m_.leg_x(), rise = m_.head_y();
   const double face = m_.leg_z(bar_), head = m_.head_z(bar_), next = hold * m_.course_pitch;
   std::vector<Vec3> flank;
+  // Straight up through the layers that are stitched.
+  if (m_.substrate > 0.0)
+    for (const double share : {0.65, 0.15})
+      flank.emplace_back(foot, m_.foot_y(bar_), -share * (m_.layer + m_.substrate));
   // Out of the way of the underlaps of the bars behind before these come past.
   if (bar_.bars_behind > 0) flank.emplace_back(foot, m_.foot_y(bar_) + 0.4 * m_.along, -0.1 * m_.layer);
   flank.emplace_back(foot, rise - 0.25 * m_.along, face);  // through the loop below: in front of its head

@@ -14,8 +14,8 @@ namespace selvage::fabric {
 
 // How much further the foot before a loop reaches down than the one after it, in yarns lying across.
 constexpr double low_foot = 0.4;
-// Most data points of a course: a loop of eleven, an underlap of two.
-constexpr int points_of_a_course = 13;
+// Most data points of a course: a loop of eleven, four through a substrate, an underlap of two.
+constexpr int points_of_a_course = 17;
 
 struct Bar {
   Lapping lapping;
@@ -37,6 +37,7 @@ struct Measures {
   int bars_with_feet = 0;
   int fall_plates = 0;
   double deepest_foot = 0;  // below and above a course's line
+  double substrate = 0;     // between underlaps and heads
 
   [[nodiscard]] double foot_x(const Bar& bar) const { return (0.5 + bar.feet_behind) * across; }
   [[nodiscard]] double leg_x() const { return (0.5 + bars_with_feet) * across; }
@@ -49,7 +50,7 @@ struct Measures {
   [[nodiscard]] double head_y() const { return deepest_foot + (2.0 + fall_plates) * along; }
   [[nodiscard]] double arch_y(const Bar& bar) const { return deepest_foot + (1.2 + bar.feet_before) * along; }
   [[nodiscard]] double underlap_z(const Bar& bar) const {
-    return -(1.0 + (fall_plates > 0 ? 1.0 : 0.0) + bar.bars_behind) * layer;
+    return -(1.0 + (fall_plates > 0 ? 1.0 : 0.0) + bar.bars_behind) * layer - substrate;
   }
   [[nodiscard]] double arch_z() const { return -layer; }
   [[nodiscard]] double head_z(const Bar& bar) const { return bar.feet_behind * layer; }
@@ -60,7 +61,7 @@ struct Measures {
 class LoopMoves {
  public:
   // Which move: those of a course of the repeat, or of the two ends of the yarns of a bar.
-  static constexpr std::size_t most_points = 16;  // of a course
+  static constexpr std::size_t most_points = 20;  // of a course
   LoopMoves() = default;
   LoopMoves(std::size_t bars, long long repeat)
       : repeat_(repeat), moves_(bars * static_cast<std::size_t>(repeat + 2) * most_points, Vec3::Zero()) {}

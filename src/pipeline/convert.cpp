@@ -225,7 +225,6 @@ void look_at_yarns(Job& job, const fabric::Fabric& fabric) {
 
 void convert(Job& job) {
   std::optional<fabric::Fabric> fabric = job.read();
-  if (fabric && job.options.cut) job.gap = cell_gap(job.options, *fabric);
   fabric = relaxed(job, std::move(fabric));
   if (!fabric) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);

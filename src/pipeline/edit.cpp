@@ -6,9 +6,10 @@
 
 #include "core/number_text.h"
 #include "fabric/loft.h"
+#include "fabric/settle_cell.h"
 #include "fabric/piece.h"
 #include "pipeline/detect.h"
-#include "pipeline/drafts.h"
+#include "pipeline/named_files.h"
 #include "pipeline/writing.h"
 
 namespace selvage::pipeline {
@@ -141,8 +142,9 @@ void edit(Job& job) {
                                                         (*format)->name, (*format)->title)));
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric = (*format)->read_fabric(*source, diagnostics);
-  if (fabric) resolve_drafts(*fabric, *source, job.options.allow_outside, diagnostics);
+  if (fabric) resolve_files(*fabric, *source, job.options.allow_outside, diagnostics);
   if (fabric) fabric::loft(*fabric, diagnostics);
+  if (fabric && !diagnostics.has_errors()) fabric::settle_cell(*fabric, {}, 1, diagnostics);
   job.say_all(diagnostics.messages());
   if (!fabric || diagnostics.has_errors()) return;
   const std::optional<int> line = line_of_edit(job, *fabric, *added);

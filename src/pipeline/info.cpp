@@ -23,7 +23,8 @@ namespace selvage::pipeline {
 namespace {
 
 std::string_view kind_of(const fabric::Item& item) {
-  constexpr std::array<std::string_view, 6> kinds = {"yarn", "weave", "knit", "warpknit", "braid", "piece"};
+  constexpr std::array<std::string_view, 7> kinds = {"yarn",  "weave", "knit", "warpknit",
+                                                     "braid", "piece", "use"};
   static_assert(kinds.size() == std::variant_size_v<fabric::Item>);
   return kinds[item.index()];
 }

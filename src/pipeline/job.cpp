@@ -10,11 +10,13 @@
 #include "core/words.h"
 #include "fabric/from_cad.h"
 #include "fabric/loft.h"
+#include "fabric/settle_cell.h"
 #include "pipeline/detect.h"
-#include "pipeline/drafts.h"
 #include "pipeline/facts.h"
 #include "pipeline/limits.h"
+#include "pipeline/named_files.h"
 #include "pipeline/parts.h"
+#include "pipeline/unit_cell.h"
 #include "pipeline/versions.h"
 
 namespace selvage::pipeline {
@@ -145,7 +147,7 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
     fabric = fabric::fabric_of(std::move(*model), diagnostics);
   }
   if (!library.empty()) channel_.send(packet::reader, "");
-  if (fabric) take_drafts(*fabric, *source, diagnostics);
+  if (fabric) take_files(*fabric, *source, diagnostics);
   forward(diagnostics);
   if (!fabric && !diagnostics.has_errors())
     say(error(Kind::internal,
@@ -157,10 +159,13 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
 
 // The hash of the input says nothing of the files that it names: with them in its settings it is never taken
 // for done by `--resume`.
-void Job::take_drafts(fabric::Fabric& fabric, const Source& source, Diagnostics& diagnostics) {
-  for (const std::string& file : resolve_drafts(fabric, source, options.allow_outside, diagnostics))
-    if (wants_report()) report.settings += " draft=" + file;
+void Job::take_files(fabric::Fabric& fabric, const Source& source, Diagnostics& diagnostics) {
+  for (const std::string& file : resolve_files(fabric, source, options.allow_outside, diagnostics))
+    if (wants_report()) report.settings += " file=" + file;
   fabric::loft(fabric, diagnostics);
+  if (diagnostics.has_errors()) return;
+  gap = gap_of_constructions(options, fabric);
+  fabric::settle_cell(fabric, build_options(), static_cast<int>(threads), diagnostics);
 }
 
 std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {

@@ -135,7 +135,7 @@ class Job {
   void show(Message message, double badness);
   void tell(Message message);
   void forward(const Diagnostics& diagnostics);
-  void take_drafts(fabric::Fabric& fabric, const Source& source, Diagnostics& diagnostics);
+  void take_files(fabric::Fabric& fabric, const Source& source, Diagnostics& diagnostics);
 
   const Channel& channel_;
   int errors_ = 0, warnings_ = 0;

@@ -83,8 +83,6 @@ void mesh(Job& job) {
   std::optional<fabric::Fabric> fabric = job.read();
   if (!fabric || !has_only_yarns(job, *fabric)) return;
   if (is_cell && !check_cell_text(job, *fabric, options.matrix)) return;
-  // Voxels need no gap: they take the cloth as it comes.
-  if (is_cell && (options.voxels == 0 || options.relaxing.gap)) job.gap = cell_gap(options, *fabric);
   fabric = relaxed(job, std::move(fabric));
   if (!fabric) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);

@@ -32,8 +32,8 @@ fabric::Yarn yarn_of(const fabric::YarnBuilder& builder, std::size_t index, cons
   const fabric::YarnBuilder::Origin origin = builder.origin(index);
   fabric::Yarn yarn = fabric::yarn_like(body);
   yarn.closed = body.closed_along;
-  if (origin.is_part) {
-    // A part has another size and count than the thread of the whole.
+  if (origin.is_part || origin.is_placed) {
+    // A part has another size and count than the thread of the whole; a block may have threads of its own.
     if (const Result<fabric::YarnPlan> plan = builder.plan(index)) yarn.own = plan->thread;
     yarn.own.name.clear();
   } else if (origin.yarn != nullptr) {
@@ -103,7 +103,7 @@ std::vector<contact::FixedPoint> fixed_points(const Job& job, const fabric::Fabr
       whole = fabric::YarnBuilder::create(fabric, options, said_before);
       if (!whole) return fixed;
     }
-    const std::optional<std::size_t> index = whole->find(yarn->name);
+    const std::optional<std::size_t> index = whole->find(builder.name(i));
     if (!index) continue;
     const Result<fabric::YarnPlan> plan = whole->plan(*index);
     if (!plan) continue;  // told where it was built
@@ -301,6 +301,8 @@ fabric::Fabric with_yarns(fabric::Fabric fabric, Built built, std::vector<yarn::
   for (fabric::Item& item : fabric.items)
     if (std::holds_alternative<fabric::Piece>(item)) items.push_back(std::move(item));
   fabric.items = std::move(items);
+  fabric.blocks.clear();
+  if (fabric.cell) fabric.cell->of_repeats.reset();
   fabric.item_ends.clear();
   fabric.edits.clear();
   if (tolerance > 0) fabric.tolerance = tolerance;

@@ -70,7 +70,11 @@ std::string length_text(double value, double repeat, Unit units) {
 
 }  // namespace
 
-double cell_gap(const Options& options, const fabric::Fabric& fabric) {
+double gap_of_constructions(const Options& options, const fabric::Fabric& fabric) {
+  const bool is_cut = options.command == Command::convert && options.cut;
+  const bool is_meshed = options.command == Command::mesh && options.wants_cell();
+  // Voxels need no gap: they take the cloth as it comes.
+  if (!is_cut && !(is_meshed && (options.voxels == 0 || options.relaxing.gap))) return 0;
   if (options.relaxing.gap) return *options.relaxing.gap;
   return default_gap_share * fabric::smallest_section(fabric).value_or(0.0);
 }

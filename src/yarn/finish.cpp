@@ -172,6 +172,62 @@ void move(Body& body, const Vec3& by, const DecimalGrid& grid) {
   body.at += by;
 }
 
+namespace {
+
+// The same surface with u run backwards.
+void reverse_u(nurbs::Surface& surface) {
+  const auto columns = static_cast<std::ptrdiff_t>(surface.count_u);
+  for (auto row = surface.points.begin(); row != surface.points.end(); row += columns)
+    std::reverse(row, row + columns);
+  for (auto row = surface.weights.begin(); row != surface.weights.end(); row += columns)
+    std::reverse(row, row + columns);
+  surface.knots_u = nurbs::reversed_knots(surface.knots_u);
+}
+
+void swap_u_and_v(nurbs::Surface& surface) {
+  const nurbs::Surface old = surface;
+  std::swap(surface.degree_u, surface.degree_v);
+  std::swap(surface.count_u, surface.count_v);
+  std::swap(surface.knots_u, surface.knots_v);
+  for (int j = 0; j < surface.count_v; ++j)
+    for (int i = 0; i < surface.count_u; ++i) {
+      surface.point(i, j) = old.point(j, i);
+      if (old.is_rational()) surface.weights[surface.index(i, j)] = old.weight(j, i);
+    }
+}
+
+// The quarters of the end curve follow each other in the other order, from the same seam.
+void mirror_outline(Body& body) {
+  const double both = body.surface.first_u() + body.surface.last_u();
+  reverse_u(body.surface);
+  const std::array<double, 4> quarters = body.quarters;
+  for (std::size_t i = 1; i < 4; ++i) body.quarters[i] = both - quarters[4 - i];
+  for (EndFace* end : {&body.start, &body.end}) {
+    if (end->style == EndStyle::patch) swap_u_and_v(end->surface);
+    if (end->style == EndStyle::fan) reverse_u(end->surface);
+  }
+}
+
+}  // namespace
+
+void map_rigidly(Body& body, const Eigen::Matrix3d& linear, const Vec3& by) {
+  const auto map = [&](Vec3& p) { p = linear * p + by; };
+  for (std::vector<Vec3>* points : {&body.surface.points, &body.axis.points, &body.start.surface.points,
+                                    &body.end.surface.points})
+    std::for_each(points->begin(), points->end(), map);
+  for (EndFace* end : {&body.start, &body.end}) {
+    map(end->origin);
+    end->normal = linear * end->normal;
+  }
+  for (TightBend& bend : body.tight_bends) map(bend.at);
+  for (Message& message : body.messages)
+    if (message.at) map(*message.at);
+  map(body.at);
+  if (linear.determinant() > 0.0) return;
+  mirror_outline(body);
+  body.twist = -body.twist;
+}
+
 Status finish(Body& body, const Sealings& ends) {
   const Result<double> side = orient(body);
   if (!side) return side.error();

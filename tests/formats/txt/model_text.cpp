@@ -240,6 +240,7 @@ class Flat {
     add(path + ".wale_pitch", v.wale_pitch);
     add(path + ".course_pitch", v.course_pitch);
     add(path + ".stitch", v.stitch);
+    add(path + ".substrate", v.substrate);
   }
   void add(const std::string& path, const Braid& v) {
     add(path + ".thread", v.thread);
@@ -283,7 +284,37 @@ class Flat {
     add(path + ".like", v.like);
     add(path + ".direction", v.direction);
   }
+  void add(const std::string& path, const Move& v) {
+    add(path + ".form", v.form);
+    add(path + ".by", v.by);
+    add(path + ".axis", v.axis);
+    add(path + ".across", v.across);
+    add(path + ".angle", v.angle);
+  }
+  void add(const std::string& path, const Use& v) {
+    add(path + ".what", v.what);
+    add(path + ".is_file", v.is_file);
+    add(path + ".as", v.as);
+    add(path + ".along_x", v.repeats[0]);
+    add(path + ".along_y", v.repeats[1]);
+    add(path + ".has_steps", v.steps.has_value());
+    if (v.steps) {
+      add(path + ".step_x", (*v.steps)[0]);
+      add(path + ".step_y", (*v.steps)[1]);
+    }
+    add(path + ".moves", v.moves);
+  }
+  void add(const std::string& path, const NamedBlock& v) {
+    add(path + ".name", v.name);
+    for (const std::string& line : flattened(*v.fabric)) lines.push_back(path + "." + line);
+  }
+  void add(const std::string& path, const CellOfRepeats& v) {
+    add(path + ".along_x", v.counts[0]);
+    add(path + ".along_y", v.counts[1]);
+    add(path + ".margin", v.margin);
+  }
   void add(const std::string& path, const Cell& v) {
+    add(path + ".of_repeats", v.of_repeats);
     add(path + ".low", v.low);
     add(path + ".high", v.high);
     add(path + ".matrix", v.matrix);
@@ -304,6 +335,7 @@ std::vector<std::string> flattened(const Fabric& fabric) {
   flat.add("threads", fabric.threads);
   flat.add("materials", fabric.materials);
   flat.add("outlines", fabric.outlines);
+  flat.add("blocks", fabric.blocks);
   flat.add("items", fabric.items);
   flat.add("edits", fabric.edits);
   flat.add("cell", fabric.cell);

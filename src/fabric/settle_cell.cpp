@@ -1,0 +1,213 @@
+#include "fabric/settle_cell.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "core/parallel.h"
+#include "nurbs/divided.h"
+#include "nurbs/samples.h"
+
+namespace selvage::fabric {
+
+namespace {
+
+// Of the thinnest yarn's thickness.
+constexpr double usual_margin = 0.1, clear_of_turns = 0.1;
+
+// A surface, dense enough to see where it reaches to within a thousandth of its thickness.
+nurbs::Samples dense_samples(const nurbs::Surface& surface) {
+  constexpr int round_a_span = 4, along_a_span = 8;
+  return {surface, nurbs::divided(surface.knots_u, surface.degree_u, round_a_span),
+          nurbs::divided(surface.knots_v, surface.degree_v, along_a_span)};
+}
+
+// The yarns of a fabric with the cell that it has now; only errors are told, for all will be built again.
+std::optional<std::vector<yarn::Body>> bodies_of(const Fabric& fabric, const BuildOptions& options, int threads,
+                                                 std::optional<Repeat>& repeat, Diagnostics& diagnostics) {
+  Diagnostics own;
+  const std::optional<YarnBuilder> builder = YarnBuilder::create(fabric, options, own);
+  std::vector<yarn::Body> bodies;
+  if (builder) {
+    repeat = builder->repeat();
+    bodies.resize(builder->count());
+    std::mutex mutex;
+    for_each_index(bodies.size(), threads, [&](std::size_t i) {
+      Result<yarn::Body> body = builder->build(i);
+      const std::lock_guard lock(mutex);
+      if (body)
+        bodies[i] = std::move(*body);
+      else
+        own.add(body.error());
+    });
+  }
+  for (const Message& message : own.messages())
+    if (message.severity == Severity::error) diagnostics.add(message);
+  return own.has_errors() ? std::nullopt : std::optional(std::move(bodies));
+}
+
+// How long the cell is along each axis; 0: as the yarns reach.
+Result<Vec3> lengths_of(const Cell& cell, const std::optional<Repeat>& repeat) {
+  if (!repeat)
+    return error(Kind::geometry,
+                 "a repeat is known of constructions only, not of yarns by hand: write two opposite corners, `cell X "
+                 "Y Z  X Y Z`");
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const std::optional<double>& along : *repeat)
+    if (along.value_or(0.0) > 0.0) shortest = std::min(shortest, *along);
+  if (!std::isfinite(shortest))
+    return error(Kind::geometry,
+                 "this cloth has no repeat, or none of a thousand yarns or less: write two opposite corners, `cell X Y "
+                 "Z  X Y Z`");
+  Vec3 lengths = Vec3::Zero();
+  std::size_t next = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::optional<double>& along = (*repeat)[static_cast<std::size_t>(axis)];
+    // What may be moved by any length is as long as it is wide.
+    if (!along) continue;
+    const int count = next < 2 ? cell.of_repeats->counts[next] : 1;
+    lengths[axis] = count * (*along > 0.0 ? *along : shortest);
+    ++next;
+  }
+  return lengths;
+}
+
+// Where surfaces turn round along an axis, within one repeat from `low` on, as shares of it.
+std::vector<double> turns_along(int axis, const std::vector<nurbs::Samples>& samples, double low, double repeat) {
+  std::vector<double> turns;
+  const double flat = 1e-9 * repeat;  // rounding along what is parallel to the face
+  const auto turns_round = [&](double before, double here, double after) {
+    const double left = here - before, right = after - here;
+    return std::abs(left) <= flat || std::abs(right) <= flat || (left > 0) != (right > 0);
+  };
+  for (const nurbs::Samples& grid : samples) {
+    const std::size_t round = grid.us.size() - 1;  // the last one is the first
+    const auto place = [&](std::size_t u, std::size_t v) { return grid.at(u % round, v)[axis]; };
+    for (std::size_t v = 1; v + 1 < grid.vs.size(); ++v)
+      for (std::size_t u = 0; u < round; ++u)
+        if (turns_round(place(u + round - 1, v), place(u, v), place(u + 1, v)) &&
+            turns_round(place(u, v - 1), place(u, v), place(u, v + 1))) {
+          const double share = (place(u, v) - low) / repeat;
+          turns.push_back(share - std::floor(share));
+        }
+  }
+  std::sort(turns.begin(), turns.end());
+  return turns;
+}
+
+// By what share of a repeat, from -1/2 to 1/2, a face at 0 moves to keep clear of the turns.
+double move_off_turns(const std::vector<double>& turns, double clear) {
+  if (turns.empty() || (turns.front() >= clear && turns.back() <= 1.0 - clear)) return 0.0;
+  double widest = 0.0, middle = 0.0;
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const double next = i + 1 < turns.size() ? turns[i + 1] : turns.front() + 1.0;
+    constexpr double rounding = 1e-6;  // of gaps that are alike the first
+    if (next - turns[i] <= widest + rounding) continue;
+    widest = next - turns[i];
+    middle = 0.5 * (turns[i] + next);
+  }
+  return middle - std::round(middle);
+}
+
+class Settling {
+ public:
+  Settling(Fabric& fabric, const BuildOptions& options, int threads, Diagnostics& diagnostics)
+      : fabric_(fabric), options_(options), threads_(threads), diagnostics_(diagnostics) {}
+
+  Status settle() {
+    Cell cell = *fabric_.cell;
+    fabric_.cell.reset();
+    std::optional<Repeat> repeat;
+    std::optional<std::vector<yarn::Body>> bodies = bodies_of(fabric_, options_, threads_, repeat, diagnostics_);
+    fabric_.cell = cell;
+    if (!bodies) return {};  // it was told
+    const Result<Vec3> lengths = lengths_of(cell, repeat);
+    if (!lengths) return lengths.error();
+    for (const int axis : {0, 1})
+      if ((*lengths)[axis] == 0.0)
+        diagnostics_.add(warning(Kind::geometry, fmt::format("the cloth has no repeat along {}: there the cell reaches "
+                                                             "beyond all of its yarns",
+                                                             axis == 0 ? "x" : "y"))
+                             .placed(cell.place, fabric_.file));
+    Box3 cloth;
+    for (const yarn::Body& body : *bodies) cloth.extend(yarn::bounds(body));
+    if (!cell.names_axes())
+      for (int axis = 0; axis < 3; ++axis) cell.periodic[static_cast<std::size_t>(axis)] = (*lengths)[axis] > 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+      place(cell, axis, (*lengths)[axis], (*repeat)[static_cast<std::size_t>(axis)].value_or(0.0), cloth);
+    fabric_.cell = cell;
+    bodies = bodies_of(fabric_, options_, threads_, repeat, diagnostics_);
+    if (!bodies) return {};
+    fit(cell, *bodies, *lengths, *repeat);
+    fabric_.cell = cell;
+    diagnostics_.add(note(Kind::geometry, fmt::format("the cell reaches from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, "
+                                                      "{:.6g}, {:.6g})",
+                                                      cell.low.x(), cell.low.y(), cell.low.z(), cell.high.x(),
+                                                      cell.high.y(), cell.high.z()))
+                         .placed(cell.place, fabric_.file));
+    return {};
+  }
+
+ private:
+  // Whole repeats from the axes' origin, next to the middle of the cloth; elsewhere the cloth itself.
+  static void place(Cell& cell, int axis, double length, double repeat, const Box3& cloth) {
+    cell.low[axis] = cloth.min()[axis];
+    cell.high[axis] = cloth.max()[axis];
+    if (length == 0.0) return;
+    const double step = repeat > 0.0 ? repeat : length, middle = cloth.center()[axis];
+    constexpr double rounding = 1e-6;  // of two that are as near the lower one
+    cell.low[axis] = std::ceil((middle - 0.5 * length) / step - 0.5 - rounding) * step + 0.0;
+    cell.high[axis] = cell.low[axis] + length;
+  }
+
+  // Is it in the cell as far as that has faces?
+  static bool is_beside(const Vec3& p, const Cell& cell, const Vec3& lengths) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (lengths[axis] > 0.0 && (p[axis] < cell.low[axis] || p[axis] > cell.high[axis])) return false;
+    return true;
+  }
+
+  // What is left to find: where no yarn runs along a face, and how far they reach.
+  void fit(Cell& cell, const std::vector<yarn::Body>& bodies, const Vec3& lengths, const Repeat& repeat) {
+    std::vector<nurbs::Samples> samples;
+    Box3 yarns;
+    double thinnest = std::numeric_limits<double>::infinity();
+    for (const yarn::Body& body : bodies) {
+      nurbs::Samples& grid = samples.emplace_back(dense_samples(body.surface));
+      for (const Vec3& p : grid.points)
+        if (is_beside(p, cell, lengths)) yarns.extend(p);
+      thinnest = std::min(thinnest, yarn::narrowest_section(body));
+    }
+    const double margin = cell.of_repeats->margin.value_or(usual_margin * thinnest);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (lengths[axis] == 0.0) {
+        cell.low[axis] = yarns.min()[axis] - margin;
+        cell.high[axis] = yarns.max()[axis] + margin;
+        continue;
+      }
+      const double own = repeat[static_cast<std::size_t>(axis)].value_or(0.0);
+      if (own == 0.0) continue;
+      const double share = move_off_turns(turns_along(axis, samples, cell.low[axis], own), clear_of_turns * thinnest / own);
+      cell.low[axis] += share * own;
+      cell.high[axis] = cell.low[axis] + lengths[axis];
+    }
+  }
+
+  Fabric& fabric_;
+  const BuildOptions& options_;
+  int threads_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+void settle_cell(Fabric& fabric, const BuildOptions& options, int threads, Diagnostics& diagnostics) {
+  if (!fabric.cell || !fabric.cell->of_repeats) return;
+  if (const Status settled = Settling(fabric, options, threads, diagnostics).settle(); !settled)
+    diagnostics.add(settled.error().placed(fabric.cell->place, fabric.file));
+}
+
+}  // namespace selvage::fabric

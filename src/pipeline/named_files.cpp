@@ -1,0 +1,211 @@
+#include "pipeline/named_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "core/sha256.h"
+#include "core/text_report.h"
+#include "fabric/inside.h"
+#include "pipeline/detect.h"
+
+namespace selvage::pipeline {
+
+namespace {
+
+namespace fs = std::filesystem;
+using fabric::Draft;
+using fabric::Weave;
+
+Result<Draft> only_draft(const fabric::Fabric& fabric) {
+  const Draft* draft = nullptr;
+  std::size_t weaves = 0;
+  for (const fabric::Item& item : fabric.items) {
+    const auto* const weave = std::get_if<Weave>(&item);
+    if (weave == nullptr) continue;
+    draft = &weave->draft;
+    ++weaves;
+  }
+  if (weaves != 1) return error(Kind::malformed, fmt::format("it has {} weaves, not one", weaves));
+  if (draft->form == Draft::Form::file)
+    return error(Kind::unsupported,
+                 fmt::format("its draft stands in a file, too: {}", in_quotes(draft->file)));
+  return *draft;
+}
+
+// The fabric of a file; an error says why there is none in the words that follow the file's name.
+Result<fabric::Fabric> fabric_in(const Source& source, std::string_view wanted, Diagnostics& diagnostics) {
+  const Result<const formats::Descriptor*> format = detect_readable(source);
+  if (!format) return format.error();
+  if ((*format)->read_fabric == nullptr)
+    return error(Kind::unsupported, fmt::format("it is {} ({}), which holds geometry and no {}", (*format)->name,
+                                                (*format)->title, wanted));
+  Diagnostics own;
+  std::optional<fabric::Fabric> fabric = (*format)->read_fabric(source, own);
+  for (const Message& message : own.messages()) diagnostics.add(message);
+  if (!fabric) return error(Kind::malformed, "it has errors");
+  return std::move(*fabric);
+}
+
+bool is_below(const fs::path& file, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+}
+
+class NamedFiles {
+ public:
+  NamedFiles(const Source& input, bool allow_outside, Diagnostics& diagnostics)
+      : allow_outside_(allow_outside), diagnostics_(diagnostics) {
+    std::error_code failure;
+    const fs::path folder = fs::path(input.name()).parent_path();
+    home_ = fs::canonical(folder.empty() ? fs::path(".") : folder, failure);
+    open_.push_back(fs::canonical(input.name(), failure));  // none of standard input
+  }
+
+  // Of one text with its blocks.
+  void resolve(fabric::Fabric& fabric, const Source& source) {
+    TextReport report(source);
+    resolve(fabric, source, report);
+    report.hand_over(diagnostics_);
+  }
+  std::vector<std::string> take_read() { return std::move(read_); }
+
+ private:
+  struct Opened {
+    fs::path path;
+    Source source;
+  };
+
+  // The file that `name` is for a text in `folder`, if it may be read; an error says why not in the words that follow
+  // its name.
+  Result<Opened> open(const std::string& name, const Source& text) {
+    const fs::path folder = fs::path(text.name()).parent_path();
+    std::error_code failure;
+    const fs::path base = fs::canonical(folder.empty() ? fs::path(".") : folder, failure);
+    if (failure) return error(Kind::io, fmt::format("cannot open its folder: {}", failure.message()));
+    fs::path file = fs::canonical(base / name, failure);
+    if (failure) return error(Kind::io, fmt::format("cannot open: {}", failure.message()));
+    if (!allow_outside_ && !is_below(file, home_))
+      return error(Kind::usage,
+                   "it is neither in this text's folder nor below it: move it there, or --allow-outside reads "
+                   "it");
+    if (!fs::is_regular_file(file, failure)) return error(Kind::io, "it is not a regular file");
+    // Standard input is the input's alone.
+    Result<Source> source = Source::open(folder / name == "-" ? "./-" : folder / name);
+    if (!source) return source.error();
+    read_.push_back(fmt::format("{} {}", name, sha256(source->bytes())));
+    return Opened{std::move(file), std::move(*source)};
+  }
+
+  void resolve(fabric::Fabric& fabric, const Source& source, TextReport& report) {
+    for (fabric::NamedBlock& block : fabric.blocks) resolve(*block.fabric, source, report);
+    std::map<fs::path, std::string> blocks;  // of files that were used already
+    for (fabric::Item& item : fabric.items) {
+      if (auto* const weave = std::get_if<Weave>(&item); weave != nullptr && weave->draft.form == Draft::Form::file)
+        resolve_draft(weave->draft, source, report);
+      if (auto* const use = std::get_if<fabric::Use>(&item); use != nullptr && use->is_file)
+        resolve_use(*use, fabric, source, report, blocks);
+    }
+  }
+
+  void resolve_draft(Draft& draft, const Source& source, TextReport& report) {
+    const auto refuse = [&](const Message& why) {
+      report.error(spot_at(source, draft.place),
+                   fmt::format("no draft in the file {}: {}", in_quotes(draft.file), why.text), why.kind);
+    };
+    const Result<Opened> named = open(draft.file, source);
+    if (!named) return refuse(named.error());
+    const Result<fabric::Fabric> fabric = fabric_in(named->source, "draft", diagnostics_);
+    if (!fabric) return refuse(fabric.error());
+    Result<Draft> found = only_draft(*fabric);
+    if (!found) return refuse(found.error());
+    found->place = draft.place;
+    draft = std::move(*found);
+  }
+
+  void resolve_use(fabric::Use& use, fabric::Fabric& user, const Source& source, TextReport& report,
+                   std::map<fs::path, std::string>& blocks) {
+    const auto refuse = [&](const Message& why) {
+      report.error(spot_at(source, use.place),
+                   fmt::format("the file {} cannot be used: {}", in_quotes(use.what), why.text), why.kind);
+    };
+    Result<Opened> named = open(use.what, source);
+    if (!named) return refuse(named.error());
+    std::string& name = blocks[named->path];
+    if (name.empty()) {
+      Result<std::shared_ptr<fabric::Fabric>> fabric = fabric_of(*named, user.units);
+      if (!fabric) {
+        blocks.erase(named->path);
+        return refuse(fabric.error());
+      }
+      name = new_name(named->path, user);
+      user.blocks.push_back({name, use.place, std::move(*fabric), nullptr});
+    }
+    use.what = name;
+    use.is_file = false;
+  }
+
+  Result<std::shared_ptr<fabric::Fabric>> fabric_of(const Opened& file, Unit unit) {
+    constexpr std::size_t deepest = 32;
+    if (std::find(open_.begin(), open_.end(), file.path) != open_.end())
+      return error(Kind::malformed, "it uses itself, by itself or by the files that it uses");
+    if (open_.size() > deepest) return error(Kind::limit, fmt::format("more than {} files use each other in turn", deepest));
+    Result<fabric::Fabric> read = fabric_in(file.source, "yarns to use", diagnostics_);
+    if (!read) return read.error();
+    if (read->units != unit)
+      return error(Kind::unsupported, fmt::format("its unit is {}, that of this text {}: give both the same `units`",
+                                                  name_of(read->units), name_of(unit)));
+    open_.push_back(file.path);
+    const int errors = diagnostics_.error_count();
+    resolve(*read, file.source);
+    open_.pop_back();
+    if (diagnostics_.error_count() > errors) return error(Kind::malformed, "it has errors");
+    std::erase_if(read->items, [](const fabric::Item& item) { return std::holds_alternative<fabric::Piece>(item); });
+    if (read->items.empty()) return error(Kind::malformed, "it has no yarns");
+    read->cell.reset();
+    read->title.reset();
+    return std::make_shared<fabric::Fabric>(std::move(*read));
+  }
+
+  // After the file, such as no block is called that may be meant there.
+  static std::string new_name(const fs::path& file, const fabric::Fabric& user) {
+    std::string stem = file.stem().string();
+    for (char& c : stem)
+      if (!(std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_')) c = '_';
+    if (stem.empty() || std::isalpha(static_cast<unsigned char>(stem.front())) == 0) stem = "_" + stem;
+    const auto is_taken = [&](const std::string& name) {
+      return fabric::find_named(user.blocks, name) != nullptr ||
+             std::any_of(user.items.begin(), user.items.end(), [&](const fabric::Item& item) {
+               const auto* const use = std::get_if<fabric::Use>(&item);
+               return use != nullptr && use->what == name;
+             });
+    };
+    std::string name = stem;
+    for (int number = 2; is_taken(name); ++number) name = fmt::format("{}_{}", stem, number);
+    return name;
+  }
+
+  bool allow_outside_;
+  Diagnostics& diagnostics_;
+  fs::path home_;               // of the input
+  std::vector<fs::path> open_;  // texts that are being read, each used by the one before it
+  std::vector<std::string> read_;
+};
+
+}  // namespace
+
+std::vector<std::string> resolve_files(fabric::Fabric& fabric, const Source& source, bool allow_outside,
+                                       Diagnostics& diagnostics) {
+  NamedFiles files(source, allow_outside, diagnostics);
+  const int errors = diagnostics.error_count();
+  files.resolve(fabric, source);
+  if (diagnostics.error_count() == errors)
+    if (const Status fits = fabric::check_uses(fabric); !fits)
+      diagnostics.add(Message(fits.error()).placed(fits.error().place, fabric.file));
+  return files.take_read();
+}
+
+}  // namespace selvage::pipeline
