@@ -33,6 +33,7 @@ bool Parser::at_row(const Block& block) const {
   if (!starts_name(first_character())) return true;
   const std::string_view word = statement_word();
   if (scope().begins_with_param(word)) return true;
+  if (word.find('(') != std::string_view::npos) return true;  // a function
   if (same_word(word, "nan") || same_word(word, "inf") || same_word(word, "infinity")) return true;
   if (!block.table->rows_of_letters || same_word(word, "end")) return false;
   for (const Block* open = &block; open != nullptr; open = open->outer)

@@ -138,7 +138,8 @@ class Parser : public Cursor {
   TextReport& report;
   std::span<const fabric::Setting> settings;  // of params, from outside
   fabric::Fabric fabric;
-  Names threads{"thread"}, materials{"material"}, yarns{"yarn"}, pieces{"piece"}, outlines{"outline"}, blocks{"block"};
+  Names threads{"thread"}, materials{"material"}, yarns{"yarn"}, pieces{"piece"}, outlines{"outline"},
+      blocks{"block"};
 
  private:
   struct Reference {

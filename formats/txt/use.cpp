@@ -43,8 +43,8 @@ void read_mirror(Parser& p, Use& use, std::string_view) {
 void read_shear(Parser& p, Use& use, std::string_view) {
   Move move{.form = Move::Form::shear, .axis = 0, .across = 1};
   const Spot spot = p.here();
-  if (const std::string_view word = p.peek_word(); word.size() == 1 && is_letter(word.front()) &&
-                                                   !p.scope().begins_with_param(word)) {
+  if (const std::string_view word = p.peek_word();
+      word.size() == 1 && is_letter(word.front()) && !p.scope().begins_with_param(word)) {
     move.axis = p.choice("axis", axis_words).value_or(0);
     move.across = p.choice("axis", axis_words).value_or(1);
     if (!p.has_failed() && move.axis == move.across)
@@ -60,7 +60,8 @@ void read_repeat(Parser& p, Use& use, std::string_view) {
   const auto along_x = p.count("the number of copies along x"), along_y = p.count("the number along y");
   std::optional<std::array<double, 2>> steps;
   if (p.more() && p.expect("step")) {
-    const auto x = p.number("the step along x", Measure::pitch), y = p.number("the step along y", Measure::pitch);
+    const auto x = p.number("the step along x", Measure::pitch),
+               y = p.number("the step along y", Measure::pitch);
     if (x && y) steps = {*x, *y};
     for (const auto& [count, step] : {std::pair(along_x, x), std::pair(along_y, y)})
       if (count.value_or(1) > 1 && step == 0.0) p.error(p.last(), "copies a step of 0 apart are one");

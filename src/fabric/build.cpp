@@ -241,8 +241,7 @@ void YarnBuilder::add_construction(std::string_view kind, Result<std::unique_ptr
 }
 
 std::string YarnBuilder::name_of(const Entry& entry) const {
-  if (entry.placed != nullptr)
-    return entry.placed->where.prefix + entry.placed->builder->name(entry.index);
+  if (entry.placed != nullptr) return entry.placed->where.prefix + entry.placed->builder->name(entry.index);
   return entry.yarn != nullptr ? entry.yarn->name
                                : entry.made->prefix + entry.made->construction->name(entry.index);
 }
@@ -301,10 +300,11 @@ void YarnBuilder::make_names_unique(Diagnostics& diagnostics) {
     if (entry.yarn != nullptr) taken.insert(entry.yarn->name);
   for (const Entry& entry : entries_)
     if (entry.placed != nullptr && taken.contains(name_of(entry)))
-      diagnostics.add(error(Kind::geometry, fmt::format("a yarn of this file has the name '{}' of a yarn that is "
-                                                        "used here: 'as' gives these other names",
-                                                        name_of(entry)))
-                          .placed(entry.placed->place, fabric_->file));
+      diagnostics.add(
+          error(Kind::geometry, fmt::format("a yarn of this file has the name '{}' of a yarn that is "
+                                            "used here: 'as' gives these other names",
+                                            name_of(entry)))
+              .placed(entry.placed->place, fabric_->file));
   if (taken.empty() && constructions_.size() < 2) return;
   std::map<std::string_view, int> numbers;  // of constructions of a kind
   for (const auto& made : constructions_) {
@@ -357,10 +357,11 @@ void YarnBuilder::check_edited_names(Diagnostics& diagnostics) const {
     if (diagnostics.is_full()) return;
     if (const std::optional<std::size_t> found = find(edit.yarn)) {
       if (entries_[*found].placed != nullptr)
-        diagnostics.add(error(Kind::geometry, fmt::format("yarn '{}' is one of a block: what edits it stands in that "
-                                                          "block, with its name there",
-                                                          edit.yarn))
-                            .placed(edit.place, fabric_->file));
+        diagnostics.add(
+            error(Kind::geometry, fmt::format("yarn '{}' is one of a block: what edits it stands in that "
+                                              "block, with its name there",
+                                              edit.yarn))
+                .placed(edit.place, fabric_->file));
       continue;
     }
     if (names.empty()) {
@@ -382,7 +383,8 @@ std::optional<YarnBuilder> YarnBuilder::create(const Fabric& fabric, const Build
 }
 
 std::optional<YarnBuilder> YarnBuilder::make(const Fabric& fabric, const BuildOptions& options,
-                                             Diagnostics& diagnostics, const std::shared_ptr<Shared>& shared) {
+                                             Diagnostics& diagnostics,
+                                             const std::shared_ptr<Shared>& shared) {
   YarnBuilder builder;
   builder.fabric_ = &fabric;
   builder.options_ = options;
@@ -423,7 +425,8 @@ std::optional<YarnBuilder> YarnBuilder::make(const Fabric& fabric, const BuildOp
 
 void YarnBuilder::add_item(const Item& item, Diagnostics& diagnostics) {
   const auto construct = [&](std::string_view kind, const auto& construction, const auto& make) {
-    add_construction(kind, make(*fabric_, construction, options_, diagnostics), construction.place, diagnostics);
+    add_construction(kind, make(*fabric_, construction, options_, diagnostics), construction.place,
+                     diagnostics);
   };
   std::visit(Overloaded{
                  [&](const Yarn& yarn) { add_yarn(yarn, diagnostics); },
@@ -507,8 +510,8 @@ Result<YarnPlan> YarnBuilder::part_plan(const Entry& entry, const Where* where) 
 }
 
 Result<YarnPlan> YarnBuilder::plan_of(const Entry& entry, const Where* where) const {
-  if (entry.placed != nullptr) return entry.placed->builder->plan_of(
-        entry.placed->builder->entries_[entry.index]);
+  if (entry.placed != nullptr)
+    return entry.placed->builder->plan_of(entry.placed->builder->entries_[entry.index]);
   Result<YarnPlan> plan = entry.parts > 1 ? part_plan(entry, where) : whole_plan(entry, where);
   if (!plan) return placed(plan.error(), entry);
   return plan;
@@ -562,10 +565,11 @@ Result<yarn::Body> YarnBuilder::build_here(const Entry& entry, const Where* wher
     Result<yarn::Body> body = build_surface(entry);
     if (body && where != nullptr) {
       if (where->line.linear != Eigen::Matrix3d::Identity())
-        return placed(error(Kind::unsupported,
-                            fmt::format("yarn '{}' is a grid, which has no centre line to shear: a path has one",
-                                        entry.yarn->name)),
-                      entry);
+        return placed(
+            error(Kind::unsupported,
+                  fmt::format("yarn '{}' is a grid, which has no centre line to shear: a path has one",
+                              entry.yarn->name)),
+            entry);
       yarn::map_rigidly(*body, where->line.linear, where->line.shift);
       body->name = where->prefix + body->name;
     }

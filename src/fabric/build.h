@@ -72,8 +72,8 @@ class YarnBuilder {
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
   // Of all constructions together; none where yarns stand in the text, or there are no constructions.
   [[nodiscard]] std::optional<Repeat> repeat() const;
-  // The yarn's plan, told from the origin, edits applied; a part's own where the yarn has parts; of a yarn that a
-  // `use` places the one in its block. Error (unsupported): a grid has none.
+  // The yarn's plan, told from the origin, edits applied; a part's own where the yarn has parts; of a yarn
+  // that a `use` places the one in its block. Error (unsupported): a grid has none.
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const;
   // Errors: geometry, limit; with the yarn, its file and line. Warnings are in Body::messages. Yarns of a
   // construction that are planned alike are swept once, and moved.
@@ -91,8 +91,8 @@ class YarnBuilder {
   struct Made;
   struct Placed;
   struct Shared;
-  // One yarn to build: a yarn block, part `part` of yarn `index` of a construction, or entry `index` of a block's
-  // builder.
+  // One yarn to build: a yarn block, part `part` of yarn `index` of a construction, or entry `index` of a
+  // block's builder.
   struct Entry {
     const Yarn* yarn = nullptr;
     const Made* made = nullptr;
@@ -104,12 +104,14 @@ class YarnBuilder {
     Placement line;
     std::string prefix;  // of its name
   };
-  static std::optional<YarnBuilder> make(const Fabric& fabric, const BuildOptions& options, Diagnostics& diagnostics,
-                                         const std::shared_ptr<Shared>& shared);
+  static std::optional<YarnBuilder> make(const Fabric& fabric, const BuildOptions& options,
+                                         Diagnostics& diagnostics, const std::shared_ptr<Shared>& shared);
   // build_uses.cpp
   void add_use(const Use& use, Diagnostics& diagnostics);
-  void add_copy(const Use& use, const YarnBuilder& within, const Placement& placement, const std::string& prefix);
-  std::shared_ptr<const YarnBuilder> builder_inside(const NamedBlock& block, const Placement* goes_on, Diagnostics& diagnostics);
+  void add_copy(const Use& use, const YarnBuilder& within, const Placement& placement,
+                const std::string& prefix);
+  std::shared_ptr<const YarnBuilder> builder_inside(const NamedBlock& block, const Placement* goes_on,
+                                                    Diagnostics& diagnostics);
   [[nodiscard]] std::optional<Repeat> repeat_inside() const;
   [[nodiscard]] Result<yarn::Body> build_placed(const Entry& entry) const;
   [[nodiscard]] Result<yarn::Body> build_here(const Entry& entry, const Where* where) const;

@@ -30,7 +30,8 @@ std::shared_ptr<ShapeMemo> YarnBuilder::memo_of(const Shared& shared) {
 }
 
 // Null: it has errors, which are told. `goes_on`: beyond the cell, since it is placed like that.
-std::shared_ptr<const YarnBuilder> YarnBuilder::builder_inside(const NamedBlock& block, const Placement* goes_on,
+std::shared_ptr<const YarnBuilder> YarnBuilder::builder_inside(const NamedBlock& block,
+                                                               const Placement* goes_on,
                                                                Diagnostics& diagnostics) {
   const Fabric* const key = block.fabric.get();
   const bool is_shared = goes_on == nullptr || !fabric_->cell;
@@ -93,18 +94,19 @@ void YarnBuilder::add_use(const Use& use, Diagnostics& diagnostics) {
     if (use.repeats[k] == 1) continue;
     steps[k] = use.steps ? (*use.steps)[k] : repeat ? (*repeat)[k].value_or(0.0) : 0.0;
     if (steps[k] == 0.0)
-      return fail(Kind::geometry, fmt::format("'{}' has no repeat of its own along {}: 'repeat {} {} step SX SY' "
-                                              "says how far apart its copies are",
-                                              use.what, k == 0 ? "x" : "y", use.repeats[0], use.repeats[1]));
+      return fail(Kind::geometry,
+                  fmt::format("'{}' has no repeat of its own along {}: 'repeat {} {} step SX SY' "
+                              "says how far apart its copies are",
+                              use.what, k == 0 ? "x" : "y", use.repeats[0], use.repeats[1]));
     if (!repeat) repeat.emplace();
     (*repeat)[k] = std::abs(steps[k]);
   }
   repeats_of_uses_.push_back(repeat ? std::optional(placed_repeat(*repeat, placement.linear)) : std::nullopt);
-  const std::uint64_t copies = product_of(static_cast<std::uint64_t>(use.repeats[0]), static_cast<std::uint64_t>(use.repeats[1]));
+  const std::uint64_t copies =
+      product_of(static_cast<std::uint64_t>(use.repeats[0]), static_cast<std::uint64_t>(use.repeats[1]));
   const Work work{product_of(copies, within->count()), product_of(copies, within->work_.points),
                   within->work_.longest};
-  if (!take_on(work, use.place, diagnostics))
-    return;
+  if (!take_on(work, use.place, diagnostics)) return;
   std::string prefix = use.as.empty() ? use.what : use.as;
   for (int number = 2; !prefixes_.insert(prefix).second; ++number)
     prefix = fmt::format("{}_{}", use.as.empty() ? use.what : use.as, number);
@@ -123,7 +125,9 @@ void YarnBuilder::add_copy(const Use& use, const YarnBuilder& within, const Plac
                            const std::string& prefix) {
   const auto new_placed = [&](const YarnBuilder& builder, const Placement& all, std::string name) {
     const TwoSteps steps = steps_of(all);
-    return placed_.emplace_back(std::make_unique<Placed>(Placed{&builder, all, {steps.line, std::move(name)}, steps.body, use.place}))
+    return placed_
+        .emplace_back(std::make_unique<Placed>(
+            Placed{&builder, all, {steps.line, std::move(name)}, steps.body, use.place}))
         .get();
   };
   std::map<const Placed*, const Placed*> placed;  // by that of the block's builder; null: its own yarns
@@ -131,9 +135,10 @@ void YarnBuilder::add_copy(const Use& use, const YarnBuilder& within, const Plac
     const Entry& theirs = within.entries_[k];
     const Placed*& here = placed[theirs.placed];
     if (here == nullptr)
-      here = theirs.placed == nullptr ? new_placed(within, placement, prefix)
-                                      : new_placed(*theirs.placed->builder, combined(theirs.placed->placement, placement),
-                                                   prefix + theirs.placed->where.prefix);
+      here = theirs.placed == nullptr
+                 ? new_placed(within, placement, prefix)
+                 : new_placed(*theirs.placed->builder, combined(theirs.placed->placement, placement),
+                              prefix + theirs.placed->where.prefix);
     Entry entry = theirs;
     entry.yarn = nullptr;
     entry.made = nullptr;

@@ -47,8 +47,8 @@ Placement placement_of_move(const Move& move) {
       break;
     case Move::Form::shear: {
       const bool is_diagonal = std::abs(move.angle) == 45.0;
-      m(move.axis, move.across) = is_diagonal ? std::copysign(1.0, move.angle)
-                                              : std::tan(move.angle * std::numbers::pi / 180.0);
+      m(move.axis, move.across) =
+          is_diagonal ? std::copysign(1.0, move.angle) : std::tan(move.angle * std::numbers::pi / 180.0);
       break;
     }
   }
@@ -180,7 +180,8 @@ class UseCheck {
     std::uint64_t all = 0;
     for (const Item& item : fabric.items) {
       const auto* const use = std::get_if<Use>(&item);
-      const NamedBlock* const block = use != nullptr && !use->is_file ? find_block(fabric, use->what) : nullptr;
+      const NamedBlock* const block =
+          use != nullptr && !use->is_file ? find_block(fabric, use->what) : nullptr;
       if (block == nullptr) continue;
       const Result<std::uint64_t> within = copies_of(fabric, *block);
       if (!within) return within.error().placed(use->place);
@@ -201,11 +202,13 @@ class UseCheck {
   Result<std::uint64_t> copies_of(const Fabric& around, const NamedBlock& block) {
     const Fabric* const key = block.fabric.get();
     if (const auto known = known_.find(key); known != known_.end()) return known->second;
-    const auto open = std::find_if(open_.begin(), open_.end(), [&](const NamedBlock* b) { return b->fabric == block.fabric; });
+    const auto open = std::find_if(open_.begin(), open_.end(),
+                                   [&](const NamedBlock* b) { return b->fabric == block.fabric; });
     if (open != open_.end()) {
       std::string circle;
       for (auto one = open; one != open_.end(); ++one) circle += fmt::format("'{}' uses ", (*one)->name);
-      return error(Kind::malformed, fmt::format("blocks use each other in a circle: {}'{}'", circle, block.name));
+      return error(Kind::malformed,
+                   fmt::format("blocks use each other in a circle: {}'{}'", circle, block.name));
     }
     open_.push_back(&block);
     const Result<std::uint64_t> copies = copies_in(inside(around, block));
@@ -224,14 +227,16 @@ Status check_materials(const Fabric& fabric, std::map<std::string, const Materia
     const Material* const other = known.try_emplace(material.name, &material).first->second;
     if (material.density != other->density || material.packing != other->packing ||
         material.elastic != other->elastic || material.expansion != other->expansion)
-      return error(Kind::malformed, fmt::format("the material '{}' is another one elsewhere: give one of them another "
-                                                "name",
-                                                material.name))
+      return error(Kind::malformed,
+                   fmt::format("the material '{}' is another one elsewhere: give one of them another "
+                               "name",
+                               material.name))
           .placed(material.place);
   }
   for (const NamedBlock& block : fabric.blocks)
     if (Status fits = check_materials(*block.fabric, known); !fits)
-      return block.fabric->file.empty() ? fits.error() : fits.error().placed(fits.error().place, block.fabric->file);
+      return block.fabric->file.empty() ? fits.error()
+                                        : fits.error().placed(fits.error().place, block.fabric->file);
   return {};
 }
 

@@ -42,9 +42,9 @@ const NamedBlock* find_block(const Fabric& fabric, std::string_view name);
 // itself. `user` has the block, by itself or from the text round it.
 Fabric inside(const Fabric& user, const NamedBlock& block);
 
-// Errors: blocks that use each other in a circle (malformed), more copies than a fabric may have yarns (limit), at a
-// `use`; two materials of one name (malformed). To be called before anything else that looks into blocks, which these would send round without
-// end.
+// Errors: blocks that use each other in a circle (malformed), more copies than a fabric may have yarns
+// (limit), at a `use`; two materials of one name (malformed). To be called before anything else that looks
+// into blocks, which these would send round without end.
 Status check_uses(const Fabric& fabric);
 
 }  // namespace selvage::fabric

@@ -26,8 +26,9 @@ nurbs::Samples dense_samples(const nurbs::Surface& surface) {
 }
 
 // The yarns of a fabric with the cell that it has now; only errors are told, for all will be built again.
-std::optional<std::vector<yarn::Body>> bodies_of(const Fabric& fabric, const BuildOptions& options, int threads,
-                                                 std::optional<Repeat>& repeat, Diagnostics& diagnostics) {
+std::optional<std::vector<yarn::Body>> bodies_of(const Fabric& fabric, const BuildOptions& options,
+                                                 int threads, std::optional<Repeat>& repeat,
+                                                 Diagnostics& diagnostics) {
   Diagnostics own;
   const std::optional<YarnBuilder> builder = YarnBuilder::create(fabric, options, own);
   std::vector<yarn::Body> bodies;
@@ -52,15 +53,17 @@ std::optional<std::vector<yarn::Body>> bodies_of(const Fabric& fabric, const Bui
 // How long the cell is along each axis; 0: as the yarns reach.
 Result<Vec3> lengths_of(const Cell& cell, const std::optional<Repeat>& repeat) {
   if (!repeat)
-    return error(Kind::geometry,
-                 "a repeat is known of constructions only, not of yarns by hand: write two opposite corners, `cell X "
-                 "Y Z  X Y Z`");
+    return error(
+        Kind::geometry,
+        "a repeat is known of constructions only, not of yarns by hand: write two opposite corners, `cell X "
+        "Y Z  X Y Z`");
   double shortest = std::numeric_limits<double>::infinity();
   for (const std::optional<double>& along : *repeat)
     if (along.value_or(0.0) > 0.0) shortest = std::min(shortest, *along);
   if (!std::isfinite(shortest))
     return error(Kind::geometry,
-                 "this cloth has no repeat, or none of a thousand yarns or less: write two opposite corners, `cell X Y "
+                 "this cloth has no repeat, or none of a thousand yarns or less: write two opposite corners, "
+                 "`cell X Y "
                  "Z  X Y Z`");
   Vec3 lengths = Vec3::Zero();
   std::size_t next = 0;
@@ -76,7 +79,8 @@ Result<Vec3> lengths_of(const Cell& cell, const std::optional<Repeat>& repeat) {
 }
 
 // Where surfaces turn round along an axis, within one repeat from `low` on, as shares of it.
-std::vector<double> turns_along(int axis, const std::vector<nurbs::Samples>& samples, double low, double repeat) {
+std::vector<double> turns_along(int axis, const std::vector<nurbs::Samples>& samples, double low,
+                                double repeat) {
   std::vector<double> turns;
   const double flat = 1e-9 * repeat;  // rounding along what is parallel to the face
   const auto turns_round = [&](double before, double here, double after) {
@@ -121,21 +125,24 @@ class Settling {
     Cell cell = *fabric_.cell;
     fabric_.cell.reset();
     std::optional<Repeat> repeat;
-    std::optional<std::vector<yarn::Body>> bodies = bodies_of(fabric_, options_, threads_, repeat, diagnostics_);
+    std::optional<std::vector<yarn::Body>> bodies =
+        bodies_of(fabric_, options_, threads_, repeat, diagnostics_);
     fabric_.cell = cell;
     if (!bodies) return {};  // it was told
     const Result<Vec3> lengths = lengths_of(cell, repeat);
     if (!lengths) return lengths.error();
     for (const int axis : {0, 1})
       if ((*lengths)[axis] == 0.0)
-        diagnostics_.add(warning(Kind::geometry, fmt::format("the cloth has no repeat along {}: there the cell reaches "
-                                                             "beyond all of its yarns",
-                                                             axis == 0 ? "x" : "y"))
-                             .placed(cell.place, fabric_.file));
+        diagnostics_.add(
+            warning(Kind::geometry, fmt::format("the cloth has no repeat along {}: there the cell reaches "
+                                                "beyond all of its yarns",
+                                                axis == 0 ? "x" : "y"))
+                .placed(cell.place, fabric_.file));
     Box3 cloth;
     for (const yarn::Body& body : *bodies) cloth.extend(yarn::bounds(body));
     if (!cell.names_axes())
-      for (int axis = 0; axis < 3; ++axis) cell.periodic[static_cast<std::size_t>(axis)] = (*lengths)[axis] > 0.0;
+      for (int axis = 0; axis < 3; ++axis)
+        cell.periodic[static_cast<std::size_t>(axis)] = (*lengths)[axis] > 0.0;
     for (int axis = 0; axis < 3; ++axis)
       place(cell, axis, (*lengths)[axis], (*repeat)[static_cast<std::size_t>(axis)].value_or(0.0), cloth);
     fabric_.cell = cell;
@@ -143,11 +150,12 @@ class Settling {
     if (!bodies) return {};
     fit(cell, *bodies, *lengths, *repeat);
     fabric_.cell = cell;
-    diagnostics_.add(note(Kind::geometry, fmt::format("the cell reaches from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, "
-                                                      "{:.6g}, {:.6g})",
-                                                      cell.low.x(), cell.low.y(), cell.low.z(), cell.high.x(),
-                                                      cell.high.y(), cell.high.z()))
-                         .placed(cell.place, fabric_.file));
+    diagnostics_.add(
+        note(Kind::geometry, fmt::format("the cell reaches from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, "
+                                         "{:.6g}, {:.6g})",
+                                         cell.low.x(), cell.low.y(), cell.low.z(), cell.high.x(),
+                                         cell.high.y(), cell.high.z()))
+            .placed(cell.place, fabric_.file));
     return {};
   }
 
@@ -190,7 +198,8 @@ class Settling {
       }
       const double own = repeat[static_cast<std::size_t>(axis)].value_or(0.0);
       if (own == 0.0) continue;
-      const double share = move_off_turns(turns_along(axis, samples, cell.low[axis], own), clear_of_turns * thinnest / own);
+      const double share =
+          move_off_turns(turns_along(axis, samples, cell.low[axis], own), clear_of_turns * thinnest / own);
       cell.low[axis] += share * own;
       cell.high[axis] = cell.low[axis] + lengths[axis];
     }

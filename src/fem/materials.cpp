@@ -91,7 +91,8 @@ MaterialChoice choose_materials(const fabric::Fabric& fabric, std::span<const ya
   const fabric::Material generic = generic_material();
   std::vector<std::string> without;  // yarns
   for (const yarn::Body& body : bodies) {
-    const fabric::Material* found = body.material.empty() ? nullptr : fabric.find_material_anywhere(body.material);
+    const fabric::Material* found =
+        body.material.empty() ? nullptr : fabric.find_material_anywhere(body.material);
     fabric::Material material = found != nullptr ? *found : generic;
     // A name of the file's own is not taken for the stand-in.
     while (found == nullptr && fabric.find_material_anywhere(material.name) != nullptr) material.name += "_";

@@ -6,8 +6,8 @@
 
 #include "core/number_text.h"
 #include "fabric/loft.h"
-#include "fabric/settle_cell.h"
 #include "fabric/piece.h"
+#include "fabric/settle_cell.h"
 #include "pipeline/detect.h"
 #include "pipeline/named_files.h"
 #include "pipeline/writing.h"

@@ -42,8 +42,8 @@ Result<fabric::Fabric> fabric_in(const Source& source, std::string_view wanted, 
   const Result<const formats::Descriptor*> format = detect_readable(source);
   if (!format) return format.error();
   if ((*format)->read_fabric == nullptr)
-    return error(Kind::unsupported, fmt::format("it is {} ({}), which holds geometry and no {}", (*format)->name,
-                                                (*format)->title, wanted));
+    return error(Kind::unsupported, fmt::format("it is {} ({}), which holds geometry and no {}",
+                                                (*format)->name, (*format)->title, wanted));
   Diagnostics own;
   std::optional<fabric::Fabric> fabric = (*format)->read_fabric(source, own);
   for (const Message& message : own.messages()) diagnostics.add(message);
@@ -79,8 +79,8 @@ class NamedFiles {
     Source source;
   };
 
-  // The file that `name` is for a text in `folder`, if it may be read; an error says why not in the words that follow
-  // its name.
+  // The file that `name` is for a text in `folder`, if it may be read; an error says why not in the words
+  // that follow its name.
   Result<Opened> open(const std::string& name, const Source& text) {
     const fs::path folder = fs::path(text.name()).parent_path();
     std::error_code failure;
@@ -89,9 +89,10 @@ class NamedFiles {
     fs::path file = fs::canonical(base / name, failure);
     if (failure) return error(Kind::io, fmt::format("cannot open: {}", failure.message()));
     if (!allow_outside_ && !is_below(file, home_))
-      return error(Kind::usage,
-                   "it is neither in this text's folder nor below it: move it there, or --allow-outside reads "
-                   "it");
+      return error(
+          Kind::usage,
+          "it is neither in this text's folder nor below it: move it there, or --allow-outside reads "
+          "it");
     if (!fs::is_regular_file(file, failure)) return error(Kind::io, "it is not a regular file");
     // Standard input is the input's alone.
     Result<Source> source = Source::open(folder / name == "-" ? "./-" : folder / name);
@@ -104,7 +105,8 @@ class NamedFiles {
     for (fabric::NamedBlock& block : fabric.blocks) resolve(*block.fabric, source, report);
     std::map<fs::path, std::string> blocks;  // of files that were used already
     for (fabric::Item& item : fabric.items) {
-      if (auto* const weave = std::get_if<Weave>(&item); weave != nullptr && weave->draft.form == Draft::Form::file)
+      if (auto* const weave = std::get_if<Weave>(&item);
+          weave != nullptr && weave->draft.form == Draft::Form::file)
         resolve_draft(weave->draft, source, report);
       if (auto* const use = std::get_if<fabric::Use>(&item); use != nullptr && use->is_file)
         resolve_use(*use, fabric, source, report, blocks);
@@ -152,18 +154,21 @@ class NamedFiles {
     constexpr std::size_t deepest = 32;
     if (std::find(open_.begin(), open_.end(), file.path) != open_.end())
       return error(Kind::malformed, "it uses itself, by itself or by the files that it uses");
-    if (open_.size() > deepest) return error(Kind::limit, fmt::format("more than {} files use each other in turn", deepest));
+    if (open_.size() > deepest)
+      return error(Kind::limit, fmt::format("more than {} files use each other in turn", deepest));
     Result<fabric::Fabric> read = fabric_in(file.source, "yarns to use", diagnostics_);
     if (!read) return read.error();
     if (read->units != unit)
-      return error(Kind::unsupported, fmt::format("its unit is {}, that of this text {}: give both the same `units`",
-                                                  name_of(read->units), name_of(unit)));
+      return error(Kind::unsupported,
+                   fmt::format("its unit is {}, that of this text {}: give both the same `units`",
+                               name_of(read->units), name_of(unit)));
     open_.push_back(file.path);
     const int errors = diagnostics_.error_count();
     resolve(*read, file.source);
     open_.pop_back();
     if (diagnostics_.error_count() > errors) return error(Kind::malformed, "it has errors");
-    std::erase_if(read->items, [](const fabric::Item& item) { return std::holds_alternative<fabric::Piece>(item); });
+    std::erase_if(read->items,
+                  [](const fabric::Item& item) { return std::holds_alternative<fabric::Piece>(item); });
     if (read->items.empty()) return error(Kind::malformed, "it has no yarns");
     read->cell.reset();
     read->title.reset();

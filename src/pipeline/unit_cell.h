@@ -14,8 +14,8 @@
 
 namespace selvage::pipeline {
 
-// The gap that constructions keep between their yarns where a cell is meshed or cut: --gap, or 5 % of the thinnest
-// section; file units. 0: their own.
+// The gap that constructions keep between their yarns where a cell is meshed or cut: --gap, or 5 % of the
+// thinnest section; file units. 0: their own.
 double gap_of_constructions(const Options& options, const fabric::Fabric& fabric);
 
 // The message, said of the `cell` statement where it has no place in the text of its own.

@@ -212,8 +212,8 @@ void mirror_outline(Body& body) {
 
 void map_rigidly(Body& body, const Eigen::Matrix3d& linear, const Vec3& by) {
   const auto map = [&](Vec3& p) { p = linear * p + by; };
-  for (std::vector<Vec3>* points : {&body.surface.points, &body.axis.points, &body.start.surface.points,
-                                    &body.end.surface.points})
+  for (std::vector<Vec3>* points :
+       {&body.surface.points, &body.axis.points, &body.start.surface.points, &body.end.surface.points})
     std::for_each(points->begin(), points->end(), map);
   for (EndFace* end : {&body.start, &body.end}) {
     map(end->origin);

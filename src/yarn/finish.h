@@ -21,7 +21,8 @@ Status finish_as_sealed(Body& body);
 void move(Body& body, const Vec3& by, const DecimalGrid& grid);
 
 // Maps a finished body by a rigid map p -> linear p + by, all its control points alike. Where that mirrors, u
-// runs the other way round, so that its normals keep pointing out of the yarn, and the fibres' twist changes its hand.
+// runs the other way round, so that its normals keep pointing out of the yarn, and the fibres' twist changes
+// its hand.
 void map_rigidly(Body& body, const Eigen::Matrix3d& linear, const Vec3& by);
 
 // One third of the flux of (position - origin) out of the yarn through one of its ends. Planar and open ends

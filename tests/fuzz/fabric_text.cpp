@@ -40,6 +40,31 @@ class Writer {
     return text_;
   }
 
+  std::string placed_text() {
+    line("fabric 1");
+    if (choice(3) == 1) line("tolerance {}", number(0.0005, 0.02));
+    line("material epoxy\n density 1.2\nend");
+    for (const char* name : {"a", "b"}) thread(name);
+    const int blocks = 1 + choice(3);
+    for (int i = 0; i < blocks; ++i) {
+      line("block b{}", i);
+      const int kind = choice(4);
+      if (kind == 1)
+        weave();
+      else if (kind == 2 && i > 0)
+        use(choice(i));
+      else
+        line("yarn y {}\n path\n  0 0 0\n  {} {} {}\n end\nend", one_of({"a", "b"}), number(1, 9),
+             number(0, 3), number(-1, 1));
+      line("end");
+    }
+    for (int i = 1 + choice(2); i > 0; --i) use(choice(blocks));
+    if (choice(3) == 1)
+      line("cell repeat {} x {}\n{} matrix epoxy\nend", 1 + choice(2), 1 + choice(2),
+           choice(2) == 1 ? fmt::format(" margin {}\n", number(0.01, 1)) : "");
+    return text_;
+  }
+
  private:
   template <class... Values>
   void line(fmt::format_string<Values...> format, Values&&... values) {
@@ -184,6 +209,30 @@ class Writer {
     if (choice(4) == 1)
       line("edit y1 point {} to {} {} {}", 1 + choice(3), number(-1, 3), number(-2, 2), number(-1, 1));
   }
+  void use(int block) {
+    line("use b{}{}", block, choice(3) == 1 ? fmt::format(" as n{}", choice(3)) : "");
+    if (choice(3) == 1)
+      line(" repeat {} {}{}", 1 + choice(2), 1 + choice(2),
+           choice(2) == 1 ? fmt::format(" step {} {}", number(0.1, 9), number(-9, -0.1)) : "");
+    for (int i = choice(4); i > 0; --i) {
+      const int axis = choice(3), other = (axis + 1 + choice(2)) % 3;
+      switch (choice(4)) {
+        case 0:
+          line(" place {} {} {}", number(-9, 9), number(-9, 9), number(-9, 9));
+          break;
+        case 1:
+          line(" rotate {} {}", "xyz"[axis], choice(2) == 1 ? 90.0 * choice(4) : number(-360, 360));
+          break;
+        case 2:
+          line(" mirror {}", "xyz"[axis]);
+          break;
+        default:
+          line(" shear {} {} {}", "xyz"[axis], "xyz"[other], number(-80, 80));
+          break;
+      }
+    }
+    line("end");
+  }
   void cell() {
     const double x = number(-2, 2), y = number(-2, 2), z = number(-2, 0);
     line("cell {} {} {}  {} {} {}\n matrix epoxy\n periodic x y\nend", x, y, z, x + number(0.3, 8),
@@ -198,6 +247,10 @@ class Writer {
 
 std::string fabric_text(std::string_view bytes) {
   return Writer(bytes).text();
+}
+
+std::string placed_text(std::string_view bytes) {
+  return Writer(bytes).placed_text();
 }
 
 }  // namespace selvage::fuzz

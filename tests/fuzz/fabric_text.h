@@ -11,4 +11,7 @@ namespace selvage::fuzz {
 // number or statement, so that a fuzzer's own mutations walk from fabric to fabric.
 std::string fabric_text(std::string_view bytes);
 
+// The same of blocks within blocks, used at other places, and of cells of repeats.
+std::string placed_text(std::string_view bytes);
+
 }  // namespace selvage::fuzz

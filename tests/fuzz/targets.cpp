@@ -5,10 +5,12 @@
 #include "core/text_report.h"
 #include "fabric/build.h"
 #include "fabric/from_cad.h"
+#include "fabric/settle_cell.h"
 #include "fem/skin.h"
 #include "fem/voxel.h"
 #include "formats/registry.h"
 #include "formats/step/inspect.h"
+#include "fuzz/expression_text.h"
 #include "fuzz/fabric_text.h"
 
 namespace selvage::fuzz {
@@ -116,6 +118,40 @@ void run_mesh(std::string_view bytes) {
         diagnostics));
 }
 
+// What is placed encloses what it did before, and closes; a cell of repeats is one or says why not.
+void run_placing(std::string_view bytes) {
+  const std::string text = placed_text(bytes);
+  const Descriptor& format = *formats::all_formats().front();
+  Diagnostics diagnostics;
+  std::optional<Fabric> fabric = read(format, named(text, format), diagnostics);
+  if (!fabric) std::abort();  // no circles are written, nor too many copies
+  for (const yarn::Body& body : bodies_of(*fabric, bytes))
+    if (!(body.volume > 0) || body.inward) std::abort();
+  if (!fabric->cell || bytes.size() % 4 != 0) return;
+  fabric::BuildOptions options;
+  options.tolerance = coarse * fabric::smallest_section(*fabric).value_or(0.0);
+  options.max_control_points = most_points;
+  options.work.points = most_data_points;
+  fabric::settle_cell(*fabric, options, 1, diagnostics);
+  const fabric::Cell& cell = *fabric->cell;
+  if (!diagnostics.has_errors() && (cell.low.array() >= cell.high.array()).any()) std::abort();
+}
+
+// Read as reckoned, to rounding.
+void run_expressions(std::string_view bytes) {
+  const ExpressionText text = expression_text(bytes);
+  const Descriptor& format = *formats::all_formats().front();
+  Diagnostics diagnostics;
+  const std::optional<Fabric> fabric = read(format, named(text.text, format), diagnostics);
+  if (!fabric) std::abort();
+  const auto& path = std::get<fabric::Path>(std::get<fabric::Yarn>(fabric->items.front()).shape);
+  double size = 1;
+  for (const double number : text.numbers) size = std::max(size, std::abs(number));
+  for (std::size_t i = 0; i < text.numbers.size(); ++i)
+    if (std::abs(path.points[i / 3][static_cast<Eigen::Index>(i % 3)] - text.numbers[i]) > 1e-6 * size)
+      std::abort();
+}
+
 // The reader in the module is OpenCASCADE's, in a process of its own: what stands before it is ours.
 void run_step(std::string_view bytes) {
   const Source source = Source::from_memory(std::string(bytes), "input.stp");
@@ -147,6 +183,10 @@ std::vector<Target> all_targets() {
       {"mesh",
        "writes a fabric by the grammar, reads, builds and checks it, and meshes its surfaces and its cell",
        "", 256, run_mesh});
+  list.push_back({"placing", "writes blocks that are used at other places, reads, builds, settles the cell",
+                  "", 256, run_placing});
+  list.push_back({"expressions", "writes numbers with units, params and expressions, compares what is read",
+                  "", 256, run_expressions});
   return list;
 }
 

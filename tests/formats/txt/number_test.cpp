@@ -118,9 +118,19 @@ TEST(Numbers, TellWhatIsWrong) {
 
 // Every word that begins a statement is refused as the name of a param.
 TEST(Numbers, KeywordsAreReserved) {
-  const std::vector<std::string> openings = {
-      "",           "thread t\n", "material m\n", "yarn y\n",           "weave\n",           "knit jersey\n",
-      "warpknit\n", "braid\n",    "piece p\n",    "cell 0 0 0 1 1 1\n", "yarn y\ngrid 2 3\n"};
+  const std::vector<std::string> openings = {"",
+                                             "thread t\n",
+                                             "material m\n",
+                                             "yarn y\n",
+                                             "weave\n",
+                                             "knit jersey\n",
+                                             "warpknit\n",
+                                             "braid\n",
+                                             "piece p\n",
+                                             "cell 0 0 0 1 1 1\n",
+                                             "yarn y\ngrid 2 3\n",
+                                             "block b\n",
+                                             "block b\nyarn y\nend\nend\nuse b\n"};
   int words = 0;
   for (const std::string& opening : openings) {
     const std::string text = messages("fabric 1\n" + opening + "qqqqqqqqqqqq 1\n");

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "fabric/quantities.h"
 
@@ -29,6 +30,7 @@ class Maker {
     for (int i = up_to(3); i > 0; --i) fabric.materials.push_back(material());
     for (int i = up_to(2); i > 0; --i) fabric.outlines.push_back(outline());
     for (int i = 1 + up_to(3); i > 0; --i) fabric.threads.push_back(thread());
+    for (int i = up_to(2); i > 0; --i) fabric.blocks.push_back(block());
     for (int i = up_to(8); i > 0; --i) fabric.items.push_back(item());
     if (!yarns_.empty())
       for (int i = up_to(3); i > 0; --i) fabric.edits.push_back(edit());
@@ -290,8 +292,53 @@ class Maker {
     }
     return draft;
   }
+  // With a thread of its own, which nothing else knows, and perhaps others in turn.
+  NamedBlock block() {
+    NamedBlock block;
+    block.name = new_name();
+    block.fabric = std::make_shared<Fabric>();
+    Fabric& fabric = *block.fabric;
+    const auto threads = threads_, materials = materials_, outlines = outlines_, blocks = blocks_;
+    const auto yarns = std::exchange(yarns_, {});
+    maybe(fabric.tolerance, [&] { return positive(); });
+    if (coin()) fabric.materials.push_back(material());
+    if (coin()) fabric.outlines.push_back(outline());
+    fabric.threads.push_back(thread());
+    if (up_to(4) == 0) fabric.blocks.push_back(this->block());
+    while (fabric.items.size() < 2)
+      if (Item one = item(); !std::holds_alternative<Piece>(one)) fabric.items.push_back(std::move(one));
+    if (!yarns_.empty() && coin()) fabric.edits.push_back(edit());
+    threads_ = threads;
+    materials_ = materials;
+    outlines_ = outlines;
+    blocks_ = blocks;
+    yarns_ = yarns;
+    blocks_.push_back(block.name);
+    return block;
+  }
+  Use use() {
+    Use use;
+    use.is_file = blocks_.empty() || up_to(3) == 0;
+    use.what = !use.is_file ? one_of(blocks_) : coin() ? "layers/a b.txt" : "twill.wif";
+    if (coin()) use.as = new_name();
+    if (coin()) use.repeats = {1 + up_to(3), 1 + up_to(3)};
+    if (coin()) use.steps = {positive(), positive()};
+    for (int i = up_to(4); i > 0; --i) {
+      Move& move = use.moves.emplace_back();
+      move.form = static_cast<Move::Form>(up_to(3));
+      if (move.form == Move::Form::place) {
+        move.by = point();
+        continue;
+      }
+      move.axis = up_to(2);
+      if (move.form == Move::Form::shear) move.across = (move.axis + 1 + up_to(1)) % 3;
+      if (move.form == Move::Form::rotate) move.angle = number();
+      if (move.form == Move::Form::shear) move.angle = between(-80.0, 80.0);
+    }
+    return use;
+  }
   Item item() {
-    switch (up_to(8)) {
+    switch (up_to(9)) {
       case 0: {
         Weave weave;
         weave.warp = system();
@@ -370,6 +417,8 @@ class Maker {
       }
       case 4:
         return piece();
+      case 5:
+        return use();
       default:
         return yarn();
     }
@@ -396,6 +445,7 @@ class Maker {
     warpknit.wale_pitch = positive();
     warpknit.course_pitch = positive();
     maybe(warpknit.stitch, [&] { return static_cast<Warpknit::Stitch>(up_to(1)); });
+    maybe(warpknit.substrate, [&] { return positive(); });
     return warpknit;
   }
   Edit curve_edit() {
@@ -461,18 +511,26 @@ class Maker {
   }
   Cell cell() {
     Cell cell;
-    cell.low = {between(-5.0, 0.0), between(-5.0, 0.0), between(-5.0, 0.0)};
-    cell.high = {positive(), positive(), positive()};
+    if (coin()) {
+      cell.of_repeats.emplace().counts = {1 + up_to(4), 1 + up_to(4)};
+      maybe(cell.of_repeats->margin, [&] { return positive(); });
+    } else {
+      corners(cell);
+    }
     if (!materials_.empty() && coin()) cell.matrix = one_of(materials_);
     cell.periodic[0] = coin();
     cell.periodic[1] = coin();
     cell.periodic[2] = coin();
     return cell;
   }
+  void corners(Cell& cell) {
+    cell.low = {between(-5.0, 0.0), between(-5.0, 0.0), between(-5.0, 0.0)};
+    cell.high = {positive(), positive(), positive()};
+  }
 
   std::mt19937_64 engine_;
   int names_ = 0;
-  std::vector<std::string> threads_, materials_, outlines_, yarns_;
+  std::vector<std::string> threads_, materials_, outlines_, yarns_, blocks_;
 };
 
 }  // namespace

@@ -492,16 +492,6 @@ TEST(Reader, Samples) {
   EXPECT_EQ(item<Piece>(sample("back_piece.txt"), 0).curves.size(), 6U);
 }
 
-// The reference page's own example.
-TEST(Reader, ExampleOfTheReferencePage) {
-  Result<Source> page = Source::open(places::tests() + "/../formats/txt/README.md");
-  ASSERT_TRUE(page.ok());
-  const std::string_view text = page->bytes();
-  const std::size_t begin = text.find("```\nfabric 1") + 4;
-  const Fabric fabric = good(std::string(text.substr(begin, text.find("```", begin) - begin)));
-  EXPECT_EQ(fabric.items.size(), 2U);
-}
-
 TEST(Reader, ManyRowsTakeTheirMemoryOnce) {
   std::string text = "fabric 1\nyarn y\n path\n";
   for (int i = 0; i < 300000; ++i) text += std::to_string(i) + " 0 0.5\n";
