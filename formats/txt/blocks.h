@@ -44,6 +44,7 @@ bool read_points(Parser& p, std::string_view kind, std::string_view name, const 
 void read_outline(Parser& p, fabric::Fabric& fabric, std::string_view word);
 
 // construction.cpp
+std::string read_file_name(Parser& p, std::string_view what);
 void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word);
 void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word);
 void read_warpknit(Parser& p, fabric::Fabric& fabric, std::string_view word);

@@ -148,13 +148,7 @@ void read_draft(Parser& p, WeaveBlock& weave, std::string_view) {
   if (!form) return p.skip_statement();
   draft.form = *form;
   if (*form == Draft::Form::file) {
-    if (p.more() && *p.here().at != '"') {
-      draft.file = p.take_word();
-    } else if (const auto file = p.name("the draft's file")) {
-      draft.file = *file;
-    } else {
-      return;
-    }
+    draft.file = read_file_name(p, "the draft's file");
   } else if (*form != Draft::Form::plain) {
     read_draft_numbers(p, draft);
     return;
@@ -367,6 +361,16 @@ void read_axial(Parser& p, BraidBlock& braid, std::string_view) {
 }
 
 }  // namespace
+
+// A word, or what stands in double quotes.
+std::string read_file_name(Parser& p, std::string_view what) {
+  const Spot spot = p.here();
+  if (!p.more() || *spot.at == '"') return std::string(p.name(what).value_or(""));
+  const std::string_view word = p.take_word();
+  if (text_prefix(word) != word.size() || word.find('"') != std::string_view::npos)
+    p.error(spot, fmt::format("{} is no name of a file: UTF-8 without double quotes", in_quotes(word)));
+  return std::string(word);
+}
 
 void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   static const Table<WeaveBlock> table({{"warp", read_warp, Times::once},

@@ -85,10 +85,7 @@ void read_use(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   if (same_word(p.peek_word(), "file")) {
     p.take_word();
     use.is_file = true;
-    if (p.more() && *p.here().at != '"')
-      use.what = p.take_word();
-    else
-      use.what = p.name("the name of the file").value_or("");
+    use.what = read_file_name(p, "the name of the file");
   } else {
     use.what = p.reference(p.blocks).value_or("");
   }

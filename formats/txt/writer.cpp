@@ -24,8 +24,18 @@ class Lines {
   Lines& line(int depth, std::string_view word) {
     if (begun_) raw("\n");
     begun_ = true;
-    for (int i = 0; i < depth; ++i) raw("  ");
+    for (int i = -blocks_; i < depth; ++i) raw("  ");
     return raw(word);
+  }
+  // Lines between stand in a block of the fabric.
+  void open_block(std::string_view block_name) {
+    blank_line();
+    line(0, "block").name(block_name);
+    ++blocks_;
+  }
+  void close_block() {
+    --blocks_;
+    line(0, "end");
   }
   // Before a block of the file.
   void blank_line() {
@@ -66,6 +76,7 @@ class Lines {
  private:
   TextBuffer text_;
   bool begun_ = false;
+  int blocks_ = 0;
 };
 
 // --- threads and materials
@@ -466,11 +477,10 @@ void write_content(Lines& out, const fabric::Fabric& fabric, WriteFacts& facts, 
   for (const fabric::Outline& outline : fabric.outlines) write_outline(out, outline);
   for (const Thread& thread : fabric.threads) write_thread(out, thread);
   for (const fabric::NamedBlock& block : fabric.blocks) {
-    out.blank_line();
-    out.line(0, "block").name(block.name);
+    out.open_block(block.name);
     WriteFacts of_block;  // its yarns are those of its uses
     write_content(out, *block.fabric, of_block, changed);
-    out.line(0, "end");
+    out.close_block();
   }
   constexpr std::array<std::string_view, 7> kinds = {"yarn",  "weave", "knit", "warpknit",
                                                      "braid", "piece", "use"};

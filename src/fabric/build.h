@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "core/diagnostics.h"
@@ -164,7 +166,10 @@ class YarnBuilder {
     TextPlace place;  // of the `use`
   };
   // The first entry of each name; made when it is first asked for.
-  struct NameIndex;
+  struct NameIndex {
+    std::once_flag once;
+    std::unordered_map<std::string, std::size_t> first;
+  };
   std::shared_ptr<NameIndex> names_;
   // The yarn taken apart last: its parts are mostly asked for one after the other.
   struct LastBundle;

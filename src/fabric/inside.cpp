@@ -177,6 +177,10 @@ class UseCheck {
  public:
   // How many copies of blocks are in the fabric, all levels together.
   Result<std::uint64_t> copies_in(const Fabric& fabric) {
+    // Its own, used or not.
+    for (const NamedBlock& block : fabric.blocks)
+      if (block.home == nullptr)
+        if (const Result<std::uint64_t> within = copies_of(fabric, block); !within) return within;
     std::uint64_t all = 0;
     for (const Item& item : fabric.items) {
       const auto* const use = std::get_if<Use>(&item);

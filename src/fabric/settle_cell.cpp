@@ -7,6 +7,7 @@
 #include <limits>
 #include <mutex>
 
+#include "core/decimal_grid.h"
 #include "core/parallel.h"
 #include "nurbs/divided.h"
 #include "nurbs/samples.h"
@@ -17,6 +18,8 @@ namespace {
 
 // Of the thinnest yarn's thickness.
 constexpr double usual_margin = 0.1, clear_of_turns = 0.1;
+// Heights are rounded outward: tubes that differ by their tolerance have one cell.
+constexpr double rounding = 0.01;
 
 // A surface, dense enough to see where it reaches to within a thousandth of its thickness.
 nurbs::Samples dense_samples(const nurbs::Surface& surface) {
@@ -108,8 +111,8 @@ double move_off_turns(const std::vector<double>& turns, double clear) {
   double widest = 0.0, middle = 0.0;
   for (std::size_t i = 0; i < turns.size(); ++i) {
     const double next = i + 1 < turns.size() ? turns[i + 1] : turns.front() + 1.0;
-    constexpr double rounding = 1e-6;  // of gaps that are alike the first
-    if (next - turns[i] <= widest + rounding) continue;
+    constexpr double alike = 1e-6;  // of gaps that are alike the first
+    if (next - turns[i] <= widest + alike) continue;
     widest = next - turns[i];
     middle = 0.5 * (turns[i] + next);
   }
@@ -166,8 +169,8 @@ class Settling {
     cell.high[axis] = cloth.max()[axis];
     if (length == 0.0) return;
     const double step = repeat > 0.0 ? repeat : length, middle = cloth.center()[axis];
-    constexpr double rounding = 1e-6;  // of two that are as near the lower one
-    cell.low[axis] = std::ceil((middle - 0.5 * length) / step - 0.5 - rounding) * step + 0.0;
+    constexpr double as_near = 1e-6;  // of two that are as near the lower one
+    cell.low[axis] = std::ceil((middle - 0.5 * length) / step - 0.5 - as_near) * step + 0.0;
     cell.high[axis] = cell.low[axis] + length;
   }
 
@@ -189,11 +192,12 @@ class Settling {
         if (is_beside(p, cell, lengths)) yarns.extend(p);
       thinnest = std::min(thinnest, yarn::narrowest_section(body));
     }
+    const DecimalGrid digits(rounding * thinnest);
     const double margin = cell.of_repeats->margin.value_or(usual_margin * thinnest);
     for (int axis = 0; axis < 3; ++axis) {
       if (lengths[axis] == 0.0) {
-        cell.low[axis] = yarns.min()[axis] - margin;
-        cell.high[axis] = yarns.max()[axis] + margin;
+        cell.low[axis] = digits.rounded(yarns.min()[axis] - margin - 0.5 * digits.step());
+        cell.high[axis] = digits.rounded(yarns.max()[axis] + margin + 0.5 * digits.step());
         continue;
       }
       const double own = repeat[static_cast<std::size_t>(axis)].value_or(0.0);

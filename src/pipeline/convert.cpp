@@ -118,9 +118,10 @@ void write_others(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) 
 }
 
 // What a surface format is given of a unit cell: solids.
-void write_cell(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs) {
+void write_cell(Job& job, fabric::Fabric& fabric, OpenOutputs& outputs) {
   const std::optional<fabric::YarnBuilder> builder = job.builder(fabric);
   if (!builder) return;
+  if (fabric.cell && fabric.cell->names_axes()) snap_cell(job, fabric, *builder);
   std::optional<std::vector<cad::Part>> parts = cell_solids(job, fabric, *builder);
   if (!parts || !open_writers(job, fabric, parts->size(), outputs)) return;
   for (std::size_t i = 0; i < parts->size(); ++i) {

@@ -68,7 +68,7 @@ class NamedFiles {
   // Of one text with its blocks.
   void resolve(fabric::Fabric& fabric, const Source& source) {
     TextReport report(source);
-    resolve(fabric, source, report);
+    resolve(fabric, source, report, fabric.units);
     report.hand_over(diagnostics_);
   }
   std::vector<std::string> take_read() { return std::move(read_); }
@@ -101,15 +101,16 @@ class NamedFiles {
     return Opened{std::move(file), std::move(*source)};
   }
 
-  void resolve(fabric::Fabric& fabric, const Source& source, TextReport& report) {
-    for (fabric::NamedBlock& block : fabric.blocks) resolve(*block.fabric, source, report);
+  // `unit`: of the text; its blocks do not know it.
+  void resolve(fabric::Fabric& fabric, const Source& source, TextReport& report, Unit unit) {
+    for (fabric::NamedBlock& block : fabric.blocks) resolve(*block.fabric, source, report, unit);
     std::map<fs::path, std::string> blocks;  // of files that were used already
     for (fabric::Item& item : fabric.items) {
       if (auto* const weave = std::get_if<Weave>(&item);
           weave != nullptr && weave->draft.form == Draft::Form::file)
         resolve_draft(weave->draft, source, report);
       if (auto* const use = std::get_if<fabric::Use>(&item); use != nullptr && use->is_file)
-        resolve_use(*use, fabric, source, report, blocks);
+        resolve_use(*use, fabric, source, report, unit, blocks);
     }
   }
 
@@ -129,7 +130,7 @@ class NamedFiles {
   }
 
   void resolve_use(fabric::Use& use, fabric::Fabric& user, const Source& source, TextReport& report,
-                   std::map<fs::path, std::string>& blocks) {
+                   Unit unit, std::map<fs::path, std::string>& blocks) {
     const auto refuse = [&](const Message& why) {
       report.error(spot_at(source, use.place),
                    fmt::format("the file {} cannot be used: {}", in_quotes(use.what), why.text), why.kind);
@@ -138,7 +139,7 @@ class NamedFiles {
     if (!named) return refuse(named.error());
     std::string& name = blocks[named->path];
     if (name.empty()) {
-      Result<std::shared_ptr<fabric::Fabric>> fabric = fabric_of(*named, user.units);
+      Result<std::shared_ptr<fabric::Fabric>> fabric = fabric_of(*named, unit);
       if (!fabric) {
         blocks.erase(named->path);
         return refuse(fabric.error());

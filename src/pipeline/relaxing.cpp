@@ -36,6 +36,7 @@ fabric::Yarn yarn_of(const fabric::YarnBuilder& builder, std::size_t index, cons
     // A part has another size and count than the thread of the whole; a block may have threads of its own.
     if (const Result<fabric::YarnPlan> plan = builder.plan(index)) yarn.own = plan->thread;
     yarn.own.name.clear();
+    if (!body.material.empty()) yarn.own.material = body.material;
   } else if (origin.yarn != nullptr) {
     yarn.thread = origin.yarn->thread;
     yarn.own = origin.yarn->own;
@@ -43,6 +44,18 @@ fabric::Yarn yarn_of(const fabric::YarnBuilder& builder, std::size_t index, cons
     yarn.thread = body.thread;
   }
   return yarn;
+}
+
+// The text has no blocks any more, but what their yarns are made of.
+void keep_materials(fabric::Fabric& fabric) {
+  std::vector<const fabric::Fabric*> within = {&fabric};
+  std::vector<fabric::Material> materials = fabric.materials;
+  for (std::size_t i = 0; i < within.size(); ++i) {
+    for (const fabric::Material& material : within[i]->materials)
+      if (fabric::find_named(materials, material.name) == nullptr) materials.push_back(material);
+    for (const fabric::NamedBlock& block : within[i]->blocks) within.push_back(block.fabric.get());
+  }
+  fabric.materials = std::move(materials);
 }
 
 // Its thread is taken apart no more: `plies` and `filaments` of the thread would ask for it again.
@@ -301,6 +314,7 @@ fabric::Fabric with_yarns(fabric::Fabric fabric, Built built, std::vector<yarn::
   for (fabric::Item& item : fabric.items)
     if (std::holds_alternative<fabric::Piece>(item)) items.push_back(std::move(item));
   fabric.items = std::move(items);
+  keep_materials(fabric);
   fabric.blocks.clear();
   if (fabric.cell) fabric.cell->of_repeats.reset();
   fabric.item_ends.clear();

@@ -444,7 +444,7 @@ const std::vector<Case> construction_cases = {
     {"use_unknown", with_thread("use nothing\nend\n"), {{5, 5, "unknown block 'nothing'"}}},
     {"use_circle",
      with_thread("block a\nuse b\nend\nend\nblock b\nuse a\nend\nend\nuse a\nend\n"),
-     {{9, 1, "circle: 'a' uses 'b' uses 'a'"}}},
+     {{10, 1, "circle: 'a' uses 'b' uses 'a'"}}},
     {"use_itself", with_thread("block a\nuse a\nend\nend\n"), {{6, 1, "circle"}}},
     {"block_empty", with_thread("block a\nend\n"), {{6, 1, "it has no yarns"}}},
     {"block_twice",

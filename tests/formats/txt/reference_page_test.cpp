@@ -86,7 +86,7 @@ std::vector<std::string> words_behind(const std::string& opening) {
   std::string list = text.substr(begin + 9, text.find('\n', begin) - begin - 9) + ",";
   for (std::size_t comma = 0; (comma = list.find(',')) != std::string::npos; list.erase(0, comma + 1)) {
     const std::size_t first = list.find_first_not_of(' ');
-    words.push_back(list.substr(first, comma - first));
+    words.push_back(list.substr(first, list.find_first_of(" ,", first) - first));
   }
   return words;
 }

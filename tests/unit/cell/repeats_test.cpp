@@ -66,11 +66,13 @@ TEST(CellOfRepeats, SharesAreThoseOfOneRepeat) {
     const Vec3 size = one.box().sizes(), twice = two.box().sizes();
     EXPECT_NEAR(twice.x(), 2 * size.x(), 1e-12);
     EXPECT_NEAR(twice.y(), size.y(), 1e-12);
-    EXPECT_NEAR(twice.z(), size.z(), 1e-9);
+    EXPECT_EQ(twice.z(), size.z());
     const double share = fraction(one);
     EXPECT_GT(share, 0.05);
-    EXPECT_NEAR(fraction(two), share, 1e-7 * share);
-    EXPECT_NEAR(fraction(other) * other.box().sizes().z(), share * size.z(), 1e-7 * share);
+    const double share_of_two = fraction(two);
+    std::cout << share << ' ' << share_of_two / share - 1 << std::endl;
+    EXPECT_NEAR(share_of_two, share, 1e-8 * share);
+    EXPECT_NEAR(fraction(other) * other.box().sizes().z(), share * size.z(), 1e-8 * share);
     EXPECT_TRUE(one.fabric->cell->periodic[0] && one.fabric->cell->periodic[1] &&
                 !one.fabric->cell->periodic[2]);
   }
@@ -94,7 +96,7 @@ TEST(CellOfRepeats, IsTheRepeat) {
   EXPECT_NEAR(cell.box().max().z(), high + 0.02, 0.005);
   EXPECT_NEAR(cell.box().min().z(), low - 0.02, 0.005);
   const Settled wide = settle(plain, "cell repeat\nmargin 0.5");
-  EXPECT_NEAR(wide.box().max().z() - cell.box().max().z(), 0.48, 1e-9 + 1e-3);
+  EXPECT_NEAR(wide.box().max().z() - cell.box().max().z(), 0.48, 1e-9 + 2e-3);
 }
 
 // A cloth turned by a quarter, or sheared by half a right angle, has as much yarn in its cell.
