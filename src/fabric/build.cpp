@@ -218,7 +218,7 @@ void YarnBuilder::add_yarn(const Yarn& yarn, Diagnostics& diagnostics) {
 }
 
 void YarnBuilder::add_construction(std::string_view kind, Result<std::unique_ptr<Construction>> made,
-                                   TextPlace place, Diagnostics& diagnostics) {
+                                   const Item& item, TextPlace place, Diagnostics& diagnostics) {
   if (!made) return diagnostics.add(made.error().placed(place, fabric_->file));
   const Construction& construction = **made;
   const std::size_t count = construction.count();
@@ -228,7 +228,7 @@ void YarnBuilder::add_construction(std::string_view kind, Result<std::unique_ptr
   for (std::size_t i = 0; i < count; ++i)
     more += in_parts({1, plain.points / count, 0}, part_count(construction.thread(i), options_.detail) - 1);
   if (more.yarns > 0 && !take_on(more, place, diagnostics)) return;
-  constructions_.push_back(std::make_unique<Made>(Made{std::move(*made), place, kind, {}}));
+  constructions_.push_back(std::make_unique<Made>(Made{std::move(*made), &item, place, kind, {}}));
   Entry entry;
   entry.made = constructions_.back().get();
   for (std::size_t i = 0; i < count; ++i) {
@@ -269,10 +269,18 @@ YarnBuilder::Origin YarnBuilder::origin(std::size_t index) const {
   return origin;
 }
 
-std::vector<const Construction*> YarnBuilder::constructions() const {
-  std::vector<const Construction*> all;
-  all.reserve(constructions_.size());
-  for (const auto& made : constructions_) all.push_back(made->construction.get());
+void YarnBuilder::add_cloths(std::vector<Cloth>& all) const {
+  const auto is_known = [&](const Construction* construction) {
+    return std::ranges::find(all, construction, &Cloth::construction) != all.end();
+  };
+  for (const auto& made : constructions_)
+    if (!is_known(made->construction.get())) all.push_back({fabric_, made->item, made->construction.get()});
+  for (const auto& inside : insides_) inside->add_cloths(all);
+}
+
+std::vector<YarnBuilder::Cloth> YarnBuilder::cloths() const {
+  std::vector<Cloth> all;
+  add_cloths(all);
   return all;
 }
 
@@ -324,7 +332,7 @@ std::optional<YarnBuilder> YarnBuilder::make(const Fabric& fabric, const BuildOp
 
 void YarnBuilder::add_item(const Item& item, Diagnostics& diagnostics) {
   const auto construct = [&](std::string_view kind, const auto& construction, const auto& make) {
-    add_construction(kind, make(*fabric_, construction, options_, diagnostics), construction.place,
+    add_construction(kind, make(*fabric_, construction, options_, diagnostics), item, construction.place,
                      diagnostics);
   };
   std::visit(Overloaded{

@@ -61,15 +61,21 @@ class YarnBuilder {
   struct Origin {
     const Yarn* yarn = nullptr;
     bool is_part = false;
-    bool is_placed = false;  // by a `use`: its thread may be one of its block
+    bool is_placed = false;                      // by a `use`: its thread may be one of its block
     const Construction* construction = nullptr;  // null: it stands in the text
     std::size_t index = 0;                       // of the construction's yarns
   };
   [[nodiscard]] Origin origin(std::size_t index) const;
   // Of a ply or a filament: the whole yarn's.
   [[nodiscard]] std::string name(std::size_t index) const { return name_of(entries_[index]); }
-  // In file order, but for those of used blocks.
-  [[nodiscard]] std::vector<const Construction*> constructions() const;
+  // A construction, and where it is said.
+  struct Cloth {
+    const Fabric* fabric = nullptr;
+    const Item* item = nullptr;
+    const Construction* construction = nullptr;
+  };
+  // In file order, then those of used blocks, each once and as it is by itself.
+  [[nodiscard]] std::vector<Cloth> cloths() const;
   // The first yarn (or part of a yarn) of this name; none where there is no such yarn.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
   // Of all constructions together; none where yarns stand in the text, or there are no constructions.
@@ -121,8 +127,9 @@ class YarnBuilder {
   static void move_to(const Where& where, YarnPlan& plan);
   static std::shared_ptr<Shared> share_among_blocks();
   static std::shared_ptr<ShapeMemo> memo_of(const Shared& shared);
-  void add_construction(std::string_view kind, Result<std::unique_ptr<Construction>> made, TextPlace place,
-                        Diagnostics& diagnostics);
+  void add_construction(std::string_view kind, Result<std::unique_ptr<Construction>> made, const Item& item,
+                        TextPlace place, Diagnostics& diagnostics);
+  void add_cloths(std::vector<Cloth>& all) const;
   // False, with the error, when it is too much together with what there is already.
   bool take_on(const Work& work, TextPlace place, Diagnostics& diagnostics);
   void add_entries(Entry entry, std::uint64_t parts);
@@ -150,6 +157,7 @@ class YarnBuilder {
   // A construction, and what its yarns' names begin with so that no other yarn has them; mostly nothing.
   struct Made {
     std::unique_ptr<Construction> construction;
+    const Item* item = nullptr;
     TextPlace place;
     std::string_view kind;  // "weave"
     std::string prefix;

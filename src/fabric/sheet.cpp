@@ -507,25 +507,22 @@ Result<Sheet> sheet_of(const Fabric& fabric, const Item& item, const Constructio
   }
   Sheet sheet = measuring.sheet(item);
   sheet.place = place_of(item);
+  sheet.file = fabric.file;
   return sheet;
 }
 
 }  // namespace
 
-SheetResult sheets_of(const Fabric& fabric, const YarnBuilder& builder, const BuildOptions& options,
-                      int threads) {
+SheetResult sheets_of(const YarnBuilder& builder, const BuildOptions& options, int threads) {
   SheetResult result;
-  std::size_t next = 0;
-  const std::vector<const Construction*> constructions = builder.constructions();
-  for (const Item& item : fabric.items) {
-    if (std::holds_alternative<Yarn>(item) || std::holds_alternative<Piece>(item)) continue;
-    Result<Sheet> sheet = sheet_of(fabric, item, *constructions[next++], options, threads);
+  for (const auto& [fabric, item, construction] : builder.cloths()) {
+    Result<Sheet> sheet = sheet_of(*fabric, *item, *construction, options, threads);
     if (sheet)
       result.sheets.push_back(std::move(*sheet));
     else
       result.missing.push_back(note(Kind::unsupported, fmt::format("no data sheet of this {}: {}",
-                                                                   kind_of(item), sheet.error().text))
-                                   .placed(place_of(item), fabric.file));
+                                                                   kind_of(*item), sheet.error().text))
+                                   .placed(place_of(*item), fabric->file));
   }
   return result;
 }

@@ -55,6 +55,7 @@ struct ThreadSheet {
 
 struct Sheet {
   std::string kind;  // weave, knit, warpknit, braid
+  std::string file;
   TextPlace place;
   // mm: what was measured, along x and y; of a braid along its axis, and nothing.
   double repeat_x = 0, repeat_y = 0;
@@ -79,9 +80,8 @@ struct SheetResult {
   std::vector<Message> missing;  // notes: no repeat, or one far larger than the cloth
 };
 
-// Of all constructions of the fabric, in file order; `builder` is the fabric's. The numbers do not
-// depend on the number of threads.
-SheetResult sheets_of(const Fabric& fabric, const YarnBuilder& builder, const BuildOptions& options,
-                      int threads);
+// Of all constructions, those of used blocks as they are by themselves. The numbers do not depend on the
+// number of threads.
+SheetResult sheets_of(const YarnBuilder& builder, const BuildOptions& options, int threads);
 
 }  // namespace selvage::fabric

@@ -168,14 +168,13 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder) {
 }
 
 // What the cloths of the text are, by the numbers of the trade.
-std::string data_sheets(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilder& builder) {
-  if (builder.constructions().empty()) return {};
+std::string data_sheets(Job& job, const fabric::YarnBuilder& builder) {
   const fabric::SheetResult result =
-      fabric::sheets_of(fabric, builder, job.build_options(), static_cast<int>(job.threads));
+      fabric::sheets_of(builder, job.build_options(), static_cast<int>(job.threads));
   job.say_all(result.missing);
   job.report["sheets"] = if_true(!result.sheets.empty(), sheets_json(result.sheets));
   std::string text;
-  for (const fabric::Sheet& sheet : result.sheets) text += sheet_text(sheet);
+  for (const fabric::Sheet& sheet : result.sheets) text += sheet_text(sheet, job.input.path);
   return text;
 }
 
@@ -206,8 +205,7 @@ void info(Job& job) {
   const std::string head = heading(job, *fabric) + of_file;
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
   std::string tables;
-  if (builder && builder->count() > 0)
-    tables = data_sheets(job, *fabric, *builder) + yarn_table(job, *builder);
+  if (builder && builder->count() > 0) tables = data_sheets(job, *builder) + yarn_table(job, *builder);
   if (builder) tables += piece_tables(job, *fabric) + other_tables(job, *fabric);
   if (!job.options.json) job.print(head + tables);
 }

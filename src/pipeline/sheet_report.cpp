@@ -133,11 +133,12 @@ std::string without_mass(const fabric::Sheet& sheet) {
 
 }  // namespace
 
-std::string sheet_text(const fabric::Sheet& sheet) {
+std::string sheet_text(const fabric::Sheet& sheet, std::string_view file) {
   const auto with = [&](const std::optional<double>& value, std::string_view unit) {
     return value ? fmt::format("{:.4g} {}", *value, unit) : "not known" + without_mass(sheet);
   };
   std::string text = fmt::format("  data sheet of the {} at line {}", sheet.kind, sheet.place.line);
+  if (sheet.file != file) text += fmt::format(" of {}", readable(sheet.file));
   text += sheet.repeat_y > 0
               ? fmt::format(", endless, by a repeat of {:.6g} x {:.6g} mm\n", sheet.repeat_x, sheet.repeat_y)
               : fmt::format(", endless, by a repeat of {:.6g} mm\n", sheet.repeat_x);

@@ -154,8 +154,8 @@ TEST(BezierFit, ByDistanceFindsTheCubicOfUnevenPoints) {
   EXPECT_LT(largest_error(fit, points), 1e-12);
   EXPECT_LT(apart(fit.solved, armhole), 1e-10);
 
-  // Ten wide, of C and S shape. Where the points tell little of the curve (four of five in its first tenth), another
-  // cubic may pass within 1e-4 of all of them and is found instead.
+  // Ten wide, of C and S shape. Where the points tell little of the curve (four of five in its first tenth),
+  // another cubic may pass within 1e-4 of all of them and is found instead.
   std::mt19937 random(6);
   std::uniform_real_distribution<double> share(0, 1);
   const auto between = [&](double least, double most) { return least + (most - least) * share(random); };
