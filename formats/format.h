@@ -20,6 +20,7 @@
 #include "core/source.h"
 #include "core/text_buffer.h"
 #include "core/units.h"
+#include "fabric/measured.h"
 #include "fabric/model.h"
 #include "fabric/piece.h"
 #include "fem/mesh.h"
@@ -129,8 +130,10 @@ struct Descriptor {
                                              const std::vector<fabric::Setting>& settings,
                                              Diagnostics& diagnostics) = nullptr;
 
-  // A CAD file as it stands; fabric/from_cad.h makes a fabric of it. A format has this or read_fabric.
+  // A CAD file as it stands; fabric/from_cad.h makes a fabric of it. A format has this, read_fabric or read_points.
   std::optional<cad::Model> (*read_model)(const Source& source, Diagnostics& diagnostics) = nullptr;
+  // Yarns as points: fabric/measured.h makes a fabric of them, or a yarn of a text (`points FILE`).
+  std::optional<fabric::Measured> (*read_points)(const Source& source, Diagnostics& diagnostics) = nullptr;
   // Does the file keep to its format in every respect? Defects and warnings that the reader puts up with.
   void (*check_structure)(const Source& source, Findings& findings) = nullptr;
   // What the beginning of a file (at most 4 KiB) says of the set that it is part of; none: it stands alone.
@@ -139,7 +142,9 @@ struct Descriptor {
   std::string_view foreign_reader{};
   // Some systems ignore a few of its entities (cad/judge.h: judge_for_receivers).
   bool is_partly_ignored = false;
-  [[nodiscard]] bool is_readable() const { return read_fabric != nullptr || read_model != nullptr; }
+  [[nodiscard]] bool is_readable() const { 
+    return read_fabric != nullptr || read_model != nullptr || read_points != nullptr;
+  }
 
   Result<WriteFacts> (*write_fabric)(const fabric::Fabric& fabric, OutputFile& output) = nullptr;
   // The bytes of a text with the edit as a line of its own after line `after` (from 1); no other byte

@@ -2,6 +2,7 @@
 
 #include "core/csv.h"
 #include "core/text_buffer.h"
+#include "formats/csv/reader.h"
 #include "formats/registry.h"
 #include "yarn/line_samples.h"
 
@@ -17,7 +18,7 @@ class Writer final : public BodyWriter {
     for (const std::string_view axis : {"x", "y", "z"}) text_ << ',' << axis << '_' << unit;
     text_ << ",tangent_x,tangent_y,tangent_z,side_x,side_y,side_z,up_x,up_y,up_z";
     for (const std::string_view size : {"width", "height", "radius"}) text_ << ',' << size << '_' << unit;
-    text_ << ",curvature_per_" << unit << '\n';
+    text_ << ",curvature_per_" << unit << ",speed_" << unit << '\n';
   }
 
   Status add_line(const yarn::Body& body) override {
@@ -27,7 +28,7 @@ class Writer final : public BodyWriter {
       text_ << name << ',' << ++number << ',' << sample.parameter << ',' << sample.arc_length;
       for (const Vec3& vector : {sample.position, sample.tangent, sample.side, sample.up})
         for (const double value : vector) text_ << ',' << value + 0.0;
-      for (const double value : {sample.width, sample.height, sample.radius, sample.curvature})
+      for (const double value : {sample.width, sample.height, sample.radius, sample.curvature, sample.speed})
         text_ << ',' << value;
       text_ << '\n';
     }
@@ -54,6 +55,7 @@ const Descriptor& descriptor() {
       .name = "csv",
       .title = "CSV, centre lines as points with frame, section and arc length",
       .extensions = {".csv"},
+      .read_points = read_points,
       .open_bodies = open_by<Writer>,
       .carries_surfaces = false,
       .carries_lines = true,

@@ -25,6 +25,10 @@ struct ShapeReading {
 fabric::Path read_path(Parser& p, ShapeReading& reading);
 fabric::Grid read_grid(Parser& p, ShapeReading& reading);
 
+// points.cpp: a yarn's `points` and `helix`.
+fabric::PointsFile read_points_file(Parser& p);
+fabric::Helix read_helix(Parser& p);
+
 // shape.cpp, too: rows `x y`, of a polygon's corners or a curve's points.
 struct PointRows {
   std::string_view noun, what;  // "corner", "a corner"

@@ -149,6 +149,8 @@ void read_draft(Parser& p, WeaveBlock& weave, std::string_view) {
   draft.form = *form;
   if (*form == Draft::Form::file) {
     draft.file = read_file_name(p, "the draft's file");
+  } else if (*form == Draft::Form::leno) {
+    if (p.more()) draft.full_turns = p.choice("kind of leno", leno_words).value_or(false);
   } else if (*form != Draft::Form::plain) {
     read_draft_numbers(p, draft);
     return;
@@ -166,6 +168,23 @@ void read_profile(Parser& p, WeaveBlock& weave, std::string_view) {
 void read_spacing(Parser& p, WeaveBlock& weave, std::string_view) {
   const auto spacing = p.choice("spacing", spacing_words);
   if (p.finish()) weave.spacing = *spacing;
+}
+
+// pucker tight T slack S ratio R every N
+void read_pucker(Parser& p, WeaveBlock& weave, std::string_view) {
+  fabric::Pucker pucker;
+  pucker.place = p.statement().place();
+  p.expect("tight");
+  pucker.tight = p.count("the number of tight warps").value_or(1);
+  p.expect("slack");
+  pucker.slack = p.count("the number of slack warps").value_or(1);
+  p.expect("ratio");
+  pucker.ratio = p.number("the ratio of the lengths of slack and tight warps").value_or(1.1);
+  if (!p.has_failed() && !(pucker.ratio > 1.0 && pucker.ratio <= 2.0))
+    p.error(p.last(), "slack warps are longer than tight ones: their ratio lies above 1, and is 2 at most");
+  p.expect("every");
+  pucker.picks = p.count("the picks from wave to wave", 2).value_or(2);
+  if (p.finish()) weave.pucker = pucker;
 }
 
 void read_crimp(Parser& p, WeaveBlock& weave, std::string_view) {
@@ -336,6 +355,35 @@ void read_radius(Parser& p, BraidBlock& braid, std::string_view) {
   braid.radius_place = p.last().place();
 }
 
+struct MandrelRows {
+  std::vector<fabric::MandrelRow> rows;
+};
+
+void read_mandrel_row(Parser& p, MandrelRows& rows) {
+  std::array<double, 4> row{};
+  const Spot spot = p.statement();
+  const int count = p.row(row.data(), 4, "a row of the mandrel");
+  if (count < 0) return;
+  if (count != 4 || !(row[3] > 0.0))
+    return p.error(spot, "a row of the mandrel is x y z RADIUS: a point of its axis, and the radius of the cloth's "
+                         "middle surface there, larger than 0");
+  const Vec3 axis(row[0], row[1], row[2]);
+  if (!rows.rows.empty() && rows.rows.back().axis == axis)
+    return p.error(spot, "this point of the axis equals the one before it");
+  rows.rows.push_back({axis, row[3]});
+}
+
+void read_mandrel(Parser& p, BraidBlock& braid, std::string_view word) {
+  static const Table<MandrelRows> table({}, read_mandrel_row);
+  braid.radius_place = p.statement().place();
+  p.finish();
+  const int errors = p.report.errors();
+  MandrelRows rows;
+  if (p.read_block(word, "", p.statement(), table, rows) && rows.rows.size() < 2 && p.report.errors() == errors)
+    p.error(p.last(), "a mandrel has at least 2 rows");
+  braid.mandrel = std::move(rows.rows);
+}
+
 void read_flat(Parser& p, BraidBlock& braid, std::string_view) {
   braid.flat = true;
   braid.radius_place = p.statement().place();
@@ -379,6 +427,7 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                         {"profile", read_profile},
                                         {"crimp", read_crimp},
                                         {"spacing", read_spacing},
+                                        {"pucker", read_pucker},
                                         {"thickness", into(&Weave::thickness, a_length("the thickness"))},
                                         {"layers", into(&Weave::layers, a_count("the number of layers"))},
                                         {"binder", read_binder, Times::any}});
@@ -395,6 +444,14 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
       p.error(*weave.draft_place, "straight yarns do not interlace: leave out the draft, or the profile");
     if (!is_straight && !weave.binders.empty())
       p.error(opened, "a binder goes through straight layers: it needs 'profile straight'");
+    const bool is_leno = weave.draft.form == Draft::Form::leno;
+    if (is_leno && (weave.profile || weave.crimp || weave.spacing || weave.thickness || weave.layers || weave.pucker))
+      p.error(opened, "a leno has a geometry of its own: leave out profile, crimp, spacing, thickness, layers, pucker");
+    if (is_leno && weave.warp.count % 2 != 0)
+      p.error(opened, fmt::format("a leno's warps are pairs of a standing and a doup end: their number is even, not {}",
+                                  weave.warp.count));
+    if (weave.pucker && (is_straight || weave.layers))
+      p.error(opened, "a pucker goes with one layer of interlaced yarns");
     if (is_straight && weave.crimp) p.error(opened, "straight yarns have no crimp to share");
     if (is_straight && weave.spacing)
       p.error(opened, "straight yarns have no intersections to make room for");
@@ -489,14 +546,20 @@ void read_braid(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                         {"pattern", read_pattern, Times::once},
                                         {"radius", read_radius, Times::once},
                                         {"flat", read_flat, Times::once, "radius"},
+                                        {"mandrel", read_mandrel, Times::once, "radius"},
                                         {"angle", read_angle, Times::once},
-                                        {"length", into(&Braid::length, a_length("the length")), Times::once},
+                                        {"length", into(&Braid::length, a_length("the length"))},
                                         {"axial", read_axial}});
   BraidBlock braid;
   const Spot opened = p.statement();
   braid.place = opened.place();
   p.finish();
-  p.read_block(word, "", opened, table, braid);
+  if (p.read_block(word, "", opened, table, braid)) {
+    if (braid.mandrel.empty() && braid.length == 0.0 && braid.angle > 0.0 && (braid.flat || braid.radius > 0.0))
+      p.error(p.last(), "'braid' ends without its 'length'");
+    if (!braid.mandrel.empty() && braid.length > 0.0)
+      p.error(opened, "the mandrel has its own length: leave out 'length'");
+  }
   if (braid.carriers % 2 != 0 && !braid.flat)
     p.error(braid.carriers_spot,
             "half of the carriers of a tube run each way round: their number has to be even (or the braid "

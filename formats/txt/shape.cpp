@@ -29,6 +29,7 @@ struct PathRows {
   Path& path;
   ShapeReading& reading;
   std::size_t seen = 0;  // rows, wrong ones included
+  std::optional<Spot> knots_spot{};
 };
 
 void add_size(const Parser& p, Path& path, const std::array<double, 6>& row, int count) {
@@ -91,6 +92,35 @@ void read_fixed(Parser& p, Path& path) {
   if (!p.finish()) return;
   path.fixed.resize(path.points.size() - 1, false);
   path.fixed.push_back(true);
+}
+
+void read_path_knots(Parser& p, PathRows& rows, std::string_view) {
+  rows.knots_spot = p.statement();
+  while (p.more())
+    if (const auto knot = p.number("a knot")) rows.path.knots.push_back(*knot);
+  if (p.finish() && rows.path.form != yarn::PathForm::control)
+    p.error(*rows.knots_spot, "knots go with 'path control', whose rows are control points");
+}
+
+// Rows + 4, clamped, none inside so often that the line would have a corner.
+void check_path_knots(Parser& p, const PathRows& rows) {
+  const std::vector<double>& knots = rows.path.knots;
+  const std::size_t n = rows.path.points.size();
+  if (knots.size() != n + 4 || n < 4)
+    return p.error(*rows.knots_spot, fmt::format("{} knots: {} control points of a cubic have {}, and there are "
+                                                 "4 points at least",
+                                                 knots.size(), n, n + 4));
+  if (knots[0] != knots[3] || knots[n] != knots[n + 3] || !(knots[3] < knots[n]))
+    return p.error(*rows.knots_spot, "the first four knots have to be equal, and the last four: the line ends in "
+                                     "its first and last row");
+  for (std::size_t i = 1; i < knots.size(); ++i)
+    if (knots[i] < knots[i - 1])
+      return p.error(*rows.knots_spot, fmt::format("knots do not decrease: {:g} after {:g}", knots[i], knots[i - 1]));
+  for (std::size_t i = 4; i + 2 < n; ++i)
+    if (knots[i] == knots[i + 2])
+      return p.error(*rows.knots_spot, fmt::format("the knot {:g} stands three times: the line would have a corner "
+                                                   "there",
+                                                   knots[i]));
 }
 
 bool is_good_row(Parser& p, const PathRows& rows, const std::array<double, 6>& row, int count) {
@@ -401,12 +431,14 @@ bool read_points(Parser& p, std::string_view kind, std::string_view name, const 
 }
 
 fabric::Path read_path(Parser& p, ShapeReading& reading) {
-  static const Table<PathRows> table({}, read_path_row);
+  static const Table<PathRows> table({{"knots", read_path_knots}}, read_path_row);
   Path path;
   path.place = reading.spot.place();
   const auto form = p.more() ? p.choice("form of path", path_words) : yarn::PathForm::chord;
-  p.finish();
   path.form = form.value_or(yarn::PathForm::chord);
+  if (path.form == yarn::PathForm::smooth)
+    path.error = p.positive("how far rows may be from the centre line", Measure::length).value_or(1.0);
+  p.finish();
   reading.good = true;
   PathRows rows{path, reading};
   const bool complete = p.read_block("path", "", reading.spot, table, rows);
@@ -417,6 +449,8 @@ fabric::Path read_path(Parser& p, ShapeReading& reading) {
   } else if (complete && reading.good && path.form == yarn::PathForm::control && all_equal(path.points)) {
     p.error(reading.last_row, "the path has no length: all its control points are the same");
     reading.good = false;
+  } else if (complete && reading.good && rows.knots_spot) {
+    check_path_knots(p, rows);
   }
   return path;
 }

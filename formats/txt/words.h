@@ -43,20 +43,23 @@ inline constexpr std::array<Word<Role>, 8> role_words{{{"warp", Role::warp},
                                                        {"axial", Role::axial},
                                                        {"binder", Role::binder},
                                                        {"other", Role::other}}};
-inline constexpr std::array<Word<yarn::PathForm>, 6> path_words{{{"chord", yarn::PathForm::chord},
+inline constexpr std::array<Word<yarn::PathForm>, 7> path_words{{{"chord", yarn::PathForm::chord},
                                                                  {"uniform", yarn::PathForm::uniform},
                                                                  {"centripetal", yarn::PathForm::centripetal},
                                                                  {"polyline", yarn::PathForm::polyline},
                                                                  {"control", yarn::PathForm::control},
-                                                                 {"loop", yarn::PathForm::loop}}};
+                                                                 {"loop", yarn::PathForm::loop},
+                                                                 {"smooth", yarn::PathForm::smooth}}};
 // Behind a row of a path.
 inline constexpr std::string_view fixed_word = "fixed";
 inline constexpr std::string_view outline_word = "outline";
-inline constexpr std::array<Word<Draft::Form>, 5> draft_words{{{"plain", Draft::Form::plain},
+inline constexpr std::array<Word<Draft::Form>, 6> draft_words{{{"plain", Draft::Form::plain},
                                                                {"twill", Draft::Form::twill},
                                                                {"satin", Draft::Form::satin},
                                                                {"basket", Draft::Form::basket},
+                                                               {"leno", Draft::Form::leno},
                                                                {"file", Draft::Form::file}}};
+inline constexpr std::array<Word<bool>, 2> leno_words{{{"half", false}, {"full", true}}};
 inline constexpr std::array<Word<bool>, 2> face_words{{{"warp-faced", true}, {"weft-faced", false}}};
 inline constexpr std::array<Word<Weave::Spacing>, 2> spacing_words{
     {{"even", Weave::Spacing::even}, {"relaxed", Weave::Spacing::relaxed}}};

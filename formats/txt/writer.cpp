@@ -154,6 +154,9 @@ void write_outline(Lines& out, const fabric::Outline& outline) {
 
 void write_path(Lines& out, const fabric::Path& path) {
   out.line(1, "path").word(word_of(path_words, path.form));
+  if (path.form == yarn::PathForm::smooth) out.value(path.error);
+  if (!path.knots.empty()) out.line(2, "knots");
+  for (const double knot : path.knots) out.value(knot);
   for (std::size_t i = 0; i < path.points.size(); ++i) {
     const Vec3& point = path.points[i];
     out.row(2, point.x()).value(point.y()).value(point.z());
@@ -203,6 +206,18 @@ void write_grid(Lines& out, const fabric::Grid& grid) {
   out.line(1, "end");
 }
 
+void write_points_file(Lines& out, const fabric::PointsFile& points) {
+  out.line(1, "points").raw(" ").quoted_text(points.file);
+  if (!points.yarn.empty()) out.word("yarn").name(points.yarn);
+  if (points.error) out.word("error").value(*points.error);
+}
+
+void write_helix(Lines& out, const fabric::Helix& helix) {
+  out.line(1, "helix radius").value(helix.radius).word("pitch").value(helix.pitch);
+  out.word("turns").value(helix.turns).word(helix.is_left ? "left" : "right");
+  if (helix.start != 0.0) out.word("start").value(helix.start);
+}
+
 void write_item(Lines& out, const fabric::Yarn& yarn) {
   out.line(0, "yarn").name(yarn.name);
   if (!yarn.thread.empty()) out.name(yarn.thread);
@@ -224,6 +239,10 @@ void write_item(Lines& out, const fabric::Yarn& yarn) {
     write_path(out, *path);
   else if (const auto* grid = std::get_if<fabric::Grid>(&yarn.shape))
     write_grid(out, *grid);
+  else if (const auto* points = std::get_if<fabric::PointsFile>(&yarn.shape))
+    write_points_file(out, *points);
+  else if (const auto* helix = std::get_if<fabric::Helix>(&yarn.shape))
+    write_helix(out, *helix);
   else
     out.fail(fmt::format("the yarn {} has no path and no grid", in_quotes(yarn.name)));
   out.line(0, "end");
@@ -257,6 +276,8 @@ void write_draft(Lines& out, const fabric::Draft& draft) {
   out.word(word_of(draft_words, draft.form));
   if (draft.form == Draft::Form::file)
     out.name(draft.file);
+  else if (draft.form == Draft::Form::leno)
+    out.word(word_of(leno_words, draft.full_turns));
   else if (draft.form == Draft::Form::satin && draft.b == 0)
     out.value(draft.a);
   else if (draft.form != Draft::Form::plain)
@@ -275,6 +296,10 @@ void write_item(Lines& out, const fabric::Weave& weave) {
   if (weave.amplitude) out.value(*weave.amplitude);
   if (weave.crimp) out.line(1, "crimp").value(*weave.crimp);
   if (weave.spacing) out.line(1, "spacing").word(word_of(spacing_words, *weave.spacing));
+  if (weave.pucker) {
+    out.line(1, "pucker tight").value(weave.pucker->tight).word("slack").value(weave.pucker->slack);
+    out.word("ratio").value(weave.pucker->ratio).word("every").value(weave.pucker->picks);
+  }
   if (weave.thickness) out.line(1, "thickness").value(*weave.thickness);
   if (weave.layers) out.line(1, "layers").value(*weave.layers);
   for (const fabric::Binder& binder : weave.binders) {
@@ -336,14 +361,19 @@ void write_item(Lines& out, const fabric::Braid& braid) {
   out.line(1, "carriers").value(braid.carriers);
   out.line(1, "pattern");
   write_pair(out, braid.over, "/", braid.under);
-  if (!braid.flat)
+  if (!braid.mandrel.empty()) {
+    out.line(1, "mandrel");
+    for (const fabric::MandrelRow& row : braid.mandrel)
+      out.row(2, row.axis.x()).value(row.axis.y()).value(row.axis.z()).value(row.radius);
+    out.line(1, "end");
+  } else if (!braid.flat)
     out.line(1, "radius").value(braid.radius);
   else if (braid.width > 0.0)
     out.line(1, "flat").value(braid.width);
   else
     out.line(1, "flat");
   out.line(1, "angle").value(braid.angle);
-  out.line(1, "length").value(braid.length);
+  if (braid.mandrel.empty()) out.line(1, "length").value(braid.length);
   if (!braid.axial_thread.empty()) out.line(1, "axial").name(braid.axial_thread).value(braid.axial_count);
   out.line(0, "end");
 }

@@ -59,12 +59,21 @@ void read_shape(Parser& p, YarnBlock& yarn, std::string_view word) {
   yarn.rows.spot = p.statement();
   if (same_word(word, "path"))
     yarn.shape = read_path(p, yarn.rows);
+  else if (same_word(word, "points"))
+    yarn.shape = read_points_file(p);
+  else if (same_word(word, "helix"))
+    yarn.shape = read_helix(p);
   else
     yarn.shape = read_grid(p, yarn.rows);
 }
 
-// A closed path goes on from its last row to its first.
+// A closed path goes on from its last row to its first; one with knots comes back to it.
 void check_closed_path(Parser& p, const ShapeReading& rows, const Path& path) {
+  if (!path.knots.empty()) {
+    if (path.points.front() != path.points.back())
+      p.error(rows.last_row, "the last row of a closed path with knots is its first again");
+    return;
+  }
   if (path.points.size() < 3)
     p.error(rows.spot, fmt::format("a closed path has at least 3 rows; this one has {}", path.points.size()));
   else if (path.points.front() == path.points.back())
@@ -74,12 +83,15 @@ void check_closed_path(Parser& p, const ShapeReading& rows, const Path& path) {
 // What can be judged when all statements of the yarn are there.
 void check_yarn(Parser& p, const YarnBlock& yarn) {
   const auto* path = std::get_if<Path>(&yarn.shape);
+  if (yarn.closed && std::holds_alternative<fabric::Helix>(yarn.shape))
+    p.error(yarn.rows.spot, "a helix does not come back to its start: leave out 'closed'");
   if (path != nullptr && yarn.closed && yarn.rows.good) check_closed_path(p, yarn.rows, *path);
   if (yarn.tangent_spot && (path == nullptr || yarn.closed || path->form == yarn::PathForm::control ||
-                            path->form == yarn::PathForm::polyline || path->form == yarn::PathForm::loop))
+                            path->form == yarn::PathForm::polyline || path->form == yarn::PathForm::loop ||
+                            path->form == yarn::PathForm::smooth))
     p.report.warning(*yarn.tangent_spot,
                      "this tangent changes nothing: only open paths through data points have end tangents");
-  if (yarn.up_spot && path == nullptr)
+  if (yarn.up_spot && std::holds_alternative<fabric::Grid>(yarn.shape))
     p.report.warning(*yarn.up_spot, "this direction changes nothing: a grid has its sections as they are");
   const auto* grid = std::get_if<fabric::Grid>(&yarn.shape);
   if (yarn.ends_spot && (yarn.closed || (grid != nullptr && grid->closed_along)))
@@ -91,6 +103,8 @@ Table<YarnBlock> make_yarn_table() {
       {"role", into(&Yarn::role, one_of("role", role_words))},
       {"path", read_shape, Times::once},
       {"grid", read_shape, Times::once, "path"},
+      {"points", read_shape, Times::once, "path"},
+      {"helix", read_shape, Times::once, "path"},
       {"closed", read_closed},
       {"group", into(&Yarn::group, [](Parser& p) { return p.name("the name of the group"); })},
       {"tangent", read_tangent, Times::any},

@@ -3,6 +3,7 @@
 
 #include "core/text_buffer.h"
 #include "formats/registry.h"
+#include "formats/vtp/reader.h"
 #include "yarn/line_samples.h"
 
 namespace selvage::formats::vtp {
@@ -46,6 +47,7 @@ class Writer final : public BodyWriter {
     put_scalars(text, "height", &LineSample::height);
     put_scalars(text, "radius", &LineSample::radius);
     put_scalars(text, "curvature", &LineSample::curvature);
+    put_scalars(text, "speed", &LineSample::speed);
     text << "</PointData>\n<CellData>\n";
     put_list(text, "Int32", "yarn", ends_.size(), [&](std::size_t i) { return i; });
     put_list(text, "Int32", "role", roles_.size(), [&](std::size_t i) { return roles_[i]; });
@@ -106,6 +108,7 @@ const Descriptor& descriptor() {
       .title = "VTK polygonal data, centre lines as points with frame, section and arc length",
       .extensions = {".vtp"},
       .sniff = looks_like_vtp,
+      .read_points = read_points,
       .open_bodies = open_by<Writer>,
       .carries_surfaces = false,
       .carries_lines = true,

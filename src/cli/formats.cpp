@@ -9,6 +9,7 @@ namespace {
 
 std::string read_word(const formats::Descriptor& format) {
   if (format.read_fabric != nullptr) return "fabric";
+  if (format.read_points != nullptr) return "points";
   return format.read_model != nullptr ? "surfaces" : "-";
 }
 

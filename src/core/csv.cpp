@@ -28,9 +28,13 @@ class Rows {
         continue;
       }
       std::vector<std::string> row;
-      do
+      const std::size_t start = at_;
+      places_.clear();
+      do {
+        while (at_ < text_.size() && (text_[at_] == ' ' || (text_[at_] == '\t' && separator_ != '\t'))) ++at_;
+        places_.push_back(static_cast<int>(at_ - start) + 1);
         if (Status read = value(row); !read) return read.error();
-      while (is_followed());
+      } while (is_followed());
       const bool is_empty = row.size() == 1 && row.front().empty();
       if (!is_empty) {
         ++line_;
@@ -40,6 +44,7 @@ class Rows {
     return std::vector<std::string>{};
   }
   [[nodiscard]] int line() const { return begin_; }
+  [[nodiscard]] const std::vector<int>& places() const { return places_; }
 
  private:
   // Behind a value: is there another one in the row? Leaves the separator or the line's end behind.
@@ -82,6 +87,7 @@ class Rows {
   char separator_;
   std::size_t at_ = 0;
   int line_ = 1, begin_ = 1;
+  std::vector<int> places_;
 };
 
 char separator_of(std::string_view text) {
@@ -105,6 +111,7 @@ Result<CsvTable> read_csv(std::string_view text) {
     const TextPlace place{rows.line(), 1};
     if (table.columns.empty()) {
       table.columns = std::move(*row);
+      table.head_line = place.line;
       for (std::size_t i = 0; i < table.columns.size(); ++i) {
         const std::string& name = table.columns[i];
         if (name.empty())
@@ -121,6 +128,7 @@ Result<CsvTable> read_csv(std::string_view text) {
           .placed(place);
     table.rows.push_back(std::move(*row));
     table.lines.push_back(place.line);
+    table.places.push_back(rows.places());
   }
   if (table.columns.empty())
     return error(Kind::malformed, "the file is empty: its first row names the columns").placed({1, 1});

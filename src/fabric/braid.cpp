@@ -12,6 +12,7 @@
 #include "fabric/braid_shape.h"
 #include "fabric/build.h"
 #include "fabric/clearance.h"
+#include "fabric/mandrel.h"
 #include "fabric/quantities.h"
 #include "fabric/yarn_spec.h"
 #include "nurbs/interpolate.h"
@@ -39,16 +40,23 @@ double rounded_up(double value) {
 class BraidConstruction : public Construction {
  public:
   BraidConstruction(const Fabric& fabric, const Braid& braid, const Thread& thread, const Thread* axial,
-                    const BraidShape& shape, int points)
-      : fabric_(fabric), braid_(braid), thread_(thread), axial_(axial), shape_(shape), points_(points) {
+                    const BraidShape& shape, int points, std::optional<Mandrel> mandrel)
+      : fabric_(fabric),
+        braid_(braid),
+        thread_(thread),
+        axial_(axial),
+        shape_(shape),
+        mandrel_(std::move(mandrel)),
+        points_(points) {
     const std::int64_t period = std::int64_t{shape.over} + shape.under;
     repeat_ = shape.flat ? 2 : period;
     class_count_ = period % 2 == 0 ? period / 2 : period;
-    // A cell cuts a braid that goes on beyond it.
-    const double more = fabric.cell ? static_cast<double>(repeat_) * shape.step : 0.0;
-    first_repeat_ = fabric.cell ? -1 : 0;
+    // A cell cuts a braid that goes on beyond it; a mandrel ends.
+    const bool goes_on = fabric.cell.has_value() && !mandrel_;
+    const double more = goes_on ? static_cast<double>(repeat_) * shape.step : 0.0;
+    first_repeat_ = goes_on ? -1 : 0;
     begin_ = -more;
-    end_ = braid.length + more;
+    end_ = (mandrel_ ? mandrel_->length() : braid.length) + more;
   }
 
   [[nodiscard]] std::size_t count() const override { return braiders() + axials(); }
@@ -69,7 +77,7 @@ class BraidConstruction : public Construction {
 
   [[nodiscard]] std::uint64_t data_points() const override {
     const double all =
-        points_of_a_braider() * static_cast<double>(braiders()) + 2.0 * static_cast<double>(axials());
+        points_of_a_braider() * static_cast<double>(braiders()) + points_of_an_axial() * static_cast<double>(axials());
     return static_cast<std::uint64_t>(std::min(all, most_points));
   }
   [[nodiscard]] std::uint64_t longest() const override {
@@ -83,8 +91,10 @@ class BraidConstruction : public Construction {
     if (!plan) return plan;
     plan->spec.guide = shape_.flat ? yarn::FrameGuide::with_up(Vec3::UnitZ())
                                    : yarn::FrameGuide::about_axis(Vec3::Zero(), Vec3::UnitZ());
+    if (mandrel_ && mandrel_->is_straight())
+      plan->spec.guide = yarn::FrameGuide::about_axis(mandrel_->origin(), mandrel_->direction());
     if (is_braider) {
-      place_braider(*plan, static_cast<std::int64_t>(index));
+      if (Status made = place_braider(*plan, static_cast<std::int64_t>(index)); !made) return made.error();
       return plan;
     }
     if (Status made = place_axial(*plan, static_cast<std::int64_t>(index - braiders())); !made)
@@ -96,6 +106,7 @@ class BraidConstruction : public Construction {
   // steps each has taken the place of the next one. (A single-thread braid: all have the same.)
   [[nodiscard]] Repeat repeat() const override {
     const double along = 2.0 * shape_.step;
+    if (mandrel_) return {};
     if (shape_.flat) return {along, std::nullopt, std::nullopt};
     return {std::nullopt, std::nullopt, along};
   }
@@ -104,6 +115,10 @@ class BraidConstruction : public Construction {
   static constexpr double most_points = 1e18;  // that a 64-bit count holds with room to spare
   [[nodiscard]] double points_of_a_braider() const {
     return std::ceil((end_ - begin_) / shape_.step * points_) + 2.0;
+  }
+  static constexpr double axial_points_a_step = 4.0;  // on a mandrel, whose generatrices bend
+  [[nodiscard]] double points_of_an_axial() const {
+    return mandrel_ ? std::ceil((end_ - begin_) / shape_.step * axial_points_a_step) + 1.0 : 2.0;
   }
   [[nodiscard]] std::size_t braiders() const { return static_cast<std::size_t>(shape_.carriers); }
   [[nodiscard]] std::size_t axials() const { return static_cast<std::size_t>(braid_.axial_count); }
@@ -133,16 +148,22 @@ class BraidConstruction : public Construction {
     return point;
   }
 
-  void place_braider(YarnPlan& plan, std::int64_t index) const {
+  [[nodiscard]] Status place_braider(YarnPlan& plan, std::int64_t index) const {
     const Copy copy = copy_of(index);
     const int axis = shape_.flat ? 0 : 2;
     const std::int64_t round = 2 * std::int64_t{shape_.carriers} * points_;  // a strip's way in points
     const double pitch = static_cast<double>(repeat_) * shape_.step;
     const std::int64_t per_repeat = repeat_ * points_;
     std::vector<double> parameters;
-    const auto add = [&](const BraidPoint& at, double along) {
+    std::vector<Vec3> away;
+    const auto add = [&](BraidPoint at, double along) {
+      at.position[axis] = along;
+      if (mandrel_) {
+        const Mandrel::Place place = mandrel_->carried(at.position, at.derivative, shape_.radius);
+        at = {place.position, place.derivative};
+        away.push_back(place.out);
+      }
       plan.points.push_back(at.position);
-      plan.points.back()[axis] = along;
       parameters.push_back((along - begin_) / (end_ - begin_));
       return Vec3(at.derivative / shape_.step * (end_ - begin_));
     };
@@ -166,11 +187,33 @@ class BraidConstruction : public Construction {
     parameters.back() = 1.0;
     plan.line.curve = nurbs::interpolate(plan.points, parameters, first, last);
     plan.line.parameters = std::move(parameters);
+    return mandrel_ && !mandrel_->is_straight() ? hold_up(plan, away) : Status();
+  }
+
+  // Along a generatrix.
+  [[nodiscard]] Status place_on_mandrel(YarnPlan& plan, const Vec2& out) const {
+    const auto steps = static_cast<int>(points_of_an_axial()) - 1;
+    std::vector<Vec3> away;
+    std::vector<double> parameters;
+    Vec3 first = Vec3::Zero(), last = Vec3::Zero();
+    for (int i = 0; i <= steps; ++i) {
+      parameters.push_back(static_cast<double>(i) / steps);
+      const Vec3 on_tube(shape_.radius * out.x(), shape_.radius * out.y(), end_ * parameters.back());
+      const Mandrel::Place place = mandrel_->carried(on_tube, end_ * Vec3::UnitZ(), shape_.radius);
+      plan.points.push_back(place.position);
+      away.push_back(place.out);
+      if (i == 0) first = place.derivative;
+      last = place.derivative;
+    }
+    plan.line.curve = nurbs::interpolate(plan.points, parameters, first, last);
+    plan.line.parameters = std::move(parameters);
+    return mandrel_->is_straight() ? Status() : hold_up(plan, away);
   }
 
   [[nodiscard]] Status place_axial(YarnPlan& plan, std::int64_t index) const {
     const std::int64_t runs = run_count(shape_);
     const Run run = run_of(shape_, index * runs / braid_.axial_count);
+    if (mandrel_) return place_on_mandrel(plan, unit_at(run.first + run.last, 2 * std::int64_t{shape_.carriers}));
     for (const double along : {begin_, end_}) {
       if (shape_.flat) {
         plan.points.emplace_back(along, shape_.column * (run.middle() - 0.5 * shape_.carriers), 0.0);
@@ -188,6 +231,7 @@ class BraidConstruction : public Construction {
   const Thread& thread_;
   const Thread* axial_;
   BraidShape shape_;
+  std::optional<Mandrel> mandrel_;
   int points_;               // data points a step
   std::int64_t repeat_ = 1;  // steps after which the pattern is there again (a tube's turned)
   std::int64_t class_count_ = 1;
@@ -277,6 +321,19 @@ BraidShape shape_of(const Braid& braid, const yarn::SectionSize& size) {
   return shape;
 }
 
+// The tube that the braid is like at a place of a mandrel, on the inside of its bend: the carriers turn at one rate
+// while the mandrel is drawn through at one speed, so that steps are equal along the axis, and the tangent of the angle
+// grows with the radius.
+Braid tube_at(const Braid& braid, const Mandrel& mandrel, double s, bool inside) {
+  Braid tube = braid;
+  tube.radius = mandrel.radius(s);
+  tube.length = mandrel.length();
+  const double shortened = inside ? 1.0 - tube.radius * mandrel.curvature(s) : 1.0;
+  const double tangent = std::tan(braid.angle / 180.0 * pi) * tube.radius / mandrel.radius(0.0) / shortened;
+  tube.angle = std::atan(tangent) / pi * 180.0;
+  return tube;
+}
+
 // Data points a step: even, so that crossings and the ends are among them; enough for the slope between two
 // crossings, 5 degrees of the helix, the turns of a strip.
 int points_of(const BraidShape& shape) {
@@ -312,24 +369,46 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
   const yarn::SectionSize size = yarn::nominal_size(*centred_section_of(thread, fabric.units));
   const double inlay =
       axial == nullptr ? 0.0 : yarn::nominal_size(*centred_section_of(*axial, fabric.units)).height;
-  BraidShape shape = shape_of(braid, size);
-  const double least = 0.5 * (size.height + inlay);
-  if (Status fits = check_counts(braid, shape); !fits) return fits.error();
-  const auto check = [&](std::string_view what, double distance) {
-    return check_proportion(what, distance, size.width, fabric.units, braid.radius_place);
-  };
-  if (Status fits = check("a radius", braid.flat ? size.width : braid.radius); !fits) return fits.error();
-  if (Status fits = check("a width", braid.width > 0.0 ? braid.width : size.width); !fits)
-    return fits.error();
-  if (Status fits = check_radius(braid, least + 0.5 * size.height, unit); !fits) return fits.error();
-  if (Status fits = check_widths(braid, shape, size.width, unit); !fits) return fits.error();
-  if (Status fits = check("the way from crossing to crossing, by the angle,", shape.step); !fits)
-    return fits.error();
+  // The tubes that the braid has to fit on: itself, or those of a mandrel from place to place.
+  std::optional<Mandrel> mandrel;
+  std::vector<Braid> tubes = {braid};
+  if (!braid.mandrel.empty()) {
+    Result<Mandrel> made = Mandrel::make(braid.mandrel, braid.radius_place);
+    if (!made) return made.error();
+    mandrel = std::move(*made);
+    tubes.clear();
+    const int places = 8 * static_cast<int>(braid.mandrel.size() - 1);
+    for (int i = 0; i <= places; ++i)
+      for (const bool inside : {false, true})
+        if (!inside || !mandrel->is_straight())
+          tubes.push_back(tube_at(braid, *mandrel, mandrel->length() * i / places, inside));
+  }
   const double wanted = std::max(options.gap > 0.0 ? options.gap : clearance * size.height,
                                  2.0 * fabric.tolerance.value_or(0.0));
-  const double gap = fit_amplitude(shape, least, wanted, *outline, *axial_outline);
-  if (Status fits = check_radius(braid, shape.amplitude + 0.5 * size.height, unit); !fits)
-    return fits.error();
+  std::optional<BraidShape> all;
+  double gap = std::numeric_limits<double>::infinity();
+  for (const Braid& tube : tubes) {
+    BraidShape shape = shape_of(tube, size);
+    const double least = 0.5 * (size.height + inlay);
+    if (Status fits = check_counts(tube, shape); !fits) return fits.error();
+    const auto check = [&](std::string_view what, double distance) {
+      return check_proportion(what, distance, size.width, fabric.units, braid.radius_place);
+    };
+    if (Status fits = check("a radius", tube.flat ? size.width : tube.radius); !fits) return fits.error();
+    if (Status fits = check("a width", tube.width > 0.0 ? tube.width : size.width); !fits) return fits.error();
+    if (Status fits = check_radius(tube, least + 0.5 * size.height, unit); !fits) return fits.error();
+    if (Status fits = check_widths(tube, shape, size.width, unit); !fits) return fits.error();
+    if (Status fits = check("the way from crossing to crossing, by the angle,", shape.step); !fits)
+      return fits.error();
+    gap = std::min(gap, fit_amplitude(shape, least, wanted, *outline, *axial_outline));
+    if (Status fits = check_radius(tube, shape.amplitude + 0.5 * size.height, unit); !fits) return fits.error();
+    if (!all) {
+      all = shape;
+      continue;
+    }
+    all->amplitude = std::max(all->amplitude, shape.amplitude);
+    all->plateau = std::max(all->plateau, shape.plateau);
+  }
   if (gap < 0.5 * wanted) {
     const std::string found = gap > 0.0 ? fmt::format("come as near as about {:.2g} {}", gap, unit)
                                         : fmt::format("overlap, by about {:.2g} {}", -gap, unit);
@@ -340,8 +419,8 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
                             found, braid.flat ? "width" : "radius"))
             .placed(braid.place, fabric.file));
   }
-  return std::unique_ptr<Construction>(
-      std::make_unique<BraidConstruction>(fabric, braid, thread, axial, shape, points_of(shape)));
+  return std::unique_ptr<Construction>(std::make_unique<BraidConstruction>(
+      fabric, braid, thread, axial, *all, points_of(*all), std::move(mandrel)));
 }
 
 }  // namespace selvage::fabric

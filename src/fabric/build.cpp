@@ -13,6 +13,7 @@
 #include "core/overloaded.h"
 #include "fabric/constructions.h"
 #include "fabric/edits.h"
+#include "fabric/helix.h"
 #include "fabric/plies.h"
 #include "fabric/quantities.h"
 #include "fabric/shape_memo.h"
@@ -200,6 +201,12 @@ void YarnBuilder::add_entries(Entry entry, std::uint64_t parts) {
 }
 
 void YarnBuilder::add_yarn(const Yarn& yarn, Diagnostics& diagnostics) {
+  if (const auto* const helix = std::get_if<Helix>(&yarn.shape)) {
+    const std::uint64_t rows = helix_rows(*helix, tolerance_);
+    if (!take_on({1, rows, rows}, helix->place, diagnostics)) return;
+    drawn_.push_back(std::make_unique<const Yarn>(drawn_helix(yarn, tolerance_)));
+    return add_yarn(*drawn_.back(), diagnostics);
+  }
   const Thread thread = resolved_thread(*fabric_, yarn);
   const auto* const path = std::get_if<Path>(&yarn.shape);
   // A grid is built as it stands, and costs no more than it does in the text.
@@ -209,7 +216,7 @@ void YarnBuilder::add_yarn(const Yarn& yarn, Diagnostics& diagnostics) {
   Entry entry;
   entry.yarn = &yarn;
   add_entries(entry, parts);
-  if (path == nullptr && part_count(thread, options_.detail) > 1)
+  if (std::holds_alternative<Grid>(yarn.shape) && part_count(thread, options_.detail) > 1)
     diagnostics.add(
         warning(Kind::unsupported, fmt::format("yarn '{}' is a grid: it is built as it stands, without plies "
                                                "and filaments",
@@ -371,6 +378,10 @@ void YarnBuilder::move_to(const Where& where, YarnPlan& plan) {
 }
 
 Result<YarnPlan> YarnBuilder::whole_plan(const Entry& entry, const Where* where) const {
+  if (const auto* const points = entry.yarn != nullptr ? std::get_if<PointsFile>(&entry.yarn->shape) : nullptr)
+    return error(Kind::geometry, fmt::format("the points of yarn '{}' stand in a file that was not read: {}",
+                                             entry.yarn->name, points->file))
+        .placed(points->place);
   if (entry.yarn != nullptr && !std::holds_alternative<Path>(entry.yarn->shape))
     return error(Kind::geometry, fmt::format("yarn '{}' has neither a path nor a grid", entry.yarn->name));
   Result<YarnPlan> plan = entry.yarn != nullptr ? plan_of_path(*fabric_, *entry.yarn, options_)

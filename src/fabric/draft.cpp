@@ -129,6 +129,8 @@ Result<Drawdown> drawdown_of(const Draft& draft) {
       return satin(a, b, draft.warp_faced);
     case Draft::Form::basket:
       return filled(a + b, a + b, [&](long long pick, long long end) { return (pick < a) == (end < a); });
+    case Draft::Form::leno:  // standing ends under every pick, doup ends over it
+      return filled(1, 2, [](long long, long long end) { return end == 1; });
     case Draft::Form::file:
       break;
   }

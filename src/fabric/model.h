@@ -138,6 +138,27 @@ struct Path {
   std::vector<bool> fixed;
   std::vector<int>
       lines;  // source line of each row; empty when the rows stand on consecutive lines after `place`
+  double error = 0;           // smooth: how far rows may be from the centre line, file units
+  std::vector<double> knots;  // control: of the clamped cubic, rows + 4; empty: uniform
+};
+
+// A path or a grid that stands in a file of points: `points FILE`. The pipeline puts it there
+// (pipeline/drafts.h).
+struct PointsFile {
+  std::string file;
+  std::string yarn;             // which one of the file; empty: it has one
+  std::optional<double> error;  // of a smooth path, file units; none: the line as the file says it
+  TextPlace place;
+};
+
+// Round the z axis, from z = 0 upwards (turns < 0 cannot be: left is said).
+struct Helix {
+  TextPlace place;
+  double radius = 0, pitch = 0;  // file units
+  double turns = 0;
+  bool is_left = false;
+  double start = 0;  // angle from the x axis at z = 0, degrees
+  bool operator==(const Helix&) const = default;
 };
 
 // Control points of the surface itself. `closed_along`: the word `closed` of the grid, not that of the yarn.
@@ -164,7 +185,7 @@ struct Yarn {
   TextPlace up_place;
   bool closed = false;
   std::optional<std::array<yarn::EndStyle, 2>> ends;  // of its start and its end; none: not said
-  std::variant<std::monostate, Path, Grid, ReadBody> shape;
+  std::variant<std::monostate, Path, Grid, ReadBody, PointsFile, Helix> shape;
 };
 
 // What stands in a text of a body beside its thread, its statements and its shape.
@@ -179,7 +200,7 @@ struct WeaveSystem {
 };
 
 struct Draft {
-  enum class Form { rows, plain, twill, satin, basket, file };
+  enum class Form { rows, plain, twill, satin, basket, leno, file };
   Form form = Form::plain;
   TextPlace place;
   std::vector<std::string> rows;  // of '0' and '1', top row = weft 1
@@ -187,6 +208,7 @@ struct Draft {
   std::vector<int> further;       // of a twill: over, under, ... behind the first two
   Hand hand = Hand::z;            // of a twill: which way its diagonal rises
   bool warp_faced = false;        // satin
+  bool full_turns = false;        // leno: the doup ends go all round their standing ends
   std::string file;
 };
 
@@ -200,6 +222,15 @@ struct Binder {
   std::vector<int> levels;  // at weft 1, 2, ...; how many layers of weft are below it; repeats
 };
 
+// Seersucker: warps in stripes, one group longer than the other, so that its stripes stand out of the cloth in waves.
+struct Pucker {
+  TextPlace place;
+  int tight = 1, slack = 1;  // warps of each group, in turn
+  double ratio = 1;          // of the slack warps' length to that of the tight ones, > 1
+  int picks = 1;             // from wave to wave
+  bool operator==(const Pucker&) const = default;
+};
+
 struct Weave {
   enum class Profile { peirce, sine, lenticular, racetrack, straight };
   TextPlace place;
@@ -211,6 +242,7 @@ struct Weave {
   std::optional<double> thickness;  // of the cloth (of a layer), at most; file units
   enum class Spacing { even, relaxed };
   std::optional<Spacing> spacing;
+  std::optional<Pucker> pucker;
   std::optional<int> layers;
   std::vector<Binder> binders;
 };
@@ -272,6 +304,12 @@ struct Warpknit {
   std::optional<double> substrate;  // thickness of the layers that it stitches together
 };
 
+// A place of a mandrel's axis, and the radius of the cloth's middle surface there; file units.
+struct MandrelRow {
+  Vec3 axis = Vec3::Zero();
+  double radius = 0;
+};
+
 struct Braid {
   TextPlace place;
   std::string thread;
@@ -281,6 +319,7 @@ struct Braid {
   int over = 1, under = 1;  // pattern 2/2
   bool flat = false;        // a strip instead of a tube
   double radius = 0;        // of a tube
+  std::vector<MandrelRow> mandrel;  // of a tube, instead of radius and length: its axis goes through them
   double width = 0;         // of a strip; 0: what its yarns need
   TextPlace radius_place;   // of `radius` or `flat`
   double angle = 0 /* degrees */, length = 0;

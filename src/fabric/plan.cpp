@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "fabric/yarn_spec.h"
 
@@ -70,6 +72,23 @@ Result<YarnPlan> start_plan(const Fabric& fabric, const Thread& thread, std::str
   plan.spec.sizes = {{0.0, yarn::nominal_size(*section), 0.0}};
   plan.spec.twist = section_twist(thread, fabric.units);
   return plan;
+}
+
+Status hold_up(YarnPlan& plan, const std::vector<Vec3>& ups) {
+  plan.spec.guide = yarn::FrameGuide::free_from(ups.front());
+  const yarn::SectionSize size = plan.spec.sizes.front().size;
+  if (std::holds_alternative<yarn::Circle>(plan.spec.section)) return {};
+  const Result<yarn::FrameField> frames = yarn::FrameField::make(plan.line.curve, plan.spec.guide, false);
+  if (!frames) return frames.error();
+  plan.spec.sizes.clear();
+  double angle = 0.0;
+  for (std::size_t i = 0; i < ups.size(); ++i) {
+    const yarn::Frame frame = frames->at(plan.line.parameters[i]);
+    const double turned = std::atan2(-ups[i].dot(frame.across), ups[i].dot(frame.up));
+    angle = turned + 2.0 * std::numbers::pi * std::round((angle - turned) / (2.0 * std::numbers::pi));
+    plan.spec.sizes.push_back({plan.line.parameters[i], size, angle});
+  }
+  return {};
 }
 
 Status interpolate(YarnPlan& plan, yarn::PathForm form, const Vec3& tangent_start, const Vec3& tangent_end) {

@@ -52,6 +52,8 @@ class LengthCheck {
       for (const Vec3& point : grid->points)
         if (!is_good(point, grid->place, yarn.name)) return;
     }
+    if (const auto* const helix = std::get_if<Helix>(&yarn.shape))
+      is_good(Vec3(helix->radius, 0.0, helix->pitch * helix->turns), helix->place, yarn.name);
     const auto* const path = std::get_if<Path>(&yarn.shape);
     if (path == nullptr) return;
     for (std::size_t i = 0; i < path->points.size(); ++i) {

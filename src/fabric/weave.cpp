@@ -281,7 +281,11 @@ Status WeaveConstruction::prepare(Diagnostics& diagnostics) {
   if (layers() > most_layers)
     return error(Kind::limit,
                  fmt::format("{} layers are more than the {} that a weave may have", layers(), most_layers));
-  Status status = is_straight() ? prepare_binders(diagnostics) : prepare_interlacing(diagnostics);
+  const bool is_leno = weave_.draft.form == Draft::Form::leno && !is_straight();
+  Status status = is_straight() ? prepare_binders(diagnostics)
+                  : is_leno     ? prepare_leno()
+                                : prepare_interlacing(diagnostics);
+  if (status.ok() && weave_.pucker) status = prepare_pucker(diagnostics);
   if (status.ok()) {
     warn_of_widths(diagnostics);
     warn_of_shared_gaps(diagnostics);
@@ -390,6 +394,13 @@ Status WeaveConstruction::plan_sine(YarnPlan& plan, const std::vector<Pass>& pas
 }
 
 Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
+  Result<YarnPlan> plan = plan_flat(index);
+  if (!plan || !pucker_) return plan;
+  if (Status made = pucker(*plan); !made) return made.error();
+  return plan;
+}
+
+Result<YarnPlan> WeaveConstruction::plan_flat(std::size_t index) const {
   const Place place = place_of(index);
   const auto& [block, yarn] = place;
   const bool is_weft = block->kind == Block::Kind::weft, is_binder = block->kind == Block::Kind::binder;
@@ -416,6 +427,10 @@ Result<YarnPlan> WeaveConstruction::plan(std::size_t index) const {
                 : (is_weft ? weft_ : warp_).at(static_cast<double>(yarn));
   const auto to_place = is_weft ? along_weft : along_warp;
   plan->at = to_place(0.0, is_straight() || is_binder ? 0.0 : layer_shift(block->layer), across);
+  if (leno_) {
+    if (Status made = plan_leno(*plan, is_weft, yarn); !made) return made.error();
+    return plan;
+  }
   const std::vector<Pass> passes = passes_of(place);
   plan->spec.guide = yarn::FrameGuide::with_across(is_weft ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitY()));
   if (is_sine(is_weft)) {
@@ -435,8 +450,12 @@ Repeat WeaveConstruction::repeat() const {
     warps = repeat_of_binders();
     wefts = repeat_of_levels();
   } else {
-    wefts = drawdown_.repeat_of_picks();
+    wefts = leno_ && !leno_->full ? 2 : drawdown_.repeat_of_picks();
     warps = drawdown_.repeat_of_ends();
+  }
+  if (pucker_) {
+    wefts = std::lcm(wefts, static_cast<long long>(weave_.pucker->picks));
+    warps = std::lcm(warps, static_cast<long long>(pucker_->tight + pucker_->slack));
   }
   if (wefts > longest_repeat || warps > longest_repeat) return {};
   wefts = std::lcm(wefts, weft_.repeat_of_threads());

@@ -10,6 +10,8 @@
 #include "fabric/constructions.h"
 #include "fabric/draft.h"
 #include "fabric/interlacing.h"
+#include "fabric/leno.h"
+#include "fabric/pucker.h"
 #include "fabric/weave_fit.h"
 #include "fabric/weave_pressed.h"
 #include "fabric/weave_system.h"
@@ -91,6 +93,11 @@ class WeaveConstruction final : public Construction {
     return {system.text->count, 0.5 * system.text->pitch, system.text->pitch, system.widest + 2.0 * off};
   }
   Status prepare_interlacing(Diagnostics& diagnostics);
+  Status prepare_leno();
+  Status prepare_pucker(Diagnostics& diagnostics);
+  Status pucker(YarnPlan& plan) const;
+  [[nodiscard]] Result<YarnPlan> plan_flat(std::size_t index) const;
+  Status plan_leno(YarnPlan& plan, bool is_weft, long long yarn) const;
   [[nodiscard]] Result<Heights> fit_heights(Diagnostics& diagnostics);
   [[nodiscard]] bool has_room(const Result<WeaveFit>& fit) const;
   [[nodiscard]] Message too_thick(LooseCloth loose) const;
@@ -128,6 +135,8 @@ class WeaveConstruction final : public Construction {
   Reach along_x_, along_y_;
   Drawdown drawdown_;
   Heights heights_;
+  std::optional<LenoShape> leno_;
+  std::optional<PuckerShape> pucker_;
   std::optional<AnyBend> warp_bend_, weft_bend_;  // none: sine
   bool is_pressed_ = false;                       // sections are not those of the threads
   double clearance_ = 0;                          // between yarns that cross

@@ -21,6 +21,16 @@ bool every_row_has_a_size(const Path& path) {
          std::all_of(path.sizes.begin(), path.sizes.end(), [](const auto& s) { return s.has_value(); });
 }
 
+// The rows of a yarn's path; of a helix one without sizes.
+const Path* path_of(const Yarn& yarn) {
+  static const Path one_row = [] {
+    Path path;
+    path.points.resize(1);
+    return path;
+  }();
+  return std::holds_alternative<Helix>(yarn.shape) ? &one_row : std::get_if<Path>(&yarn.shape);
+}
+
 // By which the section stands turned at a row, radians.
 double angle_at(const Path& path, std::size_t row) {
   const bool has_size = row < path.sizes.size() && path.sizes[row];
@@ -93,6 +103,8 @@ Result<yarn::PathRows> path_rows_of(const Fabric& fabric, const Yarn& yarn, cons
   rows.closed = yarn.closed;
   rows.tangent_start = yarn.tangent_start;
   rows.tangent_end = yarn.tangent_end;
+  rows.knots = path.knots;
+  rows.error = path.error;
   if (path.form != yarn::PathForm::polyline) return rows;
   Result<yarn::Section> section = section_of(thread, fabric.units, every_row_has_a_size(path));
   if (!section) return at_thread(fabric, yarn, section.error());
@@ -150,6 +162,7 @@ Result<yarn::TubeSpec> tube_spec_of(const Fabric& fabric, const Yarn& yarn, cons
     spec.sizes.push_back({row_parameters[i], sizes[i], angle_at(path, i)});
     if (path.sizes.empty()) break;  // one size for the whole yarn
   }
+  if (path.form == yarn::PathForm::smooth) spec.sizes = yarn::sparse_sizes(spec.sizes, path.error, yarn.closed);
   spec.guide = yarn::FrameGuide::free_from(yarn.up);
   spec.twist = section_twist(thread, fabric.units);
   return spec;
@@ -190,7 +203,7 @@ std::string share_oddity(const Thread& thread, const yarn::Section& section,
 }  // namespace
 
 std::optional<Message> fibre_share_warning(const Fabric& fabric, const Yarn& yarn, const Thread& thread) {
-  const auto* path = std::get_if<Path>(&yarn.shape);
+  const Path* const path = path_of(yarn);
   if (path == nullptr || !thread.linear_density || !thread.fibre_density()) return std::nullopt;
   const Result<yarn::Section> section = section_of(thread, fabric.units, every_row_has_a_size(*path));
   if (!section) return std::nullopt;  // reported where the yarn is built
@@ -235,7 +248,7 @@ std::optional<Message> turning_warning(const Fabric& fabric, const Thread& threa
 }
 
 std::optional<double> smallest_size(const Fabric& fabric, const Yarn& yarn) {
-  const auto* path = std::get_if<Path>(&yarn.shape);
+  const Path* const path = path_of(yarn);
   if (path == nullptr) return std::nullopt;
   const Result<yarn::Section> section =
       section_of(resolved_thread(fabric, yarn), fabric.units, every_row_has_a_size(*path));

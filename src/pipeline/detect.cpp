@@ -56,11 +56,11 @@ Result<const Descriptor*> detect_readable(const Source& source) {
 
 bool is_readable_format(const std::filesystem::path& path) {
   if (const Descriptor* format = format_with_extension(path.extension().string()))
-    return format->is_readable();
+    return format->is_readable() && format->read_points == nullptr;
   const Result<Source> source = Source::open(path);
   if (!source) return false;
   const Descriptor* format = sniff(source->bytes().substr(0, head_size));
-  return format != nullptr && format->is_readable();
+  return format != nullptr && format->is_readable() && format->read_points == nullptr;
 }
 
 }  // namespace selvage::pipeline

@@ -142,6 +142,9 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
     fabric = (*format)->read_with(*source, input.settings, diagnostics);
   } else if ((*format)->read_fabric != nullptr) {
     fabric = (*format)->read_fabric(*source, diagnostics);
+  } else if ((*format)->read_points != nullptr) {
+    if (const std::optional<fabric::Measured> points = (*format)->read_points(*source, diagnostics))
+      fabric = fabric::fabric_of(*points, *source, diagnostics);
   } else if (std::optional<cad::Model> model = read_whole_model(**format, *source, diagnostics)) {
     if (look.model) look.model(*model, **format);
     fabric = fabric::fabric_of(std::move(*model), diagnostics);

@@ -11,6 +11,7 @@
 #include "core/sha256.h"
 #include "core/text_report.h"
 #include "fabric/inside.h"
+#include "fabric/measured.h"
 #include "pipeline/detect.h"
 
 namespace selvage::pipeline {
@@ -49,6 +50,53 @@ Result<fabric::Fabric> fabric_in(const Source& source, std::string_view wanted, 
   for (const Message& message : own.messages()) diagnostics.add(message);
   if (!fabric) return error(Kind::malformed, "it has errors");
   return std::move(*fabric);
+}
+
+// The yarn of a file of points, in the text's unit; an error says why there is none, at its place in that
+// file where it has one.
+Result<fabric::Yarn> measured_yarn(const fabric::PointsFile& wanted, bool takes_size, Unit units,
+                                   const Source& source, Diagnostics& diagnostics) {
+  const Result<const formats::Descriptor*> format = detect_readable(source);
+  if (!format) return format.error();
+  if ((*format)->read_points == nullptr)
+    return error(Kind::unsupported, fmt::format("it is {} ({}), which holds no yarns as points",
+                                                (*format)->name, (*format)->title));
+  std::optional<fabric::Measured> measured = (*format)->read_points(source, diagnostics);
+  if (!measured) return error(Kind::malformed, "it has errors");
+  std::vector<fabric::MeasuredYarn>& yarns = measured->yarns;
+  const auto found = wanted.yarn.empty() ? yarns.begin()
+                                         : std::find_if(yarns.begin(), yarns.end(),
+                                                        [&](const auto& y) { return y.name == wanted.yarn; });
+  if (found == yarns.end() || (wanted.yarn.empty() && yarns.size() > 1)) {
+    std::vector<std::string_view> names;
+    for (const fabric::MeasuredYarn& yarn : yarns) names.push_back(yarn.name);
+    return error(
+        Kind::malformed,
+        wanted.yarn.empty()
+            ? fmt::format("it has {} yarns: say which one, as in yarn {}", yarns.size(), in_quotes(names[0]))
+            : fmt::format("it has no yarn {}{}", in_quotes(wanted.yarn), did_you_mean(wanted.yarn, names)));
+  }
+  if (measured->units) fabric::scale(*found, millimetres_per(*measured->units) / millimetres_per(units));
+  Result<fabric::Yarn> yarn = fabric::yarn_of(*found, wanted.error, takes_size);
+  if (yarn) return yarn;
+  TextReport report(source);
+  report.error(spot_at(source, yarn.error().place), yarn.error().text, yarn.error().kind);
+  report.hand_over(diagnostics);
+  return error(Kind::malformed, "it has errors");
+}
+
+// The text's own statements win: a direction up, a closed line, a section.
+void take_shape(fabric::Yarn& yarn, fabric::Yarn measured) {
+  const TextPlace place = std::get<fabric::PointsFile>(yarn.shape).place;
+  yarn.shape = std::move(measured.shape);
+  if (auto* path = std::get_if<fabric::Path>(&yarn.shape)) {
+    path->place = place;  // rows of another file have no lines in this one
+    path->lines.assign(path->points.size(), place.line);
+  }
+  yarn.closed = yarn.closed || measured.closed;
+  if (!yarn.up) yarn.up = measured.up;
+  if (!yarn.role) yarn.role = measured.role;
+  if (measured.own.section) yarn.own.section = measured.own.section;
 }
 
 bool is_below(const fs::path& file, const fs::path& folder) {
@@ -103,15 +151,20 @@ class NamedFiles {
 
   // `unit`: of the text; its blocks do not know it.
   void resolve(fabric::Fabric& fabric, const Source& source, TextReport& report, Unit unit) {
+    around_.push_back(&fabric);
     for (fabric::NamedBlock& block : fabric.blocks) resolve(*block.fabric, source, report, unit);
     std::map<fs::path, std::string> blocks;  // of files that were used already
     for (fabric::Item& item : fabric.items) {
       if (auto* const weave = std::get_if<Weave>(&item);
           weave != nullptr && weave->draft.form == Draft::Form::file)
         resolve_draft(weave->draft, source, report);
+      if (auto* const yarn = std::get_if<fabric::Yarn>(&item);
+          yarn != nullptr && std::holds_alternative<fabric::PointsFile>(yarn->shape))
+        resolve_points(*yarn, source, report, unit);
       if (auto* const use = std::get_if<fabric::Use>(&item); use != nullptr && use->is_file)
         resolve_use(*use, fabric, source, report, unit, blocks);
     }
+    around_.pop_back();
   }
 
   void resolve_draft(Draft& draft, const Source& source, TextReport& report) {
@@ -127,6 +180,25 @@ class NamedFiles {
     if (!found) return refuse(found.error());
     found->place = draft.place;
     draft = std::move(*found);
+  }
+
+  void resolve_points(fabric::Yarn& yarn, const Source& source, TextReport& report, Unit unit) {
+    const auto points = std::get<fabric::PointsFile>(yarn.shape);
+    const auto refuse = [&](const Message& why) {
+      report.error(spot_at(source, points.place),
+                   fmt::format("no yarn in the file {}: {}", in_quotes(points.file), why.text), why.kind);
+    };
+    const Result<Opened> named = open(points.file, source);
+    if (!named) return refuse(named.error());
+    // Of threads of one name the block's own.
+    const fabric::Fabric* home = around_.back();
+    for (const fabric::Fabric* text : around_)
+      if (text->find_thread(yarn.thread) != nullptr) home = text;
+    const fabric::Thread thread = fabric::resolved_thread(*home, yarn);
+    const bool takes_size = !thread.section && !thread.diameter && !thread.linear_density;
+    Result<fabric::Yarn> measured = measured_yarn(points, takes_size, unit, named->source, diagnostics_);
+    if (!measured) return refuse(measured.error());
+    take_shape(yarn, std::move(*measured));
   }
 
   void resolve_use(fabric::Use& use, fabric::Fabric& user, const Source& source, TextReport& report,
@@ -198,6 +270,7 @@ class NamedFiles {
   Diagnostics& diagnostics_;
   fs::path home_;               // of the input
   std::vector<fs::path> open_;  // texts that are being read, each used by the one before it
+  std::vector<const fabric::Fabric*> around_;  // the block that is looked at, and what it stands in
   std::vector<std::string> read_;
 };
 

@@ -1,5 +1,5 @@
-// The files that a text names: `draft file NAME`, `use file NAME`. Of any format that can be read as a
-// fabric.
+// The files that a text names: `draft file NAME`, `use file NAME`, of any format that can be read as a fabric;
+// `points FILE`, of formats with yarns as points.
 #pragma once
 
 #include <string>
@@ -12,7 +12,9 @@
 namespace selvage::pipeline {
 
 // Puts the draft of the named file's weave in the place of every such name, and a block with the named file's
-// fabric beside every `use` of one, also in the text's blocks and in the files themselves. Names are relative
+// fabric beside every `use` of one, and the path or grid of a file of points in that of every `points` (its
+// lengths, where the file names their unit, brought to that of the text; its sizes make the section where the
+// yarn has none), also in the text's blocks and in the files themselves. Names are relative
 // to the folder of the text that they stand in; for standard input to the current folder. Only regular files
 // are read, and without `allow_outside` only those in the folder of the input `source`, which the fabric was
 // read from, or below it, symbolic links followed: a text may come from anyone. A file's own messages go to

@@ -96,7 +96,7 @@ std::vector<LineSample> line_samples(const Body& body, double tolerance) {
       sample.arc_length =
           samples.back().arc_length + nurbs::arc_length(body.axis, samples.back().parameter, t);
     sample.position = jet.position;
-    const double speed = jet.d1.norm();
+    const double speed = sample.speed = jet.d1.norm();
     sample.tangent = jet.d1.normalized();
     if (speed > 0.0) sample.curvature = jet.d1.cross(jet.d2).norm() / (speed * speed * speed);
     SectionAt(body.surface, t).measure(sample);

@@ -19,6 +19,7 @@ struct LineSample {
   double width = 0, height = 0;  // of the section, along `side` and along `up`
   double radius = 0;             // of the circle that has the section's area
   double curvature = 0;          // of the centre line, 1 / file unit
+  double speed = 0;              // of the arc length by the parameter
 };
 
 // Points on the centre line so near to each other that no straight between two of them is farther than

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "nurbs/basis.h"
+#include "nurbs/smooth.h"
 #include "yarn/arcs.h"
 
 namespace selvage::yarn {
@@ -51,7 +52,19 @@ CentreLine through_points(const PathRows& rows, nurbs::Parameterization how) {
   return line;
 }
 
+// Over [0, 1], whatever the knots as given.
+CentreLine with_knots(const PathRows& rows) {
+  CentreLine line;
+  line.curve = {3, rows.knots, rows.points, {}};
+  const double first = rows.knots.front(), length = rows.knots.back() - first;
+  for (double& knot : line.curve.knots) knot = (knot - first) / length;
+  line.parameters = nurbs::greville(line.curve.knots, 3, static_cast<int>(rows.points.size()));
+  if (rows.closed) line.curve.points.back() = line.curve.points.front();
+  return line;
+}
+
 CentreLine from_control(const PathRows& rows) {
+  if (!rows.knots.empty()) return with_knots(rows);
   CentreLine line;
   const std::size_t n = rows.points.size();
   line.curve = rows.closed ? periodic_uniform(rows.points) : clamped_uniform(rows.points);
@@ -108,6 +121,16 @@ CentreLine from_loop(const PathRows& rows) {
         std::max(line.largest_miss, (nurbs::evaluate(line.curve, parameters.back()) - p[i]).norm());
   }
   line.parameters = parameters;
+  return line;
+}
+
+CentreLine from_smooth(const PathRows& rows) {
+  std::optional<nurbs::Smoothed> smoothed = nurbs::smooth(rows.points, rows.error, rows.closed);
+  if (!smoothed) return through_points(rows, nurbs::Parameterization::chord);
+  CentreLine line;
+  line.curve = std::move(smoothed->curve);
+  line.parameters = std::move(smoothed->parameters);
+  line.largest_miss = smoothed->farthest;
   return line;
 }
 
@@ -184,6 +207,8 @@ Result<CentreLine> line_of(const PathRows& rows) {
       return from_control(rows);
     case PathForm::loop:
       return from_loop(rows);
+    case PathForm::smooth:
+      return from_smooth(rows);
     case PathForm::polyline:
       break;
   }
@@ -213,7 +238,7 @@ Result<CentreLine> make_centre_line(const PathRows& rows) {
   const std::size_t n = rows.points.size();
   if (n < 2) return at_row(0, "a path needs at least two points");
   if (rows.closed && n < 3) return at_row(0, "a closed path needs at least three points");
-  for (std::size_t i = 0; i + (rows.closed ? 0 : 1) < n; ++i)
+  for (std::size_t i = 0; rows.knots.empty() && i + (rows.closed ? 0 : 1) < n; ++i)
     if (rows.points[i] == rows.points[(i + 1) % n])
       return at_row((i + 1) % n,
                     fmt::format("points {} and {} of the path are equal", i + 1, (i + 1) % n + 1));

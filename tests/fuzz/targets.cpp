@@ -33,6 +33,12 @@ Source named(std::string_view bytes, const Descriptor& format) {
 
 std::optional<Fabric> read(const Descriptor& format, const Source& source, Diagnostics& diagnostics) {
   if (format.read_fabric != nullptr) return format.read_fabric(source, diagnostics);
+  if (format.read_points != nullptr) {
+    const std::optional<fabric::Measured> points = format.read_points(source, diagnostics);
+    if (!points) return std::nullopt;
+    Fabric fabric = fabric::fabric_of(*points, source, diagnostics);
+    return diagnostics.has_errors() ? std::nullopt : std::optional(std::move(fabric));
+  }
   std::optional<cad::Model> model = format.read_model(source, diagnostics);
   if (!model) return std::nullopt;
   return fabric::fabric_of(std::move(*model), diagnostics);
@@ -45,8 +51,8 @@ void run_reader(const Descriptor& format, std::string_view bytes) {
   if (format.part_mark != nullptr) static_cast<void>(format.part_mark(head));
   Diagnostics diagnostics;
   // A rule of every reader: nothing comes back exactly when there was an error.
-  const bool has_read = format.read_fabric != nullptr ? format.read_fabric(source, diagnostics).has_value()
-                                                      : format.read_model(source, diagnostics).has_value();
+  const auto reads = [&](auto* reader) { return reader != nullptr && reader(source, diagnostics).has_value(); };
+  const bool has_read = reads(format.read_fabric) || reads(format.read_model) || reads(format.read_points);
   if (has_read == diagnostics.has_errors()) std::abort();
   // What takes as long as reading and is the same for most inputs: one in four has it done.
   if (bytes.size() % 4 != 0) return;

@@ -147,7 +147,21 @@ class Flat {
     add(path + ".points", v.points);
     add(path + ".sizes", v.sizes);
     add(path + ".outlines", v.outlines);
+    add(path + ".error", v.error);
+    add(path + ".knots", v.knots);
     for (std::size_t i = 0; i < v.fixed.size(); ++i) add(path + ".fixed", static_cast<int>(v.fixed[i]));
+  }
+  void add(const std::string& path, const PointsFile& v) {
+    add(path + ".file", v.file);
+    add(path + ".yarn", v.yarn);
+    add(path + ".error", v.error);
+  }
+  void add(const std::string& path, const Helix& v) {
+    add(path + ".radius", v.radius);
+    add(path + ".pitch", v.pitch);
+    add(path + ".turns", v.turns);
+    add(path + ".is_left", v.is_left);
+    add(path + ".start", v.start);
   }
   void add(const std::string& path, const Grid& v) {
     add(path + ".sections", v.sections);
@@ -187,6 +201,7 @@ class Flat {
     add(path + ".further", v.further);
     add(path + ".hand", v.hand);
     add(path + ".warp_faced", v.warp_faced);
+    add(path + ".full_turns", v.full_turns);
     add(path + ".file", v.file);
   }
   void add(const std::string& path, const Binder& v) {
@@ -195,7 +210,18 @@ class Flat {
     add(path + ".first", v.first);
     add(path + ".levels", v.levels);
   }
+  void add(const std::string& path, const Pucker& v) {
+    add(path + ".tight", v.tight);
+    add(path + ".slack", v.slack);
+    add(path + ".ratio", v.ratio);
+    add(path + ".picks", v.picks);
+  }
+  void add(const std::string& path, const MandrelRow& v) {
+    add(path + ".axis", v.axis);
+    add(path + ".radius", v.radius);
+  }
   void add(const std::string& path, const Weave& v) {
+    add(path + ".pucker", v.pucker);
     add(path + ".warp", v.warp);
     add(path + ".weft", v.weft);
     add(path + ".draft", v.draft);
@@ -249,6 +275,7 @@ class Flat {
     add(path + ".under", v.under);
     add(path + ".flat", v.flat);
     add(path + ".radius", v.radius);
+    add(path + ".mandrel", v.mandrel);
     add(path + ".width", v.width);
     add(path + ".angle", v.angle);
     add(path + ".length", v.length);

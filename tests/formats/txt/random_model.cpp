@@ -168,8 +168,10 @@ class Maker {
   // --------------------------------------------------------------------------------------------------------
   Path path() {
     Path path;
-    path.form = static_cast<yarn::PathForm>(up_to(5));
+    path.form = static_cast<yarn::PathForm>(up_to(6));
     const int rows = 3 + up_to(20);
+    if (path.form == yarn::PathForm::smooth) path.error = positive();
+    if (path.form == yarn::PathForm::control && rows >= 4 && coin()) path.knots = knots(rows, 3);
     const bool sized = coin();
     for (int i = 0; i < rows; ++i) {
       path.points.push_back(point());
@@ -194,6 +196,16 @@ class Maker {
         if (coin()) at->weight = positive();
       }
     return path;
+  }
+  PointsFile points_file() {
+    PointsFile points;
+    points.file = "folder name/" + new_name();
+    if (coin()) points.yarn = new_name();
+    maybe(points.error, [&] { return positive(); });
+    return points;
+  }
+  Helix helix() {
+    return {{}, positive(), positive(), positive(), coin(), coin() ? number() : 0.0};
   }
   Outline outline() {
     Outline outline;
@@ -251,8 +263,15 @@ class Maker {
     yarn.closed = coin();
     if (coin())
       yarn.shape = path();
-    else
+    else if (coin())
       yarn.shape = grid();
+    else if (coin())
+      yarn.shape = points_file();
+    else
+      yarn.shape = helix();
+    if (std::holds_alternative<Helix>(yarn.shape)) yarn.closed = false;
+    const auto* path = std::get_if<Path>(&yarn.shape);
+    if (path != nullptr && !path->knots.empty()) yarn.closed = false;
     return yarn;
   }
 
@@ -267,7 +286,7 @@ class Maker {
   }
   Draft draft() {
     Draft draft;
-    draft.form = static_cast<Draft::Form>(up_to(5));
+    draft.form = static_cast<Draft::Form>(up_to(6));
     if (draft.form == Draft::Form::rows) {
       const int width = 1 + up_to(7);
       for (int i = up_to(6); i >= 0; --i) {
@@ -282,6 +301,8 @@ class Maker {
       draft.warp_faced = coin();
     } else if (draft.form == Draft::Form::file) {
       draft.file = coin() ? "drafts/a b.wif" : "twill.wif";
+    } else if (draft.form == Draft::Form::leno) {
+      draft.full_turns = coin();
     } else if (draft.form != Draft::Form::plain) {
       draft.a = count();
       draft.b = count();
@@ -360,6 +381,15 @@ class Maker {
           maybe(weave.crimp, [&] { return up_to(8) / 8.0; });
           maybe(weave.spacing, [&] { return static_cast<Weave::Spacing>(up_to(1)); });
           if (!weave.profile) maybe(weave.thickness, [&] { return (1 + up_to(8)) / 8.0; });
+          if (!weave.layers) maybe(weave.pucker, [&] { return Pucker{{}, count(), count(), 1.25, 1 + count()}; });
+          if (weave.draft.form == Draft::Form::leno) {
+            Weave leno;
+            leno.warp = weave.warp;
+            leno.weft = weave.weft;
+            leno.draft = weave.draft;
+            leno.warp.count *= 2;
+            return leno;
+          }
         }
         return weave;
       }
@@ -405,10 +435,13 @@ class Maker {
         braid.carriers = braid.flat ? 2 + up_to(100) : 2 * (1 + up_to(100));
         braid.over = count();
         braid.under = count();
-        if (!braid.flat) braid.radius = positive();
+        const bool has_mandrel = !braid.flat && coin();
+        for (int i = 0; has_mandrel && i < 2 + up_to(3); ++i)
+          braid.mandrel.push_back({Vec3(number(), number(), i), positive()});
+        if (!braid.flat && !has_mandrel) braid.radius = positive();
         if (braid.flat && coin()) braid.width = positive();
         braid.angle = between(1.0, 89.0);
-        braid.length = positive();
+        if (!has_mandrel) braid.length = positive();
         if (coin()) {
           braid.axial_thread = one_of(threads_);
           braid.axial_count = count();

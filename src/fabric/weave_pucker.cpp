@@ -1,0 +1,131 @@
+// The statement `pucker` of a weave: pucker.h is the surface on which its yarns lie.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fabric/weave_construction.h"
+#include "nurbs/basis.h"
+#include "nurbs/interpolate.h"
+
+namespace selvage::fabric {
+
+namespace {
+
+// Of each span of the flat line, and of a wave.
+constexpr int looks_a_span = 8, looks_a_wave = 48;
+// Of half the cloth's thickness to the surface's least radius: beyond, yarns inside a bend have no room.
+constexpr double most_bend = 0.8;
+constexpr double steepest = 1.5;  // amplitude by a quarter of a wave, where looking for it ends
+
+std::vector<double> places_on(const nurbs::Curve& line, double length, double wave) {
+  const std::vector<double> breaks = nurbs::breakpoints(line.knots, line.degree);
+  std::vector<double> places = {breaks.front()};
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+    const double share = (breaks[k + 1] - breaks[k]) / (breaks.back() - breaks.front());
+    const int looks = std::max(looks_a_span, static_cast<int>(std::ceil(share * length / wave * looks_a_wave)));
+    for (int i = 1; i <= looks; ++i)
+      places.push_back(i == looks ? breaks[k + 1] : breaks[k] + (breaks[k + 1] - breaks[k]) * i / looks);
+  }
+  return places;
+}
+
+double polygon_length(const std::vector<Vec3>& points) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  return length;
+}
+
+}  // namespace
+
+// The line and its thickness directions on the puckered surface.
+Status WeaveConstruction::pucker(YarnPlan& plan) const {
+  tell_from_origin(plan);
+  const nurbs::Curve flat = plan.line.curve;
+  const auto extent = (flat.points.back() - flat.points.front()).norm();
+  std::vector<double> places = places_on(flat, extent, std::min(pucker_->wave, (pucker_->slack + 1) * pucker_->pitch));
+  std::vector<Vec3> points, ups;
+  for (const double t : places) {
+    const Vec3 place = nurbs::evaluate(flat, t);
+    points.push_back(pucker_->carried(place));
+    ups.push_back(pucker_->normal(place));
+  }
+  const auto derivative = [&](double t, double towards) {
+    const double step = 1e-5 * (towards - t);
+    const Vec3 a = pucker_->carried(nurbs::evaluate(flat, t)), b = pucker_->carried(nurbs::evaluate(flat, t + step)),
+               c = pucker_->carried(nurbs::evaluate(flat, t + 2.0 * step));
+    return Vec3((4.0 * b - 3.0 * a - c) / (2.0 * step));
+  };
+  const Vec3 first = derivative(places.front(), places[1]), last = derivative(places.back(), places[places.size() - 2]);
+  plan.points = points;
+  plan.line.curve = nurbs::interpolate(points, places, first, last);
+  plan.line.parameters = std::move(places);
+  return hold_up(plan, ups);
+}
+
+// The amplitude at which the slack warps have the ratio of lengths, on average.
+Status WeaveConstruction::prepare_pucker(Diagnostics& diagnostics) {
+  const Pucker& text = *weave_.pucker;
+  PuckerShape shape;
+  shape.wave = text.picks * weft_.text->pitch;
+  shape.pitch = warp_.text->pitch;
+  shape.tight = text.tight;
+  shape.slack = text.slack;
+  if (text.tight + text.slack > warp_.text->count)
+    return error(Kind::geometry, fmt::format("{} tight and {} slack warps are more than the {} of this weave", text.tight,
+                                             text.slack, warp_.text->count))
+        .placed(text.place);
+  std::vector<std::vector<Vec3>> flat;  // the slack warps of the first stripe, as polygons
+  const Block& warps = blocks_.front();
+  for (int i = 0; i < text.slack; ++i) {
+    const auto index = warps.first + static_cast<std::size_t>(text.tight + i - warps.begin);
+    Result<YarnPlan> plan = plan_flat(index);
+    if (!plan) return plan.error();
+    tell_from_origin(*plan);
+    const nurbs::Curve& line = plan->line.curve;
+    const double extent = (line.points.back() - line.points.front()).norm();
+    std::vector<Vec3>& polygon = flat.emplace_back();
+    for (const double t : places_on(line, extent, shape.wave)) polygon.push_back(nurbs::evaluate(line, t));
+  }
+  double shortest = 0.0, longest = 0.0;
+  const auto mean_ratio = [&](double amplitude) {
+    shape.amplitude = amplitude;
+    double sum = 0.0;
+    shortest = longest = 0.0;
+    for (const std::vector<Vec3>& polygon : flat) {
+      std::vector<Vec3> carried;
+      for (const Vec3& point : polygon) carried.push_back(shape.carried(point));
+      const double ratio = polygon_length(carried) / polygon_length(polygon);
+      sum += ratio;
+      shortest = shortest == 0.0 ? ratio : std::min(shortest, ratio);
+      longest = std::max(longest, ratio);
+    }
+    return sum / static_cast<double>(flat.size());
+  };
+  double low = 0.0, high = steepest * 0.25 * shape.wave;
+  const double half = 0.5 * thickness_of(warp_, weft_, heights_);
+  const auto refuse = [&] {
+    return error(Kind::geometry,
+                 fmt::format("waves of {} picks with {} slack warps bend more tightly than the cloth is thick when these "
+                             "are {:.4g} times as long: more picks from wave to wave, more slack warps, or a smaller "
+                             "ratio give room",
+                             text.picks, text.slack, text.ratio))
+        .placed(text.place);
+  };
+  if (mean_ratio(high) < text.ratio) return refuse();
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    (mean_ratio(middle) < text.ratio ? low : high) = middle;
+  }
+  mean_ratio(high);
+  if (shape.most_curvature() * half > most_bend) return refuse();
+  pucker_ = shape;
+  diagnostics.add(note(Kind::geometry,
+                       fmt::format("the slack warps are {:.4g} times as long as they would be flat, those in the middle "
+                                   "of a stripe {:.4g} times, at its edges {:.4g}; waves stand {:.3g} {} out of the cloth",
+                                   text.ratio, longest, shortest, shape.amplitude, name_of(fabric_.units)))
+                      .placed(text.place, fabric_.file));
+  return {};
+}
+
+}  // namespace selvage::fabric
