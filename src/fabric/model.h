@@ -143,7 +143,7 @@ struct Path {
 };
 
 // A path or a grid that stands in a file of points: `points FILE`. The pipeline puts it there
-// (pipeline/drafts.h).
+// (pipeline/named_files.h).
 struct PointsFile {
   std::string file;
   std::string yarn;             // which one of the file; empty: it has one

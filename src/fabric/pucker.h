@@ -10,11 +10,12 @@ namespace selvage::fabric {
 // every period tight ones first. Lengths in file units.
 struct PuckerShape {
   double wave = 1, amplitude = 0;
+  double lift = 1;  // of heights over the middle surface: yarns that cross askew need more room
   double pitch = 1;
   int tight = 1, slack = 1;
 
   // A place of the flat cloth, z over its middle surface, on the puckered one: as far along its normal.
-  [[nodiscard]] Vec3 carried(const Vec3& flat) const { return Vec3(flat.x(), flat.y(), height(flat)) + flat.z() * normal(flat); }
+  [[nodiscard]] Vec3 carried(const Vec3& flat) const { return Vec3(flat.x(), flat.y(), height(flat)) + lift * flat.z() * normal(flat); }
   [[nodiscard]] Vec3 normal(const Vec3& flat) const;
   [[nodiscard]] bool is_slack(long long warp) const;
   // The largest curvature of the surface, at most.

@@ -96,6 +96,7 @@ class WeaveConstruction final : public Construction {
   Status prepare_leno();
   Status prepare_pucker(Diagnostics& diagnostics);
   Status pucker(YarnPlan& plan) const;
+  [[nodiscard]] Result<double> puckered_gap() const;
   [[nodiscard]] Result<YarnPlan> plan_flat(std::size_t index) const;
   Status plan_leno(YarnPlan& plan, bool is_weft, long long yarn) const;
   [[nodiscard]] Result<Heights> fit_heights(Diagnostics& diagnostics);

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "fabric/clearance.h"
 #include "fabric/weave_construction.h"
 #include "nurbs/basis.h"
 #include "nurbs/interpolate.h"
@@ -16,6 +18,8 @@ namespace {
 constexpr int looks_a_span = 8, looks_a_wave = 48;
 // Of half the cloth's thickness to the surface's least radius: beyond, yarns inside a bend have no room.
 constexpr double most_bend = 0.8;
+// Heights over the middle surface are raised by these steps until yarns that cross keep three quarters of the clearance.
+constexpr double lift_step = 1.01, highest_lift = 1.3, least_share = 0.75;
 constexpr double steepest = 1.5;  // amplitude by a quarter of a wave, where looking for it ends
 
 std::vector<double> places_on(const nurbs::Curve& line, double length, double wave) {
@@ -36,7 +40,59 @@ double polygon_length(const std::vector<Vec3>& points) {
   return length;
 }
 
+// The parameter at which a line is nearest to a place along x or y, as its data points tell.
+double parameter_near(const YarnPlan& plan, int axis, double place) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < plan.points.size(); ++i)
+    if (std::abs(plan.points[i][axis] - place) < std::abs(plan.points[best][axis] - place)) best = i;
+  return plan.line.parameters[best];
+}
+
+SweptYarn swept_plan(const YarnPlan& plan, const PuckerShape& shape) {
+  return {[&plan, &shape](double t) {
+            const nurbs::CurveJet jet = nurbs::evaluate_jet(plan.line.curve, t);
+            const Vec3 tangent = jet.d1.normalized(), normal = shape.normal(jet.position);
+            const Vec3 up = (normal - normal.dot(tangent) * tangent).normalized();
+            return SweptStation{jet.position, jet.d1, up.cross(tangent), up};
+          },
+          outline_polygon(plan.spec.section)};
+}
+
 }  // namespace
+
+// The least gap of the yarns that cross in a stripe and over a wave.
+Result<double> WeaveConstruction::puckered_gap() const {
+  constexpr int stations = 48;
+  const Block &warps = blocks_[0], &wefts = blocks_[1];
+  const double pitch_x = weft_.text->pitch, pitch_y = warp_.text->pitch;
+  std::vector<YarnPlan> across;
+  const int picks = std::min(weave_.pucker->picks, weft_.text->count);
+  for (int j = 0; j < picks; ++j) {
+    Result<YarnPlan> weft = plan(wefts.first + static_cast<std::size_t>(j - wefts.begin));
+    if (!weft) return weft.error();
+    across.push_back(std::move(*weft));
+  }
+  double least = std::numeric_limits<double>::infinity();
+  // The tight warps on both sides of the stripe, too, where the picks bend.
+  for (int i = -1; i <= pucker_->slack && pucker_->tight + i < warp_.text->count; ++i) {
+    const Result<YarnPlan> warp = plan(warps.first + static_cast<std::size_t>(pucker_->tight + i - warps.begin));
+    if (!warp) return warp.error();
+    const SweptYarn along = swept_plan(*warp, *pucker_);
+    const double y = warp_.at(pucker_->tight + i);
+    for (int j = 0; j < picks; ++j) {
+      const double x = weft_.at(j);
+      const double from = parameter_near(*warp, 0, x - 0.5 * pitch_x), to = parameter_near(*warp, 0, x + 0.5 * pitch_x);
+      const YarnPlan& weft = across[static_cast<std::size_t>(j)];
+      const double near = parameter_near(weft, 1, y);
+      const double reach = parameter_near(weft, 1, y + pitch_y) - parameter_near(weft, 1, y - pitch_y);
+      const SweptYarn other = swept_plan(weft, *pucker_);
+      const double low = parameter_near(weft, 1, y - 0.5 * pitch_y), high = parameter_near(weft, 1, y + 0.5 * pitch_y);
+      least = std::min({least, least_gap(along, from, to, stations, other, near, reach),
+                        least_gap(other, low, high, stations, along, 0.5 * (from + to), to - from)});
+    }
+  }
+  return least;
+}
 
 // The line and its thickness directions on the puckered surface.
 Status WeaveConstruction::pucker(YarnPlan& plan) const {
@@ -102,7 +158,6 @@ Status WeaveConstruction::prepare_pucker(Diagnostics& diagnostics) {
     }
     return sum / static_cast<double>(flat.size());
   };
-  double low = 0.0, high = steepest * 0.25 * shape.wave;
   const double half = 0.5 * thickness_of(warp_, weft_, heights_);
   const auto refuse = [&] {
     return error(Kind::geometry,
@@ -112,14 +167,23 @@ Status WeaveConstruction::prepare_pucker(Diagnostics& diagnostics) {
                              text.picks, text.slack, text.ratio))
         .placed(text.place);
   };
-  if (mean_ratio(high) < text.ratio) return refuse();
-  for (int step = 0; step < 60; ++step) {
-    const double middle = 0.5 * (low + high);
-    (mean_ratio(middle) < text.ratio ? low : high) = middle;
+  double gap = 0.0;
+  for (; shape.lift <= highest_lift; shape.lift *= lift_step) {
+    double low = 0.0, high = steepest * 0.25 * shape.wave;
+    if (mean_ratio(high) < text.ratio) return refuse();
+    for (int step = 0; step < 50; ++step) {
+      const double middle = 0.5 * (low + high);
+      (mean_ratio(middle) < text.ratio ? low : high) = middle;
+    }
+    mean_ratio(high);
+    if (shape.most_curvature() * half > most_bend) return refuse();
+    pucker_ = shape;
+    Result<double> found = puckered_gap();
+    if (!found) return found.error();
+    gap = *found;
+    if (gap >= least_share * clearance_) break;
   }
-  mean_ratio(high);
-  if (shape.most_curvature() * half > most_bend) return refuse();
-  pucker_ = shape;
+  if (gap < least_share * clearance_) return refuse();
   diagnostics.add(note(Kind::geometry,
                        fmt::format("the slack warps are {:.4g} times as long as they would be flat, those in the middle "
                                    "of a stripe {:.4g} times, at its edges {:.4g}; waves stand {:.3g} {} out of the cloth",

@@ -56,6 +56,7 @@ class Fit {
     breaks_ = breaks;
     const Basis basis(breaks, closed_);
     for (int round = 0; round < rounds; ++round) {
+      spread();
       solve_controls(basis);
       project();
     }
@@ -95,11 +96,24 @@ class Fit {
     if (closed_) {
       smoothed.curve = sub_curve(curve_, 0.0, 1.0);
       smoothed.curve.points.back() = smoothed.curve.points.front();
+      return smoothed;
     }
+    // From the first point's place to the last one's: beyond, nothing holds it.
+    const double first = parameters_.front(), length = parameters_.back() - first;
+    smoothed.curve = sub_curve(curve_, first, parameters_.back());
+    for (double& knot : smoothed.curve.knots) knot = (knot - first) / length;
+    for (double& t : smoothed.parameters) t = (t - first) / length;
     return smoothed;
   }
 
  private:
+  // Over all of 0 to 1: a line that goes on beyond its points would be held by nothing there.
+  void spread() {
+    if (closed_) return;
+    const double first = parameters_.front(), length = parameters_.back() - first;
+    for (double& t : parameters_) t = (t - first) / length;
+  }
+
   void solve_controls(const Basis& basis) {
     const auto n = static_cast<Eigen::Index>(basis.unknowns());
     std::vector<Eigen::Triplet<double>> terms;
