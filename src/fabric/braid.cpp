@@ -372,16 +372,19 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
   // The tubes that the braid has to fit on: itself, or those of a mandrel from place to place.
   std::optional<Mandrel> mandrel;
   std::vector<Braid> tubes = {braid};
+  double inclination = 1.0;  // heights are away from the axis: across a wall that widens yarns are nearer by so much
   if (!braid.mandrel.empty()) {
     Result<Mandrel> made = Mandrel::make(braid.mandrel, braid.radius_place);
     if (!made) return made.error();
     mandrel = std::move(*made);
     tubes.clear();
     const int places = 8 * static_cast<int>(braid.mandrel.size() - 1);
-    for (int i = 0; i <= places; ++i)
-      for (const bool inside : {false, true})
-        if (!inside || !mandrel->is_straight())
-          tubes.push_back(tube_at(braid, *mandrel, mandrel->length() * i / places, inside));
+    for (int i = 0; i <= places; ++i) {
+      const double s = mandrel->length() * i / places;
+      inclination = std::max(inclination, std::hypot(1.0, mandrel->slope(s)));
+      tubes.push_back(tube_at(braid, *mandrel, s, false));
+      if (!mandrel->is_straight()) tubes.push_back(tube_at(braid, *mandrel, s, true));
+    }
   }
   const double wanted = std::max(options.gap > 0.0 ? options.gap : clearance * size.height,
                                  2.0 * fabric.tolerance.value_or(0.0));
@@ -409,6 +412,7 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
     all->amplitude = std::max(all->amplitude, shape.amplitude);
     all->plateau = std::max(all->plateau, shape.plateau);
   }
+  all->amplitude *= inclination;
   if (gap < 0.5 * wanted) {
     const std::string found = gap > 0.0 ? fmt::format("come as near as about {:.2g} {}", gap, unit)
                                         : fmt::format("overlap, by about {:.2g} {}", -gap, unit);

@@ -49,6 +49,21 @@ LenoPoint leno_point(const LenoShape& shape, bool is_doup, double t) {
   return point;
 }
 
+// By differences of the slopes: the second derivative of waves.
+double tightest_bend(const LenoShape& shape, bool is_doup, double height) {
+  constexpr int looks = 256;
+  constexpr double step = 1e-4;
+  double tightest = 0.0;
+  for (int i = 0; i <= looks; ++i) {
+    const double t = 2.0 * i / looks;
+    const Vec3 first = leno_point(shape, is_doup, t).derivative;
+    const Vec3 second = (leno_point(shape, is_doup, t + step).derivative - leno_point(shape, is_doup, t - step).derivative) /
+                        (2.0 * step);
+    tightest = std::max(tightest, 0.5 * height * first.cross(second).norm() / std::pow(first.norm(), 3));
+  }
+  return tightest;
+}
+
 double fit_leno(LenoShape& shape, double wanted, const LenoYarn& standing, const LenoYarn& doup,
                 const LenoYarn& pick) {
   constexpr double growth = 1.02;

@@ -34,6 +34,9 @@ struct LenoYarn {
   std::vector<Vec2> outline;
   double width = 0, height = 0;
 };
+// Of the tightest bend of a warp, half its thickness to the radius: 1 and more fold.
+double tightest_bend(const LenoShape& shape, bool is_doup, double height);
+
 // The lowest heights and the smallest side at which the ends of a pair and the picks keep `wanted` apart, by samples on
 // the exact swept sections. Returns the gap that is left: less than `wanted` where there is no room for more.
 double fit_leno(LenoShape& shape, double wanted, const LenoYarn& standing, const LenoYarn& doup, const LenoYarn& pick);

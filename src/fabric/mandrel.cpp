@@ -76,9 +76,8 @@ Mandrel::Place Mandrel::carried(const Vec3& position, const Vec3& derivative, do
   const double distance = across.norm(), s = std::clamp(position.z(), 0.0, length());
   const Vec2 out = across / distance, round(-out.y(), out.x());
   const yarn::Frame frame = frame_at(s);
-  const auto [value, slope] = radius_.at(s / length());
-  const double here = value[0] + distance - radius;
-  const double climb = slope[0] / length() * derivative.z() + way.dot(out), turn = way.dot(round) / distance;
+  const double here = this->radius(s) + distance - radius;
+  const double climb = slope(s) * derivative.z() + way.dot(out), turn = way.dot(round) / distance;
   const Vec3 away = out.x() * frame.across + out.y() * frame.up, sideways = round.x() * frame.across + round.y() * frame.up;
   const double shortened = 1.0 - here * away.dot(frame.tangent_dt / frame.speed);
   return {frame.position + here * away,

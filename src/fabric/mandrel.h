@@ -24,6 +24,7 @@ class Mandrel {
   [[nodiscard]] Vec3 direction() const { return frames_.at(0.0).tangent; }
   // At a length s along the axis.
   [[nodiscard]] double radius(double s) const { return radius_.at(s / length()).value[0]; }
+  [[nodiscard]] double slope(double s) const { return radius_.at(s / length()).slope[0] / length(); }  // of the radius
   [[nodiscard]] double curvature(double s) const;
 
   struct Place {

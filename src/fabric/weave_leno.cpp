@@ -11,6 +11,10 @@ namespace selvage::fabric {
 namespace {
 
 constexpr int points_a_pick = 24;
+constexpr double most_warp_bend = 0.95;  // of half the thickness to the bend's radius
+// A pitch of picks that has room is looked for in these steps.
+constexpr double pick_growth = 1.02;
+constexpr int most_pitches = 150;
 
 bool is_doup(long long warp) {
   return wrapped<long long>(warp, 2) == 1;
@@ -38,14 +42,19 @@ Status WeaveConstruction::prepare_leno() {
   const LenoYarn standing = thickest_of(warp_, [](long long warp) { return !is_doup(warp); });
   const LenoYarn doup = thickest_of(warp_, is_doup);
   const LenoYarn pick = thickest_of(weft_, [](long long) { return true; });
-  const double gap = fit_leno(shape, clearance_, standing, doup, pick);
   const std::string_view unit = name_of(fabric_.units);
-  if (gap < 0.5 * clearance_)
+  const auto fits = [&] {
+    return fit_leno(shape, clearance_, standing, doup, pick) >= 0.5 * clearance_ &&
+           tightest_bend(shape, false, standing.height) < most_warp_bend && tightest_bend(shape, true, doup.height) < most_warp_bend;
+  };
+  if (!fits()) {
+    for (int step = 0; step < most_pitches && !fits(); ++step) shape.pick *= pick_growth;
     return error(Kind::geometry,
-                 fmt::format("the ends of a pair have no room to cross between picks {:.4g} {} apart: a larger pitch "
-                             "of the weft, or thinner yarns, give it",
-                             shape.pick, unit))
+                 fmt::format("the ends of a pair have no room to cross between picks {:.4g} {} apart: they pass each "
+                             "other, and bend no more tightly than they are thick, at a pitch of {:.4g} {} or more",
+                             weft_.text->pitch, unit, shape.pick, unit))
         .placed(weft_.text->place);
+  }
   const double room = 2.0 * warp_.text->pitch, needed = shape.side + 0.5 * (standing.width + doup.width) + clearance_;
   if (room < needed)
     return error(Kind::geometry, fmt::format("pairs of warps have no room beside each other: at a pitch of {:.4g} {} a "

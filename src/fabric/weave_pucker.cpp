@@ -17,7 +17,7 @@ namespace {
 // Of each span of the flat line, and of a wave.
 constexpr int looks_a_span = 8, looks_a_wave = 48;
 // Of half the cloth's thickness to the surface's least radius: beyond, yarns inside a bend have no room.
-constexpr double most_bend = 0.8;
+constexpr double most_surface_bend = 0.8;
 // Heights over the middle surface are raised by these steps until yarns that cross keep three quarters of the clearance.
 constexpr double lift_step = 1.01, highest_lift = 1.3, least_share = 0.75;
 constexpr double steepest = 1.5;  // amplitude by a quarter of a wave, where looking for it ends
@@ -146,12 +146,17 @@ Status WeaveConstruction::prepare_pucker(Diagnostics& diagnostics) {
   double shortest = 0.0, longest = 0.0;
   const auto mean_ratio = [&](double amplitude) {
     shape.amplitude = amplitude;
+    PuckerShape flat_cloth = shape;
+    flat_cloth.amplitude = 0.0;
     double sum = 0.0;
     shortest = longest = 0.0;
     for (const std::vector<Vec3>& polygon : flat) {
-      std::vector<Vec3> carried;
-      for (const Vec3& point : polygon) carried.push_back(shape.carried(point));
-      const double ratio = polygon_length(carried) / polygon_length(polygon);
+      std::vector<Vec3> slack, tight;
+      for (const Vec3& point : polygon) {
+        slack.push_back(shape.carried(point));
+        tight.push_back(flat_cloth.carried(point));
+      }
+      const double ratio = polygon_length(slack) / polygon_length(tight);
       sum += ratio;
       shortest = shortest == 0.0 ? ratio : std::min(shortest, ratio);
       longest = std::max(longest, ratio);
@@ -176,7 +181,7 @@ Status WeaveConstruction::prepare_pucker(Diagnostics& diagnostics) {
       (mean_ratio(middle) < text.ratio ? low : high) = middle;
     }
     mean_ratio(high);
-    if (shape.most_curvature() * half > most_bend) return refuse();
+    if (shape.most_curvature() * half > most_surface_bend) return refuse();
     pucker_ = shape;
     Result<double> found = puckered_gap();
     if (!found) return found.error();
