@@ -130,7 +130,8 @@ struct Descriptor {
                                              const std::vector<fabric::Setting>& settings,
                                              Diagnostics& diagnostics) = nullptr;
 
-  // A CAD file as it stands; fabric/from_cad.h makes a fabric of it. A format has this, read_fabric or read_points.
+  // A CAD file as it stands; fabric/from_cad.h makes a fabric of it. A format has this, read_fabric or
+  // read_points.
   std::optional<cad::Model> (*read_model)(const Source& source, Diagnostics& diagnostics) = nullptr;
   // Yarns as points: fabric/measured.h makes a fabric of them, or a yarn of a text (`points FILE`).
   std::optional<fabric::Measured> (*read_points)(const Source& source, Diagnostics& diagnostics) = nullptr;
@@ -142,7 +143,7 @@ struct Descriptor {
   std::string_view foreign_reader{};
   // Some systems ignore a few of its entities (cad/judge.h: judge_for_receivers).
   bool is_partly_ignored = false;
-  [[nodiscard]] bool is_readable() const { 
+  [[nodiscard]] bool is_readable() const {
     return read_fabric != nullptr || read_model != nullptr || read_points != nullptr;
   }
 

@@ -25,8 +25,25 @@ struct Column {
   bool is_length = false;
 };
 enum Which : std::size_t {
-  yarn, section, point, x, y, z, width, height, radius, diameter, angle, parameter, speed,
-  tangent_x, tangent_y, tangent_z, up_x, up_y, up_z
+  yarn,
+  section,
+  point,
+  x,
+  y,
+  z,
+  width,
+  height,
+  radius,
+  diameter,
+  angle,
+  parameter,
+  speed,
+  tangent_x,
+  tangent_y,
+  tangent_z,
+  up_x,
+  up_y,
+  up_z
 };
 constexpr std::array<Column, 19> columns{{{{"yarn", "name", "id", "fibre"}},
                                           {{"section", "slice"}},
@@ -58,7 +75,8 @@ class Reader {
   std::optional<Measured> read() {
     if (!find_columns()) return std::nullopt;
     for (std::size_t row = 0; row < table_.rows.size() && !report_.is_full(); ++row) read_row(row);
-    if (table_.rows.empty()) report_.error({source_.bytes().data(), 1, 1}, "the table has no point: a row each");
+    if (table_.rows.empty())
+      report_.error({source_.bytes().data(), 1, 1}, "the table has no point: a row each");
     return std::move(measured_);
   }
 
@@ -71,8 +89,9 @@ class Reader {
     const std::size_t mark = name.rfind('_');
     if (mark == std::string_view::npos) return name;
     const std::string_view end = name.substr(mark + 1);
-    for (const auto& [word, value] : {std::pair{"mm", Unit::mm}, std::pair{"cm", Unit::cm}, std::pair{"m", Unit::m},
-                                      std::pair{"um", Unit::um}, std::pair{"inch", Unit::inch}, std::pair{"in", Unit::inch}})
+    for (const auto& [word, value] :
+         {std::pair{"mm", Unit::mm}, std::pair{"cm", Unit::cm}, std::pair{"m", Unit::m},
+          std::pair{"um", Unit::um}, std::pair{"inch", Unit::inch}, std::pair{"in", Unit::inch}})
       if (same_word(end, word)) {
         unit = value;
         return name.substr(0, mark);
@@ -105,10 +124,12 @@ class Reader {
     for (const Which which : {x, y, z})
       if (!has(which)) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", columns[which].names[0]);
     if (!missing.empty())
-      return head_error(fmt::format("columns are missing: {}; the first row names them, as in yarn,x,y,z,radius "
-                                    "(lengths perhaps with their unit: x_mm)",
-                                    missing));
-    if (has(width) != has(height)) return head_error("width and height go together: a round yarn has a radius");
+      return head_error(
+          fmt::format("columns are missing: {}; the first row names them, as in yarn,x,y,z,radius "
+                      "(lengths perhaps with their unit: x_mm)",
+                      missing));
+    if (has(width) != has(height))
+      return head_error("width and height go together: a round yarn has a radius");
     measured_.units = *of_all;
     return true;
   }
@@ -129,8 +150,9 @@ class Reader {
     const std::string& text = table_.rows[row][at_[which]];
     const std::optional<double> value = read_number(text);
     if (value) return *value;
-    refuse(row, which, fmt::format("{} is not a number: the column {} has finite decimal numbers with a point",
-                                   in_quotes(text), in_quotes(table_.columns[at_[which]])));
+    refuse(row, which,
+           fmt::format("{} is not a number: the column {} has finite decimal numbers with a point",
+                       in_quotes(text), in_quotes(table_.columns[at_[which]])));
     return 0.0;
   }
   double positive(std::size_t row, Which which) {
@@ -163,8 +185,9 @@ class Reader {
     std::vector<std::string>& seen = sections_[number];
     if (!seen.empty() && seen.back() == id) return;
     if (std::find(seen.begin(), seen.end(), id) != seen.end())
-      refuse(row, section, fmt::format("section {} has points further up: the rows of a section stand together",
-                                       in_quotes(id)));
+      refuse(row, section,
+             fmt::format("section {} has points further up: the rows of a section stand together",
+                         in_quotes(id)));
     seen.push_back(id);
     of.sections.push_back(of.points.size());
   }
@@ -176,8 +199,9 @@ class Reader {
       if (!has(which)) continue;
       const double value = this->number(row, which);
       if (good_ && last[k] && value <= *last[k])
-        refuse(row, which, fmt::format("points out of order: the {} is {} after {}; sort the rows of each yarn",
-                                       columns[which].names[0], value, *last[k]));
+        refuse(row, which,
+               fmt::format("points out of order: the {} is {} after {}; sort the rows of each yarn",
+                           columns[which].names[0], value, *last[k]));
       last[k] = value;
     }
   }

@@ -331,6 +331,7 @@ void read_warpknit_courses(Parser& p, Warpknit& warpknit, std::string_view) {
 // odd.
 struct BraidBlock : Braid {
   Spot carriers_spot{};
+  bool has_length = false, has_mandrel = false;
 };
 
 void read_carriers(Parser& p, BraidBlock& braid, std::string_view) {
@@ -355,6 +356,12 @@ void read_radius(Parser& p, BraidBlock& braid, std::string_view) {
   braid.radius_place = p.last().place();
 }
 
+void read_braid_length(Parser& p, BraidBlock& braid, std::string_view) {
+  braid.has_length = true;
+  const auto length = p.positive("the length", Measure::length);
+  if (p.finish()) braid.length = *length;
+}
+
 struct MandrelRows {
   std::vector<fabric::MandrelRow> rows;
 };
@@ -365,8 +372,9 @@ void read_mandrel_row(Parser& p, MandrelRows& rows) {
   const int count = p.row(row.data(), 4, "a row of the mandrel");
   if (count < 0) return;
   if (count != 4 || !(row[3] > 0.0))
-    return p.error(spot, "a row of the mandrel is x y z RADIUS: a point of its axis, and the radius of the cloth's "
-                         "middle surface there, larger than 0");
+    return p.error(spot,
+                   "a row of the mandrel is x y z RADIUS: a point of its axis, and the radius of the cloth's "
+                   "middle surface there, larger than 0");
   const Vec3 axis(row[0], row[1], row[2]);
   if (!rows.rows.empty() && rows.rows.back().axis == axis)
     return p.error(spot, "this point of the axis equals the one before it");
@@ -376,10 +384,12 @@ void read_mandrel_row(Parser& p, MandrelRows& rows) {
 void read_mandrel(Parser& p, BraidBlock& braid, std::string_view word) {
   static const Table<MandrelRows> table({}, read_mandrel_row);
   braid.radius_place = p.statement().place();
+  braid.has_mandrel = true;
   p.finish();
   const int errors = p.report.errors();
   MandrelRows rows;
-  if (p.read_block(word, "", p.statement(), table, rows) && rows.rows.size() < 2 && p.report.errors() == errors)
+  if (p.read_block(word, "", p.statement(), table, rows) && rows.rows.size() < 2 &&
+      p.report.errors() == errors)
     p.error(p.last(), "a mandrel has at least 2 rows");
   braid.mandrel = std::move(rows.rows);
 }
@@ -445,11 +455,16 @@ void read_weave(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     if (!is_straight && !weave.binders.empty())
       p.error(opened, "a binder goes through straight layers: it needs 'profile straight'");
     const bool is_leno = weave.draft.form == Draft::Form::leno;
-    if (is_leno && (weave.profile || weave.crimp || weave.spacing || weave.thickness || weave.layers || weave.pucker))
-      p.error(opened, "a leno has a geometry of its own: leave out profile, crimp, spacing, thickness, layers, pucker");
+    if (is_leno &&
+        (weave.profile || weave.crimp || weave.spacing || weave.thickness || weave.layers || weave.pucker))
+      p.error(
+          opened,
+          "a leno has a geometry of its own: leave out profile, crimp, spacing, thickness, layers, pucker");
     if (is_leno && weave.warp.count % 2 != 0)
-      p.error(opened, fmt::format("a leno's warps are pairs of a standing and a doup end: their number is even, not {}",
-                                  weave.warp.count));
+      p.error(
+          opened,
+          fmt::format("a leno's warps are pairs of a standing and a doup end: their number is even, not {}",
+                      weave.warp.count));
     if (weave.pucker && (is_straight || weave.layers))
       p.error(opened, "a pucker goes with one layer of interlaced yarns");
     if (is_straight && weave.crimp) p.error(opened, "straight yarns have no crimp to share");
@@ -548,16 +563,15 @@ void read_braid(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                         {"flat", read_flat, Times::once, "radius"},
                                         {"mandrel", read_mandrel, Times::once, "radius"},
                                         {"angle", read_angle, Times::once},
-                                        {"length", into(&Braid::length, a_length("the length"))},
+                                        {"length", read_braid_length},
                                         {"axial", read_axial}});
   BraidBlock braid;
   const Spot opened = p.statement();
   braid.place = opened.place();
   p.finish();
   if (p.read_block(word, "", opened, table, braid)) {
-    if (braid.mandrel.empty() && braid.length == 0.0 && braid.angle > 0.0 && (braid.flat || braid.radius > 0.0))
-      p.error(p.last(), "'braid' ends without its 'length'");
-    if (!braid.mandrel.empty() && braid.length > 0.0)
+    if (!braid.has_mandrel && !braid.has_length) p.error(p.last(), "'braid' ends without its 'length'");
+    if (braid.has_mandrel && braid.has_length)
       p.error(opened, "the mandrel has its own length: leave out 'length'");
   }
   if (braid.carriers % 2 != 0 && !braid.flat)

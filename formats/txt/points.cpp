@@ -8,17 +8,18 @@ fabric::PointsFile read_points_file(Parser& p) {
   constexpr std::array<Word<bool>, 2> words{{{"yarn", true}, {"error", false}}};
   fabric::PointsFile points;
   points.place = p.statement().place();
-  if (p.more() && *p.here().at != '"')
+  if (p.more() && *p.here().at != '"') {
     points.file = p.take_word();
-  else
+    if (points.file.find('"') != std::string::npos || text_prefix(points.file) != points.file.size())
+      p.error(p.last(), "the name of a file is UTF-8, and has no double quotes");
+  } else {
     points.file = p.name("the file of points").value_or("");
+  }
   while (p.more()) {
     const auto is_yarn = p.choice("word of the points", words);
     if (!is_yarn) break;
-    if (*is_yarn ? !points.yarn.empty() : points.error.has_value()) {
-      p.error(p.last(), "this is given twice");
-      break;
-    }
+    if (*is_yarn ? !points.yarn.empty() : points.error.has_value())
+      return p.error(p.last(), "this is given twice"), p.take_rest(), points;
     if (*is_yarn)
       points.yarn = p.name("the yarn's name in that file").value_or("");
     else

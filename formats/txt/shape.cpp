@@ -107,20 +107,24 @@ void check_path_knots(Parser& p, const PathRows& rows) {
   const std::vector<double>& knots = rows.path.knots;
   const std::size_t n = rows.path.points.size();
   if (knots.size() != n + 4 || n < 4)
-    return p.error(*rows.knots_spot, fmt::format("{} knots: {} control points of a cubic have {}, and there are "
-                                                 "4 points at least",
-                                                 knots.size(), n, n + 4));
+    return p.error(*rows.knots_spot,
+                   fmt::format("{} knots: {} control points of a cubic have {}, and there are "
+                               "4 points at least",
+                               knots.size(), n, n + 4));
   if (knots[0] != knots[3] || knots[n] != knots[n + 3] || !(knots[3] < knots[n]))
-    return p.error(*rows.knots_spot, "the first four knots have to be equal, and the last four: the line ends in "
-                                     "its first and last row");
+    return p.error(*rows.knots_spot,
+                   "the first four knots have to be equal, and the last four: the line ends in "
+                   "its first and last row");
   for (std::size_t i = 1; i < knots.size(); ++i)
     if (knots[i] < knots[i - 1])
-      return p.error(*rows.knots_spot, fmt::format("knots do not decrease: {:g} after {:g}", knots[i], knots[i - 1]));
+      return p.error(*rows.knots_spot,
+                     fmt::format("knots do not decrease: {:g} after {:g}", knots[i], knots[i - 1]));
   for (std::size_t i = 4; i + 2 < n; ++i)
     if (knots[i] == knots[i + 2])
-      return p.error(*rows.knots_spot, fmt::format("the knot {:g} stands three times: the line would have a corner "
-                                                   "there",
-                                                   knots[i]));
+      return p.error(*rows.knots_spot,
+                     fmt::format("the knot {:g} stands three times: the line would have a corner "
+                                 "there",
+                                 knots[i]));
 }
 
 bool is_good_row(Parser& p, const PathRows& rows, const std::array<double, 6>& row, int count) {
@@ -449,7 +453,7 @@ fabric::Path read_path(Parser& p, ShapeReading& reading) {
   } else if (complete && reading.good && path.form == yarn::PathForm::control && all_equal(path.points)) {
     p.error(reading.last_row, "the path has no length: all its control points are the same");
     reading.good = false;
-  } else if (complete && reading.good && rows.knots_spot) {
+  } else if (complete && reading.good && rows.knots_spot && path.form == yarn::PathForm::control) {
     check_path_knots(p, rows);
   }
   return path;

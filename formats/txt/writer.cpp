@@ -215,7 +215,7 @@ void write_points_file(Lines& out, const fabric::PointsFile& points) {
 void write_helix(Lines& out, const fabric::Helix& helix) {
   out.line(1, "helix radius").value(helix.radius).word("pitch").value(helix.pitch);
   out.word("turns").value(helix.turns).word(helix.is_left ? "left" : "right");
-  if (helix.start != 0.0) out.word("start").value(helix.start);
+  if (helix.start != 0.0 || std::signbit(helix.start)) out.word("start").value(helix.start);
 }
 
 void write_item(Lines& out, const fabric::Yarn& yarn) {

@@ -26,14 +26,17 @@ struct Array {
   std::vector<TextPlace> places;
   std::size_t components = 1;
   TextPlace place;
-  [[nodiscard]] Vec3 vector(std::size_t i) const { return {values[3 * i], values[3 * i + 1], values[3 * i + 2]}; }
+  [[nodiscard]] Vec3 vector(std::size_t i) const {
+    return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  }
 };
 // By where they stand and their name: "PointData/radius".
 using Arrays = std::map<std::string, Array, std::less<>>;
 
 class Reader {
  public:
-  Reader(const Source& source, TextReport& report) : source_(source), report_(report), text_(source.bytes()) {}
+  Reader(const Source& source, TextReport& report)
+      : source_(source), report_(report), text_(source.bytes()) {}
 
   std::optional<Measured> read() {
     Measured measured;
@@ -96,9 +99,10 @@ class Reader {
 
   bool read_array() {
     if (attribute("format") != "ascii") {
-      refuse(tag_place_, fmt::format("the array {} has the format {}: only ascii is read (of ParaView's Data Mode: "
-                                     "Ascii)",
-                                     in_quotes(attribute("Name")), in_quotes(attribute("format"))));
+      refuse(tag_place_,
+             fmt::format("the array {} has the format {}: only ascii is read (of ParaView's Data Mode: "
+                         "Ascii)",
+                         in_quotes(attribute("Name")), in_quotes(attribute("format"))));
       return false;
     }
     Array array;
@@ -140,8 +144,8 @@ class Reader {
     if (array == nullptr) return nullptr;
     const std::size_t expected = components * (find("Points")->values.size() / 3);
     if (array->values.size() == expected) return array;
-    refuse(array->place, fmt::format("the array {} has {} numbers: {} are expected, {} a point", in_quotes(name),
-                                     array->values.size(), expected, components));
+    refuse(array->place, fmt::format("the array {} has {} numbers: {} are expected, {} a point",
+                                     in_quotes(name), array->values.size(), expected, components));
     return nullptr;
   }
 
@@ -163,16 +167,16 @@ class Reader {
 
   bool take_piece(Measured& measured) {
     const Array *const points = find("Points"), *const ids = find("Lines/connectivity"),
-                *const offsets = find("Lines/offsets");
+                       *const offsets = find("Lines/offsets");
     if (points == nullptr || ids == nullptr || offsets == nullptr)
       return refuse(tag_place_, "this piece has no Points, or no Lines with connectivity and offsets"), false;
     if (points->values.size() % 3 != 0)
       return refuse(points->place, "the numbers of the points are no triples"), false;
     const std::size_t count = points->values.size() / 3;
     const Array *const width = of_points("width"), *const height = of_points("height"),
-                *const radius = of_points("radius"), *const angle = of_points("angle"),
-                *const parameter = of_points("parameter"), *const speed = of_points("speed"),
-                *const tangent = of_points("tangent", 3), *const up = of_points("up", 3);
+                       *const radius = of_points("radius"), *const angle = of_points("angle"),
+                       *const parameter = of_points("parameter"), *const speed = of_points("speed"),
+                       *const tangent = of_points("tangent", 3), *const up = of_points("up", 3);
     if (report_.errors() > 0) return false;
     const std::vector<std::string> all_names = names();
     const Array* const roles = find("CellData/role");
@@ -190,22 +194,29 @@ class Reader {
         yarn.role = static_cast<fabric::Role>(static_cast<int>(roles->values[line]));
       for (; first < static_cast<std::size_t>(end); ++first) {
         const double id = ids->values[first];
-        if (!(id >= 0.0 && id < static_cast<double>(count)) || id != static_cast<double>(static_cast<std::size_t>(id)))
-          return refuse(ids->places[first], fmt::format("there is no point {:g}: the file has {}", id, count)), false;
+        if (!(id >= 0.0 && id < static_cast<double>(count)) ||
+            id != static_cast<double>(static_cast<std::size_t>(id)))
+          return refuse(ids->places[first],
+                        fmt::format("there is no point {:g}: the file has {}", id, count)),
+                 false;
         const auto i = static_cast<std::size_t>(id);
         yarn.points.push_back(points->vector(i));
         yarn.places.push_back(points->places[3 * i]);
         if (width != nullptr && height != nullptr)
           yarn.sizes.emplace_back(fabric::SizeAt{width->values[i], height->values[i], std::nullopt});
         else if (radius != nullptr)
-          yarn.sizes.emplace_back(fabric::SizeAt{2.0 * radius->values[i], 2.0 * radius->values[i], std::nullopt});
+          yarn.sizes.emplace_back(
+              fabric::SizeAt{2.0 * radius->values[i], 2.0 * radius->values[i], std::nullopt});
         if (!yarn.sizes.empty() && !(yarn.sizes.back()->width > 0.0 && yarn.sizes.back()->height > 0.0))
-          return refuse(yarn.places.back(), "the section's size at this point has to be larger than 0"), false;
+          return refuse(yarn.places.back(), "the section's size at this point has to be larger than 0"),
+                 false;
         if (!yarn.sizes.empty() && angle != nullptr) yarn.sizes.back()->angle = angle->values[i];
         if (parameter != nullptr && speed != nullptr && tangent != nullptr) {
-          if (!(speed->values[i] > 0.0) || (!yarn.parameters.empty() && parameter->values[i] <= yarn.parameters.back()))
-            return refuse(parameter->places[i],
-                          "points out of order: parameters increase along a line, and speeds are larger than 0"),
+          if (!(speed->values[i] > 0.0) ||
+              (!yarn.parameters.empty() && parameter->values[i] <= yarn.parameters.back()))
+            return refuse(
+                       parameter->places[i],
+                       "points out of order: parameters increase along a line, and speeds are larger than 0"),
                    false;
           yarn.parameters.push_back(parameter->values[i]);
           yarn.derivatives.push_back(speed->values[i] * tangent->vector(i));
@@ -213,7 +224,8 @@ class Reader {
         if (up != nullptr) yarn.ups.push_back(up->vector(i));
       }
       if (yarn.points.empty())
-        return refuse(offsets->places[line], fmt::format("the line of yarn {} has no point", in_quotes(yarn.name))),
+        return refuse(offsets->places[line],
+                      fmt::format("the line of yarn {} has no point", in_quotes(yarn.name))),
                false;
       measured.yarns.push_back(std::move(yarn));
     }

@@ -9,8 +9,8 @@
 
 namespace selvage::formats::vtp {
 
-// Errors, each at its place: what is no such file, binary data, missing arrays, values that are no numbers, arrays of
-// other lengths than the points.
+// Errors, each at its place: what is no such file, binary data, missing arrays, values that are no numbers,
+// arrays of other lengths than the points.
 std::optional<fabric::Measured> read_points(const Source& source, Diagnostics& diagnostics);
 
 }  // namespace selvage::formats::vtp

@@ -13,8 +13,8 @@ namespace selvage {
 struct CsvTable {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
-  int head_line = 0;       // of the names, from 1
-  std::vector<int> lines;  // where each row begins, from 1
+  int head_line = 0;                     // of the names, from 1
+  std::vector<int> lines;                // where each row begins, from 1
   std::vector<std::vector<int>> places;  // the bytes' number of the row at which each value begins, from 1
 };
 

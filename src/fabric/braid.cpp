@@ -76,8 +76,8 @@ class BraidConstruction : public Construction {
   }
 
   [[nodiscard]] std::uint64_t data_points() const override {
-    const double all =
-        points_of_a_braider() * static_cast<double>(braiders()) + points_of_an_axial() * static_cast<double>(axials());
+    const double all = points_of_a_braider() * static_cast<double>(braiders()) +
+                       points_of_an_axial() * static_cast<double>(axials());
     return static_cast<std::uint64_t>(std::min(all, most_points));
   }
   [[nodiscard]] std::uint64_t longest() const override {
@@ -213,7 +213,8 @@ class BraidConstruction : public Construction {
   [[nodiscard]] Status place_axial(YarnPlan& plan, std::int64_t index) const {
     const std::int64_t runs = run_count(shape_);
     const Run run = run_of(shape_, index * runs / braid_.axial_count);
-    if (mandrel_) return place_on_mandrel(plan, unit_at(run.first + run.last, 2 * std::int64_t{shape_.carriers}));
+    if (mandrel_)
+      return place_on_mandrel(plan, unit_at(run.first + run.last, 2 * std::int64_t{shape_.carriers}));
     for (const double along : {begin_, end_}) {
       if (shape_.flat) {
         plan.points.emplace_back(along, shape_.column * (run.middle() - 0.5 * shape_.carriers), 0.0);
@@ -321,9 +322,9 @@ BraidShape shape_of(const Braid& braid, const yarn::SectionSize& size) {
   return shape;
 }
 
-// The tube that the braid is like at a place of a mandrel, on the inside of its bend: the carriers turn at one rate
-// while the mandrel is drawn through at one speed, so that steps are equal along the axis, and the tangent of the angle
-// grows with the radius.
+// The tube that the braid is like at a place of a mandrel, on the inside of its bend: the carriers turn at
+// one rate while the mandrel is drawn through at one speed, so that steps are equal along the axis, and the
+// tangent of the angle grows with the radius.
 Braid tube_at(const Braid& braid, const Mandrel& mandrel, double s, bool inside) {
   Braid tube = braid;
   tube.radius = mandrel.radius(s);
@@ -372,7 +373,8 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
   // The tubes that the braid has to fit on: itself, or those of a mandrel from place to place.
   std::optional<Mandrel> mandrel;
   std::vector<Braid> tubes = {braid};
-  double inclination = 1.0;  // heights are away from the axis: across a wall that widens yarns are nearer by so much
+  double inclination =
+      1.0;  // heights are away from the axis: across a wall that widens yarns are nearer by so much
   if (!braid.mandrel.empty()) {
     Result<Mandrel> made = Mandrel::make(braid.mandrel, braid.radius_place);
     if (!made) return made.error();
@@ -398,13 +400,15 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
       return check_proportion(what, distance, size.width, fabric.units, braid.radius_place);
     };
     if (Status fits = check("a radius", tube.flat ? size.width : tube.radius); !fits) return fits.error();
-    if (Status fits = check("a width", tube.width > 0.0 ? tube.width : size.width); !fits) return fits.error();
+    if (Status fits = check("a width", tube.width > 0.0 ? tube.width : size.width); !fits)
+      return fits.error();
     if (Status fits = check_radius(tube, least + 0.5 * size.height, unit); !fits) return fits.error();
     if (Status fits = check_widths(tube, shape, size.width, unit); !fits) return fits.error();
     if (Status fits = check("the way from crossing to crossing, by the angle,", shape.step); !fits)
       return fits.error();
     gap = std::min(gap, fit_amplitude(shape, least, wanted, *outline, *axial_outline));
-    if (Status fits = check_radius(tube, shape.amplitude + 0.5 * size.height, unit); !fits) return fits.error();
+    if (Status fits = check_radius(tube, shape.amplitude + 0.5 * size.height, unit); !fits)
+      return fits.error();
     if (!all) {
       all = shape;
       continue;

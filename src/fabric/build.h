@@ -163,7 +163,7 @@ class YarnBuilder {
     std::string prefix;
   };
   std::vector<std::unique_ptr<Made>> constructions_;  // entries point to them
-  std::vector<std::unique_ptr<const Yarn>> drawn_;  // helices as paths; entries point to them
+  std::vector<std::unique_ptr<const Yarn>> drawn_;    // helices as paths; entries point to them
   std::vector<Entry> entries_;
   Work work_;
   // A yarn of a block, or of one within that: how it comes from where its own builder has it.

@@ -38,7 +38,8 @@ Yarn drawn_helix(const Yarn& yarn, double tolerance) {
   };
   for (double i = 0; i <= steps; ++i) {
     const double angle = start + turn * (i / steps);
-    path.points.emplace_back(helix.radius * std::cos(angle), helix.radius * std::sin(angle), rise * (i / steps));
+    path.points.emplace_back(helix.radius * std::cos(angle), helix.radius * std::sin(angle),
+                             rise * (i / steps));
   }
   Yarn drawn = yarn;
   if (!drawn.tangent_start) drawn.tangent_start = yarn::EndTangent(derivative(0.0), true);

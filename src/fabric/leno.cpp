@@ -57,8 +57,9 @@ double tightest_bend(const LenoShape& shape, bool is_doup, double height) {
   for (int i = 0; i <= looks; ++i) {
     const double t = 2.0 * i / looks;
     const Vec3 first = leno_point(shape, is_doup, t).derivative;
-    const Vec3 second = (leno_point(shape, is_doup, t + step).derivative - leno_point(shape, is_doup, t - step).derivative) /
-                        (2.0 * step);
+    const Vec3 second =
+        (leno_point(shape, is_doup, t + step).derivative - leno_point(shape, is_doup, t - step).derivative) /
+        (2.0 * step);
     tightest = std::max(tightest, 0.5 * height * first.cross(second).norm() / std::pow(first.norm(), 3));
   }
   return tightest;
@@ -74,7 +75,8 @@ double fit_leno(LenoShape& shape, double wanted, const LenoYarn& standing, const
   shape.side = 0.25 * (standing.width + doup.width);
   double gap = 0.0;
   for (int step = 0; step < most_steps; ++step) {
-    const SweptYarn over = swept_end(shape, true, doup.outline), under = swept_end(shape, false, standing.outline);
+    const SweptYarn over = swept_end(shape, true, doup.outline),
+                    under = swept_end(shape, false, standing.outline);
     const SweptYarn across = swept_pick(shape, pick.outline);
     const double reach = 2.0 * (doup.width + standing.width) + shape.side;
     const double above = least_gap(over, -0.5, 0.5, stations, across, 0.0, reach);

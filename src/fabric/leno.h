@@ -1,9 +1,10 @@
-// Leno: pairs of warps, a standing end and a doup end that crosses it between any two picks. The doup end passes over
-// every pick and below the standing end between them, which passes under every pick; picks are straight.
+// Leno: pairs of warps, a standing end and a doup end that crosses it between any two picks. The doup end
+// passes over every pick and below the standing end between them, which passes under every pick; picks are
+// straight.
 //
-// Half: the doup end goes from one side of the standing end to the other and at the next crossing back (gauze). Full:
-// it goes all round the standing end from pick to pick, always the same way. (Watson's Advanced Textile Design, chapter
-// on leno or cross weaving.)
+// Half: the doup end goes from one side of the standing end to the other and at the next crossing back
+// (gauze). Full: it goes all round the standing end from pick to pick, always the same way. (Watson's
+// Advanced Textile Design, chapter on leno or cross weaving.)
 #pragma once
 
 #include <vector>
@@ -20,7 +21,8 @@ struct LenoShape {
   double over = 0;      // height of the doup end's centre line on a pick
   double under = 0;     // depth of the standing end's below a pick
   double crossing = 0;  // depth of the doup end's half way between picks; the standing end's height there
-  double side = 0;      // of the doup end, at the most: half on each pick, full a quarter of the way to the next one
+  double side =
+      0;  // of the doup end, at the most: half on each pick, full a quarter of the way to the next one
 };
 
 struct LenoPoint {
@@ -37,8 +39,10 @@ struct LenoYarn {
 // Of the tightest bend of a warp, half its thickness to the radius: 1 and more fold.
 double tightest_bend(const LenoShape& shape, bool is_doup, double height);
 
-// The lowest heights and the smallest side at which the ends of a pair and the picks keep `wanted` apart, by samples on
-// the exact swept sections. Returns the gap that is left: less than `wanted` where there is no room for more.
-double fit_leno(LenoShape& shape, double wanted, const LenoYarn& standing, const LenoYarn& doup, const LenoYarn& pick);
+// The lowest heights and the smallest side at which the ends of a pair and the picks keep `wanted` apart, by
+// samples on the exact swept sections. Returns the gap that is left: less than `wanted` where there is no
+// room for more.
+double fit_leno(LenoShape& shape, double wanted, const LenoYarn& standing, const LenoYarn& doup,
+                const LenoYarn& pick);
 
 }  // namespace selvage::fabric

@@ -41,9 +41,10 @@ Result<Mandrel> Mandrel::make(const std::vector<MandrelRow>& rows, TextPlace pla
     mandrel.is_straight_ = mandrel.is_straight_ && curvature * mandrel.length() < 1e-9;
     if (curvature * radius >= 1.0)
       return error(Kind::geometry,
-                   fmt::format("the mandrel folds: {:.4g} along its axis that bends with a radius of {:.4g}, and the "
-                               "cloth's radius is {:.4g} there",
-                               s, 1.0 / curvature, radius))
+                   fmt::format(
+                       "the mandrel folds: {:.4g} along its axis that bends with a radius of {:.4g}, and the "
+                       "cloth's radius is {:.4g} there",
+                       s, 1.0 / curvature, radius))
           .placed(place);
   }
   return mandrel;
@@ -52,7 +53,8 @@ Result<Mandrel> Mandrel::make(const std::vector<MandrelRow>& rows, TextPlace pla
 // Newton's method from the nearest look.
 yarn::Frame Mandrel::frame_at(double s) const {
   s = std::clamp(s, 0.0, length());
-  const auto after = static_cast<std::size_t>(std::upper_bound(lengths_.begin(), lengths_.end(), s) - lengths_.begin());
+  const auto after =
+      static_cast<std::size_t>(std::upper_bound(lengths_.begin(), lengths_.end(), s) - lengths_.begin());
   const std::size_t k = std::clamp<std::size_t>(after, 1, lengths_.size() - 1);
   double t = parameters_[k - 1] +
              (s - lengths_[k - 1]) / (lengths_[k] - lengths_[k - 1]) * (parameters_[k] - parameters_[k - 1]);
@@ -78,7 +80,8 @@ Mandrel::Place Mandrel::carried(const Vec3& position, const Vec3& derivative, do
   const yarn::Frame frame = frame_at(s);
   const double here = this->radius(s) + distance - radius;
   const double climb = slope(s) * derivative.z() + way.dot(out), turn = way.dot(round) / distance;
-  const Vec3 away = out.x() * frame.across + out.y() * frame.up, sideways = round.x() * frame.across + round.y() * frame.up;
+  const Vec3 away = out.x() * frame.across + out.y() * frame.up,
+             sideways = round.x() * frame.across + round.y() * frame.up;
   const double shortened = 1.0 - here * away.dot(frame.tangent_dt / frame.speed);
   return {frame.position + here * away,
           derivative.z() * shortened * frame.tangent + climb * away + here * turn * sideways, away};

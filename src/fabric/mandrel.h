@@ -10,12 +10,12 @@
 
 namespace selvage::fabric {
 
-// The axis is the cubic through the rows (path chord), its frame turns about it as little as can be and begins as the
-// tube's about the z axis does; the radius is a monotone cubic of the axis's length.
+// The axis is the cubic through the rows (path chord), its frame turns about it as little as can be and
+// begins as the tube's about the z axis does; the radius is a monotone cubic of the axis's length.
 class Mandrel {
  public:
-  // At least two rows, neighbours differ. Error (geometry), at the place: an axis that bends more tightly than the
-  // radius there.
+  // At least two rows, neighbours differ. Error (geometry), at the place: an axis that bends more tightly
+  // than the radius there.
   static Result<Mandrel> make(const std::vector<MandrelRow>& rows, TextPlace place);
 
   [[nodiscard]] double length() const { return frames_.length(); }
@@ -24,15 +24,18 @@ class Mandrel {
   [[nodiscard]] Vec3 direction() const { return frames_.at(0.0).tangent; }
   // At a length s along the axis.
   [[nodiscard]] double radius(double s) const { return radius_.at(s / length()).value[0]; }
-  [[nodiscard]] double slope(double s) const { return radius_.at(s / length()).slope[0] / length(); }  // of the radius
+  [[nodiscard]] double slope(double s) const {
+    return radius_.at(s / length()).slope[0] / length();
+  }  // of the radius
   [[nodiscard]] double curvature(double s) const;
 
   struct Place {
     Vec3 position, derivative;
     Vec3 out;  // unit: away from the axis
   };
-  // What on a straight tube about z is `position` (z along the axis, its distance from z being `radius` and a height
-  // over it), with a derivative by some parameter, on this mandrel: as far along its axis, as high over its radius.
+  // What on a straight tube about z is `position` (z along the axis, its distance from z being `radius` and a
+  // height over it), with a derivative by some parameter, on this mandrel: as far along its axis, as high
+  // over its radius.
   [[nodiscard]] Place carried(const Vec3& position, const Vec3& derivative, double radius) const;
 
  private:

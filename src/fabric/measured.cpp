@@ -29,23 +29,43 @@ bool is_ring(const MeasuredYarn& measured) {
   return measured.points.size() > 3 && measured.points.front() == measured.points.back();
 }
 
+// What is no number by itself is told by the readers; products of two may be out of their range.
+Status check_numbers(const MeasuredYarn& measured) {
+  constexpr double most = 1e100;
+  const auto is_good = [](const Vec3& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() < most; };
+  for (std::size_t i = 0; i < measured.points.size(); ++i) {
+    const bool good = is_good(measured.points[i]) &&
+                      (measured.derivatives.empty() || is_good(measured.derivatives[i])) &&
+                      (measured.sizes.empty() || !measured.sizes[i] ||
+                       is_good(Vec3(measured.sizes[i]->width, measured.sizes[i]->height, 0.0)));
+    if (!good) return at_point(measured, i, "the numbers of this point are out of the range of yarns");
+    if (!measured.ups.empty() && !(is_good(measured.ups[i]) && measured.ups[i].squaredNorm() > 0.0))
+      return at_point(measured, i,
+                      "the thickness has no direction at this point: `up` is zero, or out of range");
+  }
+  return {};
+}
+
 Status check_line(const MeasuredYarn& measured, const std::optional<double>& noise) {
   const std::vector<Vec3>& p = measured.points;
   if (p.size() < 2)
-    return at_point(measured, 0, fmt::format("yarn '{}' has one point: a centre line has two at least", measured.name));
+    return at_point(measured, 0,
+                    fmt::format("yarn '{}' has one point: a centre line has two at least", measured.name));
   for (std::size_t i = 1; i < p.size(); ++i)
-    if (p[i] == p[i - 1]) return at_point(measured, i, "this point equals the one before it: leave one of them out");
+    if (p[i] == p[i - 1])
+      return at_point(measured, i, "this point equals the one before it: leave one of them out");
   const double sharpest = noise ? sharpest_noisy_turn : sharpest_turn;
   for (std::size_t i = 1; i + 1 < p.size(); ++i) {
     const Vec3 in = p[i] - p[i - 1], out = p[i + 1] - p[i];
     if (noise && std::min(in.norm(), out.norm()) <= 2.0 * *noise) continue;
     const double turn = std::atan2(in.cross(out).norm(), in.dot(out)) * 180.0 / pi;
     if (turn > sharpest)
-      return at_point(measured, i,
-                      fmt::format("the line of yarn '{}' doubles back on itself here, turning by {:.0f} degrees: its "
-                                  "points stand in the order of the yarn{}",
-                                  measured.name, turn,
-                                  noise ? "; what is noise is less than the error" : ", or give noise an `error`"));
+      return at_point(
+          measured, i,
+          fmt::format("the line of yarn '{}' doubles back on itself here, turning by {:.0f} degrees: its "
+                      "points stand in the order of the yarn{}",
+                      measured.name, turn,
+                      noise ? "; what is noise is less than the error" : ", or give noise an `error`"));
   }
   return {};
 }
@@ -188,6 +208,7 @@ Result<Yarn> line_of(const MeasuredYarn& measured, const std::optional<double>& 
 }  // namespace
 
 Result<Yarn> yarn_of(const MeasuredYarn& measured, const std::optional<double>& error, bool takes_size) {
+  if (Status good = check_numbers(measured); !good) return good.error();
   Yarn yarn;
   if (!measured.sections.empty()) {
     Result<Grid> grid = grid_of_outlines(measured);
@@ -218,10 +239,11 @@ Fabric fabric_of(const Measured& measured, const Source& source, Diagnostics& di
     }
     const auto* path = std::get_if<Path>(&yarn->shape);
     if (path != nullptr && points.sizes.empty()) {
-      report.error(spot_at(source, points.places.front()),
-                   fmt::format("nothing says how thick yarn {} is: add width and height, radius or diameter to its "
-                               "points, or name the file in a text whose yarn has a thread: points FILE",
-                               in_quotes(points.name)));
+      report.error(
+          spot_at(source, points.places.front()),
+          fmt::format("nothing says how thick yarn {} is: add width and height, radius or diameter to its "
+                      "points, or name the file in a text whose yarn has a thread: points FILE",
+                      in_quotes(points.name)));
       continue;
     }
     fabric.items.emplace_back(std::move(*yarn));

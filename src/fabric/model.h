@@ -137,8 +137,8 @@ struct Path {
   // apart.
   std::vector<bool> fixed;
   std::vector<int>
-      lines;  // source line of each row; empty when the rows stand on consecutive lines after `place`
-  double error = 0;           // smooth: how far rows may be from the centre line, file units
+      lines;         // source line of each row; empty when the rows stand on consecutive lines after `place`
+  double error = 0;  // smooth: how far rows may be from the centre line, file units
   std::vector<double> knots;  // control: of the clamped cubic, rows + 4; empty: uniform
 };
 
@@ -151,14 +151,13 @@ struct PointsFile {
   TextPlace place;
 };
 
-// Round the z axis, from z = 0 upwards (turns < 0 cannot be: left is said).
+// Round the z axis, from z = 0 upwards.
 struct Helix {
   TextPlace place;
   double radius = 0, pitch = 0;  // file units
   double turns = 0;
   bool is_left = false;
   double start = 0;  // angle from the x axis at z = 0, degrees
-  bool operator==(const Helix&) const = default;
 };
 
 // Control points of the surface itself. `closed_along`: the word `closed` of the grid, not that of the yarn.
@@ -222,13 +221,13 @@ struct Binder {
   std::vector<int> levels;  // at weft 1, 2, ...; how many layers of weft are below it; repeats
 };
 
-// Seersucker: warps in stripes, one group longer than the other, so that its stripes stand out of the cloth in waves.
+// Seersucker: warps in stripes, one group longer than the other, so that its stripes stand out of the cloth
+// in waves.
 struct Pucker {
   TextPlace place;
   int tight = 1, slack = 1;  // warps of each group, in turn
   double ratio = 1;          // of the slack warps' length to that of the tight ones, > 1
   int picks = 1;             // from wave to wave
-  bool operator==(const Pucker&) const = default;
 };
 
 struct Weave {
@@ -316,12 +315,12 @@ struct Braid {
   TextPlace thread_place;
   int carriers = 0;  // even on a tube
   TextPlace carriers_place;
-  int over = 1, under = 1;  // pattern 2/2
-  bool flat = false;        // a strip instead of a tube
-  double radius = 0;        // of a tube
+  int over = 1, under = 1;          // pattern 2/2
+  bool flat = false;                // a strip instead of a tube
+  double radius = 0;                // of a tube
   std::vector<MandrelRow> mandrel;  // of a tube, instead of radius and length: its axis goes through them
-  double width = 0;         // of a strip; 0: what its yarns need
-  TextPlace radius_place;   // of `radius` or `flat`
+  double width = 0;                 // of a strip; 0: what its yarns need
+  TextPlace radius_place;           // of `radius` or `flat`
   double angle = 0 /* degrees */, length = 0;
   std::string axial_thread;
   TextPlace axial_place;

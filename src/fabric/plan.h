@@ -92,8 +92,8 @@ Result<YarnPlan> start_plan(const Fabric& fabric, const Thread& thread, std::str
 // yarn::make_centre_line.
 Status interpolate(YarnPlan& plan, yarn::PathForm form, const Vec3& tangent_start, const Vec3& tangent_end);
 
-// Sections whose thickness points as these directions say, one at each parameter of the centre line, as near as its
-// tangent lets them. Errors: as yarn::FrameField::make.
+// Sections whose thickness points as these directions say, one at each parameter of the centre line, as near
+// as its tangent lets them. Errors: as yarn::FrameField::make.
 Status hold_up(YarnPlan& plan, const std::vector<Vec3>& ups);
 
 }  // namespace selvage::fabric

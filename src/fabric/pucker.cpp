@@ -29,7 +29,8 @@ double PuckerShape::height(const Vec3& flat) const {
 Vec3 PuckerShape::normal(const Vec3& flat) const {
   const double turn = 2.0 * pi * flat.x() / wave;
   const Window across = window(flat.y());
-  return Vec3(amplitude * 2.0 * pi / wave * std::sin(turn) * across.value, -amplitude * std::cos(turn) * across.slope, 1.0)
+  return Vec3(amplitude * 2.0 * pi / wave * std::sin(turn) * across.value,
+              -amplitude * std::cos(turn) * across.slope, 1.0)
       .normalized();
 }
 

@@ -5,9 +5,9 @@
 
 namespace selvage::fabric {
 
-// The cloth's middle surface z = amplitude cos(2 pi x / wave) sin^2(pi u) over a stripe of slack warps, u from 0 at the
-// last tight warp before it to 1 at the first one after it; 0 elsewhere. Warps lie at (i + 1/2) pitch, i from 0, in
-// every period tight ones first. Lengths in file units.
+// The cloth's middle surface z = amplitude cos(2 pi x / wave) sin^2(pi u) over a stripe of slack warps, u
+// from 0 at the last tight warp before it to 1 at the first one after it; 0 elsewhere. Warps lie at (i + 1/2)
+// pitch, i from 0, in every period tight ones first. Lengths in file units.
 struct PuckerShape {
   double wave = 1, amplitude = 0;
   double lift = 1;  // of heights over the middle surface: yarns that cross askew need more room
@@ -15,7 +15,9 @@ struct PuckerShape {
   int tight = 1, slack = 1;
 
   // A place of the flat cloth, z over its middle surface, on the puckered one: as far along its normal.
-  [[nodiscard]] Vec3 carried(const Vec3& flat) const { return Vec3(flat.x(), flat.y(), height(flat)) + lift * flat.z() * normal(flat); }
+  [[nodiscard]] Vec3 carried(const Vec3& flat) const {
+    return Vec3(flat.x(), flat.y(), height(flat)) + lift * flat.z() * normal(flat);
+  }
   [[nodiscard]] Vec3 normal(const Vec3& flat) const;
   [[nodiscard]] bool is_slack(long long warp) const;
   // The largest curvature of the surface, at most.

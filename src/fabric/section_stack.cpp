@@ -63,7 +63,8 @@ std::vector<Vec3> aligned(const std::vector<Vec3>& before, std::vector<Vec3> out
   return best;
 }
 
-// Rows of control points of the closed uniform quadratic that goes through these rows in the middle of its spans.
+// Rows of control points of the closed uniform quadratic that goes through these rows in the middle of its
+// spans.
 Eigen::MatrixXd quadratic_round(Eigen::Index count, const Eigen::MatrixXd& data) {
   Eigen::MatrixXd blend = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -81,7 +82,8 @@ Result<Grid> grid_of_outlines(const MeasuredYarn& measured) {
     return error(Kind::malformed, std::move(text)).placed(measured.places[point]).of_yarn(measured.name);
   };
   const std::size_t sections = measured.sections.size();
-  if (sections < 2) return refuse(0, fmt::format("yarn '{}' has one section: a yarn has two at least", measured.name));
+  if (sections < 2)
+    return refuse(0, fmt::format("yarn '{}' has one section: a yarn has two at least", measured.name));
   std::vector<std::vector<Vec3>> outlines;
   std::size_t count = fewest_round;
   for (std::size_t k = 0; k < sections; ++k) {
@@ -89,8 +91,8 @@ Result<Grid> grid_of_outlines(const MeasuredYarn& measured) {
     std::size_t last = k + 1 < sections ? measured.sections[k + 1] : measured.points.size();
     if (last - first > 3 && measured.points[first] == measured.points[last - 1]) --last;  // closed by hand
     if (last - first < 3)
-      return refuse(first, fmt::format("section {} of yarn '{}' has {} points: an outline has three at least", k + 1,
-                                       measured.name, last - first));
+      return refuse(first, fmt::format("section {} of yarn '{}' has {} points: an outline has three at least",
+                                       k + 1, measured.name, last - first));
     for (std::size_t i = first; i < last; ++i)
       if (measured.points[i] == measured.points[i + 1 < last ? i + 1 : first])
         return refuse(i, "this point of the outline equals the one after it");
@@ -133,7 +135,8 @@ Result<Grid> grid_of_outlines(const MeasuredYarn& measured) {
   if (control.rows() == 4) grid.degree_along = 3;
   grid.knots_along = nurbs::clamped_knots(along);
   for (Eigen::Index k = 0; k < control.rows(); ++k)
-    for (Eigen::Index i = 0; i < columns; ++i) grid.points.emplace_back(control.block(k, 3 * i, 1, 3).transpose());
+    for (Eigen::Index i = 0; i < columns; ++i)
+      grid.points.emplace_back(control.block(k, 3 * i, 1, 3).transpose());
   return grid;
 }
 

@@ -45,21 +45,25 @@ Status WeaveConstruction::prepare_leno() {
   const std::string_view unit = name_of(fabric_.units);
   const auto fits = [&] {
     return fit_leno(shape, clearance_, standing, doup, pick) >= 0.5 * clearance_ &&
-           tightest_bend(shape, false, standing.height) < most_warp_bend && tightest_bend(shape, true, doup.height) < most_warp_bend;
+           tightest_bend(shape, false, standing.height) < most_warp_bend &&
+           tightest_bend(shape, true, doup.height) < most_warp_bend;
   };
   if (!fits()) {
     for (int step = 0; step < most_pitches && !fits(); ++step) shape.pick *= pick_growth;
     return error(Kind::geometry,
-                 fmt::format("the ends of a pair have no room to cross between picks {:.4g} {} apart: they pass each "
-                             "other, and bend no more tightly than they are thick, at a pitch of {:.4g} {} or more",
-                             weft_.text->pitch, unit, shape.pick, unit))
+                 fmt::format(
+                     "the ends of a pair have no room to cross between picks {:.4g} {} apart: they pass each "
+                     "other, and bend no more tightly than they are thick, at a pitch of {:.4g} {} or more",
+                     weft_.text->pitch, unit, shape.pick, unit))
         .placed(weft_.text->place);
   }
-  const double room = 2.0 * warp_.text->pitch, needed = shape.side + 0.5 * (standing.width + doup.width) + clearance_;
+  const double room = 2.0 * warp_.text->pitch,
+               needed = shape.side + 0.5 * (standing.width + doup.width) + clearance_;
   if (room < needed)
-    return error(Kind::geometry, fmt::format("pairs of warps have no room beside each other: at a pitch of {:.4g} {} a "
-                                             "pair has {:.4g}, and needs {:.4g}; the pitch has to be {:.4g} {} at least",
-                                             warp_.text->pitch, unit, room, needed, 0.5 * needed, unit))
+    return error(Kind::geometry,
+                 fmt::format("pairs of warps have no room beside each other: at a pitch of {:.4g} {} a "
+                             "pair has {:.4g}, and needs {:.4g}; the pitch has to be {:.4g} {} at least",
+                             warp_.text->pitch, unit, room, needed, 0.5 * needed, unit))
         .placed(warp_.text->place);
   leno_ = shape;
   add_block(Block::Kind::warp, 0, 0, row_of(warp_));

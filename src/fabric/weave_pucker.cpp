@@ -18,7 +18,8 @@ namespace {
 constexpr int looks_a_span = 8, looks_a_wave = 48;
 // Of half the cloth's thickness to the surface's least radius: beyond, yarns inside a bend have no room.
 constexpr double most_surface_bend = 0.8;
-// Heights over the middle surface are raised by these steps until yarns that cross keep three quarters of the clearance.
+// Heights over the middle surface are raised by these steps until yarns that cross keep three quarters of the
+// clearance.
 constexpr double lift_step = 1.01, highest_lift = 1.3, least_share = 0.75;
 constexpr double steepest = 1.5;  // amplitude by a quarter of a wave, where looking for it ends
 
@@ -27,7 +28,8 @@ std::vector<double> places_on(const nurbs::Curve& line, double length, double wa
   std::vector<double> places = {breaks.front()};
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
     const double share = (breaks[k + 1] - breaks[k]) / (breaks.back() - breaks.front());
-    const int looks = std::max(looks_a_span, static_cast<int>(std::ceil(share * length / wave * looks_a_wave)));
+    const int looks =
+        std::max(looks_a_span, static_cast<int>(std::ceil(share * length / wave * looks_a_wave)));
     for (int i = 1; i <= looks; ++i)
       places.push_back(i == looks ? breaks[k + 1] : breaks[k] + (breaks[k + 1] - breaks[k]) * i / looks);
   }
@@ -75,18 +77,21 @@ Result<double> WeaveConstruction::puckered_gap() const {
   double least = std::numeric_limits<double>::infinity();
   // The tight warps on both sides of the stripe, too, where the picks bend.
   for (int i = -1; i <= pucker_->slack && pucker_->tight + i < warp_.text->count; ++i) {
-    const Result<YarnPlan> warp = plan(warps.first + static_cast<std::size_t>(pucker_->tight + i - warps.begin));
+    const Result<YarnPlan> warp =
+        plan(warps.first + static_cast<std::size_t>(pucker_->tight + i - warps.begin));
     if (!warp) return warp.error();
     const SweptYarn along = swept_plan(*warp, *pucker_);
     const double y = warp_.at(pucker_->tight + i);
     for (int j = 0; j < picks; ++j) {
       const double x = weft_.at(j);
-      const double from = parameter_near(*warp, 0, x - 0.5 * pitch_x), to = parameter_near(*warp, 0, x + 0.5 * pitch_x);
+      const double from = parameter_near(*warp, 0, x - 0.5 * pitch_x),
+                   to = parameter_near(*warp, 0, x + 0.5 * pitch_x);
       const YarnPlan& weft = across[static_cast<std::size_t>(j)];
       const double near = parameter_near(weft, 1, y);
       const double reach = parameter_near(weft, 1, y + pitch_y) - parameter_near(weft, 1, y - pitch_y);
       const SweptYarn other = swept_plan(weft, *pucker_);
-      const double low = parameter_near(weft, 1, y - 0.5 * pitch_y), high = parameter_near(weft, 1, y + 0.5 * pitch_y);
+      const double low = parameter_near(weft, 1, y - 0.5 * pitch_y),
+                   high = parameter_near(weft, 1, y + 0.5 * pitch_y);
       least = std::min({least, least_gap(along, from, to, stations, other, near, reach),
                         least_gap(other, low, high, stations, along, 0.5 * (from + to), to - from)});
     }
@@ -99,7 +104,8 @@ Status WeaveConstruction::pucker(YarnPlan& plan) const {
   tell_from_origin(plan);
   const nurbs::Curve flat = plan.line.curve;
   const auto extent = (flat.points.back() - flat.points.front()).norm();
-  std::vector<double> places = places_on(flat, extent, std::min(pucker_->wave, (pucker_->slack + 1) * pucker_->pitch));
+  std::vector<double> places =
+      places_on(flat, extent, std::min(pucker_->wave, (pucker_->slack + 1) * pucker_->pitch));
   std::vector<Vec3> points, ups;
   for (const double t : places) {
     const Vec3 place = nurbs::evaluate(flat, t);
@@ -108,11 +114,13 @@ Status WeaveConstruction::pucker(YarnPlan& plan) const {
   }
   const auto derivative = [&](double t, double towards) {
     const double step = 1e-5 * (towards - t);
-    const Vec3 a = pucker_->carried(nurbs::evaluate(flat, t)), b = pucker_->carried(nurbs::evaluate(flat, t + step)),
+    const Vec3 a = pucker_->carried(nurbs::evaluate(flat, t)),
+               b = pucker_->carried(nurbs::evaluate(flat, t + step)),
                c = pucker_->carried(nurbs::evaluate(flat, t + 2.0 * step));
     return Vec3((4.0 * b - 3.0 * a - c) / (2.0 * step));
   };
-  const Vec3 first = derivative(places.front(), places[1]), last = derivative(places.back(), places[places.size() - 2]);
+  const Vec3 first = derivative(places.front(), places[1]),
+             last = derivative(places.back(), places[places.size() - 2]);
   plan.points = points;
   plan.line.curve = nurbs::interpolate(points, places, first, last);
   plan.line.parameters = std::move(places);
@@ -128,8 +136,8 @@ Status WeaveConstruction::prepare_pucker(Diagnostics& diagnostics) {
   shape.tight = text.tight;
   shape.slack = text.slack;
   if (text.tight + text.slack > warp_.text->count)
-    return error(Kind::geometry, fmt::format("{} tight and {} slack warps are more than the {} of this weave", text.tight,
-                                             text.slack, warp_.text->count))
+    return error(Kind::geometry, fmt::format("{} tight and {} slack warps are more than the {} of this weave",
+                                             text.tight, text.slack, warp_.text->count))
         .placed(text.place);
   std::vector<std::vector<Vec3>> flat;  // the slack warps of the first stripe, as polygons
   const Block& warps = blocks_.front();
@@ -166,10 +174,12 @@ Status WeaveConstruction::prepare_pucker(Diagnostics& diagnostics) {
   const double half = 0.5 * thickness_of(warp_, weft_, heights_);
   const auto refuse = [&] {
     return error(Kind::geometry,
-                 fmt::format("waves of {} picks with {} slack warps bend more tightly than the cloth is thick when these "
-                             "are {:.4g} times as long: more picks from wave to wave, more slack warps, or a smaller "
-                             "ratio give room",
-                             text.picks, text.slack, text.ratio))
+                 fmt::format(
+                     "waves of {} picks with {} slack warps bend more tightly than the cloth is thick when "
+                     "these "
+                     "are {:.4g} times as long: more picks from wave to wave, more slack warps, or a smaller "
+                     "ratio give room",
+                     text.picks, text.slack, text.ratio))
         .placed(text.place);
   };
   double gap = 0.0;
@@ -189,11 +199,13 @@ Status WeaveConstruction::prepare_pucker(Diagnostics& diagnostics) {
     if (gap >= least_share * clearance_) break;
   }
   if (gap < least_share * clearance_) return refuse();
-  diagnostics.add(note(Kind::geometry,
-                       fmt::format("the slack warps are {:.4g} times as long as they would be flat, those in the middle "
-                                   "of a stripe {:.4g} times, at its edges {:.4g}; waves stand {:.3g} {} out of the cloth",
-                                   text.ratio, longest, shortest, shape.amplitude, name_of(fabric_.units)))
-                      .placed(text.place, fabric_.file));
+  diagnostics.add(
+      note(
+          Kind::geometry,
+          fmt::format("the slack warps are {:.4g} times as long as they would be flat, those in the middle "
+                      "of a stripe {:.4g} times, at its edges {:.4g}; waves stand {:.3g} {} out of the cloth",
+                      text.ratio, longest, shortest, shape.amplitude, name_of(fabric_.units)))
+          .placed(text.place, fabric_.file));
   return {};
 }
 

@@ -162,7 +162,8 @@ Result<yarn::TubeSpec> tube_spec_of(const Fabric& fabric, const Yarn& yarn, cons
     spec.sizes.push_back({row_parameters[i], sizes[i], angle_at(path, i)});
     if (path.sizes.empty()) break;  // one size for the whole yarn
   }
-  if (path.form == yarn::PathForm::smooth) spec.sizes = yarn::sparse_sizes(spec.sizes, path.error, yarn.closed);
+  if (path.form == yarn::PathForm::smooth)
+    spec.sizes = yarn::sparse_sizes(spec.sizes, path.error, yarn.closed);
   spec.guide = yarn::FrameGuide::free_from(yarn.up);
   spec.twist = section_twist(thread, fabric.units);
   return spec;

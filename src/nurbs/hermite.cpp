@@ -31,7 +31,9 @@ struct HermitePiece {
     return 3.0 / length() * (r * r * (b[1] - b[0]) + 2.0 * r * s * (b[2] - b[1]) + s * s * (b[3] - b[2]));
   }
   // Second derivatives at both ends.
-  [[nodiscard]] Vec3 bend_at_start() const { return 6.0 / (length() * length()) * (b[0] - 2.0 * b[1] + b[2]); }
+  [[nodiscard]] Vec3 bend_at_start() const {
+    return 6.0 / (length() * length()) * (b[0] - 2.0 * b[1] + b[2]);
+  }
   [[nodiscard]] Vec3 bend_at_end() const { return 6.0 / (length() * length()) * (b[1] - 2.0 * b[2] + b[3]); }
 };
 
@@ -45,7 +47,9 @@ Curve through_derivatives(const std::vector<double>& t, const std::vector<Vec3>&
   const auto piece_of = [&](std::size_t i, std::size_t k) {
     const double third = (t[k] - t[i]) / 3.0;
     return HermitePiece{
-        t[i], t[k], {points[i], points[i] + third * derivatives[i], points[k] - third * derivatives[k], points[k]}};
+        t[i],
+        t[k],
+        {points[i], points[i] + third * derivatives[i], points[k] - third * derivatives[k], points[k]}};
   };
   const auto holds_between = [&](const HermitePiece& piece, std::size_t i, std::size_t k) {
     for (std::size_t m = i + 1; m < k; ++m) {
@@ -80,8 +84,8 @@ Curve through_derivatives(const std::vector<double>& t, const std::vector<Vec3>&
   }
   curve.knots.insert(curve.knots.end(), 4, t.back());
   piece_at.resize(curve.knots.size(), pieces.size() - 1);
-  // A control point is the polar form of any span that it holds at the three knots inside; of the two in the middle
-  // the longer one is the most exact.
+  // A control point is the polar form of any span that it holds at the three knots inside; of the two in the
+  // middle the longer one is the most exact.
   for (std::size_t i = 0; i + 4 < curve.knots.size(); ++i) {
     const double u = curve.knots[i + 1], v = curve.knots[i + 2], w = curve.knots[i + 3];
     std::size_t span = v - u >= w - v ? i + 1 : i + 2;

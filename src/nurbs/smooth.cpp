@@ -20,7 +20,7 @@ constexpr double stiffness = 1e-9;
 // Rounds of solving and of looking for the nearest parameters.
 constexpr int rounds = 4;
 // Knots are taken away again one by one, as long as that costs no more than so many points looked at.
-constexpr double most_looks = 2e7;
+constexpr double most_looks = 5e6;
 
 // The spans' ends, 0 to 1, and what follows from them.
 class Basis {
@@ -36,7 +36,9 @@ class Basis {
   [[nodiscard]] std::size_t unknowns() const { return closed_ ? spans_ : spans_ + cubic; }
   [[nodiscard]] int count() const { return static_cast<int>(spans_) + cubic; }
   [[nodiscard]] const std::vector<double>& knots() const { return knots_; }
-  [[nodiscard]] std::size_t unknown(int control) const { return static_cast<std::size_t>(control) % unknowns(); }
+  [[nodiscard]] std::size_t unknown(int control) const {
+    return static_cast<std::size_t>(control) % unknowns();
+  }
 
  private:
   std::size_t spans_;

@@ -31,7 +31,8 @@ struct PathRows {
   // polyline: half the section's size in the plane of the bend at row i; corners are rounded by an arc
   // of 1.05 times it.
   std::vector<double> half_sizes;
-  // control: rows + 4 knots, clamped (closed: of the clamped form, whose last row is its first); empty: uniform.
+  // control: rows + 4 knots, clamped (closed: of the clamped form, whose last row is its first); empty:
+  // uniform.
   std::vector<double> knots;
   double error = 0;  // smooth: > 0, how far a row may be from the line
 };
@@ -39,19 +40,20 @@ struct PathRows {
 struct CentreLine {
   nurbs::Curve curve;  // over [0, 1], C1; closed: the first point equals the last, to the bit
   bool closed = false;
-  std::vector<double>
-      parameters;  // one a row: where it is met, comes nearest (loop, smooth), or has its largest share (control)
-  double largest_miss = 0;  // loop, smooth: the largest distance of the curve from a row's point; 0 for the others
+  std::vector<double> parameters;  // one a row: where it is met, comes nearest (loop, smooth), or has its
+                                   // largest share (control)
+  double largest_miss =
+      0;  // loop, smooth: the largest distance of the curve from a row's point; 0 for the others
   bool operator==(const CentreLine&) const = default;
 };
 
 // uniform, chord, centripetal: the cubic through the rows (nurbs/interpolate.h). control: the rows are
 // control points of the clamped uniform cubic (degree rows - 1 below four rows; closed: the periodic one).
-// smooth: the least squares cubic within the error of the rows (nurbs/smooth.h), through them (chord) where they
-// are too few for that. loop: ../shared/references 000. polyline: segments and arcs, exact as a rational quadratic. Errors
-// (geometry): equal neighbouring points, a closed path of fewer than three points, polyline corners with no
-// room for their arc or that turn back by more than 150 degrees; the message's place.line holds the index
-// (from 1) of the row concerned.
+// smooth: the least squares cubic within the error of the rows (nurbs/smooth.h), through them (chord) where
+// they are too few for that. loop: ../shared/references 000. polyline: segments and arcs, exact as a rational
+// quadratic. Errors (geometry): equal neighbouring points, a closed path of fewer than three points, polyline
+// corners with no room for their arc or that turn back by more than 150 degrees; the message's place.line
+// holds the index (from 1) of the row concerned.
 Result<CentreLine> make_centre_line(const PathRows& rows);
 
 // The control points of a loop path: two for every row, on the line through it parallel to the chord of its

@@ -32,14 +32,16 @@ SizeAtParameter middle_of(const std::vector<SizeAtParameter>& sizes) {
     return 0.5 * (value(*low) + value(*high));
   };
   return {sizes.front().parameter,
-          {middle([](const auto& s) { return s.size.width; }), middle([](const auto& s) { return s.size.height; })},
+          {middle([](const auto& s) { return s.size.width; }),
+           middle([](const auto& s) { return s.size.height; })},
           middle([](const auto& s) { return s.angle; })};
 }
 
 }  // namespace
 
 // Between the two ends, and then always the size in each gap that is farthest off.
-std::vector<SizeAtParameter> sparse_sizes(const std::vector<SizeAtParameter>& sizes, double error, bool closed) {
+std::vector<SizeAtParameter> sparse_sizes(const std::vector<SizeAtParameter>& sizes, double error,
+                                          bool closed) {
   std::vector<SizeAtParameter> all;
   for (const SizeAtParameter& size : sizes)
     if (all.empty() || size.parameter > all.back().parameter) all.push_back(size);

@@ -33,9 +33,10 @@ struct SizeAtParameter {
   bool operator==(const SizeAtParameter&) const = default;
 };
 
-// As few of these sizes as give all others within `error` (file units; angles by what they move of the section's
-// half size), by the profile through them. Parameters that do not increase are left out.
-std::vector<SizeAtParameter> sparse_sizes(const std::vector<SizeAtParameter>& sizes, double error, bool closed);
+// As few of these sizes as give all others within `error` (file units; angles by what they move of the
+// section's half size), by the profile through them. Parameters that do not increase are left out.
+std::vector<SizeAtParameter> sparse_sizes(const std::vector<SizeAtParameter>& sizes, double error,
+                                          bool closed);
 
 struct TubeSpec {
   Section section;

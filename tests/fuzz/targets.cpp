@@ -51,7 +51,9 @@ void run_reader(const Descriptor& format, std::string_view bytes) {
   if (format.part_mark != nullptr) static_cast<void>(format.part_mark(head));
   Diagnostics diagnostics;
   // A rule of every reader: nothing comes back exactly when there was an error.
-  const auto reads = [&](auto* reader) { return reader != nullptr && reader(source, diagnostics).has_value(); };
+  const auto reads = [&](auto* reader) {
+    return reader != nullptr && reader(source, diagnostics).has_value();
+  };
   const bool has_read = reads(format.read_fabric) || reads(format.read_model) || reads(format.read_points);
   if (has_read == diagnostics.has_errors()) std::abort();
   // What takes as long as reading and is the same for most inputs: one in four has it done.

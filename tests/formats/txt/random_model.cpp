@@ -204,9 +204,7 @@ class Maker {
     maybe(points.error, [&] { return positive(); });
     return points;
   }
-  Helix helix() {
-    return {{}, positive(), positive(), positive(), coin(), coin() ? number() : 0.0};
-  }
+  Helix helix() { return {{}, positive(), positive(), positive(), coin(), coin() ? number() : 0.0}; }
   Outline outline() {
     Outline outline;
     outline.name = new_name();
@@ -381,13 +379,14 @@ class Maker {
           maybe(weave.crimp, [&] { return up_to(8) / 8.0; });
           maybe(weave.spacing, [&] { return static_cast<Weave::Spacing>(up_to(1)); });
           if (!weave.profile) maybe(weave.thickness, [&] { return (1 + up_to(8)) / 8.0; });
-          if (!weave.layers) maybe(weave.pucker, [&] { return Pucker{{}, count(), count(), 1.25, 1 + count()}; });
+          if (!weave.layers)
+            maybe(weave.pucker, [&] { return Pucker{{}, count(), count(), 1.25, 1 + count()}; });
           if (weave.draft.form == Draft::Form::leno) {
             Weave leno;
             leno.warp = weave.warp;
             leno.weft = weave.weft;
             leno.draft = weave.draft;
-            leno.warp.count *= 2;
+            leno.warp.count = 2 * (1 + up_to(100));
             return leno;
           }
         }

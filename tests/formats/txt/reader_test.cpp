@@ -245,8 +245,9 @@ TEST(Reader, SmoothPathsPointsAndHelices) {
   const Path smooth = path_of(good("fabric 1\nyarn y\npath smooth 0.02\n0 0 0\n1 0 0\nend\nend"));
   EXPECT_EQ(smooth.form, yarn::PathForm::smooth);
   EXPECT_EQ(smooth.error, 0.02);
-  const Path knots = path_of(
-      good("fabric 1\nyarn y\npath control\nknots 0 0 0 0 2 5 5 5 5\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n4 1 0\nend\nend"));
+  const Path knots =
+      path_of(good("fabric 1\nyarn y\npath control\nknots 0 0 0 0 2 5 5 5 5\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n4 1 "
+                   "0\nend\nend"));
   EXPECT_EQ(knots.knots, (std::vector<double>{0, 0, 0, 0, 2, 5, 5, 5, 5}));
   const Fabric fabric = good(
       "fabric 1\nunits mm\nyarn a\npoints \"my scan.csv\" yarn \"tow 1\" error 0.1\nend\n"
@@ -266,15 +267,20 @@ TEST(Reader, SmoothPathsPointsAndHelices) {
 
 TEST(Reader, LenosPuckersAndMandrels) {
   const std::string head = "fabric 1\nthread t\n diameter 0.2\nend\n";
-  const Fabric fabric = good(head +
-                             "weave\nwarp t 4 pitch 1\nweft t 4 pitch 1\ndraft leno full\nend\n"
-                             "weave\nwarp t 4 pitch 1\nweft t 4 pitch 1\ndraft plain\n"
-                             "pucker tight 3 slack 5 ratio 1.1 every 6\nend\n"
-                             "braid\nthread t\ncarriers 8\npattern 1/1\nangle 30\nmandrel\n0 0 0 2\n0 0 9 3\nend\nend");
+  const Fabric fabric =
+      good(head +
+           "weave\nwarp t 4 pitch 1\nweft t 4 pitch 1\ndraft leno full\nend\n"
+           "weave\nwarp t 4 pitch 1\nweft t 4 pitch 1\ndraft plain\n"
+           "pucker tight 3 slack 5 ratio 1.1 every 6\nend\n"
+           "braid\nthread t\ncarriers 8\npattern 1/1\nangle 30\nmandrel\n0 0 0 2\n0 0 9 3\nend\nend");
   EXPECT_EQ(item<Weave>(fabric, 0).draft.form, Draft::Form::leno);
   EXPECT_TRUE(item<Weave>(fabric, 0).draft.full_turns);
-  const Pucker wanted{item<Weave>(fabric, 1).pucker->place, 3, 5, 1.1, 6};
-  EXPECT_EQ(item<Weave>(fabric, 1).pucker, wanted);
+  const std::optional<Pucker>& pucker = item<Weave>(fabric, 1).pucker;
+  ASSERT_TRUE(pucker.has_value());
+  EXPECT_EQ(pucker->tight, 3);
+  EXPECT_EQ(pucker->slack, 5);
+  EXPECT_EQ(pucker->ratio, 1.1);
+  EXPECT_EQ(pucker->picks, 6);
   const Braid& braid = item<Braid>(fabric, 2);
   ASSERT_EQ(braid.mandrel.size(), 2U);
   EXPECT_EQ(braid.mandrel[1].axis, Vec3(0, 0, 9));

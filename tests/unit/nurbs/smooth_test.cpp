@@ -34,8 +34,9 @@ TEST(Smooth, KeepsTheErrorWithFewKnots) {
     ASSERT_TRUE(smoothed.has_value()) << error;
     EXPECT_LE(smoothed->farthest, error);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      EXPECT_LE((evaluate(smoothed->curve, smoothed->parameters[i]) - points[i]).norm(), error * (1.0 + 1e-9));
-      if (i > 0) EXPECT_GE(smoothed->parameters[i], smoothed->parameters[i - 1]);
+      EXPECT_LE((evaluate(smoothed->curve, smoothed->parameters[i]) - points[i]).norm(),
+                error * (1.0 + 1e-9));
+      EXPECT_GE(smoothed->parameters[i], i > 0 ? smoothed->parameters[i - 1] : 0.0);
     }
     EXPECT_EQ(smoothed->parameters.front(), 0.0);
     EXPECT_EQ(smoothed->parameters.back(), 1.0);
@@ -71,8 +72,8 @@ TEST(Smooth, RingsClose) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> off(-0.01, 0.01);
   for (int i = 0; i < 100; ++i)
-    points.emplace_back(2.0 * std::cos(2.0 * pi * i / 100) + off(random), std::sin(2.0 * pi * i / 100) + off(random),
-                        off(random));
+    points.emplace_back(2.0 * std::cos(2.0 * pi * i / 100) + off(random),
+                        std::sin(2.0 * pi * i / 100) + off(random), off(random));
   const std::optional<Smoothed> smoothed = smooth(points, 0.04, true);
   ASSERT_TRUE(smoothed.has_value());
   const CurveJet first = evaluate_jet(smoothed->curve, 0.0), last = evaluate_jet(smoothed->curve, 1.0);
