@@ -122,8 +122,9 @@ end
         """The ratio of lengths, of the stripe's warps to the tight ones; picks stay."""
         for ratio, slack, every in ((1.08, 8, 16), (1.03, 6, 12), (1.2, 12, 24)):
             text = (SAMPLES / "weave_seersucker.txt").read_text()
-            text = text.replace("slack 8 ratio 1.08 every 16", f"slack {slack} ratio {ratio} every {every}")
-            text = text.replace("5tight,8slack 18", f"5tight,{slack}slack {10 + slack}").replace("tight 32", f"tight {2 * every}")
+            text = text.replace("tight 3 slack 6 ratio 1.08 every 12", f"tight 5 slack {slack} ratio {ratio} every {every}")
+            text = text.replace("3tight,6slack 12", f"5tight,{slack}slack {10 + slack}")
+            text = text.replace("weft   tight 12", f"weft tight {2 * every}")
             lines = self.lines_of(text)
             self.sound(self.folder / "cloth.txt")
             count = 10 + slack

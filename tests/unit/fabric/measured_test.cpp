@@ -46,7 +46,7 @@ TEST(Measured, PointsOutOfOrderAreToldAtTheirPlace) {
   EXPECT_EQ(swapped.error().place.line, 3);
   // Noise doubles back, too: less than the error it is none.
   const MeasuredYarn noisy =
-      line_of({Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.49, 0.01, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)});
+      line_of({Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.49, 0.002, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)});
   EXPECT_FALSE(yarn_of(noisy, std::nullopt, true).ok());
   EXPECT_TRUE(yarn_of(noisy, 0.02, true).ok());
 }
