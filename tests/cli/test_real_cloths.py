@@ -133,6 +133,12 @@ end
             self.assertLess(max(tight) - min(tight), 1e-6 * max(tight))
             mean = np.mean(lengths[5:5 + slack]) / np.mean(tight)
             self.assertAlmostEqual(mean, ratio, delta=5e-4)
+            # A plain weave everywhere, in the stripe as beside it.
+            warps, wefts = [Along(line, 0) for line in lines[:count]], [Along(line, 1) for line in lines[count:]]
+            for i, warp in enumerate(warps):
+                for j, weft in enumerate(wefts):
+                    above = warp(0.4 * (j + 0.5))[2] - weft(0.4 * (i + 0.5))[2]
+                    self.assertGreater(above * (-1)**(i + j), 0.15)
             heights = [np.abs(line(line.dense(10))[:, 2]).max() for line in lines[:count]]
             self.assertLess(max(heights[:5]), 0.25)
             self.assertGreater(heights[5 + slack // 2], 3 * max(heights[:5]))
@@ -177,6 +183,22 @@ end
         self.sound(self.folder / "cloth.txt")
         self.assertEqual(len(lines), 16)
         rate = math.tan(math.radians(30)) / 5  # radians a millimetre
+        # Crossings: over and under in turn, on every braider of one direction.
+        unrolled = []
+        for line in lines:
+            p = line(line.dense(60))
+            unrolled.append((p[:, 2], np.unwrap(np.arctan2(p[:, 1], p[:, 0])), np.hypot(p[:, 0], p[:, 1])))
+        zs = np.linspace(0.05, 29.95, 6000)
+        for one in unrolled[:8]:
+            met = []
+            for other in unrolled[8:]:
+                apart = np.interp(zs, one[0], one[1]) - np.interp(zs, other[0], other[1])
+                turns = np.floor(apart / (2 * math.pi))
+                for k in np.nonzero(np.diff(turns))[0]:
+                    met.append((zs[k], np.interp(zs[k], one[0], one[2]) > np.interp(zs[k], other[0], other[2])))
+            order = [over for _, over in sorted(met)]
+            self.assertGreater(len(order), 8)
+            self.assertEqual(order, [order[0] ^ bool(k % 2) for k in range(len(order))])
         for number, line in enumerate(lines):
             ts = line.dense(20)
             points, slopes = line(ts), line.derivative()(ts)

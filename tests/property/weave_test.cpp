@@ -32,6 +32,8 @@ bool warp_has_to_be_on_top(const Draft& draft, int warp, int weft) {
       return (i + draft.b * j) % draft.a == 0;
     case Draft::Form::basket:
       return (i % period < draft.a) == (j % period < draft.a);
+    case Draft::Form::leno:  // standing ends below, doup ends above
+      return warp % 2 == 0;
     case Draft::Form::file:
       break;
   }
@@ -172,8 +174,18 @@ std::vector<std::string> differences(const Weave& weave, const Plans& plans) {
   return Differences(weave, plans).found();
 }
 
+// Those whose yarns lie in planes along x and y: others are looked at in tests/cli/test_real_cloths.py.
+std::vector<const ZooFabric*> plane_weaves() {
+  std::vector<const ZooFabric*> weaves = with<Weave>();
+  std::erase_if(weaves, [](const ZooFabric* zoo) {
+    const Weave& weave = item_of<Weave>(*zoo);
+    return weave.draft.form == Draft::Form::leno || weave.pucker;
+  });
+  return weaves;
+}
+
 TEST(WeaveProperty, EveryYarnOfTheZooGoesOverAndUnderAsItsDraftSays) {
-  const std::vector<const ZooFabric*> weaves = with<Weave>();
+  const std::vector<const ZooFabric*> weaves = plane_weaves();
   EXPECT_GE(weaves.size(), 15U);
   for (const ZooFabric* zoo : weaves)
     EXPECT_EQ(differences(item_of<Weave>(*zoo), by_name(zoo->fabric)), std::vector<std::string>())
@@ -181,7 +193,7 @@ TEST(WeaveProperty, EveryYarnOfTheZooGoesOverAndUnderAsItsDraftSays) {
 }
 
 TEST(WeaveProperty, AYarnTurnedUpsideDownIsSeen) {
-  for (const ZooFabric* zoo : with<Weave>()) {
+  for (const ZooFabric* zoo : plane_weaves()) {
     const Weave& weave = item_of<Weave>(*zoo);
     Plans plans = by_name(zoo->fabric);
     for (const char* name : {"warp_2", "layer1_weft_1", "binder_1"}) {
