@@ -14,7 +14,7 @@ namespace {
 
 constexpr int cubic = 3;
 // Of a span: fewer would let the curve follow the noise of single points.
-constexpr std::size_t fewest_points = 4;
+constexpr std::size_t fewest_points = 2;
 // Of the equations' diagonal, on second differences of control points: what no point holds is kept straight.
 constexpr double stiffness = 1e-9;
 // Rounds of solving and of looking for the nearest parameters.
@@ -80,6 +80,7 @@ class Fit {
         is_far = is_far || distances_[i] > error;
       }
       if (is_far) {
+        std::sort(here.begin(), here.end());
         if (here.size() < 2 * fewest_points) return std::nullopt;
         const double middle = 0.5 * (here[here.size() / 2 - 1] + here[here.size() / 2]);
         const double least = 1e-6 * (breaks_[k + 1] - breaks_[k]);
@@ -101,18 +102,26 @@ class Fit {
       return smoothed;
     }
     // From the first point's place to the last one's: beyond, nothing holds it.
-    const double first = parameters_.front(), length = parameters_.back() - first;
-    smoothed.curve = sub_curve(curve_, first, parameters_.back());
+    const auto [first, length] = extent();
+    smoothed.curve = sub_curve(curve_, first, first + length);
     for (double& knot : smoothed.curve.knots) knot = (knot - first) / length;
     for (double& t : smoothed.parameters) t = (t - first) / length;
     return smoothed;
   }
 
  private:
+  struct Extent {
+    double first = 0, length = 0;
+  };
+  [[nodiscard]] Extent extent() const {
+    const auto [low, high] = std::minmax_element(parameters_.begin(), parameters_.end());
+    return {*low, *high - *low};
+  }
+
   // Over all of 0 to 1: a line that goes on beyond its points would be held by nothing there.
   void spread() {
     if (closed_) return;
-    const double first = parameters_.front(), length = parameters_.back() - first;
+    const auto [first, length] = extent();
     for (double& t : parameters_) t = (t - first) / length;
   }
 
@@ -151,7 +160,8 @@ class Fit {
       curve_.points.emplace_back(controls.row(static_cast<Eigen::Index>(basis.unknown(i))).transpose());
   }
 
-  // Newton's method on the distance, from where the points were; their order stays.
+  // Newton's method on the distance, from where the points were. Noise larger than their steps changes their
+  // order.
   void project() {
     distances_.clear();
     for (std::size_t i = 0; i < points_->size(); ++i) {
@@ -163,12 +173,10 @@ class Fit {
         if (!(change > 0.25 * jet.d1.squaredNorm())) break;
         t = std::clamp(t - slope / change, 0.0, 1.0);
       }
-      if (i > 0) t = std::max(t, parameters_[i - 1]);
       const double before = (evaluate(curve_, parameters_[i]) - (*points_)[i]).norm();
       const double after = (evaluate(curve_, t) - (*points_)[i]).norm();
-      const bool must_move = i > 0 && parameters_[i] < parameters_[i - 1];
-      if (after < before || must_move) parameters_[i] = t;
-      distances_.push_back(must_move ? after : std::min(before, after));
+      if (after < before) parameters_[i] = t;
+      distances_.push_back(std::min(before, after));
     }
   }
 

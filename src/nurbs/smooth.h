@@ -13,7 +13,7 @@ namespace selvage::nurbs {
 
 struct Smoothed {
   Curve curve;                     // cubic over [0, 1], C2; closed: first and last point equal to the bit
-  std::vector<double> parameters;  // one a point, not decreasing: where the curve is nearest to it
+  std::vector<double> parameters;  // one a point: where the curve is nearest to it; noise changes their order
   double farthest = 0;             // the largest distance of a point from the curve there
 };
 
