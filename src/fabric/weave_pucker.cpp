@@ -20,7 +20,7 @@ constexpr int looks_a_span = 8, looks_a_wave = 48;
 constexpr double most_surface_bend = 0.8;
 // Heights over the middle surface are raised by these steps until yarns that cross keep three quarters of the
 // clearance.
-constexpr double lift_step = 1.01, highest_lift = 1.3, least_share = 0.75;
+constexpr double lift_step = 1.025, highest_lift = 1.5, least_share = 0.75;
 constexpr double steepest = 1.5;  // amplitude by a quarter of a wave, where looking for it ends
 
 std::vector<double> places_on(const nurbs::Curve& line, double length, double wave) {
@@ -64,7 +64,7 @@ SweptYarn swept_plan(const YarnPlan& plan, const PuckerShape& shape) {
 
 // The least gap of the yarns that cross in a stripe and over a wave.
 Result<double> WeaveConstruction::puckered_gap() const {
-  constexpr int stations = 48;
+  constexpr int stations = 32;
   const Block &warps = blocks_[0], &wefts = blocks_[1];
   const double pitch_x = weft_.text->pitch, pitch_y = warp_.text->pitch;
   std::vector<YarnPlan> across;
@@ -198,7 +198,16 @@ Status WeaveConstruction::prepare_pucker(Diagnostics& diagnostics) {
     gap = *found;
     if (gap >= least_share * clearance_) break;
   }
-  if (gap < least_share * clearance_) return refuse();
+  if (gap < least_share * clearance_)
+    return error(
+               Kind::geometry,
+               fmt::format(
+                   "the yarns of the stripe, which cross askew in its waves, have no room to pass each other "
+                   "(they come as near as {:.2g} {}): rounder yarns, a smaller ratio, or more picks and "
+                   "slack "
+                   "warps to a wave give it",
+                   gap, name_of(fabric_.units)))
+        .placed(text.place);
   diagnostics.add(
       note(
           Kind::geometry,

@@ -15,8 +15,8 @@ namespace {
 constexpr int cubic = 3;
 // Of a span: fewer would let the curve follow the noise of single points.
 constexpr std::size_t fewest_points = 2;
-// Of the weight of a control point's share of points, on second differences of control points: what few points hold,
-// as at the ends, is kept straight.
+// Of the weight of a control point's share of points, on second differences of control points: what few
+// points hold, as at the ends, is kept straight.
 constexpr double stiffness = 1e-3;
 // Rounds of solving and of looking for the nearest parameters.
 constexpr int rounds = 4;
