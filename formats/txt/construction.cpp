@@ -56,6 +56,13 @@ void read_system(Parser& p, WeaveSystem& system) {
   read_extent(p, "the number of yarns", system.count, system.pitch);
 }
 
+// The rows of a user's own loop.
+struct OwnLoopRows {
+  fabric::OwnLoop& loop;
+  Spot last;  // of the last row
+  bool good = true;
+};
+
 // Of larger drafts the builder tells what is wrong with them.
 constexpr int most_shafts_checked = 1000;
 
@@ -275,6 +282,58 @@ void read_gating(Parser& p, Knit& knit, std::string_view) {
   knit.bed_distance = distance;
 }
 
+void read_crossing(Parser& p, Knit& knit, std::string_view) {
+  const auto point = p.point("the point where both yarns cross");
+  if (p.finish()) knit.crossing = *point;
+}
+
+// --- a user's own loop
+// -----------------------------------------------------------------------------------------------
+
+constexpr std::size_t most_loop_points = 64;
+
+void read_loop_row(Parser& p, OwnLoopRows& rows) {
+  rows.last = p.statement();
+  Vec3 point;
+  for (double& x : point) x = p.number("x in wales, y in courses, z in thicknesses").value_or(0);
+  if (!p.finish()) {
+    rows.good = false;
+    return;
+  }
+  if (!rows.loop.points.empty() && rows.loop.points.back() == point) {
+    rows.good = false;
+    p.error(rows.last, "this point equals the one before it");
+  }
+  rows.loop.points.push_back(point);
+}
+
+// Up to the `end` of the block; false where something was wrong.
+bool read_own_loop(Parser& p, fabric::OwnLoop& loop, std::size_t least, std::size_t most) {
+  static const Table<OwnLoopRows> table({}, read_loop_row);
+  loop.place = p.statement().place();
+  OwnLoopRows rows{loop, p.statement()};
+  const bool is_closed = p.read_block("points", "", p.statement(), table, rows) && rows.good;
+  const std::size_t count = loop.points.size();
+  if (is_closed && (count < least || count > most)) {
+    p.error(p.last(), fmt::format("a loop has from {} to {} points; this one has {}", least, most, count));
+    return false;
+  }
+  return is_closed;
+}
+
+void read_knit_points(Parser& p, Knit& knit, std::string_view) {
+  const Spot spot = p.statement();
+  fabric::OwnLoop loop;
+  if (p.more()) loop.sign = p.choice("stitch", stitch_signs).value_or('K');
+  p.finish();
+  for (const fabric::OwnLoop& other : knit.own_loops)
+    if (other.sign == loop.sign)
+      p.error(spot,
+              fmt::format("the points of {} are given twice; first on line {}", loop.sign, other.place.line));
+  constexpr std::size_t least = 3;
+  if (read_own_loop(p, loop, least, most_loop_points)) knit.own_loops.push_back(std::move(loop));
+}
+
 void read_chart(Parser& p, Knit& knit, std::string_view) {
   if (!p.finish()) return;
   knit.chart_place = p.statement().place();
@@ -314,6 +373,33 @@ void read_bar(Parser& p, Warpknit& warpknit, std::string_view) {
   }
   bar.lapping = lapping;
   warpknit.bars.push_back(std::move(bar));
+}
+
+// Of the bar before it.
+void read_bar_points(Parser& p, Warpknit& warpknit, std::string_view) {
+  const Spot spot = p.statement();
+  p.finish();
+  fabric::OwnLoop loop;
+  constexpr std::size_t least = 4;
+  if (!read_own_loop(p, loop, least, fabric::most_points_of_a_loop)) return;
+  if (warpknit.bars.empty())
+    return p.error(spot, "the points of a loop stand behind the 'bar' that knits it");
+  if (warpknit.bars.back().own_loop)
+    return p.error(spot, "the loop of this bar is given twice: one block 'points' behind each 'bar'");
+  warpknit.bars.back().own_loop = std::move(loop);
+}
+
+// THREADS every N [first C]
+void read_inserted_weft(Parser& p, Warpknit& warpknit, std::string_view) {
+  fabric::WarpknitWeft weft;
+  weft.place = p.statement().place();
+  read_threads(p, weft.threads);
+  p.expect("every");
+  const auto every = p.count("every how many courses");
+  if (p.more() && p.expect("first")) weft.first = p.count("the first course").value_or(1);
+  if (!p.finish()) return;
+  weft.every = *every;
+  warpknit.weft = std::move(weft);
 }
 
 void read_warpknit_wales(Parser& p, Warpknit& warpknit, std::string_view) {
@@ -486,6 +572,10 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                   {"gating", read_gating},
                                   {"plating", read_plating},
                                   {"pile", read_pile},
+                                  {"unit", into(&Knit::unit, a_length("the loop's unit"))},
+                                  {"crossing", read_crossing},
+                                  {"shape", into(&Knit::shape, one_of("shape", knit_shape_words))},
+                                  {"points", read_knit_points, Times::any},
                                   {"method", into(&Knit::method, one_of("method", knit_method_words))},
                                   {"chart", read_chart}});
   Knit knit;
@@ -518,6 +608,13 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
       p.error(opened, "'plating' goes with 'knit jersey'");
     if (knit.pile && knit.plating.empty())
       p.error(opened, "a pile takes a thread of its own: add 'plating THREAD'");
+    if (knit.unit && (knit.course_pitch > 0 || knit.wale_pitch > 0))
+      p.error(opened,
+              "the loop's unit says how far courses and wales are apart: leave out 'unit', or the pitches");
+    if (!knit.own_loops.empty() && (knit.loop || knit.unit || knit.shape || !knit.plating.empty()))
+      p.error(opened,
+              "the points of a loop say its size and shape: leave out 'points', or 'loop', 'unit', "
+              "'shape' and 'plating'");
     if (has_form && form != Knit::Form::interlock && knit.gating)
       p.error(opened, "'gating' goes with a chart or an interlock");
   }
@@ -527,6 +624,8 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
 void read_warpknit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   static const Table<Warpknit> table({{"thread", read_construction_thread<Warpknit>},
                                       {"bar", read_bar, Times::any},
+                                      {"points", read_bar_points, Times::any},
+                                      {"weft", read_inserted_weft},
                                       {"wales", read_warpknit_wales, Times::once},
                                       {"courses", read_warpknit_courses, Times::once},
                                       {"stitch", into(&Warpknit::stitch, one_of("stitch", stitch_words))},

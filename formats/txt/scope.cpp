@@ -36,7 +36,8 @@ constexpr std::array keywords = {
     "axial",    "line",     "curve",    "matrix",     "periodic",  "K",         "fixed",   "nan",
     "inf",      "infinity", "outline",  "derivative", "spacing",   "thickness", "loop",    "feeds",
     "gating",   "plating",  "pile",     "block",      "use",       "place",     "rotate",  "mirror",
-    "shear",    "repeat",   "margin",   "substrate",  "points",    "helix",     "pucker",  "mandrel"};
+    "shear",    "repeat",   "margin",   "substrate",  "points",    "helix",     "pucker",  "mandrel",
+    "unit",     "crossing", "shape"};
 
 bool continues_identifier(char c) {
   return starts_name(c) || (c >= '0' && c <= '9');

@@ -79,6 +79,10 @@ inline constexpr std::array<Word<Knit::Form>, 9> knit_words{{{"jersey", Knit::Fo
                                                              {"milano", Knit::Form::milano},
                                                              {"half-milano", Knit::Form::half_milano},
                                                              {"jacquard", Knit::Form::jacquard}}};
+inline constexpr std::array<Word<Knit::Shape>, 2> knit_shape_words{
+    {{"published", Knit::Shape::published}, {"relaxed", Knit::Shape::relaxed}}};
+inline constexpr std::array<Word<char>, 5> stitch_signs{
+    {{"K", 'K'}, {"P", 'P'}, {"T", 'T'}, {"U", 'U'}, {"M", 'M'}}};
 inline constexpr std::array<Word<Knit::Gating>, 2> gating_words{
     {{"rib", Knit::Gating::rib}, {"opposite", Knit::Gating::opposite}}};
 inline constexpr std::array<Word<nurbs::Parameterization>, 3> knit_method_words{
@@ -144,7 +148,8 @@ consteval bool says_all(const std::array<Word<Enum>, N>&, std::size_t without = 
 static_assert(says_all(hand_words) && says_all(density_words) && says_all(unit_words) &&
               says_all(role_words) && says_all(path_words) && says_all(profile_words) &&
               says_all(spacing_words) && says_all(knit_method_words) && says_all(gating_words) &&
-              says_all(stitch_words) && says_all(end_words) && says_all(edit_words) && says_all(move_words) &&
+              says_all(knit_shape_words) && says_all(stitch_words) && says_all(end_words) &&
+              says_all(edit_words) && says_all(move_words) &&
               section_words.size() == std::variant_size_v<yarn::Section>);
 static_assert(says_all(draft_words, 1) && says_all(knit_words, 1) && says_all(curve_words, 1) &&
               says_all(curve_method_words));

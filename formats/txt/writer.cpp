@@ -311,6 +311,11 @@ void write_item(Lines& out, const fabric::Weave& weave) {
   out.line(0, "end");
 }
 
+void write_own_loop(Lines& out, const fabric::OwnLoop& loop) {
+  for (const Vec3& point : loop.points) out.row(2, point.x()).value(point.y()).value(point.z());
+  out.line(1, "end");
+}
+
 void write_item(Lines& out, const fabric::Knit& knit) {
   out.line(0, "knit");
   if (knit.form != Knit::Form::chart) out.word(word_of(knit_words, knit.form));
@@ -323,6 +328,13 @@ void write_item(Lines& out, const fabric::Knit& knit) {
   extent("courses", knit.courses, knit.course_pitch);
   extent("wales", knit.wales, knit.wale_pitch);
   if (knit.loop) out.line(1, "loop").value(*knit.loop);
+  if (knit.unit) out.line(1, "unit").value(*knit.unit);
+  if (knit.crossing) out.line(1, "crossing").values(*knit.crossing);
+  if (knit.shape) out.line(1, "shape").word(word_of(knit_shape_words, *knit.shape));
+  for (const fabric::OwnLoop& loop : knit.own_loops) {
+    out.line(1, "points").word(word_of(stitch_signs, loop.sign));
+    write_own_loop(out, loop);
+  }
   if (knit.method) out.line(1, "method").word(word_of(knit_method_words, *knit.method));
   if (!knit.plating.empty()) out.line(1, "plating").name(knit.plating);
   if (knit.pile) out.line(1, "pile").value(*knit.pile);
@@ -347,6 +359,14 @@ void write_item(Lines& out, const fabric::Warpknit& warpknit) {
   for (const fabric::WarpknitBar& bar : warpknit.bars) {
     out.line(1, "bar").name(bar.thread).word(bar.lapping);
     if (bar.fall_plate) out.word("fall-plate");
+    if (!bar.own_loop) continue;
+    out.line(1, "points");
+    write_own_loop(out, *bar.own_loop);
+  }
+  if (warpknit.weft) {
+    write_threads(out, "weft", warpknit.weft->threads);
+    out.word("every").value(warpknit.weft->every);
+    if (warpknit.weft->first != 1) out.word("first").value(warpknit.weft->first);
   }
   out.line(1, "wales").value(warpknit.wales).word("pitch").value(warpknit.wale_pitch);
   out.line(1, "courses").value(warpknit.courses).word("pitch").value(warpknit.course_pitch);

@@ -13,6 +13,7 @@
 #include "fabric/knit_density.h"
 #include "fabric/knit_loop.h"
 #include "fabric/knit_mend.h"
+#include "fabric/own_loop.h"
 #include "fabric/quantities.h"
 #include "fabric/yarn_spec.h"
 #include "nurbs/interpolate.h"
@@ -41,8 +42,10 @@ class KnitConstruction final : public Construction {
         field_(std::move(field)),
         moves_(std::move(moves)),
         half_(std::move(half)),
-        pitch_(knit.wale_pitch > 0 ? knit.wale_pitch : wale_spacing * half_.x(),
-               knit.course_pitch > 0 ? knit.course_pitch : course_spacing * half_.x()) {}
+        pitch_(knit.wale_pitch > 0 ? knit.wale_pitch : wale_spacing * knit.unit.value_or(half_.x()),
+               knit.course_pitch > 0 ? knit.course_pitch : course_spacing * knit.unit.value_or(half_.x())) {
+    if (knit.crossing) origin_ = *knit.crossing - Vec3(pitch_.x() / 2, 0, 0);
+  }
 
   [[nodiscard]] std::size_t count() const override {
     return static_cast<std::size_t>(field_.last_course - field_.first_course + 1) * yarns_of_a_course();
@@ -71,7 +74,9 @@ class KnitConstruction final : public Construction {
     return product_of(rows * static_cast<std::uint64_t>(field_.ends), longest());
   }
   [[nodiscard]] std::uint64_t longest() const override {
-    const std::uint64_t points_a_loop = field_.pile > 0 ? 12 : 8;
+    std::uint64_t points_a_loop = field_.pile > 0 ? 12 : 8;
+    for (const OwnLoop& own : knit_.own_loops)
+      points_a_loop = std::max<std::uint64_t>(points_a_loop, own.points.size());
     return points_a_loop * wales() + 1;
   }
   [[nodiscard]] Result<YarnPlan> plan(std::size_t index) const override;
@@ -111,13 +116,15 @@ class KnitConstruction final : public Construction {
   KnitMoves moves_;
   Vec2 half_;   // of the section: r across, and r through the thickness
   Vec2 pitch_;  // of wales and courses, file units
+  Vec3 origin_ = Vec3::Zero();
 };
 
 Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
   Result<YarnPlan> plan = start_plan(fabric_, thread(index), name(index), Role::course, knit_.place);
   if (!plan) return plan;
   const double r = half_.x();
-  plan->at.y() = field_.chart.height(course(index)) * pitch_.y();
+  plan->at = origin_;
+  plan->at.y() += field_.chart.height(course(index)) * pitch_.y();
   std::vector<Vec3>& points = plan->points;
   points.reserve(8 * wales() + 1);
   const auto place_from = [&](std::size_t first, long long wale) {
@@ -188,6 +195,12 @@ KnitYarn knit_yarn_of(const Fabric& fabric, const Knit& knit, const Thickest& th
 // The loops that the statement asks for, were all its lengths so many times larger.
 Result<LoopShape> shape_of(const Knit& knit, const KnitField& field, const Vec2& half, double larger) {
   KnitField spaced = field;
+  if (knit.unit) {
+    const double across = larger * *knit.unit / half.x();
+    spaced.shape.wale = across * wale_spacing;
+    spaced.shape.course = across * course_spacing;
+    spaced.shape.depth *= larger * *knit.unit / half.y();
+  }
   if (knit.wale_pitch > 0) spaced.shape.wale = larger * knit.wale_pitch / half.x();
   if (knit.course_pitch > 0) spaced.shape.course = larger * knit.course_pitch / half.x();
   if (field.chart.is_opposite())
@@ -199,7 +212,7 @@ Result<LoopShape> shape_of(const Knit& knit, const KnitField& field, const Vec2&
 
 // Published loops are what they are; loops of given densities have to have room.
 bool has_densities(const Knit& knit) {
-  return knit.wale_pitch > 0 || knit.course_pitch > 0 || knit.loop;
+  return knit.wale_pitch > 0 || knit.course_pitch > 0 || knit.loop || knit.unit;
 }
 
 // How many times larger the cloth has to be for its yarn, surely. None where eight times does not help.
@@ -358,6 +371,7 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
     field.ends = 2;
     field.shape.depth = plated_depth;
   }
+  if (!knit.own_loops.empty()) field.own = &knit.own_loops;
   if (threads.empty()) return error(Kind::geometry, "this knit has no thread").placed(knit.place);
   const yarn::SectionSize size = yarn::nominal_size(thickest.section);
   const long long beside = fabric.cell ? margin_wales : 0;
@@ -374,6 +388,8 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
   Result<LoopShape> shape = shape_of(knit, field, half, 1);
   if (!shape) return shape.error().placed(knit.place);
   field.shape = *shape;
+  if (field.own != nullptr)
+    if (Status good = check_own_loops(knit, field); !good) return good.error();
   if (knit.pile) {
     field.pile = plated_back(field.shape) + *knit.pile / half.y() - 1;
     if (const double least = (least_pile(field.shape) - plated_back(field.shape) + 1) * half.y();

@@ -35,6 +35,18 @@ constexpr Point tuck_shoulder_top = {-3.15, 0.2, -1.15};
 constexpr double tuck_head_over_top = 3.5, tuck_head = -5;
 constexpr double float_y = -2, float_z = -2.5;
 
+// A point of a user's own loop, from the left side of its wale.
+Vec3 own_point(const LoopShape& shape, const Vec3& p) {
+  return {p.x() * shape.wale, p.y() * shape.course, 2 * p.z()};
+}
+
+const std::vector<Vec3>& own_points(const KnitField& field, long long course, long long wale) {
+  const auto sign = static_cast<char>(field.chart.at(course, wale));
+  return std::find_if(field.own->begin(), field.own->end(),
+                      [&](const OwnLoop& loop) { return loop.sign == sign; })
+      ->points;
+}
+
 // A point of the published loop where the shape has it: x from the loop's middle.
 Vec3 shaped(const LoopShape& shape, const Point& p, double top) {
   // Foot and shoulder of the published loop are at 1 and 3, the leg's middle at 2, a sinker's at 4.
@@ -74,12 +86,15 @@ bool is_inside(const KnitField& field, long long course) {
   return course >= field.first_course && course <= field.last_course;
 }
 
-// The loop that the needle holds when the course begins; first_course - 1: none.
+}  // namespace
+
 long long held_course(const KnitField& field, long long course, long long wale, int bed) {
   long long held = course - 1;
   while (is_inside(field, held) && !is_loop(field.chart.at(held, wale, bed))) --held;
   return held;
 }
+
+namespace {
 
 // The first later course that knits on this needle; last_course + 1: none.
 long long next_loop_course(const KnitField& field, long long course, long long wale, int bed) {
@@ -270,6 +285,11 @@ double least_pile(const LoopShape& shape) {
 
 void add_stitch_points(const KnitField& field, long long course, long long wale, std::vector<Vec3>& points,
                        int end) {
+  if (field.own != nullptr) {
+    const std::vector<Vec3>& own = own_points(field, course, wale);
+    for (std::size_t i = 0; i + 1 < own.size(); ++i) points.push_back(own_point(field.shape, own[i]));
+    return;
+  }
   const Needle needle = needle_at(field, course, wale);
   const Hold hold = hold_of(field, course, wale, needle.side);
   const Sinker left_sinker = sinker_of(field, course, wale);
@@ -294,6 +314,8 @@ void add_stitch_points(const KnitField& field, long long course, long long wale,
 }
 
 Vec3 last_sinker_point(const KnitField& field, long long course, int end) {
+  if (field.own != nullptr)
+    return own_point(field.shape, own_points(field, course, field.last_wale).back() - Vec3::UnitX());
   return sinker_at(field, sinker_of(field, course, field.last_wale + 1), end);
 }
 

@@ -42,12 +42,17 @@ struct KnitField {
   LoopShape shape = {};
   // Yarns that are knitted together: 2 is a plated jersey, the second yarn behind the first one.
   int ends = 1;
+  // A user's own loops, one for each sign of the chart; null: those of the shape.
+  const std::vector<OwnLoop>* own = nullptr;
   // Not 0: how far behind the middle plane the sinkers of the second yarn stand, in half thicknesses.
   double pile = 0;
 };
 
 // Heads of opposite beds pass each other.
 inline constexpr double least_bed = 2.5;
+
+// The row whose loop the needle of a bed holds when this row begins; first_course - 1: none.
+long long held_course(const KnitField& field, long long course, long long wale, int bed);
 
 // Appends the points that one needle gives to one course, from the sinker on its left to the last point
 // before the sinker on its right, which is the next needle's first point. x from the left side of the wale

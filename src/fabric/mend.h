@@ -42,6 +42,8 @@ struct MendLine {
   // at their present values (a constant part, of directions given at ends, is left out). Shares below 1e-3
   // may be left out as well.
   std::function<std::vector<std::vector<Share>>(const std::vector<Vec3>&)> shares;
+  // MendProblem::repeat holds for it, too.
+  bool repeats = true;
   // Its length stays what it is at the given points (see MendProblem::measure).
   bool keeps_length = false;
   double radius = 1;  // of the yarn, about: the scale of steps and searches

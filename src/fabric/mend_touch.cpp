@@ -195,6 +195,7 @@ std::vector<CellPoint> TouchFinder::points_of(const std::vector<CubicPath>& path
   const int copies = copies_within(problem_.repeat, positions, look);
   for (int copy = -copies; copy <= copies; ++copy)
     for (std::size_t line = 0; line < paths.size(); ++line) {
+      if (copy != 0 && !problem_.lines[line].repeats) continue;
       const int turns = copies_within(paths[line].period(), positions, look);
       double along = 0;
       for (int turn = -turns; turn <= turns; ++turn) {

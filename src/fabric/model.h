@@ -246,6 +246,17 @@ struct Weave {
   std::vector<Binder> binders;
 };
 
+// A user's own loop, as data points from its beginning to its end. Weft knits: x in wales from the left side
+// of the wale, y in courses from the course's lower crossings. Warp knits: x in wales from the middle of the
+// needle, y in courses from the course's line, of an overlap that begins on the needle's right. z in
+// thicknesses of the thickest yarn, to the face.
+struct OwnLoop {
+  char sign = 'K';  // weft knits: of the chart
+  TextPlace place;
+  std::vector<Vec3> points;
+};
+inline constexpr std::size_t most_points_of_a_loop = 11;  // of a warp knit
+
 struct Knit {
   enum class Form {
     jersey,
@@ -269,7 +280,13 @@ struct Knit {
   int courses = 0, wales = 0;
   double course_pitch = 0, wale_pitch = 0;  // 0: as they follow from the yarn
   std::optional<double> loop;               // the length of a stitch
-  std::optional<int> feeds;                 // rows of the chart in a course
+  std::optional<double> unit;               // of the published loop: its r; none: half the yarn's thickness
+  std::optional<Vec3> crossing;             // where the yarns of the first stitch cross, in its middle
+  // Of given lengths: the published loop, spread to them, or the one that bends least.
+  enum class Shape { published, relaxed };
+  std::optional<Shape> shape;
+  std::vector<OwnLoop> own_loops;  // of each sign of the chart, or none at all
+  std::optional<int> feeds;        // rows of the chart in a course
   std::optional<Gating> gating;
   std::optional<double> bed_distance;  // between the middle planes of both beds' loops
   std::string plating;                 // a second thread, knitted behind the others; empty: none
@@ -288,6 +305,15 @@ struct WarpknitBar {
   std::string lapping;      // as written, blanks kept as they separate the overlaps
   TextPlace lapping_place;  // of its first character
   bool fall_plate = false;
+  std::optional<OwnLoop> own_loop;
+};
+
+// Straight yarns across a warp knit, between its loops and its underlaps.
+struct WarpknitWeft {
+  std::vector<std::string> threads;  // in turn
+  TextPlace place;
+  int every = 1;  // every how many courses
+  int first = 1;  // the course of the first one, from 1
 };
 
 struct Warpknit {
@@ -297,6 +323,7 @@ struct Warpknit {
   std::string thread;   // of a classic
   TextPlace thread_place;
   std::vector<WarpknitBar> bars;
+  std::optional<WarpknitWeft> weft;
   int wales = 0, courses = 0;
   double wale_pitch = 0, course_pitch = 0;
   std::optional<Stitch> stitch;

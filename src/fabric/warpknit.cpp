@@ -25,8 +25,10 @@
 #include <limits>
 #include <numeric>
 
+#include "core/wrapped.h"
 #include "fabric/build.h"
 #include "fabric/lapping.h"
+#include "fabric/own_loop.h"
 #include "fabric/quantities.h"
 #include "fabric/warpknit_mend.h"
 #include "fabric/yarn_spec.h"
@@ -38,6 +40,8 @@ namespace {
 
 // Courses by which yarns are continued on each side of a fabric with a unit cell.
 constexpr int continued_courses = 2;
+// Wales by which inserted wefts are.
+constexpr int continued_wales = 2;
 // Of a thickness, between the surfaces of yarns: less makes poor tetrahedra of what lies between.
 constexpr double gap_share = 0.01;
 
@@ -50,15 +54,33 @@ double thickness_of(const yarn::Section& section) {
   return std::max(size.width, size.height);
 }
 
+// The straight yarns across, counted from 0; with a unit cell there are some before it.
+struct Wefts {
+  std::vector<const Thread*> threads;  // in turn; none: no wefts
+  int every = 1, first_course = 0;     // of weft 0
+  long long first = 0, end = 0;        // wefts of the fabric
+  [[nodiscard]] long long count() const { return end - first; }
+  [[nodiscard]] long long course(long long weft) const { return first_course + weft * every; }
+  [[nodiscard]] const Thread& thread(long long weft) const {
+    return *threads[static_cast<std::size_t>(wrapped(weft, static_cast<long long>(threads.size())))];
+  }
+};
+
 class WarpknitConstruction final : public Construction {
  public:
-  WarpknitConstruction(const Fabric& fabric, const Warpknit& warpknit, WarpknitPiece piece, LoopMoves moves)
-      : fabric_(fabric), warpknit_(warpknit), piece_(std::move(piece)), moves_(std::move(moves)) {}
+  WarpknitConstruction(const Fabric& fabric, const Warpknit& warpknit, WarpknitPiece piece, LoopMoves moves,
+                       Wefts wefts)
+      : fabric_(fabric),
+        warpknit_(warpknit),
+        piece_(std::move(piece)),
+        moves_(std::move(moves)),
+        wefts_(std::move(wefts)) {}
 
   [[nodiscard]] std::size_t count() const override {
-    return piece_.bars.size() * static_cast<std::size_t>(warpknit_.wales);
+    return guides() + static_cast<std::size_t>(wefts_.count());
   }
   [[nodiscard]] std::string name(std::size_t index) const override {
+    if (is_weft(index)) return fmt::format("weft_{}", weft_of(index) + 1);
     return fmt::format("bar{}_{}", bar_of(index) + 1, guide_of(index) + 1);
   }
   [[nodiscard]] Vec2 unit() const override { return {warpknit_.wale_pitch, warpknit_.course_pitch}; }
@@ -66,6 +88,7 @@ class WarpknitConstruction final : public Construction {
     return fmt::format("bar{}", bar_of(index) + 1);
   }
   [[nodiscard]] const Thread& thread(std::size_t index) const override {
+    if (is_weft(index)) return wefts_.thread(weft_of(index));
     return *piece_.bars[bar_of(index)].thread;
   }
   [[nodiscard]] std::uint64_t data_points() const override { return product_of(count(), longest()); }
@@ -76,6 +99,14 @@ class WarpknitConstruction final : public Construction {
   [[nodiscard]] Repeat repeat() const override;
 
  private:
+  [[nodiscard]] std::size_t guides() const {
+    return piece_.bars.size() * static_cast<std::size_t>(warpknit_.wales);
+  }
+  [[nodiscard]] bool is_weft(std::size_t index) const { return index >= guides(); }
+  [[nodiscard]] long long weft_of(std::size_t index) const {
+    return wefts_.first + static_cast<long long>(index - guides());
+  }
+  [[nodiscard]] Result<YarnPlan> plan_weft(std::size_t index) const;
   [[nodiscard]] std::size_t bar_of(std::size_t index) const {
     return index / static_cast<std::size_t>(warpknit_.wales);
   }
@@ -86,9 +117,33 @@ class WarpknitConstruction final : public Construction {
   const Warpknit& warpknit_;
   WarpknitPiece piece_;  // all of it; at least one bar, front bar first
   LoopMoves moves_;
+  Wefts wefts_;
 };
 
+// Edge to edge of the needle bed.
+Result<YarnPlan> WarpknitConstruction::plan_weft(std::size_t index) const {
+  Result<YarnPlan> plan = start_plan(fabric_, thread(index), name(index), Role::weft, warpknit_.weft->place);
+  if (!plan) return plan;
+  int low = highest_space, high = 0;
+  for (const Bar& bar : piece_.bars)
+    for (const Overlap& o : bar.lapping) {
+      low = std::min({low, o.from, o.to});
+      high = std::max({high, o.from, o.to});
+    }
+  const Measures& m = piece_.measures;
+  const double beyond = fabric_.cell ? continued_wales : 0;
+  const double start = (low - beyond) * m.wale_pitch,
+               end = (high + warpknit_.wales - 1 + beyond) * m.wale_pitch;
+  plan->points = {{start, 0, m.weft_z()}, {end, 0, m.weft_z()}};
+  plan->at.y() = std::fma(static_cast<double>(wefts_.course(weft_of(index))), m.course_pitch, m.weft_y());
+  if (Status made = interpolate(*plan, yarn::PathForm::chord, Vec3::UnitX(), Vec3::UnitX()); !made)
+    return made.error();
+  plan->spec.guide = yarn::FrameGuide::with_up(Vec3::UnitZ());
+  return plan;
+}
+
 Result<YarnPlan> WarpknitConstruction::plan(std::size_t index) const {
+  if (is_weft(index)) return plan_weft(index);
   const Bar& bar = piece_.bars[bar_of(index)];
   Result<YarnPlan> plan = start_plan(fabric_, *bar.thread, name(index), Role::wale, bar.place);
   if (!plan) return plan;
@@ -109,6 +164,11 @@ Result<YarnPlan> WarpknitConstruction::plan(std::size_t index) const {
 Repeat WarpknitConstruction::repeat() const {
   constexpr long long longest = 1'000'000;
   long long courses = 1;
+  if (wefts_.count() > 0)
+    courses = wefts_.every *
+              smallest_shift(static_cast<long long>(wefts_.threads.size()), [&](long long i, long long k) {
+                return &wefts_.thread(i) == &wefts_.thread(k);
+              });
   for (const Bar& bar : piece_.bars) {
     courses = std::lcm(
         courses, smallest_shift(static_cast<long long>(bar.lapping.size()), [&](long long i, long long k) {
@@ -138,10 +198,11 @@ Result<std::vector<Bar>> read_bars(const Fabric& fabric, const Warpknit& warpkni
   if (!warpknit.classic.empty())
     for (const std::string_view lapping :
          classic_lappings(warpknit.classic, warpknit.stitch.value_or(Warpknit::Stitch::closed)))
-      texts.push_back({warpknit.thread, warpknit.place, std::string(lapping), {}, false});
+      texts.push_back({warpknit.thread, warpknit.place, std::string(lapping), {}, false, {}});
   if (texts.empty()) return error(Kind::geometry, "this warp knit has no bars").placed(warpknit.place);
   std::vector<Bar> bars;
-  for (const WarpknitBar& text : texts) {
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const WarpknitBar& text = texts[i];
     Bar bar;
     Result<Lapping> lapping = parse_lapping(text.lapping, text.lapping_place);
     if (!lapping) return lapping.error().placed(text.place);
@@ -153,6 +214,10 @@ Result<std::vector<Bar>> read_bars(const Fabric& fabric, const Warpknit& warpkni
     bar.is_fall_plate = text.fall_plate;
     bar.place = text.place;
     bar.has_feet = wraps(bar.lapping);
+    if (text.own_loop) bar.own = &*warpknit.bars[i].own_loop;
+    if (bar.own != nullptr && !bar.has_feet)
+      return error(Kind::geometry, "this bar only lays in: it forms no loop, leave out its 'points'")
+          .placed(bar.own->place);
     bars.push_back(std::move(bar));
   }
   for (std::size_t i = 0; i < bars.size(); ++i) {
@@ -163,11 +228,20 @@ Result<std::vector<Bar>> read_bars(const Fabric& fabric, const Warpknit& warpkni
   return bars;
 }
 
-Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, std::vector<Bar>& bars) {
+double weft_thickness(const Fabric& fabric, const Wefts& wefts) {
+  double thickest = 0;
+  for (const Thread* thread : wefts.threads)
+    if (const Result<yarn::Section> section = centred_section_of(*thread, fabric.units); section)
+      thickest = std::max(thickest, thickness_of(*section));
+  return thickest;
+}
+
+Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, const Wefts& wefts,
+                         std::vector<Bar>& bars) {
   Measures m;
-  double thickest = 0.0;
+  double thickest = weft_thickness(fabric, wefts);
   int most_feet_before = 0;
-  bool knits = false;
+  bool knits = false, has_own_only = true;
   for (Bar& bar : bars) {
     const Result<yarn::Section> section = centred_section_of(*bar.thread, fabric.units);
     if (!section) return section.error();
@@ -177,6 +251,7 @@ Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, std::ve
     m.fall_plates += bar.has_feet && bar.is_fall_plate ? 1 : 0;
     most_feet_before = std::max(most_feet_before, bar.feet_before);
     knits = knits || (bar.has_feet && !bar.is_fall_plate);
+    has_own_only = has_own_only && (!bar.has_feet || bar.own != nullptr);
   }
   if (!knits)
     return error(Kind::geometry,
@@ -185,15 +260,19 @@ Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, std::ve
   // Side by side on one needle: two feet a bar, the two legs of the loop below, half a space to each side.
   const double across = 2.0 * m.bars_with_feet + 2.0;
   // One above the other within a course: feet from the lowest to the highest, arches, heads, the next feet.
-  const double along = 2.0 * most_feet_before + 4.0 + low_foot + 2.0 * m.fall_plates;
+  m.has_weft = wefts.count() > 0;
+  const double along =
+      2.0 * most_feet_before + 4.0 + low_foot + 2.0 * m.fall_plates + (m.has_weft ? 1.0 : 0.0);
   const auto too_small = [&](std::string_view what, double pitch, double yarns) {
     return error(Kind::geometry,
                  fmt::format("the {} pitch {} is too small for yarns of {:.4g}: the loops of {} bars "
                              "need at least {:.6g}",
                              what, pitch, thickest, m.bars_with_feet, yarns * thickest));
   };
-  if (!(warpknit.wale_pitch >= across * thickest)) return too_small("wale", warpknit.wale_pitch, across);
-  if (!(warpknit.course_pitch >= along * thickest)) return too_small("course", warpknit.course_pitch, along);
+  if (!has_own_only && !(warpknit.wale_pitch >= across * thickest))
+    return too_small("wale", warpknit.wale_pitch, across);
+  if (!has_own_only && !(warpknit.course_pitch >= along * thickest))
+    return too_small("course", warpknit.course_pitch, along);
   for (const auto& [what, pitch] :
        {std::pair("a wale pitch", warpknit.wale_pitch), std::pair("a course pitch", warpknit.course_pitch)})
     if (Status fits = check_proportion(what, pitch, thickest, fabric.units, warpknit.place); !fits)
@@ -202,10 +281,33 @@ Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, std::ve
   m.course_pitch = warpknit.course_pitch;
   m.across = warpknit.wale_pitch / across;
   m.along = warpknit.course_pitch / along;
+  m.thickest = thickest;
   m.layer = 1.12 * thickest;  // the loop path misses its points by a few per cent of a yarn
   m.deepest_foot = (0.5 + most_feet_before) * m.along;
   m.substrate = warpknit.substrate.value_or(0.0);
   return m;
+}
+
+Result<Wefts> read_wefts(const Fabric& fabric, const Warpknit& warpknit, const WarpknitPiece& piece) {
+  Wefts wefts;
+  if (!warpknit.weft) return wefts;
+  for (const std::string& name : warpknit.weft->threads) {
+    wefts.threads.push_back(fabric.find_thread(name));
+    if (wefts.threads.back() == nullptr)
+      return error(Kind::geometry, fmt::format("there is no thread '{}'", name)).placed(warpknit.weft->place);
+    if (const Result<yarn::Section> section = centred_section_of(*wefts.threads.back(), fabric.units);
+        !section)
+      return section.error().placed(warpknit.weft->place);
+  }
+  wefts.every = warpknit.weft->every;
+  wefts.first_course = warpknit.weft->first - 1;
+  if (wefts.first_course >= warpknit.courses)
+    return error(Kind::geometry, fmt::format("the first weft is in course {}, and this warp knit has {}",
+                                             wefts.first_course + 1, warpknit.courses))
+        .placed(warpknit.weft->place);
+  while (wefts.course(wefts.first - 1) >= piece.first_course) --wefts.first;
+  wefts.end = (piece.last_course - 1 - wefts.first_course) / wefts.every + 1;
+  return wefts;
 }
 
 // What keeps the loops apart. None moves where the repeat is too long, and where a loop is held too long,
@@ -241,20 +343,23 @@ Result<std::unique_ptr<Construction>> make_warpknit(const Fabric& fabric, const 
     return error(Kind::geometry, "a warp knit needs at least one wale and one course").placed(warpknit.place);
   Result<std::vector<Bar>> bars = read_bars(fabric, warpknit);
   if (!bars) return bars.error();
-  const Result<Measures> measures = measure(fabric, warpknit, *bars);
-  if (!measures) return measures.error().placed(warpknit.place);
   WarpknitPiece piece;
-  piece.bars = std::move(*bars);
-  piece.measures = *measures;
   piece.last_course = warpknit.courses;
   if (fabric.cell) {
     piece.first_course -= continued_courses;
     piece.last_course += continued_courses;
   }
+  Result<Wefts> wefts = read_wefts(fabric, warpknit, piece);
+  if (!wefts) return wefts.error();
+  const Result<Measures> measures = measure(fabric, warpknit, *wefts, *bars);
+  if (!measures) return measures.error().placed(warpknit.place);
+  piece.bars = std::move(*bars);
+  piece.measures = *measures;
+  if (Status good = check_own_loops(piece.bars, piece.measures); !good) return good.error();
   LoopMoves moves;
   if (!options.as_published) moves = moves_apart(fabric, warpknit, piece, options, diagnostics);
-  return std::unique_ptr<Construction>(
-      std::make_unique<WarpknitConstruction>(fabric, warpknit, std::move(piece), std::move(moves)));
+  return std::unique_ptr<Construction>(std::make_unique<WarpknitConstruction>(
+      fabric, warpknit, std::move(piece), std::move(moves), std::move(*wefts)));
 }
 
 }  // namespace selvage::fabric

@@ -59,6 +59,35 @@ nurbs::Curve loop_curve(const std::vector<Vec3>& rows) {
   return line ? line->curve : nurbs::Curve{};
 }
 
+// Straight yarns in every course, which stay where they are, as long as all lines with their neighbours.
+void add_wefts(const WarpknitPiece& piece, double gap, MendProblem& problem) {
+  const Measures& m = piece.measures;
+  double low = 0, high = 0;
+  for (const MendLine& line : problem.lines)
+    for (const Vec3& point : line.points) {
+      low = std::min(low, point.x());
+      high = std::max(high, point.x());
+    }
+  constexpr double beyond = 3;  // wales
+  for (long long course = piece.first_course; course < piece.last_course; ++course) {
+    const double y = static_cast<double>(course) * m.course_pitch + m.weft_y();
+    MendLine line;
+    line.points = {{low - beyond * m.wale_pitch, y, m.weft_z()},
+                   {high + beyond * m.wale_pitch, y, m.weft_z()}};
+    line.classes = {-1, -1};
+    line.curve = [](const std::vector<Vec3>& ends) {
+      return nurbs::Curve{3,
+                          {0, 0, 0, 0, 1, 1, 1, 1},
+                          {ends[0], (2 * ends[0] + ends[1]) / 3, (ends[0] + 2 * ends[1]) / 3, ends[1]},
+                          {}};
+    };
+    line.shares = [](const std::vector<Vec3>&) { return std::vector<std::vector<Share>>(4); };
+    line.repeats = false;
+    line.radius = 0.5 * (m.thickest + gap);
+    problem.lines.push_back(std::move(line));
+  }
+}
+
 }  // namespace
 
 Result<std::optional<LoopMending>> mend_loops(const WarpknitPiece& cloth, double gap) {
@@ -92,6 +121,7 @@ Result<std::optional<LoopMending>> mend_loops(const WarpknitPiece& cloth, double
     line.points = points->of_guide(0);
     problem.lines.push_back(std::move(line));
   }
+  if (piece->measures.has_weft) add_wefts(*piece, gap, problem);
   result.mending = mend(problem);
   for (std::size_t c = 0; c < numbers.size(); ++c) result.moves.set(numbers[c], result.mending.moves[c]);
   return std::optional(std::move(result));

@@ -8,16 +8,24 @@
 namespace selvage::fabric {
 
 void YarnPoints::begin(long long course, const Overlap& overlap) {
-  const double x = foot_x(overlap), z = m_.underlap_z(bar_), foot = m_.reach_y(bar_);
-  put_moved(course, overlap, {x, -m_.course_pitch, z}, moves_.of_beginning(bar_number_, 0));
-  put_moved(course, overlap, {x, -0.5 * (m_.course_pitch + foot), z}, moves_.of_beginning(bar_number_, 1));
+  const Vec3 foot = foot_in(overlap);
+  put_moved(course, overlap, {foot.x(), -m_.course_pitch, foot.z()}, moves_.of_beginning(bar_number_, 0));
+  put_moved(course, overlap, {foot.x(), -0.5 * (m_.course_pitch - foot.y()), foot.z()},
+            moves_.of_beginning(bar_number_, 1));
 }
 
 void YarnPoints::overlap(long long course, const Overlap& overlap, int hold) {
   placed_ = 0;
+  const std::size_t first = points_.size();
   put_moved(course, overlap, foot_in(overlap), next_number(course));
-  if (!overlap.is_laid_in()) bar_.is_fall_plate ? low_arch(course, overlap) : loop(course, overlap, hold);
+  if (bar_.own != nullptr && !overlap.is_laid_in()) {
+    for (std::size_t i = 1; i + 1 < bar_.own->points.size(); ++i)
+      put_moved(course, overlap, own_point(bar_.own->points[i]), next_number(course));
+  } else if (!overlap.is_laid_in()) {
+    bar_.is_fall_plate ? low_arch(course, overlap) : loop(course, overlap, hold);
+  }
   put_moved(course, overlap, foot_out(overlap), next_number(course));
+  stitches_.push_back({first, points_.size() - 1});
 }
 
 void YarnPoints::underlap(long long course, const Overlap& before, const Overlap& after) {
@@ -33,11 +41,12 @@ void YarnPoints::underlap(long long course, const Overlap& before, const Overlap
 }
 
 void YarnPoints::finish(long long course, const Overlap& overlap) {
-  const double x = foot_x(overlap), z = m_.underlap_z(bar_), foot = m_.reach_y(bar_);
+  const Vec3 foot = foot_in(overlap);
   placed_ = 0;
-  put_moved(course, overlap, foot_in(overlap), next_number(course));
-  put_moved(course, overlap, {x, 0.5 * (m_.course_pitch - foot), z}, moves_.of_end(bar_number_, 0));
-  put_moved(course, overlap, {x, m_.course_pitch, z}, moves_.of_end(bar_number_, 1));
+  put_moved(course, overlap, foot, next_number(course));
+  put_moved(course, overlap, {foot.x(), 0.5 * (m_.course_pitch + foot.y()), foot.z()},
+            moves_.of_end(bar_number_, 0));
+  put_moved(course, overlap, {foot.x(), m_.course_pitch, foot.z()}, moves_.of_end(bar_number_, 1));
 }
 
 std::vector<Vec3> YarnPoints::of_guide(std::size_t guide) const {
@@ -64,11 +73,17 @@ void YarnPoints::put(long long course, const Overlap& overlap, double x, double 
   put_moved(course, overlap, {x, y, z}, next_number(course));
 }
 
+Vec3 YarnPoints::own_point(const Vec3& p) const {
+  return {p.x() * m_.wale_pitch, p.y() * m_.course_pitch, p.z() * m_.thickest};
+}
+
 Vec3 YarnPoints::foot_in(const Overlap& overlap) const {
+  if (bar_.own != nullptr && !overlap.is_laid_in()) return own_point(bar_.own->points.front());
   return {foot_x(overlap), -m_.reach_y(bar_), m_.underlap_z(bar_)};
 }
 
 Vec3 YarnPoints::foot_out(const Overlap& overlap) const {
+  if (bar_.own != nullptr && !overlap.is_laid_in()) return own_point(bar_.own->points.back());
   return {-foot_x(overlap), m_.foot_y(bar_), m_.underlap_z(bar_)};
 }
 

@@ -1,6 +1,7 @@
 // The data points of a warp knit's yarns: the dimensions of its loops, and how they follow each other.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct Bar {
   int bars_behind = 0;                   // of all bars
   int feet_before = 0, feet_behind = 0;  // bars with feet before and behind this one
   double thickness = 0;                  // of its yarns, file units
+  const OwnLoop* own = nullptr;          // the user's; null: of the measures
 };
 
 // The dimensions of the loops, file units. They grow with the pitches, so that the smallest pitches are those
@@ -36,6 +38,8 @@ struct Measures {
   double across = 0, along = 0, layer = 0;
   int bars_with_feet = 0;
   int fall_plates = 0;
+  bool has_weft = false;    // straight yarns between loops and underlaps
+  double thickest = 0;      // of all yarns, file units
   double deepest_foot = 0;  // below and above a course's line
   double substrate = 0;     // between underlaps and heads
 
@@ -50,9 +54,15 @@ struct Measures {
   [[nodiscard]] double head_y() const { return deepest_foot + (2.0 + fall_plates) * along; }
   [[nodiscard]] double arch_y(const Bar& bar) const { return deepest_foot + (1.2 + bar.feet_before) * along; }
   [[nodiscard]] double underlap_z(const Bar& bar) const {
-    return -(1.0 + (fall_plates > 0 ? 1.0 : 0.0) + bar.bars_behind) * layer - substrate;
+    return -(1.0 + (fall_plates > 0 || has_weft ? 1.0 : 0.0) + bar.bars_behind) * layer - substrate;
   }
   [[nodiscard]] double arch_z() const { return -layer; }
+  // A straight weft lies above the heads that stand on a course's line, below the feet of the next course.
+  [[nodiscard]] double weft_y() const {
+    const double reach = deepest_foot + (fall_plates > 0 ? 1.0 : low_foot) * along;
+    return 0.5 * (head_y() + course_pitch - reach);
+  }
+  [[nodiscard]] double weft_z() const { return -layer; }
   [[nodiscard]] double head_z(const Bar& bar) const { return bar.feet_behind * layer; }
   [[nodiscard]] double leg_z(const Bar& bar) const { return (bars_with_feet + bar.feet_behind) * layer; }
 };
@@ -108,6 +118,8 @@ class YarnPoints {
   [[nodiscard]] std::vector<Vec3> of_guide(std::size_t guide) const;
   // For each point, which of the moves moves it.
   [[nodiscard]] const std::vector<std::size_t>& moved_by() const { return moved_by_; }
+  // For each course, the first and the last of its points from foot to foot.
+  [[nodiscard]] const std::vector<std::array<std::size_t, 2>>& stitches() const { return stitches_; }
 
  private:
   [[nodiscard]] Vec3 point(long long course, const Overlap& overlap, const Vec3& local,
@@ -117,6 +129,7 @@ class YarnPoints {
   [[nodiscard]] std::size_t next_number(long long course) {
     return moves_.of_course(bar_number_, course, placed_++);
   }
+  [[nodiscard]] Vec3 own_point(const Vec3& p) const;
   [[nodiscard]] Vec3 foot_in(const Overlap& overlap) const;
   [[nodiscard]] Vec3 foot_out(const Overlap& overlap) const;
   [[nodiscard]] double foot_x(const Overlap& overlap) const {
@@ -133,7 +146,9 @@ class YarnPoints {
   std::size_t placed_ = 0;  // points of this course
   std::vector<Vec3> points_;
   std::vector<std::size_t> moved_by_;
+  std::vector<std::array<std::size_t, 2>> stitches_;
 };
+
 // A loop is held while its needle waits for the next one; a machine breaks the yarn sooner than after these
 // courses.
 inline constexpr int longest_hold = 8;

@@ -233,6 +233,10 @@ class Flat {
     add(path + ".layers", v.layers);
     add(path + ".binders", v.binders);
   }
+  void add(const std::string& path, const OwnLoop& v) {
+    add(path + ".sign", std::string(1, v.sign));
+    add(path + ".points", v.points);
+  }
   void add(const std::string& path, const Knit& v) {
     add(path + ".form", v.form);
     add(path + ".rib_a", v.rib_a);
@@ -243,6 +247,10 @@ class Flat {
     add(path + ".course_pitch", v.course_pitch);
     add(path + ".wale_pitch", v.wale_pitch);
     add(path + ".loop", v.loop);
+    add(path + ".unit", v.unit);
+    add(path + ".crossing", v.crossing);
+    add(path + ".shape", v.shape);
+    add(path + ".own_loops", v.own_loops);
     add(path + ".feeds", v.feeds);
     add(path + ".gating", v.gating);
     add(path + ".bed_distance", v.bed_distance);
@@ -256,11 +264,18 @@ class Flat {
     add(path + ".thread", v.thread);
     add(path + ".lapping", v.lapping);
     add(path + ".fall_plate", v.fall_plate);
+    add(path + ".own_loop", v.own_loop);
+  }
+  void add(const std::string& path, const WarpknitWeft& v) {
+    add(path + ".threads", v.threads);
+    add(path + ".every", v.every);
+    add(path + ".first", v.first);
   }
   void add(const std::string& path, const Warpknit& v) {
     add(path + ".classic", v.classic);
     add(path + ".thread", v.thread);
     add(path + ".bars", v.bars);
+    add(path + ".weft", v.weft);
     add(path + ".wales", v.wales);
     add(path + ".courses", v.courses);
     add(path + ".wale_pitch", v.wale_pitch);

@@ -405,8 +405,14 @@ class Maker {
         maybe(knit.loop, [&] { return positive(); });
         knit.courses = count();
         knit.wales = count();
+        const bool has_own = !knit.loop && up_to(3) == 0;
+        if (has_own) knit.own_loops.push_back(own_loop("KPTUM"[up_to(4)]));
+        if (!has_own) maybe(knit.shape, [&] { return static_cast<Knit::Shape>(up_to(1)); });
+        if (!has_own && knit.course_pitch == 0 && knit.wale_pitch == 0)
+          maybe(knit.unit, [&] { return positive(); });
+        maybe(knit.crossing, [&] { return Vec3(positive(), -positive(), positive()); });
         maybe(knit.method, [&] { return static_cast<nurbs::Parameterization>(up_to(2)); });
-        if (knit.form == Knit::Form::jersey && up_to(1) == 0) {
+        if (knit.form == Knit::Form::jersey && !has_own && up_to(1) == 0) {
           knit.plating = one_of(threads_);
           maybe(knit.pile, [&] { return positive(); });
           knit.pile_is_cut = knit.pile && up_to(1) == 0;
@@ -455,6 +461,12 @@ class Maker {
         return yarn();
     }
   }
+  OwnLoop own_loop(char sign) {
+    OwnLoop loop;
+    loop.sign = sign;
+    for (int i = 4 + up_to(5); i >= 0; --i) loop.points.emplace_back(positive(), -positive(), i);
+    return loop;
+  }
   Warpknit warpknit() {
     static const std::vector<std::string> lappings = {"1-0/1-2", "2-3/1-0//", "1-0/1-2/2-3/2-1", "1-0 1-2",
                                                       "10-0 / 0-0"};
@@ -470,8 +482,16 @@ class Maker {
         bar.thread = one_of(threads_);
         bar.lapping = one_of(lappings);
         bar.fall_plate = coin();
+        maybe(bar.own_loop, [&] { return own_loop('K'); });
       }
     }
+    maybe(warpknit.weft, [&] {
+      WarpknitWeft weft;
+      for (int i = up_to(2); i >= 0; --i) weft.threads.push_back(one_of(threads_));
+      weft.every = count();
+      weft.first = count();
+      return weft;
+    });
     warpknit.wales = count();
     warpknit.courses = count();
     warpknit.wale_pitch = positive();
