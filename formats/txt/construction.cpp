@@ -611,6 +611,9 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     if (knit.unit && (knit.course_pitch > 0 || knit.wale_pitch > 0))
       p.error(opened,
               "the loop's unit says how far courses and wales are apart: leave out 'unit', or the pitches");
+    if (knit.shape == Knit::Shape::relaxed &&
+        knit.method.value_or(nurbs::Parameterization::uniform) != nurbs::Parameterization::uniform)
+      p.error(opened, "relaxed loops take uniform parameters: leave out 'method', or 'shape relaxed'");
     if (!knit.own_loops.empty() && (knit.loop || knit.unit || knit.shape || !knit.plating.empty()))
       p.error(opened,
               "the points of a loop say its size and shape: leave out 'points', or 'loop', 'unit', "

@@ -160,7 +160,7 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
       stands_out ? yarn::FrameGuide::free_from(Vec3::UnitZ()) : yarn::FrameGuide::with_up(Vec3::UnitZ());
   Onward onward;  // loops that move alike are all of one form
   if (moves_.wales_go_on()) onward = {(points.size() - 1) / wales(), {pitch_.x(), 0, 0}};
-  plan->line = course_line(points, knit_.method.value_or(nurbs::Parameterization::chord), onward);
+  plan->line = course_line(points, method_of(knit_), onward);
   return plan;
 }
 
@@ -181,14 +181,15 @@ KnitYarn knit_yarn_of(const Fabric& fabric, const Knit& knit, const Thickest& th
                       const BuildOptions& options) {
   const yarn::SectionSize size = yarn::nominal_size(thickest.section);
   KnitYarn yarn;
-  yarn.how = knit.method.value_or(nurbs::Parameterization::chord);
+  yarn.how = method_of(knit);
   yarn.section = thickest.section;
   yarn.half = Vec2(size.width / 2, size.height / 2);
   yarn.turns = section_twist(*thickest.thread, fabric.units) != 0.0 &&
                !std::holds_alternative<yarn::Circle>(thickest.section);
   // Each surface may lie outside of its yarn by the tolerance.
   yarn.gap = gap_of(fabric, size, options) + 2.0 * tolerance_of(fabric, {});
-  yarn.keeps_length = knit.loop.has_value();
+  yarn.relaxes = knit.shape == Knit::Shape::relaxed;
+  yarn.keeps_length = knit.loop.has_value() || yarn.relaxes;
   return yarn;
 }
 
@@ -206,8 +207,7 @@ Result<LoopShape> shape_of(const Knit& knit, const KnitField& field, const Vec2&
   if (field.chart.is_opposite())
     spaced.shape.bed = knit.bed_distance ? larger * *knit.bed_distance / 2 / half.y() : least_bed;
   if (!knit.loop) return spaced.shape;
-  return shape_of_length(spaced, knit.method.value_or(nurbs::Parameterization::chord), half,
-                         larger * *knit.loop);
+  return shape_of_length(spaced, method_of(knit), half, larger * *knit.loop);
 }
 
 // Published loops are what they are; loops of given densities have to have room.
@@ -304,6 +304,12 @@ Result<KnitMoves> moves_of(const Fabric& fabric, const Knit& knit, const Thickes
         "the loops of this knit become {:.2g} % longer or shorter than is said where they are moved "
         "apart",
         100 * mending.stretch));
+  if (mending.is_solved() && yarn.relaxes)
+    diagnostics.add(
+        note(Kind::geometry, fmt::format("relaxed, the loops of this knit bend with {:.3g} of the energy "
+                                         "that they have where they are only moved apart",
+                                         mending.bent / mending.bent_before))
+            .placed(knit.place, fabric.file));
   if (mending.is_solved()) return moves;
   const double gap = gap_of(fabric, size, options);
   const double left = yarn.gap - 0.5 * mending.missing * size.width;

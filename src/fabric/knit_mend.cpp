@@ -104,6 +104,11 @@ class Reach {
 
 }  // namespace
 
+nurbs::Parameterization method_of(const Knit& knit) {
+  const bool is_relaxed = knit.shape == Knit::Shape::relaxed;
+  return knit.method.value_or(is_relaxed ? nurbs::Parameterization::uniform : nurbs::Parameterization::chord);
+}
+
 yarn::CentreLine course_line(const std::vector<Vec3>& points, nurbs::Parameterization how,
                              const Onward& onward) {
   yarn::CentreLine line;
@@ -154,14 +159,14 @@ long long LoopTies::of_offset(long long offset, long long count) const {
 namespace {
 
 // Wales are solved as one only in a cloth wide enough to have an inside: a narrow one stays symmetric.
-std::vector<LoopTies> ties_of(const KnitField& field, bool as_one) {
+std::vector<LoopTies> ties_of(const KnitField& field, bool as_one, bool also_narrow = false) {
   const int hold = field.chart.longest_hold();
   const long long wales = field.last_wale - field.first_wale + 1;
   const bool is_wide = wales > 2 * border_wales + range_wales;
   return {LoopTies(field.first_course, field.last_course, field.chart.repeat_of_courses(),
                    border_courses(field.chart), hold + 2, as_one),
           LoopTies(field.first_wale, field.last_wale, field.chart.repeat_of_wales(), border_wales,
-                   range_wales, as_one && is_wide)};
+                   range_wales, as_one && (is_wide || also_narrow))};
 }
 
 // The class that each one is the mirror image of, if every course is its own image; else nothing.
@@ -188,7 +193,8 @@ long long KnitMoves::loops_solved(const KnitField& field) {
   return ties[0].reduced_count() * ties[1].reduced_count() * field.ends;
 }
 
-KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn) : ties_(ties_of(field, true)) {
+KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn)
+    : ties_(ties_of(field, true, yarn.relaxes)) {
   solve(field, yarn);
   const bool was_periodic = ties_[0].is_periodic() || ties_[1].is_periodic();
   if (mending_.is_solved() || !was_periodic) return;
@@ -205,7 +211,9 @@ bool KnitMoves::come_apart(const KnitField& field, const KnitYarn& yarn) {
   endless.last_wale = endless.first_wale + std::max(wide, field.chart.repeat_of_wales()) - 1;
   KnitMoves moves;
   moves.ties_ = ties_of(endless, true);
-  moves.solve(endless, yarn, few_steps);
+  KnitYarn rigid = yarn;
+  rigid.relaxes = false;
+  moves.solve(endless, rigid, few_steps);
   return moves.mending_.is_solved();
 }
 
@@ -228,6 +236,7 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn, int max_step
   MendProblem problem;
   problem.measure = scale;
   problem.max_steps = max_steps;
+  problem.relaxes = yarn.relaxes;
   if (ties_[0].is_periodic()) problem.repeat = {0, field.shape.course * field.chart.height(1), 0};
   const bool goes_on = ties_[1].is_periodic();
   for (long long l = 0; l < courses * ends_; ++l) {
@@ -264,9 +273,10 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn, int max_step
       curve.points = scaled(std::move(curve.points), scale.cwiseInverse());
       return curve;
     };
-    line.shares = [scale, how = yarn.how, goes_on](const std::vector<Vec3>& points) {
+    const double least = yarn.relaxes ? least_relaxed_share : least_share;
+    line.shares = [scale, how = yarn.how, goes_on, least](const std::vector<Vec3>& points) {
       const std::vector<double> t = nurbs::parameters(scaled(points, scale), how);
-      return goes_on ? periodic_shares(t) : interpolation_shares(t);
+      return goes_on ? periodic_shares(t, least) : interpolation_shares(t, least);
     };
     line.keeps_length = yarn.keeps_length;
     line.radius = radius;

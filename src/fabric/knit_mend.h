@@ -26,6 +26,9 @@ struct Onward {
 yarn::CentreLine course_line(const std::vector<Vec3>& points, nurbs::Parameterization how,
                              const Onward& onward = {});
 
+// Relaxed loops take uniform parameters, which do not change as their points move.
+nurbs::Parameterization method_of(const Knit& knit);
+
 struct KnitYarn {
   nurbs::Parameterization how = nurbs::Parameterization::chord;
   yarn::Section section;
@@ -33,6 +36,7 @@ struct KnitYarn {
   bool turns = false;         // the section turns along the path
   double gap = 0;             // wanted between two surfaces, file units
   bool keeps_length = false;  // courses become neither longer nor shorter
+  bool relaxes = false;       // loops bend as little as they can, all alike where the chart has them so
 };
 
 // Which loops move alike along one direction of the cloth: near its edges every one for itself, inside those

@@ -1,12 +1,10 @@
 #include "fabric/mend.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "fabric/mend_system.h"
 #include "fabric/mend_touch.h"
 #include "nurbs/basis.h"
 #include "nurbs/interpolate.h"
@@ -15,13 +13,17 @@ namespace selvage::fabric {
 
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-using Vector = Eigen::VectorXd;
+using mending::Linear;
+using mending::Matrix;
+using mending::Pull;
+using mending::Residual;
+using mending::Vector;
 
 // Stiffnesses, for a radius of 1: of moves, of their bending and stretching along a line; of what keeps yarns
 // apart and bends open. The last two are so large that little is missing in the first balance.
 constexpr double hold = 1, bending = 1, stretching = 1, pressing = 8e2, opening = 1e3, lengthening = 1e3;
 constexpr double negligible = 1e-2;  // shares in a place that steps leave out
+constexpr double least_pull = 1e-6;  // the same where lines relax
 // In radii:
 constexpr double longest_step = 0.25, least_ahead = 0.05;
 constexpr double stalled = 1e-3;
@@ -29,23 +31,6 @@ constexpr int most_halves = 12;  // of a step
 constexpr int most_stalls = 4;
 constexpr double settled = 0.02;        // share of the energy that a step gains
 constexpr double least_stretch = 1e-4;  // of a line that keeps its length
-
-// What a class contributes to a residual: a vector along which its move counts.
-struct Pull {
-  int index = 0;  // of the class
-  Vec3 along;
-};
-
-// One penalty: weight / 2 (lack - sum pulls . moves)^2, where that is lacking; or whatever it is.
-struct Residual {
-  double weight = 0, lack = 0;
-  std::vector<Pull> pulls;
-  bool counts_always = false;
-
-  [[nodiscard]] double left(double change) const {
-    return counts_always ? lack - change : std::max(lack - change, 0.0);
-  }
-};
 
 struct State {
   Vector moves;
@@ -55,6 +40,7 @@ struct State {
   std::vector<Touch> touches;
   double energy = 0, missing = 0;
   Vec3 at = Vec3::Zero();
+  double bending = 0;
   std::vector<double> lengths;  // of those lines that keep theirs; else 0
 };
 
@@ -78,7 +64,11 @@ class Mender {
   [[nodiscard]] std::vector<Residual> residuals(const State& state, double more) const;
   // Calls each(place, weight, jet): a length is the sum of weight |measure d1|.
   template <class Each>
-  static void for_pieces(const CubicPath& path, const Each& each);
+  void for_pieces(const CubicPath& path, const Each& each) const;
+  [[nodiscard]] double bending_of(const State& state) const;
+  void add_bending(const State& state, std::size_t line, const std::vector<std::vector<Share>>& shares,
+                   std::vector<Residual>& found) const;
+  State relax(State state, double more);
   [[nodiscard]] std::vector<double> lengths_of(const State& state) const;
   [[nodiscard]] Residual length_residual(const State& state, std::size_t line,
                                          const std::vector<std::vector<Share>>& shares) const;
@@ -94,6 +84,8 @@ class Mender {
   std::vector<double> lengths_, asked_lengths_;
   double ahead_ = 0;  // what is nearer than this may be lacking after a step
   Matrix stiffness_;
+  Vector held_;  // the moves at which it pulls with nothing
+  bool is_relaxing_ = false;
   std::optional<TouchFinder> finder_;
 };
 
@@ -134,16 +126,61 @@ void Mender::for_tight_bends(const State& state, const Each& each) const {
 }
 
 template <class Each>
-void Mender::for_pieces(const CubicPath& path, const Each& each) {
-  // Gauss' three points in a half of each span.
-  const double off = std::sqrt(0.15);
-  const std::array<std::array<double, 2>, 3> nodes = {
-      {{0.5 - off, 5.0 / 18}, {0.5, 4.0 / 9}, {0.5 + off, 5.0 / 18}}};
+void Mender::for_pieces(const CubicPath& path, const Each& each) const {
+  // Gauss' three points in a half of each span, or five.
+  static const double off = std::sqrt(0.15);
+  static const std::vector<std::array<double, 2>> three = {
+      {0.5 - off, 5.0 / 18}, {0.5, 4.0 / 9}, {0.5 + off, 5.0 / 18}};
+  static const double near = std::sqrt(5 - 2 * std::sqrt(10.0 / 7)) / 6,
+                      far = std::sqrt(5 + 2 * std::sqrt(10.0 / 7)) / 6,
+                      of_near = (322 + 13 * std::sqrt(70.0)) / 1800,
+                      of_far = (322 - 13 * std::sqrt(70.0)) / 1800;
+  static const std::vector<std::array<double, 2>> five = {{0.5 - far, of_far},
+                                                          {0.5 - near, of_near},
+                                                          {0.5, 64.0 / 225},
+                                                          {0.5 + near, of_near},
+                                                          {0.5 + far, of_far}};
   for (std::size_t half = 0; half < 2 * path.spans(); ++half)
-    for (const auto& [node, weight] : nodes) {
+    for (const auto& [node, weight] : problem_.relaxes ? five : three) {
       const double place = 0.5 * (static_cast<double>(half) + node);
       each(place, 0.5 * weight, path.at(place));
     }
+}
+
+double Mender::bending_of(const State& state) const {
+  double sum = 0;
+  for (const CubicPath& path : state.paths)
+    for_pieces(path, [&](double, double weight, const CubicPath::Jet& jet) {
+      const Vec3 d1 = jet.d1.cwiseProduct(problem_.measure), d2 = jet.d2.cwiseProduct(problem_.measure);
+      const double speed = d1.norm();
+      sum += weight * d1.cross(d2).squaredNorm() / std::pow(speed, 5);
+    });
+  return sum;
+}
+
+// The curvature k = c''/s^2 - c' (c' c'')/s^4, with speed s, times the root of s: half of its squares' sum is
+// the energy.
+void Mender::add_bending(const State& state, std::size_t line, const std::vector<std::vector<Share>>& shares,
+                         std::vector<Residual>& found) const {
+  const double stiffness = std::pow(radius_, 3);
+  for_pieces(state.paths[line], [&](double place, double weight, const CubicPath::Jet& jet) {
+    const Vec3 d1 = jet.d1.cwiseProduct(problem_.measure), d2 = jet.d2.cwiseProduct(problem_.measure);
+    const double s = d1.norm(), along = d1.dot(d2), root = std::sqrt(s);
+    const Vec3 t = d1 / s, k = (d2 - d2.dot(t) * t) / (s * s);
+    const Eigen::Matrix3d by_d2 = root / (s * s) * (Eigen::Matrix3d::Identity() - t * t.transpose());
+    const Eigen::Matrix3d by_d1 =
+        root * ((4 * along / std::pow(s, 5) * d1 - 2 / std::pow(s, 3) * d2) * t.transpose() -
+                (along * Eigen::Matrix3d::Identity() + d1 * d2.transpose()) / std::pow(s, 4)) +
+        k * t.transpose() / (2 * root);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      Residual residual{weight * stiffness, root * k(i), {}, true};
+      add_pulls(problem_.lines[line], state, line, place, 2,
+                -by_d2.row(i).transpose().cwiseProduct(problem_.measure), shares, residual.pulls);
+      add_pulls(problem_.lines[line], state, line, place, 1,
+                -by_d1.row(i).transpose().cwiseProduct(problem_.measure), shares, residual.pulls);
+      found.push_back(std::move(residual));
+    }
+  });
 }
 
 std::vector<double> Mender::lengths_of(const State& state) const {
@@ -181,7 +218,9 @@ Residual Mender::length_residual(const State& state, std::size_t line,
 // Finds the touches of a state and its energy when `more` than the needed distance is asked for.
 void Mender::look(State& state, double more) const {
   state.touches = finder_->find(state.paths, more + ahead_);
-  state.energy = 0.5 * state.moves.dot(stiffness_ * state.moves);
+  state.energy = 0.5 * (state.moves - held_).dot(stiffness_ * (state.moves - held_));
+  if (problem_.relaxes) state.bending = bending_of(state);
+  if (is_relaxing_) state.energy += 0.5 * std::pow(radius_, 3) * state.bending;
   state.missing = 0;
   state.lengths = lengths_of(state);
   for (std::size_t l = 0; l < asked_lengths_.size(); ++l)
@@ -237,6 +276,7 @@ void Mender::make_stiffness() {
       }
     }
   }
+  held_ = Vector::Zero(size_);
   stiffness_.resize(size_, size_);
   stiffness_.setFromTriplets(entries.begin(), entries.end());
 }
@@ -303,6 +343,7 @@ std::vector<Residual> Mender::residuals(const State& state, double more) const {
       });
   for (std::size_t l = 0; l < lengths_.size(); ++l)
     if (lengths_[l] > 0) found.push_back(length_residual(state, l, shares[l]));
+  for (std::size_t l = 0; is_relaxing_ && l < shares.size(); ++l) add_bending(state, l, shares[l], found);
   for (Residual& residual : found) {
     // Classes that stand in it twice (both places are of one class) count once.
     std::stable_sort(residual.pulls.begin(), residual.pulls.end(),
@@ -316,121 +357,11 @@ std::vector<Residual> Mender::residuals(const State& state, double more) const {
     }
     for (Pull& pull : merged)
       pull.along = pull.along.cwiseProduct(problem_.freedom[static_cast<std::size_t>(pull.index)]);
-    std::erase_if(merged, [](const Pull& pull) { return pull.along.norm() < negligible; });
+    const double least = is_relaxing_ ? least_pull : negligible;
+    std::erase_if(merged, [&](const Pull& pull) { return pull.along.norm() < least; });
     residual.pulls = std::move(merged);
   }
   return found;
-}
-
-// Stiffness and those penalties that count, to the first order at a state.
-class Linear {
- public:
-  Linear(const Matrix& stiffness, const std::vector<Residual>& residuals)
-      : stiffness_(stiffness), residuals_(residuals) {}
-
-  void count_only(std::vector<std::size_t> rows) { rows_ = std::move(rows); }
-
-  // After a step of x from these moves, with all penalties that lack then.
-  [[nodiscard]] double energy(const Vector& moves, const Vector& x) const {
-    const Vector after = moves + x;
-    double sum = 0.5 * after.dot(stiffness_ * after);
-    for (const Residual& residual : residuals_) {
-      const double lack = residual.left(change(residual, x));
-      sum += 0.5 * residual.weight * lack * lack;
-    }
-    return sum;
-  }
-  [[nodiscard]] Vector times(const Vector& x) const {
-    Vector image = stiffness_ * x;
-    for (const std::size_t row : rows_) {
-      const Residual& residual = residuals_[row];
-      add(residual, residual.weight * change(residual, x), image);
-    }
-    return image;
-  }
-  // What the penalties pull with at x = 0.
-  [[nodiscard]] Vector force() const {
-    Vector sum = Vector::Zero(stiffness_.rows());
-    for (const std::size_t row : rows_)
-      add(residuals_[row], residuals_[row].weight * residuals_[row].lack, sum);
-    return sum;
-  }
-  // The blocks of 3 x 3 on the diagonal, inverted.
-  [[nodiscard]] std::vector<Eigen::Matrix3d> diagonal_inverses() const {
-    std::vector<Eigen::Matrix3d> blocks(static_cast<std::size_t>(stiffness_.rows() / 3),
-                                        Eigen::Matrix3d::Zero());
-    for (Eigen::Index row = 0; row < stiffness_.rows(); ++row)
-      for (Matrix::InnerIterator entry(stiffness_, row); entry; ++entry)
-        if (entry.col() / 3 == row / 3)
-          blocks[static_cast<std::size_t>(row / 3)](row % 3, entry.col() % 3) += entry.value();
-    for (const std::size_t row : rows_)
-      for (const Pull& pull : residuals_[row].pulls)
-        blocks[static_cast<std::size_t>(pull.index)] +=
-            residuals_[row].weight * pull.along * pull.along.transpose();
-    for (Eigen::Matrix3d& block : blocks) block = block.inverse().eval();
-    return blocks;
-  }
-  // All of it as one matrix, of which the lower half is filled.
-  [[nodiscard]] Eigen::MatrixXd matrix() const {
-    Eigen::MatrixXd sum = stiffness_;
-    for (const std::size_t row : rows_) {
-      const std::vector<Pull>& pulls = residuals_[row].pulls;  // by increasing class
-      for (std::size_t b = 0; b < pulls.size(); ++b) {
-        const Eigen::RowVector3d right = residuals_[row].weight * pulls[b].along.transpose();
-        for (std::size_t a = b; a < pulls.size(); ++a)
-          sum.block<3, 3>(3 * Eigen::Index{pulls[a].index}, 3 * Eigen::Index{pulls[b].index}) +=
-              pulls[a].along * right;
-      }
-    }
-    return sum;
-  }
-  static double change(const Residual& residual, const Vector& x) {
-    double sum = 0;
-    for (const Pull& pull : residual.pulls) sum += pull.along.dot(x.segment<3>(3 * Eigen::Index{pull.index}));
-    return sum;
-  }
-
- private:
-  static void add(const Residual& residual, double factor, Vector& to) {
-    for (const Pull& pull : residual.pulls)
-      to.segment<3>(3 * Eigen::Index{pull.index}) += factor * pull.along;
-  }
-
-  const Matrix& stiffness_;
-  const std::vector<Residual>& residuals_;
-  std::vector<std::size_t> rows_;
-};
-
-// By Cholesky's method where that is quick; else by conjugate gradients from `x` on.
-void solve(const Linear& linear, const Vector& right, Vector& x) {
-  constexpr Eigen::Index most_dense = 200;
-  if (right.size() <= most_dense) {
-    x = linear.matrix().selfadjointView<Eigen::Lower>().llt().solve(right);
-    return;
-  }
-  constexpr int most = 300;
-  constexpr double enough = 1e-3;  // of the right side; the next step takes up the rest
-  const std::vector<Eigen::Matrix3d> inverses = linear.diagonal_inverses();
-  const auto precondition = [&](const Vector& r) {
-    Vector z(r.size());
-    for (std::size_t i = 0; i < inverses.size(); ++i)
-      z.segment<3>(3 * static_cast<Eigen::Index>(i)) =
-          inverses[i] * r.segment<3>(3 * static_cast<Eigen::Index>(i));
-    return z;
-  };
-  Vector r = right - linear.times(x), z = precondition(r), direction = z;
-  double product = r.dot(z);
-  const double goal = enough * right.norm();
-  for (int i = 0; i < most && r.norm() > goal; ++i) {
-    const Vector image = linear.times(direction);
-    const double along = product / direction.dot(image);
-    x += along * direction;
-    r -= along * image;
-    z = precondition(r);
-    const double next = r.dot(z);
-    direction = z + next / product * direction;
-    product = next;
-  }
 }
 
 // The Gauss-Newton step: the minimum of the penalties as they are to the first order, in which each counts
@@ -453,10 +384,11 @@ Vector Mender::step(const State& state, double more) const {
     if (round > 0 && 20 * changes <= rows.size()) break;
     linear.count_only(std::move(rows));
     Vector next = step;
-    solve(linear, linear.force() - stiffness_ * state.moves, next);
+    solve(linear, linear.force() - stiffness_ * (state.moves - held_), next);
     // Not so far that what begins to lack outweighs what is gained.
-    const double before = linear.energy(state.moves, step);
-    for (int half = 0; half < most_halves && linear.energy(state.moves, next) > before; ++half)
+    const Vector moved = state.moves - held_;
+    const double before = linear.energy(moved, step);
+    for (int half = 0; half < most_halves && linear.energy(moved, next) > before; ++half)
       next = (0.5 * (step + next)).eval();
     step = std::move(next);
   }
@@ -490,6 +422,45 @@ bool keeps_sides(const State& before, const State& after) {
                        after.paths[touch.line_b].at(touch.place_b).position - touch.shift;
     return touch.normal.dot(apart) > least_share * (touch.on_a - touch.on_b).norm();
   });
+}
+
+// Steps of Gauss and Newton on the bending energy. The stiffness only damps them: it holds what nothing else
+// does, above all data points that slide along their line.
+State Mender::relax(State state, double more) {
+  constexpr int most_steps = 400;
+  constexpr double damping = 1e-2, settled_share = 1e-4, relaxed_share = 1e-8, least_left = 2e-7;
+  is_relaxing_ = true;
+  stiffness_ *= damping;
+  const double margin = 2e-3 * radius_;
+  State best = state;
+  bool is_best_long_enough = stretch_of(best) <= least_left;
+  for (int steps = 0; steps < most_steps; ++steps) {
+    held_ = state.moves;
+    look(state, more);
+    Vector step = this->step(state, more);
+    if (const double longest = largest_of(step); longest > longest_step * radius_)
+      step *= longest_step * radius_ / longest;
+    State next = state_at(state.moves + step);
+    look(next, more);
+    for (int half = 0; half < most_halves && (next.energy > state.energy || !keeps_sides(state, next));
+         ++half) {
+      step *= 0.5;
+      next = state_at(state.moves + step);
+      look(next, more);
+    }
+    const double gain = (state.energy - next.energy) / state.energy;
+    if (gain > 0) state = std::move(next);
+    const bool is_long_enough = stretch_of(state) <= least_left;
+    if (state.missing == 0 && is_long_enough && (!is_best_long_enough || state.bending < best.bending)) {
+      best = state;
+      is_best_long_enough = true;
+      if (gain < relaxed_share) break;
+    }
+    if (gain > settled_share) continue;
+    if (state.missing > 0) more += 1.1 * state.missing + 0.1 * margin;
+    for (std::size_t l = 0; l < lengths_.size(); ++l) asked_lengths_[l] += lengths_[l] - state.lengths[l];
+  }
+  return best;
 }
 
 Mending Mender::run() {
@@ -549,18 +520,20 @@ Mending Mender::run() {
     for (std::size_t l = 0; l < lengths_.size(); ++l) asked_lengths_[l] += lengths_[l] - state.lengths[l];
     look(state, more);
   }
-  Mending mending{{}, best.missing, best.at, stretch_of(best)};
+  const double bent_before = best.bending;
+  if (problem_.relaxes && best.missing == 0) best = relax(std::move(best), more);
+  Mending mending{{}, best.missing, best.at, bent_before, best.bending, stretch_of(best)};
   for (std::size_t c = 0; c < problem_.freedom.size(); ++c)
     mending.moves.emplace_back(best.moves.segment<3>(3 * static_cast<Eigen::Index>(c)));
   return mending;
 }
 
 // Shares of the data rows in the control rows that interpolation makes of the unit matrix.
-std::vector<std::vector<Share>> shares_in(const Eigen::MatrixXd& control) {
+std::vector<std::vector<Share>> shares_in(const Eigen::MatrixXd& control, double least) {
   std::vector<std::vector<Share>> shares(static_cast<std::size_t>(control.rows()));
   for (Eigen::Index row = 0; row < control.rows(); ++row)
     for (Eigen::Index point = 0; point < control.cols(); ++point)
-      if (std::abs(control(row, point)) > 1e-3)
+      if (std::abs(control(row, point)) > least)
         shares[static_cast<std::size_t>(row)].push_back(
             {static_cast<std::size_t>(point), control(row, point)});
   return shares;
@@ -572,9 +545,9 @@ Mending mend(const MendProblem& problem) {
   return Mender(problem).run();
 }
 
-std::vector<std::vector<Share>> interpolation_shares(const std::vector<double>& parameters) {
-  // The share falls by 2 + sqrt(3) from point to point: to 1e-4 in seven.
-  constexpr std::size_t near = 7;
+std::vector<std::vector<Share>> interpolation_shares(const std::vector<double>& parameters, double least) {
+  // The share falls by 2 + sqrt(3) from point to point: to 1e-4 in seven, to 1e-9 in sixteen.
+  const std::size_t near = least < least_share ? 16 : 7;
   const std::size_t count = parameters.size();
   std::vector<std::vector<Share>> shares(count + 2);
   for (std::size_t i = 0; i < count; ++i) {
@@ -589,16 +562,16 @@ std::vector<std::vector<Share>> interpolation_shares(const std::vector<double>& 
     for (Eigen::Index j = 0; j < control.rows(); ++j) {
       const bool is_first_pair = j < 2, is_last_pair = j + 2 >= control.rows();
       if ((is_first_pair && first > 0) || (is_last_pair && last + 1 < count)) continue;
-      if (std::abs(control(j, 0)) > 1e-3)
+      if (std::abs(control(j, 0)) > least)
         shares[first + static_cast<std::size_t>(j)].push_back({i, control(j, 0)});
     }
   }
   return shares;
 }
 
-std::vector<std::vector<Share>> periodic_shares(const std::vector<double>& parameters) {
+std::vector<std::vector<Share>> periodic_shares(const std::vector<double>& parameters, double least) {
   const auto count = static_cast<Eigen::Index>(parameters.size()) - 1;
-  return shares_in(nurbs::interpolate_periodic(parameters, Eigen::MatrixXd::Identity(count, count)));
+  return shares_in(nurbs::interpolate_periodic(parameters, Eigen::MatrixXd::Identity(count, count)), least);
 }
 
 }  // namespace selvage::fabric

@@ -70,6 +70,9 @@ struct MendProblem {
   // Bends tighter than this, in radii, are opened to about it.
   double bend = 1.15;
   int max_steps = 80;
+  // Once they are apart, the lines take the shape of least bending energy (the integral of the squared
+  // curvature by arc length, of true lengths) that the room has; small moves are no end in themselves then.
+  bool relaxes = false;
 };
 
 struct Mending {
@@ -77,6 +80,8 @@ struct Mending {
   double missing = 0;       // the largest lack of distance that is left; 0: every pair has what it needs
   Vec3 at = Vec3::Zero();   // where most is missing
 
+  // Bending energies before and after, of true lengths; only where lines relax.
+  double bent_before = 0, bent = 0;
   double stretch = 0;  // the largest that is left of a line that keeps its length, a share of it
 
   [[nodiscard]] bool is_solved() const { return missing == 0; }
@@ -86,8 +91,11 @@ Mending mend(const MendProblem& problem);
 
 // The shares of the clamped cubic through data at these parameters (nurbs/interpolate.h), its derivatives at
 // the ends held.
-std::vector<std::vector<Share>> interpolation_shares(const std::vector<double>& parameters);
+inline constexpr double least_share = 1e-3, least_relaxed_share = 1e-9;  // smaller ones are left out
+std::vector<std::vector<Share>> interpolation_shares(const std::vector<double>& parameters,
+                                                     double least = least_share);
 // The same for the periodic cubic; the last parameter is that of the return to the first data point.
-std::vector<std::vector<Share>> periodic_shares(const std::vector<double>& parameters);
+std::vector<std::vector<Share>> periodic_shares(const std::vector<double>& parameters,
+                                                double least = least_share);
 
 }  // namespace selvage::fabric

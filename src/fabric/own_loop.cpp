@@ -127,7 +127,7 @@ Status check_own_loops(const Knit& knit, const KnitField& field) {
             knit.own_loops.front(),
             fmt::format("the chart has a {0}, whose points are not given: add a block 'points {0}'", sign));
   if (Status closes = check_closing(knit, field); !closes) return closes;
-  const auto how = knit.method.value_or(nurbs::Parameterization::chord);
+  const auto how = method_of(knit);
   KnitField endless = field;
   const long long far = static_cast<long long>(max_held + 1) * chart.feeds();
   endless.first_course = -far;

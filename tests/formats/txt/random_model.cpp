@@ -411,7 +411,8 @@ class Maker {
         if (!has_own && knit.course_pitch == 0 && knit.wale_pitch == 0)
           maybe(knit.unit, [&] { return positive(); });
         maybe(knit.crossing, [&] { return Vec3(positive(), -positive(), positive()); });
-        maybe(knit.method, [&] { return static_cast<nurbs::Parameterization>(up_to(2)); });
+        if (knit.shape != Knit::Shape::relaxed)
+          maybe(knit.method, [&] { return static_cast<nurbs::Parameterization>(up_to(2)); });
         if (knit.form == Knit::Form::jersey && !has_own && up_to(1) == 0) {
           knit.plating = one_of(threads_);
           maybe(knit.pile, [&] { return positive(); });
