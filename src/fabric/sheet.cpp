@@ -146,7 +146,7 @@ int widest_way(const Construction& warpknit) {
   double most = 0;
   std::string system;
   for (std::size_t i = 0; i < warpknit.count(); ++i) {
-    if (warpknit.system(i) == system) continue;
+    if (warpknit.system(i) == system || warpknit.system(i) == "weft") continue;
     system = warpknit.system(i);
     if (const Result<YarnPlan> plan = warpknit.plan(i))
       for (const Vec3& point : plan->points) most = std::max(most, std::abs(point.x()));
@@ -219,6 +219,11 @@ double cotton_count(double tex) {
   return LinearDensity{1, LinearDensity::Measure::ne}.tex() / tex;
 }
 constexpr double inch = 25.4;
+
+// Seen from above.
+bool runs_in_lanes(const Weave& weave) {
+  return weave.draft.form != Draft::Form::leno;
+}
 
 // Sums over the yarns of a repeat.
 class Measuring {
@@ -397,7 +402,7 @@ SystemSheet Measuring::system_sheet(const Item& item, const std::string& name, c
     system.loop_length = sum.length / (sum.forward > 0 ? sum.yarns * needles : sum.yarns);
     if (tex > 0) system.tightness = std::sqrt(tex) / (0.1 * *system.loop_length);
   }
-  if (std::holds_alternative<Warpknit>(item)) {
+  if (std::holds_alternative<Warpknit>(item) && name != "weft") {
     constexpr double courses_a_rack = 480;
     system.run_in = courses_a_rack * sum.length * unit_.y() / (sum.yarns * sample_.size.y());
   }
@@ -459,7 +464,7 @@ Sheet Measuring::sheet(const Item& item) const {
     sheet.mass = 1e6 * mass / area;
     if (is_braid()) sheet.linear_mass = 1e3 * mass / extent();
   }
-  if (std::holds_alternative<Weave>(item)) {
+  if (const auto* const weave = std::get_if<Weave>(&item); weave != nullptr && runs_in_lanes(*weave)) {
     std::array<double, 2> hidden{};
     for (const int axis : {0, 1})
       hidden[static_cast<std::size_t>(axis)] =

@@ -85,7 +85,7 @@ class WarpknitConstruction final : public Construction {
   }
   [[nodiscard]] Vec2 unit() const override { return {warpknit_.wale_pitch, warpknit_.course_pitch}; }
   [[nodiscard]] std::string system(std::size_t index) const override {
-    return fmt::format("bar{}", bar_of(index) + 1);
+    return is_weft(index) ? "weft" : fmt::format("bar{}", bar_of(index) + 1);
   }
   [[nodiscard]] const Thread& thread(std::size_t index) const override {
     if (is_weft(index)) return wefts_.thread(weft_of(index));
