@@ -27,7 +27,7 @@ Yarn drawn_helix(const Yarn& yarn, double tolerance) {
   const Helix& helix = std::get<Helix>(yarn.shape);
   const double turn = (helix.is_left ? -2.0 : 2.0) * std::numbers::pi * helix.turns;
   const double rise = helix.pitch * helix.turns, start = helix.start / 180.0 * std::numbers::pi;
-  const double steps = steps_of(helix, tolerance);
+  const auto steps = static_cast<int>(steps_of(helix, tolerance));
   Path path;
   path.form = yarn::PathForm::uniform;
   path.place = helix.place;
@@ -36,10 +36,10 @@ Yarn drawn_helix(const Yarn& yarn, double tolerance) {
     const double angle = start + turn * t;
     return Vec3(-helix.radius * turn * std::sin(angle), helix.radius * turn * std::cos(angle), rise);
   };
-  for (double i = 0; i <= steps; ++i) {
-    const double angle = start + turn * (i / steps);
-    path.points.emplace_back(helix.radius * std::cos(angle), helix.radius * std::sin(angle),
-                             rise * (i / steps));
+  for (int i = 0; i <= steps; ++i) {
+    const double share = static_cast<double>(i) / steps;
+    const double angle = start + turn * share;
+    path.points.emplace_back(helix.radius * std::cos(angle), helix.radius * std::sin(angle), rise * share);
   }
   Yarn drawn = yarn;
   if (!drawn.tangent_start) drawn.tangent_start = yarn::EndTangent(derivative(0.0), true);

@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "nurbs/basis.h"
@@ -34,7 +35,9 @@ class Basis {
                               : breaks[static_cast<std::size_t>(std::clamp(i, 0, m))]);
     }
   }
-  [[nodiscard]] std::size_t unknowns() const { return closed_ ? spans_ : spans_ + cubic; }
+  [[nodiscard]] std::size_t unknowns() const {
+    return closed_ ? std::max<std::size_t>(spans_, 1) : spans_ + cubic;
+  }
   [[nodiscard]] int count() const { return static_cast<int>(spans_) + cubic; }
   [[nodiscard]] const std::vector<double>& knots() const { return knots_; }
   [[nodiscard]] std::size_t unknown(int control) const {
