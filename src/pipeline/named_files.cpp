@@ -70,6 +70,7 @@ Result<fabric::Yarn> measured_yarn(const fabric::PointsFile& wanted, bool takes_
                                                         [&](const auto& y) { return y.name == wanted.yarn; });
   if (found == yarns.end() || (wanted.yarn.empty() && yarns.size() > 1)) {
     std::vector<std::string_view> names;
+    names.reserve(yarns.size());
     for (const fabric::MeasuredYarn& yarn : yarns) names.push_back(yarn.name);
     return error(
         Kind::malformed,
