@@ -611,6 +611,8 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     if (knit.unit && (knit.course_pitch > 0 || knit.wale_pitch > 0))
       p.error(opened,
               "the loop's unit says how far courses and wales are apart: leave out 'unit', or the pitches");
+    if (knit.shape == Knit::Shape::relaxed && (form != Knit::Form::jersey || !knit.plating.empty()))
+      p.error(opened, "'shape relaxed' goes with 'knit jersey' without plating");
     if (knit.shape == Knit::Shape::relaxed &&
         knit.method.value_or(nurbs::Parameterization::uniform) != nurbs::Parameterization::uniform)
       p.error(opened, "relaxed loops take uniform parameters: leave out 'method', or 'shape relaxed'");

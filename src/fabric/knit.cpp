@@ -145,7 +145,8 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
   }
   // What goes from bed to bed, and a pile, runs along the cloth's normal, which says nothing about its
   // sections there.
-  const bool stands_out = knit_.bed_distance || (knit_.pile && end(index) == 1);
+  const bool stands_out = knit_.bed_distance || (knit_.pile && end(index) == 1) ||
+                          (knit_.shape == Knit::Shape::relaxed && half_.x() == half_.y());
   if (is_tuft) {  // without the sinker that is cut
     points.erase(points.begin());
     plan->spec.guide = yarn::FrameGuide::free_from(Vec3::UnitX());

@@ -196,6 +196,12 @@ long long KnitMoves::loops_solved(const KnitField& field) {
 KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn)
     : ties_(ties_of(field, true, yarn.relaxes)) {
   solve(field, yarn);
+  if (yarn.relaxes) {  // loops with room are symmetric
+    const Mending turned = mending_;
+    solve(field, yarn, MendProblem().max_steps, Start::mirrored);
+    const bool is_worse = !mending_.is_solved() || mending_.bent > turned.bent;
+    if (is_worse && turned.is_solved()) mending_ = turned;
+  }
   const bool was_periodic = ties_[0].is_periodic() || ties_[1].is_periodic();
   if (mending_.is_solved() || !was_periodic) return;
   // At its edges and from loop to loop the cloth may give way where a single loop cannot.
@@ -217,7 +223,7 @@ bool KnitMoves::come_apart(const KnitField& field, const KnitYarn& yarn) {
   return moves.mending_.is_solved();
 }
 
-void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn, int max_steps) {
+void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn, int max_steps, Start start) {
   KnitField reduced = field;
   reduced.last_course = field.first_course + ties_[0].reduced_count() - 1;
   reduced.last_wale = field.first_wale + ties_[1].reduced_count() - 1;
@@ -283,7 +289,7 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn, int max_step
     line.reach = reach;
     problem.lines.push_back(std::move(line));
   }
-  if (goes_on) {
+  if (goes_on && start == Start::turned) {
     // Symmetric loops between their like have no room: they turn about the wale, one leg to the face.
     constexpr double turn = 0.5;
     problem.start.assign(problem.freedom.size(), Vec3::Zero());

@@ -94,7 +94,10 @@ class KnitMoves {
   static long long loops_solved(const KnitField& field);
 
  private:
-  void solve(const KnitField& field, const KnitYarn& yarn, int max_steps = MendProblem().max_steps);
+  // As its own mirror image, or, where all wales are alike, from a start that is not.
+  enum class Start { turned, mirrored };
+  void solve(const KnitField& field, const KnitYarn& yarn, int max_steps = MendProblem().max_steps,
+             Start start = Start::turned);
   [[nodiscard]] std::size_t loop_index(long long course, long long wale, int end) const;
   // The loop of the reduced cloth whose first point moves like the last point of its course.
   [[nodiscard]] long long end_wale() const;

@@ -407,13 +407,14 @@ class Maker {
         knit.wales = count();
         const bool has_own = !knit.loop && up_to(3) == 0;
         if (has_own) knit.own_loops.push_back(own_loop("KPTUM"[up_to(4)]));
-        if (!has_own) maybe(knit.shape, [&] { return static_cast<Knit::Shape>(up_to(1)); });
+        if (!has_own && knit.form == Knit::Form::jersey)
+          maybe(knit.shape, [&] { return static_cast<Knit::Shape>(up_to(1)); });
         if (!has_own && knit.course_pitch == 0 && knit.wale_pitch == 0)
           maybe(knit.unit, [&] { return positive(); });
         maybe(knit.crossing, [&] { return Vec3(positive(), -positive(), positive()); });
         if (knit.shape != Knit::Shape::relaxed)
           maybe(knit.method, [&] { return static_cast<nurbs::Parameterization>(up_to(2)); });
-        if (knit.form == Knit::Form::jersey && !has_own && up_to(1) == 0) {
+        if (knit.form == Knit::Form::jersey && !has_own && !knit.shape && up_to(1) == 0) {
           knit.plating = one_of(threads_);
           maybe(knit.pile, [&] { return positive(); });
           knit.pile_is_cut = knit.pile && up_to(1) == 0;

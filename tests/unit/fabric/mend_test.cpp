@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "fabric/knit_mend.h"
 #include "fabric/mend_touch.h"
 #include "nurbs/interpolate.h"
+#include "nurbs/measure.h"
 
 namespace selvage::fabric {
 namespace {
@@ -318,6 +320,68 @@ TEST(Mend, CopiesThatMoveAlikeStayAsNearAsTheyAre) {
   EXPECT_NEAR(mending.missing, 0.3, 1e-3);
   problem.repeat = {0, 0, 2.1};
   EXPECT_TRUE(mend(problem).is_solved());
+}
+
+// The elastica: the wave of least bending for its length, by elliptic integrals of the
+// modulus k (A. E. H. Love, Mathematical Theory of Elasticity, 1927, 262 f.): of a length L the period is
+// L (2 E / K - 1), the integral of the squared curvature 64 K / L (E - (1 - k^2) K), and its height, from
+// trough to crest, k L / K.
+TEST(Mend, APeriodicLineRelaxesToTheElastica) {
+  constexpr double period = 20;
+  for (const double k : {0.3, 0.6, 0.75}) {
+    const double complete_k = std::comp_ellint_1(k), complete_e = std::comp_ellint_2(k);
+    const double length = period / (2 * complete_e / complete_k - 1);
+    const double energy = 64 * complete_k / length * (complete_e - (1 - k * k) * complete_k);
+    for (const int count : {16, 32}) {
+      // A wave of that length, out of shape.
+      const auto wave = [&](double height) {
+        std::vector<Vec3> points;
+        for (int i = 0; i <= count; ++i) {
+          const double s = 2 * std::numbers::pi * i / count;
+          points.emplace_back(period * i / count, height * (std::sin(s) + 0.1 * std::sin(3 * s)), 0);
+        }
+        return points;
+      };
+      const auto line_of = [&](const std::vector<Vec3>& p) {
+        return periodic_course(p, {period, 0, 0}, uniform);
+      };
+      double low = 0, high = 4 * period;
+      while (high - low > 1e-13 * period)
+        (nurbs::arc_length(line_of(wave(0.5 * (low + high)))) < length ? low : high) = 0.5 * (low + high);
+      MendProblem problem;
+      MendLine line = line_through(wave(low), 0);
+      line.classes.back() = 0;
+      line.period = {period, 0, 0};
+      line.radius = 0.4;
+      line.keeps_length = true;
+      line.curve = line_of;
+      line.shares = [](const std::vector<Vec3>& p) {
+        return periodic_shares(nurbs::parameters(p, uniform), least_relaxed_share);
+      };
+      problem.lines = {line};
+      problem.freedom.assign(static_cast<std::size_t>(count), Vec3(1, 1, 0));
+      problem.relaxes = true;
+      const Mending mending = mend(problem);
+      std::vector<Vec3> points = line.points;
+      for (std::size_t i = 0; i < points.size(); ++i)
+        points[i] += mending.moves[static_cast<std::size_t>(line.classes[i])];
+      const nurbs::Curve relaxed = line_of(points);
+      EXPECT_NEAR(nurbs::arc_length(relaxed), length, 1e-6 * length) << k;
+      double bent = 0, bottom = 0, top = 0;
+      constexpr int looks = 20000;
+      for (int i = 0; i < looks; ++i) {
+        const nurbs::CurveJet jet = nurbs::evaluate_jet(relaxed, (i + 0.5) / looks);
+        bent += jet.d1.cross(jet.d2).squaredNorm() / std::pow(jet.d1.norm(), 5) / looks;
+        bottom = std::min(bottom, jet.position.y());
+        top = std::max(top, jet.position.y());
+      }
+      // Splines bend a little more than the best curve, by the fourth power of the distance of their points.
+      const double spline = count == 16 ? 4e-3 : 3e-4;
+      EXPECT_GT(bent, energy * (1 - 1e-5)) << k << " " << count;
+      EXPECT_LT(bent, energy * (1 + spline)) << k << " " << count;
+      EXPECT_NEAR(top - bottom, k * length / complete_k, 2e-3 * length) << k << " " << count;
+    }
+  }
 }
 
 }  // namespace
