@@ -305,7 +305,12 @@ Result<KnitMoves> moves_of(const Fabric& fabric, const Knit& knit, const Thickes
         "the loops of this knit become {:.2g} % longer or shorter than is said where they are moved "
         "apart",
         100 * mending.stretch));
-  if (mending.is_solved() && yarn.relaxes)
+  if (mending.is_solved() && yarn.relaxes && !mending.is_relaxed)
+    warn(
+        "the loops of this knit have no room to relax: they are only moved apart; longer loops or a thinner "
+        "yarn "
+        "give it");
+  if (mending.is_solved() && mending.is_relaxed)
     diagnostics.add(
         note(Kind::geometry, fmt::format("relaxed, the loops of this knit bend with {:.3g} of the energy "
                                          "that they have where they are only moved apart",

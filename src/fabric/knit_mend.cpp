@@ -199,14 +199,16 @@ KnitMoves::KnitMoves(const KnitField& field, const KnitYarn& yarn)
   if (yarn.relaxes) {  // loops with room are symmetric
     const Mending turned = mending_;
     solve(field, yarn, MendProblem().max_steps, Start::mirrored);
-    const bool is_worse = !mending_.is_solved() || mending_.bent > turned.bent;
-    if (is_worse && turned.is_solved()) mending_ = turned;
+    const bool is_worse = !mending_.is_relaxed || mending_.bent > turned.bent;
+    if (is_worse && turned.is_solved() && (turned.is_relaxed || !mending_.is_solved())) mending_ = turned;
   }
   const bool was_periodic = ties_[0].is_periodic() || ties_[1].is_periodic();
   if (mending_.is_solved() || !was_periodic) return;
   // At its edges and from loop to loop the cloth may give way where a single loop cannot.
   ties_ = ties_of(field, false);
-  solve(field, yarn);
+  KnitYarn rigid = yarn;
+  rigid.relaxes = false;
+  solve(field, rigid);
 }
 
 bool KnitMoves::come_apart(const KnitField& field, const KnitYarn& yarn) {

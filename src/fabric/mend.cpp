@@ -68,7 +68,7 @@ class Mender {
   [[nodiscard]] double bending_of(const State& state) const;
   void add_bending(const State& state, std::size_t line, const std::vector<std::vector<Share>>& shares,
                    std::vector<Residual>& found) const;
-  State relax(State state, double more);
+  std::optional<State> relax(State state, double more);
   [[nodiscard]] std::vector<double> lengths_of(const State& state) const;
   [[nodiscard]] Residual length_residual(const State& state, std::size_t line,
                                          const std::vector<std::vector<Share>>& shares) const;
@@ -425,8 +425,8 @@ bool keeps_sides(const State& before, const State& after) {
 }
 
 // Steps of Gauss and Newton on the bending energy. The stiffness only damps them: it holds what nothing else
-// does, above all data points that slide along their line.
-State Mender::relax(State state, double more) {
+// does, above all data points that slide along their line. None: nothing that keeps the lengths was found.
+std::optional<State> Mender::relax(State state, double more) {
   constexpr int most_steps = 400;
   constexpr double damping = 1e-2, settled_share = 1e-4, relaxed_share = 1e-8, least_left = 2e-7;
   is_relaxing_ = true;
@@ -460,7 +460,7 @@ State Mender::relax(State state, double more) {
     if (state.missing > 0) more += 1.1 * state.missing + 0.1 * margin;
     for (std::size_t l = 0; l < lengths_.size(); ++l) asked_lengths_[l] += lengths_[l] - state.lengths[l];
   }
-  return best;
+  return is_best_long_enough ? std::optional(std::move(best)) : std::nullopt;
 }
 
 Mending Mender::run() {
@@ -521,8 +521,13 @@ Mending Mender::run() {
     look(state, more);
   }
   const double bent_before = best.bending;
-  if (problem_.relaxes && best.missing == 0) best = relax(std::move(best), more);
-  Mending mending{{}, best.missing, best.at, bent_before, best.bending, stretch_of(best)};
+  bool is_relaxed = false;
+  if (problem_.relaxes && best.missing == 0)
+    if (std::optional<State> relaxed = relax(best, more)) {
+      best = std::move(*relaxed);
+      is_relaxed = true;
+    }
+  Mending mending{{}, best.missing, best.at, bent_before, best.bending, is_relaxed, stretch_of(best)};
   for (std::size_t c = 0; c < problem_.freedom.size(); ++c)
     mending.moves.emplace_back(best.moves.segment<3>(3 * static_cast<Eigen::Index>(c)));
   return mending;

@@ -82,6 +82,7 @@ struct Mending {
 
   // Bending energies before and after, of true lengths; only where lines relax.
   double bent_before = 0, bent = 0;
+  bool is_relaxed = false;
   double stretch = 0;  // the largest that is left of a line that keeps its length, a share of it
 
   [[nodiscard]] bool is_solved() const { return missing == 0; }

@@ -102,7 +102,7 @@ void YarnPoints::loop(long long course, const Overlap& overlap, int hold) {
   std::vector<Vec3> flank;
   // Straight up through the layers that are stitched.
   if (m_.substrate > 0.0)
-    for (const double share : {0.85, 0.15})
+    for (const double share : {0.65, 0.15})
       flank.emplace_back(foot, m_.foot_y(bar_), -share * (m_.layer + m_.substrate));
   // Out of the way of the underlaps of the bars behind before these come past.
   if (bar_.bars_behind > 0) flank.emplace_back(foot, m_.foot_y(bar_) + 0.4 * m_.along, -0.1 * m_.layer);

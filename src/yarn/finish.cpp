@@ -212,6 +212,11 @@ void mirror_outline(Body& body) {
 
 void map_rigidly(Body& body, const Eigen::Matrix3d& linear, const Vec3& by) {
   const auto map = [&](Vec3& p) { p = linear * p + by; };
+  std::array<bool, 2> is_standard{};
+  for (const bool last : {false, true})
+    if (const EndStyle style = (last ? body.end : body.start).style;
+        style == EndStyle::patch || style == EndStyle::fan)
+      is_standard[last ? 1 : 0] = is_standard_end(body, last);
   for (std::vector<Vec3>* points :
        {&body.surface.points, &body.axis.points, &body.start.surface.points, &body.end.surface.points})
     std::for_each(points->begin(), points->end(), map);
@@ -223,9 +228,13 @@ void map_rigidly(Body& body, const Eigen::Matrix3d& linear, const Vec3& by) {
   for (Message& message : body.messages)
     if (message.at) map(*message.at);
   map(body.at);
-  if (linear.determinant() > 0.0) return;
-  mirror_outline(body);
-  body.twist = -body.twist;
+  if (linear.determinant() < 0.0) {
+    mirror_outline(body);
+    body.twist = -body.twist;
+  }
+  // What is made of the outline has the numbers of the outline.
+  for (const bool last : {false, true})
+    if (is_standard[last ? 1 : 0]) renew_end(body, last);
 }
 
 Status finish(Body& body, const Sealings& ends) {

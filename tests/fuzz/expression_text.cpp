@@ -25,7 +25,7 @@ class Reckoner {
       params_.push_back({name, value.value});
       made.text += fmt::format("param {} {}\n", name, value.text);
     }
-    made.text += "thread t\ndiameter 1\nend\nyarn y t\npath\n";
+    made.text += "thread t\ndiameter 1\nend\nyarn y t\npath control\n20000 0 0\n";  // rows may be equal
     for (int row = 0; row < 2; ++row) {
       for (int k = 0; k < 3; ++k) {
         const Value value = number(4);

@@ -135,7 +135,7 @@ class Writer {
     if (choice(3) == 1) line(" crimp {}", number(0, 1));
     if (choice(4) == 1) line(" layers 2");
     if (choice(4) == 1) line(" spacing {}", one_of({"even", "relaxed"}));
-    if (choice(4) == 1) line(" thickness {}", number(0.01, 2));
+    if (choice(4) == 1 && profile == 0) line(" thickness {}", number(0.01, 2));
     line("end");
   }
   void knit() {

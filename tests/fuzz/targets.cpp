@@ -156,7 +156,7 @@ void run_expressions(std::string_view bytes) {
   double size = 1;
   for (const double number : text.numbers) size = std::max(size, std::abs(number));
   for (std::size_t i = 0; i < text.numbers.size(); ++i)
-    if (std::abs(path.points[i / 3][static_cast<Eigen::Index>(i % 3)] - text.numbers[i]) > 1e-6 * size)
+    if (std::abs(path.points[1 + i / 3][static_cast<Eigen::Index>(i % 3)] - text.numbers[i]) > 1e-6 * size)
       std::abort();
 }
 

@@ -178,7 +178,7 @@ Bent bent(const YarnPlan& plan, double from, double to) {
 
 // Loops that stand out of their wale are cut by planes x = const in several places, but in whole loops.
 TEST(KnitLoops, RelaxedLoopsBendLeast) {
-  for (const double loop : {3.4, 3.7, 4.2}) {
+  for (const double loop : {3.6, 3.7, 4.2}) {
     const std::string size = "knit jersey\n thread t\n courses 5 pitch 0.7\n wales 8 pitch 0.95\n loop " +
                              std::to_string(loop) + "\n";
     const Cloth usual(size + "end\n"), relaxed(size + " shape relaxed\nend\n");
@@ -216,6 +216,15 @@ TEST(KnitLoops, RelaxedLoopsAreSymmetricWhereTheyHaveRoom) {
     const Vec3& image = p[p.size() - 1 - i];
     EXPECT_LT((Vec3(3 * 1.4 - image.x(), image.y(), image.z()) - p[i]).norm(), 1e-6) << i;
   }
+}
+
+TEST(KnitLoops, LoopsWithoutRoomToRelaxAreToldSo) {
+  const Cloth cloth(
+      "knit jersey\n thread t\n courses 2 pitch 0.7\n wales 3 pitch 0.95\n loop 3.4\n shape relaxed\nend\n");
+  ASSERT_EQ(cloth.plans.size(), 2U) << cloth.message();
+  ASSERT_FALSE(cloth.diagnostics.messages().empty());
+  EXPECT_NE(cloth.diagnostics.messages().front().text.find("no room to relax"), std::string::npos)
+      << cloth.diagnostics.messages().front().text;
 }
 
 // Scaled as a whole, loops relax to the same shape: bending has no length of its own.
