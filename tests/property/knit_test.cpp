@@ -161,7 +161,8 @@ std::vector<nurbs::Curve> courses_of(const fabric::Fabric& fabric, bool as_publi
   const std::optional<fabric::YarnBuilder> builder =
       fabric::YarnBuilder::create(fabric, options, diagnostics);
   for (const Message& message : diagnostics.messages())
-    if (message.severity == Severity::error || !may_warn) ADD_FAILURE() << to_string(message);
+    if (message.severity > (may_warn ? Severity::warning : Severity::note))
+      ADD_FAILURE() << to_string(message);
   if (!builder) return curves;
   for (std::size_t i = 0; i < builder->count(); ++i) {
     const Result<fabric::YarnPlan> plan = builder->plan(i);
