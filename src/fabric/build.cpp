@@ -378,7 +378,8 @@ void YarnBuilder::move_to(const Where& where, YarnPlan& plan) {
 }
 
 Result<YarnPlan> YarnBuilder::whole_plan(const Entry& entry, const Where* where) const {
-  if (const auto* const points = entry.yarn != nullptr ? std::get_if<PointsFile>(&entry.yarn->shape) : nullptr)
+  if (const auto* const points =
+          entry.yarn != nullptr ? std::get_if<PointsFile>(&entry.yarn->shape) : nullptr)
     return error(Kind::geometry, fmt::format("the points of yarn '{}' stand in a file that was not read: {}",
                                              entry.yarn->name, points->file))
         .placed(points->place);

@@ -270,8 +270,8 @@ class NamedFiles {
 
   bool allow_outside_;
   Diagnostics& diagnostics_;
-  fs::path home_;               // of the input
-  std::vector<fs::path> open_;  // texts that are being read, each used by the one before it
+  fs::path home_;                              // of the input
+  std::vector<fs::path> open_;                 // texts that are being read, each used by the one before it
   std::vector<const fabric::Fabric*> around_;  // the block that is looked at, and what it stands in
   std::vector<std::string> read_;
 };

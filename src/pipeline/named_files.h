@@ -1,5 +1,5 @@
-// The files that a text names: `draft file NAME`, `use file NAME`, of any format that can be read as a fabric;
-// `points FILE`, of formats with yarns as points.
+// The files that a text names: `draft file NAME`, `use file NAME`, of any format that can be read as a
+// fabric; `points FILE`, of formats with yarns as points.
 #pragma once
 
 #include <string>

@@ -163,7 +163,9 @@ void move(Body& body, const Vec3& by, const DecimalGrid& grid) {
   }
   for (Vec3& p : body.axis.points) p += by;
   for (const bool last : {false, true}) {
-    (last ? body.end : body.start).origin += step;
+    EndFace& end = last ? body.end : body.start;
+    end.origin += step;
+    for (Vec3& p : end.surface.points) p += step;  // a fan's centre is no point of the outline
     renew_end(body, last);
   }
   for (TightBend& bend : body.tight_bends) bend.at += by;

@@ -3,6 +3,7 @@
 // being there.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -19,16 +20,16 @@ struct ZooFabric {
 // All of them, sorted by name; read once. A sample that cannot be read fails the calling test.
 const std::vector<ZooFabric>& all();
 
-// Those that have an item of this kind: with<fabric::Weave>().
+// Those that have an item of this kind and use no others beside it: with<fabric::Weave>().
 template <class Item>
 std::vector<const ZooFabric*> with() {
   std::vector<const ZooFabric*> found;
-  for (const ZooFabric& zoo : all())
-    for (const fabric::Item& item : zoo.fabric.items)
-      if (std::holds_alternative<Item>(item)) {
-        found.push_back(&zoo);
-        break;
-      }
+  for (const ZooFabric& zoo : all()) {
+    const auto& items = zoo.fabric.items;
+    const auto is_one = [](const fabric::Item& item) { return std::holds_alternative<Item>(item); };
+    const auto is_use = [](const fabric::Item& item) { return std::holds_alternative<fabric::Use>(item); };
+    if (std::ranges::any_of(items, is_one) && std::ranges::none_of(items, is_use)) found.push_back(&zoo);
+  }
   return found;
 }
 

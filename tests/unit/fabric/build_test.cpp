@@ -255,5 +255,28 @@ TEST(BuildTest, TheSevenPointSectionSaysHowRoundItIs) {
   EXPECT_NEAR(std::stod(told.substr(told.find("by ") + 3)), 100 * (high - low) / sum, 0.05) << told;
 }
 
+// Yarns of one shape are swept once and moved, their end faces with them: each centre stands in its outline.
+TEST(BuildTest, FansMoveWithTheirYarns) {
+  Weave weave;
+  weave.warp = {{"cotton30"}, {}, 3, 0.7};
+  weave.weft = {{"cotton30"}, {}, 2, 0.7};
+  Fabric fabric = fabric_of(cotton(), straight("y", 1));
+  fabric.items = {weave};
+  BuildOptions options;
+  options.ends = yarn::EndStyle::fan;
+  Diagnostics diagnostics;
+  const std::optional<YarnBuilder> builder = YarnBuilder::create(fabric, options, diagnostics);
+  ASSERT_TRUE(builder);
+  for (std::size_t i = 0; i < builder->count(); ++i) {
+    const Result<yarn::Body> body = builder->build(i);
+    ASSERT_TRUE(body);
+    for (const yarn::EndFace* end : {&body->start, &body->end}) {
+      const Vec3 centre = end->surface.points.back();
+      EXPECT_LT((centre - end->origin).norm(), 1e-9) << body->name;
+      EXPECT_LT((centre - end->surface.points.front()).norm(), 0.2) << body->name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace selvage::fabric

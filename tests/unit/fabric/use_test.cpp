@@ -114,7 +114,7 @@ TEST(Uses, MirrorsKeepNormalsOutward) {
         yarn::Body again = body;
         ASSERT_TRUE(yarn::finish_as_sealed(again).ok());
         EXPECT_FALSE(again.inward);
-        EXPECT_EQ(again.start.inward, body.start.inward);
+        EXPECT_EQ(again.start.inward, body.start.inward) << sealing << axis;
         EXPECT_NEAR(again.volume, original->volume, sealing == "patch" ? 1e-12 : 1e-3);
         for (std::size_t q = 1; q < 4; ++q) EXPECT_GT(body.quarters[q], body.quarters[q - 1]);
         // The same points as a set.
