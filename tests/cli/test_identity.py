@@ -83,7 +83,7 @@ class Identity(unittest.TestCase):
 
 # With lengths in another unit beside it, a thread of so many tex or turns a metre makes another fabric, possibly an
 # impossible one; a draft stands in a file of its own.
-PHYSICAL = r"^\s*(tex|denier|ne|twist|plies|filaments|draft\s+file)\b"
+PHYSICAL = r"^\s*(tex|denier|ne|twist|plies|filaments|draft\s+file|use\s+file)\b"
 
 
 def with_unit(text, unit):
