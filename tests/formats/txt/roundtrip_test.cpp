@@ -60,7 +60,7 @@ TEST(RoundTrip, Samples) {
 }
 
 TEST(RoundTrip, RandomModels) {
-  std::array<int, 6> kinds{};
+  std::array<int, std::variant_size_v<fabric::Item>> kinds{};
   for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
     const fabric::Fabric fabric = random_fabric(seed);
     for (const fabric::Item& item : fabric.items) ++kinds[item.index()];
