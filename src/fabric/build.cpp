@@ -328,6 +328,7 @@ std::optional<YarnBuilder> YarnBuilder::make(const Fabric& fabric, const BuildOp
         warn(turning_warning(fabric, *thread, thread->place));
       }
   }
+  builder.shared_ = nullptr;  // it holds builders of blocks, which would hold it
   if (diagnostics.error_count() == errors_before) {
     builder.make_names_unique(diagnostics);
     builder.check_part_names(diagnostics);
@@ -480,7 +481,7 @@ Result<yarn::Body> YarnBuilder::build(std::size_t index) const {
 }
 
 Result<yarn::Body> YarnBuilder::build_here(const Entry& entry, const Where* where) const {
-  if (entry.yarn != nullptr && !std::holds_alternative<Path>(entry.yarn->shape)) {
+  if (has_surface(entry)) {
     Result<yarn::Body> body = build_surface(entry);
     if (body && where != nullptr) {
       if (where->line.linear != Eigen::Matrix3d::Identity())
@@ -496,10 +497,11 @@ Result<yarn::Body> YarnBuilder::build_here(const Entry& entry, const Where* wher
   }
   Result<YarnPlan> made = plan_of(entry, where);
   if (!made) return made.error();
-  Result<yarn::Body> body = build_swept(entry, std::move(*made), where);
-  if (!body) return placed(body.error(), entry);
-  for (Message& message : body->messages) message = placed(message, entry);
-  return body;
+  return build_swept(entry, std::move(*made), where);
+}
+
+bool YarnBuilder::has_surface(const Entry& entry) {
+  return entry.yarn != nullptr && !std::holds_alternative<Path>(entry.yarn->shape);
 }
 
 // Of a yarn that has its surface.
@@ -542,41 +544,46 @@ Status YarnBuilder::sweep(yarn::Body& body, const ShapeMemo::Plan& shape, const 
   return yarn::finish(body, shape.sealings);
 }
 
-Result<yarn::Body> YarnBuilder::build_swept(const Entry& entry, YarnPlan plan, const Where* where) const {
-  yarn::Body body;
-  yarn::BodyLabel label = label_of(entry, plan, where);
+Result<YarnBuilder::Shaped> YarnBuilder::shape_of(const Entry& entry, YarnPlan plan,
+                                                  const Where* where) const {
+  Shaped shaped{nullptr, label_of(entry, plan, where), plan.at, {}};
   const ShapeMemo::Plan shape = shape_plan(entry, plan);
+  shaped.grid = shape.spec.grid;
   // A yarn of the text is planned once, but for one that is placed.
   const bool may_be_known = entry.yarn == nullptr || where != nullptr;
-  if (const auto known = may_be_known ? shapes_->find(shape) : nullptr) {
-    body = *known;
-    static_cast<yarn::BodyLabel&>(body) = std::move(label);
-  } else {
-    static_cast<yarn::BodyLabel&>(body) = std::move(label);
-    if (Status swept = sweep(body, shape, plan); !swept) return swept.error();
-    if (may_be_known) shapes_->keep(shape, body);
+  if (may_be_known) shaped.body = shapes_->find(shape);
+  if (shaped.body == nullptr) {
+    auto body = std::make_shared<yarn::Body>();
+    static_cast<yarn::BodyLabel&>(*body) = shaped.label;
+    if (Status swept = sweep(*body, shape, plan); !swept) return placed(swept.error(), entry);
+    if (may_be_known) shapes_->keep(shape, *body);
+    for (Message& message : body->messages) message = placed(message, entry);
+    shaped.body = std::move(body);
   }
-  body.density = density_of(*fabric_, plan.thread, body);
-  if (plan.at != Vec3::Zero()) yarn::move(body, plan.at, shape.spec.grid);
+  shaped.label.density = density_of(*fabric_, plan.thread, *shaped.body);
+  return shaped;
+}
+
+Result<yarn::Body> YarnBuilder::build_swept(const Entry& entry, YarnPlan plan, const Where* where) const {
+  Result<Shaped> shaped = shape_of(entry, std::move(plan), where);
+  if (!shaped) return shaped.error();
+  yarn::Body body = *shaped->body;
+  static_cast<yarn::BodyLabel&>(body) = std::move(shaped->label);
+  if (shaped->at != Vec3::Zero()) yarn::move(body, shaped->at, shaped->grid);
   return body;
 }
 
 Result<YarnBuilder::Shaped> YarnBuilder::shape(std::size_t index) const {
   const Entry& entry = entries_[index];
-  Result<YarnPlan> plan = plan_of(entry);
-  if (!plan) return plan.error();
-  Shaped shaped{nullptr, label_of(entry, *plan, nullptr), plan->at};
-  const ShapeMemo::Plan shape = shape_plan(entry, *plan);
-  shaped.body = shapes_->find(shape);
-  if (shaped.body == nullptr) {
-    auto body = std::make_shared<yarn::Body>();
-    static_cast<yarn::BodyLabel&>(*body) = shaped.label;
-    if (Status swept = sweep(*body, shape, *plan); !swept) return placed(swept.error(), entry);
-    shapes_->keep(shape, *body);
-    shaped.body = std::move(body);
+  if (entry.placed == nullptr && !has_surface(entry)) {
+    Result<YarnPlan> plan = plan_of(entry);
+    if (!plan) return plan.error();
+    return shape_of(entry, std::move(*plan), nullptr);
   }
-  shaped.label.density = density_of(*fabric_, plan->thread, *shaped.body);
-  return shaped;
+  Result<yarn::Body> body = build(index);
+  if (!body) return body.error();
+  yarn::BodyLabel label = *body;
+  return Shaped{std::make_shared<const yarn::Body>(std::move(*body)), std::move(label), Vec3::Zero(), {}};
 }
 
 }  // namespace selvage::fabric

@@ -86,12 +86,13 @@ class YarnBuilder {
   // Errors: geometry, limit; with the yarn, its file and line. Warnings are in Body::messages. Yarns of a
   // construction that are planned alike are swept once, and moved.
   [[nodiscard]] Result<yarn::Body> build(std::size_t index) const;
-  // A yarn of a construction as it was swept, `at` away from its place. Bodies of one shape (yarn::Body) are
-  // one body, with the label of the first. Errors: as build.
+  // A yarn as it was swept, `at` away from its place. Those of a construction that are one shape (yarn::Body)
+  // are one body, with the label of the first; others stand at their place. Errors: as build.
   struct Shaped {
     std::shared_ptr<const yarn::Body> body;
     yarn::BodyLabel label;
     Vec3 at = Vec3::Zero();
+    DecimalGrid grid;  // on which it is moved
   };
   [[nodiscard]] Result<Shaped> shape(std::size_t index) const;
 
@@ -145,6 +146,9 @@ class YarnBuilder {
   [[nodiscard]] yarn::BodyLabel label_of(const Entry& entry, const YarnPlan& plan, const Where* where) const;
   [[nodiscard]] ShapeMemo::Plan shape_plan(const Entry& entry, YarnPlan& plan) const;
   [[nodiscard]] Status sweep(yarn::Body& body, const ShapeMemo::Plan& shape, const YarnPlan& plan) const;
+  // Does the text or a file say its surface?
+  [[nodiscard]] static bool has_surface(const Entry& entry);
+  [[nodiscard]] Result<Shaped> shape_of(const Entry& entry, YarnPlan plan, const Where* where) const;
   [[nodiscard]] Result<yarn::Body> build_swept(const Entry& entry, YarnPlan plan, const Where* where) const;
   [[nodiscard]] Result<YarnPlan> part_plan(const Entry& entry, const Where* where) const;
   [[nodiscard]] Result<yarn::Body> build_grid(const Yarn& yarn) const;
@@ -185,7 +189,7 @@ class YarnBuilder {
   std::shared_ptr<LastBundle> last_bundle_;
   std::shared_ptr<ShapeMemo> shapes_;
   // Of blocks: their builders, and the copies of each.
-  std::shared_ptr<Shared> shared_;
+  std::shared_ptr<Shared> shared_;  // while it is made
   std::shared_ptr<const Fabric> own_fabric_;
   std::vector<std::shared_ptr<const YarnBuilder>> insides_;
   std::vector<std::unique_ptr<Placed>> placed_;

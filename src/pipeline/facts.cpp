@@ -27,9 +27,9 @@ double round_down(double value) {
 
 }  // namespace
 
-Json yarn_json(const yarn::Body& body, Unit units) {
+Json yarn_json(const yarn::Body& body, const std::string& name, Unit units) {
   const double mm = millimetres_per(units);
-  return {{"name", body.name},
+  return {{"name", name},
           {"closed", is_closed(body)},
           {"length", body.length * mm},
           {"volume", body.volume * mm * mm * mm},

@@ -14,7 +14,7 @@ namespace selvage::pipeline {
 bool is_closed(const yarn::Body& body);
 
 // A yarn in the report; lengths of the body in `units`. `closed` as above, until a check says better.
-Json yarn_json(const yarn::Body& body, Unit units);
+Json yarn_json(const yarn::Body& body, const std::string& name, Unit units);
 
 // A garment piece in the report; `with_table`: with the fixed points and control points of its curves.
 Json piece_json(const fabric::PieceShape& piece, Unit units, bool with_table);

@@ -113,14 +113,15 @@ Box3 box_of(const yarn::Body& body) {
 // The box of all bodies; one shape is looked at once.
 class BoxOfBodies {
  public:
-  void extend(const yarn::Body& body) {
+  // Of a body that stands `at` away from its place.
+  void extend(const yarn::Body& body, const Vec3& at) {
     if (body.shape == 0) {
-      box_.extend(box_of(body));
+      box_.extend(box_of(body).translated(at));
       return;
     }
     const auto [known, is_new] = shapes_.try_emplace(body.shape);
     if (is_new) known->second = box_of(body).translated(Vec3(-body.at));
-    if (!known->second.isEmpty()) box_.extend(known->second.translated(body.at));
+    if (!known->second.isEmpty()) box_.extend(known->second.translated(Vec3(body.at + at)));
   }
   [[nodiscard]] const Box3& box() const { return box_; }
 
@@ -136,18 +137,18 @@ std::string yarn_table(Job& job, const fabric::YarnBuilder& builder) {
   double total_length = 0, total_volume = 0, largest_miss = 0;
   BoxOfBodies boxes;
   std::map<std::string, int> groups;  // yarns of plies or filaments
-  job.for_each_yarn(builder, "building yarn", [&](yarn::Body&& body) {
+  job.for_each_shape(builder, "building yarn", [&](const fabric::YarnBuilder::Shaped& yarn) {
+    const yarn::Body& body = *yarn.body;
     const double volume = shown.volume(body.volume);
-    table.add({body.name, std::string(yarn::name_of(body.role)),
+    table.add({yarn.label.name, std::string(yarn::name_of(yarn.label.role)),
                fmt::format("{}x{}", body.surface.count_u, body.surface.count_v), cell(length(body.length)),
                cell(volume), cell(length(body.min_bend_radius)), cell(length(body.tube_error)),
                body.closed_along ? "ring" : std::string(yarn::name_of(body.start.style))});
-    if (!body.group.empty()) ++groups[body.group];
+    if (!yarn.label.group.empty()) ++groups[yarn.label.group];
     total_length += length(body.length);
     total_volume += volume;
     largest_miss = std::max(largest_miss, length(body.path_miss));
-    boxes.extend(body);
-    return true;
+    boxes.extend(body, yarn.at);
   });
   std::string text = fmt::format("  lengths in {}\n{}", name_of(shown.unit), table.text());
   if (!groups.empty()) {

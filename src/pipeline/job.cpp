@@ -184,34 +184,54 @@ std::optional<fabric::YarnBuilder> Job::builder(const fabric::Fabric& fabric) {
   return made;
 }
 
-void Job::build_each(const fabric::YarnBuilder& builder, std::string_view verb,
-                     const std::function<bool(std::size_t index, Result<yarn::Body>&&)>& take) {
+namespace {
+
+const yarn::Body& body_of(const yarn::Body& body) {
+  return body;
+}
+const yarn::Body& body_of(const fabric::YarnBuilder::Shaped& yarn) {
+  return *yarn.body;
+}
+
+// What `make` gives for each index, a few of them at once, to `take` one by one.
+template <class Made>
+void make_each(Job& job, std::size_t count, std::string_view verb,
+               const std::function<Result<Made>(std::size_t index)>& make,
+               const std::function<bool(std::size_t index, Result<Made>&&)>& take) {
   // As many at once as there are threads, of small ones more: to start threads takes as long as to build
   // some.
   constexpr std::size_t enough = std::size_t{4} << 20;  // bytes
-  std::size_t most = threads;
-  std::vector<std::optional<Result<yarn::Body>>> ready;
+  std::size_t most = job.threads;
+  std::vector<std::optional<Result<Made>>> ready;
   bool goes_on = true;
-  for (std::size_t taken = 0; goes_on && taken < builder.count();) {
+  for (std::size_t taken = 0; goes_on && taken < count;) {
     const std::size_t first = taken + ready.size();
-    std::vector<std::optional<Result<yarn::Body>>> next(std::min(most, builder.count() - first));
+    std::vector<std::optional<Result<Made>>> next(std::min(most, count - first));
     // While those that are ready are taken, the next ones are built.
-    for_each_index(next.size() + 1, static_cast<int>(threads), [&](std::size_t i) {
+    for_each_index(next.size() + 1, static_cast<int>(job.threads), [&](std::size_t i) {
       if (i > 0) {
-        next[i - 1] = builder.build(first + i - 1);
+        next[i - 1] = make(first + i - 1);
         return;
       }
       for (; goes_on && taken < first; ++taken) {
-        progress(verb, taken + 1, builder.count());
+        job.progress(verb, taken + 1, count);
         goes_on = take(taken, std::move(*ready[taken + ready.size() - first]));
       }
     });
     ready = std::move(next);
     std::size_t largest = 1;
-    for (const std::optional<Result<yarn::Body>>& body : ready)
-      if (body && *body) largest = std::max(largest, (*body)->surface.points.size() * sizeof(Vec3));
-    most = std::clamp<std::size_t>(enough / largest, threads, 8 * threads);
+    for (const std::optional<Result<Made>>& made : ready)
+      if (made && *made) largest = std::max(largest, body_of(**made).surface.points.size() * sizeof(Vec3));
+    most = std::clamp<std::size_t>(enough / largest, job.threads, 8 * job.threads);
   }
+}
+
+}  // namespace
+
+void Job::build_each(const fabric::YarnBuilder& builder, std::string_view verb,
+                     const std::function<bool(std::size_t index, Result<yarn::Body>&&)>& take) {
+  make_each<yarn::Body>(
+      *this, builder.count(), verb, [&](std::size_t i) { return builder.build(i); }, take);
 }
 
 void Job::for_each_yarn(const fabric::YarnBuilder& builder, std::string_view verb,
@@ -222,9 +242,26 @@ void Job::for_each_yarn(const fabric::YarnBuilder& builder, std::string_view ver
       return true;
     }
     say_all(body->messages);
-    if (wants_report()) report["yarns"].push_back(yarn_json(*body, file_units()));
+    if (wants_report()) report["yarns"].push_back(yarn_json(*body, body->name, file_units()));
     return take(std::move(*body));
   });
+}
+
+void Job::for_each_shape(const fabric::YarnBuilder& builder, std::string_view verb,
+                         const std::function<void(const fabric::YarnBuilder::Shaped&)>& take) {
+  using Shaped = fabric::YarnBuilder::Shaped;
+  make_each<Shaped>(
+      *this, builder.count(), verb, [&](std::size_t i) { return builder.shape(i); },
+      [&](std::size_t /*index*/, Result<Shaped>&& yarn) {
+        if (!yarn) {
+          say(yarn.error());
+          return true;
+        }
+        say_all(yarn->body->messages);
+        if (wants_report()) report["yarns"].push_back(yarn_json(*yarn->body, yarn->label.name, file_units()));
+        take(*yarn);
+        return true;
+      });
 }
 
 std::optional<std::vector<yarn::Body>> Job::build_all(const fabric::YarnBuilder& builder) {

@@ -118,6 +118,9 @@ class Job {
   // the others are tried, so that every error is told.
   void for_each_yarn(const fabric::YarnBuilder& builder, std::string_view verb,
                      const std::function<bool(yarn::Body&&)>& take);
+  // The same with yarns as they were swept: for who asks what they are, and not to have each at its place.
+  void for_each_shape(const fabric::YarnBuilder& builder, std::string_view verb,
+                      const std::function<void(const fabric::YarnBuilder::Shaped&)>& take);
   // All of them; nothing when one failed (the others were tried, so that every error is told).
   std::optional<std::vector<yarn::Body>> build_all(const fabric::YarnBuilder& builder);
 
