@@ -52,7 +52,7 @@ bool read_values(Parameters& in, std::vector<double>& values, const auto& is_wro
   });
 }
 
-// Not decreasing, with a domain, and nowhere so many equal ones that the shape falls apart.
+// Not decreasing, with a domain.
 bool read_knots(Parameters& in, const Direction& direction, std::vector<double>& knots,
                 std::string_view which) {
   knots.resize(direction.knots());
@@ -66,12 +66,95 @@ bool read_knots(Parameters& in, const Direction& direction, std::vector<double>&
     if (!(knots[order - 1] < knots[points]))
       return fail(points,
                   fmt::format("the {}s span nothing: from {} to {}", which, knots[order - 1], knots[points]));
-    for (std::size_t i = 1; i + order <= points; ++i)  // inner ones
-      if (knots[i] == knots[i + order - 1] && knots[i] > knots[order - 1] && knots[i] < knots[points])
-        return fail(i, fmt::format("{} {} stands {} times or more: the shape of degree {} falls apart there",
-                                   which, knots[i], order, direction.degree));
     return false;
   });
+}
+
+// An inner knot that stands more often than the degree tears the shape apart, or does nothing where both sides
+// meet: one of the two points goes then, with the knots that are too many, and points that nothing is made of.
+struct Tear {
+  std::size_t first = 0, count = 0;  // knots that are too many, and the numbers of the points that go with them
+};
+std::vector<Tear> tears_of(const std::vector<double>& knots, int degree) {
+  std::vector<Tear> tears;
+  const auto most = static_cast<std::size_t>(degree);
+  for (std::size_t i = most + 1; i + most + 1 < knots.size();) {
+    std::size_t next = i;
+    while (next < knots.size() && knots[next] == knots[i]) ++next;
+    if (next + most < knots.size() && next - i > most) tears.push_back({i, next - i - most});
+    i = next;
+  }
+  return tears;
+}
+
+// `gap(left, right)`: how far what belongs to two points is apart. `drop(i)`: without what belongs to point i.
+template <class Gap, class Drop>
+bool mend_tears(Reading& reading, const DirectoryEntry& entry, Parameters& in, std::vector<double>& knots, int degree,
+                double size, const Gap& gap, const Drop& drop) {
+  const std::vector<Tear> tears = tears_of(knots, degree);
+  for (auto tear = tears.rbegin(); tear != tears.rend(); ++tear) {
+    const double apart = gap(tear->first - 1, tear->first + tear->count - 1);
+    if (apart > 1e-3 * size) {
+      in.fail(fmt::format("knot {} stands {} times or more, and the shape of degree {} falls apart there, by {:.3g}",
+                          knots[tear->first], degree + 1, degree, apart));
+      return false;
+    }
+    if (apart > std::max(1e-6 * size, 2 * reading.file().global().resolution))
+      reading.warning(entry, fmt::format("it is torn at the knot {}, by {:.3g}; its pieces are joined",
+                                         knots[tear->first], apart));
+    for (std::size_t k = tear->count; k-- > 0;) {
+      drop(tear->first + k);
+      knots.erase(knots.begin() + static_cast<std::ptrdiff_t>(tear->first));
+    }
+  }
+  return true;
+}
+
+bool mend_tears(Reading& reading, const DirectoryEntry& entry, Parameters& in, nurbs::Curve& curve) {
+  return mend_tears(
+      reading, entry, in, curve.knots, curve.degree, cad::box_of(curve.points).sizes().norm(),
+      [&](std::size_t a, std::size_t b) { return (curve.points[a] - curve.points[b]).norm(); },
+      [&](std::size_t i) {
+        const auto at = static_cast<std::ptrdiff_t>(i);
+        curve.points.erase(curve.points.begin() + at);
+        if (curve.is_rational()) curve.weights.erase(curve.weights.begin() + at);
+      });
+}
+
+// The list without its columns (or rows) of this number.
+template <class Value>
+void drop_line(std::vector<Value>& list, std::size_t count_u, bool in_u, std::size_t number) {
+  std::size_t k = 0;
+  std::erase_if(list, [&](const Value&) {
+    const std::size_t at = k++;
+    return (in_u ? at % count_u : at / count_u) == number;
+  });
+}
+
+bool mend_tears(Reading& reading, const DirectoryEntry& entry, Parameters& in, nurbs::Surface& s) {
+  const double size = cad::box_of(s.points).sizes().norm();
+  for (const bool in_u : {true, false}) {
+    const auto gap = [&](std::size_t a, std::size_t b) {
+      double largest = 0;
+      const int across = in_u ? s.count_v : s.count_u;
+      for (int k = 0; k < across; ++k) {
+        const auto point = [&](std::size_t i) {
+          return in_u ? s.point(static_cast<int>(i), k) : s.point(k, static_cast<int>(i));
+        };
+        largest = std::max(largest, (point(a) - point(b)).norm());
+      }
+      return largest;
+    };
+    const auto drop = [&](std::size_t i) {
+      const auto count_u = static_cast<std::size_t>(s.count_u);
+      drop_line(s.points, count_u, in_u, i);
+      drop_line(s.weights, count_u, in_u, i);
+      --(in_u ? s.count_u : s.count_v);
+    };
+    if (!mend_tears(reading, entry, in, in_u ? s.knots_u : s.knots_v, in_u ? s.degree_u : s.degree_v, size, gap, drop))
+      return false;
+  }
+  return true;
 }
 
 // Empty where all are 1.
@@ -126,7 +209,7 @@ std::optional<nurbs::Curve> read_curve(Reading& reading, const DirectoryEntry& e
   if (!in.reals(curve.points.data()->data(), 3 * curve.points.size())) return std::nullopt;
   const double from = in.real(), to = in.real();
   for (int part = 0; part < 3; ++part) in.real();  // the plane's normal: seen in the points
-  if (!in.ok()) return std::nullopt;
+  if (!in.ok() || !mend_tears(reading, entry, in, curve)) return std::nullopt;
   const Range domain{curve.first_parameter(), curve.last_parameter()};
   const Range used = used_range(reading, entry, {from, to}, domain, "the parameter");
   if (used == domain) return curve;
@@ -157,7 +240,7 @@ std::optional<nurbs::Surface> read_surface(Reading& reading, const DirectoryEntr
   if (!in.reals(surface.points.data()->data(), 3 * count)) return std::nullopt;
   std::array<double, 4> ranges{};
   for (double& range : ranges) range = in.real();
-  if (!in.ok()) return std::nullopt;
+  if (!in.ok() || !mend_tears(reading, entry, in, surface)) return std::nullopt;
   const Range domain_u{surface.first_u(), surface.last_u()}, domain_v{surface.first_v(), surface.last_v()};
   const Range used_u = used_range(reading, entry, {ranges[0], ranges[1]}, domain_u, "u");
   const Range used_v = used_range(reading, entry, {ranges[2], ranges[3]}, domain_v, "v");

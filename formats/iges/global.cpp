@@ -125,13 +125,16 @@ class GlobalReader {
     for (char& c : name)
       if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
     const UnitRow* const named = row_named(name);
-    const UnitRow* const row = flag == 3 ? named : row_of(flag);
+    const UnitRow* row = flag == 3 ? named : row_of(flag);
+    if (row == nullptr && flag != 3) {
+      // A number that is none: the name, else what OpenCASCADE takes.
+      row = named != nullptr ? named : row_of(2);
+      complaints_.flaw(spot(14), fmt::format("there is no unit {}: units are 1 to 11; lengths are taken as {}", flag,
+                                             row->names[0]));
+    }
     if (!(scale > 0)) fault(13, fmt::format("the model space scale is not positive: {}", scale));
     if (row == nullptr) {
-      if (flag == 3)
-        fault(15, fmt::format("unit 3 goes by its name, and {} is none", in_quotes(said)));
-      else
-        fault(14, fmt::format("there is no unit {}: units are 1 to 11", flag));
+      fault(15, fmt::format("unit 3 goes by its name, and {} is none", in_quotes(said)));
       return;
     }
     if (name.empty()) {

@@ -122,6 +122,8 @@ class Reading {
   void find_members();
   void read_levels();
   void drop_used();
+  [[nodiscard]] std::vector<char> pointed_to() const;
+  void stand_left_over(const Context& top);
   [[nodiscard]] std::optional<cad::Color> color(const DirectoryEntry& entry);
   void fail_once(const DirectoryEntry& entry, const Spot& spot, const std::string& text);
   static std::size_t index(const DirectoryEntry& entry) {

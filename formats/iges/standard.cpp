@@ -124,7 +124,8 @@ constexpr Target targets[] = {{'c', {100, 102, 104, 106, 110, 112, 126, 130}},
 // A cursor over the values along the fields of the table.
 class Walk {
  public:
-  Walk(const DirectoryEntry& entry, const Values& values) : entry_(entry), values_(values) {}
+  Walk(const DirectoryEntry& entry, const Values& values, std::size_t first)
+      : entry_(entry), values_(values), at_(first) {}
 
   References run(std::string_view fields) {
     walk(fields);
@@ -207,7 +208,7 @@ class Walk {
 
   const DirectoryEntry& entry_;
   const Values& values_;
-  std::size_t at_ = 1;
+  std::size_t at_;
   bool broken_ = false;
   References found_;
 };
@@ -229,11 +230,11 @@ bool is_group(int form) {
   return form == 1 || form == 7 || form == 14 || form == 15;
 }
 
-References references_of(const DirectoryEntry& entry, const Values& values) {
+References references_of(const DirectoryEntry& entry, const Values& values, std::size_t first) {
   const StandardType* const type = standard_type(entry.type);
   // Of the associativities only groups are listed.
   if (type == nullptr || type->fields.empty() || (entry.type == 402 && !is_group(entry.form))) return {};
-  return Walk(entry, values).run(type->fields);
+  return Walk(entry, values, first).run(type->fields);
 }
 
 bool may_point(char to, int type) {

@@ -45,8 +45,8 @@ struct References {
   // How many values are the entity's own, its type among them; nothing: not known.
   std::optional<std::size_t> own;
 };
-// `values` from the type on.
-References references_of(const DirectoryEntry& entry, const Values& values);
+// `values` from the type on, or with `first` the index of the one behind it.
+References references_of(const DirectoryEntry& entry, const Values& values, std::size_t first = 1);
 // Is an entity of `type` what such a pointer is for?
 bool may_point(char to, int type);
 

@@ -222,6 +222,44 @@ void Reading::drop_used() {
   std::erase_if(model_.curves, [&](const cad::NamedCurve&) { return is_used(curve_pointers_[next++]); });
 }
 
+// What other entities of the file point to. Of types whose fields are not listed, whatever may be a pointer.
+std::vector<char> Reading::pointed_to() const {
+  std::vector<char> found(file_.directory().size());
+  const auto mark = [&](int pointer) {
+    if (const DirectoryEntry* const target = file_.entity(std::abs(pointer))) found[index(*target)] = 1;
+  };
+  for (const DirectoryEntry& entry : file_.directory()) {
+    if (entry.type == 126 || entry.type == 128) continue;  // most of a file, and they point to nothing
+    const Parameters parameters = file_.parameters(entry);
+    if (!parameters.ok()) continue;  // told where it is read
+    const Values values(parameters);
+    const References references = references_of(entry, values, 0);
+    for (const References::Reference& reference : references.all) mark(reference.pointer);
+    const StandardType* const type = standard_type(entry.type);
+    if (references.own || (type != nullptr && !type->fields.empty() && entry.type != 402)) continue;
+    for (std::size_t i = 0; i < values.size(); ++i) mark(values.integer(i).value_or(0));
+  }
+  return found;
+}
+
+// Writers leave entities marked as parts of others that are nowhere: solids first, then what they are made of.
+void Reading::stand_left_over(const Context& top) {
+  const auto is_left = [&](const DirectoryEntry& entry) {
+    return entry.is_physically_dependent() && entry.use != 2 && entry.use != 5 && used_[index(entry)] == 0 &&
+           held_[index(entry)] == 0 && type_of(entry) != nullptr;
+  };
+  if (std::ranges::none_of(file_.directory(), is_left)) return;
+  const std::vector<char> pointed = pointed_to();
+  const auto stands_in = [](const EntityType& type, int pass) {
+    return pass == 0 ? type.stand != nullptr || type.part != nullptr
+                     : type.face != nullptr || type.surface != nullptr || type.curve != nullptr;
+  };
+  for (const int pass : {0, 1})
+    for (const DirectoryEntry& entry : file_.directory())
+      if (is_left(entry) && pointed[index(entry)] == 0 && stands_in(*type_of(entry), pass))
+        stand_entry(entry, top);
+}
+
 void Reading::stand_all() {
   count_entities();
   read_levels();
@@ -230,6 +268,7 @@ void Reading::stand_all() {
   const Context top{Placement::scaling(file_.global().factor), {}};
   for (const DirectoryEntry& entry : file_.directory())
     if (may_stand(entry) && held_[index(entry)] == 0) stand_entry(entry, top);
+  stand_left_over(top);
   drop_used();
 }
 

@@ -51,6 +51,9 @@ std::optional<Surface> read_patches(Reading& reading, const DirectoryEntry& entr
           for (std::size_t k = 0; k < 4; ++k) patch[k][l][axis] = in.real();
       if (j < n) patches[j * m + i] = patch;
     }
+  // So does the last row, which some leave out.
+  if (in.ok() && in.room() >= 48 * (n + 1))
+    for (std::size_t i = 0; i < 48 * (n + 1); ++i) in.skip();
   if (!in.ok()) return std::nullopt;
   double gap = 0;
   Surface surface = nurbs::from_power(*breaks_u, *breaks_v, patches, &gap);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/graph.h"
 #include "core/words.h"
 #include "formats/step/entities.h"
 #include "formats/step/lexer.h"
@@ -185,6 +186,25 @@ class Checker {
 };
 
 }  // namespace
+
+void check_circles(const Part21& file, TextReport& report) {
+  std::vector<TypeFacts> facts;
+  for (const std::string& type : file.types) facts.push_back(facts_of(type));
+  Graph graph;
+  graph.firsts.push_back(0);
+  for (std::size_t i = 0; i < file.statements.size(); ++i) {
+    const Statement& statement = file.statements[i];
+    if (facts[statement.type].is_known && file.types[statement.type] != "APPLICATION_PROTOCOL_DEFINITION")
+      graph.targets.insert(graph.targets.end(), file.targets.begin() + statement.first_ref,
+                           file.targets.begin() + static_cast<std::ptrdiff_t>(file.refs_end(i)));
+    graph.firsts.push_back(graph.targets.size());
+  }
+  std::vector<std::size_t> order;
+  if (const std::vector<Circle> circles = sort_from_leaves(graph, order); !circles.empty()) {
+    const Statement &at = file.statements[circles[0].at], &by = file.statements[circles[0].by];
+    report.error(at.spot, fmt::format("#{} refers to itself, by way of #{}", at.id, by.id));
+  }
+}
 
 void check_attributes(const Part21& file, std::string_view text, TextReport& report) {
   Checker(file, text.data() + text.size(), report).check_all();

@@ -10,4 +10,8 @@ namespace selvage::formats::step {
 // table are passed by, and so are references to them.
 void check_attributes(const Part21& file, std::string_view text, TextReport& report);
 
+// Does an entity refer to itself, by way of others? Circles through what nobody translates (annotations that
+// name their callouts) harm no one, nor does a protocol's definition. The first one is an error.
+void check_circles(const Part21& file, TextReport& report);
+
 }  // namespace selvage::formats::step

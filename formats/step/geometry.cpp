@@ -130,8 +130,19 @@ nurbs::Surface to_spline(const Handle(Geom_Surface) & surface, const cad::Range&
   if (const auto trimmed = Handle(Geom_RectangularTrimmedSurface)::DownCast(surface); !trimmed.IsNull())
     basis = trimmed->BasisSurface();
   cad::Range used = range;
-  if (basis->IsUPeriodic()) used.u1 = std::min(used.u1, used.u0 + basis->UPeriod());
-  if (basis->IsVPeriodic()) used.v1 = std::min(used.v1, used.v0 + basis->VPeriod());
+  // Boundaries reach beyond a surface's end by what their tolerance allows.
+  const cad::Range whole = bounds_of(basis);
+  const auto fit = [](double& low, double& high, double first, double last, bool is_periodic) {
+    if (is_periodic) {
+      high = std::min(high, low + (last - first));
+      return;
+    }
+    low = std::clamp(low, first, last);
+    high = std::clamp(high, first, last);
+    if (!(low < high)) low = first, high = last;
+  };
+  fit(used.u0, used.u1, whole.u0, whole.u1, basis->IsUPeriodic());
+  fit(used.v0, used.v1, whole.v0, whole.v1, basis->IsVPeriodic());
   return from_spline(GeomConvert::SurfaceToBSplineSurface(
       new Geom_RectangularTrimmedSurface(basis, used.u0, used.u1, used.v0, used.v1)));
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/words.h"
 #include "formats/step/assemblies.h"
 #include "formats/step/attributes.h"
 
@@ -11,11 +12,14 @@ namespace selvage::formats::step {
 
 namespace {
 
-// The application protocols whose geometry OpenCASCADE knows.
+// The application protocols whose geometry OpenCASCADE knows: AP203 of both editions, AP209, 210, 214, 242, and
+// drafts of them. Some write the name in small letters.
 bool is_known_schema(std::string_view schema) {
-  for (const std::string_view known : {"CONFIG_CONTROL_", "CCD_CLA_GVP_AST", "AUTOMOTIVE_DESIGN", "AP203",
-                                       "AP214", "AP242", "AP209", "STRUCTURAL_ANALYSIS_DESIGN"})
-    if (schema.starts_with(known)) return true;
+  for (const std::string_view known :
+       {"CONFIG_CONTROL_", "CONFIGURATION_CONTROL_", "CCD_CLA_GVP_AST", "AUTOMOTIVE_DESIGN", "AP203", "AP214",
+        "AP242", "AP209", "AP210", "STRUCTURAL_ANALYSIS_DESIGN", "MULTIDISCIPLINARY_ANALYSIS", "ELECTRONIC_ASSEMBLY",
+        "MANAGED_MODEL_BASED", "CONSTRUCTION_HISTORY"})
+    if (same_word(schema.substr(0, known.size()), known)) return true;
   return false;
 }
 
@@ -33,6 +37,7 @@ void check_schema(const Part21& file, TextReport& report) {
 std::optional<Part21> inspect(const Source& source, TextReport& report) {
   std::optional<Part21> file = read_part21(source, report);
   if (file) check_schema(*file, report);
+  if (report.errors() == 0) check_circles(*file, report);
   if (report.errors() == 0) check_attributes(*file, source.bytes(), report);
   if (report.errors() == 0) check_assemblies(*file, report);
   if (report.errors() > 0) return std::nullopt;

@@ -48,7 +48,7 @@ void Lexer::skip_blanks() {
       new_line();
     } else if (*at_ == '/' && end_ - at_ > 1 && at_[1] == '*') {
       skip_comment();
-    } else if (*at_ != ' ' && *at_ != '\t' && *at_ != '\r' && *at_ != '\f') {
+    } else if (*at_ != ' ' && *at_ != '\t' && *at_ != '\r' && *at_ != '\f' && *at_ != '\0') {
       return;
     }
   }

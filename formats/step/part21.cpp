@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/graph.h"
+#include "core/words.h"
 #include "formats/step/lexer.h"
 #include "formats/step/strings.h"
 
@@ -68,8 +68,9 @@ class FileReader {
     fail(fmt::format("{} where {} should stand", in_quotes(lexer_.text()), what));
   }
 
+  // Some write `Header;` and `EndSec;`.
   [[nodiscard]] bool is_word(std::string_view word) const {
-    return lexer_.token() == Token::word && lexer_.text() == word;
+    return lexer_.token() == Token::word && same_word(lexer_.text(), word);
   }
 
   void expect(Token token, std::string_view what) {
@@ -279,19 +280,6 @@ class FileReader {
         report_.error(file_.statements[i].spot, fmt::format("#{} refers to #{}, which is not in the file",
                                                             file_.statements[i].id, file_.refs[r]));
       }
-    if (report_.errors() == 0) check_circles();
-  }
-
-  void check_circles() {
-    Graph graph;
-    for (const Statement& statement : file_.statements) graph.firsts.push_back(statement.first_ref);
-    graph.firsts.push_back(file_.refs.size());
-    graph.targets = file_.targets;
-    std::vector<std::size_t> order;
-    if (const std::vector<Circle> circles = sort_from_leaves(graph, order); !circles.empty()) {
-      const Statement &at = file_.statements[circles[0].at], &by = file_.statements[circles[0].by];
-      report_.error(at.spot, fmt::format("#{} refers to itself, by way of #{}", at.id, by.id));
-    }
   }
 
   TextReport& report_;

@@ -188,6 +188,8 @@ class PartBuilder {
       BRepBuilderAPI_MakeFace maker(surface, Precision::Confusion());
       if (!maker.IsDone()) throw Standard_Failure("a surface that makes no face");
       built = maker.Face();
+    } else if (const std::optional<TopoDS_Face> by_flats = face_by_flats(face)) {
+      built = *by_flats;
     } else {
       builder_.MakeFace(built, surface, Precision::Confusion());
       for (const cad::Loop& loop : face.loops) builder_.Add(built, build_wire(loop, surface));
@@ -197,13 +199,105 @@ class PartBuilder {
     return built;
   }
 
+  // A trimmed face that shares no edges, by the curves that the file has in the surface's parameters; nothing
+  // where it has not all of them, or OpenCASCADE does not find that valid.
+  std::optional<TopoDS_Face> face_by_flats(const cad::Face& face) {
+    for (const cad::Edge& edge : cad::edges_of(face))
+      if (edge.flat.points.empty() || edge.id >= 0) return std::nullopt;
+    TopoDS_Face built;
+    builder_.MakeFace(built, solid::occt::spatial_surface(face.surface, 1.0), Precision::Confusion());
+    for (const cad::Loop& loop : face.loops) {
+      const std::vector<TopoDS_Vertex> corners = corners_of(face, loop);
+      TopoDS_Wire wire;
+      builder_.MakeWire(wire);
+      for (std::size_t i = 0; i < loop.edges.size(); ++i) {
+        const TopoDS_Vertex &from = corners[i], &to = corners[(i + 1) % corners.size()];
+        builder_.Add(wire, edge_by_flat(loop.edges[i], from, to, built));
+      }
+      wire.Closed(true);
+      builder_.Add(built, wire);
+    }
+    BRepLib::UpdateTolerances(built);
+    built = turned_outward(built);
+    if (!BRepCheck_Analyzer(built).IsValid()) return std::nullopt;
+    return built;
+  }
+
+  static Vec3 end_of(const cad::Face& face, const cad::Edge& edge, double share) {
+    return edge.curve.points.empty() ? cad::at_share(face.surface, edge.flat, share)
+                                     : cad::at_share(edge.curve, share);
+  }
+
+  // Where each edge of a loop begins; edges that follow each other meet, as far as the file leaves them apart.
+  std::vector<TopoDS_Vertex> corners_of(const cad::Face& face, const cad::Loop& loop) {
+    std::vector<TopoDS_Vertex> corners;
+    for (std::size_t i = 0; i < loop.edges.size(); ++i) {
+      const cad::Edge& before = loop.edges[(i + loop.edges.size() - 1) % loop.edges.size()];
+      const Vec3 to = end_of(face, before, 1), from = end_of(face, loop.edges[i], 0);
+      const Vec3 middle = 0.5 * (to + from);
+      builder_.MakeVertex(corners.emplace_back(), gp_Pnt(middle.x(), middle.y(), middle.z()),
+                          0.5 * (to - from).norm() + Precision::Confusion());
+    }
+    return corners;
+  }
+
+  TopoDS_Edge edge_by_flat(const cad::Edge& edge, const TopoDS_Vertex& from, const TopoDS_Vertex& to,
+                           const TopoDS_Face& face) {
+    const bool has_curve = !edge.curve.points.empty();
+    nurbs::Curve flat = edge.flat;
+    if (has_curve) flat.knots = stretched(flat, edge.curve.first_parameter(), edge.curve.last_parameter());
+    TopoDS_Edge built;
+    if (has_curve)
+      builder_.MakeEdge(built, solid::occt::spatial_curve(edge.curve, 1.0), Precision::Confusion());
+    else
+      builder_.MakeEdge(built);
+    builder_.UpdateEdge(built, flat_curve(flat), face, Precision::Confusion());
+    builder_.Add(built, from.Oriented(TopAbs_FORWARD));
+    builder_.Add(built, to.Oriented(TopAbs_REVERSED));
+    builder_.Range(built, flat.first_parameter(), flat.last_parameter());
+    if (has_curve) {
+      builder_.SameParameter(built, false);
+      BRepLib::SameParameter(built, Precision::Confusion());
+    } else if (from.IsSame(to) || is_pole(face, flat)) {
+      builder_.Degenerated(built, true);
+    } else {
+      BRepLib::BuildCurve3d(built);
+    }
+    return built;
+  }
+
+  static std::vector<double> stretched(const nurbs::Curve& curve, double first, double last) {
+    const double from = curve.first_parameter(), factor = (last - first) / (curve.last_parameter() - from);
+    std::vector<double> knots = curve.knots;
+    for (double& knot : knots) knot = knot == curve.last_parameter() ? last : first + factor * (knot - from);
+    return knots;
+  }
+
+  [[nodiscard]] bool is_pole(const TopoDS_Face& face, const nurbs::Curve& flat) const {
+    const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
+    const auto at = [&](double share) {
+      const Vec3 p = cad::at_share(flat, share);
+      return vector_of(surface->Value(p.x(), p.y()));
+    };
+    const Vec3 start = at(0);
+    return (at(0.31) - start).norm() <= tolerance_ && (at(0.77) - start).norm() <= tolerance_ &&
+           (at(1) - start).norm() <= tolerance_;
+  }
+
   // Curves in parameter space, seams and orientations, which a STEP file does not need but sewing does.
   static TopoDS_Face fixed(const TopoDS_Face& face) {
     const Handle(ShapeFix_Face) fix = new ShapeFix_Face(face);
     fix->Perform();
     const TopoDS_Shape result = fix->Result();
     if (result.IsNull() || result.ShapeType() != TopAbs_FACE) return face;
-    return TopoDS::Face(result.Oriented(TopAbs_FORWARD));
+    return turned_outward(TopoDS::Face(result));
+  }
+
+  // Loops that run clockwise are turned round, which ShapeFix_Face::Perform() does not always do.
+  static TopoDS_Face turned_outward(const TopoDS_Face& face) {
+    const Handle(ShapeFix_Face) turn = new ShapeFix_Face(face);
+    turn->FixOrientation();
+    return TopoDS::Face(turn->Face().Oriented(TopAbs_FORWARD));
   }
 
   TopoDS_Wire build_wire(const cad::Loop& loop, const Handle(Geom_BSplineSurface) & surface) {
