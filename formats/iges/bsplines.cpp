@@ -70,10 +70,12 @@ bool read_knots(Parameters& in, const Direction& direction, std::vector<double>&
   });
 }
 
-// An inner knot that stands more often than the degree tears the shape apart, or does nothing where both sides
-// meet: one of the two points goes then, with the knots that are too many, and points that nothing is made of.
+// An inner knot that stands more often than the degree tears the shape apart, or does nothing where both
+// sides meet: one of the two points goes then, with the knots that are too many, and points that nothing is
+// made of.
 struct Tear {
-  std::size_t first = 0, count = 0;  // knots that are too many, and the numbers of the points that go with them
+  std::size_t first = 0,
+              count = 0;  // knots that are too many, and the numbers of the points that go with them
 };
 std::vector<Tear> tears_of(const std::vector<double>& knots, int degree) {
   std::vector<Tear> tears;
@@ -87,16 +89,18 @@ std::vector<Tear> tears_of(const std::vector<double>& knots, int degree) {
   return tears;
 }
 
-// `gap(left, right)`: how far what belongs to two points is apart. `drop(i)`: without what belongs to point i.
+// `gap(left, right)`: how far what belongs to two points is apart. `drop(i)`: without what belongs to point
+// i.
 template <class Gap, class Drop>
-bool mend_tears(Reading& reading, const DirectoryEntry& entry, Parameters& in, std::vector<double>& knots, int degree,
-                double size, const Gap& gap, const Drop& drop) {
+bool mend_tears(Reading& reading, const DirectoryEntry& entry, Parameters& in, std::vector<double>& knots,
+                int degree, double size, const Gap& gap, const Drop& drop) {
   const std::vector<Tear> tears = tears_of(knots, degree);
   for (auto tear = tears.rbegin(); tear != tears.rend(); ++tear) {
     const double apart = gap(tear->first - 1, tear->first + tear->count - 1);
     if (apart > 1e-3 * size) {
-      in.fail(fmt::format("knot {} stands {} times or more, and the shape of degree {} falls apart there, by {:.3g}",
-                          knots[tear->first], degree + 1, degree, apart));
+      in.fail(fmt::format(
+          "knot {} stands {} times or more, and the shape of degree {} falls apart there, by {:.3g}",
+          knots[tear->first], degree + 1, degree, apart));
       return false;
     }
     if (apart > std::max(1e-6 * size, 2 * reading.file().global().resolution))
@@ -151,7 +155,8 @@ bool mend_tears(Reading& reading, const DirectoryEntry& entry, Parameters& in, n
       drop_line(s.weights, count_u, in_u, i);
       --(in_u ? s.count_u : s.count_v);
     };
-    if (!mend_tears(reading, entry, in, in_u ? s.knots_u : s.knots_v, in_u ? s.degree_u : s.degree_v, size, gap, drop))
+    if (!mend_tears(reading, entry, in, in_u ? s.knots_u : s.knots_v, in_u ? s.degree_u : s.degree_v, size,
+                    gap, drop))
       return false;
   }
   return true;

@@ -129,8 +129,9 @@ class GlobalReader {
     if (row == nullptr && flag != 3) {
       // A number that is none: the name, else what OpenCASCADE takes.
       row = named != nullptr ? named : row_of(2);
-      complaints_.flaw(spot(14), fmt::format("there is no unit {}: units are 1 to 11; lengths are taken as {}", flag,
-                                             row->names[0]));
+      complaints_.flaw(spot(14),
+                       fmt::format("there is no unit {}: units are 1 to 11; lengths are taken as {}", flag,
+                                   row->names[0]));
     }
     if (!(scale > 0)) fault(13, fmt::format("the model space scale is not positive: {}", scale));
     if (row == nullptr) {

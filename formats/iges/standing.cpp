@@ -242,7 +242,8 @@ std::vector<char> Reading::pointed_to() const {
   return found;
 }
 
-// Writers leave entities marked as parts of others that are nowhere: solids first, then what they are made of.
+// Writers leave entities marked as parts of others that are nowhere: solids first, then what they are made
+// of.
 void Reading::stand_left_over(const Context& top) {
   const auto is_left = [&](const DirectoryEntry& entry) {
     return entry.is_physically_dependent() && entry.use != 2 && entry.use != 5 && used_[index(entry)] == 0 &&

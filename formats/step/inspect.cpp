@@ -12,13 +12,13 @@ namespace selvage::formats::step {
 
 namespace {
 
-// The application protocols whose geometry OpenCASCADE knows: AP203 of both editions, AP209, 210, 214, 242, and
-// drafts of them. Some write the name in small letters.
+// The application protocols whose geometry OpenCASCADE knows: AP203 of both editions, AP209, 210, 214, 242,
+// and drafts of them. Some write the name in small letters.
 bool is_known_schema(std::string_view schema) {
   for (const std::string_view known :
        {"CONFIG_CONTROL_", "CONFIGURATION_CONTROL_", "CCD_CLA_GVP_AST", "AUTOMOTIVE_DESIGN", "AP203", "AP214",
-        "AP242", "AP209", "AP210", "STRUCTURAL_ANALYSIS_DESIGN", "MULTIDISCIPLINARY_ANALYSIS", "ELECTRONIC_ASSEMBLY",
-        "MANAGED_MODEL_BASED", "CONSTRUCTION_HISTORY"})
+        "AP242", "AP209", "AP210", "STRUCTURAL_ANALYSIS_DESIGN", "MULTIDISCIPLINARY_ANALYSIS",
+        "ELECTRONIC_ASSEMBLY", "MANAGED_MODEL_BASED", "CONSTRUCTION_HISTORY"})
     if (same_word(schema.substr(0, known.size()), known)) return true;
   return false;
 }

@@ -228,7 +228,8 @@ class PartBuilder {
                                      : cad::at_share(edge.curve, share);
   }
 
-  // Where each edge of a loop begins; edges that follow each other meet, as far as the file leaves them apart.
+  // Where each edge of a loop begins; edges that follow each other meet, as far as the file leaves them
+  // apart.
   std::vector<TopoDS_Vertex> corners_of(const cad::Face& face, const cad::Loop& loop) {
     std::vector<TopoDS_Vertex> corners;
     for (std::size_t i = 0; i < loop.edges.size(); ++i) {

@@ -47,34 +47,39 @@ double Border::distance(const Vec3& p, double hint, double enough, double most) 
     best = std::min(best, (nurbs::evaluate(curve_, std::lerp(first_, last_, share)) - p).norm());
     if (best <= enough) return best;
   }
-  std::size_t nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const double squared = (points_[i] - p).squaredNorm();
-    if (squared < least) {
-      least = squared;
-      nearest = i;
-    }
+  std::vector<double> squared(points_.size());
+  std::transform(points_.begin(), points_.end(), squared.begin(),
+                 [&](const Vec3& q) { return (q - p).squaredNorm(); });
+  best = std::min(best, std::sqrt(*std::min_element(squared.begin(), squared.end())));
+  // From every place that is nearer than those beside it: a closed border begins and ends at one place, and
+  // the nearest one may lie on either side of it. No point is farther from its nearest sample than one step.
+  for (std::size_t i = 0; i < squared.size() && best > enough; ++i) {
+    const bool is_least =
+        (i == 0 || squared[i] <= squared[i - 1]) && (i + 1 == squared.size() || squared[i] <= squared[i + 1]);
+    if (is_least && std::sqrt(squared[i]) - step_ <= std::min(best, most))
+      best = std::min(best, refined(p, i));
   }
-  best = std::min(best, std::sqrt(least));
-  // No point of the border is farther from its nearest sample than that one's step.
-  return best <= enough || std::sqrt(least) - step_ > most ? best : std::min(best, refined(p, nearest));
+  return best;
 }
 
 double Border::refined(const Vec3& p, std::size_t nearest) const {
-  const double low = parameters_[nearest == 0 ? 0 : nearest - 1];
-  const double high = parameters_[std::min(nearest + 1, parameters_.size() - 1)];
+  double low = parameters_[nearest == 0 ? 0 : nearest - 1];
+  double high = parameters_[std::min(nearest + 1, parameters_.size() - 1)];
+  const double width = high - low;
   double t = parameters_[nearest], best = (points_[nearest] - p).norm();
   for (int step = 0; step < newton_steps; ++step) {
     const nurbs::CurveJet jet = nurbs::evaluate_jet(curve_, t);
     const Vec3 gap = p - jet.position;
     best = std::min(best, gap.norm());
-    // Newton's method on the derivative of the squared distance; Gauss's form where that is no minimum.
-    const double bend = jet.d1.squaredNorm() - gap.dot(jet.d2);
+    // Newton's method on the derivative of the squared distance; Gauss's form where that is no minimum. What
+    // leaves the part in which the derivative changes its sign halves it.
+    const double pull = gap.dot(jet.d1), bend = jet.d1.squaredNorm() - gap.dot(jet.d2);
     const double slope = bend > 0 ? bend : jet.d1.squaredNorm();
-    if (!(slope > 0)) break;
-    const double next = std::clamp(t + gap.dot(jet.d1) / slope, low, high);
-    if (std::abs(next - t) <= 1e-15 * (high - low)) break;
+    if (!(slope > 0) || pull == 0) break;
+    (pull > 0 ? low : high) = t;
+    double next = t + pull / slope;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::abs(next - t) <= 1e-15 * width) break;
     t = next;
   }
   return best;

@@ -24,8 +24,8 @@ class Border {
   [[nodiscard]] int side() const { return side_; }
 
   // The distance of `p`: at `hint` (0 to 1, from first to last) or its mirror image where that is at most
-  // `enough`, else the least, by Newton's method from the nearest of points(). Where it is more than `most`
-  // only that is sure of the result.
+  // `enough`, else the least, by Newton's method from those of points() that are nearer than those beside
+  // them. Where it is more than `most` only that is sure of the result.
   [[nodiscard]] double distance(const Vec3& p, double hint, double enough, double most) const;
 
  private:
