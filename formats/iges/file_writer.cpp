@@ -299,6 +299,10 @@ Status FileWriter::add_part(const cad::Part& part) {
     if (part.group != group_)
       if (Status closed = close_group(); !closed.ok()) return closed;
     for (const cad::Face& face : part.faces) take_size(face.surface.points);
+    if (part.kind == cad::Part::Kind::solid && !is_written_as_solid(part))
+      messages_.push_back(warning(
+          Kind::unsupported, fmt::format("{} is written as surfaces, not as a solid: {}; --to step keeps it",
+                                         what, why_no_solid(part))));
     int last = 0;
     // Its group, too, has to find room at the end.
     const std::int64_t values =

@@ -156,7 +156,7 @@ bool runs_along(const cad::Edge& edge, const nurbs::Curve& curve) {
 struct Shared {
   explicit Shared(const cad::Part& part) : vertices(1e-7 * cad::box_of(part).sizes().norm()) {
     for (const cad::Face& face : part.faces)
-      for (const cad::Edge& edge : cad::edges_of(face)) {
+      for (const cad::Edge& edge : cad::boundary_edges_of(face)) {
         if (is_pole(edge) || !index_of.try_emplace(edge.id, edges.size()).second) continue;
         const std::size_t from = vertices.at(cad::at_share(edge.curve, 0));
         edges.push_back({edge.curve, from, end_of(edge)});
@@ -191,7 +191,7 @@ SolidFace PartWriter::face_of_solid(Shared& shared, const cad::Face& face) {
   const Look own(records_, colors_, face);
   const int surface = write_surface(records_, own.entity(128, 0, dependent), face.surface);
   std::vector<int> loops;
-  for (const cad::Loop& each : face.loops) loops.push_back(loop(shared, own, each));
+  for (const cad::Loop& each : cad::boundary_of(face)) loops.push_back(loop(shared, own, each));
   return {write_face(records_, own, surface, loops, own.name), !face.reversed};
 }
 
@@ -221,23 +221,28 @@ std::string_view fault_of(const cad::Part& part) {
   if (part.faces.empty()) return "has no faces";
   for (const cad::Face& face : part.faces) {
     if (!is_finite(face.surface)) return not_finite;
-    for (const cad::Loop& loop : face.loops) {
+    for (const cad::Loop& loop : cad::boundary_of(face)) {
       for (const cad::Edge& edge : loop.edges)
         if (!is_finite(edge.curve) || !is_finite(edge.flat))
           return "has an edge with a number that is not finite";
-      if (!has_all_flats(loop) && !has_all_curves(loop, face.surface))
+      if (!face.loops.empty() && !has_all_flats(loop) && !has_all_curves(loop, face.surface))
         return "has a loop whose curves are known neither all in space nor all in the surface's parameters";
     }
   }
   return {};
 }
 
-bool is_written_as_solid(const cad::Part& part) {
-  if (part.kind != cad::Part::Kind::solid || !cad::has_shared_edges(part)) return false;
+std::string_view why_no_solid(const cad::Part& part) {
+  if (!cad::has_shared_edges(part)) return "not all of its edges are known to be shared by two of its faces";
   for (const cad::Face& face : part.faces)
-    for (const cad::Edge& edge : cad::edges_of(face))
-      if (lacks_curve(edge, face.surface)) return false;
-  return cad::shells_of(part.faces).size() == 1;
+    for (const cad::Edge& edge : cad::boundary_edges_of(face))
+      if (lacks_curve(edge, face.surface)) return "an edge has no curve in space";
+  if (cad::shells_of(part.faces).size() != 1) return "it has more than one shell";
+  return {};
+}
+
+bool is_written_as_solid(const cad::Part& part) {
+  return part.kind == cad::Part::Kind::solid && why_no_solid(part).empty();
 }
 
 std::int64_t most_values_of_part(const cad::Part& part) {
@@ -245,7 +250,7 @@ std::int64_t most_values_of_part(const cad::Part& part) {
   for (const cad::Face& face : part.faces) {
     values +=
         100 + 4 * face.surface.points.size() + face.surface.knots_u.size() + face.surface.knots_v.size();
-    for (const cad::Edge& edge : cad::edges_of(face))
+    for (const cad::Edge& edge : cad::boundary_edges_of(face))
       values += 100 + 5 * (edge.curve.points.size() + edge.flat.points.size()) + edge.curve.knots.size() +
                 edge.flat.knots.size();
   }

@@ -16,6 +16,8 @@ std::string_view fault_of(const cad::Part& part);
 
 // Does a 186 say it all: every face with loops, every edge with an id that two uses share?
 bool is_written_as_solid(const cad::Part& part);
+// Of a solid, what it lacks for that; empty: nothing.
+std::string_view why_no_solid(const cad::Part& part);
 
 // Upper bound of the lines in each section.
 std::int64_t most_values_of_part(const cad::Part& part);

@@ -25,7 +25,7 @@ void Placement::apply(std::vector<nurbs::Curve>& curves) const {
 
 void Placement::apply(cad::Face& face) const {
   apply(face.surface);
-  for (cad::Edge& edge : cad::edges_of(face)) apply(edge.curve);
+  for (cad::Edge& edge : cad::boundary_edges_of(face)) apply(edge.curve);
 }
 
 void Placement::apply(cad::Part& part) const {

@@ -168,9 +168,10 @@ class FaceMaker {
     } else if (polygons.size() == 1 && !polygons[0].empty() &&
                is_rectangle(polygons[0], box_of(polygons[0]), face_)) {
       take_surface(snapped(box_of(polygons[0]), whole, face_), whole);
+      result_.border = loops_of(chains);
     } else {
       take_surface(trimmed_range(polygons, whole), whole);
-      take_loops(chains);
+      result_.loops = loops_of(chains);
     }
     return std::move(result_);
   }
@@ -191,19 +192,32 @@ class FaceMaker {
     for (const Polygon& polygon : polygons) all.insert(all.end(), polygon.begin(), polygon.end());
     cad::Range box = whole;
     if (!all.empty()) {
-      box = box_of(all);
-      // Between two samples a curve may bulge out.
-      const double du = 0.05 * (box.u1 - box.u0), dv = 0.05 * (box.v1 - box.v0);
-      box = {std::max(box.u0 - du, whole.u0), std::min(box.u1 + du, whole.u1),
-             std::max(box.v0 - dv, whole.v0), std::min(box.v1 + dv, whole.v1)};
-      if (surface_->IsUPeriodic()) box.u0 = whole.u0, box.u1 = whole.u1;
-      if (surface_->IsVPeriodic()) box.v0 = whole.v0, box.v1 = whole.v1;
+      const cad::Range used = box_of(all);
+      follow(used.u0, used.u1, surface_->IsUPeriodic(), box.u0, box.u1);
+      follow(used.v0, used.v1, surface_->IsVPeriodic(), box.v0, box.v1);
     }
     if (!is_finite(box)) throw Standard_Failure("a face without a boundary on an unbounded surface");
     return box;
   }
 
-  void take_loops(const std::vector<Chain>& chains) {
+  // A range that holds the loops' own: they may run over a periodic surface's seam. Between two samples a
+  // curve may bulge out.
+  static void follow(double used_low, double used_high, bool is_periodic, double& low, double& high) {
+    const double slack = 0.05 * (used_high - used_low), period = high - low;
+    if (!is_periodic) {
+      low = std::max(used_low - slack, low);
+      high = std::min(used_high + slack, high);
+    } else if (used_high - used_low + 2 * slack < period) {
+      low = used_low - slack;
+      high = used_high + slack;
+    } else {
+      low = used_low;
+      high = used_low + period;
+    }
+  }
+
+  std::vector<cad::Loop> loops_of(const std::vector<Chain>& chains) {
+    std::vector<cad::Loop> loops;
     const bool has_flats = keeps_parameters(surface_);
     for (const Chain& chain : chains) {
       cad::Loop loop;
@@ -216,8 +230,9 @@ class FaceMaker {
         if (piece.curve.points.empty() && piece.flat.points.empty()) continue;
         loop.edges.push_back(std::move(piece));
       }
-      if (!loop.edges.empty()) result_.loops.push_back(std::move(loop));
+      if (!loop.edges.empty()) loops.push_back(std::move(loop));
     }
+    return loops;
   }
 
   TopoDS_Face face_;
@@ -243,7 +258,7 @@ void stretch(nurbs::Curve& curve, double factor) {
 
 void stretch(cad::Face& face, double factor) {
   for (Vec3& p : face.surface.points) p *= factor;
-  for (cad::Edge& edge : cad::edges_of(face)) stretch(edge.curve, factor);
+  for (cad::Edge& edge : cad::boundary_edges_of(face)) stretch(edge.curve, factor);
   if (face.area) *face.area *= factor * factor;
 }
 

@@ -134,7 +134,8 @@ nurbs::Surface to_spline(const Handle(Geom_Surface) & surface, const cad::Range&
   const cad::Range whole = bounds_of(basis);
   const auto fit = [](double& low, double& high, double first, double last, bool is_periodic) {
     if (is_periodic) {
-      high = std::min(high, low + (last - first));
+      // A turn and a rounding error more is taken for the rounding error alone.
+      while (high - low > last - first) high = std::min(low + (last - first), std::nextafter(high, low));
       return;
     }
     low = std::clamp(low, first, last);

@@ -25,6 +25,7 @@
 #include <TopoDS_Vertex.hxx>
 #include <TopoDS_Wire.hxx>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gp_Ax3.hxx>
 #include <map>
@@ -107,12 +108,14 @@ class PartBuilder {
   // Nothing has to be found: every edge has both its curves, and an id that two faces share.
   static bool is_stated(const cad::Part& part) {
     if (part.kind != cad::Part::Kind::solid || !cad::has_shared_edges(part)) return false;
-    for (const cad::Face& face : part.faces)
+    for (const cad::Face& face : part.faces) {
+      if (face.loops.empty()) return false;
       for (const cad::Edge& edge : cad::edges_of(face))
         if (edge.curve.points.empty() || edge.flat.points.empty() ||
             edge.curve.first_parameter() != edge.flat.first_parameter() ||
             edge.curve.last_parameter() != edge.flat.last_parameter())
           return false;
+    }
     return true;
   }
 
@@ -372,8 +375,19 @@ class PartBuilder {
     return result;
   }
 
+  // Edges of other programs meet within tolerances of their own: what does not close is sewn more loosely.
   PartShape joined(const std::vector<TopoDS_Face>& faces) {
-    BRepBuilderAPI_Sewing sewing(tolerance_);
+    constexpr std::array<double, 3> looser = {1, 10, 100};
+    PartShape result;
+    for (const double factor : looser) {
+      result = sewn(faces, factor * tolerance_);
+      if (result.closed || part_.kind != cad::Part::Kind::solid) break;
+    }
+    return result;
+  }
+
+  PartShape sewn(const std::vector<TopoDS_Face>& faces, double tolerance) {
+    BRepBuilderAPI_Sewing sewing(tolerance);
     for (const TopoDS_Face& face : faces) sewing.Add(face);
     sewing.Perform();
     PartShape result;

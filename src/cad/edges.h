@@ -45,6 +45,14 @@ inline auto edges_of(Face& face) {
   return EdgeRange(face.loops);
 }
 
+// Those of a whole surface, too (Face::border).
+inline auto boundary_edges_of(const Face& face) {
+  return EdgeRange(boundary_of(face));
+}
+inline auto boundary_edges_of(Face& face) {
+  return EdgeRange(face.loops.empty() ? face.border : face.loops);
+}
+
 // The numbers of the faces that hang together by edges of one id (poles aside), in the order of their first
 // ones.
 std::vector<std::vector<std::size_t>> shells_of(const std::vector<Face>& faces);

@@ -10,8 +10,8 @@ namespace selvage::cad {
 bool has_shared_edges(const Part& part) {
   std::map<int, int> uses;
   for (const Face& face : part.faces) {
-    if (face.loops.empty()) return false;
-    for (const Edge& edge : edges_of(face)) {
+    if (boundary_of(face).empty()) return false;
+    for (const Edge& edge : boundary_edges_of(face)) {
       if (edge.curve.points.empty()) continue;
       if (edge.id < 0) return false;
       ++uses[edge.id];
@@ -24,7 +24,7 @@ std::vector<std::vector<std::size_t>> shells_of(const std::vector<Face>& faces) 
   Groups groups(faces.size());
   std::map<int, std::size_t> first;
   for (std::size_t i = 0; i < faces.size(); ++i)
-    for (const Edge& edge : edges_of(faces[i]))
+    for (const Edge& edge : boundary_edges_of(faces[i]))
       if (!edge.curve.points.empty()) groups.join(first.try_emplace(edge.id, i).first->second, i);
   std::map<std::size_t, std::vector<std::size_t>> members;
   for (std::size_t i = 0; i < faces.size(); ++i) members[groups.of(i)].push_back(i);

@@ -52,6 +52,9 @@ struct Face : Label {
   nurbs::Surface surface;
   bool reversed = false;    // the face's outside is against S_u x S_v
   std::vector<Loop> loops;  // empty: the whole surface; else the outer one first, then holes
+  // Of a whole surface the edges round it that the file has, seams and all: who makes a solid of the faces
+  // needs to know which of them they share. Empty: the file has none.
+  std::vector<Loop> border;
   // As another program's kernel measured it in the file that it read; none: nobody did. Who makes the face
   // anew has to find it again.
   std::optional<double> area;
@@ -69,8 +72,13 @@ struct Part : Label {
   std::string group;  // of the outermost group or assembly below the file that holds it; empty: none
 };
 
+// The face's loops, or the edges round a whole surface.
+inline const std::vector<Loop>& boundary_of(const Face& face) {
+  return face.loops.empty() ? face.border : face.loops;
+}
+
 // Are all edges of all faces shared by name, each by two of them (poles, which have no curve in space, need
-// not be)? Not when a face has no loops.
+// not be)? Not when nothing is known of what bounds a face.
 bool has_shared_edges(const Part& part);
 
 struct NamedCurve : Label {

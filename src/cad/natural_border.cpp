@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "cad/edges.h"
 #include "cad/sampled_curve.h"
@@ -182,7 +183,7 @@ bool has_natural_border(const Face& face, double tolerance) {
 
 bool drop_natural_border(Face& face, double tolerance) {
   if (!has_natural_border(face, tolerance)) return false;
-  face.loops.clear();
+  if (!face.loops.empty()) face.border = std::exchange(face.loops, {});
   return true;
 }
 

@@ -11,7 +11,7 @@ namespace selvage::cad {
 // space (within `tolerance`, model units, at its breakpoints and between).
 bool has_natural_border(const Face& face, double tolerance);
 
-// Takes the loops away where that is so: the face is then untrimmed.
+// Takes the loops away where that is so: the face is then untrimmed, and they are its border.
 bool drop_natural_border(Face& face, double tolerance);
 
 // What counts as equal on a face of a file that claims `resolution` (file units; 0: nothing): no less than

@@ -85,7 +85,8 @@ void convert_lengths(cad::Part& part, Unit from, Unit to) {
   const Ratio scale = ratio(from, to);
   for (cad::Face& face : part.faces) {
     scale.apply_to_all(face.surface.points);
-    for (cad::Edge& edge : cad::edges_of(face)) scale.apply_to_all(edge.curve.points);
+    for (cad::Edge& edge : cad::boundary_edges_of(face)) scale.apply_to_all(edge.curve.points);
+    if (face.area) *face.area = scale(scale(*face.area));
   }
 }
 

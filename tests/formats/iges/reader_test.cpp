@@ -277,6 +277,62 @@ TEST(IgesReader, WhatDoesNotStandForItself) {
   EXPECT_EQ(reading.model->unknown.at("777 form 2 (no type of IGES 5.3)"), 1U);
 }
 
+// Marked as parts of others that are nowhere.
+TEST(IgesReader, WhatNobodyRefersToStands) {
+  IgesText text;
+  const std::string line = "1,1,0,0,1,0,0.,0.,1.,1.,1.,1.,1.,2.,3.,4.,5.,6.,0.,1.,0.,0.,0.";
+  text.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = "00010000"});  // D1
+  text.add({.type = 126, .parameters = line, .status = "00010000"});               // D3
+  text.add({.type = 126, .parameters = line, .status = "00010000"});               // D5, part of D7
+  text.add({.type = 102, .parameters = "1,5", .status = "00010000"});
+  const IgesReading reading = read_iges(text.bytes());
+  ASSERT_TRUE(reading.model) << reading.text();
+  EXPECT_EQ(reading.model->parts.size(), 1U);
+  ASSERT_EQ(reading.model->curves.size(), 2U);
+  EXPECT_EQ(reading.model->curves[0].origin.entity, "102 at D7");  // what is made of others comes first
+  EXPECT_EQ(reading.model->curves[1].origin.entity, "126 at D3");
+}
+
+// Two parabolas, their common knot once too often.
+TEST(IgesReader, TornKnots) {
+  const auto curve = [](double start) {
+    IgesText text;
+    text.add({.type = 126,
+              .parameters =
+                  "5,2,0,0,1,0,0.,0.,0.,1.,1.,1.,2.,2.,2.,1.,1.,1.,1.,1.,1.,0.,0.,0.,1.,2.,0.,2.,0.,0.," +
+                  std::to_string(start) + ",0.,0.,3.,-2.,0.,4.,0.,0.,0.,2.,0.,0.,1."});
+    return read_iges(text.bytes());
+  };
+  const IgesReading joined = curve(2);
+  ASSERT_TRUE(joined.model) << joined.text();
+  const nurbs::Curve& spline = joined.model->curves.at(0).curve;
+  EXPECT_EQ(spline.points.size(), 5U);
+  EXPECT_EQ(spline.knots, (std::vector<double>{0, 0, 0, 1, 1, 2, 2, 2}));
+  EXPECT_EQ(nurbs::evaluate(spline, 0.5), Vec3(1, 1, 0));
+  EXPECT_EQ(nurbs::evaluate(spline, 1.5), Vec3(3, -1, 0));
+  EXPECT_TRUE(curve(2.003).says(Severity::warning, "torn at the knot 1, by 0.003"));
+  EXPECT_TRUE(curve(2.5).says(Severity::error, "falls apart there, by 0.5"));
+}
+
+// One patch x = s, y = t, with the row and the column that mean nothing, and with a name behind them.
+TEST(IgesReader, SplineSurfaceHasARowAndAColumnMore) {
+  const std::string zeros = "0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,";
+  std::string parameters =
+      "3,1,1,1,0.,1.,0.,1.,0.,1.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,"
+      "0.,0.,0.,0.,1.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.," +
+      zeros;
+  for (int patch = 1; patch < 4; ++patch) parameters += zeros + zeros + zeros;
+  IgesText text;
+  text.add({.type = 406, .form = 15, .parameters = "1,4Hwing"});
+  text.add({.type = 114, .parameters = parameters + "0,1,1"});
+  const IgesReading reading = read_iges(text.bytes());
+  ASSERT_TRUE(reading.model) << reading.text();
+  ASSERT_EQ(reading.model->parts.size(), 1U);
+  EXPECT_EQ(reading.model->parts[0].name, "wing");
+  const nurbs::Surface& surface = reading.model->parts[0].faces.at(0).surface;
+  EXPECT_LT((nurbs::evaluate(surface, 0.25, 0.75) - Vec3(0.25, 0.75, 0)).norm(), 1e-14);
+}
+
 // Knots that are not clamped: a uniform cubic, whose ends are (1 4 1) / 6 of its points.
 TEST(IgesReader, PeriodicCurve) {
   IgesText text;

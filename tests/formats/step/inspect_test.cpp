@@ -122,6 +122,27 @@ TEST(StepInspect, WhatIsRightOrUnknownIsLeftAlone) {
             "");
 }
 
+TEST(StepInspect, SchemasByOtherWritersNames) {
+  for (const std::string_view schema :
+       {"automotive_design", "ccd_cla_gvp_ast", "CONSTRUCTION_HISTORY_SCHEMA",
+        "CONFIGURATION_CONTROL_3D_DESIGN_ED2_MIM_LF { 1 0 10303 403 1 1 4}"}) {
+    std::string text = file_of(corner);
+    text.replace(text.find("AUTOMOTIVE_DESIGN"), 17, schema);
+    text.replace(text.find("HEADER"), 6, "Header");
+    text += std::string(3, '\0');
+    const Source source = Source::from_memory(text, "a.stp");
+    TextReport report(source);
+    EXPECT_TRUE(inspect(source, report)) << schema;
+  }
+}
+
+// Through what nobody translates: a note that names the callout in which it stands.
+TEST(StepInspect, OnlyCirclesOfShapesHarm) {
+  EXPECT_EQ(with_corner("#6=DIMENSION_TEXT_ASSOCIATIVITY('',#7);\n#7=DRAUGHTING_CALLOUT('',(#6));"), "");
+  EXPECT_EQ(with_corner("#6=OFFSET_CURVE_3D('',#7,1.,.F.,#2);\n#7=OFFSET_CURVE_3D('',#6,1.,.F.,#2);"),
+            "11:1: #6 refers to itself, by way of #7");
+}
+
 // Levels of assemblies, each with the one below it twice.
 std::string doubling(int levels) {
   std::string text =

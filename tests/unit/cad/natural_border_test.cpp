@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cad/border.h"
 #include "cad/sampled_curve.h"
 #include "nurbs/restrict.h"
 #include "unit/cad/surfaces.h"
@@ -160,6 +161,28 @@ TEST(SampledCurve, FindsItsOwnPoints) {
 }
 
 // A rim whose circle begins at another place than the surface's seam.
+// A circle of three thirds has few points; the place nearest to the one next to its start lies behind its
+// end.
+TEST(Border, IsOneAcrossTheStartOfAClosedCurve) {
+  nurbs::Curve circle;
+  circle.degree = 2;
+  circle.knots = {0, 0, 0, 1, 1, 2, 2, 3, 3, 3};
+  for (int k = 0; k <= 6; ++k) {
+    const double angle = std::numbers::pi / 3 * k, radius = k % 2 == 0 ? 50 : 100;
+    circle.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+    circle.weights.push_back(k % 2 == 0 ? 1 : 0.5);
+  }
+  circle.points.back() = circle.points.front();
+  const cad::Border border(circle);
+  for (int k = 0; k < 720; ++k) {
+    const double angle = std::numbers::pi / 360 * k;
+    for (const double radius : {50.0, 51.0, 49.0}) {
+      const Vec3 p(radius * std::cos(angle), radius * std::sin(angle), 0.5);
+      EXPECT_NEAR(border.distance(p, 0.3, 0, 1e9), std::hypot(radius - 50, 0.5), 1e-12) << k;
+    }
+  }
+}
+
 TEST(NaturalBorder, ARimThatBeginsElsewhere) {
   Loop first, last;
   for (const double z : {0.0, 3.0}) {
