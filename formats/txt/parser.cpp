@@ -312,9 +312,12 @@ void Parser::check_references() {
     if (&names == &materials)
       for (const fabric::Fibre& fibre : fabric::all_fibres()) known.push_back(fibre.material.name);
     std::sort(known.begin(), known.end());
-    error(reference.spot, fmt::format("unknown {} {}{}", names.kind, in_quotes(reference.name),
-                                      known.empty() ? fmt::format("; this file defines no {}", names.kind)
-                                                    : did_you_mean(reference.name, known)));
+    std::string hint = known.empty() ? fmt::format("; this file defines no {}", names.kind)
+                                     : did_you_mean(reference.name, known);
+    if (hint.empty() && &names == &materials)
+      hint = fmt::format("; known: {} (others have a block 'material {}')", fmt::join(known, ", "),
+                         is_identifier(reference.name) ? reference.name : "NAME");
+    error(reference.spot, fmt::format("unknown {} {}{}", names.kind, in_quotes(reference.name), hint));
   }
 }
 

@@ -197,7 +197,12 @@ const std::vector<Case> thread_cases = {
     {"color_256", in_thread("color 0 256 0"), {{3, 9, "from 0 to 255"}}},
     {"color_negative", in_thread("color -1 0 0"), {{3, 7, "from 0 to 255"}}},
     {"color_two", in_thread("color 1 2"), {{3, 10, "missing"}}},
-    {"unknown_material", in_thread("material unobtainium"), {{3, 10, "unknown material 'unobtainium'"}}},
+    {"unknown_material",
+     in_thread("material unobtainium"),
+     {{3, 10, "unknown material 'unobtainium'; known: acetate, acrylic, aramid, carbon-AS4"}}},
+    {"material_of_a_maker",
+     in_thread("material kevlar"),
+     {{3, 10, "wool (others have a block 'material kevlar')"}}},
     {"near_material",
      in_material("density 1") +
          "thread t\n  material n\nend\nmaterial nylon\nend\nthread u\n material nylom\nend\n",
