@@ -294,6 +294,7 @@ PressedThreads press_yarns(const Fabric& fabric, const Warpknit& warpknit, Wefts
       less * std::min(warpknit.wale_pitch / stack.across(), warpknit.course_pitch / stack.along());
   if (stack.has_own_only || !(most > 0.0)) return {};
   std::vector<const Thread**> places;
+  places.reserve(bars.size() + wefts.threads.size());
   for (Bar& bar : bars) places.push_back(&bar.thread);
   for (const Thread*& thread : wefts.threads) places.push_back(&thread);
   PressedThreads pressed;
