@@ -256,7 +256,8 @@ std::optional<std::array<int, 2>> Parser::pair(std::string_view what, char sign)
     p = stop + (i == 0 && good ? 1 : 0);
   }
   if (good) return values;
-  if (word.empty()) return fail(spot, fmt::format("{} is missing", what));
+  if (word.empty())
+    return fail(spot, fmt::format("{} is missing: two whole numbers, as in 2{}1", what, sign));
   return fail(spot, fmt::format("{}: two whole numbers joined by '{}' are expected, as in 2{}1, found {}",
                                 what, sign, sign, in_quotes(word)));
 }
