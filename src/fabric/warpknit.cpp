@@ -236,14 +236,6 @@ Result<std::vector<Bar>> read_bars(const Fabric& fabric, const Warpknit& warpkni
   return bars;
 }
 
-double weft_thickness(const Fabric& fabric, const Wefts& wefts) {
-  double thickest = 0;
-  for (const Thread* thread : wefts.threads)
-    if (const Result<yarn::Section> section = centred_section_of(*thread, fabric.units); section)
-      thickest = std::max(thickest, thickness_of(*section));
-  return thickest;
-}
-
 // How many yarns lie side by side on one needle, and one above the other within a course.
 struct Stack {
   int bars_with_feet = 0, fall_plates = 0, most_feet_before = 0;
@@ -270,18 +262,14 @@ Stack stack_of(const std::vector<Bar>& bars, const Wefts& wefts) {
   return stack;
 }
 
-// The thread in as thin a round yarn; none where its size does not follow from its packing, or its fibres
-// would lie closer than discs can.
-std::unique_ptr<const Thread> pressed_to(const Thread& thread, double thickness, double wanted) {
+// How much thinner a thread's round yarns can be: with their fibres as close as discs lie. 1 where their size
+// does not follow from their packing.
+double least_share(const Thread& thread) {
   const std::optional<double> packing = thread.size_packing();
   const bool has_size =
       thread.diameter || (thread.section && yarn::nominal_size(*thread.section).width > 0.0);
-  if (has_size || !packing || !thread.linear_density || !thread.fibre_density()) return nullptr;
-  const double closer = *packing * thickness * thickness / (wanted * wanted);
-  if (!(closer <= densest_packing)) return nullptr;
-  Thread pressed = thread;
-  pressed.packing = closer;
-  return std::make_unique<const Thread>(std::move(pressed));
+  if (has_size || !packing || !thread.linear_density || !thread.fibre_density()) return 1.0;
+  return std::min(1.0, std::sqrt(*packing / densest_packing));
 }
 
 // Yarns that are thicker than the pitches leave room for, and whose fibres can come closer, are pressed; all
@@ -303,9 +291,12 @@ PressedThreads press_yarns(const Fabric& fabric, const Warpknit& warpknit, Wefts
     if (!seen.insert(*place).second) continue;
     const Result<yarn::Section> section = centred_section_of(**place, fabric.units);
     if (!section) return {};
-    if (!(thickness_of(*section) * less > most)) continue;
-    pressed.push_back(pressed_to(**place, thickness_of(*section), most));
-    if (pressed.back() == nullptr) return {};
+    const double thickness = thickness_of(*section);
+    if (!(thickness * less > most)) continue;
+    if (thickness * least_share(**place) > most) return {};
+    Thread closer = **place;
+    closer.packing = *closer.size_packing() * thickness * thickness / (most * most);
+    pressed.push_back(std::make_unique<const Thread>(std::move(closer)));
   }
   for (const std::unique_ptr<const Thread>& now : pressed) {
     const Thread* const thread = fabric.find_thread(now->name);
@@ -322,14 +313,21 @@ PressedThreads press_yarns(const Fabric& fabric, const Warpknit& warpknit, Wefts
 }
 
 Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, const Wefts& wefts,
-                         std::vector<Bar>& bars) {
+                         std::vector<Bar>& bars, bool are_pressed) {
   Measures m;
-  double thickest = weft_thickness(fabric, wefts);
+  double thickest = 0.0, pressed = 0.0;  // as they are, and as thin as they can be
+  const auto add = [&](const Thread& thread, double thickness) {
+    thickest = std::max(thickest, thickness);
+    pressed = std::max(pressed, thickness * (are_pressed ? least_share(thread) : 1.0));
+  };
+  for (const Thread* thread : wefts.threads)
+    if (const Result<yarn::Section> section = centred_section_of(*thread, fabric.units); section)
+      add(*thread, thickness_of(*section));
   for (Bar& bar : bars) {
     const Result<yarn::Section> section = centred_section_of(*bar.thread, fabric.units);
     if (!section) return section.error();
     bar.thickness = thickness_of(*section);
-    thickest = std::max(thickest, bar.thickness);
+    add(*bar.thread, bar.thickness);
   }
   const Stack stack = stack_of(bars, wefts);
   if (!stack.knits)
@@ -343,8 +341,9 @@ Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, const W
   const auto too_small = [&](std::string_view what, double pitch, double yarns) {
     return error(Kind::geometry,
                  fmt::format("the {} pitch {} is too small for yarns of {:.4g}: the loops of {} bars "
-                             "need at least {:.6g}",
-                             what, pitch, thickest, m.bars_with_feet, yarns * thickest));
+                             "need at least {:.6g}{}",
+                             what, pitch, thickest, m.bars_with_feet, yarns * pressed,
+                             pressed < thickest ? ", with their fibres as close as they go" : ""));
   };
   if (!stack.has_own_only && !(warpknit.wale_pitch >= across * thickest))
     return too_small("wale", warpknit.wale_pitch, across);
@@ -430,7 +429,7 @@ Result<std::unique_ptr<Construction>> make_warpknit(const Fabric& fabric, const 
   if (!wefts) return wefts.error();
   PressedThreads pressed;
   if (!options.as_published) pressed = press_yarns(fabric, warpknit, *wefts, *bars, diagnostics);
-  const Result<Measures> measures = measure(fabric, warpknit, *wefts, *bars);
+  const Result<Measures> measures = measure(fabric, warpknit, *wefts, *bars, !options.as_published);
   if (!measures) return measures.error().placed(warpknit.place);
   piece.bars = std::move(*bars);
   piece.measures = *measures;

@@ -1,6 +1,9 @@
 // Lapping notation, and warp knits that cannot be.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "fabric/build.h"
 #include "fabric/lapping.h"
 #include "formats/registry.h"
@@ -118,9 +121,10 @@ TEST(Warpknit, SmallestPitches) {
 // Locknit of 40 denier at 14 wales and 20 courses a centimetre, as it is sold: 6.4 yarns lie within a course
 // of two bars (2 x 1 + 4 + 0.4), so that they are pressed to 0.5 / 6.4 mm.
 TEST(Warpknit, FibresComeCloserWhereALoopHasNoRoom) {
-  const auto text = [](const std::string& thread) {
+  std::string courses = "20/cm";
+  const auto text = [&](const std::string& thread) {
     return "fabric 1\nthread f\n  denier 40\n" + thread +
-           "end\nwarpknit locknit\n  thread f\n  wales 4 14/cm\n  courses 4 20/cm\nend\n";
+           "end\nwarpknit locknit\n  thread f\n  wales 4 14/cm\n  courses 4 " + courses + "\nend\n";
   };
   const auto message = [&](const std::string& thread, const BuildOptions& options,
                            std::vector<YarnPlan>* plans, std::string* told) {
@@ -147,6 +151,18 @@ TEST(Warpknit, FibresComeCloserWhereALoopHasNoRoom) {
   published.as_published = true;
   EXPECT_NE(message("  material nylon\n", published, nullptr, nullptr).find("need at least 0.5206"),
             std::string::npos);
+  // Denser than fibres lie, pi / (2 sqrt 3): the pitch that the message names is the smallest one.
+  courses = "24/cm";
+  const std::string dense = message("  material nylon\n", {}, nullptr, nullptr);
+  const double diameter =
+      2 * std::sqrt(40.0 / 9 / (1000 * std::numbers::pi * 1.14 * std::numbers::pi / std::sqrt(12.0)));
+  const std::size_t at = dense.find("need at least ");
+  ASSERT_NE(at, std::string::npos) << dense;
+  EXPECT_NEAR(std::stod(dense.substr(at + 14)), 6.4 * diameter, 1e-6);
+  EXPECT_NE(dense.find(", with their fibres as close as they go"), std::string::npos);
+  courses = "pitch " + std::to_string(6.4 * diameter + 1e-6);
+  EXPECT_EQ(message("  material nylon\n", {}, nullptr, nullptr), "");
+  courses = "20/cm";
   // Fibres that are one, that lie as close as they can, or whose yarn has a size of its own, stay.
   for (const std::string thread : {"  density 0.9\n  filaments 1\n", "  density 0.9\n  packing 0.9\n",
                                    "  material nylon\n  diameter 0.0814\n"})
