@@ -340,7 +340,7 @@ Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, const W
   const double across = stack.across(), along = stack.along();
   const auto too_small = [&](std::string_view what, double pitch, double yarns) {
     return error(Kind::geometry,
-                 fmt::format("the {} pitch {} is too small for yarns of {:.4g}: the loops of {} bars "
+                 fmt::format("the {} pitch {:.6g} is too small for yarns of {:.4g}: the loops of {} bars "
                              "need at least {:.6g}{}",
                              what, pitch, thickest, m.bars_with_feet, yarns * pressed,
                              pressed < thickest ? ", with their fibres as close as they go" : ""));
