@@ -256,7 +256,8 @@ std::optional<std::array<int, 2>> Parser::pair(std::string_view what, char sign)
     p = stop + (i == 0 && good ? 1 : 0);
   }
   if (good) return values;
-  if (word.empty()) return fail(spot, fmt::format("{} is missing", what));
+  if (word.empty())
+    return fail(spot, fmt::format("{} is missing: two whole numbers, as in 2{}1", what, sign));
   return fail(spot, fmt::format("{}: two whole numbers joined by '{}' are expected, as in 2{}1, found {}",
                                 what, sign, sign, in_quotes(word)));
 }
@@ -312,9 +313,12 @@ void Parser::check_references() {
     if (&names == &materials)
       for (const fabric::Fibre& fibre : fabric::all_fibres()) known.push_back(fibre.material.name);
     std::sort(known.begin(), known.end());
-    error(reference.spot, fmt::format("unknown {} {}{}", names.kind, in_quotes(reference.name),
-                                      known.empty() ? fmt::format("; this file defines no {}", names.kind)
-                                                    : did_you_mean(reference.name, known)));
+    std::string hint = known.empty() ? fmt::format("; this file defines no {}", names.kind)
+                                     : did_you_mean(reference.name, known);
+    if (hint.empty() && &names == &materials)
+      hint = fmt::format("; known: {} (others have a block 'material {}')", fmt::join(known, ", "),
+                         is_identifier(reference.name) ? reference.name : "NAME");
+    error(reference.spot, fmt::format("unknown {} {}{}", names.kind, in_quotes(reference.name), hint));
   }
 }
 

@@ -189,6 +189,10 @@ Status Scope::check_names(std::string_view text, Measure measure) const {
                                     [&](const NamedValue& value) { return value.name == name; });
     if (same_word(name, "nan") || same_word(name, "inf") || same_word(name, "infinity")) {
       status = wrong(text, "it is no finite number");
+    } else if (found == values_.end() && find_unit(name) != nullptr) {
+      status = wrong(text, text.ends_with(fmt::format("/{}", name))
+                               ? std::string("so many on a length are a pitch, which does not belong here")
+                               : fmt::format("a unit stands right behind its number, as in 3{}", name));
     } else if (found == values_.end()) {
       const std::vector<std::string_view> known = names();
       std::string hint = did_you_mean(name, known);

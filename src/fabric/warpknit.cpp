@@ -23,7 +23,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <set>
 
 #include "core/wrapped.h"
 #include "fabric/build.h"
@@ -31,6 +33,7 @@
 #include "fabric/own_loop.h"
 #include "fabric/quantities.h"
 #include "fabric/warpknit_mend.h"
+#include "fabric/weave_press.h"
 #include "fabric/yarn_spec.h"
 #include "yarn/outline.h"
 
@@ -66,15 +69,19 @@ struct Wefts {
   }
 };
 
+// Threads whose fibres lie closer than their own packing says.
+using PressedThreads = std::vector<std::unique_ptr<const Thread>>;
+
 class WarpknitConstruction final : public Construction {
  public:
   WarpknitConstruction(const Fabric& fabric, const Warpknit& warpknit, WarpknitPiece piece, LoopMoves moves,
-                       Wefts wefts)
+                       Wefts wefts, PressedThreads pressed)
       : fabric_(fabric),
         warpknit_(warpknit),
         piece_(std::move(piece)),
         moves_(std::move(moves)),
-        wefts_(std::move(wefts)) {}
+        wefts_(std::move(wefts)),
+        pressed_(std::move(pressed)) {}
 
   [[nodiscard]] std::size_t count() const override {
     return guides() + static_cast<std::size_t>(wefts_.count());
@@ -118,6 +125,7 @@ class WarpknitConstruction final : public Construction {
   WarpknitPiece piece_;  // all of it; at least one bar, front bar first
   LoopMoves moves_;
   Wefts wefts_;
+  PressedThreads pressed_;  // that bars and wefts have
 };
 
 // Edge to edge of the needle bed.
@@ -228,50 +236,118 @@ Result<std::vector<Bar>> read_bars(const Fabric& fabric, const Warpknit& warpkni
   return bars;
 }
 
-double weft_thickness(const Fabric& fabric, const Wefts& wefts) {
-  double thickest = 0;
-  for (const Thread* thread : wefts.threads)
-    if (const Result<yarn::Section> section = centred_section_of(*thread, fabric.units); section)
-      thickest = std::max(thickest, thickness_of(*section));
-  return thickest;
+// How many yarns lie side by side on one needle, and one above the other within a course.
+struct Stack {
+  int bars_with_feet = 0, fall_plates = 0, most_feet_before = 0;
+  bool knits = false, has_own_only = true, has_weft = false;
+
+  // Two feet a bar, the two legs of the loop below, half a space to each side.
+  [[nodiscard]] double across() const { return 2.0 * bars_with_feet + 2.0; }
+  // Feet from the lowest to the highest, arches, heads, the next feet.
+  [[nodiscard]] double along() const {
+    return 2.0 * most_feet_before + 4.0 + low_foot + 2.0 * fall_plates + (has_weft ? 1.0 : 0.0);
+  }
+};
+
+Stack stack_of(const std::vector<Bar>& bars, const Wefts& wefts) {
+  Stack stack;
+  for (const Bar& bar : bars) {
+    stack.bars_with_feet += bar.has_feet ? 1 : 0;
+    stack.fall_plates += bar.has_feet && bar.is_fall_plate ? 1 : 0;
+    stack.most_feet_before = std::max(stack.most_feet_before, bar.feet_before);
+    stack.knits = stack.knits || (bar.has_feet && !bar.is_fall_plate);
+    stack.has_own_only = stack.has_own_only && (!bar.has_feet || bar.own != nullptr);
+  }
+  stack.has_weft = wefts.count() > 0;
+  return stack;
+}
+
+// How much thinner a thread's round yarns can be: with their fibres as close as discs lie. 1 where their size
+// does not follow from their packing.
+double least_share(const Thread& thread) {
+  const std::optional<double> packing = thread.size_packing();
+  const bool has_size =
+      thread.diameter || (thread.section && yarn::nominal_size(*thread.section).width > 0.0);
+  if (has_size || !packing || !thread.linear_density || !thread.fibre_density()) return 1.0;
+  return std::min(1.0, std::sqrt(*packing / densest_packing));
+}
+
+// Yarns that are thicker than the pitches leave room for, and whose fibres can come closer, are pressed; all
+// of them or none: what has no room then is told by `measure`.
+PressedThreads press_yarns(const Fabric& fabric, const Warpknit& warpknit, Wefts& wefts,
+                           std::vector<Bar>& bars, Diagnostics& diagnostics) {
+  constexpr double less = 1.0 - 1e-9;
+  const Stack stack = stack_of(bars, wefts);
+  const double most =
+      less * std::min(warpknit.wale_pitch / stack.across(), warpknit.course_pitch / stack.along());
+  if (stack.has_own_only || !(most > 0.0)) return {};
+  std::vector<const Thread**> places;
+  places.reserve(bars.size() + wefts.threads.size());
+  for (Bar& bar : bars) places.push_back(&bar.thread);
+  for (const Thread*& thread : wefts.threads) places.push_back(&thread);
+  PressedThreads pressed;
+  std::set<const Thread*> seen;
+  for (const Thread** place : places) {
+    if (!seen.insert(*place).second) continue;
+    const Result<yarn::Section> section = centred_section_of(**place, fabric.units);
+    if (!section) return {};
+    const double thickness = thickness_of(*section);
+    if (!(thickness * less > most)) continue;
+    if (thickness * least_share(**place) > most) return {};
+    Thread closer = **place;
+    closer.packing = *closer.size_packing() * thickness * thickness / (most * most);
+    pressed.push_back(std::make_unique<const Thread>(std::move(closer)));
+  }
+  for (const std::unique_ptr<const Thread>& now : pressed) {
+    const Thread* const thread = fabric.find_thread(now->name);
+    diagnostics.add(
+        note(Kind::geometry,
+             fmt::format("the warp knit has no room for thread '{}' as it is: it is pressed to {:.4g} {}, "
+                         "the packing of its fibres rises from {:.3g} to {:.3g}",
+                         now->name, most, name_of(fabric.units), *thread->size_packing(), *now->packing))
+            .placed(thread->place, fabric.file));
+    for (const Thread** place : places)
+      if (*place == thread) *place = now.get();
+  }
+  return pressed;
 }
 
 Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, const Wefts& wefts,
-                         std::vector<Bar>& bars) {
+                         std::vector<Bar>& bars, bool are_pressed) {
   Measures m;
-  double thickest = weft_thickness(fabric, wefts);
-  int most_feet_before = 0;
-  bool knits = false, has_own_only = true;
+  double thickest = 0.0, pressed = 0.0;  // as they are, and as thin as they can be
+  const auto add = [&](const Thread& thread, double thickness) {
+    thickest = std::max(thickest, thickness);
+    pressed = std::max(pressed, thickness * (are_pressed ? least_share(thread) : 1.0));
+  };
+  for (const Thread* thread : wefts.threads)
+    if (const Result<yarn::Section> section = centred_section_of(*thread, fabric.units); section)
+      add(*thread, thickness_of(*section));
   for (Bar& bar : bars) {
     const Result<yarn::Section> section = centred_section_of(*bar.thread, fabric.units);
     if (!section) return section.error();
     bar.thickness = thickness_of(*section);
-    thickest = std::max(thickest, bar.thickness);
-    m.bars_with_feet += bar.has_feet ? 1 : 0;
-    m.fall_plates += bar.has_feet && bar.is_fall_plate ? 1 : 0;
-    most_feet_before = std::max(most_feet_before, bar.feet_before);
-    knits = knits || (bar.has_feet && !bar.is_fall_plate);
-    has_own_only = has_own_only && (!bar.has_feet || bar.own != nullptr);
+    add(*bar.thread, bar.thickness);
   }
-  if (!knits)
+  const Stack stack = stack_of(bars, wefts);
+  if (!stack.knits)
     return error(Kind::geometry,
                  "no bar of this warp knit forms loops: at least one needs overlaps, such as 1-0/1-2, "
                  "that are not pushed down");
-  // Side by side on one needle: two feet a bar, the two legs of the loop below, half a space to each side.
-  const double across = 2.0 * m.bars_with_feet + 2.0;
-  // One above the other within a course: feet from the lowest to the highest, arches, heads, the next feet.
-  m.has_weft = wefts.count() > 0;
-  const double along =
-      2.0 * most_feet_before + 4.0 + low_foot + 2.0 * m.fall_plates + (m.has_weft ? 1.0 : 0.0);
+  m.bars_with_feet = stack.bars_with_feet;
+  m.fall_plates = stack.fall_plates;
+  m.has_weft = stack.has_weft;
+  const double across = stack.across(), along = stack.along();
   const auto too_small = [&](std::string_view what, double pitch, double yarns) {
     return error(Kind::geometry,
-                 fmt::format("the {} pitch {} is too small for yarns of {:.4g}: the loops of {} bars "
-                             "need at least {:.6g}",
-                             what, pitch, thickest, m.bars_with_feet, yarns * thickest));
+                 fmt::format("the {} pitch {:.6g} is too small for yarns of {:.4g}: the loops of {} bars "
+                             "need at least {:.6g}{}",
+                             what, pitch, thickest, m.bars_with_feet, yarns * pressed,
+                             pressed < thickest ? ", with their fibres as close as they go" : ""));
   };
-  if (!has_own_only && !(warpknit.wale_pitch >= across * thickest))
+  if (!stack.has_own_only && !(warpknit.wale_pitch >= across * thickest))
     return too_small("wale", warpknit.wale_pitch, across);
-  if (!has_own_only && !(warpknit.course_pitch >= along * thickest))
+  if (!stack.has_own_only && !(warpknit.course_pitch >= along * thickest))
     return too_small("course", warpknit.course_pitch, along);
   for (const auto& [what, pitch] :
        {std::pair("a wale pitch", warpknit.wale_pitch), std::pair("a course pitch", warpknit.course_pitch)})
@@ -283,7 +359,7 @@ Result<Measures> measure(const Fabric& fabric, const Warpknit& warpknit, const W
   m.along = warpknit.course_pitch / along;
   m.thickest = thickest;
   m.layer = 1.12 * thickest;  // the loop path misses its points by a few per cent of a yarn
-  m.deepest_foot = (0.5 + most_feet_before) * m.along;
+  m.deepest_foot = (0.5 + stack.most_feet_before) * m.along;
   m.substrate = warpknit.substrate.value_or(0.0);
   return m;
 }
@@ -351,7 +427,9 @@ Result<std::unique_ptr<Construction>> make_warpknit(const Fabric& fabric, const 
   }
   Result<Wefts> wefts = read_wefts(fabric, warpknit, piece);
   if (!wefts) return wefts.error();
-  const Result<Measures> measures = measure(fabric, warpknit, *wefts, *bars);
+  PressedThreads pressed;
+  if (!options.as_published) pressed = press_yarns(fabric, warpknit, *wefts, *bars, diagnostics);
+  const Result<Measures> measures = measure(fabric, warpknit, *wefts, *bars, !options.as_published);
   if (!measures) return measures.error().placed(warpknit.place);
   piece.bars = std::move(*bars);
   piece.measures = *measures;
@@ -359,7 +437,7 @@ Result<std::unique_ptr<Construction>> make_warpknit(const Fabric& fabric, const 
   LoopMoves moves;
   if (!options.as_published) moves = moves_apart(fabric, warpknit, piece, options, diagnostics);
   return std::unique_ptr<Construction>(std::make_unique<WarpknitConstruction>(
-      fabric, warpknit, std::move(piece), std::move(moves), std::move(*wefts)));
+      fabric, warpknit, std::move(piece), std::move(moves), std::move(*wefts), std::move(pressed)));
 }
 
 }  // namespace selvage::fabric

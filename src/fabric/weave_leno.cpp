@@ -1,6 +1,9 @@
 // The draft `leno` of a weave: leno.h says where its yarns lie.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/wrapped.h"
 #include "fabric/clearance.h"
 #include "fabric/weave_construction.h"
@@ -14,7 +17,7 @@ constexpr int points_a_pick = 24;
 constexpr double most_warp_bend = 0.95;  // of half the thickness to the bend's radius
 // A pitch of picks that has room is looked for in these steps.
 constexpr double pick_growth = 1.02;
-constexpr int most_pitches = 150;
+constexpr int most_pick_steps = 150;
 
 bool is_doup(long long warp) {
   return wrapped<long long>(warp, 2) == 1;
@@ -49,7 +52,21 @@ Status WeaveConstruction::prepare_leno() {
            tightest_bend(shape, true, doup.height) < most_warp_bend;
   };
   if (!fits()) {
-    for (int step = 0; step < most_pitches && !fits(); ++step) shape.pick *= pick_growth;
+    const auto fits_at = [&](int steps) {
+      shape.pick = weft_.text->pitch * std::pow(pick_growth, steps);
+      return fits();
+    };
+    // A number of steps with too little room, and one with room; then the least.
+    int close = 0, wide = 1;
+    while (wide < most_pick_steps && !fits_at(wide)) {
+      close = wide;
+      wide = std::min(2 * wide, most_pick_steps);
+    }
+    while (wide - close > 1) {
+      const int middle = (close + wide) / 2;
+      (fits_at(middle) ? wide : close) = middle;
+    }
+    shape.pick = weft_.text->pitch * std::pow(pick_growth, wide);
     return error(Kind::geometry,
                  fmt::format(
                      "the ends of a pair have no room to cross between picks {:.4g} {} apart: they pass each "

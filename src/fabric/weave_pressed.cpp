@@ -226,10 +226,11 @@ std::string remedies_for(const LooseCloth& cloth) {
     return has_room(cloth, {up(warp_pitch, by), up(weft_pitch, by), 1.0});
   });
   if (!wider) return "no pitch up to four times as large gives it: its yarns are too thick";
+  const double percent = 100.0 * (*wider - 1.0);
   std::string text = fmt::format(
-      "both ways it is {:.2g} % too dense. Remedies: `pitch {:.6g}` for the warp and `pitch {:.6g}` for the "
+      "both ways it is {:.{}f} % too dense. Remedies: `pitch {:.6g}` for the warp and `pitch {:.6g}` for the "
       "weft; or {}",
-      100.0 * (*wider - 1.0), rounded(*wider * warp_pitch, true), rounded(*wider * weft_pitch, true),
+      percent, percent < 10.0 ? 1 : 0, rounded(*wider * warp_pitch, true), rounded(*wider * weft_pitch, true),
       thinner_threads(cloth, 1.0 / *wider));
   if (const auto picks = least_factor(*wider, [&](double by) {
         return has_room(cloth, {1.0, up(weft_pitch, by), 1.0});

@@ -302,6 +302,28 @@ class Pieces(Case):
         self.assertEqual(outputs[1]["entities"], {"MANIFOLD_SOLID_BREP": 4, "SHELL_BASED_SURFACE_MODEL": 1})
         self.succeeds("check", both)
 
+    def test_a_pattern_follows_the_measurements(self):
+        """Three bodies, drafted here once more; the curves by their cubics through four rows, the area by a polygon."""
+        for chest, back, neck in ((88, 41, 36), (104, 43, 40), (76, 38.5, 34.5)):
+            width, depth, hollow = chest / 4 + 1.5, chest / 8 + 10.5, neck / 6 + 0.5
+            armhole = [(width, back - depth), (width - 3.6, back - depth + 3.4), (chest / 8 + neck / 8 + 2, back - depth / 2),
+                       (hollow + 11.5, back - 4.5)]
+            neckline = [(hollow, back), (0.87 * hollow, back - 0.575 * hollow), (0.5 * hollow, back - hollow),
+                        (0, back - 1.15 * hollow)]
+            cubics = [[rows[0], *least_squares(rows, [0, 1 / 3, 2 / 3, 1]), rows[-1]] for rows in (armhole, neckline)]
+            body = ("--set", f"chest={chest}", "--set", f"back={back}", "--set", f"neck={neck}")
+            (piece,), mm = self.facts(SAMPLES / "bodice_measured.txt", "--table", *body)
+            lengths = {edge["name"]: edge["length"] / mm for edge in piece["edges"]}
+            for name, (p, q) in {"waist": ((0, 0), (width, 0)), "side": ((width, 0), armhole[0]), "shoulder": (armhole[-1], neckline[0]),
+                                 "middle": (neckline[-1], (0, 0))}.items():
+                self.assertAlmostEqual(lengths[name], math.dist(p, q), delta=1e-12 * back)
+            for name, cubic in zip(("armhole", "neckline"), cubics):
+                points = [bezier(cubic, i / 2000) for i in range(2001)]
+                self.assertAlmostEqual(lengths[name], sum(map(math.dist, points, points[1:])), delta=1e-5)
+            outline = polygon_of([[(0, 0), (width, 0)], [(width, 0), armhole[0]], cubics[0], [armhole[-1], neckline[0]], cubics[1],
+                                  [neckline[-1], (0, 0)]])
+            self.assertAlmostEqual(piece["area"] / mm**2, area_of(outline), delta=1e-4)
+
     def test_armhole_follows_its_sleeve(self):
         """Lengths by sums of chords along what the drawing has."""
         self.succeeds("convert", SAMPLES / "sleeve_and_armhole.txt", "-o", self.folder / "p.svg")

@@ -41,9 +41,9 @@ def tex_of(yarn):
 
 
 def pitch_of(words):
-    """mm, of `44/in`, `20/cm` or a distance."""
+    """mm, of `44/in`, `20/cm`, `208/10cm` or a distance."""
     number, _, unit = words.partition("/")
-    return {"": float(number), "in": 25.4 / float(number), "cm": 10 / float(number)}[unit]
+    return {"": float(number), "in": 25.4 / float(number), "cm": 10 / float(number), "10cm": 100 / float(number)}[unit]
 
 
 def straight_mass(sheet):

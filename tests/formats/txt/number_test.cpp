@@ -100,6 +100,9 @@ TEST(Numbers, TellWhatIsWrong) {
   expect(pitch("0/cm"), "have to be more than 0");
   expect(pitch("pitch ches/4", "param chest 96\n"), "there is no param 'ches'; did you mean 'chest'?");
   expect(pitch("pitch 2*(3"), "a bracket is not closed");
+  expect(pitch("pitch 2*cm"), "a unit stands right behind its number, as in 3cm");
+  expect("fabric 1\nthread t\nend\nweave\nwarp t 60/inch\nend\n",
+         "the number of yarns: '60/inch': so many on a length are a pitch, which does not belong here");
   expect(pitch("pitch 2+*3"), "does not belong there");
   expect(pitch("pitch 1,5"), "a decimal comma in '1,5'");
   expect(pitch("1", "param a b\nparam b a\n"), "'b' is not a number");

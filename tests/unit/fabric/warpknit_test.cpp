@@ -1,6 +1,9 @@
 // Lapping notation, and warp knits that cannot be.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "fabric/build.h"
 #include "fabric/lapping.h"
 #include "formats/registry.h"
@@ -113,6 +116,57 @@ TEST(Warpknit, SmallestPitches) {
   EXPECT_NE(with("0.39", "0.45").find("at least 0.4"), std::string::npos) << with("0.39", "0.45");
   EXPECT_NE(with("0.4", "0.43").find("at least 0.44"), std::string::npos) << with("0.4", "0.43");
   EXPECT_NE(with("0.39", "0.45").find("w.txt:5"), std::string::npos);
+}
+
+// Locknit of 40 denier at 14 wales and 20 courses a centimetre, as it is sold: 6.4 yarns lie within a course
+// of two bars (2 x 1 + 4 + 0.4), so that they are pressed to 0.5 / 6.4 mm.
+TEST(Warpknit, FibresComeCloserWhereALoopHasNoRoom) {
+  std::string courses = "20/cm";
+  const auto text = [&](const std::string& thread) {
+    return "fabric 1\nthread f\n  denier 40\n" + thread +
+           "end\nwarpknit locknit\n  thread f\n  wales 4 14/cm\n  courses 4 " + courses + "\nend\n";
+  };
+  const auto message = [&](const std::string& thread, const BuildOptions& options,
+                           std::vector<YarnPlan>* plans, std::string* told) {
+    Diagnostics diagnostics;
+    const std::optional<Fabric> fabric =
+        formats::txt::descriptor().read_fabric(Source::from_memory(text(thread), "w.txt"), diagnostics);
+    const std::optional<YarnBuilder> builder = YarnBuilder::create(*fabric, options, diagnostics);
+    for (std::size_t i = 0; builder && plans != nullptr && i < builder->count(); ++i)
+      plans->push_back(std::move(*builder->plan(i)));
+    if (told != nullptr && !diagnostics.messages().empty()) *told = to_string(diagnostics.messages().front());
+    return diagnostics.has_errors() ? to_string(*diagnostics.first_error()) : std::string();
+  };
+  std::vector<YarnPlan> plans;
+  std::string told;
+  EXPECT_EQ(message("  material nylon\n", {}, &plans, &told), "");
+  EXPECT_NE(told.find("w.txt:2:1: note: the warp knit has no room for thread 'f' as it is: it is pressed to "
+                      "0.07812 mm, the packing of its fibres rises from 0.75 to 0.81"),
+            std::string::npos)
+      << told;
+  ASSERT_EQ(plans.size(), 8U);
+  for (const YarnPlan& plan : plans)
+    EXPECT_NEAR(yarn::nominal_size(plan.spec.section).width, 0.5 / 6.4, 1e-9);
+  BuildOptions published;
+  published.as_published = true;
+  EXPECT_NE(message("  material nylon\n", published, nullptr, nullptr).find("need at least 0.5206"),
+            std::string::npos);
+  // Denser than fibres lie, pi / (2 sqrt 3): the pitch that the message names is the smallest one.
+  courses = "24/cm";
+  const std::string dense = message("  material nylon\n", {}, nullptr, nullptr);
+  const double diameter =
+      2 * std::sqrt(40.0 / 9 / (1000 * std::numbers::pi * 1.14 * std::numbers::pi / std::sqrt(12.0)));
+  const std::size_t at = dense.find("need at least ");
+  ASSERT_NE(at, std::string::npos) << dense;
+  EXPECT_NEAR(std::stod(dense.substr(at + 14)), 6.4 * diameter, 1e-6);
+  EXPECT_NE(dense.find(", with their fibres as close as they go"), std::string::npos);
+  courses = "pitch " + std::to_string(6.4 * diameter + 1e-6);
+  EXPECT_EQ(message("  material nylon\n", {}, nullptr, nullptr), "");
+  courses = "20/cm";
+  // Fibres that are one, that lie as close as they can, or whose yarn has a size of its own, stay.
+  for (const std::string thread : {"  density 0.9\n  filaments 1\n", "  density 0.9\n  packing 0.9\n",
+                                   "  material nylon\n  diameter 0.0814\n"})
+    EXPECT_NE(message(thread, {}, nullptr, nullptr).find("too small for yarns"), std::string::npos) << thread;
 }
 
 TEST(Warpknit, WhatCannotBeIsSaidAtItsPlace) {
