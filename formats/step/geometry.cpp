@@ -8,15 +8,18 @@
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_BezierSurface.hxx>
 #include <Geom_Conic.hxx>
+#include <Geom_ElementarySurface.hxx>
 #include <Geom_Plane.hxx>
 #include <Geom_RectangularTrimmedSurface.hxx>
 #include <Geom_SurfaceOfLinearExtrusion.hxx>
+#include <Geom_SurfaceOfRevolution.hxx>
 #include <Geom_TrimmedCurve.hxx>
 #include <StepGeom_BSplineSurfaceWithKnots.hxx>
 #include <StepGeom_BSplineSurfaceWithKnotsAndRationalBSplineSurface.hxx>
 #include <StepGeom_CartesianPoint.hxx>
 #include <algorithm>
 #include <cmath>
+#include <gp_Ax1.hxx>
 
 #include "nurbs/basis.h"
 
@@ -123,29 +126,57 @@ nurbs::Curve to_spline(const Handle(Geom2d_Curve) & curve, double first, double 
   return from_spline(Geom2dConvert::CurveToBSplineCurve(new Geom2d_TrimmedCurve(curve, first, last)));
 }
 
+namespace {
+
+// The axis of a surface that closes round one; none for others.
+std::optional<gp_Ax1> axis_of(const Handle(Geom_Surface) & surface) {
+  if (const auto revolution = Handle(Geom_SurfaceOfRevolution)::DownCast(surface); !revolution.IsNull())
+    return revolution->Axis();
+  const auto elementary = Handle(Geom_ElementarySurface)::DownCast(surface);
+  if (elementary.IsNull() || !surface->IsUPeriodic()) return std::nullopt;
+  return elementary->Axis();
+}
+
+// u runs clockwise about the axis of what has a left-handed system.
+bool axis_turns_back(const Geom_Surface& surface) {
+  const auto* const elementary = dynamic_cast<const Geom_ElementarySurface*>(&surface);
+  return elementary != nullptr && !elementary->Position().Direct();
+}
+
+// Within the surface's own bounds: boundaries reach beyond its end by what their tolerance allows.
+void fit(double& low, double& high, double first, double last, bool is_periodic) {
+  if (is_periodic) {
+    if (high - low >= last - first) low = first, high = last;
+    return;
+  }
+  low = std::clamp(low, first, last);
+  high = std::clamp(high, first, last);
+  if (!(low < high)) low = first, high = last;
+}
+
+}  // namespace
+
 nurbs::Surface to_spline(const Handle(Geom_Surface) & surface, const cad::Range& range) {
   if (surface->IsKind(STANDARD_TYPE(Geom_BSplineSurface)) && covers(range, surface))
     return from_spline(Handle(Geom_BSplineSurface)::DownCast(surface->Copy()));
   Handle(Geom_Surface) basis = surface;
   if (const auto trimmed = Handle(Geom_RectangularTrimmedSurface)::DownCast(surface); !trimmed.IsNull())
     basis = trimmed->BasisSurface();
-  cad::Range used = range;
-  // Boundaries reach beyond a surface's end by what their tolerance allows.
   const cad::Range whole = bounds_of(basis);
-  const auto fit = [](double& low, double& high, double first, double last, bool is_periodic) {
-    if (is_periodic) {
-      // A turn and a rounding error more is taken for the rounding error alone.
-      while (high - low > last - first) high = std::min(low + (last - first), std::nextafter(high, low));
-      return;
-    }
-    low = std::clamp(low, first, last);
-    high = std::clamp(high, first, last);
-    if (!(low < high)) low = first, high = last;
-  };
+  cad::Range used = range;
+  // A whole turn that begins elsewhere is made by turning the surface, which then closes to the last digit.
+  double turn = 0;
+  if (const std::optional<gp_Ax1> axis = axis_of(basis);
+      axis && used.u0 != whole.u0 && used.u1 - used.u0 >= whole.u1 - whole.u0) {
+    turn = used.u0 - whole.u0;
+    basis = Handle(Geom_Surface)::DownCast(basis->Rotated(*axis, axis_turns_back(*basis) ? -turn : turn));
+  }
   fit(used.u0, used.u1, whole.u0, whole.u1, basis->IsUPeriodic());
   fit(used.v0, used.v1, whole.v0, whole.v1, basis->IsVPeriodic());
-  return from_spline(GeomConvert::SurfaceToBSplineSurface(
+  nurbs::Surface spline = from_spline(GeomConvert::SurfaceToBSplineSurface(
       new Geom_RectangularTrimmedSurface(basis, used.u0, used.u1, used.v0, used.v1)));
+  for (double& knot : spline.knots_u) knot += turn;
+  return spline;
 }
 
 bool keeps_parameters(const Handle(Geom_Surface) & surface) {

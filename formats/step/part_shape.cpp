@@ -191,6 +191,8 @@ class PartBuilder {
       BRepBuilderAPI_MakeFace maker(surface, Precision::Confusion());
       if (!maker.IsDone()) throw Standard_Failure("a surface that makes no face");
       built = maker.Face();
+    } else if (const std::optional<TopoDS_Face> on_plane = face_on_plane(face)) {
+      built = *on_plane;
     } else if (const std::optional<TopoDS_Face> by_flats = face_by_flats(face)) {
       built = *by_flats;
     } else {
@@ -199,6 +201,27 @@ class PartBuilder {
       built = fixed(built);
     }
     if (face.reversed) built.Reverse();
+    return built;
+  }
+
+  // A trimmed rectangle is its plane: curves in a plane's parameters are those in space, to the last digit.
+  // Nothing where an edge has no curve in space, or OpenCASCADE does not find that valid.
+  std::optional<TopoDS_Face> face_on_plane(const cad::Face& face) {
+    const nurbs::Surface& s = face.surface;
+    if (s.degree_u != 1 || s.degree_v != 1 || s.count_u != 2 || s.count_v != 2) return std::nullopt;
+    for (const cad::Edge& edge : cad::edges_of(face))
+      if (edge.curve.points.empty()) return std::nullopt;
+    const Vec3 &a = s.points[0], x = s.points[1] - a, y = s.points[2] - a, normal = x.cross(y);
+    const double size = x.norm() + y.norm();
+    if (!(normal.norm() > 1e-9 * size * size)) return std::nullopt;
+    if (std::abs((s.points[3] - a).dot(normal.normalized())) > 1e-12 * size) return std::nullopt;
+    const Handle(Geom_Plane) plane = new Geom_Plane(gp_Ax3(
+        gp_Pnt(a.x(), a.y(), a.z()), gp_Dir(normal.x(), normal.y(), normal.z()), gp_Dir(x.x(), x.y(), x.z())));
+    TopoDS_Face built;
+    builder_.MakeFace(built, plane, Precision::Confusion());
+    for (const cad::Loop& loop : face.loops) builder_.Add(built, build_wire(loop, plane));
+    built = fixed(built);
+    if (!BRepCheck_Analyzer(built).IsValid()) return std::nullopt;
     return built;
   }
 
@@ -304,7 +327,7 @@ class PartBuilder {
     return TopoDS::Face(turn->Face().Oriented(TopAbs_FORWARD));
   }
 
-  TopoDS_Wire build_wire(const cad::Loop& loop, const Handle(Geom_BSplineSurface) & surface) {
+  TopoDS_Wire build_wire(const cad::Loop& loop, const Handle(Geom_Surface) & surface) {
     TopoDS_Wire wire;
     builder_.MakeWire(wire);
     for (const cad::Edge& edge : loop.edges) {
@@ -316,7 +339,7 @@ class PartBuilder {
   }
 
   // In the loop's direction. Poles are left out: OpenCASCADE puts them back.
-  TopoDS_Edge edge_of(const cad::Edge& edge, const Handle(Geom_BSplineSurface) & surface) {
+  TopoDS_Edge edge_of(const cad::Edge& edge, const Handle(Geom_Surface) & surface) {
     if (edge.curve.points.empty() && edge.flat.points.empty()) return {};
     if (edge.id >= 0) {
       const auto known = shared_.find(edge.id);
