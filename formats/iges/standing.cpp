@@ -251,13 +251,10 @@ void Reading::stand_left_over(const Context& top) {
   };
   if (std::ranges::none_of(file_.directory(), is_left)) return;
   const std::vector<char> pointed = pointed_to();
-  const auto stands_in = [](const EntityType& type, int pass) {
-    return pass == 0 ? type.stand != nullptr || type.part != nullptr
-                     : type.face != nullptr || type.surface != nullptr || type.curve != nullptr;
-  };
-  for (const int pass : {0, 1})
+  const auto holds_others = [](const EntityType& type) { return type.stand != nullptr || type.part != nullptr; };
+  for (const bool first : {true, false})
     for (const DirectoryEntry& entry : file_.directory())
-      if (is_left(entry) && pointed[index(entry)] == 0 && stands_in(*type_of(entry), pass))
+      if (is_left(entry) && pointed[index(entry)] == 0 && holds_others(*type_of(entry)) == first)
         stand_entry(entry, top);
 }
 

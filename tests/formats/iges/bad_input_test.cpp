@@ -369,8 +369,8 @@ TEST(IgesBadInput, Globals) {
   expect_error(with("1H,,1H,,;"), "both delimiters");
   expect_error(with("1H,,1H;,4HPart,8Hpart.igs,4HTest,4HTest,32,38,6,308,15,4HPart,0.,2,2HMM;"),
                "scale is not positive: 0");
-  expect_error(with("1H,,1H;,4HPart,8Hpart.igs,4HTest,4HTest,32,38,6,308,15,4HPart,1.,12,2HMM;"),
-               "units are 1 to 11");
+  expect_warning(with("1H,,1H;,4HPart,8Hpart.igs,4HTest,4HTest,32,38,6,308,15,4HPart,1.,12,2HMM;"),
+                 "units are 1 to 11; lengths are taken as MM");
   expect_error(with("1H,,1H;,4HPart,8Hpart.igs,4HTest,4HTest,32,38,6,308,15,4HPart,1.,3,5HCUBIT;"),
                "'CUBIT'");
   expect_error(with("1H,,1H;,4HPart,99Hpart.igs;"), "longer than what is left");

@@ -288,7 +288,7 @@ TEST(IgesReader, WhatNobodyRefersToStands) {
   const IgesReading reading = read_iges(text.bytes());
   ASSERT_TRUE(reading.model) << reading.text();
   EXPECT_EQ(reading.model->parts.size(), 1U);
-  ASSERT_EQ(reading.model->curves.size(), 2U);
+  ASSERT_EQ(reading.model->curves.size(), 2U) << reading.model->curves.back().origin.entity;
   EXPECT_EQ(reading.model->curves[0].origin.entity, "102 at D7");  // what is made of others comes first
   EXPECT_EQ(reading.model->curves[1].origin.entity, "126 at D3");
 }
@@ -316,12 +316,14 @@ TEST(IgesReader, TornKnots) {
 
 // One patch x = s, y = t, with the row and the column that mean nothing, and with a name behind them.
 TEST(IgesReader, SplineSurfaceHasARowAndAColumnMore) {
-  const std::string zeros = "0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,";
-  std::string parameters =
-      "3,1,1,1,0.,1.,0.,1.,0.,1.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,"
-      "0.,0.,0.,0.,1.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.,0.," +
-      zeros;
-  for (int patch = 1; patch < 4; ++patch) parameters += zeros + zeros + zeros;
+  // The sixteen coefficients of a coordinate, of which one is 1 or none.
+  const auto coefficients = [](int one) {
+    std::string values;
+    for (int i = 0; i < 16; ++i) values += i == one ? "1.," : "0.,";
+    return values;
+  };
+  std::string parameters = "3,1,1,1,0.,1.,0.,1.," + coefficients(1) + coefficients(4) + coefficients(-1);
+  for (int i = 0; i < 3 * 3; ++i) parameters += coefficients(-1);
   IgesText text;
   text.add({.type = 406, .form = 15, .parameters = "1,4Hwing"});
   text.add({.type = 114, .parameters = parameters + "0,1,1"});
