@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <ranges>
 
 #include "cad/edges.h"
 #include "cad/sampled_curve.h"
@@ -67,7 +68,7 @@ class PartWriter {
   int chain(const Common& common, const std::vector<const nurbs::Curve*>& curves, std::string_view status);
   int boundary(const Common& common, int pointer, const nurbs::Surface& surface, const cad::Loop& loop);
   int face(const cad::Face& face);
-  int loop(Shared& shared, const Common& common, const cad::Loop& loop);
+  int loop(Shared& shared, const Common& common, const cad::Loop& given, bool is_whole);
   SolidFace face_of_solid(Shared& shared, const cad::Face& face);
   int solid(const cad::Part& part);
 
@@ -171,15 +172,18 @@ struct Shared {
   SolidLists lists;
 };
 
-int PartWriter::loop(Shared& shared, const Common& common, const cad::Loop& loop) {
+// Begun with an edge: OpenCASCADE turns a pole that comes first round. On a whole face a pole has its curve
+// in the parameters only where all edges have theirs: else OpenCASCADE makes it a second time.
+int PartWriter::loop(Shared& shared, const Common& common, const cad::Loop& given, bool is_whole) {
+  cad::Loop loop = given;
+  std::ranges::rotate(loop.edges, std::ranges::find_if_not(loop.edges, is_pole));
   std::vector<EdgeUse> uses;
-  std::size_t vertex = 0;  // where a pole that comes first stands
-  for (const cad::Edge& edge : loop.edges)
-    if (!is_pole(edge)) vertex = shared.end_of(edge);
+  std::size_t vertex = 0;
   for (const cad::Edge& edge : loop.edges) {
     EdgeUse& use = uses.emplace_back();
-    use.flat = edge.flat.points.empty() ? 0 : chain(common, {&edge.flat}, dependent_in_2d);
     use.is_vertex = is_pole(edge);
+    const bool has_flat = !edge.flat.points.empty() && !(is_whole && use.is_vertex && !has_all_flats(loop));
+    use.flat = has_flat ? chain(common, {&edge.flat}, dependent_in_2d) : 0;
     if (!use.is_vertex) vertex = shared.end_of(edge);
     use.index = use.is_vertex ? vertex : shared.index_of[edge.id];
     use.forward = use.is_vertex || runs_along(edge, shared.edges[use.index].curve);
@@ -191,7 +195,8 @@ SolidFace PartWriter::face_of_solid(Shared& shared, const cad::Face& face) {
   const Look own(records_, colors_, face);
   const int surface = write_surface(records_, own.entity(128, 0, dependent), face.surface);
   std::vector<int> loops;
-  for (const cad::Loop& each : cad::boundary_of(face)) loops.push_back(loop(shared, own, each));
+  for (const cad::Loop& each : cad::boundary_of(face))
+    loops.push_back(loop(shared, own, each, face.loops.empty()));
   return {write_face(records_, own, surface, loops, own.name), !face.reversed};
 }
 
@@ -199,9 +204,12 @@ int PartWriter::solid(const cad::Part& part) {
   Shared shared(part);
   const Look own(records_, colors_, part);
   shared.lists = write_lists(records_, own, shared.vertices.points(), shared.edges);
-  std::vector<SolidFace> faces;
-  for (const cad::Face& face : part.faces) faces.push_back(face_of_solid(shared, face));
-  return write_shell(records_, own, faces);
+  std::vector<std::vector<SolidFace>> shells;
+  for (const std::vector<std::size_t>& members : cad::shells_of(part.faces)) {
+    std::vector<SolidFace>& shell = shells.emplace_back();
+    for (const std::size_t i : members) shell.push_back(face_of_solid(shared, part.faces[i]));
+  }
+  return write_shells(records_, own, shells);
 }
 
 int PartWriter::part(const cad::Part& part) {
@@ -237,7 +245,6 @@ std::string_view why_no_solid(const cad::Part& part) {
   for (const cad::Face& face : part.faces)
     for (const cad::Edge& edge : cad::boundary_edges_of(face))
       if (lacks_curve(edge, face.surface)) return "an edge has no curve in space";
-  if (cad::shells_of(part.faces).size() != 1) return "it has more than one shell";
   return {};
 }
 

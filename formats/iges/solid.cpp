@@ -154,18 +154,23 @@ int write_face(Records& records, const Common& common, int surface, std::span<co
   return pointer;
 }
 
-int write_shell(Records& records, const Common& common, std::span<const SolidFace> faces) {
-  const int shell = records.begin(common.entity(514, 1, dependent));
-  records.integer(static_cast<std::int64_t>(faces.size()));
-  for (const SolidFace& face : faces) {
-    records.integer(face.pointer);
-    records.integer(face.outward ? 1 : 0);
+int write_shells(Records& records, const Common& common, std::span<const std::vector<SolidFace>> shells) {
+  std::vector<int> pointers;
+  for (const std::vector<SolidFace>& faces : shells) {
+    pointers.push_back(records.begin(common.entity(514, 1, dependent)));
+    records.integer(static_cast<std::int64_t>(faces.size()));
+    for (const SolidFace& face : faces) {
+      records.integer(face.pointer);
+      records.integer(face.outward ? 1 : 0);
+    }
+    records.end();
   }
-  records.end();
   const int solid = records.begin(common.entity(186));
-  records.integer(shell);
-  records.integer(1);  // the shell's orientation is that of its faces
-  records.integer(0);  // no voids
+  for (std::size_t i = 0; i < pointers.size(); ++i) {
+    records.integer(pointers[i]);
+    records.integer(1);  // the shell's orientation is that of its faces
+    if (i == 0) records.integer(static_cast<std::int64_t>(pointers.size()) - 1);  // voids
+  }
   records.end(common.name);
   return solid;
 }
@@ -197,7 +202,7 @@ int write_solid(Records& records, const Common& common, const yarn::Body& body) 
     const int loop = write_loop(records, common, lists, face.loop);
     faces.push_back({write_face(records, common, surfaces[faces.size()], {&loop, 1}), face.outward});
   }
-  return write_shell(records, common, faces);
+  return write_shells(records, common, {&faces, 1});
 }
 
 }  // namespace selvage::formats::iges

@@ -36,7 +36,8 @@ int write_loop(Records& records, const Common& common, const SolidLists& lists,
 // 510; the outer loop is the first. `property`: of the entity, or 0.
 int write_face(Records& records, const Common& common, int surface, std::span<const int> loops,
                int property = 0);
-int write_shell(Records& records, const Common& common, std::span<const SolidFace> faces);  // 514 and its 186
+// Their 514s, and the 186 of them: the outer shell comes first.
+int write_shells(Records& records, const Common& common, std::span<const std::vector<SolidFace>> shells);
 
 // How many entities write_solid writes for this body.
 int entities_of_solid(const yarn::Body& body);

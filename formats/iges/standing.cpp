@@ -251,7 +251,9 @@ void Reading::stand_left_over(const Context& top) {
   };
   if (std::ranges::none_of(file_.directory(), is_left)) return;
   const std::vector<char> pointed = pointed_to();
-  const auto holds_others = [](const EntityType& type) { return type.stand != nullptr || type.part != nullptr; };
+  const auto holds_others = [](const EntityType& type) {
+    return type.stand != nullptr || type.part != nullptr;
+  };
   for (const bool first : {true, false})
     for (const DirectoryEntry& entry : file_.directory())
       if (is_left(entry) && pointed[index(entry)] == 0 && holds_others(*type_of(entry)) == first)

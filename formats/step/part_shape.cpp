@@ -215,8 +215,9 @@ class PartBuilder {
     const double size = x.norm() + y.norm();
     if (!(normal.norm() > 1e-9 * size * size)) return std::nullopt;
     if (std::abs((s.points[3] - a).dot(normal.normalized())) > 1e-12 * size) return std::nullopt;
-    const Handle(Geom_Plane) plane = new Geom_Plane(gp_Ax3(
-        gp_Pnt(a.x(), a.y(), a.z()), gp_Dir(normal.x(), normal.y(), normal.z()), gp_Dir(x.x(), x.y(), x.z())));
+    const Handle(Geom_Plane) plane =
+        new Geom_Plane(gp_Ax3(gp_Pnt(a.x(), a.y(), a.z()), gp_Dir(normal.x(), normal.y(), normal.z()),
+                              gp_Dir(x.x(), x.y(), x.z())));
     TopoDS_Face built;
     builder_.MakeFace(built, plane, Precision::Confusion());
     for (const cad::Loop& loop : face.loops) builder_.Add(built, build_wire(loop, plane));
