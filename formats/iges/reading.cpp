@@ -119,23 +119,43 @@ const DirectoryEntry* Reading::entry(int pointer, int type, Parameters& by) {
   return found;
 }
 
-const std::vector<int>* Reading::edge_list(int pointer, Parameters& by) {
+const std::vector<Reading::ListedEdge>* Reading::edge_list(int pointer, Parameters& by) {
   const DirectoryEntry* const list = entry(pointer, 504, by);
   if (list == nullptr) return nullptr;
   const auto [known, is_new] = edge_lists_.try_emplace(list->pointer);
   if (is_new)
     known->second = inside(list, by, [this](Parameters& in) {
-      std::vector<int> curves(in.count("edges", 5));
-      for (int& curve : curves) {
-        curve = in.pointer();
-        use(curve);
-        for (int k = 0; k < 2; ++k) {  // start and end: a list of vertices, and the vertex in it
-          use(in.pointer());
-          in.integer();
+      std::vector<ListedEdge> edges(in.count("edges", 5));
+      for (ListedEdge& edge : edges) {
+        edge.curve = in.pointer();
+        use(edge.curve);
+        for (const std::size_t k : {0U, 1U}) {
+          edge.lists[k] = in.pointer();
+          use(edge.lists[k]);
+          edge.vertices[k] = in.integer();
         }
       }
-      return std::optional(std::move(curves));
+      return std::optional(std::move(edges));
     });
+  if (known->second) return &*known->second;
+  by.give_up({});  // said once
+  return nullptr;
+}
+
+const std::vector<Vec3>* Reading::vertex_list(int pointer, Parameters& by) {
+  const DirectoryEntry* const list = entry(pointer, 502, by);
+  if (list == nullptr) return nullptr;
+  const auto [known, is_new] = vertex_lists_.try_emplace(list->pointer);
+  if (is_new) {
+    known->second = inside(list, by, [](Parameters& in) {
+      std::vector<Vec3> places(in.count("vertices", 3));
+      for (Vec3& place : places) in.reals(place.data(), 3);
+      return std::optional(std::move(places));
+    });
+    const Placement own = placement(*list);
+    if (known->second)
+      for (Vec3& place : *known->second) place = own(place);
+  }
   if (known->second) return &*known->second;
   by.give_up({});  // said once
   return nullptr;

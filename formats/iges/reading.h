@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -57,8 +58,16 @@ class Reading {
   const DirectoryEntry* entry(int pointer, Parameters& by);
   // The same, of one type; it is marked as part of the other one.
   const DirectoryEntry* entry(int pointer, int type, Parameters& by);
-  // The pointers to the curves of a 504, its edges in order; each list is read once. Null after by.fail().
-  const std::vector<int>* edge_list(int pointer, Parameters& by);
+  // The edges of a 504 in order; each list is read once. Null after by.fail().
+  struct ListedEdge {
+    int curve = 0;
+    // Where it starts and ends: a 502, and the number of the vertex in it, from 1.
+    std::array<int, 2> lists{};
+    std::array<std::int64_t, 2> vertices{};
+  };
+  const std::vector<ListedEdge>* edge_list(int pointer, Parameters& by);
+  // The places of a 502, which is read once. Null after by.fail().
+  const std::vector<Vec3>* vertex_list(int pointer, Parameters& by);
   // Call it for what is read through entry(): the entity does not stand for itself.
   void use(int pointer);
 
@@ -141,7 +150,8 @@ class Reading {
   int depth_ = 0;
   std::size_t points_ = 0;
   std::unordered_map<int, std::optional<cad::Color>> colors_;
-  std::unordered_map<int, std::optional<std::vector<int>>> edge_lists_;
+  std::unordered_map<int, std::optional<std::vector<ListedEdge>>> edge_lists_;
+  std::unordered_map<int, std::optional<std::vector<Vec3>>> vertex_lists_;
   // Of each face of the model, and of each curve: its entity, or 0 where it may not be dropped.
   std::vector<int> face_pointers_, curve_pointers_;
 };

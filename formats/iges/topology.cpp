@@ -6,6 +6,7 @@
 
 #include "cad/edges.h"
 #include "cad/natural_border.h"
+#include "cad/sampled_curve.h"
 #include "formats/iges/surfaces.h"
 #include "formats/iges/types.h"
 
@@ -34,12 +35,31 @@ void check_vertex(Reading& reading, const Use& use, Parameters& by) {
   if (size) check_index(use, "vertex", *size, by);
 }
 
-// The curve of an edge: field 5 i + 1 of the 504. 0 after an error.
-int edge_curve(Reading& reading, const Use& use, Parameters& by) {
-  const std::vector<int>* const curves = reading.edge_list(use.list, by);
-  if (curves == nullptr) return 0;
-  check_index(use, "edge", curves->size(), by);
-  return by.ok() ? (*curves)[static_cast<std::size_t>(use.index) - 1] : 0;
+// Null after an error.
+const Reading::ListedEdge* listed_edge(Reading& reading, const Use& use, Parameters& by) {
+  const std::vector<Reading::ListedEdge>* const edges = reading.edge_list(use.list, by);
+  if (edges == nullptr) return nullptr;
+  check_index(use, "edge", edges->size(), by);
+  return by.ok() ? &(*edges)[static_cast<std::size_t>(use.index) - 1] : nullptr;
+}
+
+// The curve of an edge from its start to its end, which some writers leave to the vertices.
+std::optional<nurbs::Curve> curve_of(Reading& reading, const Use& use, Parameters& by) {
+  const Reading::ListedEdge* const edge = listed_edge(reading, use, by);
+  if (edge == nullptr) return std::nullopt;
+  std::optional<nurbs::Curve> curve = reading.curve(edge->curve, by);
+  std::array<Vec3, 2> ends;
+  for (const std::size_t k : {0U, 1U}) {
+    const std::vector<Vec3>* const places = curve ? reading.vertex_list(edge->lists[k], by) : nullptr;
+    if (places == nullptr || edge->vertices[k] < 1 ||
+        edge->vertices[k] > static_cast<std::int64_t>(places->size()))
+      return curve;
+    ends[k] = (*places)[static_cast<std::size_t>(edge->vertices[k]) - 1];
+  }
+  const Vec3 from = cad::at_share(*curve, 0), to = cad::at_share(*curve, 1);
+  if ((from - ends[0]).norm() + (to - ends[1]).norm() > (from - ends[1]).norm() + (to - ends[0]).norm())
+    curve = nurbs::reversed(*curve);
+  return curve;
 }
 
 // One number for an edge of one list in the whole file: an edge takes five values, so a line of 64 columns
@@ -67,7 +87,7 @@ std::vector<Use> read_uses(Reading& reading, Parameters& in) {
     if (use.is_vertex)
       check_vertex(reading, use, in);
     else
-      edge_curve(reading, use, in);
+      listed_edge(reading, use, in);
   }
   if (in.ok() && uses.empty()) in.fail("a loop without edges");
   return uses;
@@ -82,7 +102,7 @@ std::optional<cad::Loop> read_loop(Reading& reading, int pointer, Parameters& by
   for (const Use& use : *uses) {
     cad::Edge edge;
     if (!use.is_vertex) {
-      std::optional<nurbs::Curve> curve = reading.curve(edge_curve(reading, use, by), by);
+      std::optional<nurbs::Curve> curve = curve_of(reading, use, by);
       if (!curve) return std::nullopt;
       edge.curve = use.forward ? std::move(*curve) : nurbs::reversed(*curve);
       edge.id = id_of(*reading.file().entity(use.list), use.index);

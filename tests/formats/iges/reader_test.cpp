@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "core/number_text.h"
@@ -291,6 +292,37 @@ TEST(IgesReader, WhatNobodyRefersToStands) {
   ASSERT_EQ(reading.model->curves.size(), 2U) << reading.model->curves.back().origin.entity;
   EXPECT_EQ(reading.model->curves[0].origin.entity, "102 at D7");  // what is made of others comes first
   EXPECT_EQ(reading.model->curves[1].origin.entity, "126 at D3");
+}
+
+// An edge runs from its first vertex to its second, whichever way its curve does.
+TEST(IgesReader, VerticesTellTheDirectionOfEdges) {
+  IgesText text;
+  const int surface = text.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = "00010000"});
+  const std::array<const char*, 4> lines = {"0.,0.,0.,1.,0.,0.", "1.,1.,0.,1.,0.,0.", "1.,1.,0.,0.,1.,0.",
+                                            "0.,0.,0.,0.,1.,0."};  // the second and the last run backwards
+  std::vector<int> curves;
+  for (const char* line : lines) curves.push_back(text.add({.type = 110, .parameters = line, .status = "00010000"}));
+  const int vertices = text.add({.type = 502,
+                                 .form = 1,
+                                 .parameters = "4,0.,0.,0.,1.,0.,0.,1.,1.,0.,0.,1.,0.",
+                                 .status = "00010000"});
+  std::string edges = "4";
+  for (int k = 0; k < 4; ++k)
+    edges += fmt::format(",{},{},{},{},{}", curves[static_cast<std::size_t>(k)], vertices, k + 1, vertices,
+                         (k + 1) % 4 + 1);
+  const int list = text.add({.type = 504, .form = 1, .parameters = edges, .status = "00010000"});
+  std::string uses = "4";
+  for (int k = 1; k <= 4; ++k) uses += fmt::format(",0,{},{},1,0", list, k);
+  const int loop = text.add({.type = 508, .form = 1, .parameters = uses, .status = "00010000"});
+  text.add({.type = 510, .form = 1, .parameters = fmt::format("{},1,1,{}", surface, loop)});
+  const IgesReading reading = read_iges(text.bytes());
+  ASSERT_TRUE(reading.model) << reading.text();
+  const cad::Face& face = reading.model->parts.at(0).faces.at(0);
+  ASSERT_EQ(face.border.size(), 1U);
+  const std::vector<cad::Edge>& round = face.border[0].edges;
+  ASSERT_EQ(round.size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_EQ(round[k].curve.points.back(), round[(k + 1) % 4].curve.points.front()) << k;
 }
 
 // Two parabolas, their common knot once too often.
