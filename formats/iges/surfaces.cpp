@@ -227,7 +227,7 @@ double FlatMap::Axis::operator()(double value) const {
   return angles.empty() ? own : nurbs::parameter_at_angle(angles, own);
 }
 
-std::optional<Curve> FlatMap::operator()(const Curve& flat, bool only_exact) const {
+std::optional<Curve> FlatMap::operator()(const Curve& flat) const {
   if (!is_known_) return std::nullopt;
   if (u_.is_identity() && v_.is_identity()) return flat;
   const auto point_by_point = [&] {
@@ -246,7 +246,6 @@ std::optional<Curve> FlatMap::operator()(const Curve& flat, bool only_exact) con
     return nurbs::segment(at(cad::at_share(flat, 0)), at(cad::at_share(flat, 1)), flat.first_parameter(),
                           flat.last_parameter());
   }
-  if (only_exact) return std::nullopt;
   const std::vector<double> parameters = nurbs::divided(flat.knots, flat.degree, 32);
   std::vector<Vec3> points;
   points.reserve(parameters.size());

@@ -20,8 +20,8 @@ class FlatMap {
   FlatMap(Reading& reading, int pointer, const nurbs::Surface& surface);
 
   // Nothing where it cannot be told. Straight lines along the parameters stay exact; others are interpolated
-  // where the map is not the identity, unless `only_exact`.
-  [[nodiscard]] std::optional<nurbs::Curve> operator()(const nurbs::Curve& flat, bool only_exact) const;
+  // where the map is not the identity.
+  [[nodiscard]] std::optional<nurbs::Curve> operator()(const nurbs::Curve& flat) const;
 
  private:
   struct Axis {

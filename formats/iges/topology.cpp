@@ -134,8 +134,7 @@ std::optional<cad::Face> read_face(Reading& reading, const DirectoryEntry& /*ent
   if (!map) return std::nullopt;
   for (cad::Edge& edge : cad::edges_of(face)) {
     if (edge.flat.points.empty()) continue;
-    // Beside the curve in space only what is exact; a pole has no other one, and needs none.
-    edge.flat = (*map)(edge.flat, true).value_or(nurbs::Curve{});
+    edge.flat = (*map)(edge.flat).value_or(nurbs::Curve{});  // a pole needs none
     align_flat(edge, face.surface);
   }
   cad::drop_natural_border(face, cad::border_tolerance(face, reading.file().global().resolution));

@@ -90,7 +90,7 @@ void add_flats(cad::Loop& loop, const Boundary& boundary, const FlatMap& map, co
   const bool alone = loop.edges.empty();
   if (!alone && boundary.flat.size() != loop.edges.size()) return;
   for (std::size_t i = 0; i < boundary.flat.size(); ++i) {
-    std::optional<Curve> flat = map(boundary.flat[i], !alone);
+    std::optional<Curve> flat = map(boundary.flat[i]);
     if (alone && !flat)
       by.give_up("its boundary is known in the surface's parameters only, which are not understood");
     if (alone) loop.edges.emplace_back();

@@ -301,11 +301,10 @@ TEST(IgesReader, VerticesTellTheDirectionOfEdges) {
   const std::array<const char*, 4> lines = {"0.,0.,0.,1.,0.,0.", "1.,1.,0.,1.,0.,0.", "1.,1.,0.,0.,1.,0.",
                                             "0.,0.,0.,0.,1.,0."};  // the second and the last run backwards
   std::vector<int> curves;
-  for (const char* line : lines) curves.push_back(text.add({.type = 110, .parameters = line, .status = "00010000"}));
-  const int vertices = text.add({.type = 502,
-                                 .form = 1,
-                                 .parameters = "4,0.,0.,0.,1.,0.,0.,1.,1.,0.,0.,1.,0.",
-                                 .status = "00010000"});
+  for (const char* line : lines)
+    curves.push_back(text.add({.type = 110, .parameters = line, .status = "00010000"}));
+  const int vertices = text.add(
+      {.type = 502, .form = 1, .parameters = "4,0.,0.,0.,1.,0.,0.,1.,1.,0.,0.,1.,0.", .status = "00010000"});
   std::string edges = "4";
   for (int k = 0; k < 4; ++k)
     edges += fmt::format(",{},{},{},{},{}", curves[static_cast<std::size_t>(k)], vertices, k + 1, vertices,
