@@ -52,15 +52,34 @@ class CheckCad(Case):
                 (last, 10, "     99", r"counts 99 lines in the global section"),
                 (body, 79, "77", r"sequence number P\d+ follows"),
                 (body, 70, "999", r"points back to"),
-                (body, 15, "0", r"PROP1 says that it is open in u, and it is closed"),
                 (last, 1, "X", r"where the number of start lines is due")):
             with self.subTest(message):
                 done = run("check", self.broken(good, line, column, text))
                 self.assertIn(done.returncode, (1, 3), done.stderr)
                 self.assertRegex(done.stderr, r"broken\.igs:%d:\d+: error: .*%s" % (line, message))
-        done = run("check", self.broken(good, body, 15, "0"))
+        done = run("check", self.broken(good, last, 10, "     99"))
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("1 defect", done.stdout)
+        self.assertIn("  geometry: sound\n  header, records and flags: 1 defect\n", done.stdout)
+        self.assertIn("  1 defect\n", done.stdout)
+
+    def test_flags_are_no_defects(self):
+        """Of what flags say wrongly one line a kind is shown, and it alone fails nothing."""
+        good = self.written("good.igs")
+        path = good
+        lines = [i for i, line in enumerate(good.read_text().splitlines(), 1) if line.startswith("128,17,15")]
+        self.assertGreater(len(lines), 3)
+        for line in lines:
+            path = self.broken(path, line, 15, "0")
+        done = run("check", path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = [line for line in done.stderr.splitlines() if "PROP1 says that it is open in u" in line]
+        self.assertEqual(len(found), 1, done.stderr)
+        self.assertRegex(found[0], r"broken\.igs:%d:\d+: warning: x%d, for example: 128 at " % (lines[0], len(lines)))
+        self.assertIn("  geometry: sound\n  header, records and flags: %d warnings\n" % len(lines), done.stdout)
+        every = run("check", path, "--all")
+        self.assertEqual(every.stderr.count("PROP1 says that it is open in u"), len(lines))
+        self.assertEqual(every.returncode, 0)
+        self.assertEqual(run("check", path, "--strict").returncode, 1)
 
     def moved_corner(self, path):
         """The file with the first control point of its first end face moved: one digit of its largest coordinate."""
