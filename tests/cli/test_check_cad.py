@@ -1,6 +1,7 @@
 """`selvage check` on CAD files: sound ones, planted faults with their lines, what other systems stumble on."""
 
 import json
+import re
 import unittest
 
 from program import GRID, PATH, RING, Case, run
@@ -116,6 +117,27 @@ class CheckCad(Case):
         done = run("check", bad, "--report", report)
         texts = [m["text"] for m in json.loads(report.read_text())["inputs"][0]["messages"]]
         self.assertTrue(any("an edge" in text and ("apart" in text or "no other face" in text) for text in texts), texts)
+
+    def test_stated_measures(self):
+        """A STEP file whose volume, area or centre is changed is defective; each is told by the product's name."""
+        good = self.written("good.stp", source=RING)
+        text = good.read_text("ascii")
+        changed = good.with_name("changed.stp")
+        for pattern, what in ((r"(VOLUME_MEASURE\()([^)]*)(\))", "volume"), (r"(AREA_MEASURE\()([^)]*)(\))", "area"),
+                              (r"('centre point',\()([^,]*)(,)", "centre")):
+            with self.subTest(what):
+                found = re.search(pattern, text)
+                value = float(found.group(2))
+                other = value * 1.002 if what != "centre" else value + 0.1
+                changed.write_text(text[: found.start(2)] + repr(other).upper() + text[found.end(2) :], "ascii")
+                done = run("check", changed)
+                self.assertEqual(done.returncode, 3, done.stderr)
+                self.assertRegex(done.stderr, r"changed\.stp: error: '\w+': the file says that its %s is " % what)
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        for unit in ("m", "inch"):
+            path = self.folder / "unit.stp"
+            self.succeeds("convert", RING, "-o", path, "--units", unit)
+            self.assertEqual(run("check", path).returncode, 0)
 
     def test_not_readable(self):
         path = self.folder / "cut.igs"
