@@ -4,6 +4,7 @@
 
 #include <BRepBndLib.hxx>
 #include <BRepGProp.hxx>
+#include <BRep_Builder.hxx>
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
 #include <STEPCAFControl_Reader.hxx>
@@ -12,7 +13,7 @@
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
-#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
 #include <XCAFDoc_Area.hxx>
 #include <XCAFDoc_Centroid.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -22,6 +23,7 @@
 #include <cmath>
 #include <istream>
 #include <streambuf>
+#include <vector>
 
 #include "core/text_report.h"
 #include "formats/step/inspect.h"
@@ -100,6 +102,12 @@ class PropertyCheck {
     if (!reader.Transfer(document)) return;
     shapes_ = XCAFDoc_DocumentTool::ShapeTool(document->Main());
     TDF_LabelSequence labels;
+    shapes_->GetFreeShapes(labels);
+    BRep_Builder().MakeCompound(all_);
+    for (const TDF_Label& label : labels)
+      if (const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label); !shape.IsNull())
+        BRep_Builder().Add(all_, shape);
+    labels.Clear();
     shapes_->GetShapes(labels);
     for (const TDF_Label& label : labels) {
       check(label);
@@ -137,37 +145,40 @@ class PropertyCheck {
     return found == 0 || std::abs(said - found) <= (is_own_ ? of_own : of_others) * std::abs(found);
   }
 
-  // A product of several bodies may have its properties at one of them: that of the whole will do.
-  [[nodiscard]] static TopoDS_Shape whole_of(const TDF_Label& label) {
+  // A product of several bodies may have its properties at one of them: what the whole has will do.
+  [[nodiscard]] std::vector<TopoDS_Shape> wholes_of(const TDF_Label& label) const {
+    if (is_own_) return {};
     const TDF_Label above = label.Father();
-    return !above.IsNull() && XCAFDoc_ShapeTool::IsShape(above) ? XCAFDoc_ShapeTool::GetShape(above)
-                                                                : TopoDS_Shape();
+    if (above.IsNull() || !XCAFDoc_ShapeTool::IsShape(above)) return {all_};
+    return {XCAFDoc_ShapeTool::GetShape(above), all_};
   }
 
   void check(const TDF_Label& label) {
-    const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label), whole = whole_of(label);
+    const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
     if (shape.IsNull()) return;
     double said = 0;
-    if (XCAFDoc_Area::Get(label, said)) check_area(label, shape, whole, said);
+    if (XCAFDoc_Area::Get(label, said)) check_area(label, shape, said);
     if (!XCAFDoc_Volume::Get(label, said)) return;
-    check_volume(label, shape, whole, said);
-    if (gp_Pnt centre; whole.IsNull() && XCAFDoc_Centroid::Get(label, centre)) check_centre(label, shape, centre);
+    check_volume(label, shape, said);
+    if (gp_Pnt centre; XCAFDoc_Centroid::Get(label, centre)) check_centre(label, shape, centre);
   }
 
-  void check_area(const TDF_Label& label, const TopoDS_Shape& shape, const TopoDS_Shape& whole, double said) {
+  void check_area(const TDF_Label& label, const TopoDS_Shape& shape, double said) {
     if (agree(said, area_of(shape, false))) return;
     const double area = area_of(shape, true);
-    if (agree(said, area) || (!whole.IsNull() && agree(said, area_of(whole, true)))) return;
+    const auto is_its = [&](const TopoDS_Shape& whole) { return agree(said, area_of(whole, true)); };
+    if (agree(said, area) || std::ranges::any_of(wholes_of(label), is_its)) return;
     tell(label, "area", said, area, "mm^2");
   }
 
-  void check_volume(const TDF_Label& label, const TopoDS_Shape& shape, const TopoDS_Shape& whole, double said) {
+  void check_volume(const TDF_Label& label, const TopoDS_Shape& shape, double said) {
     const auto agrees = [&](const std::optional<SolidVolume>& found) {
       return !found || agree(said, found->volume);
     };
     if (agrees(volume_of(shape, false))) return;
     const std::optional<SolidVolume> found = volume_of(shape, true);
-    if (agrees(found) || (!whole.IsNull() && agrees(volume_of(whole, true)))) return;
+    const auto is_its = [&](const TopoDS_Shape& whole) { return agrees(volume_of(whole, true)); };
+    if (agrees(found) || std::ranges::any_of(wholes_of(label), is_its)) return;
     tell(label, "volume", said, found->volume, "mm^3");
   }
 
@@ -196,6 +207,7 @@ class PropertyCheck {
   const Source& source_;
   Findings& findings_;
   bool is_own_;
+  TopoDS_Compound all_;  // of the file
   Handle(XCAFDoc_ShapeTool) shapes_;
 };
 
