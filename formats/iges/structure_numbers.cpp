@@ -50,8 +50,8 @@ class Numbers {
   [[nodiscard]] bool is_sound() const { return defects_ == 0; }
 
   // Order and multiplicity; `first`: the index of the first knot among the values. Where one inside tears the
-  // shape, `meets(i)` says whether the control points (rows of them) i and i + 1, at which the two pieces end and
-  // begin, are the same: receivers join or divide it there.
+  // shape, `meets(i)` says whether the control points (rows of them) i and i + 1, at which the two pieces end
+  // and begin, are the same: receivers join or divide it there.
   void check_knots(const std::vector<double>& knots, int degree, std::size_t first, std::string_view where,
                    const std::function<bool(std::size_t)>& meets) {
     for (std::size_t i = 1; i < knots.size(); ++i)
@@ -106,15 +106,16 @@ class Numbers {
   int defects_ = 0;
 };
 
-// Does what ends in one of these and begins in the other hang together? Readers join it over some resolutions.
+// Does what ends in one of these and begins in the other hang together? Readers join it over some
+// resolutions.
 bool meet(const Vec3& a, const Vec3& b, double resolution) {
   const double size = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
   return (a - b).norm() <= std::max(rounding * size, std::min(10 * resolution, 1e-4 * size));
 }
 
-// The flags PROP1 and PROP4 (PROP2 and PROP5) against the largest distance of the two opposite borders. Warnings
-// only: what they say follows from the numbers behind them, by which receivers go, and the standard has those
-// of periodicity for information alone (IGES 5.3, 4.23).
+// The flags PROP1 and PROP4 (PROP2 and PROP5) against the largest distance of the two opposite borders.
+// Warnings only: what they say follows from the numbers behind them, by which receivers go, and the standard
+// has those of periodicity for information alone (IGES 5.3, 4.23).
 void check_closed(Numbers& numbers, bool said, bool periodic, double gap, double size, double resolution,
                   std::string_view flag, std::string_view where, std::size_t value) {
   if (said && gap > std::max(leave_open * size, std::min(resolution, 1e-6 * size)))

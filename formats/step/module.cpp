@@ -16,9 +16,9 @@ extern "C" __attribute__((visibility("default"))) const void* selvage_brep() {
 }
 
 extern "C" __attribute__((visibility("default"))) const void* selvage_step() {
-  static const selvage::formats::step::StepModule table = {.open_writer = selvage::formats::step::open_writer,
-                                                           .read_model = selvage::formats::step::read_model,
-                                                           .check_properties =
-                                                               selvage::formats::step::check_properties};
+  static const selvage::formats::step::StepModule table = {
+      .open_writer = selvage::formats::step::open_writer,
+      .read_model = selvage::formats::step::read_model,
+      .check_properties = selvage::formats::step::check_properties};
   return &table;
 }

@@ -34,8 +34,8 @@ namespace selvage::formats::step {
 
 namespace {
 
-// Of the value; of the size for a centre. Our own files have theirs to 1e-9; others are of other integrals, some
-// with an error of some thousandths, and of edges with tolerances.
+// Of the value; of the size for a centre. Our own files have theirs to 1e-9; others are of other integrals,
+// some with an error of some thousandths, and of edges with tolerances.
 constexpr double of_own = 1e-4, of_others = 1e-3, surely_wrong = 5e-3;
 constexpr double fine = 1e-6;  // relative error of the second integral
 
@@ -195,7 +195,8 @@ class PropertyCheck {
       if (off <= (is_own_ ? of_own : of_others) * size) return;
       if (!again) continue;
       std::string text = fmt::format(
-          "'{}': the file says that its centre is ({:.6g}, {:.6g}, {:.6g}) mm, and that of its volume is ({:.6g}, "
+          "'{}': the file says that its centre is ({:.6g}, {:.6g}, {:.6g}) mm, and that of its volume is "
+          "({:.6g}, "
           "{:.6g}, {:.6g}), {:.3g} away (geometric validation property)",
           name_of(label), said.X(), said.Y(), said.Z(), centre.X(), centre.Y(), centre.Z(), off);
       // Some give that of the mass, or of what was drawn beside the shape.
@@ -217,9 +218,8 @@ void check_properties(const Source& source, Findings& findings) {
   if (source.bytes().find("geometric validation property") == std::string_view::npos) return;
   Diagnostics unsaid;
   // What kills OpenCASCADE's reader is told when the file is read.
-  const auto looked = reported(source, unsaid, [](const Source& from, TextReport& report) {
-    return inspect(from, report);
-  });
+  const auto looked =
+      reported(source, unsaid, [](const Source& from, TextReport& report) { return inspect(from, report); });
   if (!looked) return;
   const Status done = solid::occt::guarded("the STEP file's properties", [&]() -> Status {
     PropertyCheck(source, *looked, findings).run();

@@ -313,9 +313,9 @@ class Recognizer {
     return all_tried;
   }
 
-  // Whether an open tube is a yarn: nothing else belongs to it, or it is the one tube of a small group; and it
-  // has a face at one end, or the role of a yarn, or the file has such tubes alone: among other surfaces, it is
-  // the side of a hole or of a pin as a rule.
+  // Whether an open tube is a yarn: nothing else belongs to it, or it is the one tube of a small group; and
+  // it has a face at one end, or the role of a yarn, or the file has such tubes alone: among other surfaces,
+  // it is the side of a hole or of a pin as a rule.
   [[nodiscard]] bool is_open_yarn(const Tube& tube) const {
     const Part& part = model_.parts[tube.part];
     if (part.faces.size() > 3 || tubes_of_part_.at(tube.part) != 1) return false;

@@ -28,8 +28,9 @@ class CadCheck {
   [[nodiscard]] bool is_foreign() const { return has_model() && is_foreign_; }
   // What is true when there is no defect.
   [[nodiscard]] std::string_view sound() const {
-    return has_structure_ && structure_.warnings() == 0 ? "the file keeps to its format, its surfaces are sound"
-                                                        : "its surfaces are sound";
+    return has_structure_ && structure_.warnings() == 0
+               ? "the file keeps to its format, its surfaces are sound"
+               : "its surfaces are sound";
   }
   // A line of how many defects and warnings the geometry has, and one of the header, records and flags.
   [[nodiscard]] std::string summary() const;

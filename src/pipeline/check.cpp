@@ -67,11 +67,12 @@ bool is_open_tube(const yarn::Body& body) {
 }
 
 Message open_tube(const yarn::Body& body) {
-  return warning(Kind::geometry,
-                 fmt::format("'{}' is an open tube, a surface and no solid; as a yarn, --ends patch seals it where "
-                             "it is converted",
-                             body.name),
-                 about(body));
+  return warning(
+      Kind::geometry,
+      fmt::format("'{}' is an open tube, a surface and no solid; as a yarn, --ends patch seals it where "
+                  "it is converted",
+                  body.name),
+      about(body));
 }
 
 std::string brep_word(const solid::BrepCheck& brep) {

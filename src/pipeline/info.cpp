@@ -75,7 +75,8 @@ constexpr std::array<std::string_view, 3> part_kinds = {"surfaces", "shell", "so
 constexpr std::size_t most_rows = 50;  // of parts, and of curves
 
 std::string rest_of(std::size_t count, std::string_view what) {
-  return count > most_rows ? fmt::format("  and {} (--json has all)\n", counted(count - most_rows, what)) : "";
+  return count > most_rows ? fmt::format("  and {} (--json has all)\n", counted(count - most_rows, what))
+                           : "";
 }
 
 std::ptrdiff_t trimmed_in(const cad::Part& part) {
@@ -119,7 +120,8 @@ Json parts_json(const fabric::Fabric& fabric, const std::map<int, std::string>& 
     if (const Box3 box = cad::box_of(part); !box.isEmpty())
       made["box"] = {vector(box.min()), vector(box.max())};
     if (part.color)
-      made["color"] = fmt::format("#{:02X}{:02X}{:02X}", part.color->red, part.color->green, part.color->blue);
+      made["color"] =
+          fmt::format("#{:02X}{:02X}{:02X}", part.color->red, part.color->green, part.color->blue);
     if (const auto name = levels.find(part.level); name != levels.end())
       made["layer"] = name->second;
     else if (part.level != 0)

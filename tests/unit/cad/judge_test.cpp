@@ -145,7 +145,8 @@ TEST(Judge, GapsThatKernelsSew) {
     EXPECT_EQ(verdict.findings.is_sound(), severity == warning) << verdict.text();
     model = trimmed();
     model.parts[0].faces[0].loops[0].edges[1].curve.points[1].x() += gap;
-    EXPECT_TRUE(verdict_of(model).says(severity, "its boundary is not closed", 5)) << verdict_of(model).text();
+    EXPECT_TRUE(verdict_of(model).says(severity, "its boundary is not closed", 5))
+        << verdict_of(model).text();
   }
   // Of a model of 4 m: 0.02 mm.
   for (const auto& [gap, severity] : {std::pair(0.019, warning), std::pair(0.021, defect)}) {
