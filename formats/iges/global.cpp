@@ -79,16 +79,16 @@ class GlobalReader {
     Global global;
     take_names(global);
     take_units(global);
-    if (integer(16, 1, false) < 1) defect(16, "the number of line weights is not positive");
+    if (integer(16, 1, false) < 1) warning(16, "the number of line weights is not positive");
     global.date = date(18);
     take_ranges(global);
     text(21);  // author
     text(22);  // organization
     const std::int64_t version = integer(23, 3), drafting = integer(24);
     if (version < 1 || version > last_version)
-      defect(23, fmt::format("there is no version {}: IGES 5.3 is 11", version));
+      warning(23, fmt::format("there is no version {}: IGES 5.3 is 11", version));
     if (drafting < 0 || drafting > last_drafting)
-      defect(24, fmt::format("there is no drafting standard {}: they are 0 to 7", drafting));
+      warning(24, fmt::format("there is no drafting standard {}: they are 0 to 7", drafting));
     date(25);  // of the last change
     text(26);  // protocol
     if (values_.size() > 24)
@@ -109,7 +109,8 @@ class GlobalReader {
                 fmt::format("global parameter {} ({}) is not given, and has no default", number, name));
     global.product = text(3);
     global.file_name = text(4);
-    for (const int number : {5, 6, 12}) text(number);
+    global.system = text(5);
+    for (const int number : {6, 12}) text(number);
     bool told = false;
     for (int number = 7; number <= 11; ++number)
       if (integer(number) <= 0 && !std::exchange(told, true))
@@ -168,7 +169,7 @@ class GlobalReader {
       warning(19, "the resolution (global parameter 19) is not given, and has no default");
     else if (!(global.stated_resolution > 0))
       defect(19, fmt::format("a resolution (global parameter 19) of {}", global.stated_resolution));
-    if (global.largest < 0) defect(20, "the largest coordinate (global parameter 20) is negative");
+    if (global.largest < 0) warning(20, "the largest coordinate (global parameter 20) is negative");
   }
 
   static std::size_t index(int number) { return static_cast<std::size_t>(number - 3); }

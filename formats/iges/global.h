@@ -12,6 +12,7 @@ namespace selvage::formats::iges {
 struct Global {
   Delimiters delimiters;
   std::string product, file_name;      // 3, 4
+  std::string system;                  // 5
   std::string date;                    // 18, YYYYMMDD.HHNNSS; empty: not given
   double stated_resolution = 0;        // 19, as in the file; 0: not given
   double resolution = 0;               // the same in `units`, not negative

@@ -47,9 +47,11 @@ void check_characters(std::string_view text, const Line& line, Complaints& compl
   for (const char c : text) good &= is_printable(c);
   if (good) return;
   const auto* const bad = std::find_if_not(text.begin(), text.end(), is_printable);
-  complaints.defect(
-      line.spot(static_cast<int>(bad - text.begin()) + 1),
-      fmt::format("the byte 0x{:02X} is not printable ASCII", static_cast<unsigned char>(*bad)));
+  const Spot spot = line.spot(static_cast<int>(bad - text.begin()) + 1);
+  std::string what =
+      fmt::format("the byte 0x{:02X} is not printable ASCII", static_cast<unsigned char>(*bad));
+  // Letters of other alphabets stand in names; receivers at most show them wrongly.
+  (*bad & 0x80) != 0 ? complaints.warning(spot, std::move(what)) : complaints.defect(spot, std::move(what));
 }
 
 // What this is instead of fixed-length ASCII. False: a reader stops here.
@@ -281,8 +283,12 @@ bool Lines::index_irregular(Complaints& complaints) {
       return complaints.is_check();
     }
     if (trimmed.empty() || (complaints.is_check() && trimmed == "\x1A")) {
-      complaints.habit("empty lines", line.spot(),
-                       [] { return std::string("an empty line is passed over"); });
+      // Behind the end of the file it is no part of it.
+      if (complaints.is_check() && count(Section::terminate) > 0)
+        complaints.warning(line.spot(), "an empty line behind the terminate line");
+      else
+        complaints.habit("empty lines", line.spot(),
+                         [] { return std::string("an empty line is passed over"); });
       continue;
     }
     if (!complaints.is_check() && count(Section::terminate) == 1) {

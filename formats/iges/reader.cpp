@@ -17,6 +17,7 @@ std::optional<cad::Model> read(const Source& source, TextReport& report) {
   if (global.product != global.file_name) model.title = global.product;
   model.file_name = global.file_name;
   model.date = global.date;
+  model.system = global.system;
   model.units = global.units;
   model.resolution = global.resolution;
   Reading reading(*file, type_of, report, model);

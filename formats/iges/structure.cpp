@@ -135,7 +135,12 @@ class StructureCheck {
     }
     const References references = references_of(entry, values);
     const bool has_numbers = entry.type == 126 || entry.type == 128 || entry.type == 124;
-    if (has_numbers && (!references.own || values.size() < *references.own)) {
+    // The normal of a planar curve, the last three values: nobody needs them.
+    if (entry.type == 126 && references.own && values.size() + 3 == *references.own)
+      findings_.warning(fmt::format("{}: {} values; {} are due: the plane's normal is missing", entry.name(),
+                                    values.size() - 1, *references.own - 1),
+                        values.spot(values.size() - 1).place());
+    else if (has_numbers && (!references.own || values.size() < *references.own)) {
       defect(entry, values.spot(values.size() - 1),
              references.own ? fmt::format("{} values; {} are due", values.size() - 1, *references.own - 1)
                             : std::string("a count that the record cannot hold"));
@@ -214,9 +219,10 @@ class StructureCheck {
         std::any_of(file_.directory().begin(), file_.directory().end(),
                     [](const DirectoryEntry& entry) { return entry.type == 124 || entry.type == 408; });
     if (!moved && global.largest > 0 && found > global.largest * (1 + 1e-12))
-      findings_.defect(fmt::format("the largest coordinate is said to be {} (global parameter 20); {} has {}",
-                                   global.largest, bounds_.largest_entity, found),
-                       global.largest_spot.place());
+      findings_.warning(
+          fmt::format("the largest coordinate is said to be {} (global parameter 20); {} has {}",
+                      global.largest, bounds_.largest_entity, found),
+          global.largest_spot.place());
     if (resolution > 0.01 * found)
       findings_.warning(
           fmt::format("the resolution is said to be {} (global parameter 19), and no coordinate "

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "formats/iges/entities.h"
 #include "nurbs/basis.h"
@@ -42,13 +43,17 @@ class Numbers {
     findings_.defect(entry_.name() + ": " + what, values_.spot(value).place());
     ++defects_;
   }
-  void warning(const std::string& what, std::size_t value) {
-    findings_.warning(entry_.name() + ": " + what, values_.spot(value).place());
+  // What a flag says wrongly of the numbers that follow it.
+  void warning(const std::string& what, std::size_t value, double badness = 0) {
+    findings_.warning(entry_.name() + ": " + what, values_.spot(value).place(), badness);
   }
   [[nodiscard]] bool is_sound() const { return defects_ == 0; }
 
-  // Order and multiplicity; `first`: the index of the first knot among the values.
-  void check_knots(const std::vector<double>& knots, int degree, std::size_t first, std::string_view where) {
+  // Order and multiplicity; `first`: the index of the first knot among the values. Where one inside tears the
+  // shape, `meets(i)` says whether the control points (rows of them) i and i + 1, at which the two pieces end
+  // and begin, are the same: receivers join or divide it there.
+  void check_knots(const std::vector<double>& knots, int degree, std::size_t first, std::string_view where,
+                   const std::function<bool(std::size_t)>& meets) {
     for (std::size_t i = 1; i < knots.size(); ++i)
       if (!(knots[i] >= knots[i - 1])) {
         defect(fmt::format("knot {}{} is {} after {}", i + 1, where, knots[i], knots[i - 1]), first + i);
@@ -59,7 +64,11 @@ class Numbers {
       std::size_t next = i;
       while (next < knots.size() && knots[next] == knots[i]) ++next;
       const bool is_end = i == 0 || next == knots.size();
-      if (next - i > most + (is_end ? 1 : 0))
+      if (!is_end && next - i == most + 1 && meets(i - 1))
+        warning(fmt::format("the knot {}{} is there {} times, at degree {}: two pieces that meet there",
+                            knots[i], where, next - i, degree),
+                first + i);
+      else if (next - i > most + (is_end ? 1 : 0))
         defect(fmt::format("the knot {}{} is there {} times, at degree {}: {}", knots[i], where, next - i,
                            degree, is_end ? "a control point has no influence" : "the surface is torn"),
                first + i);
@@ -97,17 +106,27 @@ class Numbers {
   int defects_ = 0;
 };
 
+// Does what ends in one of these and begins in the other hang together? Readers join it over some
+// resolutions.
+bool meet(const Vec3& a, const Vec3& b, double resolution) {
+  const double size = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+  return (a - b).norm() <= std::max(rounding * size, std::min(10 * resolution, 1e-4 * size));
+}
+
 // The flags PROP1 and PROP4 (PROP2 and PROP5) against the largest distance of the two opposite borders.
+// Warnings only: what they say follows from the numbers behind them, by which receivers go, and the standard
+// has those of periodicity for information alone (IGES 5.3, 4.23).
 void check_closed(Numbers& numbers, bool said, bool periodic, double gap, double size, double resolution,
                   std::string_view flag, std::string_view where, std::size_t value) {
   if (said && gap > std::max(leave_open * size, std::min(resolution, 1e-6 * size)))
-    numbers.defect(
-        fmt::format("{} says that it is closed{}, and its ends are {:.3g} apart", flag, where, gap), value);
+    numbers.warning(
+        fmt::format("{} says that it is closed{}, and its ends are {:.3g} apart", flag, where, gap), value,
+        gap);
   else if (!said && gap <= rounding * size)
-    numbers.defect(fmt::format("{} says that it is open{}, and it is closed", flag, where), value);
+    numbers.warning(fmt::format("{} says that it is open{}, and it is closed", flag, where), value);
   if (periodic && gap > std::max(leave_open * size, resolution))
-    numbers.defect(fmt::format("it is said to be periodic{}, and its ends are {:.3g} apart", where, gap),
-                   value + 3);
+    numbers.warning(fmt::format("it is said to be periodic{}, and its ends are {:.3g} apart", where, gap),
+                    value + 3, gap);
 }
 
 double largest_gap(const nurbs::Surface& surface, bool in_u, const std::array<double, 4>& range) {
@@ -155,7 +174,9 @@ void check_curve(const DirectoryEntry& entry, const Values& values, Bounds& boun
   const std::size_t range = numbers.at();
   const double first = numbers.take(), end = numbers.take();
   const Vec3 normal = numbers.points(1)[0];
-  numbers.check_knots(curve.knots, curve.degree, knots, "");
+  numbers.check_knots(curve.knots, curve.degree, knots, "", [&](std::size_t i) {
+    return i + 1 < count && meet(curve.points[i], curve.points[i + 1], bounds.resolution);
+  });
   numbers.check_weights(curve.weights, polynomial, weights, 5, "PROP3");
   numbers.check_range(first, end, curve.first_parameter(), curve.last_parameter(), "", range);
   if (!numbers.is_sound() || curve.degree > nurbs::max_degree) return;
@@ -169,8 +190,9 @@ void check_curve(const DirectoryEntry& entry, const Values& values, Bounds& boun
       high = std::max(high, point.dot(normal.normalized()));
     }
     if (high - low > std::max(1e-6 * size, bounds.resolution))
-      numbers.defect(
-          fmt::format("PROP1 says that it is planar, and it leaves its plane by {:.3g}", high - low), 3);
+      numbers.warning(
+          fmt::format("PROP1 says that it is planar, and it leaves its plane by {:.3g}", high - low), 3,
+          high - low);
   }
   if (entry.use != 5 && entry.subordinate == 0) note_largest(entry, size, bounds);
 }
@@ -202,8 +224,20 @@ void check_surface(const DirectoryEntry& entry, const Values& values, Bounds& bo
   const std::size_t range_at = numbers.at();
   std::array<double, 4> range{};
   for (double& value : range) value = numbers.take();
-  numbers.check_knots(surface.knots_u, surface.degree_u, knots_u, " in u");
-  numbers.check_knots(surface.knots_v, surface.degree_v, knots_v, " in v");
+  const auto rows_are_one = [&](bool in_u, std::size_t i) {
+    const int at = static_cast<int>(i);
+    if (at + 1 >= (in_u ? surface.count_u : surface.count_v)) return false;
+    for (int k = 0; k < (in_u ? surface.count_v : surface.count_u); ++k) {
+      const Vec3 &a = in_u ? surface.point(at, k) : surface.point(k, at),
+                 &b = in_u ? surface.point(at + 1, k) : surface.point(k, at + 1);
+      if (!meet(a, b, bounds.resolution)) return false;
+    }
+    return true;
+  };
+  numbers.check_knots(surface.knots_u, surface.degree_u, knots_u, " in u",
+                      [&](std::size_t i) { return rows_are_one(true, i); });
+  numbers.check_knots(surface.knots_v, surface.degree_v, knots_v, " in v",
+                      [&](std::size_t i) { return rows_are_one(false, i); });
   numbers.check_weights(surface.weights, flags[2], weights, 7, "PROP3");
   note_largest(entry, largest_of(surface.points).value_or(0), bounds);
   if (!numbers.is_sound()) return;

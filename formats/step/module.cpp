@@ -1,6 +1,7 @@
 // What the shared object selvage_occt shows to the program: a table for each part that it implements.
 #include <Standard_Version.hxx>
 
+#include "formats/step/properties.h"
 #include "formats/step/reader.h"
 #include "formats/step/writer.h"
 #include "solid/brep.h"
@@ -15,7 +16,9 @@ extern "C" __attribute__((visibility("default"))) const void* selvage_brep() {
 }
 
 extern "C" __attribute__((visibility("default"))) const void* selvage_step() {
-  static const selvage::formats::step::StepModule table = {.open_writer = selvage::formats::step::open_writer,
-                                                           .read_model = selvage::formats::step::read_model};
+  static const selvage::formats::step::StepModule table = {
+      .open_writer = selvage::formats::step::open_writer,
+      .read_model = selvage::formats::step::read_model,
+      .check_properties = selvage::formats::step::check_properties};
   return &table;
 }

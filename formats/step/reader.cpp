@@ -134,6 +134,7 @@ class ModelReader {
   void take_header() {
     model_.file = source_.name();
     model_.date = date_of(file_.time_stamp);
+    model_.system = file_.originating_system;
     for (const Statement& statement : file_.statements)
       ++model_.entities[std::string(file_.type_of(statement))];
   }

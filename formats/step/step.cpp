@@ -81,6 +81,12 @@ std::optional<cad::Model> read_model(const Source& source, Diagnostics& diagnost
   return std::nullopt;
 }
 
+// Of what the reader does not judge already. It needs OpenCASCADE where the file states properties only.
+void check_structure(const Source& source, Findings& findings) {
+  Result<const void*> table = open_module("occt", "selvage_step");
+  if (table) static_cast<const StepModule*>(*table)->check_properties(source, findings);
+}
+
 }  // namespace
 
 const Descriptor& descriptor() {
@@ -90,6 +96,7 @@ const Descriptor& descriptor() {
       .extensions = {".stp", ".step"},
       .sniff = looks_like_step,
       .read_model = read_model,
+      .check_structure = check_structure,
       .foreign_reader = "STEP",
       .open_bodies = open_bodies,
       .carries_curves = true,

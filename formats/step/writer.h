@@ -11,6 +11,7 @@ namespace selvage::formats::step {
 struct StepModule {
   Result<std::unique_ptr<BodyWriter>> (*open_writer)(OutputFile& output, const SurfaceOptions& options);
   std::optional<cad::Model> (*read_model)(const Source& source, Diagnostics& diagnostics);
+  void (*check_properties)(const Source& source, Findings& findings);
 };
 
 // Errors: usage (a schema other than AP242 and AP214).

@@ -551,6 +551,12 @@ void write_content(Lines& out, const fabric::Fabric& fabric, WriteFacts& facts, 
 }  // namespace
 
 Result<WriteFacts> write_fabric(const fabric::Fabric& fabric, OutputFile& output) {
+  if (fabric.items.empty() && fabric.parts.size() + fabric.curves.size() > 0)
+    return error(
+        Kind::unsupported,
+        fmt::format("there is no yarn and no piece in this input, and Fabric TXT holds nothing else: {} "
+                    "and {} would be left out; --to iges,step writes them",
+                    counted(fabric.parts.size(), "part"), counted(fabric.curves.size(), "curve")));
   Lines out(output);
   out.line(0, "fabric").value(1);
   if (fabric.title) out.line(0, "title").raw(" ").quoted_text(*fabric.title);

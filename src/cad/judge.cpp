@@ -23,7 +23,10 @@ constexpr double reach = 1e-2;            // of the part's size: edges farther a
 constexpr double rounding = 1e-12;        // of the part's size
 constexpr double far_off = 1e-3;          // of the part's size: an edge that lies off its surface
 constexpr double no_area = 1e-12;         // of the square of the part's size
+constexpr double suspicious_area = 1e-4;  // of the same: counted more finely
 constexpr double outside = 1e-6;          // of the range of parameters
+// Up to which gaps are joined by kernels with tolerant edges (judge.h): mm, and of the model's size.
+constexpr double sewn_mm = 0.02, sewn_share = 1e-4;
 
 std::string who(const Face& face) {
   std::string name = face.origin.entity.empty() ? std::string("a face") : face.origin.entity;
@@ -56,13 +59,14 @@ class Judge {
     const Face* face;
   };
 
+  // `badness`: as in core/tally.h.
   void find(Severity severity, const Part& part, const Face& face, std::string_view text,
-            const std::optional<Vec3>& at = std::nullopt) {
+            const std::optional<Vec3>& at = std::nullopt, double badness = 0) {
     Message made = error(Kind::geometry, fmt::format("{}: {}", who(face), text));
     made.severity = severity;
     made.place = place_of(part, face);
     made.at = at;
-    findings_.add(std::move(made));
+    findings_.add(std::move(made), badness);
   }
 
   void judge_part(const Part& part) {
@@ -73,6 +77,7 @@ class Judge {
     if (!sound || box.isEmpty()) return;
     size_ = box.sizes().maxCoeff();
     tolerance_ = std::max(model_.resolution, least_tolerance * size_);
+    sewn_ = std::max(tolerance_, std::min(sewn_mm / millimetres_per(model_.units), sewn_share * m_.size));
     std::vector<Owned> borders;
     std::vector<std::size_t> firsts;  // where the borders of each face begin
     for (const Face& face : part.faces) {
@@ -143,10 +148,10 @@ class Judge {
                    next = end_of(face, loop.edges[(i + 1) % loop.edges.size()], false);
         const double gap = (end - next).norm();
         if (gap > tolerance_)
-          find(Severity::error, part, face,
+          find(gap > sewn_ ? Severity::error : Severity::warning, part, face,
                fmt::format("its boundary is not closed: {:.3g} {} between two of its edges", gap,
                            name_of(model_.units)),
-               end);
+               end, gap);
       }
       for (const Edge& edge : loop.edges) judge_edge(part, face, edge, surface);
     }
@@ -160,33 +165,78 @@ class Judge {
 
   void judge_edge(const Part& part, const Face& face, const Edge& edge, std::optional<SurfaceSet>& surface) {
     const nurbs::Surface& s = face.surface;
-    const Vec2 low(s.first_u(), s.first_v()), high(s.last_u(), s.last_v()), slack = outside * (high - low);
-    bool leaves = false;
-    double off = 0;
-    std::optional<Vec3> off_at;
+    double leaves = 0, off = 0;
+    std::optional<Vec3> leaves_at, off_at;
     for (const double share : {0.0, 0.21, 0.5, 0.77, 1.0}) {
       std::optional<Vec2> start;
       if (!edge.flat.points.empty()) {
         start = at_share(edge.flat, share).head<2>();
-        leaves =
-            leaves || ((*start - low + slack).minCoeff() < 0) || ((high + slack - *start).minCoeff() < 0);
+        double beyond = bring_inside(s, *start);
+        const Vec3 inside = beyond > 0 ? nurbs::evaluate(s, start->x(), start->y()) : Vec3::Zero();
+        // Who goes by the curve in space, or stops at the border, is not led astray.
+        if (!edge.curve.points.empty() && beyond > 0)
+          beyond = std::min(beyond, (inside - at_share(edge.curve, share)).norm());
+        if (beyond > leaves) {
+          leaves = beyond;
+          leaves_at = inside;
+        }
       }
       if (edge.curve.points.empty()) continue;
       const Vec3 p = at_share(edge.curve, share);
       double distance = start ? (nurbs::evaluate(s, start->x(), start->y()) - p).norm() : 0;
       if (!start || distance > tolerance_) {
         if (!surface) surface.emplace(std::vector{&s});
-        distance = surface->near(p).distance;
+        const SurfaceSet::Foot foot = surface->near(p);
+        distance = foot.distance;
+        // The foot may be that of another place of the surface: only what is proven is told.
+        if (distance > 10 * tolerance_ && distance > off) distance = surface->least_distance(p, foot);
       }
       if (distance > off) {
         off = distance;
         off_at = p;
       }
     }
-    if (leaves) find(Severity::error, part, face, "its boundary leaves the range of its surface");
+    if (leaves > 0)
+      find(leaves > sewn_ ? Severity::error : Severity::warning, part, face,
+           fmt::format("its boundary leaves the range of its surface by {:.3g} {}", leaves,
+                       name_of(model_.units)),
+           leaves_at, leaves);
     if (off > 10 * tolerance_)
-      find(off > far_off * size_ ? Severity::error : Severity::warning, part, face,
-           fmt::format("an edge lies {:.3g} {} off its surface", off, name_of(model_.units)), off_at);
+      find(off > std::max(sewn_, far_off * size_) ? Severity::error : Severity::warning, part, face,
+           fmt::format("an edge lies {:.3g} {} off its surface", off, name_of(model_.units)), off_at, off);
+  }
+
+  // Parameters that leave the surface's range are brought into it: by a period where the surface is closed in
+  // that direction, else onto its border. Gives about how far they were beyond it, in space; 0: not more than
+  // rounding.
+  [[nodiscard]] double bring_inside(const nurbs::Surface& s, Vec2& at) const {
+    const Vec2 low(s.first_u(), s.first_v()), high(s.last_u(), s.last_v()), slack = outside * (high - low);
+    Vec2 beyond = Vec2::Zero();
+    for (const int k : {0, 1}) {
+      if (at[k] >= low[k] - slack[k] && at[k] <= high[k] + slack[k]) continue;
+      if (is_closed(s, k == 0)) {
+        at[k] = low[k] + std::remainder(at[k] - low[k], high[k] - low[k]);
+        if (at[k] < low[k]) at[k] += high[k] - low[k];
+        continue;
+      }
+      const double inside = std::clamp(at[k], low[k], high[k]);
+      beyond[k] = at[k] - inside;
+      at[k] = inside;
+    }
+    if (beyond.isZero(0)) return 0;
+    const nurbs::SurfaceJet jet =
+        nurbs::evaluate_jet(s, std::clamp(at.x(), low.x(), high.x()), std::clamp(at.y(), low.y(), high.y()));
+    return std::hypot(beyond.x() * jet.du.norm(), beyond.y() * jet.dv.norm());
+  }
+
+  // Are the two borders of this direction one, within the tolerance?
+  [[nodiscard]] bool is_closed(const nurbs::Surface& s, bool in_u) const {
+    for (const double share : {0.0, 0.3, 0.5, 0.8, 1.0}) {
+      const Vec3 a = in_u ? at_shares(s, 0, share) : at_shares(s, share, 0),
+                 b = in_u ? at_shares(s, 1, share) : at_shares(s, share, 1);
+      if ((a - b).norm() > tolerance_) return false;
+    }
+    return true;
   }
 
   // An untrimmed face: poles, area, and whether it nearly closes.
@@ -194,7 +244,10 @@ class Judge {
   void judge_whole(const Part& part, const Face& face, std::span<const Owned> borders) {
     std::array<const Border*, 4> sides{};
     for (std::size_t i = 0; i < sides.size(); ++i) sides[i] = &borders[i].border;
-    const double area = area_of(face.surface);
+    double area = area_of(face.surface, 12, 12);
+    // Few steps may meet a helix in the same place of every turn.
+    if (area <= suspicious_area * size_ * size_)
+      area = area_of(face.surface, 3 * face.surface.count_u, 3 * face.surface.count_v);
     if (area <= no_area * size_ * size_) return find(Severity::error, part, face, "a face without area");
     if (!m_.least_area || area < *m_.least_area) {
       m_.least_area = area;
@@ -223,17 +276,17 @@ class Judge {
     }
   }
 
-  static double area_of(const nurbs::Surface& s) {
-    constexpr int steps = 12;
+  // Of a grid of so many triangles' pairs.
+  static double area_of(const nurbs::Surface& s, int steps_u, int steps_v) {
     std::vector<double> us, vs;
-    for (int i = 0; i <= steps; ++i) {
-      us.push_back(std::lerp(s.first_u(), s.last_u(), static_cast<double>(i) / steps));
-      vs.push_back(std::lerp(s.first_v(), s.last_v(), static_cast<double>(i) / steps));
-    }
+    for (int i = 0; i <= steps_u; ++i)
+      us.push_back(std::lerp(s.first_u(), s.last_u(), static_cast<double>(i) / steps_u));
+    for (int j = 0; j <= steps_v; ++j)
+      vs.push_back(std::lerp(s.first_v(), s.last_v(), static_cast<double>(j) / steps_v));
     const nurbs::Samples grid(s, us, vs);
     double area = 0;
-    for (std::size_t j = 0; j < steps; ++j)
-      for (std::size_t i = 0; i < steps; ++i) {
+    for (std::size_t j = 0; j + 1 < vs.size(); ++j)
+      for (std::size_t i = 0; i + 1 < us.size(); ++i) {
         const Vec3 &a = grid.at(i, j), &b = grid.at(i + 1, j), &c = grid.at(i, j + 1),
                    &d = grid.at(i + 1, j + 1);
         area += 0.5 * ((b - a).cross(c - a).norm() + (b - d).cross(c - d).norm());
@@ -276,15 +329,15 @@ class Judge {
       }
     }
     const Face& face = *borders[own].face;
-    const Severity severity = part.kind == Part::Kind::solid ? Severity::error : Severity::warning;
+    const bool is_solid = part.kind == Part::Kind::solid;
     if (gap > far) {
       ++m_.open_borders;
       constexpr std::array<std::string_view, 3> kinds = {"group of surfaces", "shell", "solid"};
       return find(
-          severity, part, face,
+          is_solid ? Severity::error : Severity::warning, part, face,
           fmt::format("an edge of length {:.3g} {} has no other face beside it: the {} is open",
                       border.length(), name_of(model_.units), kinds[static_cast<std::size_t>(part.kind)]),
-          gap_at);
+          gap_at, border.length());
     }
     if (gap > m_.largest_gap) {
       m_.largest_gap = gap;
@@ -292,11 +345,11 @@ class Judge {
       m_.gap_entity = who(face);
     }
     if (gap > tolerance_)
-      find(severity, part, face,
+      find(is_solid && gap > sewn_ ? Severity::error : Severity::warning, part, face,
            fmt::format("an edge and its neighbour are up to {:.3g} {} apart; {:.3g} are within the "
                        "file's resolution",
                        gap, name_of(model_.units), tolerance_),
-           gap_at);
+           gap_at, gap);
   }
 
   // Points that tell a face: of its surface's inside, or of its outer loop.
@@ -363,9 +416,21 @@ class Judge {
       // faces in another is there twice.
       const std::size_t fewest = std::min(first->part->faces.size(), second->part->faces.size());
       if (first->part != second->part && shared[std::minmax(first->part, second->part)] < fewest) continue;
+      // What stands in two groups, or in two representations of one shape, is read twice.
+      const Origin &one = origin_of(*first), &other = origin_of(*second);
+      if (!one.entity.empty() && one.entity == other.entity && one.place.line == other.place.line) {
+        find(Severity::note, *second->part, *second->face, "it is read twice: two groups have it",
+             second->points.front());
+        continue;
+      }
       find(Severity::error, *second->part, *second->face,
            fmt::format("the same face as {}, at the same place", who(*first->face)), second->points.front());
     }
+  }
+
+  // Some faces are named by their part alone.
+  static const Origin& origin_of(const Signature& s) {
+    return s.face->origin.entity.empty() ? s.part->origin : s.face->origin;
   }
 
   static bool is_same(const Signature& a, const Signature& b, double tolerance) {
@@ -382,7 +447,7 @@ class Judge {
   const Model& model_;
   Findings& findings_;
   Measures m_;
-  double size_ = 0, tolerance_ = 0;  // of the part at hand
+  double size_ = 0, tolerance_ = 0, sewn_ = 0;  // of the part at hand
 };
 
 }  // namespace

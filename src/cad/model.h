@@ -93,6 +93,7 @@ struct Model {
   std::string file;  // as messages name it
   std::string title;
   std::string file_name;  // that the file gives itself in its header (IGES); empty: none
+  std::string system;     // the program that wrote it, by its header; may be empty
   std::string date;       // YYYYMMDD.HHNNSS of the file; empty: not known
   Unit units = Unit::mm;
   double resolution = 0;              // IGES parameter 19, STEP uncertainty; file units; 0: not given

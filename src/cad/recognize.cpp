@@ -313,13 +313,28 @@ class Recognizer {
     return all_tried;
   }
 
-  // Whether an open tube is a yarn: nothing else belongs to it, or it is the one tube of a small group.
+  // Whether an open tube is a yarn: nothing else belongs to it, or it is the one tube of a small group; and
+  // it has a face at one end, or the role of a yarn, or the file has such tubes alone: among other surfaces,
+  // it is the side of a hole or of a pin as a rule.
   [[nodiscard]] bool is_open_yarn(const Tube& tube) const {
-    return model_.parts[tube.part].faces.size() <= 3 && tubes_of_part_.at(tube.part) == 1;
+    const Part& part = model_.parts[tube.part];
+    if (part.faces.size() > 3 || tubes_of_part_.at(tube.part) != 1) return false;
+    const bool has_lid = tube.lids[0] != nothing || tube.lids[1] != nothing;
+    return has_lid || only_tubes_ ||
+           role_of(part.level != 0 ? part.level : part.faces[tube.face].level) != yarn::Role::other;
+  }
+
+  // Is there nothing but tubes, their end faces, and parts that are yarns?
+  [[nodiscard]] bool has_only_tubes() const {
+    return std::ranges::all_of(candidates_, &Candidate::taken) &&
+           std::ranges::none_of(model_.parts, [](const Part& part) {
+             return part.kind != Part::Kind::surfaces && !part.faces.empty();
+           });
   }
 
   void finish_loose() {
     for (const Tube& tube : tubes_) ++tubes_of_part_[tube.part];
+    only_tubes_ = has_only_tubes();
     std::vector<std::pair<std::size_t, std::size_t>> taken;  // part, face
     for (std::size_t t = 0; t < tubes_.size(); ++t) {
       Tube& tube = tubes_[t];
@@ -378,6 +393,7 @@ class Recognizer {
   std::vector<Candidate> candidates_;
   std::vector<std::array<bool, 2>> sealed_by_other_;
   std::unordered_map<std::size_t, std::size_t> tubes_of_part_;
+  bool only_tubes_ = false;
   std::size_t replaced_ = 0, misfits_ = 0, loose_ = 0, leftover_ = 0;
   std::string first_replaced_, first_misfit_, first_loose_;
 };

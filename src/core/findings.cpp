@@ -5,18 +5,18 @@
 
 namespace selvage {
 
-void Findings::defect(std::string text, TextPlace place) {
-  add(error(Kind::malformed, std::move(text), {.place = place}));
+void Findings::defect(std::string text, TextPlace place, double badness) {
+  add(error(Kind::malformed, std::move(text), {.place = place}), badness);
 }
 
-void Findings::warning(std::string text, TextPlace place) {
-  add(selvage::warning(Kind::malformed, std::move(text), {.place = place}));
+void Findings::warning(std::string text, TextPlace place, double badness) {
+  add(selvage::warning(Kind::malformed, std::move(text), {.place = place}), badness);
 }
 
-void Findings::add(Message message) {
+void Findings::add(Message message, double badness) {
   if (message.severity == Severity::error) ++defects_;
   if (message.severity == Severity::warning) ++warnings_;
-  if (tally_.take(message)) shown_.push_back(std::move(message));
+  if (tally_.take(message, badness) || keeps_all_) shown_.push_back(std::move(message));
 }
 
 std::vector<Message> Findings::messages() const {
@@ -26,6 +26,7 @@ std::vector<Message> Findings::messages() const {
   };
   std::stable_sort(all.begin(), all.end(),
                    [&](const Message& a, const Message& b) { return line(a) < line(b); });
+  if (keeps_all_) return all;
   const std::vector<Message> rest = tally_.rest();
   all.insert(all.end(), rest.begin(), rest.end());
   return all;

@@ -76,4 +76,18 @@ std::vector<Message> Tally::rest() const {
   return all;
 }
 
+std::vector<Message> Tally::summary() const {
+  std::vector<Message> all;
+  for (const Severity severity : {Severity::error, Severity::warning, Severity::note})
+    for (const OfKind& kind : kinds_) {
+      if (kind.worst.severity != severity) continue;
+      Message message = kind.worst;
+      if (kind.count > 1)
+        message.text = fmt::format("x{}, {}: {}", kind.count, kind.badness > 0 ? "the worst" : "for example",
+                                   kind.worst.text);
+      all.push_back(std::move(message));
+    }
+  return all;
+}
+
 }  // namespace selvage

@@ -23,6 +23,8 @@ class Tally {
   // What is kept does not grow with the number of messages: beyond `most_kinds` kinds, the others of a
   // severity are one.
   [[nodiscard]] std::vector<Message> rest() const;
+  // Of every kind one message, its worst: "x94, the worst: ..."; errors first, then warnings, then notes.
+  [[nodiscard]] std::vector<Message> summary() const;
 
  private:
   struct OfKind {

@@ -61,6 +61,20 @@ std::vector<Message> defects_of(const Examined& found, std::size_t i, Unit units
   return defects;
 }
 
+bool is_open_tube(const yarn::Body& body) {
+  return !body.closed_along &&
+         (body.start.style == yarn::EndStyle::none || body.end.style == yarn::EndStyle::none);
+}
+
+Message open_tube(const yarn::Body& body) {
+  return warning(
+      Kind::geometry,
+      fmt::format("'{}' is an open tube, a surface and no solid; as a yarn, --ends patch seals it where "
+                  "it is converted",
+                  body.name),
+      about(body));
+}
+
 std::string brep_word(const solid::BrepCheck& brep) {
   if (brep.valid && brep.free_edges == 0) return "valid";
   return brep.valid ? fmt::format("{} free edges", brep.free_edges) : "invalid";
@@ -106,7 +120,7 @@ void print_tables(const Job& job, const Examined& found, const CadCheck& cad, st
   const Shown shown = job.shown();
   std::string text = fmt::format("{}: lengths in {}\n", readable(job.input.path), name_of(shown.unit)), sound;
   if (cad.has_model()) {
-    text += cad.table(shown);
+    text += cad.table(shown) + cad.summary();
     sound = cad.sound();
   }
   if (!found.bodies.empty()) {
@@ -164,7 +178,7 @@ Result<formats::WriteFacts> write_gap_map(Job& job, const std::vector<yarn::Body
 }  // namespace
 
 bool check(Job& job) {
-  CadCheck cad;
+  CadCheck cad(job.options.all);
   const std::optional<fabric::Fabric> fabric = job.read(cad.look());
   cad.say(job);
   if (!fabric) return false;
@@ -180,6 +194,11 @@ bool check(Job& job) {
       job.report["creo_absolute_accuracy"] = *accuracy * millimetres_per(fabric->units);
   std::size_t defects = cad.defects() + found->solids.overlaps.size() + found->pieces.defects;
   for (std::size_t i = 0; i < found->bodies.size(); ++i) {
+    // What a file of another program has as a surface without ends is just that.
+    if (cad.is_foreign() && is_open_tube(found->bodies[i])) {
+      job.say(open_tube(found->bodies[i]));
+      continue;
+    }
     for (Message& message : defects_of(*found, i, fabric->units)) {
       ++defects;
       job.say_defect(std::move(message));

@@ -191,7 +191,11 @@ void inputs_and_outputs(OptionTable& t) {
            kept(fmt::format("formats to go through, separated by commas (default: {})", trip_names())),
            Argument::text("FORMAT"), &Options::formats);
   t.flag({info, diff}, "--json", "one JSON object instead of text", &Options::json);
-  t.flag({diff}, "--all", "every difference (default: the first 20 and a count)", &Options::all);
+  t.flag(
+      {diff, check}, "--all",
+      "every difference (default: the first 20 and a count); of check: every finding of a CAD file (default: "
+      "one a kind with the worst and a count)",
+      &Options::all);
   t.option({check}, "--gap-map",
            kept(fmt::format("write the yarns coloured by the gap to the next one to this file ({})",
                             extension_of_gap_maps())),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 #include <unordered_map>
 
 #include "core/readable.h"
@@ -70,30 +71,90 @@ std::string file_facts(const cad::Model& model) {
   return text;
 }
 
+constexpr std::array<std::string_view, 3> part_kinds = {"surfaces", "shell", "solid"};
+constexpr std::size_t most_rows = 50;  // of parts, and of curves
+
+std::string rest_of(std::size_t count, std::string_view what) {
+  return count > most_rows ? fmt::format("  and {} (--json has all)\n", counted(count - most_rows, what))
+                           : "";
+}
+
+std::ptrdiff_t trimmed_in(const cad::Part& part) {
+  return std::ranges::count_if(part.faces, [](const cad::Face& face) { return !face.loops.empty(); });
+}
+
+// Of each face, file units: the one that another kernel measured, or that of an untrimmed surface.
+std::optional<double> area_of(const cad::Part& part) {
+  double area = 0;
+  for (const cad::Face& face : part.faces) {
+    if (!face.area && !face.loops.empty()) return std::nullopt;
+    area += face.area ? std::abs(*face.area) : nurbs::moments(face.surface, Vec3::Zero()).area;
+  }
+  return area;
+}
+
+// Of a solid of untrimmed faces.
+std::optional<double> volume_of(const cad::Part& part) {
+  if (part.kind != cad::Part::Kind::solid || trimmed_in(part) > 0) return std::nullopt;
+  const Box3 box = cad::box_of(part);
+  if (box.isEmpty()) return std::nullopt;
+  double volume = 0;
+  for (const cad::Face& face : part.faces)
+    volume += (face.reversed ? -1 : 1) * nurbs::volume_flux(face.surface, box.center());
+  return std::abs(volume);
+}
+
+// Parts that are neither yarns nor garment pieces, in mm.
+Json parts_json(const fabric::Fabric& fabric, const std::map<int, std::string>& levels) {
+  const double mm = millimetres_per(fabric.units);
+  const auto vector = [&](const Vec3& p) { return Json{p.x() * mm, p.y() * mm, p.z() * mm}; };
+  Json all = Json::array();
+  for (const cad::Part& part : fabric.parts) {
+    Json made = {{"kind", part_kinds[static_cast<std::size_t>(part.kind)]},
+                 {"faces", part.faces.size()},
+                 {"trimmed", trimmed_in(part)}};
+    if (!part.name.empty()) made["name"] = part.name;
+    if (!part.group.empty()) made["group"] = part.group;
+    if (const std::optional<double> area = area_of(part)) made["area"] = *area * mm * mm;
+    if (const std::optional<double> volume = volume_of(part)) made["volume"] = *volume * mm * mm * mm;
+    if (const Box3 box = cad::box_of(part); !box.isEmpty())
+      made["box"] = {vector(box.min()), vector(box.max())};
+    if (part.color)
+      made["color"] =
+          fmt::format("#{:02X}{:02X}{:02X}", part.color->red, part.color->green, part.color->blue);
+    if (const auto name = levels.find(part.level); name != levels.end())
+      made["layer"] = name->second;
+    else if (part.level != 0)
+      made["layer"] = std::to_string(part.level);
+    if (!part.origin.entity.empty()) made["entity"] = part.origin.entity;
+    all.push_back(std::move(made));
+  }
+  return all;
+}
+
 // What is neither a yarn nor a garment piece.
 std::string other_tables(const Job& job, const fabric::Fabric& fabric) {
   const Shown shown = job.shown();
   std::string text;
   if (!fabric.parts.empty()) {
-    constexpr std::array<std::string_view, 3> kinds = {"surfaces", "shell", "solid"};
     Table table({"part", "kind", "faces", "trimmed", "extent", "entity"});
-    for (const cad::Part& part : fabric.parts) {
+    for (const cad::Part& part : std::span(fabric.parts).first(std::min(most_rows, fabric.parts.size()))) {
       const Box3 box = cad::box_of(part);
-      const auto trimmed =
-          std::ranges::count_if(part.faces, [](const cad::Face& face) { return !face.loops.empty(); });
-      table.add({part.name.empty() ? "-" : part.name, std::string(kinds[static_cast<std::size_t>(part.kind)]),
-                 std::to_string(part.faces.size()), std::to_string(trimmed),
+      table.add({part.name.empty() ? "-" : part.name,
+                 std::string(part_kinds[static_cast<std::size_t>(part.kind)]),
+                 std::to_string(part.faces.size()), std::to_string(trimmed_in(part)),
                  box.isEmpty() ? "-" : cell(shown.length(box.diagonal().norm())), part.origin.entity});
     }
-    text += table.text();
+    text += table.text() + rest_of(fabric.parts.size(), "more part");
   }
   if (!fabric.curves.empty()) {
     Table table({"curve", "degree", "points", "length", "entity"});
-    for (const cad::NamedCurve& curve : fabric.curves)
+    for (const cad::NamedCurve& curve :
+         std::span(fabric.curves).first(std::min(most_rows, fabric.curves.size())))
       table.add({curve.name.empty() ? "-" : curve.name, std::to_string(curve.curve.degree),
                  std::to_string(curve.curve.points.size()),
                  cell(shown.length(nurbs::arc_length(curve.curve))), curve.origin.entity});
-    text += table.text();
+    text += table.text() + rest_of(fabric.curves.size(), "more curve");
   }
   return text;
 }
@@ -195,14 +256,17 @@ std::string piece_tables(Job& job, const fabric::Fabric& fabric) {
 
 void info(Job& job) {
   std::string of_file;
+  std::map<int, std::string> levels;
   CadLook look;
   look.model = [&](const cad::Model& model, const formats::Descriptor&) {
     of_file = file_facts(model);
+    levels = model.levels;
     job.report["entities"] = if_true(!model.entities.empty(), model.entities);
     job.report["not_understood"] = if_true(!model.unknown.empty(), model.unknown);
   };
   const std::optional<fabric::Fabric> fabric = job.read(look);
   if (!fabric) return;
+  if (job.wants_report() && !fabric->parts.empty()) job.report["parts"] = parts_json(*fabric, levels);
   const std::string head = heading(job, *fabric) + of_file;
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
   std::string tables;

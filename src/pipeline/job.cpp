@@ -66,7 +66,7 @@ void Job::say_rest() {
 void Job::show(Message message, double badness) {
   if (message.file.empty()) message.file = input.path == "-" ? "<stdin>" : input.path;
   if (options.sweep.wanted) message.text += fmt::format(" [{}]", input.name().substr(input.path.size() + 1));
-  if (tally_.take(message, badness)) tell(std::move(message));
+  if (options.all || tally_.take(message, badness)) tell(std::move(message));
 }
 
 void Job::tell(Message message) {
@@ -127,14 +127,14 @@ std::optional<fabric::Fabric> Job::read(const CadLook& look) {
   if (!is_own) limit_time(options, **format);
   Diagnostics diagnostics;
   std::optional<fabric::Fabric> fabric;
+  // Libraries die of some files: that is a defect of the file, not of ours.
+  const std::string_view library = (*format)->foreign_reader;
+  if (!library.empty()) channel_.send(packet::reader, library);
   if (look.file) {
     look.file(*source, **format);
     for (const std::filesystem::path& file : further_files(input.path))
       if (const Result<Source> further = Source::open(file)) look.file(*further, **format);
   }
-  // Libraries die of some files: that is a defect of the file, not of ours.
-  const std::string_view library = (*format)->foreign_reader;
-  if (!library.empty()) channel_.send(packet::reader, library);
   if (!input.settings.empty()) {
     if ((*format)->read_with == nullptr)
       return fail(error(Kind::unsupported, fmt::format("this is {} ({}), which has no params to set",

@@ -177,7 +177,9 @@ Status check_names(const Options& options, const InputList& list,
     if (list.inputs[i].path == "-") continue;
     const std::vector<fs::path> files = files_of(list.inputs[i].path);
     for (const fs::path& file : files) {
-      input_of.emplace(identity(file), i);
+      // One that is missing is told when it is opened.
+      std::error_code failure;
+      if (fs::exists(file, failure)) input_of.emplace(identity(file), i);
       note_part(file);
     }
     // To write what stands for the set would be to replace it.

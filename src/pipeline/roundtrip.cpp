@@ -278,6 +278,11 @@ std::vector<Trip> all_trips() {
   return all;
 }
 
+// What a text of yarns cannot hold.
+bool has_only_surfaces(const Original& original) {
+  return original.fabric.items.empty() && original.fabric.parts.size() + original.fabric.curves.size() > 0;
+}
+
 std::string names_of(const std::vector<Trip>& trips) {
   std::vector<std::string> names;
   names.reserve(trips.size());
@@ -315,6 +320,9 @@ bool roundtrip(Job& job) {
   bool is_different = false;
   std::size_t number = 0;
   for (const Trip& trip : *trips) {
+    // Of all formats those that hold it; who names one is told why not.
+    if (job.options.formats.empty() && trip.format->write_fabric != nullptr && has_only_surfaces(*original))
+      continue;
     job.progress(trip.name, ++number, trips->size());
     is_different = traveller.travel(trip) || is_different;
   }

@@ -1,6 +1,7 @@
 """`selvage check` on CAD files: sound ones, planted faults with their lines, what other systems stumble on."""
 
 import json
+import re
 import unittest
 
 from program import GRID, PATH, RING, Case, run
@@ -52,15 +53,34 @@ class CheckCad(Case):
                 (last, 10, "     99", r"counts 99 lines in the global section"),
                 (body, 79, "77", r"sequence number P\d+ follows"),
                 (body, 70, "999", r"points back to"),
-                (body, 15, "0", r"PROP1 says that it is open in u, and it is closed"),
                 (last, 1, "X", r"where the number of start lines is due")):
             with self.subTest(message):
                 done = run("check", self.broken(good, line, column, text))
                 self.assertIn(done.returncode, (1, 3), done.stderr)
                 self.assertRegex(done.stderr, r"broken\.igs:%d:\d+: error: .*%s" % (line, message))
-        done = run("check", self.broken(good, body, 15, "0"))
+        done = run("check", self.broken(good, last, 10, "     99"))
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("1 defect", done.stdout)
+        self.assertIn("  geometry: sound\n  header, records and flags: 1 defect\n", done.stdout)
+        self.assertIn("  1 defect\n", done.stdout)
+
+    def test_flags_are_no_defects(self):
+        """Of what flags say wrongly one line a kind is shown, and it alone fails nothing."""
+        good = self.written("good.igs")
+        path = good
+        lines = [i for i, line in enumerate(good.read_text().splitlines(), 1) if line.startswith("128,17,15")]
+        self.assertGreater(len(lines), 3)
+        for line in lines:
+            path = self.broken(path, line, 15, "0")
+        done = run("check", path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = [line for line in done.stderr.splitlines() if "PROP1 says that it is open in u" in line]
+        self.assertEqual(len(found), 1, done.stderr)
+        self.assertRegex(found[0], r"broken\.igs:%d:\d+: warning: x%d, for example: 128 at " % (lines[0], len(lines)))
+        self.assertIn("  geometry: sound\n  header, records and flags: %d warnings\n" % len(lines), done.stdout)
+        every = run("check", path, "--all")
+        self.assertEqual(every.stderr.count("PROP1 says that it is open in u"), len(lines))
+        self.assertEqual(every.returncode, 0)
+        self.assertEqual(run("check", path, "--strict").returncode, 1)
 
     def moved_corner(self, path):
         """The file with the first control point of its first end face moved: one digit of its largest coordinate."""
@@ -97,6 +117,27 @@ class CheckCad(Case):
         done = run("check", bad, "--report", report)
         texts = [m["text"] for m in json.loads(report.read_text())["inputs"][0]["messages"]]
         self.assertTrue(any("an edge" in text and ("apart" in text or "no other face" in text) for text in texts), texts)
+
+    def test_stated_measures(self):
+        """A STEP file whose volume, area or centre is changed is defective; each is told by the product's name."""
+        good = self.written("good.stp", source=RING)
+        text = good.read_text("ascii")
+        changed = good.with_name("changed.stp")
+        for pattern, what in ((r"(VOLUME_MEASURE\()([^)]*)(\))", "volume"), (r"(AREA_MEASURE\()([^)]*)(\))", "area"),
+                              (r"('centre point',\()([^,]*)(,)", "centre")):
+            with self.subTest(what):
+                found = re.search(pattern, text)
+                value = float(found.group(2))
+                other = value * 1.002 if what != "centre" else value + 0.1
+                changed.write_text(text[: found.start(2)] + repr(other).upper() + text[found.end(2) :], "ascii")
+                done = run("check", changed)
+                self.assertEqual(done.returncode, 3, done.stderr)
+                self.assertRegex(done.stderr, r"changed\.stp: error: '\w+': the file says that its %s is " % what)
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        for unit in ("m", "inch"):
+            path = self.folder / "unit.stp"
+            self.succeeds("convert", RING, "-o", path, "--units", unit)
+            self.assertEqual(run("check", path).returncode, 0)
 
     def test_not_readable(self):
         path = self.folder / "cut.igs"

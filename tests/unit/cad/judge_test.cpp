@@ -65,6 +65,21 @@ Model block() {
   return model;
 }
 
+// The unit square in a plane of 4 x 4, as a hole-free trimmed face on line 5.
+Model trimmed() {
+  Face face = face_of(bilinear({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {4, 4, 0}), 5);
+  const std::array<Vec3, 4> corners = {Vec3(1, 1, 0), Vec3(2, 1, 0), Vec3(2, 2, 0), Vec3(1, 2, 0)};
+  cad::Loop loop;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 &a = corners[i], &b = corners[(i + 1) % 4];
+    loop.edges.push_back({.curve = line(a, b), .flat = line(a / 4, b / 4)});
+  }
+  face.loops = {loop};
+  Model model;
+  model.parts.push_back(alone(face));
+  return model;
+}
+
 struct Verdict {
   Findings findings;
   cad::Measures measures;
@@ -118,6 +133,50 @@ TEST(Judge, GapIsMeasured) {
   // Within the resolution of the file it is none.
   model.resolution = 0.01;
   EXPECT_EQ(verdict_of(model).findings.defects(), 0);
+}
+
+// Kernels with tolerant edges sew 0.02 mm, and a ten-thousandth of the size: a warning, and a defect beyond.
+TEST(Judge, GapsThatKernelsSew) {
+  for (const auto& [gap, severity] : {std::pair(0.0003, warning), std::pair(0.0005, defect)}) {
+    Model model = block();  // of size 4: 0.0004
+    model.parts[0].faces[5].surface.points[3].z() += gap;
+    const Verdict verdict = verdict_of(model);
+    EXPECT_TRUE(verdict.says(severity, "apart", 60)) << verdict.text();
+    EXPECT_EQ(verdict.findings.is_sound(), severity == warning) << verdict.text();
+    model = trimmed();
+    model.parts[0].faces[0].loops[0].edges[1].curve.points[1].x() += gap;
+    EXPECT_TRUE(verdict_of(model).says(severity, "its boundary is not closed", 5))
+        << verdict_of(model).text();
+  }
+  // Of a model of 4 m: 0.02 mm.
+  for (const auto& [gap, severity] : {std::pair(0.019, warning), std::pair(0.021, defect)}) {
+    Model model = block();
+    for (Face& face : model.parts[0].faces)
+      for (Vec3& p : face.surface.points) p *= 1000;
+    model.parts[0].faces[5].surface.points[3].z() += gap;
+    EXPECT_TRUE(verdict_of(model).says(severity, "apart", 60)) << verdict_of(model).text();
+    // In inches it is 25.4 times as much.
+    model.units = Unit::inch;
+    EXPECT_TRUE(verdict_of(model).says(defect, "apart", 60)) << verdict_of(model).text();
+  }
+}
+
+TEST(Judge, OneLineAKindHasTheWorst) {
+  Model model = block();
+  model.parts[0].faces.pop_back();
+  model.parts[0].faces.pop_back();
+  const Verdict verdict = verdict_of(model);
+  const std::vector<Message> summary = verdict.findings.summary();
+  const auto open = std::count_if(summary.begin(), summary.end(), [](const Message& message) {
+    return message.text.find("has no other face beside it") != std::string::npos;
+  });
+  EXPECT_EQ(open, 1);
+  ASSERT_FALSE(summary.empty());
+  EXPECT_EQ(summary[0].severity, defect);
+  EXPECT_TRUE(summary[0].text.starts_with("x")) << summary[0].text;
+  EXPECT_NE(summary[0].text.find("the worst: "), std::string::npos) << summary[0].text;
+  EXPECT_NE(summary[0].text.find("length 4 mm"), std::string::npos) << summary[0].text;  // the longest
+  for (std::size_t i = 1; i < summary.size(); ++i) EXPECT_GE(summary[i - 1].severity, summary[i].severity);
 }
 
 TEST(Judge, OpenEdgesAreCounted) {
@@ -237,6 +296,36 @@ TEST(Judge, FaceThatIsThereTwice) {
   EXPECT_EQ(verdict.findings.defects(), 1);
 }
 
+// Two groups have the same entity: a habit of some programs, and no defect.
+TEST(Judge, AFaceOfTwoGroups) {
+  Model model = block();
+  model.parts.push_back(alone(model.parts[0].faces[2]));
+  const Verdict verdict = verdict_of(model);
+  EXPECT_EQ(verdict.findings.defects(), 0) << verdict.text();
+  EXPECT_TRUE(verdict.says(note, "it is read twice: two groups have it", 30)) << verdict.text();
+}
+
+// Twelve turns of a thread, of which twelve steps see one place each.
+TEST(Judge, AreaOfAHelix) {
+  constexpr int turns = 12, each = 10, count = turns * each + 1;
+  nurbs::Surface flank;
+  flank.degree_u = flank.degree_v = 1;
+  flank.count_u = 2;
+  flank.count_v = count;
+  flank.knots_u = {0, 0, 1, 1};
+  flank.knots_v = {0};
+  for (int j = 0; j < count; ++j) flank.knots_v.push_back(j);
+  flank.knots_v.push_back(count - 1);
+  for (int j = 0; j < count; ++j) {
+    const double turn = 2 * std::numbers::pi * (j % each) / each;
+    for (const double z : {0.0, 0.5})
+      flank.points.emplace_back(std::cos(turn), std::sin(turn), z + static_cast<double>(j) / each);
+  }
+  Model model;
+  model.parts = {alone(face_of(flank, 70))};
+  EXPECT_FALSE(verdict_of(model).says(defect, "a face without area")) << verdict_of(model).text();
+}
+
 TEST(Judge, FaceWithoutArea) {
   Model model = block();
   model.parts.push_back(alone(face_of(bilinear({0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}), 70)));
@@ -260,21 +349,6 @@ TEST(Judge, KnotsAndWeights) {
   EXPECT_TRUE(verdict_of(model).says(defect, "times, at degree", 80));
 }
 
-// The unit square in a plane of 4 x 4, as a hole-free trimmed face on line 5.
-Model trimmed() {
-  Face face = face_of(bilinear({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {4, 4, 0}), 5);
-  const std::array<Vec3, 4> corners = {Vec3(1, 1, 0), Vec3(2, 1, 0), Vec3(2, 2, 0), Vec3(1, 2, 0)};
-  cad::Loop loop;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3 &a = corners[i], &b = corners[(i + 1) % 4];
-    loop.edges.push_back({.curve = line(a, b), .flat = line(a / 4, b / 4)});
-  }
-  face.loops = {loop};
-  Model model;
-  model.parts.push_back(alone(face));
-  return model;
-}
-
 TEST(Judge, Loops) {
   EXPECT_EQ(verdict_of(trimmed()).findings.defects(), 0) << verdict_of(trimmed()).text();
   Model model = trimmed();
@@ -289,6 +363,32 @@ TEST(Judge, Loops) {
   for (cad::Edge& edge : model.parts[0].faces[0].loops[0].edges)
     for (Vec3& p : edge.curve.points) p.z() += 0.5;
   EXPECT_TRUE(verdict_of(model).says(defect, "an edge lies 0.5 mm off its surface", 5))
+      << verdict_of(model).text();
+}
+
+// Of a closed surface parameters beyond its range are those of another turn.
+TEST(Judge, ParametersOfAnotherTurn) {
+  nurbs::Surface side = cylinder(1, 3);
+  const double turn = side.last_u() - side.first_u(), low = side.first_v(), height = side.last_v() - low;
+  const auto at = [&](double u, double v) { return Vec3(side.first_u() + u * turn, low + v * height, 0); };
+  const auto loop_from = [&](double shift) {
+    cad::Loop loop;
+    const std::array<Vec2, 4> corners = {Vec2(0.1, 0.2), Vec2(0.4, 0.2), Vec2(0.4, 0.8), Vec2(0.1, 0.8)};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Vec2 &a = corners[i], &b = corners[(i + 1) % 4];
+      loop.edges.push_back({.curve = {}, .flat = line(at(a.x() + shift, a.y()), at(b.x() + shift, b.y()))});
+    }
+    return loop;
+  };
+  Model model;
+  model.parts = {alone(face_of(side, 5))};
+  for (const double shift : {0.0, -1.0, 1.0}) {
+    model.parts[0].faces[0].loops = {loop_from(shift)};
+    EXPECT_FALSE(verdict_of(model).says(defect, "leaves the range")) << shift << verdict_of(model).text();
+  }
+  model.parts[0].faces[0].loops = {loop_from(0)};
+  model.parts[0].faces[0].loops[0].edges[1].flat.points[1].y() = low + 1.2 * height;
+  EXPECT_TRUE(verdict_of(model).says(defect, "leaves the range of its surface by 0.6 mm", 5))
       << verdict_of(model).text();
 }
 

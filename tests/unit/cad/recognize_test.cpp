@@ -493,6 +493,19 @@ TEST(Recognize, WhatIsNoYarnStays) {
   }
 }
 
+// Among other surfaces a tube without end faces is a hole or a pin; alone, a yarn with open ends.
+TEST(Recognize, ATubeAmongOtherSurfacesIsNoYarn) {
+  Model model;
+  model.parts = {part_of("hole", {cylinder(0.2, 2, 10, 10)}), part_of("sheet", {sheet()})};
+  EXPECT_TRUE(taken(model).empty());
+  EXPECT_EQ(model.parts.size(), 2U);
+  Model alone;
+  alone.parts = {part_of("sleeve", {cylinder(0.2, 2, 10, 10)})};
+  const std::vector<FoundYarn> found = taken(alone);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].body.start.style, EndStyle::none);
+}
+
 TEST(Recognize, TenThousandLooseYarns) {
   const Body model_yarn =
       wave("", {.length = 1, .width = 0.25, .height = 0.125, .amplitude = 0.05, .sections = 4, .round = 8},
