@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
 #include "cad/basis.h"
 #include "cad/outline.h"
+#include "cad/region.h"
+#include "cad/sampled_curve.h"
 #include "core/parallel.h"
 #include "core/readable.h"
 
@@ -21,6 +24,8 @@ using nurbs::Surface;
 
 // What the arithmetic of distance_to leaves, as a share of the largest coordinate.
 constexpr double arithmetic = 1e-13;
+// A difference is told by bounds of which the upper one is at most this many times the lower one.
+constexpr double largest_spread = 1.5;
 
 struct Limits {
   double points = 0;     // control points that are this near are equal
@@ -48,6 +53,11 @@ Range range_of(const Thing& thing, std::size_t k) {
   return k < thing.faces.size() ? used_range(*thing.faces[k]) : domain(*thing.surfaces[k]);
 }
 
+std::optional<Region> region_of(const Thing& thing, std::size_t k) {
+  if (k >= thing.faces.size() || thing.faces[k]->loops.empty()) return std::nullopt;
+  return Region(*thing.faces[k]);
+}
+
 class Comparer {
  public:
   Comparer(const Subject& a, const Subject& b, const CompareOptions& options)
@@ -73,6 +83,12 @@ class Comparer {
                                     const std::vector<std::size_t>& partner) const;
   [[nodiscard]] SurfaceFinding compare_surfaces(const Thing& a, std::size_t i, const Thing& b,
                                                 std::size_t j) const;
+  struct Place;
+  [[nodiscard]] static Place place_of(const Thing& thing, std::size_t k);
+  // Nothing farther than `limit` was found.
+  [[nodiscard]] bool is_within(const Reach& reach, double limit) const {
+    return reach.at_most <= limit || (std::isfinite(reach.at_most) && reach.at_least <= limit);
+  }
   [[nodiscard]] std::vector<std::size_t> partners(const Thing& a, const Thing& b) const;
   [[nodiscard]] PairFinding compare_unions(const Thing& a, const Thing& b) const;
   void find_motion(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
@@ -89,6 +105,7 @@ class Comparer {
   Limits limits_;
   double near_ = 0;
   Comparison out_;
+  std::size_t uncertain_ = 0;  // equal at all points that were looked at, without a bound that says so
   std::size_t without_name_ = 0, without_color_ = 0;
 };
 
@@ -110,53 +127,109 @@ SurfaceFinding Comparer::compare_surfaces(const Thing& a, std::size_t i, const T
     const Reach outlines = outline_distance(*a.faces[i], *b.faces[j], limits_.distances);
     if (!by_points && !(is_flat(s) && is_flat(t))) {
       const Reach surfaces = trimmed_distance(*a.faces[i], *b.faces[j], limits_.distances);
-      finding.reach = surfaces.at_most > outlines.at_most ? surfaces : outlines;
+      finding.reach = worse(surfaces, outlines, limits_.distances);
       finding.points.reset();
     } else if (!by_points || outlines.at_most > std::max(limits_.distances, finding.reach.at_most)) {
       finding.reach = outlines;
       finding.points.reset();
+    } else if (outlines.at_most > finding.reach.at_most) {
+      finding.reach.at_most = outlines.at_most;
+      if (finding.reach.at_most > limits_.points) finding.points.reset();
     }
     return finding;
   }
   if (finding.points) return finding;
-  const Reach there = distance_to(s, domain(s), SurfaceSet({&t}), limits_.distances);
-  const Reach back = distance_to(t, domain(t), SurfaceSet({&s}), limits_.distances);
-  finding.reach = there.at_most >= back.at_most ? there : back;
+  const SurveyOptions survey = {.near = largest_spread};
+  const Reach there = distance_to(s, domain(s), SurfaceSet({&t}), limits_.distances, survey);
+  const Reach back = distance_to(t, domain(t), SurfaceSet({&s}), limits_.distances, survey);
+  finding.reach = worse(there, back, limits_.distances);
   return finding;
 }
 
-// Which surface of b belongs to each one of a, which has as many: the same number where that is the nearest,
-// by the boxes.
+// What a face is known by, however its parameters run.
+struct Comparer::Place {
+  Box3 box;     // of its outline, and of points inside
+  Vec3 middle;  // of points inside
+};
+
+Comparer::Place Comparer::place_of(const Thing& thing, std::size_t k) {
+  constexpr int inside = 4;
+  Place place;
+  const Face& face = *thing.faces[k];
+  for (const nurbs::Curve& curve : outline(face))
+    for (const Vec3& p : SampledCurve(curve).points) place.box.extend(p);
+  const Region region(face);
+  const Range range = used_range(face);
+  place.middle = Vec3::Zero();
+  int count = 0;
+  for (int j = 0; j < inside; ++j)
+    for (int i = 0; i < inside; ++i) {
+      const double u = std::lerp(range.u0, range.u1, (i + 0.5) / inside),
+                   v = std::lerp(range.v0, range.v1, (j + 0.5) / inside);
+      if (!region.contains(u, v)) continue;
+      const Vec3 p = nurbs::evaluate(face.surface, u, v);
+      place.box.extend(p);
+      place.middle += p;
+      ++count;
+    }
+  place.middle = count > 0 ? Vec3(place.middle / count) : Vec3(place.box.center());
+  return place;
+}
+
+// Which surface of b belongs to each one of a, which has as many: what lies at the same place, its own number
+// first, then what is nearest.
 std::vector<std::size_t> Comparer::partners(const Thing& a, const Thing& b) const {
   const std::size_t count = a.surfaces.size();
   std::vector<std::size_t> partner(count);
   std::iota(partner.begin(), partner.end(), 0);
   constexpr std::size_t most = 4000;
   if (count == 1 || count > most) return partner;
-  const auto boxes = [](const Thing& thing) {
-    std::vector<Box3> list;
-    for (const Surface* const surface : thing.surfaces) list.push_back(box_of(surface->points));
+  std::vector<Place> of_a, of_b;
+  Box3 all_a, all_b;
+  for (std::size_t k = 0; k < count; ++k) {
+    all_a.extend(of_a.emplace_back(place_of(a, k)).box);
+    all_b.extend(of_b.emplace_back(place_of(b, k)).box);
+  }
+  const Vec3 moved = all_b.center() - all_a.center();
+  const Vec3 shift = moved.norm() <= 1e-3 * all_a.diagonal().norm() ? Vec3(Vec3::Zero()) : moved;
+  const auto box_distance = [&](std::size_t i, std::size_t j) {
+    return (of_a[i].box.min() + shift - of_b[j].box.min()).norm() +
+           (of_a[i].box.max() + shift - of_b[j].box.max()).norm();
+  };
+  // The points inside depend on how the parameters run: their middle tells only what the box does not.
+  const auto distance = [&](std::size_t i, std::size_t j) {
+    return box_distance(i, j) + 0.1 * (of_a[i].middle + shift - of_b[j].middle).norm();
+  };
+  struct FacePair {
+    double distance;
+    std::size_t i, order;
+    auto operator<=>(const FacePair&) const = default;
+  };
+  std::vector<bool> done(count), taken(count);
+  const auto take_best = [&](std::size_t i) {
+    std::vector<FacePair> list;
+    for (std::size_t k = 0; k < count; ++k)
+      if (const std::size_t j = (i + k) % count; !taken[j]) list.push_back({distance(i, j), i, k});
     return list;
   };
-  const std::vector<Box3> of_a = boxes(a), of_b = boxes(b);
-  const Vec3 shift = b.box.center() - a.box.center();
-  const auto distance = [&](std::size_t i, std::size_t j) {
-    return (of_a[i].min() + shift - of_b[j].min()).norm() + (of_a[i].max() + shift - of_b[j].max()).norm();
-  };
-  std::vector<bool> taken(count);
+  const double same = std::max(near_, 1e-4 * all_a.diagonal().norm());
   for (std::size_t i = 0; i < count; ++i) {
-    std::size_t best = count;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t j = (i + k) % count;  // its own number first
-      if (taken[j]) continue;
-      const double d = distance(i, j);
-      if (d >= least) continue;
-      least = d;
-      best = j;
-    }
-    partner[i] = best;
-    taken[best] = true;
+    const std::vector<FacePair> list = take_best(i);
+    const FacePair& best = *std::ranges::min_element(list);
+    const std::size_t j = (i + best.order) % count;
+    if (box_distance(i, j) > same) continue;
+    partner[i] = j;
+    done[i] = taken[j] = true;
+  }
+  std::vector<FacePair> rest;
+  for (std::size_t i = 0; i < count; ++i)
+    if (!done[i]) std::ranges::copy(take_best(i), std::back_inserter(rest));
+  std::ranges::sort(rest);
+  for (const FacePair& candidate : rest) {
+    const std::size_t j = (candidate.i + candidate.order) % count;
+    if (done[candidate.i] || taken[j]) continue;
+    partner[candidate.i] = j;
+    done[candidate.i] = taken[j] = true;
   }
   return partner;
 }
@@ -166,18 +239,22 @@ PairFinding Comparer::compare_unions(const Thing& a, const Thing& b) const {
   PairFinding finding;
   const SurfaceSet all_a(a.surfaces), all_b(b.surfaces);
   for (std::size_t i = 0; i < a.surfaces.size(); ++i) {
-    const Reach reach = distance_to(*a.surfaces[i], range_of(a, i), all_b, limits_.distances);
-    if (reach.at_most < finding.reach.at_most) continue;
+    const std::optional<Region> region = region_of(a, i);
+    const SurveyOptions survey = {.near = largest_spread, .region = region ? &*region : nullptr};
+    const Reach reach = distance_to(*a.surfaces[i], range_of(a, i), all_b, limits_.distances, survey);
+    if (i > 0 && &worse(finding.reach, reach, limits_.distances) == &finding.reach) continue;
     finding.reach = reach;
     finding.surface = i;
   }
   for (std::size_t j = 0; j < b.surfaces.size(); ++j) {
-    const Reach reach = distance_to(*b.surfaces[j], range_of(b, j), all_a, limits_.distances);
-    if (reach.at_most <= finding.reach.at_most) continue;
+    const std::optional<Region> region = region_of(b, j);
+    const SurveyOptions survey = {.near = largest_spread, .region = region ? &*region : nullptr};
+    const Reach reach = distance_to(*b.surfaces[j], range_of(b, j), all_a, limits_.distances, survey);
+    if (&worse(finding.reach, reach, limits_.distances) == &finding.reach) continue;
     finding.reach = reach;
     finding.surface = a.surfaces.size();
   }
-  finding.is_equal = finding.reach.at_most <= limits_.distances;
+  finding.is_equal = is_within(finding.reach, limits_.distances);
   return finding;
 }
 
@@ -207,9 +284,14 @@ PairFinding Comparer::look_at(const Thing& a, const Thing& b, const std::vector<
     const SurfaceFinding& one = found.emplace_back(compare_surfaces(a, i, b, partner[i]));
     finding.count += a.surfaces[i]->points.size();
     if (one.points) finding.changed += one.points->changed;
-    finding.is_equal =
-        finding.is_equal && one.reach.at_most <= (one.points ? limits_.points : limits_.distances);
-    if (i > 0 && one.reach.at_most <= finding.reach.at_most) continue;
+    const bool is_equal = one.points ? one.reach.at_most <= limits_.points
+                                     : is_within(one.reach, limits_.distances);
+    // The worst one is one that differs, where there is such a one.
+    const bool is_worse = is_equal == finding.is_equal
+                              ? &worse(finding.reach, one.reach, limits_.distances) == &one.reach
+                              : !is_equal;
+    finding.is_equal = finding.is_equal && is_equal;
+    if (i > 0 && !is_worse) continue;
     finding.reach = one.reach;
     finding.points = one.points;
     finding.surface = i;
@@ -280,6 +362,7 @@ void Comparer::report_pair(const Thing& a, const Thing& b, const PairFinding& fi
     out_.largest = finding.reach.at_most;
     out_.largest_of = a.name;
   }
+  if (finding.is_equal && finding.reach.at_most > limits_.distances) ++uncertain_;
   if (a.name != b.name) {
     if (a.name.empty() || b.name.empty())
       ++without_name_;
@@ -325,9 +408,13 @@ void Comparer::absorb_regrouped(Pairing& pairing) {
         const Range range = range_of(thing, k);
         const Vec3 middle = nurbs::evaluate(s, 0.5 * (range.u0 + range.u1), 0.5 * (range.v0 + range.v1));
         if (others.near(middle).distance > near_) return false;
-        most = std::max(most, distance_to(s, range, others, limits_.distances).at_most);
-        if (most > limits_.distances) return false;
+        const std::optional<Region> region = region_of(thing, k);
+        const SurveyOptions survey = {.near = largest_spread, .region = region ? &*region : nullptr};
+        const Reach reach = distance_to(s, range, others, limits_.distances, survey);
+        if (!is_within(reach, limits_.distances)) return false;
+        most = std::max(most, reach.at_most);
       }
+      if (most > limits_.distances) ++uncertain_;
       if (most > out_.largest) {
         out_.largest = most;
         out_.largest_of = thing.name;
@@ -361,6 +448,7 @@ Comparison::Counts counts_of(const Things& things) {
 }
 
 void Comparer::add_notes() {
+  out_.uncertain = uncertain_;
   if (without_name_ > 0) out_.notes.push_back(fmt::format("{} have a name in one file only", without_name_));
   if (without_color_ > 0)
     out_.notes.push_back(fmt::format("{} have a colour in one file only", without_color_));

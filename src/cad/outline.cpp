@@ -7,7 +7,9 @@
 #include <limits>
 
 #include "cad/basis.h"
+#include "cad/carrier.h"
 #include "cad/edges.h"
+#include "cad/region.h"
 #include "cad/sampled_curve.h"
 
 namespace selvage::cad {
@@ -16,6 +18,9 @@ using nurbs::Curve;
 using nurbs::Surface;
 
 namespace {
+
+// What is found to be farther is told within half of itself.
+constexpr SurveyOptions survey = {.most_cells = 2000, .near = 1.5};
 
 double size_of(const std::vector<Vec3>& points) {
   return points.empty() ? 0.0 : box_of(points).diagonal().norm();
@@ -48,10 +53,6 @@ std::vector<Surface> as_surfaces(const std::vector<Curve>& curves) {
   return out;
 }
 
-Reach worse(const Reach& a, const Reach& b) {
-  return a.at_most >= b.at_most ? a : b;
-}
-
 Reach one_way(const std::vector<Surface>& from, const std::vector<Surface>& to, double enough) {
   std::vector<const Surface*> all;
   all.reserve(to.size());
@@ -59,7 +60,7 @@ Reach one_way(const std::vector<Surface>& from, const std::vector<Surface>& to, 
   const SurfaceSet others(all);
   Reach reach;
   for (const Surface& surface : from)
-    reach = worse(reach, distance_to(surface, domain(surface), others, enough));
+    reach = worse(reach, distance_to(surface, domain(surface), others, enough, survey), enough);
   return reach;
 }
 
@@ -82,12 +83,12 @@ Reach outline_distance(const Face& a, const Face& b, double enough) {
     for (std::size_t k = 0; k < of_a.size(); ++k) {
       const auto change = compare_control_points(as_surface(of_a[k]), as_surface(of_b[k]), enough);
       if (!change || change->bound > enough) break;
-      reach = worse(reach, {change->largest, change->bound, of_a[k].points.front()});
+      reach.at_most = std::max(reach.at_most, change->bound);
       if (k + 1 == of_a.size()) return reach;
     }
   }
   const std::vector<Surface> all_a = as_surfaces(of_a), all_b = as_surfaces(of_b);
-  return worse(one_way(all_a, all_b, enough), one_way(all_b, all_a, enough));
+  return worse(one_way(all_a, all_b, enough), one_way(all_b, all_a, enough), enough);
 }
 
 Range used_range(const Face& face) {
@@ -115,13 +116,71 @@ bool is_flat(const Surface& surface) {
                      [&](const Vec3& p) { return std::abs(normal.dot(p - mean)) <= near; });
 }
 
-Reach trimmed_distance(const Face& a, const Face& b, double enough) {
+namespace {
+
+// Where the middle of one face is on the other one's surface, but outside of that one's loops: the two have
+// one outline and are the two sides of it.
+Reach beyond_outline(const Face& a, const Region& of_a, const SurfaceSet& others, const Face& b,
+                     const Region& of_b, double enough) {
+  constexpr int grid = 7;
   Reach reach;
-  if (a.loops.empty() || !b.loops.empty())
-    reach = distance_to(a.surface, used_range(a), SurfaceSet({&b.surface}), enough);
-  if (b.loops.empty() || !a.loops.empty())
-    reach = worse(reach, distance_to(b.surface, used_range(b), SurfaceSet({&a.surface}), enough));
+  if (!of_a.is_known() || !of_b.is_known()) return reach;
+  const Range range = used_range(a);
+  std::vector<Vec3> outside;
+  for (int j = 0; j < grid; ++j)
+    for (int i = 0; i < grid; ++i) {
+      const double u = std::lerp(range.u0, range.u1, (i + 0.5) / grid),
+                   v = std::lerp(range.v0, range.v1, (j + 0.5) / grid);
+      if (!of_a.contains(u, v)) continue;
+      const Vec3 p = nurbs::evaluate(a.surface, u, v);
+      const SurfaceSet::Foot foot = others.near(p);
+      if (foot.distance <= enough && !of_b.contains(foot.u, foot.v)) outside.push_back(p);
+    }
+  if (outside.empty()) return reach;
+  const std::vector<Surface> border = as_surfaces(outline(b));
+  std::vector<const Surface*> all;
+  for (const Surface& surface : border) all.push_back(&surface);
+  if (all.empty()) return reach;
+  const SurfaceSet sides(all);
+  const double deep = std::max(enough, 1e-3 * size_of(a.surface.points));
+  for (const Vec3& p : outside) {
+    const SurfaceSet::Foot foot = sides.near(p);
+    if (foot.distance <= std::max(deep, reach.found)) continue;
+    reach.found = reach.at_most = foot.distance;
+    reach.at_least = sides.least_distance(p, foot);
+    reach.at = p;
+  }
   return reach;
+}
+
+}  // namespace
+
+Reach trimmed_distance(const Face& a, const Face& b, double enough) {
+  const Range range_a = used_range(a), range_b = used_range(b);
+  const Region of_a(a), of_b(b);
+  const SurfaceSet set_a({&a.surface}), set_b({&b.surface});
+  Reach reach = worse(beyond_outline(a, of_a, set_b, b, of_b, enough),
+                      beyond_outline(b, of_b, set_a, a, of_a, enough), enough);
+  if (reach.at_least > enough) return reach;
+  if (const auto bound = carrier_distance(a.surface, range_a, b.surface, range_b, enough)) {
+    reach.at_most = *bound;
+    return reach;
+  }
+  SurveyOptions options = survey;
+  if (a.loops.empty() || !b.loops.empty()) {
+    options.region = &of_a;
+    reach = distance_to(a.surface, range_a, set_b, enough, options);
+  }
+  if (b.loops.empty() || !a.loops.empty()) {
+    options.region = &of_b;
+    reach = worse(reach, distance_to(b.surface, range_b, set_a, enough, options), enough);
+  }
+  return reach;
+}
+
+const Reach& worse(const Reach& a, const Reach& b, double enough) {
+  if (std::max(a.at_least, b.at_least) > enough) return a.at_least >= b.at_least ? a : b;
+  return a.at_most >= b.at_most ? a : b;
 }
 
 }  // namespace selvage::cad

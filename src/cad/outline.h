@@ -26,4 +26,7 @@ bool is_flat(const nurbs::Surface& surface);
 // apart.
 Reach trimmed_distance(const Face& a, const Face& b, double enough);
 
+// The one that says more: that was found to be farther than `enough`, or else the less certain one.
+const Reach& worse(const Reach& a, const Reach& b, double enough);
+
 }  // namespace selvage::cad

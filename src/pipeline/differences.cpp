@@ -33,6 +33,8 @@ std::string reach_text(const cad::Reach& reach, Unit units) {
   const double low = reach.at_least, high = reach.at_most;
   if (!std::isfinite(high)) return fmt::format("by {:.6g} {} or more", low, name_of(units));
   if (high <= 1.000001 * low) return fmt::format("by {:.6g} {}", low, name_of(units));
+  if (low > 0 && high > 1.6 * low)
+    return fmt::format("by {:.6g} {} or more (nowhere by more than {:.6g})", low, name_of(units), high);
   return fmt::format("by {:.6g} to {:.6g} {}", low, high, name_of(units));
 }
 
@@ -154,6 +156,9 @@ std::string summary_of(const cad::Comparison& found, double tolerance, Unit unit
   if (found.largest > 0)
     text += fmt::format(", at most {:.6g} {} apart{}", found.largest, name_of(units),
                         found.largest_of.empty() ? "" : fmt::format(" ({})", in_quotes(found.largest_of)));
+  if (found.uncertain > 0)
+    text += fmt::format("; {} of them within the tolerance at every point that was measured, certified only so far",
+                        found.uncertain);
   return text + fmt::format(" (tolerance {:g} {})", tolerance, name_of(units));
 }
 
@@ -168,6 +173,7 @@ std::string to_json(const cad::Comparison& found, const std::string& a, const st
               {"equal", found.differences.empty()},
               {"counts", {{"a", counts_json(found.a)}, {"b", counts_json(found.b)}}},
               {"same", found.equal},
+              {"uncertain", found.uncertain},
               {"largest_deviation", found.largest},
               {"kinds", kinds},
               {"differences", list_json(found.differences, difference_json)},

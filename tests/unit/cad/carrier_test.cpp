@@ -1,0 +1,105 @@
+// Surfaces that one cylinder, cone, sphere or torus carries, told from those that none does.
+#include "cad/carrier.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "unit/cad/surfaces.h"
+
+namespace selvage::cad {
+namespace {
+
+using nurbs::Surface;
+using namespace test;
+
+// A quarter circle's points and weights turned about z: radius and height of the profile's points.
+struct Profile {
+  std::vector<Vec3> points;  // (r, 0, z)
+  std::vector<double> weights, knots;
+  int degree = 1;
+};
+
+// Turned from one angle to another (radians, less than a half turn) in one rational piece: arcs that begin at
+// other places have other parameters.
+Surface turned(const Profile& profile, double from, double to) {
+  Surface s;
+  s.degree_u = 2;
+  s.degree_v = profile.degree;
+  s.count_u = 3;
+  s.count_v = static_cast<int>(profile.points.size());
+  s.knots_u = {0, 0, 0, 1, 1, 1};
+  s.knots_v = profile.knots;
+  const double half = 0.5 * (to - from), middle = 0.5 * (to + from);
+  for (std::size_t j = 0; j < profile.points.size(); ++j) {
+    const double r = profile.points[j].x(), z = profile.points[j].z();
+    const double w = profile.weights.empty() ? 1 : profile.weights[j];
+    for (const auto& [angle, reach, weight] :
+         {std::tuple{from, 1.0, 1.0}, {middle, 1 / std::cos(half), std::cos(half)}, {to, 1.0, 1.0}}) {
+      s.points.emplace_back(r * reach * std::cos(angle), r * reach * std::sin(angle), z);
+      s.weights.push_back(w * weight);
+    }
+  }
+  return s;
+}
+
+Profile segment(double r0, double z0, double r1, double z1) {
+  return {{{r0, 0, z0}, {r1, 0, z1}}, {}, {0, 0, 1, 1}, 1};
+}
+
+// An arc about (c, 0) in the plane of r and z.
+Profile arc(double c, double radius, double from, double to) {
+  const double half = 0.5 * (to - from), middle = 0.5 * (to + from), far = radius / std::cos(half);
+  return {{{c + radius * std::cos(from), 0, radius * std::sin(from)},
+           {c + far * std::cos(middle), 0, far * std::sin(middle)},
+           {c + radius * std::cos(to), 0, radius * std::sin(to)}},
+          {1, std::cos(half), 1},
+          {0, 0, 0, 1, 1, 1},
+          2};
+}
+
+std::optional<double> between(const Surface& a, const Surface& b, double enough = 1e-7) {
+  return carrier_distance(a, domain(a), b, domain(b), enough);
+}
+
+TEST(Carrier, OfCylindersConesSpheresAndTori) {
+  for (const Profile& profile : {segment(2, 0, 2, 5), segment(1, 0, 3, 4), arc(0, 2, -0.7, 1.1), arc(5, 1, -0.4, 1.9)}) {
+    const Surface a = turned(profile, 0, 2), b = turned(profile, -0.3, 2.2);
+    const auto bound = between(a, b);
+    ASSERT_TRUE(bound.has_value());
+    EXPECT_LE(*bound, 1e-9);
+  }
+}
+
+TEST(Carrier, OfAConeWithItsPoint) {
+  const Profile cone = segment(0, 0, 2, 3);
+  const auto bound = between(turned(cone, 0, 2), turned(cone, -0.3, 2.2), 1e-6);
+  ASSERT_TRUE(bound.has_value());
+  EXPECT_LE(*bound, 1e-6);
+}
+
+TEST(Carrier, NoneWhereTheyDiffer) {
+  constexpr double change = 1e-5;
+  const std::vector<std::pair<Profile, Profile>> pairs = {
+      {segment(2, 0, 2, 5), segment(2 + change, 0, 2 + change, 5)},
+      {segment(1, 0, 3, 4), segment(1, 0, 3 + change, 4)},
+      {arc(0, 2, -0.7, 1.1), arc(0, 2 + change, -0.7, 1.1)},
+      {arc(5, 1, -0.4, 1.9), arc(5, 1 + change, -0.4, 1.9)},
+      {arc(5, 1, -0.4, 1.9), arc(5 + change, 1, -0.4, 1.9)}};
+  for (const auto& [one, other] : pairs) {
+    const Surface a = turned(one, 0, 2), b = turned(other, -0.3, 2.2);
+    EXPECT_FALSE(between(a, b, 0.5 * change).has_value());
+    // Where it is certified after all, the bound holds.
+    if (const auto bound = between(a, b, 100 * change)) {
+      EXPECT_GE(*bound, 0.5 * change);
+    }
+  }
+}
+
+TEST(Carrier, NoneOfFreeShapes) {
+  EXPECT_FALSE(between(wavy_tube(), reseamed(wavy_tube(), 0.3)).has_value());
+}
+
+}  // namespace
+}  // namespace selvage::cad
