@@ -83,8 +83,8 @@ class Comparer {
                                     const std::vector<std::size_t>& partner) const;
   [[nodiscard]] SurfaceFinding compare_surfaces(const Thing& a, std::size_t i, const Thing& b,
                                                 std::size_t j) const;
-  struct Place;
-  [[nodiscard]] static Place place_of(const Thing& thing, std::size_t k);
+  // Do a few points tell that they differ?
+  [[nodiscard]] std::optional<PairFinding> glance_at(const Thing& a, const Thing& b) const;
   // Nothing farther than `limit` was found.
   [[nodiscard]] bool is_within(const Reach& reach, double limit) const {
     return reach.at_most <= limit || (std::isfinite(reach.at_most) && reach.at_least <= limit);
@@ -146,36 +146,6 @@ SurfaceFinding Comparer::compare_surfaces(const Thing& a, std::size_t i, const T
   return finding;
 }
 
-// What a face is known by, however its parameters run.
-struct Comparer::Place {
-  Box3 box;     // of its outline, and of points inside
-  Vec3 middle;  // of points inside
-};
-
-Comparer::Place Comparer::place_of(const Thing& thing, std::size_t k) {
-  constexpr int inside = 4;
-  Place place;
-  const Face& face = *thing.faces[k];
-  for (const nurbs::Curve& curve : outline(face))
-    for (const Vec3& p : SampledCurve(curve).points) place.box.extend(p);
-  const Region region(face);
-  const Range range = used_range(face);
-  place.middle = Vec3::Zero();
-  int count = 0;
-  for (int j = 0; j < inside; ++j)
-    for (int i = 0; i < inside; ++i) {
-      const double u = std::lerp(range.u0, range.u1, (i + 0.5) / inside),
-                   v = std::lerp(range.v0, range.v1, (j + 0.5) / inside);
-      if (!region.contains(u, v)) continue;
-      const Vec3 p = nurbs::evaluate(face.surface, u, v);
-      place.box.extend(p);
-      place.middle += p;
-      ++count;
-    }
-  place.middle = count > 0 ? Vec3(place.middle / count) : Vec3(place.box.center());
-  return place;
-}
-
 // Which surface of b belongs to each one of a, which has as many: what lies at the same place, its own number
 // first, then what is nearest.
 std::vector<std::size_t> Comparer::partners(const Thing& a, const Thing& b) const {
@@ -187,8 +157,8 @@ std::vector<std::size_t> Comparer::partners(const Thing& a, const Thing& b) cons
   std::vector<Place> of_a, of_b;
   Box3 all_a, all_b;
   for (std::size_t k = 0; k < count; ++k) {
-    all_a.extend(of_a.emplace_back(place_of(a, k)).box);
-    all_b.extend(of_b.emplace_back(place_of(b, k)).box);
+    all_a.extend(of_a.emplace_back(place_of(*a.faces[k])).box);
+    all_b.extend(of_b.emplace_back(place_of(*b.faces[k])).box);
   }
   const Vec3 moved = all_b.center() - all_a.center();
   const Vec3 shift = moved.norm() <= 1e-3 * all_a.diagonal().norm() ? Vec3(Vec3::Zero()) : moved;
@@ -198,7 +168,9 @@ std::vector<std::size_t> Comparer::partners(const Thing& a, const Thing& b) cons
   };
   // The points inside depend on how the parameters run: their middle tells only what the box does not.
   const auto distance = [&](std::size_t i, std::size_t j) {
-    return box_distance(i, j) + 0.1 * (of_a[i].middle + shift - of_b[j].middle).norm();
+    const std::optional<Vec3>&middle_a = of_a[i].middle, &middle_b = of_b[j].middle;
+    const double inside = middle_a && middle_b ? (*middle_a + shift - *middle_b).norm() : 0.0;
+    return box_distance(i, j) + 0.1 * inside;
   };
   struct FacePair {
     double distance;
@@ -319,6 +291,33 @@ PairFinding Comparer::look_at(const Thing& a, const Thing& b) const {
   if (ordered && partner == in_order) return *ordered;
   PairFinding other = look_at(a, b, partner);
   return ordered && ordered->reach.at_most <= other.reach.at_most ? *ordered : other;
+}
+
+// A difference that a point shows is one however the surfaces belong together.
+std::optional<PairFinding> Comparer::glance_at(const Thing& a, const Thing& b) const {
+  constexpr int points_of_one = 8, points_of_many = 3;
+  constexpr std::size_t many = 6;
+  if (a.surfaces.size() == b.surfaces.size()) {
+    bool bases_agree = true;
+    for (std::size_t k = 0; k < a.surfaces.size() && bases_agree; ++k)
+      bases_agree = have_one_basis(*a.surfaces[k], *b.surfaces[k]);
+    if (bases_agree) return std::nullopt;  // their control points are compared
+  }
+  const SurfaceSet all_b(b.surfaces);
+  for (std::size_t k = 0; k < a.surfaces.size(); ++k) {
+    const std::optional<Region> region = region_of(a, k);
+    if (region && !region->is_known()) continue;
+    const Reach reach = sampled_distance(*a.surfaces[k], range_of(a, k), all_b, limits_.distances,
+                                         a.surfaces.size() > many ? points_of_many : points_of_one,
+                                         region ? &*region : nullptr);
+    if (reach.at_least <= std::max(limits_.distances, 0.5 * reach.found)) continue;
+    PairFinding finding;
+    finding.reach = reach;
+    finding.surface = k;
+    finding.is_equal = false;
+    return finding;
+  }
+  return std::nullopt;
 }
 
 std::string surface_label(const Thing& thing, std::size_t k) {
@@ -462,10 +461,21 @@ Comparison Comparer::run() {
   out_.a = counts_of(a_);
   out_.b = counts_of(b_);
   Pairing pairing = pair_things(a_.list, b_.list, near_);
+  // Where most have changed, a few points of each tell by about how much; bounds are for what is left.
+  constexpr std::size_t few = 8;
+  std::vector<std::optional<PairFinding>> glances(pairing.pairs.size());
+  if (pairing.pairs.size() > few)
+    for_each_index(glances.size(), options_.threads, [&](std::size_t k) {
+      const auto [i, j] = pairing.pairs[k];
+      glances[k] = glance_at(a_.list[i], b_.list[j]);
+    });
+  const bool many_differ =
+      std::ranges::count_if(glances, [](const auto& glance) { return glance.has_value(); }) >
+      static_cast<std::ptrdiff_t>(few);
   std::vector<PairFinding> findings(pairing.pairs.size());
   const auto look = [&](std::size_t k) {
     const auto [i, j] = pairing.pairs[k];
-    findings[k] = look_at(a_.list[i], b_.list[j]);
+    findings[k] = many_differ && glances[k] ? *glances[k] : look_at(a_.list[i], b_.list[j]);
   };
   for_each_index(findings.size(), options_.threads, look, options_.progress);
   absorb_regrouped(pairing);

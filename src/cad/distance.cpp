@@ -504,4 +504,26 @@ Reach distance_to(const Surface& surface, const Range& range, const SurfaceSet& 
   return Surveyor(surface, others, enough, options).survey(range);
 }
 
+Reach sampled_distance(const Surface& surface, const Range& range, const SurfaceSet& others, double enough,
+                       int points, const Region* region) {
+  Reach reach;
+  reach.at_most = infinity;
+  SurfaceSet::Foot worst;
+  for (int j = 0; j < points; ++j)
+    for (int i = 0; i < points; ++i) {
+      const double u = std::lerp(range.u0, range.u1, (i + 0.5) / points),
+                   v = std::lerp(range.v0, range.v1, (j + 0.5) / points);
+      if (region != nullptr && !region->contains(u, v)) continue;
+      const Vec3 p = nurbs::evaluate(surface, u, v);
+      const SurfaceSet::Foot foot = others.near(p);
+      ++reach.looked_at;
+      if (foot.distance <= worst.distance) continue;
+      worst = foot;
+      reach.at = p;
+    }
+  reach.found = worst.distance;
+  if (reach.found > enough) reach.at_least = others.least_distance(reach.at, worst);
+  return reach;
+}
+
 }  // namespace selvage::cad

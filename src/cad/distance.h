@@ -74,6 +74,10 @@ struct SurveyOptions {
 Reach distance_to(const nurbs::Surface& surface, const Range& range, const SurfaceSet& others, double enough,
                   const SurveyOptions& options = {});
 
+// The same from a grid of so many points in each direction only, without an upper bound.
+Reach sampled_distance(const nurbs::Surface& surface, const Range& range, const SurfaceSet& others,
+                       double enough, int points, const Region* region = nullptr);
+
 // A curve as a surface of no width: over the curve's parameter in u and [0, 1] in v.
 nurbs::Surface as_surface(const nurbs::Curve& curve);
 

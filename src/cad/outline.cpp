@@ -104,6 +104,30 @@ Range used_range(const Face& face) {
   return range.u0 < range.u1 && range.v0 < range.v1 ? range : whole;
 }
 
+Place place_of(const Face& face) {
+  constexpr int inside = 4;
+  Place place;
+  for (const Curve& curve : outline(face))
+    for (const Vec3& p : SampledCurve(curve).points) place.box.extend(p);
+  const Region region(face);
+  if (!face.loops.empty() && !region.is_known() && !place.box.isEmpty()) return place;
+  const Range range = used_range(face);
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (int j = 0; j < inside; ++j)
+    for (int i = 0; i < inside; ++i) {
+      const double u = std::lerp(range.u0, range.u1, (i + 0.5) / inside),
+                   v = std::lerp(range.v0, range.v1, (j + 0.5) / inside);
+      if (!region.contains(u, v)) continue;
+      const Vec3 p = nurbs::evaluate(face.surface, u, v);
+      place.box.extend(p);
+      sum += p;
+      ++count;
+    }
+  if (count > 0) place.middle = sum / count;
+  return place;
+}
+
 bool is_flat(const Surface& surface) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& p : surface.points) mean += p;

@@ -1,6 +1,7 @@
 // Faces that are parts of their surfaces: their outlines, and how far two such faces are apart.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "cad/distance.h"
@@ -17,6 +18,13 @@ Reach outline_distance(const Face& a, const Face& b, double enough);
 
 // The box of the face's loops in its surface's parameters; the whole domain where they are not given there.
 Range used_range(const Face& face);
+
+// What a face takes up, however its parameters run: by points of its outline and a few inside.
+struct Place {
+  Box3 box;
+  std::optional<Vec3> middle;  // of the points inside; none where the loops are not given in the parameters
+};
+Place place_of(const Face& face);
 
 // The control points lie in one plane (to 1e-9 of their extent): the face is its outline's inside.
 bool is_flat(const nurbs::Surface& surface);
