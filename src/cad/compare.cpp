@@ -43,6 +43,8 @@ struct PairFinding {
   Reach reach;              // the worst of its surfaces
   std::size_t surface = 0;  // that has it, in a
   bool is_equal = true;     // within the limits
+  bool is_reversed = false;  // the start of one yarn is the end of the other
+  bool is_swapped = false;   // another pair has these two names the other way round
   std::optional<ControlChange> points;
   std::size_t changed = 0, count = 0;
   std::optional<Motion> motion;
@@ -95,6 +97,7 @@ class Comparer {
                    const std::vector<SurfaceFinding>& found, PairFinding& finding) const;
   void report_pair(const Thing& a, const Thing& b, const PairFinding& finding);
   void report_lonely(const Thing& thing, Difference::Kind kind);
+  void follow_names(Pairing& pairing, std::vector<PairFinding>& findings) const;
   void absorb_regrouped(Pairing& pairing);
   void add_notes();
 
@@ -106,6 +109,7 @@ class Comparer {
   double near_ = 0;
   Comparison out_;
   std::size_t uncertain_ = 0;  // equal at all points that were looked at, without a bound that says so
+  std::vector<std::string> reversed_;  // yarns that run the other way
   std::size_t without_name_ = 0, without_color_ = 0;
 };
 
@@ -138,11 +142,22 @@ SurfaceFinding Comparer::compare_surfaces(const Thing& a, std::size_t i, const T
     }
     return finding;
   }
-  if (finding.points) return finding;
+  if (finding.points) {
+    // Where a seam lies elsewhere, or a yarn runs the other way, all points are far off, and the surface is none.
+    constexpr double far = 1e-4;
+    constexpr int points = 6;
+    if (finding.points->largest <= far * box_of(s.points).diagonal().norm() ||
+        2 * finding.points->changed <= s.points.size() ||
+        sampled_distance(s, domain(s), SurfaceSet({&t}), limits_.distances, points).found > limits_.distances)
+      return finding;
+  }
   const SurveyOptions survey = {.near = largest_spread};
   const Reach there = distance_to(s, domain(s), SurfaceSet({&t}), limits_.distances, survey);
   const Reach back = distance_to(t, domain(t), SurfaceSet({&s}), limits_.distances, survey);
-  finding.reach = worse(there, back, limits_.distances);
+  const Reach& distance = worse(there, back, limits_.distances);
+  if (finding.points && distance.at_most > limits_.distances) return finding;
+  finding.points.reset();
+  finding.reach = distance;
   return finding;
 }
 
@@ -268,6 +283,8 @@ PairFinding Comparer::look_at(const Thing& a, const Thing& b, const std::vector<
     finding.points = one.points;
     finding.surface = i;
   }
+  finding.is_reversed = a.kind == Thing::Kind::yarn && partner.size() == 3 && partner[0] == 0 &&
+                        partner[1] == 2 && partner[2] == 1;
   if (!finding.is_equal && finding.reach.at_least > limits_.points)
     find_motion(a, b, partner, found, finding);
   return finding;
@@ -366,8 +383,10 @@ void Comparer::report_pair(const Thing& a, const Thing& b, const PairFinding& fi
     if (a.name.empty() || b.name.empty())
       ++without_name_;
     else
-      out_.differences.push_back(difference_of(a, b, Difference::Kind::renamed));
+      out_.differences.emplace_back(difference_of(a, b, Difference::Kind::renamed)).is_swapped =
+          finding.is_swapped;
   }
+  if (finding.is_equal && finding.is_reversed) reversed_.push_back(a.name);
   if (a.color.has_value() != b.color.has_value()) ++without_color_;
   if (a.color && b.color && *a.color != *b.color) {
     Difference& recoloured = out_.differences.emplace_back(difference_of(a, b, Difference::Kind::recoloured));
@@ -381,6 +400,48 @@ void Comparer::report_lonely(const Thing& thing, Difference::Kind kind) {
   Difference& difference = out_.differences.emplace_back(difference_of(thing, thing, kind));
   difference.box = thing.box;
   difference.surfaces = thing.surfaces.size();
+}
+
+// Names that went round among things that stayed where they were: each of these is the other one's partner.
+void Comparer::follow_names(Pairing& pairing, std::vector<PairFinding>& findings) const {
+  constexpr std::size_t most = 2000;
+  std::vector<std::size_t> changed;
+  for (std::size_t k = 0; k < findings.size(); ++k)
+    if (!findings[k].is_equal) changed.push_back(k);
+  if (changed.size() < 2 || changed.size() > most) return;
+  const auto at_one_place = [&](const Thing& a, const Thing& b) {
+    const double near = std::max(near_, 1e-3 * a.box.diagonal().norm());
+    return a.kind == b.kind && a.surfaces.size() == b.surfaces.size() &&
+           (a.box.min() - b.box.min()).cwiseAbs().maxCoeff() <= near &&
+           (a.box.max() - b.box.max()).cwiseAbs().maxCoeff() <= near;
+  };
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> next(findings.size(), none);
+  for (const std::size_t k : changed)
+    for (const std::size_t l : changed)
+      if (l != k && at_one_place(a_.list[pairing.pairs[k].first], b_.list[pairing.pairs[l].second])) next[k] = l;
+  std::vector<bool> is_done(findings.size());
+  for (const std::size_t first : changed) {
+    std::vector<std::size_t> round;
+    for (std::size_t k = first; k != none && !is_done[k]; k = next[k]) {
+      is_done[k] = true;
+      round.push_back(k);
+    }
+    if (round.size() < 2 || next[round.back()] != first) continue;
+    std::vector<std::pair<std::size_t, PairFinding>> better;  // the other thing, and what is found of it
+    for (const std::size_t k : round) {
+      const std::size_t other = pairing.pairs[next[k]].second;
+      PairFinding finding = look_at(a_.list[pairing.pairs[k].first], b_.list[other]);
+      if (!finding.is_equal) break;
+      finding.is_swapped = round.size() == 2;
+      better.emplace_back(other, std::move(finding));
+    }
+    if (better.size() != round.size()) continue;
+    for (std::size_t i = 0; i < round.size(); ++i) {
+      pairing.pairs[round[i]].second = better[i].first;
+      findings[round[i]] = std::move(better[i].second);
+    }
+  }
 }
 
 // Things without a partner whose surfaces lie on those of the other side that have none either: the same
@@ -448,6 +509,11 @@ Comparison::Counts counts_of(const Things& things) {
 
 void Comparer::add_notes() {
   out_.uncertain = uncertain_;
+  if (!reversed_.empty())
+    out_.notes.push_back(fmt::format("{} the other way: '{}'{}",
+                                     reversed_.size() == 1 ? "a yarn runs"
+                                                           : fmt::format("{} yarns run", reversed_.size()),
+                                     reversed_.front(), reversed_.size() > 1 ? " and others" : ""));
   if (without_name_ > 0) out_.notes.push_back(fmt::format("{} have a name in one file only", without_name_));
   if (without_color_ > 0)
     out_.notes.push_back(fmt::format("{} have a colour in one file only", without_color_));
@@ -478,6 +544,7 @@ Comparison Comparer::run() {
     findings[k] = many_differ && glances[k] ? *glances[k] : look_at(a_.list[i], b_.list[j]);
   };
   for_each_index(findings.size(), options_.threads, look, options_.progress);
+  follow_names(pairing, findings);
   absorb_regrouped(pairing);
   std::size_t next = 0;
   for (std::size_t k = 0; k <= findings.size(); ++k) {

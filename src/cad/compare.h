@@ -42,7 +42,8 @@ struct Difference {
                 points = 0;  // of this thing, how many of how many are farther than the tolerance
   };
   std::optional<ControlPoint> control_point;
-  Color before, after;  // recoloured
+  Color before, after;      // recoloured
+  bool is_swapped = false;  // renamed: what had the other name has this one's now
 };
 std::string_view name_of(Difference::Kind kind);
 
