@@ -91,6 +91,10 @@ class Comparer {
   [[nodiscard]] bool is_within(const Reach& reach, double limit) const {
     return reach.at_most <= limit || (std::isfinite(reach.at_most) && reach.at_least <= limit);
   }
+  [[nodiscard]] Reach distance_between(const Surface& s, const Surface& t) const;
+  void look_beyond_points(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
+                          std::vector<SurfaceFinding>& found) const;
+  void sum_up(const Thing& a, const std::vector<SurfaceFinding>& found, PairFinding& finding) const;
   [[nodiscard]] std::vector<std::size_t> partners(const Thing& a, const Thing& b) const;
   [[nodiscard]] PairFinding compare_unions(const Thing& a, const Thing& b) const;
   void find_motion(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
@@ -142,23 +146,36 @@ SurfaceFinding Comparer::compare_surfaces(const Thing& a, std::size_t i, const T
     }
     return finding;
   }
-  if (finding.points) {
-    // Where a seam lies elsewhere, or a yarn runs the other way, all points are far off, and the surface is none.
-    constexpr double far = 1e-4;
-    constexpr int points = 6;
-    if (finding.points->largest <= far * box_of(s.points).diagonal().norm() ||
-        2 * finding.points->changed <= s.points.size() ||
-        sampled_distance(s, domain(s), SurfaceSet({&t}), limits_.distances, points).found > limits_.distances)
-      return finding;
-  }
+  if (finding.points) return finding;
+  finding.reach = distance_between(s, t);
+  return finding;
+}
+
+Reach Comparer::distance_between(const Surface& s, const Surface& t) const {
   const SurveyOptions survey = {.near = largest_spread};
   const Reach there = distance_to(s, domain(s), SurfaceSet({&t}), limits_.distances, survey);
   const Reach back = distance_to(t, domain(t), SurfaceSet({&s}), limits_.distances, survey);
-  const Reach& distance = worse(there, back, limits_.distances);
-  if (finding.points && distance.at_most > limits_.distances) return finding;
-  finding.points.reset();
-  finding.reach = distance;
-  return finding;
+  return worse(there, back, limits_.distances);
+}
+
+// Where a seam lies elsewhere, or a yarn runs the other way, control points are far from those of their number,
+// and the surfaces are not.
+void Comparer::look_beyond_points(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
+                                  std::vector<SurfaceFinding>& found) const {
+  constexpr int points = 6;
+  constexpr double far = 1e-4;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    SurfaceFinding& one = found[i];
+    const Surface &s = *a.surfaces[i], &t = *b.surfaces[partner[i]];
+    if (!one.points || one.reach.at_most <= limits_.points) continue;
+    if (one.points->largest <= far * box_of(s.points).diagonal().norm()) continue;
+    const Reach sample = sampled_distance(s, domain(s), SurfaceSet({&t}), limits_.distances, points);
+    if (sample.found > 0.5 * one.points->largest) continue;
+    const Reach distance = distance_between(s, t);
+    if (distance.at_most > 0.5 * one.points->largest) continue;
+    one.reach = distance;
+    one.points.reset();
+  }
 }
 
 // Which surface of b belongs to each one of a, which has as many: what lies at the same place, its own number
@@ -264,16 +281,15 @@ void Comparer::find_motion(const Thing& a, const Thing& b, const std::vector<std
   }
 }
 
-PairFinding Comparer::look_at(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner) const {
-  PairFinding finding;
-  std::vector<SurfaceFinding> found;
-  for (std::size_t i = 0; i < a.surfaces.size(); ++i) {
-    const SurfaceFinding& one = found.emplace_back(compare_surfaces(a, i, b, partner[i]));
+// The worst surface is one that differs, where there is such a one.
+void Comparer::sum_up(const Thing& a, const std::vector<SurfaceFinding>& found, PairFinding& finding) const {
+  finding = {};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const SurfaceFinding& one = found[i];
     finding.count += a.surfaces[i]->points.size();
     if (one.points) finding.changed += one.points->changed;
     const bool is_equal = one.points ? one.reach.at_most <= limits_.points
                                      : is_within(one.reach, limits_.distances);
-    // The worst one is one that differs, where there is such a one.
     const bool is_worse = is_equal == finding.is_equal
                               ? &worse(finding.reach, one.reach, limits_.distances) == &one.reach
                               : !is_equal;
@@ -283,10 +299,22 @@ PairFinding Comparer::look_at(const Thing& a, const Thing& b, const std::vector<
     finding.points = one.points;
     finding.surface = i;
   }
+}
+
+PairFinding Comparer::look_at(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner) const {
+  std::vector<SurfaceFinding> found;
+  for (std::size_t i = 0; i < a.surfaces.size(); ++i) found.push_back(compare_surfaces(a, i, b, partner[i]));
+  PairFinding finding;
+  sum_up(a, found, finding);
+  if (!finding.is_equal && finding.reach.at_least > limits_.points) {
+    find_motion(a, b, partner, found, finding);
+    if (!finding.motion && finding.points) {
+      look_beyond_points(a, b, partner, found);
+      sum_up(a, found, finding);
+    }
+  }
   finding.is_reversed = a.kind == Thing::Kind::yarn && partner.size() == 3 && partner[0] == 0 &&
                         partner[1] == 2 && partner[2] == 1;
-  if (!finding.is_equal && finding.reach.at_least > limits_.points)
-    find_motion(a, b, partner, found, finding);
   return finding;
 }
 
@@ -312,7 +340,7 @@ PairFinding Comparer::look_at(const Thing& a, const Thing& b) const {
 
 // A difference that a point shows is one however the surfaces belong together.
 std::optional<PairFinding> Comparer::glance_at(const Thing& a, const Thing& b) const {
-  constexpr int points_of_one = 8, points_of_many = 3;
+  constexpr int points_of_one = 16, points_of_many = 3;
   constexpr std::size_t many = 6;
   if (a.surfaces.size() == b.surfaces.size()) {
     bool bases_agree = true;

@@ -11,6 +11,9 @@
 #include "cad/edges.h"
 #include "cad/region.h"
 #include "cad/sampled_curve.h"
+#include "nurbs/basis.h"
+#include "nurbs/hermite.h"
+#include "nurbs/sweep.h"
 
 namespace selvage::cad {
 
@@ -29,6 +32,28 @@ double size_of(const std::vector<Vec3>& points) {
 bool same_curve(const Curve& a, const Curve& b, double near) {
   const std::optional<ControlChange> change = compare_control_points(as_surface(a), as_surface(b), near);
   return change && change->bound <= near;
+}
+
+// The surface's curve over one in its parameters, cubic between places that are dense.
+Curve in_space(const Surface& surface, const Curve& flat) {
+  constexpr int each = 32;
+  const std::vector<double> spans = nurbs::breakpoints(flat.knots, flat.degree);
+  std::vector<double> parameters;
+  for (std::size_t i = 0; i + 1 < spans.size(); ++i)
+    for (int k = 0; k < each; ++k)
+      parameters.push_back(std::lerp(spans[i], spans[i + 1], static_cast<double>(k) / each));
+  parameters.push_back(spans.back());
+  const Range range = domain(surface);
+  std::vector<Vec3> points, slopes;
+  for (const double t : parameters) {
+    const nurbs::CurveJet at = nurbs::evaluate_jet(flat, t);
+    const nurbs::SurfaceJet jet =
+        nurbs::evaluate_jet(surface, std::clamp(at.position.x(), range.u0, range.u1),
+                            std::clamp(at.position.y(), range.v0, range.v1));
+    points.push_back(jet.position);
+    slopes.push_back(jet.du * at.d1.x() + jet.dv * at.d1.y());
+  }
+  return nurbs::through_derivatives(parameters, points, slopes);
 }
 
 // Without those that occur twice, and those without a length.
@@ -68,7 +93,9 @@ Reach one_way(const std::vector<Surface>& from, const std::vector<Surface>& to, 
 
 std::vector<Curve> outline(const Face& face) {
   std::vector<Curve> curves;
-  for (const Edge& edge : edges_of(face)) curves.push_back(edge.curve);
+  for (const Edge& edge : edges_of(face))
+    curves.push_back(edge.curve.points.empty() && !edge.flat.points.empty() ? in_space(face.surface, edge.flat)
+                                                                          : edge.curve);
   if (face.loops.empty()) std::ranges::copy(sides_of(face.surface), std::back_inserter(curves));
   return open_ones(std::move(curves), size_of(face.surface.points));
 }
@@ -95,7 +122,7 @@ Range used_range(const Face& face) {
   const Range whole = domain(face.surface);
   Box3 box;
   for (const Edge& edge : edges_of(face)) {
-    if (edge.flat.points.empty()) return whole;
+    if (edge.flat.points.empty()) return Region(face).range();
     box.extend(box_of(edge.flat.points));
   }
   if (box.isEmpty()) return whole;

@@ -16,7 +16,7 @@ std::vector<nurbs::Curve> outline(const Face& face);
 // The larger of the distances of each outline from the other; infinite where only one of the faces has one.
 Reach outline_distance(const Face& a, const Face& b, double enough);
 
-// The box of the face's loops in its surface's parameters; the whole domain where they are not given there.
+// The box of the face's loops in its surface's parameters, or the whole domain.
 Range used_range(const Face& face);
 
 // What a face takes up, however its parameters run: by points of its outline and a few inside.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "cad/edges.h"
 #include "cad/sampled_curve.h"
@@ -36,22 +37,43 @@ std::vector<Vec3> polygon_of(const nurbs::Curve& flat) {
   return points;
 }
 
+// The feet of an edge's points; in the turn round the surface in which `before` is, where that is given.
+std::vector<Vec3> feet_of(const nurbs::Curve& curve, const SurfaceSet& surface, const Vec3* before,
+                          const std::array<double, 2>& periods) {
+  std::vector<Vec3> points;
+  for (const Vec3& p : SampledCurve(curve).points) {
+    const SurfaceSet::Foot foot = surface.near(p);
+    Vec3 place(foot.u, foot.v, 0);
+    const Vec3* const last = points.empty() ? before : &points.back();
+    for (Eigen::Index d = 0; last != nullptr && d < 2; ++d)
+      if (const double period = periods[static_cast<std::size_t>(d)]; period > 0)
+        place[d] -= period * std::round((place[d] - (*last)[d]) / period);
+    points.push_back(place);
+  }
+  return points;
+}
+
 }  // namespace
 
 Region::Region(const Face& face) {
+  const Range whole = range_ = domain(face.surface);
   if (face.loops.empty()) return;
-  const Range whole = domain(face.surface);
   const std::array<double, 2> widths = {whole.u1 - whole.u0, whole.v1 - whole.v0};
   for (std::size_t d = 0; d < 2; ++d) {
     if (is_closed(face.surface, d == 0)) periods_[d] = widths[d];
     near_[d] = 1e-9 * widths[d];
   }
+  std::optional<SurfaceSet> surface;
   std::array<int, 2> rounds = {0, 0};  // loops that go round the surface
   for (const Loop& loop : face.loops) {
     std::vector<Vec3> points;
     for (const Edge& edge : loop.edges) {
-      if (edge.flat.points.empty()) return;
-      const std::vector<Vec3> piece = polygon_of(edge.flat);
+      if (edge.flat.points.empty() && edge.curve.points.empty()) continue;  // a pole
+      if (edge.flat.points.empty() && !surface) surface.emplace(std::vector<const Surface*>{&face.surface});
+      const std::vector<Vec3> piece =
+          edge.flat.points.empty()
+              ? feet_of(edge.curve, *surface, points.empty() ? nullptr : &points.back(), periods_)
+              : polygon_of(edge.flat);
       points.insert(points.end(), piece.begin(), piece.end());
     }
     if (points.size() < 2) return;
@@ -72,6 +94,21 @@ Region::Region(const Face& face) {
   if (rounds[0] % 2 != 0 || rounds[1] % 2 != 0) return;  // a cap round a pole: of the two sides none is told
   along_v_ = rounds[0] > 0;
   is_known_ = !segments_.empty();
+  if (!is_known_) return;
+  Box3 box;
+  for (const Segment& s : segments_)
+    for (const std::array<double, 2>& end : {s.from, s.to}) box.extend(Vec3(end[0], end[1], 0));
+  const auto narrow = [](double& low, double& high, double least, double most, double period) {
+    // What is given in another turn round the surface has no range here.
+    if (period > 0 && (least < low - 1e-9 * period || most > high + 1e-9 * period)) return;
+    const double first = std::max(low, least), last = std::min(high, most);
+    if (first < last) {
+      low = first;
+      high = last;
+    }
+  };
+  if (rounds[0] == 0) narrow(range_.u0, range_.u1, box.min().x(), box.max().x(), periods_[0]);
+  if (rounds[1] == 0) narrow(range_.v0, range_.v1, box.min().y(), box.max().y(), periods_[1]);
 }
 
 bool Region::contains_as_it_is(double u, double v) const {

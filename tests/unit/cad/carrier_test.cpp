@@ -6,6 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "cad/compare.h"
+#include "cad/natural_border.h"
+#include "cad/sampled_curve.h"
+#include "shapes.h"
 #include "unit/cad/surfaces.h"
 
 namespace selvage::cad {
@@ -99,6 +103,71 @@ TEST(Carrier, NoneWhereTheyDiffer) {
 
 TEST(Carrier, NoneOfFreeShapes) {
   EXPECT_FALSE(between(wavy_tube(), reseamed(wavy_tube(), 0.3)).has_value());
+}
+
+// A face on one surface with the sides of another one as its boundary, in space only.
+Subject face_of(const Surface& surface, const Surface& border) {
+  Subject subject;
+  subject.model.parts = {test::part_of("face", {surface})};
+  Loop& loop = subject.model.parts[0].faces[0].loops.emplace_back();
+  for (Edge& edge : natural_border(border, 1e-9).edges) {
+    edge.flat = {};
+    loop.edges.push_back(std::move(edge));
+  }
+  return subject;
+}
+
+Comparison compared(const Subject& a, const Subject& b, double tolerance) {
+  CompareOptions options;
+  options.tolerance = tolerance;
+  return compare(a, b, options);
+}
+
+TEST(Carrier, FacesOnOneSurfaceAreEqualHoweverItsParametersRun) {
+  for (const Profile& profile : {segment(2, 0, 2, 5), segment(1, 0, 3, 4), arc(0, 2, -0.7, 1.1), arc(5, 1, -0.4, 1.9)}) {
+    const Surface border = turned(profile, 0.1, 1.9);
+    const Comparison found = compared(face_of(turned(profile, 0, 2), border),
+                                      face_of(swapped(turned(profile, -0.3, 2.2)), border), 1e-6);
+    EXPECT_TRUE(found.differences.empty());
+    EXPECT_EQ(found.uncertain, 0U);
+    EXPECT_LE(found.largest, 1e-6);
+  }
+}
+
+TEST(Carrier, AChangedRadiusIsToldByTwoNearBounds) {
+  const Surface a = turned(segment(2, 0, 2, 5), 0, 2), b = turned(segment(2.001, 0, 2.001, 5), -0.3, 2.2);
+  const Surface border = turned(segment(2, 0, 2, 5), 0.1, 1.9);
+  const Comparison found = compared(face_of(a, border), face_of(b, border), 1e-6);
+  ASSERT_EQ(found.differences.size(), 1U);
+  const Reach& reach = found.differences[0].reach;
+  EXPECT_LE(reach.at_least, 0.001 + 1e-9);
+  EXPECT_GE(reach.at_least, 0.0009);
+  EXPECT_GE(reach.at_most, 0.001 - 1e-9);
+  EXPECT_LE(reach.at_most, 1.5 * 0.001);
+}
+
+TEST(Carrier, BothSidesOfOneOutlineAreTwoFaces) {
+  // A sphere of two pieces, of which one or the other half belongs to the face.
+  const Profile half = arc(0, 2, -std::numbers::pi / 4, std::numbers::pi / 4);
+  const Surface zone = turned(half, 0, 2);
+  const auto part = [&](double u0, double u1, double v0, double v1) {
+    Subject subject;
+    subject.model.parts = {test::part_of("face", {zone})};
+    Loop& loop = subject.model.parts[0].faces[0].loops.emplace_back();
+    const std::vector<Vec3> corners = {{u0, v0, 0}, {u1, v0, 0}, {u1, v1, 0}, {u0, v1, 0}};
+    for (std::size_t k = 0; k < 4; ++k) {
+      Edge& edge = loop.edges.emplace_back();
+      edge.flat = line(corners[k], corners[(k + 1) % 4]);
+    }
+    return subject;
+  };
+  // The whole with a hole, and the hole's filling with the whole's outline as a second loop, have one outline.
+  Subject ring = part(0.1, 0.9, 0.1, 0.9), other = ring;
+  ring.model.parts[0].faces[0].loops.push_back(part(0.3, 0.7, 0.3, 0.7).model.parts[0].faces[0].loops[0]);
+  EXPECT_TRUE(compared(ring, ring, 1e-9).differences.empty());
+  const Comparison found = compared(ring, other, 1e-9);
+  ASSERT_EQ(found.differences.size(), 1U);
+  EXPECT_GT(found.differences[0].reach.at_least, 0.1);
 }
 
 }  // namespace
