@@ -162,7 +162,7 @@ Reach Comparer::distance_between(const Surface& s, const Surface& t) const {
 // and the surfaces are not.
 void Comparer::look_beyond_points(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
                                   std::vector<SurfaceFinding>& found) const {
-  constexpr int points = 6;
+  constexpr int points = 36;
   constexpr double far = 1e-4;
   for (std::size_t i = 0; i < found.size(); ++i) {
     SurfaceFinding& one = found[i];
@@ -340,7 +340,7 @@ PairFinding Comparer::look_at(const Thing& a, const Thing& b) const {
 
 // A difference that a point shows is one however the surfaces belong together.
 std::optional<PairFinding> Comparer::glance_at(const Thing& a, const Thing& b) const {
-  constexpr int points_of_one = 16, points_of_many = 3;
+  constexpr int points_of_one = 160, points_of_many = 12;
   constexpr std::size_t many = 6;
   if (a.surfaces.size() == b.surfaces.size()) {
     bool bases_agree = true;

@@ -154,6 +154,16 @@ std::vector<double> cut_to(const std::vector<double>& breaks, double low, double
   return values;
 }
 
+// Between neighbours of a grid, along both directions together.
+double largest_step(const std::vector<Vec3>& points, std::size_t columns) {
+  double along = 0, across = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (k % columns > 0) along = std::max(along, (points[k] - points[k - 1]).squaredNorm());
+    if (k >= columns) across = std::max(across, (points[k] - points[k - columns]).squaredNorm());
+  }
+  return std::sqrt(along) + std::sqrt(across);
+}
+
 }  // namespace
 
 struct SurfaceSet::Impl {
@@ -161,6 +171,7 @@ struct SurfaceSet::Impl {
   std::vector<Sample> samples;
   BoxTree tree{{}};  // of the samples' points
   double size = 0;   // largest coordinate
+  double step = 0;   // no point of a surface is much farther than this from one of its samples
 };
 
 Range domain(const Surface& surface) {
@@ -182,6 +193,7 @@ SurfaceSet::SurfaceSet(const std::vector<const Surface*>& surfaces) {
     const Target& target = made->targets.emplace_back(target_of(*surface, 1e-9 * made->size));
     const std::vector<Vec3> points = nurbs::evaluate_grid(*surface, target.sites_u, target.sites_v);
     const auto index = static_cast<std::uint32_t>(made->targets.size() - 1);
+    made->step = std::max(made->step, largest_step(points, target.sites_u.size()));
     for (std::size_t k = 0; k < points.size(); ++k) {
       made->samples.push_back({index, static_cast<std::uint32_t>(k % target.sites_u.size()),
                                static_cast<std::uint32_t>(k / target.sites_u.size())});
@@ -201,7 +213,7 @@ SurfaceSet::Foot SurfaceSet::near(const Vec3& point) const {
   // Next to a border, or where surfaces meet, the nearest sample may be on another one.
   for (int trial = 0; trial < 3; ++trial) {
     const Sample* sample = nullptr;
-    double reach = infinity;
+    double reach = best.distance + impl_->step;
     impl_->tree.near_point(point, reach, [&](std::uint32_t k) {
       const double distance = (impl_->tree.box(k).min() - point).norm();
       if (distance < reach && std::ranges::find(tried, impl_->samples[k].surface) == tried.end()) {
@@ -509,18 +521,20 @@ Reach sampled_distance(const Surface& surface, const Range& range, const Surface
   Reach reach;
   reach.at_most = infinity;
   SurfaceSet::Foot worst;
-  for (int j = 0; j < points; ++j)
-    for (int i = 0; i < points; ++i) {
-      const double u = std::lerp(range.u0, range.u1, (i + 0.5) / points),
-                   v = std::lerp(range.v0, range.v1, (j + 0.5) / points);
-      if (region != nullptr && !region->contains(u, v)) continue;
-      const Vec3 p = nurbs::evaluate(surface, u, v);
-      const SurfaceSet::Foot foot = others.near(p);
-      ++reach.looked_at;
-      if (foot.distance <= worst.distance) continue;
-      worst = foot;
-      reach.at = p;
-    }
+  // Shares of the golden section: no grid, whose lines could keep step with what repeats itself.
+  const double golden = 0.5 * (std::sqrt(5.0) - 1);
+  for (int k = 0; k < points; ++k) {
+    const double share = k * golden;
+    const double u = std::lerp(range.u0, range.u1, share - std::floor(share)),
+                 v = std::lerp(range.v0, range.v1, (k + 0.5) / points);
+    if (region != nullptr && !region->contains(u, v)) continue;
+    const Vec3 p = nurbs::evaluate(surface, u, v);
+    const SurfaceSet::Foot foot = others.near(p);
+    ++reach.looked_at;
+    if (foot.distance <= worst.distance) continue;
+    worst = foot;
+    reach.at = p;
+  }
   reach.found = worst.distance;
   if (reach.found > enough) reach.at_least = others.least_distance(reach.at, worst);
   return reach;

@@ -74,7 +74,7 @@ struct SurveyOptions {
 Reach distance_to(const nurbs::Surface& surface, const Range& range, const SurfaceSet& others, double enough,
                   const SurveyOptions& options = {});
 
-// The same from a grid of so many points in each direction only, without an upper bound.
+// The same by so many points only, without an upper bound.
 Reach sampled_distance(const nurbs::Surface& surface, const Range& range, const SurfaceSet& others,
                        double enough, int points, const Region* region = nullptr);
 
