@@ -218,8 +218,8 @@ ImplicitBounds implicit_bounds(const nurbs::Surface& surface, const Range& range
   const int order = function.degree(), slope_order = 2 * (order - 1);
   const int most = std::max(order, slope_order);
   if (most * std::max(surface.degree_u, surface.degree_v) > highest) return unknown;
-  // The least (or largest) ratio of coefficients of two polynomials, the second one positive, bounds the ratio
-  // of their values.
+  // The least (or largest) ratio of coefficients of two polynomials, the second one positive, bounds the
+  // ratio of their values.
   const auto ratios = [&](int power, const auto& of_point) -> std::optional<std::array<double, 2>> {
     const Conversion& u = conversion(power * surface.degree_u);
     const Conversion& v = conversion(power * surface.degree_v);

@@ -68,7 +68,8 @@ class Carrier : public Implicit {
   [[nodiscard]] Vec3 gradient(const Vec3& p) const override {
     Vec3 sum = Vec3::Zero();
     Eigen::Index i = 0;
-    for (const Term& term : terms_at(frame_.inside(p), is_cyclide_)) sum += coefficients_[i++] * term.gradient;
+    for (const Term& term : terms_at(frame_.inside(p), is_cyclide_))
+      sum += coefficients_[i++] * term.gradient;
     return sum / frame_.size;
   }
   // What it leaves of the points, root mean square.
@@ -89,8 +90,7 @@ class Carrier : public Implicit {
 std::vector<double> sites_of(const std::vector<double>& breaks, int each) {
   std::vector<double> sites;
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
-    for (int i = 0; i < each; ++i)
-      sites.push_back(std::lerp(breaks[k], breaks[k + 1], (i + 0.5) / each));
+    for (int i = 0; i < each; ++i) sites.push_back(std::lerp(breaks[k], breaks[k + 1], (i + 0.5) / each));
   return sites;
 }
 

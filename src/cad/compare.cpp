@@ -40,9 +40,9 @@ struct SurfaceFinding {
 };
 
 struct PairFinding {
-  Reach reach;              // the worst of its surfaces
-  std::size_t surface = 0;  // that has it, in a
-  bool is_equal = true;     // within the limits
+  Reach reach;               // the worst of its surfaces
+  std::size_t surface = 0;   // that has it, in a
+  bool is_equal = true;      // within the limits
   bool is_reversed = false;  // the start of one yarn is the end of the other
   bool is_swapped = false;   // another pair has these two names the other way round
   std::optional<ControlChange> points;
@@ -158,8 +158,8 @@ Reach Comparer::distance_between(const Surface& s, const Surface& t) const {
   return worse(there, back, limits_.distances);
 }
 
-// Where a seam lies elsewhere, or a yarn runs the other way, control points are far from those of their number,
-// and the surfaces are not.
+// Where a seam lies elsewhere, or a yarn runs the other way, control points are far from those of their
+// number, and the surfaces are not.
 void Comparer::look_beyond_points(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
                                   std::vector<SurfaceFinding>& found) const {
   constexpr int points = 36;
@@ -288,8 +288,8 @@ void Comparer::sum_up(const Thing& a, const std::vector<SurfaceFinding>& found, 
     const SurfaceFinding& one = found[i];
     finding.count += a.surfaces[i]->points.size();
     if (one.points) finding.changed += one.points->changed;
-    const bool is_equal = one.points ? one.reach.at_most <= limits_.points
-                                     : is_within(one.reach, limits_.distances);
+    const bool is_equal =
+        one.points ? one.reach.at_most <= limits_.points : is_within(one.reach, limits_.distances);
     const bool is_worse = is_equal == finding.is_equal
                               ? &worse(finding.reach, one.reach, limits_.distances) == &one.reach
                               : !is_equal;
@@ -447,7 +447,8 @@ void Comparer::follow_names(Pairing& pairing, std::vector<PairFinding>& findings
   std::vector<std::size_t> next(findings.size(), none);
   for (const std::size_t k : changed)
     for (const std::size_t l : changed)
-      if (l != k && at_one_place(a_.list[pairing.pairs[k].first], b_.list[pairing.pairs[l].second])) next[k] = l;
+      if (l != k && at_one_place(a_.list[pairing.pairs[k].first], b_.list[pairing.pairs[l].second]))
+        next[k] = l;
   std::vector<bool> is_done(findings.size());
   for (const std::size_t first : changed) {
     std::vector<std::size_t> round;
@@ -538,10 +539,10 @@ Comparison::Counts counts_of(const Things& things) {
 void Comparer::add_notes() {
   out_.uncertain = uncertain_;
   if (!reversed_.empty())
-    out_.notes.push_back(fmt::format("{} the other way: '{}'{}",
-                                     reversed_.size() == 1 ? "a yarn runs"
-                                                           : fmt::format("{} yarns run", reversed_.size()),
-                                     reversed_.front(), reversed_.size() > 1 ? " and others" : ""));
+    out_.notes.push_back(
+        fmt::format("{} the other way: '{}'{}",
+                    reversed_.size() == 1 ? "a yarn runs" : fmt::format("{} yarns run", reversed_.size()),
+                    reversed_.front(), reversed_.size() > 1 ? " and others" : ""));
   if (without_name_ > 0) out_.notes.push_back(fmt::format("{} have a name in one file only", without_name_));
   if (without_color_ > 0)
     out_.notes.push_back(fmt::format("{} have a colour in one file only", without_color_));
@@ -563,9 +564,9 @@ Comparison Comparer::run() {
       const auto [i, j] = pairing.pairs[k];
       glances[k] = glance_at(a_.list[i], b_.list[j]);
     });
-  const bool many_differ =
-      std::ranges::count_if(glances, [](const auto& glance) { return glance.has_value(); }) >
-      static_cast<std::ptrdiff_t>(few);
+  const bool many_differ = std::ranges::count_if(glances, [](const auto& glance) {
+                             return glance.has_value();
+                           }) > static_cast<std::ptrdiff_t>(few);
   std::vector<PairFinding> findings(pairing.pairs.size());
   const auto look = [&](std::size_t k) {
     const auto [i, j] = pairing.pairs[k];

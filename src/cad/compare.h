@@ -54,12 +54,12 @@ struct Comparison {
   Counts a, b;
   std::vector<Difference> differences;  // in the order of a, what was added last
   std::size_t equal = 0;                // things of a without any difference
-  // Of these, how many without a bound within the tolerance: nothing farther was found at the points that were
-  // looked at, which are the denser the less the bound says.
+  // Of these, how many without a bound within the tolerance: nothing farther was found at the points that
+  // were looked at, which are the denser the less the bound says.
   std::size_t uncertain = 0;
-  double largest = 0;                   // bound on the deviation of all that is within the tolerance
-  std::string largest_of;               // the thing that has it
-  std::vector<std::string> notes;       // what is no difference of geometry: units, missing names, ...
+  double largest = 0;              // bound on the deviation of all that is within the tolerance
+  std::string largest_of;          // the thing that has it
+  std::vector<std::string> notes;  // what is no difference of geometry: units, missing names, ...
   struct Match {
     Thing::Kind what = Thing::Kind::part;
     std::string name;                  // in a

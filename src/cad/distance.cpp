@@ -129,7 +129,7 @@ enum class Split : std::uint8_t { both, u, v };
 // The range divided at its middle in one direction or both; nothing where doubles have no number between.
 std::vector<Range> parts_of(const Range& r, Split split) {
   const double u = 0.5 * (r.u0 + r.u1), v = 0.5 * (r.v0 + r.v1);
-  const bool has_u = u > r.u0 && u < r.u1, has_v = v > r.v0 && v < r.v1;
+  const bool has_u = u > r.u0 && u<r.u1, has_v = v> r.v0 && v < r.v1;
   if (split == Split::u && has_u) return {{r.u0, u, r.v0, r.v1}, {u, r.u1, r.v0, r.v1}};
   if (split == Split::v && has_v) return {{r.u0, r.u1, r.v0, v}, {r.u0, r.u1, v, r.v1}};
   if (split == Split::both && has_u && has_v)

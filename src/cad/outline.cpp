@@ -94,8 +94,9 @@ Reach one_way(const std::vector<Surface>& from, const std::vector<Surface>& to, 
 std::vector<Curve> outline(const Face& face) {
   std::vector<Curve> curves;
   for (const Edge& edge : edges_of(face))
-    curves.push_back(edge.curve.points.empty() && !edge.flat.points.empty() ? in_space(face.surface, edge.flat)
-                                                                          : edge.curve);
+    curves.push_back(edge.curve.points.empty() && !edge.flat.points.empty()
+                         ? in_space(face.surface, edge.flat)
+                         : edge.curve);
   if (face.loops.empty()) std::ranges::copy(sides_of(face.surface), std::back_inserter(curves));
   return open_ones(std::move(curves), size_of(face.surface.points));
 }

@@ -32,7 +32,8 @@ std::vector<Vec3> polygon_of(const nurbs::Curve& flat) {
   std::vector<Vec3> points;
   for (std::size_t i = 0; i + 1 < spans.size(); ++i)
     for (int k = 0; k < each; ++k)
-      points.push_back(nurbs::evaluate(flat, std::lerp(spans[i], spans[i + 1], static_cast<double>(k) / each)));
+      points.push_back(
+          nurbs::evaluate(flat, std::lerp(spans[i], spans[i + 1], static_cast<double>(k) / each)));
   points.push_back(nurbs::evaluate(flat, spans.back()));
   return points;
 }
@@ -83,7 +84,8 @@ Region::Region(const Face& face) {
       bool jumps = false;
       if (k + 1 == points.size())
         for (std::size_t d = 0; d < 2; ++d)
-          if (periods_[d] > 0 && std::abs(std::abs(step[static_cast<Eigen::Index>(d)]) - periods_[d]) < 1e-3 * periods_[d]) {
+          if (periods_[d] > 0 &&
+              std::abs(std::abs(step[static_cast<Eigen::Index>(d)]) - periods_[d]) < 1e-3 * periods_[d]) {
             ++rounds[d];
             jumps = true;
           }

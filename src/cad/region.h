@@ -15,8 +15,8 @@ class Region {
  public:
   explicit Region(const Face& face);
 
-  // False where there are no loops, or these do not tell which side of them is the face: all of the surface is
-  // taken for the face's then.
+  // False where there are no loops, or these do not tell which side of them is the face: all of the surface
+  // is taken for the face's then.
   [[nodiscard]] bool is_known() const { return is_known_; }
   // Holds it; the whole domain where it is not known, or goes round the surface.
   [[nodiscard]] const Range& range() const { return range_; }
@@ -33,9 +33,9 @@ class Region {
   std::vector<Segment> segments_;
   Range range_;
   bool is_known_ = false;
-  bool along_v_ = false;                       // rays run along v: loops go round the surface in u
-  std::array<double, 2> periods_ = {0, 0};     // 0: not closed
-  std::array<double, 2> near_ = {0, 0};        // what counts as no width
+  bool along_v_ = false;                    // rays run along v: loops go round the surface in u
+  std::array<double, 2> periods_ = {0, 0};  // 0: not closed
+  std::array<double, 2> near_ = {0, 0};     // what counts as no width
 };
 
 }  // namespace selvage::cad

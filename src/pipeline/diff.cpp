@@ -39,7 +39,8 @@ void report(Job& job, const cad::Comparison& found, Unit units) {
   for (const cad::Difference& difference : found.differences)
     by_thing[{std::string(name_of(difference.what)), difference.name}].push_back(line_of(difference, units));
   Json& all = job.report["compared"] = Json::array();
-  const auto add = [&](std::string_view what, const std::string& name, const std::vector<std::string>& lines) {
+  const auto add = [&](std::string_view what, const std::string& name,
+                       const std::vector<std::string>& lines) {
     all.push_back({{"name", fmt::format("{} {}", what, name.empty() ? "without a name" : in_quotes(name))},
                    {"differences", lines}});
   };

@@ -32,7 +32,8 @@ std::string thing_text(const Difference& d) {
 
 std::string reach_text(const cad::Reach& reach, Unit units) {
   const double low = reach.at_least, high = reach.at_most;
-  if (!std::isfinite(high)) return fmt::format("by about {:.3g} {}", std::max(reach.found, low), name_of(units));
+  if (!std::isfinite(high))
+    return fmt::format("by about {:.3g} {}", std::max(reach.found, low), name_of(units));
   if (high <= 1.000001 * low) return fmt::format("by {:.6g} {}", low, name_of(units));
   if (low > 0 && high > 1.6 * low)
     return fmt::format("by {:.6g} {} or more (nowhere by more than {:.6g})", low, name_of(units), high);
@@ -178,8 +179,9 @@ std::string summary_of(const cad::Comparison& found, double tolerance, Unit unit
     text += fmt::format(", at most {:.6g} {} apart{}", found.largest, name_of(units),
                         found.largest_of.empty() ? "" : fmt::format(" ({})", in_quotes(found.largest_of)));
   if (found.uncertain > 0)
-    text += fmt::format("; {} of them within the tolerance at every point that was measured, certified only so far",
-                        found.uncertain);
+    text += fmt::format(
+        "; {} of them within the tolerance at every point that was measured, certified only so far",
+        found.uncertain);
   return text + fmt::format(" (tolerance {:g} {})", tolerance, name_of(units));
 }
 

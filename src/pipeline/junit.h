@@ -11,9 +11,9 @@ struct JunitInput {
   std::string path;
   std::string entry;  // of the report, as JSON; empty: not done
 };
-// Of `roundtrip` one test case an input and format: a failure where the geometry came back different, an error
-// where it did not come back. Of `diff` one a yarn, part or curve: a failure where it differs, an error where a
-// file cannot be read. An input that was not reached is skipped.
+// Of `roundtrip` one test case an input and format: a failure where the geometry came back different, an
+// error where it did not come back. Of `diff` one a yarn, part or curve: a failure where it differs, an error
+// where a file cannot be read. An input that was not reached is skipped.
 std::string junit_text(std::string_view command, const std::vector<JunitInput>& inputs,
                        const std::string& started, double seconds);
 

@@ -68,7 +68,8 @@ std::optional<double> between(const Surface& a, const Surface& b, double enough 
 }
 
 TEST(Carrier, OfCylindersConesSpheresAndTori) {
-  for (const Profile& profile : {segment(2, 0, 2, 5), segment(1, 0, 3, 4), arc(0, 2, -0.7, 1.1), arc(5, 1, -0.4, 1.9)}) {
+  for (const Profile& profile :
+       {segment(2, 0, 2, 5), segment(1, 0, 3, 4), arc(0, 2, -0.7, 1.1), arc(5, 1, -0.4, 1.9)}) {
     const Surface a = turned(profile, 0, 2), b = turned(profile, -0.3, 2.2);
     const auto bound = between(a, b);
     ASSERT_TRUE(bound.has_value());
@@ -124,7 +125,8 @@ Comparison compared(const Subject& a, const Subject& b, double tolerance) {
 }
 
 TEST(Carrier, FacesOnOneSurfaceAreEqualHoweverItsParametersRun) {
-  for (const Profile& profile : {segment(2, 0, 2, 5), segment(1, 0, 3, 4), arc(0, 2, -0.7, 1.1), arc(5, 1, -0.4, 1.9)}) {
+  for (const Profile& profile :
+       {segment(2, 0, 2, 5), segment(1, 0, 3, 4), arc(0, 2, -0.7, 1.1), arc(5, 1, -0.4, 1.9)}) {
     const Surface border = turned(profile, 0.1, 1.9);
     const Comparison found = compared(face_of(turned(profile, 0, 2), border),
                                       face_of(swapped(turned(profile, -0.3, 2.2)), border), 1e-6);
@@ -161,7 +163,8 @@ TEST(Carrier, BothSidesOfOneOutlineAreTwoFaces) {
     }
     return subject;
   };
-  // The whole with a hole, and the hole's filling with the whole's outline as a second loop, have one outline.
+  // The whole with a hole, and the hole's filling with the whole's outline as a second loop, have one
+  // outline.
   Subject ring = part(0.1, 0.9, 0.1, 0.9), other = ring;
   ring.model.parts[0].faces[0].loops.push_back(part(0.3, 0.7, 0.3, 0.7).model.parts[0].faces[0].loops[0]);
   EXPECT_TRUE(compared(ring, ring, 1e-9).differences.empty());
