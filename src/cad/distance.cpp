@@ -494,11 +494,12 @@ Reach Surveyor::survey(const Range& range) {
     for (std::size_t i = 0; i + 1 < us.size(); ++i) look_at({us[i], us[i + 1], vs[j], vs[j + 1]}, 0);
   while (!cells_.empty() && left_ > 0) {
     const Cell cell = cells_.top();
-    if (cell.bound <= near_ * worst_foot_.distance || cell.depth >= deepest) break;
+    if (cell.bound <= near_ * worst_foot_.distance) break;
     cells_.pop();
     of_whole_ = cell.bound;
     const std::vector<Range> parts = parts_of(cell.range, cell.split);
-    for (const Range& part : parts) look_at(part, cell.depth + 1);
+    // Cuts at borders count as divisions, too, and leave a cell as wide as it was: they may begin anew.
+    for (const Range& part : parts) look_at(part, std::min(cell.depth + 1, deepest / 2));
     if (parts.empty()) settled_ = std::max(settled_, cell.bound);
   }
   Reach reach;
