@@ -179,9 +179,9 @@ std::string summary_of(const cad::Comparison& found, double tolerance, Unit unit
     text += fmt::format(", at most {:.6g} {} apart{}", found.largest, name_of(units),
                         found.largest_of.empty() ? "" : fmt::format(" ({})", in_quotes(found.largest_of)));
   if (found.uncertain > 0)
-    text += fmt::format(
-        "; {} of them within the tolerance at every point that was measured, certified only so far",
-        found.uncertain);
+    text +=
+        fmt::format("; of {} nothing farther than the tolerance was found, and no more than that is proven",
+                    found.uncertain);
   return text + fmt::format(" (tolerance {:g} {})", tolerance, name_of(units));
 }
 
