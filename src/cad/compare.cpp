@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "cad/basis.h"
 #include "cad/outline.h"
@@ -207,7 +208,9 @@ std::vector<std::size_t> Comparer::partners(const Thing& a, const Thing& b) cons
   struct FacePair {
     double distance;
     std::size_t i, order;
-    auto operator<=>(const FacePair&) const = default;
+    bool operator<(const FacePair& other) const {
+      return std::tie(distance, i, order) < std::tie(other.distance, other.i, other.order);
+    }
   };
   std::vector<bool> done(count), taken(count);
   const auto take_best = [&](std::size_t i) {
@@ -219,7 +222,7 @@ std::vector<std::size_t> Comparer::partners(const Thing& a, const Thing& b) cons
   const double same = std::max(near_, 1e-4 * all_a.diagonal().norm());
   for (std::size_t i = 0; i < count; ++i) {
     const std::vector<FacePair> list = take_best(i);
-    const FacePair& best = *std::ranges::min_element(list);
+    const FacePair& best = *std::min_element(list.begin(), list.end());
     const std::size_t j = (i + best.order) % count;
     if (box_distance(i, j) > same) continue;
     partner[i] = j;
@@ -228,7 +231,7 @@ std::vector<std::size_t> Comparer::partners(const Thing& a, const Thing& b) cons
   std::vector<FacePair> rest;
   for (std::size_t i = 0; i < count; ++i)
     if (!done[i]) std::ranges::copy(take_best(i), std::back_inserter(rest));
-  std::ranges::sort(rest);
+  std::sort(rest.begin(), rest.end());
   for (const FacePair& candidate : rest) {
     const std::size_t j = (candidate.i + candidate.order) % count;
     if (done[candidate.i] || taken[j]) continue;
