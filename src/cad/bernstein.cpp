@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "cad/distance.h"
@@ -111,6 +112,13 @@ Matrix coefficients(const Matrix& values, const Conversion& rows, const Conversi
   return rows.to_coefficients * values * columns.to_coefficients.transpose();
 }
 
+// Of the columns: twice the middle one of three neighbours less the others.
+double largest_bend(const Matrix& net) {
+  const Eigen::Index inner = net.rows() - 2;
+  if (inner <= 0) return 0;
+  return (net.topRows(inner) - 2 * net.middleRows(1, inner) + net.bottomRows(inner)).cwiseAbs().maxCoeff();
+}
+
 }  // namespace
 
 bool BilinearMap::make_rectangle(double near) {
@@ -166,14 +174,14 @@ Box3 piece_bounds(const nurbs::Surface& surface, const Range& range) {
   return box;
 }
 
-double piece_difference(const nurbs::Surface& a, const Range& range_a, const nurbs::Surface& b,
-                        const Range& range_b, bool swapped) {
+PieceDifference piece_difference(const nurbs::Surface& a, const Range& range_a, const nurbs::Surface& b,
+                                 const Range& range_b, bool swapped) {
   constexpr double unknown = std::numeric_limits<double>::infinity();
   const bool rational = a.is_rational() || b.is_rational();
   const int b_s = swapped ? b.degree_v : b.degree_u, b_t = swapped ? b.degree_u : b.degree_v;
   const int degree_s = rational ? a.degree_u + b_s : std::max(a.degree_u, b_s);
   const int degree_t = rational ? a.degree_v + b_t : std::max(a.degree_v, b_t);
-  if (degree_s > highest || degree_t > highest) return unknown;
+  if (degree_s > highest || degree_t > highest) return {unknown, 0, 0};
   const Conversion& s = conversion(degree_s);
   const Conversion& t = conversion(degree_t);
   const Values va = values_of(a, range_a, s.nodes, t.nodes);
@@ -181,6 +189,7 @@ double piece_difference(const nurbs::Surface& a, const Range& range_a, const nur
   if (swapped)
     for (Matrix& m : vb) m.transposeInPlace();
   // a - b = (A w_b - B w_a) / (w_a w_b): the numerator's coefficients over the least of the denominator's.
+  PieceDifference out;
   double squared = 0;
   std::array<Matrix, 3> numerator;
   for (std::size_t d = 0; d < 3; ++d) {
@@ -193,9 +202,44 @@ double piece_difference(const nurbs::Surface& a, const Range& range_a, const nur
     for (const Matrix& part : numerator) sum += part.data()[i] * part.data()[i];
     squared = std::max(squared, sum);
   }
-  if (!rational) return std::sqrt(squared);
+  for (const Matrix& part : numerator) {
+    out.bend_s = std::max(out.bend_s, largest_bend(part));
+    out.bend_t = std::max(out.bend_t, largest_bend(part.transpose()));
+  }
+  out.bound = std::sqrt(squared);
+  if (!rational) return out;
   const double least = coefficients(va[3].cwiseProduct(vb[3]), s, t).minCoeff();
-  return least > 0 ? std::sqrt(squared) / least : unknown;
+  out.bound = least > 0 ? out.bound / least : unknown;
+  return out;
+}
+
+ImplicitBounds implicit_bounds(const nurbs::Surface& surface, const Range& range, const Implicit& function) {
+  constexpr ImplicitBounds unknown = {std::numeric_limits<double>::infinity(), 0};
+  const int order = function.degree(), slope_order = 2 * (order - 1);
+  const int most = std::max(order, slope_order);
+  if (most * std::max(surface.degree_u, surface.degree_v) > highest) return unknown;
+  // The least (or largest) ratio of coefficients of two polynomials, the second one positive, bounds the
+  // ratio of their values.
+  const auto ratios = [&](int power, const auto& of_point) -> std::optional<std::array<double, 2>> {
+    const Conversion& u = conversion(power * surface.degree_u);
+    const Conversion& v = conversion(power * surface.degree_v);
+    const Values values = values_of(surface, range, u.nodes, v.nodes);
+    Matrix numerator(values[3].rows(), values[3].cols()), weights = numerator;
+    for (Eigen::Index i = 0; i < weights.size(); ++i) {
+      const double w = values[3].data()[i];
+      weights.data()[i] = std::pow(w, power);
+      const Vec3 p = Vec3(values[0].data()[i], values[1].data()[i], values[2].data()[i]) / w;
+      numerator.data()[i] = of_point(p) * weights.data()[i];
+    }
+    const Matrix above = coefficients(numerator, u, v), below = coefficients(weights, u, v);
+    if (!(below.minCoeff() > 0)) return std::nullopt;
+    const Eigen::ArrayXXd ratio = above.array() / below.array();
+    return std::array<double, 2>{ratio.minCoeff(), ratio.maxCoeff()};
+  };
+  const auto value = ratios(order, [&](const Vec3& p) { return function.value(p); });
+  const auto slope = ratios(slope_order, [&](const Vec3& p) { return function.gradient(p).squaredNorm(); });
+  if (!value || !slope) return unknown;
+  return {std::max(std::abs((*value)[0]), std::abs((*value)[1])), std::sqrt(std::max(0.0, (*slope)[0]))};
 }
 
 }  // namespace selvage::cad

@@ -30,9 +30,28 @@ struct BilinearMap {
 // direction; empty where none can be told.
 Box3 piece_bounds(const nurbs::Surface& surface, const Range& range);
 
-// A bound on |a(s, t) - b(s, t)| over [0, 1]^2, where a and b run through their ranges (each between
-// neighbouring knots; u0 > u1: backwards); `swapped`: b's u runs with t. Infinite where none can be told.
-double piece_difference(const nurbs::Surface& a, const Range& range_a, const nurbs::Surface& b,
-                        const Range& range_b, bool swapped);
+// How far two pieces are apart where they are laid upon each other.
+struct PieceDifference {
+  double bound = 0;               // on |a(s, t) - b(s, t)| over [0, 1]^2; infinite where none can be told
+  double bend_s = 0, bend_t = 0;  // how much the difference bends along s and t: dividing that way helps
+};
+// a and b run through their ranges (each between neighbouring knots; u0 > u1: backwards); `swapped`: b's u
+// runs with t.
+PieceDifference piece_difference(const nurbs::Surface& a, const Range& range_a, const nurbs::Surface& b,
+                                 const Range& range_b, bool swapped);
+
+// A function of space whose zeros are a surface: a polynomial of `degree`.
+class Implicit {
+ public:
+  virtual ~Implicit() = default;
+  [[nodiscard]] virtual int degree() const = 0;
+  [[nodiscard]] virtual double value(const Vec3& p) const = 0;
+  [[nodiscard]] virtual Vec3 gradient(const Vec3& p) const = 0;
+};
+struct ImplicitBounds {
+  double largest_value, least_gradient;  // of the absolute values; infinite and 0 where none can be told
+};
+// Of `function` over a piece of a surface, which lies between neighbouring knots.
+ImplicitBounds implicit_bounds(const nurbs::Surface& surface, const Range& range, const Implicit& function);
 
 }  // namespace selvage::cad

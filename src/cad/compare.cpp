@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "cad/basis.h"
 #include "cad/outline.h"
+#include "cad/region.h"
+#include "cad/sampled_curve.h"
 #include "core/parallel.h"
 #include "core/readable.h"
 
@@ -21,6 +25,8 @@ using nurbs::Surface;
 
 // What the arithmetic of distance_to leaves, as a share of the largest coordinate.
 constexpr double arithmetic = 1e-13;
+// A difference is told by bounds of which the upper one is at most this many times the lower one.
+constexpr double largest_spread = 1.5;
 
 struct Limits {
   double points = 0;     // control points that are this near are equal
@@ -35,9 +41,11 @@ struct SurfaceFinding {
 };
 
 struct PairFinding {
-  Reach reach;              // the worst of its surfaces
-  std::size_t surface = 0;  // that has it, in a
-  bool is_equal = true;     // within the limits
+  Reach reach;               // the worst of its surfaces
+  std::size_t surface = 0;   // that has it, in a
+  bool is_equal = true;      // within the limits
+  bool is_reversed = false;  // the start of one yarn is the end of the other
+  bool is_swapped = false;   // another pair has these two names the other way round
   std::optional<ControlChange> points;
   std::size_t changed = 0, count = 0;
   std::optional<Motion> motion;
@@ -46,6 +54,11 @@ struct PairFinding {
 // What of its surface `k` a thing has.
 Range range_of(const Thing& thing, std::size_t k) {
   return k < thing.faces.size() ? used_range(*thing.faces[k]) : domain(*thing.surfaces[k]);
+}
+
+std::optional<Region> region_of(const Thing& thing, std::size_t k) {
+  if (k >= thing.faces.size() || thing.faces[k]->loops.empty()) return std::nullopt;
+  return Region(*thing.faces[k]);
 }
 
 class Comparer {
@@ -73,12 +86,23 @@ class Comparer {
                                     const std::vector<std::size_t>& partner) const;
   [[nodiscard]] SurfaceFinding compare_surfaces(const Thing& a, std::size_t i, const Thing& b,
                                                 std::size_t j) const;
+  // Do a few points tell that they differ?
+  [[nodiscard]] std::optional<PairFinding> glance_at(const Thing& a, const Thing& b) const;
+  // Nothing farther than `limit` was found.
+  [[nodiscard]] bool is_within(const Reach& reach, double limit) const {
+    return reach.at_most <= limit || (std::isfinite(reach.at_most) && reach.at_least <= limit);
+  }
+  [[nodiscard]] Reach distance_between(const Surface& s, const Surface& t) const;
+  void look_beyond_points(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
+                          std::vector<SurfaceFinding>& found) const;
+  void sum_up(const Thing& a, const std::vector<SurfaceFinding>& found, PairFinding& finding) const;
   [[nodiscard]] std::vector<std::size_t> partners(const Thing& a, const Thing& b) const;
   [[nodiscard]] PairFinding compare_unions(const Thing& a, const Thing& b) const;
   void find_motion(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
                    const std::vector<SurfaceFinding>& found, PairFinding& finding) const;
   void report_pair(const Thing& a, const Thing& b, const PairFinding& finding);
   void report_lonely(const Thing& thing, Difference::Kind kind);
+  void follow_names(Pairing& pairing, std::vector<PairFinding>& findings) const;
   void absorb_regrouped(Pairing& pairing);
   void add_notes();
 
@@ -89,6 +113,8 @@ class Comparer {
   Limits limits_;
   double near_ = 0;
   Comparison out_;
+  std::size_t uncertain_ = 0;  // equal at all points that were looked at, without a bound that says so
+  std::vector<std::string> reversed_;  // yarns that run the other way
   std::size_t without_name_ = 0, without_color_ = 0;
 };
 
@@ -110,53 +136,107 @@ SurfaceFinding Comparer::compare_surfaces(const Thing& a, std::size_t i, const T
     const Reach outlines = outline_distance(*a.faces[i], *b.faces[j], limits_.distances);
     if (!by_points && !(is_flat(s) && is_flat(t))) {
       const Reach surfaces = trimmed_distance(*a.faces[i], *b.faces[j], limits_.distances);
-      finding.reach = surfaces.at_most > outlines.at_most ? surfaces : outlines;
+      finding.reach = worse(surfaces, outlines, limits_.distances);
       finding.points.reset();
     } else if (!by_points || outlines.at_most > std::max(limits_.distances, finding.reach.at_most)) {
       finding.reach = outlines;
       finding.points.reset();
+    } else if (outlines.at_most > finding.reach.at_most) {
+      finding.reach.at_most = outlines.at_most;
+      if (finding.reach.at_most > limits_.points) finding.points.reset();
     }
     return finding;
   }
   if (finding.points) return finding;
-  const Reach there = distance_to(s, domain(s), SurfaceSet({&t}), limits_.distances);
-  const Reach back = distance_to(t, domain(t), SurfaceSet({&s}), limits_.distances);
-  finding.reach = there.at_most >= back.at_most ? there : back;
+  finding.reach = distance_between(s, t);
   return finding;
 }
 
-// Which surface of b belongs to each one of a, which has as many: the same number where that is the nearest,
-// by the boxes.
+Reach Comparer::distance_between(const Surface& s, const Surface& t) const {
+  const SurveyOptions survey = {.near = largest_spread};
+  const Reach there = distance_to(s, domain(s), SurfaceSet({&t}), limits_.distances, survey);
+  const Reach back = distance_to(t, domain(t), SurfaceSet({&s}), limits_.distances, survey);
+  return worse(there, back, limits_.distances);
+}
+
+// Where a seam lies elsewhere, or a yarn runs the other way, control points are far from those of their
+// number, and the surfaces are not.
+void Comparer::look_beyond_points(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
+                                  std::vector<SurfaceFinding>& found) const {
+  constexpr int points = 36;
+  constexpr double far = 1e-4;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    SurfaceFinding& one = found[i];
+    const Surface &s = *a.surfaces[i], &t = *b.surfaces[partner[i]];
+    if (!one.points || one.reach.at_most <= limits_.points) continue;
+    if (one.points->largest <= far * box_of(s.points).diagonal().norm()) continue;
+    const Reach sample = sampled_distance(s, domain(s), SurfaceSet({&t}), limits_.distances, points);
+    if (sample.found > 0.5 * one.points->largest) continue;
+    const Reach distance = distance_between(s, t);
+    if (distance.at_most > 0.5 * one.points->largest) continue;
+    one.reach = distance;
+    one.points.reset();
+  }
+}
+
+// Which surface of b belongs to each one of a, which has as many: what lies at the same place, its own number
+// first, then what is nearest.
 std::vector<std::size_t> Comparer::partners(const Thing& a, const Thing& b) const {
   const std::size_t count = a.surfaces.size();
   std::vector<std::size_t> partner(count);
   std::iota(partner.begin(), partner.end(), 0);
   constexpr std::size_t most = 4000;
   if (count == 1 || count > most) return partner;
-  const auto boxes = [](const Thing& thing) {
-    std::vector<Box3> list;
-    for (const Surface* const surface : thing.surfaces) list.push_back(box_of(surface->points));
+  std::vector<Place> of_a, of_b;
+  Box3 all_a, all_b;
+  for (std::size_t k = 0; k < count; ++k) {
+    all_a.extend(of_a.emplace_back(place_of(*a.faces[k])).box);
+    all_b.extend(of_b.emplace_back(place_of(*b.faces[k])).box);
+  }
+  const Vec3 moved = all_b.center() - all_a.center();
+  const Vec3 shift = moved.norm() <= 1e-3 * all_a.diagonal().norm() ? Vec3(Vec3::Zero()) : moved;
+  const auto box_distance = [&](std::size_t i, std::size_t j) {
+    return (of_a[i].box.min() + shift - of_b[j].box.min()).norm() +
+           (of_a[i].box.max() + shift - of_b[j].box.max()).norm();
+  };
+  // The points inside depend on how the parameters run: their middle tells only what the box does not.
+  const auto distance = [&](std::size_t i, std::size_t j) {
+    const std::optional<Vec3>&middle_a = of_a[i].middle, &middle_b = of_b[j].middle;
+    const double inside = middle_a && middle_b ? (*middle_a + shift - *middle_b).norm() : 0.0;
+    return box_distance(i, j) + 0.1 * inside;
+  };
+  struct FacePair {
+    double distance;
+    std::size_t i, order;
+    bool operator<(const FacePair& other) const {
+      return std::tie(distance, i, order) < std::tie(other.distance, other.i, other.order);
+    }
+  };
+  std::vector<bool> done(count), taken(count);
+  const auto take_best = [&](std::size_t i) {
+    std::vector<FacePair> list;
+    for (std::size_t k = 0; k < count; ++k)
+      if (const std::size_t j = (i + k) % count; !taken[j]) list.push_back({distance(i, j), i, k});
     return list;
   };
-  const std::vector<Box3> of_a = boxes(a), of_b = boxes(b);
-  const Vec3 shift = b.box.center() - a.box.center();
-  const auto distance = [&](std::size_t i, std::size_t j) {
-    return (of_a[i].min() + shift - of_b[j].min()).norm() + (of_a[i].max() + shift - of_b[j].max()).norm();
-  };
-  std::vector<bool> taken(count);
+  const double same = std::max(near_, 1e-4 * all_a.diagonal().norm());
   for (std::size_t i = 0; i < count; ++i) {
-    std::size_t best = count;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t j = (i + k) % count;  // its own number first
-      if (taken[j]) continue;
-      const double d = distance(i, j);
-      if (d >= least) continue;
-      least = d;
-      best = j;
-    }
-    partner[i] = best;
-    taken[best] = true;
+    const std::vector<FacePair> list = take_best(i);
+    const FacePair& best = *std::min_element(list.begin(), list.end());
+    const std::size_t j = (i + best.order) % count;
+    if (box_distance(i, j) > same) continue;
+    partner[i] = j;
+    done[i] = taken[j] = true;
+  }
+  std::vector<FacePair> rest;
+  for (std::size_t i = 0; i < count; ++i)
+    if (!done[i]) std::ranges::copy(take_best(i), std::back_inserter(rest));
+  std::sort(rest.begin(), rest.end());
+  for (const FacePair& candidate : rest) {
+    const std::size_t j = (candidate.i + candidate.order) % count;
+    if (done[candidate.i] || taken[j]) continue;
+    partner[candidate.i] = j;
+    done[candidate.i] = taken[j] = true;
   }
   return partner;
 }
@@ -166,18 +246,22 @@ PairFinding Comparer::compare_unions(const Thing& a, const Thing& b) const {
   PairFinding finding;
   const SurfaceSet all_a(a.surfaces), all_b(b.surfaces);
   for (std::size_t i = 0; i < a.surfaces.size(); ++i) {
-    const Reach reach = distance_to(*a.surfaces[i], range_of(a, i), all_b, limits_.distances);
-    if (reach.at_most < finding.reach.at_most) continue;
+    const std::optional<Region> region = region_of(a, i);
+    const SurveyOptions survey = {.near = largest_spread, .region = region ? &*region : nullptr};
+    const Reach reach = distance_to(*a.surfaces[i], range_of(a, i), all_b, limits_.distances, survey);
+    if (i > 0 && &worse(finding.reach, reach, limits_.distances) == &finding.reach) continue;
     finding.reach = reach;
     finding.surface = i;
   }
   for (std::size_t j = 0; j < b.surfaces.size(); ++j) {
-    const Reach reach = distance_to(*b.surfaces[j], range_of(b, j), all_a, limits_.distances);
-    if (reach.at_most <= finding.reach.at_most) continue;
+    const std::optional<Region> region = region_of(b, j);
+    const SurveyOptions survey = {.near = largest_spread, .region = region ? &*region : nullptr};
+    const Reach reach = distance_to(*b.surfaces[j], range_of(b, j), all_a, limits_.distances, survey);
+    if (&worse(finding.reach, reach, limits_.distances) == &finding.reach) continue;
     finding.reach = reach;
     finding.surface = a.surfaces.size();
   }
-  finding.is_equal = finding.reach.at_most <= limits_.distances;
+  finding.is_equal = is_within(finding.reach, limits_.distances);
   return finding;
 }
 
@@ -200,22 +284,40 @@ void Comparer::find_motion(const Thing& a, const Thing& b, const std::vector<std
   }
 }
 
-PairFinding Comparer::look_at(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner) const {
-  PairFinding finding;
-  std::vector<SurfaceFinding> found;
-  for (std::size_t i = 0; i < a.surfaces.size(); ++i) {
-    const SurfaceFinding& one = found.emplace_back(compare_surfaces(a, i, b, partner[i]));
+// The worst surface is one that differs, where there is such a one.
+void Comparer::sum_up(const Thing& a, const std::vector<SurfaceFinding>& found, PairFinding& finding) const {
+  finding = {};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const SurfaceFinding& one = found[i];
     finding.count += a.surfaces[i]->points.size();
     if (one.points) finding.changed += one.points->changed;
-    finding.is_equal =
-        finding.is_equal && one.reach.at_most <= (one.points ? limits_.points : limits_.distances);
-    if (i > 0 && one.reach.at_most <= finding.reach.at_most) continue;
+    const bool is_equal =
+        one.points ? one.reach.at_most <= limits_.points : is_within(one.reach, limits_.distances);
+    const bool is_worse = is_equal == finding.is_equal
+                              ? &worse(finding.reach, one.reach, limits_.distances) == &one.reach
+                              : !is_equal;
+    finding.is_equal = finding.is_equal && is_equal;
+    if (i > 0 && !is_worse) continue;
     finding.reach = one.reach;
     finding.points = one.points;
     finding.surface = i;
   }
-  if (!finding.is_equal && finding.reach.at_least > limits_.points)
+}
+
+PairFinding Comparer::look_at(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner) const {
+  std::vector<SurfaceFinding> found;
+  for (std::size_t i = 0; i < a.surfaces.size(); ++i) found.push_back(compare_surfaces(a, i, b, partner[i]));
+  PairFinding finding;
+  sum_up(a, found, finding);
+  if (!finding.is_equal && finding.reach.at_least > limits_.points) {
     find_motion(a, b, partner, found, finding);
+    if (!finding.motion && finding.points) {
+      look_beyond_points(a, b, partner, found);
+      sum_up(a, found, finding);
+    }
+  }
+  finding.is_reversed = a.kind == Thing::Kind::yarn && partner.size() == 3 && partner[0] == 0 &&
+                        partner[1] == 2 && partner[2] == 1;
   return finding;
 }
 
@@ -237,6 +339,33 @@ PairFinding Comparer::look_at(const Thing& a, const Thing& b) const {
   if (ordered && partner == in_order) return *ordered;
   PairFinding other = look_at(a, b, partner);
   return ordered && ordered->reach.at_most <= other.reach.at_most ? *ordered : other;
+}
+
+// A difference that a point shows is one however the surfaces belong together.
+std::optional<PairFinding> Comparer::glance_at(const Thing& a, const Thing& b) const {
+  constexpr int points_of_one = 160, points_of_many = 12;
+  constexpr std::size_t many = 6;
+  if (a.surfaces.size() == b.surfaces.size()) {
+    bool bases_agree = true;
+    for (std::size_t k = 0; k < a.surfaces.size() && bases_agree; ++k)
+      bases_agree = have_one_basis(*a.surfaces[k], *b.surfaces[k]);
+    if (bases_agree) return std::nullopt;  // their control points are compared
+  }
+  const SurfaceSet all_b(b.surfaces);
+  for (std::size_t k = 0; k < a.surfaces.size(); ++k) {
+    const std::optional<Region> region = region_of(a, k);
+    if (region && !region->is_known()) continue;
+    const Reach reach = sampled_distance(*a.surfaces[k], range_of(a, k), all_b, limits_.distances,
+                                         a.surfaces.size() > many ? points_of_many : points_of_one,
+                                         region ? &*region : nullptr);
+    if (reach.at_least <= std::max(limits_.distances, 0.5 * reach.found)) continue;
+    PairFinding finding;
+    finding.reach = reach;
+    finding.surface = k;
+    finding.is_equal = false;
+    return finding;
+  }
+  return std::nullopt;
 }
 
 std::string surface_label(const Thing& thing, std::size_t k) {
@@ -280,12 +409,15 @@ void Comparer::report_pair(const Thing& a, const Thing& b, const PairFinding& fi
     out_.largest = finding.reach.at_most;
     out_.largest_of = a.name;
   }
+  if (finding.is_equal && finding.reach.at_most > limits_.distances) ++uncertain_;
   if (a.name != b.name) {
     if (a.name.empty() || b.name.empty())
       ++without_name_;
     else
-      out_.differences.push_back(difference_of(a, b, Difference::Kind::renamed));
+      out_.differences.emplace_back(difference_of(a, b, Difference::Kind::renamed)).is_swapped =
+          finding.is_swapped;
   }
+  if (finding.is_equal && finding.is_reversed) reversed_.push_back(a.name);
   if (a.color.has_value() != b.color.has_value()) ++without_color_;
   if (a.color && b.color && *a.color != *b.color) {
     Difference& recoloured = out_.differences.emplace_back(difference_of(a, b, Difference::Kind::recoloured));
@@ -299,6 +431,49 @@ void Comparer::report_lonely(const Thing& thing, Difference::Kind kind) {
   Difference& difference = out_.differences.emplace_back(difference_of(thing, thing, kind));
   difference.box = thing.box;
   difference.surfaces = thing.surfaces.size();
+}
+
+// Names that went round among things that stayed where they were: each of these is the other one's partner.
+void Comparer::follow_names(Pairing& pairing, std::vector<PairFinding>& findings) const {
+  constexpr std::size_t most = 2000;
+  std::vector<std::size_t> changed;
+  for (std::size_t k = 0; k < findings.size(); ++k)
+    if (!findings[k].is_equal) changed.push_back(k);
+  if (changed.size() < 2 || changed.size() > most) return;
+  const auto at_one_place = [&](const Thing& a, const Thing& b) {
+    const double near = std::max(near_, 1e-3 * a.box.diagonal().norm());
+    return a.kind == b.kind && a.surfaces.size() == b.surfaces.size() &&
+           (a.box.min() - b.box.min()).cwiseAbs().maxCoeff() <= near &&
+           (a.box.max() - b.box.max()).cwiseAbs().maxCoeff() <= near;
+  };
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> next(findings.size(), none);
+  for (const std::size_t k : changed)
+    for (const std::size_t l : changed)
+      if (l != k && at_one_place(a_.list[pairing.pairs[k].first], b_.list[pairing.pairs[l].second]))
+        next[k] = l;
+  std::vector<bool> is_done(findings.size());
+  for (const std::size_t first : changed) {
+    std::vector<std::size_t> round;
+    for (std::size_t k = first; k != none && !is_done[k]; k = next[k]) {
+      is_done[k] = true;
+      round.push_back(k);
+    }
+    if (round.size() < 2 || next[round.back()] != first) continue;
+    std::vector<std::pair<std::size_t, PairFinding>> better;  // the other thing, and what is found of it
+    for (const std::size_t k : round) {
+      const std::size_t other = pairing.pairs[next[k]].second;
+      PairFinding finding = look_at(a_.list[pairing.pairs[k].first], b_.list[other]);
+      if (!finding.is_equal) break;
+      finding.is_swapped = round.size() == 2;
+      better.emplace_back(other, std::move(finding));
+    }
+    if (better.size() != round.size()) continue;
+    for (std::size_t i = 0; i < round.size(); ++i) {
+      pairing.pairs[round[i]].second = better[i].first;
+      findings[round[i]] = std::move(better[i].second);
+    }
+  }
 }
 
 // Things without a partner whose surfaces lie on those of the other side that have none either: the same
@@ -325,9 +500,13 @@ void Comparer::absorb_regrouped(Pairing& pairing) {
         const Range range = range_of(thing, k);
         const Vec3 middle = nurbs::evaluate(s, 0.5 * (range.u0 + range.u1), 0.5 * (range.v0 + range.v1));
         if (others.near(middle).distance > near_) return false;
-        most = std::max(most, distance_to(s, range, others, limits_.distances).at_most);
-        if (most > limits_.distances) return false;
+        const std::optional<Region> region = region_of(thing, k);
+        const SurveyOptions survey = {.near = largest_spread, .region = region ? &*region : nullptr};
+        const Reach reach = distance_to(s, range, others, limits_.distances, survey);
+        if (!is_within(reach, limits_.distances)) return false;
+        most = std::max(most, reach.at_most);
       }
+      if (most > limits_.distances) ++uncertain_;
       if (most > out_.largest) {
         out_.largest = most;
         out_.largest_of = thing.name;
@@ -361,6 +540,12 @@ Comparison::Counts counts_of(const Things& things) {
 }
 
 void Comparer::add_notes() {
+  out_.uncertain = uncertain_;
+  if (!reversed_.empty())
+    out_.notes.push_back(
+        fmt::format("{} the other way: '{}'{}",
+                    reversed_.size() == 1 ? "a yarn runs" : fmt::format("{} yarns run", reversed_.size()),
+                    reversed_.front(), reversed_.size() > 1 ? " and others" : ""));
   if (without_name_ > 0) out_.notes.push_back(fmt::format("{} have a name in one file only", without_name_));
   if (without_color_ > 0)
     out_.notes.push_back(fmt::format("{} have a colour in one file only", without_color_));
@@ -374,12 +559,24 @@ Comparison Comparer::run() {
   out_.a = counts_of(a_);
   out_.b = counts_of(b_);
   Pairing pairing = pair_things(a_.list, b_.list, near_);
+  // Where most have changed, a few points of each tell by about how much; bounds are for what is left.
+  constexpr std::size_t few = 8;
+  std::vector<std::optional<PairFinding>> glances(pairing.pairs.size());
+  if (pairing.pairs.size() > few)
+    for_each_index(glances.size(), options_.threads, [&](std::size_t k) {
+      const auto [i, j] = pairing.pairs[k];
+      glances[k] = glance_at(a_.list[i], b_.list[j]);
+    });
+  const bool many_differ = std::ranges::count_if(glances, [](const auto& glance) {
+                             return glance.has_value();
+                           }) > static_cast<std::ptrdiff_t>(few);
   std::vector<PairFinding> findings(pairing.pairs.size());
   const auto look = [&](std::size_t k) {
     const auto [i, j] = pairing.pairs[k];
-    findings[k] = look_at(a_.list[i], b_.list[j]);
+    findings[k] = many_differ && glances[k] ? *glances[k] : look_at(a_.list[i], b_.list[j]);
   };
   for_each_index(findings.size(), options_.threads, look, options_.progress);
+  follow_names(pairing, findings);
   absorb_regrouped(pairing);
   std::size_t next = 0;
   for (std::size_t k = 0; k <= findings.size(); ++k) {

@@ -42,7 +42,8 @@ struct Difference {
                 points = 0;  // of this thing, how many of how many are farther than the tolerance
   };
   std::optional<ControlPoint> control_point;
-  Color before, after;  // recoloured
+  Color before, after;      // recoloured
+  bool is_swapped = false;  // renamed: what had the other name has this one's now
 };
 std::string_view name_of(Difference::Kind kind);
 
@@ -53,9 +54,12 @@ struct Comparison {
   Counts a, b;
   std::vector<Difference> differences;  // in the order of a, what was added last
   std::size_t equal = 0;                // things of a without any difference
-  double largest = 0;                   // bound on the deviation of all that is within the tolerance
-  std::string largest_of;               // the thing that has it
-  std::vector<std::string> notes;       // what is no difference of geometry: units, missing names, ...
+  // Of these, how many without a bound within the tolerance: nothing farther was found at the points that
+  // were looked at, which are the denser the less the bound says.
+  std::size_t uncertain = 0;
+  double largest = 0;              // bound on the deviation of all that is within the tolerance
+  std::string largest_of;          // the thing that has it
+  std::vector<std::string> notes;  // what is no difference of geometry: units, missing names, ...
   struct Match {
     Thing::Kind what = Thing::Kind::part;
     std::string name;                  // in a

@@ -9,6 +9,7 @@
 #include <queue>
 
 #include "cad/bernstein.h"
+#include "cad/region.h"
 #include "core/box_tree.h"
 #include "nurbs/basis.h"
 #include "nurbs/sweep.h"
@@ -56,6 +57,13 @@ bool is_closed(const Target& target, bool in_u, double near) {
   return true;
 }
 
+// A curve as a surface of no width: two equal rows.
+bool is_curve(const Surface& surface) {
+  const auto half = surface.points.begin() + static_cast<std::ptrdiff_t>(surface.count_u);
+  return surface.degree_v == 1 && surface.count_v == 2 &&
+         std::equal(surface.points.begin(), half, half, surface.points.end());
+}
+
 Target target_of(const Surface& surface, double near) {
   Target target;
   target.surface = &surface;
@@ -64,9 +72,7 @@ Target target_of(const Surface& surface, double near) {
   target.sites_u = sample_sites(target.breaks_u);
   target.sites_v = sample_sites(target.breaks_v);
   target.range = domain(surface);
-  const auto half = surface.points.begin() + static_cast<std::ptrdiff_t>(surface.count_u);
-  target.is_curve = surface.degree_v == 1 && surface.count_v == 2 &&
-                    std::equal(surface.points.begin(), half, half, surface.points.end());
+  target.is_curve = is_curve(surface);
   target.closed_u = is_closed(target, true, near);
   target.closed_v = !target.is_curve && is_closed(target, false, near);
   return target;
@@ -118,6 +124,19 @@ double snapped(double t, const std::vector<double>& values, double near) {
   return t;
 }
 
+enum class Split : std::uint8_t { both, u, v };
+
+// The range divided at its middle in one direction or both; nothing where doubles have no number between.
+std::vector<Range> parts_of(const Range& r, Split split) {
+  const double u = 0.5 * (r.u0 + r.u1), v = 0.5 * (r.v0 + r.v1);
+  const bool has_u = u > r.u0 && u<r.u1, has_v = v> r.v0 && v < r.v1;
+  if (split == Split::u && has_u) return {{r.u0, u, r.v0, r.v1}, {u, r.u1, r.v0, r.v1}};
+  if (split == Split::v && has_v) return {{r.u0, r.u1, r.v0, v}, {r.u0, r.u1, v, r.v1}};
+  if (split == Split::both && has_u && has_v)
+    return {{r.u0, u, r.v0, v}, {u, r.u1, r.v0, v}, {r.u0, u, v, r.v1}, {u, r.u1, v, r.v1}};
+  return {};
+}
+
 // The range divided at its middle in both directions; nothing where doubles have no number between.
 std::optional<std::array<Range, 4>> quarters(const Range& r) {
   const double u = 0.5 * (r.u0 + r.u1), v = 0.5 * (r.v0 + r.v1);
@@ -135,6 +154,16 @@ std::vector<double> cut_to(const std::vector<double>& breaks, double low, double
   return values;
 }
 
+// Between neighbours of a grid, along both directions together.
+double largest_step(const std::vector<Vec3>& points, std::size_t columns) {
+  double along = 0, across = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (k % columns > 0) along = std::max(along, (points[k] - points[k - 1]).squaredNorm());
+    if (k >= columns) across = std::max(across, (points[k] - points[k - columns]).squaredNorm());
+  }
+  return std::sqrt(along) + std::sqrt(across);
+}
+
 }  // namespace
 
 struct SurfaceSet::Impl {
@@ -142,6 +171,7 @@ struct SurfaceSet::Impl {
   std::vector<Sample> samples;
   BoxTree tree{{}};  // of the samples' points
   double size = 0;   // largest coordinate
+  double step = 0;   // no point of a surface is much farther than this from one of its samples
 };
 
 Range domain(const Surface& surface) {
@@ -163,6 +193,7 @@ SurfaceSet::SurfaceSet(const std::vector<const Surface*>& surfaces) {
     const Target& target = made->targets.emplace_back(target_of(*surface, 1e-9 * made->size));
     const std::vector<Vec3> points = nurbs::evaluate_grid(*surface, target.sites_u, target.sites_v);
     const auto index = static_cast<std::uint32_t>(made->targets.size() - 1);
+    made->step = std::max(made->step, largest_step(points, target.sites_u.size()));
     for (std::size_t k = 0; k < points.size(); ++k) {
       made->samples.push_back({index, static_cast<std::uint32_t>(k % target.sites_u.size()),
                                static_cast<std::uint32_t>(k / target.sites_u.size())});
@@ -182,7 +213,7 @@ SurfaceSet::Foot SurfaceSet::near(const Vec3& point) const {
   // Next to a border, or where surfaces meet, the nearest sample may be on another one.
   for (int trial = 0; trial < 3; ++trial) {
     const Sample* sample = nullptr;
-    double reach = infinity;
+    double reach = best.distance + impl_->step;
     impl_->tree.near_point(point, reach, [&](std::uint32_t k) {
       const double distance = (impl_->tree.box(k).min() - point).norm();
       if (distance < reach && std::ranges::find(tried, impl_->samples[k].surface) == tried.end()) {
@@ -236,12 +267,15 @@ double SurfaceSet::least_distance(const Vec3& point, const Foot& foot) const {
 // One walk over a surface: the cells that are open, the worst one first.
 class Surveyor {
  public:
-  Surveyor(const Surface& surface, const SurfaceSet& others, double enough, std::size_t most_cells)
+  Surveyor(const Surface& surface, const SurfaceSet& others, double enough, const SurveyOptions& options)
       : surface_(surface),
         others_(others),
         targets_(others.impl_->targets),
         enough_(enough),
-        left_(most_cells) {}
+        near_(options.near),
+        region_(options.region),
+        left_(options.most_cells),
+        is_curve_(is_curve(surface)) {}
 
   Reach survey(const Range& range);
 
@@ -250,6 +284,7 @@ class Surveyor {
     double bound = 0;
     Range range;
     int depth = 0;
+    Split split = Split::both;
     bool operator<(const Cell& other) const { return bound < other.bound; }
   };
   // Where a cell lies in the parameters of one of the others.
@@ -264,46 +299,59 @@ class Surveyor {
   [[nodiscard]] std::optional<Image> image_of(Feet feet) const;
   void compare_rectangle(const Range& range, int depth, const Image& image);
   double box_bound(const Range& range);
-  void keep(double bound, const Range& range, int depth);
+  void keep(double bound, const Range& range, int depth, Split split = Split::both);
   // Where the difference says too little, the box may say more.
-  void keep_difference(double bound, const Range& range, int depth) {
-    keep(bound > enough_ ? std::min(bound, box_bound(range)) : bound, range, depth);
+  void keep_difference(const PieceDifference& difference, const Range& range, int depth) {
+    double bound = difference.bound;
+    if (bound > enough_) bound = std::min(bound, box_bound(range));
+    const Split split = difference.bend_s > 4 * difference.bend_t   ? Split::u
+                        : difference.bend_t > 4 * difference.bend_s ? Split::v
+                                                                    : Split::both;
+    keep(bound, range, depth, split);
   }
-  void take_foot(const Vec3& point, const SurfaceSet::Foot& foot);
+  // Of the surface's point at (u, v).
+  void take_foot(double u, double v, const Vec3& point, const SurfaceSet::Foot& foot);
 
   const Surface& surface_;
   const SurfaceSet& others_;
   const std::vector<Target>& targets_;
-  double enough_;
-  std::size_t left_;
+  double enough_, near_;
+  const Region* region_;  // may be null
+  std::size_t left_, looked_at_ = 0;
+  bool is_curve_;
   std::priority_queue<Cell> cells_;
-  double settled_ = 0;  // the largest bound of the cells that need no more
+  double of_whole_ = infinity;  // the bound of the cell that is being divided
+  double settled_ = 0;          // the largest bound of the cells that need no more
   Vec3 worst_ = Vec3::Zero();
   SurfaceSet::Foot worst_foot_;
   static constexpr int deepest = 40, deepest_search = 20;
   static constexpr double largest_skew = 0.2;  // of a rectangle's image, by its sides
 };
 
-void Surveyor::take_foot(const Vec3& point, const SurfaceSet::Foot& foot) {
+void Surveyor::take_foot(double u, double v, const Vec3& point, const SurfaceSet::Foot& foot) {
+  ++looked_at_;
   if (foot.distance <= worst_foot_.distance) return;
+  if (region_ != nullptr && !region_->contains(u, v)) return;
   worst_foot_ = foot;
   worst_ = point;
 }
 
-void Surveyor::keep(double bound, const Range& range, int depth) {
+void Surveyor::keep(double bound, const Range& range, int depth, Split split) {
+  bound = std::min(bound, of_whole_);
   if (bound <= enough_)
     settled_ = std::max(settled_, bound);
   else
-    cells_.push({bound, range, depth});
+    cells_.push({bound, range, depth, is_curve_ ? Split::u : split});
 }
 
 // Any point of the cell's box is within its half diagonal of the middle one.
 double Surveyor::box_bound(const Range& range) {
   const Box3 box = piece_bounds(surface_, range);
   if (box.isEmpty()) return infinity;
-  const Vec3 middle = nurbs::evaluate(surface_, 0.5 * (range.u0 + range.u1), 0.5 * (range.v0 + range.v1));
+  const double u = 0.5 * (range.u0 + range.u1), v = 0.5 * (range.v0 + range.v1);
+  const Vec3 middle = nurbs::evaluate(surface_, u, v);
   const SurfaceSet::Foot foot = others_.near(middle);
-  take_foot(middle, foot);
+  take_foot(u, v, middle, foot);
   const Vec3 far = (box.max() - middle).cwiseMax(middle - box.min());
   return foot.distance + far.norm();
 }
@@ -314,9 +362,13 @@ Surveyor::Feet Surveyor::feet_of(const Range& range) {
   const double du = range.u1 - range.u0, dv = range.v1 - range.v0;
   for (std::size_t k = 0; k < 4; ++k) {
     const double u = range.u0 + du * (k % 2 == 0 ? 0.25 : 0.75), v = range.v0 + dv * (k < 2 ? 0.25 : 0.75);
+    if (k > 1 && is_curve_) {
+      feet[k] = feet[k - 2];
+      continue;
+    }
     const Vec3 point = nurbs::evaluate(surface_, u, v);
     feet[k] = others_.near(point);
-    take_foot(point, feet[k]);
+    take_foot(u, v, point, feet[k]);
   }
   return feet;
 }
@@ -408,6 +460,7 @@ void Surveyor::compare_rectangle(const Range& range, int depth, const Image& ima
 }
 
 void Surveyor::look_at(const Range& range, int depth) {
+  if (region_ != nullptr && !region_->may_meet(range)) return;
   if (left_ > 0) --left_;
   const Feet feet = feet_of(range);
   const bool same_low = feet[0].surface == feet[1].surface, same_high = feet[2].surface == feet[3].surface;
@@ -441,24 +494,51 @@ Reach Surveyor::survey(const Range& range) {
     for (std::size_t i = 0; i + 1 < us.size(); ++i) look_at({us[i], us[i + 1], vs[j], vs[j + 1]}, 0);
   while (!cells_.empty() && left_ > 0) {
     const Cell cell = cells_.top();
-    if (cell.bound <= 1.1 * worst_foot_.distance || cell.depth >= deepest) break;
+    if (cell.bound <= near_ * worst_foot_.distance) break;
     cells_.pop();
-    if (const auto parts = quarters(cell.range))
-      for (const Range& part : *parts) look_at(part, cell.depth + 1);
-    else
-      settled_ = std::max(settled_, cell.bound);
+    of_whole_ = cell.bound;
+    const std::vector<Range> parts = parts_of(cell.range, cell.split);
+    // Cuts at borders count as divisions, too, and leave a cell as wide as it was: they may begin anew.
+    for (const Range& part : parts) look_at(part, std::min(cell.depth + 1, deepest / 2));
+    if (parts.empty()) settled_ = std::max(settled_, cell.bound);
   }
   Reach reach;
   reach.at_most = cells_.empty() ? settled_ : std::max(settled_, cells_.top().bound);
   reach.at = worst_;
-  if (reach.at_most > enough_) reach.at_least = others_.least_distance(worst_, worst_foot_);
+  reach.found = worst_foot_.distance;
+  reach.looked_at = looked_at_;
+  if (worst_foot_.distance > enough_) reach.at_least = others_.least_distance(worst_, worst_foot_);
   reach.at_most = std::max(reach.at_most, reach.at_least);
   return reach;
 }
 
 Reach distance_to(const Surface& surface, const Range& range, const SurfaceSet& others, double enough,
-                  std::size_t most_cells) {
-  return Surveyor(surface, others, enough, most_cells).survey(range);
+                  const SurveyOptions& options) {
+  return Surveyor(surface, others, enough, options).survey(range);
+}
+
+Reach sampled_distance(const Surface& surface, const Range& range, const SurfaceSet& others, double enough,
+                       int points, const Region* region) {
+  Reach reach;
+  reach.at_most = infinity;
+  SurfaceSet::Foot worst;
+  // Shares of the golden section: no grid, whose lines could keep step with what repeats itself.
+  const double golden = 0.5 * (std::sqrt(5.0) - 1);
+  for (int k = 0; k < points; ++k) {
+    const double share = k * golden;
+    const double u = std::lerp(range.u0, range.u1, share - std::floor(share)),
+                 v = std::lerp(range.v0, range.v1, (k + 0.5) / points);
+    if (region != nullptr && !region->contains(u, v)) continue;
+    const Vec3 p = nurbs::evaluate(surface, u, v);
+    const SurfaceSet::Foot foot = others.near(p);
+    ++reach.looked_at;
+    if (foot.distance <= worst.distance) continue;
+    worst = foot;
+    reach.at = p;
+  }
+  reach.found = worst.distance;
+  if (reach.found > enough) reach.at_least = others.least_distance(reach.at, worst);
+  return reach;
 }
 
 }  // namespace selvage::cad

@@ -14,6 +14,10 @@ namespace selvage::cad {
 struct Reach {
   double at_least = 0, at_most = 0;
   Vec3 at = Vec3::Zero();  // the point of the surface whose distance is `at_least` or more
+  // The largest distance at the points that were looked at, each by a search of its own: none of them is
+  // farther. Where it is within what was `enough`, at_least is not asked for, and 0.
+  double found = 0;
+  std::size_t looked_at = 0;
 };
 
 // Surfaces that are asked for the points nearest to others. They have to outlive it.
@@ -58,10 +62,21 @@ Range domain(const nurbs::Surface& surface);
 // but for an affine change, a direction, a seam or a cut, the cell is cut at the other's knots, and the
 // difference of the two pieces is one polynomial, whose Bernstein coefficients bound it. Elsewhere the
 // rectangle is one that a bilinear map takes it to, or the cell's own box bounds it. The worst cells are
-// divided until the bound is at most `enough`, or within a tenth of what was found, or `most_cells` were
-// looked at. `at_most` holds up to the rounding of the arithmetic, some 1e-14 of the coordinates' size.
+// divided, in the direction in which their difference bends, until the bound is at most `enough`, or `near`
+// times what was found, or `most_cells` were looked at. `at_most` holds up to the rounding of the arithmetic,
+// some 1e-14 of the coordinates' size.
+class Region;
+struct SurveyOptions {
+  std::size_t most_cells = 2000;
+  double near = 1.1;
+  const Region* region = nullptr;  // of the surface's parameters: what else there is does not count
+};
 Reach distance_to(const nurbs::Surface& surface, const Range& range, const SurfaceSet& others, double enough,
-                  std::size_t most_cells = 2000);
+                  const SurveyOptions& options = {});
+
+// The same by so many points only, without an upper bound.
+Reach sampled_distance(const nurbs::Surface& surface, const Range& range, const SurfaceSet& others,
+                       double enough, int points, const Region* region = nullptr);
 
 // A curve as a surface of no width: over the curve's parameter in u and [0, 1] in v.
 nurbs::Surface as_surface(const nurbs::Curve& curve);

@@ -8,6 +8,7 @@
 
 #include "cad/distance.h"
 #include "cad/edges.h"
+#include "cad/outline.h"
 #include "core/box_tree.h"
 
 namespace selvage::cad {
@@ -19,10 +20,14 @@ void measure(Thing& thing) {
   std::size_t count = 0;
   for (const nurbs::Surface* surface : thing.surfaces)
     for (const Vec3& p : surface->points) {
-      thing.box.extend(p);
       mean += p;
       ++count;
     }
+  for (std::size_t k = 0; k < thing.surfaces.size(); ++k)
+    if (k < thing.faces.size() && !thing.faces[k]->loops.empty())
+      thing.box.extend(place_of(*thing.faces[k]).box);
+    else
+      thing.box.extend(box_of(thing.surfaces[k]->points));
   if (count == 0) return;
   mean /= static_cast<double>(count);
   double sum = 0;
@@ -143,15 +148,19 @@ class Pairer {
       if (group.a.size() == 1 && group.b.size() == 1)
         take(group.a.front(), group.b.front());
       else if (!group.a.empty() && !group.b.empty())
-        by_place(group.a, group.b);
+        for (const double share : {0.0, 1e-3, 0.03}) by_place(group.a, group.b, share);
     }
   }
 
-  void by_place(const Indices& from, const Indices& to) {
+  // `share`: of a thing's size, which its box may be off by where parameters run in another way.
+  void by_place(const Indices& from, const Indices& to, double share = 0) {
     if (from.empty() || to.empty()) return;
     const PlaceIndex index(b_, to);
-    for (const std::size_t i : from)
-      if (const std::size_t j = index.nearest(a_[i], near_, taken_b_); j != PlaceIndex::npos) take(i, j);
+    for (const std::size_t i : from) {
+      if (taken_a_[i]) continue;
+      const double near = std::max(near_, share * a_[i].box.diagonal().norm());
+      if (const std::size_t j = index.nearest(a_[i], near, taken_b_); j != PlaceIndex::npos) take(i, j);
+    }
   }
 
   // Equal in everything that a motion leaves.

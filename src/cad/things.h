@@ -25,7 +25,7 @@ struct Thing {
   std::optional<Color> color;
   std::vector<const nurbs::Surface*> surfaces;
   std::vector<const Face*> faces;  // of a curve none
-  Box3 box;                        // of the control points
+  Box3 box;                        // of the control points, of trimmed faces of points on them (place_of)
   double spread = 0;               // root of the mean square distance of the control points from their mean
 };
 std::string_view name_of(Thing::Kind kind);  // "yarn", "part", "curve"

@@ -306,10 +306,11 @@ Status Batch::write_table() const {
 
 Status Batch::write_junit(const std::vector<Message>& missing) const {
   if (options_.junit.empty()) return {};
+  const std::string_view word = options_.command == Command::diff ? "diff" : "roundtrip";
   std::vector<JunitInput> all;
   for (std::size_t i = 0; i < reports_.size(); ++i) all.push_back({plan_.name(i), std::string(reports_[i])});
   for (std::size_t i = 0; i < missing.size(); ++i) all.push_back({missing[i].file, missing_reports_[i]});
-  return write_whole(options_.junit, junit_text(all, started_, seconds_since(start_)));
+  return write_whole(options_.junit, junit_text(word, all, started_, seconds_since(start_)));
 }
 
 int Batch::exit_code() const {

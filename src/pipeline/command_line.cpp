@@ -203,7 +203,8 @@ void inputs_and_outputs(OptionTable& t) {
   t.option(on_batch, "--report", "write a JSON report to this file", file, &Options::report);
   t.option({info}, "--csv", "write a table of the data sheets to this file, a row an input", file,
            &Options::csv);
-  t.option({roundtrip}, "--junit", "write the results as JUnit XML to this file", file, &Options::junit);
+  t.option({roundtrip, diff}, "--junit", "write the results as JUnit XML to this file", file,
+           &Options::junit);
   t.option(on_batch, "--set", "another value of a param of the input (more than one: selvage sweep)",
            Argument::texts("NAME=VALUE"), into(&Options::sweep, &SweepWords::sets))
       .is_of_run = false;

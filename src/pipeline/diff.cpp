@@ -1,7 +1,11 @@
 // `selvage diff`: the geometry of two files of any readable formats.
 #include <fmt/format.h>
 
+#include <map>
+
+#include "core/words.h"
 #include "pipeline/differences.h"
+#include "pipeline/report.h"
 #include "pipeline/subject.h"
 
 namespace selvage::pipeline {
@@ -27,6 +31,26 @@ void print(const Job& job, const cad::Comparison& found, Unit units) {
     text += fmt::format("... and {} more (--all shows them)\n", found.differences.size() - shown);
   for (const std::string& note : found.notes) text += "note: " + note + "\n";
   job.print(text + summary_of(found, asked.difference_tolerance, units) + "\n");
+}
+
+// A test case for each thing of either file, with what is different about it.
+void report(Job& job, const cad::Comparison& found, Unit units) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> by_thing;
+  for (const cad::Difference& difference : found.differences)
+    by_thing[{std::string(name_of(difference.what)), difference.name}].push_back(line_of(difference, units));
+  Json& all = job.report["compared"] = Json::array();
+  const auto add = [&](std::string_view what, const std::string& name,
+                       const std::vector<std::string>& lines) {
+    all.push_back({{"name", fmt::format("{} {}", what, name.empty() ? "without a name" : in_quotes(name))},
+                   {"differences", lines}});
+  };
+  for (const cad::Comparison::Match& match : found.matches) {
+    const auto lines = by_thing.find({std::string(name_of(match.what)), match.name});
+    add(name_of(match.what), match.name,
+        lines == by_thing.end() ? std::vector<std::string>{} : std::move(lines->second));
+    if (lines != by_thing.end()) by_thing.erase(lines);
+  }
+  for (const auto& [thing, lines] : by_thing) add(thing.first, thing.second, lines);
 }
 
 // By a job of its own, whose messages name the file. Nothing when it failed.
@@ -62,6 +86,7 @@ Verdict diff(Job& job) {
   cad::Comparison found = cad::compare(*a, *b, options);
   if (!note.empty()) found.notes.insert(found.notes.begin(), note);
   print(job, found, units);
+  if (!job.options.junit.empty()) report(job, found, units);
   return found.differences.empty() ? Verdict::done : Verdict::defect;
 }
 

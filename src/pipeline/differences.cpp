@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/text_report.h"
 #include "core/words.h"
@@ -31,8 +32,11 @@ std::string thing_text(const Difference& d) {
 
 std::string reach_text(const cad::Reach& reach, Unit units) {
   const double low = reach.at_least, high = reach.at_most;
-  if (!std::isfinite(high)) return fmt::format("by {:.6g} {} or more", low, name_of(units));
+  if (!std::isfinite(high))
+    return fmt::format("by about {:.3g} {}", std::max(reach.found, low), name_of(units));
   if (high <= 1.000001 * low) return fmt::format("by {:.6g} {}", low, name_of(units));
+  if (low > 0 && high > 1.6 * low)
+    return fmt::format("by {:.6g} {} or more (nowhere by more than {:.6g})", low, name_of(units), high);
   return fmt::format("by {:.6g} to {:.6g} {}", low, high, name_of(units));
 }
 
@@ -68,6 +72,24 @@ std::size_t count_of(const cad::Comparison& found, Difference::Kind kind) {
   return static_cast<std::size_t>(std::ranges::count(found.differences, kind, &Difference::kind));
 }
 
+// Of many that are reshaped, about how far.
+std::string spread_text(const cad::Comparison& found, Unit units) {
+  constexpr std::size_t many = 3;
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  std::size_t count = 0;
+  for (const Difference& d : found.differences) {
+    if (d.kind != Difference::Kind::reshaped) continue;
+    const double by = std::max(d.reach.at_least, d.reach.found);
+    low = std::min(low, by);
+    high = std::max(high, by);
+    ++count;
+  }
+  if (count < many || high == 0) return {};
+  const std::string_view all = found.equal == 0 && count == found.differences.size() ? "all " : "";
+  if (high <= 1.2 * low) return fmt::format(", {}by about {:.3g} {}", all, high, name_of(units));
+  return fmt::format(", {}by about {:.3g} to {:.3g} {}", all, low, high, name_of(units));
+}
+
 using Counts = cad::Comparison::Counts;
 constexpr std::array<std::pair<std::string_view, std::size_t Counts::*>, 4> counted_things = {
     {{"yarn", &Counts::yarns},
@@ -101,6 +123,7 @@ Json difference_json(const Difference& d) {
           {"what", name_of(d.what)},
           {"name", d.name},
           {"other_name", if_true(d.kind == renamed, d.other_name)},
+          {"swapped", if_true(d.is_swapped, true)},
           {"entity", if_true(!d.entity.empty(), d.entity)},
           {"surfaces", if_true(has_come_or_gone, d.surfaces)},
           {"box", if_true(has_come_or_gone, {point_json(d.box.min()), point_json(d.box.max())})},
@@ -133,7 +156,8 @@ std::string line_of(const Difference& d, Unit units) {
     case Difference::Kind::reshaped:
       return text + ", " + shape_text(d, units);
     case Difference::Kind::renamed:
-      return text + fmt::format(" to {}", in_quotes(d.other_name));
+      return text + fmt::format(" to {}{}", in_quotes(d.other_name),
+                                d.is_swapped ? ": the two swapped their names" : "");
     case Difference::Kind::recoloured:
       return text + fmt::format(" from {} to {}", color_text(d.before), color_text(d.after));
   }
@@ -149,11 +173,15 @@ std::string summary_of(const cad::Comparison& found, double tolerance, Unit unit
     for (const Difference::Kind kind : all_kinds)
       if (const std::size_t count = count_of(found, kind); count > 0)
         kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", count, name_of(kind));
-    text = fmt::format("different: {}; the other {} equal", kinds, found.equal);
+    text = fmt::format("different: {}{}; the other {} equal", kinds, spread_text(found, units), found.equal);
   }
   if (found.largest > 0)
     text += fmt::format(", at most {:.6g} {} apart{}", found.largest, name_of(units),
                         found.largest_of.empty() ? "" : fmt::format(" ({})", in_quotes(found.largest_of)));
+  if (found.uncertain > 0)
+    text +=
+        fmt::format("; of {} nothing farther than the tolerance was found, and no more than that is proven",
+                    found.uncertain);
   return text + fmt::format(" (tolerance {:g} {})", tolerance, name_of(units));
 }
 
@@ -168,6 +196,7 @@ std::string to_json(const cad::Comparison& found, const std::string& a, const st
               {"equal", found.differences.empty()},
               {"counts", {{"a", counts_json(found.a)}, {"b", counts_json(found.b)}}},
               {"same", found.equal},
+              {"uncertain", found.uncertain},
               {"largest_deviation", found.largest},
               {"kinds", kinds},
               {"differences", list_json(found.differences, difference_json)},

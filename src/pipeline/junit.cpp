@@ -46,18 +46,30 @@ std::string outcome(std::string_view element, const std::string& text) {
                      escaped(text), element);
 }
 
-void add_cases(const JunitInput& input, Suite& suite) {
+void add_cases(std::string_view command, const JunitInput& input, Suite& suite) {
   const Json entry = Json::parse(input.entry, nullptr, false);
   if (!entry.is_object()) {
     ++suite.skipped;
-    suite.cases.push_back({input.path, "roundtrip", "<skipped/>", 0});
+    suite.cases.push_back({input.path, std::string(command), "<skipped/>", 0});
+    return;
+  }
+  if (const auto things = entry.find("compared"); things != entry.end() && things->is_array()) {
+    for (const Json& thing : *things) {
+      Case& one = suite.cases.emplace_back();
+      one.class_name = input.path;
+      one.name = text_at(thing, "name");
+      const std::string lines = lines_of(thing, "differences");
+      if (lines.empty()) continue;
+      ++suite.failures;
+      one.body = outcome("failure", lines);
+    }
     return;
   }
   const auto trips = entry.find("roundtrips");
   if (trips == entry.end() || !trips->is_array() || trips->empty()) {
     ++suite.errors;
     suite.cases.push_back(
-        {input.path, "roundtrip", outcome("error", errors_of(entry)), entry.value("seconds", 0.0)});
+        {input.path, std::string(command), outcome("error", errors_of(entry)), entry.value("seconds", 0.0)});
     return;
   }
   for (const Json& trip : *trips) {
@@ -77,16 +89,17 @@ void add_cases(const JunitInput& input, Suite& suite) {
 
 }  // namespace
 
-std::string junit_text(const std::vector<JunitInput>& inputs, const std::string& started, double seconds) {
+std::string junit_text(std::string_view command, const std::vector<JunitInput>& inputs,
+                       const std::string& started, double seconds) {
   Suite suite;
-  for (const JunitInput& input : inputs) add_cases(input, suite);
+  for (const JunitInput& input : inputs) add_cases(command, input, suite);
   const std::string counts =
       fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"",
                   suite.cases.size(), suite.failures, suite.errors, suite.skipped, seconds);
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n"
-      "<testsuite name=\"selvage roundtrip\" timestamp=\"{}\" {}>\n",
-      counts, escaped(started), counts);
+      "<testsuite name=\"selvage {}\" timestamp=\"{}\" {}>\n",
+      counts, escaped(command), escaped(started), counts);
   for (const Case& one : suite.cases)
     text += fmt::format("<testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">{}</testcase>\n",
                         escaped(one.class_name), escaped(one.name), one.seconds, one.body);

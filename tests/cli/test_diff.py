@@ -6,6 +6,7 @@ import re
 import signal
 import time
 import unittest
+import xml.etree.ElementTree
 
 from program import BAD, Case, GRID, PATH, RING, SAMPLES, run, start
 
@@ -103,6 +104,41 @@ class Differences(Case):
         micrometres = self.text("um.txt", scaled.replace("\nunits mm\n", "\nunits um\n"))
         lines = self.lines(0, GRID, micrometres)
         self.assertIn("note: units: mm and um; compared in mm", lines)
+
+    def test_swapped_names(self):
+        text = pathlib.Path(PATH).read_text()
+        swapped = text.replace("yarn warp1", "yarn x").replace("yarn warp2", "yarn warp1").replace("yarn x", "yarn warp2")
+        lines = self.lines(3, PATH, self.text("swapped.txt", swapped))
+        self.assertEqual(lines[0], "renamed: yarn 'warp1' to 'warp2': the two swapped their names")
+        self.assertEqual(len(lines), 3)
+
+    def test_all_have_changed(self):
+        before = self.text("before.txt", WEAVE.format(extra="", color="1 2 3", warps=12))
+        after = self.text("after.txt", before.read_text().replace("diameter 0.5", "diameter 0.52"))
+        found = self.found(3, before, after)
+        self.assertEqual(found["kinds"]["reshaped"], 18)
+        for one in found["differences"]:
+            self.assertLessEqual(one["at_least"], one.get("at_most", 1))
+            self.assertGreater(one["at_least"], 0.005)  # the radii differ by 0.01
+            self.assertLess(one["at_least"], 0.06)
+        self.assertRegex(self.lines(3, before, after)[-1], r"^different: 18 reshaped, all by about 0\.\d+( to 0\.\d+)? mm; ")
+
+    def test_junit(self):
+        before = self.text("before.txt", WEAVE.format(extra="", color="1 2 3", warps=6))
+        after = self.text("after.txt", WEAVE.format(extra="", color="3 2 1", warps=5))
+        path = self.folder / "diff.xml"
+        self.lines(3, before, after, "--junit", path)
+        suite = xml.etree.ElementTree.parse(path).getroot().find("testsuite")
+        self.assertEqual(suite.get("name"), "selvage diff")
+        cases = {case.get("name"): case.find("failure") for case in suite}
+        self.assertEqual(len(cases), 12)
+        self.assertEqual(suite.get("failures"), "7")
+        self.assertIsNone(cases["yarn 'warp_1'"])
+        self.assertIn("recoloured", cases["yarn 'weft_1'"].text)
+        self.assertIn("removed", cases["yarn 'warp_6'"].text)
+        run("diff", before, self.folder / "none.txt", "--junit", path)
+        suite = xml.etree.ElementTree.parse(path).getroot().find("testsuite")
+        self.assertEqual((suite.get("tests"), suite.get("errors")), ("1", "1"))
 
     def test_at_most_twenty_lines(self):
         before = self.text("before.txt", WEAVE.format(extra="", color="1 2 3", warps=30))

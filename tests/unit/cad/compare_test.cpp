@@ -211,5 +211,75 @@ TEST(Compare, TrimmedFaces) {
   EXPECT_GE(larger.differences[0].reach.at_least, 0.3);
 }
 
+TEST(Compare, FacesAreFoundByWhatTheyTakeUpNotByTheirSurfaces) {
+  // Squares at steps, on planes that reach far beyond them by another amount in each file.
+  const auto part = [](bool backward, double far) {
+    Subject subject;
+    Part& all = subject.model.parts.emplace_back();
+    all.name = "squares";
+    for (int n = 0; n < 6; ++n) {
+      const int k = backward ? 5 - n : n;
+      const double x = 2.0 * k, low = -far * (1 + k % 3), high = far * (2 + k % 2);
+      Face& face = all.faces.emplace_back();
+      Surface& s = face.surface;
+      s.degree_u = s.degree_v = 1;
+      s.count_u = s.count_v = 2;
+      s.knots_u = s.knots_v = {low, low, high, high};
+      s.points = {{low, low, 0}, {high, low, 0}, {low, high, 0}, {high, high, 0}};
+      Loop& loop = face.loops.emplace_back();
+      const std::vector<Vec3> corners = {{x, 0, 0}, {x + 1, 0, 0}, {x + 1, 1.0 + k, 0}, {x, 1.0 + k, 0}};
+      for (std::size_t c = 0; c < 4; ++c) {
+        Edge& edge = loop.edges.emplace_back();
+        edge.flat = edge.curve = line(corners[c], corners[(c + 1) % 4]);
+      }
+    }
+    return subject;
+  };
+  EXPECT_TRUE(compared(part(false, 20), part(true, 33), 1e-9).differences.empty());
+  Subject changed = part(true, 33);
+  for (Edge& edge : changed.model.parts[0].faces[2].loops[0].edges)
+    for (Vec3& p : edge.curve.points) p.y() *= 1.01;
+  const Comparison found = compared(part(false, 20), changed, 1e-9);
+  ASSERT_EQ(found.differences.size(), 1U);
+  EXPECT_NEAR(found.differences[0].reach.at_least, 0.04, 0.001);
+}
+
+TEST(Compare, AYarnThatRunsTheOtherWayIsTheSame) {
+  const Subject before = cloth(3);
+  Subject after = before;
+  Part& part = after.model.parts[1];
+  std::swap(part.faces[1], part.faces[2]);
+  part.faces[0].surface = reseamed(backward_v(part.faces[0].surface), 0.5);
+  for (const double tolerance : {0.0, 1e-9}) {
+    const Comparison found = compared(before, after, tolerance);
+    EXPECT_TRUE(found.differences.empty());
+    ASSERT_EQ(found.notes.size(), 1U);
+    EXPECT_EQ(found.notes[0], "a yarn runs the other way: 'yarn2'");
+  }
+}
+
+TEST(Compare, SwappedNames) {
+  const Subject before = cloth(5);
+  Subject after = before;
+  std::swap(after.model.parts[1].name, after.model.parts[3].name);
+  const Comparison found = compared(before, after);
+  ASSERT_EQ(found.differences.size(), 2U);
+  for (const Difference& d : found.differences) {
+    EXPECT_EQ(d.kind, Kind::renamed);
+    EXPECT_TRUE(d.is_swapped);
+  }
+  EXPECT_EQ(found.differences[0].name, "yarn2");
+  EXPECT_EQ(found.differences[0].other_name, "yarn4");
+  EXPECT_EQ(found.equal, 3U);
+  // Three names that went round are three new names.
+  std::swap(after.model.parts[1].name, after.model.parts[0].name);
+  const Comparison round = compared(before, after);
+  ASSERT_EQ(round.differences.size(), 3U);
+  for (const Difference& d : round.differences) {
+    EXPECT_EQ(d.kind, Kind::renamed);
+    EXPECT_FALSE(d.is_swapped);
+  }
+}
+
 }  // namespace
 }  // namespace selvage::cad
