@@ -175,7 +175,8 @@ struct Shared {
 // in the parameters only where all edges have theirs: else OpenCASCADE makes it a second time.
 int PartWriter::loop(Shared& shared, const Common& common, const cad::Loop& given, bool is_whole) {
   cad::Loop loop = given;
-  std::rotate(loop.edges.begin(), std::find_if_not(loop.edges.begin(), loop.edges.end(), is_pole), loop.edges.end());
+  std::rotate(loop.edges.begin(), std::find_if_not(loop.edges.begin(), loop.edges.end(), is_pole),
+              loop.edges.end());
   std::vector<EdgeUse> uses;
   std::size_t vertex = 0;
   for (const cad::Edge& edge : loop.edges) {
