@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
+#include <optional>
 
 #include "cad/edges.h"
 #include "cad/sampled_curve.h"
@@ -40,6 +42,25 @@ bool has_all_curves(const cad::Loop& loop, const nurbs::Surface& surface) {
                       [&](const cad::Edge& edge) { return lacks_curve(edge, surface); });
 }
 
+// The curve in the parameters of a parallelogram, which is the one in space under an affine map; none for
+// other surfaces. OpenCASCADE's own projections onto such a surface are off by 1e-5 of what a circle holds.
+std::optional<nurbs::Curve> flat_on_parallelogram(const nurbs::Surface& s, const nurbs::Curve& curve) {
+  if (s.degree_u != 1 || s.degree_v != 1 || s.count_u != 2 || s.count_v != 2 || s.is_rational())
+    return std::nullopt;
+  const Vec3 &a = s.points[0], x = s.points[1] - a, y = s.points[2] - a;
+  const double size = x.norm() + y.norm(), xx = x.dot(x), xy = x.dot(y), yy = y.dot(y);
+  const double determinant = xx * yy - xy * xy;
+  if ((s.points[3] - a - x - y).norm() > 1e-12 * size || !(determinant > 1e-12 * xx * yy))
+    return std::nullopt;
+  nurbs::Curve flat = curve;
+  for (Vec3& p : flat.points) {
+    const double px = (p - a).dot(x), py = (p - a).dot(y);
+    const double u = (yy * px - xy * py) / determinant, v = (xx * py - xy * px) / determinant;
+    p = {std::lerp(s.first_u(), s.last_u(), u), std::lerp(s.first_v(), s.last_v(), v), 0};
+  }
+  return flat;
+}
+
 // What is written of one thing: colour, level, label and name. Its 406 is written at once, so that the
 // pointer is known.
 struct Look : Common {
@@ -68,7 +89,7 @@ class PartWriter {
   int boundary(const Common& common, int pointer, const nurbs::Surface& surface, const cad::Loop& loop);
   int face(const cad::Face& face);
   int loop(Shared& shared, const Common& common, const cad::Loop& given, bool is_whole);
-  SolidFace face_of_solid(Shared& shared, const cad::Face& face);
+  SolidFace face_of_solid(Shared& shared, const cad::Face& given);
   int solid(const cad::Part& part);
 
   Records& records_;
@@ -191,7 +212,11 @@ int PartWriter::loop(Shared& shared, const Common& common, const cad::Loop& give
   return write_loop(records_, common, shared.lists, uses);
 }
 
-SolidFace PartWriter::face_of_solid(Shared& shared, const cad::Face& face) {
+SolidFace PartWriter::face_of_solid(Shared& shared, const cad::Face& given) {
+  cad::Face face = given;
+  for (cad::Edge& edge : cad::boundary_edges_of(face))
+    if (edge.flat.points.empty() && !is_pole(edge))
+      edge.flat = flat_on_parallelogram(face.surface, edge.curve).value_or(nurbs::Curve{});
   const Look own(records_, colors_, face);
   const int surface = write_surface(records_, own.entity(128, 0, dependent), face.surface);
   std::vector<int> loops;

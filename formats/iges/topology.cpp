@@ -50,7 +50,11 @@ std::optional<nurbs::Curve> curve_of(Reading& reading, const Use& use, Parameter
   std::optional<nurbs::Curve> curve = reading.curve(edge->curve, by);
   std::array<Vec3, 2> ends;
   for (const std::size_t k : {0U, 1U}) {
-    const std::vector<Vec3>* const places = curve ? reading.vertex_list(edge->lists[k], by) : nullptr;
+    const DirectoryEntry* const list = reading.file().entity(edge->lists[k]);
+    // A curve says enough where its vertices cannot be read.
+    if (!curve || list == nullptr || list->type != 502 || !reading.file().parameters(*list).ok())
+      return curve;
+    const std::vector<Vec3>* const places = reading.vertex_list(edge->lists[k], by);
     if (places == nullptr || edge->vertices[k] < 1 ||
         edge->vertices[k] > static_cast<std::int64_t>(places->size()))
       return curve;

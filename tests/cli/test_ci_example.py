@@ -73,7 +73,7 @@ class Example(Case):
         self.assertNotEqual(failed.returncode, 0)
         self.assertIn("67% tests passed, 1 tests failed out of 3", failed.stdout)
         self.assertRegex(failed.stdout, r"reshaped: yarn 'warp_1', .* by \S+( to \S+)? mm")
-        self.assertRegex(failed.stdout, r"different: 4 reshaped; the other 0 equal")
+        self.assertRegex(failed.stdout, r"different: 4 reshaped, all by about .*; the other 0 equal")
 
 
 if __name__ == "__main__":
