@@ -13,8 +13,8 @@ class Trade(Case):
         sheets = trade.sheets()
         self.assertEqual(sorted(sheet["cloth"] for sheet in sheets), sorted(path.stem for path in trade.TRADE.glob("*.txt")))
         published = [sheet for sheet in sheets if sheet["kind"] != "memory"]
-        self.assertGreaterEqual(len(published), 36)
-        self.assertGreaterEqual(sum(not sheet["outside"] for sheet in published), 22)
+        self.assertGreaterEqual(len(published), 46)
+        self.assertGreaterEqual(sum(not sheet["outside"] for sheet in published), 31)
         for sheet in sheets:
             with self.subTest(sheet["cloth"]):
                 text = trade.text_of(sheet)
@@ -26,7 +26,7 @@ class Trade(Case):
                     systems = [("wales", "ends"), ("courses", "picks")]
                 for system, count in systems:
                     self.assertRegex(text, rf"(?m)^  {system} (\S+ )?\d+ (pitch )?{re.escape(sheet[count])}$")
-                for yarn in filter(None, (sheet["warp"], sheet["weft"])):
+                for yarn in filter(None, trade.yarns_of(sheet["warp"]) + trade.yarns_of(sheet["weft"])):
                     if match := re.match(r"([\d.]+) mm", yarn):
                         value, unit = re.search(r"^  diameter ([\d.]+)(in)?$", text, re.MULTILINE).groups()
                         self.assertAlmostEqual(float(value) * (25.4 if unit else 1), float(match[1]), places=9)

@@ -32,8 +32,15 @@ def published(sheet):
     return {what: float(sheet[column]) for what, column in columns.items() if sheet[column]}
 
 
+def yarns_of(words):
+    """`tex 68`, or several in turn: `tex 83, tex 55`."""
+    return words.split(", ")
+
+
 def tex_of(yarn):
-    """`tex 68`, `Ne 30`, or a wire's diameter and density, `0.2 mm 7.85`."""
+    """`tex 68`, `Ne 30`, or a wire's diameter and density, `0.2 mm 7.85`. Of several in turn their mean."""
+    if len(yarns_of(yarn)) > 1:
+        return sum(map(tex_of, yarns_of(yarn))) / len(yarns_of(yarn))
     if match := re.fullmatch(r"([\d.]+) mm ([\d.]+)", yarn):
         return 1000 * float(match[2]) * math.pi / 4 * float(match[1])**2
     word, value = yarn.split()
@@ -123,7 +130,9 @@ def measured(sheet, path=None):
         threads = [points for name, points in yarns.items() if name.startswith(f"{system}_")]
         shares = [crimp(points, axis, pitch, len(threads)) for points in threads]
         built[f"{system} crimp"] = 100 * sum(shares) / len(shares)
-        mass += tex_of(sheet[system]) * (1 + built[f"{system} crimp"] / 100) / own
+        yarns_in_turn = yarns_of(sheet[system])
+        mass += sum(tex_of(yarns_in_turn[i % len(yarns_in_turn)]) * (1 + share) / (own * len(shares))
+                    for i, share in enumerate(shares))
     built["mass"] = mass
     return built
 
