@@ -45,14 +45,6 @@ double read_radius(Parameters& in, const char* what) {
   return radius;
 }
 
-// What stands by itself: the finite ones.
-std::optional<nurbs::Surface> read_whole(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
-  const std::optional<nurbs::Analytic> shape = read_analytic(reading, entry, in);
-  if (!shape) return std::nullopt;
-  if (!shape->is_finite()) return in.give_up("it has no end, and nothing bounds it here");
-  return shape->part(shape->whole());
-}
-
 // 108: form 1 is bounded by a curve.
 std::optional<cad::Face> read_bounded_plane(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
   std::optional<nurbs::Analytic> plane = read_plane(in);
@@ -77,14 +69,49 @@ bool is_simple_form(int form) {
   return form == 0 || form == 1;
 }
 
+constexpr int deepest_offset = 8;  // of offsets of offsets
+
+bool is_formula(const DirectoryEntry& entry) {
+  return entry.type == 108 || (entry.type >= 190 && entry.type <= 198 && entry.type % 2 == 0);
+}
+
+// A 140 of one of these: in the middle of its parameters its side is told.
+std::optional<nurbs::Analytic> read_at_distance(Reading& reading, Parameters& in) {
+  const std::optional<OffsetOf> offset = read_offset(in);
+  const DirectoryEntry* const entry = offset ? reading.entry(offset->base, in) : nullptr;
+  if (entry == nullptr) return std::nullopt;
+  reading.use(offset->base);
+  std::optional<nurbs::Analytic> base =
+      reading.inside(entry, in, [&](Parameters& of_base) { return read_analytic(reading, *entry, of_base); });
+  if (!base) return std::nullopt;
+  const Placement placement = reading.placement(*entry);
+  if (!placement.is_identity) {
+    base->origin = placement(base->origin);
+    for (Vec3* const axis : {&base->x, &base->y, &base->z}) *axis = (placement.linear * *axis).normalized();
+  }
+  using std::numbers::pi;
+  const Vec3 normal = base->normal(pi, base->kind == Kind::torus ? pi : 0);
+  std::optional<nurbs::Analytic> moved =
+      base->at_distance(offset->side.dot(normal) < 0 ? -offset->distance : offset->distance);
+  if (!moved) return in.give_up("nothing is left of its surface at that distance");
+  return moved;
+}
+
 }  // namespace
 
-bool is_analytic(const DirectoryEntry& entry) {
-  return entry.type == 108 || (entry.type >= 190 && entry.type <= 198 && entry.type % 2 == 0);
+bool is_analytic(Reading& reading, const DirectoryEntry& entry) {
+  const DirectoryEntry* shape = &entry;
+  for (int depth = 0; shape != nullptr && shape->type == 140 && depth < deepest_offset; ++depth) {
+    Parameters in = reading.file().parameters(*shape);
+    const std::optional<OffsetOf> offset = read_offset(in);
+    shape = offset ? reading.file().entity(offset->base) : nullptr;
+  }
+  return shape != nullptr && is_formula(*shape);
 }
 
 // Form 1 has a direction at which angles begin; a sphere's axis, too, is given only there.
 std::optional<nurbs::Analytic> read_analytic(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
+  if (entry.type == 140) return read_at_distance(reading, in);
   if (entry.type == 108) return read_plane(in);
   const int place = in.pointer();
   const bool is_sphere = entry.type == 196, has_reference = entry.form == 1;
@@ -120,6 +147,13 @@ std::optional<nurbs::Analytic> read_analytic(Reading& reading, const DirectoryEn
   shape.half_angle = second * std::numbers::pi / 180;
   shape.minor = second;
   return shape;
+}
+
+std::optional<nurbs::Surface> read_whole(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
+  const std::optional<nurbs::Analytic> shape = read_analytic(reading, entry, in);
+  if (!shape) return std::nullopt;
+  if (!shape->is_finite()) return in.give_up("it has no end, and nothing bounds it here");
+  return shape->part(shape->whole());
 }
 
 std::span<const EntityType> analytic_types() {

@@ -54,7 +54,8 @@ FileWriter::FileWriter(OutputFile& output, const SurfaceOptions& options, Record
               .units = options.units,
               .time = options.date.empty() ? iges_timestamp() : options.date,
               .part = {}},
-      records_(output, header_text(header_).bytes.size(), limits, options.threads) {}
+      records_(output, header_text(header_).bytes.size(), limits, options.threads),
+      expected_(options.expected_bodies) {}
 
 Status FileWriter::whole_or_nothing(const std::string& yarn, TextPlace place,
                                     const std::function<Status()>& work) {
@@ -110,7 +111,7 @@ Status FileWriter::check_room(std::int64_t values, const std::string& what,
   const std::int64_t most = records_.limits().lines;
   if (now.parameters + values <= most && now.directory + values <= most) return {};
 
-  const Records::Lines needed = measured(write);
+  const Records::Lines needed = measured(write).lines;
   if (needed.parameters <= most && needed.directory <= most) return {};
   const bool parameters = needed.parameters > most;
   const std::int64_t count = parameters ? needed.parameters : needed.directory;
@@ -128,18 +129,45 @@ Status FileWriter::check_room(std::int64_t values, const std::string& what,
                   what.starts_with("yarn") ? "yarns" : "yarns and pieces"));
 }
 
+std::uint64_t FileWriter::Shared::entities() const {
+  return colors.size() + static_cast<std::uint64_t>(std::count(levels.begin(), levels.end(), true));
+}
+
 // What the sections would have with it.
-Records::Lines FileWriter::measured(const std::function<void()>& write) {
+FileWriter::Needed FileWriter::measured(const std::function<void()>& write, Records::Measuring how) {
   const Shared before = shared_;
-  records_.measure(true);
+  records_.measure(how);
   write();
+  const std::uint64_t shared = shared_.entities();
   shared_ = before;
-  return records_.measure(false);
+  return {records_.measure(Records::Measuring::off), shared};
 }
 
 std::int64_t FileWriter::lines_of(const yarn::Body& body) {
-  const Records::Lines now = records_.lines(), with = measured([&] { write(body); });
+  const Records::Lines now = records_.lines(), with = measured([&] { write(body); }).lines;
   return std::max(with.parameters - now.parameters, with.directory - now.directory);
+}
+
+// What is still to come is as what came.
+void FileWriter::expect(std::uint64_t entities, std::uint64_t shared, std::uint64_t bodies) {
+  if (expected_ > bodies) records_.expect(shared + (entities - shared) * expected_ / bodies);
+}
+
+// Large yarns fill the buffer before the first of them is whole: how many entities it has is counted before.
+// Of so many that they will not fit into one file its lines, too: that they are `values` at most says little.
+void FileWriter::expect_as_first(std::int64_t values, const std::function<void()>& write,
+                                 std::uint64_t bodies) {
+  constexpr std::int64_t values_a_line = 12;
+  const std::int64_t most = records_.limits().lines,
+                     all = static_cast<std::int64_t>(std::min<std::uint64_t>(expected_, most));
+  if (all <= static_cast<std::int64_t>(bodies)) return;
+  const bool is_set = values / values_a_line > most / all;
+  const Needed needed = measured(write, is_set ? Records::Measuring::lines : Records::Measuring::entities);
+  if (is_set)
+    expected_ = std::min<std::uint64_t>(
+        expected_,
+        bodies * static_cast<std::uint64_t>(most / std::max<std::int64_t>(needed.lines.parameters, 1)));
+  expect(static_cast<std::uint64_t>(needed.lines.directory / 2), needed.shared, bodies);
 }
 
 int FileWriter::color(const yarn::Color& color) {
@@ -347,16 +375,11 @@ Status FileWriter::add_checked(const std::string& name, const std::string& what,
                                const std::function<void()>& write, std::uint64_t bodies) {
   if (Status status = check_room(values, what, write); !status.ok()) return status;
   warn_of_name(name, what);
+  if (bodies_ == 0 && bodies > 0) expect_as_first(values, write, bodies);
   write();
   bodies_ += bodies;
-  // What is still to come is as what came.
-  const auto entities = static_cast<std::uint64_t>(records_.lines().directory / 2);
-  if (options_.expected_bodies > bodies_) {
-    const std::uint64_t shared =
-        shared_.colors.size() +
-        static_cast<std::uint64_t>(std::count(shared_.levels.begin(), shared_.levels.end(), true));
-    records_.expect(shared + (entities - shared) * options_.expected_bodies / bodies_);
-  }
+  if (bodies_ > 0)
+    expect(static_cast<std::uint64_t>(records_.lines().directory / 2), shared_.entities(), bodies_);
   return records_.status();
 }
 

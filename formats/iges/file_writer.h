@@ -47,6 +47,7 @@ class FileWriter final : public BodyWriter, private ColorSource {
 
   // The lines of the longer section of a file that holds nothing but this yarn.
   std::int64_t lines_of(const yarn::Body& body);
+  [[nodiscard]] std::uint64_t bodies() const { return bodies_; }  // that are in the file
   [[nodiscard]] bool is_empty() const { return bodies_ == 0; }
   // After finish(): what the file begins with, and a number that is another one for another content.
   [[nodiscard]] const Header& header() const { return header_; }
@@ -57,6 +58,8 @@ class FileWriter final : public BodyWriter, private ColorSource {
     std::vector<std::pair<yarn::Color, int>> colors;        // and their 314
     std::array<bool, yarn::all_roles.size() + 1> levels{};  // by role, and that of pieces
     std::map<std::size_t, int> definitions;                 // of shapes that have copies: their 308
+
+    [[nodiscard]] std::uint64_t entities() const;  // of colours and levels
   };
 
   // What fails leaves no trace, and says of which yarn (none: empty) and place it is, where it does not.
@@ -64,7 +67,14 @@ class FileWriter final : public BodyWriter, private ColorSource {
   Status check(const yarn::Body& body);
   // `values`: an upper bound of the lines that `write` writes; `what`: "yarn warp1".
   Status check_room(std::int64_t values, const std::string& what, const std::function<void()>& write);
-  Records::Lines measured(const std::function<void()>& write);
+  struct Needed {
+    Records::Lines lines;
+    std::uint64_t shared = 0;  // entities
+  };
+  Needed measured(const std::function<void()>& write, Records::Measuring how = Records::Measuring::lines);
+  // How many entities the file will have, by what `bodies` have, `shared` among them.
+  void expect(std::uint64_t entities, std::uint64_t shared, std::uint64_t bodies);
+  void expect_as_first(std::int64_t values, const std::function<void()>& write, std::uint64_t bodies);
   Status add_checked(const std::string& name, const std::string& what, std::int64_t values,
                      const std::function<void()>& write, std::uint64_t bodies = 1);
   // Of a yarn or, where there is an `instance`, a copy of one.
@@ -94,7 +104,7 @@ class FileWriter final : public BodyWriter, private ColorSource {
   // The group whose parts come at present, and theirs so far.
   std::string group_;
   std::vector<int> members_;
-  std::uint64_t bodies_ = 0;
+  std::uint64_t bodies_ = 0, expected_ = 0;  // that are in the file; that will be, as far as one can tell
   // Of all that was written.
   struct Extremes {
     double largest = 0;

@@ -53,7 +53,7 @@ int Records::begin(const Entity& entity) {
   const int pointer = next();
   entity_ = entity;
   entity_line_ = lines_;
-  if (!measuring_) right_justified(tail_ + 1, 7, pointer);
+  if (measuring_ == Measuring::off) right_justified(tail_ + 1, 7, pointer);
   integer(entity.type);
   return pointer;
 }
@@ -65,7 +65,7 @@ void Records::close_line(char* at) {
   if (rest > block) std::memset(at + block, ' ', static_cast<std::size_t>(rest - block));
   std::memcpy(line_ + data_columns, tail_, sizeof tail_);
   ++lines_;
-  if (measuring_) return;
+  if (measuring_ != Measuring::off) return;
   if (lines_ < most_lines) count_up(tail_ + 15);
   line_ += line_length;
   if (line_ == buffer_.get() + limits_.buffer_lines * line_length) flush_parameters();
@@ -120,27 +120,18 @@ void Records::put(const Tokens& tokens) {
   }
 }
 
-// While what is formatted is put on its lines, what comes next is formatted.
 void Records::reals_by_threads(const double* values, std::size_t count) {
-  constexpr std::size_t chunk = 8192;
-  const std::size_t at_once = 2 * static_cast<std::size_t>(threads_);
-  tokens_.resize(2 * at_once);
-  std::span<Tokens> ready, next = std::span(tokens_).first(at_once), other = std::span(tokens_).last(at_once);
-  for (std::size_t first = 0; first < count || !ready.empty(); first += chunk * at_once) {
-    const std::size_t rest = first < count ? count - first : 0,
-                      chunks = std::min(at_once, (rest + chunk - 1) / chunk);
-    for_each_index(chunks + 1, threads_, [&](std::size_t k) {
-      if (k > 0)
-        next[k - 1].format(values + first + (k - 1) * chunk, std::min(chunk, rest - (k - 1) * chunk));
-      else
-        for (const Tokens& tokens : ready) put(tokens);
-    });
-    ready = next.first(chunks);
-    std::swap(next, other);
-  }
+  constexpr std::size_t chunk = 4096;
+  tokens_.resize(4 * static_cast<std::size_t>(threads_));
+  for_each_in_order((count + chunk - 1) / chunk, tokens_.size(), threads_,
+                    [&](std::size_t i, std::size_t slot) {
+                      tokens_[slot].format(values + i * chunk, std::min(chunk, count - i * chunk));
+                    },
+                    [&](std::size_t /*i*/, std::size_t slot) { put(tokens_[slot]); });
 }
 
 void Records::reals(const double* values, std::size_t count) {
+  if (measuring_ == Measuring::entities) return;
   constexpr std::size_t many = 20'000;  // to start a thread takes as long as to format a thousand
   if (threads_ > 1 && count >= many) return reals_by_threads(values, count);
   char* at = cursor_;
@@ -207,7 +198,7 @@ void Records::end(int property) {
   close_line(cursor_);
   cursor_ = line_;
   ++entities_;
-  if (measuring_) return;
+  if (measuring_ != Measuring::off) return;
   ++counts_[entity_.type];
   file_entity(entity_line_ + 1, lines_ - entity_line_);
 }
@@ -246,16 +237,16 @@ void Records::file_entity(std::int64_t first_line, std::int64_t line_count) {
   second[80] = '\n';
 }
 
-Records::Lines Records::measure(bool on) {
+Records::Lines Records::measure(Measuring how) {
   const Lines reached = lines();
-  if (on) {
+  if (how != Measuring::off) {
     before_measuring_ = reached;
   } else {
     entities_ = before_measuring_.directory / 2;
     lines_ = before_measuring_.parameters;
     number_line();
   }
-  measuring_ = on;
+  measuring_ = how;
   return reached;
 }
 

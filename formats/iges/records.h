@@ -68,12 +68,14 @@ class Records {
   // `property`: directory pointer of a property of this entity; 0: none.
   void end(int property = 0);
 
-  // Between measure(true) and measure(false) everything is counted and nothing is kept. Only between
-  // entities. measure(false) returns the lines that both sections would have after it.
+  // Between measure(how) and measure(Measuring::off) everything is counted and nothing is kept; where only
+  // entities are, reals are passed over, and lines of parameters mean nothing. Only between entities.
+  // measure(Measuring::off) returns the lines that both sections would have after it.
+  enum class Measuring { off, entities, lines };
   struct Lines {
     std::int64_t directory = 0, parameters = 0;
   };
-  Lines measure(bool on);
+  Lines measure(Measuring how);
   [[nodiscard]] Lines lines() const { return {2 * entities_, lines_}; }
   [[nodiscard]] const std::map<int, std::uint64_t>& counts() const {
     return counts_;
@@ -120,7 +122,7 @@ class Records {
   int threads_;
   std::vector<Tokens> tokens_;  // reused
   Status status_;
-  bool measuring_ = false;
+  Measuring measuring_ = Measuring::off;
   Lines before_measuring_;
 
   std::unique_ptr<char[]> buffer_;  // whole lines, then room for one number; not touched before it is needed

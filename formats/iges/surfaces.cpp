@@ -205,7 +205,7 @@ bool has_angles(int type) {
 
 FlatMap::FlatMap(Reading& reading, int pointer, const Surface& surface) {
   const DirectoryEntry* const entry = reading.file().entity(pointer);
-  if (entry == nullptr || is_analytic(*entry) || entry->type == 118) {
+  if (entry == nullptr || is_analytic(reading, *entry) || entry->type == 118) {
     is_known_ = false;
     return;
   }
@@ -302,11 +302,17 @@ std::optional<Surface> bounded_surface(Reading& reading, const DirectoryEntry& e
 std::optional<FlatMap> put_surface(Reading& reading, int pointer, cad::Face& face, Parameters& by) {
   const DirectoryEntry* const entry = reading.entry(pointer, by);
   if (entry == nullptr) return std::nullopt;
-  std::optional<Surface> surface =
-      is_analytic(*entry) ? bounded_surface(reading, *entry, face.loops, by) : reading.surface(pointer, by);
+  std::optional<Surface> surface = is_analytic(reading, *entry)
+                                       ? bounded_surface(reading, *entry, face.loops, by)
+                                       : reading.surface(pointer, by);
   if (!surface) return std::nullopt;
   face.surface = std::move(*surface);
-  return FlatMap(reading, pointer, face.surface);
+  if (entry->type != 140 || is_analytic(reading, *entry)) return FlatMap(reading, pointer, face.surface);
+  Parameters in = reading.file().parameters(*entry);
+  const int base = read_offset(in)->base;
+  surface = reading.surface(base, by);
+  if (!surface) return std::nullopt;
+  return FlatMap(reading, base, *surface);
 }
 
 std::span<const EntityType> surface_types() {

@@ -9,9 +9,20 @@
 
 namespace selvage::formats::iges {
 
-// 108 and 190 to 198: by formula, some of them without end.
-bool is_analytic(const DirectoryEntry& entry);
+// 108, 190 to 198 and what is offset (140) from one of them: by formula, some of them without end.
+bool is_analytic(Reading& reading, const DirectoryEntry& entry);
 std::optional<nurbs::Analytic> read_analytic(Reading& reading, const DirectoryEntry& entry, Parameters& in);
+// What stands by itself: all of a finite one.
+std::optional<nurbs::Surface> read_whole(Reading& reading, const DirectoryEntry& entry, Parameters& in);
+
+// A 140: how far from which surface, and on whose side (the end of a normal in its middle). Both have the
+// same parameters.
+struct OffsetOf {
+  Vec3 side = Vec3::Zero();
+  double distance = 0;
+  int base = 0;
+};
+std::optional<OffsetOf> read_offset(Parameters& in);
 
 // What is due to a curve in the parameters that the standard gives to the surface at `pointer`, so that it
 // is one in those of the B-spline `surface`: these run along arcs otherwise than the angle does.

@@ -9,7 +9,7 @@ const EntityType* type_of(const DirectoryEntry& entry) {
   static const std::unordered_map<int, const EntityType*> all = [] {
     std::unordered_map<int, const EntityType*> table;
     for (const std::span<const EntityType> list :
-         {bspline_types(), curve_types(), surface_types(), analytic_types(), trimming_types(),
+         {bspline_types(), curve_types(), surface_types(), analytic_types(), offset_types(), trimming_types(),
           topology_types(), subfigure_types(), structure_types()})
       for (const EntityType& type : list) table.emplace(type.number, &type);
     return table;

@@ -36,7 +36,8 @@ std::span<const EntityType> curve_types();      // 100, 102, 104, 106, 110, 112,
 std::span<const EntityType> surface_types();    // 114, 118, 120, 122
 std::span<const EntityType> analytic_types();   // 108, 190, 192, 194, 196, 198
 std::span<const EntityType> trimming_types();   // 141, 142, 143, 144
-std::span<const EntityType> subfigure_types();  // 308, 408
+std::span<const EntityType> offset_types();     // 130, 140
+std::span<const EntityType> subfigure_types();  // 308, 408, 412, 414
 std::span<const EntityType> topology_types();   // 186, 514, 510, 508, 504, 502
 std::span<const EntityType> structure_types();  // 124, 314, 402, 406 and what needs no function
 

@@ -156,6 +156,7 @@ Status SetWriter::put_in_pieces(const yarn::Body& body, const Message& why) {
 }
 
 Status SetWriter::finish_file() {
+  options_.expected_bodies -= std::min(options_.expected_bodies, file_->bodies());
   Result<WriteFacts> facts = file_->finish();
   if (!facts) return facts.error();
   for (const auto& [type, count] : facts->entities) facts_.entities[type] += count;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/text_buffer.h"
+#include "core/vec.h"
 
 namespace selvage::formats::step {
 
@@ -29,6 +30,29 @@ struct Measure {  // LENGTH_MEASURE(25.4)
   double value;
 };
 
+// How lines are filled: where one may be broken, it is before what no longer fits.
+class Filling {
+ public:
+  // `out` takes string views one after the other (append).
+  template <class Out>
+  void token(Out& out, std::string_view token) {
+    if (token.empty()) return;
+    if (column_ + token.size() > filled_to && (before_ == ',' || before_ == '(' || before_ == ' ')) {
+      out.append("\n");
+      column_ = 0;
+    }
+    out.append(token);
+    before_ = token.back();
+    column_ = before_ == '\n' ? 0 : column_ + token.size();
+  }
+
+ private:
+  // Leaves room for the brackets that may follow the last token.
+  static constexpr std::size_t filled_to = 72;
+  std::size_t column_ = 0;
+  char before_ = '\n';  // the last character
+};
+
 // `text` as a Part 21 string with its quotes. What is not ASCII is written as \X2\00FC\X0\ (\X4\ beyond 16
 // bits), and so is a backslash, which some readers take for the beginning of a code even where it is doubled.
 std::string encoded(std::string_view text);
@@ -37,7 +61,7 @@ std::string encoded(std::string_view text);
 // that reads back to the same bits, with a decimal point. The first failure of the file is kept for finish().
 class EntityText {
  public:
-  explicit EntityText(OutputFile& output) : text_(output) {}
+  explicit EntityText(OutputFile& output, int threads = 1) : text_(output), threads_(threads) {}
 
   // A number for an entity that is written later.
   Id reserve() { return {++last_}; }
@@ -54,6 +78,13 @@ class EntityText {
     end();
     return id;
   }
+
+  struct Point {
+    Id id;
+    Vec3 at;
+  };
+  // CARTESIAN_POINTs without a name, of numbers reserved for them, formatted by the threads.
+  void put_points(std::span<const Point> points);
 
   // The same in pieces: begin, parts (more than one: between brackets, of a complex entity), end.
   void begin(Id id);
@@ -73,7 +104,7 @@ class EntityText {
   }
 
   // As it stands: it must not hold what a line may be broken in.
-  void token(std::string_view token);
+  void token(std::string_view token) { filling_.token(text_, token); }
   void value(std::string_view word) { token(word); }
   void value(const char* word) { token(word); }
   void value(Id id);
@@ -106,9 +137,10 @@ class EntityText {
 
  private:
   TextBuffer text_;
+  int threads_;
+  std::vector<std::string> chunks_;  // reused
   std::size_t last_ = 0;
-  std::size_t column_ = 0;
-  char before_ = '\n';  // the last character
+  Filling filling_;
 };
 
 }  // namespace selvage::formats::step

@@ -42,12 +42,18 @@ std::vector<std::vector<Value>> rows_of(const Surface& surface, const std::vecto
 
 }  // namespace
 
-Id YarnFaces::point(const Vec3& at) {
+std::pair<Id, bool> YarnFaces::number_of(const Vec3& at) {
   const Bits bits{{std::bit_cast<std::uint64_t>(at.x()), std::bit_cast<std::uint64_t>(at.y()),
                    std::bit_cast<std::uint64_t>(at.z())}};
   const auto [known, is_new] = points_.try_emplace(bits);
-  if (is_new) known->second = new_point(at);
-  return known->second;
+  if (is_new) known->second = text_.reserve();
+  return {known->second, is_new};
+}
+
+Id YarnFaces::point(const Vec3& at) {
+  const auto [id, is_new] = number_of(at);
+  if (is_new) text_.put_points(std::array{EntityText::Point{id, at}});
+  return id;
 }
 
 Id YarnFaces::curve(const Curve& curve) {
@@ -75,11 +81,16 @@ Id YarnFaces::curve(const Curve& curve) {
 
 Id YarnFaces::surface(const Surface& surface, bool is_closed_u, bool is_closed_v) {
   grid_.clear();
+  new_points_.clear();
   for (int j = 0; j < surface.count_v; ++j)
     for (int i = 0; i < surface.count_u; ++i) {
       const bool is_border = i == 0 || j == 0 || i == surface.count_u - 1 || j == surface.count_v - 1;
-      grid_.push_back(is_border ? point(surface.point(i, j)) : new_point(surface.point(i, j)));
+      const Vec3& at = surface.point(i, j);
+      const auto [id, is_new] = is_border ? number_of(at) : std::pair(text_.reserve(), true);
+      grid_.push_back(id);
+      if (is_new) new_points_.push_back({id, at});
     }
+  text_.put_points(new_points_);
   const std::vector<std::vector<Id>> points = rows_of(surface, grid_);
   const KnotList u = knot_list(surface.knots_u), v = knot_list(surface.knots_v);
   const Flag closed_u{is_closed_u}, closed_v{is_closed_v}, crosses_itself{false};

@@ -48,6 +48,8 @@ class YarnFaces {
     return text_.put("CARTESIAN_POINT", "''", std::array{at.x(), at.y(), at.z()});
   }
   Id point(const Vec3& at);
+  // The number of a border's point; one that is new gets its own, and is_new is told.
+  std::pair<Id, bool> number_of(const Vec3& at);
   Id direction(const Vec3& along) {
     return text_.put("DIRECTION", "''", std::array{along.x(), along.y(), along.z()});
   }
@@ -66,6 +68,7 @@ class YarnFaces {
   EntityText& text_;
   std::unordered_map<Bits, Id, Digest> points_;  // of this yarn's borders
   std::vector<Id> grid_, faces_;
+  std::vector<EntityText::Point> new_points_;  // reused
 };
 
 }  // namespace selvage::formats::step

@@ -65,7 +65,7 @@ void write_head(EntityText& text, Schema schema, const SurfaceOptions& options) 
 class YarnWriter : public BodyWriter {
  public:
   YarnWriter(OutputFile& output, const SurfaceOptions& options, Schema schema)
-      : text_(output),
+      : text_(output, options.threads),
         products_(begun(text_, schema, options), schema, options.units,
                   uncertainty / millimetres_per(options.units)),
         faces_(text_) {

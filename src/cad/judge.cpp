@@ -10,8 +10,10 @@
 
 #include "cad/border.h"
 #include "cad/distance.h"
+#include "cad/facing.h"
 #include "cad/sampled_curve.h"
 #include "core/box_tree.h"
+#include "nurbs/measure.h"
 #include "nurbs/samples.h"
 
 namespace selvage::cad {
@@ -103,6 +105,24 @@ class Judge {
     for (const Owned& owned : borders) boxes.push_back(owned.border.box());
     const BoxTree tree(std::move(boxes));
     for (std::size_t i = 0; i < borders.size(); ++i) judge_border(part, borders, tree, i);
+    if (part.kind != Part::Kind::solid) return;
+    judge_outside(part);
+    for (const std::size_t i : turned_faces(part, sewn_))
+      find(Severity::error, part, part.faces[i],
+           "it looks to the inside where the faces beside it look out: it is turned");
+  }
+
+  // Where no face is trimmed the volume is known, and its sign.
+  void judge_outside(const Part& part) {
+    double volume = 0;
+    for (const Face& face : part.faces) {
+      if (!face.loops.empty()) return;
+      volume += (face.reversed ? -1 : 1) *
+                nurbs::volume_flux(face.surface, part.faces.front().surface.points.front());
+    }
+    if (volume < -least_tolerance * size_ * size_ * size_)
+      find(Severity::error, part, part.faces.front(),
+           fmt::format("its solid is inside out: the volume is {:.6g} {}3", volume, name_of(model_.units)));
   }
 
   // Knots and weights; false: it cannot be evaluated.

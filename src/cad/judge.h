@@ -33,11 +33,13 @@ struct Measures {
 };
 
 // Defects: edges of a solid that have no neighbour, or one that is farther than kernels sew; loops that are
-// open, or leave the range of their surface, by more than that, or lie off it; faces without area; the same
-// face twice; knots out of order or repeated too often; weights that are not positive. Warnings: gaps above
-// the tolerance that kernels sew; gaps and open edges of what is no solid; edges off their surface by more
-// than ten times the tolerance; surfaces that are closed but for less than the tolerance. Each distance of an
-// edge from its surface is one that the surface is proven to have at least (SurfaceSet::least_distance).
+// open, or leave the range of their surface, by more than that, or lie off it; faces without area; faces of a
+// solid that look to the other side than those beside them, and solids of untrimmed faces that are inside
+// out; the same face twice; knots out of order or repeated too often; weights that are not positive.
+// Warnings: gaps above the tolerance that kernels sew; gaps and open edges of what is no solid; edges off
+// their surface by more than ten times the tolerance; surfaces that are closed but for less than the
+// tolerance. Each distance of an edge from its surface is one that the surface is proven to have at least
+// (SurfaceSet::least_distance).
 //
 // The tolerance is the file's resolution, and at least a millionth of the part's size. Kernels sew up to
 // more: here 0.02 mm, and at most a ten-thousandth of the model's size. OpenCASCADE's reader makes such edges

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <cstddef>
 #include <exception>
 #include <mutex>
@@ -51,6 +52,56 @@ void for_each_index(std::size_t count, int threads, const Work& work, const Prog
     const std::lock_guard lock(guard);
     progress(++done, count);
   });
+}
+
+// Calls make(i, slot) for i = 0 .. count - 1 on `threads` threads (as above), in any order, and take(i, slot)
+// for each after it, in order and never two at a time, by whichever thread is free. `slot`, 0 .. `slots` - 1,
+// is i's own from its make() to its take(): where what was made waits. The first exception ends it, and is
+// thrown again here.
+template <class Make, class Take>
+void for_each_in_order(std::size_t count, std::size_t slots, int threads, const Make& make,
+                       const Take& take) {
+  std::mutex guard;
+  std::condition_variable changed;
+  std::vector<char> is_made(slots, 0);
+  std::size_t next = 0, taken = 0;
+  bool is_taking = false;
+  const auto work = [&](std::size_t) {
+    std::unique_lock lock(guard);
+    const auto unlocked = [&](const auto& run) {
+      lock.unlock();
+      try {
+        run();
+      } catch (...) {
+        lock.lock();
+        taken = next = count;  // nobody begins another one
+        changed.notify_all();
+        throw;
+      }
+      lock.lock();
+    };
+    while (taken < count) {
+      if (!is_taking && is_made[taken % slots] != 0) {
+        is_taking = true;
+        const std::size_t i = taken;
+        unlocked([&] { take(i, i % slots); });
+        is_taking = false;
+        if (taken == count) break;
+        is_made[i % slots] = 0;
+        ++taken;
+        changed.notify_all();
+      } else if (next < std::min(count, taken + slots)) {
+        const std::size_t i = next++;
+        unlocked([&] { make(i, i % slots); });
+        is_made[i % slots] = 1;
+        changed.notify_all();
+      } else {
+        changed.wait(lock);
+      }
+    }
+  };
+  const std::size_t helpers = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
+  for_each_index(helpers, threads, work);
 }
 
 }  // namespace selvage

@@ -25,6 +25,7 @@ class TextBuffer {
     }
     return *this;
   }
+  TextBuffer& append(std::string_view text) { return *this << text; }
   TextBuffer& operator<<(char letter) {
     reserve(1);
     block_[used_++] = letter;

@@ -136,6 +136,36 @@ Surface Analytic::part(const Range& range) const {
   return transposed(surface);
 }
 
+Vec3 Analytic::normal(double u, double v) const {
+  const Vec3 outwards = std::cos(u) * x + std::sin(u) * y;
+  switch (kind) {
+    case Kind::plane:
+      return z;
+    case Kind::cylinder:
+      return outwards;
+    case Kind::cone:
+      return std::cos(half_angle) * outwards - std::sin(half_angle) * z;
+    case Kind::sphere:
+    case Kind::torus:
+      break;
+  }
+  return std::cos(v) * outwards + std::sin(v) * z;
+}
+
+std::optional<Analytic> Analytic::at_distance(double distance) const {
+  Analytic moved = *this;
+  if (kind == Kind::plane)
+    moved.origin += distance * z;
+  else if (kind == Kind::torus)
+    moved.minor += distance;
+  else
+    moved.radius += kind == Kind::cone ? distance / std::cos(half_angle) : distance;
+  const bool is_whole = kind == Kind::plane || (kind == Kind::cone && moved.radius >= 0) ||
+                        (kind == Kind::torus && moved.minor > 0 && moved.minor < radius) ||
+                        ((kind == Kind::cylinder || kind == Kind::sphere) && moved.radius > 0);
+  return is_whole ? std::optional(moved) : std::nullopt;
+}
+
 Vec2 Analytic::parameters(const Vec3& p) const {
   const Vec3 q = p - origin;
   const double a = q.dot(x), b = q.dot(y), h = q.dot(z);

@@ -31,6 +31,11 @@ struct Analytic {
   [[nodiscard]] Range whole() const;  // of a finite one
   [[nodiscard]] Surface part(const Range& range) const;
 
+  // S_u x S_v / |S_u x S_v| at the angle u and height or angle v.
+  [[nodiscard]] Vec3 normal(double u, double v) const;
+  // At a distance along that normal, exactly; nothing where there is no such surface (a radius of 0 or less).
+  [[nodiscard]] std::optional<Analytic> at_distance(double distance) const;
+
   // The parameters of the point below `p`; u means nothing on the axis.
   [[nodiscard]] Vec2 parameters(const Vec3& p) const;
   [[nodiscard]] bool is_on_axis(const Vec3& p) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/parallel.h"
 #include "core/words.h"
 #include "formats/registry.h"
 #include "pipeline/cell_cad.h"
@@ -62,12 +63,16 @@ std::string formats_with(bool formats::Descriptor::*what) {
   return alternatives(names);
 }
 
-// False: a writer failed, which was said.
-bool add_to_all(Job& job, OpenOutputs& outputs, const std::function<Status(OpenOutput&)>& add) {
-  for (OpenOutput& output : outputs) {
-    if (!output.writer) continue;
-    if (Status status = add(output); !status) return job.fail(status.error());
-  }
+// False: a writer failed, which was said. What has many `points` is written to all outputs at once.
+bool add_to_all(Job& job, OpenOutputs& outputs, const std::function<Status(OpenOutput&)>& add,
+                std::size_t points = 0) {
+  constexpr std::size_t many = 4000;
+  std::vector<Status> made(outputs.size());
+  for_each_index(outputs.size(), points < many ? 1 : static_cast<int>(job.threads), [&](std::size_t i) {
+    if (outputs[i].writer) made[i] = add(outputs[i]);
+  });
+  for (const Status& status : made)
+    if (!status) return job.fail(status.error());
   return true;
 }
 
@@ -199,10 +204,13 @@ void write_surfaces(Job& job, const fabric::Fabric& fabric, OpenOutputs& outputs
     convert_lengths(body, fabric.units, units);
     if (job.has_failed()) return true;
     const std::optional<formats::Instance> instance = finder ? finder->place(body) : std::nullopt;
-    return is_written = add_to_all(job, outputs, [&](OpenOutput& output) {
-             if (takes_lines(job, *output.plan->format)) return output.writer->add_line(body);
-             return instance ? output.writer->add_instance(body, *instance) : output.writer->add(body);
-           });
+    return is_written = add_to_all(
+               job, outputs,
+               [&](OpenOutput& output) {
+                 if (takes_lines(job, *output.plan->format)) return output.writer->add_line(body);
+                 return instance ? output.writer->add_instance(body, *instance) : output.writer->add(body);
+               },
+               body.surface.points.size());
   });
   if (!is_written) return;
   write_others(job, fabric, outputs);

@@ -57,5 +57,39 @@ TEST(Parallel, ExceptionsOfThreadsComeToTheCaller) {
                std::runtime_error);
 }
 
+TEST(Parallel, TakesInOrderWhatWasMadeInAny) {
+  for (const int threads : {1, 2, 5}) {
+    std::vector<std::size_t> slots(7), taken;
+    bool is_taking = false;
+    for_each_in_order(
+        1000, slots.size(), threads,
+        [&](std::size_t i, std::size_t slot) {
+          for (volatile std::size_t wait = 0; wait < 50 * (i * 7919 % 13); wait = wait + 1) {
+          }
+          slots[slot] = i * i;
+        },
+        [&](std::size_t i, std::size_t slot) {
+          EXPECT_FALSE(is_taking);
+          is_taking = true;
+          EXPECT_EQ(slots[slot], i * i);
+          taken.push_back(i);
+          is_taking = false;
+        });
+    ASSERT_EQ(taken.size(), 1000U);
+    for (std::size_t i = 0; i < taken.size(); ++i) EXPECT_EQ(taken[i], i);
+  }
+}
+
+TEST(Parallel, AnExceptionEndsWhatComesInOrder) {
+  const auto nothing = [](std::size_t, std::size_t) {};
+  const auto at_500 = [](std::size_t i, std::size_t) {
+    if (i == 500) throw std::runtime_error("500");
+  };
+  for (const int threads : {1, 4}) {
+    EXPECT_THROW(for_each_in_order(1000, 8, threads, at_500, nothing), std::runtime_error);
+    EXPECT_THROW(for_each_in_order(1000, 8, threads, nothing, at_500), std::runtime_error);
+  }
+}
+
 }  // namespace
 }  // namespace selvage
