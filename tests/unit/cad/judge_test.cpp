@@ -58,6 +58,7 @@ Model block() {
                            : axis == 1 ? corner(a, side, b)
                                        : corner(a, b, side));
       part.faces.push_back(face_of(bilinear(points[0], points[1], points[2], points[3]), line += 10));
+      part.faces.back().reversed = (axis == 1) == (side == 1);
     }
   Model model;
   model.resolution = 1e-6;
@@ -247,6 +248,26 @@ TEST(Judge, ManyCopiesAreFoundAtOnce) {
   EXPECT_EQ(all.measures.comparisons, 999U);
 }
 
+TEST(Judge, AFaceThatIsTurned) {
+  for (const std::size_t turned : {0U, 3U, 5U}) {
+    Model model = block();
+    Face& face = model.parts[0].faces[turned];
+    face.reversed = !face.reversed;
+    const Verdict verdict = verdict_of(model);
+    EXPECT_EQ(verdict.findings.defects(), 1) << verdict.text();
+    EXPECT_TRUE(verdict.says(defect, "it is turned", 10 * static_cast<int>(turned + 1))) << verdict.text();
+  }
+  // Against their neighbours all are right.
+  Model model = block();
+  for (Face& face : model.parts[0].faces) face.reversed = !face.reversed;
+  const Verdict verdict = verdict_of(model);
+  EXPECT_EQ(verdict.findings.defects(), 1);
+  EXPECT_TRUE(verdict.says(defect, "inside out: the volume is -8 mm3")) << verdict.text();
+  // What does not enclose anything has no outside.
+  model.parts[0].kind = Part::Kind::shell;
+  EXPECT_EQ(verdict_of(model).findings.defects(), 0);
+}
+
 TEST(Judge, OneFaceMayBeOpen) {
   Model model;
   model.parts = {part_of("s", {sheet()})};
@@ -266,6 +287,7 @@ TEST(Judge, SeamNeedsNoNeighbour) {
   };
   model.parts = {part_of("rod", {side, disc(0), disc(3)})};
   model.parts[0].kind = Part::Kind::solid;
+  model.parts[0].faces[1].reversed = true;
   const Verdict verdict = verdict_of(model);
   EXPECT_EQ(verdict.findings.defects(), 0) << verdict.text();
   EXPECT_EQ(verdict.measures.poles, 2U);

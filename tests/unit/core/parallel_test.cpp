@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 #include <pthread.h>
 
+#include <chrono>
 #include <new>
 #include <set>
 #include <stdexcept>
+#include <thread>
 
 namespace selvage {
 namespace {
@@ -64,8 +66,7 @@ TEST(Parallel, TakesInOrderWhatWasMadeInAny) {
     for_each_in_order(
         1000, slots.size(), threads,
         [&](std::size_t i, std::size_t slot) {
-          for (volatile std::size_t wait = 0; wait < 50 * (i * 7919 % 13); wait = wait + 1) {
-          }
+          std::this_thread::sleep_for(std::chrono::microseconds(i * 7919 % 13));
           slots[slot] = i * i;
         },
         [&](std::size_t i, std::size_t slot) {
