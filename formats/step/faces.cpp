@@ -201,13 +201,16 @@ class FaceMaker {
   }
 
   // A range that holds the loops' own: they may run over a periodic surface's seam. Between two samples a
-  // curve may bulge out.
+  // curve may bulge out. A surface that is not closed where the loops leave a gap has its sides in that gap: an edge
+  // that lies on a seam has two places in the parameters, and who projects it may take the wrong one.
   static void follow(double used_low, double used_high, bool is_periodic, double& low, double& high) {
-    const double slack = 0.05 * (used_high - used_low), period = high - low;
+    constexpr double least_gap = 1e-3;  // of the period
+    const double used = used_high - used_low, period = high - low, gap = period - used;
+    const double slack = is_periodic ? std::min(0.05 * used, 0.4 * gap) : 0.05 * used;
     if (!is_periodic) {
       low = std::max(used_low - slack, low);
       high = std::min(used_high + slack, high);
-    } else if (used_high - used_low + 2 * slack < period) {
+    } else if (gap > least_gap * period) {
       low = used_low - slack;
       high = used_high + slack;
     } else {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepCheck_Analyzer.hxx>
@@ -17,6 +18,7 @@
 #include <TColStd_Array1OfReal.hxx>
 #include <TColgp_Array1OfPnt2d.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Face.hxx>
@@ -475,6 +477,22 @@ std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part
   if (!BRepCheck_Analyzer(built.shape).IsValid())
     return fmt::format("OpenCASCADE's check finds the result invalid; {}", remedy);
   return std::nullopt;
+}
+
+std::optional<PartShape> kept_part(const cad::Part& part) {
+  if (!part.kernel) return std::nullopt;
+  const auto& read = *static_cast<const TopoDS_Shape*>(part.kernel.get());
+  gp_Trsf scale;
+  scale.SetScale(gp_Pnt(0, 0, 0), part.kernel_scale);
+  // Its place goes into its geometry.
+  PartShape kept;
+  kept.shape = BRepBuilderAPI_Transform(read.Located(TopLoc_Location()), scale * read.Location().Transformation(), true).Shape();
+  for (TopExp_Explorer it(kept.shape, TopAbs_FACE); it.More(); it.Next()) kept.faces.push_back(it.Current());
+  kept.closed = kept.shape.ShapeType() == TopAbs_SOLID;
+  if (kept.faces.size() != part.faces.size() || kept.closed != (part.kind == cad::Part::Kind::solid) ||
+      !BRepCheck_Analyzer(kept.shape).IsValid())
+    return std::nullopt;
+  return kept;
 }
 
 TopoDS_Edge build_edge(const nurbs::Curve& curve) {

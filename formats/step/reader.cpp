@@ -353,6 +353,8 @@ class ModelReader {
     EdgeIds ids;
     take_faces(shape, part, part.color, ids, context);
     if (part.faces.empty()) return;
+    part.kernel = std::make_shared<const TopoDS_Shape>(shape);
+    part.kernel_scale = scale_ / working_;
     // Files give a group its colour face by face.
     const std::optional<cad::Color>& first = part.faces.front().color;
     if (!part.color && std::all_of(part.faces.begin(), part.faces.end(),

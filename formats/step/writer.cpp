@@ -182,6 +182,23 @@ class StepBodyWriter : public BodyWriter {
     return {};
   }
 
+  // Of its faces; where that fails, what OpenCASCADE read of it.
+  static Result<PartShape> sound_part(const cad::Part& part, double tolerance) {
+    const std::string who = part.name.empty() ? part.origin.entity : in_quotes(part.name);
+    std::string flaw;
+    try {
+      PartShape built = build_part(part, tolerance);
+      std::optional<std::string> found = flaw_of(built, part);
+      if (!found) return built;
+      flaw = std::move(*found);
+    } catch (const Standard_Failure& failure) {
+      if (!part.kernel) throw;
+      flaw = failure.GetMessageString();
+    }
+    if (std::optional<PartShape> kept = kept_part(part)) return std::move(*kept);
+    return error(Kind::geometry, fmt::format("{} cannot be written as STEP: {}", who, flaw));
+  }
+
   Status add_foreign(const cad::Part& part) {
     for (const cad::Face& face : part.faces)
       if (Status finite = check_finite(face.surface.points, "'" + part.name + "'"); !finite.ok())
@@ -189,14 +206,12 @@ class StepBodyWriter : public BodyWriter {
     if (part.faces.empty()) return {};
     const double tolerance = std::max(1e-6 * cad::box_of(part).diagonal().norm(),
                                       written_uncertainty / millimetres_per(options_.units));
-    const PartShape built = build_part(part, tolerance);
-    if (const std::optional<std::string> flaw = flaw_of(built, part)) {
-      Message refused = error(
-          Kind::geometry, fmt::format("{} cannot be written as STEP: {}",
-                                      part.name.empty() ? part.origin.entity : in_quotes(part.name), *flaw));
-      refused.place = part.origin.place;
-      return refused;
+    Result<PartShape> made = sound_part(part, tolerance);
+    if (!made) {
+      made.error().place = part.origin.place;
+      return made.error();
     }
+    const PartShape& built = *made;
     ++facts_.entities[built.closed ? "MANIFOLD_SOLID_BREP" : "SHELL_BASED_SURFACE_MODEL"];
     Part added{built.shape, part.name, part.color, {}};
     for (std::size_t i = 0; i < part.faces.size(); ++i)

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -70,6 +71,10 @@ struct Part : Label {
   Kind kind = Kind::surfaces;
   std::vector<Face> faces;
   std::string group;  // of the outermost group or assembly below the file that holds it; empty: none
+  // What the kernel that read the file made of it, whose lengths times `kernel_scale` are those of the faces: for a
+  // writer of that kernel that cannot make it of the faces. Null: there is none. Who changes the faces takes it away.
+  std::shared_ptr<const void> kernel;
+  double kernel_scale = 1;
 };
 
 // The face's loops, or the edges round a whole surface.

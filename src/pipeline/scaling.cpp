@@ -83,6 +83,7 @@ void convert_lengths(fabric::PieceShape& piece, Unit from, Unit to) {
 void convert_lengths(cad::Part& part, Unit from, Unit to) {
   if (from == to) return;
   const Ratio scale = ratio(from, to);
+  part.kernel_scale = scale(part.kernel_scale);
   for (cad::Face& face : part.faces) {
     scale.apply_to_all(face.surface.points);
     for (cad::Edge& edge : cad::boundary_edges_of(face)) scale.apply_to_all(edge.curve.points);
