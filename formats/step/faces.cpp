@@ -201,8 +201,8 @@ class FaceMaker {
   }
 
   // A range that holds the loops' own: they may run over a periodic surface's seam. Between two samples a
-  // curve may bulge out. A surface that is not closed where the loops leave a gap has its sides in that gap: an edge
-  // that lies on a seam has two places in the parameters, and who projects it may take the wrong one.
+  // curve may bulge out. A surface that is not closed where the loops leave a gap has its sides in that gap:
+  // an edge that lies on a seam has two places in the parameters, and who projects it may take the wrong one.
   static void follow(double used_low, double used_high, bool is_periodic, double& low, double& high) {
     constexpr double least_gap = 1e-3;  // of the period
     const double used = used_high - used_low, period = high - low, gap = period - used;

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
-#include <BRepBuilderAPI_Transform.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
@@ -486,7 +486,9 @@ std::optional<PartShape> kept_part(const cad::Part& part) {
   scale.SetScale(gp_Pnt(0, 0, 0), part.kernel_scale);
   // Its place goes into its geometry.
   PartShape kept;
-  kept.shape = BRepBuilderAPI_Transform(read.Located(TopLoc_Location()), scale * read.Location().Transformation(), true).Shape();
+  kept.shape = BRepBuilderAPI_Transform(read.Located(TopLoc_Location()),
+                                        scale * read.Location().Transformation(), true)
+                   .Shape();
   for (TopExp_Explorer it(kept.shape, TopAbs_FACE); it.More(); it.Next()) kept.faces.push_back(it.Current());
   kept.closed = kept.shape.ShapeType() == TopAbs_SOLID;
   if (kept.faces.size() != part.faces.size() || kept.closed != (part.kind == cad::Part::Kind::solid) ||

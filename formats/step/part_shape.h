@@ -30,8 +30,9 @@ PartShape build_part(const cad::Part& part, double tolerance);
 // nothing. Exceptions: Standard_Failure.
 std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part);
 
-// What OpenCASCADE made of the file that the part is from (cad::Part::kernel), in the part's unit; nothing where there is
-// none, where it does not have the part's faces, or where its check finds it invalid. Exceptions: Standard_Failure.
+// What OpenCASCADE made of the file that the part is from (cad::Part::kernel), in the part's unit; nothing
+// where there is none, where it does not have the part's faces, or where its check finds it invalid.
+// Exceptions: Standard_Failure.
 std::optional<PartShape> kept_part(const cad::Part& part);
 
 TopoDS_Edge build_edge(const nurbs::Curve& curve);

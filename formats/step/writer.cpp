@@ -186,6 +186,7 @@ class StepBodyWriter : public BodyWriter {
   static Result<PartShape> sound_part(const cad::Part& part, double tolerance) {
     const std::string who = part.name.empty() ? part.origin.entity : in_quotes(part.name);
     std::string flaw;
+    if (std::optional<PartShape> kept = kept_part(part)) return std::move(*kept);
     try {
       PartShape built = build_part(part, tolerance);
       std::optional<std::string> found = flaw_of(built, part);
