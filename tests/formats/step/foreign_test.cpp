@@ -6,6 +6,7 @@
 
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepGProp.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
 #include <GeomConvert.hxx>
@@ -28,8 +29,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <gp_Ax2.hxx>
 #include <math.hxx>
 #include <math_Vector.hxx>
+#include <numbers>
 #include <sstream>
 
 #include "built.h"
@@ -159,8 +162,8 @@ TopoDS_Shape occt_read(const std::string& path) {
   return reader.OneShape();
 }
 
-void occt_write_step(const TopoDS_Shape& shape, const std::string& path) {
-  Interface_Static::SetCVal("write.step.unit", "MM");
+void occt_write_step(const TopoDS_Shape& shape, const std::string& path, const char* unit = "MM") {
+  Interface_Static::SetCVal("write.step.unit", unit);
   Interface_Static::SetIVal("write.surfacecurve.mode", 1);
   STEPControl_Writer writer;
   ASSERT_EQ(writer.Transfer(shape, STEPControl_AsIs), IFSelect_RetDone);
@@ -277,6 +280,7 @@ TEST(ForeignAreas, AreFoundAgain) {
   const Reading reading = read(formats::step::descriptor(), path);
   ASSERT_TRUE(reading.model.has_value());
   cad::Part part = reading.model->parts.front();
+  part.kernel.reset();  // it would be written as it was read
   double sum = 0;
   for (const cad::Part& one : reading.model->parts)
     for (const cad::Face& face : one.faces) sum += face.area.value_or(0);
@@ -293,6 +297,49 @@ TEST(ForeignAreas, AreFoundAgain) {
     EXPECT_EQ(added.ok(), factor == 1.0);
     const std::string said = added.ok() ? "" : added.error().text;
     EXPECT_EQ(said.find("has an area of") != std::string::npos, factor == 2.0) << said;
+  }
+}
+
+// Solids of other programs keep their planes and cylinders, and their volume to the last digits, in any unit
+// and place; where what was read is gone, they are made of their faces.
+TEST(ForeignSolids, KeepTheirSurfaces) {
+  const gp_Ax2 place(gp_Pnt(10, -3, 7), gp_Dir(1, 2, 2));
+  const double volume = std::numbers::pi * 1.5 * 1.5 * 4;
+  const Folder folder;
+  const auto times = [](const std::string& text, const std::string& word) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+    return count;
+  };
+  for (const char* const unit : {"MM", "INCH"}) {
+    SCOPED_TRACE(unit);
+    STEPControl_Controller::Init();
+    occt_write_step(BRepPrimAPI_MakeCylinder(place, 1.5, 4).Shape(), folder / "rod.step", unit);
+    const Reading reading = read(formats::step::descriptor(), folder / "rod.step");
+    ASSERT_TRUE(reading.model && reading.model->parts.size() == 1);
+    for (const bool is_kept : {true, false}) {
+      cad::Part part = reading.model->parts.front();
+      if (!is_kept) part.kernel.reset();
+      Result<OutputFile> output = OutputFile::create(folder / "again.step");
+      ASSERT_TRUE(output.ok());
+      formats::SurfaceOptions options;
+      options.units = reading.model->units;
+      options.has_others = true;
+      auto writer = formats::step::descriptor().open_bodies(*output, options);
+      ASSERT_TRUE(writer.ok());
+      ASSERT_TRUE((*writer)->add_part(part).ok());
+      ASSERT_TRUE((*writer)->finish().ok());
+      ASSERT_TRUE(output->commit().ok());
+      const Result<Source> again = Source::open(folder / "again.step");
+      const std::string text(again->bytes());
+      EXPECT_EQ(times(text, "CYLINDRICAL_SURFACE("), is_kept ? 1U : 0U);
+      if (is_kept) {
+        EXPECT_EQ(times(text, "= PLANE("), 2U);
+      }
+      GProp_GProps properties;
+      BRepGProp::VolumeProperties(occt_read(folder / "again.step"), properties, 1e-12);
+      EXPECT_NEAR(properties.Mass(), volume, (is_kept ? 1e-11 : 1e-5) * volume);
+    }
   }
 }
 
