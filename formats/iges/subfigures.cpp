@@ -120,9 +120,9 @@ Copies read_rectangular_array(Parameters& in) {
   const std::vector<char> taken = read_places(in, is_sane ? columns * rows : 0);
   const Eigen::AngleAxisd turn(angle, Vec3::UnitZ());
   for (std::size_t i = 0; i < taken.size(); ++i) {
-    const auto column = static_cast<double>(i / static_cast<std::size_t>(rows)),
-               row = static_cast<double>(i % static_cast<std::size_t>(rows));
-    if (taken[i] != 0) copies.shifts.emplace_back(Vec3(x, y, z) + turn * Vec3(column * dx, row * dy, 0));
+    const std::size_t column = i / static_cast<std::size_t>(rows), row = i % static_cast<std::size_t>(rows);
+    const Vec3 place(static_cast<double>(column) * dx, static_cast<double>(row) * dy, 0);
+    if (taken[i] != 0) copies.shifts.emplace_back(Vec3(x, y, z) + turn * place);
   }
   return copies;
 }

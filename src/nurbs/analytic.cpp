@@ -137,7 +137,7 @@ Surface Analytic::part(const Range& range) const {
 }
 
 Vec3 Analytic::normal(double u, double v) const {
-  const Vec3 outwards = std::cos(u) * x + std::sin(u) * y;
+  Vec3 outwards = std::cos(u) * x + std::sin(u) * y;
   switch (kind) {
     case Kind::plane:
       return z;
