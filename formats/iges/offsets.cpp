@@ -44,8 +44,12 @@ struct Distance {
   std::array<double, 4> values{};  // first distance and its place, second distance and its place
 };
 
-// The base with the parameter that the standard gives to it; nothing where that is not known here, and
-// matters.
+// Composites and conics have other parameters as B-splines than the standard gives to them.
+bool keeps_parameters(const DirectoryEntry& entry) {
+  return entry.type != 102 && entry.type != 104;
+}
+
+// The base with the parameter that the standard gives to it, where that is kept.
 std::optional<Curve> base_curve(Reading& reading, int pointer, Parameters& in) {
   std::optional<Curve> curve = reading.curve(pointer, in);
   if (!curve) return std::nullopt;
@@ -78,12 +82,17 @@ std::optional<Curve> read_offset_curve(Reading& reading, const DirectoryEntry& e
   std::optional<Curve> function;
   if (base && distance.kind == 3) function = reading.curve(function_pointer, in);
   if (!in.ok() || !base || (distance.kind == 3 && !function)) return std::nullopt;
+  const bool is_kept = keeps_parameters(*reading.file().entity(base_pointer));
+  if (!is_kept && distance.kind != 1 && distance.by != 1)
+    return in.give_up("its distance goes by the parameter of a composite or a conic, which is not kept");
   // Both 0: not said.
-  if (from < to && from >= base->first_parameter() - 1e-9 && to <= base->last_parameter() + 1e-9)
+  if (is_kept && from < to && from >= base->first_parameter() - 1e-9 && to <= base->last_parameter() + 1e-9)
     base = nurbs::restricted(*base, std::max(from, base->first_parameter()),
                              std::min(to, base->last_parameter()));
   else if (from != to)
-    reading.warning(entry, fmt::format("its curve has no parameters {} to {}; all of it is taken", from, to));
+    reading.warning(
+        entry, is_kept ? fmt::format("its curve has no parameters {} to {}; all of it is taken", from, to)
+                       : "all of the composite or conic is taken, wherever it is to begin and end");
   const double start = base->first_parameter();
   const auto at_place = [&](double t) {
     const auto& [d1, t1, d2, t2] = distance.values;

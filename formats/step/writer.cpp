@@ -182,22 +182,14 @@ class StepBodyWriter : public BodyWriter {
     return {};
   }
 
-  // Of its faces; where that fails, what OpenCASCADE read of it.
+  // What OpenCASCADE read of it; without that, of its faces.
   static Result<PartShape> sound_part(const cad::Part& part, double tolerance) {
     const std::string who = part.name.empty() ? part.origin.entity : in_quotes(part.name);
-    std::string flaw;
     if (std::optional<PartShape> kept = kept_part(part)) return std::move(*kept);
-    try {
-      PartShape built = build_part(part, tolerance);
-      std::optional<std::string> found = flaw_of(built, part);
-      if (!found) return built;
-      flaw = std::move(*found);
-    } catch (const Standard_Failure& failure) {
-      if (!part.kernel) throw;
-      flaw = failure.GetMessageString();
-    }
-    if (std::optional<PartShape> kept = kept_part(part)) return std::move(*kept);
-    return error(Kind::geometry, fmt::format("{} cannot be written as STEP: {}", who, flaw));
+    PartShape built = build_part(part, tolerance);
+    if (const std::optional<std::string> flaw = flaw_of(built, part))
+      return error(Kind::geometry, fmt::format("{} cannot be written as STEP: {}", who, *flaw));
+    return built;
   }
 
   Status add_foreign(const cad::Part& part) {

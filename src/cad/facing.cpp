@@ -99,10 +99,8 @@ class Finder {
   }
 
  private:
-  void add(std::size_t face, const nurbs::Curve& curve, const std::optional<bool>& is_right) {
-    if (!is_right) return;
-    Border border(curve);
-    if (border.length() > tolerance_) rims_.push_back({face, std::move(border), *is_right});
+  void add(std::size_t face, Border border, const std::optional<bool>& is_right) {
+    if (is_right && border.length() > tolerance_) rims_.push_back({face, std::move(border), *is_right});
   }
 
   void add_sides(std::size_t number) {
@@ -114,7 +112,7 @@ class Finder {
                                     Vec2(u, s.last_v())},
                               inside = {Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)};
     for (std::size_t i = 0; i < sides.size(); ++i)
-      add(number, sides[i], is_on_the_right(face, at[i], inside[i], tangent_at(sides[i], 0.5)));
+      add(number, Border(sides[i]), is_on_the_right(face, at[i], inside[i], tangent_at(sides[i], 0.5)));
   }
 
   void add_edges(std::size_t number) {
@@ -139,23 +137,19 @@ class Finder {
         const double du = jet.du.norm(), dv = jet.dv.norm();
         if (!(du > 0) || !(dv > 0)) continue;
         Vec2 across(-along.y() * dv / du, along.x() * du / dv);
-        const double length = std::hypot(across.x() * du, across.y() * dv), wanted = chord_length(edge.curve);
+        const double length = std::hypot(across.x() * du, across.y() * dv);
         if (!(length > 0)) continue;
-        across *= wanted / length;
+        Border border(edge.curve);
+        across *= border.length() / length;
         const std::optional<Vec2> inside = into_face(region, at, across);
-        if (inside) add(number, edge.curve, is_on_the_right(face, at, *inside, tangent_at(edge.curve, 0.5)));
+        if (inside)
+          add(number, std::move(border), is_on_the_right(face, at, *inside, tangent_at(edge.curve, 0.5)));
       }
     // Loops have the face on one side all along: else it was not understood where the face is, as on a sphere
     // with loops through its poles.
     const auto differs = [&](const Rim& rim) { return rim.is_against != rims_[first].is_against; };
     if (std::any_of(rims_.begin() + static_cast<std::ptrdiff_t>(first), rims_.end(), differs))
       rims_.erase(rims_.begin() + static_cast<std::ptrdiff_t>(first), rims_.end());
-  }
-
-  static double chord_length(const nurbs::Curve& curve) {
-    double length = 0;
-    for (int k = 0; k < 8; ++k) length += (at_share(curve, (k + 1) / 8.0) - at_share(curve, k / 8.0)).norm();
-    return length;
   }
 
   // The rims of other faces that pass through the middle of a rim: one of them is its neighbour there.

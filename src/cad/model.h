@@ -72,8 +72,8 @@ struct Part : Label {
   std::vector<Face> faces;
   std::string group;  // of the outermost group or assembly below the file that holds it; empty: none
   // What the kernel that read the file made of it, whose lengths times `kernel_scale` are those of the faces:
-  // for a writer of that kernel that cannot make it of the faces. Null: there is none. Who changes the faces
-  // takes it away.
+  // a writer of that kernel gives it back as it was. Null: there is none. Who changes the faces takes it
+  // away.
   std::shared_ptr<const void> kernel;
   double kernel_scale = 1;
 };

@@ -55,6 +55,11 @@ class Trend(unittest.TestCase):
         found, _ = self.worse(("| 64.00 | 400 |", "| 64.00 | 300 |"), ("| 8.00 | 400 |", "| 8.00 | 500 |"))
         self.assertEqual([row[1:3] for row in found], [(("selvage", "512"), "MB/s")])
 
+    def test_growth_is_no_loss_where_the_row_gains(self):
+        self.assertEqual(self.worse(("| 1.0 | 1.00 | 5 |", "| 0.1 | 1.00 | 5 |"), ("| 16.0 | 4.00 |", "| 15.0 | 37.00 |"))[0], [])
+        found, _ = self.worse(("| 16.0 | 4.00 |", "| 16.0 | 5.00 |"))
+        self.assertEqual([row[2:] for row in found], [("to the first", 4.0, 5.0)])
+
     def test_peers_are_not_ours(self):
         self.assertEqual(self.worse(("| bare loop | 8 | 1.00 |", "| bare loop | 8 | 9.00 |"), ("4.00 | 20 |", "4.00 | 90 |"))[0], [])
 

@@ -99,10 +99,10 @@ std::vector<OcctSample> occt_solids() {
   all.push_back({"drilled box", placed(drilled), 7, 5, 24 - pi * 0.25 * 4, 4});
   const UnderSpline under = under_a_spline();
   all.push_back({"extruded spline", BRepPrimAPI_MakePrism(under.face, gp_Vec(0, 0, 1.5)).Shape(), 6, 4,
-                 1.5 * under.area, 0, 2 * under.area + 1.5 * under.length, 1e-3});
+                 1.5 * under.area, 0, 2 * under.area + 1.5 * under.length});
   all.push_back({"revolved spline",
                  BRepPrimAPI_MakeRevol(under.face, gp_Ax1(gp_Pnt(0, -2, 0), gp_Dir(1, 0, 0)), 1.9).Shape(), 6,
-                 2, 1.9 * under.first, 0, 2 * under.area + 1.9 * under.turned, 1e-3});
+                 2, 1.9 * under.first, 0, 2 * under.area + 1.9 * under.turned});
   all.push_back(
       {"placed cylinder", placed(BRepPrimAPI_MakeCylinder(1.5, 4).Shape()), 3, 1, pi * 1.5 * 1.5 * 4});
   return all;

@@ -13,11 +13,10 @@ struct OcctSample {
   std::string name;
   TopoDS_Shape shape;
   int faces = 0;
-  int untrimmed = 0;    // of them, by us
-  double volume = 0;    // by formula
-  int only_brep = 0;    // untrimmed in the B-rep mode only: there planes have no border of their own
-  double area = 0;      // by formula where OpenCASCADE's is not exact; 0: it is
-  double share = 1e-6;  // to which OpenCASCADE measures it
+  int untrimmed = 0;  // of them, by us
+  double volume = 0;  // by formula
+  int only_brep = 0;  // untrimmed in the B-rep mode only: there planes have no border of their own
+  double area = 0;    // by formula; 0: as OpenCASCADE measures it
 };
 
 std::vector<OcctSample> occt_solids();

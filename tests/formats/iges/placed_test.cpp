@@ -201,6 +201,11 @@ TEST(IgesOffsets, BadInput) {
        "a pointer to an entity is missing");
   says({line, {.type = 130, .parameters = "1,1,0,0,0,1.,0.,0.,0.,0.,0.,1.,5.,9."}}, Severity::warning,
        "no parameters 5 to 9");
+  const IgesEntity joined{.type = 102, .parameters = "1,1", .status = dependent};
+  says({line, joined, {.type = 130, .parameters = "3,1,0,0,0,1.,0.,0.,0.,0.,0.,1.,0.,1."}}, Severity::warning,
+       "all of the composite or conic is taken");
+  says({line, joined, {.type = 130, .parameters = "3,2,0,0,2,1.,0.,2.,1.,0.,0.,1.,0.,1."}}, Severity::warning,
+       "which is not kept");
   says({bent, {.type = 130, .parameters = "1,1,0,0,0,.2,0.,0.,0.,0.,0.,1.,0.,2."}}, Severity::warning,
        "a corner or a cusp");
   says({middle, sphere, {.type = 140, .parameters = "1.,0.,0.,2.,3"}}, Severity::warning, "nothing is left");
