@@ -77,7 +77,10 @@ class Checker {
       skip_comma();
     }
     lexer_.next();
-    if (count != attributes.size())
+    // The name of a complex entity: without it nothing is lost.
+    if (count == 0 && name_ == "REPRESENTATION_ITEM" && !by_itself)
+      report_.warning(open, fmt::format("#{} has no name, not even an empty one", statement_->id));
+    else if (count != attributes.size())
       fail(open, fmt::format("{} has {} attributes here, not {}", name_, count, attributes.size()));
   }
 

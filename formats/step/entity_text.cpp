@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
-#include "core/parallel.h"
 #include "core/pointed_number.h"
 #include "formats/step/character.h"
 
@@ -12,35 +13,56 @@ namespace selvage::formats::step {
 
 namespace {
 
-// The word of a number, in the room for one.
-class Word {
- public:
-  explicit Word(Id id) : Word("#", static_cast<long long>(id.number)) {}
-  explicit Word(int number) : Word("", static_cast<long long>(number)) {}
-  explicit Word(double number) : end_(write_pointed(text_, number)) {}
-  operator std::string_view() const { return {text_, static_cast<std::size_t>(end_ - text_)}; }
+char* write_id(char* out, Id id) {
+  *out++ = '#';
+  return write_number(out, static_cast<long long>(id.number));
+}
 
- private:
-  Word(std::string_view before, long long number)
-      : end_(write_number(text_ + before.copy(text_, before.size()), number)) {}
+std::string_view between(const char* first, const char* last) {
+  return {first, static_cast<std::size_t>(last - first)};
+}
 
-  char text_[max_number_length + 1];
-  char* end_;
-};
-
-// The same tokens as put() makes of it.
+// The same text as put() makes of it, which mostly is one line.
 void append_point(std::string& out, const EntityText::Point& point) {
-  Filling filling;
-  filling.token(out, Word(point.id));
-  for (const std::string_view token : {" = ", "CARTESIAN_POINT", "(", "''", ",", "("})
-    filling.token(out, token);
-  filling.token(out, Word(point.at.x()));
-  filling.token(out, ",");
-  filling.token(out, Word(point.at.y()));
-  filling.token(out, ",");
-  filling.token(out, Word(point.at.z()));
-  for (const std::string_view token : {")", ")"}) filling.token(out, token);
-  out += ";\n";
+  static constexpr std::string_view name = " = CARTESIAN_POINT('',(";
+  char text[name.size() + 4 * (max_number_length + 1)];
+  std::array<char*, 4> at{write_id(text, point.id)};  // where its numbers begin, and one beyond the last
+  at[0] += name.copy(at[0], name.size());
+  for (std::size_t k = 0; k < 3; ++k) {
+    char* end = write_pointed(at[k], point.at[static_cast<Eigen::Index>(k)]);
+    *end = ',';
+    at[k + 1] = end + 1;
+  }
+  const std::string_view line = between(text, at[3] - 1);
+  if (line.size() <= Filling::filled_to) {
+    out.append(line);
+  } else {
+    Filling filling;
+    filling.token(out, between(text, at[0]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (k > 0) filling.token(out, ",");
+      filling.token(out, between(at[k], at[k + 1] - 1));
+    }
+  }
+  out.append("));\n");
+}
+
+// "(#1,#2,...)", from the beginning of a line.
+void append_row(std::string& out, std::span<const Id> ids) {
+  char word[max_number_length + 2] = "(";
+  std::size_t column = 0;
+  for (const Id id : ids) {
+    const std::string_view text = between(word, write_id(word + 1, id));
+    if (column + text.size() > Filling::filled_to) {  // after its comma
+      out.append(text.substr(0, 1)).append("\n").append(text.substr(1));
+      column = text.size() - 1;
+    } else {
+      out.append(text);
+      column += text.size();
+    }
+    word[0] = ',';
+  }
+  out.append(")");
 }
 
 }  // namespace
@@ -66,37 +88,69 @@ void EntityText::begin(Id id) {
 }
 
 void EntityText::end() {
-  text_ << ";\n";
+  constexpr std::size_t block = std::size_t{1} << 20U;
+  text_ += ";\n";
   filling_ = {};
+  if (text_.size() >= block) hand_over();
 }
 
-void EntityText::put_points(std::span<const Point> points) {
-  constexpr std::size_t chunk = 1024, many = 4096;
-  const int threads = points.size() < many ? 1 : threads_;
-  chunks_.resize(4 * static_cast<std::size_t>(threads));
-  for_each_in_order(
-      (points.size() + chunk - 1) / chunk, chunks_.size(), threads,
-      [&](std::size_t i, std::size_t slot) {
-        // A thread's own: strings side by side would share their processors' cache lines.
-        std::string text = std::move(chunks_[slot]);
-        text.clear();
-        for (const Point& point : points.subspan(i * chunk, std::min(chunk, points.size() - i * chunk)))
-          append_point(text, point);
-        chunks_[slot] = std::move(text);
-      },
-      [&](std::size_t /*i*/, std::size_t slot) { text_ << chunks_[slot]; });
+void EntityText::hand_over() {
+  queue_.add(std::exchange(text_, {}));
+}
+
+Status EntityText::finish() {
+  hand_over();
+  return queue_.finish();
+}
+
+void EntityText::put_points(std::vector<Point> points) {
+  static constexpr std::size_t chunk = 2048, many = 8192;
+  if (points.size() < many) {
+    for (const Point& point : points) append_point(text_, point);
+    return;
+  }
+  hand_over();
+  const auto all = std::make_shared<const std::vector<Point>>(std::move(points));
+  for (std::size_t first = 0; first < all->size(); first += chunk)
+    queue_.add([all, first](std::string& text) {
+      for (const Point& point : std::span(*all).subspan(first).first(std::min(chunk, all->size() - first)))
+        append_point(text, point);
+    });
+}
+
+void EntityText::value(const Net& net) {
+  constexpr std::size_t many = 20'000;
+  const std::size_t length = net.ids.size() / net.rows;
+  const bool are_many = net.ids.size() >= many;
+  token("(\n");
+  if (are_many) hand_over();
+  const auto all = std::make_shared<const std::vector<Id>>(net.ids);
+  for (std::size_t i = 0; i < net.rows; ++i) {
+    const auto row = [all, i, length, is_last = i + 1 == net.rows](std::string& text) {
+      append_row(text, std::span(*all).subspan(i * length, length));
+      text += is_last ? "\n" : ",\n";
+    };
+    if (are_many)
+      queue_.add(row);
+    else
+      row(text_);
+  }
+  token(")");
 }
 
 void EntityText::value(Id id) {
-  token(Word(id));
+  char word[max_number_length + 1];
+  token(between(word, write_id(word, id)));
 }
 
 void EntityText::value(int number) {
-  token(Word(number));
+  char word[max_number_length];
+  token(between(word, write_number(word, static_cast<long long>(number))));
 }
 
 void EntityText::value(double number) {
-  token(Word(number));
+  char word[max_number_length];
+  token(between(word, write_pointed(word, number)));
 }
 
 }  // namespace selvage::formats::step

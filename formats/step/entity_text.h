@@ -1,4 +1,4 @@
-// The text of a Part 21 file (ISO 10303-21), entity by entity, straight to its OutputFile: nothing is kept.
+// The text of a Part 21 file (ISO 10303-21), entity by entity, straight to its OutputFile: little is kept.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/text_buffer.h"
+#include "core/text_queue.h"
 #include "core/vec.h"
 
 namespace selvage::formats::step {
@@ -30,9 +30,18 @@ struct Measure {  // LENGTH_MEASURE(25.4)
   double value;
 };
 
+// A list of lists, each on lines of its own: ((#1,#2),(#3,#4)).
+struct Net {
+  std::vector<Id> ids;  // row by row
+  std::size_t rows;     // at least 1
+};
+
 // How lines are filled: where one may be broken, it is before what no longer fits.
 class Filling {
  public:
+  // Leaves room for the brackets that may follow the last token.
+  static constexpr std::size_t filled_to = 72;
+
   // `out` takes string views one after the other (append).
   template <class Out>
   void token(Out& out, std::string_view token) {
@@ -47,8 +56,6 @@ class Filling {
   }
 
  private:
-  // Leaves room for the brackets that may follow the last token.
-  static constexpr std::size_t filled_to = 72;
   std::size_t column_ = 0;
   char before_ = '\n';  // the last character
 };
@@ -61,7 +68,7 @@ std::string encoded(std::string_view text);
 // that reads back to the same bits, with a decimal point. The first failure of the file is kept for finish().
 class EntityText {
  public:
-  explicit EntityText(OutputFile& output, int threads = 1) : text_(output), threads_(threads) {}
+  explicit EntityText(OutputFile& output, int threads = 1) : queue_(output, threads) {}
 
   // A number for an entity that is written later.
   Id reserve() { return {++last_}; }
@@ -83,8 +90,8 @@ class EntityText {
     Id id;
     Vec3 at;
   };
-  // CARTESIAN_POINTs without a name, of numbers reserved for them, formatted by the threads.
-  void put_points(std::span<const Point> points);
+  // CARTESIAN_POINTs without a name, of numbers reserved for them. Many are formatted by the threads.
+  void put_points(std::vector<Point> points);
 
   // The same in pieces: begin, parts (more than one: between brackets, of a complex entity), end.
   void begin(Id id);
@@ -113,6 +120,8 @@ class EntityText {
   void value(Flag flag) { token(flag.is_true ? ".T." : ".F."); }
   void value(const Quoted& quoted) { token(encoded(quoted.text)); }
   void value(const Measure& measure) { part(measure.type, measure.value); }
+  // A large one is formatted by the threads.
+  void value(const Net& net);
   // A list: (first,second,...).
   template <class Value>
   void value(std::span<const Value> list) {
@@ -133,12 +142,13 @@ class EntityText {
   }
 
   // What was written so far is all: the rest goes to the file. Error (io): the file refused it.
-  Status finish() { return text_.finish(); }
+  Status finish();
 
  private:
-  TextBuffer text_;
-  int threads_;
-  std::vector<std::string> chunks_;  // reused
+  void hand_over();
+
+  std::string text_;  // that is not in the queue yet
+  TextQueue queue_;
   std::size_t last_ = 0;
   Filling filling_;
 };

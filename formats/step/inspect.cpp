@@ -23,13 +23,16 @@ bool is_known_schema(std::string_view schema) {
   return false;
 }
 
-// Types of entities and their attributes are judged by what these protocols have.
+// Types of entities and their attributes are judged by what these protocols have. Names of others are told,
+// but a shape that is put as in these protocols is read (IFC, for one, puts it in another way).
 void check_schema(const Part21& file, TextReport& report) {
   if (std::any_of(file.schemas.begin(), file.schemas.end(), is_known_schema)) return;
-  report.error(file.schema_spot,
-               fmt::format("a STEP file of the schema {}, not of AP203, AP214 or AP242",
-                           file.schemas.empty() ? "''" : in_quotes(file.schemas.front())),
-               Kind::unsupported);
+  std::string text = fmt::format("a STEP file of the schema {}, not of AP203, AP214 or AP242",
+                                 file.schemas.empty() ? "''" : in_quotes(file.schemas.front()));
+  if (std::ranges::find(file.types, "SHAPE_DEFINITION_REPRESENTATION") == file.types.end())
+    report.error(file.schema_spot, std::move(text), Kind::unsupported);
+  else
+    report.warning(file.schema_spot, text + "; it is read as one of these");
 }
 
 }  // namespace

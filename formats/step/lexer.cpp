@@ -134,12 +134,16 @@ Token Lexer::take_reference() {
   return Token::reference;
 }
 
+// An apostrophe that should be doubled ends no string where a letter follows it: what may follow does not
+// begin with one.
 Token Lexer::take_string() {
+  has_bare_apostrophe_ = false;
   for (; at_ != end_; ++at_) {
     if (*at_ == '\n') new_line();
     if (*at_ != '\'') continue;
     ++at_;
-    if (at_ == end_ || *at_ != '\'') return Token::string;
+    if (at_ == end_ || (*at_ != '\'' && !is_name(*at_))) return Token::string;
+    has_bare_apostrophe_ = has_bare_apostrophe_ || *at_ != '\'';
   }
   throw Failure{spot_, "this string has no end"};
 }

@@ -45,6 +45,8 @@ class Lexer {
   [[nodiscard]] std::string_view text() const { return text_; }
   [[nodiscard]] int reference() const { return reference_; }
   [[nodiscard]] const Spot& spot() const { return spot_; }
+  // Of a string: an apostrophe inside it stands alone, where two should.
+  [[nodiscard]] bool has_bare_apostrophe() const { return has_bare_apostrophe_; }
 
   void next();
   // Up to the statement's end, whatever stands there.
@@ -68,6 +70,7 @@ class Lexer {
   Token token_ = Token::end;
   std::string_view text_;
   int reference_ = 0;
+  bool has_bare_apostrophe_ = false;
   Spot spot_;
 };
 

@@ -46,7 +46,8 @@ class Places {
 
 class FileReader {
  public:
-  FileReader(const Source& source, TextReport& report) : report_(report), lexer_(source.bytes()) {}
+  FileReader(const Source& source, TextReport& report)
+      : report_(report), bytes_(source.bytes()), lexer_(bytes_) {}
 
   std::optional<Part21> read() {
     try {
@@ -198,6 +199,8 @@ class FileReader {
         wants_value = is_empty = false;
       } else if (wants_value && is_value(token)) {
         if (token == Token::reference && in_data_) file_.refs.push_back(lexer_.reference());
+        if (token == Token::string && lexer_.has_bare_apostrophe())
+          report_.warning(lexer_.spot(), "an apostrophe inside this string is not doubled");
         if (token == Token::string && !in_data_)
           strings_.push_back(decoded(lexer_.text().substr(1, lexer_.text().size() - 2)));
         wants_value = is_empty = false;
@@ -231,39 +234,53 @@ class FileReader {
     return type_indices_.emplace(name, static_cast<std::uint32_t>(file_.types.size() - 1)).first->second;
   }
 
-  // The references stay where they are; only whether statements stand in the order of their ids is looked at.
+  // By ids. One that is defined a second time in the same words is left out.
   void sort() {
-    auto& list = file_.statements;
-    const auto less = [](const Statement& a, const Statement& b) { return a.id < b.id; };
-    if (!std::is_sorted(list.begin(), list.end(), less)) {
-      regroup_refs(less);
-    }
-    for (std::size_t i = 1; i < list.size(); ++i)
-      if (list[i].id == list[i - 1].id)
-        report_.error(list[i].spot, fmt::format("#{} is defined a second time, first in line {}", list[i].id,
-                                                list[i - 1].spot.line));
-  }
-
-  template <class Less>
-  void regroup_refs(Less less) {
-    auto& list = file_.statements;
-    std::vector<std::uint32_t> ends(list.size());
-    for (std::size_t i = 0; i < list.size(); ++i)
-      ends[i] = i + 1 < list.size() ? list[i + 1].first_ref : static_cast<std::uint32_t>(file_.refs.size());
+    const std::vector<Statement>& list = file_.statements;
     std::vector<std::size_t> order(list.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return less(list[a], list[b]); });
+    const auto id = [&](std::size_t i) { return list[i].id; };
+    if (!std::ranges::is_sorted(order, {}, id)) std::ranges::stable_sort(order, {}, id);
+    const auto repeats = [&](std::size_t a, std::size_t b) {
+      if (list[a].id != list[b].id) return false;
+      std::string text =
+          fmt::format("#{} is defined a second time, first in line {}", list[a].id, list[a].spot.line);
+      if (are_same(list[a], list[b]))
+        report_.warning(list[b].spot, text + ", by the same words");
+      else
+        report_.error(list[b].spot, std::move(text));
+      return true;
+    };
+    order.erase(std::unique(order.begin(), order.end(), repeats), order.end());
+    if (order.size() != list.size() || !std::ranges::is_sorted(order)) regroup_refs(order);
+  }
+
+  [[nodiscard]] bool are_same(const Statement& a, const Statement& b) const {
+    Lexer first = lexer_at(a), second = lexer_at(b);
+    do {
+      first.next();
+      second.next();
+      if (first.token() != second.token() || first.text() != second.text()) return false;
+    } while (first.token() != Token::semicolon);
+    return true;
+  }
+  [[nodiscard]] Lexer lexer_at(const Statement& statement) const {
+    return Lexer(bytes_.substr(static_cast<std::size_t>(statement.spot.at - bytes_.data())), statement.spot);
+  }
+
+  // Statements, and with them what they refer to, in this order.
+  void regroup_refs(const std::vector<std::size_t>& order) {
     std::vector<Statement> sorted;
-    sorted.reserve(list.size());
+    sorted.reserve(order.size());
     std::vector<int> refs;
     refs.reserve(file_.refs.size());
     for (const std::size_t i : order) {
-      sorted.push_back(list[i]);
+      sorted.push_back(file_.statements[i]);
       sorted.back().first_ref = static_cast<std::uint32_t>(refs.size());
-      refs.insert(refs.end(), file_.refs.begin() + list[i].first_ref, file_.refs.begin() + ends[i]);
+      refs.insert(refs.end(), file_.refs.begin() + file_.statements[i].first_ref,
+                  file_.refs.begin() + static_cast<std::ptrdiff_t>(file_.refs_end(i)));
     }
-    list = std::move(sorted);
+    file_.statements = std::move(sorted);
     file_.refs = std::move(refs);
   }
 
@@ -283,6 +300,7 @@ class FileReader {
   }
 
   TextReport& report_;
+  std::string_view bytes_;
   Lexer lexer_;
   Part21 file_;
   bool in_data_ = false;

@@ -30,13 +30,12 @@ KnotList knot_list(const std::vector<double>& knots) {
   return list;
 }
 
-// Rows of attributes, as STEP has what stands in a net: a row for each u, in it v.
-template <class Value>
-std::vector<std::vector<Value>> rows_of(const Surface& surface, const std::vector<Value>& values) {
-  std::vector<std::vector<Value>> rows(static_cast<std::size_t>(surface.count_u));
+// Weights as STEP has what stands in a net: a row for each u, in it v.
+std::vector<std::vector<double>> weight_rows(const Surface& surface) {
+  std::vector<std::vector<double>> rows(static_cast<std::size_t>(surface.count_u));
   for (int i = 0; i < surface.count_u; ++i)
     for (int j = 0; j < surface.count_v; ++j)
-      rows[static_cast<std::size_t>(i)].push_back(values[surface.index(i, j)]);
+      rows[static_cast<std::size_t>(i)].push_back(surface.weights[surface.index(i, j)]);
   return rows;
 }
 
@@ -52,7 +51,7 @@ std::pair<Id, bool> YarnFaces::number_of(const Vec3& at) {
 
 Id YarnFaces::point(const Vec3& at) {
   const auto [id, is_new] = number_of(at);
-  if (is_new) text_.put_points(std::array{EntityText::Point{id, at}});
+  if (is_new) text_.put_points({{id, at}});
   return id;
 }
 
@@ -80,18 +79,21 @@ Id YarnFaces::curve(const Curve& curve) {
 }
 
 Id YarnFaces::surface(const Surface& surface, bool is_closed_u, bool is_closed_v) {
-  grid_.clear();
-  new_points_.clear();
+  const auto rows = static_cast<std::size_t>(surface.count_u),
+             length = static_cast<std::size_t>(surface.count_v);
+  std::vector<Id> grid(rows * length);
+  std::vector<EntityText::Point> new_points;
+  new_points.reserve(grid.size());
   for (int j = 0; j < surface.count_v; ++j)
     for (int i = 0; i < surface.count_u; ++i) {
       const bool is_border = i == 0 || j == 0 || i == surface.count_u - 1 || j == surface.count_v - 1;
       const Vec3& at = surface.point(i, j);
       const auto [id, is_new] = is_border ? number_of(at) : std::pair(text_.reserve(), true);
-      grid_.push_back(id);
-      if (is_new) new_points_.push_back({id, at});
+      grid[static_cast<std::size_t>(i) * length + static_cast<std::size_t>(j)] = id;
+      if (is_new) new_points.push_back({id, at});
     }
-  text_.put_points(new_points_);
-  const std::vector<std::vector<Id>> points = rows_of(surface, grid_);
+  text_.put_points(std::move(new_points));
+  const Net points{std::move(grid), rows};
   const KnotList u = knot_list(surface.knots_u), v = knot_list(surface.knots_v);
   const Flag closed_u{is_closed_u}, closed_v{is_closed_v}, crosses_itself{false};
   if (!surface.is_rational())
@@ -109,7 +111,7 @@ Id YarnFaces::surface(const Surface& surface, bool is_closed_u, bool is_closed_v
   text_.part("B_SPLINE_SURFACE_WITH_KNOTS", u.multiplicities, v.multiplicities, u.values, v.values, no_form);
   text_.token(" ");
   text_.token("GEOMETRIC_REPRESENTATION_ITEM() ");
-  text_.part("RATIONAL_B_SPLINE_SURFACE", rows_of(surface, surface.weights));
+  text_.part("RATIONAL_B_SPLINE_SURFACE", weight_rows(surface));
   text_.token(" ");
   text_.token("REPRESENTATION_ITEM('') SURFACE() )");
   text_.end();

@@ -67,8 +67,7 @@ class YarnFaces {
 
   EntityText& text_;
   std::unordered_map<Bits, Id, Digest> points_;  // of this yarn's borders
-  std::vector<Id> grid_, faces_;
-  std::vector<EntityText::Point> new_points_;  // reused
+  std::vector<Id> faces_;
 };
 
 }  // namespace selvage::formats::step

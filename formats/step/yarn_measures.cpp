@@ -197,8 +197,9 @@ Result<YarnMeasures> MeasuredYarns::of(const yarn::Body& body) {
   }
   Result<YarnMeasures> measures = measured(body);
   const std::size_t points = body.surface.points.size();
-  if (!measures || points > most_points) return measures;
-  for (; points_ + points > most_points; known_.pop_front())
+  if (!measures) return measures;
+  // Two of the largest yarns have room, whatever their size.
+  for (; !known_.empty() && points_ + points > std::max(most_points, 2 * points); known_.pop_front())
     points_ -= known_.front().body.surface.points.size();
   known_.push_back({body, invariants, *measures});
   points_ += points;

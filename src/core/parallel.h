@@ -56,10 +56,11 @@ void for_each_index(std::size_t count, int threads, const Work& work, const Prog
 
 // Calls make(i, slot) for i = 0 .. count - 1 on `threads` threads (as above), in any order, and take(i, slot)
 // for each after it, in order and never two at a time, by whichever thread is free. `slot`, 0 .. `slots` - 1,
-// is i's own from its make() to its take(): where what was made waits. The first exception ends it, and is
-// thrown again here.
-template <class Make, class Take>
-void for_each_in_order(std::size_t count, std::size_t slots, int threads, const Make& make,
+// is i's own from its make() to its take(): where what was made waits. A make() begins only while fewer than
+// room() others wait or are made, which is asked by one thread at a time and is at least 1, at most `slots`.
+// The first exception ends it, and is thrown again here.
+template <class Room, class Make, class Take>
+void for_each_in_order(std::size_t count, std::size_t slots, const Room& room, int threads, const Make& make,
                        const Take& take) {
   std::mutex guard;
   std::condition_variable changed;
@@ -90,7 +91,7 @@ void for_each_in_order(std::size_t count, std::size_t slots, int threads, const 
         is_made[i % slots] = 0;
         ++taken;
         changed.notify_all();
-      } else if (next < std::min(count, taken + slots)) {
+      } else if (next < count && next < taken + room()) {
         const std::size_t i = next++;
         unlocked([&] { make(i, i % slots); });
         is_made[i % slots] = 1;
@@ -102,6 +103,14 @@ void for_each_in_order(std::size_t count, std::size_t slots, int threads, const 
   };
   const std::size_t helpers = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
   for_each_index(helpers, threads, work);
+}
+
+// The same with room for all slots.
+template <class Make, class Take>
+void for_each_in_order(std::size_t count, std::size_t slots, int threads, const Make& make,
+                       const Take& take) {
+  for_each_in_order(
+      count, slots, [slots] { return slots; }, threads, make, take);
 }
 
 }  // namespace selvage

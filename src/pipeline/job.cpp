@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/sha256.h"
@@ -193,37 +195,31 @@ const yarn::Body& body_of(const fabric::YarnBuilder::Shaped& yarn) {
   return *yarn.body;
 }
 
-// What `make` gives for each index, a few of them at once, to `take` one by one.
+// What `make` gives for each index, a few of them ahead, to `take` one by one.
 template <class Made>
 void make_each(Job& job, std::size_t count, std::string_view verb,
                const std::function<Result<Made>(std::size_t index)>& make,
                const std::function<bool(std::size_t index, Result<Made>&&)>& take) {
-  // As many at once as there are threads, of small ones more: to start threads takes as long as to build
-  // some.
   constexpr std::size_t enough = std::size_t{4} << 20;  // bytes
-  std::size_t most = job.threads;
-  std::vector<std::optional<Result<Made>>> ready;
-  bool goes_on = true;
-  for (std::size_t taken = 0; goes_on && taken < count;) {
-    const std::size_t first = taken + ready.size();
-    std::vector<std::optional<Result<Made>>> next(std::min(most, count - first));
-    // While those that are ready are taken, the next ones are built.
-    for_each_index(next.size() + 1, static_cast<int>(job.threads), [&](std::size_t i) {
-      if (i > 0) {
-        next[i - 1] = make(first + i - 1);
-        return;
-      }
-      for (; goes_on && taken < first; ++taken) {
-        job.progress(verb, taken + 1, count);
-        goes_on = take(taken, std::move(*ready[taken + ready.size() - first]));
-      }
-    });
-    ready = std::move(next);
-    std::size_t largest = 1;
-    for (const std::optional<Result<Made>>& made : ready)
-      if (made && *made) largest = std::max(largest, body_of(**made).surface.points.size() * sizeof(Vec3));
-    most = std::clamp<std::size_t>(enough / largest, job.threads, 8 * job.threads);
-  }
+  const std::size_t least = job.threads + 1, most = 8 * job.threads;
+  std::vector<std::optional<Result<Made>>> made(most);
+  std::atomic<std::size_t> largest = 0;  // bytes; 0: none is known
+  std::atomic<bool> goes_on = true;
+  for_each_in_order(
+      count, most, [&] { return largest == 0 ? least : std::clamp(enough / largest, least, most); },
+      static_cast<int>(job.threads),
+      [&](std::size_t i, std::size_t slot) {
+        if (goes_on) made[slot] = make(i);
+        if (!made[slot] || !*made[slot]) return;
+        const std::size_t size = body_of(**made[slot]).surface.points.size() * sizeof(Vec3);
+        for (std::size_t known = largest; known < size && !largest.compare_exchange_weak(known, size);) {
+        }
+      },
+      [&](std::size_t i, std::size_t slot) {
+        if (!goes_on) return;
+        job.progress(verb, i + 1, count);
+        goes_on = take(i, *std::exchange(made[slot], std::nullopt));
+      });
 }
 
 }  // namespace

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
 #include <unordered_map>
 
 #include "core/output.h"
+#include "core/sha256.h"
 #include "core/words.h"
 #include "formats/registry.h"
 #include "pipeline/detect.h"
@@ -156,22 +160,38 @@ fs::path output_path(const Options& options, const Input& input, const Descripto
   return path;
 }
 
-// The same file under every name that leads to it.
-std::string identity(const fs::path& path) {
-  std::error_code failure;
-  fs::path real = fs::weakly_canonical(followed(path).value_or(path), failure);
-  return failure ? fs::absolute(path, failure).lexically_normal().string() : real.string();
-}
+// The same for a file under every name that leads to it, and for no other: of that name's digest, as there
+// may be 100,000.
+struct Identity {
+  explicit Identity(const fs::path& path) {
+    std::error_code failure;
+    fs::path real = fs::weakly_canonical(followed(path).value_or(path), failure);
+    if (failure) real = fs::absolute(path, failure).lexically_normal();
+    const std::string digest = sha256(real.native());
+    for (std::size_t i = 0; i < words.size(); ++i)
+      std::from_chars(&digest[16 * i], &digest[16 * i] + 16, words[i], 16);
+  }
+  bool operator==(const Identity&) const = default;
+
+  std::array<std::uint64_t, 2> words{};
+};
+
+struct Bucket {
+  std::size_t operator()(const Identity& identity) const { return identity.words[0]; }
+};
+
+template <class Value>
+using ByIdentity = std::unordered_map<Identity, Value, Bucket>;
 
 Status check_names(const Options& options, const InputList& list,
                    std::vector<std::vector<PlannedOutput>>& plan) {
-  const std::string report =
-      options.report.empty() || options.report == "-" ? std::string() : identity(options.report);
-  std::unordered_map<std::string, std::size_t> input_of;
+  std::optional<Identity> report;
+  if (!options.report.empty() && options.report != "-") report.emplace(options.report);
+  ByIdentity<std::size_t> input_of;
   // Of names that may be files of a set: by the identity of the name that stands for the set.
-  std::unordered_map<std::string, std::vector<fs::path>> parts_of;
+  ByIdentity<std::vector<fs::path>> parts_of;
   const auto note_part = [&](const fs::path& path) {
-    if (const std::optional<fs::path> whole = whole_path(path)) parts_of[identity(*whole)].push_back(path);
+    if (const std::optional<fs::path> whole = whole_path(path)) parts_of[Identity(*whole)].push_back(path);
   };
   for (std::size_t i = 0; i < plan.size(); ++i) {
     if (list.inputs[i].path == "-") continue;
@@ -179,19 +199,19 @@ Status check_names(const Options& options, const InputList& list,
     for (const fs::path& file : files) {
       // One that is missing is told when it is opened.
       std::error_code failure;
-      if (fs::exists(file, failure)) input_of.emplace(identity(file), i);
+      if (fs::exists(file, failure)) input_of.emplace(Identity(file), i);
       note_part(file);
     }
     // To write what stands for the set would be to replace it.
-    if (files.size() > 1) input_of.emplace(identity(*whole_path(files.front())), i);
+    if (files.size() > 1) input_of.emplace(Identity(*whole_path(files.front())), i);
   }
-  if (input_of.contains(report))
+  if (report && input_of.contains(*report))
     return error(Kind::usage, fmt::format("the report '{}' would replace an input", options.report));
-  std::unordered_map<std::string, std::size_t> writer_of;
+  ByIdentity<std::size_t> writer_of;
   for (std::size_t i = 0; i < plan.size(); ++i) {
     for (const PlannedOutput& output : plan[i]) {
       if (output.to_standard_output) continue;
-      const std::string name = identity(output.path);
+      const Identity name(output.path);
       if (name == report)
         return error(Kind::usage, fmt::format("the report and an output would both be '{}'", options.report));
       if (const auto found = input_of.find(name); found != input_of.end())
@@ -210,7 +230,7 @@ Status check_names(const Options& options, const InputList& list,
   }
   for (std::vector<PlannedOutput>& outputs : plan)
     for (PlannedOutput& output : outputs)
-      if (const auto found = parts_of.find(identity(output.path)); found != parts_of.end())
+      if (const auto found = parts_of.find(Identity(output.path)); found != parts_of.end())
         for (const fs::path& part : found->second)
           if (const std::optional<int> number = part_number(part))
             output.taken.push_back(part_path(output.path, *number));

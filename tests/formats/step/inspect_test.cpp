@@ -90,6 +90,9 @@ TEST(StepInspect, ReferencesToTheWrongTypeHaveTheirPlace) {
 TEST(StepInspect, AttributesAreCountedAndOfTheirKind) {
   EXPECT_EQ(with_corner("#6=LINE('',#1);"), "11:8: #6: LINE has 2 attributes here, not 3");
   EXPECT_EQ(with_corner("#6=AXIS1_PLACEMENT();"), "11:19: #6: AXIS1_PLACEMENT has 0 attributes here, not 3");
+  EXPECT_EQ(with_corner("#6=(BOUNDED_CURVE()B_SPLINE_CURVE(1,(#1,#1),.UNSPECIFIED.,.F.,.F.)CURVE()"
+                        "GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_CURVE()REPRESENTATION_ITEM(''));"),
+            "11:128: #6: RATIONAL_B_SPLINE_CURVE has 0 attributes here, not 1");
   EXPECT_EQ(with_corner("#6=LINE('',$,#3);"),
             "11:12: #6: attribute 2 of LINE is '$', not a reference to CARTESIAN_POINT");
   EXPECT_EQ(with_corner("#6=CARTESIAN_POINT('',#1);"),
@@ -100,6 +103,22 @@ TEST(StepInspect, AttributesAreCountedAndOfTheirKind) {
             "11:17: #6: attribute 2 of EDGE_LOOP is a list of 0, fewer than 1");
   EXPECT_EQ(with_corner("#6=DIRECTION('',(1.,0.,0.,0.));"),
             "11:17: #6: attribute 2 of DIRECTION is a list of 4, more than 3");
+}
+
+TEST(StepInspect, AComplexEntityWithoutANameIsFit) {
+  const Source source = Source::from_memory(
+      file_of(std::string(corner) +
+              "#6=(BOUNDED_CURVE()B_SPLINE_CURVE(1,(#1,#1),.UNSPECIFIED.,.F.,.F.)CURVE()"
+              "GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_CURVE((1.,1.))REPRESENTATION_ITEM());"),
+      "a.stp");
+  TextReport report(source);
+  EXPECT_TRUE(inspect(source, report).has_value());
+  Diagnostics diagnostics;
+  report.hand_over(diagnostics);
+  ASSERT_EQ(diagnostics.messages().size(), 1U);
+  EXPECT_EQ(diagnostics.messages()[0].severity, Severity::warning);
+  EXPECT_EQ(diagnostics.messages()[0].text, "#6 has no name, not even an empty one");
+  EXPECT_EQ(diagnostics.messages()[0].place.line, 11);
 }
 
 TEST(StepInspect, WhatIsRightOrUnknownIsLeftAlone) {

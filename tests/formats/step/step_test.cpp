@@ -147,7 +147,8 @@ std::vector<Vec3> first_surface(const std::string& file) {
   for (std::sregex_iterator it(file.begin(), file.end(), point), none; it != none; ++it)
     points[std::stoi((*it)[1])] = {std::stod((*it)[2]), std::stod((*it)[3]), std::stod((*it)[4])};
   const std::size_t at = file.find("B_SPLINE_SURFACE_WITH_KNOTS");
-  const std::string list = file.substr(at, file.find("))", at) - at);  // ((row of u = 0), (row of u = 1), ..
+  const std::string list =
+      file.substr(at, file.find(".UNSPEC", at) - at);  // ((row of u = 0), (row of u = 1), ..
   std::vector<std::vector<Vec3>> along;
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (list[i] == '(') along.emplace_back();

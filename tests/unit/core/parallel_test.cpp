@@ -81,6 +81,28 @@ TEST(Parallel, TakesInOrderWhatWasMadeInAny) {
   }
 }
 
+TEST(Parallel, NoMoreIsAheadThanThereIsRoomFor) {
+  for (const int threads : {1, 2, 5})
+    for (const std::size_t room : {1U, 3U, 6U}) {
+      std::atomic<std::size_t> ahead = 0, most = 0;
+      std::size_t taken = 0;
+      for_each_in_order(
+          300, 6, [&] { return room; }, threads,
+          [&](std::size_t i, std::size_t) {
+            const std::size_t now = ++ahead;
+            for (std::size_t known = most; known < now && !most.compare_exchange_weak(known, now);) {
+            }
+            std::this_thread::sleep_for(std::chrono::microseconds(i * 7919 % 13));
+          },
+          [&](std::size_t i, std::size_t) {
+            EXPECT_EQ(i, taken++);
+            --ahead;
+          });
+      EXPECT_EQ(taken, 300U);
+      EXPECT_LE(most, room);
+    }
+}
+
 TEST(Parallel, AnExceptionEndsWhatComesInOrder) {
   const auto nothing = [](std::size_t, std::size_t) {};
   const auto at_500 = [](std::size_t i, std::size_t) {

@@ -1,0 +1,76 @@
+#include "core/text_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+
+#include "unit/core/scratch_folder.h"
+
+namespace selvage {
+namespace {
+
+TEST(TextQueue, WritesInTheOrderInWhichItWasTold) {
+  for (const int threads : {1, 2, 5}) {
+    OutputFile file = std::move(*OutputFile::in_memory());
+    TextQueue queue(file, threads);
+    std::string wanted;
+    std::atomic<int> ahead = 0, most = 0;
+    for (int i = 0; i < 500; ++i) {
+      const std::string piece = std::to_string(i) + '\n';
+      wanted += piece;
+      if (i % 3 == 0) {
+        queue.add(piece);
+        continue;
+      }
+      queue.add([&, piece, i](std::string& text) {
+        EXPECT_TRUE(text.empty());
+        for (int known = most, now = ++ahead; known < now && !most.compare_exchange_weak(known, now);) {
+        }
+        std::this_thread::sleep_for(std::chrono::microseconds(i * 7919 % 13));
+        text += piece;
+        --ahead;
+      });
+    }
+    ASSERT_TRUE(queue.finish().ok());
+    EXPECT_EQ(*file.contents(), wanted);
+    EXPECT_LE(most, threads);
+    queue.add("more");
+    ASSERT_TRUE(queue.finish().ok());
+    EXPECT_EQ(*file.contents(), wanted + "more");
+  }
+}
+
+TEST(TextQueue, KeepsTheFirstFailure) {
+  for (const int threads : {1, 3}) {
+    const test::ScratchFolder scratch;
+    Result<OutputFile> file = OutputFile::create(scratch.path() / "text");
+    ASSERT_TRUE(file.ok());
+    ASSERT_TRUE(file->commit().ok());  // nothing may be written afterwards
+    TextQueue queue(*file, threads);
+    int made = 0;
+    for (int i = 0; i < 100; ++i) queue.add(std::string("text"));
+    queue.add([&](std::string& text) { text += std::to_string(++made); });
+    EXPECT_FALSE(queue.finish().ok());
+    EXPECT_EQ(made, 1);
+  }
+}
+
+TEST(TextQueue, ThrowsAgainWhatWasThrown) {
+  for (const int threads : {1, 3}) {
+    OutputFile file = std::move(*OutputFile::in_memory());
+    TextQueue queue(file, threads);
+    queue.add(std::string("before"));
+    queue.add([](std::string&) { throw std::bad_alloc(); });
+    for (int i = 0; i < 100; ++i) queue.add([](std::string& text) { text += "after"; });
+    EXPECT_THROW((void)queue.finish(), std::bad_alloc);
+    EXPECT_EQ(file.contents()->find("after"), std::string::npos);
+  }
+  // What was not waited for is dropped.
+  OutputFile file = std::move(*OutputFile::in_memory());
+  TextQueue queue(file, 3);
+  for (int i = 0; i < 10; ++i) queue.add([](std::string& text) { text += "text"; });
+}
+
+}  // namespace
+}  // namespace selvage
