@@ -107,9 +107,10 @@ TEST(StepInspect, AttributesAreCountedAndOfTheirKind) {
 
 TEST(StepInspect, AComplexEntityWithoutANameIsFit) {
   const Source source = Source::from_memory(
-      file_of(std::string(corner) +
-              "#6=(BOUNDED_CURVE()B_SPLINE_CURVE(1,(#1,#1),.UNSPECIFIED.,.F.,.F.)CURVE()"
-              "GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_CURVE((1.,1.))REPRESENTATION_ITEM());"),
+      file_of(fmt::format(
+          "{}{}", corner,
+          "#6=(BOUNDED_CURVE()B_SPLINE_CURVE(1,(#1,#1),.UNSPECIFIED.,.F.,.F.)CURVE()"
+          "GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_CURVE((1.,1.))REPRESENTATION_ITEM());")),
       "a.stp");
   TextReport report(source);
   EXPECT_TRUE(inspect(source, report).has_value());
