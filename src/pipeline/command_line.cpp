@@ -190,6 +190,9 @@ void inputs_and_outputs(OptionTable& t) {
   t.option({roundtrip}, "--to",
            kept(fmt::format("formats to go through, separated by commas (default: {})", trip_names())),
            Argument::text("FORMAT"), &Options::formats);
+  t.option({convert, relax}, "--file-name",
+           "what an IGES or STEP file calls itself in its header (default: the output's own name)",
+           Argument::text("NAME"), &Options::file_name);
   t.flag({info, diff}, "--json", "one JSON object instead of text", &Options::json);
   t.flag(
       {diff, check}, "--all",

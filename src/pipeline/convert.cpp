@@ -29,6 +29,7 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
   // A file that is read and written again stays the same to the byte, under whatever name.
   for (const std::string_view extension : output.format->extensions)
     if (fabric.file_name.ends_with(extension)) surface.file_name = fabric.file_name;
+  if (!job.options.file_name.empty()) surface.file_name = job.options.file_name;
   surface.units = job.shown().unit;
   surface.expected_bodies = count;
   surface.date = fabric.date;

@@ -50,9 +50,10 @@ struct Options {
   Command command = Command::convert;
   std::string settings;  // the options that outputs depend on, as words
   std::vector<std::string>
-      inputs;           // as given: files, folders, patterns, "-", "@list"; of `diff` the two files
-  std::string output;   // -o; empty: beside the inputs; "-": standard output
-  std::string formats;  // --to, as given
+      inputs;             // as given: files, folders, patterns, "-", "@list"; of `diff` the two files
+  std::string output;     // -o; empty: beside the inputs; "-": standard output
+  std::string file_name;  // of headers; empty: the output's own
+  std::string formats;    // --to, as given
 
   std::size_t workers = 0;       // 0: one a core
   double timeout = 0;            // seconds an input; 0: none, but for formats of other programs

@@ -30,6 +30,23 @@ class Places(Case):
         self.assertEqual(self.names(), ["edited/plain4_path.txt", "meshed/plain4_grid.inp", "plain/plain4_grid.igs",
                                         "relaxed/plain4_path.txt", "seen/ring.png"])
 
+    def test_a_name_that_is_fixed(self):
+        """Equal content is equal bytes under every name, if what headers call the file is said."""
+        os.environ["SOURCE_DATE_EPOCH"] = "1700000000"
+        self.addCleanup(os.environ.pop, "SOURCE_DATE_EPOCH")
+        for extension, header in (("igs", rb"10Hfabric\.cad"), ("stp", rb"FILE_NAME\('fabric\.cad'")):
+            own = [self.folder / f"{stem}.{extension}" for stem in ("one", "another")]
+            fixed = [self.folder / "fixed" / path.name for path in own]
+            for free, named in zip(own, fixed):
+                self.succeeds("convert", GRID, "-o", free)
+                self.succeeds("convert", GRID, "-o", named, "--file-name", "fabric.cad")
+            self.assertNotEqual(own[0].read_bytes(), own[1].read_bytes())
+            self.assertEqual(fixed[0].read_bytes(), fixed[1].read_bytes())
+            self.assertRegex(fixed[0].read_bytes()[:2000], header)
+            # Also where a file that is read says another one.
+            self.succeeds("convert", own[0], "-o", self.out / fixed[0].name, "--file-name", "fabric.cad")
+            self.assertRegex((self.out / fixed[0].name).read_bytes()[:2000], header)
+
     def test_an_extension_that_no_format_has(self):
         for arguments, listed in ((("convert", GRID), r"\.igs, .*\.stp"), (("convert", GRID, "--to", "iges"), r"\.igs"),
                                   (("convert", GRID, RING), r"\.igs"), (("relax", PATH), r"\.txt"),
