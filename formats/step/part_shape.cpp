@@ -35,6 +35,7 @@
 
 #include "cad/edges.h"
 #include "cad/sampled_curve.h"
+#include "cad/seam.h"
 #include "formats/step/faces.h"
 #include "formats/step/geometry.h"
 #include "solid/occt/shape.h"
@@ -102,7 +103,7 @@ class PartBuilder {
       shared_.clear();
     }
     std::vector<TopoDS_Face> faces;
-    for (const cad::Face& face : part_.faces) faces.push_back(build_face(face));
+    for (const cad::Face& face : part_.faces) faces.push_back(build_face(cad::with_seam_in_gap(face)));
     return part_.kind == cad::Part::Kind::surfaces ? loose(faces) : joined(faces);
   }
 

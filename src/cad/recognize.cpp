@@ -13,6 +13,7 @@
 #include "cad/sampled_curve.h"
 #include "cad/tube.h"
 #include "core/box_tree.h"
+#include "nurbs/measure.h"
 #include "nurbs/turn.h"
 #include "yarn/ends.h"
 
@@ -314,13 +315,13 @@ class Recognizer {
   }
 
   // Whether an open tube is a yarn: nothing else belongs to it, or it is the one tube of a small group; and
-  // it has a face at one end, or the role of a yarn, or the file has such tubes alone: among other surfaces,
-  // it is the side of a hole or of a pin as a rule.
+  // it has a face at one end and is longer than thick, or the role of a yarn, or the file has such tubes
+  // alone: among other surfaces, it is the side of a hole, of a pin or of a disc as a rule.
   [[nodiscard]] bool is_open_yarn(const Tube& tube) const {
     const Part& part = model_.parts[tube.part];
     if (part.faces.size() > 3 || tubes_of_part_.at(tube.part) != 1) return false;
     const bool has_lid = tube.lids[0] != nothing || tube.lids[1] != nothing;
-    return has_lid || only_tubes_ ||
+    return (has_lid && nurbs::arc_length(tube.body.axis) > tube.kind.size) || only_tubes_ ||
            role_of(part.level != 0 ? part.level : part.faces[tube.face].level) != yarn::Role::other;
   }
 

@@ -6,6 +6,7 @@
 
 #include "cad/edges.h"
 #include "cad/sampled_curve.h"
+#include "cad/seam.h"
 #include "nurbs/basis.h"
 
 namespace selvage::cad {
@@ -15,16 +16,6 @@ namespace {
 using nurbs::Surface;
 
 constexpr int points_a_span = 16;
-
-bool is_closed(const Surface& s, bool in_u) {
-  const double size = box_of(s.points).diagonal().norm();
-  for (const double share : {0.2, 0.5, 0.7}) {
-    const Vec3 a = in_u ? at_shares(s, 0, share) : at_shares(s, share, 0);
-    const Vec3 b = in_u ? at_shares(s, 1, share) : at_shares(s, share, 1);
-    if ((a - b).norm() > 1e-9 * size) return false;
-  }
-  return true;
-}
 
 std::vector<Vec3> polygon_of(const nurbs::Curve& flat) {
   const std::vector<double> spans = nurbs::breakpoints(flat.knots, flat.degree);
@@ -38,18 +29,36 @@ std::vector<Vec3> polygon_of(const nurbs::Curve& flat) {
   return points;
 }
 
-// The feet of an edge's points; in the turn round the surface in which `before` is, where that is given.
-std::vector<Vec3> feet_of(const nurbs::Curve& curve, const SurfaceSet& surface, const Vec3* before,
-                          const std::array<double, 2>& periods) {
+// Every parameter in this direction is the same place: at a pole.
+bool is_any(const Surface& s, const SurfaceSet::Foot& foot, bool in_u, double size) {
+  const nurbs::SurfaceJet jet = nurbs::evaluate_jet(s, foot.u, foot.v);
+  return (in_u ? jet.du.norm() * (s.last_u() - s.first_u()) : jet.dv.norm() * (s.last_v() - s.first_v())) <
+         1e-6 * size;
+}
+
+// The feet of an edge's points; in the turn round the surface in which `before` is, where that is given. What
+// a pole leaves open is as it is beside it.
+std::vector<Vec3> feet_of(const nurbs::Curve& curve, const Surface& s, const SurfaceSet& surface,
+                          const Vec3* before, const std::array<double, 2>& periods) {
+  const double size = box_of(s.points).diagonal().norm();
   std::vector<Vec3> points;
+  std::array<std::vector<bool>, 2> open;
   for (const Vec3& p : SampledCurve(curve).points) {
     const SurfaceSet::Foot foot = surface.near(p);
-    Vec3 place(foot.u, foot.v, 0);
-    const Vec3* const last = points.empty() ? before : &points.back();
-    for (Eigen::Index d = 0; last != nullptr && d < 2; ++d)
-      if (const double period = periods[static_cast<std::size_t>(d)]; period > 0)
-        place[d] -= period * std::round((place[d] - (*last)[d]) / period);
-    points.push_back(place);
+    points.emplace_back(foot.u, foot.v, 0);
+    for (std::size_t d = 0; d < 2; ++d) open[d].push_back(is_any(s, foot, d == 0, size));
+  }
+  for (Eigen::Index d = 0; d < 2; ++d) {
+    const std::vector<bool>& is_open = open[static_cast<std::size_t>(d)];
+    const auto known = static_cast<std::size_t>(std::ranges::find(is_open, false) - is_open.begin());
+    for (std::size_t i = 0; known < points.size() && i < points.size(); ++i)
+      if (is_open[i]) points[i][d] = i < known ? points[known][d] : points[i - 1][d];
+    const double period = periods[static_cast<std::size_t>(d)];
+    const Vec3* last = before;
+    for (Vec3& place : points) {
+      if (last != nullptr && period > 0) place[d] -= period * std::round((place[d] - (*last)[d]) / period);
+      last = &place;
+    }
   }
   return points;
 }
@@ -71,10 +80,10 @@ Region::Region(const Face& face) {
     for (const Edge& edge : loop.edges) {
       if (edge.flat.points.empty() && edge.curve.points.empty()) continue;  // a pole
       if (edge.flat.points.empty() && !surface) surface.emplace(std::vector<const Surface*>{&face.surface});
-      const std::vector<Vec3> piece =
-          edge.flat.points.empty()
-              ? feet_of(edge.curve, *surface, points.empty() ? nullptr : &points.back(), periods_)
-              : polygon_of(edge.flat);
+      const std::vector<Vec3> piece = edge.flat.points.empty()
+                                          ? feet_of(edge.curve, face.surface, *surface,
+                                                    points.empty() ? nullptr : &points.back(), periods_)
+                                          : polygon_of(edge.flat);
       points.insert(points.end(), piece.begin(), piece.end());
     }
     if (points.size() < 2) return;
@@ -100,6 +109,7 @@ Region::Region(const Face& face) {
   Box3 box;
   for (const Segment& s : segments_)
     for (const std::array<double, 2>& end : {s.from, s.to}) box.extend(Vec3(end[0], end[1], 0));
+  extent_ = {{{box.min().x(), box.max().x()}, {box.min().y(), box.max().y()}}};
   const auto narrow = [](double& low, double& high, double least, double most, double period) {
     // What is given in another turn round the surface has no range here.
     if (period > 0 && (least < low - 1e-9 * period || most > high + 1e-9 * period)) return;
@@ -125,12 +135,24 @@ bool Region::contains_as_it_is(double u, double v) const {
   return is_inside;
 }
 
+// All the turns round the surface together: loops are wherever their first points lie, a hole perhaps a turn
+// away from the loop that it is in.
 bool Region::contains(double u, double v) const {
   if (!is_known_) return true;
-  for (const double turn_u : {0.0, -periods_[0], periods_[0]})
-    for (const double turn_v : {0.0, -periods_[1], periods_[1]})
-      if (contains_as_it_is(u + turn_u, v + turn_v)) return true;
-  return false;
+  bool is_inside = false;
+  for (const double turn_u : turns(0, u, u))
+    for (const double turn_v : turns(1, v, v))
+      if (contains_as_it_is(u + turn_u, v + turn_v)) is_inside = !is_inside;
+  return is_inside;
+}
+
+std::vector<double> Region::turns(std::size_t d, double first, double last) const {
+  const double period = periods_[d];
+  if (period == 0) return {0};
+  std::vector<double> shifts;
+  for (double k = std::ceil((extent_[d][0] - last) / period); k * period <= extent_[d][1] - first; ++k)
+    shifts.push_back(k * period);
+  return shifts;
 }
 
 bool Region::may_meet(const Range& range) const {
@@ -138,14 +160,16 @@ bool Region::may_meet(const Range& range) const {
   if (contains(0.5 * (range.u0 + range.u1), 0.5 * (range.v0 + range.v1))) return true;
   const double wide = 0.05 * (range.u1 - range.u0) + near_[0], high = 0.05 * (range.v1 - range.v0) + near_[1];
   const auto meets = [&](const Segment& s, double turn_u, double turn_v) {
-    return std::max(s.from[0], s.to[0]) + turn_u >= range.u0 - wide &&
-           std::min(s.from[0], s.to[0]) + turn_u <= range.u1 + wide &&
-           std::max(s.from[1], s.to[1]) + turn_v >= range.v0 - high &&
-           std::min(s.from[1], s.to[1]) + turn_v <= range.v1 + high;
+    return std::max(s.from[0], s.to[0]) >= range.u0 + turn_u - wide &&
+           std::min(s.from[0], s.to[0]) <= range.u1 + turn_u + wide &&
+           std::max(s.from[1], s.to[1]) >= range.v0 + turn_v - high &&
+           std::min(s.from[1], s.to[1]) <= range.v1 + turn_v + high;
   };
+  const std::vector<double> turns_u = turns(0, range.u0 - wide, range.u1 + wide),
+                            turns_v = turns(1, range.v0 - high, range.v1 + high);
   for (const Segment& s : segments_)
-    for (const double turn_u : {0.0, -periods_[0], periods_[0]})
-      for (const double turn_v : {0.0, -periods_[1], periods_[1]})
+    for (const double turn_u : turns_u)
+      for (const double turn_v : turns_v)
         if (meets(s, turn_u, turn_v)) return true;
   return false;
 }

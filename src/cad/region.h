@@ -29,13 +29,17 @@ class Region {
     std::array<double, 2> from, to;
   };
   [[nodiscard]] bool contains_as_it_is(double u, double v) const;
+  // What brings parameters `first` to `last` to where the segments are, turns round the surface (0 in a
+  // direction that is not closed).
+  [[nodiscard]] std::vector<double> turns(std::size_t d, double first, double last) const;
 
   std::vector<Segment> segments_;
   Range range_;
   bool is_known_ = false;
-  bool along_v_ = false;                    // rays run along v: loops go round the surface in u
-  std::array<double, 2> periods_ = {0, 0};  // 0: not closed
-  std::array<double, 2> near_ = {0, 0};     // what counts as no width
+  bool along_v_ = false;                           // rays run along v: loops go round the surface in u
+  std::array<double, 2> periods_ = {0, 0};         // 0: not closed
+  std::array<std::array<double, 2>, 2> extent_{};  // of the segments, in u and in v
+  std::array<double, 2> near_ = {0, 0};            // what counts as no width
 };
 
 }  // namespace selvage::cad

@@ -36,33 +36,45 @@ void measure(Thing& thing) {
   thing.spread = std::sqrt(sum / static_cast<double>(count));
 }
 
-// The edges of a model's trimmed faces, by their ends. Some writers draw an outline a second time, as curves.
+// The edges of a model's faces. Some writers draw an outline a second time, as curves.
 class Edges {
  public:
   explicit Edges(const Model& model) {
+    Box3 box;
     for (const Part& part : model.parts)
       for (const Face& face : part.faces)
-        for (const Edge& edge : edges_of(face))
-          if (!edge.curve.points.empty()) by_ends_.emplace(key(edge.curve), &edge.curve);
+        for (const Edge& edge : boundary_edges_of(face)) {
+          if (edge.curve.points.empty()) continue;
+          by_first_end_.emplace(first_end(edge.curve), &edge.curve);
+          box.extend(box_of(edge.curve.points));
+        }
+    if (!box.isEmpty()) near_ = 1e-7 * box.diagonal().norm();
   }
   [[nodiscard]] bool contain(const nurbs::Curve& curve) const {
     if (curve.points.empty()) return false;
-    const auto [first, last] = by_ends_.equal_range(key(curve));
-    return std::any_of(first, last, [&](const auto& entry) {
-      const std::vector<Vec3>& points = entry.second->points;
-      return std::equal(points.begin(), points.end(), curve.points.begin(), curve.points.end()) ||
-             std::equal(points.rbegin(), points.rend(), curve.points.begin(), curve.points.end());
-    });
+    const double x = first_end(curve);
+    return std::any_of(by_first_end_.lower_bound(x - near_), by_first_end_.upper_bound(x + near_),
+                       [&](const auto& entry) { return are_same(curve, *entry.second); });
   }
 
  private:
   // The same for both directions.
-  static std::array<double, 6> key(const nurbs::Curve& curve) {
-    const Vec3 &a = curve.points.front(), &b = curve.points.back();
-    const Vec3 low = a.cwiseMin(b), high = a.cwiseMax(b);
-    return {low.x(), low.y(), low.z(), high.x(), high.y(), high.z()};
+  static double first_end(const nurbs::Curve& curve) {
+    return std::min(curve.points.front().x(), curve.points.back().x());
   }
-  std::multimap<std::array<double, 6>, const nurbs::Curve*> by_ends_;
+  [[nodiscard]] bool are_same(const nurbs::Curve& a, const nurbs::Curve& b) const {
+    const auto meet = [&](const Vec3& p, const Vec3& q) { return (p - q).norm() <= near_; };
+    if (!(meet(a.points.front(), b.points.front()) && meet(a.points.back(), b.points.back())) &&
+        !(meet(a.points.front(), b.points.back()) && meet(a.points.back(), b.points.front())))
+      return false;
+    const SampledCurve sampled(b);
+    return std::ranges::all_of(std::array{0.25, 0.5, 0.75}, [&](double share) {
+      return sampled.nearest(at_share(a, share), near_).distance <= near_;
+    });
+  }
+
+  double near_ = 0;
+  std::multimap<double, const nurbs::Curve*> by_first_end_;
 };
 
 // What OpenCASCADE calls a product that has no name.

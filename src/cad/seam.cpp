@@ -1,0 +1,84 @@
+#include "cad/seam.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cad/edges.h"
+#include "cad/sampled_curve.h"
+#include "nurbs/chain.h"
+#include "nurbs/restrict.h"
+
+namespace selvage::cad {
+
+namespace {
+
+using nurbs::Surface;
+
+constexpr double no_width = 1e-9;  // as a share of the range
+
+// One behind the other along u: the last column of `a` is the first one of `b`.
+Surface joined(Surface a, const Surface& b) {
+  const double step = a.last_u() - b.first_u();
+  a.knots_u.pop_back();
+  for (auto knot = b.knots_u.begin() + b.degree_u + 1; knot != b.knots_u.end(); ++knot)
+    a.knots_u.push_back(*knot + step);
+  Surface whole = a;
+  whole.count_u += b.count_u - 1;
+  whole.points.clear();
+  whole.weights.clear();
+  const double factor = a.is_rational() ? a.weight(a.count_u - 1, 0) / b.weight(0, 0) : 1;
+  for (int j = 0; j < a.count_v; ++j) {
+    for (int i = 0; i < whole.count_u; ++i) {
+      const int k = i - a.count_u + 1;  // in b
+      whole.points.push_back(k <= 0 ? a.point(i, j) : b.point(k, j));
+      if (a.is_rational()) whole.weights.push_back(k <= 0 ? a.weight(i, j) : factor * b.weight(k, j));
+    }
+  }
+  return whole;
+}
+
+// The same surface from the parameter `start` on, over as wide a range: closed in u.
+Surface opened_at(const Surface& s, double start) {
+  const double first = s.first_u(), last = s.last_u(), period = last - first;
+  const double turns = std::floor((start - first) / period + no_width), at = start - turns * period;
+  Surface opened = at <= first + no_width * period
+                       ? s
+                       : joined(nurbs::restricted(s, at, last, s.first_v(), s.last_v()),
+                                nurbs::restricted(s, first, at, s.first_v(), s.last_v()));
+  for (double& knot : opened.knots_u) knot += turns * period;
+  return opened;
+}
+
+}  // namespace
+
+bool is_closed(const Surface& surface, bool in_u) {
+  const double size = box_of(surface.points).diagonal().norm();
+  for (const double share : {0.2, 0.5, 0.7}) {
+    const Vec3 a = in_u ? at_shares(surface, 0, share) : at_shares(surface, share, 0);
+    const Vec3 b = in_u ? at_shares(surface, 1, share) : at_shares(surface, share, 1);
+    if ((a - b).norm() > 1e-9 * size) return false;
+  }
+  return true;
+}
+
+Face with_seam_in_gap(Face face) {
+  Box3 box;
+  for (const Edge& edge : edges_of(face)) {
+    if (edge.flat.points.empty()) return face;
+    for (const Vec3& p : edge.flat.points) box.extend(p);
+  }
+  if (face.loops.empty()) return face;
+  for (const bool in_u : {true, false}) {
+    Surface s = in_u ? face.surface : nurbs::transposed(face.surface);
+    const Eigen::Index d = in_u ? 0 : 1;
+    const double low = box.min()[d], high = box.max()[d], period = s.last_u() - s.first_u();
+    const bool leaves = low < s.first_u() - no_width * period || high > s.last_u() + no_width * period;
+    if (!leaves || high - low > (1 + no_width) * period || !is_closed(s, true)) continue;
+    s = opened_at(s, low - 0.5 * std::max(0.0, period - (high - low)));
+    face.surface = in_u ? std::move(s) : nurbs::transposed(s);
+  }
+  return face;
+}
+
+}  // namespace selvage::cad
