@@ -13,8 +13,8 @@ class Trade(Case):
         sheets = trade.sheets()
         self.assertEqual(sorted(sheet["cloth"] for sheet in sheets), sorted(path.stem for path in trade.TRADE.glob("*.txt")))
         published = [sheet for sheet in sheets if sheet["kind"] != "memory"]
-        self.assertGreaterEqual(len(published), 46)
-        self.assertGreaterEqual(sum(not sheet["outside"] for sheet in published), 31)
+        self.assertGreaterEqual(len(published), 65)
+        self.assertGreaterEqual(sum(not sheet["outside"] for sheet in published), 41)
         for sheet in sheets:
             with self.subTest(sheet["cloth"]):
                 text = trade.text_of(sheet)
