@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <BRep_Tool.hxx>
 #include <Interface_Check.hxx>
 #include <Interface_CheckIterator.hxx>
+#include <Precision.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <STEPConstruct_UnitContext.hxx>
@@ -404,6 +406,12 @@ class ModelReader {
   }
 
   void take_edge(const TopoDS_Edge& edge, Context& context) {
+    double first = 0, last = 0;
+    BRep_Tool::Range(edge, first, last);
+    if (Precision::IsInfinite(first) || Precision::IsInfinite(last)) {
+      report_.warning(spot_at(source_, origin_of(item_of(edge)).place), "a line without ends is left out");
+      return;
+    }
     cad::NamedCurve curve;
     curve.curve = to_curve(edge);
     if (curve.curve.points.empty()) return;

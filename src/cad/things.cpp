@@ -238,7 +238,10 @@ Things things_of(const Subject& subject) {
     thing.kind = i < subject.yarns ? Thing::Kind::yarn : Thing::Kind::part;
     thing.name = part.name;
     if (is_invented(thing.name)) thing.name.clear();
-    thing.color = part.color;
+    // What is seen: faces have colours of their own above that of the whole. Of several the first one.
+    thing.color = std::ranges::all_of(part.faces, [](const Face& face) { return face.color.has_value(); })
+                      ? part.faces.front().color
+                      : part.color;
     for (const Face& face : part.faces) {
       if (thing.name.empty() && part.faces.size() == 1) thing.name = is_invented(face.name) ? "" : face.name;
       if (!thing.color) thing.color = face.color;

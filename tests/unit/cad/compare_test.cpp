@@ -105,6 +105,33 @@ TEST(Compare, AddedRemovedRenamedRecoloured) {
   EXPECT_EQ(found.equal, 3U);
 }
 
+TEST(Compare, ColoursAreThoseThatAreSeen) {
+  Subject before = cloth(2), after = before;
+  for (Face& face : before.model.parts[0].faces) face.color = Color{1, 2, 3};
+  after.model.parts[0].color = Color{1, 2, 3};
+  EXPECT_TRUE(compared(before, after).differences.empty());
+  before.model.parts[0].faces[0].color.reset();
+  ASSERT_EQ(compared(before, after).differences.size(), 1U);
+  EXPECT_EQ(compared(before, after).differences[0].kind, Kind::recoloured);
+}
+
+TEST(Compare, OutlinesThatAreDrawnASecondTime) {
+  Subject before = cloth(1);
+  const nurbs::Curve rim = nurbs::boundary_row(before.model.parts[0].faces[0].surface, false);
+  Loop loop;
+  loop.edges.push_back({rim, {}, -1});
+  before.model.parts[0].faces[0].border = {loop};
+  Subject after = before;
+  NamedCurve again;
+  again.curve = rim;
+  for (Vec3& p : again.curve.points) p += Vec3(1e-9, -1e-9, 0);
+  after.model.curves = {again};
+  EXPECT_TRUE(compared(before, after).differences.empty());
+  for (Vec3& p : after.model.curves[0].curve.points) p += Vec3(1e-4, 0, 0);
+  ASSERT_EQ(compared(before, after).differences.size(), 1U);
+  EXPECT_EQ(compared(before, after).differences[0].kind, Kind::added);
+}
+
 TEST(Compare, OrderDirectionsSeamsAndMissingNamesAreNoDifference) {
   const Subject before = cloth(7);
   Subject after;

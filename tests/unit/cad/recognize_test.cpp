@@ -506,6 +506,17 @@ TEST(Recognize, ATubeAmongOtherSurfacesIsNoYarn) {
   EXPECT_EQ(found[0].body.start.style, EndStyle::none);
 }
 
+TEST(Recognize, ADiscWithOneFaceIsNoYarn) {
+  Surface bottom = cylinder(0.2, 1, 10, 10);
+  for (int i = 0; i < bottom.count_u; ++i) bottom.point(i, 1) = Vec3(10, 10, 0);
+  for (const double height : {0.05, 2.0}) {  // 0.4 across
+    Model model;
+    model.parts = {part_of("tube", {cylinder(0.2, height, 10, 10), bottom}), part_of("sheet", {sheet()})};
+    Diagnostics diagnostics;  // the yarn's end is made anew
+    EXPECT_EQ(cad::take_yarns(model, diagnostics).size(), height > 1 ? 1U : 0U);
+  }
+}
+
 TEST(Recognize, TenThousandLooseYarns) {
   const Body model_yarn =
       wave("", {.length = 1, .width = 0.25, .height = 0.125, .amplitude = 0.05, .sections = 4, .round = 8},
