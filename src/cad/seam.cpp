@@ -41,7 +41,10 @@ Surface joined(Surface a, const Surface& b) {
 // The same surface from the parameter `start` on, over as wide a range: closed in u.
 Surface opened_at(const Surface& s, double start) {
   const double first = s.first_u(), last = s.last_u(), period = last - first;
-  const double turns = std::floor((start - first) / period + no_width), at = start - turns * period;
+  const double turns = std::floor((start - first) / period + no_width);
+  double at = start - turns * period;
+  for (const double knot : s.knots_u)
+    if (std::abs(at - knot) <= no_width * period) at = knot;  // no span may be as short as that
   Surface opened = at <= first + no_width * period
                        ? s
                        : joined(nurbs::restricted(s, at, last, s.first_v(), s.last_v()),
