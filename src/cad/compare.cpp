@@ -64,7 +64,7 @@ std::optional<Region> region_of(const Thing& thing, std::size_t k) {
 class Comparer {
  public:
   Comparer(const Subject& a, const Subject& b, const CompareOptions& options)
-      : a_(things_of(a)), b_(things_of(b)), subject_a_(a), subject_b_(b), options_(options) {
+      : a_(things_of(a, b)), b_(things_of(b, a)), subject_a_(a), subject_b_(b), options_(options) {
     double size = 0;
     for (const Things* things : {&a_, &b_})
       for (const Thing& thing : things->list)

@@ -70,7 +70,7 @@ Region::Region(const Face& face) {
   if (face.loops.empty()) return;
   const std::array<double, 2> widths = {whole.u1 - whole.u0, whole.v1 - whole.v0};
   for (std::size_t d = 0; d < 2; ++d) {
-    if (is_closed(face.surface, d == 0)) periods_[d] = widths[d];
+    if (closes(face.surface, d == 0)) periods_[d] = widths[d];
     near_[d] = 1e-9 * widths[d];
   }
   std::optional<SurfaceSet> surface;

@@ -55,7 +55,7 @@ Surface opened_at(const Surface& s, double start) {
 
 }  // namespace
 
-bool is_closed(const Surface& surface, bool in_u) {
+bool closes(const Surface& surface, bool in_u) {
   const double size = box_of(surface.points).diagonal().norm();
   for (const double share : {0.2, 0.5, 0.7}) {
     const Vec3 a = in_u ? at_shares(surface, 0, share) : at_shares(surface, share, 0);
@@ -77,7 +77,7 @@ Face with_seam_in_gap(Face face) {
     const Eigen::Index d = in_u ? 0 : 1;
     const double low = box.min()[d], high = box.max()[d], period = s.last_u() - s.first_u();
     const bool leaves = low < s.first_u() - no_width * period || high > s.last_u() + no_width * period;
-    if (!leaves || high - low > (1 + no_width) * period || !is_closed(s, true)) continue;
+    if (!leaves || high - low > (1 + no_width) * period || !closes(s, true)) continue;
     s = opened_at(s, low - 0.5 * std::max(0.0, period - (high - low)));
     face.surface = in_u ? std::move(s) : nurbs::transposed(s);
   }

@@ -6,7 +6,7 @@
 namespace selvage::cad {
 
 // Do both ends of a direction of the surface lie on each other?
-bool is_closed(const nurbs::Surface& surface, bool in_u);
+bool closes(const nurbs::Surface& surface, bool in_u);
 
 // A face whose boundary in parameters leaves the range of its surface, in a direction in which that is closed
 // and the boundary does not go round: the surface is cut open in the middle of the gap that the boundary

@@ -9,6 +9,7 @@
 #include "cad/distance.h"
 #include "cad/edges.h"
 #include "cad/outline.h"
+#include "cad/sampled_curve.h"
 #include "core/box_tree.h"
 
 namespace selvage::cad {
@@ -36,45 +37,46 @@ void measure(Thing& thing) {
   thing.spread = std::sqrt(sum / static_cast<double>(count));
 }
 
-// The edges of a model's faces. Some writers draw an outline a second time, as curves.
-class Edges {
+// Where the faces of two models end. Some writers draw an outline a second time, as curves.
+class Outlines {
  public:
-  explicit Edges(const Model& model) {
-    Box3 box;
-    for (const Part& part : model.parts)
-      for (const Face& face : part.faces)
-        for (const Edge& edge : boundary_edges_of(face)) {
-          if (edge.curve.points.empty()) continue;
-          by_first_end_.emplace(first_end(edge.curve), &edge.curve);
-          box.extend(box_of(edge.curve.points));
+  Outlines(const Model& model, const Model& other) {
+    std::vector<Box3> boxes;
+    Box3 all;
+    const auto add = [&](const nurbs::Curve& curve) {
+      if (curve.points.empty()) return;
+      curves_.push_back(curve);
+      all.extend(boxes.emplace_back(box_of(curve.points)));
+    };
+    for (const Model* of : {&model, &other})
+      for (const Part& part : of->parts)
+        for (const Face& face : part.faces) {
+          for (const Edge& edge : edges_of(face)) add(edge.curve);
+          if (face.loops.empty())
+            for (const nurbs::Curve& side : sides_of(face.surface)) add(side);
         }
-    if (!box.isEmpty()) near_ = 1e-7 * box.diagonal().norm();
+    if (!all.isEmpty()) near_ = 1e-7 * all.diagonal().norm();
+    tree_ = BoxTree(std::move(boxes));
   }
+  // All along one of them?
   [[nodiscard]] bool contain(const nurbs::Curve& curve) const {
-    if (curve.points.empty()) return false;
-    const double x = first_end(curve);
-    return std::any_of(by_first_end_.lower_bound(x - near_), by_first_end_.upper_bound(x + near_),
-                       [&](const auto& entry) { return are_same(curve, *entry.second); });
+    if (curves_.empty() || curve.points.empty()) return false;
+    const Vec3 middle = at_share(curve, 0.5), around = Vec3::Constant(near_);
+    bool is_there = false;
+    tree_.meeting(Box3(middle - around, middle + around), [&](std::uint32_t i) {
+      if (is_there) return;
+      const SampledCurve sampled(curves_[i]);
+      is_there = std::ranges::all_of(std::array{0.5, 0.0, 0.25, 0.75, 1.0}, [&](double share) {
+        return sampled.nearest(at_share(curve, share), near_).distance <= near_;
+      });
+    });
+    return is_there;
   }
 
  private:
-  // The same for both directions.
-  static double first_end(const nurbs::Curve& curve) {
-    return std::min(curve.points.front().x(), curve.points.back().x());
-  }
-  [[nodiscard]] bool are_same(const nurbs::Curve& a, const nurbs::Curve& b) const {
-    const auto meet = [&](const Vec3& p, const Vec3& q) { return (p - q).norm() <= near_; };
-    if (!(meet(a.points.front(), b.points.front()) && meet(a.points.back(), b.points.back())) &&
-        !(meet(a.points.front(), b.points.back()) && meet(a.points.back(), b.points.front())))
-      return false;
-    const SampledCurve sampled(b);
-    return std::ranges::all_of(std::array{0.25, 0.5, 0.75}, [&](double share) {
-      return sampled.nearest(at_share(a, share), near_).distance <= near_;
-    });
-  }
-
   double near_ = 0;
-  std::multimap<double, const nurbs::Curve*> by_first_end_;
+  std::vector<nurbs::Curve> curves_;
+  BoxTree tree_{{}};
 };
 
 // What OpenCASCADE calls a product that has no name.
@@ -229,7 +231,7 @@ std::string_view name_of(Thing::Kind kind) {
   return std::array<std::string_view, 3>{"yarn", "part", "curve"}[static_cast<std::size_t>(kind)];
 }
 
-Things things_of(const Subject& subject) {
+Things things_of(const Subject& subject, const Subject& other) {
   Things things;
   for (std::size_t i = 0; i < subject.model.parts.size(); ++i) {
     const Part& part = subject.model.parts[i];
@@ -250,9 +252,10 @@ Things things_of(const Subject& subject) {
     }
     measure(thing);
   }
-  const Edges edges(subject.model);
+  std::optional<Outlines> outlines;
+  if (!subject.model.curves.empty()) outlines.emplace(subject.model, other.model);
   for (const NamedCurve& curve : subject.model.curves) {
-    if (edges.contain(curve.curve)) continue;
+    if (outlines->contain(curve.curve)) continue;
     Thing& thing = things.list.emplace_back();
     thing.kind = Thing::Kind::curve;
     thing.name = curve.name;

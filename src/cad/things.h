@@ -34,9 +34,9 @@ struct Things {
   std::vector<Thing> list;
   std::deque<nurbs::Surface> curves;
 };
-// Without curves that are the edge of a face in the same model, control point by control point. The model
-// outlives them.
-Things things_of(const Subject& subject);
+// Without curves that run along the edge of a face of either model, to 1e-7 of its size: outlines that are
+// drawn twice. The model outlives them.
+Things things_of(const Subject& subject, const Subject& other);
 
 struct Pairing {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;  // in the order of a

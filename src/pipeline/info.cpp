@@ -9,6 +9,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "cad/measure.h"
 #include "core/readable.h"
 #include "core/words.h"
 #include "nurbs/measure.h"
@@ -83,27 +84,6 @@ std::ptrdiff_t trimmed_in(const cad::Part& part) {
   return std::ranges::count_if(part.faces, [](const cad::Face& face) { return !face.loops.empty(); });
 }
 
-// Of each face, file units: the one that another kernel measured, or that of an untrimmed surface.
-std::optional<double> area_of(const cad::Part& part) {
-  double area = 0;
-  for (const cad::Face& face : part.faces) {
-    if (!face.area && !face.loops.empty()) return std::nullopt;
-    area += face.area ? std::abs(*face.area) : nurbs::moments(face.surface, Vec3::Zero()).area;
-  }
-  return area;
-}
-
-// Of a solid of untrimmed faces.
-std::optional<double> volume_of(const cad::Part& part) {
-  if (part.kind != cad::Part::Kind::solid || trimmed_in(part) > 0) return std::nullopt;
-  const Box3 box = cad::box_of(part);
-  if (box.isEmpty()) return std::nullopt;
-  double volume = 0;
-  for (const cad::Face& face : part.faces)
-    volume += (face.reversed ? -1 : 1) * nurbs::volume_flux(face.surface, box.center());
-  return std::abs(volume);
-}
-
 // Parts that are neither yarns nor garment pieces, in mm.
 Json parts_json(const fabric::Fabric& fabric, const std::map<int, std::string>& levels) {
   const double mm = millimetres_per(fabric.units);
@@ -115,8 +95,9 @@ Json parts_json(const fabric::Fabric& fabric, const std::map<int, std::string>& 
                  {"trimmed", trimmed_in(part)}};
     if (!part.name.empty()) made["name"] = part.name;
     if (!part.group.empty()) made["group"] = part.group;
-    if (const std::optional<double> area = area_of(part)) made["area"] = *area * mm * mm;
-    if (const std::optional<double> volume = volume_of(part)) made["volume"] = *volume * mm * mm * mm;
+    const cad::PartMeasures measures = cad::measures_of(part);
+    if (measures.area) made["area"] = *measures.area * mm * mm;
+    if (measures.volume) made["volume"] = *measures.volume * mm * mm * mm;
     if (const Box3 box = cad::box_of(part); !box.isEmpty())
       made["box"] = {vector(box.min()), vector(box.max())};
     if (part.color)
@@ -137,12 +118,15 @@ std::string other_tables(const Job& job, const fabric::Fabric& fabric) {
   const Shown shown = job.shown();
   std::string text;
   if (!fabric.parts.empty()) {
-    Table table({"part", "kind", "faces", "trimmed", "extent", "entity"});
+    Table table({"part", "kind", "faces", "trimmed", "area", "volume", "extent", "entity"});
     for (const cad::Part& part : std::span(fabric.parts).first(std::min(most_rows, fabric.parts.size()))) {
       const Box3 box = cad::box_of(part);
+      const cad::PartMeasures measures = cad::measures_of(part);
       table.add({part.name.empty() ? "-" : part.name,
                  std::string(part_kinds[static_cast<std::size_t>(part.kind)]),
                  std::to_string(part.faces.size()), std::to_string(trimmed_in(part)),
+                 measures.area ? cell(shown.area(*measures.area)) : "-",
+                 measures.volume ? cell(shown.volume(*measures.volume)) : "-",
                  box.isEmpty() ? "-" : cell(shown.length(box.diagonal().norm())), part.origin.entity});
     }
     text += table.text() + rest_of(fabric.parts.size(), "more part");

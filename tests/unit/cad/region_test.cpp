@@ -88,8 +88,8 @@ TEST(Region, EdgesThatMeetInAPole) {
 TEST(Seam, IsInTheGapThatTheBoundaryLeaves) {
   const Surface round = cylinder(2, 3), wavy = wavy_tube();
   for (const Surface& s : {round, wavy, swapped(round)}) {
-    const bool in_u = is_closed(s, true);
-    ASSERT_NE(in_u, is_closed(s, false));
+    const bool in_u = closes(s, true);
+    ASSERT_NE(in_u, closes(s, false));
     const double first = in_u ? s.first_u() : s.first_v(), turn = (in_u ? s.last_u() : s.last_v()) - first;
     const double low = in_u ? s.first_v() : s.first_u(), high = in_u ? s.last_v() : s.last_u();
     for (const double start : {-0.3, 0.55, 0.8, -1.3, 1.9}) {  // in turns
