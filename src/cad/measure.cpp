@@ -273,9 +273,10 @@ class Integrator {
     const double from = base_, to = at[d];
     const bool wraps = periods_[across_] > 0;
     Values sum = Values::Zero();
-    const double low_turn = wraps ? std::floor((from - first) / period) : 0;
-    const double high_turn = wraps ? std::floor((to - first) / period) : 0;
-    for (double turn = low_turn; turn <= high_turn; ++turn)
+    const auto turn_of = [&](double t) {
+      return wraps ? static_cast<int>(std::floor((t - first) / period)) : 0;
+    };
+    for (int turn = turn_of(from); turn <= turn_of(to); ++turn)
       for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
         double a = breaks[k] + turn * period, b = breaks[k + 1] + turn * period;
         // Beyond an open range the surface ends.
