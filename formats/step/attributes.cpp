@@ -77,8 +77,9 @@ class Checker {
       skip_comma();
     }
     lexer_.next();
-    // The name of a complex entity: without it nothing is lost.
-    if (count == 0 && name_ == "REPRESENTATION_ITEM" && !by_itself)
+    // OpenCASCADE reads a surface without its name all the same; of a curve it makes nothing, and uses that.
+    if (count == 0 && name_ == "REPRESENTATION_ITEM" && !by_itself &&
+        file_.type_of(*statement_).find("RATIONAL_B_SPLINE_SURFACE") != std::string_view::npos)
       report_.warning(open, fmt::format("#{} has no name, not even an empty one", statement_->id));
     else if (count != attributes.size())
       fail(open, fmt::format("{} has {} attributes here, not {}", name_, count, attributes.size()));

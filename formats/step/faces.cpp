@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <unordered_set>
 
 #include "cad/edges.h"
 #include "core/plane.h"
@@ -84,13 +85,13 @@ cad::Range box_of(const Polygon& polygon) {
 }
 
 // Do the edge's curves in parameters and in space agree? Files have some that are off by a thousandth of the
-// face: then the one in space holds.
-bool has_true_flat(const TopoDS_Edge& edge, const TopoDS_Face& face, double tolerance) {
+// face: then the one in space holds. `surface`: the face's, in its place.
+bool has_true_flat(const TopoDS_Edge& edge, const TopoDS_Face& face, const Handle(Geom_Surface) & surface,
+                   double tolerance) {
   double first = 0, last = 0, from = 0, to = 0;
   const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, from, to);
   const Handle(Geom2d_Curve) flat = BRep_Tool::CurveOnSurface(edge, face, first, last);
   if (curve.IsNull() || flat.IsNull() || !BRep_Tool::SameParameter(edge)) return true;
-  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
   for (int i = 0; i <= samples; ++i) {
     const double t = first + (last - first) * i / samples;
     const gp_Pnt2d place = flat->Value(t);
@@ -170,9 +171,6 @@ class FaceMaker {
       : face_(TopoDS::Face(face.Oriented(TopAbs_FORWARD))), ids_(ids) {
     surface_ = BRep_Tool::Surface(face_, location_);
     if (surface_.IsNull()) throw Standard_Failure("a face without a surface");
-    Bnd_Box box;
-    BRepBndLib::AddClose(face_, box);
-    if (!box.IsVoid()) same_place_ = std::max(same_place_, 1e-5 * std::sqrt(box.SquareExtent()));
     if (!entity.IsNull()) exact_ = exact_spline(entity->FaceGeometry(), scale);
     result_.reversed = face.Orientation() == TopAbs_REVERSED;
   }
@@ -182,14 +180,12 @@ class FaceMaker {
     std::vector<Polygon> polygons;
     polygons.reserve(chains.size());
     for (const Chain& chain : chains) polygons.push_back(polygon_of(chain, face_));
-    const bool are_true = std::ranges::all_of(chains, [&](const Chain& chain) {
-      return std::ranges::all_of(chain, [&](const TopoDS_Edge& edge) { return is_true(edge); });
-    });
+    find_untrue(chains);
     const cad::Range whole = bounds_of(surface_);
     if (chains.empty()) {
       if (!is_finite(whole)) throw Standard_Failure("a face without a boundary on an unbounded surface");
       take_surface(whole, whole);
-    } else if (are_true && polygons.size() == 1 && !polygons[0].empty() &&
+    } else if (untrue_.empty() && polygons.size() == 1 && !polygons[0].empty() &&
                is_rectangle(polygons[0], box_of(polygons[0]), face_)) {
       take_surface(snapped(box_of(polygons[0]), whole, face_), whole);
       result_.border = loops_of(chains);
@@ -201,8 +197,15 @@ class FaceMaker {
   }
 
  private:
-  [[nodiscard]] bool is_true(const TopoDS_Edge& edge) const {
-    return has_true_flat(edge, face_, same_place_);
+  void find_untrue(const std::vector<Chain>& chains) {
+    Bnd_Box box;
+    BRepBndLib::AddClose(face_, box);
+    const double size = box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
+    const double tolerance = std::max(10 * Precision::Confusion(), 1e-5 * size);
+    const Handle(Geom_Surface) placed = BRep_Tool::Surface(face_);
+    for (const Chain& chain : chains)
+      for (const TopoDS_Edge& edge : chain)
+        if (!has_true_flat(edge, face_, placed, tolerance)) untrue_.insert(edge.TShape().get());
   }
 
   void take_surface(const cad::Range& range, const cad::Range& whole) {
@@ -255,7 +258,8 @@ class FaceMaker {
       for (const TopoDS_Edge& edge : chain) {
         cad::Edge piece;
         piece.curve = to_curve(edge);
-        if (piece.curve.points.empty() || (has_flats && is_true(edge))) piece.flat = flat_of(edge, face_);
+        if (piece.curve.points.empty() || (has_flats && !untrue_.contains(edge.TShape().get())))
+          piece.flat = flat_of(edge, face_);
         if (!lies_in(piece.flat, result_.surface)) piece.flat = {};
         piece.id = ids_.try_emplace(edge.TShape().get(), static_cast<int>(ids_.size())).first->second;
         if (piece.curve.points.empty() && piece.flat.points.empty()) continue;
@@ -271,7 +275,7 @@ class FaceMaker {
   TopLoc_Location location_;
   Handle(Geom_Surface) surface_;
   std::optional<nurbs::Surface> exact_;
-  double same_place_ = 10 * Precision::Confusion();
+  std::unordered_set<const TopoDS_TShape*> untrue_;  // edges whose curves do not agree
   cad::Face result_;
 };
 

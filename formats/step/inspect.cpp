@@ -27,10 +27,10 @@ bool is_known_schema(std::string_view schema) {
 // but a shape that is put as in these protocols is read (IFC, for one, puts it in another way).
 void check_schema(const Part21& file, TextReport& report) {
   if (std::any_of(file.schemas.begin(), file.schemas.end(), is_known_schema)) return;
-  std::string text = fmt::format("a STEP file of the schema {}, not of AP203, AP214 or AP242",
-                                 file.schemas.empty() ? "''" : in_quotes(file.schemas.front()));
+  const std::string text = fmt::format("a STEP file of the schema {}, not of AP203, AP214 or AP242",
+                                       file.schemas.empty() ? "''" : in_quotes(file.schemas.front()));
   if (std::ranges::find(file.types, "SHAPE_DEFINITION_REPRESENTATION") == file.types.end())
-    report.error(file.schema_spot, std::move(text), Kind::unsupported);
+    report.error(file.schema_spot, text + "; export it as one of these", Kind::unsupported);
   else
     report.warning(file.schema_spot, text + "; it is read as one of these");
 }

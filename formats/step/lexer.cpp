@@ -135,15 +135,25 @@ Token Lexer::take_reference() {
 }
 
 // An apostrophe that should be doubled ends no string where a letter follows it: what may follow does not
-// begin with one.
+// begin with one. But where another string may begin before the end, it may be a comma that is missing.
 Token Lexer::take_string() {
   has_bare_apostrophe_ = false;
+  const auto is_inside = [](char c) {
+    return is_name(c) || c == '\\' || static_cast<unsigned char>(c) >= 0x80;
+  };
+  char before = 0;  // but for blanks
   for (; at_ != end_; ++at_) {
     if (*at_ == '\n') new_line();
-    if (*at_ != '\'') continue;
+    if (*at_ != '\'') {
+      if (*at_ != ' ' && *at_ != '\n' && *at_ != '\r') before = *at_;
+      continue;
+    }
+    if (has_bare_apostrophe_ && before == ',')
+      throw Failure{spot_, "this string has no clear end: an apostrophe inside it is written twice"};
     ++at_;
-    if (at_ == end_ || (*at_ != '\'' && !is_name(*at_))) return Token::string;
+    if (at_ == end_ || (*at_ != '\'' && !is_inside(*at_))) return Token::string;
     has_bare_apostrophe_ = has_bare_apostrophe_ || *at_ != '\'';
+    before = *at_;
   }
   throw Failure{spot_, "this string has no end"};
 }

@@ -248,7 +248,7 @@ class FileReader {
       if (are_same(list[a], list[b]))
         report_.warning(list[b].spot, text + ", by the same words");
       else
-        report_.error(list[b].spot, std::move(text));
+        report_.error(list[b].spot, text + ", in other words; give one of them a number of its own");
       return true;
     };
     order.erase(std::unique(order.begin(), order.end(), repeats), order.end());

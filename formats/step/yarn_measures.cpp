@@ -24,7 +24,7 @@ constexpr double same_direction = 1e-5;
 // Yarns that lie on each other to this share of their thickness measure the same: their places have been
 // rounded.
 constexpr double same_shape = 1e-11;
-// What is kept of yarns to compare others with, control points: 1.5 MB.
+// What is kept of yarns to compare others with, control points: 1.5 MB, or two of the largest yarns.
 constexpr std::size_t most_points = std::size_t{1} << 16U;
 
 bool is_number(const nurbs::Surface& surface) {

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "cad/distance.h"
+#include "cad/sampled_curve.h"
 #include "cad/seam.h"
 #include "nurbs/basis.h"
 #include "nurbs/chain.h"
@@ -35,59 +37,135 @@ struct Trace {
 
 class FaceTracer {
  public:
-  FaceTracer(const Surface& surface, const std::array<double, 2>& periods)
-      : surface_(surface), periods_(periods) {}
+  // `breaks`: of the surface, in u and in v.
+  FaceTracer(const Surface& surface, const std::array<double, 2>& periods,
+             const std::array<std::vector<double>, 2>& breaks)
+      : surface_(surface), periods_(periods), breaks_(breaks) {}
 
   std::optional<Trace> trace(const Edge& edge) {
-    return edge.flat.points.empty() ? follow(edge.curve) : flat(edge.flat);
+    return flat_holds(surface_, edge) ? along(edge.flat) : follow(edge.curve);
+  }
+  std::optional<Trace> straight(const Vec2& from, const Vec2& to) {
+    return along({1, {0, 0, 1, 1}, {Vec3(from.x(), from.y(), 0), Vec3(to.x(), to.y(), 0)}, {}});
+  }
+
+  [[nodiscard]] Vec2 moved_near(Vec2 at, const Vec2& other) const {
+    for (std::size_t d = 0; d < 2; ++d) {
+      const auto k = static_cast<Eigen::Index>(d);
+      if (periods_[d] > 0) at[k] -= periods_[d] * std::round((at[k] - other[k]) / periods_[d]);
+    }
+    return at;
   }
 
  private:
-  static std::vector<double> nodes_of(const Curve& curve, std::vector<double>& weights) {
-    const std::vector<double> breaks = nurbs::breakpoints(curve.knots, curve.degree);
+  static constexpr std::size_t most_parts = 20'000;  // of an edge
+
+  // Parameters of an edge between which it stays in one span of the curve and one of the surface; `place`
+  // tells where in the surface's parameters it is. Nothing where these are too many.
+  template <class Place>
+  std::optional<std::vector<double>> parts_of(const Curve& curve, const Place& place) const {
+    constexpr int looks = 4;  // a span
+    const std::vector<double> spans = nurbs::breakpoints(curve.knots, curve.degree);
+    std::vector<double> parts = {spans.front()};
+    for (std::size_t k = 0; k + 1 < spans.size(); ++k)
+      for (int i = 0; i < looks; ++i) {
+        double from = std::lerp(spans[k], spans[k + 1], static_cast<double>(i) / looks);
+        const double to = std::lerp(spans[k], spans[k + 1], static_cast<double>(i + 1) / looks);
+        const std::array<double, 2> last = cell_of(place(to));
+        for (std::array<double, 2> here = cell_of(place(from)); here != last;) {
+          double low = from, high = to;  // the cell is another at `high`
+          while (high - low > 1e-13 * (spans.back() - spans.front())) {
+            const double middle = 0.5 * (low + high);
+            if (!(middle > low && middle < high)) break;
+            (cell_of(place(middle)) == here ? low : high) = middle;
+          }
+          parts.push_back(high);
+          if (parts.size() > most_parts) return std::nullopt;
+          from = high;
+          here = cell_of(place(high));
+        }
+        if (i + 1 == looks) parts.push_back(to);
+      }
+    std::ranges::sort(parts);
+    parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
+    return parts;
+  }
+
+  // The spans of the surface that hold a place, counted through all turns.
+  [[nodiscard]] std::array<double, 2> cell_of(const Vec2& at) const {
+    std::array<double, 2> cell{};
+    for (std::size_t d = 0; d < 2; ++d) {
+      const std::vector<double>& breaks = breaks_[d];
+      const double width = breaks.back() - breaks.front();
+      double value = at[static_cast<Eigen::Index>(d)] + 1e-9 * width;
+      const double turn = periods_[d] > 0 ? std::floor((value - breaks.front()) / width) : 0;
+      value -= turn * width;
+      const auto span = std::upper_bound(breaks.begin(), breaks.end(), value) - breaks.begin();
+      cell[d] = turn * static_cast<double>(breaks.size()) + static_cast<double>(span);
+    }
+    return cell;
+  }
+
+  struct Node {
+    double t, weight;
+  };
+  static std::vector<Node> nodes_of(const std::vector<double>& parts) {
     const nurbs::GaussRule& rule = nurbs::gauss_rule(order);
-    std::vector<double> nodes;
-    for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+    std::vector<Node> nodes;
+    for (std::size_t k = 0; k + 1 < parts.size(); ++k)
       for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-        const double half = 0.5 * (breaks[k + 1] - breaks[k]);
-        nodes.push_back(0.5 * (breaks[k] + breaks[k + 1]) + half * rule.nodes[i]);
-        weights.push_back(half * rule.weights[i]);
+        const double half = 0.5 * (parts[k + 1] - parts[k]);
+        nodes.push_back({0.5 * (parts[k] + parts[k + 1]) + half * rule.nodes[i], half * rule.weights[i]});
       }
     return nodes;
   }
 
-  static Trace flat(const Curve& curve) {
+  std::optional<Trace> along(const Curve& flat) const {
+    const auto place = [&](double t) { return Vec2(nurbs::evaluate(flat, t).head<2>()); };
+    const std::optional<std::vector<double>> parts = parts_of(flat, place);
+    if (!parts) return std::nullopt;
     Trace trace;
-    std::vector<double> weights;
-    const std::vector<double> nodes = nodes_of(curve, weights);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const nurbs::CurveJet jet = nurbs::evaluate_jet(curve, nodes[i]);
-      trace.steps.push_back({jet.position.head<2>(), weights[i] * jet.d1.head<2>()});
+    for (const Node& node : nodes_of(*parts)) {
+      const nurbs::CurveJet jet = nurbs::evaluate_jet(flat, node.t);
+      trace.steps.push_back({jet.position.head<2>(), node.weight * jet.d1.head<2>()});
     }
-    trace.first = nurbs::evaluate(curve, curve.first_parameter()).head<2>();
-    trace.last = nurbs::evaluate(curve, curve.last_parameter()).head<2>();
+    trace.first = place(flat.first_parameter());
+    trace.last = place(flat.last_parameter());
     return trace;
   }
 
-  // From the middle to both ends: at an end it may meet a pole, which has every parameter.
+  // By its feet on the surface, each near the one before, from the middle to both ends: at an end it may meet
+  // a pole, which has every parameter.
   std::optional<Trace> follow(const Curve& curve) {
+    std::map<double, Vec2> feet;
+    const auto place = [&](double t) {
+      const auto after = feet.lower_bound(t);
+      if (after != feet.end() && after->first == t) return after->second;
+      std::optional<Vec2> beside;
+      if (after != feet.end()) beside = after->second;
+      if (after != feet.begin() && (!beside || t - std::prev(after)->first < after->first - t))
+        beside = std::prev(after)->second;
+      const Vec2 foot = foot_of(nurbs::evaluate(curve, t), beside);
+      feet.emplace(t, foot);
+      return foot;
+    };
+    const double first = curve.first_parameter(), last = curve.last_parameter();
+    constexpr int looks = 64;
+    for (int i = 0; i < looks; ++i)
+      for (const int side : {1, -1}) place(std::lerp(first, last, 0.5 + side * 0.5 * i / looks));
     Trace trace;
-    std::vector<double> weights;
-    const std::vector<double> nodes = nodes_of(curve, weights);
-    trace.steps.resize(nodes.size());
-    const std::size_t middle = nodes.size() / 2;
-    std::optional<Vec2> foot;
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      if (k == nodes.size() - middle) foot = trace.steps[middle].at;
-      const std::size_t i = k < nodes.size() - middle ? middle + k : nodes.size() - 1 - k;
-      const nurbs::CurveJet jet = nurbs::evaluate_jet(curve, nodes[i]);
-      foot = foot_of(jet.position, foot);
-      const std::optional<Vec2> along = direction(*foot, jet.d1);
-      if (!along) return std::nullopt;
-      trace.steps[i] = {*foot, weights[i] * *along};
+    trace.first = end_of(nurbs::evaluate(curve, first), feet.begin()->second);
+    trace.last = end_of(nurbs::evaluate(curve, last), std::prev(feet.end())->second);
+    feet.emplace(first, trace.first);
+    feet.emplace(last, trace.last);
+    const std::optional<std::vector<double>> parts = parts_of(curve, place);
+    if (!parts) return std::nullopt;
+    for (const Node& node : nodes_of(*parts)) {
+      const Vec2 foot = place(node.t);
+      const std::optional<Vec2> step = direction(foot, nurbs::evaluate_jet(curve, node.t).d1);
+      if (!step) return std::nullopt;
+      trace.steps.push_back({foot, node.weight * *step});
     }
-    trace.first = end_of(nurbs::evaluate(curve, curve.first_parameter()), trace.steps.front().at);
-    trace.last = end_of(nurbs::evaluate(curve, curve.last_parameter()), trace.steps.back().at);
     return trace;
   }
 
@@ -143,18 +221,9 @@ class FaceTracer {
             jet.dv.norm() < 1e-6 * near.dv.norm() ? beside.y() : at.y()};
   }
 
- public:
-  [[nodiscard]] Vec2 moved_near(Vec2 at, const Vec2& other) const {
-    for (std::size_t d = 0; d < 2; ++d) {
-      const auto k = static_cast<Eigen::Index>(d);
-      if (periods_[d] > 0) at[k] -= periods_[d] * std::round((at[k] - other[k]) / periods_[d]);
-    }
-    return at;
-  }
-
- private:
   const Surface& surface_;
   std::array<double, 2> periods_;
+  const std::array<std::vector<double>, 2>& breaks_;
   std::optional<SurfaceSet> set_;
 };
 
@@ -178,7 +247,7 @@ class Integrator {
 
   std::optional<FaceIntegrals> over(const std::vector<Loop>& loops) {
     std::vector<Round> rounds;
-    FaceTracer tracer(surface_, periods_);
+    FaceTracer tracer(surface_, periods_, breaks_);
     for (const Loop& loop : loops) {
       std::optional<Round> round = round_of(loop, tracer);
       if (!round) return std::nullopt;
@@ -187,7 +256,7 @@ class Integrator {
     std::array<std::size_t, 2> around = {0, 0};
     for (const Round& round : rounds)
       for (std::size_t d = 0; d < 2; ++d) around[d] += round.turns[d] != 0 ? 1 : 0;
-    if (rounds.empty() || (around[0] > 0 && around[1] > 0)) return std::nullopt;
+    if (rounds.empty() || (around[0] > 0 && around[1] > 0) || !is_near(rounds)) return std::nullopt;
     // Lines across what goes round; else those that cross fewer spans.
     across_ = around[0] > 0 ? 1 : around[1] > 0 ? 0 : (breaks_[0].size() <= breaks_[1].size() ? 0 : 1);
     base_ = rounds.front().steps.front().at[static_cast<Eigen::Index>(across_)];
@@ -198,6 +267,19 @@ class Integrator {
   }
 
  private:
+  // Beyond some turns it is no boundary that anybody meant.
+  [[nodiscard]] bool is_near(const std::vector<Round>& rounds) const {
+    constexpr double most_turns = 4;
+    const Vec2 centre = middle();
+    for (const Round& round : rounds)
+      for (const Step& step : round.steps)
+        for (std::size_t d = 0; d < 2; ++d) {
+          const auto k = static_cast<Eigen::Index>(d);
+          if (periods_[d] > 0 && !(std::abs(step.at[k] - centre[k]) < most_turns * periods_[d])) return false;
+        }
+    return true;
+  }
+
   std::optional<Round> round_of(const Loop& loop, FaceTracer& tracer) {
     Round round;
     std::optional<Vec2> first, last;
@@ -205,10 +287,10 @@ class Integrator {
       if (edge.flat.points.empty() && edge.curve.points.empty()) continue;  // a pole
       std::optional<Trace> trace = tracer.trace(edge);
       if (!trace) return std::nullopt;
-      const Vec2 shift = last ? Vec2(tracer.moved_near(trace->first, *last) - trace->first) : Vec2::Zero();
+      const Vec2 shift = tracer.moved_near(trace->first, last.value_or(middle())) - trace->first;
       for (Step& step : trace->steps) step.at += shift;
-      if (last) add_straight(round, *last, trace->first + shift);
-      if (!first) first = trace->first;
+      if (last && !add_straight(round, tracer, *last, trace->first + shift)) return std::nullopt;
+      if (!first) first = trace->first + shift;
       last = trace->last + shift;
       round.steps.insert(round.steps.end(), trace->steps.begin(), trace->steps.end());
     }
@@ -220,16 +302,19 @@ class Integrator {
         round.turns[d] = static_cast<int>(std::lround((end[k] - (*first)[k]) / periods_[d]));
         if (std::abs(round.turns[d]) > 1) return std::nullopt;
       }
-    add_straight(round, *last, end);
+    if (!add_straight(round, tracer, *last, end)) return std::nullopt;
     return round;
   }
 
-  static void add_straight(Round& round, const Vec2& from, const Vec2& to) {
-    if (from == to) return;
-    const nurbs::GaussRule& rule = nurbs::gauss_rule(order);
-    for (std::size_t i = 0; i < rule.nodes.size(); ++i)
-      round.steps.push_back(
-          {from + 0.5 * (1 + rule.nodes[i]) * (to - from), 0.5 * rule.weights[i] * (to - from)});
+  [[nodiscard]] Vec2 middle() const {
+    return {0.5 * (surface_.first_u() + surface_.last_u()), 0.5 * (surface_.first_v() + surface_.last_v())};
+  }
+
+  static bool add_straight(Round& round, FaceTracer& tracer, const Vec2& from, const Vec2& to) {
+    if (from == to) return true;
+    const std::optional<Trace> trace = tracer.straight(from, to);
+    if (trace) round.steps.insert(round.steps.end(), trace->steps.begin(), trace->steps.end());
+    return trace.has_value();
   }
 
   // `around`: how many of them go round. The largest one, or the two that go round, hold the others.
@@ -278,12 +363,9 @@ class Integrator {
     };
     for (int turn = turn_of(from); turn <= turn_of(to); ++turn)
       for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-        double a = breaks[k] + turn * period, b = breaks[k + 1] + turn * period;
         // Beyond an open range the surface ends.
-        if (!wraps && k == 0) a = std::min(a, from);
-        if (!wraps && k + 2 == breaks.size()) b = std::max(b, to);
-        a = std::max(a, from);
-        b = std::min(b, to);
+        const double a = std::max(breaks[k] + turn * period, from),
+                     b = std::min(breaks[k + 1] + turn * period, to);
         if (a < b) add_span(sum, at, a, b);
       }
     return sum;

@@ -16,6 +16,7 @@ namespace {
 using nurbs::Surface;
 
 constexpr int points_a_span = 16;
+constexpr double most_turns = 4;
 
 std::vector<Vec3> polygon_of(const nurbs::Curve& flat) {
   const std::vector<double> spans = nurbs::breakpoints(flat.knots, flat.degree);
@@ -27,6 +28,21 @@ std::vector<Vec3> polygon_of(const nurbs::Curve& flat) {
           nurbs::evaluate(flat, std::lerp(spans[i], spans[i + 1], static_cast<double>(k) / each)));
   points.push_back(nurbs::evaluate(flat, spans.back()));
   return points;
+}
+
+// In the turn round the surface in which `before` is, where that is given.
+void bring_near(std::vector<Vec3>& points, const Vec3* before, const std::array<double, 2>& periods) {
+  for (Eigen::Index d = 0; before != nullptr && d < 2; ++d)
+    if (const double period = periods[static_cast<std::size_t>(d)]; period > 0) {
+      const double shift = period * std::round((points.front()[d] - (*before)[d]) / period);
+      for (Vec3& p : points) p[d] -= shift;
+    }
+}
+
+// By whole turns, so that they begin in the range of the surface.
+void bring_in(std::vector<Vec3>& points, const Range& range, const std::array<double, 2>& periods) {
+  const Vec3 first(range.u0 + 0.5 * periods[0], range.v0 + 0.5 * periods[1], 0);
+  bring_near(points, &first, periods);
 }
 
 // Every parameter in this direction is the same place: at a pole.
@@ -79,14 +95,19 @@ Region::Region(const Face& face) {
     std::vector<Vec3> points;
     for (const Edge& edge : loop.edges) {
       if (edge.flat.points.empty() && edge.curve.points.empty()) continue;  // a pole
-      if (edge.flat.points.empty() && !surface) surface.emplace(std::vector<const Surface*>{&face.surface});
-      const std::vector<Vec3> piece = edge.flat.points.empty()
-                                          ? feet_of(edge.curve, face.surface, *surface,
-                                                    points.empty() ? nullptr : &points.back(), periods_)
-                                          : polygon_of(edge.flat);
+      const Vec3* const last = points.empty() ? nullptr : &points.back();
+      std::vector<Vec3> piece;
+      if (flat_holds(face.surface, edge)) {
+        piece = polygon_of(edge.flat);
+        bring_near(piece, last, periods_);
+      } else {
+        if (!surface) surface.emplace(std::vector<const Surface*>{&face.surface});
+        piece = feet_of(edge.curve, face.surface, *surface, last, periods_);
+      }
       points.insert(points.end(), piece.begin(), piece.end());
     }
     if (points.size() < 2) return;
+    bring_in(points, whole, periods_);
     for (std::size_t k = 0; k < points.size(); ++k) {
       const Vec3 &a = points[k], &b = points[(k + 1) % points.size()];
       const Vec3 step = b - a;
@@ -109,6 +130,11 @@ Region::Region(const Face& face) {
   Box3 box;
   for (const Segment& s : segments_)
     for (const std::array<double, 2>& end : {s.from, s.to}) box.extend(Vec3(end[0], end[1], 0));
+  for (std::size_t d = 0; d < 2; ++d) {  // beyond some turns it is no boundary that anybody meant
+    const auto k = static_cast<Eigen::Index>(d);
+    if (periods_[d] > 0 && !(box.max()[k] - box.min()[k] < most_turns * periods_[d])) is_known_ = false;
+  }
+  if (!is_known_) return;
   extent_ = {{{box.min().x(), box.max().x()}, {box.min().y(), box.max().y()}}};
   const auto narrow = [](double& low, double& high, double least, double most, double period) {
     // What is given in another turn round the surface has no range here.

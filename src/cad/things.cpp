@@ -61,14 +61,14 @@ class Outlines {
   // All along one of them?
   [[nodiscard]] bool contain(const nurbs::Curve& curve) const {
     if (curves_.empty() || curve.points.empty()) return false;
-    const Vec3 middle = at_share(curve, 0.5), around = Vec3::Constant(near_);
+    const std::vector<Vec3> points = SampledCurve(curve).points;
+    const Vec3 &middle = points[points.size() / 2], around = Vec3::Constant(near_);
     bool is_there = false;
     tree_.meeting(Box3(middle - around, middle + around), [&](std::uint32_t i) {
       if (is_there) return;
       const SampledCurve sampled(curves_[i]);
-      is_there = std::ranges::all_of(std::array{0.5, 0.0, 0.25, 0.75, 1.0}, [&](double share) {
-        return sampled.nearest(at_share(curve, share), near_).distance <= near_;
-      });
+      is_there = std::ranges::all_of(
+          points, [&](const Vec3& p) { return sampled.nearest(p, near_).distance <= near_; });
     });
     return is_there;
   }

@@ -7,7 +7,9 @@
 namespace selvage {
 
 TextQueue::TextQueue(OutputFile& output, int threads)
-    : output_(output), threads_(static_cast<std::size_t>(std::max(threads, 1))) {}
+    : output_(output), threads_(static_cast<std::size_t>(std::max(threads, 1))) {
+  spare_.reserve(2 * threads_);
+}
 
 TextQueue::~TextQueue() {
   {
@@ -68,15 +70,14 @@ void TextQueue::write_first(Lock& lock) {
   std::string text = std::move(pieces_.front().text);
   pieces_.pop_front();
   is_writing_ = true;
-  if (status_.ok() && !failure_) {
-    lock.unlock();
+  guarded(lock, [&] {
     Status status = output_.write(text);
-    lock.lock();
-    status_ = std::move(status);
-  }
+    if (status.ok()) return true;
+    status_ = std::move(status);  // read when nobody writes any more
+    return false;
+  });
   is_writing_ = false;
-  text.clear();
-  spare_.push_back(std::move(text));
+  recycle(std::move(text));
   changed_.notify_all();
 }
 
@@ -87,19 +88,38 @@ void TextQueue::make(Piece& piece, Lock& lock) {
     spare_.pop_back();
   }
   piece.state = State::being_made;
-  const Make make = std::move(piece.make);
+  guarded(lock, [&] {
+    piece.make(text);
+    return true;
+  });
+  piece.make = {};
+  piece.text = std::move(text);
+  piece.state = State::made;
+  changed_.notify_all();
+}
+
+// Runs without the lock, unless all is dropped; what it throws is kept.
+template <class Run>
+void TextQueue::guarded(Lock& lock, const Run& run) {
+  if (failure_ || has_failed_) return;
   lock.unlock();
   std::exception_ptr failure;
+  bool fails = false;
   try {
-    make(text);
+    fails = !run();
   } catch (...) {
     failure = std::current_exception();
   }
   lock.lock();
   if (!failure_) failure_ = failure;
-  piece.text = std::move(text);
-  piece.state = State::made;
-  changed_.notify_all();
+  has_failed_ = has_failed_ || fails;
+}
+
+// As many as may be in the hands of threads at once; the others' memory is given back.
+void TextQueue::recycle(std::string text) {
+  if (spare_.size() >= 2 * threads_) return;
+  text.clear();
+  spare_.push_back(std::move(text));
 }
 
 }  // namespace selvage

@@ -16,7 +16,7 @@ namespace selvage {
 
 // Pieces of text are written in the order in which they were added, while later ones are made. Who adds goes
 // on meanwhile, and helps where more than a few wait; helpers are started when the first piece is to be made.
-// All members are called by one thread.
+// Members are never called by two threads at a time.
 class TextQueue {
  public:
   // Adds a piece to an empty text; called by any thread, once.
@@ -30,8 +30,8 @@ class TextQueue {
 
   void add(std::string text);
   void add(Make make);
-  // Waits until all is written. The first failure of the file (io), after which all was dropped; what a
-  // make() has thrown is thrown again.
+  // Waits until all is written. The first failure of the file (io), or what a make() has thrown, which is
+  // thrown again: after it nothing more is made or written.
   Status finish();
 
  private:
@@ -48,6 +48,9 @@ class TextQueue {
   bool work(Lock& lock);
   void write_first(Lock& lock);
   void make(Piece& piece, Lock& lock);
+  template <class Run>
+  void guarded(Lock& lock, const Run& run);
+  void recycle(std::string text);
   void help();
 
   OutputFile& output_;
@@ -56,10 +59,10 @@ class TextQueue {
   std::mutex guard_;
   std::condition_variable changed_;
   std::deque<Piece> pieces_;
-  std::vector<std::string> spare_;  // whose memory is used again
-  bool is_writing_ = false, is_over_ = false;
+  std::vector<std::string> spare_;  // a few, whose memory is used again
+  bool is_writing_ = false, is_over_ = false, has_failed_ = false;
   std::exception_ptr failure_;
-  Status status_;
+  Status status_;  // the file's, once it has failed
 };
 
 }  // namespace selvage

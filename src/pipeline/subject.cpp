@@ -1,6 +1,7 @@
 #include "pipeline/subject.h"
 
 #include "cad/from_body.h"
+#include "cad/seam.h"
 #include "pipeline/scaling.h"
 
 namespace selvage::pipeline {
@@ -54,7 +55,9 @@ std::optional<cad::Subject> subject_of(Job& job, const fabric::Fabric& fabric, c
       subject.model.parts.push_back(part_of(*shape));
     }
   if (job.has_failed()) return std::nullopt;
-  subject.model.parts.insert(subject.model.parts.end(), fabric.parts.begin(), fabric.parts.end());
+  for (const cad::Part& part : fabric.parts)
+    for (cad::Face& face : subject.model.parts.emplace_back(part).faces)
+      face = cad::with_seam_in_gap(std::move(face));
   subject.model.curves.insert(subject.model.curves.end(), fabric.curves.begin(), fabric.curves.end());
   return subject;
 }

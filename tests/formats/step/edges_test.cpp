@@ -3,15 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <GProp_GProps.hxx>
 #include <Geom2d_Line.hxx>
 #include <GeomAPI_PointsToBSpline.hxx>
+#include <GeomConvert.hxx>
 #include <Geom_BSplineCurve.hxx>
+#include <Geom_BSplineSurface.hxx>
 #include <Geom_CylindricalSurface.hxx>
 #include <Geom_Line.hxx>
+#include <Geom_RectangularTrimmedSurface.hxx>
 #include <Interface_Static.hxx>
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Reader.hxx>
@@ -28,6 +32,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "cad/measure.h"
 #include "cad/region.h"
 #include "formats/registry.h"
 #include "nurbs/basis.h"
@@ -180,6 +185,24 @@ TEST(StepEdges, CurvesInParametersThatAreOff) {
       ++seen;
     }
   EXPECT_GT(seen, 100U);
+}
+
+// A rational surface without its name is read (a rational curve without one is refused: inspect_test.cpp).
+TEST(StepEdges, ASurfaceWithoutItsName) {
+  const Handle(Geom_Surface) quarter =
+      new Geom_RectangularTrimmedSurface(new Geom_CylindricalSurface(gp_Ax3(), 1), 0.0, pi / 2, 0.0, 2.0);
+  std::string text =
+      occt_text(BRepBuilderAPI_MakeFace(GeomConvert::SurfaceToBSplineSurface(quarter), 1e-7).Face(), false);
+  const std::size_t surface = text.find("RATIONAL_B_SPLINE_SURFACE"), name = text.find("ITEM('')", surface);
+  ASSERT_NE(name, std::string::npos);
+  text.erase(name + 5, 2);
+  std::vector<std::string> said;
+  const std::optional<cad::Model> model = read(text, &said);
+  ASSERT_TRUE(model && model->face_count() == 1);
+  EXPECT_NEAR(cad::measures_of(model->parts[0]).area.value_or(0), pi, 1e-9);
+  EXPECT_EQ(std::ranges::count_if(
+                said, [](const std::string& words) { return words.ends_with("not even an empty one"); }),
+            1);
 }
 
 TEST(StepEdges, LinesWithoutEndsAreToldAndLeftOut) {

@@ -236,6 +236,9 @@ TEST(StepReader, WhatIsUnambiguousIsReadThrough) {
   } faults[] = {
       {with(whole, "'AP242", "'ccd_cla_cvp_ast AP242"), "of the schema 'ccd_cla_cvp_ast AP242"},
       {with(whole, point, point + point), "#36 is defined a second time, first in line "},
+      {with(whole, "FILE_DESCRIPTION((''),",
+            "FILE_DESCRIPTION(('l'\xC3\xA9toile, l'\\X2\\00E9\\X0\\toile'),"),
+       "an apostrophe inside this string is not doubled"},
       {with(whole, "BREP('yarn ''a b'''", "BREP('yarn 'a b'''"),
        "an apostrophe inside this string is not doubled"},
   };
@@ -269,6 +272,8 @@ TEST(StepReader, BadFilesAreErrorsWithTheirLine) {
   expect_error(with(whole, "ADVANCED_FACE('',(", "ADVANCED_FACE('',(#99999,"),
                "refers to #99999, which is not");
   expect_error(with(whole, "(0.,", "(1E999,"), "larger than any number");
+  expect_error(with(whole, "PRODUCT('yarn',", "PRODUCT('yarn'x,"),
+               "an apostrophe inside it is written twice");
   expect_error(with(whole, "(0.,", "(0.,,"), "where a value should stand");
   expect_error(with(whole, "(0.,", "(@,"), "no part of a STEP file");
   expect_error(with(whole, "DATA;", "DATA; /* no end"), "this comment has no end");

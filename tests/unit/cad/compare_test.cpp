@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <numbers>
 
+#include "nurbs/basis.h"
 #include "shapes.h"
 #include "unit/cad/surfaces.h"
 
@@ -127,6 +128,23 @@ TEST(Compare, OutlinesThatAreDrawnASecondTime) {
   for (Vec3& p : again.curve.points) p += Vec3(1e-9, -1e-9, 0);
   after.model.curves = {again};
   EXPECT_TRUE(compared(before, after).differences.empty());
+  // A zigzag about a side, which it meets at places in between.
+  Subject zigzag = before;
+  zigzag.model.parts.push_back(part_of("sheet", {sheet()}));
+  Subject straight = zigzag;
+  NamedCurve& zig = zigzag.model.curves.emplace_back();
+  const nurbs::Curve side = nurbs::boundary_row(zigzag.model.parts.back().faces[0].surface, false);
+  zig.curve.degree = 1;
+  for (int k = 0; k <= 8; ++k) {
+    zig.curve.points.push_back(
+        nurbs::evaluate(side, std::lerp(side.first_parameter(), side.last_parameter(), k / 8.0)) +
+        Vec3(0, k % 2 == 0 ? 0 : 0.3, 0));
+    zig.curve.knots.push_back(k);
+  }
+  zig.curve.knots.insert(zig.curve.knots.begin(), 0);
+  zig.curve.knots.push_back(8);
+  ASSERT_EQ(compared(straight, zigzag).differences.size(), 1U);
+  EXPECT_EQ(compared(straight, zigzag).differences[0].kind, Kind::added);
   for (Vec3& p : after.model.curves[0].curve.points) p += Vec3(1e-4, 0, 0);
   ASSERT_EQ(compared(before, after).differences.size(), 1U);
   EXPECT_EQ(compared(before, after).differences[0].kind, Kind::added);

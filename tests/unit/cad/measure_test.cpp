@@ -5,7 +5,10 @@
 
 #include <numbers>
 
+#include "cad/seam.h"
 #include "nurbs/basis.h"
+#include "nurbs/measure.h"
+#include "nurbs/restrict.h"
 #include "unit/cad/surfaces.h"
 
 namespace selvage::cad {
@@ -89,6 +92,43 @@ TEST(Measure, OfASleeveWithAWindow) {
       ASSERT_TRUE(found.has_value());
       EXPECT_NEAR(found->area, 2 * pi * r * 1.8 - 0.5 * pi * r * 0.6, 1e-9) << turned << ' ' << away;
     }
+}
+
+// Boundaries that cross the knots of their surface where they like: a rectangle of the parameters is the
+// surface cut there.
+TEST(Measure, OfARectangleOfManySpans) {
+  for (const Surface& s :
+       {sheet(), refined_v(sheet(), {0.21, 0.22, 0.5, 0.77}), swapped(sheet()), wavy_tube(), cylinder(2, 3)})
+    for (const double from : {0.0, 0.13, 0.31}) {
+      const double u0 = std::lerp(s.first_u(), s.last_u(), from),
+                   u1 = std::lerp(s.first_u(), s.last_u(), from + 0.57),
+                   v0 = std::lerp(s.first_v(), s.last_v(), 0.11),
+                   v1 = std::lerp(s.first_v(), s.last_v(), 0.93);
+      const nurbs::Moments cut = nurbs::moments(nurbs::restricted(s, u0, u1, v0, v1), Vec3(1, 2, 3));
+      for (const double turn : {0.0, 1.0, -1.0}) {
+        const double shift = closes(s, true) ? turn * (s.last_u() - s.first_u()) : 0;
+        const auto found =
+            integrals_of(face_of(s, {rectangle(u0 + shift, u1 + shift, v0, v1, turn < 0)}), Vec3(1, 2, 3));
+        ASSERT_TRUE(found.has_value());
+        EXPECT_NEAR(found->area, cut.area, 1e-8 * cut.area);
+        EXPECT_NEAR(found->volume, cut.volume, 1e-8 * cut.area);
+        EXPECT_LE((found->area_vector - cut.area_vector).norm(), 1e-8 * cut.area);
+      }
+    }
+}
+
+// Turns without end, and parameters beyond an open range.
+TEST(Measure, OfBoundariesThatNobodyMeant) {
+  const Surface round = cylinder(2, 3);
+  const double turn = round.last_u() - round.first_u();
+  for (const double wide : {6.0, 1e4, 1e9, 1e20})
+    EXPECT_FALSE(integrals_of(face_of(round, {rectangle(0, wide * turn, 0.5, 1)}), Vec3::Zero()).has_value())
+        << wide;
+  const Surface open = sheet();
+  const auto over = integrals_of(face_of(open, {rectangle(0.2, 0.6, -0.5, 0.5)}), Vec3::Zero()),
+             within = integrals_of(face_of(open, {rectangle(0.2, 0.6, 0, 0.5)}), Vec3::Zero());
+  ASSERT_TRUE(over && within);
+  EXPECT_NEAR(over->area, within->area, 1e-6 * within->area);
 }
 
 // The sixth of a cone between two of its lines, which meet in its point.

@@ -59,6 +59,21 @@ TEST(Region, HolesAndOuterLoopsMayBeATurnApart) {
     }
 }
 
+// Far away in the parameters, or round and round: what is there is found, or it is not known; never is it
+// looked for without end.
+TEST(Region, BoundariesFarAway) {
+  const Surface s = cylinder(2, 3);
+  const double first = s.first_u(), turn = s.last_u() - first;
+  const double far = 1000 * turn;
+  const Region region(face_of(s, {rectangle(first + far + 0.2 * turn, first + far + 0.4 * turn, 1, 2)}));
+  ASSERT_TRUE(region.is_known());
+  EXPECT_TRUE(region.contains(first + 0.3 * turn, 1.5));
+  EXPECT_FALSE(region.contains(first + 0.5 * turn, 1.5));
+  for (const double wide : {10.0, 1e9, 1e20})
+    EXPECT_FALSE(Region(face_of(s, {rectangle(first, first + (wide + 0.5) * turn, 1, 2)})).is_known())
+        << wide;
+}
+
 // A cone about z, its point at the bottom, and of it the sixth between two of its lines, which file has as
 // curves in space only. At the point they have every parameter.
 TEST(Region, EdgesThatMeetInAPole) {
