@@ -145,7 +145,7 @@ class FaceTracer {
       if (after != feet.end()) beside = after->second;
       if (after != feet.begin() && (!beside || t - std::prev(after)->first < after->first - t))
         beside = std::prev(after)->second;
-      const Vec2 foot = foot_of(nurbs::evaluate(curve, t), beside);
+      Vec2 foot = foot_of(nurbs::evaluate(curve, t), beside);
       feet.emplace(t, foot);
       return foot;
     };
