@@ -49,14 +49,6 @@ class FaceTracer {
     return along({1, {0, 0, 1, 1}, {Vec3(from.x(), from.y(), 0), Vec3(to.x(), to.y(), 0)}, {}});
   }
 
-  [[nodiscard]] Vec2 moved_near(Vec2 at, const Vec2& other) const {
-    for (std::size_t d = 0; d < 2; ++d) {
-      const auto k = static_cast<Eigen::Index>(d);
-      if (periods_[d] > 0) at[k] -= periods_[d] * std::round((at[k] - other[k]) / periods_[d]);
-    }
-    return at;
-  }
-
  private:
   static constexpr std::size_t most_parts = 20'000;  // of an edge
 
@@ -200,8 +192,8 @@ class FaceTracer {
     }
     if (!set_) set_.emplace(std::vector<const Surface*>{&surface_});
     const SurfaceSet::Foot foot = set_->near(p);
-    Vec2 at(foot.u, foot.v);
-    return before ? moved_near(at, *before) : at;
+    const Vec2 at(foot.u, foot.v);
+    return before ? Vec2(at + turns_towards(at, *before, periods_)) : at;
   }
 
   [[nodiscard]] double extent() const {
@@ -236,11 +228,8 @@ struct Round {
 
 class Integrator {
  public:
-  Integrator(const Face& face, const Vec3& origin) : surface_(face.surface), origin_(origin) {
-    for (const bool in_u : {true, false})
-      if (closes(surface_, in_u))
-        periods_[in_u ? 0 : 1] =
-            in_u ? surface_.last_u() - surface_.first_u() : surface_.last_v() - surface_.first_v();
+  Integrator(const Face& face, const Vec3& origin)
+      : surface_(face.surface), origin_(origin), periods_(periods_of(surface_)) {
     breaks_ = {nurbs::breakpoints(surface_.knots_u, surface_.degree_u),
                nurbs::breakpoints(surface_.knots_v, surface_.degree_v)};
   }
@@ -267,9 +256,7 @@ class Integrator {
   }
 
  private:
-  // Beyond some turns it is no boundary that anybody meant.
   [[nodiscard]] bool is_near(const std::vector<Round>& rounds) const {
-    constexpr double most_turns = 4;
     const Vec2 centre = middle();
     for (const Round& round : rounds)
       for (const Step& step : round.steps)
@@ -287,7 +274,7 @@ class Integrator {
       if (edge.flat.points.empty() && edge.curve.points.empty()) continue;  // a pole
       std::optional<Trace> trace = tracer.trace(edge);
       if (!trace) return std::nullopt;
-      const Vec2 shift = tracer.moved_near(trace->first, last.value_or(middle())) - trace->first;
+      const Vec2 shift = turns_towards(trace->first, last.value_or(middle()), periods_);
       for (Step& step : trace->steps) step.at += shift;
       if (last && !add_straight(round, tracer, *last, trace->first + shift)) return std::nullopt;
       if (!first) first = trace->first + shift;
@@ -295,7 +282,7 @@ class Integrator {
       round.steps.insert(round.steps.end(), trace->steps.begin(), trace->steps.end());
     }
     if (!first) return round;
-    const Vec2 end = tracer.moved_near(*first, *last);
+    const Vec2 end = *first + turns_towards(*first, *last, periods_);
     for (std::size_t d = 0; d < 2; ++d)
       if (periods_[d] > 0) {
         const auto k = static_cast<Eigen::Index>(d);
@@ -394,7 +381,7 @@ class Integrator {
 
   const Surface& surface_;
   Vec3 origin_;
-  std::array<double, 2> periods_ = {0, 0};  // 0: not closed
+  std::array<double, 2> periods_;
   std::array<std::vector<double>, 2> breaks_;
   std::size_t across_ = 0;  // the parameter that changes along the lines: 0 is u
   double base_ = 0;         // where they begin

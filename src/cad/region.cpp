@@ -16,7 +16,6 @@ namespace {
 using nurbs::Surface;
 
 constexpr int points_a_span = 16;
-constexpr double most_turns = 4;
 
 std::vector<Vec3> polygon_of(const nurbs::Curve& flat) {
   const std::vector<double> spans = nurbs::breakpoints(flat.knots, flat.degree);
@@ -30,19 +29,10 @@ std::vector<Vec3> polygon_of(const nurbs::Curve& flat) {
   return points;
 }
 
-// In the turn round the surface in which `before` is, where that is given.
-void bring_near(std::vector<Vec3>& points, const Vec3* before, const std::array<double, 2>& periods) {
-  for (Eigen::Index d = 0; before != nullptr && d < 2; ++d)
-    if (const double period = periods[static_cast<std::size_t>(d)]; period > 0) {
-      const double shift = period * std::round((points.front()[d] - (*before)[d]) / period);
-      for (Vec3& p : points) p[d] -= shift;
-    }
-}
-
-// By whole turns, so that they begin in the range of the surface.
-void bring_in(std::vector<Vec3>& points, const Range& range, const std::array<double, 2>& periods) {
-  const Vec3 first(range.u0 + 0.5 * periods[0], range.v0 + 0.5 * periods[1], 0);
-  bring_near(points, &first, periods);
+// In the turn round the surface in which `other` is.
+void bring_near(std::vector<Vec3>& points, const Vec2& other, const std::array<double, 2>& periods) {
+  const Vec2 turns = turns_towards(points.front().head<2>(), other, periods);
+  for (Vec3& p : points) p.head<2>() += turns;
 }
 
 // Every parameter in this direction is the same place: at a pole.
@@ -69,12 +59,11 @@ std::vector<Vec3> feet_of(const nurbs::Curve& curve, const Surface& s, const Sur
     const auto known = static_cast<std::size_t>(std::ranges::find(is_open, false) - is_open.begin());
     for (std::size_t i = 0; known < points.size() && i < points.size(); ++i)
       if (is_open[i]) points[i][d] = i < known ? points[known][d] : points[i - 1][d];
-    const double period = periods[static_cast<std::size_t>(d)];
-    const Vec3* last = before;
-    for (Vec3& place : points) {
-      if (last != nullptr && period > 0) place[d] -= period * std::round((place[d] - (*last)[d]) / period);
-      last = &place;
-    }
+  }
+  const Vec3* last = before;
+  for (Vec3& place : points) {
+    if (last != nullptr) place.head<2>() += turns_towards(place.head<2>(), last->head<2>(), periods);
+    last = &place;
   }
   return points;
 }
@@ -84,11 +73,9 @@ std::vector<Vec3> feet_of(const nurbs::Curve& curve, const Surface& s, const Sur
 Region::Region(const Face& face) {
   const Range whole = range_ = domain(face.surface);
   if (face.loops.empty()) return;
-  const std::array<double, 2> widths = {whole.u1 - whole.u0, whole.v1 - whole.v0};
-  for (std::size_t d = 0; d < 2; ++d) {
-    if (closes(face.surface, d == 0)) periods_[d] = widths[d];
-    near_[d] = 1e-9 * widths[d];
-  }
+  periods_ = periods_of(face.surface);
+  near_ = {1e-9 * (whole.u1 - whole.u0), 1e-9 * (whole.v1 - whole.v0)};
+  const Vec2 middle(0.5 * (whole.u0 + whole.u1), 0.5 * (whole.v0 + whole.v1));
   std::optional<SurfaceSet> surface;
   std::array<int, 2> rounds = {0, 0};  // loops that go round the surface
   for (const Loop& loop : face.loops) {
@@ -99,7 +86,7 @@ Region::Region(const Face& face) {
       std::vector<Vec3> piece;
       if (flat_holds(face.surface, edge)) {
         piece = polygon_of(edge.flat);
-        bring_near(piece, last, periods_);
+        if (last != nullptr) bring_near(piece, last->head<2>(), periods_);
       } else {
         if (!surface) surface.emplace(std::vector<const Surface*>{&face.surface});
         piece = feet_of(edge.curve, face.surface, *surface, last, periods_);
@@ -107,7 +94,7 @@ Region::Region(const Face& face) {
       points.insert(points.end(), piece.begin(), piece.end());
     }
     if (points.size() < 2) return;
-    bring_in(points, whole, periods_);
+    bring_near(points, middle, periods_);
     for (std::size_t k = 0; k < points.size(); ++k) {
       const Vec3 &a = points[k], &b = points[(k + 1) % points.size()];
       const Vec3 step = b - a;
@@ -130,7 +117,7 @@ Region::Region(const Face& face) {
   Box3 box;
   for (const Segment& s : segments_)
     for (const std::array<double, 2>& end : {s.from, s.to}) box.extend(Vec3(end[0], end[1], 0));
-  for (std::size_t d = 0; d < 2; ++d) {  // beyond some turns it is no boundary that anybody meant
+  for (std::size_t d = 0; d < 2; ++d) {
     const auto k = static_cast<Eigen::Index>(d);
     if (periods_[d] > 0 && !(box.max()[k] - box.min()[k] < most_turns * periods_[d])) is_known_ = false;
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "cad/edges.h"
 #include "cad/sampled_curve.h"
@@ -15,7 +14,9 @@ namespace {
 
 using nurbs::Surface;
 
-constexpr double no_width = 1e-9;  // as a share of the range
+// As a share of the range. No span may be as short, and a boundary that leaves the range by less stays where
+// it is.
+constexpr double no_width = 1e-6;
 
 // One behind the other along u: the last column of `a` is the first one of `b`.
 Surface joined(Surface a, const Surface& b) {
@@ -44,7 +45,7 @@ Surface opened_at(const Surface& s, double start) {
   const double turns = std::floor((start - first) / period + no_width);
   double at = start - turns * period;
   for (const double knot : s.knots_u)
-    if (std::abs(at - knot) <= no_width * period) at = knot;  // no span may be as short as that
+    if (std::abs(at - knot) <= no_width * period) at = knot;
   Surface opened = at <= first + no_width * period
                        ? s
                        : joined(nurbs::restricted(s, at, last, s.first_v(), s.last_v()),
@@ -63,6 +64,20 @@ bool closes(const Surface& surface, bool in_u) {
     if ((a - b).norm() > 1e-9 * size) return false;
   }
   return true;
+}
+
+std::array<double, 2> periods_of(const Surface& surface) {
+  return {closes(surface, true) ? surface.last_u() - surface.first_u() : 0,
+          closes(surface, false) ? surface.last_v() - surface.first_v() : 0};
+}
+
+Vec2 turns_towards(const Vec2& place, const Vec2& other, const std::array<double, 2>& periods) {
+  Vec2 turns = Vec2::Zero();
+  for (std::size_t d = 0; d < 2; ++d) {
+    const auto k = static_cast<Eigen::Index>(d);
+    if (periods[d] > 0) turns[k] = periods[d] * std::round((other[k] - place[k]) / periods[d]);
+  }
+  return turns;
 }
 
 Face with_seam_in_gap(Face face) {

@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "cad/measure.h"
+#include "core/parallel.h"
 #include "core/readable.h"
 #include "core/words.h"
 #include "nurbs/measure.h"
@@ -85,19 +86,20 @@ std::ptrdiff_t trimmed_in(const cad::Part& part) {
 }
 
 // Parts that are neither yarns nor garment pieces, in mm.
-Json parts_json(const fabric::Fabric& fabric, const std::map<int, std::string>& levels) {
+Json parts_json(const fabric::Fabric& fabric, const std::vector<cad::PartMeasures>& measures,
+                const std::map<int, std::string>& levels) {
   const double mm = millimetres_per(fabric.units);
   const auto vector = [&](const Vec3& p) { return Json{p.x() * mm, p.y() * mm, p.z() * mm}; };
   Json all = Json::array();
-  for (const cad::Part& part : fabric.parts) {
+  for (std::size_t i = 0; i < fabric.parts.size(); ++i) {
+    const cad::Part& part = fabric.parts[i];
     Json made = {{"kind", part_kinds[static_cast<std::size_t>(part.kind)]},
                  {"faces", part.faces.size()},
                  {"trimmed", trimmed_in(part)}};
     if (!part.name.empty()) made["name"] = part.name;
     if (!part.group.empty()) made["group"] = part.group;
-    const cad::PartMeasures measures = cad::measures_of(part);
-    if (measures.area) made["area"] = *measures.area * mm * mm;
-    if (measures.volume) made["volume"] = *measures.volume * mm * mm * mm;
+    if (measures[i].area) made["area"] = *measures[i].area * mm * mm;
+    if (measures[i].volume) made["volume"] = *measures[i].volume * mm * mm * mm;
     if (const Box3 box = cad::box_of(part); !box.isEmpty())
       made["box"] = {vector(box.min()), vector(box.max())};
     if (part.color)
@@ -114,19 +116,20 @@ Json parts_json(const fabric::Fabric& fabric, const std::map<int, std::string>& 
 }
 
 // What is neither a yarn nor a garment piece.
-std::string other_tables(const Job& job, const fabric::Fabric& fabric) {
+std::string other_tables(const Job& job, const fabric::Fabric& fabric,
+                         const std::vector<cad::PartMeasures>& measures) {
   const Shown shown = job.shown();
   std::string text;
   if (!fabric.parts.empty()) {
     Table table({"part", "kind", "faces", "trimmed", "area", "volume", "extent", "entity"});
-    for (const cad::Part& part : std::span(fabric.parts).first(std::min(most_rows, fabric.parts.size()))) {
+    for (std::size_t i = 0; i < std::min(most_rows, fabric.parts.size()); ++i) {
+      const cad::Part& part = fabric.parts[i];
       const Box3 box = cad::box_of(part);
-      const cad::PartMeasures measures = cad::measures_of(part);
       table.add({part.name.empty() ? "-" : part.name,
                  std::string(part_kinds[static_cast<std::size_t>(part.kind)]),
                  std::to_string(part.faces.size()), std::to_string(trimmed_in(part)),
-                 measures.area ? cell(shown.area(*measures.area)) : "-",
-                 measures.volume ? cell(shown.volume(*measures.volume)) : "-",
+                 measures[i].area ? cell(shown.area(*measures[i].area)) : "-",
+                 measures[i].volume ? cell(shown.volume(*measures[i].volume)) : "-",
                  box.isEmpty() ? "-" : cell(shown.length(box.diagonal().norm())), part.origin.entity});
     }
     text += table.text() + rest_of(fabric.parts.size(), "more part");
@@ -250,12 +253,16 @@ void info(Job& job) {
   };
   const std::optional<fabric::Fabric> fabric = job.read(look);
   if (!fabric) return;
-  if (job.wants_report() && !fabric->parts.empty()) job.report["parts"] = parts_json(*fabric, levels);
+  std::vector<cad::PartMeasures> measures(fabric->parts.size());
+  for_each_index(measures.size(), static_cast<int>(job.threads),
+                 [&](std::size_t i) { measures[i] = cad::measures_of(fabric->parts[i]); });
+  if (job.wants_report() && !fabric->parts.empty())
+    job.report["parts"] = parts_json(*fabric, measures, levels);
   const std::string head = heading(job, *fabric) + of_file;
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
   std::string tables;
   if (builder && builder->count() > 0) tables = data_sheets(job, *builder) + yarn_table(job, *builder);
-  if (builder) tables += piece_tables(job, *fabric) + other_tables(job, *fabric);
+  if (builder) tables += piece_tables(job, *fabric) + other_tables(job, *fabric, measures);
   if (!job.options.json) job.print(head + tables);
 }
 

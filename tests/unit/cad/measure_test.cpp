@@ -5,6 +5,8 @@
 
 #include <numbers>
 
+#include "cad/region.h"
+#include "cad/sampled_curve.h"
 #include "cad/seam.h"
 #include "nurbs/basis.h"
 #include "nurbs/measure.h"
@@ -19,21 +21,8 @@ using nurbs::Surface;
 using std::numbers::pi;
 using namespace test;
 
-Curve straight(const Vec3& from, const Vec3& to) {
-  return {1, {0, 0, 1, 1}, {from, to}, {}};
-}
 Edge in_space(const Curve& curve) {
   return {curve, {}, -1};
-}
-Edge in_parameters(const Curve& curve) {
-  return {{}, curve, -1};
-}
-Loop rectangle(double u0, double u1, double v0, double v1, bool turned = false) {
-  std::array<Vec3, 4> at = {Vec3(u0, v0, 0), Vec3(u1, v0, 0), Vec3(u1, v1, 0), Vec3(u0, v1, 0)};
-  if (turned) std::swap(at[1], at[3]);
-  Loop loop;
-  for (std::size_t i = 0; i < 4; ++i) loop.edges.push_back(in_parameters(straight(at[i], at[(i + 1) % 4])));
-  return loop;
 }
 // A circle about z, or an arc of it of less than a half, from one angle to another.
 Curve arc(double radius, double height, double from, double to) {
@@ -41,12 +30,6 @@ Curve arc(double radius, double height, double from, double to) {
   const auto at = [&](double r, double a) { return Vec3(r * std::cos(a), r * std::sin(a), height); };
   return {
       2, {0, 0, 0, 1, 1, 1}, {at(radius, from), at(radius / weight, middle), at(radius, to)}, {1, weight, 1}};
-}
-Face face_of(const Surface& surface, std::vector<Loop> loops) {
-  Face face;
-  face.surface = surface;
-  face.loops = std::move(loops);
-  return face;
 }
 
 // The patch of a cylinder between two angles and heights, its edges in space; and over its seam.
@@ -68,6 +51,30 @@ TEST(Measure, OfAPatchOfACylinder) {
     const Vec3 flat =
         r * (high - low) * Vec3(std::sin(to) - std::sin(from), std::cos(from) - std::cos(to), 0);
     EXPECT_LE((found->area_vector - flat).norm(), 1e-9 * area) << from;
+  }
+}
+
+// An edge that has both: the curve in space holds where the one in the parameters is off it.
+TEST(Measure, OfEdgesWithBothCurves) {
+  const double r = 2, low = 0.4, high = 2.3;
+  const Surface s = cylinder(r, 3);
+  const double first = s.first_u(), quarter = 0.25 * (s.last_u() - first);
+  const auto at = [&](double height) { return std::lerp(s.first_v(), s.last_v(), height / 3); };
+  const auto corner = [&](double a, double z) { return Vec3(r * std::cos(a), r * std::sin(a), z); };
+  for (const double off : {0.0, 1e-8, 1e-4, 0.05}) {
+    Loop loop = rectangle(first, first + quarter, at(low), at(high + off));
+    loop.edges[0].curve = arc(r, low, 0, pi / 2);
+    loop.edges[1].curve = straight(corner(pi / 2, low), corner(pi / 2, high));
+    loop.edges[2].curve = arc(r, high, pi / 2, 0);
+    loop.edges[3].curve = straight(corner(0, high), corner(0, low));
+    EXPECT_EQ(flat_holds(s, loop.edges[2]), off < 1e-6) << off;
+    const Face face = face_of(s, {loop});
+    const std::optional<FaceIntegrals> found = integrals_of(face, Vec3::Zero());
+    ASSERT_TRUE(found.has_value());
+    EXPECT_NEAR(found->area, 0.5 * pi * r * (high - low), off < 1e-6 ? 1e-6 : 1e-9) << off;
+    const Region region(face);
+    EXPECT_TRUE(region.contains(first + 0.5 * quarter, at(high - 1e-3)));
+    EXPECT_FALSE(region.contains(first + 0.5 * quarter, at(high + 0.03)));
   }
 }
 

@@ -16,25 +16,6 @@ using nurbs::Curve;
 using nurbs::Surface;
 using namespace test;
 
-Curve straight(const Vec3& from, const Vec3& to) {
-  return {1, {0, 0, 1, 1}, {from, to}, {}};
-}
-
-// A rectangle in the parameters, from (u0, v0) round to the left.
-Loop rectangle(double u0, double u1, double v0, double v1) {
-  const std::array<Vec3, 4> at = {Vec3(u0, v0, 0), Vec3(u1, v0, 0), Vec3(u1, v1, 0), Vec3(u0, v1, 0)};
-  Loop loop;
-  for (std::size_t i = 0; i < 4; ++i) loop.edges.push_back({{}, straight(at[i], at[(i + 1) % 4]), -1});
-  return loop;
-}
-
-Face face_of(const Surface& surface, std::vector<Loop> loops) {
-  Face face;
-  face.surface = surface;
-  face.loops = std::move(loops);
-  return face;
-}
-
 // Parameters of one turn more or less are the same place: a hole is taken out, in whatever turn it and the
 // loop round it were given.
 TEST(Region, HolesAndOuterLoopsMayBeATurnApart) {

@@ -134,6 +134,25 @@ Surface reseamed(const Surface& surface, double at) {
   }));
 }
 
+Curve straight(const Vec3& from, const Vec3& to) {
+  return {1, {0, 0, 1, 1}, {from, to}, {}};
+}
+
+cad::Loop rectangle(double u0, double u1, double v0, double v1, bool turned) {
+  std::array<Vec3, 4> at = {Vec3(u0, v0, 0), Vec3(u1, v0, 0), Vec3(u1, v1, 0), Vec3(u0, v1, 0)};
+  if (turned) std::swap(at[1], at[3]);
+  cad::Loop loop;
+  for (std::size_t i = 0; i < 4; ++i) loop.edges.push_back({{}, straight(at[i], at[(i + 1) % 4]), -1});
+  return loop;
+}
+
+cad::Face face_of(const Surface& surface, std::vector<cad::Loop> loops) {
+  cad::Face face;
+  face.surface = surface;
+  face.loops = std::move(loops);
+  return face;
+}
+
 cad::Part part_of(const std::string& name, const std::vector<Surface>& surfaces) {
   cad::Part part;
   part.name = name;

@@ -26,6 +26,10 @@ nurbs::Surface cut_v(const nurbs::Surface& surface, double v0, double v1);
 // A surface closed in u, begun at the parameter u = at instead.
 nurbs::Surface reseamed(const nurbs::Surface& surface, double at);
 
+nurbs::Curve straight(const Vec3& from, const Vec3& to);
+// Round a rectangle of the parameters, which is given in these alone: to the left, or `turned`.
+cad::Loop rectangle(double u0, double u1, double v0, double v1, bool turned = false);
+cad::Face face_of(const nurbs::Surface& surface, std::vector<cad::Loop> loops);
 cad::Part part_of(const std::string& name, const std::vector<nurbs::Surface>& surfaces);
 
 }  // namespace selvage::test
