@@ -136,7 +136,10 @@ class StretchFit {
         const Joint &from = joints_[k], &to = joints_[k + 1];
         joints.push_back(from);
         const bool is_settled = !slides_ && stretch.control.rows() > 0 && stretch.error <= tolerance;
-        if (!is_settled) fit(stretch, from, to);
+        if (stretch.control.rows() == 0 && !stretches.empty())
+          fit_from(stretch, from, to, stretches.back().spans - 1, tolerance);
+        else if (!is_settled)
+          fit(stretch, from, to);
         int parts = 1;
         while (parts == 1 && stretch.error > tolerance) {
           // The error falls with the fourth power of the spans' number; never more of them than are needed.
@@ -333,6 +336,20 @@ class StretchFit {
     };
     const auto bend = [&](std::size_t i, const auto& length_of) { return length_of(bent_.row(i)) / 4.0; };
     stretch.error = largest(0, values.rows(), deviation) + largest(1, values.rows() - 1, bend);
+  }
+
+  // The first fit of a stretch: with about as many spans as its neighbour has, and no more than are needed.
+  void fit_from(Stretch& stretch, const Joint& from, const Joint& to, int spans, double tolerance) {
+    const int least = stretch.spans;
+    stretch.spans = std::max(least, spans);
+    fit(stretch, from, to);
+    while (stretch.spans > least && stretch.error <= tolerance) {
+      Stretch fewer = stretch;
+      --fewer.spans;
+      fit(fewer, from, to);
+      if (fewer.error > tolerance) break;
+      stretch = std::move(fewer);
+    }
   }
 
   // Of what `measure(i, length_of)` says of the rows from `first` to before `last`: those that cannot have
