@@ -75,6 +75,11 @@ class Installed(Case):
         if samples.returncode == 0 and samples.stdout:  # not in a copy without its repository
             self.assertEqual({f"share/selvage/{name}" for name in samples.stdout.splitlines()} - files, set())
 
+    def test_what_needs_another_machine_runs_every_night(self):
+        nightly = (ROOT / ".github/workflows/nightly.yml").read_text()
+        for command in ("scripts/package\n", *of_page("docker build").splitlines(keepends=True)):
+            self.assertIn(f"- run: {command}", nightly)
+
     def test_headers_include_what_is_installed(self):
         include = self.prefix / "include/selvage"
         headers = sorted(include.rglob("*.h"))
