@@ -91,7 +91,7 @@ pipeline::Given given_of(const CLI::App& command, pipeline::Command what) {
 Result<Parsed> parse(int count, char** words) {
   CLI::App program("Yarn-level fabrics: text in; CAD files, checked solids and solver-ready meshes out.",
                    "selvage");
-  program.set_version_flag("--version", fmt::format("selvage {}", pipeline::version()));
+  program.set_version_flag("--version", &pipeline::version_text);
   program.require_subcommand(1);
   for (const pipeline::Subcommand& known : pipeline::all_commands()) {
     CLI::App& command = *program.add_subcommand(std::string(known.name), std::string(known.help));
