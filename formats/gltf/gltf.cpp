@@ -25,7 +25,7 @@ bool looks_like_glb(std::string_view head) {
 }
 
 // With its quotes; bytes that are no UTF-8 are replaced.
-std::string quoted(std::string_view text) {
+std::string json_text(std::string_view text) {
   return nlohmann::json(std::string(text)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -129,7 +129,7 @@ class Writer final : public BodyWriter {
     put_vector(accessors, box.max());
     accessors << R"(},{"bufferView":)" << 2 * meshes_ + 1 << R"(,"componentType":)" << unsigned_type
               << R"(,"count":)" << corners << R"(,"type":"SCALAR"})";
-    next(arrays_.meshes, meshes_) << R"({"name":)" << quoted(body.name)
+    next(arrays_.meshes, meshes_) << R"({"name":)" << json_text(body.name)
                                   << R"(,"primitives":[{"attributes":{"POSITION":)" << 2 * meshes_
                                   << R"(},"indices":)" << 2 * meshes_ + 1 << R"(,"material":)"
                                   << material_of(body.color) << "}]}";
@@ -146,7 +146,7 @@ class Writer final : public BodyWriter {
 
   void put_node(const yarn::Body& body, std::size_t mesh, const yarn::RigidMotion& motion) {
     TextBuffer& nodes = next(arrays_.nodes, nodes_++);
-    nodes << R"({"name":)" << quoted(body.name) << R"(,"mesh":)" << mesh;
+    nodes << R"({"name":)" << json_text(body.name) << R"(,"mesh":)" << mesh;
     if (!motion.is_translation()) {
       nodes << R"(,"matrix":[)";
       for (Eigen::Index column = 0; column < 3; ++column) {
@@ -166,7 +166,7 @@ class Writer final : public BodyWriter {
   Status put_arrays() {
     const double scale = millimetres_per(options_.units) / millimetres_per(Unit::m);
     text_ << R"(,"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":)"
-          << quoted(options_.title.empty() ? "yarns" : options_.title) << R"(,"matrix":[)" << scale
+          << json_text(options_.title.empty() ? "yarns" : options_.title) << R"(,"matrix":[)" << scale
           << ",0,0,0,0,0," << -scale << ",0,0," << scale << R"(,0,0,0,0,0,1],"children":[)";
     for (std::size_t k = 1; k <= nodes_; ++k) text_ << (k > 1 ? "," : "") << k;
     text_ << "]},";

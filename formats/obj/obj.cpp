@@ -90,7 +90,7 @@ class MaterialWriter final : public BodyWriter {
 
 const Descriptor& material_descriptor() {
   static const Descriptor self = {.name = "mtl",
-                                  .title = "Colours of an OBJ file",
+                                  .title = "Colours of an OBJ file, which it comes with",
                                   .extensions = {".mtl"},
                                   .open_bodies = open_by<MaterialWriter>,
                                   .carries_surfaces = false,

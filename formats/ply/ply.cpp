@@ -44,12 +44,12 @@ class Writer final : public BodyWriter {
     for (const Vec3& p : skin->vertices) {
       for (const double x : p) append_little_endian(vertices, x + 0.0);
       for (const int c : color) append_little_endian(vertices, static_cast<std::uint8_t>(c));
+      append_little_endian(vertices, static_cast<std::int32_t>(yarns_));
     }
     for (const auto& t : skin->triangles) {
       append_little_endian(faces, std::uint8_t{3});
       for (const std::uint32_t corner : t)
         append_little_endian(faces, static_cast<std::int32_t>(vertices_ + corner));
-      append_little_endian(faces, static_cast<std::int32_t>(yarns_));
     }
     vertices_ += skin->vertices.size();
     triangles_ += skin->triangles.size();
@@ -64,8 +64,9 @@ class Writer final : public BodyWriter {
         name_of(options_.units));
     const std::string end = fmt::format(
         "element vertex {}\nproperty double x\nproperty double y\nproperty double z\nproperty uchar red\n"
-        "property uchar green\nproperty uchar blue\nelement face {}\nproperty list uchar int vertex_indices\n"
-        "property int yarn\nend_header\n",
+        "property uchar green\nproperty uchar blue\nproperty int yarn\nelement face {}\nproperty list uchar "
+        "int vertex_indices\n"
+        "end_header\n",
         vertices_, triangles_);
     if (Status put = output_->write(begin); !put) return put.error();
     for (const std::unique_ptr<Spool>& spool : spools_) {

@@ -46,9 +46,10 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
 
 // The name of the file that stands beside this one; empty: there is none.
 std::string companion_of(const OpenOutput& output, const OpenOutputs& outputs) {
-  const auto* const companion = output.plan->format->companion;
+  if (output.plan->format->companion == nullptr) return {};
+  const formats::Descriptor& companion = output.plan->format->companion();
   for (const OpenOutput& other : outputs)
-    if (companion != nullptr && other.plan->is_companion && other.plan->format == &companion())
+    if (other.plan->is_companion && other.plan->format == &companion)
       return fs::path(other.plan->path).filename().string();
   return {};
 }

@@ -78,7 +78,7 @@ class Triangles(Case):
 
     def test_all_formats_have_the_same_triangles(self):
         meshes, soup, _ = self.write(SAMPLES / "plain4_path.txt")
-        self.assertEqual(len(meshes["obj"]), 8)
+        self.assertEqual(len(meshes["obj"]), 4)
         self.assertGreater(len({mesh.color for mesh in meshes["obj"]}), 1)
         for own in zip(*meshes.values()):
             for other in own[1:]:
@@ -253,10 +253,10 @@ class Triangles(Case):
         self.assertNotIn("warning", done.stderr)
 
     def test_names_of_every_kind(self):
-        source = self.source(cylinder().replace("yarn rod rod", 'yarn "Kette ""1"" ü / 50%" rod'))
+        source = self.source(cylinder().replace("yarn rod rod", 'yarn "Kette 1\\ü, 50%" rod'))
         self.write(source)
         self.assertEqual(reader.gltf(self.out / "cloth.glb")[0].name, self.yarns(source)[0]["name"])
-        self.assertEqual(reader.obj(self.out / "cloth.obj")[0].name, self.yarns(source)[0]["name"].replace(" ", "_"))
+        self.assertEqual(reader.obj(self.out / "cloth.obj")[0].name, self.yarns(source)[0]["name"].replace(" ", "_").replace("\\", "_"))
 
     def test_what_they_cannot_hold_is_said_first(self):
         parts = self.folder / "parts.igs"
@@ -296,7 +296,7 @@ class Triangles(Case):
         self.assertEqual(outputs[1]["entities"], {"materials": len({mesh.color for mesh in meshes})})
         done = self.succeeds("convert", source, "--to", "obj", "-o", "-")
         self.assertNotIn("mtl", done.stdout)
-        self.assertEqual(done.stdout.count("\no "), 8)
+        self.assertEqual(done.stdout.count("\no "), 4)
         self.assertIn("cannot write mtl", self.fails(2, "convert", source, "--to", "mtl", "-o", self.out))
 
     def test_same_input_same_bytes(self):

@@ -104,18 +104,20 @@ def ply(path):
     counts = {words[1]: int(words[2]) for words in map(str.split, lines) if words[0] == "element"}
     properties = [line for line in lines if line.startswith("property")]
     assert properties == ["property double x", "property double y", "property double z", "property uchar red",
-                          "property uchar green", "property uchar blue", "property list uchar int vertex_indices",
-                          "property int yarn"], properties
-    vertex = np.dtype([("p", "<f8", 3), ("color", "u1", 3)])
-    face = np.dtype([("count", "u1"), ("corners", "<i4", 3), ("yarn", "<i4")])
+                          "property uchar green", "property uchar blue", "property int yarn",
+                          "property list uchar int vertex_indices"], properties
+    vertex = np.dtype([("p", "<f8", 3), ("color", "u1", 3), ("yarn", "<i4")])
+    face = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
     assert len(rest) == counts["vertex"] * vertex.itemsize + counts["face"] * face.itemsize
     vertices = np.frombuffer(rest, vertex, counts["vertex"])
     faces = np.frombuffer(rest, face, counts["face"], counts["vertex"] * vertex.itemsize)
     assert np.all(faces["count"] == 3)
     names = dict(re.findall(r"^comment yarn (\d+): (.*)$", head.decode(), re.MULTILINE))
     meshes = []
-    for number in sorted(set(faces["yarn"])):
-        own = faces["corners"][faces["yarn"] == number]
+    yarns = vertices["yarn"][faces["corners"]]
+    assert np.all(yarns == yarns[:, :1]), "a triangle of two yarns"
+    for number in sorted(set(yarns[:, 0])):
+        own = faces["corners"][yarns[:, 0] == number]
         used, numbers = np.unique(own, return_inverse=True)
         colors = np.unique(vertices["color"][used], axis=0)
         assert len(colors) == 1
