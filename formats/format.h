@@ -55,10 +55,12 @@ struct SurfaceOptions {
   double max_coordinate = 0;          // upper bound of |coordinate| over all bodies, if known; 0: unknown
   std::string date;                   // YYYYMMDD.HHNNSS for headers; empty: now
   double tolerance = 0;               // of the modelled tubes, file units; 0: unknown
-  bool yarns_are_solids = false;      // in the file of this format that they come from (fabric::Fabric)
-  bool has_others = false;            // pieces, parts or curves will be added, not yarns alone
-  OptionValues own;                   // of Descriptor::options
-  int threads = 1;                    // that may format text
+  double chord = 0;                   // of triangles, from surfaces, file units; 0: as `tolerance`
+  std::string companion;          // the name of the file beside (Descriptor::companion); empty: there is none
+  bool yarns_are_solids = false;  // in the file of this format that they come from (fabric::Fabric)
+  bool has_others = false;        // pieces, parts or curves will be added, not yarns alone
+  OptionValues own;               // of Descriptor::options
+  int threads = 1;                // that may format text
   // For formats whose files have a largest size: opens file `number` (2, 3, ...) of the fabric. What it gives
   // outlives the writer. Null: there can be one file only.
   std::function<Result<OutputFile*>(int number)> next_part;
@@ -156,12 +158,14 @@ struct Descriptor {
                                                      const SurfaceOptions& options) = nullptr;
   bool carries_surfaces = true;
   bool carries_curves = false;
+  bool carries_parts = false;  // free faces and solids: of CAD files, and what --cut makes
   bool carries_lines =
       false;  // centre lines of yarns; a format without surfaces is given nothing else of them
   Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output) = nullptr;
-  // The format of a second file of the same stem that goes with each file of this one, of meshes that have
-  // load cases.
+  // The format of a second file of the same stem that goes with each file of this one; of meshes, with those
+  // that have load cases.
   const Descriptor& (*companion)() = nullptr;
+  bool is_companion = false;  // never written by itself
   // What the command line says of this format alone: of subcommands that can write it.
   std::vector<const Option*> options{};
   // A flag of these that makes another form of the format; a round trip goes through both.
@@ -175,6 +179,11 @@ struct Descriptor {
 // How far polygons of a centre line may be from it: as far as tubes from theirs.
 inline double line_tolerance(const SurfaceOptions& options, const yarn::Body& body) {
   return options.tolerance > 0.0 ? options.tolerance : 1e-3 * yarn::narrowest_section(body);
+}
+
+// How far triangles may be from the surface that they stand for.
+inline double chord_height(const SurfaceOptions& options, const yarn::Body& body) {
+  return options.chord > 0.0 ? options.chord : line_tolerance(options, body);
 }
 
 // Descriptor::open_bodies of a writer that is made of its arguments.

@@ -17,6 +17,20 @@ const Descriptor& descriptor();
 namespace step {  // STEP AP242 or AP214: each yarn a manifold solid with its name and colour
 const Descriptor& descriptor();
 }
+namespace stl {  // STL: triangles of yarns
+const Descriptor& descriptor();
+}
+namespace obj {  // Wavefront OBJ: triangles of yarns, by name
+const Descriptor& descriptor();
+// NAME.mtl, the colours of NAME.obj.
+const Descriptor& material_descriptor();
+}  // namespace obj
+namespace ply {  // PLY: triangles of yarns with colours
+const Descriptor& descriptor();
+}
+namespace gltf {  // glTF 2.0: triangles of yarns for viewers
+const Descriptor& descriptor();
+}
 namespace svg {  // SVG 1.1: garment pieces and centre lines as a drawing at true scale
 const Descriptor& descriptor();
 }

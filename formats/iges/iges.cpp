@@ -32,6 +32,7 @@ const Descriptor& descriptor() {
       .open_bodies = [](OutputFile& output,
                         const SurfaceOptions& options) { return open_writer(output, options); },
       .carries_curves = true,
+      .carries_parts = true,
       .carries_lines = true,
       .options = option::all(),
       .other_form = &option::solid,

@@ -100,6 +100,7 @@ const Descriptor& descriptor() {
       .foreign_reader = "STEP",
       .open_bodies = open_bodies,
       .carries_curves = true,
+      .carries_parts = true,
       .carries_lines = true,
       .options = option::all(),
       .is_usual = true};

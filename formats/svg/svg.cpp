@@ -11,6 +11,7 @@
 #include "core/text_buffer.h"
 #include "core/xml_text.h"
 #include "nurbs/bezier.h"
+#include "yarn/color_text.h"
 #include "yarn/line_samples.h"
 
 namespace selvage::formats::svg {
@@ -91,9 +92,7 @@ class Writer final : public BodyWriter {
     for (const yarn::LineSample& sample : yarn::line_samples(body, tolerance))
       box_.extend(Vec2(sample.position.head<2>()));
     ++pieces_;
-    const yarn::Color& c = body.color;
-    paths_ += "<path id=\"" + new_id(body.name) + "\" stroke=\"" +
-              fmt::format("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue) + "\" d=\"" +
+    paths_ += "<path id=\"" + new_id(body.name) + "\" stroke=\"#" + yarn::hex(body.color) + "\" d=\"" +
               path_data(body.axis, tolerance) + "\"><title>" + xml_text(body.name) + "</title></path>\n";
     return {};
   }

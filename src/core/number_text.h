@@ -16,6 +16,10 @@ inline constexpr std::size_t max_number_length = 32;
 // end: the very characters of std::to_chars, in less than its time (digits by Junekey Jeon's Dragonbox as
 // {fmt} has it).
 char* write_number(char* out, double value);
+// The shortest form that reads back to the same float.
+inline char* write_number(char* out, float value) {
+  return std::to_chars(out, out + max_number_length, value).ptr;
+}
 inline char* write_number(char* out, long long value) {
   return std::to_chars(out, out + max_number_length, value).ptr;
 }

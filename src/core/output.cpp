@@ -147,6 +147,10 @@ Result<OutputFile> OutputFile::in_memory() {
   return file;
 }
 
+Result<OutputFile> OutputFile::scratch() const {
+  return form_ == Form::file ? create(target_) : in_memory();
+}
+
 OutputFile::OutputFile(OutputFile&& other) noexcept {
   *this = std::move(other);
 }

@@ -40,6 +40,10 @@ class OutputFile {
   // In memory only, for tests: commit() keeps the bytes readable through contents().
   static Result<OutputFile> in_memory();
 
+  // Another one where this one is, for bytes that wait (core/spool.h): it gets no name, and goes with the
+  // object.
+  [[nodiscard]] Result<OutputFile> scratch() const;
+
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
   OutputFile(const OutputFile&) = delete;

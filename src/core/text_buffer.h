@@ -32,6 +32,7 @@ class TextBuffer {
     return *this;
   }
   TextBuffer& operator<<(double value) { return number(value); }
+  TextBuffer& operator<<(float value) { return number(value); }
   TextBuffer& operator<<(std::size_t value) { return number(static_cast<long long>(value)); }
   TextBuffer& operator<<(int value) { return number(static_cast<long long>(value)); }
 

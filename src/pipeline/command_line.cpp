@@ -252,6 +252,12 @@ void of_yarns(OptionTable& t) {
       "of surfaces that are written, and of lengths that are shown (default: the input's, which costs no "
       "bits)",
       "m cm mm um inch", &Options::units, {Unit::m, Unit::cm, Unit::mm, Unit::um, Unit::inch});
+  t.option(
+       {convert, relax}, "--chord",
+       "how far triangles may be from the surfaces that they stand for, in the input's unit (default: the "
+       "tolerance)",
+       Argument::positive(), &Options::chord)
+      .goes_with("is of triangles", "", "--cut --matrix --lines");
   t.choice({convert, check, relax, mesh, roundtrip, info}, "--ends",
            "how a yarn is sealed (default: as the input has it, else patch)", "patch fan planar none",
            &Options::ends,

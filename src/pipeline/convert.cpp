@@ -35,6 +35,7 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
   surface.date = fabric.date;
   surface.tolerance =
       converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, surface.units);
+  surface.chord = converted(job.options.chord, fabric.units, surface.units);
   surface.yarns_are_solids = fabric.yarns_are_solids;
   surface.has_others = job.options.lines || !fabric::pieces_of(fabric).empty() || !fabric.parts.empty() ||
                        !fabric.curves.empty();
@@ -43,10 +44,21 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
   return surface;
 }
 
+// The name of the file that stands beside this one; empty: there is none.
+std::string companion_of(const OpenOutput& output, const OpenOutputs& outputs) {
+  if (output.plan->format->companion == nullptr) return {};
+  const formats::Descriptor& companion = output.plan->format->companion();
+  for (const OpenOutput& other : outputs)
+    if (other.plan->is_companion && other.plan->format == &companion)
+      return fs::path(other.plan->path).filename().string();
+  return {};
+}
+
 bool open_writers(Job& job, const fabric::Fabric& fabric, std::size_t count, OpenOutputs& outputs) {
   for (OpenOutput& output : outputs) {
     if (output.plan->format->write_fabric != nullptr) continue;
     formats::SurfaceOptions options = surface_options(job, fabric, *output.plan, count);
+    options.companion = companion_of(output, outputs);
     if (!output.plan->to_standard_output)
       options.next_part = [&output](int number) { return open_part(output, number); };
     Result<std::unique_ptr<formats::BodyWriter>> writer =
@@ -87,7 +99,8 @@ bool can_carry(Job& job, const fabric::Fabric& fabric, std::size_t yarns, const 
   const std::vector<const fabric::Piece*> pieces = fabric::pieces_of(fabric);
   for (const OpenOutput& output : outputs) {
     const formats::Descriptor& format = *output.plan->format;
-    if (format.open_bodies == nullptr || format.write_fabric != nullptr) continue;
+    if (format.open_bodies == nullptr || format.write_fabric != nullptr || output.plan->is_companion)
+      continue;
     if (yarns > 0 && !format.carries_surfaces && !takes_lines(job, format))
       job.say(
           error(Kind::unsupported, fmt::format("{} holds garment pieces (`piece`) only, and this input has "
@@ -99,6 +112,17 @@ bool can_carry(Job& job, const fabric::Fabric& fabric, std::size_t yarns, const 
                     fmt::format("{} holds no garment pieces, such as '{}': write it as {}", format.name,
                                 pieces.front()->name, formats_with(&formats::Descriptor::carries_curves)),
                     {.place = pieces.front()->place}));
+    const auto refuse = [&](std::size_t count, std::string_view what, std::string_view first,
+                            bool formats::Descriptor::*needed) {
+      if (count > 0 && !(format.*needed))
+        job.say(error(Kind::unsupported,
+                      fmt::format("{} holds no free {}s, and this input has {}, such as '{}': write {}",
+                                  format.name, what, counted(count, what), first, formats_with(needed))));
+    };
+    refuse(fabric.parts.size(), "surface", fabric.parts.empty() ? "" : fabric.parts.front().name,
+           &formats::Descriptor::carries_parts);
+    refuse(fabric.curves.size(), "curve", fabric.curves.empty() ? "" : fabric.curves.front().name,
+           &formats::Descriptor::carries_lines);
   }
   return !job.has_failed();
 }
@@ -144,10 +168,12 @@ void write_cell(Job& job, fabric::Fabric& fabric, OpenOutputs& outputs) {
 bool holds_solids(Job& job, const OpenOutputs& outputs) {
   for (const OpenOutput& output : outputs) {
     const formats::Descriptor& format = *output.plan->format;
-    if (format.write_fabric == nullptr && format.open_bodies != nullptr && format.carries_surfaces) continue;
+    if (output.plan->is_companion ||
+        (format.write_fabric == nullptr && format.open_bodies != nullptr && format.carries_parts))
+      continue;
     job.say(error(Kind::usage, fmt::format("{} holds no solids, which {} makes: write {}", format.name,
                                            job.options.matrix ? "--matrix" : "--cut",
-                                           formats_with(&formats::Descriptor::carries_surfaces))));
+                                           formats_with(&formats::Descriptor::carries_parts))));
   }
   return !job.has_failed();
 }
@@ -156,7 +182,7 @@ bool holds_solids(Job& job, const OpenOutputs& outputs) {
 bool holds_lines(Job& job, const OpenOutputs& outputs) {
   if (!job.options.lines) return true;
   for (const OpenOutput& output : outputs)
-    if (!output.plan->format->carries_lines)
+    if (!output.plan->format->carries_lines && !output.plan->is_companion)
       job.say(error(Kind::usage, fmt::format("{} holds no centre lines, which --lines makes: write {}",
                                              output.plan->format->name,
                                              formats_with(&formats::Descriptor::carries_lines))));

@@ -69,6 +69,7 @@ struct Options {
   std::optional<Unit> units;   // of surfaces and tables; none: the input's
   bool allow_outside = false;  // files that a text names may be anywhere, not only below its folder
   double tolerance = 0;        // input's unit; 0: the input's
+  double chord = 0;            // of triangles, input's unit; 0: the tolerance
   bool full_digits = false;    // of the tubes' control points
   fabric::Detail detail = fabric::Detail::filaments;  // how far yarns are taken apart
   bool as_published = false;           // constructions as their paper gives them, overlaps and all

@@ -29,7 +29,7 @@ const Descriptor& picture_format() {
 bool can_be_written(const Descriptor& format, Command command) {
   if (command == Command::mesh) return format.write_mesh != nullptr;
   if (command == Command::edit) return format.insert_edit != nullptr;
-  return format.write_fabric != nullptr || format.open_bodies != nullptr;
+  return format.write_fabric != nullptr || (format.open_bodies != nullptr && !format.is_companion);
 }
 
 std::string_view extension_of_gap_maps() {
