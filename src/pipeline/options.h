@@ -18,7 +18,23 @@
 
 namespace selvage::pipeline {
 
-enum class Command { convert, check, relax, mesh, roundtrip, diff, info, edit, view, sweep, formats };
+enum class Command {
+  convert,
+  check,
+  relax,
+  mesh,
+  roundtrip,
+  diff,
+  info,
+  edit,
+  view,
+  sweep,
+  formats,
+  new_text,
+  explain,
+  help,
+  show_version
+};
 std::string_view name_of(Command command);
 
 // --relax and what goes with it; lengths in the input's unit.
@@ -116,6 +132,8 @@ struct Options {
 
   EditWords edit;
   SweepWords sweep;
+
+  std::string subject;  // new, explain, help: what is asked for; may be empty
 
   bool json = false;   // info, diff: JSON instead of text
   bool table = false;  // info: the fixed points and control points of garment curves
