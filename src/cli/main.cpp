@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <csignal>
-#include <cstdio>
 
 #include "cli/explain.h"
 #include "cli/formats.h"
 #include "cli/new_text.h"
 #include "cli/parse.h"
+#include "core/console.h"
 #include "core/standard_output.h"
 #include "pipeline/batch.h"
 #include "pipeline/command_line.h"
@@ -24,7 +24,7 @@ int tell(const Result<std::string>& text, const std::string& file = {}) {
   }
   const Status printed = write_to_standard_output(*text);
   if (printed) return 0;
-  std::fprintf(stderr, "%s\n", to_string(printed.error()).c_str());
+  write_messages(to_string(printed.error()) + "\n");
   return 1;
 }
 

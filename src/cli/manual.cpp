@@ -4,6 +4,7 @@
 
 #include "cli/codes.h"
 #include "cli/generate.h"
+#include "core/clock.h"
 #include "core/words.h"
 #include "pipeline/versions.h"
 
@@ -26,16 +27,28 @@ std::string roff(std::string_view text) {
       out += "\\(ha";
     else if (c == '`' || c == '\'')
       out += c == '`' ? "\\(ga" : "\\(aq";
-    else if (c == '\n')
-      out += "\n";
     else
       out += c;
   }
   return out;
 }
 
+// The same in lines, of which none is long.
+std::string filled(std::string_view text) {
+  constexpr std::size_t most = 70;
+  std::string out, line;
+  for (const std::string_view word : words_of(text)) {
+    if (!line.empty() && line.size() + 1 + word.size() > most) {
+      out += roff(line) + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + std::string(word);
+  }
+  return out + roff(line);
+}
+
 std::string paragraph(const std::string& tag, std::string_view text) {
-  return fmt::format(".TP\n{}\n{}\n", tag, roff(text));
+  return fmt::format(".TP\n{}\n{}\n", tag, filled(text));
 }
 
 std::string tag_of(const Option& option) {
@@ -59,22 +72,24 @@ std::string help_of(const pipeline::Row& row) {
 std::string manual_page() {
   std::string page = fmt::format(
       ".\\\" Made by: selvage --generate man\n"
-      ".TH SELVAGE 1 \"\" \"selvage {}\" \"User Commands\"\n"
+      ".TH SELVAGE 1 {} \"selvage {}\" \"User Commands\"\n"
       ".SH NAME\n"
-      "selvage \\- yarn\\-level fabrics: text in; CAD files, checked solids and solver\\-ready meshes out\n"
+      "selvage \\- fabrics yarn by yarn: text in; CAD files, solids and meshes out\n"
       ".SH SYNOPSIS\n"
       ".B selvage\n"
       ".I COMMAND\n"
       "[\\fIOPTIONS\\fR] [\\fIARGUMENTS\\fR]\n"
       ".br\n"
       ".B selvage\n"
-      "\\fB\\-\\-help\\fR | \\fB\\-\\-version\\fR | \\fB\\-\\-generate\\fR \\fI{}\\fR\n",
-      pipeline::version(), roff(fmt::format("{}", fmt::join(generated_forms(), "|"))));
+      "\\fB\\-\\-help\\fR | \\fB\\-\\-version\\fR | \\fB\\-\\-generate\\fR \\fIFORM\\fR\n",
+      iso_timestamp().substr(0, 10), pipeline::version());
   page += ".SH COMMANDS\n";
   for (const pipeline::Subcommand& command : pipeline::all_commands())
     page += paragraph(fmt::format("\\fB{}\\fR", roff(command.name)), command.help);
   page += ".SH OPTIONS\n";
   page += paragraph("\\fB\\-h\\fR, \\fB\\-\\-help\\fR", "Of every command: its options, and examples");
+  page += paragraph("\\fB\\-\\-generate\\fR \\fIFORM\\fR",
+                    fmt::format("Instead of a command: {}", fmt::join(generated_forms(), ", ")));
   for (const Group& group : all_groups()) {
     page += fmt::format(".SS {}\n", roff(group.heading));
     for (const pipeline::Row* row : group.rows) page += paragraph(tag_of(row->option), help_of(*row));
@@ -88,8 +103,9 @@ std::string manual_page() {
   page += paragraph("\\fBSOURCE_DATE_EPOCH\\fR",
                     "The moment that headers of outputs name, in seconds of Unix time");
   page += ".SH EXAMPLES\n";
-  for (const pipeline::Subcommand& command : pipeline::all_commands())
-    page += fmt::format(".PP\n.nf\n{}\n.fi\n", roff(command.examples));
+  page += ".nf\n";
+  for (const pipeline::Subcommand& command : pipeline::all_commands()) page += roff(command.examples) + "\n";
+  page += ".fi\n";
   return page;
 }
 

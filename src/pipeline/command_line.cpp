@@ -396,6 +396,10 @@ void of_running(OptionTable& t) {
   t.flag(all, "-q,--quiet", "errors only", &Options::quiet);
   t.flag(on_yarns, "-v,--verbose", "say more", &Options::verbose);
   t.flag(on_yarns, "--no-progress", "no progress bar or lines", &Options::no_progress);
+  t.choice(on_yarns, "--progress", "json: an object a line on standard error, for programs (with -q, too)",
+           "auto json", &Options::progress_json, {false, true})
+      .with_preset("auto")
+      .goes_with("asks for what --no-progress refuses", "", "--no-progress", "json");
   t.option(on_batch, "--shard", "only the I-th of N equal parts of the inputs, from 0", Argument::text("I/N"),
            take_shard);
   t.option(all, "--timeout",

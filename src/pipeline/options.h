@@ -77,7 +77,7 @@ struct Options {
   bool memory_is_share = false;  // it was not given
   Sandbox sandbox = Sandbox::automatic;
   std::size_t part = 0, parts = 1;
-  bool quiet = false, verbose = false, no_progress = false;
+  bool quiet = false, verbose = false, no_progress = false, progress_json = false;
   bool strict = false;
   std::string report;
   bool resume = false;

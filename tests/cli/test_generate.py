@@ -61,9 +61,8 @@ class Generated(Case):
             for section in ("NAME", "SYNOPSIS", "OPTIONS", "EXIT STATUS", "EXAMPLES"):
                 self.assertRegex(shown, rf"(?m)^{section}$")
         if shutil.which("mandoc"):
-            done = subprocess.run(["mandoc", "-Tlint", "-Wwarning", page], capture_output=True, text=True)
-            # The page has no date: the same program makes the same page on every day.
-            self.assertEqual([line for line in done.stdout.splitlines() if "missing date" not in line], [])
+            done = subprocess.run(["mandoc", "-Tlint", page], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stdout), (0, ""))
 
     # --- completion
 
