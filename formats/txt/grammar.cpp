@@ -40,11 +40,12 @@ std::string textmate_grammar(const Language& language) {
            "\\s+" + name},
       {"captures",
        {{"1", {{"name", "keyword.control.fabric-txt"}}}, {"2", {{"name", "entity.name.fabric-txt"}}}}}};
+  // Not all that ends with ".txt" is one: the first line tells.
   const nlohmann::ordered_json grammar = {
       {"comment", "Made by: selvage --generate textmate"},
       {"name", language.name},
       {"scopeName", "source.fabric-txt"},
-      {"fileTypes", {"txt"}},
+      {"fileTypes", {"fabric.txt"}},
       {"firstLineMatch", "^(\\xEF\\xBB\\xBF)?\\s*(?i:fabric)\\s+\\d+"},
       {"patterns",
        {pattern("comment.line.number-sign", "#(?![0-9A-Fa-f]{6}(?![0-9A-Fa-f])).*$"),

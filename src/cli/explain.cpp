@@ -7,6 +7,7 @@
 #include <set>
 
 #include "cli/codes.h"
+#include "cli/generate.h"
 #include "cli/language.h"
 #include "cli/words.h"
 #include "core/words.h"
@@ -124,6 +125,21 @@ const std::vector<Topic>& topics() {
   return list;
 }
 
+// Options of that name, with their commands.
+std::string options_of(std::string_view word) {
+  std::string text;
+  for (const Group& group : all_groups())
+    for (const pipeline::Row* row : group.rows) {
+      if (row->option.word() != word) continue;
+      std::string commands;
+      for (const pipeline::Command command : row->commands)
+        commands += fmt::format("{}{}", commands.empty() ? "" : ", ", pipeline::name_of(command));
+      text += fmt::format("  {} {}\n      {} ({})\n", row->option.name, argument_of(row->option),
+                          row->option.help, commands);
+    }
+  return text.empty() ? text : "\nOptions of that name:\n" + text;
+}
+
 std::vector<std::string> all_help() {
   std::vector<std::string> all = all_topics();
   for (const std::string& word : explained_words()) all.push_back(word);
@@ -203,7 +219,7 @@ Result<std::string> help_of(const std::string& topic) {
                                           did_you_mean(topic, all_help()), fmt::join(all_topics(), ", ")));
   std::string block = topic;
   std::transform(block.begin(), block.end(), block.begin(), lower);
-  *text += statements_of(block);
+  *text += statements_of(block) + options_of(block);
   std::string kinds;
   for (const formats::Template& one : language().templates)
     if (one.text.find("\n" + block) != std::string_view::npos) kinds += fmt::format(" {}", one.kind);

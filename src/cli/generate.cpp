@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "cli/codes.h"
 #include "cli/explain.h"
@@ -42,7 +43,7 @@ Json argument_json(const Argument& argument) {
     case Argument::Form::real:
       return {{"form", argument.form == Argument::Form::whole ? "whole" : "real"},
               {"least", argument.least},
-              {"most", argument.most}};
+              {"most", argument.most < std::numeric_limits<double>::max() ? Json(argument.most) : Json()}};
   }
   return {};
 }

@@ -85,8 +85,10 @@ pipeline::Given given_of(const CLI::App& command, pipeline::Command what) {
   return given;
 }
 
-// Flags before the subcommand, as in `selvage -q check FILE`, are the subcommand's.
+// Flags before the subcommand, as in `selvage -q check FILE`, are the subcommand's. --version is the
+// program's.
 void put_command_first(int count, char** words) {
+  if (count < 2 || std::string_view(words[1]) == "--version") return;
   char** const end = words + count;
   char** const first = std::find_if(words + 1, end, [](const char* word) { return *word != '-'; });
   if (first == end || first == words + 1) return;
@@ -116,7 +118,10 @@ Result<Parsed> parse(int count, char** words) {
   };
   const bool wants_help = names("-h") || names("--help");
   if (wants_help)
-    program.footer(fmt::format("Also: selvage --generate {{{}}}", fmt::join(generated_forms(), ",")));
+    program.footer(
+        fmt::format("To begin: selvage new plain -o plain.txt, then selvage view plain.txt -o "
+                    "plain.png\nAlso:     selvage --generate {{{}}}",
+                    fmt::join(generated_forms(), ",")));
   program.require_subcommand(1);
   for (const pipeline::Subcommand& known : pipeline::all_commands()) {
     // What no word names stands in the program's help alone, and has no options there: to set up those of all

@@ -192,6 +192,8 @@ class Help(Case):
                             ("tolerance", "B-spline surface"), ("sections", "racetrack"), ("overlap", "selvage relax"),
                             ("inputs", "@LIST"), ("outputs", "-o"), ("language", "warpknit"), ("braid", "selvage new KIND")):
             self.assertIn(part, self.succeeds("help", topic).stdout, topic)
+        tolerance = self.succeeds("help", "tolerance").stdout
+        self.assertEqual(tolerance.count("--tolerance X"), 2, "of the tubes, and of comparisons")
         self.assertIn("did you mean 'units'", self.fails(2, "help", "unitz"))
 
     def test_flags_before_the_command(self):
@@ -199,6 +201,8 @@ class Help(Case):
         done = self.succeeds("-q", "convert", self.folder / "yarns.txt", "--to", "iges", "-o", self.out)
         self.assertEqual(done.stderr, "")
         self.assertTrue((self.out / "yarns.igs").exists())
+        self.assertEqual(self.succeeds("--help", "convert").stdout, self.succeeds("convert", "--help").stdout)
+        self.assertEqual(self.succeeds("--version", "convert").stdout, self.succeeds("--version").stdout)
 
 
 if __name__ == "__main__":
