@@ -8,7 +8,6 @@ namespace selvage::cli {
 
 namespace {
 
-using pipeline::Command;
 using pipeline::Row;
 using pipeline::Subcommand;
 

@@ -127,6 +127,7 @@ std::vector<std::string> names_of_formats(Command command) {
 
 std::vector<std::string_view> generated_forms() {
   std::vector<std::string_view> names;
+  names.reserve(forms.size());
   for (const Form& form : forms) names.push_back(form.name);
   return names;
 }

@@ -36,6 +36,7 @@ Result<std::string> help(const std::string& topic) {
   const auto is_it = [&](const pipeline::Subcommand& command) { return command.name == topic; };
   if (!topic.empty() && std::none_of(commands.begin(), commands.end(), is_it)) return help_of(topic);
   std::vector<char*> pointers;
+  pointers.reserve(words.size());
   for (std::string& word : words) pointers.push_back(word.data());
   Result<Parsed> parsed = parse(static_cast<int>(pointers.size()), pointers.data());
   if (!parsed) return parsed.error();
