@@ -1,4 +1,4 @@
-// What receiving systems stumble on. The facts are collected from their manuals and users (README.md, formats
+// What receiving systems stumble on. The facts are collected from their manuals and users (src/cli/check.md, formats
 // of the other end); where a limit is not known exactly the message says so.
 #include <fmt/format.h>
 

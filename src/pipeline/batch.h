@@ -5,7 +5,7 @@
 
 namespace selvage::pipeline {
 
-// Does what the options ask for; returns the program's exit code (README.md). Messages go to standard error,
+// Does what the options ask for; returns the program's exit code (src/cli/README.md). Messages go to standard error,
 // results to standard output.
 int run(const Options& options);
 

@@ -14,7 +14,7 @@ std::string line_of(const cad::Difference& difference, Unit units);
 // "2 of 4 yarns differ: 1 moved, 1 reshaped; ..." or "equal: 4 yarns, 12 surfaces; ...".
 std::string summary_of(const cad::Comparison& found, double tolerance, Unit units);
 
-// The object of `selvage diff --json` (README.md).
+// The object of `selvage diff --json` (src/cli/check.md).
 std::string to_json(const cad::Comparison& found, const std::string& a, const std::string& b,
                     double tolerance, Unit units);
 

@@ -1,5 +1,5 @@
 // What the command line asks for, after it was understood (pipeline/command_line.h, where defaults that are
-// values stand, too). The contract is in README.md.
+// values stand, too). The contract is in src/cli/README.md.
 #pragma once
 
 #include <cstddef>

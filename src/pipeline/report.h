@@ -1,4 +1,4 @@
-// The JSON report (README.md): whoever finds something puts it there as it is to be read. Lengths in mm; what
+// The JSON report (src/cli/report.md): whoever finds something puts it there as it is to be read. Lengths in mm; what
 // is unknown is left out.
 #pragma once
 

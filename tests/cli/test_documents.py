@@ -1,4 +1,4 @@
-"""Every command of the documents works as printed."""
+"""Every command of the documents works as printed, and nothing is said in two of them."""
 
 import os
 import pathlib
@@ -18,6 +18,27 @@ def commands(document):
             yield line, int(code[1]) if code else 0
 
 
+def without_code(text):
+    return re.sub(r"^```.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
+
+
+def headings(text):
+    """The anchors of a page, as GitHub makes them."""
+    lines = re.findall(r"^#+ (.*)$", without_code(text), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", line.lower()).replace(" ", "-") for line in lines}
+
+
+def saved_texts(document):
+    """(name, text) of each block that the document says to save as a file."""
+    return re.findall(r"ave\s+it\s+as\s+`([\w.]+)`:\n\n```\n(.*?)```", (ROOT / document).read_text(), re.DOTALL)
+
+
+def pages():
+    """Every page for users, by its place."""
+    return sorted(str(path.relative_to(ROOT)) for folder in ("src/cli", "formats", "samples", "scripts")
+                  for path in (ROOT / folder).rglob("*.md")) + ["README.md"]
+
+
 class Documents(Case):
     def setUp(self):
         super().setUp()
@@ -28,13 +49,17 @@ class Documents(Case):
         self.path = f"{programs}:{os.environ['PATH']}"
 
     def check(self, document):
+        """Runs the commands in a folder that holds the samples and the texts that the document says to save."""
+        for name, text in saved_texts(document):
+            (self.folder / name).write_text(text)
         count = 0
         for line, code in commands(document):
             if line == "./scripts/test":
                 continue  # this is what is running
             line = line.replace("./scripts/run", "selvage", 1)
+            line = re.sub(r"^scripts/", f"{ROOT}/scripts/", line)
             with self.subTest(line):
-                self.assertTrue(line.startswith("selvage "), "only commands of selvage are expected here")
+                self.assertRegex(line, f"^(selvage|{ROOT}/scripts/homogenize) ", "no other commands are expected here")
                 done = subprocess.run(["sh", "-c", line], cwd=self.folder, env=environment(PATH=self.path),
                                       capture_output=True, text=True)
                 self.assertEqual(done.returncode, code, done.stderr)
@@ -43,6 +68,14 @@ class Documents(Case):
 
     def test_readme(self):
         self.check("README.md")
+        self.assertLess(len((ROOT / "README.md").read_bytes()), 9000)
+
+    def test_pages_of_the_command_line(self):
+        for page in sorted((ROOT / "src/cli").glob("*.md")):
+            if page.name == "report.md":
+                continue  # has no commands
+            with self.subTest(page.name):
+                self.check(page.relative_to(ROOT))
 
     def test_samples(self):
         self.check("samples/README.md")
@@ -54,7 +87,7 @@ class Documents(Case):
 
     def test_table_of_formats(self):
         table = run("formats").stdout
-        self.assertIn(f"```\n{table}```", (ROOT / "README.md").read_text())
+        self.assertIn(f"```\n{table}```", (ROOT / "formats" / "README.md").read_text())
 
     def test_every_sample_is_described(self):
         text = (ROOT / "samples" / "README.md").read_text()
@@ -62,8 +95,36 @@ class Documents(Case):
         for path in sorted((ROOT / "samples").glob("*.txt")):
             self.assertTrue(any(path.match(pattern) for pattern in patterns), path.name)
 
-    def test_options_of_the_help_are_in_the_readme(self):
-        text = (ROOT / "README.md").read_text()
+    def test_every_command_is_on_a_page_that_is_checked(self):
+        checked = {"README.md", "samples/README.md", "samples/ci/README.md",
+                   *(str(page.relative_to(ROOT)) for page in (ROOT / "src/cli").glob("*.md"))}
+        for page in pages():
+            if list(commands(page)):
+                self.assertIn(page, checked)
+
+    def test_links_lead_to_pages_and_headings(self):
+        for page in pages():
+            for target in re.findall(r"\]\(([^)\s]+)\)", (ROOT / page).read_text()):
+                if target.startswith("http"):
+                    continue
+                name, _, heading = target.partition("#")
+                path = ROOT / page if not name else (ROOT / page).parent / name
+                with self.subTest(f"{page}: {target}"):
+                    self.assertTrue(path.exists())
+                    if heading:
+                        self.assertIn(heading, headings(path.read_text()))
+
+    def test_no_sentence_stands_on_two_pages(self):
+        where = {}
+        for page in pages():
+            text = without_code((ROOT / page).read_text())
+            for sentence in set(re.split(r"(?<=[.:;])\s+|\n\n|\|", re.sub(r"(?<!\n)\n(?!\n)", " ", text))):
+                if len(sentence.split()) >= 9:
+                    self.assertNotIn(sentence, where, f"{page} says what {where.get(sentence)} says: {sentence}")
+                    where[sentence] = page
+
+    def test_options_of_the_help_are_on_the_pages(self):
+        text = "".join(page.read_text() for page in (ROOT / "src/cli").glob("*.md"))
         for command in ("convert", "relax", "check", "mesh", "diff", "roundtrip", "info", "edit", "view"):
             for option in re.findall(r"^\s+(?:-\w,)?(--[\w-]+)", run(command, "--help").stdout, re.MULTILINE):
                 if option not in ("--help", "--output", "--verbose"):  # -h, -o, -v
