@@ -24,6 +24,7 @@
 #include "fabric/model.h"
 #include "fabric/piece.h"
 #include "fem/mesh.h"
+#include "formats/language.h"
 #include "solid/gap_map.h"
 #include "yarn/body.h"
 #include "yarn/congruence.h"
@@ -170,7 +171,9 @@ struct Descriptor {
   std::vector<const Option*> options{};
   // A flag of these that makes another form of the format; a round trip goes through both.
   const Option* other_form = nullptr;
-  bool is_own = false;    // the program's own text: what it reads and writes where it works on the text
+  bool is_own = false;  // the program's own text: what it reads and writes where it works on the text
+  // What the program teaches of its words. Null: nobody writes it by hand.
+  const Language& (*language)() = nullptr;
   bool is_usual = false;  // written where no format is named
   // Lengths in mm.
   Result<WriteFacts> (*write_gap_map)(const solid::GapMap& map, OutputFile& output) = nullptr;

@@ -18,9 +18,10 @@ namespace {
 constexpr std::size_t longest_expression = 1000;  // characters
 
 // Those of muParser, and what it gives besides.
-constexpr std::array functions = {"sin",  "cos",  "tan", "asin", "acos",  "atan",  "atan2", "sinh", "cosh",
-                                  "tanh", "log2", "log", "ln",   "exp",   "sqrt",  "sign",  "rint", "abs",
-                                  "min",  "max",  "sum", "avg",  "asinh", "acosh", "atanh", "log10"};
+constexpr std::array<std::string_view, 26> functions = {
+    "sin",  "cos",  "tan", "asin", "acos",  "atan",  "atan2", "sinh", "cosh",
+    "tanh", "log2", "log", "ln",   "exp",   "sqrt",  "sign",  "rint", "abs",
+    "min",  "max",  "sum", "avg",  "asinh", "acosh", "atanh", "log10"};
 constexpr std::string_view circle_number = "pi";
 
 // Words that begin statements, and those of units that stand alone.
@@ -108,6 +109,10 @@ bool is_reserved(std::string_view word) {
   return std::any_of(keywords.begin(), keywords.end(), is_word) ||
          std::any_of(functions.begin(), functions.end(), is_word) || same_word(word, circle_number) ||
          find_unit(word) != nullptr;
+}
+
+std::span<const std::string_view> function_names() {
+  return functions;
 }
 
 bool is_identifier(std::string_view text) {

@@ -82,6 +82,8 @@ class Scope {
 
 // Words that no param may have for its name: those of units, those that begin statements, functions.
 bool is_reserved(std::string_view word);
+// That an expression may call, "sqrt".
+std::span<const std::string_view> function_names();
 // Is it a name that can stand in an expression: letters, digits and `_`, no digit first?
 bool is_identifier(std::string_view text);
 

@@ -1,6 +1,7 @@
 #include "formats/registry.h"
 
 #include "formats/txt/edit_line.h"
+#include "formats/txt/lessons.h"
 #include "formats/txt/reader.h"
 #include "formats/txt/writer.h"
 
@@ -15,7 +16,8 @@ const Descriptor& descriptor() {
                                   .read_with = read_fabric_with,
                                   .write_fabric = write_fabric,
                                   .insert_edit = insert_edit,
-                                  .is_own = true};
+                                  .is_own = true,
+                                  .language = language};
   return self;
 }
 

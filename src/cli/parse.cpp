@@ -1,12 +1,16 @@
 #include "cli/parse.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <sstream>
 
+#include "cli/generate.h"
+#include "cli/words.h"
+#include "core/words.h"
 #include "pipeline/command_line.h"
 #include "pipeline/versions.h"
 
@@ -19,16 +23,11 @@ using pipeline::Row;
 // Words of the contract that come with later versions.
 constexpr std::array<std::string_view, 1> later_commands = {"report"};
 
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
-  const std::string_view near = nearest_word(word, std::vector<std::string_view>(known.begin(), known.end()));
-  return near.empty() ? std::string() : fmt::format("; did you mean '{}'?", near);
-}
-
-Message no_command(const CLI::App& program, const std::string& word) {
+Message no_command(const std::string& word) {
   if (std::find(later_commands.begin(), later_commands.end(), word) != later_commands.end())
     return error(Kind::usage, fmt::format("'selvage {}' is not in this version of selvage", word));
   std::vector<std::string> names;
-  for (const CLI::App* command : program.get_subcommands(nullptr)) names.push_back(command->get_name());
+  for (const pipeline::Subcommand& command : pipeline::all_commands()) names.emplace_back(command.name);
   return error(Kind::usage, fmt::format("unknown subcommand '{}'{} (help: selvage --help)", word,
                                         did_you_mean(word, names)));
 }
@@ -41,7 +40,7 @@ Message with_help(std::string_view text, const CLI::App& program, const CLI::App
 // Why the command line was refused.
 Message refusal(const CLI::App& program, const CLI::ParseError& failure, int count, char** words) {
   const CLI::App* command = program.get_subcommands().empty() ? &program : program.get_subcommands().front();
-  if (command == &program && count > 1) return no_command(program, words[1]);
+  if (command == &program && count > 1) return no_command(words[1]);
   std::string text = failure.what();
   for (int i = 1; i < count; ++i) {
     const std::string word = words[i];
@@ -86,18 +85,53 @@ pipeline::Given given_of(const CLI::App& command, pipeline::Command what) {
   return given;
 }
 
+// Flags before the subcommand, as in `selvage -q check FILE`, are the subcommand's. --version is the
+// program's.
+void put_command_first(int count, char** words) {
+  if (count < 2 || std::string_view(words[1]) == "--version") return;
+  char** const end = words + count;
+  char** const first = std::find_if(words + 1, end, [](const char* word) { return *word != '-'; });
+  if (first == end || first == words + 1) return;
+  const auto& known = pipeline::all_commands();
+  const auto is_it = [&](const pipeline::Subcommand& command) { return command.name == *first; };
+  if (std::any_of(known.begin(), known.end(), is_it)) std::rotate(words + 1, first, first + 1);
+}
+
+// What `--generate` makes.
+Result<Parsed> generated(std::string_view what) {
+  Result<std::string> text = generate(what);
+  if (!text) return text.error();
+  return Parsed{std::move(*text), {}};
+}
+
 }  // namespace
 
 Result<Parsed> parse(int count, char** words) {
+  put_command_first(count, words);
+  constexpr std::string_view generator = "--generate";
+  if (count > 1 && words[1] == generator) return generated(count == 3 ? words[2] : "");
   CLI::App program("Yarn-level fabrics: text in; CAD files, checked solids and solver-ready meshes out.",
                    "selvage");
   program.set_version_flag("--version", &pipeline::version_text);
+  const auto names = [&](std::string_view word) {
+    return std::find(words, words + count, word) != words + count;
+  };
+  const bool wants_help = names("-h") || names("--help");
+  if (wants_help)
+    program.footer(
+        fmt::format("To begin: selvage new plain -o plain.txt, then selvage view plain.txt -o "
+                    "plain.png\nAlso:     selvage --generate {{{}}}",
+                    fmt::join(generated_forms(), ",")));
   program.require_subcommand(1);
   for (const pipeline::Subcommand& known : pipeline::all_commands()) {
+    // What no word names stands in the program's help alone, and has no options there: to set up those of all
+    // commands takes longer than a small job.
+    const bool is_named = names(known.name);
+    if (!is_named && !wants_help) continue;
     CLI::App& command = *program.add_subcommand(std::string(known.name), std::string(known.help));
-    // What no word names needs no options: to set up those of all commands takes longer than a small job.
-    if (std::find(words, words + count, known.name) == words + count) continue;
+    if (!is_named) continue;
     for (const Row* row : pipeline::rows_of(known.command)) add(command, *row);
+    command.footer(fmt::format("Examples:\n  {}", fmt::join(split(known.examples, '\n'), "\n  ")));
   }
   try {
     program.parse(count, words);
@@ -107,6 +141,7 @@ Result<Parsed> parse(int count, char** words) {
       Result<pipeline::Options> options =
           pipeline::understand(known.command, given_of(command, known.command));
       if (!options) return with_help(options.error().text, program, command);
+      if (known.command == pipeline::Command::show_version) return Parsed{program.version() + "\n", {}};
       return Parsed{{}, std::move(*options)};
     }
     return error(Kind::internal, "a subcommand that is not in the table");

@@ -14,6 +14,7 @@
 #include <cstring>
 
 #include "core/clock.h"
+#include "core/console.h"
 #include "core/process.h"
 #include "core/progress.h"
 #include "core/readable.h"
@@ -60,7 +61,10 @@ class Batch {
         plan_(plan),
         earlier_(std::move(earlier)),
         reports_(options.wants_report() ? plan.size() : 0),
-        progress_(!options.quiet && !options.no_progress, plan.size()) {}
+        progress_(options.progress_json                    ? ProgressForm::json
+                  : !options.quiet && !options.no_progress ? ProgressForm::shown
+                                                           : ProgressForm::none,
+                  plan.size()) {}
 
   int run(const std::vector<Message>& missing);
 
@@ -178,7 +182,7 @@ void Batch::receive(std::size_t job, char kind, std::string_view bytes) {
 void Batch::show(std::string& text) {
   if (text.empty()) return;
   progress_.clear();
-  std::fwrite(text.data(), 1, text.size(), stderr);
+  write_messages(text);
   text.clear();
 }
 
@@ -368,7 +372,7 @@ int Batch::run(const std::vector<Message>& missing) {
   pool.interrupted = [this](std::size_t) { has_lost_workers_ = true; };
   pool.tick = [this] { return tick(); };
   const Result<PoolEnd> end = run_jobs(pool);
-  progress_.clear();
+  progress_.finish();
   if (has_lost_workers_) remove_leftovers();
 
   const bool complete = end.ok() && *end == PoolEnd::complete;
@@ -384,7 +388,7 @@ int Batch::run(const std::vector<Message>& missing) {
   for (const Status& status :
        {printed_, write_report(code == exit_code::well), write_junit(missing), write_table()}) {
     if (status.ok()) continue;
-    std::fprintf(stderr, "%s\n", to_string(status.error()).c_str());
+    write_messages(to_string(status.error()) + "\n");
     if (complete) code = exit_code::failed;
   }
   if (complete) summarize();
@@ -419,7 +423,7 @@ std::size_t available_cores(const Options& options) {
 int refuse(const Message& message) {
   Message shown = message;
   if (shown.file.empty()) shown.file = "selvage";
-  std::fprintf(stderr, "%s\n", to_string(shown).c_str());
+  write_messages(to_string(shown) + "\n");
   return exit_code::usage;
 }
 

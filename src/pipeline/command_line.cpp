@@ -24,23 +24,6 @@ using enum Command;
 using Commands = std::vector<Command>;
 using Take = decltype(Row::take);
 
-constexpr std::array commands = {
-    Subcommand{convert, "convert", "write surfaces, solids or text"},
-    Subcommand{check, "check", "closed? valid? overlapping? within tolerance? (exit code 3: no)"},
-    Subcommand{relax, "relax", "move and reshape yarns until none overlap (exit code 3: no solution)"},
-    Subcommand{mesh, "mesh",
-               "tetrahedra in every yarn, or in a unit cell with its matrix, as a solver's input deck"},
-    Subcommand{roundtrip, "roundtrip",
-               "write, read back and compare, for every surface format (exit code 3: different)"},
-    Subcommand{diff, "diff", "compare the geometry of two files (exit code 3: they differ)"},
-    Subcommand{info, "info", "what is in a file: yarns, sizes, units, lengths"},
-    Subcommand{edit, "edit", "move a point of a yarn: adds an `edit` line to a text"},
-    Subcommand{view, "view", "a picture of the yarns, ray-traced (PNG)"},
-    Subcommand{
-        sweep, "sweep",
-        "check, convert or mesh an input with many values of its params, and make a table of the results"},
-    Subcommand{formats, "formats", "the formats that can be read and written"}};
-
 const Commands on_batch = {convert, check, relax, mesh, roundtrip, info, view};
 const Commands on_yarns = {convert, check, relax, mesh, roundtrip, diff, info, view};
 const Commands writing = {convert, relax, mesh, view};
@@ -419,6 +402,10 @@ void of_running(OptionTable& t) {
   t.flag(all, "-q,--quiet", "errors only", &Options::quiet);
   t.flag(on_yarns, "-v,--verbose", "say more", &Options::verbose);
   t.flag(on_yarns, "--no-progress", "no progress bar or lines", &Options::no_progress);
+  t.choice(on_yarns, "--progress", "json: an object a line on standard error, for programs (with -q, too)",
+           "auto json", &Options::progress_json, {false, true})
+      .with_preset("auto")
+      .goes_with("asks for what --no-progress refuses", "", "--no-progress", "json");
   t.option(on_batch, "--shard", "only the I-th of N equal parts of the inputs, from 0", Argument::text("I/N"),
            take_shard);
   t.option(all, "--timeout",
@@ -441,6 +428,18 @@ void of_running(OptionTable& t) {
          &Options::allow_outside);
 }
 
+void of_learning(OptionTable& t) {
+  t.begin("What is asked", true);
+  t.option({new_text}, "KIND", "of the text", Argument::text(""), &Options::subject).is_required = false;
+  t.option({new_text}, "-o,--output", "the new file, which must not be there (default: standard output)",
+           Argument::text("FILE"), &Options::output);
+  t.option({explain}, "WORD", "without it the words that there are", Argument::text(""), &Options::subject)
+      .is_required = false;
+  t.option({help}, "TOPIC", "a subcommand, a topic, or a word as of explain", Argument::text(""),
+           &Options::subject)
+      .is_required = false;
+}
+
 // What formats declare for themselves.
 void of_formats(OptionTable& t) {
   for (const formats::Descriptor* format : formats::all_formats()) {
@@ -456,7 +455,7 @@ const std::deque<Row>& all_rows() {
   static const std::deque<Row> rows = [] {
     OptionTable table;
     for (auto* const part : {inputs_and_outputs, of_a_sweep, of_an_edit, of_a_picture, of_yarns, of_relaxing,
-                             of_a_mesh, of_a_cell, of_formats, of_running})
+                             of_a_mesh, of_a_cell, of_formats, of_running, of_learning})
       part(table);
     return table.take();
   }();
@@ -514,14 +513,6 @@ Status check_company(const std::vector<const Row*>& rows, const Line& line) {
 }
 
 }  // namespace
-
-std::string_view name_of(Command command) {
-  return commands[static_cast<std::size_t>(command)].name;
-}
-
-std::span<const Subcommand> all_commands() {
-  return commands;
-}
 
 // What a sweep may do with each variant.
 constexpr std::array swept = {Command::check, Command::convert, Command::mesh, Command::info};

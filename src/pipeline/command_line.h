@@ -18,6 +18,7 @@ namespace selvage::pipeline {
 struct Subcommand {
   Command command;
   std::string_view name, help;
+  std::string_view examples;  // lines that can be typed
 };
 // In the order of help.
 std::span<const Subcommand> all_commands();

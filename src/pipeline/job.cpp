@@ -331,6 +331,10 @@ Verdict work(Job& job, const std::string& earlier) {
       break;
     case Command::sweep:
     case Command::formats:
+    case Command::new_text:
+    case Command::explain:
+    case Command::help:
+    case Command::show_version:
       break;  // no jobs
   }
   if (job.has_failed()) return Verdict::failed;

@@ -18,7 +18,23 @@
 
 namespace selvage::pipeline {
 
-enum class Command { convert, check, relax, mesh, roundtrip, diff, info, edit, view, sweep, formats };
+enum class Command {
+  convert,
+  check,
+  relax,
+  mesh,
+  roundtrip,
+  diff,
+  info,
+  edit,
+  view,
+  sweep,
+  formats,
+  new_text,
+  explain,
+  help,
+  show_version
+};
 std::string_view name_of(Command command);
 
 // --relax and what goes with it; lengths in the input's unit.
@@ -61,7 +77,7 @@ struct Options {
   bool memory_is_share = false;  // it was not given
   Sandbox sandbox = Sandbox::automatic;
   std::size_t part = 0, parts = 1;
-  bool quiet = false, verbose = false, no_progress = false;
+  bool quiet = false, verbose = false, no_progress = false, progress_json = false;
   bool strict = false;
   std::string report;
   bool resume = false;
@@ -117,6 +133,8 @@ struct Options {
 
   EditWords edit;
   SweepWords sweep;
+
+  std::string subject;  // new, explain, help: what is asked for; may be empty
 
   bool json = false;   // info, diff: JSON instead of text
   bool table = false;  // info: the fixed points and control points of garment curves
