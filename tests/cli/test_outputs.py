@@ -52,8 +52,8 @@ class Places(Case):
                                   (("convert", GRID, RING), r"\.igs"), (("relax", PATH), r"\.txt"),
                                   (("mesh", GRID), r"\.inp"), (("view", GRID), r"\.png"),
                                   (("edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0,0,0"), r"\.txt")):
-            message = self.fails(2, *arguments, "-o", self.folder / "x.stl")
-            self.assertRegex(message, f"no format has the extension '.stl'.*{listed}")
+            message = self.fails(2, *arguments, "-o", self.folder / "x.sat")
+            self.assertRegex(message, f"no format has the extension '.sat'.*{listed}")
             self.assertEqual(self.names(), [])
         self.assertIn("cannot write iges", self.fails(2, "edit", PATH, "--yarn", "warp1", "--point", "2", "--to", "0,0,0",
                                                          "-o", self.folder / "x.igs"))

@@ -26,6 +26,14 @@ class Mesh:
         a, b, c = np.moveaxis(self.corners().astype(float), 1, 0)
         return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
 
+    def unpaired(self):
+        """Directed edges that are there more often than the other way: none of a closed mesh, even where it is pinched."""
+        t = self.triangles
+        edges = np.vstack([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]])
+        low, high = edges.min(axis=1), edges.max(axis=1)
+        _, numbers = np.unique(low * len(self.points) + high, return_inverse=True)
+        return int(np.count_nonzero(np.bincount(numbers, np.where(edges[:, 0] == low, 1, -1))))
+
     def bad_edges(self):
         """Directed edges that do not stand once each way."""
         t = self.triangles
