@@ -83,7 +83,10 @@ class Installed(Case):
     def test_headers_include_what_is_installed(self):
         include = self.prefix / "include/selvage"
         headers = sorted(include.rglob("*.h"))
-        self.assertIn(include / "formats/registry.h", headers)
+        of_formats = [*(ROOT / "formats").glob("*.h"), *(ROOT / "formats").glob("*/options.h")]
+        self.assertGreater(len(of_formats), 2)
+        for header in of_formats:
+            self.assertIn(include / header.relative_to(ROOT), headers)
         for header in headers:
             for name in re.findall(r'^#include "(.*)"', header.read_text(), re.MULTILINE):
                 self.assertTrue((include / name).exists(), f"{header}: {name}")
