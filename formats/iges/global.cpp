@@ -252,6 +252,7 @@ Global read_global(const Lines& lines, Complaints& complaints) {
   } else if (const Values values(cursor); values.failure()) {
     complaints.fault(values.failure()->spot, "global section: " + values.failure()->text);
   } else {
+    if (values.flaw()) complaints.flaw(values.flaw()->spot, "global section: " + values.flaw()->text);
     for (std::size_t i = 0; i < values.size(); ++i)
       if (values[i].is_broken)
         complaints.fault(values[i].spot, "global section: " + broken_number(values[i].text));

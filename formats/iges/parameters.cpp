@@ -194,7 +194,35 @@ bool Parameters::is_string() {
   if (failure_ || done_ || !skip_blanks()) return false;
   const char* p = at_;
   while (p != end_ && is_digit(*p)) ++p;
+  if (p != at_ && p == end_) return count_goes_on();
   return p != at_ && p != end_ && (*p == 'H' || *p == 'h');
+}
+
+// The line ends in digits. Are they the beginning of a string's count? A number whose delimiter is lost would
+// look the same, so the string has to be one.
+bool Parameters::count_goes_on() const {
+  Parameters ahead = *this;
+  if (line().is_shifted || !ahead.next_line()) return false;
+  while (ahead.at_ != ahead.end_ && is_digit(*ahead.at_)) ++ahead.at_;
+  if (ahead.at_ == ahead.end_ || (*ahead.at_ != 'H' && *ahead.at_ != 'h')) return false;
+  ahead = *this;
+  ahead.flaw_.reset();
+  ahead.string_here();
+  return ahead.ok() && !ahead.flaw_;
+}
+
+// Behind the H: the rest of the line without its delimiter, where that is the only one and ends the line.
+bool Parameters::text_of_line(std::size_t count, std::string& text) {
+  const std::string_view rest = trimmed({at_, static_cast<std::size_t>(end_ - at_)});
+  if (rest.empty() || line().is_shifted) return false;
+  const char delimiters[] = {delimiters_.parameter, delimiters_.record};
+  if (rest.find_first_of(delimiters, 0, 2) != rest.size() - 1) return false;
+  text = rest.substr(0, rest.size() - 1);
+  at_ += rest.size() - 1;
+  if (!flaw_)
+    flaw_ = Failure{value_spot_,
+                    fmt::format("a string of {} characters says that it has {}", text.size(), count), false};
+  return true;
 }
 
 std::string Parameters::text() {
@@ -203,21 +231,34 @@ std::string Parameters::text() {
     if (field(token) && !token.empty()) fail("a string (its length, H and its characters) is due here");
     return {};
   }
+  return string_here();
+}
+
+std::string Parameters::string_here() {
   value_spot_ = here();
   std::size_t length = 0;
-  for (; is_digit(*at_); ++at_)
+  while (at_ != end_ ? is_digit(*at_) : next_line()) {
+    if (at_ == end_ || !is_digit(*at_)) continue;
     if (length < 100'000'000) length = 10 * length + static_cast<std::size_t>(*at_ - '0');
-  ++at_;
-  std::string value;
-  if (length > room() || !characters(length, value)) {
-    fail(fmt::format("a string of {} characters is longer than what is left of the parameters", length));
-    return {};
+    ++at_;
   }
-  if (at_ == end_) next_line();
-  if (!skip_blanks() || !is_delimiter())
-    fail("no delimiter after a string: its count may be wrong");
-  else
-    take_delimiter();
+  ++at_;
+  const Parameters begin = *this;
+  std::string value;
+  const bool is_long_enough = length <= room() && characters(length, value);
+  if (is_long_enough && at_ == end_) next_line();
+  if (!is_long_enough || !skip_blanks() || !is_delimiter()) {
+    *this = begin;
+    value.clear();
+    if (!text_of_line(length, value)) {
+      fail(is_long_enough
+               ? "no delimiter after a string: its count may be wrong"
+               : fmt::format("a string of {} characters is longer than what is left of the parameters",
+                             length));
+      return value;
+    }
+  }
+  take_delimiter();
   return value;
 }
 
@@ -331,6 +372,7 @@ Values::Values(Parameters in) {
     values_.push_back(value);
   }
   failure_ = in.failure();
+  flaw_ = in.flaw();
 }
 
 std::optional<int> Values::integer(std::size_t i, int otherwise) const {

@@ -46,6 +46,8 @@ class Parameters {
   bool logical(bool otherwise = false) { return integer(otherwise ? 1 : 0) != 0; }
   // A directory pointer as it stands: 0 for none, possibly negative or nonsense; File::entity() judges it.
   int pointer();
+  // Where the count is wrong without a doubt (nothing but the record's line ends behind the string and its
+  // delimiter) the string is what stands there, and flaw() tells.
   std::string text();
   void skip();  // any value
   // For who takes values of any kind: does a string stand next, which text() takes? If not, token() gives the
@@ -71,6 +73,8 @@ class Parameters {
   [[nodiscard]] const Delimiters& delimiters() const { return delimiters_; }
   [[nodiscard]] bool ok() const { return !failure_; }
   [[nodiscard]] const std::optional<Failure>& failure() const { return failure_; }
+  // The first thing that was read through; nothing: there was none.
+  [[nodiscard]] const std::optional<Failure>& flaw() const { return flaw_; }
   // The first one stays. At the value read last, or at `spot`. Nothing comes back, for who returns it.
   std::nullopt_t fail(std::string text);
   std::nullopt_t fail(const Spot& spot, std::string text);
@@ -99,6 +103,9 @@ class Parameters {
   bool take_delimiter();
   bool slow_real(double& value);
   bool characters(std::size_t count, std::string& text);
+  bool count_goes_on() const;
+  std::string string_here();
+  bool text_of_line(std::size_t count, std::string& text);
 
   const Lines* lines_;
   Section section_;
@@ -109,7 +116,7 @@ class Parameters {
   const char* start_ = nullptr;  // of the present line
   bool done_ = false;
   Spot value_spot_;
-  std::optional<Failure> failure_;
+  std::optional<Failure> failure_, flaw_;
 };
 
 // What is said of a number that runs over the end of its line.
@@ -138,6 +145,7 @@ class Values {
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] const Value& operator[](std::size_t i) const { return values_[i]; }
   [[nodiscard]] const std::optional<Parameters::Failure>& failure() const { return failure_; }
+  [[nodiscard]] const std::optional<Parameters::Failure>& flaw() const { return flaw_; }
   // Of value `i`, of the last one where there are fewer.
   [[nodiscard]] Spot spot(std::size_t i) const { return i < size() ? values_[i].spot : end_; }
   // The line (number in the section) with the record delimiter.
@@ -154,7 +162,7 @@ class Values {
  private:
   std::vector<Value> values_;
   std::forward_list<std::string> kept_;  // what does not stand in the file in one piece
-  std::optional<Parameters::Failure> failure_;
+  std::optional<Parameters::Failure> failure_, flaw_;
   Spot end_;
   int last_line_ = 0;
 };

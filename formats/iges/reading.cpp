@@ -75,7 +75,7 @@ class Reading::Nested {
 Reading::Reading(const File& file, TypeOf& type_of, TextReport& report, cad::Model& model)
     : file_(file), type_of_(type_of), report_(report), model_(model) {
   const std::size_t count = file.directory().size();
-  for (std::vector<char>* const flags : {&used_, &held_, &active_, &failed_}) flags->resize(count);
+  for (std::vector<char>* const flags : {&used_, &held_, &active_, &failed_, &flawed_}) flags->resize(count);
   extents_.resize(count);
 }
 
@@ -84,6 +84,8 @@ void Reading::warning(const DirectoryEntry& entry, const std::string& text) {
 }
 
 bool Reading::finish(const DirectoryEntry& entry, Parameters& parameters) {
+  if (parameters.flaw() && std::exchange(flawed_[index(entry)], 1) == 0)
+    report_.warning(parameters.flaw()->spot, entry.name() + ": " + parameters.flaw()->text);
   if (parameters.ok()) return true;
   const Parameters::Failure& failure = *parameters.failure();
   if (!failure.unsupported && !failure.text.empty()) {

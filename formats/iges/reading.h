@@ -145,7 +145,7 @@ class Reading {
   cad::Model& model_;
   // By the index of the entity: part of another one; held by a group or definition; being read at present;
   // its failure was reported.
-  std::vector<char> used_, held_, active_, failed_;
+  std::vector<char> used_, held_, active_, failed_, flawed_;
   std::vector<double> extents_;  // of each entity
   int depth_ = 0;
   std::size_t points_ = 0;

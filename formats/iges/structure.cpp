@@ -81,6 +81,7 @@ class StructureCheck {
         Parameters(file_.lines(), Section::parameter, entry.first_line, last, file_.global().delimiters));
     for (std::size_t i = 0; i < values.size(); ++i)
       if (values[i].is_broken) defect(entry, values.spot(i), broken_number(values[i].text));
+    if (values.flaw()) defect(entry, values.flaw()->spot, values.flaw()->text);
     if (values.failure()) {
       defect(entry, values.failure()->spot, values.failure()->text);
       return;

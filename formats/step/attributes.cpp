@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <set>
+#include <utility>
+
 #include "core/graph.h"
 #include "core/words.h"
 #include "formats/step/entities.h"
@@ -81,6 +84,8 @@ class Checker {
     if (count == 0 && name_ == "REPRESENTATION_ITEM" && !by_itself &&
         file_.type_of(*statement_).find("RATIONAL_B_SPLINE_SURFACE") != std::string_view::npos)
       report_.warning(open, fmt::format("#{} has no name, not even an empty one", statement_->id));
+    else if (count < attributes.size() && attributes[count].may_lack)
+      tell_lack(open, count + 1, "is not there");
     else if (count != attributes.size())
       fail(open, fmt::format("{} has {} attributes here, not {}", name_, count, attributes.size()));
   }
@@ -89,7 +94,8 @@ class Checker {
     if (attribute.takes_anything) return skip_value();
     switch (lexer_.token()) {
       case Token::omitted:
-        return take_if(attribute.is_omissible || attribute.is_derived, attribute);
+        if (attribute.may_lack && !attribute.is_omissible) tell_lack(lexer_.spot(), number_, "is '$'");
+        return take_if(attribute.is_omissible || attribute.is_derived || attribute.may_lack, attribute);
       case Token::derived:
         return take_if(attribute.is_derived, attribute);
       case Token::string:
@@ -109,6 +115,14 @@ class Checker {
       default:
         refuse(attribute);
     }
+  }
+
+  // At the first place alone: who leaves it out does so everywhere.
+  void tell_lack(const Spot& spot, std::size_t number, std::string_view what) {
+    if (lacking_.emplace(name_, number).second)
+      report_.warning(
+          spot, fmt::format("#{}: attribute {} of {} {}, which is read through here and wherever it is so",
+                            statement_->id, number, name_, what));
   }
 
   void take_if(bool fits, const Attribute& attribute) {
@@ -184,9 +198,10 @@ class Checker {
   std::vector<TypeFacts> facts_;  // one a type of the file
   Lexer lexer_{{}};
   const Statement* statement_ = nullptr;
-  std::size_t next_reference_ = 0;  // in Part21::refs
-  std::string_view name_;           // of the entity that is being checked
-  std::size_t number_ = 0;          // of its attribute, from 1
+  std::size_t next_reference_ = 0;                              // in Part21::refs
+  std::string_view name_;                                       // of the entity that is being checked
+  std::size_t number_ = 0;                                      // of its attribute, from 1
+  std::set<std::pair<std::string_view, std::size_t>> lacking_;  // told already
 };
 
 }  // namespace

@@ -74,8 +74,10 @@ class Entities {
   // "[[CARTESIAN_POINT]2]2", "AXIS2_PLACEMENT_2D|AXIS2_PLACEMENT_3D", "DIRECTION?", "s"
   [[nodiscard]] Attribute attribute_of(std::string_view word) const {
     Attribute attribute;
-    for (; word.ends_with('?') || word.ends_with('*'); word.remove_suffix(1))
-      (word.ends_with('?') ? attribute.is_omissible : attribute.is_derived) = true;
+    for (; word.ends_with('?') || word.ends_with('*') || word.ends_with('!'); word.remove_suffix(1))
+      (word.ends_with('?')   ? attribute.is_omissible
+       : word.ends_with('*') ? attribute.is_derived
+                             : attribute.may_lack) = true;
     if (word.starts_with('[')) {
       const std::size_t close = word.rfind(']');
       attribute.element.push_back(attribute_of(word.substr(1, close - 1)));

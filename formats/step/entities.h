@@ -17,6 +17,7 @@ using EntitySet = std::bitset<most_entities>;  // by their number in the table
 struct Attribute {
   bool is_omissible = false;  // '$'
   bool is_derived = false;    // '*'
+  bool may_lack = false;      // against the standard, but harmless: '$', or nothing behind it either
   bool takes_string = false, takes_number = false, takes_enumeration = false;
   bool takes_typed = false;         // NAME(value)
   bool takes_anything = false;      // every kind above, references to anything, lists

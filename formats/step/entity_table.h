@@ -3,7 +3,8 @@
 //
 //   s a string (or $), n a number, e an enumeration value, m a measure: a number or NAME(value), x anything,
 //   NAME a reference to that entity or one below it, A|B either, [A] a list of at least one, [A]0 [A]2 [A]1-3
-//   of at least none, two, one to three; A? may be omitted ($), A* may be derived (*).
+//   of at least none, two, one to three; A? may be omitted ($), A* may be derived (*), A! may not be omitted
+//   by the standard, but some leave it out ($, or with what is behind it) where no shape depends on it.
 //
 // "..." says nothing of the attributes, because editions differ. The fourth column is all the attributes of
 // the entity by itself, where that is not its supertypes' and its own: some are derived.
@@ -50,7 +51,7 @@ inline constexpr EntityRow entity_rows[] = {
   {"SOLID_ANGLE_MEASURE_WITH_UNIT", "MEASURE_WITH_UNIT", ""},
   {"MASS_MEASURE_WITH_UNIT", "MEASURE_WITH_UNIT", ""},
   {"RATIO_MEASURE_WITH_UNIT", "MEASURE_WITH_UNIT", ""},
-  {"UNCERTAINTY_MEASURE_WITH_UNIT", "MEASURE_WITH_UNIT", "s s"},
+  {"UNCERTAINTY_MEASURE_WITH_UNIT", "MEASURE_WITH_UNIT", "s! s!"},
   {"CONVERSION_BASED_UNIT", "NAMED_UNIT", "s MEASURE_WITH_UNIT"},
   {"CONTEXT_DEPENDENT_UNIT", "NAMED_UNIT", "s"},
   {"GEOMETRIC_REPRESENTATION_CONTEXT", "REPRESENTATION_CONTEXT", "n"},
@@ -268,13 +269,13 @@ inline constexpr EntityRow entity_rows[] = {
   {"SURFACE_STYLE_PARAMETER_LINE", "", "..."},
   {"SURFACE_STYLE_TRANSPARENT", "", "n"},
   {"SURFACE_STYLE_REFLECTANCE_AMBIENT", "", "..."},
-  {"SURFACE_STYLE_RENDERING", "", "e COLOUR"},
+  {"SURFACE_STYLE_RENDERING", "", "e! COLOUR"},
   {"SURFACE_STYLE_RENDERING_WITH_PROPERTIES", "SURFACE_STYLE_RENDERING",
    "[SURFACE_STYLE_TRANSPARENT|SURFACE_STYLE_REFLECTANCE_AMBIENT]"},
   {"SURFACE_SIDE_STYLE", "",
    "s [SURFACE_STYLE_FILL_AREA|SURFACE_STYLE_BOUNDARY|SURFACE_STYLE_SILHOUETTE|SURFACE_STYLE_SEGMENTATION_CURVE|"
    "SURFACE_STYLE_CONTROL_GRID|SURFACE_STYLE_PARAMETER_LINE|SURFACE_STYLE_RENDERING]"},
-  {"SURFACE_STYLE_USAGE", "", "e SURFACE_SIDE_STYLE"},
+  {"SURFACE_STYLE_USAGE", "", "e! SURFACE_SIDE_STYLE"},
   {"TEXT_STYLE", "", "..."},
   {"SYMBOL_STYLE", "", "..."},
   {"PRESENTATION_STYLE_ASSIGNMENT", "",

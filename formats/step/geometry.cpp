@@ -22,6 +22,7 @@
 #include <gp_Ax1.hxx>
 
 #include "nurbs/basis.h"
+#include "nurbs/restrict.h"
 
 namespace selvage::formats::step {
 
@@ -118,6 +119,11 @@ nurbs::Curve to_spline(const Handle(Geom_Curve) & curve, double first, double la
     if (std::abs(first - spline->FirstParameter()) <= within &&
         std::abs(last - spline->LastParameter()) <= within)
       return from_spline(Handle(Geom_BSplineCurve)::DownCast(spline->Copy()));
+    // OpenCASCADE's own cut fails where an end is beside a knot.
+    const double from = std::max(first, spline->FirstParameter()),
+                 to = std::min(last, spline->LastParameter());
+    if (!spline->IsPeriodic() && from < to)
+      return nurbs::restricted(from_spline(Handle(Geom_BSplineCurve)::DownCast(spline->Copy())), from, to);
   }
   return from_spline(GeomConvert::CurveToBSplineCurve(new Geom_TrimmedCurve(curve, first, last)));
 }
@@ -173,6 +179,10 @@ nurbs::Surface to_spline(const Handle(Geom_Surface) & surface, const cad::Range&
   }
   fit(used.u0, used.u1, whole.u0, whole.u1, basis->IsUPeriodic());
   fit(used.v0, used.v1, whole.v0, whole.v1, basis->IsVPeriodic());
+  // OpenCASCADE's own cut fails where an end is beside a knot.
+  if (basis->IsKind(STANDARD_TYPE(Geom_BSplineSurface)) && !basis->IsUPeriodic() && !basis->IsVPeriodic())
+    return nurbs::restricted(from_spline(Handle(Geom_BSplineSurface)::DownCast(basis->Copy())), used.u0,
+                             used.u1, used.v0, used.v1);
   nurbs::Surface spline = from_spline(GeomConvert::SurfaceToBSplineSurface(
       new Geom_RectangularTrimmedSurface(basis, used.u0, used.u1, used.v0, used.v1)));
   for (double& knot : spline.knots_u) knot += turn;

@@ -114,7 +114,10 @@ class FileReader {
       lexer_.next();
       strings_.clear();
       read_parameters();
-      expect(Token::semicolon, "';'");
+      if (lexer_.token() == Token::word)
+        report_.warning(lexer_.spot(), fmt::format("no ';' behind {} of the header", type));
+      else
+        expect(Token::semicolon, "';'");
       take_header(type);
     }
     expect_word("ENDSEC");

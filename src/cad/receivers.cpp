@@ -1,5 +1,5 @@
-// What receiving systems stumble on. The facts are collected from their manuals and users (src/cli/check.md, formats
-// of the other end); where a limit is not known exactly the message says so.
+// What receiving systems stumble on. The facts are collected from their manuals and users (src/cli/check.md,
+// formats of the other end); where a limit is not known exactly the message says so.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -112,7 +112,7 @@ Result<Parsed> parse(int count, char** words) {
   if (count > 1 && words[1] == generator) return generated(count == 3 ? words[2] : "");
   CLI::App program("Yarn-level fabrics: text in; CAD files, checked solids and solver-ready meshes out.",
                    "selvage");
-  program.set_version_flag("--version", fmt::format("selvage {}", pipeline::version()));
+  program.set_version_flag("--version", &pipeline::version_text);
   const auto names = [&](std::string_view word) {
     return std::find(words, words + count, word) != words + count;
   };
@@ -141,7 +141,7 @@ Result<Parsed> parse(int count, char** words) {
       Result<pipeline::Options> options =
           pipeline::understand(known.command, given_of(command, known.command));
       if (!options) return with_help(options.error().text, program, command);
-      if (known.command == pipeline::Command::show_version) return Parsed{program.version() + "\n", {}};
+      if (known.command == pipeline::Command::show_version) return Parsed{pipeline::version_text() + "\n", {}};
       return Parsed{{}, std::move(*options)};
     }
     return error(Kind::internal, "a subcommand that is not in the table");

@@ -5,8 +5,8 @@
 
 namespace selvage::pipeline {
 
-// Does what the options ask for; returns the program's exit code (src/cli/README.md). Messages go to standard error,
-// results to standard output.
+// Does what the options ask for; returns the program's exit code (src/cli/README.md). Messages go to standard
+// error, results to standard output.
 int run(const Options& options);
 
 // How many jobs or threads at once: -j, or one a core that this process may use.

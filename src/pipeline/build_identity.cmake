@@ -1,5 +1,7 @@
-# Writes HEADER with a hash of all sources below ROOT that the program is built from; leaves it alone where it says so
-# already. By their contents, not by git: the same for a clone, a copy and an archive.
+# Writes HEADER with the version (RELEASE is the project's) and a hash of all sources below ROOT that the program is built from;
+# leaves it alone where it says so already. The hash is of their contents, not by git: the same for a clone, a copy and an archive.
+include(${ROOT}/scripts/packaging/version.cmake)
+selvage_version(version ${ROOT} ${RELEASE})
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/src/*.cpp ${ROOT}/src/*.h ${ROOT}/formats/*.cpp ${ROOT}/formats/*.h)
 list(SORT files)
 set(all "")
@@ -9,7 +11,7 @@ foreach(file ${files})
 endforeach()
 string(SHA256 identity "${all}")
 string(SUBSTRING ${identity} 0 16 identity)
-set(text "#define SELVAGE_BUILD_IDENTITY \"${identity}\"\n")
+set(text "#define SELVAGE_VERSION \"${version}\"\n#define SELVAGE_BUILD_IDENTITY \"${identity}\"\n")
 set(old "")
 if(EXISTS ${HEADER})
   file(READ ${HEADER} old)

@@ -32,7 +32,8 @@ constexpr auto progress_interval = std::chrono::milliseconds(50);
 // line.
 std::string settings_of(const Options& options) {
   std::string text = fmt::format("selvage={} build={}", version(), build_identity());
-  for (const auto& [library, number] : library_versions()) text += fmt::format(" {}={}", library, number);
+  for (const Library& library : library_versions())
+    text += fmt::format(" {}={}", library.name, library.version);
   text += fmt::format(" {}{}", name_of(options.command), options.settings);
   return text;
 }

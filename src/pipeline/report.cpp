@@ -67,7 +67,7 @@ std::string InputReport::text() {
 std::string whole_report(const std::string& started, double seconds, bool ok, const Counts& counts,
                          const std::vector<std::string>& inputs) {
   Json libraries = Json::object();
-  for (const auto& [name, version] : library_versions()) libraries[std::string(name)] = version;
+  for (const Library& library : library_versions()) libraries[std::string(library.name)] = library.version;
   Json list = Json::array();
   for (const std::string& text : inputs)
     if (!text.empty()) list.push_back(Json::parse(text, nullptr, false));

@@ -1,5 +1,5 @@
-// The JSON report (src/cli/report.md): whoever finds something puts it there as it is to be read. Lengths in mm; what
-// is unknown is left out.
+// The JSON report (src/cli/report.md): whoever finds something puts it there as it is to be read. Lengths in
+// mm; what is unknown is left out.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,9 @@
 #include "pipeline/versions.h"
 
+#include <array>
+
 #include "build_identity.h"
+#include "libraries_built_with.h"
 
 namespace selvage::pipeline {
 
@@ -12,13 +15,19 @@ std::string_view build_identity() {
   return SELVAGE_BUILD_IDENTITY;
 }
 
-std::vector<std::pair<std::string_view, std::string_view>> library_versions() {
-  std::vector<std::pair<std::string_view, std::string_view>> known = {{"occt", SELVAGE_OCCT_VERSION},
-                                                                      {"cgal", SELVAGE_CGAL_VERSION},
-                                                                      {"embree", SELVAGE_EMBREE_VERSION},
-                                                                      {"tetgen", SELVAGE_TETGEN_VERSION}};
-  std::erase_if(known, [](const auto& library) { return library.second.empty(); });
+std::span<const Library> library_versions() {
+  static constexpr auto known = std::to_array<Library>({SELVAGE_LIBRARIES});
   return known;
+}
+
+std::string version_text() {
+  std::string text = "selvage " SELVAGE_VERSION "\n";
+  std::string_view before = "with ";
+  for (const Library& library : library_versions()) {
+    text.append(before).append(library.title).append(" ").append(library.version);
+    before = ", ";
+  }
+  return text;
 }
 
 }  // namespace selvage::pipeline

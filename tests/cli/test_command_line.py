@@ -14,7 +14,11 @@ class Usage(Case):
         self.assertFalse(self.out.exists(), "a refused command line must do nothing")
 
     def test_version_and_help(self):
-        self.assertRegex(self.succeeds("--version").stdout, r"^selvage \d+\.\d+\.\d+\n$")
+        version, libraries = self.succeeds("--version").stdout.splitlines()
+        self.assertRegex(version, r"^selvage \d+\.\d+\.\d+\S*$")
+        self.assertRegex(libraries, r"^with (\w+ \d+(\.\d+)+(, |$))+$")
+        for library in ("OpenCASCADE", "CGAL", "Embree", "TetGen", "muParser", "Eigen", "fmt"):
+            self.assertIn(f"{library} ", libraries)
         everything = self.succeeds("--help").stdout
         for command in ("convert", "relax", "check", "mesh", "info", "edit", "view", "formats"):
             self.assertIn(command, everything)

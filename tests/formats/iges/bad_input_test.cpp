@@ -160,8 +160,10 @@ TEST(IgesBadInput, WrongCounts) {
   expect_error(with_parameters(5, "2,", "999,"), "more than");
   expect_error(with_parameters(5, "2,", "3,"), "pointer to an entity is missing");
   expect_error(with_parameters(5, "2,", "-2,"), "cannot be -2");
-  expect_error(with_parameters(2, "5Hwarp1", "9Hwarp1"), "");
-  expect_error(with_parameters(2, "5Hwarp1", "99Hwarp1"), "longer than what is left");
+  expect_warning(with_parameters(2, "5Hwarp1", "9Hwarp1"), "a string of 5 characters says that it has 9");
+  expect_warning(with_parameters(2, "5Hwarp1", "99Hwarp1"), "a string of 5 characters says that it has 99");
+  expect_error(with_parameters(2, "5Hwarp1", "9Hwa,rp1"), "no delimiter after a string");
+  expect_error(with_parameters(2, "5Hwarp1", "99Hwa,rp1"), "longer than what is left");
 }
 
 TEST(IgesBadInput, PointersToNowhere) {
@@ -373,7 +375,7 @@ TEST(IgesBadInput, Globals) {
                  "units are 1 to 11; lengths are taken as MM");
   expect_error(with("1H,,1H;,4HPart,8Hpart.igs,4HTest,4HTest,32,38,6,308,15,4HPart,1.,3,5HCUBIT;"),
                "'CUBIT'");
-  expect_error(with("1H,,1H;,4HPart,99Hpart.igs;"), "longer than what is left");
+  expect_error(with("1H,,1H;,4HPart,99Hpa,rt.igs;"), "longer than what is left");
   expect_error(with("1H,,1H;,4HPart,8Hpart.igs,4HTest,4HTest,32,38,6,308,15,4HPart,big,2,2HMM;"),
                "'big' is no number");
   expect_error(with("1H,,1H;,4HPart,8Hpart.igs,4HTest,4HTest,32,38,6,308,15,4HPart,1.,2"), "end without");

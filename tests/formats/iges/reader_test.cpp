@@ -167,6 +167,40 @@ TEST(IgesReader, LongStrings) {
   EXPECT_EQ(model_of(text).parts.at(0).name, name);
 }
 
+// A count that runs over the end of its line, and one that is wrong without a doubt.
+TEST(IgesReader, CountsOfStrings) {
+  IgesText text = one_face();
+  text.global = "1H,,1H;,1HA,7Ha.igs/b,,,32,38,6,308,15,,1.,2,2HMM,1,0.1,13H960102.030405,1.E-06,100.;";
+  const auto with_second_line_from = [&](const std::string& first, const std::string& rest) {
+    std::string bytes = text.bytes();
+    const std::size_t line = bytes.find("1H,,1H;,");
+    bytes.replace(line, 72, first + std::string(72 - first.size(), ' '));
+    bytes.replace(bytes.find('\n', line) + 1, 72, rest + std::string(72 - rest.size(), ' '));
+    return read_iges(bytes);
+  };
+  const std::string rest = ",,,32,38,6,308,15,,1.,2,2HMM,1,0.1,13H960102.030405,1.E-06,100.;";
+
+  const std::string title(57, 'x');
+  IgesReading reading =
+      with_second_line_from("1H,,1H;,57H" + title + ",,,1", "5HTest 2.0 of 2026,32,38,6,308,15,,1.,2;");
+  EXPECT_FALSE(reading.model);  // 15 characters of 16: no string, so its count is none either
+  reading = with_second_line_from("1H,,1H;,57H" + title + ",,,1", "6HTest 2.0 of 2026,32,38,6,308,15,,1.,2;");
+  ASSERT_TRUE(reading.model) << reading.text();
+  EXPECT_EQ(reading.model->title, title);
+  EXPECT_EQ(reading.model->units, Unit::mm);
+
+  reading = with_second_line_from("1H,,1H;,1HA,", "99H7 characters,");
+  EXPECT_FALSE(reading.model);
+  reading = with_second_line_from("1H,,1H;,5HA,", rest.substr(1));
+  EXPECT_FALSE(reading.model);  // ",  32" would be characters, too
+  reading = with_second_line_from("1H,,1H;,74HA,", rest);
+  ASSERT_TRUE(reading.model) << reading.text();
+  EXPECT_TRUE(reading.says(Severity::warning, "a string of 1 characters says that it has 74"))
+      << reading.text();
+  EXPECT_EQ(reading.model->title, "A");
+  EXPECT_EQ(reading.model->date, "19960102.030405");
+}
+
 TEST(IgesReader, NumbersInEveryForm) {
   IgesText text;
   // Integers where reals stand, reals where integers stand, D exponents, blanks, defaults.

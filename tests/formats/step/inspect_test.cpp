@@ -145,6 +145,29 @@ TEST(StepInspect, SchemasByOtherWritersNames) {
   }
 }
 
+// What is left out against the standard, where no shape depends on it, is told once.
+TEST(StepInspect, WhatMayLackIsToldOnce) {
+  const std::string text = file_of(
+      "#1=COLOUR_RGB('',0.,0.,1.);\n#2=SURFACE_STYLE_RENDERING($,#1);\n#3=SURFACE_STYLE_RENDERING($,#1);\n"
+      "#4=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));\n"
+      "#5=UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-6),#4);");
+  const Source source = Source::from_memory(text, "a.stp");
+  TextReport report(source);
+  EXPECT_TRUE(inspect(source, report));
+  Diagnostics diagnostics;
+  report.hand_over(diagnostics);
+  ASSERT_EQ(diagnostics.messages().size(), 2U);
+  EXPECT_EQ(diagnostics.messages()[0].place.line, 7);
+  EXPECT_TRUE(
+      diagnostics.messages()[0].text.starts_with("#2: attribute 1 of SURFACE_STYLE_RENDERING is '$'"));
+  EXPECT_TRUE(diagnostics.messages()[1].text.starts_with(
+      "#5: attribute 3 of UNCERTAINTY_MEASURE_WITH_UNIT is not there"));
+  for (const Message& message : diagnostics.messages()) EXPECT_EQ(message.severity, Severity::warning);
+  // Not where a shape depends on it.
+  EXPECT_EQ(with_corner("#6=EDGE_CURVE('',#5,#5,#4,$);"),
+            "11:27: #6: attribute 5 of EDGE_CURVE is '$', not a value between dots");
+}
+
 // Through what nobody translates: a note that names the callout in which it stands.
 TEST(StepInspect, OnlyCirclesOfShapesHarm) {
   EXPECT_EQ(with_corner("#6=DIMENSION_TEXT_ASSOCIATIVITY('',#7);\n#7=DRAUGHTING_CALLOUT('',(#6));"), "");

@@ -241,6 +241,9 @@ TEST(StepReader, WhatIsUnambiguousIsReadThrough) {
        "an apostrophe inside this string is not doubled"},
       {with(whole, "BREP('yarn ''a b'''", "BREP('yarn 'a b'''"),
        "an apostrophe inside this string is not doubled"},
+      {with(whole, "'2;1');", "'2;1')"), "no ';' behind FILE_DESCRIPTION of the header"},
+      {with(whole, "SURFACE_STYLE_USAGE(.BOTH.", "SURFACE_STYLE_USAGE($"),
+       "attribute 1 of SURFACE_STYLE_USAGE is '$'"},
   };
   const Reading before = read(whole);
   ASSERT_TRUE(before.model.has_value());

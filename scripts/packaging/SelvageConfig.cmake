@@ -1,0 +1,12 @@
+# find_package(Selvage): the target Selvage::selvage.
+include(CMakeFindDependencyMacro)
+find_dependency(Eigen3 3.4 NO_MODULE)
+find_dependency(Threads)
+find_dependency(ZLIB)
+find_library(Selvage_MD md)
+if(NOT Selvage_MD)
+  set(Selvage_FOUND FALSE)
+  set(Selvage_NOT_FOUND_MESSAGE "libmd is missing (Debian: libmd-dev)")
+  return()
+endif()
+include(${CMAKE_CURRENT_LIST_DIR}/SelvageTargets.cmake)

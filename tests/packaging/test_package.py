@@ -1,0 +1,89 @@
+"""The Debian package on a bare Debian 12: it installs, its dependencies are all that it needs, it works, and it goes without a trace.
+
+Takes root, debootstrap and Debian's archive, so it runs every night, and by hand:
+  scripts/package && python3 tests/packaging/test_package.py
+SELVAGE_PACKAGE: the package (default: that in build). SELVAGE_ROOT: the folder of a bare root, made where it is missing and kept
+(default: one that goes at the end).
+"""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+SAMPLES = "/usr/share/selvage/samples"
+
+
+def packages():
+    named = os.environ.get("SELVAGE_PACKAGE")
+    return [pathlib.Path(named)] if named else sorted((REPOSITORY / "build").glob("selvage_*.deb"))
+
+
+class Package(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        (cls.package,) = packages()
+        kept = os.environ.get("SELVAGE_ROOT")
+        cls.root = pathlib.Path(kept or tempfile.mkdtemp(prefix="selvage-root-"))
+        if not (cls.root / "etc/debian_version").exists():
+            subprocess.run(["debootstrap", "--variant=minbase", "bookworm", cls.root], check=True, stdout=subprocess.DEVNULL)
+        if not kept:
+            cls.addClassCleanup(shutil.rmtree, cls.root)
+        # It reaches the archive in the way that this machine does.
+        shutil.copy("/etc/resolv.conf", cls.root / "etc")
+        shutil.rmtree(cls.root / "etc/apt")
+        shutil.copytree("/etc/apt", cls.root / "etc/apt")
+        subprocess.run(["mount", "-t", "proc", "proc", cls.root / "proc"], check=True)
+        cls.addClassCleanup(subprocess.run, ["umount", cls.root / "proc"], check=True)
+        shutil.copy(cls.package, cls.root / "root/selvage.deb")
+        cls.addClassCleanup((cls.root / "root/selvage.deb").unlink)
+        cls.inside("apt-get", "update", "-q")
+
+    @classmethod
+    def inside(cls, *command, code=0):
+        """Runs a command in the root; its standard output."""
+        done = subprocess.run(["chroot", cls.root, "env", "-i", "HOME=/root", "PATH=/usr/sbin:/usr/bin:/sbin:/bin", "LC_ALL=C",
+                               "DEBIAN_FRONTEND=noninteractive", *command], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        if done.returncode != code:
+            raise AssertionError(f"{command}: {done.returncode}\n{done.stdout}\n{done.stderr}")
+        return done.stdout
+
+    def assert_bare(self):
+        self.assertEqual(self.inside("find", "/", "-xdev", "-iname", "*selvage*", "-not", "-path", "/root/selvage.deb"), "")
+
+    def test_from_nothing_to_nothing(self):
+        self.assert_bare()
+        self.inside("apt-get", "install", "-q", "-y", "--no-install-recommends", "/root/selvage.deb")
+        self.addCleanup(self.inside, "dpkg", "--purge", "selvage")  # where something fails
+        files = self.inside("dpkg", "-L", "selvage").split()
+        self.assertIn("/usr/bin/selvage", files)
+        programs = [name for name in files if name.startswith(("/usr/bin/", "/usr/lib/selvage/"))]
+        self.assertEqual(len(programs), 6)
+        for name in programs:
+            self.assertNotIn("not found", self.inside("ldd", name))
+        self.works()
+        self.inside("apt-get", "purge", "-q", "-y", "--autoremove", "selvage")
+        for name in programs:
+            self.assertFalse((self.root / name[1:]).exists(), name)
+        self.assert_bare()
+
+    def works(self):
+        """Each module is opened, and the worker runs."""
+        weave, out = f"{SAMPLES}/weave_plain.txt", "/root/out"
+        self.assertTrue(self.inside("selvage", "--version").startswith("selvage "))
+        self.inside("selvage", "convert", weave, "--to", "iges,step", "-o", out)
+        self.assertTrue((self.root / "root/out/weave_plain.igs").read_text().rstrip().endswith("T      1"))
+        self.assertTrue((self.root / "root/out/weave_plain.stp").read_text().endswith("END-ISO-10303-21;\n"))
+        self.inside("selvage", "check", f"{out}/weave_plain.stp")
+        self.inside("selvage", "mesh", weave, "--size", "0.2", "-o", f"{out}/weave.inp")
+        self.assertIn("*ELEMENT", (self.root / "root/out/weave.inp").read_text().upper())
+        self.inside("selvage", "view", weave, "--size", "80x60", "-o", f"{out}/weave.png")
+        self.inside("selvage", "convert", f"{SAMPLES}/plain_by_params.txt", "--set", "sett=2*11", "-o", f"{out}/params.igs")
+        self.inside("rm", "-r", out)
+
+
+if __name__ == "__main__":
+    unittest.main()
