@@ -141,7 +141,8 @@ Result<Parsed> parse(int count, char** words) {
       Result<pipeline::Options> options =
           pipeline::understand(known.command, given_of(command, known.command));
       if (!options) return with_help(options.error().text, program, command);
-      if (known.command == pipeline::Command::show_version) return Parsed{program.version() + "\n", {}};
+      if (known.command == pipeline::Command::show_version)
+        return Parsed{pipeline::version_text() + "\n", {}};
       return Parsed{{}, std::move(*options)};
     }
     return error(Kind::internal, "a subcommand that is not in the table");
