@@ -5,10 +5,11 @@ namespace selvage::formats {
 
 const std::vector<const Descriptor*>& all_formats() {
   static const std::vector<const Descriptor*> list = {
-      &txt::descriptor(), &wif::descriptor(), &tg3::descriptor(), &iges::descriptor(),      &step::descriptor(),
-      &svg::descriptor(), &dxf::descriptor(), &vtp::descriptor(),       &csv::descriptor(),
-      &inp::descriptor(), &cdb::descriptor(), &cdb::macro_descriptor(), &k::descriptor(),
-      &bdf::descriptor(), &msh::descriptor(), &vtu::descriptor(),       &unv::descriptor()};
+      &txt::descriptor(),  &wif::descriptor(), &tg3::descriptor(), &iges::descriptor(),
+      &step::descriptor(), &svg::descriptor(), &dxf::descriptor(), &vtp::descriptor(),
+      &csv::descriptor(),  &inp::descriptor(), &cdb::descriptor(), &cdb::macro_descriptor(),
+      &k::descriptor(),    &bdf::descriptor(), &msh::descriptor(), &vtu::descriptor(),
+      &unv::descriptor()};
   return list;
 }
 

@@ -9,8 +9,8 @@
 
 namespace selvage::formats::tg3 {
 
-// The yarns of a <Textile> without any, by its type, as its own sizes say. Errors, at the element: a type that is not built
-// here (unsupported), sizes and patterns that are missing or do not fit.
+// The yarns of a <Textile> without any, by its type, as its own sizes say. Errors, at the element: a type
+// that is not built here (unsupported), sizes and patterns that are missing or do not fit.
 std::optional<std::vector<TextileYarn>> construct(const Element& textile, const Fields& fields);
 
 }  // namespace selvage::formats::tg3

@@ -44,9 +44,10 @@ std::vector<double> Fields::numbers(const Element& element, std::string_view nam
     values[i] = value.value_or(0.0);
   }
   if (!is_good)
-    error(element, fmt::format("the {} of <{}> is {}: {} expected", name, element.name, in_quotes(*text),
-                               count == 1 ? "a finite decimal number is"
-                                          : fmt::format("{} finite numbers with commas between them are", count)));
+    error(element,
+          fmt::format("the {} of <{}> is {}: {} expected", name, element.name, in_quotes(*text),
+                      count == 1 ? "a finite decimal number is"
+                                 : fmt::format("{} finite numbers with commas between them are", count)));
   return values;
 }
 
@@ -59,7 +60,8 @@ double Fields::positive(const Element& element, std::string_view name) const {
   const int errors = this->errors();
   const double value = number(element, name);
   if (this->errors() == errors && !(value > 0))
-    error(element, fmt::format("the {} of <{}> is {}: it has to be larger than 0", name, element.name, value));
+    error(element,
+          fmt::format("the {} of <{}> is {}: it has to be larger than 0", name, element.name, value));
   return value;
 }
 
@@ -70,8 +72,8 @@ int Fields::whole(const Element& element, std::string_view name, int least, int 
   const double value = number(element, name);
   if (this->errors() != errors) return least;
   if (value == std::floor(value) && value >= least && value <= most) return static_cast<int>(value);
-  error(element, fmt::format("the {} of <{}> is {}: a whole number from {} to {} is expected", name, element.name,
-                             value, least, most));
+  error(element, fmt::format("the {} of <{}> is {}: a whole number from {} to {} is expected", name,
+                             element.name, value, least, most));
   return least;
 }
 
@@ -84,7 +86,8 @@ Vec2 Fields::pair(const Element& element, std::string_view name) const {
   return {values[0], values[1]};
 }
 
-Vec3 Fields::vector(const Element& element, std::string_view name, const std::optional<Vec3>& otherwise) const {
+Vec3 Fields::vector(const Element& element, std::string_view name,
+                    const std::optional<Vec3>& otherwise) const {
   if (otherwise && element.attribute(name) == nullptr) return *otherwise;
   const std::vector<double> values = numbers(element, name, 3);
   return {values[0], values[1], values[2]};

@@ -28,8 +28,7 @@ std::vector<Vec3> corners_of(const std::vector<HalfSpace>& sides) {
         Eigen::Matrix3d normals;
         normals << sides[i].normal.transpose(), sides[j].normal.transpose(), sides[k].normal.transpose();
         if (std::abs(normals.determinant()) < 1e-9) continue;
-        const Vec3 corner =
-            normals.inverse() * Vec3(sides[i].distance, sides[j].distance, sides[k].distance);
+        const Vec3 corner = normals.inverse() * Vec3(sides[i].distance, sides[j].distance, sides[k].distance);
         const bool is_inside = std::ranges::all_of(sides, [&](const HalfSpace& side) {
           return side.normal.dot(corner) >= side.distance - 1e-9 * (1 + corner.norm());
         });
@@ -44,7 +43,10 @@ using Steps = std::vector<int>;
 class Layer {
  public:
   Layer(const TextileYarn& yarn, const YarnUnit& unit, const Fields& fields)
-      : yarn_(yarn), unit_(unit), fields_(fields), repeats_(3, static_cast<Eigen::Index>(yarn.repeats.size())) {
+      : yarn_(yarn),
+        unit_(unit),
+        fields_(fields),
+        repeats_(3, static_cast<Eigen::Index>(yarn.repeats.size())) {
     for (std::size_t k = 0; k < yarn.repeats.size(); ++k)
       repeats_.col(static_cast<Eigen::Index>(k)) = yarn.repeats[k];
     box_ = bounds_of(unit.grid.points);
@@ -60,8 +62,9 @@ class Layer {
     if (repeats_.cols() == 0) return std::vector{std::pair(Vec3(Vec3::Zero()), 1)};
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(repeats_, Eigen::ComputeThinU | Eigen::ComputeThinV);
     if (repeats_.cols() > 3 || svd.singularValues().minCoeff() < 1e-9 * svd.singularValues().maxCoeff()) {
-      fields_.error(error(Kind::geometry, "the repeats of this yarn lie in one line or plane: each has to lead where the "
-                                          "others do not"),
+      fields_.error(error(Kind::geometry,
+                          "the repeats of this yarn lie in one line or plane: each has to lead where the "
+                          "others do not"),
                     yarn_.place);
       return std::nullopt;
     }
@@ -79,9 +82,10 @@ class Layer {
       copies *= std::max(0.0, ranges.back()[1] - ranges.back()[0] + 1);
     }
     if (!(copies <= most_copies)) {
-      fields_.error(error(Kind::limit, fmt::format("the domain holds more than {} copies of this yarn; make it smaller",
-                                                   most_copies)),
-                    yarn_.place);
+      fields_.error(
+          error(Kind::limit, fmt::format("the domain holds more than {} copies of this yarn; make it smaller",
+                                         most_copies)),
+          yarn_.place);
       return std::nullopt;
     }
     return joined(standing(ranges, domain));
@@ -104,7 +108,8 @@ class Layer {
   }
 
   // All copies within the ranges that reach into the domain.
-  [[nodiscard]] std::vector<Steps> standing(const std::vector<std::array<double, 2>>& ranges, const Domain& domain) const {
+  [[nodiscard]] std::vector<Steps> standing(const std::vector<std::array<double, 2>>& ranges,
+                                            const Domain& domain) const {
     std::vector<Steps> all = {{}};
     for (const auto& [low, high] : ranges) {
       std::vector<Steps> longer;
@@ -136,8 +141,8 @@ class Layer {
       for (const Steps& steps : copies) lines.emplace_back(shift_of(steps), 1);
       return lines;
     }
-    // The copy of each line of which the step along the yarn's longest own one is the smallest, and the first and
-    // last of the units that stand from there.
+    // The copy of each line of which the step along the yarn's longest own one is the smallest, and the first
+    // and last of the units that stand from there.
     std::size_t longest = 0;
     for (std::size_t k = 1; k < own.size(); ++k)
       if (std::abs(own[k]) > std::abs(own[longest])) longest = k;
@@ -171,9 +176,11 @@ class Layer {
 std::optional<Domain> read_domain(const Element& element, const Fields& fields) {
   const std::string_view type = fields.text(element, "type");
   if (type != "CDomainPlanes") {
-    fields.warning(element, fmt::format("a domain of the type {} is left out: the yarns are not repeated, and there is no "
-                                        "cell; planes (CDomainPlanes) are read",
-                                        in_quotes(type)));
+    fields.warning(
+        element,
+        fmt::format("a domain of the type {} is left out: the yarns are not repeated, and there is no "
+                    "cell; planes (CDomainPlanes) are read",
+                    in_quotes(type)));
     return std::nullopt;
   }
   const int errors = fields.errors();
@@ -190,16 +197,22 @@ std::optional<Domain> read_domain(const Element& element, const Fields& fields) 
       domain.sides.push_back({normal.normalized(), distance / normal.norm()});
   }
   if (domain.sides.size() > most_planes)
-    fields.error(element, fmt::format("this domain has {} planes; up to {} are read", domain.sides.size(), most_planes),
-                 Kind::limit);
+    fields.error(
+        element,
+        fmt::format("this domain has {} planes; up to {} are read", domain.sides.size(), most_planes),
+        Kind::limit);
   else if (const std::vector<Vec3> corners = corners_of(domain.sides);
            corners.size() < 4 || !(bounds_of(corners).sizes().minCoeff() > 0))
-    fields.error(element, "the planes of this domain enclose no room: of each pair of opposite ones the normals have to "
-                          "point at each other",
-                 Kind::geometry);
+    fields.error(
+        element,
+        "the planes of this domain enclose no room: of each pair of opposite ones the normals have to "
+        "point at each other",
+        Kind::geometry);
   if (fields.errors() > errors) return std::nullopt;
   if (!cell_of(domain))
-    fields.warning(element, "this domain is no box along the axes: the yarns are repeated over it, but there is no cell");
+    fields.warning(
+        element,
+        "this domain is no box along the axes: the yarns are repeated over it, but there is no cell");
   return domain;
 }
 
@@ -215,7 +228,8 @@ std::optional<fabric::Cell> cell_of(const Domain& domain) {
     (is_high ? cell.high : cell.low)[axis] = side.normal[axis] * side.distance;
     is_set[static_cast<std::size_t>(axis)][is_high ? 1 : 0] = true;
   }
-  if (is_set != std::array<std::array<bool, 2>, 3>{{{true, true}, {true, true}, {true, true}}}) return std::nullopt;
+  if (is_set != std::array<std::array<bool, 2>, 3>{{{true, true}, {true, true}, {true, true}}})
+    return std::nullopt;
   return cell;
 }
 
@@ -223,7 +237,8 @@ void lay(const TextileYarn& yarn, const std::optional<Domain>& domain, const Fie
          fabric::Fabric& fabric) {
   Result<YarnPath> path = YarnPath::make(yarn.nodes, yarn.interpolation);
   if (!path) return fields.error(path.error(), yarn.place);
-  YarnShape shape{.path = std::move(*path), .sections = yarn.sections, .pieces = yarn.pieces, .blend = yarn.blend};
+  YarnShape shape{
+      .path = std::move(*path), .sections = yarn.sections, .pieces = yarn.pieces, .blend = yarn.blend};
   if (!yarn.positions.empty()) shape.pieces = pieces_of_positions(shape.path, yarn.positions);
   if (shape.pieces.empty()) shape.pieces = constant_pieces(shape.path);
   const Result<YarnUnit> unit = surface_of(shape, most_control_points);
@@ -235,13 +250,16 @@ void lay(const TextileYarn& yarn, const std::optional<Domain>& domain, const Fie
     lines = *found;
   }
   std::size_t points = 0;
-  for (const auto& [shift, units] : lines) points += unit->grid.points.size() * static_cast<std::size_t>(units);
+  for (const auto& [shift, units] : lines)
+    points += unit->grid.points.size() * static_cast<std::size_t>(units);
   if (points > most_control_points)
-    return fields.error(error(Kind::limit, fmt::format("the copies of this yarn in the domain would need more than {} "
-                                                       "control points; make the domain smaller",
-                                                       most_control_points)),
-                        yarn.place);
-  if (lines.empty()) fields.warning(yarn.place, "no copy of this yarn reaches into the domain: it is left out");
+    return fields.error(
+        error(Kind::limit, fmt::format("the copies of this yarn in the domain would need more than {} "
+                                       "control points; make the domain smaller",
+                                       most_control_points)),
+        yarn.place);
+  if (lines.empty())
+    fields.warning(yarn.place, "no copy of this yarn reaches into the domain: it is left out");
   const Vec3 period = yarn.nodes.back().position - yarn.nodes.front().position;
   int number = 0;
   for (const auto& [shift, units] : lines) {

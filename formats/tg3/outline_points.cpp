@@ -26,11 +26,12 @@ Vec2 sizes_of(const Section& section) {
   return bounds_of(points).sizes();
 }
 
-// The length of the sections' outlines up to t, all sections together and each as if it were as wide as high, and its
-// inverse, from `start` once round.
+// The length of the sections' outlines up to t, all sections together and each as if it were as wide as high,
+// and its inverse, from `start` once round.
 class LengthTable {
  public:
-  LengthTable(const std::vector<Section>& sections, std::vector<double> marks) : ts_{marks.front()}, lengths_{0.0} {
+  LengthTable(const std::vector<Section>& sections, std::vector<double> marks)
+      : ts_{marks.front()}, lengths_{0.0} {
     std::vector<Vec2> scales;
     for (const Section& section : sections) scales.push_back(sizes_of(section).cwiseInverse());
     marks.push_back(marks.front() + 1);
@@ -157,7 +158,8 @@ Eigen::MatrixXd OutlinePoints::controls(const Eigen::MatrixXd& data) const {
     // Of the quartic through five even points, at the first of them.
     const auto slope = [&](Eigen::Index first, Eigen::Index step) -> Eigen::RowVectorXd {
       const auto row = [&](Eigen::Index i) { return rows.row(first + i * step); };
-      const double h = static_cast<double>(step) * (parameters.back() - parameters.front()) / static_cast<double>(arc.spans);
+      const double h = static_cast<double>(step) * (parameters.back() - parameters.front()) /
+                       static_cast<double>(arc.spans);
       return (-25 * row(0) + 48 * row(1) - 36 * row(2) + 16 * row(3) - 3 * row(4)) / (12 * h);
     };
     const Eigen::MatrixXd part =
@@ -176,7 +178,8 @@ double OutlinePoints::worst_error(const std::vector<Section>& sections) const {
       data.row(static_cast<Eigen::Index>(i)) = points_[n][i].transpose();
     const Eigen::MatrixXd control = controls(data);
     nurbs::Curve curve{degree(), knots_, {}, {}};
-    for (Eigen::Index i = 0; i < control.rows(); ++i) curve.points.emplace_back(control(i, 0), control(i, 1), 0.0);
+    for (Eigen::Index i = 0; i < control.rows(); ++i)
+      curve.points.emplace_back(control(i, 0), control(i, 1), 0.0);
     for (std::size_t i = 0; i < ts_.size(); ++i) {
       const nurbs::CurveJet jet = nurbs::evaluate_jet(curve, (parameters_[i] + parameters_[i + 1]) / 2);
       const Vec2 miss = sections[n].point(brought_in(halfways_[i])) - jet.position.head<2>();

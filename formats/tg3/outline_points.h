@@ -11,16 +11,17 @@ namespace selvage::formats::tg3 {
 
 inline constexpr double round_share = 1e-6;
 
-// The same parameters for all sections of a yarn. Polygons are joined by straight lines. Other sections are joined by cubics
-// between their corners (periodic where none has one), with so many points, evenly along the sections' outlines, that
-// the curve keeps within `round_share` of the largest section's size.
+// The same parameters for all sections of a yarn. Polygons are joined by straight lines. Other sections are
+// joined by cubics between their corners (periodic where none has one), with so many points, evenly along the
+// sections' outlines, that the curve keeps within `round_share` of the largest section's size.
 class OutlinePoints {
  public:
   explicit OutlinePoints(const std::vector<Section>& sections);
 
   // Of each section, counter-clockwise, the first not repeated.
   [[nodiscard]] const std::vector<std::vector<Vec2>>& points() const { return points_; }
-  // The control points (rows) round through a row of data for each point, first = last; columns are independent.
+  // The control points (rows) round through a row of data for each point, first = last; columns are
+  // independent.
   [[nodiscard]] Eigen::MatrixXd controls(const Eigen::MatrixXd& data) const;
   [[nodiscard]] int degree() const { return is_straight_ ? 1 : 3; }
   [[nodiscard]] const std::vector<double>& knots() const { return knots_; }

@@ -56,8 +56,8 @@ std::optional<double> Properties::stress(const Element& element, std::string_vie
 
 void Properties::read_fibres(const Element& element, fabric::Thread& thread) {
   // tex, g/cm3, mm2, mm.
-  const std::optional<double> linear =
-      measured(element, "YarnLinearDensity", {{"kg/m", 1e6}, {"g/m", 1e3}, {"kg/km", 1e3}, {"g/km", 1}, {"tex", 1}});
+  const std::optional<double> linear = measured(
+      element, "YarnLinearDensity", {{"kg/m", 1e6}, {"g/m", 1e3}, {"kg/km", 1e3}, {"g/km", 1}, {"tex", 1}});
   thread.density =
       measured(element, "FibreDensity", {{"kg/m^3", 1e-3}, {"g/cm^3", 1}, {"g/m^3", 1e-6}, {"kg/mm^3", 1e6}});
   std::optional<double> area =
@@ -70,33 +70,43 @@ void Properties::read_fibres(const Element& element, fabric::Thread& thread) {
   if (!area && diameter && thread.filaments)
     area = *thread.filaments * std::numbers::pi / 4 * *diameter * *diameter;
   // g/km of mm2 of g/cm3.
-  const std::optional<double> tex = linear ? linear : area && thread.density ? std::optional(1e3 * *area * *thread.density)
-                                                                             : std::nullopt;
-  if (tex && *tex > 0) thread.linear_density = fabric::LinearDensity{*tex, fabric::LinearDensity::Measure::tex};
+  const std::optional<double> tex = linear                   ? linear
+                                    : area && thread.density ? std::optional(1e3 * *area * *thread.density)
+                                                             : std::nullopt;
+  if (tex && *tex > 0)
+    thread.linear_density = fabric::LinearDensity{*tex, fabric::LinearDensity::Measure::tex};
   if (thread.density && !(*thread.density > 0)) thread.density.reset();
   if ((diameter || area) && !tex)
-    fields_.warning(element, "the fibres' diameter or area is left out: with the density of the fibre (and their number) "
-                             "it would say the yarn's linear density");
+    fields_.warning(
+        element,
+        "the fibres' diameter or area is left out: with the density of the fibre (and their number) "
+        "it would say the yarn's linear density");
 }
 
 void Properties::read_elastic(const Element& element, fabric::Material& material) {
   const std::optional<double> e1 = stress(element, "YoungsModulus"), e2 = stress(element, "YoungsModulusY"),
                               e3 = stress(element, "YoungsModulusZ"), g12 = stress(element, "ShearModulusXY"),
-                              g13 = stress(element, "ShearModulusXZ"), g23 = stress(element, "ShearModulusYZ");
+                              g13 = stress(element, "ShearModulusXZ"),
+                              g23 = stress(element, "ShearModulusYZ");
   const double nu12 = fields_.number(element, "PoissonsRatio", 0.0),
                nu13 = fields_.number(element, "PoissonsRatioY", 0.0),
                nu23 = fields_.number(element, "PoissonsRatioZ", 0.0);
   if (e1 && e2 && g12 && *e1 > 0 && *e2 > 0 && *g12 > 0) {
-    material.elastic = fabric::TransverseElastic{.e1 = *e1, .e2 = *e2, .nu12 = nu12, .g12 = *g12, .nu23 = nu23};
-    const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-9 * std::max(std::abs(a), std::abs(b)); };
+    material.elastic =
+        fabric::TransverseElastic{.e1 = *e1, .e2 = *e2, .nu12 = nu12, .g12 = *g12, .nu23 = nu23};
+    const auto differ = [](double a, double b) {
+      return std::abs(a - b) > 1e-9 * std::max(std::abs(a), std::abs(b));
+    };
     const double of_plane = *e2 / (2 * (1 + nu23));
     if (!warned_of_orthotropy_ && (differ(*e2, e3.value_or(*e2)) || differ(*g12, g13.value_or(*g12)) ||
                                    differ(of_plane, g23.value_or(of_plane)) || differ(nu12, nu13))) {
       warned_of_orthotropy_ = true;
-      fields_.warning(element, fmt::format("yarns are alike in all directions across them here: the third Young's modulus, "
-                                           "PoissonsRatioY and the shear moduli XZ and YZ are left out (G23 becomes {:.6g} "
-                                           "MPa)",
-                                           of_plane));
+      fields_.warning(
+          element,
+          fmt::format("yarns are alike in all directions across them here: the third Young's modulus, "
+                      "PoissonsRatioY and the shear moduli XZ and YZ are left out (G23 becomes {:.6g} "
+                      "MPa)",
+                      of_plane));
     }
   }
   const std::vector<Unit> per_kelvin = {{"/K", 1}, {"1/K", 1}, {"/C", 1}};
@@ -107,9 +117,8 @@ void Properties::read_elastic(const Element& element, fabric::Material& material
 
 std::string Properties::thread_of(const Element& yarn, const Element& textile) {
   fabric::Thread thread;
-  const bool has_own = std::ranges::any_of(yarn.attributes, [](const Attribute& attribute) {
-    return attribute.name.ends_with("Value");
-  });
+  const bool has_own = std::ranges::any_of(
+      yarn.attributes, [](const Attribute& attribute) { return attribute.name.ends_with("Value"); });
   const Element& element = has_own ? yarn : textile;
   thread.place = element.place;
   read_fibres(element, thread);

@@ -13,8 +13,8 @@ class Properties {
  public:
   Properties(const Fields& fields, fabric::Fabric& fabric) : fields_(fields), fabric_(fabric) {}
 
-  // The thread of a yarn, which has the textile's properties where it has none of its own; yarns with the same ones share
-  // it. Empty: nothing is said.
+  // The thread of a yarn, which has the textile's properties where it has none of its own; yarns with the
+  // same ones share it. Empty: nothing is said.
   std::string thread_of(const Element& yarn, const Element& textile);
   // The material of the matrix; empty: nothing is said of it.
   std::string matrix_of(const Element& textile);
@@ -24,7 +24,8 @@ class Properties {
     std::string_view name;
     double factor;  // into the model's unit
   };
-  std::optional<double> measured(const Element& element, std::string_view name, const std::vector<Unit>& units);
+  std::optional<double> measured(const Element& element, std::string_view name,
+                                 const std::vector<Unit>& units);
   std::optional<double> stress(const Element& element, std::string_view name);
   void read_fibres(const Element& element, fabric::Thread& thread);
   void read_elastic(const Element& element, fabric::Material& material);

@@ -21,8 +21,8 @@ namespace {
 constexpr std::size_t most_bytes = std::size_t{256} << 20U;
 
 // What TexGen computes from the rest, and how it is to mesh it.
-constexpr std::array<std::string_view, 8> computed = {"SlaveNode", "SectionAABB", "SectionLength", "SectionMesh",
-                                                      "EdgePoint", "Mesh",        "Layer",         "Offset"};
+constexpr std::array<std::string_view, 8> computed = {
+    "SlaveNode", "SectionAABB", "SectionLength", "SectionMesh", "EdgePoint", "Mesh", "Layer", "Offset"};
 
 // What each element may hold that is read, or that says nothing of the geometry.
 const std::map<std::string_view, std::set<std::string_view>>& known_elements() {
@@ -76,10 +76,12 @@ class Reader {
     }
     const std::string_view version = fields_.text(model, "version");
     if (version.starts_with("3.")) return true;
-    fields_.error(model,
-                  fmt::format("the model has the version {}: 3 is read (of TexGen 3.0 to 3.13); save it with one of these",
-                              in_quotes(version)),
-                  Kind::unsupported);
+    fields_.error(
+        model,
+        fmt::format(
+            "the model has the version {}: 3 is read (of TexGen 3.0 to 3.13); save it with one of these",
+            in_quotes(version)),
+        Kind::unsupported);
     return false;
   }
 
@@ -91,25 +93,29 @@ class Reader {
       if (known->second.contains(child.name))
         warn_of_unknown(child);
       else if (warned_.insert(child.name).second)
-        fields_.warning(child, fmt::format("<{}> in <{}> is not known, and left out", child.name, element.name));
+        fields_.warning(child,
+                        fmt::format("<{}> in <{}> is not known, and left out", child.name, element.name));
     }
   }
 
   void read_unit(const Element& element) {
     fabric_.units_given = true;
-    const std::string_view word = element.attribute("GeometryScale") != nullptr ? fields_.text(element, "GeometryScale") : "mm";
+    const std::string_view word =
+        element.attribute("GeometryScale") != nullptr ? fields_.text(element, "GeometryScale") : "mm";
     for (const Unit unit : all_units)
       if (name_of(unit) == word) {
         fabric_.units = unit;
         return;
       }
-    fields_.error(element, fmt::format("the GeometryScale {} is not known: m, cm, mm, um or inch", in_quotes(word)));
+    fields_.error(element,
+                  fmt::format("the GeometryScale {} is not known: m, cm, mm, um or inch", in_quotes(word)));
   }
 
   void read_textile(const Element& element, const Element& model) {
     read_unit(element);
     if (const std::string_view name = fields_.text(element, "name"); !name.empty()) fabric_.title = name;
-    const Element* const domain = element.child("Domain") != nullptr ? element.child("Domain") : model.child("Domain");
+    const Element* const domain =
+        element.child("Domain") != nullptr ? element.child("Domain") : model.child("Domain");
     Textile textile;
     if (domain != nullptr) textile.domain = read_domain(*domain, fields_);
     const bool has_yarns = element.child("Yarn") != nullptr;
@@ -133,7 +139,8 @@ class Reader {
       lay(yarn, textile.domain, fields_, fabric_);
     }
     fields_.set_yarn({});
-    if (fabric_.items.empty() && fields_.errors() == 0) fields_.error(element, "the textile has no yarn in its domain");
+    if (fabric_.items.empty() && fields_.errors() == 0)
+      fields_.error(element, "the textile has no yarn in its domain");
     fabric_.tell_threads_their_materials();
   }
 
@@ -164,7 +171,8 @@ class Reader {
     for (const Element& group : element.children) {
       if (group.name != "XYarns" && group.name != "YYarns") continue;
       const fabric::Role role = group.name == "XYarns" ? fabric::Role::warp : fabric::Role::weft;
-      for (const Element& yarn : group.children) roles[fields_.whole(yarn, "yarnindex", 0, most_yarns)] = role;
+      for (const Element& yarn : group.children)
+        roles[fields_.whole(yarn, "yarnindex", 0, most_yarns)] = role;
     }
     return roles;
   }
@@ -179,21 +187,25 @@ class Reader {
 
 bool is_tg3(std::string_view head) {
   const std::size_t first = head.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-  return first != std::string_view::npos && head[first] == '<' && head.find("<TexGenModel") != std::string_view::npos;
+  return first != std::string_view::npos && head[first] == '<' &&
+         head.find("<TexGenModel") != std::string_view::npos;
 }
 
 std::optional<fabric::Fabric> read_fabric(const Source& source, Diagnostics& diagnostics) {
-  return reported(source, diagnostics, [](const Source& text, TextReport& report) -> std::optional<fabric::Fabric> {
-    if (text.bytes().size() > most_bytes)
-      return report.error(spot_at(text, {1, 1}),
-                          fmt::format("the file has {} MB: up to {} are read; save it without what TexGen computes "
-                                      "(its standard output)",
-                                      text.bytes().size() >> 20U, most_bytes >> 20U),
-                          Kind::limit);
-    const Result<Element> model = read_xml(text.bytes(), computed);
-    if (!model) return report.error(spot_at(text, model.error().place), model.error().text, model.error().kind);
-    return Reader(text, report).read(*model);
-  });
+  return reported(
+      source, diagnostics, [](const Source& text, TextReport& report) -> std::optional<fabric::Fabric> {
+        if (text.bytes().size() > most_bytes)
+          return report.error(
+              spot_at(text, {1, 1}),
+              fmt::format("the file has {} MB: up to {} are read; save it without what TexGen computes "
+                          "(its standard output)",
+                          text.bytes().size() >> 20U, most_bytes >> 20U),
+              Kind::limit);
+        const Result<Element> model = read_xml(text.bytes(), computed);
+        if (!model)
+          return report.error(spot_at(text, model.error().place), model.error().text, model.error().kind);
+        return Reader(text, report).read(*model);
+      });
 }
 
 }  // namespace selvage::formats::tg3

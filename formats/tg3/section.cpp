@@ -138,10 +138,11 @@ Result<Section> hybrid(std::vector<double> divisions, std::vector<Section> secti
     const Section& before = sections[(k + sections.size() - 1) % sections.size()];
     const Vec2 from = before.point(divisions[k]), to = sections[k].point(divisions[k]);
     if ((to - from).norm() > 1e-6 * std::max(to.norm(), from.norm()))
-      return error(Kind::geometry,
-                   fmt::format("the parts of this section do not meet at the division {}: one is at ({}, {}), the "
-                               "other at ({}, {}); give them the same size there",
-                               divisions[k], from.x(), from.y(), to.x(), to.y()));
+      return error(
+          Kind::geometry,
+          fmt::format("the parts of this section do not meet at the division {}: one is at ({}, {}), the "
+                      "other at ({}, {}); give them the same size there",
+                      divisions[k], from.x(), from.y(), to.x(), to.y()));
     for (const double corner : sections[k].corners)
       if (part_at(corner) == k) whole.corners.push_back(corner);
   }

@@ -38,15 +38,18 @@ std::optional<Section> read_lenticular(const Element& element, const Fields& fie
   const double distortion = fields.number(element, "Distortion", 0.0);
   if (fields.errors() > 0) return std::nullopt;
   if (std::abs(distortion) >= height / 2)
-    return refuse(element, fields,
-                  fmt::format("the distortion {} of this lens reaches half of its height, {}: one of its arcs is flat or "
-                              "hollow; make it smaller",
-                              distortion, height / 2));
+    return refuse(
+        element, fields,
+        fmt::format(
+            "the distortion {} of this lens reaches half of its height, {}: one of its arcs is flat or "
+            "hollow; make it smaller",
+            distortion, height / 2));
   if (height / 2 + std::abs(distortion) > width / 2)
-    return refuse(element, fields,
-                  fmt::format("this lens is {} wide and {} high: it has to be as wide as its arcs are high; an ellipse "
-                              "may be higher",
-                              width, height));
+    return refuse(
+        element, fields,
+        fmt::format("this lens is {} wide and {} high: it has to be as wide as its arcs are high; an ellipse "
+                    "may be higher",
+                    width, height));
   return lenticular(width, height, distortion);
 }
 
@@ -54,19 +57,22 @@ std::optional<Section> read_polygon(const Element& element, const Fields& fields
   std::vector<Vec2> points = points_of(element, "PolygonPoint", fields);
   if (points.size() > 1 && points.front() == points.back()) points.pop_back();
   if (points.size() < 3)
-    return refuse(element, fields, fmt::format("this polygon has {} points: it needs three at least", points.size()));
+    return refuse(element, fields,
+                  fmt::format("this polygon has {} points: it needs three at least", points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)
     if (points[i] == points[(i + 1) % points.size()])
-      return refuse(element, fields, fmt::format("point {} of this polygon equals the next one; remove one of them", i + 1));
+      return refuse(element, fields,
+                    fmt::format("point {} of this polygon equals the next one; remove one of them", i + 1));
   return polygon(std::move(points), fields.flag(element, "RetainPoints", false));
 }
 
 std::optional<Section> read_bezier(const Element& element, const Fields& fields) {
   std::vector<Vec2> points = points_of(element, "BezierPoint", fields);
   if (points.size() < 6 || points.size() % 3 != 0)
-    return refuse(element, fields,
-                  fmt::format("this Bezier section has {} points: it needs three for each of two curves or more",
-                              points.size()));
+    return refuse(
+        element, fields,
+        fmt::format("this Bezier section has {} points: it needs three for each of two curves or more",
+                    points.size()));
   return bezier(std::move(points));
 }
 
@@ -77,19 +83,22 @@ std::optional<Section> read_hybrid(const Element& element, const Fields& fields)
     if (child.name == "Division") divisions.push_back(fields.number(child, "Value"));
     if (child.name != "Section") continue;
     if (fields.text(child, "type") == "CSectionRotated")
-      return refuse(child, fields, "a rotated section as a part of a hybrid one is not read; rotate the whole",
+      return refuse(child, fields,
+                    "a rotated section as a part of a hybrid one is not read; rotate the whole",
                     Kind::unsupported);
     std::optional<Section> part = read_section(child, fields);
     if (!part) return std::nullopt;
     sections.push_back(std::move(*part));
   }
   if (divisions.empty() || divisions.size() != sections.size())
-    return refuse(element, fields,
-                  fmt::format("this hybrid section has {} divisions and {} sections: as many of both are needed",
-                              divisions.size(), sections.size()));
+    return refuse(
+        element, fields,
+        fmt::format("this hybrid section has {} divisions and {} sections: as many of both are needed",
+                    divisions.size(), sections.size()));
   for (std::size_t k = 0; k < divisions.size(); ++k)
     if (divisions[k] < 0 || divisions[k] >= 1 || (k > 0 && divisions[k] <= divisions[k - 1]))
-      return refuse(element, fields, "the divisions of this hybrid section have to increase from 0 to below 1");
+      return refuse(element, fields,
+                    "the divisions of this hybrid section have to increase from 0 to below 1");
   Result<Section> whole = hybrid(std::move(divisions), std::move(sections));
   if (whole) return std::move(*whole);
   fields.error(whole.error(), element.place);
@@ -113,9 +122,11 @@ std::optional<Section> read_any(const Element& element, const Fields& fields) {
     if (fields.errors() > 0) return std::nullopt;
     // Beyond these the section is a box with corners, or a cross without area: as those of Fabric TXT.
     if (power < 0.1 || power > 10)
-      return refuse(element, fields, fmt::format("the power {} of this ellipse is not within 0.1 to 10", power));
+      return refuse(element, fields,
+                    fmt::format("the power {} of this ellipse is not within 0.1 to 10", power));
     if (std::abs(offset) >= width / 2)
-      return refuse(element, fields, fmt::format("the offset {} reaches half of the width, {}", offset, width / 2));
+      return refuse(element, fields,
+                    fmt::format("the offset {} reaches half of the width, {}", offset, width / 2));
     return power_ellipse(width, height, power, offset);
   }
   if (type == "CSectionLenticular") return read_lenticular(element, fields);
@@ -132,12 +143,13 @@ std::optional<Section> read_any(const Element& element, const Fields& fields) {
     if (!inner) return std::nullopt;
     return scaled(std::move(*inner), fields.pair(element, "Scale"));
   }
-  return refuse(element, fields,
-                fmt::format("a section of the type {} is not read{}", in_quotes(type),
-                            did_you_mean(type, {"CSectionEllipse", "CSectionRectangle", "CSectionPowerEllipse",
-                                                "CSectionLenticular", "CSectionPolygon", "CSectionBezier",
-                                                "CSectionHybrid", "CSectionRotated", "CSectionScaled"})),
-                Kind::unsupported);
+  return refuse(
+      element, fields,
+      fmt::format("a section of the type {} is not read{}", in_quotes(type),
+                  did_you_mean(type, {"CSectionEllipse", "CSectionRectangle", "CSectionPowerEllipse",
+                                      "CSectionLenticular", "CSectionPolygon", "CSectionBezier",
+                                      "CSectionHybrid", "CSectionRotated", "CSectionScaled"})),
+      Kind::unsupported);
 }
 
 }  // namespace
@@ -148,11 +160,12 @@ std::optional<Section> read_section(const Element& element, const Fields& fields
   if (!section || fields.errors() > errors) return std::nullopt;
   const double area = area_of(*section);
   if (!(area > 0))
-    return refuse(element, fields,
-                  fmt::format("this section's area is {}: it has no inside, or its points run clockwise; give them "
-                              "counter-clockwise",
-                              area),
-                  Kind::geometry);
+    return refuse(
+        element, fields,
+        fmt::format("this section's area is {}: it has no inside, or its points run clockwise; give them "
+                    "counter-clockwise",
+                    area),
+        Kind::geometry);
   return section;
 }
 

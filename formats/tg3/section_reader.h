@@ -8,8 +8,8 @@
 
 namespace selvage::formats::tg3 {
 
-// Errors, at their element: sizes that are not positive, sections without area or that run clockwise, too few points, an unknown
-// type.
+// Errors, at their element: sizes that are not positive, sections without area or that run clockwise, too few
+// points, an unknown type.
 std::optional<Section> read_section(const Element& element, const Fields& fields);
 
 }  // namespace selvage::formats::tg3

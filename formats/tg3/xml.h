@@ -1,4 +1,5 @@
-// The elements of an XML text, by pugixml (https://pugixml.org), which is opened only where there is one to read.
+// The elements of an XML text, by pugixml (https://pugixml.org), which is opened only where there is one to
+// read.
 #pragma once
 
 #include <span>
@@ -28,8 +29,9 @@ struct Element {
 // Parts of an XML text that do not matter: elements of these names, with all that stands in them.
 using Skipped = std::span<const std::string_view>;
 
-// The outermost element. Errors, at their place: malformed (no well-formed XML in UTF-8, no element), unsupported
-// (a document type: entities are not read), limit (elements that stand in each other more than 32 deep).
+// The outermost element. Errors, at their place: malformed (no well-formed XML in UTF-8, no element),
+// unsupported (a document type: entities are not read), limit (elements that stand in each other more than 32
+// deep).
 Result<Element> read_xml(std::string_view bytes, Skipped skipped);
 
 // What the module has.

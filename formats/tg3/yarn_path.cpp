@@ -65,7 +65,8 @@ Result<YarnPath> YarnPath::make(std::vector<PathNode> nodes, Interpolation inter
   for (std::size_t i = 0; i < path.spans(); ++i) {
     double length = 0;
     for (int k = 0; k < parts; ++k)
-      for (const auto& [x, weight] : {std::pair{-far, 5.0 / 18}, std::pair{0.0, 8.0 / 18}, std::pair{far, 5.0 / 18}}) {
+      for (const auto& [x, weight] :
+           {std::pair{-far, 5.0 / 18}, std::pair{0.0, 8.0 / 18}, std::pair{far, 5.0 / 18}}) {
         const double t = (k + 0.5 + 0.5 * x) / parts;
         length += weight / parts * path.line_at(i, t, t).d1.norm();
       }
@@ -86,15 +87,16 @@ Status YarnPath::set_tangents() {
     Vec3 tangent = is_given ? nodes_[i].tangent.normalized() : unit_or_zero(after - before);
     if (interpolation_.has_flat_nodes) tangent.z() = 0;
     if (interpolation_.form != Form::cubic && tangent.norm() < 1e-9)
-      return at_node(nodes_[i], "the line has no direction at this node: its neighbours are in one place, or its "
-                                "tangent is made flat; give it a tangent");
+      return at_node(nodes_[i],
+                     "the line has no direction at this node: its neighbours are in one place, or its "
+                     "tangent is made flat; give it a tangent");
     tangents_.push_back(tangent);
   }
   return {};
 }
 
-// Derivatives at the nodes of the cubic spline over the nodes' numbers: periodic, or natural (no curvature at its
-// ends).
+// Derivatives at the nodes of the cubic spline over the nodes' numbers: periodic, or natural (no curvature at
+// its ends).
 void YarnPath::set_cubics() {
   const auto count = static_cast<Eigen::Index>(nodes_.size()), last = count - 1;
   const auto p = [&](Eigen::Index i) { return nodes_[static_cast<std::size_t>(i)].position.transpose(); };
@@ -128,8 +130,9 @@ Status YarnPath::check_frames() const {
       const Vec3 up = nodes_[i].up + t * (nodes_[i + 1].up - nodes_[i].up);
       if (tangent.norm() < 1e-9) return at_node(nodes_[i], "the line stands still behind this node; move it");
       if (up.norm() < 1e-9)
-        return at_node(nodes_[i], "the directions `Up` of this node and of the next cancel each other between them; "
-                                  "turn one of them");
+        return at_node(nodes_[i],
+                       "the directions `Up` of this node and of the next cancel each other between them; "
+                       "turn one of them");
       if (up.normalized().cross(tangent.normalized()).norm() < 1e-9)
         return at_node(nodes_[i], "the direction `Up` lies along the line at or behind this node; turn it");
     }
@@ -176,8 +179,8 @@ PathJet YarnPath::at(std::size_t span, double t, double from) const {
   // TexGen's `up` between two nodes, less its part along the line.
   const Vec3 raw = first.up + t * (second.up - first.up), raw_dt = second.up - first.up;
   const Vec3 across = raw - tangent * tangent.dot(raw);
-  const Vec3 across_dt = raw_dt - tangent_dt * tangent.dot(raw) -
-                         tangent * (tangent_dt.dot(raw) + tangent.dot(raw_dt));
+  const Vec3 across_dt =
+      raw_dt - tangent_dt * tangent.dot(raw) - tangent * (tangent_dt.dot(raw) + tangent.dot(raw_dt));
   const auto [up, up_dt] = unit_jet(across, across_dt);
   const Vec3 side = tangent.cross(up), side_dt = tangent_dt.cross(up) + tangent.cross(up_dt);
   const double angle = first.angle + t * (second.angle - first.angle), angle_dt = second.angle - first.angle;

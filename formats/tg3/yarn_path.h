@@ -25,25 +25,26 @@ struct Adjustment {
 struct Interpolation {
   enum class Form { bezier, cubic, linear };
   Form form = Form::bezier;
-  bool is_periodic = true;          // the first node follows the last
-  bool has_flat_frames = false;     // the frame's tangent has no z
-  bool has_flat_nodes = false;      // nor have the tangents at the nodes, of a Bezier
+  bool is_periodic = true;                             // the first node follows the last
+  bool has_flat_frames = false;                        // the frame's tangent has no z
+  bool has_flat_nodes = false;                         // nor have the tangents at the nodes, of a Bezier
   std::vector<std::vector<Adjustment>> adjustments{};  // of each span, by increasing t; may be empty
 };
 
-// A place of the line, its frame there, and their derivatives by t. `up` is a unit vector across the frame's tangent;
-// `side` is tangent x up, turned about `up` by the nodes' angle.
+// A place of the line, its frame there, and their derivatives by t. `up` is a unit vector across the frame's
+// tangent; `side` is tangent x up, turned about `up` by the nodes' angle.
 struct PathJet {
   Vec3 position, side, up;
   Vec3 position_dt, side_dt, up_dt;
 };
 
-// The cubic (periodic or natural, over the nodes' numbers), the Beziers whose inner points are a third of the chord
-// away along the nodes' tangents, or the chords; `up` is linear between the nodes, and made square to the tangent.
+// The cubic (periodic or natural, over the nodes' numbers), the Beziers whose inner points are a third of the
+// chord away along the nodes' tangents, or the chords; `up` is linear between the nodes, and made square to
+// the tangent.
 class YarnPath {
  public:
-  // Errors (geometry), at the node: fewer than two nodes, equal neighbours, a tangent or `up` that vanishes, an `up`
-  // along the line.
+  // Errors (geometry), at the node: fewer than two nodes, equal neighbours, a tangent or `up` that vanishes,
+  // an `up` along the line.
   static Result<YarnPath> make(std::vector<PathNode> nodes, Interpolation interpolation);
 
   [[nodiscard]] std::size_t spans() const { return nodes_.size() - 1; }
@@ -52,7 +53,8 @@ class YarnPath {
   [[nodiscard]] PathJet at(std::size_t span, double t, double from) const;
   [[nodiscard]] double length(std::size_t span) const { return lengths_[span]; }
   [[nodiscard]] const Interpolation& interpolation() const { return interpolation_; }
-  // The length of the range of a surface's parameter over the span, with which the line is as smooth as it can be.
+  // The length of the range of a surface's parameter over the span, with which the line is as smooth as it
+  // can be.
   [[nodiscard]] double knot_span(std::size_t span) const;
 
  private:
@@ -66,7 +68,7 @@ class YarnPath {
 
   std::vector<PathNode> nodes_;
   Interpolation interpolation_;
-  std::vector<Vec3> tangents_;     // at the nodes; of a cubic the derivatives
+  std::vector<Vec3> tangents_;  // at the nodes; of a cubic the derivatives
   std::vector<double> lengths_;
 };
 

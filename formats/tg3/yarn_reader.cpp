@@ -57,8 +57,8 @@ std::optional<Interpolation> read_interpolation(const Element& element, const Fi
   else if (type != "CInterpolationBezier") {
     fields.error(element,
                  fmt::format("an interpolation of the type {} is not read{}", in_quotes(type),
-                             did_you_mean(type, {"CInterpolationBezier", "CInterpolationCubic", "CInterpolationLinear",
-                                                 "CInterpolationAdjusted"})),
+                             did_you_mean(type, {"CInterpolationBezier", "CInterpolationCubic",
+                                                 "CInterpolationLinear", "CInterpolationAdjusted"})),
                  Kind::unsupported);
     return std::nullopt;
   }
@@ -95,7 +95,8 @@ class YarnSections {
   std::size_t take(const Element& element) {
     const Element* const section = required(element, "Section", fields_);
     if (section == nullptr || fields_.is_full()) return 0;
-    if (std::optional<Section> read = read_section(*section, fields_)) yarn_.sections.push_back(std::move(*read));
+    if (std::optional<Section> read = read_section(*section, fields_))
+      yarn_.sections.push_back(std::move(*read));
     return yarn_.sections.empty() ? 0 : yarn_.sections.size() - 1;
   }
 
@@ -110,7 +111,9 @@ class YarnSections {
         if (between.name != "MidNodeSection") continue;
         const double t = fields_.number(between, "t");
         if (t <= here.back().first || t >= 1)
-          fields_.error(between, fmt::format("t is {}: sections between two nodes have to increase between 0 and 1", t));
+          fields_.error(
+              between,
+              fmt::format("t is {}: sections between two nodes have to increase between 0 and 1", t));
         here.emplace_back(t, take(between));
       }
     }
@@ -172,7 +175,8 @@ std::optional<TextileYarn> read_yarn(const Element& element, const Fields& field
     if (child.name == "Repeat") yarn.repeats.push_back(fields.vector(child, "value"));
   }
   if (yarn.nodes.size() < 2)
-    fields.error(element, fmt::format("this yarn has {} master nodes: it needs two at least", yarn.nodes.size()));
+    fields.error(element,
+                 fmt::format("this yarn has {} master nodes: it needs two at least", yarn.nodes.size()));
   const Element* const interpolation = required(element, "Interpolation", fields);
   if (interpolation != nullptr)
     if (std::optional<Interpolation> read = read_interpolation(*interpolation, fields))
@@ -186,8 +190,9 @@ std::optional<TextileYarn> read_yarn(const Element& element, const Fields& field
     YarnSections(*sections, yarn, fields).read();
   if (const Element* const fibres = element.child("FibreDistribution"))
     if (fields.text(*fibres, "type") != "CFibreDistributionConst")
-      fields.warning(*fibres, fmt::format("the fibre distribution {} is left out: fibres fill a section evenly here",
-                                          in_quotes(fields.text(*fibres, "type"))));
+      fields.warning(*fibres,
+                     fmt::format("the fibre distribution {} is left out: fibres fill a section evenly here",
+                                 in_quotes(fields.text(*fibres, "type"))));
   if (fields.errors() > errors) return std::nullopt;
   return yarn;
 }

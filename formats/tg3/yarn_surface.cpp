@@ -14,7 +14,7 @@ namespace selvage::formats::tg3 {
 
 namespace {
 
-constexpr double same_place = 1e-6;  // of a section's size
+constexpr double same_place = 1e-6;      // of a section's size
 constexpr double same_direction = 2e-3;  // radians by which a surface turns and still counts as smooth
 constexpr int most_parts = 64;           // of a piece
 
@@ -65,9 +65,10 @@ class Surface {
       std::size_t intervals = 0;
       for (const int parts : parts_) intervals += at(parts);
       if (intervals * 2 * round > most)
-        return error(Kind::limit, fmt::format("the surface of this yarn would need more than {} control points; "
-                                              "split the yarn",
-                                              most));
+        return error(Kind::limit,
+                     fmt::format("the surface of this yarn would need more than {} control points; "
+                                 "split the yarn",
+                                 most));
       lay_intervals();
       agree_on_slopes();
       if (!refine()) break;
@@ -192,7 +193,8 @@ class Surface {
     }
     const Eigen::Index points = rows.front().rows();
     Eigen::MatrixXd data(points, 3 * static_cast<Eigen::Index>(rows.size()));
-    for (std::size_t j = 0; j < rows.size(); ++j) data.middleCols(3 * static_cast<Eigen::Index>(j), 3) = rows[j];
+    for (std::size_t j = 0; j < rows.size(); ++j)
+      data.middleCols(3 * static_cast<Eigen::Index>(j), 3) = rows[j];
     const Eigen::MatrixXd control = outline_.controls(data);
     YarnUnit unit;
     fabric::Grid& grid = unit.grid;
@@ -232,7 +234,8 @@ std::vector<BlendPiece> pieces_of_positions(const YarnPath& path, const std::vec
   for (std::size_t i = 0; i < path.spans(); ++i) total += path.length(i);
   // Sections on both sides of a position, as if the yarn began anew before 0 and behind 1.
   const auto around = [&](double position) {
-    const auto above = static_cast<std::size_t>(std::ranges::upper_bound(positions, position) - positions.begin());
+    const auto above =
+        static_cast<std::size_t>(std::ranges::upper_bound(positions, position) - positions.begin());
     const std::size_t count = positions.size();
     const std::size_t from = (above + count - 1) % count, to = above % count;
     const double p0 = positions[from] - (above == 0 ? 1 : 0), p1 = positions[to] + (above == count ? 1 : 0);
@@ -275,7 +278,8 @@ fabric::Grid chained(const fabric::Grid& unit, const Vec3& shift, int count) {
     const double behind = unit.knots_along[4] - unit.knots_along.front();
     double miss = 0, size = 0;
     for (std::size_t i = 0; i < round; ++i) {
-      const Vec3 into = (chain.points[(rows - 1) * round + i] - chain.points[(rows - 2) * round + i]) / before;
+      const Vec3 into =
+          (chain.points[(rows - 1) * round + i] - chain.points[(rows - 2) * round + i]) / before;
       const Vec3 out = (unit.points[round + i] - unit.points[i]) / behind;
       miss = std::max(miss, (out - into).norm());
       size = std::max(size, out.norm());
@@ -284,8 +288,10 @@ fabric::Grid chained(const fabric::Grid& unit, const Vec3& shift, int count) {
     const std::size_t kept = is_smooth ? 2 : 3;
     chain.knots_along.resize(chain.knots_along.size() - 4 + kept);
     if (is_smooth) chain.points.resize(chain.points.size() - round);
-    for (std::size_t i = round; i < unit.points.size(); ++i) chain.points.push_back(unit.points[i] + k * shift);
-    for (std::size_t i = 4; i < unit.knots_along.size(); ++i) chain.knots_along.push_back(unit.knots_along[i] + k * period);
+    for (std::size_t i = round; i < unit.points.size(); ++i)
+      chain.points.push_back(unit.points[i] + k * shift);
+    for (std::size_t i = 4; i < unit.knots_along.size(); ++i)
+      chain.knots_along.push_back(unit.knots_along[i] + k * period);
   }
   chain.sections = static_cast<int>(chain.points.size() / round);
   return chain;

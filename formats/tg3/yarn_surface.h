@@ -1,9 +1,9 @@
 // The surface of a TexGen yarn as a B-spline grid: its sections, blended along its line.
 //
-// Round, points of the exact sections are interpolated (outline_points.h). Along, cubics have the exact places and slopes
-// of these points at all nodes and sections, and at as many even parameters between them as keep what is halfway within
-// `along_share` of the thinnest section. They meet in double knots, in triple ones where the line, its frame or its
-// sections have a bend.
+// Round, points of the exact sections are interpolated (outline_points.h). Along, cubics have the exact
+// places and slopes of these points at all nodes and sections, and at as many even parameters between them as
+// keep what is halfway within `along_share` of the thinnest section. They meet in double knots, in triple
+// ones where the line, its frame or its sections have a bend.
 #pragma once
 
 #include <optional>
@@ -18,16 +18,18 @@ namespace selvage::formats::tg3 {
 
 inline constexpr double along_share = 1e-4;
 
-// How the sections on both sides of a place are blended: in proportion to the share u of the way between them.
+// How the sections on both sides of a place are blended: in proportion to the share u of the way between
+// them.
 struct Blend {
   bool is_ramped = false;  // 3 u^2 - 2 u^3 of it
   bool is_polar = false;   // of radius and angle, not of x and y
 };
 
-// A piece of a span between two nodes, over which the share of the second section goes evenly from `u0` to `u1`.
+// A piece of a span between two nodes, over which the share of the second section goes evenly from `u0` to
+// `u1`.
 struct BlendPiece {
   std::size_t span = 0;
-  double t0 = 0, t1 = 1;  // of the span
+  double t0 = 0, t1 = 1;         // of the span
   std::size_t from = 0, to = 0;  // sections, by their index
   double u0 = 0, u1 = 1;
 };
@@ -41,8 +43,8 @@ struct YarnShape {
 
 // One section everywhere.
 std::vector<BlendPiece> constant_pieces(const YarnPath& path);
-// Section i stands at the share positions[i] (0 .. 1, increasing) of the yarn's length; behind the last one the first
-// follows, as if the yarn began anew.
+// Section i stands at the share positions[i] (0 .. 1, increasing) of the yarn's length; behind the last one
+// the first follows, as if the yarn began anew.
 std::vector<BlendPiece> pieces_of_positions(const YarnPath& path, const std::vector<double>& positions);
 
 // The yarn from its first node to its last, open.

@@ -18,7 +18,8 @@ class Places {
  public:
   explicit Places(std::string_view bytes) : bytes_(bytes) {}
   TextPlace of(std::ptrdiff_t offset) {
-    const std::size_t to = std::min(static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0)), bytes_.size());
+    const std::size_t to =
+        std::min(static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0)), bytes_.size());
     for (; at_ < to; ++at_)
       if (bytes_[at_] == '\n') {
         ++line_;
@@ -67,12 +68,13 @@ Result<Element> parse(std::string_view bytes, Skipped skipped) {
       bytes.data(), bytes.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
   if (parsed.status == pugi::status_out_of_memory) return error(Kind::limit, "the XML: " + memory_ended());
   if (!parsed)
-    return error(Kind::malformed, fmt::format("this is no whole XML text: {}; is the file cut off?",
-                                              parsed.description()))
+    return error(Kind::malformed,
+                 fmt::format("this is no whole XML text: {}; is the file cut off?", parsed.description()))
         .placed(Places(bytes).of(parsed.offset));
   for (const pugi::xml_node& node : document.children())
     if (node.type() == pugi::node_doctype)
-      return error(Kind::unsupported, "the file has a document type (DOCTYPE): entities are not read; remove it")
+      return error(Kind::unsupported,
+                   "the file has a document type (DOCTYPE): entities are not read; remove it")
           .placed(Places(bytes).of(static_cast<std::ptrdiff_t>(bytes.find("<!DOCTYPE"))));
   if (!document.document_element()) return error(Kind::malformed, "the file has no element").placed({1, 1});
   return Converter(bytes, skipped).convert(document.document_element());
