@@ -12,7 +12,7 @@ namespace {
 using fabric::Role;
 using Yarns = std::vector<TextileYarn>;
 
-constexpr int most_yarns = 1000;         // of a system
+constexpr int most_yarns = 1000;          // of a system
 constexpr std::size_t most_levels = 200;  // yarns one above the other at a crossing
 
 PathNode node_at(const Vec3& position, const Vec3& tangent, TextPlace place) {
@@ -56,8 +56,10 @@ class WeaveBuilder {
     }
     if (fields_.errors() > errors) return std::nullopt;
     if (fields_.flag(textile_, "Refine", false))
-      fields_.warning(textile_, "the yarns are built with the sections that the file states: TexGen's refinement (Refine), which "
-                                "makes them narrower where they meet, is not done; save it with its yarns to have it");
+      fields_.warning(
+          textile_,
+          "the yarns are built with the sections that the file states: TexGen's refinement (Refine), which "
+          "makes them narrower where they meet, is not done; save it with its yarns to have it");
     return yarns;
   }
 
@@ -69,7 +71,8 @@ class WeaveBuilder {
         sizes.push_back({fields_.positive(child, "Width"), fields_.positive(child, "Height"),
                          fields_.positive(child, "Spacing")});
     if (sizes.size() != count)
-      fields_.error(textile_, fmt::format("there are {} <{}> for {} yarns: each has one", sizes.size(), name, count));
+      fields_.error(textile_,
+                    fmt::format("there are {} <{}> for {} yarns: each has one", sizes.size(), name, count));
     return sizes;
   }
 
@@ -91,8 +94,9 @@ class WeaveBuilder {
       for (const Element& level : child.children)
         if (level.name == "PatternElement") one.push_back(fields_.whole(level, "value", 0, 1) == 1);
       if (one.size() > most_levels)
-        fields_.error(child, fmt::format("{} yarns lie at this crossing; up to {} are read", one.size(), most_levels),
-                      Kind::limit);
+        fields_.error(
+            child, fmt::format("{} yarns lie at this crossing; up to {} are read", one.size(), most_levels),
+            Kind::limit);
     }
     // A yarn that begins at one crossing goes on to the next.
     for (std::size_t y = 0; y < x_count_; ++y)
@@ -101,11 +105,13 @@ class WeaveBuilder {
           return std::ranges::count(cell(at_x, at_y), of_x);
         };
         if (levels(x, y, true) == levels(0, y, true) && levels(x, y, false) == levels(x, 0, false)) continue;
-        fields_.error(textile_, fmt::format("at the crossing x = {}, y = {} there are {} x yarns and {} y yarns, at the first "
-                                            "of the row {} x yarns and at the first of the column {} y yarns: as many "
-                                            "are needed all along",
-                                            x, y, levels(x, y, true), levels(x, y, false), levels(0, y, true),
-                                            levels(x, 0, false)));
+        fields_.error(
+            textile_,
+            fmt::format("at the crossing x = {}, y = {} there are {} x yarns and {} y yarns, at the first "
+                        "of the row {} x yarns and at the first of the column {} y yarns: as many "
+                        "are needed all along",
+                        x, y, levels(x, y, true), levels(x, y, false), levels(0, y, true),
+                        levels(x, 0, false)));
         return false;
       }
     return fields_.errors() == errors;
@@ -176,11 +182,13 @@ class WeaveBuilder {
 
 // --- weft knits
 
-// A loop of nine nodes, after Ravandi and others (2021) as TexGen has it: its feet, and its head `LoopHeight` above them.
+// A loop of nine nodes, after Ravandi and others (2021) as TexGen has it: its feet, and its head `LoopHeight`
+// above them.
 std::optional<Yarns> build_weft_knit(const Element& textile, const Fields& fields) {
   const int errors = fields.errors();
-  const double thickness = fields.positive(textile, "YarnThickness"), course = fields.positive(textile, "WaleHeight"),
-               loop = fields.positive(textile, "LoopHeight"), wale = fields.positive(textile, "CourseWidth");
+  const double thickness = fields.positive(textile, "YarnThickness"),
+               course = fields.positive(textile, "WaleHeight"), loop = fields.positive(textile, "LoopHeight"),
+               wale = fields.positive(textile, "CourseWidth");
   if (fields.errors() > errors) return std::nullopt;
   TextileYarn yarn;
   yarn.name = "yarn_0";
@@ -205,18 +213,21 @@ std::optional<Yarns> build_weft_knit(const Element& textile, const Fields& field
 
 std::optional<std::vector<TextileYarn>> construct(const Element& textile, const Fields& fields) {
   const std::string_view type = fields.text(textile, "type");
-  if (type == "CTextileWeave2D" || type == "CTextileWeave3D") return WeaveBuilder(textile, fields).build(false);
+  if (type == "CTextileWeave2D" || type == "CTextileWeave3D")
+    return WeaveBuilder(textile, fields).build(false);
   if (type == "CShearedTextileWeave2D") return WeaveBuilder(textile, fields).build(true);
   if (type == "CTextileWeftKnit") return build_weft_knit(textile, fields);
   if (type == "CTextile") {
     fields.error(textile, "the textile has no <Yarn>");
     return std::nullopt;
   }
-  fields.error(textile,
-               fmt::format("this textile has no yarns, and one of the type {} is not built from its parameters; save it "
-                           "with its yarns (TexGen's standard output)",
-                           in_quotes(type)),
-               Kind::unsupported);
+  fields.error(
+      textile,
+      fmt::format(
+          "this textile has no yarns, and one of the type {} is not built from its parameters; save it "
+          "with its yarns (TexGen's standard output)",
+          in_quotes(type)),
+      Kind::unsupported);
   return std::nullopt;
 }
 
