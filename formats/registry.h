@@ -11,6 +11,9 @@ const Descriptor& descriptor();
 namespace wif {  // weaving information files, the exchange format of weaving programs
 const Descriptor& descriptor();
 }
+namespace tg3 {  // models of TexGen 3: yarns by nodes and sections
+const Descriptor& descriptor();
+}
 namespace iges {  // IGES 5.3, B-spline surfaces or solids
 const Descriptor& descriptor();
 }

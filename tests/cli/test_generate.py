@@ -96,7 +96,7 @@ class Generated(Case):
         writable = set(self.completed("mesh", "--to", ""))
         self.assertIn("inp", writable)
         self.assertNotIn("iges", writable)
-        self.assertEqual(self.completed("convert", "--to", "iges,st"), ["iges,step"])
+        self.assertEqual(self.completed("convert", "--to", "iges,ste"), ["iges,step"])
         self.assertEqual(self.completed("convert", "-j", ""), [])
 
     def test_bash_of_words(self):

@@ -66,7 +66,7 @@ class Installed(Case):
         outside = {name for name in files if not name.startswith(("include/", "share/selvage/samples/", "lib/cmake/"))}
         self.assertEqual(outside, {
             "bin/selvage", "lib/libselvage.a", "lib/selvage/selvage-tetgen", "lib/selvage/selvage_cgal.so",
-            "lib/selvage/selvage_embree.so", "lib/selvage/selvage_muparser.so", "lib/selvage/selvage_occt.so",
+            "lib/selvage/selvage_embree.so", "lib/selvage/selvage_muparser.so", "lib/selvage/selvage_occt.so", "lib/selvage/selvage_pugixml.so",
             "share/doc/selvage/copyright", "share/doc/selvage/CHANGELOG.md"})
         table = (PACKAGING / "README.md").read_text()
         for name in files:

@@ -1,0 +1,20 @@
+// A tg3 file as a fabric: README.md.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "core/diagnostics.h"
+#include "core/source.h"
+#include "fabric/model.h"
+
+namespace selvage::formats::tg3 {
+
+// Does it begin as a TexGen model?
+bool is_tg3(std::string_view head);
+
+// Errors, each at its element: a file that is too large (limit, before it is read), XML that is not whole,
+// another version, what README.md says is not read, and what read_yarn, read_domain and lay refuse.
+std::optional<fabric::Fabric> read_fabric(const Source& source, Diagnostics& diagnostics);
+
+}  // namespace selvage::formats::tg3
