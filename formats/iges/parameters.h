@@ -46,8 +46,8 @@ class Parameters {
   bool logical(bool otherwise = false) { return integer(otherwise ? 1 : 0) != 0; }
   // A directory pointer as it stands: 0 for none, possibly negative or nonsense; File::entity() judges it.
   int pointer();
-  // Where the count is wrong without a doubt (nothing but the record's line ends behind the string and its
-  // delimiter) the string is what stands there, and flaw() tells.
+  // Where the count is wrong without a doubt (the line ends with the only delimiter behind the H) the string
+  // is what stands before that delimiter, and flaw() tells.
   std::string text();
   void skip();  // any value
   // For who takes values of any kind: does a string stand next, which text() takes? If not, token() gives the

@@ -144,7 +144,7 @@ class Reading {
   TextReport& report_;
   cad::Model& model_;
   // By the index of the entity: part of another one; held by a group or definition; being read at present;
-  // its failure was reported.
+  // its failure was reported; what was read through was told.
   std::vector<char> used_, held_, active_, failed_, flawed_;
   std::vector<double> extents_;  // of each entity
   int depth_ = 0;
