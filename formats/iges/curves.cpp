@@ -157,10 +157,28 @@ std::optional<Curve> read_spline(Reading& reading, const DirectoryEntry& entry, 
   return curve;
 }
 
+// Each piece turned towards the end of the one before it, where that makes them meet.
+std::vector<Curve> turned_to_meet(const std::vector<Curve>& pieces) {
+  std::vector<Curve> best = pieces;
+  for (const bool turn_first : {false, true}) {
+    std::vector<Curve> turned = pieces;
+    if (turn_first) turned.front() = nurbs::reversed(turned.front());
+    for (std::size_t i = 1; i < turned.size(); ++i) {
+      const Vec3 end = cad::at_share(turned[i - 1], 1);
+      if ((cad::at_share(turned[i], 1) - end).norm() < (cad::at_share(turned[i], 0) - end).norm())
+        turned[i] = nurbs::reversed(turned[i]);
+    }
+    if (nurbs::largest_gap(turned) < nurbs::largest_gap(best)) best = std::move(turned);
+  }
+  return best;
+}
+
 // The pieces as they are, those of composites in it one by one; empty after an error.
 std::vector<Curve> read_pieces(Reading& reading, const DirectoryEntry& entry, Parameters& in) {
   std::vector<int> trail = {entry.pointer};
-  return read_links(reading, in, trail);
+  std::vector<Curve> pieces = read_links(reading, in, trail);
+  turn_to_meet(reading, entry, pieces);
+  return pieces;
 }
 
 // The pieces as one curve, or as they are where they do not meet; `gap` is the largest between them.
@@ -275,6 +293,17 @@ void warn_of_gap(Reading& reading, const DirectoryEntry& entry, double gap, cons
   const double allowed = std::max(1e-6 * size_of(points), 2 * reading.file().global().resolution);
   if (gap > allowed)
     reading.warning(entry, fmt::format("its pieces do not meet, by {:.3g}; they are joined", gap));
+}
+
+void turn_to_meet(Reading& reading, const DirectoryEntry& entry, std::vector<Curve>& pieces) {
+  if (pieces.size() < 2) return;
+  std::vector<Vec3> points;
+  for (const Curve& piece : pieces) points.insert(points.end(), piece.points.begin(), piece.points.end());
+  if (nurbs::largest_gap(pieces) <= most_gap(points)) return;
+  std::vector<Curve> turned = turned_to_meet(pieces);
+  if (nurbs::largest_gap(turned) > 0.01 * most_gap(points)) return;
+  pieces = std::move(turned);
+  reading.warning(entry, "its curves run against each other; some are turned, so that they meet");
 }
 
 std::vector<Curve> read_chain(Reading& reading, int pointer, Parameters& by) {

@@ -26,6 +26,10 @@ std::optional<std::vector<double>> read_breaks(Parameters& in, std::size_t piece
 // one, any other one alone. Empty after by.fail() or by.give_up().
 std::vector<nurbs::Curve> read_chain(Reading& reading, int pointer, Parameters& by);
 
+// Some writers leave the curves of a composite in directions of their own: where they meet once some are
+// turned round, they are, and that is told. Not for curves in parameters, which may leap over a seam.
+void turn_to_meet(Reading& reading, const DirectoryEntry& entry, std::vector<nurbs::Curve>& pieces);
+
 // The points of a loop's curves in space, dense enough to tell its way round an axis.
 std::vector<Vec3> points_along(const cad::Loop& loop);
 double size_of(const std::vector<Vec3>& points);  // the diagonal of their box

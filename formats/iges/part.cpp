@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "cad/edges.h"
+#include "cad/feet.h"
 #include "cad/sampled_curve.h"
 #include "formats/iges/header.h"
 #include "formats/iges/solid.h"
@@ -28,12 +29,8 @@ bool has_all_flats(const cad::Loop& loop) {
 }
 // An edge that has a length, but no curve in space.
 bool lacks_curve(const cad::Edge& edge, const nurbs::Surface& surface) {
-  if (!is_pole(edge) || edge.flat.points.empty()) return false;
-  const Vec3 start = cad::at_share(surface, edge.flat, 0);
-  const double size = cad::box_of(surface.points).sizes().norm();
-  for (const double share : {0.31, 0.5, 0.77, 1.0})
-    if ((cad::at_share(surface, edge.flat, share) - start).norm() > 1e-6 * size) return true;
-  return false;
+  return is_pole(edge) && !edge.flat.points.empty() &&
+         !cad::is_point(surface, edge.flat, 1e-6 * cad::box_of(surface.points).sizes().norm());
 }
 // Poles aside; their places can be told by their neighbours, unless there are none.
 bool has_all_curves(const cad::Loop& loop, const nurbs::Surface& surface) {
@@ -42,24 +39,9 @@ bool has_all_curves(const cad::Loop& loop, const nurbs::Surface& surface) {
                       [&](const cad::Edge& edge) { return lacks_curve(edge, surface); });
 }
 
-// The curve in the parameters of a parallelogram, which is the one in space under an affine map; none for
-// other surfaces. OpenCASCADE's own projections onto such a surface are off by 1e-5 of what a circle holds.
-std::optional<nurbs::Curve> flat_on_parallelogram(const nurbs::Surface& s, const nurbs::Curve& curve) {
-  if (s.degree_u != 1 || s.degree_v != 1 || s.count_u != 2 || s.count_v != 2 || s.is_rational())
-    return std::nullopt;
-  const Vec3 &a = s.points[0], x = s.points[1] - a, y = s.points[2] - a;
-  const double size = x.norm() + y.norm(), xx = x.dot(x), xy = x.dot(y), yy = y.dot(y);
-  const double determinant = xx * yy - xy * xy;
-  if ((s.points[3] - a - x - y).norm() > 1e-12 * size || !(determinant > 1e-12 * xx * yy))
-    return std::nullopt;
-  nurbs::Curve flat = curve;
-  for (Vec3& p : flat.points) {
-    const double px = (p - a).dot(x), py = (p - a).dot(y);
-    const double u = (yy * px - xy * py) / determinant, v = (xx * py - xy * px) / determinant;
-    p = {std::lerp(s.first_u(), s.last_u(), u), std::lerp(s.first_v(), s.last_v(), v), 0};
-  }
-  return flat;
-}
+// Curves in the parameters that the file does not have: OpenCASCADE's own projections onto a parallelogram
+// are off by 1e-5 of what a circle holds, and cannot close a boundary through a sphere's pole.
+constexpr double flat_tolerance = 1e-8;  // of the surface's size
 
 // What is written of one thing: colour, level, label and name. Its 406 is written at once, so that the
 // pointer is known.
@@ -214,9 +196,7 @@ int PartWriter::loop(Shared& shared, const Common& common, const cad::Loop& give
 
 SolidFace PartWriter::face_of_solid(Shared& shared, const cad::Face& given) {
   cad::Face face = given;
-  for (cad::Edge& edge : cad::boundary_edges_of(face))
-    if (edge.flat.points.empty() && !is_pole(edge))
-      edge.flat = flat_on_parallelogram(face.surface, edge.curve).value_or(nurbs::Curve{});
+  cad::give_flats(face, flat_tolerance * cad::box_of(face.surface.points).diagonal().norm());
   const Look own(records_, colors_, face);
   const int surface = write_surface(records_, own.entity(128, 0, dependent), face.surface);
   std::vector<int> loops;

@@ -169,7 +169,7 @@ std::optional<Surface> read_revolution(Reading& reading, const DirectoryEntry& e
     return in.fail("its axis is no line");
   if (from == to) return in.fail(fmt::format("it is turned from {} to {} radians: by nothing", from, to));
   if (to < from) to += 2 * pi * std::ceil((from - to) / (2 * pi));
-  if (std::abs(to - from - 2 * pi) < 1e-7) {
+  if (std::abs(to - from - 2 * pi) < 1e-5) {  // of so many digits, files have 6.28318
     to = from + 2 * pi;
   } else if (to - from > 2 * pi) {
     reading.warning(entry, fmt::format("it is turned by {} radians; a whole turn is taken", to - from));

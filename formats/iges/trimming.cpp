@@ -5,6 +5,7 @@
 #include <array>
 #include <iterator>
 
+#include "cad/feet.h"
 #include "cad/natural_border.h"
 #include "cad/sampled_curve.h"
 #include "formats/iges/curves.h"
@@ -32,6 +33,7 @@ Boundary read_curve_on_surface(Reading& reading, Parameters& in) {
   if (in.ok() && flat == 0 && spatial == 0) in.fail("it has no curve, neither in space nor in parameters");
   if (in.ok() && flat != 0) boundary.flat = read_chain(reading, flat, in);
   if (in.ok() && spatial != 0) boundary.spatial = read_chain(reading, spatial, in);
+  if (in.ok() && spatial != 0) turn_to_meet(reading, *reading.entry(spatial, in), boundary.spatial);
   return boundary;
 }
 
@@ -82,23 +84,33 @@ cad::Loop spatial_loop(std::vector<Curve> spatial) {
   return loop;
 }
 
-// Puts the flat curves beside those in space where there are as many, or instead of them where there are
-// none.
+// Puts the curves in the parameters beside those in space where there are as many, or instead of them where
+// there are none. Where only poles are left out in space, these are edges without a curve there.
 void add_flats(cad::Loop& loop, const Boundary& boundary, const FlatMap& map, const nurbs::Surface& surface,
-               Parameters& by) {
+               double tolerance, Parameters& by) {
   if (boundary.flat.empty()) return;
   const bool alone = loop.edges.empty();
-  if (!alone && boundary.flat.size() != loop.edges.size()) return;
-  for (std::size_t i = 0; i < boundary.flat.size(); ++i) {
-    std::optional<Curve> flat = map(boundary.flat[i]);
-    if (alone && !flat)
-      by.give_up("its boundary is known in the surface's parameters only, which are not understood");
-    if (alone) loop.edges.emplace_back();
-    cad::Edge& edge = loop.edges[i];
+  std::vector<std::optional<Curve>> flats;
+  for (const Curve& flat : boundary.flat) flats.push_back(map(flat));
+  const bool are_known = std::ranges::none_of(flats, [](const auto& flat) { return !flat; });
+  if (alone && !are_known)
+    by.give_up("its boundary is known in the surface's parameters only, which are not understood");
+  cad::Loop joined;
+  std::size_t used = 0;
+  const bool all_beside = flats.size() == loop.edges.size();
+  for (std::optional<Curve>& flat : flats) {
+    cad::Edge& edge = joined.edges.emplace_back();
+    if (!alone && (all_beside || (flat && !cad::is_point(surface, *flat, tolerance)))) {
+      if (used == loop.edges.size()) return;
+      edge = loop.edges[used++];
+    }
     if (!flat) continue;
     edge.flat = std::move(*flat);
     align_flat(edge, surface);
   }
+  if (used != loop.edges.size()) return;
+  loop = std::move(joined);
+  if (are_known) cad::give_poles(loop, surface, tolerance);
 }
 
 // `boundaries` are entities of `type`.
@@ -116,10 +128,10 @@ std::optional<cad::Face> read_trimmed(Reading& reading, int surface_pointer,
   }
   const std::optional<FlatMap> map = put_surface(reading, surface_pointer, face, in);
   if (!map) return std::nullopt;
-  for (std::size_t i = 0; i < face.loops.size(); ++i)
-    add_flats(face.loops[i], read_ones[i], *map, face.surface, in);
-  if (!in.ok()) return std::nullopt;
   const double tolerance = cad::border_tolerance(face, reading.file().global().resolution);
+  for (std::size_t i = 0; i < face.loops.size(); ++i)
+    add_flats(face.loops[i], read_ones[i], *map, face.surface, tolerance, in);
+  if (!in.ok()) return std::nullopt;
   if (own_border && !face.loops.empty())
     face.loops.insert(face.loops.begin(), cad::natural_border(face.surface, tolerance));
   cad::drop_natural_border(face, tolerance);

@@ -21,6 +21,8 @@
 #include <unordered_set>
 
 #include "cad/edges.h"
+#include "cad/feet.h"
+#include "cad/sampled_curve.h"
 #include "core/plane.h"
 #include "formats/step/geometry.h"
 
@@ -192,6 +194,7 @@ class FaceMaker {
     } else {
       take_surface(trimmed_range(polygons, whole), whole);
       result_.loops = loops_of(chains);
+      complete();
     }
     return std::move(result_);
   }
@@ -270,6 +273,16 @@ class FaceMaker {
     return loops;
   }
 
+  // A loop that is known neither all in space nor all in the parameters becomes known in these.
+  void complete() {
+    const double tolerance = 1e-8 * cad::box_of(result_.surface.points).diagonal().norm();
+    const auto lacks_curve = [&](const cad::Edge& edge) {
+      return edge.curve.points.empty() && !cad::is_point(result_.surface, edge.flat, 100 * tolerance);
+    };
+    for (const cad::Loop& loop : result_.loops)
+      if (std::ranges::any_of(loop.edges, lacks_curve)) return cad::give_flats(result_, tolerance);
+  }
+
   TopoDS_Face face_;
   EdgeIds& ids_;
   TopLoc_Location location_;
@@ -284,7 +297,7 @@ class FaceMaker {
 cad::Face to_face(const TopoDS_Face& face, const Handle(StepShape_FaceSurface) & entity, double scale,
                   EdgeIds& ids) {
   cad::Face made = FaceMaker(face, entity, scale, ids).make();
-  made.area = area_of(face);
+  made.area = std::abs(area_of(face));  // negative where the loop runs the wrong way round
   return made;
 }
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
-#include "cad/distance.h"
+#include "cad/feet.h"
 #include "cad/sampled_curve.h"
 #include "cad/seam.h"
+#include "cad/sphere.h"
 #include "nurbs/basis.h"
 #include "nurbs/chain.h"
 #include "nurbs/measure.h"
@@ -38,12 +38,13 @@ struct Trace {
 class FaceTracer {
  public:
   // `breaks`: of the surface, in u and in v.
-  FaceTracer(const Surface& surface, const std::array<double, 2>& periods,
-             const std::array<std::vector<double>, 2>& breaks)
-      : surface_(surface), periods_(periods), breaks_(breaks) {}
+  FaceTracer(const Surface& surface, const std::array<std::vector<double>, 2>& breaks)
+      : feet_(surface), breaks_(breaks) {}
+
+  [[nodiscard]] const std::array<double, 2>& periods() const { return feet_.periods(); }
 
   std::optional<Trace> trace(const Edge& edge) {
-    return flat_holds(surface_, edge) ? along(edge.flat) : follow(edge.curve);
+    return flat_holds(feet_.surface(), edge) ? along(edge.flat) : follow(edge.curve);
   }
   std::optional<Trace> straight(const Vec2& from, const Vec2& to) {
     return along({1, {0, 0, 1, 1}, {Vec3(from.x(), from.y(), 0), Vec3(to.x(), to.y(), 0)}, {}});
@@ -90,7 +91,7 @@ class FaceTracer {
       const std::vector<double>& breaks = breaks_[d];
       const double width = breaks.back() - breaks.front();
       double value = at[static_cast<Eigen::Index>(d)] + 1e-9 * width;
-      const double turn = periods_[d] > 0 ? std::floor((value - breaks.front()) / width) : 0;
+      const double turn = periods()[d] > 0 ? std::floor((value - breaks.front()) / width) : 0;
       value -= turn * width;
       const auto span = std::upper_bound(breaks.begin(), breaks.end(), value) - breaks.begin();
       cell[d] = turn * static_cast<double>(breaks.size()) + static_cast<double>(span);
@@ -126,97 +127,22 @@ class FaceTracer {
     return trace;
   }
 
-  // By its feet on the surface, each near the one before, from the middle to both ends: at an end it may meet
-  // a pole, which has every parameter.
+  // By its feet on the surface.
   std::optional<Trace> follow(const Curve& curve) {
-    std::map<double, Vec2> feet;
-    const auto place = [&](double t) {
-      const auto after = feet.lower_bound(t);
-      if (after != feet.end() && after->first == t) return after->second;
-      std::optional<Vec2> beside;
-      if (after != feet.end()) beside = after->second;
-      if (after != feet.begin() && (!beside || t - std::prev(after)->first < after->first - t))
-        beside = std::prev(after)->second;
-      Vec2 foot = foot_of(nurbs::evaluate(curve, t), beside);
-      feet.emplace(t, foot);
-      return foot;
-    };
-    const double first = curve.first_parameter(), last = curve.last_parameter();
-    constexpr int looks = 64;
-    for (int i = 0; i < looks; ++i)
-      for (const int side : {1, -1}) place(std::lerp(first, last, 0.5 + side * 0.5 * i / looks));
-    Trace trace;
-    trace.first = end_of(nurbs::evaluate(curve, first), feet.begin()->second);
-    trace.last = end_of(nurbs::evaluate(curve, last), std::prev(feet.end())->second);
-    feet.emplace(first, trace.first);
-    feet.emplace(last, trace.last);
-    const std::optional<std::vector<double>> parts = parts_of(curve, place);
+    CurveFeet feet(feet_, curve);
+    Trace trace{.steps = {}, .first = feet.first(), .last = feet.last()};
+    const auto parts = parts_of(curve, [&](double t) { return feet.at(t); });
     if (!parts) return std::nullopt;
     for (const Node& node : nodes_of(*parts)) {
-      const Vec2 foot = place(node.t);
-      const std::optional<Vec2> step = direction(foot, nurbs::evaluate_jet(curve, node.t).d1);
+      const std::optional<Vec2> step = feet.derivative(node.t);
       if (!step) return std::nullopt;
-      trace.steps.push_back({foot, node.weight * *step});
+      trace.steps.push_back({feet.at(node.t), node.weight * *step});
     }
     return trace;
   }
 
-  [[nodiscard]] nurbs::SurfaceJet jet_at(const Vec2& at) const {
-    return nurbs::evaluate_jet(surface_, inside(at.x(), 0), inside(at.y(), 1));
-  }
-  [[nodiscard]] double inside(double value, std::size_t d) const {
-    const double first = d == 0 ? surface_.first_u() : surface_.first_v();
-    return periods_[d] > 0 ? value - periods_[d] * std::floor((value - first) / periods_[d]) : value;
-  }
-
-  // What of a step in space is one in the parameters; nothing at a pole.
-  [[nodiscard]] std::optional<Vec2> direction(const Vec2& at, const Vec3& step) const {
-    const nurbs::SurfaceJet jet = jet_at(at);
-    const double uu = jet.du.squaredNorm(), uv = jet.du.dot(jet.dv), vv = jet.dv.squaredNorm();
-    const double det = uu * vv - uv * uv;
-    if (!(det > 1e-24 * uu * vv)) return std::nullopt;
-    const double a = step.dot(jet.du), b = step.dot(jet.dv);
-    return Vec2((vv * a - uv * b) / det, (uu * b - uv * a) / det);
-  }
-
-  // By Newton's method from the foot before; where that goes astray, looked for.
-  Vec2 foot_of(const Vec3& p, const std::optional<Vec2>& before) {
-    if (before) {
-      Vec2 at = *before;
-      for (int round = 0; round < 8; ++round) {
-        const std::optional<Vec2> step = direction(at, p - jet_at(at).position);
-        if (!step) break;
-        at = within(at + *step);
-        if (step->cwiseAbs().maxCoeff() < 1e-13 * extent()) return at;
-      }
-    }
-    if (!set_) set_.emplace(std::vector<const Surface*>{&surface_});
-    const SurfaceSet::Foot foot = set_->near(p);
-    const Vec2 at(foot.u, foot.v);
-    return before ? Vec2(at + turns_towards(at, *before, periods_)) : at;
-  }
-
-  [[nodiscard]] double extent() const {
-    return std::max(surface_.last_u() - surface_.first_u(), surface_.last_v() - surface_.first_v());
-  }
-  [[nodiscard]] Vec2 within(Vec2 at) const {
-    if (periods_[0] == 0) at.x() = std::clamp(at.x(), surface_.first_u(), surface_.last_u());
-    if (periods_[1] == 0) at.y() = std::clamp(at.y(), surface_.first_v(), surface_.last_v());
-    return at;
-  }
-
-  // At a pole what is open is as it is beside it.
-  Vec2 end_of(const Vec3& p, const Vec2& beside) {
-    const Vec2 at = foot_of(p, beside);
-    const nurbs::SurfaceJet jet = jet_at(at), near = jet_at(beside);
-    return {jet.du.norm() < 1e-6 * near.du.norm() ? beside.x() : at.x(),
-            jet.dv.norm() < 1e-6 * near.dv.norm() ? beside.y() : at.y()};
-  }
-
-  const Surface& surface_;
-  std::array<double, 2> periods_;
+  Feet feet_;
   const std::array<std::vector<double>, 2>& breaks_;
-  std::optional<SurfaceSet> set_;
 };
 
 // A loop in the parameters, closed by straight steps where its edges leave gaps, and how often it goes round
@@ -228,15 +154,15 @@ struct Round {
 
 class Integrator {
  public:
-  Integrator(const Face& face, const Vec3& origin)
-      : surface_(face.surface), origin_(origin), periods_(periods_of(surface_)) {
+  Integrator(const Face& face, const Vec3& origin) : surface_(face.surface), origin_(origin) {
     breaks_ = {nurbs::breakpoints(surface_.knots_u, surface_.degree_u),
                nurbs::breakpoints(surface_.knots_v, surface_.degree_v)};
   }
 
   std::optional<FaceIntegrals> over(const std::vector<Loop>& loops) {
     std::vector<Round> rounds;
-    FaceTracer tracer(surface_, periods_, breaks_);
+    FaceTracer tracer(surface_, breaks_);
+    periods_ = tracer.periods();
     for (const Loop& loop : loops) {
       std::optional<Round> round = round_of(loop, tracer);
       if (!round) return std::nullopt;
@@ -252,6 +178,7 @@ class Integrator {
     for (const Round& round : rounds)
       for (const Step& step : round.steps)
         base_ = std::min(base_, step.at[static_cast<Eigen::Index>(across_)]);
+    if (around[1 - across_] == 1) return beside_one(rounds);
     return combined(rounds, around[1 - across_]);
   }
 
@@ -267,8 +194,9 @@ class Integrator {
     return true;
   }
 
-  std::optional<Round> round_of(const Loop& loop, FaceTracer& tracer) {
+  std::optional<Round> round_of(Loop loop, FaceTracer& tracer) {
     Round round;
+    const bool is_at_pole = begin_at_pole(loop, surface_);
     std::optional<Vec2> first, last;
     for (const Edge& edge : loop.edges) {
       if (edge.flat.points.empty() && edge.curve.points.empty()) continue;  // a pole
@@ -282,7 +210,7 @@ class Integrator {
       round.steps.insert(round.steps.end(), trace->steps.begin(), trace->steps.end());
     }
     if (!first) return round;
-    const Vec2 end = *first + turns_towards(*first, *last, periods_);
+    const Vec2 end = *first + (is_at_pole ? Vec2(0, 0) : turns_towards(*first, *last, periods_));
     for (std::size_t d = 0; d < 2; ++d)
       if (periods_[d] > 0) {
         const auto k = static_cast<Eigen::Index>(d);
@@ -302,6 +230,34 @@ class Integrator {
     const std::optional<Trace> trace = tracer.straight(from, to);
     if (trace) round.steps.insert(round.steps.end(), trace->steps.begin(), trace->steps.end());
     return trace.has_value();
+  }
+
+  // One goes round the surface, and the face is what is on one side of it.
+  std::optional<FaceIntegrals> beside_one(const std::vector<Round>& rounds) {
+    if (periods_[across_] > 0) return std::nullopt;
+    base_ = breaks_[across_].front();
+    Values sum = Values::Zero();
+    for (const Round& round : rounds) {
+      Values values = along(round);
+      values *= values[5] < 0 ? -1 : 1;
+      const int turns = round.turns[1 - across_];
+      if (turns == 0) {
+        sum -= values;
+        continue;
+      }
+      const std::optional<bool> is_high = is_high_side(surface_, across_, turns);
+      if (!is_high) return std::nullopt;
+      if (*is_high) {
+        const nurbs::Moments whole = nurbs::moments(surface_, origin_);
+        Values all;
+        all << whole.area, whole.area_vector, whole.volume,
+            (breaks_[0].back() - breaks_[0].front()) * (breaks_[1].back() - breaks_[1].front());
+        values = all - values;
+      }
+      sum += values;
+    }
+    if (!(sum[5] > 0) || !sum.allFinite()) return std::nullopt;
+    return FaceIntegrals{sum[0], sum.segment<3>(1), sum[4]};
   }
 
   // `around`: how many of them go round. The largest one, or the two that go round, hold the others.
@@ -381,7 +337,7 @@ class Integrator {
 
   const Surface& surface_;
   Vec3 origin_;
-  std::array<double, 2> periods_;
+  std::array<double, 2> periods_ = {0, 0};
   std::array<std::vector<double>, 2> breaks_;
   std::size_t across_ = 0;  // the parameter that changes along the lines: 0 is u
   double base_ = 0;         // where they begin
@@ -390,7 +346,14 @@ class Integrator {
 }  // namespace
 
 std::optional<FaceIntegrals> integrals_of(const Face& face, const Vec3& origin) {
-  if (!face.loops.empty()) return Integrator(face, origin).over(face.loops);
+  if (!face.loops.empty()) {
+    // What shares its edges has directed ones.
+    const std::optional<Sphere> sphere =
+        face.loops.front().edges.front().id >= 0 ? sphere_of(face.surface) : std::nullopt;
+    std::optional<FaceIntegrals> integrals;
+    if (sphere) integrals = integrals_on(*sphere, face, origin);
+    return integrals ? integrals : Integrator(face, origin).over(face.loops);
+  }
   const nurbs::Moments moments = nurbs::moments(face.surface, origin);
   return FaceIntegrals{moments.area, moments.area_vector, moments.volume};
 }
@@ -404,6 +367,8 @@ PartMeasures measures_of(const Part& part) {
   bool is_known = true, are_all = true;
   for (const Face& face : part.faces) {
     const std::optional<FaceIntegrals> integrals = integrals_of(face, box.center());
+    fprintf(stderr, "FACE %s ours %.9g kernel %.9g loops %zu rev %d\n", face.origin.entity.c_str(),
+            integrals ? integrals->area : -1.0, face.area.value_or(-1), face.loops.size(), face.reversed);
     are_all = are_all && integrals;
     is_known = is_known && (integrals || face.area);
     area += integrals ? integrals->area : std::abs(face.area.value_or(0));

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "cad/edges.h"
+#include "cad/feet.h"
 #include "cad/sampled_curve.h"
 #include "cad/seam.h"
 #include "nurbs/basis.h"
@@ -12,8 +12,6 @@
 namespace selvage::cad {
 
 namespace {
-
-using nurbs::Surface;
 
 constexpr int points_a_span = 16;
 
@@ -35,35 +33,12 @@ void bring_near(std::vector<Vec3>& points, const Vec2& other, const std::array<d
   for (Vec3& p : points) p.head<2>() += turns;
 }
 
-// Every parameter in this direction is the same place: at a pole.
-bool is_any(const Surface& s, const SurfaceSet::Foot& foot, bool in_u, double size) {
-  const nurbs::SurfaceJet jet = nurbs::evaluate_jet(s, foot.u, foot.v);
-  return (in_u ? jet.du.norm() * (s.last_u() - s.first_u()) : jet.dv.norm() * (s.last_v() - s.first_v())) <
-         1e-6 * size;
-}
-
-// The feet of an edge's points; in the turn round the surface in which `before` is, where that is given. What
-// a pole leaves open is as it is beside it.
-std::vector<Vec3> feet_of(const nurbs::Curve& curve, const Surface& s, const SurfaceSet& surface,
-                          const Vec3* before, const std::array<double, 2>& periods) {
-  const double size = box_of(s.points).diagonal().norm();
+std::vector<Vec3> feet_of(Feet& feet, const nurbs::Curve& curve) {
+  CurveFeet along(feet, curve);
   std::vector<Vec3> points;
-  std::array<std::vector<bool>, 2> open;
-  for (const Vec3& p : SampledCurve(curve).points) {
-    const SurfaceSet::Foot foot = surface.near(p);
-    points.emplace_back(foot.u, foot.v, 0);
-    for (std::size_t d = 0; d < 2; ++d) open[d].push_back(is_any(s, foot, d == 0, size));
-  }
-  for (Eigen::Index d = 0; d < 2; ++d) {
-    const std::vector<bool>& is_open = open[static_cast<std::size_t>(d)];
-    const auto known = static_cast<std::size_t>(std::ranges::find(is_open, false) - is_open.begin());
-    for (std::size_t i = 0; known < points.size() && i < points.size(); ++i)
-      if (is_open[i]) points[i][d] = i < known ? points[known][d] : points[i - 1][d];
-  }
-  const Vec3* last = before;
-  for (Vec3& place : points) {
-    if (last != nullptr) place.head<2>() += turns_towards(place.head<2>(), last->head<2>(), periods);
-    last = &place;
+  for (const double t : SampledCurve(curve).parameters) {
+    const Vec2 foot = along.at(t);
+    points.emplace_back(foot.x(), foot.y(), 0);
   }
   return points;
 }
@@ -76,9 +51,11 @@ Region::Region(const Face& face) {
   periods_ = periods_of(face.surface);
   near_ = {1e-9 * (whole.u1 - whole.u0), 1e-9 * (whole.v1 - whole.v0)};
   const Vec2 middle(0.5 * (whole.u0 + whole.u1), 0.5 * (whole.v0 + whole.v1));
-  std::optional<SurfaceSet> surface;
+  std::optional<Feet> feet;
   std::array<int, 2> rounds = {0, 0};  // loops that go round the surface
-  for (const Loop& loop : face.loops) {
+  std::array<int, 2> turns = {0, 0};   // of the last of them
+  for (Loop loop : face.loops) {
+    begin_at_pole(loop, face.surface);
     std::vector<Vec3> points;
     for (const Edge& edge : loop.edges) {
       if (edge.flat.points.empty() && edge.curve.points.empty()) continue;  // a pole
@@ -86,11 +63,11 @@ Region::Region(const Face& face) {
       std::vector<Vec3> piece;
       if (flat_holds(face.surface, edge)) {
         piece = polygon_of(edge.flat);
-        if (last != nullptr) bring_near(piece, last->head<2>(), periods_);
       } else {
-        if (!surface) surface.emplace(std::vector<const Surface*>{&face.surface});
-        piece = feet_of(edge.curve, face.surface, *surface, last, periods_);
+        if (!feet) feet.emplace(face.surface);
+        piece = feet_of(*feet, edge.curve);
       }
+      if (last != nullptr) bring_near(piece, last->head<2>(), periods_);
       points.insert(points.end(), piece.begin(), piece.end());
     }
     if (points.size() < 2) return;
@@ -104,17 +81,31 @@ Region::Region(const Face& face) {
           if (periods_[d] > 0 &&
               std::abs(std::abs(step[static_cast<Eigen::Index>(d)]) - periods_[d]) < 1e-3 * periods_[d]) {
             ++rounds[d];
+            turns[d] = step[static_cast<Eigen::Index>(d)] < 0 ? 1 : -1;
             jumps = true;
           }
       if (!jumps) segments_.push_back({{a.x(), a.y()}, {b.x(), b.y()}});
     }
   }
   if (rounds[0] > 0 && rounds[1] > 0) return;
-  if (rounds[0] % 2 != 0 || rounds[1] % 2 != 0) return;  // a cap round a pole: of the two sides none is told
+  if (segments_.empty()) return;
   along_v_ = rounds[0] > 0;
-  is_known_ = !segments_.empty();
-  if (!is_known_) return;
   Box3 box;
+  if (rounds[0] + rounds[1] == 1) {
+    // A cap round a pole.
+    const std::size_t across = along_v_ ? 1 : 0;
+    const auto is_high = is_high_side(face.surface, across, turns[1 - across]);
+    if (!is_high || periods_[across] > 0) return;
+    is_all_but_ = *is_high;
+    const std::array<double, 2> ends =
+        across == 0 ? std::array{whole.u0, whole.u1} : std::array{whole.v0, whole.v1};
+    Vec3 pole(segments_.front().from[0], segments_.front().from[1], 0);
+    pole[static_cast<Eigen::Index>(across)] = ends[*is_high ? 1 : 0];
+    box.extend(pole);
+  } else if (rounds[0] % 2 != 0 || rounds[1] % 2 != 0) {
+    return;
+  }
+  is_known_ = true;
   for (const Segment& s : segments_)
     for (const std::array<double, 2>& end : {s.from, s.to}) box.extend(Vec3(end[0], end[1], 0));
   for (std::size_t d = 0; d < 2; ++d) {
@@ -152,7 +143,7 @@ bool Region::contains_as_it_is(double u, double v) const {
 // away from the loop that it is in.
 bool Region::contains(double u, double v) const {
   if (!is_known_) return true;
-  bool is_inside = false;
+  bool is_inside = is_all_but_;
   for (const double turn_u : turns(0, u, u))
     for (const double turn_v : turns(1, v, v))
       if (contains_as_it_is(u + turn_u, v + turn_v)) is_inside = !is_inside;

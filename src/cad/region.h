@@ -36,6 +36,7 @@ class Region {
   std::vector<Segment> segments_;
   Range range_;
   bool is_known_ = false;
+  bool is_all_but_ = false;                        // the face is beyond the segments, up to a pole
   bool along_v_ = false;                           // rays run along v: loops go round the surface in u
   std::array<double, 2> periods_ = {0, 0};         // 0: not closed
   std::array<std::array<double, 2>, 2> extent_{};  // of the segments, in u and in v

@@ -85,6 +85,13 @@ bool is_point(const nurbs::Curve& curve, double tolerance) {
                      [&](const Vec3& p) { return (p - curve.points.front()).norm() <= tolerance; });
 }
 
+bool is_point(const nurbs::Surface& surface, const nurbs::Curve& flat, double tolerance) {
+  const Vec3 start = at_share(surface, flat, 0);
+  return std::ranges::all_of(std::array{0.31, 0.5, 0.77, 1.0}, [&](double share) {
+    return (at_share(surface, flat, share) - start).norm() <= tolerance;
+  });
+}
+
 SampledCurve::SampledCurve(const nurbs::Curve& sampled) {
   const std::vector<double> breaks = nurbs::breakpoints(sampled.knots, sampled.degree);
   const int parts = breaks.size() < 5 ? 8 : 2;  // of a span

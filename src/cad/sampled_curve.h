@@ -19,6 +19,8 @@ Vec3 at_share(const nurbs::Surface& surface, const nurbs::Curve& flat, double sh
 
 // Does the whole curve lie in one place? By its control points.
 bool is_point(const nurbs::Curve& curve, double tolerance);
+// The same of a curve in the parameters, by five of its points: a pole.
+bool is_point(const nurbs::Surface& surface, const nurbs::Curve& flat, double tolerance);
 
 // A place of a curve, and how far it is from some point.
 struct NearestOnCurve {

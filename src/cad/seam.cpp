@@ -75,9 +75,35 @@ Vec2 turns_towards(const Vec2& place, const Vec2& other, const std::array<double
   Vec2 turns = Vec2::Zero();
   for (std::size_t d = 0; d < 2; ++d) {
     const auto k = static_cast<Eigen::Index>(d);
-    if (periods[d] > 0) turns[k] = periods[d] * std::round((other[k] - place[k]) / periods[d]);
+    if (!(periods[d] > 0)) continue;
+    const double apart = (other[k] - place[k]) / periods[d];
+    if (std::abs(apart) > 0.5 + no_width) turns[k] = periods[d] * std::round(apart);
   }
   return turns;
+}
+
+bool begin_at_pole(Loop& loop, const Surface& surface) {
+  const double least = 1e-6 * box_of(surface.points).diagonal().norm();
+  std::vector<Vec3> poles;
+  for (const nurbs::Curve& side : sides_of(surface))
+    if (is_point(side, least)) poles.push_back(side.points.front());
+  const auto first = std::ranges::find_if(loop.edges, [&](const Edge& edge) {
+    if (edge.curve.points.empty()) return false;
+    const Vec3 start = at_share(edge.curve, 0);
+    return std::ranges::any_of(poles, [&](const Vec3& pole) { return (pole - start).norm() <= least; });
+  });
+  if (first == loop.edges.end()) return false;
+  std::ranges::rotate(loop.edges, first);
+  return true;
+}
+
+std::optional<bool> is_high_side(const Surface& surface, std::size_t across, int turns) {
+  const double least = 1e-6 * box_of(surface.points).diagonal().norm();
+  const std::array<nurbs::Curve, 4> sides = sides_of(surface);
+  const bool low = is_point(sides[2 * across], least), high = is_point(sides[2 * across + 1], least);
+  if (!low && !high) return std::nullopt;
+  if (low != high) return high;
+  return (turns > 0) == (across == 1);
 }
 
 Face with_seam_in_gap(Face face) {

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import pty
 import shutil
 import subprocess
 import tempfile
@@ -51,6 +52,14 @@ def start(*arguments, **options):
     options = {"env": environment(), "stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE,
                "text": True, **options}
     return subprocess.Popen([PROGRAM, *map(str, arguments)], **options)
+
+
+def terminal():
+    """The two sides of a new terminal; where the machine has none (a bare change of root) the test is skipped."""
+    try:
+        return pty.openpty()
+    except OSError as error:
+        raise unittest.SkipTest(f"no terminal: {error}") from error
 
 
 def children_of(pid):

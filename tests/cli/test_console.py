@@ -2,12 +2,11 @@
 
 import json
 import os
-import pty
 import re
 import subprocess
 import unittest
 
-from program import BAD, Case, PROGRAM, ROD, environment, run
+from program import BAD, Case, PROGRAM, ROD, environment, run, terminal
 
 
 def objects(text):
@@ -64,7 +63,7 @@ class Progress(Case):
 class Colors(Case):
     def on_terminal(self, *arguments, **variables):
         """Standard error of a run whose standard error is a terminal."""
-        master, slave = pty.openpty()
+        master, slave = terminal()
         env = {name: value for name, value in environment(TERM="xterm").items() if name != "NO_COLOR"}
         process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                    stderr=slave, env={**env, **variables})

@@ -2,7 +2,6 @@
 
 import json
 import os
-import pty
 import re
 import select
 import shutil
@@ -10,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from program import Case, PROGRAM, ROOT, environment, run
+from program import Case, PROGRAM, ROOT, environment, run, terminal
 
 
 def names(table):
@@ -125,7 +124,7 @@ class Generated(Case):
     def test_bash_at_a_terminal(self):
         script = self.generated("complete-bash")
         os.symlink(PROGRAM, self.folder / "selvage")
-        master, slave = pty.openpty()
+        master, slave = terminal()
         shell = subprocess.Popen(["bash", "--norc", "--noprofile", "-i"], stdin=slave, stdout=slave, stderr=slave,
                                  env=environment(PATH=f"{self.folder}:{os.environ['PATH']}", TERM="dumb", PS1="> "),
                                  start_new_session=True)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cad/measure.h"
 #include "formats/iges/reading.h"
 #include "nurbs/measure.h"
 #include "nurbs/spline.h"
@@ -178,6 +179,70 @@ TEST(IgesOffsets, OfAPlaneThatIsTrimmed) {
   const cad::Face& face = reading.model->parts[0].faces.at(0);
   EXPECT_EQ(face.loops.size(), 1U);
   for (const Vec3& p : face.surface.points) EXPECT_NEAR(p.z(), 1.5, 1e-12);
+}
+
+// Half a sphere between two meridians, as files have it: its boundary in the parameters runs through one pole
+// in an edge of its own and leaves the other pole out, and in space there are but the two half circles.
+TEST(IgesTrimmed, HalfASphereBetweenMeridians) {
+  IgesText file;
+  const auto dependent_one = [&](int type, const std::string& parameters) {
+    return file.add({.type = type, .parameters = parameters, .status = dependent});
+  };
+  const auto flat = [&](double u0, double v0, double u1, double v1) {
+    return dependent_one(126,
+                         fmt::format("1,1,1,0,1,0,0.,0.,1.,1.,1.,1.,{:.9f},{:.9f},0.,{:.9f},{:.9f},0.,0.,1.,"
+                                     "0.,0.,1.",
+                                     u0, v0, u1, v1));
+  };
+  const int axis = dependent_one(110, "0.,0.,0.,5.,0.,0.");
+  const int meridian = dependent_one(100, "0.,0.,0.,5.,0.,-5.,0.");
+  const int sphere = dependent_one(120, fmt::format("{},{},0.,{:.15g}", axis, meridian, 2 * pi));
+  const int down = flat(pi, pi, 0, pi), pole = flat(0, pi, 0, 2 * pi), up = flat(0, 2 * pi, pi, 2 * pi);
+  const int flats = dependent_one(102, fmt::format("3,{},{},{}", down, pole, up));
+  const int back = dependent_one(100, "0.,0.,0.,-5.,0.,5.,0.");
+  const int there = dependent_one(100, "0.,0.,0.,5.,0.,-5.,0.");
+  const int arcs = dependent_one(102, fmt::format("2,{},{}", back, there));
+  const int boundary = dependent_one(142, fmt::format("0,{},{},{},1", sphere, flats, arcs));
+  file.add({.type = 144, .parameters = fmt::format("{},1,0,{}", sphere, boundary)});
+  const IgesReading reading = read_iges(file.bytes());
+  ASSERT_TRUE(reading.model && reading.model->parts.size() == 1) << reading.text();
+  const cad::Part& part = reading.model->parts[0];
+  const cad::Face& face = part.faces.at(0);
+  ASSERT_EQ(face.loops.size(), 1U);
+  EXPECT_EQ(face.loops[0].edges.size(), 4U);
+  for (const cad::Edge& edge : face.loops[0].edges) EXPECT_FALSE(edge.flat.points.empty());
+  const cad::PartMeasures measures = cad::measures_of(part);
+  ASSERT_TRUE(measures.area);
+  EXPECT_NEAR(*measures.area, 2 * pi * 25, 1e-6);
+}
+
+// The curves of a composite in directions of their own, in space: they are turned, which is told.
+TEST(IgesTrimmed, CurvesThatRunAgainstEachOther) {
+  for (const int turned : {0, 1, 2, 3, 5, 9, 15}) {
+    IgesText file;
+    const int plane = file.add({.type = 128, .parameters = bilinear(0, 0, 0), .status = dependent});
+    const std::array<std::pair<double, double>, 4> corners = {{{.1, .2}, {.7, .2}, {.7, .9}, {.1, .9}}};
+    std::string chain = "4";
+    for (int i = 0; i < 4; ++i) {
+      auto from = corners.at(static_cast<std::size_t>(i)),
+           to = corners.at(static_cast<std::size_t>((i + 1) % 4));
+      if ((turned >> i & 1) != 0) std::swap(from, to);
+      chain += fmt::format(",{}", file.add({.type = 110,
+                                            .parameters = fmt::format("{},{},0.,{},{},0.", from.first,
+                                                                      from.second, to.first, to.second),
+                                            .status = dependent}));
+    }
+    const int composite = file.add({.type = 102, .parameters = chain, .status = dependent});
+    const int boundary = file.add(
+        {.type = 142, .parameters = fmt::format("0,{},0,{},2", plane, composite), .status = dependent});
+    file.add({.type = 144, .parameters = fmt::format("{},1,0,{}", plane, boundary)});
+    const IgesReading reading = read_iges(file.bytes());
+    ASSERT_TRUE(reading.model && reading.model->parts.size() == 1) << reading.text();
+    EXPECT_EQ(reading.says(Severity::warning, "run against each other"), turned != 0) << turned;
+    const cad::PartMeasures measures = cad::measures_of(reading.model->parts[0]);
+    ASSERT_TRUE(measures.area) << turned;
+    EXPECT_NEAR(*measures.area, 0.6 * 0.7, 1e-9) << turned;
+  }
 }
 
 TEST(IgesOffsets, BadInput) {

@@ -5,12 +5,15 @@
 
 #include <numbers>
 
+#include "cad/feet.h"
 #include "cad/region.h"
 #include "cad/sampled_curve.h"
 #include "cad/seam.h"
 #include "nurbs/basis.h"
+#include "nurbs/conic.h"
 #include "nurbs/measure.h"
 #include "nurbs/restrict.h"
+#include "nurbs/sweep.h"
 #include "unit/cad/surfaces.h"
 
 namespace selvage::cad {
@@ -195,7 +198,153 @@ TEST(Measure, OfASolid) {
   EXPECT_FALSE(measures_of(part).volume.has_value());
 }
 
-// Of a cap round a pole the boundary does not tell which side is meant: what another kernel measured holds.
+// A sphere of radius 2 about the origin, its poles on z.
+Surface ball() {
+  const Curve meridian =
+      nurbs::elliptic_arc(Vec3::Zero(), 2 * Vec3::UnitX(), 2 * Vec3::UnitZ(), -pi / 2, pi / 2);
+  return nurbs::revolved(meridian, Vec3::Zero(), Vec3::UnitZ(), 0, 2 * pi);
+}
+Loop rim_at(double radius, double height, int turn) {
+  Loop rim;
+  for (int k = 0; k < 4; ++k)
+    rim.edges.push_back(in_space(arc(radius, height, turn * k * pi / 2, turn * (k + 1) * pi / 2)));
+  return rim;
+}
+
+// Archimedes: a cap of a sphere has the area of the belt round it. Of the two caps the face is the one to the
+// left of its boundary, seen from where S_u x S_v points.
+TEST(Measure, OfACapOfASphere) {
+  const double r = 2;
+  const Surface sphere = ball();
+  const nurbs::SurfaceJet jet = nurbs::evaluate_jet(sphere, sphere.first_u() + 0.5, sphere.first_v() + 0.5);
+  const int out = jet.du.cross(jet.dv).dot(jet.position) > 0 ? 1 : -1;
+  for (const double z : {-1.1, 0.0, 0.7})
+    for (const int turn : {1, -1}) {
+      const Face face = face_of(sphere, {rim_at(std::sqrt(r * r - z * z), z, turn)});
+      const std::optional<FaceIntegrals> found = integrals_of(face, Vec3::Zero());
+      ASSERT_TRUE(found.has_value());
+      // Anticlockwise seen from above, the cap above is to the left for who looks from outside.
+      const double height = out * turn > 0 ? r - z : r + z;
+      EXPECT_NEAR(found->area, 2 * pi * r * height, 1e-8) << z << ' ' << turn;
+      EXPECT_NEAR(std::abs(found->volume), 2 * pi * r * height * r / 3, 1e-8) << z << ' ' << turn;
+      const Region region(face);
+      ASSERT_TRUE(region.is_known());
+      for (const double u : {0.1, 0.4, 0.8})
+        for (const double v : {0.05, 0.2, 0.4, 0.6, 0.8, 0.95}) {
+          const double pu = std::lerp(sphere.first_u(), sphere.last_u(), u),
+                       pv = std::lerp(sphere.first_v(), sphere.last_v(), v);
+          const double above = nurbs::evaluate(sphere, pu, pv).z() - z;
+          if (std::abs(above) > 0.05) {
+            EXPECT_EQ(region.contains(pu, pv), (above > 0) == (out * turn > 0)) << u << ' ' << v;
+          }
+        }
+    }
+}
+
+// With one pole alone the face ends there, whichever way its boundary runs; a window in it is taken out.
+TEST(Measure, OfTheTipOfACone) {
+  const double r = 2, h = 3;
+  Surface cone = cylinder(r, h);
+  for (int i = 0; i < cone.count_u; ++i) cone.point(i, 0) = Vec3::Zero();
+  const double first = cone.first_u(), turn = cone.last_u() - first;
+  const auto up_to = [&](double z) { return pi * r * z / h * std::hypot(r, h) * z / h; };
+  for (const int way : {1, -1}) {
+    const auto whole = integrals_of(face_of(cone, {rim_at(r * 2 / h, 2, way)}), Vec3::Zero());
+    ASSERT_TRUE(whole.has_value());
+    EXPECT_NEAR(whole->area, up_to(2), 1e-8);
+    const auto open =
+        integrals_of(face_of(cone, {rim_at(r * 2 / h, 2, way),
+                                    rectangle(first + 0.25 * turn, first + 0.5 * turn, 1 / h, 1.5 / h)}),
+                     Vec3::Zero());
+    ASSERT_TRUE(open.has_value());
+    EXPECT_NEAR(open->area, up_to(2) - (up_to(1.5) - up_to(1)) / 4, 1e-8);
+  }
+}
+
+// An eighth of a ball between two meridians and the equator, known in space alone.
+TEST(Feet, AnEighthOfASphere) {
+  const double r = 2, from = 0.9, to = from + pi / 2;
+  const auto meridian = [&](double a, double low, double high) {
+    return nurbs::elliptic_arc(Vec3::Zero(), r * Vec3(std::cos(a), std::sin(a), 0), r * Vec3::UnitZ(), low,
+                               high);
+  };
+  Loop loop;
+  loop.edges = {in_space(arc(r, 0, from, to)), in_space(meridian(to, 0, pi / 2)),
+                in_space(nurbs::reversed(meridian(from, 0, pi / 2)))};
+  Face face = face_of(ball(), {loop});
+  give_flats(face, 1e-9);
+  ASSERT_EQ(face.loops[0].edges.size(), 4U);  // with the pole
+  for (const Edge& edge : face.loops[0].edges) {
+    ASSERT_FALSE(edge.flat.points.empty());
+    for (const double share : {0.0, 0.13, 0.5, 0.77, 1.0}) {
+      const Vec3 p = at_share(face.surface, edge.flat, share);
+      EXPECT_NEAR(p.norm(), r, 1e-9);
+      const Vec3 due = edge.curve.points.empty() ? Vec3(0, 0, r) : at_share(edge.curve, share);
+      EXPECT_LE((p - due).norm(), 3e-9) << share;
+    }
+  }
+  const auto found = integrals_of(face, Vec3::Zero());
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR(found->area, pi * r * r / 2, 1e-7);
+}
+
+// What is cut out of a sphere by a plane through its pole, in all sizes, and what remains of it: the pole is
+// a place of the boundary like any other. `id`: the edges are directed, as those of solids are.
+TEST(Measure, OfASphereWhoseBoundaryRunsThroughAPole) {
+  const double r = 2;
+  for (const double tilt : {0.3, 1.0, 1.5}) {
+    // A circle through (0, 0, r) in the plane at right angles to `normal`.
+    const Vec3 normal(std::sin(tilt), 0, std::cos(tilt));
+    const double height = r * std::cos(tilt), rim = r * std::sin(tilt);
+    const Vec3 x = (r * Vec3::UnitZ() - height * normal) / rim, y = normal.cross(x);
+    for (const bool turned : {false, true}) {
+      Loop loop;
+      for (int k = 0; k < 3; ++k)
+        loop.edges.push_back(
+            {nurbs::elliptic_arc(height * normal, rim * x, rim * y, k * 2 * pi / 3, (k + 1) * 2 * pi / 3),
+             {},
+             k});
+      if (turned) {
+        std::ranges::reverse(loop.edges);
+        for (Edge& edge : loop.edges) edge.curve = nurbs::reversed(edge.curve);
+      }
+      const Surface sphere = ball();
+      const nurbs::SurfaceJet jet =
+          nurbs::evaluate_jet(sphere, sphere.first_u() + 0.5, sphere.first_v() + 0.5);
+      const bool looks_out = jet.du.cross(jet.dv).dot(jet.position) > 0;
+      const auto found = integrals_of(face_of(sphere, {loop}), Vec3(1, 2, 3));
+      ASSERT_TRUE(found.has_value());
+      const double cap = 2 * pi * r * (looks_out == turned ? r + height : r - height);
+      EXPECT_NEAR(found->area, cap, 1e-9) << tilt << turned;
+      // Over a cap the normals add up to the disc that its rim bounds.
+      const Vec3 disc = (turned ? -1 : 1) * pi * rim * rim * normal;
+      EXPECT_LE((found->area_vector - disc).norm(), 1e-9) << tilt << turned;
+      EXPECT_NEAR(found->volume, ((looks_out ? 1 : -1) * r * cap - Vec3(1, 2, 3).dot(disc)) / 3, 1e-8);
+    }
+  }
+}
+
+// A line that winds round a cylinder over its seam leaves its range: nothing is given then.
+TEST(Feet, NotBeyondTheRange) {
+  const Surface s = cylinder(2, 3);
+  Loop loop;
+  loop.edges = {in_space(arc(2, 1, -0.5, 0.6)),
+                in_space(straight(Vec3(2 * std::cos(0.6), 2 * std::sin(0.6), 1),
+                                  Vec3(2 * std::cos(0.6), 2 * std::sin(0.6), 2))),
+                in_space(arc(2, 2, 0.6, -0.5)),
+                in_space(straight(Vec3(2 * std::cos(0.5), -2 * std::sin(0.5), 2),
+                                  Vec3(2 * std::cos(0.5), -2 * std::sin(0.5), 1)))};
+  Face face = face_of(s, {loop});
+  give_flats(face, 1e-9);
+  for (const Edge& edge : face.loops[0].edges) EXPECT_TRUE(edge.flat.points.empty());
+  // Nor where the surface is not near: the loop does not close there.
+  face = face_of(sheet(), {loop});
+  give_flats(face, 1e-9);
+  EXPECT_EQ(face.loops[0].edges.size(), 4U);
+}
+
+// Where neither side of a boundary round a surface ends in a pole, it does not tell which is meant: what
+// another kernel measured holds.
 TEST(Measure, WhereTheBoundaryDoesNotTell) {
   Part part;
   Face& face = part.faces.emplace_back(face_of(cylinder(2, 3), {}));
