@@ -142,7 +142,10 @@ Vec3 lifted(const Vec2& p) {
 class FlatFit {
  public:
   FlatFit(Feet& feet, const Curve& curve, double tolerance)
-      : feet_(feet), curve_(curve), tolerance_(tolerance), along_(feet, curve) {}
+      : feet_(feet), curve_(curve), tolerance_(tolerance), along_(feet, curve) {
+    for (const double t : nurbs::divided(curve.knots, curve.degree, 2, 32))
+      tolerance_ = std::max(tolerance_, (feet.jet(along_.at(t)).position - nurbs::evaluate(curve, t)).norm());
+  }
 
   std::optional<Curve> curve() {
     std::vector<double> at = nurbs::divided(curve_.knots, curve_.degree, curve_.degree == 1 ? 1 : 2, 4);
@@ -224,6 +227,17 @@ bool bring_in(std::vector<Curve>& flats, const Surface& surface, const std::arra
   return true;
 }
 
+// Between an edge's end in space and the next one's start.
+double largest_gap(const Loop& loop, const Surface& surface) {
+  const auto at = [&](const Edge& edge, double share) {
+    return edge.curve.points.empty() ? at_share(surface, edge.flat, share) : at_share(edge.curve, share);
+  };
+  double gap = 0;
+  for (std::size_t i = 0; i < loop.edges.size(); ++i)
+    gap = std::max(gap, (at(loop.edges[i], 1) - at(loop.edges[(i + 1) % loop.edges.size()], 0)).norm());
+  return gap;
+}
+
 void give_flats(Loop& loop, Feet& feet, double tolerance) {
   // Poles are made anew: the file's own go by its own surface's parameters.
   Loop given;
@@ -244,11 +258,13 @@ void give_flats(Loop& loop, Feet& feet, double tolerance) {
   }
   if (flats.empty() || !bring_in(flats, feet.surface(), feet.periods())) return;
   for (std::size_t i = 0; i < flats.size(); ++i) given.edges[i].flat = std::move(flats[i]);
-  give_poles(given, feet.surface(), tolerance);
+  // As far as the file leaves its edges apart.
+  const double apart = 2 * largest_gap(given, feet.surface()) + tolerance;
+  give_poles(given, feet.surface(), apart);
   for (std::size_t i = 0; i < given.edges.size(); ++i) {
-    const Edge& next = given.edges[(i + 1) % given.edges.size()];
-    if (!are_one(feet.surface(), at_share(given.edges[i].flat, 1).head<2>(),
-                 at_share(next.flat, 0).head<2>()))
+    const Curve &flat = given.edges[i].flat, &next = given.edges[(i + 1) % given.edges.size()].flat;
+    if (!are_one(feet.surface(), at_share(flat, 1).head<2>(), at_share(next, 0).head<2>()) &&
+        !is_point(feet.surface(), nurbs::segment(at_share(flat, 1), at_share(next, 0)), apart))
       return;
   }
   loop = std::move(given);

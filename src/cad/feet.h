@@ -58,8 +58,8 @@ class CurveFeet {
 };
 
 // The curve in the parameters, with the curve's own parameter: piecewise cubic, its points on the surface
-// within `tolerance` (model units) of the feet, at three places between every two nodes; on a parallelogram
-// exact. Nothing where that takes too many nodes.
+// within `tolerance` (model units), or as far as the curve is off the surface, of the feet, at three places
+// between every two nodes; on a parallelogram exact. Nothing where that takes too many nodes.
 std::optional<nurbs::Curve> flat_along(Feet& feet, const nurbs::Curve& curve, double tolerance);
 
 // Gives edges of a face's boundary that have no curve in the parameters one. A loop of which they would leave
