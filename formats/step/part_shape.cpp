@@ -4,9 +4,11 @@
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepCheck_Analyzer.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
@@ -34,6 +36,8 @@
 #include <tuple>
 
 #include "cad/edges.h"
+#include "cad/feet.h"
+#include "cad/region.h"
 #include "cad/sampled_curve.h"
 #include "cad/seam.h"
 #include "formats/step/faces.h"
@@ -198,6 +202,8 @@ class PartBuilder {
       built = *on_plane;
     } else if (const std::optional<TopoDS_Face> by_flats = face_by_flats(face)) {
       built = *by_flats;
+    } else if (const std::optional<TopoDS_Face> by_own_flats = face_by_flats(with_flats(face))) {
+      built = *by_own_flats;
     } else {
       builder_.MakeFace(built, surface, Precision::Confusion());
       for (const cad::Loop& loop : face.loops) builder_.Add(built, build_wire(loop, surface));
@@ -251,6 +257,11 @@ class PartBuilder {
     built = turned_outward(built);
     if (!BRepCheck_Analyzer(built).IsValid()) return std::nullopt;
     return built;
+  }
+
+  static cad::Face with_flats(cad::Face face) {
+    cad::give_flats(face, 1e-8 * cad::box_of(face.surface.points).diagonal().norm());
+    return face;
   }
 
   static Vec3 end_of(const cad::Face& face, const cad::Edge& edge, double share) {
@@ -454,6 +465,37 @@ PartShape build_part(const cad::Part& part, double tolerance) {
   return PartBuilder(part, tolerance).build();
 }
 
+namespace {
+
+// A place of the face, well inside; nothing where its boundary does not tell which side is the face.
+std::optional<Vec3> place_inside(const cad::Face& face) {
+  constexpr int grid = 9;
+  const cad::Region region(face);
+  if (!region.is_known()) return std::nullopt;
+  const cad::Range& range = region.range();
+  for (int k = 0; k < grid * grid; ++k) {
+    // From the middle outwards.
+    const int i = (k / grid + grid / 2) % grid, j = (k % grid + grid / 2) % grid;
+    const auto at = [&](double di, double dj) {
+      return Vec2(std::lerp(range.u0, range.u1, (i + 0.5 + di) / grid),
+                  std::lerp(range.v0, range.v1, (j + 0.5 + dj) / grid));
+    };
+    const std::array<Vec2, 5> places = {at(0, 0), at(0.3, 0), at(-0.3, 0), at(0, 0.3), at(0, -0.3)};
+    if (std::ranges::all_of(places, [&](const Vec2& p) { return region.contains(p.x(), p.y()); }))
+      return nurbs::evaluate(face.surface, places[0].x(), places[0].y());
+  }
+  return std::nullopt;
+}
+
+// Is it on the face that OpenCASCADE has made?
+bool has_place(const TopoDS_Shape& built, const Vec3& place, double size) {
+  const BRepExtrema_DistShapeShape distance(
+      BRepBuilderAPI_MakeVertex(gp_Pnt(place.x(), place.y(), place.z())).Vertex(), built);
+  return !distance.IsDone() || distance.Value() <= 1e-3 * size;
+}
+
+}  // namespace
+
 std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part) {
   constexpr std::string_view remedy = "--to iges writes its faces as they are";
   // OpenCASCADE's quadrature of rational surfaces is good for about a percent; what goes wrong loses halves.
@@ -470,6 +512,11 @@ std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part
     if (!face.loops.empty() && wires != face.loops.size())
       return fmt::format("of the {} boundaries of its face {} OpenCASCADE makes {}; {}", face.loops.size(),
                          who, wires, remedy);
+    // Faces of solids have directed edges, and areas that were measured.
+    const std::optional<Vec3> inside = face.loops.empty() || face.area ? std::nullopt : place_inside(face);
+    if (inside && !has_place(built.faces[i], *inside, cad::box_of(face.surface.points).diagonal().norm()))
+      return fmt::format("OpenCASCADE takes what is beyond the boundary of its face {} for it; {}", who,
+                         remedy);
     const double area = face.area ? area_of(built.faces[i]) : 0;
     if (face.area && !(std::abs(area - *face.area) <= same_area * *face.area))
       return fmt::format("its face {} has an area of {:.6g}, and OpenCASCADE makes it {:.6g}; {}", who,

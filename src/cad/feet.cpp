@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cad/edges.h"
 #include "cad/sampled_curve.h"
 #include "cad/seam.h"
 #include "nurbs/basis.h"
@@ -198,11 +199,14 @@ void shift(Curve& flat, const Vec2& by) {
   for (Vec3& p : flat.points) p.head<2>() += by;
 }
 
-constexpr double one_place = 1e-6;  // of the range: what is within it is one place
+constexpr double one_place = 1e-6;   // of the range: what is within it is one place
+constexpr double widest_gap = 1e-3;  // of the surface's size: what leaves more between its edges is no loop
+constexpr double shortest_pole = 1e-3;  // of the range: what is shorter is a gap that the file leaves
 
-bool are_one(const Surface& s, const Vec2& a, const Vec2& b) {
-  return std::abs(a.x() - b.x()) <= one_place * (s.last_u() - s.first_u()) &&
-         std::abs(a.y() - b.y()) <= one_place * (s.last_v() - s.first_v());
+// Are both within this share of the range of each other?
+bool are_within(const Surface& s, double share, const Vec3& a, const Vec3& b) {
+  return std::abs(a.x() - b.x()) <= share * (s.last_u() - s.first_u()) &&
+         std::abs(a.y() - b.y()) <= share * (s.last_v() - s.first_v());
 }
 
 // Brought into the range of the surface: by whole turns, and to a side that it misses by nothing. False where
@@ -218,7 +222,8 @@ bool bring_in(std::vector<Curve>& flats, const Surface& surface, const std::arra
         low = std::min(low, p[k]);
         high = std::max(high, p[k]);
       }
-    const double slack = one_place * (last[d] - first[d]);
+    const double slack =
+        1e-4 * (last[d] - first[d]);  // of control points: cubics swing beyond what they join
     const double turn = periods[d] > 0 ? -periods[d] * std::floor((low - first[d] + slack) / periods[d]) : 0;
     if (low + turn < first[d] - slack || high + turn > last[d] + slack) return false;
     for (Curve& flat : flats)
@@ -259,11 +264,13 @@ void give_flats(Loop& loop, Feet& feet, double tolerance) {
   if (flats.empty() || !bring_in(flats, feet.surface(), feet.periods())) return;
   for (std::size_t i = 0; i < flats.size(); ++i) given.edges[i].flat = std::move(flats[i]);
   // As far as the file leaves its edges apart.
-  const double apart = 2 * largest_gap(given, feet.surface()) + tolerance;
+  const double gap = largest_gap(given, feet.surface());
+  if (gap > widest_gap * box_of(feet.surface().points).diagonal().norm()) return;
+  const double apart = 2 * gap + tolerance;
   give_poles(given, feet.surface(), apart);
   for (std::size_t i = 0; i < given.edges.size(); ++i) {
     const Curve &flat = given.edges[i].flat, &next = given.edges[(i + 1) % given.edges.size()].flat;
-    if (!are_one(feet.surface(), at_share(flat, 1).head<2>(), at_share(next, 0).head<2>()) &&
+    if (!are_within(feet.surface(), one_place, at_share(flat, 1), at_share(next, 0)) &&
         !is_point(feet.surface(), nurbs::segment(at_share(flat, 1), at_share(next, 0)), apart))
       return;
   }
@@ -279,6 +286,9 @@ std::optional<Curve> flat_along(Feet& feet, const Curve& curve, double tolerance
 
 void give_flats(Face& face, double tolerance) {
   std::optional<Feet> feet;
+  for (Edge& edge : boundary_edges_of(face))
+    if (edge.flat.points.empty() && !edge.curve.points.empty())
+      edge.flat = flat_on_parallelogram(face.surface, edge.curve).value_or(Curve{});
   for (Loop& loop : face.loops.empty() ? face.border : face.loops) {
     if (std::ranges::none_of(loop.edges, [](const Edge& edge) { return edge.flat.points.empty(); })) continue;
     if (!feet) feet.emplace(face.surface);
@@ -292,7 +302,7 @@ void give_poles(Loop& loop, const Surface& surface, double tolerance) {
     edges.push_back(loop.edges[i]);
     const Vec3 to = at_share(loop.edges[i].flat, 1),
                from = at_share(loop.edges[(i + 1) % loop.edges.size()].flat, 0);
-    if (are_one(surface, to.head<2>(), from.head<2>())) continue;
+    if (are_within(surface, shortest_pole, to, from)) continue;
     nurbs::Curve between = nurbs::segment(to, from);
     if (is_point(surface, between, tolerance)) edges.push_back({.curve = {}, .flat = std::move(between)});
   }

@@ -367,8 +367,6 @@ PartMeasures measures_of(const Part& part) {
   bool is_known = true, are_all = true;
   for (const Face& face : part.faces) {
     const std::optional<FaceIntegrals> integrals = integrals_of(face, box.center());
-    fprintf(stderr, "FACE %s ours %.9g kernel %.9g loops %zu rev %d\n", face.origin.entity.c_str(),
-            integrals ? integrals->area : -1.0, face.area.value_or(-1), face.loops.size(), face.reversed);
     are_all = are_all && integrals;
     is_known = is_known && (integrals || face.area);
     area += integrals ? integrals->area : std::abs(face.area.value_or(0));

@@ -24,8 +24,9 @@ void measure(Thing& thing) {
       mean += p;
       ++count;
     }
+  // A face that one file trims is whole in another: of both the points count, not those that control them.
   for (std::size_t k = 0; k < thing.surfaces.size(); ++k)
-    if (k < thing.faces.size() && !thing.faces[k]->loops.empty())
+    if (thing.kind == Thing::Kind::part && k < thing.faces.size())
       thing.box.extend(place_of(*thing.faces[k]).box);
     else
       thing.box.extend(box_of(thing.surfaces[k]->points));

@@ -67,13 +67,21 @@ class Installed(Case):
         self.assertEqual(outside, {
             "bin/selvage", "lib/libselvage.a", "lib/selvage/selvage-tetgen", "lib/selvage/selvage_cgal.so",
             "lib/selvage/selvage_embree.so", "lib/selvage/selvage_muparser.so", "lib/selvage/selvage_occt.so", "lib/selvage/selvage_pugixml.so",
-            "share/doc/selvage/copyright", "share/doc/selvage/CHANGELOG.md"})
+            "share/doc/selvage/copyright", "share/doc/selvage/CHANGELOG.md", "share/man/man1/selvage.1",
+            "share/bash-completion/completions/selvage", "share/zsh/vendor-completions/_selvage",
+            "share/fish/vendor_completions.d/selvage.fish"})
         table = (PACKAGING / "README.md").read_text()
         for name in files:
             self.assertTrue(any(name.startswith(place) for place in re.findall(r"`((?:bin|lib|include|share)[\w/.]*)`", table)), name)
         samples = subprocess.run(["git", "ls-files", "samples"], cwd=ROOT, capture_output=True, text=True)
         if samples.returncode == 0 and samples.stdout:  # not in a copy without its repository
             self.assertEqual({f"share/selvage/{name}" for name in samples.stdout.splitlines()} - files, set())
+
+    def test_pages_and_completions_are_those_of_the_program(self):
+        for kind, place in (("man", "man/man1/selvage.1"), ("complete-bash", "bash-completion/completions/selvage"),
+                            ("complete-zsh", "zsh/vendor-completions/_selvage"),
+                            ("complete-fish", "fish/vendor_completions.d/selvage.fish")):
+            self.assertEqual((self.prefix / "share" / place).read_text(), self.works("--generate", kind))
 
     def test_what_needs_another_machine_runs_every_night(self):
         nightly = (ROOT / ".github/workflows/nightly.yml").read_text()

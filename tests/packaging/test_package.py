@@ -60,6 +60,7 @@ class Package(unittest.TestCase):
         self.addCleanup(self.inside, "dpkg", "--purge", "selvage")  # where something fails
         files = self.inside("dpkg", "-L", "selvage").split()
         self.assertIn("/usr/bin/selvage", files)
+        self.completes()
         programs = [name for name in files if name.startswith(("/usr/bin/", "/usr/lib/selvage/"))]
         self.assertEqual(len(programs), 6)
         for name in programs:
@@ -69,6 +70,15 @@ class Package(unittest.TestCase):
         for name in programs:
             self.assertFalse((self.root / name[1:]).exists(), name)
         self.assert_bare()
+
+    def completes(self):
+        """The manual page by man, and a word that bash completes once it has looked for the program's completions."""
+        self.inside("apt-get", "install", "-q", "-y", "--no-install-recommends", "man-db", "bash-completion")
+        self.assertIn("Fabric", self.inside("man", "-P", "cat", "selvage"))
+        script = """. /usr/share/bash-completion/bash_completion; _completion_loader selvage
+                    COMP_WORDS=(selvage expl); COMP_CWORD=1; COMP_LINE="selvage expl"; COMP_POINT=12
+                    set -- $(complete -p selvage); while [ "$1" != -F ]; do shift; done; $2 selvage expl selvage; echo ${COMPREPLY[@]}"""
+        self.assertEqual(self.inside("bash", "-c", script).split(), ["explain"])
 
     def works(self):
         """Each module is opened, and the worker runs."""
