@@ -37,6 +37,24 @@ class Gmsh(Case):
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         return run.stdout
 
+    def names_of_volumes(self, file):
+        """As gmsh shows them: what OpenCASCADE's documents (FreeCAD's, too) call the solids of the file."""
+        program = ("import gmsh, sys\ngmsh.initialize()\ngmsh.option.setNumber('General.Terminal', 0)\n"
+                   "gmsh.option.setNumber('Geometry.OCCImportLabels', 1)\n"
+                   "for tag in gmsh.model.occ.importShapes(sys.argv[1]):\n"
+                   "    gmsh.model.occ.synchronize()\n    print('NAME', gmsh.model.getEntityName(*tag))\n")
+        run = subprocess.run(["/usr/bin/python3", "-c", program, file], capture_output=True, text=True, timeout=600)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        return [line[5:].rsplit("/", 1)[-1] for line in run.stdout.splitlines() if line.startswith("NAME ")]
+
+    def test_solids_have_the_names_of_their_yarns(self):
+        for to, options in (("iges", ["--iges-solid"]), ("step", [])):
+            file = self.folder / f"named.{to}"
+            self.succeeds("convert", GRID, "--to", to, *options, "-o", file)
+            names = [yarn["name"] for yarn in json.loads(self.succeeds("info", "--json", GRID).stdout)["inputs"][0]["yarns"]]
+            self.assertGreater(len(names), 1)
+            self.assertEqual(self.names_of_volumes(file), names, to)
+
     def script(self, file, how):
         """A gmsh script that reads the file. how: "solid" as it is; "sew"; "loop": gmsh's sewing makes no shell, so no
         solid, of one single face, not even of one that is closed: it is told that the ring's surface bounds a volume."""
