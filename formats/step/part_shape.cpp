@@ -517,7 +517,7 @@ std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part
     if (inside && !has_place(built.faces[i], *inside, cad::box_of(face.surface.points).diagonal().norm()))
       return fmt::format("OpenCASCADE takes what is beyond the boundary of its face {} for it; {}", who,
                          remedy);
-    const double area = face.area ? area_of(built.faces[i]) : 0;
+    const double area = face.area ? std::abs(area_of(built.faces[i])) : 0;
     if (face.area && !(std::abs(area - *face.area) <= same_area * *face.area))
       return fmt::format("its face {} has an area of {:.6g}, and OpenCASCADE makes it {:.6g}; {}", who,
                          *face.area, area, remedy);

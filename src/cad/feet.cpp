@@ -149,6 +149,7 @@ class FlatFit {
   }
 
   std::optional<Curve> curve() {
+    if (tolerance_ > curve_holds * box_of(feet_.surface().points).diagonal().norm()) return std::nullopt;
     std::vector<double> at = nurbs::divided(curve_.knots, curve_.degree, curve_.degree == 1 ? 1 : 2, 4);
     for (int round = 0; round < most_rounds && at.size() < most_nodes; ++round) {
       const Curve flat = through(at);
@@ -164,6 +165,7 @@ class FlatFit {
   }
 
  private:
+  static constexpr double curve_holds = 2e-6;  // of the surface's size: as flat_holds() has it
   static constexpr int most_rounds = 18;
   static constexpr std::size_t most_nodes = 4096;
 
@@ -289,7 +291,7 @@ void give_flats(Face& face, double tolerance) {
   for (Edge& edge : boundary_edges_of(face))
     if (edge.flat.points.empty() && !edge.curve.points.empty())
       edge.flat = flat_on_parallelogram(face.surface, edge.curve).value_or(Curve{});
-  for (Loop& loop : face.loops.empty() ? face.border : face.loops) {
+  for (Loop& loop : face.loops) {
     if (std::ranges::none_of(loop.edges, [](const Edge& edge) { return edge.flat.points.empty(); })) continue;
     if (!feet) feet.emplace(face.surface);
     give_flats(loop, *feet, tolerance);

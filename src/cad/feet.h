@@ -59,11 +59,13 @@ class CurveFeet {
 
 // The curve in the parameters, with the curve's own parameter: piecewise cubic, its points on the surface
 // within `tolerance` (model units), or as far as the curve is off the surface, of the feet, at three places
-// between every two nodes; on a parallelogram exact. Nothing where that takes too many nodes.
+// between every two nodes; on a parallelogram exact. Nothing where that takes too many nodes, or the curve is
+// so far off that it is the one that holds (flat_holds).
 std::optional<nurbs::Curve> flat_along(Feet& feet, const nurbs::Curve& curve, double tolerance);
 
-// Gives edges of a face's boundary that have no curve in the parameters one. A loop of which they would leave
-// the surface's range, or leave gaps that are no poles, stays as it is.
+// Gives edges of a face's loops (and of those round a whole parallelogram) that have no curve in the
+// parameters one. A loop of which they would leave the surface's range, or leave gaps that are no poles,
+// stays as it is.
 void give_flats(Face& face, double tolerance);
 
 // Edges that go from the end of a curve in the parameters to the start of the next one, where both are one

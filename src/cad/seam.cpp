@@ -93,7 +93,7 @@ bool begin_at_pole(Loop& loop, const Surface& surface) {
     return std::ranges::any_of(poles, [&](const Vec3& pole) { return (pole - start).norm() <= least; });
   });
   if (first == loop.edges.end()) return false;
-  std::ranges::rotate(loop.edges, first);
+  std::rotate(loop.edges.begin(), first, loop.edges.end());
   return true;
 }
 
