@@ -31,7 +31,9 @@ class Charter {
   [[nodiscard]] int right_of(const Loop& one) const {
     return one.end == Loop::End::knitted ? left_at(one) - made_at(one) : 0;
   }
-  void refuse(const Loop& at, std::string text) { report_.error(at.spot, std::move(text), Kind::unsupported); }
+  void refuse(const Loop& at, std::string text) {
+    report_.error(at.spot, std::move(text), Kind::unsupported);
+  }
 
   void find_gating();
   bool find_size();
@@ -70,9 +72,10 @@ bool Charter::find_size() {
   wales_ = last - first + 1;
   const long long rows = static_cast<long long>(passes_.courses) * passes_.feeds;
   if (rows * wales_ <= most_cells) return true;
-  report_.error(graph_.loops.front().spot,
-                fmt::format("{} rows by {} wales are beyond the {} stitches of a chart", rows, wales_, most_cells),
-                Kind::limit);
+  report_.error(
+      graph_.loops.front().spot,
+      fmt::format("{} rows by {} wales are beyond the {} stitches of a chart", rows, wales_, most_cells),
+      Kind::limit);
   return false;
 }
 
@@ -82,15 +85,17 @@ void Charter::check_loops() {
     if (graph_.carrier_sets[one.carriers].size() > 1)
       refuse(one, "several yarns in one loop are not supported: knit with one carrier");
     if (one.splits)
-      refuse(one, "a split is not supported: the loops that it moves would hold two loops; knit, or transfer");
+      refuse(one,
+             "a split is not supported: the loops that it moves would hold two loops; knit, or transfer");
     if (one.end == Loop::End::knitted && is_opposite_ && one.made.bed != loop(one.next).made.bed)
-      refuse(loop(one.next),
-             fmt::format("this knits a loop of the other bed (line {}), which is not supported where needles of "
-                         "both beds hold loops face to face",
-                         one.spot.line));
+      refuse(
+          loop(one.next),
+          fmt::format("this knits a loop of the other bed (line {}), which is not supported where needles of "
+                      "both beds hold loops face to face",
+                      one.spot.line));
     if (std::abs(right_of(one)) > fabric::most_moved)
-      refuse(one, fmt::format("a loop that is moved by {} wales is not supported: by {} at most", right_of(one),
-                              fabric::most_moved));
+      refuse(one, fmt::format("a loop that is moved by {} wales is not supported: by {} at most",
+                              right_of(one), fabric::most_moved));
     if (one.is_tuck && one.through_count > 0 && !is_opposite_ &&
         loop(graph_.through(one).front()).made.bed != one.made.bed)
       refuse(one, "a tuck to a loop that was made on the other bed is not supported");
@@ -98,7 +103,8 @@ void Charter::check_loops() {
     const Loop& before = graph_.loops[i - 1];
     if (before.carriers == one.carriers && before.direction == one.direction &&
         before.made.bed != one.made.bed && passes_.column(before.made) == passes_.column(one.made))
-      refuse(one, "needles that face each other cannot knit in one pass: 'rack 0.25' makes them stand in turn");
+      refuse(one,
+             "needles that face each other cannot knit in one pass: 'rack 0.25' makes them stand in turn");
   }
 }
 
@@ -109,8 +115,9 @@ void Charter::check_passings() {
     if (pass_of(pair.first).row == pass_of(pair.second).row) continue;
     const long long before = made_at(b) - made_at(a), after = left_at(b) - left_at(a);
     if (before * after < 0)
-      refuse(b, fmt::format("this loop passes one of another course on its way (line {}), which is not supported",
-                            a.spot.line));
+      refuse(b, fmt::format(
+                    "this loop passes one of another course on its way (line {}), which is not supported",
+                    a.spot.line));
   }
 }
 
@@ -180,8 +187,9 @@ void Charter::order_row(const Pass& pass) {
       const std::optional<bool> first = is_before(at(i), at(j));
       if (!first && left_at(other) == left_at(one)) continue;
       if (!first) {
-        refuse(other, fmt::format("this loop and that of line {} change places in a way that is not supported",
-                                  one.spot.line));
+        refuse(other,
+               fmt::format("this loop and that of line {} change places in a way that is not supported",
+                           one.spot.line));
         continue;
       }
       const std::size_t a = *first ? i : j, b = *first ? j : i;
@@ -210,7 +218,8 @@ void Charter::order_row(const Pass& pass) {
     for (const std::size_t b : behind[i])
       if (--left[b] == 0) ready.push_back(b);
   }
-  if (done < count) refuse(loop(pass.loops.front()), "loops of this course lie before each other in a circle");
+  if (done < count)
+    refuse(loop(pass.loops.front()), "loops of this course lie before each other in a circle");
 }
 
 void Charter::order_moves() {
@@ -281,7 +290,8 @@ std::optional<GraphChart> Charter::run() {
   if (!chart) {
     Spot spot = graph_.loops.front().spot;
     for (const Pass& pass : passes_.list)
-      if (loop(pass.loops.front()).spot.line == chart.error().place.line) spot = loop(pass.loops.front()).spot;
+      if (loop(pass.loops.front()).spot.line == chart.error().place.line)
+        spot = loop(pass.loops.front()).spot;
     report_.error(spot, fmt::format("this is not supported: {}", chart.error().text), chart.error().kind);
     return std::nullopt;
   }

@@ -15,7 +15,7 @@ namespace selvage::formats::knitout {
 inline constexpr long long most_cells = 20'000'000;
 
 struct GraphChart {
-  fabric::Knit knit;       // chart, moves, gating, feeds, courses, wales: what follows from the graph
+  fabric::Knit knit;          // chart, moves, gating, feeds, courses, wales: what follows from the graph
   std::vector<int> carriers;  // of each row, from the first one; those of rows without a yarn are anyone's
   bool is_doubled = false;    // two wales a needle
 };

@@ -62,8 +62,8 @@ void read_header_line(std::string_view line, int number, Header& header, TextRep
   constexpr std::string_view yarn = "Yarn-";
   if (same_word(name, "Gauge") && word) read_gauge(*word, header, report);
   if (name.starts_with(yarn) && word)
-    header.yarns[name.substr(yarn.size())] = {all.substr(static_cast<std::size_t>(word->name.data() - all.data())),
-                                              word->spot};
+    header.yarns[name.substr(yarn.size())] = {
+        all.substr(static_cast<std::size_t>(word->name.data() - all.data())), word->spot};
   if (!same_word(name, "Carriers")) return;
   header.has_carriers = true;
   for (; word; word = next_word(rest, line, number)) {

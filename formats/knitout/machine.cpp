@@ -47,10 +47,10 @@ int Machine::carrier(const Carrier& named) {
     carrier_numbers_.emplace(named.name, number);
     return number;
   }
-  report_.error(named.spot, fmt::format("there is no carrier {}: the header names {}", in_quotes(named.name),
-                                        header_.carriers.empty()
-                                            ? std::string("none")
-                                            : fmt::format("{}", fmt::join(header_.carriers, " "))));
+  report_.error(named.spot,
+                fmt::format("there is no carrier {}: the header names {}", in_quotes(named.name),
+                            header_.carriers.empty() ? std::string("none")
+                                                     : fmt::format("{}", fmt::join(header_.carriers, " "))));
   return -1;
 }
 
@@ -76,8 +76,9 @@ bool Machine::all_in(const Operation& operation) {
       continue;
     }
     const Carrier& named = operation.carriers[i];
-    report_.error(named.spot, fmt::format("carrier {} is not in: bring it in before, by 'inhook {}' or 'in {}'",
-                                          in_quotes(named.name), named.name, named.name));
+    report_.error(named.spot,
+                  fmt::format("carrier {} is not in: bring it in before, by 'inhook {}' or 'in {}'",
+                              in_quotes(named.name), named.name, named.name));
     state.is_in = state.is_used = true;  // said once
     return false;
   }
@@ -87,11 +88,12 @@ bool Machine::all_in(const Operation& operation) {
 bool Machine::is_on_bed(const Needle& needle, const Spot& spot) {
   const int least = std::min(least_used_, needle.number), most = std::max(most_used_, needle.number);
   if (most - least >= widest_bed) {
-    report_.error(spot,
-                  fmt::format("needle {} is beyond the bed: from {} to {} are {} needles, and the widest beds "
-                              "have {}",
-                              name_of(needle), least, most, most - least + 1, widest_bed),
-                  Kind::limit);
+    report_.error(
+        spot,
+        fmt::format("needle {} is beyond the bed: from {} to {} are {} needles, and the widest beds "
+                    "have {}",
+                    name_of(needle), least, most, most - least + 1, widest_bed),
+        Kind::limit);
     return false;
   }
   least_used_ = least;
@@ -101,8 +103,9 @@ bool Machine::is_on_bed(const Needle& needle, const Spot& spot) {
 
 bool Machine::takes_yarn(const Operation& operation) {
   if (!operation.needle.is_slider) return true;
-  report_.error(operation.needle_spot, fmt::format("{} is a slider, which only holds loops: a needle takes yarn",
-                                                   name_of(operation.needle)));
+  report_.error(
+      operation.needle_spot,
+      fmt::format("{} is a slider, which only holds loops: a needle takes yarn", name_of(operation.needle)));
   return false;
 }
 
@@ -191,9 +194,10 @@ void Machine::make_loop(const Operation& operation, bool is_tuck) {
   if (!find_carriers(operation) || !all_in(operation)) return;
   note_passings();
   for (const auto& [spot, needle] : ladders_)
-    report_.warning(spot, fmt::format("the loop dropped from {} runs: it holds the loops below it, which stay as "
-                                      "they were knitted here",
-                                      name_of(needle)));
+    report_.warning(spot,
+                    fmt::format("the loop dropped from {} runs: it holds the loops below it, which stay as "
+                                "they were knitted here",
+                                name_of(needle)));
   ladders_.clear();
   Stack& held = stack(operation.needle);
   const int number = static_cast<int>(graph_.loops.size());
@@ -250,14 +254,14 @@ void Machine::transfer(const Operation& operation, bool splits) {
   }
   if (!is_aligned() || facing(from) != to.number) {
     const Needle faced{to.bed, to.is_slider, facing(from)};
-    report_.error(operation.other_spot,
-                  is_aligned() ? fmt::format("{} does not face {}: at racking {} it faces {}; 'rack {}' brings "
-                                             "them together",
-                                             name_of(from), name_of(to), racking_, name_of(faced),
-                                             from.bed == Bed::front ? from.number - to.number
-                                                                    : to.number - from.number)
-                               : fmt::format("no needles face each other at racking {}: rack a whole number",
-                                             racking_));
+    report_.error(
+        operation.other_spot,
+        is_aligned()
+            ? fmt::format("{} does not face {}: at racking {} it faces {}; 'rack {}' brings "
+                          "them together",
+                          name_of(from), name_of(to), racking_, name_of(faced),
+                          from.bed == Bed::front ? from.number - to.number : to.number - from.number)
+            : fmt::format("no needles face each other at racking {}: rack a whole number", racking_));
     return;
   }
   note_passings();

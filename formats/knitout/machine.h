@@ -21,8 +21,9 @@ class Machine {
  public:
   Machine(const Header& header, TextReport& report);
 
-  // Errors: a carrier that there is not or that is not in, needles that do not face each other, racking beyond
-  // the bed, knitting on a slider, needles farther apart than a bed is wide. Warnings: loops that ladder.
+  // Errors: a carrier that there is not or that is not in, needles that do not face each other, racking
+  // beyond the bed, knitting on a slider, needles farther apart than a bed is wide. Warnings: loops that
+  // ladder.
   void run(const Operation& operation);
   // What hangs on the needles stays there, as open loops. What was dropped after the last loop was taken off
   // the machine, and does not ladder. Warnings of carriers that are still in.
@@ -67,7 +68,7 @@ class Machine {
   std::array<std::vector<Stack>, 4> stacks_;  // front, back, front sliders, back sliders
   std::set<int> back_needles_;                // that hold something
   double racking_ = 0, whole_ = 0;
-  double least_swept_ = 0, most_swept_ = 0;  // rackings since loops were looked at
+  double least_swept_ = 0, most_swept_ = 0;       // rackings since loops were looked at
   std::vector<std::pair<Spot, Needle>> ladders_;  // dropped since the last loop was made
   int least_used_ = most_number + 1, most_used_ = -most_number - 1;
 };

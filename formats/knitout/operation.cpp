@@ -61,8 +61,7 @@ class Line {
   // The same, or an error that says what should stand there.
   std::optional<Carrier> word(std::string_view what, const Form& form) {
     std::optional<Carrier> next = word();
-    if (!next)
-      report_.error(end(), fmt::format("{} is missing: {}", what, form.grammar));
+    if (!next) report_.error(end(), fmt::format("{} is missing: {}", what, form.grammar));
     return next;
   }
   std::nullopt_t error(const Carrier& at, std::string text, Kind kind = Kind::malformed) {
@@ -90,8 +89,8 @@ std::optional<int> Line::direction(const Form& form) {
   if (!next) return std::nullopt;
   if (next->name == "+") return 1;
   if (next->name == "-") return -1;
-  return error(*next, fmt::format("{} is no direction: + (to the right) or - (to the left)",
-                                  in_quotes(next->name)));
+  return error(*next,
+               fmt::format("{} is no direction: + (to the right) or - (to the left)", in_quotes(next->name)));
 }
 
 std::optional<Needle> Line::needle(const Form& form, Spot& spot) {

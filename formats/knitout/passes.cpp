@@ -17,9 +17,8 @@ bool goes_on(const StitchGraph& graph, const Passes& passes, const Loop& loop, i
   const int step = passes.column(loop.made) - passes.column(last.made);
   if (loop.direction != pass.direction || step * pass.direction <= 0) return false;
   const auto below = graph.through(loop);
-  return std::all_of(below.begin(), below.end(), [&](int number) {
-    return passes.of_loop[static_cast<std::size_t>(number)] < open;
-  });
+  return std::all_of(below.begin(), below.end(),
+                     [&](int number) { return passes.of_loop[static_cast<std::size_t>(number)] < open; });
 }
 
 void find_passes(const StitchGraph& graph, Passes& passes) {
@@ -44,8 +43,9 @@ int least_course(const StitchGraph& graph, const Passes& passes, const Pass& pas
   for (const int number : pass.loops) {
     const Loop& loop = graph.loops[static_cast<std::size_t>(number)];
     for (const int below : graph.through(loop))
-      least = std::max(least, courses[static_cast<std::size_t>(passes.of_loop[static_cast<std::size_t>(below)])] +
-                                  (loop.is_tuck ? 0 : 1));
+      least =
+          std::max(least, courses[static_cast<std::size_t>(passes.of_loop[static_cast<std::size_t>(below)])] +
+                              (loop.is_tuck ? 0 : 1));
   }
   return least;
 }

@@ -40,14 +40,14 @@ struct Station {
 inline constexpr int no_loop = -1;
 
 struct Loop {
-  std::uint32_t carriers = 0;  // index in StitchGraph::carrier_sets
-  signed char direction = 1;   // of the carrier: 1 to the right, -1 to the left
-  bool is_tuck = false;        // laid to what the needle held, not pulled through it
-  bool splits = false;         // what it was pulled through went on to another needle
-  bool faces_loops = false;    // the needle opposite held loops when it was made
-  bool was_moved = false;      // to another needle, by a transfer
-  Station made;                // where
-  Spot spot;                   // the operation
+  std::uint32_t carriers = 0;                          // index in StitchGraph::carrier_sets
+  signed char direction = 1;                           // of the carrier: 1 to the right, -1 to the left
+  bool is_tuck = false;                                // laid to what the needle held, not pulled through it
+  bool splits = false;                                 // what it was pulled through went on to another needle
+  bool faces_loops = false;                            // the needle opposite held loops when it was made
+  bool was_moved = false;                              // to another needle, by a transfer
+  Station made;                                        // where
+  Spot spot;                                           // the operation
   std::uint32_t first_through = 0, through_count = 0;  // in StitchGraph::throughs; of a tuck: what it joined
 
   enum class End : char { on_needle, knitted, dropped };

@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <variant>
 
-#include "core/number_text.h"
 #include "core/text_report.h"
-#include "core/words.h"
 #include "fabric/knit_journey.h"
 #include "formats/knitout/chart.h"
 #include "formats/knitout/operation.h"
 #include "formats/knitout/program.h"
-#include "formats/knitout/yarns.h"
 
 namespace selvage::formats::knitout {
 
@@ -49,7 +46,8 @@ Knit whole_chart(const Knit& knit, const StitchChart& chart) {
 
 class Programmer {
  public:
-  Programmer(const Fabric& fabric, const Knit& knit, const StitchChart& chart, const fabric::Journeys& journeys)
+  Programmer(const Fabric& fabric, const Knit& knit, const StitchChart& chart,
+             const fabric::Journeys& journeys)
       : fabric_(fabric), knit_(knit), chart_(chart), journeys_(journeys) {}
 
   Status write();
@@ -60,9 +58,8 @@ class Programmer {
 
  private:
   struct CarrierState {
-    std::string name;
+    std::string thread, name{};
     bool is_in = false, is_held = false, is_right = false;
-    int last_row = -1;
   };
   [[nodiscard]] Status refuse(std::string text) const {
     return error(Kind::unsupported, "a knitting machine cannot knit this as it is: " + std::move(text))
@@ -93,8 +90,10 @@ class Programmer {
   const StitchChart& chart_;
   const fabric::Journeys& journeys_;
   std::string text_;
-  std::vector<CarrierState> carriers_;  // of the threads
-  std::vector<char> front_, back_;  // does the needle of a wale hold something?
+  std::vector<CarrierState> carriers_;
+  std::vector<std::size_t> carrier_of_thread_;       // of the knit's threads, in turn
+  std::vector<std::vector<const LoopMove*>> moves_;  // of each row
+  std::vector<char> front_, back_;                   // does the needle of a wale hold something?
   std::vector<Made> made_;
   int racking_ = 0;
 };
@@ -106,15 +105,18 @@ std::string needle_text(int bed, int wale) {
 // Carriers keep the names that they have in threads of a program that was read; others are numbered.
 void Programmer::name_carriers() {
   constexpr std::string_view of_carrier = "carrier_";
-  std::vector<std::string> threads;  // each once
-  for (const std::string& name : knit_.threads)
-    if (std::find(threads.begin(), threads.end(), name) == threads.end()) threads.push_back(name);
-  const bool are_named = std::all_of(threads.begin(), threads.end(), [&](const std::string& name) {
-    return name.starts_with(of_carrier) && name.size() > of_carrier.size() &&
-           name.find_first_of(" \t;") == std::string::npos;
+  std::map<std::string_view, std::size_t> numbers;
+  for (const std::string& thread : knit_.threads) {
+    const auto [found, is_new] = numbers.try_emplace(thread, carriers_.size());
+    if (is_new) carriers_.push_back({.thread = thread});
+    carrier_of_thread_.push_back(found->second);
+  }
+  const bool are_named = std::all_of(carriers_.begin(), carriers_.end(), [&](const CarrierState& carrier) {
+    return carrier.thread.starts_with(of_carrier) && carrier.thread.size() > of_carrier.size() &&
+           carrier.thread.find_first_of(" \t;") == std::string::npos;
   });
-  for (std::size_t i = 0; i < threads.size(); ++i)
-    carriers_.push_back({are_named ? threads[i].substr(of_carrier.size()) : fmt::format("{}", i + 1)});
+  for (std::size_t i = 0; i < carriers_.size(); ++i)
+    carriers_[i].name = are_named ? carriers_[i].thread.substr(of_carrier.size()) : fmt::format("{}", i + 1);
 }
 
 void Programmer::write_header() {
@@ -127,18 +129,14 @@ void Programmer::write_header() {
   text_ += ";;Carriers:";
   for (const CarrierState& carrier : carriers_) text_ += " " + carrier.name;
   text_ += '\n';
-  std::size_t carrier = 0;
-  for (std::size_t i = 0; i < knit_.threads.size(); ++i) {
-    if (std::find(knit_.threads.begin(), knit_.threads.begin() + static_cast<std::ptrdiff_t>(i),
-                  knit_.threads[i]) != knit_.threads.begin() + static_cast<std::ptrdiff_t>(i))
-      continue;
-    const fabric::Thread* const thread = fabric_.find_thread(knit_.threads[i]);
-    const std::string& name = carriers_[carrier++].name;
+  for (const CarrierState& carrier : carriers_) {
+    const fabric::Thread* const thread = fabric_.find_thread(carrier.thread);
     if (thread == nullptr) continue;
     if (thread->diameter)
-      text_ += fmt::format(";;Yarn-{}: {:.12g} mm\n", name, *thread->diameter * mm);
+      text_ += fmt::format(";;Yarn-{}: {:.12g} mm\n", carrier.name, *thread->diameter * mm);
     else if (thread->linear_density && thread->material)
-      text_ += fmt::format(";;Yarn-{}: {:.12g} tex {}\n", name, thread->linear_density->tex(), *thread->material);
+      text_ += fmt::format(";;Yarn-{}: {:.12g} tex {}\n", carrier.name, thread->linear_density->tex(),
+                           *thread->material);
   }
 }
 
@@ -154,7 +152,8 @@ void Programmer::let_go(CarrierState& carrier) {
 }
 
 void Programmer::stitch(std::string_view word, CarrierState& carrier, int bed, int wale, Made made) {
-  text_ += fmt::format("{} {} {} {}\n", word, carrier.is_right ? '-' : '+', needle_text(bed, wale), carrier.name);
+  text_ +=
+      fmt::format("{} {} {} {}\n", word, carrier.is_right ? '-' : '+', needle_text(bed, wale), carrier.name);
   holds(bed, wale) = 1;
   made_.push_back(made);
 }
@@ -239,15 +238,8 @@ Status Programmer::bring_together(int row) {
 }
 
 void Programmer::knit_row(int row) {
-  const std::size_t thread = static_cast<std::size_t>(row) % knit_.threads.size();
-  std::vector<std::string> threads;
-  std::size_t number = 0;
-  for (std::size_t i = 0; i <= thread; ++i) {
-    const auto found = std::find(threads.begin(), threads.end(), knit_.threads[i]);
-    number = static_cast<std::size_t>(found - threads.begin());
-    if (found == threads.end()) threads.push_back(knit_.threads[i]);
-  }
-  CarrierState& carrier = carriers_[number];
+  CarrierState& carrier =
+      carriers_[carrier_of_thread_[static_cast<std::size_t>(row) % carrier_of_thread_.size()]];
   bring_in(carrier);
   for (int i = 0; i < chart_.wales(); ++i) {
     const int wale = carrier.is_right ? chart_.wales() - 1 - i : i;
@@ -265,25 +257,26 @@ void Programmer::knit_row(int row) {
 Status Programmer::move_loops(int row) {
   std::vector<const LoopMove*> moves;
   int bed = 0;
-  for (const LoopMove& move : knit_.moves) {
-    if (move.row != row + 1) continue;
-    const int wale = move.wale - 1, own = bed_at(row, wale);
-    if (move.is_dropped) {
+  for (const LoopMove* move : moves_[static_cast<std::size_t>(row)]) {
+    const int wale = move->wale - 1, own = bed_at(row, wale);
+    if (move->is_dropped) {
       text_ += fmt::format("drop {}\n", needle_text(own, wale));
       holds(own, wale) = 0;
       continue;
     }
     if (journeys_.at(row, wale).off < 0) continue;
-    if (chart_.is_opposite()) return refuse("needles of both beds hold loops, and transfers need one of them free");
+    if (chart_.is_opposite())
+      return refuse("needles of both beds hold loops, and transfers need one of them free");
     if (bed != 0 && own != bed)
       return refuse(fmt::format("in row {} of the chart loops of both beds are moved", row + 1));
     bed = own;
-    moves.push_back(&move);
+    moves.push_back(move);
   }
   if (moves.empty()) return {};
   for (const LoopMove* move : moves) {
     if (holds(-bed, move->wale - 1) != 0)
-      return refuse(fmt::format("wale {} of row {} has no free needle on the other bed", move->wale, row + 1));
+      return refuse(
+          fmt::format("wale {} of row {} has no free needle on the other bed", move->wale, row + 1));
     transfer(bed, move->wale - 1, move->wale - 1);
   }
   if (bed < 0) std::reverse(moves.begin(), moves.end());
@@ -304,9 +297,12 @@ void Programmer::drop_all() {
 
 Status Programmer::write() {
   if (chart_.wales() > widest_bed)
-    return refuse(fmt::format("{} wales are more than the {} needles of the widest beds", chart_.wales(), widest_bed));
+    return refuse(
+        fmt::format("{} wales are more than the {} needles of the widest beds", chart_.wales(), widest_bed));
   name_carriers();
   write_header();
+  moves_.resize(static_cast<std::size_t>(chart_.courses()));
+  for (const LoopMove& move : knit_.moves) moves_[static_cast<std::size_t>(move.row) - 1].push_back(&move);
   front_.assign(static_cast<std::size_t>(chart_.wales()), 0);
   back_ = front_;
   if (needs_cast_on()) cast_on();
@@ -359,7 +355,8 @@ Status Programmer::verify() const {
       is_same = read->journeys()->at(pass.row, loop.made.column - first_column).lift == journey.lift;
     }
     if (!is_same)
-      return other(fmt::format("the loop of row {}, wale {} would lie otherwise", made.row + 1, made.wale + 1));
+      return other(
+          fmt::format("the loop of row {}, wale {} would lie otherwise", made.row + 1, made.wale + 1));
   }
   return {};
 }
@@ -372,7 +369,8 @@ Result<const Knit*> only_knit(const Fabric& fabric) {
     return refuse("knitout holds one weft knit by its chart (`knit`), and this input is something else");
   const Knit& knit = std::get<Knit>(fabric.items.front());
   if (!knit.plating.empty())
-    return refuse("a plated knit is not written as knitout: two yarns in one loop; leave out 'plating'", knit.place);
+    return refuse("a plated knit is not written as knitout: two yarns in one loop; leave out 'plating'",
+                  knit.place);
   if (knit.threads.empty()) return refuse("this knit has no thread", knit.place);
   return &knit;
 }
@@ -387,7 +385,8 @@ Result<WriteFacts> write_fabric(const Fabric& fabric, OutputFile& output) {
   if (!chart) return at(chart.error());
   if (const long long cells = static_cast<long long>((*knit)->courses) * chart->feeds() * (*knit)->wales;
       cells > most_cells)
-    return at(error(Kind::limit, fmt::format("{} stitches are more than the {} of a program", cells, most_cells)));
+    return at(
+        error(Kind::limit, fmt::format("{} stitches are more than the {} of a program", cells, most_cells)));
   const Knit whole = whole_chart(**knit, *chart);
   const Result<StitchChart> cloth = StitchChart::of(whole);
   if (!cloth) return at(cloth.error());

@@ -91,7 +91,8 @@ std::vector<Thread> read_yarns(const Header& header, const StitchGraph& graph, G
   fabric::Knit& knit = chart.knit;
   const Spot start = graph.loops.front().spot;
   if (!header.gauge)
-    report.note(start, fmt::format("the program has no ';;Gauge: NEEDLES' an inch: {} is taken", usual_gauge));
+    report.note(start,
+                fmt::format("the program has no ';;Gauge: NEEDLES' an inch: {} is taken", usual_gauge));
   knit.wale_pitch = mm_per_inch / header.gauge.value_or(usual_gauge) / (chart.is_doubled ? 2 : 1);
   knit.course_pitch = course_share * knit.wale_pitch;
   int last = -1;
@@ -119,14 +120,16 @@ std::vector<Thread> read_yarns(const Header& header, const StitchGraph& graph, G
     threads.push_back(std::move(thread));
   }
   if (!silent.empty())
-    report.note(start, fmt::format("the header says no thickness of the yarn of carrier {}, as ';;Yarn-C: 0.3 mm': "
-                                   "{:.3g} mm is taken, a sixth of a wale",
-                                   silent, yarn_share * knit.wale_pitch));
+    report.note(start,
+                fmt::format("the header says no thickness of the yarn of carrier {}, as ';;Yarn-C: 0.3 mm': "
+                            "{:.3g} mm is taken, a sixth of a wale",
+                            silent, yarn_share * knit.wale_pitch));
   const auto count = static_cast<long long>(chart.carriers.size());
   const auto at = [&](long long row) { return chart.carriers[static_cast<std::size_t>(row)]; };
   const long long repeat =
       fabric::smallest_shift(count, [&](long long i, long long k) { return at(i) == at(k); });
-  for (long long row = 0; row < repeat; ++row) knit.threads.push_back(names[static_cast<std::size_t>(at(row))]);
+  for (long long row = 0; row < repeat; ++row)
+    knit.threads.push_back(names[static_cast<std::size_t>(at(row))]);
   knit.thread_place = start.place();
   return threads;
 }

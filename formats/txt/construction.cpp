@@ -337,10 +337,11 @@ void read_knit_points(Parser& p, Knit& knit, std::string_view) {
 void read_chart(Parser& p, Knit& knit, std::string_view) {
   if (!p.finish()) return;
   knit.chart_place = p.statement().place();
-  SignRows rows{"chart", "KPTUM.",
-                "K (knit), P (purl), T (tuck), M (miss) and . (no yarn); U (tuck of the back bed) with 'gating "
-                "opposite'",
-                knit.chart, &knit.chart_lines};
+  SignRows rows{
+      "chart", "KPTUM.",
+      "K (knit), P (purl), T (tuck) and M (miss); U (tuck of the back bed) with 'gating opposite'; . where "
+      "the row's yarn does not come",
+      knit.chart, &knit.chart_lines};
   if (knit.form == Knit::Form::jacquard) {
     rows.signs = "123456";
     rows.meaning = "1 to 6: which of the threads knits";
@@ -630,7 +631,8 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     if (has_form && has_chart && knit.chart.empty())
       p.error(p.last(), "a jacquard ends without its 'chart': rows of 1, 2, ..., which of the threads knits");
     if (has_form && !knit.moves.empty())
-      p.error(opened, "'transfer' and 'drop' go with a chart of K, P, T and M: leave out either the word or these");
+      p.error(opened,
+              "'transfer' and 'drop' go with a chart of K, P, T and M: leave out either the word or these");
     if (has_form && knit.feeds)
       p.error(opened, "'feeds' goes with a chart: leave out either the word or 'feeds'");
     if (form != Knit::Form::jersey && !knit.plating.empty())

@@ -120,8 +120,8 @@ class KnitConstruction final : public Construction {
   KnitField field_;
   KnitMoves moves_;
   std::vector<long long> rows_;  // that have a yarn; empty: all
-  Vec2 half_;   // of the section: r across, and r through the thickness
-  Vec2 pitch_;  // of wales and courses, file units
+  Vec2 half_;                    // of the section: r across, and r through the thickness
+  Vec2 pitch_;                   // of wales and courses, file units
   Vec3 origin_ = Vec3::Zero();
 };
 
@@ -382,7 +382,8 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
   }
   if (chart->journeys() != nullptr && fabric.cell)
     return error(Kind::geometry,
-                 "a cell is cut from a cloth that goes on beyond it, and a chart with '.', 'transfer' or 'drop' is "
+                 "a cell is cut from a cloth that goes on beyond it, and a chart with '.', 'transfer' or "
+                 "'drop' is "
                  "the whole cloth: leave out the cell, or these")
         .placed(knit.chart_place);
   KnitField field;

@@ -122,10 +122,10 @@ Status StitchChart::fill(const Knit& knit) {
     if (row->size() != knit.chart.front().size())
       return error(Kind::malformed, "the rows of the chart are not equally long");
     if (row->find_first_not_of(is_opposite_ ? "KPTUM." : "KPTM.") != std::string::npos)
-      return error(Kind::malformed, is_opposite_
-                                        ? "the chart has a sign that is none of K, P, T, U, M and '.'"
-                                        : "the chart has a sign that is none of K, P, T, M and '.' (U goes with "
-                                          "'gating opposite')")
+      return error(Kind::malformed,
+                   is_opposite_ ? "the chart has a sign that is none of K, P, T, U, M and '.'"
+                                : "the chart has a sign that is none of K, P, T, M and '.' (U goes with "
+                                  "'gating opposite')")
           .placed(knit.chart_place);
     rows.push_back(*row);
   }

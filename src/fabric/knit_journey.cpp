@@ -30,9 +30,10 @@ bool Journeys::are_needed(const Knit& knit) {
 Result<Journeys> Journeys::of(const StitchChart& chart, const Knit& knit) {
   if (knit.courses * static_cast<long long>(chart.feeds()) != chart.courses() || knit.wales != chart.wales())
     return error(Kind::malformed,
-                 fmt::format("a chart with '.', 'transfer' or 'drop' is the whole cloth: write 'courses {}' and "
-                             "'wales {}', or leave these out of the chart",
-                             chart.courses() / chart.feeds(), chart.wales()))
+                 fmt::format(
+                     "a chart with '.', 'transfer' or 'drop' is the whole cloth: write 'courses {}' and "
+                     "'wales {}', or leave these out of the chart",
+                     chart.courses() / chart.feeds(), chart.wales()))
         .placed(knit.chart_place);
   if (knit.loop || !knit.own_loops.empty())
     return error(Kind::malformed,
@@ -63,9 +64,10 @@ Status Journeys::read_spans(const StitchChart& chart, const Knit& knit) {
       span.last = wale;
     }
     if (stitches != span.last - span.first + 1)
-      return error(Kind::malformed,
-                   "'.' stands between stitches of this row: the yarn floats past there, which is M, or it is "
-                   "two yarns, in two rows")
+      return error(
+                 Kind::malformed,
+                 "'.' stands between stitches of this row: the yarn floats past there, which is M, or it is "
+                 "two yarns, in two rows")
           .placed(place_of(knit, static_cast<std::size_t>(row)));
     has_stitches = has_stitches || stitches > 0;
     spans_.push_back(span);
@@ -82,12 +84,13 @@ Status Journeys::follow(const StitchChart& chart, const Knit& knit) {
       return error(Kind::malformed, std::move(text)).placed(move.place);
     };
     if (move.row < 1 || move.row > chart.courses() || move.wale < 1 || move.wale > chart.wales())
-      return refuse(fmt::format("the chart has {} rows of {} wales: there is no row {}, wale {}", chart.courses(),
-                                chart.wales(), move.row, move.wale));
+      return refuse(fmt::format("the chart has {} rows of {} wales: there is no row {}, wale {}",
+                                chart.courses(), chart.wales(), move.row, move.wale));
     const std::size_t c = cell(move.row - 1, move.wale - 1);
     if (!is_made(chart.at(move.row - 1, move.wale - 1)))
       return refuse(fmt::format("row {}, wale {} of the chart makes no loop that could be moved: it is {}",
-                                move.row, move.wale, static_cast<char>(chart.at(move.row - 1, move.wale - 1))));
+                                move.row, move.wale,
+                                static_cast<char>(chart.at(move.row - 1, move.wale - 1))));
     if (order_[c] >= 0)
       return refuse(fmt::format("the loop of row {}, wale {} is moved twice", move.row, move.wale));
     if (std::abs(move.right) > most_moved)

@@ -40,8 +40,8 @@ class Journeys {
   // A chart with signs '.', or whose loops are moved, is the whole cloth.
   static bool are_needed(const Knit& knit);
   // Errors: (malformed) the chart is not as large as the cloth, '.' between stitches of a row, moves of what
-  // is no stitch, beyond the cloth, or farther than most_moved; (geometry) a loop held over more than max_held
-  // courses, and a cloth without stitches.
+  // is no stitch, beyond the cloth, or farther than most_moved; (geometry) a loop held over more than
+  // max_held courses, and a cloth without stitches.
   static Result<Journeys> of(const StitchChart& chart, const Knit& knit);
 
   [[nodiscard]] const Journey& at(long long row, long long wale) const { return journeys_[cell(row, wale)]; }

@@ -131,7 +131,8 @@ double side_of(Stitch stitch) {
 }
 
 // The same of a chart that is the whole cloth.
-Needle needle_of_journeys(const KnitField& field, const Journeys& journeys, long long course, long long wale) {
+Needle needle_of_journeys(const KnitField& field, const Journeys& journeys, long long course,
+                          long long wale) {
   Needle needle;
   needle.stitch = field.chart.at(course, wale);
   const auto side_at = [&](long long row, long long w) {

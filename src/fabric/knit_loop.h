@@ -62,8 +62,9 @@ RowExtent extent_of(const KnitField& field, long long course);
 long long held_course(const KnitField& field, long long course, long long wale, int bed);
 
 // Appends the points that one needle gives to one course, from the sinker on its left to the last point
-// before the sinker on its right, which is the next needle's first point; none where its yarn does not come. x from the left side of the wale
-// (0 .. shape.wale), y from the course's lower crossings, z from the middle plane.
+// before the sinker on its right, which is the next needle's first point; none where its yarn does not come.
+// x from the left side of the wale (0 .. shape.wale), y from the course's lower crossings, z from the middle
+// plane.
 void add_stitch_points(const KnitField& field, long long course, long long wale, std::vector<Vec3>& points,
                        int end = 0);
 

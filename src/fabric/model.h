@@ -301,8 +301,8 @@ struct Knit {
   std::optional<double> pile;          // its sinkers stand out of the back by this
   bool pile_is_cut = false;
   std::optional<nurbs::Parameterization> method;
-  std::vector<std::string>
-      chart;  // of 'K', 'P', 'T', 'U', 'M', '.', top row = last course, or of a jacquard '1', '2', ...; else empty
+  std::vector<std::string> chart;  // of 'K', 'P', 'T', 'U', 'M', '.', top row = last course, or of a jacquard
+                                   // '1', '2', ...; else empty
   TextPlace chart_place;
   std::vector<int> chart_lines;  // source line of each row; may be empty
   std::vector<LoopMove> moves;   // of loops that cross or meet, from the technical face to the back
