@@ -136,8 +136,8 @@ void Charter::fill() {
   for (const Pass& pass : passes_.list) {
     const auto from_top = static_cast<std::size_t>(rows - 1 - pass.row);
     std::string& signs = knit.chart[from_top];
-    const auto [first, last] =
-        std::minmax(made_at(loop(pass.loops.front())), made_at(loop(pass.loops.back())));
+    const int start = made_at(loop(pass.loops.front())), end = made_at(loop(pass.loops.back()));
+    const int first = std::min(start, end), last = std::max(start, end);
     std::fill(signs.begin() + first, signs.begin() + last + 1, 'M');
     for (const int number : pass.loops)
       signs[static_cast<std::size_t>(made_at(loop(number)))] = sign_of(loop(number));

@@ -130,11 +130,11 @@ Status Journeys::follow(const StitchChart& chart, const Knit& knit) {
 // Loops that are knitted off together lie on their needle as they came: of earlier rows first, of one row in
 // the order of the moves, which is told from the face; loops that are not moved lie before those.
 void Journeys::stack(const StitchChart& chart) {
-  struct Item {
+  struct Laid {
     std::size_t off;
     int row, order, wale;
   };
-  std::vector<Item> items;
+  std::vector<Laid> items;
   for (int row = 0; row < chart.courses(); ++row)
     for (int wale = 0; wale < chart.wales(); ++wale) {
       const std::size_t c = cell(row, wale);
@@ -144,7 +144,7 @@ void Journeys::stack(const StitchChart& chart) {
       const bool from_back = chart.at(journey.off, to) == Stitch::purl;
       items.push_back({cell(journey.off, to), row, from_back ? -order_[c] : order_[c], wale});
     }
-  std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
+  std::stable_sort(items.begin(), items.end(), [](const Laid& a, const Laid& b) {
     if (a.off != b.off) return a.off < b.off;
     return a.row != b.row ? a.row < b.row : a.order < b.order;
   });
