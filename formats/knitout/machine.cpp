@@ -79,7 +79,7 @@ bool Machine::all_in(const Operation& operation) {
     report_.error(named.spot,
                   fmt::format("carrier {} is not in: bring it in before, by 'inhook {}' or 'in {}'",
                               in_quotes(named.name), named.name, named.name));
-    state.is_in = state.is_used = true;  // said once
+    state = {true, false, true, operation.spot};  // said once
     return false;
   }
   return true;

@@ -162,11 +162,7 @@ void Programmer::stitch(std::string_view word, CarrierState& carrier, int bed, i
 int Programmer::bed_at(int row, int wale) const {
   const Stitch stitch = chart_.at(row, wale);
   if (chart_.is_opposite() || !fabric::is_tuck(stitch)) return fabric::bed_of(stitch);
-  const fabric::Journey& journey = journeys_.at(row, wale);
-  if (journey.off < 0) return 1;
-  const fabric::Held& held = journeys_.held(journey.off, wale + journey.right);
-  const Stitch joined = chart_.at(held.row, held.wale);
-  return fabric::bed_of(fabric::is_loop(joined) ? joined : chart_.at(journey.off, wale + journey.right));
+  return fabric::bed_of(journeys_.joined(chart_, row, wale));
 }
 
 // The bed of the needle's first loop, asked for one bed where both have their own; 0: it is never knitted.
@@ -348,8 +344,13 @@ Status Programmer::verify() const {
     const bool is_knitted = loop.end == Loop::End::knitted;
     const Made next = is_knitted ? made_[static_cast<std::size_t>(loop.next)] : Made{};
     bool is_same = is_knitted == (journey.off >= 0) && next.row == journey.off;
-    if (is_knitted && is_same)
-      is_same = next.wale == made.wale + journey.right && loop.place_in_stack == journey.index;
+    if (is_knitted && is_same) {
+      const auto stack = graph.through(graph.loops[static_cast<std::size_t>(loop.next)]);
+      const auto of_cast_on =
+          std::count_if(stack.begin(), stack.begin() + loop.place_in_stack,
+                        [&](int number) { return made_[static_cast<std::size_t>(number)].row < 0; });
+      is_same = next.wale == made.wale + journey.right && loop.place_in_stack - of_cast_on == journey.index;
+    }
     if (is_same && read->journeys() != nullptr) {
       const Pass& pass = passes.list[static_cast<std::size_t>(passes.of_loop[i])];
       is_same = read->journeys()->at(pass.row, loop.made.column - first_column).lift == journey.lift;

@@ -72,6 +72,8 @@ Result<StitchChart> StitchChart::of(const Knit& knit) {
     Result<Journeys> journeys = Journeys::of(chart, knit);
     if (!journeys) return journeys.error();
     chart.longest_hold_ = journeys->longest_hold();
+    if (!chart.is_opposite_ && !journeys->knits_within_courses())
+      chart.feed_step_ = std::min(chart.feed_step_, crowded);
     chart.journeys_ = std::make_shared<const Journeys>(std::move(*journeys));
     return chart;
   }

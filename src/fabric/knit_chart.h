@@ -55,7 +55,8 @@ class StitchChart {
   [[nodiscard]] bool is_opposite() const { return is_opposite_; }
   [[nodiscard]] int feeds() const { return feeds_; }
   // Of a row above row 0, in courses. The yarns of a course follow each other evenly; those of a jacquard are
-  // crowded, for the loops of a course are one row of the pattern.
+  // crowded, for the loops of a course are one row of the pattern; so are those of a whole cloth's chart
+  // where none is drawn through another one of its course.
   [[nodiscard]] double height(long long row) const;
   [[nodiscard]] int courses() const { return courses_; }  // of one repeat
   [[nodiscard]] int wales() const { return wales_; }

@@ -53,6 +53,17 @@ Result<Journeys> Journeys::of(const StitchChart& chart, const Knit& knit) {
   return journeys;
 }
 
+Stitch Journeys::joined(const StitchChart& chart, long long row, long long wale) const {
+  const Journey& journey = at(row, wale);
+  if (journey.off >= 0) {
+    const Held& first = held(journey.off, wale + journey.right);
+    return journey.index > 0 ? chart.at(first.row, first.wale) : chart.at(journey.off, wale + journey.right);
+  }
+  for (long long below = row - 1; below >= 0; --below)
+    if (const Stitch stitch = chart.at(below, wale); is_loop(stitch)) return stitch;
+  return chart.at(row, wale);
+}
+
 Status Journeys::read_spans(const StitchChart& chart, const Knit& knit) {
   bool has_stitches = false;
   for (int row = 0; row < chart.courses(); ++row) {
@@ -118,6 +129,7 @@ Status Journeys::follow(const StitchChart& chart, const Knit& knit) {
                                                  "than {} courses: no loop can be",
                                                  row + 1, wale + 1, max_held))
             .placed(place_of(knit, static_cast<std::size_t>(row)));
+      knits_within_courses_ = knits_within_courses_ || journey.off / chart.feeds() == row / chart.feeds();
       longest_hold_ = std::max(longest_hold_, journey.off - row - 1);
     }
     for (int wale = 0; wale < chart.wales(); ++wale)

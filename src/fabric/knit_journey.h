@@ -46,8 +46,13 @@ class Journeys {
 
   [[nodiscard]] const Journey& at(long long row, long long wale) const { return journeys_[cell(row, wale)]; }
   [[nodiscard]] const Held& held(long long row, long long wale) const { return held_[cell(row, wale)]; }
+  // The stitch that says on which side of the cloth a tuck lies: the first of those that it joins, else the
+  // loop that is drawn through it, or itself.
+  [[nodiscard]] Stitch joined(const StitchChart& chart, long long row, long long wale) const;
   [[nodiscard]] const WaleSpan& span(long long row) const { return spans_[static_cast<std::size_t>(row)]; }
   [[nodiscard]] int longest_hold() const { return longest_hold_; }
+  // Is a loop drawn through one of the same course, of another feed?
+  [[nodiscard]] bool knits_within_courses() const { return knits_within_courses_; }
 
  private:
   Status read_spans(const StitchChart& chart, const Knit& knit);
@@ -64,6 +69,7 @@ class Journeys {
   std::vector<WaleSpan> spans_;    // of rows
   std::vector<int> order_;         // of each cell among the moves; -1: it is not moved
   int longest_hold_ = 0;
+  bool knits_within_courses_ = false;
 };
 
 }  // namespace selvage::fabric

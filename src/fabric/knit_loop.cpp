@@ -146,13 +146,8 @@ Needle needle_of_journeys(const KnitField& field, const Journeys& journeys, long
   } else if (is_tuck(needle.stitch)) {
     const Journey& journey = journeys.at(course, wale);
     needle.behind = std::max(journey.index - 1, 0);
-    if (field.chart.is_opposite()) {
-      needle.side = bed_of(needle.stitch);
-    } else if (journey.off >= 0) {
-      const Held& held = journeys.held(journey.off, wale + journey.right);
-      const bool joins = journey.index > 0;
-      needle.side = joins ? side_at(held.row, held.wale) : side_at(journey.off, wale + journey.right);
-    }
+    needle.side = field.chart.is_opposite() ? bed_of(needle.stitch)
+                                            : side_of(journeys.joined(field.chart, course, wale));
   } else if (!field.chart.is_opposite()) {  // a float lies behind the loop that its needle holds
     long long held = course - 1;
     while (held >= 0 && !is_loop(field.chart.at(held, wale))) --held;

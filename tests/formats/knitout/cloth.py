@@ -85,13 +85,13 @@ class Cloth:
     """The stitches of the laid yarns: each the piece of its yarn between the middles of its sinkers."""
 
     def __init__(self, chart, lines):
-        self.chart, self.stitches, self.sides = chart, {}, {}
+        self.chart, self.stitches, self.ways = chart, {}, {}
         for r, row in enumerate(chart.rows):
             wales = [w for w, sign in enumerate(row) if sign != "."]
             if not wales:
                 continue
             points = lines[chart.yarn(r)]
-            low = np.quantile(points[:, 1], 0.0) if len(points) < 4 else points[:, 1].min()
+            low = points[:, 1].min()
             ends = [0]
             for w in wales[1:]:
                 away = np.hypot(points[:, 0] - w * chart.wale, points[:, 1] - low)
@@ -103,17 +103,26 @@ class Cloth:
                     self.stitches[r, w] = points[ends[i]:ends[i + 1] + 1]
 
     def through(self, cell, other):
-        """How often the first half of a stitch passes through the loop of another one, from the back to the face.
+        """How often each half of a stitch passes through the loop of another one, from its back to its face.
 
-        The loop is closed between its feet, and the half goes on without end: from its sinker away from the face of the
-        stitch, from its head upwards. The linking number of the two."""
-        stitch, ring = self.stitches[cell], self.stitches[other]
-        top = int(stitch[:, 1].argmax())
-        far = 100 * self.chart.wale
-        back = -far if self.chart.rows[cell[0]][cell[1]] == "K" else far
-        start, end = stitch[0], stitch[top]
-        way = np.vstack([start + [0, 0, back], stitch[:top + 1], end + [0, far, 0], end + [0, far, back], start + [0, 0, back]])
-        return round(linking_number(np.vstack([ring, ring[:1]]), way))
+        The loop is closed between its sinkers, and the half goes on without end: from its sinker to the back, from the place
+        on its leg where it has come to the face further there. The linking numbers of the two."""
+        ring = self.stitches[other][::-1]  # counter-clockwise, seen from the face of the cloth
+        ring = np.vstack([ring, ring[:1]])
+        face = 1 if self.chart.beds[cell] == "f" else -1
+        return tuple(face * round(linking_number(ring, self.way(cell, turn))) for turn in (1, -1))
+
+    def way(self, cell, turn):
+        if (cell, turn) not in self.ways:
+            stitch = self.stitches[cell][::turn]
+            half = stitch[:int(stitch[:, 1].argmax()) + 1]
+            face = 1 if self.chart.beds[cell] == "f" else -1
+            ahead = face * (half[:, 2] - half[0, 2])
+            stop = int(np.argmax(ahead >= 0.6 * ahead.max())) if ahead.max() > 0 else len(half) - 1
+            far = 100 * self.chart.wale
+            start, end = half[0] - [0, 0, face * far], half[stop] + [0, 0, face * far]
+            self.ways[cell, turn] = np.vstack([start, half[:stop + 1], end, end - [far, 0, 0], start - [far, 0, 0], start])
+        return self.ways[cell, turn]
 
 
 def linking_number(first, second):
@@ -128,5 +137,6 @@ def linking_number(first, second):
         s = (gap[..., 0] * d[..., 1] - gap[..., 1] * d[..., 0]) / cross
         t = (gap[..., 0] * b[..., 1] - gap[..., 1] * b[..., 0]) / cross
     meets = (cross != 0) & (s >= 0) & (s < 1) & (t >= 0) & (t < 1)
-    over = (a[..., 2] + s * b[..., 2]) - (c[..., 2] + t * d[..., 2])
-    return np.sum(np.sign(cross)[meets] * np.sign(over)[meets]) / 2
+    i, j = np.nonzero(meets)
+    over = a[i, 0, 2] + s[i, j] * b[i, 0, 2] - c[0, j, 2] - t[i, j] * d[0, j, 2]
+    return np.sum(np.sign(cross[i, j]) * np.sign(over)) / 2

@@ -17,12 +17,6 @@ from program import Case, SAMPLES, run  # noqa: E402
 from programs import LAID, Program, cable, plain  # noqa: E402
 
 
-# Programs whose chart is not written as a program again, and why.
-NOT_WRITTEN = {
-    "racked rib": "loops of both beds are moved",
-}
-
-
 class KnitoutCase(Case):
     def written(self, program, name="program.k"):
         path = self.folder / name
@@ -46,8 +40,8 @@ class Topology(KnitoutCase):
                 self.assertEqual(chart.named_links(), named_links(machine.loops))
 
     def test_laid_yarns(self):
-        """The first half of each loop passes once through each loop that it is drawn through: a face loop from the back, a back
-        loop from the face; and through no other of its neighbourhood."""
+        """Both halves of each loop pass once through each loop that it is drawn through, from its back to its face; and through no
+        other of its neighbourhood."""
         for name, program in LAID.items():
             with self.subTest(name):
                 path = self.written(program)
@@ -56,14 +50,12 @@ class Topology(KnitoutCase):
                 self.assertEqual(sorted(lines), sorted(chart.yarn(r) for r, row in enumerate(chart.rows) if row.strip(".")))
                 cloth = Cloth(chart, lines)
                 for cell, held in chart.through.items():
-                    sign = chart.rows[cell[0]][cell[1]]
-                    if sign in "TU":
+                    if chart.rows[cell[0]][cell[1]] in "TU":
                         continue
                     for other in chart.through:
                         if other == cell or other[0] == cell[0] or abs(other[0] - cell[0]) > 4 or abs(other[1] - cell[1]) > 3:
                             continue
-                        expected = (1 if sign == "K" else -1) if other in held else 0
-                        self.assertEqual(cloth.through(cell, other), expected, f"{cell} through {other}")
+                        self.assertEqual(cloth.through(cell, other), (1, 1) if other in held else (0, 0), f"{cell} through {other}")
 
     def test_free_of_overlap(self):
         for name, program in LAID.items():
@@ -93,7 +85,7 @@ class Crossings(KnitoutCase):
                                 heights = over(cloth.stitches[cell], cloth.stitches[other])
                                 found += len(heights)
                                 self.assertTrue(np.all(heights > 0 if front == "right" else heights < 0), heights)
-                    self.assertGreaterEqual(found, 4 * left * right)  # two legs over two legs
+                    self.assertGreaterEqual(found, 3 * left * right)  # two legs over two legs, of which one may cross near the feet
 
 
 def over(first, second):
@@ -129,18 +121,16 @@ class Writing(KnitoutCase):
         for name, program in LAID.items():
             with self.subTest(name):
                 path = self.written(program)
-                done = run("convert", path, "--to", "knitout", "-o", "-", "--quiet")
-                if name in NOT_WRITTEN:
-                    self.assertEqual(done.returncode, 1)
-                    self.assertRegex(done.stderr, NOT_WRITTEN[name])
-                    continue
-                self.assertEqual(done.returncode, 0, done.stderr)
+                text = self.succeeds("convert", path, "--to", "knitout", "-o", "-", "--quiet").stdout
                 expected = Machine(program.text()).loops
-                written = without_cast_on(Machine(done.stdout).loops, len(expected))
+                written = without_cast_on(Machine(text).loops, len(expected))
                 self.assertEqual(named_links(written), named_links(expected))
-                again = self.text_of(self.written(done.stdout, "again.knitout"))
-                if len(Machine(done.stdout).loops) == len(expected):
-                    self.assertEqual(Chart(again).named_links(), Chart(self.text_of(path)).named_links())
+                again = Chart(self.text_of(self.written(text, "again.knitout")))
+                if len(Machine(text).loops) == len(expected):  # no cast-on was needed
+                    chart = Chart(self.text_of(path))
+                    self.assertEqual(again.named_links(), chart.named_links())
+                    self.assertEqual([row.strip("M.") for row in again.rows if row.strip("M.")],
+                                     [row.strip("M.") for row in chart.rows if row.strip("M.")])
 
     def test_knits_of_texts(self):
         """Classics and charts: the written program knits the chart's stitches through each other."""
@@ -163,6 +153,8 @@ class Writing(KnitoutCase):
         knit = "fabric 1\nthread a\n  diameter 0.2\nend\nknit jersey\n  thread a\n  courses 4\n  wales 6\n  {}\nend\n"
         for text, message in ((knit.format("plating a"), "a plated knit is not written as knitout"),
                               (knit.format("").replace("wales 6", "wales 1300"), "1300 wales are more than the 1200 needles"),
+                              (knit.format("chart\n   KPKPKP\n   KPKPKP\n   KPKPKP\n   KPKPKP\n  end\n  transfer 2 1 right 2\n  transfer 2 4 left 2")
+                               .replace(" jersey", ""), "loops of both beds are moved"),
                               (pathlib.Path(SAMPLES / "weave_plain.txt").read_text(), "knitout holds one weft knit"),
                               (pathlib.Path(SAMPLES / "back_piece.txt").read_text(), "knitout holds one weft knit")):
             with self.subTest(message):
