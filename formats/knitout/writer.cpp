@@ -397,7 +397,13 @@ Result<WriteFacts> write_fabric(const Fabric& fabric, OutputFile& output) {
   if (Status written = programmer.write(); !written) return at(written.error());
   if (Status same = programmer.verify(); !same) return at(same.error());
   if (Status put = output.write(programmer.text()); !put) return put.error();
-  return WriteFacts{.entities = {{"stitch", programmer.loops()}}};
+  WriteFacts facts{.entities = {{"stitch", programmer.loops()}}};
+  if ((*knit)->loop || (*knit)->unit || !(*knit)->own_loops.empty() || (*knit)->bed_distance)
+    facts.messages.push_back(
+        at(warning(Kind::unsupported,
+                   "a program of a knitting machine says neither how long loops are nor how they lie: 'loop', "
+                   "'unit', 'points' and the distance of the beds are left out")));
+  return facts;
 }
 
 }  // namespace selvage::formats::knitout
