@@ -399,10 +399,10 @@ Result<WriteFacts> write_fabric(const Fabric& fabric, OutputFile& output) {
   if (Status put = output.write(programmer.text()); !put) return put.error();
   WriteFacts facts{.entities = {{"stitch", programmer.loops()}}};
   if ((*knit)->loop || (*knit)->unit || !(*knit)->own_loops.empty() || (*knit)->bed_distance)
-    facts.messages.push_back(
-        at(warning(Kind::unsupported,
-                   "a program of a knitting machine says neither how long loops are nor how they lie: 'loop', "
-                   "'unit', 'points' and the distance of the beds are left out")));
+    facts.messages.push_back(at(
+        warning(Kind::unsupported,
+                "a program of a knitting machine says neither how long loops are nor how they lie: 'loop', "
+                "'unit', 'points' and the distance of the beds are left out")));
   return facts;
 }
 
