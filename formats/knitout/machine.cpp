@@ -23,7 +23,8 @@ Machine::Machine(const Header& header, TextReport& report) : header_(header), re
 
 Machine::Stack& Machine::stack(const Needle& needle) {
   const std::size_t list = (needle.bed == Bed::front ? 0U : 1U) + (needle.is_slider ? 2U : 0U);
-  return stacks_[list][static_cast<std::size_t>(needle.number + most_number)];
+  const int from_first = needle.number + most_number;
+  return stacks_[list][static_cast<std::size_t>(from_first)];
 }
 
 // At racking R the back needle B faces the front needle B + R.
@@ -125,9 +126,12 @@ void Machine::take_out(const Operation& operation) {
   if (!find_carriers(operation)) return;
   for (std::size_t i = 0; i < set_.size(); ++i) {
     State& state = states_[static_cast<std::size_t>(set_[i])];
+    const Carrier& named = operation.carriers[i];
     if (!state.is_in)
-      report_.error(operation.carriers[i].spot,
-                    fmt::format("carrier {} is not in", in_quotes(operation.carriers[i].name)));
+      report_.error(named.spot, fmt::format("carrier {} is not in", in_quotes(named.name)));
+    else if (!state.is_used)
+      report_.warning(state.spot,
+                      fmt::format("carrier {} is brought in, and knits nothing", in_quotes(named.name)));
     state = {};
   }
 }

@@ -125,7 +125,7 @@ std::vector<Thread> read_yarns(const Header& header, const StitchGraph& graph, G
                             "{:.3g} mm is taken, a sixth of a wale",
                             silent, yarn_share * knit.wale_pitch));
   const auto count = static_cast<long long>(chart.carriers.size());
-  const auto at = [&](long long row) { return chart.carriers[static_cast<std::size_t>(row)]; };
+  const auto at = [&](long long row) { return chart.carriers[static_cast<std::size_t>(row % count)]; };
   const long long repeat =
       fabric::smallest_shift(count, [&](long long i, long long k) { return at(i) == at(k); });
   for (long long row = 0; row < repeat; ++row)

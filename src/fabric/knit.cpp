@@ -88,7 +88,8 @@ class KnitConstruction final : public Construction {
     const StitchChart& chart = field_.chart;
     const long long of_threads =
         smallest_shift(static_cast<long long>(threads_.size()), [&](long long i, long long k) {
-          return threads_[static_cast<std::size_t>(i)] == threads_[static_cast<std::size_t>(k)];
+          return threads_[static_cast<std::size_t>(i) % threads_.size()] ==
+                 threads_[static_cast<std::size_t>(k) % threads_.size()];
         });
     return {
         static_cast<double>(chart.repeat_of_wales()) * pitch_.x(),

@@ -122,7 +122,8 @@ Status Journeys::follow(const StitchChart& chart, const Knit& knit) {
       const std::size_t c = cell(row, wale);
       if (!is_made(stitch) || dropped[c]) continue;
       Journey& journey = journeys_[c];
-      journey.off = next[bed(stitch)][static_cast<std::size_t>(wale + journey.right)];
+      const int to = wale + journey.right;
+      journey.off = next[bed(stitch)][static_cast<std::size_t>(to)];
       if (journey.off < 0) continue;
       if (journey.off - row > most)
         return error(Kind::geometry, fmt::format("the loop of row {}, wale {} of the chart is held over more "

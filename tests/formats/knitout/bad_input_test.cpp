@@ -142,6 +142,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Warned{"left_in", three, 4, "carrier '1' is never taken out"},
                     Warned{"ladder", three + "knit - f3 1\nknit - f2 1\ndrop f2\nknit - f1 1\nout 1\n", 10,
                            "the loop dropped from f2 runs"},
+                    Warned{"in_for_nothing", three + "inhook 2\nouthook 2\nout 1\n", 8,
+                           "carrier '2' is brought in, and knits nothing"},
                     Warned{"no_gauge", ";!knitout-2\nin 1\nknit + f1 1\nout 1\n", 3, "15 is taken"},
                     Warned{"no_thickness", three, 5, "no thickness of the yarn of carrier '1'"}),
     [](const auto& one) { return one.param.name; });
