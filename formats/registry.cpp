@@ -5,12 +5,12 @@ namespace selvage::formats {
 
 const std::vector<const Descriptor*>& all_formats() {
   static const std::vector<const Descriptor*> list = {
-      &txt::descriptor(),       &wif::descriptor(),  &tg3::descriptor(), &iges::descriptor(),
-      &step::descriptor(),      &stl::descriptor(),  &obj::descriptor(), &obj::material_descriptor(),
-      &ply::descriptor(),       &gltf::descriptor(), &svg::descriptor(), &dxf::descriptor(),
-      &vtp::descriptor(),       &csv::descriptor(),  &inp::descriptor(), &cdb::descriptor(),
-      &cdb::macro_descriptor(), &k::descriptor(),    &bdf::descriptor(), &msh::descriptor(),
-      &vtu::descriptor(),       &unv::descriptor()};
+      &txt::descriptor(),          &wif::descriptor(),       &knitout::descriptor(), &tg3::descriptor(),
+      &iges::descriptor(),         &step::descriptor(),      &stl::descriptor(),     &obj::descriptor(),
+      &obj::material_descriptor(), &ply::descriptor(),       &gltf::descriptor(),    &svg::descriptor(),
+      &dxf::descriptor(),          &vtp::descriptor(),       &csv::descriptor(),     &inp::descriptor(),
+      &cdb::descriptor(),          &cdb::macro_descriptor(), &k::descriptor(),       &bdf::descriptor(),
+      &msh::descriptor(),          &vtu::descriptor(),       &unv::descriptor()};
   return list;
 }
 

@@ -11,6 +11,9 @@ const Descriptor& descriptor();
 namespace wif {  // weaving information files, the exchange format of weaving programs
 const Descriptor& descriptor();
 }
+namespace knitout {  // knitout 2: programs of knitting machines
+const Descriptor& descriptor();
+}
 namespace tg3 {  // models of TexGen 3: yarns by nodes and sections
 const Descriptor& descriptor();
 }

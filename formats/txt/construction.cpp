@@ -337,14 +337,40 @@ void read_knit_points(Parser& p, Knit& knit, std::string_view) {
 void read_chart(Parser& p, Knit& knit, std::string_view) {
   if (!p.finish()) return;
   knit.chart_place = p.statement().place();
-  SignRows rows{"chart", "KPTUM",
-                "K (knit), P (purl), T (tuck) and M (miss); U (tuck of the back bed) with 'gating opposite'",
-                knit.chart, &knit.chart_lines};
+  SignRows rows{
+      "chart", "KPTUM.",
+      "K (knit), P (purl), T (tuck) and M (miss); U (tuck of the back bed) with 'gating opposite'; . where "
+      "the row's yarn does not come",
+      knit.chart, &knit.chart_lines};
   if (knit.form == Knit::Form::jacquard) {
     rows.signs = "123456";
     rows.meaning = "1 to 6: which of the threads knits";
   }
   read_sign_rows(p, rows);
+}
+
+bool read_moved_loop(Parser& p, fabric::LoopMove& move) {
+  move.place = p.statement().place();
+  const auto row = p.count("the row of the chart"), wale = p.count("the wale");
+  move.row = row.value_or(1);
+  move.wale = wale.value_or(1);
+  return row && wale;
+}
+
+void read_transfer(Parser& p, Knit& knit, std::string_view) {
+  fabric::LoopMove move;
+  if (!read_moved_loop(p, move)) return p.skip_statement();
+  const auto side = p.choice("side", side_words);
+  const auto wales = p.count("the number of wales", 0);
+  if (!p.finish()) return;
+  move.right = *side * *wales;
+  knit.moves.push_back(move);
+}
+
+void read_drop(Parser& p, Knit& knit, std::string_view) {
+  fabric::LoopMove move;
+  move.is_dropped = true;
+  if (read_moved_loop(p, move) && p.finish()) knit.moves.push_back(move);
 }
 
 // --- warpknit
@@ -577,7 +603,9 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                   {"shape", into(&Knit::shape, one_of("shape", knit_shape_words))},
                                   {"points", read_knit_points, Times::any},
                                   {"method", into(&Knit::method, one_of("method", knit_method_words))},
-                                  {"chart", read_chart}});
+                                  {"chart", read_chart},
+                                  {"transfer", read_transfer, Times::any},
+                                  {"drop", read_drop, Times::any}});
   Knit knit;
   const Spot opened = p.statement();
   knit.place = opened.place();
@@ -602,6 +630,9 @@ void read_knit(Parser& p, fabric::Fabric& fabric, std::string_view word) {
           "'knit' ends without its 'chart'; or, behind the word 'knit': jersey, purl, rib, interlock, ...");
     if (has_form && has_chart && knit.chart.empty())
       p.error(p.last(), "a jacquard ends without its 'chart': rows of 1, 2, ..., which of the threads knits");
+    if (has_form && !knit.moves.empty())
+      p.error(opened,
+              "'transfer' and 'drop' go with a chart of K, P, T and M: leave out either the word or these");
     if (has_form && knit.feeds)
       p.error(opened, "'feeds' goes with a chart: leave out either the word or 'feeds'");
     if (form != Knit::Form::jersey && !knit.plating.empty())

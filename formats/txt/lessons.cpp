@@ -210,7 +210,15 @@ constexpr std::array lessons = {
     Lesson{"method", "knit", "method uniform | chord | centripetal",
            "The parameters of the loop's centre line.", "method chord", "", "chord"},
     Lesson{"chart", "knit", "chart ... end",
-           "Rows of signs, the bottom row is course 1: K, P, T, M, U; of a jacquard 1 to 6.", "chart"},
+           "Rows of signs, the bottom row is course 1: K, P, T, M, U and `.`; of a jacquard 1 to 6.",
+           "chart"},
+    Lesson{"transfer", "knit", "transfer ROW WALE right | left N",
+           "The loop of that row (1: the bottom one) and wale of the chart goes to the needle N wales on. Of "
+           "loops "
+           "that cross or meet the one above in the text lies before, on the face.",
+           "transfer 2 3 right 1"},
+    Lesson{"drop", "knit", "drop ROW WALE", "The loop of that row and wale of the chart is let go.",
+           "drop 2 3"},
 
     // --- warpknit
     Lesson{"thread", "warpknit braid", "thread NAME", "The thread of its yarns.", "thread pet"},

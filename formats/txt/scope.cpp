@@ -38,7 +38,7 @@ constexpr std::array keywords = {
     "inf",      "infinity", "outline",  "derivative", "spacing",   "thickness", "loop",    "feeds",
     "gating",   "plating",  "pile",     "block",      "use",       "place",     "rotate",  "mirror",
     "shear",    "repeat",   "margin",   "substrate",  "points",    "helix",     "pucker",  "mandrel",
-    "unit",     "crossing", "shape"};
+    "unit",     "crossing", "shape",    "transfer",   "drop"};
 
 bool continues_identifier(char c) {
   return starts_name(c) || (c >= '0' && c <= '9');

@@ -110,6 +110,9 @@ constexpr std::array values = {
     Value{"T", "chart points", "A tuck."},
     Value{"U", "chart points", "A tuck of the back bed, with `gating opposite`."},
     Value{"M", "chart points", "A miss: the yarn floats past."},
+    Value{".", "chart", "The yarn of this row does not come here."},
+    Value{"right", "transfer", "Towards wales of higher numbers."},
+    Value{"left", "transfer", "Towards wales of lower numbers."},
 
     Value{"tricot", "warpknit", "`1-0/1-2`."},
     Value{"cord", "warpknit", "`1-0/2-3`."},

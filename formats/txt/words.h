@@ -83,6 +83,8 @@ inline constexpr std::array<Word<Knit::Shape>, 2> knit_shape_words{
     {{"published", Knit::Shape::published}, {"relaxed", Knit::Shape::relaxed}}};
 inline constexpr std::array<Word<char>, 5> stitch_signs{
     {{"K", 'K'}, {"P", 'P'}, {"T", 'T'}, {"U", 'U'}, {"M", 'M'}}};
+// Of a loop that is moved: 1 where wales rise.
+inline constexpr std::array<Word<int>, 2> side_words{{{"right", 1}, {"left", -1}}};
 inline constexpr std::array<Word<Knit::Gating>, 2> gating_words{
     {{"rib", Knit::Gating::rib}, {"opposite", Knit::Gating::opposite}}};
 inline constexpr std::array<Word<nurbs::Parameterization>, 3> knit_method_words{

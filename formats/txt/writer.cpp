@@ -349,6 +349,10 @@ void write_item(Lines& out, const fabric::Knit& knit) {
     for (const std::string& row : knit.chart) out.line(2, row);
     out.line(1, "end");
   }
+  for (const fabric::LoopMove& move : knit.moves) {
+    out.line(1, move.is_dropped ? "drop" : "transfer").value(move.row).value(move.wale);
+    if (!move.is_dropped) out.word(word_of(side_words, move.right < 0 ? -1 : 1)).value(std::abs(move.right));
+  }
   out.line(0, "end");
 }
 

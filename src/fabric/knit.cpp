@@ -45,9 +45,13 @@ class KnitConstruction final : public Construction {
         pitch_(knit.wale_pitch > 0 ? knit.wale_pitch : wale_spacing * knit.unit.value_or(half_.x()),
                knit.course_pitch > 0 ? knit.course_pitch : course_spacing * knit.unit.value_or(half_.x())) {
     if (knit.crossing) origin_ = *knit.crossing - Vec3(pitch_.x() / 2, 0, 0);
+    if (field_.chart.journeys() == nullptr) return;
+    for (long long row = field_.first_course; row <= field_.last_course; ++row)
+      if (const RowExtent extent = extent_of(field_, row); extent.first <= extent.last) rows_.push_back(row);
   }
 
   [[nodiscard]] std::size_t count() const override {
+    if (!rows_.empty()) return rows_.size();
     return static_cast<std::size_t>(field_.last_course - field_.first_course + 1) * yarns_of_a_course();
   }
   [[nodiscard]] std::string name(std::size_t index) const override {
@@ -84,7 +88,8 @@ class KnitConstruction final : public Construction {
     const StitchChart& chart = field_.chart;
     const long long of_threads =
         smallest_shift(static_cast<long long>(threads_.size()), [&](long long i, long long k) {
-          return threads_[static_cast<std::size_t>(i)] == threads_[static_cast<std::size_t>(k)];
+          return threads_[static_cast<std::size_t>(i) % threads_.size()] ==
+                 threads_[static_cast<std::size_t>(k) % threads_.size()];
         });
     return {
         static_cast<double>(chart.repeat_of_wales()) * pitch_.x(),
@@ -95,6 +100,7 @@ class KnitConstruction final : public Construction {
  private:
   // The row of the chart, from 0.
   [[nodiscard]] long long course(std::size_t index) const {
+    if (!rows_.empty()) return rows_[index];
     return field_.first_course + static_cast<long long>(index / yarns_of_a_course());
   }
   // The first one is the ground's.
@@ -114,8 +120,9 @@ class KnitConstruction final : public Construction {
   std::vector<const Thread*> threads_;  // in turn
   KnitField field_;
   KnitMoves moves_;
-  Vec2 half_;   // of the section: r across, and r through the thickness
-  Vec2 pitch_;  // of wales and courses, file units
+  std::vector<long long> rows_;  // that have a yarn; empty: all
+  Vec2 half_;                    // of the section: r across, and r through the thickness
+  Vec2 pitch_;                   // of wales and courses, file units
   Vec3 origin_ = Vec3::Zero();
 };
 
@@ -135,8 +142,9 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
     }
   };
   const bool is_tuft = knit_.pile_is_cut && end(index) == 1;
-  const long long first_wale = is_tuft ? tuft(index) : field_.first_wale;
-  const long long last_wale = is_tuft ? tuft(index) : field_.last_wale;
+  const RowExtent extent = extent_of(field_, course(index));
+  const long long first_wale = is_tuft ? tuft(index) : extent.first;
+  const long long last_wale = is_tuft ? tuft(index) : extent.last;
   for (long long wale = first_wale; wale <= last_wale; ++wale) {
     const std::size_t first = points.size();
     add_stitch_points(field_, course(index), wale, points, end(index));
@@ -156,7 +164,7 @@ Result<YarnPlan> KnitConstruction::plan(std::size_t index) const {
   }
   points.push_back(last_sinker_point(field_, course(index), end(index)));
   moves_.apply(course(index), field_.last_wale + 1, points, points.size() - 1, end(index));
-  place_from(points.size() - 1, field_.last_wale + 1);
+  place_from(points.size() - 1, extent.last + 1);
   plan->spec.guide =
       stands_out ? yarn::FrameGuide::free_from(Vec3::UnitZ()) : yarn::FrameGuide::with_up(Vec3::UnitZ());
   Onward onward;  // loops that move alike are all of one form
@@ -218,6 +226,9 @@ bool has_densities(const Knit& knit) {
 
 // How many times larger the cloth has to be for its yarn, surely. None where eight times does not help.
 std::optional<double> least_enlargement(const Knit& knit, KnitField field, const KnitYarn& yarn) {
+  // A cloth that does not repeat is tried as a whole.
+  constexpr long long most_tried = 400;
+  if (field.chart.journeys() != nullptr && KnitMoves::loops_solved(field) > most_tried) return std::nullopt;
   const auto fits = [&](double larger) {
     const Result<LoopShape> shape = shape_of(knit, field, yarn.half, larger);
     if (!shape) return false;
@@ -370,6 +381,12 @@ Result<std::unique_ptr<Construction>> make_knit(const Fabric& fabric, const Knit
         yarn::nominal_size(*section).width > yarn::nominal_size(thickest.section).width)
       thickest = {thread, std::move(*section)};
   }
+  if (chart->journeys() != nullptr && fabric.cell)
+    return error(Kind::geometry,
+                 "a cell is cut from a cloth that goes on beyond it, and a chart with '.', 'transfer' or "
+                 "'drop' is "
+                 "the whole cloth: leave out the cell, or these")
+        .placed(knit.chart_place);
   KnitField field;
   if (!knit.plating.empty()) {
     const Thread* thread = fabric.find_thread(knit.plating);

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/wrapped.h"
+#include "fabric/knit_journey.h"
 #include "fabric/repeat.h"
 
 namespace selvage::fabric {
@@ -67,6 +68,15 @@ Result<StitchChart> StitchChart::of(const Knit& knit) {
   constexpr double crowded = 1.0 / 3;
   chart.feed_step_ = 1.0 / chart.feeds_;
   if (knit.form == Knit::Form::jacquard) chart.feed_step_ = std::min(chart.feed_step_, crowded);
+  if (Journeys::are_needed(knit)) {
+    Result<Journeys> journeys = Journeys::of(chart, knit);
+    if (!journeys) return journeys.error();
+    chart.longest_hold_ = journeys->longest_hold();
+    if (!chart.is_opposite_ && !journeys->knits_within_courses())
+      chart.feed_step_ = std::min(chart.feed_step_, crowded);
+    chart.journeys_ = std::make_shared<const Journeys>(std::move(*journeys));
+    return chart;
+  }
   for (int wale = 0; wale < chart.wales_; ++wale)
     for (const int bed : {1, -1})
       if (Status held = chart.measure_holding(knit, wale, bed); !held) return held.error();
@@ -113,11 +123,11 @@ Status StitchChart::fill(const Knit& knit) {
   for (auto row = knit.chart.rbegin(); row != knit.chart.rend(); ++row) {
     if (row->size() != knit.chart.front().size())
       return error(Kind::malformed, "the rows of the chart are not equally long");
-    if (row->find_first_not_of(is_opposite_ ? "KPTUM" : "KPTM") != std::string::npos)
-      return error(Kind::malformed, is_opposite_
-                                        ? "the chart has a sign that is none of K, P, T, U and M"
-                                        : "the chart has a sign that is none of K, P, T and M (U goes with "
-                                          "'gating opposite')")
+    if (row->find_first_not_of(is_opposite_ ? "KPTUM." : "KPTM.") != std::string::npos)
+      return error(Kind::malformed,
+                   is_opposite_ ? "the chart has a sign that is none of K, P, T, U, M and '.'"
+                                : "the chart has a sign that is none of K, P, T, M and '.' (U goes with "
+                                  "'gating opposite')")
           .placed(knit.chart_place);
     rows.push_back(*row);
   }
@@ -167,11 +177,13 @@ Stitch StitchChart::at(long long course, long long wale, int bed) const {
 }
 
 long long StitchChart::repeat_of_courses() const {
+  if (journeys_ != nullptr) return std::max(courses_, 2);  // never as its own copies
   return smallest_repeat(courses_, wales_,
                          [&](long long course, long long wale) { return at(course, wale); });
 }
 
 long long StitchChart::repeat_of_wales() const {
+  if (journeys_ != nullptr) return std::max(wales_, 2);
   return smallest_repeat(wales_, courses_,
                          [&](long long wale, long long course) { return at(course, wale); });
 }

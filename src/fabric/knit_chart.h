@@ -2,6 +2,7 @@
 // yarn; a course is as many rows as there are feeds, one almost everywhere.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace selvage::fabric {
 // miss passes behind it. Where needles of two beds stand opposite each other, knit and tuck are those of the
 // front bed, purl and back_tuck those of the back bed, each bed holds its own loops, and a miss passes
 // between them.
-enum class Stitch : char { knit = 'K', purl = 'P', tuck = 'T', back_tuck = 'U', miss = 'M' };
+enum class Stitch : char { knit = 'K', purl = 'P', tuck = 'T', back_tuck = 'U', miss = 'M', none = '.' };
 
 inline bool is_loop(Stitch stitch) {
   return stitch == Stitch::knit || stitch == Stitch::purl;
@@ -26,12 +27,14 @@ inline bool is_tuck(Stitch stitch) {
 }
 // 1: front, -1: back, 0: none.
 inline int bed_of(Stitch stitch) {
-  if (stitch == Stitch::miss) return 0;
+  if (stitch == Stitch::miss || stitch == Stitch::none) return 0;
   return stitch == Stitch::purl || stitch == Stitch::back_tuck ? -1 : 1;
 }
 
 // Courses over which a loop can stay on its needle: tucks and misses one above the other in one wale.
 inline constexpr int max_held = 6;
+
+class Journeys;
 
 class StitchChart {
  public:
@@ -40,8 +43,8 @@ class StitchChart {
   // tucks or misses in courses. interlock: two 1x1 ribs through each other on opposite needles, two feeds.
   // jacquard: one feed a thread, which knits where its number stands and misses elsewhere. Rows of a chart:
   // top row = last one. Errors: (malformed) a chart without rows, ragged rows or unknown signs, rib numbers
-  // below 1; (geometry) a loop that would be held for longer than max_held courses, at the chart's row, and a
-  // jacquard that lacks a thread.
+  // below 1; (geometry) a loop that would be held for longer than max_held courses, at the chart's row, a
+  // jacquard that lacks a thread, and those of Journeys::of.
   static Result<StitchChart> of(const Knit& knit);
 
   // Any whole numbers, from 0 (course 0 is the first one, wale 0 the left one): the chart repeats both ways.
@@ -52,7 +55,8 @@ class StitchChart {
   [[nodiscard]] bool is_opposite() const { return is_opposite_; }
   [[nodiscard]] int feeds() const { return feeds_; }
   // Of a row above row 0, in courses. The yarns of a course follow each other evenly; those of a jacquard are
-  // crowded, for the loops of a course are one row of the pattern.
+  // crowded, for the loops of a course are one row of the pattern; so are those of a whole cloth's chart
+  // where none is drawn through another one of its course.
   [[nodiscard]] double height(long long row) const;
   [[nodiscard]] int courses() const { return courses_; }  // of one repeat
   [[nodiscard]] int wales() const { return wales_; }
@@ -61,6 +65,8 @@ class StitchChart {
   [[nodiscard]] long long repeat_of_wales() const;
   // Tucks and misses one above the other, the most that there are in a wale.
   [[nodiscard]] int longest_hold() const { return longest_hold_; }
+  // Of a chart that is the whole cloth and does not repeat; null: it does.
+  [[nodiscard]] const Journeys* journeys() const { return journeys_.get(); }
 
  private:
   Status fill(const Knit& knit);
@@ -72,6 +78,7 @@ class StitchChart {
   bool is_opposite_ = false;
   double feed_step_ = 1;          // from one row of a course to the next, in courses
   std::vector<Stitch> stitches_;  // courses x wales, first course first
+  std::shared_ptr<const Journeys> journeys_;
 };
 
 }  // namespace selvage::fabric

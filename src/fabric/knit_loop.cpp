@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "fabric/knit_journey.h"
+
 namespace selvage::fabric {
 
 namespace {
@@ -34,6 +36,10 @@ constexpr Point tuck_leg = {-1, 2.45, 1};
 constexpr Point tuck_shoulder_top = {-3.15, 0.2, -1.15};
 constexpr double tuck_head_over_top = 3.5, tuck_head = -5;
 constexpr double float_y = -2, float_z = -2.5;
+// A loop that joins others on its needle goes behind them, from its feet before the plane.
+constexpr double joining_leg = 0.4;
+// How far loops that cross stand out of their layer, before the others or behind.
+constexpr double before_others = 1.9, behind_others = -0.5;
 
 // A point of a user's own loop, from the left side of its wale.
 Vec3 own_point(const LoopShape& shape, const Vec3& p) {
@@ -72,6 +78,9 @@ struct Needle {
 
 // What becomes of the yarn that one course gives to a needle.
 struct Hold {
+  double right = 0;  // wales to the right, where it is when it is knitted off
+  int lift = 0;      // 1: before the loops that it crosses on its way, seen from its own face, -1: behind
+  int joins = 0;     // others of its needle lie before it so many layers
   double top = course_spacing;  // y of the lower crossings of the row that knits it off
   bool turns = false;           // the stitch that knits it off is of the other kind
   int tucks = 0;                // laid on the needle above the held loop until then
@@ -87,6 +96,13 @@ bool is_inside(const KnitField& field, long long course) {
 }
 
 }  // namespace
+
+RowExtent extent_of(const KnitField& field, long long course) {
+  const Journeys* journeys = field.chart.journeys();
+  if (journeys == nullptr) return {field.first_wale, field.last_wale};
+  const WaleSpan& span = journeys->span(course);
+  return {span.first, span.last};
+}
 
 long long held_course(const KnitField& field, long long course, long long wale, int bed) {
   long long held = course - 1;
@@ -114,7 +130,36 @@ double side_of(Stitch stitch) {
   return stitch == Stitch::purl ? -1.0 : 1.0;
 }
 
+// The same of a chart that is the whole cloth.
+Needle needle_of_journeys(const KnitField& field, const Journeys& journeys, long long course,
+                          long long wale) {
+  Needle needle;
+  needle.stitch = field.chart.at(course, wale);
+  const auto side_at = [&](long long row, long long w) {
+    const Stitch stitch = field.chart.at(row, w);
+    return is_tuck(stitch) && field.chart.is_opposite() ? bed_of(stitch) : side_of(stitch);
+  };
+  if (is_loop(needle.stitch)) {
+    needle.side = side_of(needle.stitch);
+    const Held& held = journeys.held(course, wale);
+    if (held.count > 1 && side_at(held.row, held.wale) == needle.side) needle.behind = held.count - 1;
+  } else if (is_tuck(needle.stitch)) {
+    const Journey& journey = journeys.at(course, wale);
+    needle.behind = std::max(journey.index - 1, 0);
+    needle.side = field.chart.is_opposite() ? bed_of(needle.stitch)
+                                            : side_of(journeys.joined(field.chart, course, wale));
+  } else if (!field.chart.is_opposite()) {  // a float lies behind the loop that its needle holds
+    long long held = course - 1;
+    while (held >= 0 && !is_loop(field.chart.at(held, wale))) --held;
+    if (held >= 0) needle.side = side_of(field.chart.at(held, wale));
+  }
+  needle.middle = needle.side * (needle.stitch == Stitch::miss ? 0.0 : field.shape.bed);
+  return needle;
+}
+
 Needle needle_at(const KnitField& field, long long course, long long wale) {
+  if (const Journeys* journeys = field.chart.journeys())
+    return needle_of_journeys(field, *journeys, course, wale);
   Needle needle;
   needle.stitch = field.chart.at(course, wale);
   const int bed = bed_of(needle.stitch);
@@ -137,7 +182,22 @@ Needle needle_at(const KnitField& field, long long course, long long wale) {
   return needle;
 }
 
+Hold hold_of_journey(const KnitField& field, const Journey& journey, long long course, long long wale,
+                     double side) {
+  Hold hold;
+  hold.right = journey.right;
+  hold.lift = side > 0 ? journey.lift : -journey.lift;
+  if (journey.off < 0) return hold;
+  hold.top = course_spacing * (field.chart.height(journey.off) - field.chart.height(course));
+  hold.turns = side_of(field.chart.at(journey.off, wale + journey.right)) != side;
+  hold.tucks = journey.count - 1 - journey.index;
+  if (is_loop(field.chart.at(course, wale))) hold.joins = journey.index;
+  return hold;
+}
+
 Hold hold_of(const KnitField& field, long long course, long long wale, double side) {
+  if (const Journeys* journeys = field.chart.journeys())
+    return hold_of_journey(field, journeys->at(course, wale), course, wale, side);
   Hold hold;
   const int bed = bed_of(field.chart.at(course, wale));
   if (field.chart.is_opposite() && bed == 0) return hold;
@@ -163,8 +223,9 @@ struct Sinker {
 
 // Between a wale and the one on its left.
 Sinker sinker_of(const KnitField& field, long long course, long long wale) {
-  const Needle left = needle_at(field, course, std::max(wale - 1, field.first_wale));
-  const Needle right = needle_at(field, course, std::min(wale, field.last_wale));
+  const RowExtent extent = extent_of(field, course);
+  const Needle left = needle_at(field, course, std::max(wale - 1, extent.first));
+  const Needle right = needle_at(field, course, std::min(wale, extent.last));
   const bool floats_between = field.chart.is_opposite() && (left.middle == 0 || right.middle == 0);
   if (left.side != right.side || floats_between) return {0, true};
   const double back = depth + room_for(std::max(left.behind, right.behind));
@@ -209,6 +270,8 @@ class Half {
     points_[count_++] = {point[0], point[1] + up, point[2] + forward};
   }
   void add_loop(const Needle& needle, const Hold& hold, bool starts_in_the_middle);
+  void add_joining(const Hold& hold);
+  void add_crossing(const Hold& hold);
   void add_tuck(const Needle& needle, const Hold& hold);
 
   std::array<Point, 6> points_{};
@@ -221,6 +284,7 @@ void Half::add_loop(const Needle& needle, const Hold& hold, bool starts_in_the_m
   else if (starts_in_the_middle)
     add(arm);
   add(foot);
+  if (hold.joins > 0) return add_joining(hold);
   const bool is_held = is_long(hold);
   // A held loop is drawn up: a straight leg from the foot to the shoulder, before the plane at both ends.
   const auto on_leg = [&](double y) {
@@ -236,11 +300,33 @@ void Half::add_loop(const Needle& needle, const Hold& hold, bool starts_in_the_m
     }
     add(upper_leg_top, hold.top);
     add(shoulder_top, hold.top, 0.5 * layer * hold.tucks);
+  } else if (hold.lift != 0) {
+    add_crossing(hold);
+    add(shoulder_top, hold.top, shoulder_forward * hold.tucks);
   } else {
     add(is_held ? on_leg(leg[1]) : Point{leg[0], 0.5 * hold.top, leg[2]});
     if (is_held) add(on_leg(hold.top - leg[1]), 0, leg_forward * hold.tucks);
     add(shoulder_top, hold.top, shoulder_forward * hold.tucks);
   }
+}
+
+// From its feet behind the loops that lie on its needle before it.
+void Half::add_joining(const Hold& hold) {
+  const double back = -layer * (hold.joins - 1);
+  add({leg[0], joining_leg * hold.top, 0.5 * leg[2] + 0.5 * back});
+  if (hold.turns) {
+    add(upper_leg_top, hold.top, back - layer);
+    add(shoulder_top, hold.top, 0.5 * (back + layer * (hold.tucks - 1)));
+  } else {
+    add(tuck_shoulder_top, hold.top, back);
+  }
+}
+
+// A leg before or behind the legs of other loops.
+void Half::add_crossing(const Hold& hold) {
+  const double out = hold.lift > 0 ? before_others : behind_others;
+  for (const double share : {1.0 / 3, 2.0 / 3})
+    add({foot[0] + (shoulder_top[0] - foot[0]) * share, share * hold.top, leg[2]}, 0, out);
 }
 
 void Half::add_tuck(const Needle& needle, const Hold& hold) {
@@ -259,6 +345,8 @@ void Half::add_tuck(const Needle& needle, const Hold& hold) {
 
 Point head_of(const Needle& needle, const Hold& hold) {
   switch (needle.stitch) {
+    case Stitch::none:
+      break;
     case Stitch::miss:
       return {0, float_y, float_z - room_for(needle.behind)};
     case Stitch::tuck:
@@ -270,6 +358,7 @@ Point head_of(const Needle& needle, const Hold& hold) {
       break;
   }
   if (hold.turns) return {0, hold.top + head_over_top, depth + layer * hold.tucks};
+  if (hold.joins > 0) return {0, hold.top + tuck_head_over_top, tuck_head - layer * (hold.joins - 1)};
   return {0, hold.top + head_over_top, -depth + head_forward * hold.tucks};
 }
 
@@ -290,13 +379,15 @@ void add_stitch_points(const KnitField& field, long long course, long long wale,
     for (std::size_t i = 0; i + 1 < own.size(); ++i) points.push_back(own_point(field.shape, own[i]));
     return;
   }
+  if (field.chart.journeys() != nullptr && field.chart.at(course, wale) == Stitch::none) return;
   const Needle needle = needle_at(field, course, wale);
   const Hold hold = hold_of(field, course, wale, needle.side);
   const Sinker left_sinker = sinker_of(field, course, wale);
   const Sinker right_sinker = sinker_of(field, course, wale + 1);
   const auto add = [&](const Point& p, double mirror) {
     const Vec3 at = shaped(field.shape, p, hold.top);
-    points.emplace_back(field.shape.wale / 2 + mirror * at.x(), at.y(),
+    const double lean = hold.right * field.shape.wale * std::clamp(p[1] / hold.top, 0.0, 1.0);
+    points.emplace_back(field.shape.wale / 2 + mirror * at.x() + lean, at.y(),
                         needle.middle + needle.side * (at.z() + offset_of(field, end)));
   };
   points.push_back(sinker_at(field, left_sinker, end));
@@ -316,7 +407,7 @@ void add_stitch_points(const KnitField& field, long long course, long long wale,
 Vec3 last_sinker_point(const KnitField& field, long long course, int end) {
   if (field.own != nullptr)
     return own_point(field.shape, own_points(field, course, field.last_wale).back() - Vec3::UnitX());
-  return sinker_at(field, sinker_of(field, course, field.last_wale + 1), end);
+  return sinker_at(field, sinker_of(field, course, extent_of(field, course).last + 1), end);
 }
 
 }  // namespace selvage::fabric

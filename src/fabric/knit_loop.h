@@ -7,7 +7,8 @@
 // because it is what the next loop's legs pass. Where own stitch and stitch above differ the leg has two
 // points instead of one and crosses the middle plane between them; where neighbours in a course differ the
 // sinker crosses the plane at their common point, and each arm gets a point that keeps it on its side of
-// the leg that it passes.
+// the leg that it passes. A loop that is moved to another needle leans: its points move the farther aside the
+// higher they lie, before or behind the loops that it crosses.
 #pragma once
 
 #include <vector>
@@ -51,16 +52,23 @@ struct KnitField {
 // Heads of opposite beds pass each other.
 inline constexpr double least_bed = 2.5;
 
+// The wales of one row's yarn; none where first > last.
+struct RowExtent {
+  long long first = 0, last = -1;
+};
+RowExtent extent_of(const KnitField& field, long long course);
+
 // The row whose loop the needle of a bed holds when this row begins; first_course - 1: none.
 long long held_course(const KnitField& field, long long course, long long wale, int bed);
 
 // Appends the points that one needle gives to one course, from the sinker on its left to the last point
-// before the sinker on its right, which is the next needle's first point. x from the left side of the wale
-// (0 .. shape.wale), y from the course's lower crossings, z from the middle plane.
+// before the sinker on its right, which is the next needle's first point; none where its yarn does not come.
+// x from the left side of the wale (0 .. shape.wale), y from the course's lower crossings, z from the middle
+// plane.
 void add_stitch_points(const KnitField& field, long long course, long long wale, std::vector<Vec3>& points,
                        int end = 0);
 
-// The last point of a course: x from the right side of the last wale.
+// The last point of a course: x from the right side of the last wale that it has.
 Vec3 last_sinker_point(const KnitField& field, long long course, int end = 0);
 
 // Loops of two yarns are so much deeper than those of one.

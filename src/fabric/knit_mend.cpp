@@ -215,8 +215,11 @@ bool KnitMoves::come_apart(const KnitField& field, const KnitYarn& yarn) {
   constexpr long long wide = 2 * border_wales + range_wales + 1;
   constexpr int few_steps = 40;
   KnitField endless = field;
-  endless.last_course = endless.first_course + field.chart.repeat_of_courses() + border_courses(field.chart);
-  endless.last_wale = endless.first_wale + std::max(wide, field.chart.repeat_of_wales()) - 1;
+  if (field.chart.journeys() == nullptr) {
+    endless.last_course =
+        endless.first_course + field.chart.repeat_of_courses() + border_courses(field.chart);
+    endless.last_wale = endless.first_wale + std::max(wide, field.chart.repeat_of_wales()) - 1;
+  }
   KnitMoves moves;
   moves.ties_ = ties_of(endless, true);
   KnitYarn rigid = yarn;
@@ -252,9 +255,13 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn, int max_step
     const int end = static_cast<int>(l % ends_);
     MendLine line;
     if (goes_on) line.period = {field.shape.wale, 0, 0};
-    for (long long w = 0; w <= wales; ++w) {
+    const long long course = field.first_course + c;
+    const RowExtent extent = extent_of(reduced, course);
+    if (extent.first > extent.last) continue;
+    for (long long w = extent.first - field.first_wale; w <= wales; ++w) {
+      if (w > extent.last - field.first_wale) w = wales;
       const std::size_t first = line.points.size();
-      const long long course = field.first_course + c, wale = field.first_wale + w;
+      const long long wale = w < wales ? field.first_wale + w : extent.last + 1;
       if (w < wales)
         add_stitch_points(reduced, course, wale, line.points, end);
       else
@@ -266,7 +273,7 @@ void KnitMoves::solve(const KnitField& field, const KnitYarn& yarn, int max_step
         first_class_[own] = problem.freedom.size();
         problem.freedom.resize(problem.freedom.size() + line.points.size() - first, Vec3::Ones());
         // The ends lie in mirror planes.
-        if (w == 0 || w == wales) problem.freedom[first_class_[own]].x() = 0;
+        if (first == 0 || w == wales) problem.freedom[first_class_[own]].x() = 0;
       }
       for (std::size_t i = first; i < line.points.size(); ++i) {
         line.classes.push_back(static_cast<int>(first_class_[like] + i - first));

@@ -80,7 +80,8 @@ class KnitMoves {
   KnitMoves() = default;
   // Moves after which nothing overlaps; how far that came is in mending().
   KnitMoves(const KnitField& field, const KnitYarn& yarn);
-  // Do the loops of an endless cloth come apart, each like its copies? Sooner told than how they do.
+  // Do the loops of an endless cloth come apart, each like its copies? Sooner told than how they do. Of a
+  // chart that is the whole cloth: its own.
   static bool come_apart(const KnitField& field, const KnitYarn& yarn);
 
   // Adds to the points of one stitch (add_stitch_points), or to the last one of a course (wale = last + 1).

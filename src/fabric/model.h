@@ -257,6 +257,14 @@ struct OwnLoop {
 };
 inline constexpr std::size_t most_points_of_a_loop = 11;  // of a warp knit
 
+// What becomes of a loop of a chart before a loop is drawn through it, other than staying on its needle.
+struct LoopMove {
+  TextPlace place;
+  int row = 1, wale = 1;    // of the chart, from the bottom left
+  int right = 0;            // a transfer, so many wales to the right
+  bool is_dropped = false;  // or: it leaves its needle, and nothing is drawn through it
+};
+
 struct Knit {
   enum class Form {
     jersey,
@@ -293,10 +301,11 @@ struct Knit {
   std::optional<double> pile;          // its sinkers stand out of the back by this
   bool pile_is_cut = false;
   std::optional<nurbs::Parameterization> method;
-  std::vector<std::string>
-      chart;  // of 'K', 'P', 'T', 'U', 'M', top row = last course, or of a jacquard '1', '2', ...; else empty
+  std::vector<std::string> chart;  // of 'K', 'P', 'T', 'U', 'M', '.', top row = last course, or of a jacquard
+                                   // '1', '2', ...; else empty
   TextPlace chart_place;
   std::vector<int> chart_lines;  // source line of each row; may be empty
+  std::vector<LoopMove> moves;   // of loops that cross or meet, from the technical face to the back
 };
 
 struct WarpknitBar {

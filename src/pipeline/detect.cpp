@@ -55,11 +55,11 @@ Result<const Descriptor*> detect_readable(const Source& source) {
 }
 
 bool is_readable_format(const std::filesystem::path& path) {
-  if (const Descriptor* format = format_with_extension(path.extension().string()))
-    return format->is_readable() && format->read_points == nullptr;
-  const Result<Source> source = Source::open(path);
-  if (!source) return false;
-  const Descriptor* format = sniff(source->bytes().substr(0, head_size));
+  const Descriptor* format = format_with_extension(path.extension().string());
+  if (format == nullptr || !format->is_readable()) {  // a .k is a program of a knitting machine, too
+    const Result<Source> source = Source::open(path);
+    format = source ? sniff(source->bytes().substr(0, head_size)) : nullptr;
+  }
   return format != nullptr && format->is_readable() && format->read_points == nullptr;
 }
 

@@ -263,8 +263,8 @@ bool Traveller::travel(const Trip& trip) {
 }
 
 bool comes_and_goes(const formats::Descriptor& format) {
-  return format.is_readable() &&
-         ((format.open_bodies != nullptr && format.carries_surfaces) || format.write_fabric != nullptr);
+  return format.is_readable() && format.carries_surfaces &&
+         (format.open_bodies != nullptr || format.write_fabric != nullptr);
 }
 
 std::vector<Trip> all_trips() {

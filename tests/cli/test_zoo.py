@@ -14,7 +14,7 @@ import unittest
 from program import Case, SAMPLES, run
 
 GMSH = os.environ.get("SELVAGE_GMSH") or shutil.which("gmsh")
-READABLE = (".txt", ".wif")
+READABLE = (".txt", ".wif", ".k")
 ZOO = sorted(path for path in SAMPLES.iterdir() if path.suffix in READABLE)
 PART, PARTS = map(int, os.environ.get("SELVAGE_ZOO", "0/1").split("/"))
 

@@ -162,9 +162,13 @@ class Writer {
         std::string signs;
         for (int i = 0; i < width; ++i)
           signs += form == 5 ? "12"[choice(2)] : "KPTMU"[choice(is_opposite ? 5 : 4)];
+        if (form == 3 && choice(8) == 1) signs.back() = '.';
         line("  {}", signs);
       }
       line(" end");
+      if (form == 3 && choice(3) == 1)
+        line(" transfer {} {} {} {}", 1 + choice(3), 1 + choice(3), one_of({"right", "left"}), choice(3));
+      if (form == 3 && choice(6) == 1) line(" drop {} {}", 1 + choice(3), 1 + choice(3));
     }
     line("end");
   }

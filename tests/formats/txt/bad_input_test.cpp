@@ -420,6 +420,18 @@ const std::vector<Case> construction_cases = {
     {"knit_chart_open",
      with_thread("knit\n chart\n KK\n thread t\n courses 3\n wales 3\nend\n"),
      {{8, 2, "'end' is missing: 'chart'"}}},
+    {"knit_transfer",
+     with_thread(
+         "knit\n thread t\n courses 2\n wales 2\n chart\n  KK\n  KK\n end\n transfer 1\n transfer 1 1 up 1\n"
+         " transfer 1 1 right\n transfer 0 1 left 1\n drop 1 1 1\nend\n"),
+     {{13, 12, "the wale"},
+      {14, 15, "side"},
+      {15, 20, "number of wales"},
+      {16, 11, "1 or more"},
+      {17, 11, ""}}},
+    {"knit_transfer_and_form",
+     with_thread("knit purl\n thread t\n courses 3\n wales 3\n transfer 1 1 right 1\nend\n"),
+     {{5, 1, "'transfer' and 'drop' go with a chart"}}},
     {"knit_negative",
      with_thread("knit jersey\n thread t\n courses -3\n wales -1\nend\n"),
      {{7, 10, "1 or more"}, {8, 8, "1 or more"}}},

@@ -237,6 +237,12 @@ class Flat {
     add(path + ".sign", std::string(1, v.sign));
     add(path + ".points", v.points);
   }
+  void add(const std::string& path, const LoopMove& v) {
+    add(path + ".row", v.row);
+    add(path + ".wale", v.wale);
+    add(path + ".right", v.right);
+    add(path + ".is_dropped", v.is_dropped);
+  }
   void add(const std::string& path, const Knit& v) {
     add(path + ".form", v.form);
     add(path + ".rib_a", v.rib_a);
@@ -259,6 +265,7 @@ class Flat {
     add(path + ".pile_is_cut", v.pile_is_cut);
     add(path + ".method", v.method);
     add(path + ".chart", v.chart);
+    add(path + ".moves", v.moves);
   }
   void add(const std::string& path, const WarpknitBar& v) {
     add(path + ".thread", v.thread);

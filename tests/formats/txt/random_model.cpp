@@ -428,7 +428,11 @@ class Maker {
           const int rows = 1 + up_to(3), wales = 1 + up_to(4);
           for (int i = 0; i < rows; ++i) {
             std::string& row = knit.chart.emplace_back();
-            for (int j = 0; j < wales; ++j) row += is_jacquard ? "123456"[up_to(5)] : "KPTUM"[up_to(4)];
+            for (int j = 0; j < wales; ++j) row += is_jacquard ? "123456"[up_to(5)] : "KPTUM."[up_to(5)];
+          }
+          for (int i = is_jacquard ? 0 : up_to(3); i > 0; --i) {
+            const bool is_dropped = coin();
+            knit.moves.push_back({{}, count(), count(), is_dropped ? 0 : up_to(8) - 4, is_dropped});
           }
         }
         return knit;

@@ -1,0 +1,27 @@
+// Of a stitch graph the chart of a weft knit (fabric/knit_chart.h), which the product builds.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/text_report.h"
+#include "fabric/model.h"
+#include "formats/knitout/passes.h"
+#include "formats/knitout/stitch_graph.h"
+
+namespace selvage::formats::knitout {
+
+// A chart as large as what is read at most, rows x wales.
+inline constexpr long long most_cells = 20'000'000;
+
+struct GraphChart {
+  fabric::Knit knit;          // chart, moves, gating, feeds, courses, wales: what follows from the graph
+  std::vector<int> carriers;  // of each row, from the first one; those of rows without a yarn are anyone's
+  bool is_doubled = false;    // two wales a needle
+};
+
+// Errors, each at its operation: what a chart does not hold (two yarns in a loop, splits, transfers to the
+// other bed of an opposite gating, loops of several courses that pass each other), and too many stitches.
+std::optional<GraphChart> chart_of(const StitchGraph& graph, TextReport& report);
+
+}  // namespace selvage::formats::knitout

@@ -1,0 +1,59 @@
+// One line of a knitout program: an operation and its operands, as written.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/text_report.h"
+#include "formats/knitout/stitch_graph.h"
+
+namespace selvage::formats::knitout {
+
+// Needle numbers go so far to both sides, and all that a program uses lie on a bed of this width: the widest
+// machines have 84 inches at gauge 14.
+inline constexpr int most_number = 9999, widest_bed = 1200;
+
+enum class Verb {
+  in,
+  inhook,
+  releasehook,
+  out,
+  outhook,
+  knit,
+  tuck,
+  split,
+  miss,
+  drop,
+  amiss,
+  xfer,
+  rack,
+  stitch,
+  pause,
+  extension
+};
+
+struct Carrier {
+  std::string_view name;
+  Spot spot;
+};
+
+struct Operation {
+  Verb verb = Verb::pause;
+  std::string_view word;  // as written
+  Spot spot;
+  int direction = 1;  // 1 to the right, -1 to the left
+  Needle needle, other;
+  Spot needle_spot, other_spot;
+  double racking = 0;
+  std::vector<Carrier> carriers;
+};
+
+// The operation of a line without its comment; nothing where there is none, or an error, which is reported.
+// `operation` is filled anew; its room is kept.
+bool read_operation(std::string_view line, int number, Operation& operation, TextReport& report);
+
+// The words of a line, at blanks and tabs, each where it stands.
+std::optional<Carrier> next_word(std::string_view& rest, std::string_view line, int number);
+
+}  // namespace selvage::formats::knitout

@@ -1,0 +1,22 @@
+// A knitout program from its first line to its last.
+#pragma once
+
+#include <optional>
+
+#include "core/source.h"
+#include "core/text_report.h"
+#include "formats/knitout/header.h"
+#include "formats/knitout/stitch_graph.h"
+
+namespace selvage::formats::knitout {
+
+struct Program {
+  Header header;
+  StitchGraph graph;
+};
+
+// Runs the program on a machine (machine.h). Nothing after a first line that is not knitout's; with errors
+// reported the graph is not whole.
+std::optional<Program> run_program(const Source& source, TextReport& report);
+
+}  // namespace selvage::formats::knitout
