@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 
 #include "core/vec.h"
 #include "yarn/body.h"
@@ -17,6 +18,8 @@ enum class From { top, bottom, front, back, side, iso };
 // Camera space: pixels; x to the right, y up, z toward the eye, the origin in the picture's centre.
 class Camera {
  public:
+  // Of the yarns' own space with another origin: a pixel is a file unit, x to the right, y up.
+  explicit Camera(Vec3 origin) : turn_(Eigen::Matrix3d::Identity()), centre_(std::move(origin)) {}
   // The bodies (not none) fill the picture but for a margin of 4 % of its smaller side.
   Camera(From from, std::span<const yarn::Body> bodies, int width, int height);
 
