@@ -89,8 +89,9 @@ class Reader {
     }
     if (mesh_.elements.empty()) return refuse(0, "the file has no element that is a surface or a solid");
     if (left_out_ > 0)
-      report_.warning(spot(0), fmt::format("{} neither surfaces nor solids: left out",
-                                           left_out_ == 1 ? "1 element is" : fmt::format("{} elements are", left_out_)));
+      report_.warning(
+          spot(0), fmt::format("{} neither surfaces nor solids: left out",
+                               left_out_ == 1 ? "1 element is" : fmt::format("{} elements are", left_out_)));
     mesh_.regions.resize(region_of_.size());
     for (const auto& [material, region] : region_of_) {
       const auto name = materials_.find(material);
@@ -109,7 +110,8 @@ class Reader {
     return true;
   }
   [[nodiscard]] Spot spot(std::size_t column) const {
-    return {line_.data() + std::min(column, line_.size()), std::max(1, number_), static_cast<int>(column) + 1};
+    return {line_.data() + std::min(column, line_.size()), std::max(1, number_),
+            static_cast<int>(column) + 1};
   }
   std::nullopt_t refuse(std::size_t column, std::string text, Kind kind = Kind::malformed) {
     return report_.error(spot(column), std::move(text), kind);
@@ -141,7 +143,8 @@ class Reader {
     const std::string_view word = trimmed(format);
     if (word == "0") return 5;
     if (word == "1" || word.empty()) return 10;
-    refuse(0, "this block is binary: only ASCII is read (a deck without OUTPUT=BINARY has it)", Kind::unsupported);
+    refuse(0, "this block is binary: only ASCII is read (a deck without OUTPUT=BINARY has it)",
+           Kind::unsupported);
     return std::nullopt;
   }
 
@@ -150,7 +153,8 @@ class Reader {
     if (!width) return false;
     while (next() && columns(line_, 0, 3) != " -3") {
       const std::optional<long> number = whole(columns(line_, 3, *width));
-      if (columns(line_, 0, 3) != " -1" || !number) return fail(0, "a node is expected here, as ' -1', its number and its place");
+      if (columns(line_, 0, 3) != " -1" || !number)
+        return fail(0, "a node is expected here, as ' -1', its number and its place");
       Vec3 place;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::optional<double> x = real(3 + *width + 12 * k, 12);
@@ -177,11 +181,13 @@ class Reader {
         type = type_of(kind.value_or(0));
         if (type.nodes == 0) return fail(3 + *width, "an element of a type that is not known (1 to 12 are)");
         const long material = whole(columns(line_, 13 + *width, 5)).value_or(0);
-        region = region_of_.try_emplace(material, static_cast<std::uint32_t>(region_of_.size())).first->second;
+        region =
+            region_of_.try_emplace(material, static_cast<std::uint32_t>(region_of_.size())).first->second;
         numbers.clear();
         continue;
       }
-      if (key != " -2" || type.nodes == 0) return fail(0, "the nodes of an element are expected here, as ' -2' and their numbers");
+      if (key != " -2" || type.nodes == 0)
+        return fail(0, "the nodes of an element are expected here, as ' -2' and their numbers");
       for (std::size_t at = 3; at < line_.size() && numbers.size() < type.nodes; at += *width) {
         const std::string_view word = trimmed(columns(line_, at, *width));
         if (word.empty()) break;
@@ -204,7 +210,8 @@ class Reader {
       return;
     }
     FieldMesh::Element element{*type.shape, {}, region};
-    for (std::size_t k = 0; k < fem::corner_count(*type.shape); ++k) element.corners[k] = nodes_.at(numbers[k]);
+    for (std::size_t k = 0; k < fem::corner_count(*type.shape); ++k)
+      element.corners[k] = nodes_.at(numbers[k]);
     // Its first triangle is seen counter-clockwise from the second; VTK's the other way.
     if (type.shape == Shape::wedge) {
       std::swap(element.corners[1], element.corners[2]);

@@ -85,8 +85,7 @@ std::optional<Shape> shape_of(int type) {
 
 class Reader {
  public:
-  Reader(const Source& source, TextReport& report)
-      : report_(report), text_(source.bytes()) {}
+  Reader(const Source& source, TextReport& report) : report_(report), text_(source.bytes()) {}
 
   std::optional<FieldMesh> read() {
     find_appended();
@@ -106,8 +105,9 @@ class Reader {
     }
     if (mesh_.elements.empty()) return refuse(0, "the file has no cell that is a surface or a solid");
     if (left_out_ > 0)
-      report_.warning(spot(0), fmt::format("{} neither surfaces nor solids: left out",
-                                           left_out_ == 1 ? "1 cell is" : fmt::format("{} cells are", left_out_)));
+      report_.warning(spot(0),
+                      fmt::format("{} neither surfaces nor solids: left out",
+                                  left_out_ == 1 ? "1 cell is" : fmt::format("{} cells are", left_out_)));
     name_regions();
     return std::move(mesh_);
   }
@@ -148,17 +148,19 @@ class Reader {
 
   bool take_coding(const Tag& tag) {
     if (tag.attribute("type") != "UnstructuredGrid")
-      return fail(tag.at, fmt::format("VTK data of the type {} are no mesh: an UnstructuredGrid is",
-                                      in_quotes(tag.attribute("type"))),
+      return fail(tag.at,
+                  fmt::format("VTK data of the type {} are no mesh: an UnstructuredGrid is",
+                              in_quotes(tag.attribute("type"))),
                   Kind::unsupported);
     coding_.is_big_endian = tag.attribute("byte_order") == "BigEndian";
     coding_.has_long_heads = tag.attribute("header_type") == "UInt64";
     const std::string_view compressor = tag.attribute("compressor");
     coding_.is_compressed = !compressor.empty();
     if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
-      return fail(tag.at, fmt::format("data compressed by {} are not read: write them with zlib, or without "
-                                      "compression",
-                                      in_quotes(compressor)),
+      return fail(tag.at,
+                  fmt::format("data compressed by {} are not read: write them with zlib, or without "
+                              "compression",
+                              in_quotes(compressor)),
                   Kind::unsupported);
     return true;
   }
@@ -194,14 +196,17 @@ class Reader {
     } else {
       const std::optional<double> offset = read_number(tag.attribute("offset"));
       if (!offset || !(*offset >= 0.0) || *offset > static_cast<double>(appended_.size()))
-        return fail(tag.at, fmt::format("the array {} has no place among the appended data", in_quotes(array.name)));
-      values = decode(appended_.substr(static_cast<std::size_t>(*offset)), appended_is_base64_, type, coding_);
+        return fail(tag.at,
+                    fmt::format("the array {} has no place among the appended data", in_quotes(array.name)));
+      values =
+          decode(appended_.substr(static_cast<std::size_t>(*offset)), appended_is_base64_, type, coding_);
     }
     if (!values)
       return fail(tag.at, fmt::format("the array {}: {}", in_quotes(array.name), values.error().text),
                   values.error().kind);
     array.values = std::move(*values);
-    arrays_[fmt::format("{}/{}", within_, within_ == "Points" ? std::string_view() : array.name)] = std::move(array);
+    arrays_[fmt::format("{}/{}", within_, within_ == "Points" ? std::string_view() : array.name)] =
+        std::move(array);
     return true;
   }
 
@@ -267,7 +272,8 @@ class Reader {
     for (const char* const key : {"CellData/yarn", "CellData/material", "CellData/region"})
       if (number == nullptr) number = find(key);
     for (std::size_t k = 0; k < kept.size(); ++k) {
-      const double value = number != nullptr && kept[k] < number->values.size() ? number->values[kept[k]] : 0.0;
+      const double value =
+          number != nullptr && kept[k] < number->values.size() ? number->values[kept[k]] : 0.0;
       const long long key = number == nullptr ? 0 : std::llround(std::clamp(value, -1e9, 1e9));
       const auto [known, is_new] = region_of_.try_emplace(key, static_cast<std::uint32_t>(region_of_.size()));
       mesh_.elements[mesh_.elements.size() - kept.size() + k].region = known->second;
@@ -279,10 +285,11 @@ class Reader {
     mesh_.regions.resize(region_of_.size());
     for (const auto& [number, region] : region_of_) {
       const auto named = names_.find(number);
-      mesh_.regions[region] = region_word_.empty()                        ? "mesh"
-                              : region_word_ == "yarn" && number < 0      ? "matrix"
-                              : region_word_ == "yarn" && named != names_.end() ? named->second
-                                                                          : fmt::format("{} {}", region_word_, number);
+      mesh_.regions[region] = region_word_.empty()                   ? "mesh"
+                              : region_word_ == "yarn" && number < 0 ? "matrix"
+                              : region_word_ == "yarn" && named != names_.end()
+                                  ? named->second
+                                  : fmt::format("{} {}", region_word_, number);
     }
   }
 
@@ -294,9 +301,10 @@ class Reader {
     for (const auto& [key, array] : arrays_) {
       if (!key.starts_with(prefix) || array.values.size() != count * array.components) continue;
       if (!of_nodes && array.name == region_word_) continue;
-      auto field = std::find_if(mesh_.fields.begin(), mesh_.fields.end(), [&, &wanted = array](const auto& known) {
-        return known.name == wanted.name && known.of_nodes == of_nodes;
-      });
+      auto field =
+          std::find_if(mesh_.fields.begin(), mesh_.fields.end(), [&, &wanted = array](const auto& known) {
+            return known.name == wanted.name && known.of_nodes == of_nodes;
+          });
       if (field == mesh_.fields.end())
         field = mesh_.fields.insert(field, {array.name, of_nodes, static_cast<int>(array.components), {}});
       if (field->components != static_cast<int>(array.components)) continue;

@@ -48,11 +48,10 @@ struct Known {
   std::array<std::uint32_t, 4> nodes{};
   std::uint32_t region = 0, element = 0;
   std::uint8_t side = 0;
-  [[nodiscard]] bool same(const Known& other) const {
-    return region == other.region && nodes == other.nodes;
-  }
+  [[nodiscard]] bool same(const Known& other) const { return region == other.region && nodes == other.nodes; }
   bool operator<(const Known& other) const {
-    return std::tie(region, nodes, element, side) < std::tie(other.region, other.nodes, other.element, other.side);
+    return std::tie(region, nodes, element, side) <
+           std::tie(other.region, other.nodes, other.element, other.side);
   }
 };
 
@@ -83,8 +82,8 @@ Outside outside_of(const FieldMesh& mesh) {
     for (std::uint8_t k = 0; k < own.size(); ++k) {
       Known side{{}, element.region, e, k};
       for (std::size_t i = 0; i < 4; ++i)
-        side.nodes[i] = own[k][i] == none ? std::numeric_limits<std::uint32_t>::max()
-                                          : element.corners[own[k][i]];
+        side.nodes[i] =
+            own[k][i] == none ? std::numeric_limits<std::uint32_t>::max() : element.corners[own[k][i]];
       std::sort(side.nodes.begin(), side.nodes.end());
       sides.push_back(side);
     }

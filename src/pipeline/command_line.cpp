@@ -266,7 +266,8 @@ void of_yarns(OptionTable& t) {
          "where the format has these",
          &Options::lines)
       .goes_with("writes centre lines, not solids", "", "--cut --matrix --instances");
-  t.option({check, view}, "--reach", "list near contacts, too: gaps between yarns up to this, in the input's unit",
+  t.option({check, view}, "--reach",
+           "list near contacts, too: gaps between yarns up to this, in the input's unit",
            Argument::positive(), &Options::reach);
   t.flag({info}, "--table",
          "garment curves: each fixed point's error, and the control points by both methods", &Options::table);
@@ -304,9 +305,9 @@ void of_a_picture(OptionTable& t) {
   t.option({view}, "--background", "its colour, each 0-255", Argument::text("R,G,B"), take_background)
       .with_preset("255,255,255");
   t.flag({view}, "--flat", "without shadows, which is faster", &Options::flat);
-  t.choice({view}, "--contacts", "does a page list overlaps and near contacts; auto: of up to some million points",
-           "auto yes no", &Options::page_contacts,
-           {PageContacts::automatic, PageContacts::yes, PageContacts::no})
+  t.choice({view}, "--contacts",
+           "does a page list overlaps and near contacts; auto: of up to some million points", "auto yes no",
+           &Options::page_contacts, {PageContacts::automatic, PageContacts::yes, PageContacts::no})
       .with_preset("auto");
 }
 

@@ -94,7 +94,8 @@ void add_fields(Job& job, const fem::FieldMesh& mesh, const fem::Outside& outsid
     }
     page::Skin::Field shown{field.name, field.of_nodes, field.components, {}};
     for (const std::uint32_t k : from)
-      shown.values.insert(shown.values.end(), field.values.begin() + static_cast<std::ptrdiff_t>(k * components),
+      shown.values.insert(shown.values.end(),
+                          field.values.begin() + static_cast<std::ptrdiff_t>(k * components),
                           field.values.begin() + static_cast<std::ptrdiff_t>((k + 1) * components));
     skin.fields.push_back(std::move(shown));
   }

@@ -7,8 +7,8 @@
 
 namespace selvage::pipeline {
 
-// The outside of the mesh with its fields, as a page has them, and how good its tetrahedra are. Fields that would
-// make the page too large are left out, the last first, with a warning.
+// The outside of the mesh with its fields, as a page has them, and how good its tetrahedra are. Fields that
+// would make the page too large are left out, the last first, with a warning.
 view::page::Page mesh_page(Job& job, const fem::FieldMesh& mesh);
 
 }  // namespace selvage::pipeline

@@ -46,7 +46,8 @@ struct RelaxSettings {
   int max_iterations = 0;         // 0: the default
 };
 
-// When a page of `view` lists contacts; `automatic`: where all yarns together have at most a few million points.
+// When a page of `view` lists contacts; `automatic`: where all yarns together have at most a few million
+// points.
 enum class PageContacts { automatic, yes, no };
 
 // Of `edit`, as given.

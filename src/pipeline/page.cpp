@@ -142,7 +142,8 @@ bool add_contacts(Job& job, const Gathered& all, page::Page& to) {
     return true;
   }
   if (!all.is_kept) {
-    to.contacts_note = "Contacts were not looked for, for the yarns are many; --contacts yes does it, or selvage check.";
+    to.contacts_note =
+        "Contacts were not looked for, for the yarns are many; --contacts yes does it, or selvage check.";
     return true;
   }
   double thinnest = to.shapes.front().thickness;
@@ -181,8 +182,11 @@ bool add_picture(Job& job, const std::vector<yarn::Body>& bodies, page::Page& to
 
 bool write_page(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilder& builder,
                 OutputFile& file) {
+  const Result<std::string> library = page::library();
+  if (!library) return job.fail(library.error());
   page::Page made;
-  made.name = std::filesystem::path(job.input.path == "-" ? "standard input" : job.input.path).filename().string();
+  made.name =
+      std::filesystem::path(job.input.path == "-" ? "standard input" : job.input.path).filename().string();
   made.title = fabric.title.value_or("");
   made.units = fabric.units;
   Gathered all;
@@ -193,8 +197,9 @@ bool write_page(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilde
   if (!add_contacts(job, all, made)) return false;
   if (all.points <= most_points && !add_picture(job, all.bodies, made)) return false;
   made.sheets =
-      sheets_json(fabric::sheets_of(builder, job.build_options(), static_cast<int>(job.threads)).sheets).dump();
-  const Status written = page::write(made, file);
+      sheets_json(fabric::sheets_of(builder, job.build_options(), static_cast<int>(job.threads)).sheets)
+          .dump();
+  const Status written = page::write(made, *library, file);
   return written.ok() || job.fail(written.error());
 }
 

@@ -40,7 +40,8 @@ void write_pictures(Job& job, const fabric::YarnBuilder& builder, OpenOutputs& o
       return job.say(status.error());
 }
 
-// The format of an input that is a mesh; null: it is none, or cannot be opened (which is told when it is read).
+// The format of an input that is a mesh; null: it is none, or cannot be opened (which is told when it is
+// read).
 const formats::Descriptor* mesh_format(const Job& job) {
   if (job.input.path == "-") return nullptr;
   const Result<Source> source = Source::open(job.input.path);
@@ -50,7 +51,10 @@ const formats::Descriptor* mesh_format(const Job& job) {
 
 void view_mesh(Job& job, const formats::Descriptor& format) {
   if (job.outputs.empty() || job.outputs.front().format != &page_format())
-    return job.say(error(Kind::unsupported, "meshes are shown on pages, not in pictures: name a .html file with -o"));
+    return job.say(
+        error(Kind::unsupported, "meshes are shown on pages, not in pictures: name a .html file with -o"));
+  const Result<std::string> library = view::page::library();
+  if (!library) return job.say(library.error());
   const Result<Source> source = Source::open(job.input.path);
   if (!source) return job.say(source.error());
   Diagnostics diagnostics;
@@ -59,7 +63,8 @@ void view_mesh(Job& job, const formats::Descriptor& format) {
   if (!mesh || job.has_failed()) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);
   if (!outputs) return;
-  if (const Status written = view::page::write(mesh_page(job, *mesh), outputs->front().file); !written)
+  if (const Status written = view::page::write(mesh_page(job, *mesh), *library, outputs->front().file);
+      !written)
     return job.say(written.error());
   commit_all(job, *outputs);
 }

@@ -46,7 +46,8 @@ class Direction {
     const std::size_t last = fine.size() - 1, longest = std::max<std::size_t>(1, last / fewest);
     std::vector<std::size_t> next_stop(fine.size(), last);
     for (std::size_t k = last; k-- > 0;)
-      next_stop[k] = k + 1 < last && !is_edge(fine[k + 1]) && !is_stop(fine[k + 1]) ? next_stop[k + 1] : k + 1;
+      next_stop[k] =
+          k + 1 < last && !is_edge(fine[k + 1]) && !is_stop(fine[k + 1]) ? next_stop[k + 1] : k + 1;
     std::vector<double> chosen{fine.front()};
     for (std::size_t i = 0; i < last;) {
       if (i > 0 && is_edge(fine[i])) chosen.push_back(fine[i]);

@@ -128,6 +128,6 @@ class Measure {
 function drawScale(eye) {
   const bar = document.getElementById('scale'), most = 150 / eye.pixelsPerUnit(), power = 10 ** Math.floor(Math.log10(most));
   const length = [5, 2, 1].find((digit) => digit * power <= most) * power;
-  bar.style.width = `${length * eye.pixelsPerUnit()}px`;
+  bar.lastElementChild.style.width = `${length * eye.pixelsPerUnit()}px`;
   bar.firstElementChild.textContent = lengthText(length);
 }

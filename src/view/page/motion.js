@@ -66,6 +66,7 @@ class Eye extends EventTarget {
   // The same for a step of many, such as of a wheel: it moves until nothing has come for a while.
   stepped() {
     this.moving = true;
+    document.getElementById('keys').classList.add('unseen');  // who moves it knows how
     clearTimeout(this.resting);
     this.resting = setTimeout(() => {
       this.moving = this.pointers.size > 0;

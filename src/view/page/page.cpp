@@ -22,16 +22,19 @@ using Json = nlohmann::json;
 
 constexpr std::string_view three_file = "three.module.min.js";
 
-// The library as a function that returns what it exports: `export{a as Box}` becomes `return{Box:a}`. A page
-// that is opened as a file cannot import.
-Result<std::string> three() {
+}  // namespace
+
+// A function that returns what the file exports: `export{a as Box}` becomes `return{Box:a}`. A page that is
+// opened as a file cannot import.
+Result<std::string> library() {
   const Result<std::filesystem::path> path = find_worker(std::string(three_file));
   if (!path)
-    return error(Kind::internal,
-                 fmt::format("a page needs the library three.js, and this installation was built without it: "
-                             "'{}' is neither beside the program nor in '../lib/selvage'; run scripts/setup with "
-                             "npm installed and build again, or name a .png file with -o",
-                             three_file));
+    return error(
+        Kind::internal,
+        fmt::format("a page needs the library three.js, and this installation was built without it: "
+                    "'{}' is neither beside the program nor in '../lib/selvage'; run scripts/setup with "
+                    "npm installed and build again, or name a .png file with -o",
+                    three_file));
   const Result<Source> source = Source::open(*path);
   if (!source) return source.error();
   const std::string_view text = source->bytes();
@@ -53,6 +56,8 @@ Result<std::string> three() {
   }
   return module + "};\n})();\n";
 }
+
+namespace {
 
 Json json_of(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
@@ -157,11 +162,16 @@ Json skin_json(const Skin& skin, Binary& binary) {
   std::vector<std::uint32_t> corners;
   for (const Eigen::Vector3f& p : skin.points) points.insert(points.end(), p.begin(), p.end());
   for (const auto& t : skin.triangles) corners.insert(corners.end(), t.begin(), t.end());
-  Json json = {{"points", binary.add(points)},       {"point_count", skin.points.size()},
-               {"triangles", binary.add(corners)},   {"triangle_count", skin.triangles.size()},
-               {"region_of", binary.add(skin.region)}, {"nodes", skin.nodes},
-               {"elements", skin.elements},          {"regions", Json::array()},
-               {"fields", Json::array()},            {"histograms", Json::array()}};
+  Json json = {{"points", binary.add(points)},
+               {"point_count", skin.points.size()},
+               {"triangles", binary.add(corners)},
+               {"triangle_count", skin.triangles.size()},
+               {"region_of", binary.add(skin.region)},
+               {"nodes", skin.nodes},
+               {"elements", skin.elements},
+               {"regions", Json::array()},
+               {"fields", Json::array()},
+               {"histograms", Json::array()}};
   for (const Skin::Region& region : skin.regions)
     json["regions"].push_back(
         {{"name", region.name}, {"elements", region.elements}, {"matrix", region.is_matrix}});
@@ -199,14 +209,16 @@ std::string base64(std::string_view bytes) {
 
 }  // namespace
 
-Status write(const Page& page, OutputFile& output) {
-  const Result<std::string> library = three();
-  if (!library) return library.error();
+Status write(const Page& page, std::string_view library, OutputFile& output) {
   Binary binary;
-  Json json = {{"selvage", SELVAGE_VERSION},     {"name", page.name},
-               {"title", page.title},            {"units", name_of(page.units)},
-               {"centre", json_of(page.centre)}, {"box", json_of(page.box)},
-               {"shapes", Json::array()},        {"contacts_note", page.contacts_note},
+  Json json = {{"selvage", SELVAGE_VERSION},
+               {"name", page.name},
+               {"title", page.title},
+               {"units", name_of(page.units)},
+               {"centre", json_of(page.centre)},
+               {"box", json_of(page.box)},
+               {"shapes", Json::array()},
+               {"contacts_note", page.contacts_note},
                {"sheets", Json::parse(page.sheets, nullptr, false)}};
   for (const Shape& shape : page.shapes) json["shapes"].push_back(json_of(shape, binary));
   if (page.skin)
@@ -235,7 +247,7 @@ Status write(const Page& page, OutputFile& output) {
     else if (slot == "binary")
       text << base64(binary.bytes());
     else if (slot == "three")
-      text << *library;
+      text << library;
     else if (slot == "scripts")
       for (const std::string_view script : scripts()) text << script;
   }

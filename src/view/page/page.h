@@ -1,11 +1,12 @@
-// A page of yarns or of a mesh to look at from all sides: one HTML file that needs no network, with all that it
-// shows inside. What it does in a browser is in the files *.js, *.css and page.html beside this one.
+// A page of yarns or of a mesh to look at from all sides: one HTML file that needs no network, with all that
+// it shows inside. What it does in a browser is in the files *.js, *.css and page.html beside this one.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/diagnostics.h"
@@ -83,8 +84,12 @@ struct Page {
   std::optional<Skin> skin;          // instead of yarns
 };
 
-// Writes the page, which needs the library three.js beside the program or in ../lib/selvage. Errors: internal
-// (it is not there, with what to do about it, or is another one than the pages are made for); io.
-Status write(const Page& page, OutputFile& output);
+// The library of pages, three.js, as their script has it: a file beside the program or in ../lib/selvage.
+// Errors: internal (it is not there, with what to do about it, or is another one than pages are made for);
+// io.
+Result<std::string> library();
+
+// Errors: io.
+Status write(const Page& page, std::string_view library, OutputFile& output);
 
 }  // namespace selvage::view::page

@@ -170,7 +170,7 @@ class Panel {
         parts.push(make('p', {class: 'note', 'data-count': 0}, title + within));
         continue;
       }
-      parts.push(make('div', {class: 'row', 'data-count': count}, make('h3', {class: `grow ${style}`, style: 'margin: 0'}, title + within), box, make('label', {for: id}, 'mark')));
+      parts.push(make('div', {class: 'row', 'data-count': count}, make('h3', {class: style, style: 'margin: 0'}, title + within), box, make('label', {for: id}, 'mark')));
       const list = make('ul', {class: 'list', 'aria-label': title, style: 'max-height: 13rem'}), more = make('p', {class: 'note'});
       let filled = 0;
       const fill = () => {

@@ -42,8 +42,9 @@ std::span<const double> inner(const std::vector<double>& cuts) {
 struct Rows {
   std::size_t first = 0, last = 0;  // included
   Rows(const std::vector<double>& places, double from, double to)
-      : first(static_cast<std::size_t>(std::upper_bound(places.begin(), places.end(), from) - places.begin()) -
-              1),
+      : first(
+            static_cast<std::size_t>(std::upper_bound(places.begin(), places.end(), from) - places.begin()) -
+            1),
         last(static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), to) - places.begin())) {}
 };
 

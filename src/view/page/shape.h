@@ -31,7 +31,7 @@ struct Part {
 
 struct Level {
   bool is_tube = true;
-  double chord = 0;         // how far it may be from the surface (tube) or the centre line (ribbon), file units
+  double chord = 0;  // how far it may be from the surface (tube) or the centre line (ribbon), file units
   std::size_t columns = 0;  // of tubes
   std::vector<Part> parts;
   [[nodiscard]] std::size_t bytes() const;
