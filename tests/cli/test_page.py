@@ -1,7 +1,9 @@
 """Pages of `selvage view`: that what they hold is the yarns and the meshes. How they look and behave in a browser is looked at every
 night (tests/page)."""
 
+import base64
 import csv
+import hashlib
 import json
 import math
 import os
@@ -247,7 +249,6 @@ class Text(Pages):
     def test_a_picture_is_there_for_browsers_without_webgl(self):
         page = self.page(SAMPLES / "ring.txt")
         image = re.search(r'<noscript>.*?<img [^>]*src="data:image/png;base64,([^"]+)"', page.text, re.DOTALL)[1]
-        import base64
         self.assertEqual(base64.b64decode(image)[:8], b"\x89PNG\r\n\x1a\n")
 
 
@@ -280,7 +281,6 @@ class Files(Pages):
         self.assertIn("not the three.js", done.stderr)
 
     def test_the_library_is_the_pinned_one(self):
-        import hashlib
         lock = (pathlib.Path(__file__).parents[2] / "scripts/three.lock").read_text()
         library = pathlib.Path(PROGRAM).parent / "three.module.min.js"
         self.assertTrue(library.exists(), "scripts/setup fetches it")
@@ -346,7 +346,6 @@ class Meshes(Pages):
             for name, values, kind, components in arrays:
                 tags[name] = f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="appended" offset="{len(blob)}"/>'
                 data = len(values.tobytes()).to_bytes(4, "little") + values.tobytes()
-                import base64
                 blob += data if encoding == "raw" else base64.b64encode(data)
             text = ('<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">\n<UnstructuredGrid>\n'
                     f'<Piece NumberOfPoints="5" NumberOfCells="2">\n<Points>{tags["Points"]}</Points>\n'

@@ -44,13 +44,16 @@ class Measure {
     this.draw();
   }
 
-  // At most one look a frame.
+  // A look takes a quarter of the time at most: of a large cloth the pointer has to rest for a moment.
   ask() {
     if (this.asked || this.scene.eye.moving) return;
-    this.asked = requestAnimationFrame(() => {
+    this.asked = setTimeout(() => {
       this.asked = 0;
-      if (this.pointer) this.hover(this.scene.pick(...this.pointer, 2));
-    });
+      if (!this.pointer || this.scene.eye.moving) return;
+      const begin = performance.now();
+      this.hover(this.scene.pick(...this.pointer, 2));
+      this.pause = Math.min(1000, 3 * (performance.now() - begin));
+    }, this.pause ?? 0);
   }
   hover(hit) {
     this.show(hit);

@@ -100,9 +100,12 @@ class Eye extends EventTarget {
     const seen = Object.assign(Object.create(Eye.prototype), {turn: angles.turn ?? this.turn, tilt: angles.tilt ?? this.tilt});
     const {right, up, toward} = seen.axes();
     const half = box.getSize(new THREE.Vector3()).multiplyScalar(0.5);
-    const reach = (axis) => Math.abs(axis.x) * half.x + Math.abs(axis.y) * half.y + Math.abs(axis.z) * half.z;
-    const tan = Math.tan(THREE.MathUtils.degToRad(this.perspective.fov / 2)), aspect = this.width / this.height || 1;
-    const distance = 1.06 * Math.max(reach(up) / tan, reach(right) / (tan * aspect), 1e-9) + reach(toward);
+    const tan = Math.tan(THREE.MathUtils.degToRad(this.perspective.fov / 2)) / 1.1, aspect = this.width / this.height || 1;
+    let distance = 1e-9;
+    for (let corner = 0; corner < 8; ++corner) {
+      const place = half.clone().multiply(new THREE.Vector3(...[1, 2, 4].map((bit) => corner & bit ? 1 : -1)));
+      distance = Math.max(distance, place.dot(toward) + Math.max(Math.abs(place.dot(up)), Math.abs(place.dot(right)) / aspect) / tan);
+    }
     this.go({target: box.getCenter(new THREE.Vector3()), distance, ...angles}, still);
   }
 

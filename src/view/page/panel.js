@@ -136,7 +136,10 @@ class Panel {
       const k = 'xyz'.indexOf(axis.value);
       more.hidden = k < 0 || axis.value === 'none';
       if (more.hidden) return this.scene.cut();
-      if (anew) place.value = 500;
+      if (anew) {
+        place.value = 500;
+        turned.checked = this.scene.eye.axes().toward.getComponent(k) < 0;  // so that the eye sees what was cut
+      }
       const [low, high] = range(), at = low + place.value / 1000 * (high - low);
       number.value = Number(at.toPrecision(6));
       place.setAttribute('aria-valuetext', `${axis.value} = ${lengthText(at)}`);
