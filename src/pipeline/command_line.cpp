@@ -301,6 +301,17 @@ void of_a_picture(OptionTable& t) {
            {view::From::top, view::From::bottom, view::From::front, view::From::back, view::From::side,
             view::From::iso})
       .with_preset("top");
+  t.option({view}, "--azimuth", "the eye's angle about z in degrees: 0 front, 90 side, 180 back",
+           Argument::between(-360, 360), &Options::azimuth)
+      .goes_with("says where the eye is", "", "--from");
+  t.option({view}, "--elevation", "the eye's angle above the horizontal in degrees: 90 top",
+           Argument::between(-90, 90), &Options::elevation)
+      .goes_with("says where the eye is", "", "--from");
+  t.option({view}, "--zoom", "of pictures: how much nearer to the middle", Argument::between(0.01, 1000),
+           &Options::zoom)
+      .with_preset("1");
+  t.option({view}, "--yarns", "only these yarns; * stands for anything", Argument::texts("NAME"),
+           &Options::shown_yarns);
   t.option({view}, "--size", "in pixels", Argument::text("WxH"), take_picture_size).with_preset("1200x900");
   t.option({view}, "--background", "its colour, each 0-255", Argument::text("R,G,B"), take_background)
       .with_preset("255,255,255");

@@ -125,6 +125,9 @@ struct Options {
   // view
   PageContacts page_contacts = PageContacts::automatic;
   view::From from = view::From::top;
+  std::optional<double> azimuth, elevation;  // degrees; instead of `from`
+  double zoom = 1;
+  std::vector<std::string> shown_yarns;       // patterns of names; empty: all
   int picture_width = 0, picture_height = 0;  // pixels
   yarn::Color background{};
   bool flat = false;

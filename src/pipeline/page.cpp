@@ -73,7 +73,7 @@ bool gather(Job& job, const fabric::YarnBuilder& builder, page::Page& to, Gather
   std::map<std::uint64_t, std::size_t> known;
   const bool keeps_any = job.options.page_contacts == PageContacts::yes;
   job.for_each_shape(builder, "building yarn", [&](const fabric::YarnBuilder::Shaped& yarn) {
-    if (job.has_failed()) return;
+    if (job.has_failed() || !is_shown(job.options, yarn.label)) return;
     all.points += yarn.body->surface.points.size();
     if (all.is_kept && all.points > most_points && !keeps_any) {
       all.is_kept = false;
@@ -99,6 +99,7 @@ bool gather(Job& job, const fabric::YarnBuilder& builder, page::Page& to, Gather
     motion.offset = yarn.at;
     to.yarns.push_back(entry(yarn.label, *yarn.body, shape, motion));
   });
+  if (!job.has_failed() && to.yarns.empty()) return job.fail(none_shown(job.options));
   return !job.has_failed();
 }
 

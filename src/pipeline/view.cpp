@@ -1,7 +1,12 @@
 // `selvage view`: a picture or a page of each input.
 #include "pipeline/view.h"
 
+#include <fnmatch.h>
+
+#include <algorithm>
+
 #include "core/source.h"
+#include "core/text_report.h"
 #include "pipeline/detect.h"
 #include "pipeline/mesh_page.h"
 #include "pipeline/page.h"
@@ -14,12 +19,28 @@ view::PictureOptions picture_options(Job& job) {
   view::PictureOptions options;
   options.width = given.picture_width;
   options.height = given.picture_height;
-  options.from = given.from;
+  options.eye = {given.from, std::nullopt, given.zoom};
+  if (given.azimuth || given.elevation)
+    options.eye.angles = {given.azimuth.value_or(0.0), given.elevation.value_or(0.0)};
   options.background = given.background;
   options.flat = given.flat;
   options.threads = static_cast<int>(job.threads);
   options.progress = job.progress_of("drawing tile");
   return options;
+}
+
+bool is_shown(const Options& options, const yarn::BodyLabel& yarn) {
+  const auto matches = [&](const std::string& pattern) {
+    return ::fnmatch(pattern.c_str(), yarn.name.c_str(), 0) == 0 ||
+           (!yarn.group.empty() && ::fnmatch(pattern.c_str(), yarn.group.c_str(), 0) == 0);
+  };
+  return options.shown_yarns.empty() ||
+         std::any_of(options.shown_yarns.begin(), options.shown_yarns.end(), matches);
+}
+
+Message none_shown(const Options& options) {
+  return error(Kind::unsupported, fmt::format("no yarn has a name like {}; selvage info lists the names",
+                                              in_quotes(options.shown_yarns.front())));
 }
 
 namespace {
@@ -33,8 +54,10 @@ Status write_picture(Job& job, const std::vector<yarn::Body>& bodies, OutputFile
 }
 
 void write_pictures(Job& job, const fabric::YarnBuilder& builder, OpenOutputs& outputs) {
-  const std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
+  std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
   if (!bodies || job.has_failed()) return;
+  std::erase_if(*bodies, [&](const yarn::Body& body) { return !is_shown(job.options, body); });
+  if (bodies->empty()) return job.say(none_shown(job.options));
   for (OpenOutput& output : outputs)
     if (Status status = write_picture(job, *bodies, output.file); !status.ok())
       return job.say(status.error());

@@ -169,7 +169,7 @@ Result<std::vector<Skin>> make_skins(std::span<const yarn::Body> bodies, const C
 
 Result<Picture> render_yarns(std::span<const yarn::Body> bodies, const PictureOptions& options) {
   if (bodies.empty()) return error(Kind::geometry, "there is no yarn to show");
-  const Camera camera(options.from, bodies, options.width, options.height);
+  const Camera camera(options.eye, bodies, options.width, options.height);
   const Result<std::vector<Skin>> skins = make_skins(bodies, camera, options.threads);
   if (!skins) return skins.error();
   const Result<Scene> scene = Scene::make(*skins);
