@@ -1,6 +1,7 @@
 // `selvage view`: a picture or a page of each input.
 #include "pipeline/view.h"
 
+#include <fmt/format.h>
 #include <fnmatch.h>
 
 #include <algorithm>

@@ -335,6 +335,25 @@ class Meshes(Pages):
             self.assertLess(np.abs(page.field("t")[:, 0] - points[:, 2]).max(), 1e-5)
             self.assertLess(np.abs(page.field("u")[:, 1] - points[:, 1]**2).max(), 1e-5)
 
+    def test_elements_of_every_shape(self):
+        cube = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
+        # VTK's wedge: its first triangle is seen counter-clockwise from outside.
+        for kind, cell, volume in (("tetra", [0, 1, 3, 4], 1 / 6), ("pyramid", [0, 1, 2, 3, 4], 1 / 3), ("wedge", [0, 3, 1, 4, 7, 5], 1 / 2),
+                                   ("hexahedron", list(range(8)), 1), ("voxel", [0, 1, 3, 2, 4, 5, 7, 6], 1)):
+            path = self.folder / f"{kind}.vtu"
+            types = {"voxel": 11, "hexahedron": 12, "wedge": 13, "pyramid": 14, "tetra": 10}
+            numbers = lambda values: " ".join(map(str, np.ravel(values)))
+            path.write_text('<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece><Points><DataArray type="Float64" NumberOfComponents="3" '
+                            f'format="ascii">{numbers(cube)}</DataArray></Points><Cells><DataArray type="Int64" Name="connectivity" format="ascii">'
+                            f'{numbers(cell)}</DataArray><DataArray type="Int64" Name="offsets" format="ascii">{len(cell)}</DataArray>'
+                            f'<DataArray type="UInt8" Name="types" format="ascii">{types[kind]}</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>')
+            points, triangles, _ = self.page(path).skin()
+            own = points[triangles]
+            # Outward, and closed: the divergence theorem, from two origins.
+            for origin in (0, 10):
+                p = own - origin
+                self.assertAlmostEqual(np.einsum("ij,ij->", p[:, 0], np.cross(p[:, 1], p[:, 2])) / 6, volume, delta=1e-5, msg=kind)
+
     def test_appended_data(self):
         """As VTK appends them: a head and bytes of each array, behind an underscore."""
         points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], "<f8")
