@@ -99,9 +99,11 @@ Outside outside_of(const FieldMesh& mesh) {
       const auto corner = [&](std::size_t i) { return element.corners[side[i]]; };
       outside.triangles.push_back({corner(0), corner(1), corner(2)});
       outside.element.push_back(sides[k].element);
+      outside.inner.push_back(side[3] != none ? 2 : 0);
       if (side[3] != none) {
         outside.triangles.push_back({corner(0), corner(2), corner(3)});
         outside.element.push_back(sides[k].element);
+        outside.inner.push_back(3);
       }
     }
     k = end - 1;

@@ -39,6 +39,8 @@ std::size_t corner_count(FieldMesh::Shape shape);
 struct Outside {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // nodes
   std::vector<std::uint32_t> element;                   // of each triangle
+  std::vector<std::uint8_t>
+      inner;  // 1 to 3: its edge opposite of this corner cuts a side of four corners; else 0
 };
 Outside outside_of(const FieldMesh& mesh);
 

@@ -122,6 +122,7 @@ page::Page mesh_page(Job& job, const fem::FieldMesh& mesh) {
     std::array<std::uint32_t, 3> triangle{};
     for (std::size_t i = 0; i < 3; ++i) triangle[i] = numbering.of_node[outside.triangles[k][i]];
     skin.triangles.push_back(triangle);
+    skin.inner.push_back(outside.inner[k]);
     skin.region.push_back(mesh.elements[outside.element[k]].region);
   }
   for (const std::string& name : mesh.regions) skin.regions.push_back({name, 0, name == "matrix"});

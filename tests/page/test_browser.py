@@ -119,7 +119,7 @@ class Pages(Case):
         self.assertEqual(len(rows), 2, rows)
         self.assertEqual(len(rows[0]), 1)
         self.assertIn("<b onclick=alert(1)>a</b>, b", rows[0][0])
-        self.assertIn("0.05 mm deep", rows[0][0])
+        self.assertRegex(rows[0][0], r"0\.0(49|50)\d* mm deep")
         self.assertIn("0.01 mm apart", rows[1][0])
         self.assertEqual(self.browser.run("document.querySelectorAll('main b').length"), 0)
         before = self.picture("overlap")
@@ -192,7 +192,7 @@ class Pages(Case):
         self.assertRegex(browser.run("document.getElementById('status').textContent"), "First point on|nothing at this point")
         browser.key("Escape")
         # All that can be used is reached by the tabulator, shows that, and has a name.
-        browser.run("document.activeElement.blur(); window.reached = []; document.addEventListener('focusin', (e) => reached.push(e.target))")
+        browser.run("document.querySelector('.skip').focus(); window.reached = []; document.addEventListener('focusin', (e) => reached.push(e.target))")
         for _ in range(60):
             browser.key("Tab")
         self.assertTrue(browser.run("[...document.querySelectorAll('.tools button, #colors, #axis, ul.list button, #panel input[type=search]')]"

@@ -13,7 +13,8 @@ function showPicture(reason) {
     'The page has no picture instead; selvage view writes one with -o picture.png.'}`)];
   if (source) parts.push(make('img', {class: 'fallback', src: source, alt: DATA.title || DATA.name}));
   document.getElementById('stage').replaceChildren(...parts);
-  document.querySelector('.tools').hidden = true;
+  for (const unused of ['.tools', '#panel', '.skip']) document.querySelector(unused).hidden = true;
+  document.querySelector('main').classList.add('alone');
 }
 
 function start() {

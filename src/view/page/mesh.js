@@ -4,7 +4,7 @@ precision highp float;
 uniform mat4 viewMatrix, projectionMatrix;
 uniform float stretch;
 in vec3 position, moved;
-in float value;
+in float value, inner;
 out vec3 inWorld, inView;
 out vec3 inCorner;
 out float inValue;
@@ -16,6 +16,8 @@ void main() {
   inValue = value;
   int corner = gl_VertexID % 3;
   inCorner = vec3(corner == 0, corner == 1, corner == 2);
+  // An edge that is none of an element's is nowhere near.
+  if (inner > 0.5) inCorner[int(inner + 0.5) - 1] = 1.0;
   inTriangle = float(gl_VertexID / 3);
   gl_Position = projectionMatrix * view;
 }`;
@@ -83,7 +85,8 @@ class SkinModel {
       for (let axis = 0; axis < 3; ++axis) positions[3 * k + axis] = this.points[3 * corners[k] + axis];
     this.valueAttribute = new THREE.BufferAttribute(new Float32Array(count), 1);
     this.movedAttribute = new THREE.BufferAttribute(new Float32Array(3 * count), 3);
-    const position = new THREE.BufferAttribute(positions, 3);
+    const position = new THREE.BufferAttribute(positions, 3), inner = new THREE.BufferAttribute(new Uint8Array(count), 1);
+    numbers(Uint8Array, this.data.inner, count / 3).forEach((corner, k) => inner.array.fill(corner, 3 * k, 3 * k + 3));
     this.boxes = this.names.map(() => new THREE.Box3());
     this.ranges = this.names.map(() => [Infinity, -Infinity]);
     for (let triangle = 0; triangle < this.regionOf.length; ++triangle) {
@@ -95,6 +98,7 @@ class SkinModel {
       const [first, last] = this.ranges[region];
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', position);
+      geometry.setAttribute('inner', inner);
       geometry.setAttribute('value', this.valueAttribute);
       geometry.setAttribute('moved', this.movedAttribute);
       if (last > first) geometry.setDrawRange(3 * first, 3 * (last - first));

@@ -42,11 +42,11 @@ class Eye extends EventTarget {
     const position = this.target.clone().addScaledVector(toward, this.distance);
     const middle = box.getCenter(new THREE.Vector3()), radius = box.getSize(new THREE.Vector3()).length() / 2 || 1;
     const depth = position.clone().sub(middle).dot(toward);
-    const far = Math.max(depth + 1.05 * radius, this.distance * 1e-2);
+    const far = Math.max(depth + 1.4 * radius, this.distance * 1e-2);
     const aspect = width / height;
-    Object.assign(this.perspective, {aspect, far, near: Math.max(depth - 1.05 * radius, far * 1e-4)});
+    Object.assign(this.perspective, {aspect, far, near: Math.max(depth - 1.4 * radius, far * 1e-4)});
     const half = this.distance * Math.tan(THREE.MathUtils.degToRad(this.perspective.fov / 2));
-    Object.assign(this.flat, {top: half, bottom: -half, left: -half * aspect, right: half * aspect, near: depth - 1.05 * radius, far});
+    Object.assign(this.flat, {top: half, bottom: -half, left: -half * aspect, right: half * aspect, near: depth - 1.4 * radius, far});
     for (const camera of [this.perspective, this.flat]) {
       camera.matrix.makeBasis(right, up, toward).setPosition(position);
       camera.matrixWorldNeedsUpdate = true;

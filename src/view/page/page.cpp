@@ -88,7 +88,10 @@ class Binary {
 };
 
 Json json_of(const Shape& shape, Binary& binary) {
-  Json json = {{"thickness", shape.thickness}, {"step", shape.step}, {"boxes", Json::array()}};
+  Json json = {{"thickness", shape.thickness},
+               {"step", shape.step},
+               {"twisted", shape.is_twisted},
+               {"boxes", Json::array()}};
   for (const Box3& box : shape.boxes) json["boxes"].push_back(json_of(box));
   for (const Level& level : shape.levels) {
     Json parts = Json::array();
@@ -98,7 +101,11 @@ Json json_of(const Shape& shape, Binary& binary) {
         row.insert(row.end(), {part.has_start, part.has_end, part.origin[0], part.origin[1], part.origin[2]});
       parts.push_back(std::move(row));
     }
+    Json around = Json::array();
+    if (shape.is_twisted)
+      for (const double turns : level.around) around.push_back(static_cast<float>(turns));
     json["levels"].push_back({{"tube", level.is_tube},
+                              {"around", std::move(around)},
                               {"chord", level.chord},
                               {"columns", level.columns},
                               {"parts", std::move(parts)}});
@@ -167,6 +174,7 @@ Json skin_json(const Skin& skin, Binary& binary) {
                {"triangles", binary.add(corners)},
                {"triangle_count", skin.triangles.size()},
                {"region_of", binary.add(skin.region)},
+               {"inner", binary.add(skin.inner)},
                {"nodes", skin.nodes},
                {"elements", skin.elements},
                {"regions", Json::array()},

@@ -46,6 +46,8 @@ struct Skin {
   std::vector<Eigen::Vector3f> points;  // told from Page::centre
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> region;  // of each triangle, of `regions`
+  // Of each triangle: 1 to 3 where its edge opposite of this corner is no edge of an element; else 0.
+  std::vector<std::uint8_t> inner;
   struct Region {
     std::string name;
     std::size_t elements = 0;

@@ -177,7 +177,7 @@ class Panel {
       const list = make('ul', {class: 'list', 'aria-label': title, style: 'max-height: 13rem'}), more = make('p', {class: 'note'});
       let filled = 0;
       const fill = () => {
-        for (const end = Math.min(rows.length, filled + 200); filled < end; ++filled) list.append(this.contactRow(rows[filled], word, style));
+        for (const end = Math.min(rows.length, filled + 40); filled < end; ++filled) list.append(this.contactRow(rows[filled], word, style));
         more.replaceChildren(...filled < rows.length ? [make('button', {type: 'button', class: 'small', onclick: fill}, 'more')] :
           count > rows.length ? [`The page holds the first ${rows.length.toLocaleString('en')}.`] : []);
       };

@@ -59,7 +59,7 @@ void append_normal(std::string& to, const Vec3f& normal) {
   for (const float x : normal) append_little_endian(to, static_cast<std::int8_t>(std::lround(127.0F * x)));
 }
 
-Part tube_part(const Skin& skin, const Rows& rows, const Box3& box, double step) {
+Part tube_part(const Skin& skin, const Rows& rows, const Box3& box, double step, bool is_twisted) {
   Part part;
   part.rows = rows.last - rows.first + 1;
   part.has_start = skin.has_ends && rows.first == 0;
@@ -82,6 +82,9 @@ Part tube_part(const Skin& skin, const Rows& rows, const Box3& box, double step)
   if (part.has_start) put_end(0, skin.points.size() - 2, skin.start_normal);
   if (part.has_end) put_end(skin.rows - 1, skin.points.size() - 1, skin.end_normal);
   part.bytes += normals;
+  if (is_twisted)
+    for (std::size_t row = rows.first; row <= rows.last; ++row)
+      append_little_endian(part.bytes, static_cast<float>(skin.along[row]));
   return part;
 }
 
@@ -156,13 +159,15 @@ Result<Shape> make_shape(const yarn::Body& body, std::size_t first_level) {
   Shape shape;
   shape.centre = yarn::bounds(body).center();
   shape.thickness = yarn::narrowest_section(body);
+  shape.is_twisted = body.twist != 0.0;
   const std::vector<double> cuts = cuts_of(body, shape.thickness);
   const Camera space(shape.centre);
   for (std::size_t k = first_level; k < tube_chords.size(); ++k) {
-    Level level{true, tube_chords[k] * shape.thickness, 0, {}};
+    Level level{true, tube_chords[k] * shape.thickness, 0, {}, {}};
     const Result<Skin> skin = make_skin(body, space, level.chord, inner(cuts));
     if (!skin) return skin.error();
     level.columns = skin->columns;
+    level.around = skin->around;
     std::vector<Rows> rows;
     double longest = longest_step(*skin);
     for (std::size_t part = 0; part + 1 < cuts.size(); ++part) {
@@ -172,7 +177,8 @@ Result<Shape> make_shape(const yarn::Body& body, std::size_t first_level) {
     }
     // All levels have one step, so that they meet at the cuts; coarser skins are hardly larger.
     if (k == first_level) shape.step = std::max(shape.thickness / steps, 1.02 * longest / most_steps);
-    for (const Rows& of : rows) level.parts.push_back(tube_part(*skin, of, box_of(*skin, of), shape.step));
+    for (const Rows& of : rows)
+      level.parts.push_back(tube_part(*skin, of, box_of(*skin, of), shape.step, shape.is_twisted));
     shape.levels.push_back(std::move(level));
   }
   const std::vector<yarn::LineSample> line = yarn::line_samples(body, ribbon_chords[0] * shape.thickness / 4);
@@ -186,7 +192,7 @@ Result<Shape> make_shape(const yarn::Body& body, std::size_t first_level) {
   }
   for (std::size_t k = std::max(first_level, tube_chords.size()) - tube_chords.size();
        k < ribbon_chords.size(); ++k) {
-    Level level{false, ribbon_chords[k] * shape.thickness, 0, {}};
+    Level level{false, ribbon_chords[k] * shape.thickness, 0, {}, {}};
     for (const auto& part : parts) level.parts.push_back(ribbon_part(part, shape.centre, level.chord));
     shape.levels.push_back(std::move(level));
   }

@@ -24,8 +24,11 @@ const TUBE_VERTEX = `${YARN_HEAD}
 uniform vec3 origin;
 uniform float step;
 in vec3 position, normal;
+in float fibre;
 out vec3 inNormal;
+out float inFibre;
 void main() {
+  inFibre = fibre;
   int k = int(yarn + 0.5);
   mat4 motion = motion_of(k);
   vec4 world = motion * vec4((origin + position) * step, 1.0);
@@ -76,14 +79,14 @@ const YARN_FRAGMENT = `
 flat in vec4 inLook;
 flat in float inYarn;
 uniform vec3 eyePosition;
-void show(vec3 normal, bool inside) {
+void show(vec3 normal, bool inside, float shade) {
   if (is_cut()) discard;
   bool fills = inside && dot(plane.xyz, plane.xyz) > 0.0;
   if (picking == 1) {
     color = vec4(fills ? on_section(eyePosition) : inWorld, inYarn + 1.0);
     return;
   }
-  vec3 base = inLook.rgb;
+  vec3 base = inLook.rgb * shade;
   if (inLook.a < 0.4) base = mix(base, vec3(1.0, 0.86, 0.35), 0.55);
   else if (inLook.a < 0.8) base = mix(base, vec3(1.0), 0.28);
   if (fills) {
@@ -96,12 +99,19 @@ void show(vec3 normal, bool inside) {
 }
 `;
 const TUBE_FRAGMENT = `${YARN_FRAGMENT}
+uniform float fibres;
 in vec3 inNormal;
-void main() { show(normalize(inNormal), !gl_FrontFacing); }`;
+in float inFibre;
+void main() {
+  // Stripes where they are wide enough to see.
+  float phase = inFibre * fibres, width = fwidth(phase);
+  float depth = fibres > 0.0 ? 0.2 * (1.0 - smoothstep(0.2, 0.5, width)) : 0.0;
+  show(normalize(inNormal), !gl_FrontFacing, 1.0 - depth * (0.5 + 0.5 * cos(6.2831853 * phase)));
+}`;
 const RIBBON_FRAGMENT = `${YARN_FRAGMENT}
 in vec3 inNormal, inSide;
 in float inShare;
-void main() { show(normalize(inShare * inSide + sqrt(max(0.0, 1.0 - inShare * inShare)) * inNormal), false); }`;
+void main() { show(normalize(inShare * inSide + sqrt(max(0.0, 1.0 - inShare * inShare)) * inNormal), false, 1.0); }`;
 
 // The grid's triangles, counter-clockwise from outside, and the fans of its ends.
 function tubeIndex(rows, columns, hasStart, hasEnd) {
@@ -211,9 +221,16 @@ class Yarns {
     const geometry = new THREE.InstancedBufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(numbers(Uint16Array, at, 3 * count), 3));
     geometry.setAttribute('normal', new THREE.BufferAttribute(numbers(Int8Array, at + 6 * count, 3 * count), 3, true));
+    // Of a yarn without twist all are 0, and so are those of ends.
+    const fibre = new Float32Array(count);
+    if (shape.twisted) {
+      const along = numbers(Float32Array, at + 9 * count, rows);
+      for (let k = 0; k < rows * level.columns; ++k) fibre[k] = level.around[k % level.columns] - along[Math.floor(k / level.columns)];
+    }
+    geometry.setAttribute('fibre', new THREE.BufferAttribute(fibre, 1));
     geometry.setIndex(index);
-    return {geometry, made: material(TUBE_VERTEX, TUBE_FRAGMENT,
-      {...this.uniforms, origin: {value: new THREE.Vector3(...origin)}, step: {value: shape.step}})};
+    return {geometry, made: material(TUBE_VERTEX, TUBE_FRAGMENT, {...this.uniforms, origin: {value: new THREE.Vector3(...origin)},
+      step: {value: shape.step}, fibres: {value: shape.twisted ? 8 : 0}})};
   }
   makeRibbon(level, part) {
     const [at, rows] = level.parts[part];
@@ -235,7 +252,8 @@ class Yarns {
 
   // The coarsest level whose error cannot be seen: ribbons only where the yarn is thin on the screen.
   levelFor(shape, pixels, patience) {
-    const {levels} = shape, allowed = 0.6 * patience / pixels;
+    // What is thinner than a pixel is a texture more than a thing.
+    const {levels} = shape, allowed = (shape.thickness * pixels < 1 ? 1 : 0.6) * patience / pixels;
     for (let level = levels.length - 1; level > 0; --level) {
       if (!levels[level].tube && shape.thickness * pixels > 3.5 * patience) continue;
       if (levels[level].chord <= allowed) return level;
