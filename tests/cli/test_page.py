@@ -97,7 +97,7 @@ class Yarns(Base):
             for k, yarn in enumerate(page.names):
                 line = lines[yarn]
                 radius, shape = line[0, 3], page.shape(k)
-                self.assertLess(np.ptp(line[:, 3]), 1e-3 * radius)
+                self.assertLess(np.ptp(line[:, 3]), 3e-3 * radius)
                 for level, description in enumerate(shape["levels"]):
                     chord = description["chord"]
                     if description["tube"]:

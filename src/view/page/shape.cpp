@@ -181,7 +181,9 @@ Result<Shape> make_shape(const yarn::Body& body, std::size_t first_level) {
       level.parts.push_back(tube_part(*skin, of, box_of(*skin, of), shape.step, shape.is_twisted));
     shape.levels.push_back(std::move(level));
   }
-  const std::vector<yarn::LineSample> line = yarn::line_samples(body, ribbon_chords[0] * shape.thickness / 4);
+  // What the samples themselves leave of the line's chord.
+  const double sampled = ribbon_chords[0] * shape.thickness / 4;
+  const std::vector<yarn::LineSample> line = yarn::line_samples(body, sampled);
   const auto parts = split(line, cuts);
   for (const auto& part : parts) {
     if (first_level < tube_chords.size()) break;
@@ -193,7 +195,8 @@ Result<Shape> make_shape(const yarn::Body& body, std::size_t first_level) {
   for (std::size_t k = std::max(first_level, tube_chords.size()) - tube_chords.size();
        k < ribbon_chords.size(); ++k) {
     Level level{false, ribbon_chords[k] * shape.thickness, 0, {}, {}};
-    for (const auto& part : parts) level.parts.push_back(ribbon_part(part, shape.centre, level.chord));
+    for (const auto& part : parts)
+      level.parts.push_back(ribbon_part(part, shape.centre, level.chord - sampled));
     shape.levels.push_back(std::move(level));
   }
   return shape;
