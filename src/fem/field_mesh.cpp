@@ -79,8 +79,8 @@ Outside outside_of(const FieldMesh& mesh) {
   for (std::uint32_t e = 0; e < mesh.elements.size(); ++e) {
     const FieldMesh::Element& element = mesh.elements[e];
     const std::span<const Side> own = sides_of(element.shape);
-    for (std::uint8_t k = 0; k < own.size(); ++k) {
-      Known side{{}, element.region, e, k};
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      Known side{{}, element.region, e, static_cast<std::uint8_t>(k)};
       for (std::size_t i = 0; i < 4; ++i)
         side.nodes[i] =
             own[k][i] == none ? std::numeric_limits<std::uint32_t>::max() : element.corners[own[k][i]];

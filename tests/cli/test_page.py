@@ -126,7 +126,7 @@ class Yarns(Base):
         page = self.page(SAMPLES / "jersey.txt")
         lines = self.lines(SAMPLES / "jersey.txt")
         for k, yarn in enumerate(page.names):
-            for level in range(3, 7):
+            for level in range(3, 6):
                 parts = page.ribbons(k, level)
                 self.assertLess(np.abs(parts[0][0][0] - lines[yarn][0, :3]).max(), 1e-4)
                 self.assertLess(np.abs(parts[-1][0][-1] - lines[yarn][-1, :3]).max(), 1e-4)

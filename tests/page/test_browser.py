@@ -120,7 +120,7 @@ class Pages(Case):
         self.assertEqual(len(rows[0]), 1)
         self.assertIn("<b onclick=alert(1)>a</b>, b", rows[0][0])
         self.assertRegex(rows[0][0], r"0\.0(49|50)\d* mm deep")
-        self.assertIn("0.01 mm apart", rows[1][0])
+        self.assertRegex(rows[1][0], r"0\.0(09|10)\d* mm apart")
         self.assertEqual(self.browser.run("document.querySelectorAll('main b').length"), 0)
         before = self.picture("overlap")
         pink = lambda image: ((image[..., 0] > 150) & (image[..., 1] < 110) & (image[..., 2] > 90)).sum()
@@ -282,7 +282,7 @@ class Pages(Case):
 
     def test_many_loops(self):
         """50 x 50 in full, 641 x 641 and a million by what can be seen of them."""
-        for side, most in ((50, 1_500_000), (641, 4_000_000), (1000, 4_000_000)):
+        for side, most in ((50, 1_500_000), (641, 4_000_000), (1000, 8_000_000)):
             with self.subTest(side=side):
                 self.open(self.source(JERSEY.format(side), f"jersey{side}.txt"))
                 self.assertEqual(self.browser.run("selvage.model.count"), side)

@@ -37,7 +37,7 @@ class Marks {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(points, 3));
     // Through what is before them they are seen faintly.
-    for (const [depthFunc, strength] of [[THREE.AlwaysDepth, 0.45], [THREE.LessEqualDepth, 1]]) {
+    for (const [depthFunc, strength] of [[THREE.AlwaysDepth, 0.7], [THREE.LessEqualDepth, 1]]) {
       const marks = new THREE.Points(geometry, material(MARK_VERTEX, MARK_FRAGMENT, {
         tint: {value: new THREE.Vector3(...CONTACT_KINDS[kind].color)}, strength: {value: strength},
         size: {value: 11 * Math.min(2, window.devicePixelRatio || 1)}},

@@ -45,7 +45,7 @@ void main() {
   else if (look < 0.8) own = mix(own, vec3(1.0), 0.25);
   vec3 result = as_srgb(shaded(own, normal) * (gl_FrontFacing ? 1.0 : 0.55));
   vec3 width = fwidth(inCorner);
-  vec3 near = smoothstep(vec3(0.0), 1.2 * width, inCorner);
+  vec3 near = clamp(inCorner / max(1.2 * width, vec3(1e-4)), 0.0, 1.0);
   // Edges fade where triangles are smaller than a few pixels.
   float thin = clamp(1.6 - 4.0 * max(width.x, max(width.y, width.z)), 0.0, 1.0);
   float line = (1.0 - min(near.x, min(near.y, near.z))) * edges * thin;

@@ -52,7 +52,7 @@ struct Shape {
 
 // The chords of tubes as shares of the thickness, the finest first; ribbons follow.
 inline constexpr std::array<double, 3> tube_chords = {1.0 / 250, 1.0 / 50, 1.0 / 8};
-inline constexpr std::array<double, 4> ribbon_chords = {1.0 / 3, 1, 8.0 / 3, 8};
+inline constexpr std::array<double, 3> ribbon_chords = {1.0 / 3, 4.0 / 3, 16.0 / 3};
 inline constexpr std::size_t level_count = tube_chords.size() + ribbon_chords.size();
 
 // `first_level` of level_count: finer ones are left out. Errors: as make_skin().

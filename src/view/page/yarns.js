@@ -252,8 +252,7 @@ class Yarns {
 
   // The coarsest level whose error cannot be seen: ribbons only where the yarn is thin on the screen.
   levelFor(shape, pixels, patience) {
-    // What is thinner than a pixel is a texture more than a thing.
-    const {levels} = shape, allowed = (shape.thickness * pixels < 1 ? 1 : 0.6) * patience / pixels;
+    const {levels} = shape, allowed = 0.6 * patience / pixels;
     for (let level = levels.length - 1; level > 0; --level) {
       if (!levels[level].tube && shape.thickness * pixels > 3.5 * patience) continue;
       if (levels[level].chord <= allowed) return level;
