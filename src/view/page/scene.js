@@ -55,7 +55,11 @@ class Scene {
     SHARED.depths.value.set(depth - reach, depth + reach);
     SHARED.pixel.value = (eye.parallel ? eye.distance : 1) * 2 * Math.tan(THREE.MathUtils.degToRad(eye.perspective.fov / 2)) / this.height;
     SHARED.parallel.value = eye.parallel ? 1 : 0;
-    this.model.choose(eye, still ? 1 : this.patience);
+    // However much there is, no more is drawn than a usual machine can.
+    for (let patience = still ? 1 : this.patience; ; patience *= 2) {
+      this.model.choose(eye, patience);
+      if (this.model.triangles < 6e6 || patience > 8) break;
+    }
     this.renderer.render(this.scene, eye.camera);
     for (const watcher of this.watchers) watcher(eye);
   }
