@@ -58,7 +58,7 @@ class Scene {
     // However much there is, no more is drawn than a usual machine can.
     for (let patience = still ? 1 : this.patience; ; patience *= 2) {
       this.model.choose(eye, patience);
-      if (this.model.triangles < 6e6 || patience > 8) break;
+      if (this.model.triangles < 1e7 || patience > 8) break;
     }
     this.renderer.render(this.scene, eye.camera);
     for (const watcher of this.watchers) watcher(eye);
