@@ -266,8 +266,7 @@ void of_yarns(OptionTable& t) {
          "where the format has these",
          &Options::lines)
       .goes_with("writes centre lines, not solids", "", "--cut --matrix --instances");
-  t.option({check, view}, "--reach", "near contacts, too: gaps up to this, in the input's unit",
-           Argument::positive(), &Options::reach);
+  t.option({check, view}, "--reach", "near contacts, too, up to this", Argument::positive(), &Options::reach);
   t.flag({info}, "--table",
          "garment curves: each fixed point's error, and the control points by both methods", &Options::table);
 }
@@ -302,7 +301,7 @@ void of_a_picture(OptionTable& t) {
       .with_preset("top");
   t.option({view}, "--azimuth", "about z, degrees: 90 side", Argument::between(-360, 360), &Options::azimuth)
       .goes_with("is of an eye elsewhere", "", "--from");
-  t.option({view}, "--elevation", "degrees: 90 top", Argument::between(-90, 90), &Options::elevation)
+  t.option({view}, "--elevation", "above, degrees: 90 top", Argument::between(-90, 90), &Options::elevation)
       .goes_with("is of an eye elsewhere", "", "--from");
   t.option({view}, "--zoom", "nearer", Argument::between(0.01, 1000), &Options::zoom).with_preset("1");
   t.option({view}, "--yarns", "only these; * is anything", Argument::texts("NAME"), &Options::shown_yarns);
@@ -318,7 +317,6 @@ void of_a_picture(OptionTable& t) {
 void of_a_mesh(OptionTable& t) {
   t.begin("The mesh");
   constexpr std::string_view of_tetrahedra = "is of tetrahedra, and voxels are hexahedra of eight nodes";
-
   t.option({mesh}, "--size",
            "wanted edge length, in the input's unit (default: a quarter of the thinnest section)",
            Argument::positive(), &Options::size)
