@@ -23,6 +23,7 @@
 #include "fabric/measured.h"
 #include "fabric/model.h"
 #include "fabric/piece.h"
+#include "fem/field_mesh.h"
 #include "fem/mesh.h"
 #include "formats/language.h"
 #include "solid/gap_map.h"
@@ -162,6 +163,8 @@ struct Descriptor {
   bool carries_parts = false;  // free faces and solids: of CAD files, and what --cut makes
   bool carries_lines =
       false;  // centre lines of yarns; a format without surfaces is given nothing else of them
+  // A mesh with what was computed on it, for pages; lengths in mm.
+  std::optional<fem::FieldMesh> (*read_mesh)(const Source& source, Diagnostics& diagnostics) = nullptr;
   Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output) = nullptr;
   // The format of a second file of the same stem that goes with each file of this one; of meshes, with those
   // that have load cases.

@@ -72,6 +72,9 @@ const Descriptor& descriptor();
 namespace unv {  // I-DEAS universal file
 const Descriptor& descriptor();
 }
+namespace frd {  // results of CalculiX
+const Descriptor& descriptor();
+}
 
 // In the order in which `selvage formats` lists them.
 const std::vector<const Descriptor*>& all_formats();

@@ -5,6 +5,7 @@
 #include "core/text_buffer.h"
 #include "fem/quality.h"
 #include "formats/vtu/encoding.h"
+#include "formats/vtu/reader.h"
 
 namespace selvage::formats::vtu {
 namespace {
@@ -172,6 +173,7 @@ const Descriptor& descriptor() {
                                   .title = "VTK unstructured grid",
                                   .extensions = {".vtu"},
                                   .sniff = is_a_vtk_grid,
+                                  .read_mesh = read_mesh,
                                   .write_mesh = write,
                                   .write_gap_map = write_gaps};
   return self;

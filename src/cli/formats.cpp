@@ -10,6 +10,7 @@ namespace {
 std::string read_word(const formats::Descriptor& format) {
   if (format.read_fabric != nullptr) return "fabric";
   if (format.read_points != nullptr) return "points";
+  if (format.read_mesh != nullptr) return "mesh";
   return format.read_model != nullptr ? "surfaces" : "-";
 }
 

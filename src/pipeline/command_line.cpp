@@ -266,8 +266,7 @@ void of_yarns(OptionTable& t) {
          "where the format has these",
          &Options::lines)
       .goes_with("writes centre lines, not solids", "", "--cut --matrix --instances");
-  t.option({check}, "--reach", "list near contacts, too: gaps between yarns up to this, in the input's unit",
-           Argument::positive(), &Options::reach);
+  t.option({check, view}, "--reach", "near contacts, too, up to this", Argument::positive(), &Options::reach);
   t.flag({info}, "--table",
          "garment curves: each fixed point's error, and the control points by both methods", &Options::table);
 }
@@ -296,20 +295,28 @@ void of_an_edit(OptionTable& t) {
 
 void of_a_picture(OptionTable& t) {
   t.begin("The picture");
+  using enum view::From;
   t.choice({view}, "--from", "where the eye is; side: +x", "top bottom front back side iso", &Options::from,
-           {view::From::top, view::From::bottom, view::From::front, view::From::back, view::From::side,
-            view::From::iso})
+           {top, bottom, front, back, side, iso})
       .with_preset("top");
+  t.option({view}, "--azimuth", "about z, degrees: 90 side", Argument::between(-360, 360), &Options::azimuth)
+      .goes_with("is of an eye elsewhere", "", "--from");
+  t.option({view}, "--elevation", "above, degrees: 90 top", Argument::between(-90, 90), &Options::elevation)
+      .goes_with("is of an eye elsewhere", "", "--from");
+  t.option({view}, "--zoom", "nearer", Argument::between(0.01, 1000), &Options::zoom).with_preset("1");
+  t.option({view}, "--yarns", "only these; * is anything", Argument::texts("NAME"), &Options::shown_yarns);
   t.option({view}, "--size", "in pixels", Argument::text("WxH"), take_picture_size).with_preset("1200x900");
   t.option({view}, "--background", "its colour, each 0-255", Argument::text("R,G,B"), take_background)
       .with_preset("255,255,255");
   t.flag({view}, "--flat", "without shadows, which is faster", &Options::flat);
+  t.choice({view}, "--contacts", "overlaps and near contacts on a page; auto: of few yarns", "auto yes no",
+           &Options::page_contacts, {PageContacts::automatic, PageContacts::yes, PageContacts::no})
+      .with_preset("auto");
 }
 
 void of_a_mesh(OptionTable& t) {
   t.begin("The mesh");
   constexpr std::string_view of_tetrahedra = "is of tetrahedra, and voxels are hexahedra of eight nodes";
-
   t.option({mesh}, "--size",
            "wanted edge length, in the input's unit (default: a quarter of the thinnest section)",
            Argument::positive(), &Options::size)

@@ -35,8 +35,8 @@ constexpr std::array commands = {
                "selvage info twill.igs --json"},
     Subcommand{edit, "edit", "move a point of a yarn: adds an `edit` line to a text",
                "selvage edit yarns.txt --yarn lower --point 2 --to 0,0,-0.2 -o moved.txt"},
-    Subcommand{view, "view", "a picture of the yarns, ray-traced (PNG)",
-               "selvage view twill.txt --from iso -o twill.png"},
+    Subcommand{view, "view", "a picture of the yarns, ray-traced (PNG), or a page to turn them on (HTML)",
+               "selvage view twill.txt --from iso -o twill.png\nselvage view twill.txt -o twill.html"},
     Subcommand{
         sweep, "sweep",
         "check, convert or mesh an input with many values of its params, and make a table of the results",

@@ -35,10 +35,13 @@ const Descriptor* format_named(std::string_view name) {
   return nullptr;
 }
 
+const Descriptor* format_of(const Source& source) {
+  if (const Descriptor* format = sniff(source.bytes().substr(0, head_size))) return format;
+  return format_with_extension(std::filesystem::path(source.name()).extension().string());
+}
+
 Result<const Descriptor*> detect_readable(const Source& source) {
-  const Descriptor* format = sniff(source.bytes().substr(0, head_size));
-  if (format == nullptr)
-    format = format_with_extension(std::filesystem::path(source.name()).extension().string());
+  const Descriptor* format = format_of(source);
   if (format != nullptr && format->is_readable()) return format;
   std::string readable;
   for (const Descriptor* other : all_formats())

@@ -15,6 +15,9 @@ const formats::Descriptor* format_with_extension(std::string_view extension);
 // The format with this name; null when there is none.
 const formats::Descriptor* format_named(std::string_view name);
 
+// By the first bytes, then by the extension; null when neither tells.
+const formats::Descriptor* format_of(const Source& source);
+
 // Error (unsupported): unknown, or known but not readable by this version.
 Result<const formats::Descriptor*> detect_readable(const Source& source);
 

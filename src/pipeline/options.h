@@ -46,6 +46,10 @@ struct RelaxSettings {
   int max_iterations = 0;         // 0: the default
 };
 
+// When a page of `view` lists contacts; `automatic`: where all yarns together have at most a few million
+// points.
+enum class PageContacts { automatic, yes, no };
+
 // Of `edit`, as given.
 struct EditWords {
   std::string yarn, piece, curve, to, by, length, along;
@@ -119,7 +123,11 @@ struct Options {
   std::string gap_map;  // a VTU of the yarns coloured by gap goes to this file; empty: nowhere
 
   // view
+  PageContacts page_contacts = PageContacts::automatic;
   view::From from = view::From::top;
+  std::optional<double> azimuth, elevation;  // degrees; instead of `from`
+  double zoom = 1;
+  std::vector<std::string> shown_yarns;       // patterns of names; empty: all
   int picture_width = 0, picture_height = 0;  // pixels
   yarn::Color background{};
   bool flat = false;

@@ -26,6 +26,11 @@ const Descriptor& picture_format() {
   return self;
 }
 
+const Descriptor& page_format() {
+  static const Descriptor self = {.name = "html", .title = "HTML page", .extensions = {".html"}};
+  return self;
+}
+
 bool can_be_written(const Descriptor& format, Command command) {
   if (command == Command::mesh) return format.write_mesh != nullptr;
   if (command == Command::edit) return format.insert_edit != nullptr;
@@ -48,7 +53,8 @@ std::string writable_names(Command command) {
 }
 
 std::string writable_extensions(Command command) {
-  if (command == Command::view) return std::string(picture_format().extensions.front());
+  if (command == Command::view)
+    return fmt::format("{}, {}", picture_format().extensions.front(), page_format().extensions.front());
   std::vector<std::string_view> list;
   for (const Descriptor* format : formats::all_formats())
     if (can_be_written(*format, command))
@@ -77,8 +83,12 @@ Result<const Descriptor*> named_format(std::string_view name, Command command) {
 // The format that the name of -o tells; null when it tells none.
 const Descriptor* told_by_output(const Options& options) {
   if (options.output.empty() || options.output == "-" || options.output.ends_with('/')) return nullptr;
-  if (options.command == Command::view)
-    return fs::path(options.output).extension() == ".png" ? &picture_format() : nullptr;
+  if (options.command == Command::view) {
+    const std::string extension = fs::path(options.output).extension().string();
+    for (const Descriptor* format : {&picture_format(), &page_format()})
+      if (extension == format->extensions.front()) return format;
+    return nullptr;
+  }
   return format_with_extension(fs::path(options.output).extension().string());
 }
 
@@ -98,17 +108,16 @@ Status check_extension(const Options& options) {
                   writable_extensions(options.command)));
 }
 
-// Pictures are PNG; a name that asks for something else is refused.
+// A picture, but for a name that says a page; a name that asks for something else is refused.
 Result<Formats> picture_formats(const Options& options) {
   const std::string extension = fs::path(options.output).extension().string();
-  if (extension == ".html")
-    return error(Kind::usage,
-                 "pictures as HTML are not in this version of selvage; name a .png file with -o");
   if (format_with_extension(extension) != nullptr)
-    return error(Kind::usage, fmt::format("'selvage view' writes PNG pictures, and '{}' is no name for one",
-                                          options.output));
+    return error(Kind::usage,
+                 fmt::format("'selvage view' writes PNG pictures and HTML pages, and '{}' is no name for one",
+                             options.output));
   if (Status known = check_extension(options); !known) return known.error();
-  return Formats{&picture_format()};
+  const Descriptor* told = told_by_output(options);
+  return Formats{told != nullptr ? told : &picture_format()};
 }
 
 Result<Formats> wanted_formats(const Options& options) {

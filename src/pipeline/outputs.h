@@ -12,8 +12,10 @@
 
 namespace selvage::pipeline {
 
-// What `selvage view` writes. A picture is no format of fabrics: `selvage formats` and --to do not know it.
+// What `selvage view` writes. Pictures and pages are no formats of fabrics: `selvage formats` and --to do not
+// know them.
 const formats::Descriptor& picture_format();
+const formats::Descriptor& page_format();
 
 struct PlannedOutput {
   const formats::Descriptor* format = nullptr;

@@ -1,23 +1,50 @@
-// `selvage view`: a picture of each input.
+// `selvage view`: a picture or a page of each input.
+#include "pipeline/view.h"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+
+#include "core/source.h"
+#include "core/text_report.h"
+#include "pipeline/detect.h"
+#include "pipeline/mesh_page.h"
+#include "pipeline/page.h"
 #include "pipeline/writing.h"
-#include "view/picture.h"
 
 namespace selvage::pipeline {
-
-namespace {
 
 view::PictureOptions picture_options(Job& job) {
   const Options& given = job.options;
   view::PictureOptions options;
   options.width = given.picture_width;
   options.height = given.picture_height;
-  options.from = given.from;
+  options.eye = {given.from, std::nullopt, given.zoom};
+  if (given.azimuth || given.elevation)
+    options.eye.angles = {given.azimuth.value_or(0.0), given.elevation.value_or(0.0)};
   options.background = given.background;
   options.flat = given.flat;
   options.threads = static_cast<int>(job.threads);
   options.progress = job.progress_of("drawing tile");
   return options;
 }
+
+bool is_shown(const Options& options, const yarn::BodyLabel& yarn) {
+  const auto matches = [&](const std::string& pattern) {
+    return ::fnmatch(pattern.c_str(), yarn.name.c_str(), 0) == 0 ||
+           (!yarn.group.empty() && ::fnmatch(pattern.c_str(), yarn.group.c_str(), 0) == 0);
+  };
+  return options.shown_yarns.empty() ||
+         std::any_of(options.shown_yarns.begin(), options.shown_yarns.end(), matches);
+}
+
+Message none_shown(const Options& options) {
+  return error(Kind::unsupported, fmt::format("no yarn has a name like {}; selvage info lists the names",
+                                              in_quotes(options.shown_yarns.front())));
+}
+
+namespace {
 
 Status write_picture(Job& job, const std::vector<yarn::Body>& bodies, OutputFile& file) {
   const Result<view::Picture> picture = view::render(bodies, picture_options(job));
@@ -27,9 +54,49 @@ Status write_picture(Job& job, const std::vector<yarn::Body>& bodies, OutputFile
   return file.write(*bytes);
 }
 
+void write_pictures(Job& job, const fabric::YarnBuilder& builder, OpenOutputs& outputs) {
+  std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
+  if (!bodies || job.has_failed()) return;
+  std::erase_if(*bodies, [&](const yarn::Body& body) { return !is_shown(job.options, body); });
+  if (bodies->empty()) return job.say(none_shown(job.options));
+  for (OpenOutput& output : outputs)
+    if (Status status = write_picture(job, *bodies, output.file); !status.ok())
+      return job.say(status.error());
+}
+
+// The format of an input that is a mesh; null: it is none, or cannot be opened (which is told when it is
+// read).
+const formats::Descriptor* mesh_format(const Job& job) {
+  if (job.input.path == "-") return nullptr;
+  const Result<Source> source = Source::open(job.input.path);
+  const formats::Descriptor* format = source ? format_of(*source) : nullptr;
+  return format != nullptr && format->read_mesh != nullptr && !format->is_readable() ? format : nullptr;
+}
+
+void view_mesh(Job& job, const formats::Descriptor& format) {
+  if (job.outputs.empty() || job.outputs.front().format != &page_format())
+    return job.say(
+        error(Kind::unsupported, "meshes are shown on pages, not in pictures: name a .html file with -o"));
+  const Result<std::string> library = view::page::library();
+  if (!library) return job.say(library.error());
+  const Result<Source> source = Source::open(job.input.path);
+  if (!source) return job.say(source.error());
+  Diagnostics diagnostics;
+  const std::optional<fem::FieldMesh> mesh = format.read_mesh(*source, diagnostics);
+  job.say_all(diagnostics.messages());
+  if (!mesh || job.has_failed()) return;
+  std::optional<OpenOutputs> outputs = open_outputs(job);
+  if (!outputs) return;
+  if (const Status written = view::page::write(mesh_page(job, *mesh), *library, outputs->front().file);
+      !written)
+    return job.say(written.error());
+  commit_all(job, *outputs);
+}
+
 }  // namespace
 
 void view(Job& job) {
+  if (const formats::Descriptor* mesh = mesh_format(job)) return view_mesh(job, *mesh);
   const std::optional<fabric::Fabric> fabric = job.read();
   if (!fabric) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);
@@ -39,11 +106,11 @@ void view(Job& job) {
   if (builder->count() == 0)
     return job.say(error(Kind::unsupported,
                          "there is no yarn to show; garment pieces are drawn by: selvage convert --to svg"));
-  const std::optional<std::vector<yarn::Body>> bodies = job.build_all(*builder);
-  if (!bodies || job.has_failed()) return;
-  for (OpenOutput& output : *outputs)
-    if (Status status = write_picture(job, *bodies, output.file); !status.ok())
-      return job.say(status.error());
+  // All are of one format.
+  if (!outputs->empty() && outputs->front().plan->format == &page_format())
+    write_page(job, *fabric, *builder, outputs->front().file);
+  else
+    write_pictures(job, *builder, *outputs);
   commit_all(job, *outputs);
 }
 

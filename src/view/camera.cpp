@@ -1,6 +1,8 @@
 #include "view/camera.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace selvage::view {
 
@@ -23,9 +25,20 @@ Eigen::Matrix3d axes_of(From from) {
   return axes;
 }
 
+Eigen::Matrix3d axes_of(const Angles& angles) {
+  const double radians = std::numbers::pi / 180.0, turn = angles.azimuth * radians,
+               tilt = angles.elevation * radians;
+  const Vec3 right(std::cos(turn), std::sin(turn), 0),
+      toward(std::cos(tilt) * std::sin(turn), -std::cos(tilt) * std::cos(turn), std::sin(tilt));
+  Eigen::Matrix3d axes;
+  axes << right.transpose(), toward.cross(right).transpose(), toward.transpose();
+  return axes;
+}
+
 }  // namespace
 
-Camera::Camera(From from, std::span<const yarn::Body> bodies, int width, int height) : turn_(axes_of(from)) {
+Camera::Camera(const Eye& eye, std::span<const yarn::Body> bodies, int width, int height)
+    : turn_(eye.angles ? axes_of(*eye.angles) : axes_of(eye.from)) {
   Box3 seen;
   for (const yarn::Body& body : bodies)
     for (const Vec3& p : body.surface.points) seen.extend(turn_ * p);
@@ -33,7 +46,7 @@ Camera::Camera(From from, std::span<const yarn::Body> bodies, int width, int hei
   const double rim = 2.0 * margin * std::min(width, height);
   const double unit =  // file units a pixel
       std::max(seen.sizes().x() / (width - rim), seen.sizes().y() / (height - rim));
-  scale_ = unit > 0.0 ? 1.0 / unit : 1.0;
+  scale_ = eye.zoom * (unit > 0.0 ? 1.0 / unit : 1.0);
 }
 
 }  // namespace selvage::view

@@ -1,7 +1,9 @@
 // Where the eye is: an orthographic camera that holds a whole fabric.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "core/vec.h"
 #include "yarn/body.h"
@@ -14,11 +16,25 @@ namespace selvage::view {
 // shortened, to the lower right and to the upper right.
 enum class From { top, bottom, front, back, side, iso };
 
+// Where else: degrees about z from the front toward +x, and above the horizontal. (0, 0) is front, (90, 0)
+// side, (180, 0) back, (0, 90) top.
+struct Angles {
+  double azimuth = 0, elevation = 0;
+};
+
+struct Eye {
+  From from = From::top;
+  std::optional<Angles> angles;  // instead
+  double zoom = 1;               // the larger, the nearer the middle of the bodies
+};
+
 // Camera space: pixels; x to the right, y up, z toward the eye, the origin in the picture's centre.
 class Camera {
  public:
-  // The bodies (not none) fill the picture but for a margin of 4 % of its smaller side.
-  Camera(From from, std::span<const yarn::Body> bodies, int width, int height);
+  // Of the yarns' own space with another origin: a pixel is a file unit, x to the right, y up.
+  explicit Camera(Vec3 origin) : turn_(Eigen::Matrix3d::Identity()), centre_(std::move(origin)) {}
+  // With a zoom of 1 the bodies (not none) fill the picture but for a margin of 4 % of its smaller side.
+  Camera(const Eye& eye, std::span<const yarn::Body> bodies, int width, int height);
 
   [[nodiscard]] Vec3 to_picture(const Vec3& point) const { return scale_ * (turn_ * (point - centre_)); }
   [[nodiscard]] Vec3 direction(const Vec3& vector) const { return turn_ * vector; }

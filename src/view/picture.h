@@ -18,7 +18,7 @@ inline constexpr int largest_side = 16384;  // pixels
 
 struct PictureOptions {
   int width = 1200, height = 900;  // pixels, 1 .. largest_side
-  From from = From::top;
+  Eye eye;
   yarn::Color background{255, 255, 255};
   bool flat = false;  // without ambient occlusion and shadows, for speed
   int threads = 1;    // the picture is the same, to the bit, with any number

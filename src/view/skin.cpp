@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "nurbs/divided.h"
 #include "nurbs/samples.h"
@@ -33,22 +34,24 @@ class Direction {
     const std::size_t count = std::min<std::size_t>(24, breaks.size());
     for (std::size_t k = 0; k < count; ++k) held_.push_back(breaks[k * (breaks.size() - 1) / (count - 1)]);
   }
-  // Along the yarn: judged at the grid's own columns.
-  Direction(const nurbs::Surface& surface, const std::vector<double>& columns, double chord)
-      : surface_(surface), is_u_(false), chord_(chord), held_(columns) {}
+  // Along the yarn: judged at the grid's own columns. `stops`: knots that are taken in any case.
+  Direction(const nurbs::Surface& surface, const std::vector<double>& columns, double chord,
+            std::span<const double> stops)
+      : surface_(surface), is_u_(false), chord_(chord), held_(columns), stops_(stops) {}
 
   // Parameters between which the lines are straight within the chord; every edge of the surface twice.
   [[nodiscard]] std::vector<double> parameters(std::size_t fewest) const {
     const std::vector<double> fine = fine_parameters();
     const nurbs::Samples lines = lines_at(fine);
     const std::size_t last = fine.size() - 1, longest = std::max<std::size_t>(1, last / fewest);
-    std::vector<std::size_t> next_edge(fine.size(), last);
+    std::vector<std::size_t> next_stop(fine.size(), last);
     for (std::size_t k = last; k-- > 0;)
-      next_edge[k] = k + 1 < last && !is_edge(fine[k + 1]) ? next_edge[k + 1] : k + 1;
+      next_stop[k] =
+          k + 1 < last && !is_edge(fine[k + 1]) && !is_stop(fine[k + 1]) ? next_stop[k + 1] : k + 1;
     std::vector<double> chosen{fine.front()};
     for (std::size_t i = 0; i < last;) {
-      if (i > 0 && next_edge[i - 1] == i) chosen.push_back(fine[i]);
-      i = farthest(lines, i, std::min(i + longest, next_edge[i]));
+      if (i > 0 && is_edge(fine[i])) chosen.push_back(fine[i]);
+      i = farthest(lines, i, std::min(i + longest, next_stop[i]));
       chosen.push_back(fine[i]);
     }
     return chosen;
@@ -65,6 +68,7 @@ class Direction {
     const auto [first, last] = std::equal_range(knots().begin(), knots().end(), t);
     return last - first >= degree();
   }
+  [[nodiscard]] bool is_stop(double t) const { return std::binary_search(stops_.begin(), stops_.end(), t); }
 
   [[nodiscard]] nurbs::Samples lines_at(const std::vector<double>& parameters) const {
     return is_u_ ? nurbs::Samples(surface_, parameters, held_) : nurbs::Samples(surface_, held_, parameters);
@@ -112,6 +116,7 @@ class Direction {
   bool is_u_;
   double chord_;  // file units
   std::vector<double> held_;
+  std::span<const double> stops_;  // increasing
 };
 
 // Where a parameter stands for its normal: of two at one place the first belongs to the part before it.
@@ -191,7 +196,8 @@ void close_ends(Skin& skin, const yarn::Body& body) {
 
 }  // namespace
 
-Result<Skin> make_skin(const yarn::Body& body, const Camera& camera, double chord) {
+Result<Skin> make_skin(const yarn::Body& body, const Camera& camera, double chord,
+                       std::span<const double> stops) {
   const double pixel = 1.0 / camera.pixels_per_unit();
   const auto fault = [&](Kind kind, std::string_view what) {
     Message message = error(kind, fmt::format("yarn '{}' {}", body.name, what));
@@ -202,13 +208,14 @@ Result<Skin> make_skin(const yarn::Body& body, const Camera& camera, double chor
   for (const Vec3& p : body.surface.points)
     if (!p.allFinite()) return fault(Kind::geometry, "has coordinates that are not finite");
   std::vector<double> us = Direction(body.surface, chord * pixel).parameters(fewest_round);
-  const std::vector<double> vs = Direction(body.surface, us, chord * pixel).parameters(1);
+  const std::vector<double> vs = Direction(body.surface, us, chord * pixel, stops).parameters(1);
   if (static_cast<double>(us.size()) * static_cast<double>(vs.size()) > most_facets)
     return fault(Kind::limit, "needs more than 2^31 facets in this picture; make the picture smaller");
   if (body.inward) std::reverse(us.begin(), us.end());
   Skin skin;
   skin.columns = us.size();
   skin.rows = vs.size();
+  skin.places = vs;
   fill_grid(skin, body, camera, us, vs);
   for (double u : us) skin.around.push_back((u - us.front()) / (us.back() - us.front()));
   skin.along = fibre_turns(body, vs);

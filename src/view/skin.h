@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/diagnostics.h"
@@ -20,6 +21,7 @@ struct Skin {
   std::size_t columns = 0, rows = 0;
   std::vector<Vec3f> points;   // pixels
   std::vector<Vec3f> normals;  // outward, unit
+  std::vector<double> places;  // of each row: v on the surface
   // Of the fibres, in turns about the path: a fibre is where around[column] - along[row] keeps its value.
   std::vector<double> around, along;
   // Outline points of the two ends, each closed by a fan about one further point (after the grid's in
@@ -34,8 +36,10 @@ struct Skin {
 };
 
 // `chord`: pixels by which each of the grid's columns and rows may leave the surface, and the inside of a
-// quadrilateral these. Errors: geometry (coordinates that are
-// not finite), limit (more than 2^31 facets).
-Result<Skin> make_skin(const yarn::Body& body, const Camera& camera, double chord);
+// quadrilateral these. `stops`: knots of v, increasing, that each have a row, so that skins of one body with
+// other chords can be put together there. Errors: geometry (coordinates that are not finite), limit (more
+// than 2^31 facets).
+Result<Skin> make_skin(const yarn::Body& body, const Camera& camera, double chord,
+                       std::span<const double> stops = {});
 
 }  // namespace selvage::view

@@ -65,8 +65,7 @@ class Usage(Case):
 
     def test_formats_that_do_not_fit(self):
         self.refused("selvage mesh", "convert", GRID, "--to", "inp", "-o", self.out)
-        self.refused("HTML", "view", GRID, "-o", self.folder / "x.html")
-        self.refused("writes PNG pictures", "view", GRID, "-o", self.folder / "x.igs")
+        self.refused("writes PNG pictures and HTML pages", "view", GRID, "-o", self.folder / "x.igs")
         self.refused("cannot write iges", "mesh", GRID, "--to", "iges", "-o", self.out)
         self.refused("names a file of iges, but --to asks for step", "convert", GRID, "--to", "step", "-o",
                      self.folder / "x.igs")

@@ -130,6 +130,30 @@ class Pictures(Case):
                      for view in ("front", "side"))
         self.assertGreater(end, side + 20)
 
+    def test_angles_are_the_named_views(self):
+        text = fabric(*CROSS, ("up", GREY, "1 2 0", "1 2 3", ""))
+        for view, angles in (("front", (0, 0)), ("side", (90, 0)), ("back", (180, 0)), ("top", (0, 90))):
+            named = self.picture(text, "--from", view, "--flat")
+            turned = self.picture(text, "--azimuth", angles[0], "--elevation", angles[1], "--flat")
+            different = sum(max(abs(a - b) for a, b in zip(p, q)) > 8 for one, two in zip(named, turned) for p, q in zip(one, two))
+            self.assertLess(different, 20, view)
+        turned = self.picture(text, "--azimuth", 90, "--flat")
+        self.assertEqual(turned, self.picture(text, "--azimuth", -270, "--flat"))
+
+    def test_zoom_is_of_the_middle(self):
+        rod = fabric(("a", "0 0 0", "-8 0 0", "8 0 0", ""))
+        def thickness(*options):
+            return sum(row[100][1] < 128 for row in self.picture(rod, "--flat", *options))
+        once = thickness()
+        self.assertAlmostEqual(thickness("--zoom", 4), 4 * once, delta=4)
+
+    def test_some_yarns_alone(self):
+        rows = self.picture(fabric(*CROSS), "--yarns", "und*")
+        self.assertEqual(rows[100][100].index(max(rows[100][100])), 2)
+        both = self.picture(fabric(*CROSS), "--yarns", "under", "over")
+        self.assertEqual(both, self.picture(fabric(*CROSS)))
+        self.assertIn("no yarn has a name like 'x*'", self.fails(1, "view", self.folder / "in.txt", "--yarns", "x*", "-o", self.folder / "y.png"))
+
     def test_background(self):
         self.assertEqual(self.picture(fabric(*CROSS), "--background", "1,20,255")[0][0], (1, 20, 255))
 

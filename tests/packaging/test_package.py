@@ -61,8 +61,9 @@ class Package(unittest.TestCase):
         files = self.inside("dpkg", "-L", "selvage").split()
         self.assertIn("/usr/bin/selvage", files)
         self.completes()
-        programs = [name for name in files if name.startswith(("/usr/bin/", "/usr/lib/selvage/"))]
-        self.assertEqual(len(programs), 6)
+        self.assertIn("/usr/lib/selvage/three.module.min.js", files)
+        programs = [name for name in files if name.startswith(("/usr/bin/", "/usr/lib/selvage/")) and not name.endswith(".js")]
+        self.assertEqual(len(programs), 7)
         for name in programs:
             self.assertNotIn("not found", self.inside("ldd", name))
         self.works()
@@ -91,6 +92,7 @@ class Package(unittest.TestCase):
         self.inside("selvage", "mesh", weave, "--size", "0.2", "-o", f"{out}/weave.inp")
         self.assertIn("*ELEMENT", (self.root / "root/out/weave.inp").read_text().upper())
         self.inside("selvage", "view", weave, "--size", "80x60", "-o", f"{out}/weave.png")
+        self.inside("selvage", "view", weave, "-o", f"{out}/weave.html")
         self.inside("selvage", "convert", f"{SAMPLES}/plain_by_params.txt", "--set", "sett=2*11", "-o", f"{out}/params.igs")
         self.inside("rm", "-r", out)
 

@@ -62,8 +62,11 @@ class Renderer {
 Sample Renderer::sample(int x, int y) const {
   const auto parity = [](int k) { return k & (samples_side - 1); };
   const std::array<float, 2>& place =
-      sample_places[static_cast<std::size_t>(parity(y) * samples_side + parity(x))];
-  const auto pixel = [&](int k) { return static_cast<float>((k - parity(k)) / samples_side); };
+      sample_places[static_cast<std::size_t>(parity(y)) * samples_side + static_cast<std::size_t>(parity(x))];
+  const auto pixel = [&](int k) {
+    const int whole = (k - parity(k)) / samples_side;
+    return static_cast<float>(whole);
+  };
   const Vec3f origin(pixel(x) + place[0] - 0.5F * static_cast<float>(options_.width),
                      0.5F * static_cast<float>(options_.height) - pixel(y) - place[1], eye_);
   const Vec3f direction(0, 0, -1);
@@ -100,7 +103,7 @@ Light Renderer::pixel(const std::vector<Sample>& tile, int stride, int x, int y)
   constexpr float near_in_sizes = 0.5F;
   Light sum = Light::Zero();
   const auto at = [&](int i, int j) -> const Sample& {
-    return tile[static_cast<std::size_t>(j * stride + i)];
+    return tile[static_cast<std::size_t>(j) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(i)];
   };
   for (int j = y; j < y + samples_side; ++j)
     for (int i = x; i < x + samples_side; ++i) {
@@ -169,7 +172,7 @@ Result<std::vector<Skin>> make_skins(std::span<const yarn::Body> bodies, const C
 
 Result<Picture> render_yarns(std::span<const yarn::Body> bodies, const PictureOptions& options) {
   if (bodies.empty()) return error(Kind::geometry, "there is no yarn to show");
-  const Camera camera(options.from, bodies, options.width, options.height);
+  const Camera camera(options.eye, bodies, options.width, options.height);
   const Result<std::vector<Skin>> skins = make_skins(bodies, camera, options.threads);
   if (!skins) return skins.error();
   const Result<Scene> scene = Scene::make(*skins);

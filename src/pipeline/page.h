@@ -1,0 +1,13 @@
+// Pages of `selvage view` (view/page/page.h): what is put into them.
+#pragma once
+
+#include "core/output.h"
+#include "fabric/build.h"
+#include "pipeline/job.h"
+
+namespace selvage::pipeline {
+
+// A page of the yarns; false when that failed (it was said why).
+bool write_page(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilder& builder, OutputFile& file);
+
+}  // namespace selvage::pipeline
