@@ -16,6 +16,10 @@ PATH = str(SAMPLES / "plain4_path.txt")
 RING = str(SAMPLES / "ring.txt")
 BAD = SAMPLES / "bad"
 
+# The library of pages, which npm gives (scripts/setup): where it is not, the program says so, and there is no page to test.
+HAS_PAGES = (pathlib.Path(PROGRAM).parent / "three.module.min.js").exists()
+NO_PAGES = "three.js is not there: no pages are made"
+
 # A fabric that is made in a moment.
 ROD = """fabric 1
 title "{title}"
