@@ -214,14 +214,8 @@ void check_circles(const Part21& file, TextReport& report) {
   for (std::size_t i = 0; i < file.statements.size(); ++i) {
     const Statement& statement = file.statements[i];
     if (facts[statement.type].is_known && file.types[statement.type] != "APPLICATION_PROTOCOL_DEFINITION")
-      for (std::size_t k = statement.first_ref; k < file.refs_end(i); ++k) {
-        // Of a property, and nobody follows it.
-        if (file.targets[k] == static_cast<int>(i) && file.types[statement.type] == "REPRESENTATION")
-          report.warning(statement.spot,
-                         fmt::format("#{} is one of its own items; it is passed over as such", statement.id));
-        else
-          graph.targets.push_back(file.targets[k]);
-      }
+      graph.targets.insert(graph.targets.end(), file.targets.begin() + statement.first_ref,
+                           file.targets.begin() + static_cast<std::ptrdiff_t>(file.refs_end(i)));
     graph.firsts.push_back(graph.targets.size());
   }
   std::vector<std::size_t> order;

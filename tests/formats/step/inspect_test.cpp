@@ -175,19 +175,6 @@ TEST(StepInspect, OnlyCirclesOfShapesHarm) {
             "11:1: #6 refers to itself, by way of #7");
 }
 
-// A density whose value is itself: no shape depends on it.
-TEST(StepInspect, APropertyThatHoldsItselfIsPassedBy) {
-  const Source source = Source::from_memory(
-      file_of("#1=REPRESENTATION_CONTEXT('','');\n#2=REPRESENTATION('density',(#2),#1);"), "a.stp");
-  TextReport report(source);
-  EXPECT_TRUE(inspect(source, report));
-  Diagnostics diagnostics;
-  report.hand_over(diagnostics);
-  ASSERT_EQ(diagnostics.messages().size(), 1U);
-  EXPECT_EQ(diagnostics.messages()[0].severity, Severity::warning);
-  EXPECT_TRUE(diagnostics.messages()[0].text.starts_with("#2 is one of its own items"));
-}
-
 // Levels of assemblies, each with the one below it twice.
 std::string doubling(int levels) {
   std::string text =
