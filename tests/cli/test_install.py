@@ -73,7 +73,7 @@ class Installed(Case):
             "share/fish/vendor_completions.d/selvage.fish"})
         table = (PACKAGING / "README.md").read_text()
         for name in files:
-            self.assertTrue(any(name.startswith(place) for place in re.findall(r"`((?:bin|lib|include|share)[\w/.]*)`", table)), name)
+            self.assertTrue(any(name.startswith(place) for place in re.findall(r"`((?:bin|lib|include|share)[\w/.-]*)`", table)), name)
         samples = subprocess.run(["git", "ls-files", "samples"], cwd=ROOT, capture_output=True, text=True)
         if samples.returncode == 0 and samples.stdout:  # not in a copy without its repository
             self.assertEqual({f"share/selvage/{name}" for name in samples.stdout.splitlines()} - files, set())
