@@ -149,7 +149,7 @@ class FlatFit {
   }
 
   std::optional<Curve> curve() {
-    if (tolerance_ > curve_holds * box_of(feet_.surface().points).diagonal().norm()) return std::nullopt;
+    if (tolerance_ > curves_agree * box_of(feet_.surface().points).diagonal().norm()) return std::nullopt;
     std::vector<double> at = nurbs::divided(curve_.knots, curve_.degree, curve_.degree == 1 ? 1 : 2, 4);
     for (int round = 0; round < most_rounds && at.size() < most_nodes; ++round) {
       const Curve flat = through(at);
@@ -165,7 +165,6 @@ class FlatFit {
   }
 
  private:
-  static constexpr double curve_holds = 2e-6;  // of the surface's size: as flat_holds() has it
   static constexpr int most_rounds = 18;
   static constexpr std::size_t most_nodes = 4096;
 

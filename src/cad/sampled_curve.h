@@ -42,8 +42,10 @@ struct SampledCurve {
   [[nodiscard]] NearestOnCurve nearest(const Vec3& p, double enough = 0) const;
 };
 
-// Does the edge's curve in parameters hold? Not where it has none, and not where it runs off the one in space
-// by more than 2e-6 of the surface's size, as files have it: then that one does.
+// Where an edge's curves in the parameters and in space are farther apart than this share of the surface's
+// size, as files have it, the one in space holds.
+inline constexpr double curves_agree = 2e-6;
+// Does the edge's curve in parameters hold? Not where it has none.
 bool flat_holds(const nurbs::Surface& surface, const Edge& edge);
 
 // How far points may be apart that are meant to be one: the file's resolution, within 1e-6 and 1e-4 of the

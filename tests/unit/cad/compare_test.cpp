@@ -6,7 +6,9 @@
 #include <Eigen/Geometry>
 #include <numbers>
 
+#include "cad/natural_border.h"
 #include "nurbs/basis.h"
+#include "nurbs/restrict.h"
 #include "shapes.h"
 #include "unit/cad/surfaces.h"
 
@@ -287,6 +289,24 @@ TEST(Compare, FacesAreFoundByWhatTheyTakeUpNotByTheirSurfaces) {
   const Comparison found = compared(part(false, 20), changed, 1e-9);
   ASSERT_EQ(found.differences.size(), 1U);
   EXPECT_NEAR(found.differences[0].reach.at_least, 0.04, 0.001);
+}
+
+// One file trims a surface, another has just the part of it: of two shells that lie close in each other each
+// finds its own, whose control points stand out farther than the face.
+TEST(Compare, ATrimmedFaceAndTheSameOneWhole) {
+  Subject trimmed, whole;
+  for (const double radius : {2.0, 1.8}) {
+    Surface all = cylinder(radius, 3);
+    for (Vec3& p : all.points) p = Eigen::AngleAxisd(std::numbers::pi / 4, Vec3::UnitZ()) * p;
+    const Surface part = nurbs::restricted(all, 0.03, 0.22, 0.1, 0.9);
+    trimmed.model.parts.emplace_back().faces.push_back(face_of(all, {natural_border(part, 1e-9)}));
+    whole.model.parts.emplace_back().faces.push_back(face_of(part, {}));
+  }
+  for (const auto& [a, b] : {std::pair(&trimmed, &whole), std::pair(&whole, &trimmed)}) {
+    const Comparison found = compared(*a, *b, 1e-6);
+    EXPECT_TRUE(found.differences.empty());
+    EXPECT_EQ(found.equal, 2U);
+  }
 }
 
 TEST(Compare, AYarnThatRunsTheOtherWayIsTheSame) {
