@@ -106,7 +106,7 @@ Vec2 CurveFeet::at(double t) {
   if (after != feet_.end()) beside = after->second;
   if (after != feet_.begin() && (!beside || t - std::prev(after)->first < after->first - t))
     beside = std::prev(after)->second;
-  const Vec2 foot = surface_.of(nurbs::evaluate(curve_, t), beside);
+  Vec2 foot = surface_.of(nurbs::evaluate(curve_, t), beside);
   feet_.emplace(t, foot);
   return foot;
 }

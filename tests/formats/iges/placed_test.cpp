@@ -216,6 +216,17 @@ TEST(IgesTrimmed, HalfASphereBetweenMeridians) {
   EXPECT_NEAR(*measures.area, 2 * pi * 25, 1e-6);
 }
 
+// A turn of so many digits is a whole one.
+TEST(IgesTrimmed, AWholeTurnOfSixDigits) {
+  IgesText file;
+  const int axis = file.add({.type = 110, .parameters = "0.,0.,0.,5.,0.,0.", .status = dependent});
+  const int meridian = file.add({.type = 100, .parameters = "0.,0.,0.,5.,0.,-5.,0.", .status = dependent});
+  file.add({.type = 120, .parameters = fmt::format("{},{},0.,6.28318", axis, meridian)});
+  const IgesReading reading = read_iges(file.bytes());
+  ASSERT_TRUE(reading.model && reading.model->parts.size() == 1) << reading.text();
+  EXPECT_NEAR(cad::measures_of(reading.model->parts[0]).area.value_or(0), 4 * pi * 25, 1e-6);
+}
+
 // The curves of a composite in directions of their own, in space: they are turned, which is told.
 TEST(IgesTrimmed, CurvesThatRunAgainstEachOther) {
   for (const int turned : {0, 1, 2, 3, 5, 9, 15}) {
