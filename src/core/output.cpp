@@ -11,8 +11,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <optional>
-#include <set>
 #include <utility>
 
 #include "core/standard_output.h"
@@ -335,10 +333,13 @@ Status OutputFile::commit(std::span<OutputFile* const> files) {
   return {};
 }
 
-void OutputFile::remove_leftovers(const std::vector<std::string>& targets) {
-  std::set<fs::path> folders;
-  for (const std::string& target : targets)
-    if (const std::optional<fs::path> place = followed(target)) folders.insert(folder_of(*place));
+std::optional<fs::path> OutputFile::hidden_folder(const fs::path& target) {
+  const std::optional<fs::path> place = followed(target);
+  if (!place) return std::nullopt;
+  return folder_of(*place);
+}
+
+void OutputFile::remove_leftovers(const std::set<fs::path>& folders) {
   for (const fs::path& folder : folders)
     for (const fs::path& hidden : abandoned_in(folder, hidden_begin, hidden_end)) ::unlink(hidden.c_str());
 }

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -76,9 +77,11 @@ class OutputFile {
   // Another name for commit() to give. Error (io): as create().
   Status set_target(const std::filesystem::path& target);
 
-  // Removes the hidden files that killed processes left in the folders of these targets; those of running
-  // ones stay. Folders that cannot be read are left alone.
-  static void remove_leftovers(const std::vector<std::string>& targets);
+  // Where hidden files of this target are; nothing where it cannot be told.
+  static std::optional<std::filesystem::path> hidden_folder(const std::filesystem::path& target);
+  // Removes the hidden files that killed processes left in these folders; those of running ones stay. Folders
+  // that cannot be read are left alone.
+  static void remove_leftovers(const std::set<std::filesystem::path>& folders);
 
  private:
   enum class Form { file, standard_output, memory };

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <deque>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace selvage {
@@ -15,6 +16,12 @@ class SharedText {
   SharedText() = default;
   SharedText(const SharedText&) = delete;
   SharedText& operator=(const SharedText&) = delete;
+  SharedText(SharedText&& other) noexcept { *this = std::move(other); }
+  SharedText& operator=(SharedText&& other) noexcept {
+    std::swap(blocks_, other.blocks_);
+    std::swap(used_, other.used_);
+    return *this;
+  }
   ~SharedText();
 
   // A copy that lives as long as this. Throws std::bad_alloc.

@@ -22,7 +22,6 @@
 #include "core/standard_output.h"
 #include "core/temporary.h"
 #include "core/words.h"
-#include "pipeline/batch_plan.h"
 #include "pipeline/edit.h"
 #include "pipeline/inputs.h"
 #include "pipeline/job.h"
@@ -56,7 +55,7 @@ constexpr std::size_t most_kept = 1U << 20;
 
 class Batch {
  public:
-  Batch(const Options& options, const BatchPlan& plan, std::map<std::string, std::string> earlier)
+  Batch(const Options& options, const Plan& plan, std::map<std::string, std::string> earlier)
       : options_(options),
         plan_(plan),
         earlier_(std::move(earlier)),
@@ -96,7 +95,7 @@ class Batch {
   void summarize() const;
 
   const Options& options_;
-  const BatchPlan& plan_;
+  const Plan& plan_;
   std::map<std::string, std::string> earlier_;  // entries of the report that --resume goes by
   std::map<std::size_t, Work> work_;            // of inputs that began, until their results are printed
   SharedText report_texts_;
@@ -203,11 +202,11 @@ void Batch::keep_report(std::size_t job, std::string_view text) {
 }
 
 void Batch::fail(std::size_t job, Message message) {
-  const std::string path(plan_.path(job));
+  const std::string path(plan_.inputs().path(job));
   message.file = path == "-" ? "<stdin>" : path;
   work_[job].messages += to_string(message) + "\n";
   if (!options_.wants_report()) return;
-  InputReport report(plan_.at(job).input);
+  InputReport report(plan_.inputs().at(job));
   report.messages.push_back(std::move(message));
   keep_report(job, report.text());
 }
@@ -227,7 +226,7 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
                          end.status, memory_limit(options_));
   }
   if (!reason.empty()) {
-    const bool is_alone = plan_.at(job).input.other.empty();
+    const bool is_alone = plan_.inputs().at(job).other.empty();
     const bool is_killed = end.how == JobEnd::How::signalled && is_crash(end.status);
     if (is_killed && !work.reader.empty() && is_alone)
       fail(job,
@@ -251,7 +250,8 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
     ++counts_.failed;
   }
   if (work.left_out > 0)
-    work.messages += fmt::format("{}: and {} further messages\n", readable(plan_.path(job)), work.left_out);
+    work.messages +=
+        fmt::format("{}: and {} further messages\n", readable(plan_.inputs().path(job)), work.left_out);
   show(work.messages);
   flush_results();
   progress_.set(counts_.done + counts_.failed + counts_.skipped, counts_.failed, doing_);
@@ -259,13 +259,17 @@ void Batch::finish(std::size_t job, const JobEnd& end) {
 
 // Hidden files of workers that were killed, in this run or an earlier one.
 void Batch::remove_leftovers() const {
-  std::vector<std::string> targets;
+  std::set<fs::path> folders;
+  const auto add = [&](const fs::path& target) {
+    if (std::optional<fs::path> folder = OutputFile::hidden_folder(target))
+      folders.insert(std::move(*folder));
+  };
   for (const std::string* place : {&options_.report, &options_.junit, &options_.csv})
-    if (!place->empty() && *place != "-") targets.emplace_back(*place);
+    if (!place->empty() && *place != "-") add(*place);
   for (std::size_t i = 0; i < plan_.size(); ++i)
-    for (PlannedOutput& output : plan_.at(i).outputs)
-      if (!output.to_standard_output) targets.push_back(std::move(output.path));
-  OutputFile::remove_leftovers(targets);
+    for (const PlannedOutput& output : plan_.at(i).outputs)
+      if (!output.to_standard_output) add(output.path);
+  OutputFile::remove_leftovers(folders);
 }
 
 double Batch::tick() {
@@ -286,7 +290,8 @@ std::string Batch::report_text(bool ok) const {
   std::vector<std::string> entries;
   for (std::size_t i = 0; i < reports_.size(); ++i) {
     // An input that was not reached keeps what an earlier run knew of it.
-    entries.push_back(reports_[i].empty() ? entry_of_earlier(plan_.name(i)) : std::string(reports_[i]));
+    entries.push_back(reports_[i].empty() ? entry_of_earlier(plan_.inputs().at(i).name())
+                                          : std::string(reports_[i]));
   }
   entries.insert(entries.end(), missing_reports_.begin(), missing_reports_.end());
   return whole_report(started_, seconds_since(start_), ok, counts_, entries);
@@ -302,7 +307,7 @@ Status Batch::write_table() const {
   if (options_.csv.empty()) return {};
   SweepTable table(options_.sweep.wanted ? "variant" : "input");
   for (std::size_t i = 0; i < plan_.size(); ++i) {
-    const Input input = plan_.at(i).input;
+    const Input input = plan_.inputs().at(i);
     table.add(input, reports_[i].empty() ? entry_of_earlier(input.name()) : std::string(reports_[i]));
   }
   return write_whole(options_.csv, table.text());
@@ -312,7 +317,8 @@ Status Batch::write_junit(const std::vector<Message>& missing) const {
   if (options_.junit.empty()) return {};
   const std::string_view word = options_.command == Command::diff ? "diff" : "roundtrip";
   std::vector<JunitInput> all;
-  for (std::size_t i = 0; i < reports_.size(); ++i) all.push_back({plan_.name(i), std::string(reports_[i])});
+  for (std::size_t i = 0; i < reports_.size(); ++i)
+    all.push_back({plan_.inputs().at(i).name(), std::string(reports_[i])});
   for (std::size_t i = 0; i < missing.size(); ++i) all.push_back({missing[i].file, missing_reports_[i]});
   return write_whole(options_.junit, junit_text(word, all, started_, seconds_since(start_)));
 }
@@ -445,19 +451,15 @@ int run_all(Options options) {
     if (const Result<formats::NewEdit> edit = wanted_edit(options.edit); !edit) return refuse(edit.error());
   Result<InputList> list = inputs_of(options);
   if (!list) return refuse(list.error());
-  Result<std::vector<std::vector<PlannedOutput>>> plan = plan_outputs(options, *list);
+  Result<Plan> plan = Plan::make(options, *list);
   if (!plan) return refuse(plan.error());
   Result<std::map<std::string, std::string>> earlier = earlier_entries(options);
   if (!earlier) return refuse(earlier.error());
   if (Status status = check_report_places(options); !status.ok()) return refuse(status.error());
-  share_memory(options, std::min(available_cores(options), list->inputs.size()));
-  keep_part(list->inputs, options.part, options.parts);
-  keep_part(*plan, options.part, options.parts);
+  share_memory(options, std::min(available_cores(options), plan->size()));
+  plan->keep_part(options.part, options.parts);
   if (options.part > 0) list->missing.clear();
-  const BatchPlan kept(list->inputs, *plan);
-  list->inputs = {};
-  *plan = {};
-  return Batch(options, kept, std::move(*earlier)).run(list->missing);
+  return Batch(options, *plan, std::move(*earlier)).run(list->missing);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <string_view>
+#include <functional>
 #include <unordered_set>
 
 #include "core/source.h"
@@ -20,6 +20,32 @@ namespace selvage::pipeline {
 namespace fs = std::filesystem;
 
 namespace {
+
+void add_field(std::string& record, std::string_view field) {
+  record += field;
+  record += '\0';
+}
+
+// Reads what add_field() wrote.
+class Fields {
+ public:
+  explicit Fields(const char* record) : rest_(record) {}
+  std::string_view next() {
+    const std::string_view field = rest_;
+    rest_ += field.size() + 1;
+    return field;
+  }
+
+ private:
+  const char* rest_;
+};
+
+// As parts of a path would be compared.
+bool is_before(std::string_view a, std::string_view b) {
+  const auto rank = [](char c) { return c == '/' ? -1 : static_cast<int>(static_cast<unsigned char>(c)); };
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
+                                      [&](char x, char y) { return rank(x) < rank(y); });
+}
 
 class Expansion {
  public:
@@ -42,7 +68,7 @@ class Expansion {
   // A name that no file has may be that of a fabric in several files.
   void add_file(const std::string& path) {
     const std::string file = first_file(path).string();
-    list.inputs.push_back(input_at(file, fs::path(file).filename()));
+    list.inputs.add(input_at(file, fs::path(file).filename()));
   }
 
   // The outputs of a fabric in several files have no number.
@@ -53,27 +79,27 @@ class Expansion {
   }
 
   Status add_standard_input() {
-    if (std::any_of(list.inputs.begin(), list.inputs.end(),
-                    [](const Input& input) { return input.path == "-"; }))
-      return error(Kind::usage, "standard input ('-') can be read only once");
-    list.inputs.push_back({"-", "stdin"});
+    if (has_standard_input_) return error(Kind::usage, "standard input ('-') can be read only once");
+    has_standard_input_ = true;
+    list.inputs.add({"-", "stdin"});
     return {};
   }
 
   // Hidden files and folders are passed by; a folder that cannot be entered is an error of its own.
   Status add_folder(const fs::path& folder) {
     from_folder_ = true;
-    std::vector<fs::path> files;
-    collect(folder, files);
-    std::sort(files.begin(), files.end());
-    for (const fs::path& file : files)
-      list.inputs.push_back(input_at(file.string(), file.lexically_relative(folder)));
+    SharedText text;
+    std::vector<std::string_view> files;
+    collect(folder, [&](const std::string& file) { files.push_back(text.keep(file)); });
+    std::sort(files.begin(), files.end(), is_before);
+    for (const std::string_view file : files)
+      list.inputs.add(input_at(std::string(file), fs::path(file).lexically_relative(folder)));
     if (files.empty() && list.missing.empty())
       list.missing.push_back(error(Kind::io, "no readable file in this folder", {.file = folder.string()}));
     return {};
   }
 
-  void collect(const fs::path& folder, std::vector<fs::path>& files) {
+  void collect(const fs::path& folder, const std::function<void(const std::string&)>& found) {
     std::error_code failure;
     fs::directory_iterator entries(folder, failure);
     for (; !failure && entries != fs::directory_iterator(); entries.increment(failure)) {
@@ -81,9 +107,9 @@ class Expansion {
       if (path.filename().native().starts_with('.')) continue;
       std::error_code unknown;
       if (entries->is_directory(unknown) && !entries->is_symlink(unknown))
-        collect(path, files);
+        collect(path, found);
       else if (entries->is_regular_file(unknown) && is_readable_format(path))
-        files.push_back(path);
+        found(path.native());
     }
     if (failure)
       list.missing.push_back(error(Kind::io, fmt::format("cannot read the folder: {}", failure.message()),
@@ -128,12 +154,15 @@ class Expansion {
  public:
   // Files 2, 3, ... of a fabric whose first one is an input, too, are read with that one.
   void drop_later_parts() {
-    std::unordered_set<std::string> paths;
-    for (const Input& input : list.inputs) paths.insert(fs::path(input.path).lexically_normal().string());
-    std::erase_if(list.inputs, [&](const Input& input) {
-      const std::optional<fs::path> whole = whole_path(input.path);
-      if (!whole || !paths.contains(part_path(*whole, 1).lexically_normal().string())) return false;
-      const std::optional<formats::PartMark> mark = mark_of(input.path);
+    std::unordered_set<std::string> first_parts;
+    for (std::size_t i = 0; i < list.inputs.size(); ++i)
+      if (const fs::path path = list.inputs.path(i); part_number(path) == 1)
+        first_parts.insert(path.lexically_normal().string());
+    if (first_parts.empty()) return;
+    list.inputs.erase_if([&](std::string_view path) {
+      const std::optional<fs::path> whole = whole_path(path);
+      if (!whole || !first_parts.contains(part_path(*whole, 1).lexically_normal().string())) return false;
+      const std::optional<formats::PartMark> mark = mark_of(path);
       return mark && mark->number > 1;
     });
   }
@@ -143,10 +172,36 @@ class Expansion {
   }
 
  private:
-  bool from_folder_ = false;
+  bool from_folder_ = false, has_standard_input_ = false;
 };
 
 }  // namespace
+
+void Inputs::add(const Input& input) {
+  std::string record;
+  for (const std::string* field : {&input.path, &input.stem, &input.other}) add_field(record, *field);
+  for (const fabric::Setting& setting : input.settings) {
+    add_field(record, setting.name);
+    add_field(record, setting.value);
+  }
+  add_field(record, {});  // no setting is without a name
+  records_.push_back(text_.keep(record).data());
+}
+
+Input Inputs::at(std::size_t index) const {
+  Fields fields(records_[index]);
+  Input input;
+  for (std::string* field : {&input.path, &input.stem, &input.other}) *field = fields.next();
+  for (std::string_view name = fields.next(); !name.empty(); name = fields.next())
+    input.settings.push_back({std::string(name), std::string(fields.next())});
+  return input;
+}
+
+void Inputs::keep_part(std::size_t part, std::size_t parts) {
+  const std::size_t count = records_.size();
+  records_.resize(count * (part + 1) / parts);
+  records_.erase(records_.begin(), records_.begin() + static_cast<std::ptrdiff_t>(count * part / parts));
+}
 
 std::string Input::name() const {
   std::string name = path;
@@ -161,25 +216,23 @@ namespace {
 Status vary(InputList& list, const Options& options) {
   Result<Variants> variants = variants_of(options);
   if (!variants) return variants.error();
-  if (variants->size() == 1 && !options.sweep.wanted) {
-    for (Input& input : list.inputs) input.settings = variants->front();
-    return {};
-  }
+  const bool is_one = variants->size() == 1 && !options.sweep.wanted;
+  if (is_one && variants->front().empty()) return {};
   if (Status few =
           check_number(static_cast<double>(variants->size()) * static_cast<double>(list.inputs.size()));
       !few)
     return few;
   const std::size_t digits = std::max<std::size_t>(4, std::to_string(variants->size()).size());
-  std::vector<Input> all;
-  all.reserve(list.inputs.size() * variants->size());
-  for (const Input& input : list.inputs)
+  Inputs all;
+  for (std::size_t k = 0; k < list.inputs.size(); ++k)
     for (std::size_t i = 0; i < variants->size(); ++i) {
-      all.push_back(input);
-      all.back().stem += fmt::format("_{:0{}}", i + 1, digits);
-      all.back().settings = (*variants)[i];
+      Input input = list.inputs.at(k);
+      if (!is_one) input.stem += fmt::format("_{:0{}}", i + 1, digits);
+      input.settings = (*variants)[i];
+      all.add(input);
     }
   list.inputs = std::move(all);
-  list.one_file = false;
+  list.one_file = list.one_file && is_one;
   return {};
 }
 
@@ -188,12 +241,18 @@ Status vary(InputList& list, const Options& options) {
 Result<InputList> inputs_of(const Options& options) {
   const std::vector<std::string>& given = options.inputs;
   const std::string& first = given.front();
+  const auto only = [](const Input& input) {
+    InputList list;
+    list.inputs.add(input);
+    list.one_file = true;
+    return list;
+  };
   if (options.command == Command::edit)
-    return InputList{{{first, first == "-" ? "stdin" : fs::path(first).stem().string()}}, {}, true};
+    return only({first, first == "-" ? "stdin" : fs::path(first).stem().string()});
   if (options.command == Command::diff) {
     if (first == "-" && given[1] == "-")
       return error(Kind::usage, "standard input can be only one of the two");
-    return InputList{{{first_file(first).string(), {}, first_file(given[1]).string()}}, {}, true};
+    return only({first_file(first).string(), {}, first_file(given[1]).string()});
   }
   Expansion expansion;
   for (const std::string& argument : given)

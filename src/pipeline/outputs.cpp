@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <compare>
 #include <cstdint>
-#include <unordered_map>
+#include <iterator>
+#include <utility>
 
 #include "core/output.h"
 #include "core/sha256.h"
@@ -180,76 +182,29 @@ struct Identity {
     for (std::size_t i = 0; i < words.size(); ++i)
       std::from_chars(&digest[16 * i], &digest[16 * i] + 16, words[i], 16);
   }
-  bool operator==(const Identity&) const = default;
+  auto operator<=>(const Identity&) const = default;
 
   std::array<std::uint64_t, 2> words{};
 };
 
-struct Bucket {
-  std::size_t operator()(const Identity& identity) const { return identity.words[0]; }
+// Whose a name is.
+struct Owned {
+  Identity name;
+  std::size_t input;
+  auto operator<=>(const Owned&) const = default;
 };
 
-template <class Value>
-using ByIdentity = std::unordered_map<Identity, Value, Bucket>;
-
-Status check_names(const Options& options, const InputList& list,
-                   std::vector<std::vector<PlannedOutput>>& plan) {
-  std::optional<Identity> report;
-  if (!options.report.empty() && options.report != "-") report.emplace(options.report);
-  ByIdentity<std::size_t> input_of;
-  // Of names that may be files of a set: by the identity of the name that stands for the set.
-  ByIdentity<std::vector<fs::path>> parts_of;
-  const auto note_part = [&](const fs::path& path) {
-    if (const std::optional<fs::path> whole = whole_path(path)) parts_of[Identity(*whole)].push_back(path);
-  };
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    if (list.inputs[i].path == "-") continue;
-    const std::vector<fs::path> files = files_of(list.inputs[i].path);
-    for (const fs::path& file : files) {
-      // One that is missing is told when it is opened.
-      std::error_code failure;
-      if (fs::exists(file, failure)) input_of.emplace(Identity(file), i);
-      note_part(file);
-    }
-    // To write what stands for the set would be to replace it.
-    if (files.size() > 1) input_of.emplace(Identity(*whole_path(files.front())), i);
-  }
-  if (report && input_of.contains(*report))
-    return error(Kind::usage, fmt::format("the report '{}' would replace an input", options.report));
-  ByIdentity<std::size_t> writer_of;
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    for (const PlannedOutput& output : plan[i]) {
-      if (output.to_standard_output) continue;
-      const Identity name(output.path);
-      if (name == report)
-        return error(Kind::usage, fmt::format("the report and an output would both be '{}'", options.report));
-      if (const auto found = input_of.find(name); found != input_of.end())
-        return error(Kind::usage,
-                     fmt::format("the output '{}' would replace the input '{}'; name another place with -o",
-                                 output.path, list.inputs[found->second].path));
-      if (const auto [found, is_new] = writer_of.emplace(name, i); !is_new)
-        return error(
-            Kind::usage,
-            fmt::format(
-                "'{}' and '{}' would both write '{}'; nothing was done (the files of a folder keep their "
-                "subfolders: name the folder above them as the input)",
-                list.inputs[found->second].path, list.inputs[i].path, output.path));
-      note_part(output.path);
-    }
-  }
-  for (std::vector<PlannedOutput>& outputs : plan)
-    for (PlannedOutput& output : outputs)
-      if (const auto found = parts_of.find(Identity(output.path)); found != parts_of.end())
-        for (const fs::path& part : found->second)
-          if (const std::optional<int> number = part_number(part))
-            output.taken.push_back(part_path(output.path, *number));
-  return {};
+// Null: none has that name. The list is sorted.
+const Owned* first_of(const std::vector<Owned>& list, const Identity& name) {
+  const auto found =
+      std::lower_bound(list.begin(), list.end(), name,
+                       [](const Owned& one, const Identity& wanted) { return one.name < wanted; });
+  return found == list.end() || found->name != name ? nullptr : &*found;
 }
 
-// `check --gap-map` writes one file, of one input.
-Status plan_gap_map(const Options& options, const InputList& list,
-                    std::vector<std::vector<PlannedOutput>>& plan) {
-  if (options.gap_map.empty()) return {};
+// `check --gap-map` writes one file, of one input; other commands that write none have no formats.
+Result<Formats> gap_map_formats(const Options& options, const InputList& list) {
+  if (options.command != Command::check || options.gap_map.empty()) return Formats{};
   const Descriptor* format = format_with_extension(fs::path(options.gap_map).extension().string());
   if (format == nullptr || format->write_gap_map == nullptr)
     return error(Kind::usage, fmt::format("--gap-map writes no file of the name '{}'; name a {} file",
@@ -258,47 +213,145 @@ Status plan_gap_map(const Options& options, const InputList& list,
     return error(Kind::usage, fmt::format("'--gap-map {}' names one file, but there may be several inputs; "
                                           "name one input",
                                           options.gap_map));
-  for (std::vector<PlannedOutput>& outputs : plan) outputs.push_back({format, options.gap_map, false, {}});
-  return {};
+  return Formats{format};
+}
+
+bool writes_files(Command command) {
+  return command != Command::check && command != Command::info && command != Command::roundtrip &&
+         command != Command::diff;
 }
 
 }  // namespace
 
-Result<std::vector<std::vector<PlannedOutput>>> plan_outputs(const Options& options, const InputList& list) {
-  std::vector<std::vector<PlannedOutput>> plan(list.inputs.size());
-  if (options.command == Command::check || options.command == Command::info ||
-      options.command == Command::roundtrip || options.command == Command::diff) {
-    if (Status status = plan_gap_map(options, list, plan); !status.ok()) return status.error();
-    if (Status status = check_names(options, list, plan); !status.ok()) return status.error();
-    return plan;
-  }
-  Result<Formats> wanted = wanted_formats(options);
+Result<Plan> Plan::make(const Options& options, InputList& list) {
+  const bool writes = writes_files(options.command);
+  Result<Formats> wanted = writes ? wanted_formats(options) : gap_map_formats(options, list);
   if (!wanted) return wanted.error();
-  if (Status status = check_single_output(options, list, *wanted); !status.ok()) return status.error();
-  if (options.units && std::any_of(wanted->begin(), wanted->end(),
-                                   [](auto* format) { return format->open_bodies == nullptr; }))
-    return error(Kind::usage, "--units converts surfaces; text keeps the unit of its input");
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    const Input& input = list.inputs[i];
-    if (input.path == "-" && options.output.empty())
+  if (writes) {
+    if (Status status = check_single_output(options, list, *wanted); !status.ok()) return status.error();
+    if (options.units && std::any_of(wanted->begin(), wanted->end(),
+                                     [](auto* format) { return format->open_bodies == nullptr; }))
+      return error(Kind::usage, "--units converts surfaces; text keeps the unit of its input");
+  }
+  Plan plan(options);
+  plan.formats_ = std::move(*wanted);
+  plan.inputs_ = std::move(list.inputs);
+  if (writes)
+    if (Status status = plan.check_standard_input(); !status.ok()) return status.error();
+  // `edit` may replace its input.
+  if (options.command != Command::edit)
+    if (Status status = plan.check_names(); !status.ok()) return status.error();
+  return plan;
+}
+
+Status Plan::check_standard_input() const {
+  if (!options_->output.empty()) return {};
+  for (std::size_t i = 0; i < size(); ++i)
+    if (inputs_.path(i) == "-")
       return error(Kind::usage, "standard input has no folder for its outputs; name one with -o");
-    for (const Descriptor* format : *wanted) {
-      if (options.output == "-") {
-        plan[i].push_back({format, "<stdout>", true, {}});
-        continue;
-      }
-      const fs::path path = output_path(options, input, *format);
-      plan[i].push_back({format, path, false, {}});
-      if (format->companion == nullptr) continue;
-      const Descriptor& second = format->companion();
-      if (std::find(wanted->begin(), wanted->end(), &second) == wanted->end())
-        plan[i].push_back(
-            {&second, fs::path(path).replace_extension(second.extensions.front()), false, {}, true});
+  return {};
+}
+
+std::vector<PlannedOutput> Plan::outputs_of(const Input& input) const {
+  std::vector<PlannedOutput> outputs;
+  for (const Descriptor* format : formats_) {
+    if (options_->command == Command::check) {
+      outputs.push_back({format, options_->gap_map});
+      continue;
+    }
+    if (options_->output == "-") {
+      outputs.push_back({format, "<stdout>", true});
+      continue;
+    }
+    const fs::path path = output_path(*options_, input, *format);
+    outputs.push_back({format, path});
+    if (format->companion == nullptr) continue;
+    const Descriptor& second = format->companion();
+    if (std::find(formats_.begin(), formats_.end(), &second) == formats_.end())
+      outputs.push_back(
+          {&second, fs::path(path).replace_extension(second.extensions.front()), false, {}, true});
+  }
+  return outputs;
+}
+
+PlannedInput Plan::at(std::size_t index) const {
+  PlannedInput planned;
+  planned.input = inputs_.at(index);
+  planned.outputs = outputs_of(planned.input);
+  if (!taken_.empty())
+    for (PlannedOutput& output : planned.outputs)
+      if (const auto found = taken_.find(output.path); found != taken_.end()) output.taken = found->second;
+  return planned;
+}
+
+Status Plan::check_names() {
+  std::optional<Identity> report;
+  if (!options_->report.empty() && options_->report != "-") report.emplace(options_->report);
+  std::vector<Owned> inputs;
+  inputs.reserve(size());
+  // Of names that may be files of a set: by the identity of the name that stands for the set.
+  std::map<Identity, std::vector<fs::path>> parts_of;
+  const auto note_part = [&](const fs::path& path) {
+    if (const std::optional<fs::path> whole = whole_path(path)) parts_of[Identity(*whole)].push_back(path);
+  };
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (inputs_.path(i) == "-") continue;
+    const std::vector<fs::path> files = files_of(inputs_.path(i));
+    for (const fs::path& file : files) {
+      // One that is missing is told when it is opened.
+      std::error_code failure;
+      if (fs::exists(file, failure)) inputs.push_back({Identity(file), i});
+      note_part(file);
+    }
+    // To write what stands for the set would be to replace it.
+    if (files.size() > 1) inputs.push_back({Identity(*whole_path(files.front())), i});
+  }
+  std::sort(inputs.begin(), inputs.end());
+  if (report && first_of(inputs, *report) != nullptr)
+    return error(Kind::usage, fmt::format("the report '{}' would replace an input", options_->report));
+  std::vector<Owned> outputs;
+  outputs.reserve(size() * formats_.size());
+  for (std::size_t i = 0; i < size() && !formats_.empty(); ++i) {
+    for (const PlannedOutput& output : outputs_of(inputs_.at(i))) {
+      if (output.to_standard_output) continue;
+      const Identity name(output.path);
+      if (name == report)
+        return error(Kind::usage,
+                     fmt::format("the report and an output would both be '{}'", options_->report));
+      if (const Owned* input = first_of(inputs, name))
+        return error(Kind::usage,
+                     fmt::format("the output '{}' would replace the input '{}'; name another place with -o",
+                                 output.path, inputs_.path(input->input)));
+      outputs.push_back({name, i});
+      note_part(output.path);
     }
   }
-  if (options.command == Command::edit) return plan;  // it may replace its input
-  if (Status status = check_names(options, list, plan); !status.ok()) return status.error();
-  return plan;
+  std::sort(outputs.begin(), outputs.end());
+  // Of several the first in the order of the inputs.
+  const Owned* first = nullptr;
+  for (std::size_t k = 0; k + 1 < outputs.size(); ++k)
+    if (outputs[k].name == outputs[k + 1].name &&
+        (first == nullptr || outputs[k + 1].input < std::next(first)->input))
+      first = &outputs[k];
+  if (first != nullptr) {
+    const std::size_t second = std::next(first)->input;
+    std::string path;
+    for (const PlannedOutput& output : outputs_of(inputs_.at(second)))
+      if (Identity(output.path) == first->name) path = output.path;
+    return error(
+        Kind::usage,
+        fmt::format("'{}' and '{}' would both write '{}'; nothing was done (the files of a folder keep their "
+                    "subfolders: name the folder above them as the input)",
+                    inputs_.path(first->input), inputs_.path(second), path));
+  }
+  if (parts_of.empty()) return {};
+  for (std::size_t i = 0; i < size(); ++i)
+    for (const PlannedOutput& output : outputs_of(inputs_.at(i)))
+      if (const auto found = parts_of.find(Identity(output.path)); found != parts_of.end())
+        for (const fs::path& part : found->second)
+          if (const std::optional<int> number = part_number(part))
+            taken_[output.path].push_back(part_path(output.path, *number));
+  return {};
 }
 
 }  // namespace selvage::pipeline

@@ -112,7 +112,7 @@ class Scale(Case):
             seconds.append(used.seconds)
             memory.append(used.bytes)
             self.tell(f"{count} inputs: {used.bytes / MEBIBYTE:.0f} MiB")
-        self.assertLess(memory[-1] - memory[0], 700 * (sizes[-1] - sizes[0]), "bytes an input while it is planned")
+        self.assertLess(memory[-1] - memory[0], 150 * (sizes[-1] - sizes[0]), "bytes an input while it is planned")
         self.assert_grows(seconds, sizes, "inputs")
 
 

@@ -225,7 +225,11 @@ TEST(OutputFile, RemovesWhatNobodyHoldsAndNothingElse) {
   for (const std::string& name : {left, held, own, likewise}) test::put_bytes(folder / name, "x");
   const int holder = ::open((folder / held).c_str(), O_RDWR);
   ASSERT_EQ(::flock(holder, LOCK_EX), 0);
-  OutputFile::remove_leftovers({folder / "a.igs", folder / "b.igs", folder / "nowhere/c.igs"});
+  std::set<std::filesystem::path> folders;
+  for (const char* name : {"a.igs", "b.igs", "nowhere/c.igs"})
+    if (const auto hidden = OutputFile::hidden_folder(folder / name)) folders.insert(*hidden);
+  EXPECT_EQ(folders.size(), 2);
+  OutputFile::remove_leftovers(folders);
   EXPECT_EQ(folder.names(), (Names{own, held, likewise}));
   ::close(holder);
 }
