@@ -168,7 +168,8 @@ class GlobalReader {
     if (is_blank(19))
       warning(19, "the resolution (global parameter 19) is not given, and has no default");
     else if (!(global.stated_resolution > 0))
-      defect(19, fmt::format("a resolution (global parameter 19) of {}", global.stated_resolution));
+      warning(19, fmt::format("a resolution (global parameter 19) of {}, which states none",
+                              global.stated_resolution));
     if (global.largest < 0) warning(20, "the largest coordinate (global parameter 20) is negative");
   }
 

@@ -90,12 +90,12 @@ class Numbers {
   void check_range(double first, double last, double low, double high, std::string_view where,
                    std::size_t value) {
     const double slack = rounding * std::max({1.0, std::abs(low), std::abs(high)});
-    if (!(first < last))
-      defect(fmt::format("the range{} is {} to {}", where, first, last), value);
-    else if (first < low - slack || last > high + slack)
-      defect(
-          fmt::format("the range{} is {} to {}, and the knots allow {} to {}", where, first, last, low, high),
-          value);
+    if (!(first < last)) return defect(fmt::format("the range{} is {} to {}", where, first, last), value);
+    if (first >= low - slack && last <= high + slack) return;
+    const std::string what =
+        fmt::format("the range{} is {} to {}, and the knots allow {} to {}", where, first, last, low, high);
+    // All of the knots can only mean all of the shape.
+    first <= low + slack&& last >= high - slack ? warning(what, value) : defect(what, value);
   }
 
  private:

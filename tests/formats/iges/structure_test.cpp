@@ -110,23 +110,23 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Global, Faults,
-    testing::Values(Fault{small, 2, 3, "3", 2, "'3' cannot be the parameter delimiter"},
-                    Fault{small, 2, 7, "-", 2, "'-' cannot be the record delimiter"},
-                    Fault{small, 2, 9, "9", 2, "no delimiter after a string"},
-                    Fault{small, 3, 7, "0.", 3, "scale is not positive"},
-                    Fault{small, 3, 10, "2", 3, "unit 2 is MM, but its name is given as 'M'"},
-                    Fault{small, 3, 14, "X", 3, "unit 6 is M, but its name is given as 'X'"},
-                    Fault{small, 3, 10, "0", 3, "there is no unit 0"},
-                    Fault{small, 3, 16, "0", 3, "number of line weights", Severity::warning},
-                    Fault{small, 3, 29, "3", 3, "is no date", Severity::warning},
-                    Fault{small, 3, 41, "0.E-06", 3, "a resolution (global parameter 19) of 0"},
-                    Fault{small, 3, 41, "1.E+03", 3, "lose the shape", Severity::warning},
-                    Fault{small, 3, 41, "1.E-40", 3, "finer than the numbers", Severity::warning},
-                    Fault{small, 3, 48, "0.5", 3, "the largest coordinate is said to be 0.5",
-                          Severity::warning},
-                    Fault{small, 3, 54, "12", 3, "there is no version 12", Severity::warning},
-                    Fault{small, 3, 57, "9", 3, "there is no drafting standard 9", Severity::warning},
-                    Fault{small, 3, 41, "1.x-06", 3, "is no number"}));
+    testing::Values(
+        Fault{small, 2, 3, "3", 2, "'3' cannot be the parameter delimiter"},
+        Fault{small, 2, 7, "-", 2, "'-' cannot be the record delimiter"},
+        Fault{small, 2, 9, "9", 2, "no delimiter after a string"},
+        Fault{small, 3, 7, "0.", 3, "scale is not positive"},
+        Fault{small, 3, 10, "2", 3, "unit 2 is MM, but its name is given as 'M'"},
+        Fault{small, 3, 14, "X", 3, "unit 6 is M, but its name is given as 'X'"},
+        Fault{small, 3, 10, "0", 3, "there is no unit 0"},
+        Fault{small, 3, 16, "0", 3, "number of line weights", Severity::warning},
+        Fault{small, 3, 29, "3", 3, "is no date", Severity::warning},
+        Fault{small, 3, 41, "0.E-06", 3, "a resolution (global parameter 19) of 0", Severity::warning},
+        Fault{small, 3, 41, "1.E+03", 3, "lose the shape", Severity::warning},
+        Fault{small, 3, 41, "1.E-40", 3, "finer than the numbers", Severity::warning},
+        Fault{small, 3, 48, "0.5", 3, "the largest coordinate is said to be 0.5", Severity::warning},
+        Fault{small, 3, 54, "12", 3, "there is no version 12", Severity::warning},
+        Fault{small, 3, 57, "9", 3, "there is no drafting standard 9", Severity::warning},
+        Fault{small, 3, 41, "1.x-06", 3, "is no number"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Directory, Faults,
@@ -169,18 +169,20 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Numbers, Faults,
-    testing::Values(Fault{small, 10, 27, "2.0", 10, "knot 3 in u is 1 after 2"},
-                    Fault{loops, 95, 39, "0.0", 95, "the knot 0 in u is there 5 times, at degree 3"},
-                    Fault{small, 10, 55, "-1.", 10, "weight 1 is -1"},
-                    Fault{small, 10, 55, "3.0", 10,
-                          "PROP3 says that it is polynomial, and its weights are 1 to 3"},
-                    Fault{small, 10, 13, "1", 10, "PROP1 says that it is closed in u, and its ends are 1",
-                          Severity::warning},
-                    Fault{small, 10, 15, "1", 10, "PROP2 says that it is closed in v", Severity::warning},
-                    Fault{small, 10, 19, "1", 10, "said to be periodic in u", Severity::warning},
-                    Fault{small, 11, 57, "1.0,0.0", 11, "the range in u is 1 to 0"},
-                    Fault{small, 11, 61, "1.5", 11, "the range in u is 0 to 1.5, and the knots allow 0 to 1"},
-                    Fault{small, 11, 57, "0.0,0.0,\n", 11, "columns"}));
+    testing::Values(
+        Fault{small, 10, 27, "2.0", 10, "knot 3 in u is 1 after 2"},
+        Fault{loops, 95, 39, "0.0", 95, "the knot 0 in u is there 5 times, at degree 3"},
+        Fault{small, 10, 55, "-1.", 10, "weight 1 is -1"},
+        Fault{small, 10, 55, "3.0", 10, "PROP3 says that it is polynomial, and its weights are 1 to 3"},
+        Fault{small, 10, 13, "1", 10, "PROP1 says that it is closed in u, and its ends are 1",
+              Severity::warning},
+        Fault{small, 10, 15, "1", 10, "PROP2 says that it is closed in v", Severity::warning},
+        Fault{small, 10, 19, "1", 10, "said to be periodic in u", Severity::warning},
+        Fault{small, 11, 57, "1.0,0.0", 11, "the range in u is 1 to 0"},
+        Fault{small, 11, 61, "1.5", 11, "the range in u is 0 to 1.5, and the knots allow 0 to 1",
+              Severity::warning},
+        Fault{small, 11, 57, "0.5,1.5", 11, "the range in u is 0.5 to 1.5, and the knots allow 0 to 1"},
+        Fault{small, 11, 57, "0.0,0.0,\n", 11, "columns"}));
 
 TEST(Structure, ClosedSurfaceSaidToBeOpen) {
   const std::string bytes = iges_bytes({ring("ring")}, surfaces());
