@@ -504,7 +504,7 @@ std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part
     return fmt::format("its faces do not close it, and a solid must stay one; {}", remedy);
   for (std::size_t i = 0; i < part.faces.size(); ++i) {
     const cad::Face& face = part.faces[i];
-    const std::string who = face.origin.entity.empty() ? fmt::format("face {}", i + 1) : face.origin.entity;
+    const std::string who = face.origin.entity.empty() ? std::to_string(i + 1) : face.origin.entity;
     if (i >= built.faces.size() || built.faces[i].IsNull())
       return fmt::format("OpenCASCADE loses its face {}; {}", who, remedy);
     std::size_t wires = 0;
