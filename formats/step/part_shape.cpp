@@ -4,17 +4,17 @@
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
-#include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepCheck_Analyzer.hxx>
-#include <BRepExtrema_DistShapeShape.hxx>
+#include <BRepClass_FaceClassifier.hxx>
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Geom2d_BSplineCurve.hxx>
 #include <Geom_Plane.hxx>
 #include <Precision.hxx>
+#include <ShapeAnalysis_Surface.hxx>
 #include <ShapeFix_Face.hxx>
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
@@ -487,11 +487,18 @@ std::optional<Vec3> place_inside(const cad::Face& face) {
   return std::nullopt;
 }
 
-// Is it on the face that OpenCASCADE has made?
+// Is it on the face that OpenCASCADE has made? Its distance of a point and a face passes over feet on knots.
 bool has_place(const TopoDS_Shape& built, const Vec3& place, double size) {
-  const BRepExtrema_DistShapeShape distance(
-      BRepBuilderAPI_MakeVertex(gp_Pnt(place.x(), place.y(), place.z())).Vertex(), built);
-  return !distance.IsDone() || distance.Value() <= 1e-3 * size;
+  const gp_Pnt point(place.x(), place.y(), place.z());
+  for (TopExp_Explorer it(built, TopAbs_FACE); it.More(); it.Next()) {
+    const TopoDS_Face& face = TopoDS::Face(it.Current());
+    ShapeAnalysis_Surface surface(BRep_Tool::Surface(face));
+    const gp_Pnt2d foot = surface.ValueOfUV(point, Precision::Confusion());
+    if (surface.Value(foot).Distance(point) > 1e-3 * size) continue;
+    const TopAbs_State side = BRepClass_FaceClassifier(face, foot, Precision::PConfusion()).State();
+    if (side == TopAbs_IN || side == TopAbs_ON) return true;
+  }
+  return false;
 }
 
 }  // namespace

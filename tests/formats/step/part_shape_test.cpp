@@ -23,6 +23,16 @@ TEST(PartShape, AFaceOnTheOtherSideOfItsBoundaryIsRefused) {
   EXPECT_NE(flaw->find("takes what is beyond the boundary of its face 1 for it"), std::string::npos) << *flaw;
 }
 
+// In the middle of half a cylinder two of its quarters meet.
+TEST(PartShape, APlaceOnAKnotIsFound) {
+  const nurbs::Surface round = test::cylinder(0.0169, 0.0236);
+  const double u = round.first_u(), length = round.last_u() - u;
+  cad::Part part;
+  part.faces.push_back(test::face_of(
+      round, {test::rectangle(u + length / 2, u + length, 0.1 * round.last_v(), 0.9 * round.last_v())}));
+  EXPECT_EQ(flaw_of(build_part(part, 1e-9), part).value_or("none"), "none");
+}
+
 // A face whose area was measured in the file has to have it again.
 TEST(PartShape, AFaceOfAnotherAreaIsRefused) {
   cad::Part part = trimmed(0.1, 0.3);
