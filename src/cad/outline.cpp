@@ -101,8 +101,21 @@ std::vector<Curve> outline(const Face& face) {
   return open_ones(std::move(curves), size_of(face.surface.points));
 }
 
+namespace {
+
+// A whole face beside a trimmed one: by the edges that its file has round it, which may lie beside its
+// surface's sides by as much as that file's tolerance.
+std::vector<Curve> outline_beside(const Face& face, const Face& other) {
+  if (!face.loops.empty() || face.border.empty() || other.loops.empty()) return outline(face);
+  Face trimmed = face;
+  std::swap(trimmed.loops, trimmed.border);
+  return outline(trimmed);
+}
+
+}  // namespace
+
 Reach outline_distance(const Face& a, const Face& b, double enough) {
-  const std::vector<Curve> of_a = outline(a), of_b = outline(b);
+  const std::vector<Curve> of_a = outline_beside(a, b), of_b = outline_beside(b, a);
   if (of_a.empty() && of_b.empty()) return {};
   const Vec3 somewhere = of_a.empty() ? of_b.front().points.front() : of_a.front().points.front();
   if (of_a.empty() || of_b.empty()) return {0, std::numeric_limits<double>::infinity(), somewhere};

@@ -309,6 +309,26 @@ TEST(Compare, ATrimmedFaceAndTheSameOneWhole) {
   }
 }
 
+// A file's edges round a whole surface lie beside its sides, within that file's tolerance; another file has
+// the same edges as the surface's boundary. One that was moved is found.
+TEST(Compare, AWholeFaceByTheEdgesThatItsFileHas) {
+  const Surface part = nurbs::restricted(cylinder(2, 3), 0.03, 0.22, 0.1, 0.9);
+  Loop edges = natural_border(part, 1e-9);
+  for (Edge& edge : edges.edges) {
+    edge.flat = {};
+    for (std::size_t k = 1; k + 1 < edge.curve.points.size(); ++k) edge.curve.points[k].z() += 1e-3;
+  }
+  Subject whole, trimmed;
+  whole.model.parts.emplace_back().faces.push_back(face_of(part, {}));
+  whole.model.parts[0].faces[0].border = {edges};
+  trimmed.model.parts.emplace_back().faces.push_back(face_of(part, {edges}));
+  EXPECT_TRUE(compared(whole, trimmed, 1e-6).differences.empty());
+  EXPECT_TRUE(compared(trimmed, whole, 1e-6).differences.empty());
+  for (Edge& edge : trimmed.model.parts[0].faces[0].loops[0].edges)
+    for (std::size_t k = 1; k + 1 < edge.curve.points.size(); ++k) edge.curve.points[k].z() -= 2e-3;
+  EXPECT_EQ(compared(whole, trimmed, 1e-6).differences.size(), 1U);
+}
+
 TEST(Compare, AYarnThatRunsTheOtherWayIsTheSame) {
   const Subject before = cloth(3);
   Subject after = before;
