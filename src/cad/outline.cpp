@@ -204,6 +204,7 @@ Reach beyond_outline(const Face& a, const Region& of_a, const SurfaceSet& others
   if (outside.empty()) return reach;
   const std::vector<Surface> border = as_surfaces(outline(b));
   std::vector<const Surface*> all;
+  all.reserve(border.size());
   for (const Surface& surface : border) all.push_back(&surface);
   if (all.empty()) return reach;
   const SurfaceSet sides(all);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <compare>
 #include <cstdint>
 #include <iterator>
 #include <utility>
@@ -182,7 +181,8 @@ struct Identity {
     for (std::size_t i = 0; i < words.size(); ++i)
       std::from_chars(&digest[16 * i], &digest[16 * i] + 16, words[i], 16);
   }
-  auto operator<=>(const Identity&) const = default;
+  bool operator==(const Identity&) const = default;
+  bool operator<(const Identity& other) const { return words < other.words; }
 
   std::array<std::uint64_t, 2> words{};
 };
@@ -191,7 +191,9 @@ struct Identity {
 struct Owned {
   Identity name;
   std::size_t input;
-  auto operator<=>(const Owned&) const = default;
+  bool operator<(const Owned& other) const {
+    return name == other.name ? input < other.input : name < other.name;
+  }
 };
 
 // Null: none has that name. The list is sorted.
