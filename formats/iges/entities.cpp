@@ -119,13 +119,14 @@ int write_planar_end(Records& records, const Common& common, const yarn::Body& b
   return write_trimmed(records, common, {&boundary, 1}, surface);
 }
 
-int write_boundary(Records& records, const Common& common, int surface, int flat, int spatial) {
+int write_boundary(Records& records, const Common& common, int surface, int flat, int spatial,
+                   bool flat_is_true) {
   const int pointer = records.begin(common.entity(142, 0, dependent));
   records.integer(0);  // how the curve was made: not said
   records.integer(surface);
   records.integer(flat);
   records.integer(spatial);
-  records.integer(2);  // the curve in space is the true one
+  records.integer(flat_is_true ? 1 : 2);  // which is the true one
   records.end();
   return pointer;
 }

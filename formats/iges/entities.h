@@ -46,8 +46,10 @@ int write_curve(Records& records, const Entity& entity, const nurbs::Curve& curv
 int write_planar_end(Records& records, const Common& common, const yarn::Body& body, bool last);
 inline constexpr int entities_of_planar_end = 5;
 
-// 142: the boundary of a trimmed surface by a curve in its parameters and the same in space.
-int write_boundary(Records& records, const Common& common, int surface, int flat, int spatial);
+// 142: the boundary of a trimmed surface by a curve in its parameters and the same in space; `flat_is_true`:
+// the first of them is what holds.
+int write_boundary(Records& records, const Common& common, int surface, int flat, int spatial,
+                   bool flat_is_true = false);
 // 144; the outer boundary is the first.
 int write_trimmed(Records& records, const Common& common, std::span<const int> boundaries, int surface);
 // 102; `status` is that of the curves.

@@ -10,9 +10,12 @@
 
 #include "cad/edges.h"
 #include "cad/feet.h"
+#include "cad/outline.h"
 #include "cad/sampled_curve.h"
+#include "cad/seam.h"
 #include "formats/iges/header.h"
 #include "formats/iges/solid.h"
+#include "nurbs/restrict.h"
 
 namespace selvage::formats::iges {
 
@@ -90,16 +93,22 @@ int PartWriter::chain(const Common& common, const std::vector<const nurbs::Curve
   return parts.size() == 1 ? parts.front() : write_composite(records_, common, status, parts);
 }
 
-// The poles as curves without length, so that edges in space and in the parameters go together.
+// Where all edges have curves in the parameters, those hold, and poles have none in space: OpenCASCADE would
+// take an edge on the seam beside a pole without length to the seam's other side. Else the poles are curves
+// without length.
 int PartWriter::boundary(const Common& common, int pointer, const nurbs::Surface& surface,
                          const cad::Loop& loop) {
+  const bool all_flat = has_all_flats(loop);
   std::vector<const nurbs::Curve*> flats, curves;
   std::vector<nurbs::Curve> poles(loop.edges.size());
   for (std::size_t i = 0; i < loop.edges.size(); ++i) {
     const cad::Edge& edge = loop.edges[i];
     flats.push_back(&edge.flat);
-    curves.push_back(&edge.curve);
-    if (!is_pole(edge)) continue;
+    if (!is_pole(edge)) {
+      curves.push_back(&edge.curve);
+      continue;
+    }
+    if (all_flat) continue;
     for (std::size_t k = 1; k < loop.edges.size(); ++k) {
       const cad::Edge& before = loop.edges[(i + loop.edges.size() - k) % loop.edges.size()];
       if (is_pole(before)) continue;
@@ -107,19 +116,42 @@ int PartWriter::boundary(const Common& common, int pointer, const nurbs::Surface
       poles[i] = nurbs::segment(at, at);
       break;
     }
-    curves.back() = &poles[i];
+    curves.push_back(&poles[i]);
   }
-  const int flat = has_all_flats(loop) ? chain(common, flats, dependent_in_2d) : 0;
+  const bool has_poles = curves.size() < flats.size();
+  const int flat = all_flat ? chain(common, flats, dependent_in_2d) : 0;
   const int spatial = has_all_curves(loop, surface) ? chain(common, curves, dependent) : 0;
-  return write_boundary(records_, common, pointer, flat, spatial);
+  return write_boundary(records_, common, pointer, flat, spatial, has_poles);
+}
+
+// Of a closed surface with a face that begins or ends at its seam just the range of that face: OpenCASCADE
+// takes an edge on a seam to either of its sides.
+nurbs::Surface beside_seam(const cad::Face& face) {
+  const nurbs::Surface& s = face.surface;
+  cad::Range range = cad::domain(s);
+  if (!std::ranges::all_of(face.loops, has_all_flats)) return s;
+  const cad::Range used = cad::used_range(face);
+  const std::array<double, 2> periods = cad::periods_of(s);
+  const auto narrow = [](double& low, double& high, double first, double last, double period) {
+    const double near = 1e-7 * period;
+    if (last - first >= period - near || (first > low + near && last < high - near)) return false;
+    low = first;
+    high = last;
+    return true;
+  };
+  const bool narrower = narrow(range.u0, range.u1, used.u0, used.u1, periods[0]);
+  return narrow(range.v0, range.v1, used.v0, used.v1, periods[1]) || narrower
+             ? nurbs::restricted(s, range.u0, range.u1, range.v0, range.v1)
+             : s;
 }
 
 int PartWriter::face(const cad::Face& face) {
   const Look own(records_, colors_, face);
   if (face.loops.empty()) return write_surface(records_, own.entity(128), face.surface, own.name);
-  const int surface = write_surface(records_, own.entity(128, 0, dependent), face.surface);
+  const nurbs::Surface beside = beside_seam(face);
+  const int surface = write_surface(records_, own.entity(128, 0, dependent), beside);
   std::vector<int> boundaries;
-  for (const cad::Loop& loop : face.loops) boundaries.push_back(boundary(own, surface, face.surface, loop));
+  for (const cad::Loop& loop : face.loops) boundaries.push_back(boundary(own, surface, beside, loop));
   return write_trimmed(records_, own, boundaries, surface);
 }
 
