@@ -139,6 +139,22 @@ Status take_background(Options& options, const std::string& text) {
                fmt::format("'{}' is no colour; it is R,G,B, each 0-255, for example 255,255,255", text));
 }
 
+Status take_section(Options& options, const std::string& text) {
+  const std::size_t axis = std::string_view("xyz").find(text.empty() ? ' ' : text.front());
+  const Argument number = Argument::between(-1e9, 1e9);
+  const Result<std::string> place =
+      text.size() > 2 && text[1] == '=' && axis < 3
+          ? number.canonical(std::string_view(text).substr(2))
+          : Result<std::string>(error(Kind::usage, ""));
+  if (!place)
+    return error(Kind::usage, fmt::format("'{}' is no section; it is x=, y= or z= and a place in the input's "
+                                          "unit, for example z=0",
+                                          text));
+  options.section.emplace().axis = static_cast<int>(axis);
+  store(options.section->place, *place);
+  return {};
+}
+
 Status take_shard(Options& options, const std::string& text) {
   const auto shard = numbers<2>(text, '/', 0, std::numeric_limits<int>::max());
   if (!shard || (*shard)[0] >= (*shard)[1])
@@ -296,19 +312,25 @@ void of_an_edit(OptionTable& t) {
 void of_a_picture(OptionTable& t) {
   t.begin("The picture");
   using enum view::From;
-  t.choice({view}, "--from", "where the eye is; side: +x", "top bottom front back side iso", &Options::from,
-           {top, bottom, front, back, side, iso})
-      .with_preset("top");
+  t.choice({view}, "--from",
+           "where the eye is; plan: above, the warp or wales upright; top: above, x to the right; side: +x "
+           "(default: plan; of a section across x side, across y front)",
+           "plan top bottom front back side iso", &Options::from,
+           {plan, top, bottom, front, back, side, iso});
   t.option({view}, "--azimuth", "about z, degrees: 90 side", Argument::between(-360, 360), &Options::azimuth)
       .goes_with("is of an eye elsewhere", "", "--from");
   t.option({view}, "--elevation", "above, degrees: 90 top", Argument::between(-90, 90), &Options::elevation)
       .goes_with("is of an eye elsewhere", "", "--from");
   t.option({view}, "--zoom", "nearer", Argument::between(0.01, 1000), &Options::zoom).with_preset("1");
   t.option({view}, "--yarns", "only these; * is anything", Argument::texts("NAME"), &Options::shown_yarns);
+  t.option({view}, "--section",
+           "cut at this plane, in the input's unit, such as z=0: what lies on the eye's side of it is left out",
+           Argument::text("AXIS=PLACE"), take_section);
   t.option({view}, "--size", "in pixels", Argument::text("WxH"), take_picture_size).with_preset("1200x900");
   t.option({view}, "--background", "its colour, each 0-255", Argument::text("R,G,B"), take_background)
       .with_preset("255,255,255");
   t.flag({view}, "--flat", "without shadows, which is faster", &Options::flat);
+  t.flag({view}, "--no-scale-bar", "without the scale bar at the picture's foot", &Options::no_scale_bar);
   t.choice({view}, "--contacts", "overlaps and near contacts on a page; auto: of few yarns", "auto yes no",
            &Options::page_contacts, {PageContacts::automatic, PageContacts::yes, PageContacts::no})
       .with_preset("auto");
@@ -403,13 +425,15 @@ void of_relaxing(OptionTable& t) {
 
 void of_running(OptionTable& t) {
   t.begin("Running", true);
-  const Commands all = {convert, check, relax, mesh, roundtrip, diff, info, edit, view};
-  t.option(on_yarns, "-j", "inputs worked on at once (default: one a core)", Argument::whole(1, 4096),
+  const Commands all = {convert, check, relax, mesh, roundtrip, diff, info, edit, view, report};
+  Commands side_by_side = on_yarns;
+  side_by_side.push_back(report);
+  t.option(side_by_side, "-j", "inputs worked on at once (default: one a core)", Argument::whole(1, 4096),
            &Options::workers);
   t.flag(all, "-q,--quiet", "errors only", &Options::quiet);
   t.flag(on_yarns, "-v,--verbose", "say more", &Options::verbose);
-  t.flag(on_yarns, "--no-progress", "no progress bar or lines", &Options::no_progress);
-  t.choice(on_yarns, "--progress", "json: an object a line on standard error, for programs (with -q, too)",
+  t.flag(side_by_side, "--no-progress", "no progress bar or lines", &Options::no_progress);
+  t.choice(side_by_side, "--progress", "json: an object a line on standard error, for programs (with -q, too)",
            "auto json", &Options::progress_json, {false, true})
       .with_preset("auto")
       .goes_with("asks for what --no-progress refuses", "", "--no-progress", "json");
@@ -433,6 +457,18 @@ void of_running(OptionTable& t) {
   t.flag(all, "--allow-outside",
          "files that a text names (`draft file`) may be anywhere, not only in its folder or below",
          &Options::allow_outside);
+}
+
+void of_a_report(OptionTable& t) {
+  t.begin("The reports", true);
+  t.option({report}, "ACTION", "merge: the reports as one; html: a page of them", Argument::one_of("merge html"),
+           &Options::subject);
+  t.option({report}, "REPORT", "reports, as --report wrote them", Argument::texts(""), &Options::inputs);
+  t.option({report}, "-o,--output",
+           "the report of all (merge), the page (html: its name ends with .html), or - for standard output",
+           Argument::text("FILE"), &Options::output)
+      .required();
+  t.flag({report}, "--no-pictures", "html: without a picture of each input", &Options::no_pictures);
 }
 
 void of_learning(OptionTable& t) {
@@ -461,7 +497,7 @@ void of_formats(OptionTable& t) {
 const std::deque<Row>& all_rows() {
   static const std::deque<Row> rows = [] {
     OptionTable table;
-    for (auto* const part : {inputs_and_outputs, of_a_sweep, of_an_edit, of_a_picture, of_yarns, of_relaxing,
+    for (auto* const part : {inputs_and_outputs, of_a_report, of_a_sweep, of_an_edit, of_a_picture, of_yarns, of_relaxing,
                              of_a_mesh, of_a_cell, of_formats, of_running, of_learning})
       part(table);
     return table.take();

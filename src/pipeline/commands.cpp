@@ -41,6 +41,11 @@ constexpr std::array commands = {
         sweep, "sweep",
         "check, convert or mesh an input with many values of its params, and make a table of the results",
         "selvage sweep yarns.txt --set half=0.16:0.2:0.02 --csv gaps.csv"},
+    Subcommand{report, "report", "join the reports of several runs (merge), or show them on a page (html)",
+               "selvage check twill.txt --report one.json\n"
+               "selvage check jersey.txt --report two.json\n"
+               "selvage report merge one.json two.json -o all.json\n"
+               "selvage report html all.json -o report.html"},
     Subcommand{formats, "formats", "the formats that can be read and written", "selvage formats"},
     Subcommand{new_text, "new", "a text to begin with, with comments; without KIND the kinds that there are",
                "selvage new\n"
