@@ -11,7 +11,9 @@
 #include "core/words.h"
 #include "formats/registry.h"
 #include "pipeline/limits.h"
+#include "pipeline/number_list.h"
 #include "pipeline/outputs.h"
+#include "pipeline/picture_words.h"
 #include "pipeline/roundtrip.h"
 #include "pipeline/variants.h"
 #include "view/picture.h"
@@ -103,57 +105,6 @@ class OptionTable {
   bool of_run_ = false;
   std::deque<Row> rows_;  // where they are, they stay
 };
-
-// Whole numbers between `separator`s, each within [low, high]: exactly as many as the array holds.
-template <std::size_t Count>
-std::optional<std::array<int, Count>> numbers(std::string_view text, char separator, int low, int high) {
-  std::array<int, Count> values{};
-  const char *at = text.data(), *end = at + text.size();
-  for (std::size_t k = 0; k < Count; ++k) {
-    if (k > 0 && (at == end || *at++ != separator)) return std::nullopt;
-    const auto [rest, failure] = std::from_chars(at, end, values[k]);
-    if (failure != std::errc() || values[k] < low || values[k] > high) return std::nullopt;
-    at = rest;
-  }
-  if (at != end) return std::nullopt;
-  return values;
-}
-
-Status take_picture_size(Options& options, const std::string& text) {
-  if (const auto size = numbers<2>(text, 'x', 1, view::largest_side)) {
-    options.picture_width = (*size)[0];
-    options.picture_height = (*size)[1];
-    return {};
-  }
-  return error(Kind::usage,
-               fmt::format("'{}' is no size; it is WxH in pixels, up to {}, for example 1200x900", text,
-                           view::largest_side));
-}
-
-Status take_background(Options& options, const std::string& text) {
-  if (const auto color = numbers<3>(text, ',', 0, 255)) {
-    options.background = {(*color)[0], (*color)[1], (*color)[2]};
-    return {};
-  }
-  return error(Kind::usage,
-               fmt::format("'{}' is no colour; it is R,G,B, each 0-255, for example 255,255,255", text));
-}
-
-Status take_section(Options& options, const std::string& text) {
-  const std::size_t axis = std::string_view("xyz").find(text.empty() ? ' ' : text.front());
-  const Argument number = Argument::between(-1e9, 1e9);
-  const Result<std::string> place =
-      text.size() > 2 && text[1] == '=' && axis < 3
-          ? number.canonical(std::string_view(text).substr(2))
-          : Result<std::string>(error(Kind::usage, ""));
-  if (!place)
-    return error(Kind::usage, fmt::format("'{}' is no section; it is x=, y= or z= and a place in the input's "
-                                          "unit, for example z=0",
-                                          text));
-  options.section.emplace().axis = static_cast<int>(axis);
-  store(options.section->place, *place);
-  return {};
-}
 
 Status take_shard(Options& options, const std::string& text) {
   const auto shard = numbers<2>(text, '/', 0, std::numeric_limits<int>::max());
@@ -323,9 +274,10 @@ void of_a_picture(OptionTable& t) {
       .goes_with("is of an eye elsewhere", "", "--from");
   t.option({view}, "--zoom", "nearer", Argument::between(0.01, 1000), &Options::zoom).with_preset("1");
   t.option({view}, "--yarns", "only these; * is anything", Argument::texts("NAME"), &Options::shown_yarns);
-  t.option({view}, "--section",
-           "cut at this plane, in the input's unit, such as z=0: what lies on the eye's side of it is left out",
-           Argument::text("AXIS=PLACE"), take_section);
+  t.option(
+      {view}, "--section",
+      "cut at this plane, in the input's unit, such as z=0: what lies on the eye's side of it is left out",
+      Argument::text("AXIS=PLACE"), take_section);
   t.option({view}, "--size", "in pixels", Argument::text("WxH"), take_picture_size).with_preset("1200x900");
   t.option({view}, "--background", "its colour, each 0-255", Argument::text("R,G,B"), take_background)
       .with_preset("255,255,255");
@@ -433,8 +385,9 @@ void of_running(OptionTable& t) {
   t.flag(all, "-q,--quiet", "errors only", &Options::quiet);
   t.flag(on_yarns, "-v,--verbose", "say more", &Options::verbose);
   t.flag(side_by_side, "--no-progress", "no progress bar or lines", &Options::no_progress);
-  t.choice(side_by_side, "--progress", "json: an object a line on standard error, for programs (with -q, too)",
-           "auto json", &Options::progress_json, {false, true})
+  t.choice(side_by_side, "--progress",
+           "json: an object a line on standard error, for programs (with -q, too)", "auto json",
+           &Options::progress_json, {false, true})
       .with_preset("auto")
       .goes_with("asks for what --no-progress refuses", "", "--no-progress", "json");
   t.option(on_batch, "--shard", "only the I-th of N equal parts of the inputs, from 0", Argument::text("I/N"),
@@ -461,8 +414,8 @@ void of_running(OptionTable& t) {
 
 void of_a_report(OptionTable& t) {
   t.begin("The reports", true);
-  t.option({report}, "ACTION", "merge: the reports as one; html: a page of them", Argument::one_of("merge html"),
-           &Options::subject);
+  t.option({report}, "ACTION", "merge: the reports as one; html: a page of them",
+           Argument::one_of("merge html"), &Options::subject);
   t.option({report}, "REPORT", "reports, as --report wrote them", Argument::texts(""), &Options::inputs);
   t.option({report}, "-o,--output",
            "the report of all (merge), the page (html: its name ends with .html), or - for standard output",
@@ -497,8 +450,8 @@ void of_formats(OptionTable& t) {
 const std::deque<Row>& all_rows() {
   static const std::deque<Row> rows = [] {
     OptionTable table;
-    for (auto* const part : {inputs_and_outputs, of_a_report, of_a_sweep, of_an_edit, of_a_picture, of_yarns, of_relaxing,
-                             of_a_mesh, of_a_cell, of_formats, of_running, of_learning})
+    for (auto* const part : {inputs_and_outputs, of_a_report, of_a_sweep, of_an_edit, of_a_picture, of_yarns,
+                             of_relaxing, of_a_mesh, of_a_cell, of_formats, of_running, of_learning})
       part(table);
     return table.take();
   }();

@@ -92,9 +92,9 @@ Status write(const Options& options) {
 int run_report(const Options& options) {
   const bool is_page = options.output.ends_with(page_extension);
   if (options.output != "-" && is_page != (options.subject == "html")) {
-    write_messages(fmt::format("selvage: error: -o: '{}' is no name for {}\n", options.output,
-                               is_page ? "a report, it is that of a page (selvage report html)"
-                                       : "a page: it ends with .html"));
+    write_messages(fmt::format(
+        "selvage: error: -o: '{}' is no name for {}\n", options.output,
+        is_page ? "a report, it is that of a page (selvage report html)" : "a page: it ends with .html"));
     return 2;
   }
   const Status done = write(options);

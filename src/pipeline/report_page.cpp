@@ -67,7 +67,7 @@ std::optional<double> size_of(const Json& entry, const char* key) {
   return entry.contains(key) ? std::optional(static_cast<double>(list_at(entry, key).size())) : std::nullopt;
 }
 
-constexpr std::array columns = {
+constexpr std::array all_columns = {
     Column{"Yarns", [](const Json& e) { return number_at(e, "yarn_count"); }},
     Column{"Overlaps", [](const Json& e) { return size_of(e, "overlaps"); }},
     Column{"Deepest, mm",
@@ -81,7 +81,8 @@ constexpr std::array columns = {
     Column{"Cover, %", [](const Json& e) { return scaled(of_sheet(e, "cover"), 100); }},
     Column{"Fibres fill, %", [](const Json& e) { return scaled(of_sheet(e, "fibre_fraction"), 100); }},
     Column{"Tetrahedra", [](const Json& e) { return number_at(object_at(e, "mesh"), "tets"); }},
-    Column{"Least dihedral, °", [](const Json& e) { return number_at(object_at(e, "mesh"), "min_dihedral"); }},
+    Column{"Least dihedral, °",
+           [](const Json& e) { return number_at(object_at(e, "mesh"), "min_dihedral"); }},
     Column{"Files", [](const Json& e) { return size_of(e, "outputs"); }},
     Column{"Seconds", [](const Json& e) { return number_at(e, "seconds"); }},
 };
@@ -89,7 +90,7 @@ constexpr std::array columns = {
 // Those that an input at least has.
 std::vector<const Column*> used_columns(const std::vector<const Json*>& entries) {
   std::vector<const Column*> used;
-  for (const Column& column : columns)
+  for (const Column& column : all_columns)
     if (std::any_of(entries.begin(), entries.end(),
                     [&](const Json* entry) { return column.value(*entry).has_value(); }))
       used.push_back(&column);
@@ -162,8 +163,8 @@ void put_picture(TextBuffer& to, const Thumbnail& picture, const std::string& pa
   } else {
     std::string letters;
     append_base64(letters, picture.png);
-    to << fmt::format("<img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,", thumbnail_width,
-                      thumbnail_height, xml_text(path))
+    to << fmt::format("<img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,",
+                      thumbnail_width, thumbnail_height, xml_text(path))
        << letters << "\">";
   }
   to << "</td>";
@@ -175,11 +176,10 @@ void put_messages(TextBuffer& to, const Json& entry) {
   const Json& list = list_at(entry, "messages");
   to << fmt::format("<td class=\"messages\" data-value=\"{}\">", 1'000'000 * errors + warnings);
   if (!list.empty()) {
-    const std::string head =
-        errors + warnings == 0 ? counted(list.size(), "note")
-        : errors == 0          ? counted(warnings, "warning")
-        : warnings == 0        ? counted(errors, "error")
-                               : counted(errors, "error") + ", " + counted(warnings, "warning");
+    const std::string head = errors + warnings == 0 ? counted(list.size(), "note")
+                             : errors == 0          ? counted(warnings, "warning")
+                             : warnings == 0        ? counted(errors, "error")
+                                             : counted(errors, "error") + ", " + counted(warnings, "warning");
     // Of a few nothing is hidden.
     constexpr std::size_t few = 2;
     to << "<details" << (list.size() <= few ? " open" : "") << "><summary>" << head << "</summary><ul>";
@@ -221,8 +221,8 @@ void put_row(TextBuffer& to, const Json& entry, const Thumbnail* picture,
 
 void put_head(TextBuffer& to, bool has_pictures, const std::vector<const Column*>& used) {
   const auto put = [&](std::string_view text, bool is_text, std::string_view more = {}) {
-    to << "<th scope=\"col\"" << (is_text ? " class=\"text\"" : "") << more << "><button type=\"button\">" << text
-       << "</button></th>";
+    to << "<th scope=\"col\"" << (is_text ? " class=\"text\"" : "") << more << "><button type=\"button\">"
+       << text << "</button></th>";
   };
   if (has_pictures) to << "<th scope=\"col\" class=\"text\"><span class=\"unseen\">Picture</span></th>";
   put("Input", true);

@@ -60,7 +60,7 @@ Options viewing(const Options& options) {
 }
 
 // In a process of its own: what it sends is a picture or a note, and messages.
-void picture(Job& job, const std::string& digest) {
+void send_picture(Job& job, const std::string& digest) {
   if (!digest.empty())
     if (const Result<std::string> now = digest_of(job.input.path); !now || *now != digest)
       return job.channel().send(thumbnail_packet::note, "the file has changed since the report");
@@ -101,7 +101,7 @@ Result<std::vector<Thumbnail>> thumbnails_of(const Options& options,
   }
   Options view = viewing(options);
   share_memory(view, std::min(available_cores(view), std::max<std::size_t>(1, drawn.size())));
-  ProgressDisplay progress(view.progress_json                ? ProgressForm::json
+  ProgressDisplay progress(view.progress_json                 ? ProgressForm::json
                            : !view.quiet && !view.no_progress ? ProgressForm::shown
                                                               : ProgressForm::none,
                            drawn.size());
@@ -116,7 +116,7 @@ Result<std::vector<Thumbnail>> thumbnails_of(const Options& options,
     const std::vector<PlannedOutput> none;
     Job job(view, input, none, channel);
     Status done = contain_job(view, std::array{input.path}, {});
-    if (done) done = guarded(view, [&] { picture(job, text_at(*entries[entry], "sha256")); });
+    if (done) done = guarded(view, [&] { send_picture(job, text_at(*entries[entry], "sha256")); });
     if (!done) job.say(done.error());
     return 0;
   };

@@ -20,7 +20,6 @@ inline constexpr std::size_t most_thumbnails = 500;                  // of the f
 // Of each entry of a report, in their order. Each input is read in a process of its own, as any other; it has
 // to be where the report says, seen from here, as it was. Errors: interrupted; limit (no process can be
 // started).
-Result<std::vector<Thumbnail>> thumbnails_of(const Options& options,
-                                             const std::vector<const Json*>& entries);
+Result<std::vector<Thumbnail>> thumbnails_of(const Options& options, const std::vector<const Json*>& entries);
 
 }  // namespace selvage::pipeline

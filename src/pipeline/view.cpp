@@ -117,8 +117,8 @@ void view_mesh(Job& job, const formats::Descriptor& format) {
 
 void view(Job& job) {
   if (job.options.section && !job.outputs.empty() && job.outputs.front().format == &page_format())
-    return job.say(error(Kind::unsupported,
-                         "--section is of pictures; on a page sections are moved under 'Section'"));
+    return job.say(
+        error(Kind::unsupported, "--section is of pictures; on a page sections are moved under 'Section'"));
   if (const formats::Descriptor* mesh = mesh_format(job)) return view_mesh(job, *mesh);
   const std::optional<fabric::Fabric> fabric = job.read();
   if (!fabric) return;

@@ -52,7 +52,8 @@ struct Picture {
 //   orange where it holds a part of itself (neighbouring loops, a fold). A surface that lies inside another
 //   yarn cannot be seen itself, so the place is marked on the skin before it. Overlaps that are shallower
 //   than the picture's own accuracy (0.6 pixel, and the yarns' tube_error) are not marked.
-// Errors: geometry (no yarn, coordinates that are not finite, a section that cuts nothing), limit (more than 2^31 facets), internal.
+// Errors: geometry (no yarn, coordinates that are not finite, a section that cuts nothing), limit (more than
+// 2^31 facets), internal.
 Result<Picture> render(std::span<const yarn::Body> bodies, const PictureOptions& options);
 
 // The picture as a PNG file. Error (internal): libpng refuses.

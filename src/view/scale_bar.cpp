@@ -70,8 +70,7 @@ std::vector<Stroke> strokes_of(const Letter& letter) {
 }
 
 double distance(const Point& p, const Stroke& stroke) {
-  const double dx = stroke.to.x - stroke.from.x, dy = stroke.to.y - stroke.from.y,
-               square = dx * dx + dy * dy;
+  const double dx = stroke.to.x - stroke.from.x, dy = stroke.to.y - stroke.from.y, square = dx * dx + dy * dy;
   const double along = (p.x - stroke.from.x) * dx + (p.y - stroke.from.y) * dy;
   const double t = square > 0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
   return std::hypot(p.x - stroke.from.x - t * dx, p.y - stroke.from.y - t * dy);
@@ -81,7 +80,9 @@ double distance(const Point& p, const Stroke& stroke) {
 class Foot {
  public:
   Foot(Picture& picture, int rows, const yarn::Color& background)
-      : picture_(picture), first_(picture.height), ground_{background.red, background.green, background.blue} {
+      : picture_(picture),
+        first_(picture.height),
+        ground_{background.red, background.green, background.blue} {
     const double bright = 0.299 * background.red + 0.587 * background.green + 0.114 * background.blue;
     ink_ = bright > 127 ? 0 : 255;
     picture.height += rows;
@@ -176,8 +177,8 @@ void add_scale_bar(Picture& picture, int rows, Unit unit, const yarn::Color& bac
   const double letter_unit = high / units_a_capital;
   double x = right + high;
   for (const char sign : length.text) {
-    const auto* const letter = std::find_if(letters.begin(), letters.end(),
-                                            [&](const Letter& known) { return known.sign == sign; });
+    const auto* const letter =
+        std::find_if(letters.begin(), letters.end(), [&](const Letter& known) { return known.sign == sign; });
     if (letter == letters.end()) {
       x += blank * letter_unit;
       continue;

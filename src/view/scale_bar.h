@@ -7,8 +7,8 @@
 
 namespace selvage::view {
 
-// How many rows of pixels it takes of a picture of this size: some 5 % of its smaller side. 0: that picture is
-// too small to read one.
+// How many rows of pixels it takes of a picture of this size: some 5 % of its smaller side. 0: that picture
+// is too small to read one.
 int scale_bar_rows(int width, int height);
 
 // Adds so many rows to the picture, of this background; the bar is at most a quarter as long as the picture

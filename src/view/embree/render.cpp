@@ -73,7 +73,7 @@ Sample Renderer::sample(int x, int y) const {
     return static_cast<float>(whole);
   };
   Vec3f origin(pixel(x) + place[0] - 0.5F * static_cast<float>(options_.width),
-                     0.5F * static_cast<float>(options_.height) - pixel(y) - place[1], eye_);
+               0.5F * static_cast<float>(options_.height) - pixel(y) - place[1], eye_);
   const Vec3f direction(0, 0, -1);
   Sample made;
   if (cut_ != nullptr) {

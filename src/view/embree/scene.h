@@ -44,8 +44,8 @@ class Scene {
   std::unique_ptr<RTCSceneTy, Releaser<rtcReleaseScene>> scene_;
 };
 
-// The hits along a ray, the nearest first. Two facets of a skin that share an edge may both be hit there: that
-// is one hit. Other skins are not one: those of yarns that touch lie nearer.
+// The hits along a ray, the nearest first. Two facets of a skin that share an edge may both be hit there:
+// that is one hit. Other skins are not one: those of yarns that touch lie nearer.
 class Walk {
  public:
   // `scene` outlives it.

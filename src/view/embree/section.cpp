@@ -50,17 +50,17 @@ std::array<Vec3f, 13> directions() {
 
 Status check_section(const Section& section, const Camera& camera, const std::vector<Skin>& skins) {
   const Vec3f way = axis_of(camera, section.axis);
-  const float place =
-      way.dot(camera.to_picture(section.place * Vec3::Unit(section.axis)).cast<float>());
+  const float place = way.dot(camera.to_picture(section.place * Vec3::Unit(section.axis)).cast<float>());
   for (const Skin& skin : skins) {
     bool below = false, above = false;
     for (const Vec3f& p : skin.points) (way.dot(p) < place ? below : above) = true;
     if (below && above) return {};
   }
   const auto [low, high] = extent(skins, camera, section.axis);
-  return error(Kind::geometry, fmt::format("the section {}={:.6g} cuts no yarn; they reach from {:.4g} to {:.4g}",
-                                           "xyz"[section.axis], section.place, low / camera.pixels_per_unit(),
-                                           high / camera.pixels_per_unit()));
+  return error(
+      Kind::geometry,
+      fmt::format("the section {}={:.6g} cuts no yarn; they reach from {:.4g} to {:.4g}", "xyz"[section.axis],
+                  section.place, low / camera.pixels_per_unit(), high / camera.pixels_per_unit()));
 }
 
 CutScene::CutScene(const Section& section, const Camera& camera, const Scene& scene,

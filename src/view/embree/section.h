@@ -43,8 +43,8 @@ class CutScene {
   const Scene& scene_;
   const std::vector<Skin>& skins_;
   Vec3f normal_;
-  float place_ = 0;   // normal_ . p of the plane's points
-  Vec3f across_;      // unit: the direction in which the yarns together are thinnest
+  float place_ = 0;                // normal_ . p of the plane's points
+  Vec3f across_ = Vec3f::UnitZ();  // unit: the direction in which the yarns together are thinnest
 };
 
 }  // namespace selvage::view::embree

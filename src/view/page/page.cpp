@@ -119,7 +119,7 @@ Json yarns_json(const Page& page, Binary& binary) {
   for (const yarn::Role role : yarn::all_roles) {
     json["roles"].push_back(name_of(role));
     Json colors = Json::array();  // of every second yarn another one
-    for (const std::size_t number : {0, 1}) {
+    for (const std::size_t number : {std::size_t{0}, std::size_t{1}}) {
       const yarn::Color color = role_color(role, number);
       colors.push_back({color.red, color.green, color.blue});
     }
