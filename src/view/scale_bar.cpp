@@ -31,7 +31,7 @@ struct Letter {
   int width;
   std::string_view strokes;
 };
-constexpr double units_a_capital = 6, foot = 2, gap = 1.7, blank = 2.6;
+constexpr double units_a_capital = 6, foot = 2, gap = 1.7, blank = 3.4;
 constexpr std::array letters = {
     Letter{'0', 4, "12 32 43 47 38 18 07 03 12"},
     Letter{'1', 2, "06 28 22"},

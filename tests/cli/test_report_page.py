@@ -48,6 +48,8 @@ class Page(html.parser.HTMLParser):
         assert self.open.pop() == tag, tag
         if tag == "table":
             self.inner -= 1
+        if self.inner == 1 and tag in ("td", "th"):
+            self.cell = None
 
     def handle_data(self, data):
         if self.open:
@@ -258,7 +260,7 @@ class Refusals(Base):
 
     def test_words(self):
         self.report.write_text('{"inputs": []}')
-        self.assertIn("not one of merge, html", self.fails(2, "report", "pdf", self.report, "-o", self.folder / "x.html"))
+        self.assertIn("'pdf' is not merge or html", self.fails(2, "report", "pdf", self.report, "-o", self.folder / "x.html"))
         self.assertIn("ends with .html", self.fails(2, "report", "html", self.report, "-o", self.folder / "x.json"))
         self.assertIn("selvage report html", self.fails(2, "report", "merge", self.report, "-o", self.folder / "x.html"))
         self.assertIn("--output", self.fails(2, "report", "html", self.report))
