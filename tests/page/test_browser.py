@@ -325,10 +325,10 @@ class Pages(Case):
         # Without a value at the end, upwards and downwards.
         self.assertEqual(sort("Yarns", "Enter"), (["ring.txt", "cloth.txt", "plain4_path.txt", "misspelt.txt"], [["Yarns", "ascending"]]))
         self.assertEqual(sort("Yarns", "Enter"), (["plain4_path.txt", "cloth.txt", "ring.txt", "misspelt.txt"], [["Yarns", "descending"]]))
-        browser.run("find.value = 'did you mean'; find.dispatchEvent(new Event('input'))")
+        browser.run("document.getElementById('find').value = 'did you mean'; document.getElementById('find').dispatchEvent(new Event('input'))")
         self.assertEqual(browser.run("[...document.querySelectorAll('#inputs > tbody > tr:not([hidden]) > th')].length"), 1)
         self.assertEqual(browser.run("found.textContent"), "1 of 4")
-        browser.run("find.value = ''; find.dispatchEvent(new Event('input'))")
+        browser.run("document.getElementById('find').value = ''; document.getElementById('find').dispatchEvent(new Event('input'))")
         self.assertTrue(browser.run("[...document.images].every((image) => image.naturalWidth === 200) && document.images.length === 3"))
         self.assert_quiet()
 
