@@ -326,6 +326,14 @@ class Sections(Base):
         self.assertGreater(count(0.9, "z=0.45"), 20)
         self.assertGreater(count(0.5, "z=0.25"), count(0.9, "z=0.45"))
 
+    def test_a_yarn_in_itself_is_marked_otherwise(self):
+        crossing = "fabric 1\nyarn a\n diameter 1\n path polyline\n -3 -2 0\n 3 2 0\n 3 -2 0\n -3 2 0\n end\nend\n"
+        rows = self.picture(crossing, "--section", "z=0.1")
+        r, g, b = rows[100][100]
+        self.assertGreater(r, 2 * b)
+        self.assertGreater(g, 1.5 * b)
+        self.assertEqual(rows[100][180], (140, 146, 150))
+
     def test_a_ring_is_cut_twice(self):
         self.succeeds("view", RING, "--section", "x=0", "-o", self.folder / "x.png", "--no-scale-bar", "--size", "400x300")
         row = decode((self.folder / "x.png").read_bytes())[2][150]
