@@ -112,11 +112,12 @@ Result<std::vector<Thumbnail>> thumbnails_of(const Options& options,
   pool.seconds = view.timeout;
   pool.mebibytes = view.memory;
   pool.run = [&](std::size_t index, const Channel& channel) {
-    const auto& [entry, input] = drawn[index];
+    const Json& entry = *entries[drawn[index].first];
+    const Input& input = drawn[index].second;
     const std::vector<PlannedOutput> none;
     Job job(view, input, none, channel);
     Status done = contain_job(view, std::array{input.path}, {});
-    if (done) done = guarded(view, [&] { send_picture(job, text_at(*entries[entry], "sha256")); });
+    if (done) done = guarded(view, [&] { send_picture(job, text_at(entry, "sha256")); });
     if (!done) job.say(done.error());
     return 0;
   };
