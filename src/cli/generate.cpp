@@ -176,6 +176,8 @@ Expected expected(Command command, const Option& option) {
   } else if (option.argument.words == "FORMAT") {
     found.words = names_of_formats(command == Command::roundtrip ? Command::convert : command);
     found.is_list = true;
+  } else if (command == Command::report && !is_named) {
+    found.takes_files = true;
   } else if (!is_named) {
     found.takes_inputs = true;
   } else {

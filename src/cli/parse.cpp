@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <sstream>
 
 #include "cli/generate.h"
@@ -20,12 +19,7 @@ namespace {
 
 using pipeline::Row;
 
-// Words of the contract that come with later versions.
-constexpr std::array<std::string_view, 1> later_commands = {"report"};
-
 Message no_command(const std::string& word) {
-  if (std::find(later_commands.begin(), later_commands.end(), word) != later_commands.end())
-    return error(Kind::usage, fmt::format("'selvage {}' is not in this version of selvage", word));
   std::vector<std::string> names;
   for (const pipeline::Subcommand& command : pipeline::all_commands()) names.emplace_back(command.name);
   return error(Kind::usage, fmt::format("unknown subcommand '{}'{} (help: selvage --help)", word,

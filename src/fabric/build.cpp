@@ -133,6 +133,7 @@ void describe(yarn::BodyLabel& body, const std::string& name, const std::string&
   body.material = thread.material.value_or("");
   body.role = role;
   body.color = thread.color.value_or(Color{});
+  body.has_own_color = thread.color && body.is_colored;
   body.twist = fibre_twist(thread, units);
   if (thread.linear_density && thread.fibre_density())
     body.fibre_area =

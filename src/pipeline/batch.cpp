@@ -29,6 +29,7 @@
 #include "pipeline/limits.h"
 #include "pipeline/outputs.h"
 #include "pipeline/report.h"
+#include "pipeline/report_command.h"
 #include "pipeline/roundtrip.h"
 #include "pipeline/sweep_table.h"
 
@@ -436,6 +437,7 @@ int refuse(const Message& message) {
 namespace {
 
 int run_all(Options options) {
+  if (options.command == Command::report) return run_report(options);
   if (Status status = check_sandbox(options.sandbox, this_kernel()); !status) return refuse(status.error());
   std::optional<TemporaryFolder> scratch;
   if (options.command == Command::roundtrip) {

@@ -11,7 +11,9 @@
 #include "core/words.h"
 #include "formats/registry.h"
 #include "pipeline/limits.h"
+#include "pipeline/number_list.h"
 #include "pipeline/outputs.h"
+#include "pipeline/picture_words.h"
 #include "pipeline/roundtrip.h"
 #include "pipeline/variants.h"
 #include "view/picture.h"
@@ -103,41 +105,6 @@ class OptionTable {
   bool of_run_ = false;
   std::deque<Row> rows_;  // where they are, they stay
 };
-
-// Whole numbers between `separator`s, each within [low, high]: exactly as many as the array holds.
-template <std::size_t Count>
-std::optional<std::array<int, Count>> numbers(std::string_view text, char separator, int low, int high) {
-  std::array<int, Count> values{};
-  const char *at = text.data(), *end = at + text.size();
-  for (std::size_t k = 0; k < Count; ++k) {
-    if (k > 0 && (at == end || *at++ != separator)) return std::nullopt;
-    const auto [rest, failure] = std::from_chars(at, end, values[k]);
-    if (failure != std::errc() || values[k] < low || values[k] > high) return std::nullopt;
-    at = rest;
-  }
-  if (at != end) return std::nullopt;
-  return values;
-}
-
-Status take_picture_size(Options& options, const std::string& text) {
-  if (const auto size = numbers<2>(text, 'x', 1, view::largest_side)) {
-    options.picture_width = (*size)[0];
-    options.picture_height = (*size)[1];
-    return {};
-  }
-  return error(Kind::usage,
-               fmt::format("'{}' is no size; it is WxH in pixels, up to {}, for example 1200x900", text,
-                           view::largest_side));
-}
-
-Status take_background(Options& options, const std::string& text) {
-  if (const auto color = numbers<3>(text, ',', 0, 255)) {
-    options.background = {(*color)[0], (*color)[1], (*color)[2]};
-    return {};
-  }
-  return error(Kind::usage,
-               fmt::format("'{}' is no colour; it is R,G,B, each 0-255, for example 255,255,255", text));
-}
 
 Status take_shard(Options& options, const std::string& text) {
   const auto shard = numbers<2>(text, '/', 0, std::numeric_limits<int>::max());
@@ -296,19 +263,26 @@ void of_an_edit(OptionTable& t) {
 void of_a_picture(OptionTable& t) {
   t.begin("The picture");
   using enum view::From;
-  t.choice({view}, "--from", "where the eye is; side: +x", "top bottom front back side iso", &Options::from,
-           {top, bottom, front, back, side, iso})
-      .with_preset("top");
+  t.choice({view}, "--from",
+           "where the eye is; plan: above, the warp or wales upright; top: above, x to the right; side: +x "
+           "(default: plan; of a section across x side, across y front)",
+           "plan top bottom front back side iso", &Options::from,
+           {plan, top, bottom, front, back, side, iso});
   t.option({view}, "--azimuth", "about z, degrees: 90 side", Argument::between(-360, 360), &Options::azimuth)
       .goes_with("is of an eye elsewhere", "", "--from");
   t.option({view}, "--elevation", "above, degrees: 90 top", Argument::between(-90, 90), &Options::elevation)
       .goes_with("is of an eye elsewhere", "", "--from");
   t.option({view}, "--zoom", "nearer", Argument::between(0.01, 1000), &Options::zoom).with_preset("1");
   t.option({view}, "--yarns", "only these; * is anything", Argument::texts("NAME"), &Options::shown_yarns);
+  t.option(
+      {view}, "--section",
+      "cut at this plane, in the input's unit, such as z=0: what lies on the eye's side of it is left out",
+      Argument::text("AXIS=PLACE"), take_section);
   t.option({view}, "--size", "in pixels", Argument::text("WxH"), take_picture_size).with_preset("1200x900");
   t.option({view}, "--background", "its colour, each 0-255", Argument::text("R,G,B"), take_background)
       .with_preset("255,255,255");
   t.flag({view}, "--flat", "without shadows, which is faster", &Options::flat);
+  t.flag({view}, "--no-scale-bar", "without the scale bar at the picture's foot", &Options::no_scale_bar);
   t.choice({view}, "--contacts", "overlaps and near contacts on a page; auto: of few yarns", "auto yes no",
            &Options::page_contacts, {PageContacts::automatic, PageContacts::yes, PageContacts::no})
       .with_preset("auto");
@@ -403,14 +377,17 @@ void of_relaxing(OptionTable& t) {
 
 void of_running(OptionTable& t) {
   t.begin("Running", true);
-  const Commands all = {convert, check, relax, mesh, roundtrip, diff, info, edit, view};
-  t.option(on_yarns, "-j", "inputs worked on at once (default: one a core)", Argument::whole(1, 4096),
+  const Commands all = {convert, check, relax, mesh, roundtrip, diff, info, edit, view, report};
+  Commands side_by_side = on_yarns;
+  side_by_side.push_back(report);
+  t.option(side_by_side, "-j", "inputs worked on at once (default: one a core)", Argument::whole(1, 4096),
            &Options::workers);
   t.flag(all, "-q,--quiet", "errors only", &Options::quiet);
   t.flag(on_yarns, "-v,--verbose", "say more", &Options::verbose);
-  t.flag(on_yarns, "--no-progress", "no progress bar or lines", &Options::no_progress);
-  t.choice(on_yarns, "--progress", "json: an object a line on standard error, for programs (with -q, too)",
-           "auto json", &Options::progress_json, {false, true})
+  t.flag(side_by_side, "--no-progress", "no progress bar or lines", &Options::no_progress);
+  t.choice(side_by_side, "--progress",
+           "json: an object a line on standard error, for programs (with -q, too)", "auto json",
+           &Options::progress_json, {false, true})
       .with_preset("auto")
       .goes_with("asks for what --no-progress refuses", "", "--no-progress", "json");
   t.option(on_batch, "--shard", "only the I-th of N equal parts of the inputs, from 0", Argument::text("I/N"),
@@ -433,6 +410,18 @@ void of_running(OptionTable& t) {
   t.flag(all, "--allow-outside",
          "files that a text names (`draft file`) may be anywhere, not only in its folder or below",
          &Options::allow_outside);
+}
+
+void of_a_report(OptionTable& t) {
+  t.begin("The reports", true);
+  t.option({report}, "ACTION", "merge: the reports as one; html: a page of them",
+           Argument::one_of("merge html"), &Options::subject);
+  t.option({report}, "REPORT", "reports, as --report wrote them", Argument::texts(""), &Options::inputs);
+  t.option({report}, "-o,--output",
+           "the report of all (merge), the page (html: its name ends with .html), or - for standard output",
+           Argument::text("FILE"), &Options::output)
+      .required();
+  t.flag({report}, "--no-pictures", "html: without a picture of each input", &Options::no_pictures);
 }
 
 void of_learning(OptionTable& t) {
@@ -461,8 +450,8 @@ void of_formats(OptionTable& t) {
 const std::deque<Row>& all_rows() {
   static const std::deque<Row> rows = [] {
     OptionTable table;
-    for (auto* const part : {inputs_and_outputs, of_a_sweep, of_an_edit, of_a_picture, of_yarns, of_relaxing,
-                             of_a_mesh, of_a_cell, of_formats, of_running, of_learning})
+    for (auto* const part : {inputs_and_outputs, of_a_report, of_a_sweep, of_an_edit, of_a_picture, of_yarns,
+                             of_relaxing, of_a_mesh, of_a_cell, of_formats, of_running, of_learning})
       part(table);
     return table.take();
   }();

@@ -17,7 +17,7 @@ constexpr std::array commands = {
                "selvage convert jersey.txt rib.txt --to iges,step -o out"},
     Subcommand{check, "check", "closed? valid? overlapping? within tolerance? (exit code 3: no)",
                "selvage check twill.txt\n"
-               "selvage check twill.igs twill.stp -v"},
+               "selvage check twill.igs twill.stp -v --report check.json"},
     Subcommand{relax, "relax", "move and reshape yarns until none overlap (exit code 3: no solution)",
                "selvage relax yarns.txt --gap 0.05 -o apart.txt"},
     Subcommand{mesh, "mesh",
@@ -32,7 +32,8 @@ constexpr std::array commands = {
                "selvage diff twill.igs twill.stp --tolerance 1e-6"},
     Subcommand{info, "info", "what is in a file: yarns, sizes, units, lengths",
                "selvage info twill.txt\n"
-               "selvage info twill.igs --json"},
+               "selvage info twill.igs --json\n"
+               "selvage info jersey.txt --report info.json"},
     Subcommand{edit, "edit", "move a point of a yarn: adds an `edit` line to a text",
                "selvage edit yarns.txt --yarn lower --point 2 --to 0,0,-0.2 -o moved.txt"},
     Subcommand{view, "view", "a picture of the yarns, ray-traced (PNG), or a page to turn them on (HTML)",
@@ -41,6 +42,9 @@ constexpr std::array commands = {
         sweep, "sweep",
         "check, convert or mesh an input with many values of its params, and make a table of the results",
         "selvage sweep yarns.txt --set half=0.16:0.2:0.02 --csv gaps.csv"},
+    Subcommand{report, "report", "join the reports of several runs (merge), or show them on a page (html)",
+               "selvage report html check.json -o report.html\n"
+               "selvage report merge check.json info.json -o all.json"},
     Subcommand{formats, "formats", "the formats that can be read and written", "selvage formats"},
     Subcommand{new_text, "new", "a text to begin with, with comments; without KIND the kinds that there are",
                "selvage new\n"

@@ -330,6 +330,7 @@ Verdict work(Job& job, const std::string& earlier) {
       edit(job);
       break;
     case Command::sweep:
+    case Command::report:
     case Command::formats:
     case Command::new_text:
     case Command::explain:

@@ -13,7 +13,7 @@
 #include "core/units.h"
 #include "fabric/plies.h"
 #include "formats/format.h"
-#include "view/camera.h"
+#include "view/picture.h"
 #include "yarn/body.h"
 
 namespace selvage::pipeline {
@@ -29,6 +29,7 @@ enum class Command {
   edit,
   view,
   sweep,
+  report,
   formats,
   new_text,
   explain,
@@ -124,13 +125,14 @@ struct Options {
 
   // view
   PageContacts page_contacts = PageContacts::automatic;
-  view::From from = view::From::top;
+  std::optional<view::From> from;            // none: plan, but of a section the side from which it is seen
   std::optional<double> azimuth, elevation;  // degrees; instead of `from`
+  std::optional<view::Section> section;
   double zoom = 1;
   std::vector<std::string> shown_yarns;       // patterns of names; empty: all
   int picture_width = 0, picture_height = 0;  // pixels
   yarn::Color background{};
-  bool flat = false;
+  bool flat = false, no_scale_bar = false;
 
   // roundtrip, diff
   double difference_tolerance = 0;  // the first input's unit; distances up to it are no difference
@@ -142,7 +144,9 @@ struct Options {
   EditWords edit;
   SweepWords sweep;
 
-  std::string subject;  // new, explain, help: what is asked for; may be empty
+  std::string subject;  // new, explain, help: what is asked for; may be empty; report: merge or html
+
+  bool no_pictures = false;  // report
 
   bool json = false;   // info, diff: JSON instead of text
   bool table = false;  // info: the fixed points and control points of garment curves

@@ -167,13 +167,11 @@ bool add_contacts(Job& job, const Gathered& all, page::Page& to) {
 
 // For browsers without WebGL: small and without shadows.
 bool add_picture(Job& job, const std::vector<yarn::Body>& bodies, page::Page& to) {
-  view::PictureOptions options = picture_options(job);
+  view::PictureOptions options = picture_options(job, bodies);
   options.width = std::min(options.width, 960);
   options.height = std::min(options.height, 720);
   options.flat = true;
-  const Result<view::Picture> picture = view::render(bodies, options);
-  if (!picture) return job.fail(picture.error());
-  Result<std::string> bytes = view::png(*picture);
+  Result<std::string> bytes = draw(job, bodies, options);
   if (!bytes) return job.fail(bytes.error());
   to.picture = std::move(*bytes);
   return true;

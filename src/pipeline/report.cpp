@@ -46,6 +46,18 @@ std::string text_at(const Json& object, const char* key) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
+std::optional<double> number_at(const Json& object, const char* key) {
+  if (!object.is_object()) return std::nullopt;
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
+}
+
+bool is_true(const Json& object, const char* key) {
+  if (!object.is_object()) return false;
+  const auto found = object.find(key);
+  return found != object.end() && found->is_boolean() && found->get<bool>();
+}
+
 InputReport::InputReport(const Input& input)
     : entries_(Json::object({{"path", input.name()}, {"ok", false}, {"seconds", 0.0}})) {
   // In the order in which they are written.
@@ -85,16 +97,23 @@ std::string whole_report(const std::string& started, double seconds, bool ok, co
   return text_of(out, 2) + "\n";
 }
 
-Result<std::map<std::string, std::string>> read_entries(const std::string& report_path) {
-  Result<Source> source = Source::open(report_path);
+Result<Json> read_report(const std::string& path) {
+  const Result<Source> source = Source::open(path);
   if (!source) return source.error();
-  const Json report = Json::parse(source->bytes(), nullptr, false);
+  Json report = Json::parse(source->bytes(), nullptr, false);
   const auto inputs = report.is_object() ? report.find("inputs") : report.end();
   if (!report.is_object() || inputs == report.end() || !inputs->is_array())
-    return error(Kind::malformed, "this is not a report of selvage, so nothing can be resumed from it",
-                 {.file = report_path});
+    return error(Kind::malformed,
+                 "this is not a report of selvage: those are written by --report FILE.json of other commands",
+                 {.file = path});
+  return report;
+}
+
+Result<std::map<std::string, std::string>> read_entries(const std::string& report_path) {
+  const Result<Json> report = read_report(report_path);
+  if (!report) return report.error();
   std::map<std::string, std::string> entries;
-  for (const Json& entry : *inputs)
+  for (const Json& entry : report->at("inputs"))
     if (const std::string path = text_at(entry, "path"); !path.empty()) entries[path] = text_of(entry);
   return entries;
 }

@@ -70,6 +70,10 @@ void drop_unknown(Json& json);
 std::string text_of(const Json& json, int indent = -1);
 // The text under a key; empty where there is none.
 std::string text_at(const Json& object, const char* key);
+// The number; none where there is none.
+std::optional<double> number_at(const Json& object, const char* key);
+// Is it there, and true?
+bool is_true(const Json& object, const char* key);
 
 struct Counts {
   std::size_t inputs = 0, done = 0, failed = 0, skipped = 0;
@@ -79,7 +83,10 @@ struct Counts {
 std::string whole_report(const std::string& started, double seconds, bool ok, const Counts& counts,
                          const std::vector<std::string>& inputs);
 
-// An earlier report: the entry of each path as JSON text. Errors: io, malformed.
+// A report as it was written; `inputs` is there and a list, of whatever. Errors: io, malformed.
+Result<Json> read_report(const std::string& path);
+
+// An earlier report: the entry of each path as JSON text. Errors: as read_report().
 Result<std::map<std::string, std::string>> read_entries(const std::string& report_path);
 
 // True when `entry` (JSON text of an earlier run) says that this input, with these settings, gave whole

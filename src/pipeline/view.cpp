@@ -5,6 +5,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/source.h"
 #include "core/text_report.h"
@@ -12,22 +13,47 @@
 #include "pipeline/mesh_page.h"
 #include "pipeline/page.h"
 #include "pipeline/writing.h"
+#include "view/scale_bar.h"
 
 namespace selvage::pipeline {
 
-view::PictureOptions picture_options(Job& job) {
+namespace {
+
+// From where a section is seen as it is; else the plan.
+view::From usual_view(const Options& options) {
+  constexpr std::array views = {view::From::side, view::From::front, view::From::plan};
+  return options.section ? views[static_cast<std::size_t>(options.section->axis)] : view::From::plan;
+}
+
+}  // namespace
+
+view::PictureOptions picture_options(Job& job, std::span<const yarn::Body> bodies) {
   const Options& given = job.options;
   view::PictureOptions options;
   options.width = given.picture_width;
   options.height = given.picture_height;
-  options.eye = {given.from, std::nullopt, given.zoom};
+  options.eye.from = given.from.value_or(usual_view(given));
+  options.eye.upright = view::upright_of(bodies);
+  options.eye.zoom = given.zoom;
   if (given.azimuth || given.elevation)
     options.eye.angles = {given.azimuth.value_or(0.0), given.elevation.value_or(0.0)};
+  options.section = given.section;
   options.background = given.background;
   options.flat = given.flat;
   options.threads = static_cast<int>(job.threads);
   options.progress = job.progress_of("drawing tile");
   return options;
+}
+
+Result<std::string> draw(const Job& job, std::span<const yarn::Body> bodies,
+                         const view::PictureOptions& options) {
+  view::PictureOptions above = options;
+  const int rows = job.options.no_scale_bar ? 0 : view::scale_bar_rows(options.width, options.height);
+  above.height -= rows;
+  Result<view::Picture> picture = view::render(bodies, above);
+  if (!picture) return picture.error();
+  if (rows > 0) view::add_scale_bar(*picture, rows, job.file_units(), options.background);
+  return view::png(*picture);
 }
 
 bool is_shown(const Options& options, const yarn::BodyLabel& yarn) {
@@ -46,22 +72,16 @@ Message none_shown(const Options& options) {
 
 namespace {
 
-Status write_picture(Job& job, const std::vector<yarn::Body>& bodies, OutputFile& file) {
-  const Result<view::Picture> picture = view::render(bodies, picture_options(job));
-  if (!picture) return picture.error();
-  const Result<std::string> bytes = view::png(*picture);
-  if (!bytes) return bytes.error();
-  return file.write(*bytes);
-}
-
 void write_pictures(Job& job, const fabric::YarnBuilder& builder, OpenOutputs& outputs) {
   std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
   if (!bodies || job.has_failed()) return;
+  const view::PictureOptions options = picture_options(job, *bodies);
   std::erase_if(*bodies, [&](const yarn::Body& body) { return !is_shown(job.options, body); });
   if (bodies->empty()) return job.say(none_shown(job.options));
+  const Result<std::string> picture = draw(job, *bodies, options);
+  if (!picture) return job.say(picture.error());
   for (OpenOutput& output : outputs)
-    if (Status status = write_picture(job, *bodies, output.file); !status.ok())
-      return job.say(status.error());
+    if (Status status = output.file.write(*picture); !status.ok()) return job.say(status.error());
 }
 
 // The format of an input that is a mesh; null: it is none, or cannot be opened (which is told when it is
@@ -96,6 +116,9 @@ void view_mesh(Job& job, const formats::Descriptor& format) {
 }  // namespace
 
 void view(Job& job) {
+  if (job.options.section && !job.outputs.empty() && job.outputs.front().format == &page_format())
+    return job.say(
+        error(Kind::unsupported, "--section is of pictures; on a page sections are moved under 'Section'"));
   if (const formats::Descriptor* mesh = mesh_format(job)) return view_mesh(job, *mesh);
   const std::optional<fabric::Fabric> fabric = job.read();
   if (!fabric) return;

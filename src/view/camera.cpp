@@ -10,8 +10,9 @@ namespace {
 
 constexpr double margin = 0.04;
 
-Eigen::Matrix3d axes_of(From from) {
+Eigen::Matrix3d axes_of(From from, const Vec3& upright) {
   Vec3 right = Vec3::UnitX(), up = Vec3::UnitZ();
+  if (from == From::plan) up = upright, right = upright.cross(Vec3::UnitZ());
   if (from == From::top) up = Vec3::UnitY();
   if (from == From::bottom) right = -Vec3::UnitX(), up = Vec3::UnitY();
   if (from == From::back) right = -Vec3::UnitX();
@@ -37,8 +38,16 @@ Eigen::Matrix3d axes_of(const Angles& angles) {
 
 }  // namespace
 
+Vec3 upright_of(std::span<const yarn::Body> bodies) {
+  const auto is_warp = [](const yarn::Body& body) { return body.role == yarn::Role::warp; };
+  const auto warp = std::find_if(bodies.begin(), bodies.end(), is_warp);
+  if (warp == bodies.end() || warp->axis.points.empty()) return Vec3::UnitY();
+  const Vec3 way = warp->axis.points.back() - warp->axis.points.front();
+  return std::abs(way.x()) > std::abs(way.y()) ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitY());
+}
+
 Camera::Camera(const Eye& eye, std::span<const yarn::Body> bodies, int width, int height)
-    : turn_(eye.angles ? axes_of(*eye.angles) : axes_of(eye.from)) {
+    : turn_(eye.angles ? axes_of(*eye.angles) : axes_of(eye.from, eye.upright)) {
   Box3 seen;
   for (const yarn::Body& body : bodies)
     for (const Vec3& p : body.surface.points) seen.extend(turn_ * p);

@@ -13,8 +13,8 @@ namespace selvage::view {
 // top: looking along -z, x to the right, y up. bottom: along +z, x to the left, y up (the cloth turned over
 // about y). front: along +y, x to the right, z up. back: along -y, x to the left, z up. side: along -x, y to
 // the right, z up. iso: from above, the front and the right (along (-1, 1, -1)), z up: x and y run equally
-// shortened, to the lower right and to the upper right.
-enum class From { top, bottom, front, back, side, iso };
+// shortened, to the lower right and to the upper right. plan: as top, turned so that Eye::upright is upright.
+enum class From { plan, top, bottom, front, back, side, iso };
 
 // Where else: degrees about z from the front toward +x, and above the horizontal. (0, 0) is front, (90, 0)
 // side, (180, 0) back, (0, 90) top.
@@ -23,10 +23,16 @@ struct Angles {
 };
 
 struct Eye {
-  From from = From::top;
+  From from = From::plan;
+  Vec3 upright = Vec3::UnitY();  // of plan, unit, across z
   std::optional<Angles> angles;  // instead
   double zoom = 1;               // the larger, the nearer the middle of the bodies
 };
+
+// What is upright in the plan of these yarns: their warp, else y, along which wales run. Where the first warp
+// runs rather along x than along y that is -x, so that the plan shows a draft as its text does: the top row
+// is the first weft, the left column the first warp.
+Vec3 upright_of(std::span<const yarn::Body> bodies);
 
 // Camera space: pixels; x to the right, y up, z toward the eye, the origin in the picture's centre.
 class Camera {

@@ -45,9 +45,6 @@ class Usage(Case):
         self.refused("unknown format 'igs'; did you mean 'iges'|unknown format 'igs'", "convert", GRID, "--to", "igs", "-o",
                      self.out)
 
-    def test_words_of_later_versions(self):
-        self.refused("'selvage report' is not in this version", "report", GRID)
-
     def test_values(self):
         for option, value in (("-j", "0"), ("-j", "x"), ("--timeout", "-1"), ("--memory", "0"), ("--ends", "round"),
                               ("--units", "feet"), ("--tolerance", "0"), ("--step-schema", "AP203"), ("--shard", "2/2"),
@@ -60,7 +57,7 @@ class Usage(Case):
             self.refused(re.escape(option), "mesh", GRID, "-o", self.out, option, value)
         for option, value in (("--size", "0x9"), ("--size", "12"), ("--size", "9x9x9"), ("--size", "99999x9"),
                               ("--size", "ax9"), ("--size", "-4x9"), ("--from", "below"), ("--background", "white"),
-                              ("--background", "0,0,256"), ("--background", "0,0")):
+                              ("--background", "0,0,256"), ("--section", "w=0"), ("--section", "z"), ("--background", "0,0")):
             self.refused(re.escape(option), "view", GRID, "-o", self.out, option, value)
 
     def test_formats_that_do_not_fit(self):

@@ -75,8 +75,6 @@ class Documents(Case):
 
     def test_pages_of_the_command_line(self):
         for page in sorted((ROOT / "src/cli").glob("*.md")):
-            if page.name == "report.md":
-                continue  # has no commands
             with self.subTest(page.name):
                 self.check(page.relative_to(ROOT))
 
@@ -128,7 +126,7 @@ class Documents(Case):
 
     def test_options_of_the_help_are_on_the_pages(self):
         text = "".join(page.read_text() for page in (ROOT / "src/cli").glob("*.md"))
-        for command in ("convert", "relax", "check", "mesh", "diff", "roundtrip", "info", "edit", "view"):
+        for command in ("convert", "relax", "check", "mesh", "diff", "roundtrip", "info", "edit", "view", "report"):
             for option in re.findall(r"^\s+(?:-\w,)?(--[\w-]+)", run(command, "--help").stdout, re.MULTILINE):
                 if option not in ("--help", "--output", "--verbose"):  # -h, -o, -v
                     self.assertIn(option, text, command)

@@ -294,6 +294,44 @@ class Pages(Case):
                 self.assertLess(self.browser.run("selvage.model.triangles"), 1_500_000)
                 self.assert_quiet()
 
+    def test_a_page_of_a_report(self):
+        report, source = self.folder / "r.json", self.source(CROSS)
+        self.fails(1, "check", SAMPLES / "plain4_path.txt", source, SAMPLES / "ring.txt", SAMPLES / "bad/misspelt.txt", "--report", report)
+        self.page = self.folder / "r.html"
+        self.succeeds("report", "html", report, "-o", self.page)
+        browser = self.browser
+        for scheme in ("dark", "light"):
+            browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+            browser.open(self.page, "document.readyState === 'complete'")
+            if KEPT:
+                pathlib.Path(KEPT).mkdir(parents=True, exist_ok=True)
+                (pathlib.Path(KEPT) / f"report-{scheme}.png").write_bytes(browser.screenshot())
+            red, = browser.run("[getComputedStyle(document.querySelector('.wide')).backgroundColor.match(/[0-9]+/)[0]]")
+            self.assertEqual(int(red) > 128, scheme == "light")
+        browser.call("Emulation.setEmulatedMedia", features=[])
+
+        def names():
+            return browser.run("[...document.querySelectorAll('#inputs > tbody > tr > th')].map((cell) => cell.dataset.value.split('/').pop())")
+
+        def sort(head, *keys):
+            browser.run(f"[...document.querySelectorAll('#inputs thead button')].find((one) => one.textContent === {head!r}).focus()")
+            for key in keys:
+                browser.key(key)
+            browser.settle()
+            return names(), browser.run("[...document.querySelectorAll('[aria-sort]')].map((one) => [one.textContent, one.getAttribute('aria-sort')])")
+
+        self.assertEqual(names(), ["misspelt.txt", "cloth.txt", "plain4_path.txt", "ring.txt"])
+        self.assertEqual(sort("Input", "Enter"), (["cloth.txt", "misspelt.txt", "plain4_path.txt", "ring.txt"], [["Input", "ascending"]]))
+        # Without a value at the end, upwards and downwards.
+        self.assertEqual(sort("Yarns", "Enter"), (["ring.txt", "cloth.txt", "plain4_path.txt", "misspelt.txt"], [["Yarns", "ascending"]]))
+        self.assertEqual(sort("Yarns", "Enter"), (["plain4_path.txt", "cloth.txt", "ring.txt", "misspelt.txt"], [["Yarns", "descending"]]))
+        browser.run("document.getElementById('find').value = 'did you mean'; document.getElementById('find').dispatchEvent(new Event('input'))")
+        self.assertEqual(browser.run("[...document.querySelectorAll('#inputs > tbody > tr:not([hidden]) > th')].length"), 1)
+        self.assertEqual(browser.run("found.textContent"), "1 of 4")
+        browser.run("document.getElementById('find').value = ''; document.getElementById('find').dispatchEvent(new Event('input'))")
+        self.assertTrue(browser.run("[...document.images].every((image) => image.naturalWidth === 200) && document.images.length === 3"))
+        self.assert_quiet()
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
+#include "view/embree/section.h"
 #include "view/embree/shading.h"
 
 namespace selvage::view::embree {
@@ -27,16 +28,18 @@ struct Sample {
   Look look;
   Vec3f place;
   float surroundings = 1, lamp = 1;
+  bool is_cut = false;  // the inside of a yarn, at a section
 };
 
 class Renderer {
  public:
   Renderer(const PictureOptions& options, const std::vector<Skin>& skins, const std::vector<Paint>& paints,
-           const Scene& scene)
+           const Scene& scene, const CutScene* cut)
       : options_(options),
         skins_(skins),
         paints_(paints),
         scene_(scene),
+        cut_(cut),
         background_(linear(options.background)) {
     for (const Skin& skin : skins)
       for (const Vec3f& p : skin.points) eye_ = std::max(eye_, p.z() + 1.0F);
@@ -47,12 +50,14 @@ class Renderer {
  private:
   [[nodiscard]] Sample sample(int x, int y) const;
   void light(Sample& sample, const Hit& hit, int cell) const;
+  [[nodiscard]] bool is_blocked(const Vec3f& origin, const Vec3f& direction, float reach) const;
   [[nodiscard]] Light pixel(const std::vector<Sample>& tile, int stride, int x, int y) const;
 
   const PictureOptions& options_;
   const std::vector<Skin>& skins_;
   const std::vector<Paint>& paints_;
   const Scene& scene_;
+  const CutScene* cut_;  // null: the yarns are whole
   Light background_;
   Patterns patterns_;
   float eye_ = 0;  // z from where all rays start
@@ -67,10 +72,24 @@ Sample Renderer::sample(int x, int y) const {
     const int whole = (k - parity(k)) / samples_side;
     return static_cast<float>(whole);
   };
-  const Vec3f origin(pixel(x) + place[0] - 0.5F * static_cast<float>(options_.width),
-                     0.5F * static_cast<float>(options_.height) - pixel(y) - place[1], eye_);
+  Vec3f origin(pixel(x) + place[0] - 0.5F * static_cast<float>(options_.width),
+               0.5F * static_cast<float>(options_.height) - pixel(y) - place[1], eye_);
   const Vec3f direction(0, 0, -1);
   Sample made;
+  if (cut_ != nullptr) {
+    const std::optional<float> start = cut_->begin_of_sight(origin);
+    if (!start) return made;
+    if (*start < eye_) {
+      origin.z() = *start;
+      if (const std::optional<CutScene::Inner> inner = cut_->inside_at(origin)) {
+        made.yarn = inner->yarn;
+        made.place = origin;
+        made.look = {tinted(paints_[inner->yarn].color, inner->shared), cut_->normal()};
+        made.is_cut = true;
+        return made;
+      }
+    }
+  }
   const std::optional<Hit> hit = scene_.nearest(origin, direction);
   if (!hit) return made;
   made.yarn = hit->yarn;
@@ -82,18 +101,24 @@ Sample Renderer::sample(int x, int y) const {
   return made;
 }
 
+// What is cut away casts no shadow.
+bool Renderer::is_blocked(const Vec3f& origin, const Vec3f& direction, float reach) const {
+  if (cut_ != nullptr) reach = std::min(reach, cut_->way_out(origin, direction));
+  return reach > 0.0F && scene_.is_blocked(origin, direction, reach);
+}
+
 void Renderer::light(Sample& sample, const Hit& hit, int cell) const {
   constexpr float off_surface = 0.15F;  // pixels: more than the chord
   const Vec3f origin = sample.place + off_surface * hit.facing;
   const float reach = reach_in_sizes * static_cast<float>(skins_[hit.yarn].size);
   int free = 0;
   for (int ray = 0; ray < Patterns::rays_to_surroundings; ++ray)
-    if (!scene_.is_blocked(origin, patterns_.to_surroundings(cell, ray, sample.look.normal), reach)) ++free;
+    if (!is_blocked(origin, patterns_.to_surroundings(cell, ray, sample.look.normal), reach)) ++free;
   sample.surroundings = static_cast<float>(free) / Patterns::rays_to_surroundings;
   const Vec3f& to_lamp = patterns_.to_lamp(cell);
   const bool turned_away = sample.look.normal.dot(to_lamp) <= 0.0F;
   sample.lamp =
-      turned_away || scene_.is_blocked(origin, to_lamp, std::numeric_limits<float>::infinity()) ? 0.0F : 1.0F;
+      turned_away || is_blocked(origin, to_lamp, std::numeric_limits<float>::infinity()) ? 0.0F : 1.0F;
 }
 
 // x, y: of the pixel's first sample in the tile's array. Samples are averaged nearly as the eye judges them,
@@ -112,13 +137,22 @@ Light Renderer::pixel(const std::vector<Sample>& tile, int stride, int x, int y)
         sum += background_.cwiseSqrt();
         continue;
       }
+      if (own.is_cut) {
+        constexpr float rim = 0.3F;
+        bool is_rim = false;
+        for (int l = j - window_before; l <= j + window_after; ++l)
+          for (int k = i - window_before; k <= i + window_after; ++k)
+            is_rim = is_rim || !at(k, l).is_cut || at(k, l).yarn != own.yarn;
+        sum += ((is_rim ? rim : 1.0F) * own.look.color).cwiseSqrt();
+        continue;
+      }
       const float near = near_in_sizes * static_cast<float>(skins_[own.yarn].size);
       float surroundings = 0, lamp = 0;
       int count = 0;
       for (int l = j - window_before; l <= j + window_after; ++l)
         for (int k = i - window_before; k <= i + window_after; ++k) {
           const Sample& other = at(k, l);
-          if (other.yarn != own.yarn || std::abs(other.place.z() - own.place.z()) > near ||
+          if (other.yarn != own.yarn || other.is_cut || std::abs(other.place.z() - own.place.z()) > near ||
               other.look.normal.dot(own.look.normal) < alike)
             continue;
           surroundings += other.surroundings;
@@ -179,11 +213,16 @@ Result<Picture> render_yarns(std::span<const yarn::Body> bodies, const PictureOp
   if (!scene) return scene.error();
   std::vector<Paint> paints;
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    paints.push_back(paint_of(bodies[i], (*skins)[i], camera.pixels_per_unit()));
+    paints.push_back(paint_of(bodies[i], i, (*skins)[i], camera.pixels_per_unit()));
+  std::optional<CutScene> cut;
+  if (options.section) {
+    if (Status status = check_section(*options.section, camera, *skins); !status.ok()) return status.error();
+    cut.emplace(*options.section, camera, *scene, *skins);
+  }
 
-  Picture picture{options.width, options.height, {}};
+  Picture picture{options.width, options.height, {}, camera.pixels_per_unit()};
   picture.rgb.resize(3 * static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height));
-  const Renderer renderer(options, *skins, paints, *scene);
+  const Renderer renderer(options, *skins, paints, *scene, cut ? &*cut : nullptr);
   const auto tiles = [](int pixels) {
     return static_cast<std::size_t>((pixels + tile_side - 1) / tile_side);
   };

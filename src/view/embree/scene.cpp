@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <new>
 
@@ -89,6 +90,18 @@ std::optional<Hit> Scene::nearest(const Vec3f& origin, const Vec3f& direction, f
   return Hit{found.hit.geomID, found.hit.primID,
              found.hit.u,      found.hit.v,
              found.ray.tfar,   Vec3f(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z).normalized()};
+}
+
+std::optional<Hit> Walk::next() {
+  constexpr float one_place = 1e-3F;  // pixels
+  for (;;) {
+    const float beyond =
+        last_ ? std::nextafter(last_->distance, std::numeric_limits<float>::infinity()) : 0.0F;
+    const std::optional<Hit> before = std::exchange(last_, scene_.nearest(origin_, direction_, beyond));
+    if (!last_ || !before || before->yarn != last_->yarn || last_->distance - before->distance >= one_place ||
+        before->facing.dot(direction_) * last_->facing.dot(direction_) <= 0.0F)
+      return last_;
+  }
 }
 
 bool Scene::is_blocked(const Vec3f& origin, const Vec3f& direction, float reach) const {

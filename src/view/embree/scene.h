@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "view/skin.h"
@@ -41,6 +42,26 @@ class Scene {
   };
   std::unique_ptr<RTCDeviceTy, Releaser<rtcReleaseDevice>> device_;
   std::unique_ptr<RTCSceneTy, Releaser<rtcReleaseScene>> scene_;
+};
+
+// The hits along a ray, the nearest first. Two facets of a skin that share an edge may both be hit there:
+// that is one hit. Other skins are not one: those of yarns that touch lie nearer.
+class Walk {
+ public:
+  // `scene` outlives it.
+  Walk(const Scene& scene, Vec3f origin, Vec3f direction)
+      : scene_(scene), origin_(std::move(origin)), direction_(std::move(direction)) {}
+  // Behind a hit that is known.
+  Walk(const Scene& scene, const Vec3f& origin, const Vec3f& direction, const Hit& first)
+      : Walk(scene, origin, direction) {
+    last_ = first;
+  }
+  std::optional<Hit> next();
+
+ private:
+  const Scene& scene_;
+  Vec3f origin_, direction_;
+  std::optional<Hit> last_;
 };
 
 }  // namespace selvage::view::embree

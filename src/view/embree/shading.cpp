@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "view/role_color.h"
+
 namespace selvage::view::embree {
 
 namespace {
@@ -49,9 +51,9 @@ std::uint8_t encoded(float linear) {
   return static_cast<std::uint8_t>(std::lround(255.0F * s));
 }
 
-Paint paint_of(const yarn::Body& body, const Skin& skin, double pixels_per_unit) {
+Paint paint_of(const yarn::Body& body, std::size_t number, const Skin& skin, double pixels_per_unit) {
   Paint paint;
-  paint.color = linear(body.color);
+  paint.color = linear(body.has_own_color ? body.color : role_color(body.role, number));
   paint.end_color = mixed(paint.color, Light::Ones(), ends_toward_white);
   if (body.twist == 0.0) return paint;
   // Pixels between two stripes, across them.
@@ -164,21 +166,13 @@ class Shared {
 Inside inside_of(const Scene& scene, const std::vector<Skin>& skins, const Vec3f& origin,
                  const Vec3f& direction, const Hit& first) {
   constexpr int most_hits = 32;
-  // Two facets that share an edge may both be hit there: nearer than this, in pixels, one skin is met once.
-  // Other skins are not: those of yarns that touch lie nearer.
-  constexpr float one_place = 1e-3F;
   const Shared shared(skins, direction);
   std::vector<Hit> entered;  // not left yet: `first`'s yarn and others
-  Hit last = first;
+  Walk walk(scene, origin, direction, first);
   int depth = 1;  // how often the ray is inside the first yarn
   for (int k = 0; k < most_hits; ++k) {
-    const std::optional<Hit> hit = scene.nearest(
-        origin, direction, std::nextafter(last.distance, std::numeric_limits<float>::infinity()));
+    const std::optional<Hit> hit = walk.next();
     if (!hit) break;
-    const Hit before = std::exchange(last, *hit);
-    if (before.yarn == hit->yarn && hit->distance - before.distance < one_place &&
-        before.facing.dot(direction) * hit->facing.dot(direction) > 0.0F)
-      continue;
     const bool own = hit->yarn == first.yarn;
     if (hit->facing.dot(direction) < 0.0F) {
       entered.push_back(*hit);

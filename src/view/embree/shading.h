@@ -21,7 +21,8 @@ struct Paint {
   float stripes =
       0;  // how dark the fibres' stripes are: 0 for none, 0 too where they would be too fine to see
 };
-Paint paint_of(const yarn::Body& body, const Skin& skin, double pixels_per_unit);
+// `number`: of the yarn among those that are shown.
+Paint paint_of(const yarn::Body& body, std::size_t number, const Skin& skin, double pixels_per_unit);
 
 // One place of a skin as the eye sees it.
 struct Look {

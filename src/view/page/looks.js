@@ -1,8 +1,4 @@
 // Colours, and how things are shaded.
-const ROLE_COLORS = {
-  warp: [46, 98, 150], weft: [205, 140, 52], wale: [72, 128, 92], course: [58, 130, 140],
-  braider: [150, 84, 120], axial: [120, 116, 66], binder: [176, 72, 60], other: [140, 146, 150],
-};
 // Of regions of meshes, and of yarns one by one: hues a golden section of the circle apart.
 function hueColor(index) {
   const color = new THREE.Color().setHSL((0.55 + index * 0.618034) % 1, 0.42, 0.48, THREE.SRGBColorSpace);

@@ -13,6 +13,7 @@
 #include "core/words.h"
 #include "core/xml_text.h"
 #include "view/page/sources.h"
+#include "view/role_color.h"
 
 namespace selvage::view::page {
 
@@ -115,7 +116,15 @@ Json json_of(const Shape& shape, Binary& binary) {
 
 Json yarns_json(const Page& page, Binary& binary) {
   Json json = {{"count", page.yarns.size()}, {"roles", Json::array()}, {"names", Json::array()}};
-  for (const yarn::Role role : yarn::all_roles) json["roles"].push_back(name_of(role));
+  for (const yarn::Role role : yarn::all_roles) {
+    json["roles"].push_back(name_of(role));
+    Json colors = Json::array();  // of every second yarn another one
+    for (const std::size_t number : {std::size_t{0}, std::size_t{1}}) {
+      const yarn::Color color = role_color(role, number);
+      colors.push_back({color.red, color.green, color.blue});
+    }
+    json["role_colors"].push_back(std::move(colors));
+  }
   std::vector<float> motions, measures;
   std::vector<std::uint32_t> shapes;
   std::vector<std::uint8_t> looks;
@@ -217,6 +226,17 @@ std::string base64(std::string_view bytes) {
 
 }  // namespace
 
+void fill(TextBuffer& to, std::string_view text, const std::function<void(std::string_view slot)>& put) {
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t at = rest.find("{{");
+    to << rest.substr(0, at);
+    if (at == rest.npos) break;
+    const std::size_t end = rest.find("}}", at);
+    put(rest.substr(at + 2, end - at - 2));
+    rest.remove_prefix(end + 2);
+  }
+}
+
 Status write(const Page& page, std::string_view library, OutputFile& output) {
   Binary binary;
   Json json = {{"selvage", SELVAGE_VERSION},
@@ -235,19 +255,12 @@ Status write(const Page& page, std::string_view library, OutputFile& output) {
     json["yarns"] = yarns_json(page, binary);
   if (page.contacts) json["contacts"] = contacts_json(*page.contacts);
 
-  // The slots of page.html.
   TextBuffer text(output);
-  for (std::string_view rest = html(); !rest.empty();) {
-    const std::size_t at = rest.find("{{");
-    text << rest.substr(0, at);
-    if (at == rest.npos) break;
-    const std::size_t end = rest.find("}}", at);
-    const std::string_view slot = rest.substr(at + 2, end - at - 2);
-    rest.remove_prefix(end + 2);
+  fill(text, page_html(), [&](std::string_view slot) {
     if (slot == "name")
       text << xml_text(page.title.empty() ? page.name : page.title);
     else if (slot == "css")
-      text << css();
+      text << palette_css() << page_css();
     else if (slot == "picture")
       text << (page.picture.empty() ? "" : "data:image/png;base64,") << base64(page.picture);
     else if (slot == "data")
@@ -258,7 +271,7 @@ Status write(const Page& page, std::string_view library, OutputFile& output) {
       text << library;
     else if (slot == "scripts")
       for (const std::string_view script : scripts()) text << script;
-  }
+  });
   return text.finish();
 }
 

@@ -139,6 +139,7 @@ class Yarns {
     this.names = data.names;
     this.threads = data.threads;
     this.roleNames = data.roles;
+    this.roleColors = data.role_colors;
     this.motions = numbers(Float32Array, data.motions, 12 * count);
     this.measures = numbers(Float32Array, data.measures, 2 * count);
     this.shapeOf = numbers(Uint32Array, data.shape_of, count);
@@ -175,9 +176,7 @@ class Yarns {
     const own = [...this.ownLooks.subarray(4 * yarn, 4 * yarn + 3)];
     if (way === 'file') return own;
     if (way === 'each') return hueColor(yarn);
-    // Neighbours differ a little, so that they can be told apart.
-    const shade = yarn % 2 === 0 ? 1 : 1.14;
-    return ROLE_COLORS[this.role(yarn)].map((part) => Math.min(255, part * shade));
+    return this.roleColors[this.ownLooks[4 * yarn + 3]][yarn % 2];
   }
   paint(way = this.way) {
     this.way = way;

@@ -1,0 +1,42 @@
+#include "view/role_color.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace selvage::view {
+
+namespace {
+
+yarn::Color color_of(yarn::Role role) {
+  using enum yarn::Role;
+  switch (role) {
+    case warp:
+      return {46, 98, 150};
+    case weft:
+      return {205, 140, 52};
+    case wale:
+      return {72, 128, 92};
+    case course:
+      return {58, 130, 140};
+    case braider:
+      return {150, 84, 120};
+    case axial:
+      return {120, 116, 66};
+    case binder:
+      return {176, 72, 60};
+    case other:
+      return {140, 146, 150};
+  }
+  return {};
+}
+
+}  // namespace
+
+yarn::Color role_color(yarn::Role role, std::size_t number) {
+  const double shade = number % 2 == 0 ? 1.0 : 1.14;
+  const auto shaded = [&](int part) { return std::min(255, static_cast<int>(std::lround(shade * part))); };
+  const yarn::Color color = color_of(role);
+  return {shaded(color.red), shaded(color.green), shaded(color.blue)};
+}
+
+}  // namespace selvage::view
