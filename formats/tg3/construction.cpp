@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/tg3/binder_weave.h"
+
 namespace selvage::formats::tg3 {
 
 namespace {
@@ -216,6 +218,10 @@ std::optional<std::vector<TextileYarn>> construct(const Element& textile, const 
   if (type == "CTextileWeave2D" || type == "CTextileWeave3D")
     return WeaveBuilder(textile, fields).build(false);
   if (type == "CShearedTextileWeave2D") return WeaveBuilder(textile, fields).build(true);
+  if (type == "CTextileOrthogonal") return build_binder_weave(textile, BinderTurn::orthogonal, fields);
+  if (type == "CTextileAngleInterlock")
+    return build_binder_weave(textile, BinderTurn::angle_interlock, fields);
+  if (type == "CTextileLayerToLayer") return build_binder_weave(textile, BinderTurn::layer_to_layer, fields);
   if (type == "CTextileWeftKnit") return build_weft_knit(textile, fields);
   if (type == "CTextile") {
     fields.error(textile, "the textile has no <Yarn>");

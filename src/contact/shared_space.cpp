@@ -24,16 +24,50 @@ struct Passage {
   std::uint32_t triangle = 0;
 };
 
+// A skin's vertices in a frame, each seen when it is asked for.
+class SeenMesh {
+ public:
+  SeenMesh(const TriangleRuns& skin, const Axes& frame)
+      : skin_(skin),
+        frame_(frame),
+        points_(skin.mesh().vertices.size()),
+        is_seen_(skin.mesh().vertices.size(), 0) {}
+  [[nodiscard]] const TriangleRuns& skin() const { return skin_; }
+
+  // Can triangles of the run reach lines over the rectangle?
+  [[nodiscard]] bool reaches(const TriangleRuns::Run& run, const Rectangle& lines) const {
+    return lines.squaredExteriorDistance(Vec2(frame_.seen(run.middle).head<2>())) <= run.radius * run.radius;
+  }
+  const std::vector<Vec3>& of(const std::array<std::uint32_t, 3>& triangle) {
+    for (const std::uint32_t corner : triangle) {
+      if (is_seen_[corner] != 0) continue;
+      is_seen_[corner] = 1;
+      points_[corner] = frame_.seen(skin_.mesh().vertices[corner]);
+    }
+    return points_;
+  }
+
+ private:
+  const TriangleRuns& skin_;
+  const Axes& frame_;
+  std::vector<Vec3> points_;
+  std::vector<char> is_seen_;
+};
+
 // Lines along the frame's direction through a skin.
 class Rays : public Raster {
  public:
   using Raster::Raster;
 
-  // Every passage of a line through a triangle of the skin, line by line, each going up. `seen`: its vertices
-  // in the frame.
-  [[nodiscard]] std::vector<Passage> pass(const Mesh& skin, const std::vector<Vec3>& seen) const {
+  // Every passage of a line through a triangle of the skin, line by line, each going up.
+  [[nodiscard]] std::vector<Passage> pass(SeenMesh& seen) const {
     std::vector<Passage> met;
-    for (std::uint32_t k = 0; k < skin.triangles.size(); ++k) pass(seen, skin.triangles[k], k, met);
+    const Rectangle whole(low, Vec2(low + step * lines));
+    const auto& triangles = seen.skin().mesh().triangles;
+    for (const TriangleRuns::Run& run : seen.skin().runs()) {
+      if (!seen.reaches(run, whole)) continue;
+      for (std::uint32_t k = run.begin; k < run.end; ++k) pass(seen.of(triangles[k]), triangles[k], k, met);
+    }
     // By lines in one go, as few passages are on each.
     std::vector<std::size_t> ends(size() + 1, 0);
     for (const Passage& passage : met) ++ends[passage.line + 1];
@@ -136,18 +170,28 @@ Passages next_line(const std::vector<Passage>& all, std::size_t begin) {
 
 }  // namespace
 
+TriangleRuns::TriangleRuns(const Mesh& mesh) : mesh_(mesh) {
+  constexpr std::uint32_t in_a_run = 16;
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  for (std::uint32_t begin = 0; begin < count; begin += in_a_run) {
+    Run run{begin, std::min(begin + in_a_run, count), Vec3::Zero(), 0};
+    Box3 box;
+    for (std::uint32_t k = run.begin; k < run.end; ++k)
+      for (const std::uint32_t corner : mesh.triangles[k]) box.extend(mesh.vertices[corner]);
+    run.middle = box.center();
+    for (std::uint32_t k = run.begin; k < run.end; ++k)
+      for (const std::uint32_t corner : mesh.triangles[k])
+        run.radius = std::max(run.radius, (mesh.vertices[corner] - run.middle).norm());
+    run.radius *= 1 + 1e-6;  // rounding, of the frame too
+    runs_.push_back(run);
+  }
+}
+
 // Both skins in a frame.
 class SharedSpace::View {
  public:
-  View(const SharedSpace& space, const Vec3& direction) : space_(space), frame_(direction, space.walls_) {
-    const auto see = [this](const std::vector<Vec3>& points) {
-      std::vector<Vec3> seen;
-      seen.reserve(points.size());
-      for (const Vec3& p : points) seen.push_back(frame_.seen(p));
-      return seen;
-    };
-    seen_a_ = see(space.a_.vertices);
-    seen_b_ = see(space.b_.vertices);
+  View(const SharedSpace& space, const Vec3& direction)
+      : space_(space), frame_(direction, space.walls_), seen_a_(space.a_, frame_), seen_b_(space.b_, frame_) {
     for (const Vec3& p : space.walls_) box_.extend(frame_.seen(p));
   }
 
@@ -225,8 +269,7 @@ class SharedSpace::View {
   // Calls visit(piece of A, piece of B) for those that overlap, line by line.
   template <class Visit>
   void for_each_shared(const Rays& raster, const Visit& visit) const {
-    const std::vector<Passage> all_a = raster.pass(space_.a_, seen_a_),
-                               all_b = raster.pass(space_.b_, seen_b_);
+    const std::vector<Passage> all_a = raster.pass(seen_a_), all_b = raster.pass(seen_b_);
     std::vector<Chord> pieces_a, pieces_b;
     for (std::size_t i = 0, j = 0; i < all_a.size() && j < all_b.size();) {
       const Passages a = next_line(all_a, i), b = next_line(all_b, j);
@@ -250,8 +293,8 @@ class SharedSpace::View {
 
   const SharedSpace& space_;
   Axes frame_;
-  std::vector<Vec3> seen_a_, seen_b_;
-  Box3 box_;  // of the walls
+  mutable SeenMesh seen_a_, seen_b_;  // what was seen once
+  Box3 box_;                          // of the walls
 };
 
 Parting SharedSpace::parting(const Vec3& direction) const {

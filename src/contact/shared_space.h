@@ -14,6 +14,24 @@ struct Parting {
   Vec3 p = Vec3::Zero(), q = Vec3::Zero();  // on them; p - q = distance * direction
 };
 
+// A skin's triangles in runs, each within a sphere: most are far from the few lines that are looked along.
+// The mesh has to outlive it.
+class TriangleRuns {
+ public:
+  struct Run {
+    std::uint32_t begin = 0, end = 0;  // triangles
+    Vec3 middle = Vec3::Zero();
+    double radius = 0;
+  };
+  explicit TriangleRuns(const Mesh& mesh);
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+  [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
+
+ private:
+  const Mesh& mesh_;
+  std::vector<Run> runs_;
+};
+
 // Two closed skins that share the space round some points. parting(n): how far A has to
 // go along -n until that space is shared no more: on every line along n through it, A's piece [a0, a1] and
 // B's piece [b0, b1] that overlap part by a1 - b0, and the largest of these counts. Lines are tried on a
@@ -38,8 +56,7 @@ class SharedSpace {
  private:
   class View;
 
-  const Mesh& a_;
-  const Mesh& b_;
+  TriangleRuns a_, b_;
   std::vector<Vec3> walls_;
   double grain_;
 };
