@@ -10,7 +10,6 @@
 
 #include "cad/edges.h"
 #include "cad/feet.h"
-#include "cad/outline.h"
 #include "cad/sampled_curve.h"
 #include "cad/seam.h"
 #include "formats/iges/header.h"
@@ -130,17 +129,20 @@ nurbs::Surface beside_seam(const cad::Face& face) {
   const nurbs::Surface& s = face.surface;
   cad::Range range = cad::domain(s);
   if (!std::ranges::all_of(face.loops, has_all_flats)) return s;
-  const cad::Range used = cad::used_range(face);
+  Box3 used;
+  for (const cad::Edge& edge : cad::edges_of(face)) used.extend(cad::box_of(edge.flat.points));
   const std::array<double, 2> periods = cad::periods_of(s);
   const auto narrow = [](double& low, double& high, double first, double last, double period) {
     const double near = 1e-7 * period;
-    if (last - first >= period - near || (first > low + near && last < high - near)) return false;
-    low = first;
-    high = last;
+    const bool touches = first <= low + near || last >= high - near,
+               fits = first >= low - near && last <= high + near;
+    if (!touches || !fits || last - first >= period - near) return false;
+    low = std::max(low, first);
+    high = std::min(high, last);
     return true;
   };
-  const bool narrower = narrow(range.u0, range.u1, used.u0, used.u1, periods[0]);
-  return narrow(range.v0, range.v1, used.v0, used.v1, periods[1]) || narrower
+  const bool narrower = narrow(range.u0, range.u1, used.min().x(), used.max().x(), periods[0]);
+  return narrow(range.v0, range.v1, used.min().y(), used.max().y(), periods[1]) || narrower
              ? nurbs::restricted(s, range.u0, range.u1, range.v0, range.v1)
              : s;
 }
