@@ -39,6 +39,11 @@ end
 """
 
 
+def is_page(line):
+    """Does the command write a page that needs three.js? Those of reports do not."""
+    return line.endswith(".html") and " view " in line
+
+
 def environment(**more):
     # One moment for all files, so that two runs can be compared byte for byte.
     return {**os.environ, "SOURCE_DATE_EPOCH": "1700000000", "LC_ALL": "C", **more}

@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import unittest
 
-from program import Case, HAS_PAGES, PROGRAM, ROOT, environment, run
+from program import Case, HAS_PAGES, PROGRAM, ROOT, environment, is_page, run
 
 
 def commands(document):
@@ -62,7 +62,7 @@ class Documents(Case):
                 self.assertRegex(line, f"^(selvage|{ROOT}/scripts/homogenize) ", "no other commands are expected here")
                 done = subprocess.run(["sh", "-c", line], cwd=self.folder, env=environment(PATH=self.path),
                                       capture_output=True, text=True)
-                if line.endswith(".html") and not HAS_PAGES:
+                if is_page(line) and not HAS_PAGES:
                     self.assertIn("three.js", done.stderr)
                 else:
                     self.assertEqual(done.returncode, code, done.stderr)

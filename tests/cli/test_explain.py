@@ -4,7 +4,7 @@ import json
 import re
 import unittest
 
-from program import Case, HAS_PAGES, ROOT, run
+from program import Case, HAS_PAGES, ROOT, is_page, run
 
 TXT = ROOT / "formats" / "txt"
 STRANGE = "qqqqqqqqqqqq"  # near to no word
@@ -181,7 +181,7 @@ class Help(Case):
                     self.assertTrue(line.strip().startswith(f"selvage {command}"), line)
                     with self.subTest(line):
                         # What is read back is proven to about 1e-12, not to the bit.
-                        if line.endswith(".html") and not HAS_PAGES:
+                        if is_page(line) and not HAS_PAGES:
                             self.assertIn("three.js", self.fails(1, *line.split()[1:], cwd=self.folder))
                         else:
                             self.succeeds(*line.split()[1:], cwd=self.folder)
