@@ -29,6 +29,12 @@ bool has_all_flats(const cad::Loop& loop) {
   return std::none_of(loop.edges.begin(), loop.edges.end(),
                       [](const cad::Edge& edge) { return edge.flat.points.empty(); });
 }
+// All are there, and none is another curve than the one in space, as close as other programs fit them.
+bool flats_hold(const cad::Loop& loop, const nurbs::Surface& surface) {
+  constexpr double fitted = 1e-3;  // of the surface's size
+  return std::ranges::all_of(loop.edges,
+                             [&](const cad::Edge& edge) { return cad::flat_holds(surface, edge, fitted); });
+}
 // An edge that has a length, but no curve in space.
 bool lacks_curve(const cad::Edge& edge, const nurbs::Surface& surface) {
   return is_pole(edge) && !edge.flat.points.empty() &&
@@ -92,12 +98,11 @@ int PartWriter::chain(const Common& common, const std::vector<const nurbs::Curve
   return parts.size() == 1 ? parts.front() : write_composite(records_, common, status, parts);
 }
 
-// Where all edges have curves in the parameters, those hold, and poles have none in space: OpenCASCADE would
-// take an edge on the seam beside a pole without length to the seam's other side. Else the poles are curves
-// without length.
+// Where the curves in the parameters hold, poles have none in space: OpenCASCADE would take an edge on the
+// seam beside a pole without length to the seam's other side. Else the poles are curves without length.
 int PartWriter::boundary(const Common& common, int pointer, const nurbs::Surface& surface,
                          const cad::Loop& loop) {
-  const bool all_flat = has_all_flats(loop);
+  const bool by_flats = flats_hold(loop, surface);
   std::vector<const nurbs::Curve*> flats, curves;
   std::vector<nurbs::Curve> poles(loop.edges.size());
   for (std::size_t i = 0; i < loop.edges.size(); ++i) {
@@ -107,7 +112,7 @@ int PartWriter::boundary(const Common& common, int pointer, const nurbs::Surface
       curves.push_back(&edge.curve);
       continue;
     }
-    if (all_flat) continue;
+    if (by_flats) continue;
     for (std::size_t k = 1; k < loop.edges.size(); ++k) {
       const cad::Edge& before = loop.edges[(i + loop.edges.size() - k) % loop.edges.size()];
       if (is_pole(before)) continue;
@@ -117,10 +122,10 @@ int PartWriter::boundary(const Common& common, int pointer, const nurbs::Surface
     }
     curves.push_back(&poles[i]);
   }
-  const bool has_poles = curves.size() < flats.size();
-  const int flat = all_flat ? chain(common, flats, dependent_in_2d) : 0;
+  const bool lacks_poles = curves.size() < flats.size();
+  const int flat = has_all_flats(loop) ? chain(common, flats, dependent_in_2d) : 0;
   const int spatial = has_all_curves(loop, surface) ? chain(common, curves, dependent) : 0;
-  return write_boundary(records_, common, pointer, flat, spatial, has_poles);
+  return write_boundary(records_, common, pointer, flat, spatial, lacks_poles);
 }
 
 // Of a closed surface with a face that begins or ends at its seam just the range of that face: OpenCASCADE
@@ -128,7 +133,7 @@ int PartWriter::boundary(const Common& common, int pointer, const nurbs::Surface
 nurbs::Surface beside_seam(const cad::Face& face) {
   const nurbs::Surface& s = face.surface;
   cad::Range range = cad::domain(s);
-  if (!std::ranges::all_of(face.loops, has_all_flats)) return s;
+  if (!std::ranges::all_of(face.loops, [&](const cad::Loop& loop) { return flats_hold(loop, s); })) return s;
   Box3 used;
   for (const cad::Edge& edge : cad::edges_of(face)) used.extend(cad::box_of(edge.flat.points));
   const std::array<double, 2> periods = cad::periods_of(s);

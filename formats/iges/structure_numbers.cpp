@@ -95,7 +95,8 @@ class Numbers {
     const std::string what =
         fmt::format("the range{} is {} to {}, and the knots allow {} to {}", where, first, last, low, high);
     // All of the knots can only mean all of the shape.
-    first <= low + slack&& last >= high - slack ? warning(what, value) : defect(what, value);
+    const bool is_all = first <= low + slack && last >= high - slack;
+    is_all ? warning(what, value) : defect(what, value);
   }
 
  private:

@@ -122,9 +122,9 @@ NearestOnCurve SampledCurve::nearest(const Vec3& p, double enough) const {
   return nearest;
 }
 
-bool flat_holds(const nurbs::Surface& surface, const Edge& edge) {
+bool flat_holds(const nurbs::Surface& surface, const Edge& edge, double agree) {
   if (edge.flat.points.empty() || edge.curve.points.empty()) return !edge.flat.points.empty();
-  const double tolerance = curves_agree * box_of(surface.points).diagonal().norm();
+  const double tolerance = agree * box_of(surface.points).diagonal().norm();
   const SampledCurve sampled(edge.curve);
   return std::ranges::all_of(std::array{0.5, 0.1, 0.3, 0.7, 0.9}, [&](double share) {
     return sampled.nearest(at_share(surface, edge.flat, share), tolerance).distance <= tolerance;

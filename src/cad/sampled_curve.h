@@ -45,8 +45,8 @@ struct SampledCurve {
 // Where an edge's curves in the parameters and in space are farther apart than this share of the surface's
 // size, as files have it, the one in space holds.
 inline constexpr double curves_agree = 2e-6;
-// Does the edge's curve in parameters hold? Not where it has none.
-bool flat_holds(const nurbs::Surface& surface, const Edge& edge);
+// Does the edge's curve in parameters hold, to this share of the surface's size? Not where it has none.
+bool flat_holds(const nurbs::Surface& surface, const Edge& edge, double agree = curves_agree);
 
 // How far points may be apart that are meant to be one: the file's resolution, within 1e-6 and 1e-4 of the
 // size of what they belong to (and above the rounding of their coordinates).

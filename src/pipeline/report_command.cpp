@@ -35,11 +35,12 @@ Status check_entries(const Json& report, const std::string& path) {
 Json merged(const std::vector<Json>& reports) {
   Json all = reports.front();
   constexpr std::array tallied = {"inputs", "done", "failed", "skipped"};
+  constexpr double most_inputs = 1e15;  // a report may say anything
   std::array<std::uint64_t, tallied.size()> counts{};
   for (const Json& report : reports)
     for (std::size_t k = 0; k < tallied.size(); ++k)
       counts[k] += static_cast<std::uint64_t>(
-          std::max(0.0, number_at(report.value("counts", Json()), tallied[k]).value_or(0)));
+          std::clamp(number_at(report.value("counts", Json()), tallied[k]).value_or(0), 0.0, most_inputs));
   all["counts"] = Json::object();
   for (std::size_t k = 0; k < tallied.size(); ++k) all["counts"][tallied[k]] = counts[k];
   Json& inputs = all["inputs"];

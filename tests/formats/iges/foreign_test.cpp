@@ -6,6 +6,7 @@
 #include <GProp_GProps.hxx>
 #include <cmath>
 #include <numbers>
+#include <regex>
 
 #include "formats/iges/files.h"
 #include "formats/iges/occt_reader.h"
@@ -78,43 +79,57 @@ TEST_P(Foreign, SolidsOfOpenCascade) {
   }
 }
 
-// A part of a sphere between its seam and another meridian, as SolidWorks writes it: OpenCASCADE finds that
-// part again in what we write, and not the rest of the sphere.
-TEST(ForeignSphere, BetweenTheSeamAndAMeridian) {
+// A part of a sphere of radius 5 between its seam and the meridian at `angle`, as SolidWorks writes it; its
+// curves in the parameters go to the meridian at `flat_angle`.
+cad::Model part_of_sphere(double angle, double flat_angle) {
   constexpr double radius = 5, pi = std::numbers::pi;
+  IgesText file;
+  const auto one = [&](int type, const std::string& parameters) {
+    return file.add({.type = type, .parameters = parameters, .status = "00010000"});
+  };
+  const auto flat = [&](double u0, double v0, double u1, double v1) {
+    return one(
+        126, fmt::format("1,1,1,0,1,0,0.,0.,1.,1.,1.,1.,{:.9f},{:.9f},0.,{:.9f},{:.9f},0.,0.,1.,0.,0.,1.", u0,
+                         v0, u1, v1));
+  };
+  // From pole to pole along the meridian, as a rational quadratic of two quarters.
+  const auto half_circle = [&](double at, double from) {
+    return one(126,
+               fmt::format("4,2,1,0,0,0,0.,0.,0.,1.,1.,2.,2.,2.,1.,{2:.15f},1.,{2:.15f},1.,{3:.15f},0.,0.,"
+                           "{3:.15f},{0:.15f},{1:.15f},0.,{0:.15f},{1:.15f},{4:.15f},{0:.15f},{1:.15f},"
+                           "{4:.15f},0.,0.,0.,2.,0.,0.,0.",
+                           radius * std::cos(at), radius * std::sin(at), std::sqrt(0.5), from, -from));
+  };
+  const int axis = one(110, "-5.,0.,0.,5.,0.,0."), meridian = one(100, "0.,0.,0.,5.,0.,-5.,0.");
+  const int sphere = one(120, fmt::format("{},{},0.,{:.15g}", axis, meridian, 2 * pi));
+  const std::string flats = fmt::format("3,{},{},{}", flat(pi, 0, 0, 0), flat(0, flat_angle, pi, flat_angle),
+                                        flat(pi, flat_angle, pi, 0));
+  const std::string arcs = fmt::format("2,{},{}", half_circle(0, -radius), half_circle(angle, radius));
+  const int boundary = one(142, fmt::format("1,{},{},{},1", sphere, one(102, flats), one(102, arcs)));
+  file.add({.type = 144, .parameters = fmt::format("{},1,0,{}", sphere, boundary)});
+  IgesReading reading = read_iges(file.bytes());
+  EXPECT_TRUE(reading.model) << reading.text();
+  return reading.model.value_or(cad::Model{});
+}
+
+// OpenCASCADE finds that part again in what we write, and not the rest of the sphere.
+TEST(ForeignSphere, BetweenTheSeamAndAMeridian) {
   for (const double angle : {0.7, 2.4, 3.9, 5.5}) {
-    IgesText file;
-    const auto one = [&](int type, const std::string& parameters) {
-      return file.add({.type = type, .parameters = parameters, .status = "00010000"});
-    };
-    const auto flat = [&](double u0, double v0, double u1, double v1) {
-      return one(126,
-                 fmt::format("1,1,1,0,1,0,0.,0.,1.,1.,1.,1.,{:.9f},{:.9f},0.,{:.9f},{:.9f},0.,0.,1.,0.,0.,1.",
-                             u0, v0, u1, v1));
-    };
-    const auto half_circle = [&](double at, bool back) {
-      const double c = radius * std::cos(at), s = radius * std::sin(at), sign = back ? -1 : 1,
-                   w = std::sqrt(0.5);
-      // From pole to pole along the meridian, as a rational quadratic of two quarters.
-      return one(126,
-                 fmt::format("4,2,1,0,0,0,0.,0.,0.,1.,1.,2.,2.,2.,1.,{2:.15f},1.,{2:.15f},1.,{3:.15f},0.,0.,"
-                             "{3:.15f},{0:.15f},{1:.15f},0.,{0:.15f},{1:.15f},{4:.15f},{0:.15f},{1:.15f},"
-                             "{4:.15f},0.,0.,0.,2.,0.,0.,0.",
-                             c, s, w, sign * radius, -sign * radius));
-    };
-    const int axis = one(110, "-5.,0.,0.,5.,0.,0."), meridian = one(100, "0.,0.,0.,5.,0.,-5.,0.");
-    const int sphere = one(120, fmt::format("{},{},0.,{:.15g}", axis, meridian, 2 * pi));
-    const std::string flats =
-        fmt::format("3,{},{},{}", flat(pi, 0, 0, 0), flat(0, angle, pi, angle), flat(pi, angle, pi, 0));
-    const std::string arcs = fmt::format("2,{},{}", half_circle(0, true), half_circle(angle, false));
-    const int boundary = one(142, fmt::format("1,{},{},{},1", sphere, one(102, flats), one(102, arcs)));
-    file.add({.type = 144, .parameters = fmt::format("{},1,0,{}", sphere, boundary)});
-    const IgesReading reading = read_iges(file.bytes());
-    ASSERT_TRUE(reading.model) << reading.text();
-    const OcctReading again = read_with_occt(write_again(*reading.model), 1e-5);
+    const OcctReading again = read_with_occt(write_again(part_of_sphere(angle, angle)), 1e-5);
     EXPECT_EQ(again.faces, 1);
-    EXPECT_NEAR(again.area, 2 * radius * radius * angle, 1e-5 * again.area) << angle;
+    EXPECT_NEAR(again.area, 2 * 25 * angle, 1e-5 * again.area) << angle;
   }
+}
+
+// Which curve holds is the last number of a 142: those in the parameters only where they lie on those in
+// space.
+TEST(ForeignSphere, CurvesOfAnotherMeridianDoNotHold) {
+  const std::regex in_space("142,[0-9,]+,2;"), in_parameters("142,[0-9,]+,1;");
+  const std::string apart = bytes_of(write_again(part_of_sphere(2.4, 2.3))),
+                    together = bytes_of(write_again(part_of_sphere(2.4, 2.4)));
+  EXPECT_TRUE(std::regex_search(apart, in_space));
+  EXPECT_FALSE(std::regex_search(apart, in_parameters));
+  EXPECT_TRUE(std::regex_search(together, in_parameters));
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, Foreign, testing::Bool(),
