@@ -25,6 +25,7 @@
 #include "fabric/piece.h"
 #include "fem/field_mesh.h"
 #include "fem/mesh.h"
+#include "fem/raster.h"
 #include "formats/language.h"
 #include "solid/gap_map.h"
 #include "yarn/body.h"
@@ -166,6 +167,8 @@ struct Descriptor {
   // A mesh with what was computed on it, for pages; lengths in mm.
   std::optional<fem::FieldMesh> (*read_mesh)(const Source& source, Diagnostics& diagnostics) = nullptr;
   Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output) = nullptr;
+  // A unit cell on voxels (`mesh --voxel`), for a format that holds no elements.
+  Result<WriteFacts> (*write_raster)(const fem::Raster& raster, OutputFile& output) = nullptr;
   // The format of a second file of the same stem that goes with each file of this one; of meshes, with those
   // that have load cases.
   const Descriptor& (*companion)() = nullptr;

@@ -10,7 +10,8 @@ const std::vector<const Descriptor*>& all_formats() {
       &obj::material_descriptor(), &ply::descriptor(),       &gltf::descriptor(),    &svg::descriptor(),
       &dxf::descriptor(),          &vtp::descriptor(),       &csv::descriptor(),     &inp::descriptor(),
       &cdb::descriptor(),          &cdb::macro_descriptor(), &k::descriptor(),       &bdf::descriptor(),
-      &msh::descriptor(),          &vtu::descriptor(),       &unv::descriptor(),     &frd::descriptor()};
+      &msh::descriptor(),          &vtu::descriptor(),       &unv::descriptor(),     &frd::descriptor(),
+      &hdf5::descriptor(),         &npz::descriptor()};
   return list;
 }
 

@@ -75,6 +75,12 @@ const Descriptor& descriptor();
 namespace frd {  // results of CalculiX
 const Descriptor& descriptor();
 }
+namespace hdf5 {  // HDF5: a unit cell as fields on voxels
+const Descriptor& descriptor();
+}
+namespace npz {  // arrays of NumPy in an archive: the same
+const Descriptor& descriptor();
+}
 
 // In the order in which `selvage formats` lists them.
 const std::vector<const Descriptor*>& all_formats();

@@ -11,50 +11,14 @@
 #include "fem/complete_cell.h"
 #include "fem/fibre.h"
 #include "fem/materials.h"
+#include "fem/voxel_grid.h"
 #include "fem/yarn_columns.h"
 
 namespace selvage::fem {
 namespace {
 
-constexpr int largest_count = 10'000;
 constexpr double most_hexahedra = 2e7;
 constexpr std::int32_t no_yarn = -1;
-
-// The grid: coordinates of its planes along each axis, file units; first and last are the box's own.
-struct Grid {
-  std::array<std::vector<double>, 3> planes;
-
-  [[nodiscard]] std::size_t count(std::size_t axis) const { return planes[axis].size() - 1; }
-  [[nodiscard]] std::size_t voxels() const { return count(0) * count(1) * count(2); }
-  [[nodiscard]] std::vector<double> middles(std::size_t axis) const {
-    std::vector<double> result;
-    for (std::size_t i = 0; i < count(axis); ++i)
-      result.push_back((planes[axis][i] + planes[axis][i + 1]) / 2);
-    return result;
-  }
-};
-
-Result<Grid> make_grid(const Box3& box, int count) {
-  if (count < 1 || count > largest_count)
-    return error(Kind::usage, fmt::format("the number of hexahedra along the longest side is 1 to {}, not {}",
-                                          largest_count, count));
-  const double size = box.sizes().maxCoeff() / count;
-  std::array<double, 3> numbers{};
-  for (int axis = 0; axis < 3; ++axis)
-    numbers[static_cast<std::size_t>(axis)] = std::max(1.0, std::round(box.sizes()[axis] / size));
-  if (numbers[0] * numbers[1] * numbers[2] > most_hexahedra)
-    return error(Kind::limit,
-                 fmt::format("{:.1e} hexahedra would be needed, more than {:.0e}; choose a smaller --voxel",
-                             numbers[0] * numbers[1] * numbers[2], most_hexahedra));
-  Grid grid;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto n = static_cast<int>(numbers[static_cast<std::size_t>(axis)]);
-    std::vector<double>& planes = grid.planes[static_cast<std::size_t>(axis)];
-    for (int i = 0; i < n; ++i) planes.push_back(box.min()[axis] + box.sizes()[axis] * i / n);
-    planes.push_back(box.max()[axis]);
-  }
-  return grid;
-}
 
 // Whose each voxel is, and where along that yarn about.
 struct Owners {
@@ -67,12 +31,12 @@ double distance_from_axis(const yarn::Body& body, const Vec3& point, double v) {
   return (nurbs::evaluate(body.axis, v) - point).norm();
 }
 
-Owners find_owners(const Grid& grid, std::span<const yarn::Body> bodies) {
+Owners find_owners(const VoxelGrid& grid, std::span<const yarn::Body> bodies) {
   Owners owners;
   owners.yarn.assign(grid.voxels(), no_yarn);
   owners.v.assign(grid.voxels(), std::numeric_limits<double>::quiet_NaN());
   const std::vector<double> xs = grid.middles(0), ys = grid.middles(1), zs = grid.middles(2);
-  const double edge = (grid.planes[0][1] - grid.planes[0][0]) / 2;
+  const double edge = grid.sides().x() / 2;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const yarn::Body& body = bodies[b];
     const Box3 box = yarn::bounds(body);
@@ -109,7 +73,7 @@ Owners find_owners(const Grid& grid, std::span<const yarn::Body> bodies) {
 // Nodes are made in the order of the grid, those that a hexahedron needs.
 class Builder {
  public:
-  Builder(const Grid& grid, double unit, Mesh& mesh)
+  Builder(const VoxelGrid& grid, double unit, Mesh& mesh)
       : grid_(grid),
         unit_(unit),
         mesh_(mesh),
@@ -147,7 +111,7 @@ class Builder {
             first + layer, first + layer + 1, first + layer + row + 1, first + layer + row};
   }
 
-  const Grid& grid_;
+  const VoxelGrid& grid_;
   double unit_;
   Mesh& mesh_;
   std::vector<std::size_t> nodes_;
@@ -161,7 +125,7 @@ void add_region(Mesh& mesh, Builder& builder, Region region, const std::vector<s
   mesh.regions.push_back(std::move(region));
 }
 
-void fill_regions(Mesh& mesh, const Grid& grid, const Owners& owners, std::span<const yarn::Body> bodies,
+void fill_regions(Mesh& mesh, const VoxelGrid& grid, const Owners& owners, std::span<const yarn::Body> bodies,
                   const MaterialChoice& choice, const std::string& matrix, double unit) {
   std::vector<std::vector<std::size_t>> of_yarn(bodies.size());
   std::vector<std::size_t> of_matrix;
@@ -199,9 +163,8 @@ void fill_regions(Mesh& mesh, const Grid& grid, const Owners& owners, std::span<
 }
 
 // Every hexahedron is the same box: all figures of quality are known.
-void fill_quality(Mesh& mesh, const Grid& grid, double unit) {
-  const Vec3 sides(grid.planes[0][1] - grid.planes[0][0], grid.planes[1][1] - grid.planes[1][0],
-                   grid.planes[2][1] - grid.planes[2][0]);
+void fill_quality(Mesh& mesh, const VoxelGrid& grid, double unit) {
+  const Vec3 sides = grid.sides();
   mesh.quality = {.min_dihedral = 90,
                   .max_dihedral = 90,
                   .max_aspect = sides.maxCoeff() / sides.minCoeff(),
@@ -228,7 +191,7 @@ Result<Mesh> mesh_voxels(const fabric::Fabric& fabric, std::span<const yarn::Bod
   const fabric::Cell& cell = *fabric.cell;
   const Box3 box(cell.low.cwiseMin(cell.high), cell.low.cwiseMax(cell.high));
   const auto at_cell = [&](const Message& message) { return message.placed(cell.place, fabric.file); };
-  const Result<Grid> grid = make_grid(box, options.count);
+  const Result<VoxelGrid> grid = make_grid(box, options.count, most_hexahedra, "hexahedra");
   if (!grid) return grid.error();
   MaterialChoice choice = choose_materials(fabric, bodies, diagnostics);
   if (options.matrix)

@@ -5,15 +5,10 @@
 #include <cmath>
 
 #include "core/plane.h"
-#include "nurbs/divided.h"
+#include "fem/yarn_triangles.h"
 
 namespace selvage::fem {
 namespace {
-
-struct Vertex {
-  Vec3 at = Vec3::Zero();
-  double v = 0;
-};
 
 // The x at which the edge between two vertices passes a line of constant y. The result does not depend on
 // their order, so that the triangles on both sides of the edge agree on which side of it a line is.
@@ -28,8 +23,8 @@ class Columns {
   Columns(std::span<const double> xs, std::span<const double> ys)
       : xs_(xs), ys_(ys), crossings_(xs.size() * ys.size()) {}
 
-  void add(const Vertex& a, const Vertex& b, const Vertex& c) {
-    const std::array<const Vertex*, 3> corners = {&a, &b, &c};
+  void add(const YarnVertex& a, const YarnVertex& b, const YarnVertex& c) {
+    const std::array<const YarnVertex*, 3> corners = {&a, &b, &c};
     const auto [low, high] = std::minmax({a.at.y(), b.at.y(), c.at.y()});
     const auto first = std::lower_bound(ys_.begin(), ys_.end(), low);
     const auto last = std::lower_bound(first, ys_.end(), high);  // y of the upper end does not count
@@ -56,7 +51,7 @@ class Columns {
   }
 
  private:
-  void meet(const std::array<const Vertex*, 3>& corners, std::size_t i, std::size_t j) {
+  void meet(const std::array<const YarnVertex*, 3>& corners, std::size_t i, std::size_t j) {
     const Vec3 &a = corners[0]->at, &b = corners[1]->at, &c = corners[2]->at;
     const Vec2 ab = (b - a).head<2>(), ac = (c - a).head<2>(), ap = Vec2(xs_[i], ys_[j]) - a.head<2>();
     const double whole = cross(ab, ac);
@@ -79,36 +74,10 @@ class Columns {
 
 std::vector<std::vector<Crossing>> cross_yarn(const yarn::Body& body, std::span<const double> xs,
                                               std::span<const double> ys, double edge) {
-  const nurbs::Surface& surface = body.surface;
-  const double middle_v = (surface.first_v() + surface.last_v()) / 2;
-  const auto steps = [&](const std::vector<double>& breaks, const auto& place) {
-    return nurbs::divided(breaks, [&](std::size_t k) {
-      return nurbs::whole_parts((place(breaks[k + 1]) - place(breaks[k])).norm() / edge, 2, 1000);
-    });
-  };
-  const std::vector<double> us = steps(nurbs::breakpoints(surface.knots_u, surface.degree_u),
-                                       [&](double u) { return nurbs::evaluate(surface, u, middle_v); });
-  const std::vector<double> vs = steps(nurbs::breakpoints(surface.knots_v, surface.degree_v),
-                                       [&](double v) { return nurbs::evaluate(body.axis, v); });
-  std::vector<Vec3> points = nurbs::evaluate_grid(surface, us, vs);
-  const std::size_t columns = us.size(), rows = vs.size();
-  auto vertex = [&](std::size_t i, std::size_t j) {
-    return Vertex{points[j * columns + (i + 1 == columns ? 0 : i)], vs[j]};
-  };
-  if (body.closed_along)  // the last row is the first one, to the bit
-    std::copy_n(points.begin(), columns, points.end() - static_cast<std::ptrdiff_t>(columns));
-
   Columns result(xs, ys);
-  for (std::size_t j = 0; j + 1 < rows; ++j)
-    for (std::size_t i = 0; i + 1 < columns; ++i) {
-      result.add(vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1));
-      result.add(vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1));
-    }
-  if (!body.closed_along)
-    for (const std::size_t j : {std::size_t{0}, rows - 1}) {
-      const Vertex centre{nurbs::evaluate(body.axis, vs[j]), vs[j]};
-      for (std::size_t i = 0; i + 1 < columns; ++i) result.add(centre, vertex(i, j), vertex(i + 1, j));
-    }
+  triangulate_yarn(body, edge, edge, [&](const YarnVertex& a, const YarnVertex& b, const YarnVertex& c) {
+    result.add(a, b, c);
+  });
   return result.finish();
 }
 

@@ -326,7 +326,7 @@ void of_a_cell(OptionTable& t) {
          &Options::periodic);
   t.option({mesh}, "--voxel",
            "mesh the cell with so many hexahedra along its longest side instead (always works; yarns "
-           "have stairs)",
+           "have stairs); to HDF5 and NPZ as fields",
            Argument::whole(1, 10'000), &Options::voxels);
   t.choice({mesh}, "--yarn-stiffness",
            "given: a yarn's material is the yarn's; chamis: it is its fibres', and the yarn's follows "

@@ -9,7 +9,6 @@
 #include "pipeline/meshing.h"
 #include "pipeline/overlaps.h"
 #include "pipeline/relaxing.h"
-#include "pipeline/unit_cell.h"
 #include "pipeline/writing.h"
 #include "solid/check.h"
 
@@ -75,30 +74,69 @@ void tell_volumes(Job& job, const fem::Mesh& mesh) {
   if (std::optional<Message> message = wrong_volume(mesh)) job.say(std::move(*message));
 }
 
+// What the outputs ask for, elements and fields on voxels; empty where they ask for none, or it failed (it
+// was said).
+struct Made {
+  std::optional<fem::Mesh> mesh;
+  std::optional<fem::Raster> raster;
+};
+
+void take(Job& job, MadeMesh made, Made& all) {
+  if (!made.mesh) return job.say(made.mesh.error());
+  job.report["mesh"] = mesh_json(*made.mesh, made.estimate);
+  tell_volumes(job, *made.mesh);
+  all.mesh = std::move(*made.mesh);
+}
+
+void take(Job& job, Result<fem::Raster> raster, Made& all) {
+  if (!raster) return job.say(raster.error());
+  job.report["voxels"] = raster_json(*raster);
+  tell(job, fmt::format("{}: {}\n", job.input.path, raster_in_words(*raster)));
+  all.raster = std::move(*raster);
+}
+
+Made make(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder, bool wants_mesh,
+          bool wants_raster) {
+  Made all;
+  Diagnostics diagnostics;
+  if (!job.options.wants_cell()) {
+    std::optional<MadeMesh> made = mesh_of_yarns(job, fabric, builder, diagnostics);
+    job.say_all(diagnostics.messages());
+    if (made) take(job, std::move(*made), all);
+    return all;
+  }
+  const std::optional<ReadyCell> ready = prepare_cell(job, fabric, builder);
+  if (!ready) return all;
+  std::optional<MadeMesh> mesh;
+  std::optional<Result<fem::Raster>> raster;
+  if (wants_mesh) mesh = mesh_of_cell(job, fabric, *ready, diagnostics);
+  if (wants_raster) raster = raster_of_cell(job, fabric, *ready, diagnostics);
+  job.say_all(diagnostics.messages());
+  if (mesh) take(job, std::move(*mesh), all);
+  if (raster) take(job, std::move(*raster), all);
+  return all;
+}
+
 }  // namespace
 
 void mesh(Job& job) {
   const Options& options = job.options;
-  const bool is_cell = options.wants_cell();
   std::optional<fabric::Fabric> fabric = job.read();
   if (!fabric || !has_only_yarns(job, *fabric)) return;
-  if (is_cell && !check_cell_text(job, *fabric, options.matrix)) return;
+  if (options.wants_cell() && !check_cell_text(job, *fabric, options.matrix)) return;
   fabric = relaxed(job, std::move(fabric));
   if (!fabric) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);
   if (!outputs) return;
   const std::optional<fabric::YarnBuilder> builder = job.builder(*fabric);
   if (!builder) return;
-
-  Diagnostics diagnostics;
-  const std::optional<MadeMesh> made = is_cell ? mesh_of_cell(job, *fabric, *builder, diagnostics)
-                                               : mesh_of_yarns(job, *fabric, *builder, diagnostics);
-  if (!made) return;
-  job.say_all(diagnostics.messages());
-  if (!made->mesh) return job.say(made->mesh.error());
-  job.report["mesh"] = mesh_json(*made->mesh, made->estimate);
-  tell_volumes(job, *made->mesh);
-  write_mesh(job, *outputs, *made->mesh);
+  const auto is_wanted = [&](auto writes) {
+    return std::ranges::any_of(
+        job.outputs, [&](const PlannedOutput& output) { return output.format->*writes != nullptr; });
+  };
+  const Made made = make(job, *fabric, *builder, is_wanted(&formats::Descriptor::write_mesh),
+                         is_wanted(&formats::Descriptor::write_raster));
+  if (!job.has_failed()) write_meshes(job, *outputs, made.mesh, made.raster);
 }
 
 }  // namespace selvage::pipeline

@@ -3,7 +3,6 @@
 #include "fem/cell_mesher.h"
 #include "fem/fibre.h"
 #include "fem/voxel.h"
-#include "pipeline/unit_cell.h"
 
 namespace selvage::pipeline {
 
@@ -12,16 +11,11 @@ namespace {
 // Yarns are bonded where they are within this many times the gap that they keep.
 constexpr double bond_reach = 1.5;
 
-// What is ready to be meshed.
-struct ReadyCell {
-  std::vector<yarn::Body> bodies;
-  std::array<bool, 3> periodic{};
-  CellSize size;
-};
+}  // namespace
 
-// Yarns built and looked at; nothing when something is wrong with them or the cell (it was said).
-std::optional<ReadyCell> prepare(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilder& builder) {
+std::optional<ReadyCell> prepare_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder) {
   const Options& options = job.options;
+  if (options.periodic) snap_cell(job, fabric, builder);
   std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
   if (!bodies) return std::nullopt;
   ReadyCell ready;
@@ -41,6 +35,8 @@ std::optional<ReadyCell> prepare(Job& job, const fabric::Fabric& fabric, const f
   ready.size = *size;
   return ready;
 }
+
+namespace {
 
 // Its load cases bend it.
 bool is_plate(const Options& options, const ReadyCell& ready) {
@@ -83,18 +79,24 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
 
 }  // namespace
 
-std::optional<MadeMesh> mesh_of_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder,
-                                     Diagnostics& diagnostics) {
-  if (job.options.periodic) snap_cell(job, fabric, builder);
-  const std::optional<ReadyCell> ready = prepare(job, fabric, builder);
-  if (!ready) return std::nullopt;
-  say_what_bending_costs(job, fabric, *ready);
-  MadeMesh made{mesh_of(job, fabric, *ready, diagnostics)};
-  if (job.options.voxels == 0) made.estimate = ready->size.tetrahedra;
+MadeMesh mesh_of_cell(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready,
+                      Diagnostics& diagnostics) {
+  say_what_bending_costs(job, fabric, ready);
+  MadeMesh made{mesh_of(job, fabric, ready, diagnostics)};
+  if (job.options.voxels == 0) made.estimate = ready.size.tetrahedra;
   if (made.mesh && job.options.chamis)
     if (Status derived = fem::derive_yarn_stiffness(*made.mesh, diagnostics); !derived)
       made.mesh = derived.error();
   return made;
+}
+
+Result<fem::Raster> raster_of_cell(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready,
+                                   Diagnostics& diagnostics) {
+  return fem::rasterize(fabric, ready.bodies,
+                        {.count = job.options.voxels,
+                         .threads = static_cast<int>(job.threads),
+                         .progress = job.progress_of("filling voxels")},
+                        diagnostics);
 }
 
 }  // namespace selvage::pipeline

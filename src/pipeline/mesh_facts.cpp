@@ -127,4 +127,23 @@ Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {
   return facts;
 }
 
+Json raster_json(const fem::Raster& raster) {
+  return {{"count", raster.count},
+          {"lengths", point_json(Vec3(raster.high - raster.low))},
+          {"yarn_fraction", raster.yarn},
+          {"fibre_fraction", if_true(!std::isnan(raster.fibre), raster.fibre)},
+          {"overlap_fraction", raster.overlap},
+          {"phases", list_json(raster.phases, [](const fem::RasterPhase& phase) {
+             return Json{{"name", phase.name}, {"material", phase.material}, {"fraction", phase.fraction}};
+           })}};
+}
+
+std::string raster_in_words(const fem::Raster& raster) {
+  const auto [nx, ny, nz] = raster.count;
+  std::string text =
+      fmt::format("{} x {} x {} voxels; yarns fill {:.2f} % of the cell", nx, ny, nz, 100 * raster.yarn);
+  if (raster.fibre > 0) text += fmt::format(", fibres {:.2f} %", 100 * raster.fibre);
+  return text;
+}
+
 }  // namespace selvage::pipeline

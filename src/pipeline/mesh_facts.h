@@ -6,6 +6,7 @@
 
 #include "core/diagnostics.h"
 #include "fem/mesh.h"
+#include "fem/raster.h"
 #include "pipeline/report.h"
 
 namespace selvage::pipeline {
@@ -19,5 +20,9 @@ std::string volumes_in_words(const fem::Mesh& mesh);
 
 // A volume that is wrong by more than a mesh of the usual size ever has.
 std::optional<Message> wrong_volume(const fem::Mesh& mesh);
+
+// The same of fields on voxels.
+Json raster_json(const fem::Raster& raster);
+std::string raster_in_words(const fem::Raster& raster);
 
 }  // namespace selvage::pipeline

@@ -5,7 +5,9 @@
 
 #include "fabric/model.h"
 #include "fem/block.h"
+#include "fem/raster.h"
 #include "pipeline/job.h"
+#include "pipeline/unit_cell.h"
 
 namespace selvage::pipeline {
 
@@ -19,9 +21,23 @@ struct MadeMesh {
   std::optional<double> estimate{};
 };
 
-// Of the unit cell: its yarns, cut flush, and the matrix between them. Nothing when something is wrong with
-// the yarns or the cell (it was said). The cell may be snapped to its yarns' repeats.
-std::optional<MadeMesh> mesh_of_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder,
-                                     Diagnostics& diagnostics);
+// The yarns of a unit cell, ready to be meshed.
+struct ReadyCell {
+  std::vector<yarn::Body> bodies;
+  std::array<bool, 3> periodic{};
+  CellSize size;  // not of voxels
+};
+
+// Yarns built and looked at; nothing when something is wrong with them or the cell (it was said). The cell
+// may be snapped to its yarns' repeats.
+std::optional<ReadyCell> prepare_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder);
+
+// Its yarns, cut flush, and the matrix between them.
+MadeMesh mesh_of_cell(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready,
+                      Diagnostics& diagnostics);
+
+// The same on voxels, as fields.
+Result<fem::Raster> raster_of_cell(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready,
+                                   Diagnostics& diagnostics);
 
 }  // namespace selvage::pipeline

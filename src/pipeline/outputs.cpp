@@ -33,7 +33,7 @@ const Descriptor& page_format() {
 }
 
 bool can_be_written(const Descriptor& format, Command command) {
-  if (command == Command::mesh) return format.write_mesh != nullptr;
+  if (command == Command::mesh) return format.write_mesh != nullptr || format.write_raster != nullptr;
   if (command == Command::edit) return format.insert_edit != nullptr;
   return format.write_fabric != nullptr || (format.open_bodies != nullptr && !format.is_companion);
 }
@@ -68,6 +68,7 @@ Result<const Descriptor*> fitting(const Descriptor& format, Command command) {
   std::string text = fmt::format("'selvage {}' cannot write {}; it writes: {}", name_of(command), format.name,
                                  writable_names(command));
   if (command != Command::mesh && format.write_mesh != nullptr) text += " (for a mesh: selvage mesh)";
+  if (format.write_raster != nullptr) text += " (for voxels: selvage mesh --voxel N)";
   return error(Kind::usage, std::move(text));
 }
 
@@ -234,6 +235,11 @@ Result<Plan> Plan::make(const Options& options, InputList& list) {
     if (options.units && std::any_of(wanted->begin(), wanted->end(),
                                      [](auto* format) { return format->open_bodies == nullptr; }))
       return error(Kind::usage, "--units converts surfaces; text keeps the unit of its input");
+    for (const Descriptor* format : *wanted)
+      if (format->write_raster != nullptr && options.voxels == 0)
+        return error(
+            Kind::usage,
+            fmt::format("{} holds the voxels of a unit cell: say how many with --voxel N", format->name));
   }
   Plan plan(options);
   plan.formats_ = std::move(*wanted);

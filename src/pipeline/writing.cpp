@@ -129,10 +129,16 @@ void tell(Job& job, const std::string& text) {
     job.channel().send(packet::message, text.substr(0, text.size() - 1));
 }
 
-void write_mesh(Job& job, OpenOutputs& outputs, const fem::Mesh& mesh) {
-  if (mesh.load_cases.empty()) drop_companions(outputs);
-  for (OpenOutput& output : outputs)
-    if (!take_facts(job, output, output.plan->format->write_mesh(mesh, output.file))) return;
+void write_meshes(Job& job, OpenOutputs& outputs, const std::optional<fem::Mesh>& mesh,
+                  const std::optional<fem::Raster>& raster) {
+  if (!mesh || mesh->load_cases.empty()) drop_companions(outputs);
+  for (OpenOutput& output : outputs) {
+    const formats::Descriptor& format = *output.plan->format;
+    if (!take_facts(job, output,
+                    format.write_raster != nullptr ? format.write_raster(*raster, output.file)
+                                                   : format.write_mesh(*mesh, output.file)))
+      return;
+  }
   commit_all(job, outputs);
 }
 

@@ -32,8 +32,9 @@ void drop_companions(OpenOutputs& outputs);
 // line.
 void tell(Job& job, const std::string& text);
 
-// Writes a mesh to every output and commits them; what goes wrong is said.
-void write_mesh(Job& job, OpenOutputs& outputs, const fem::Mesh& mesh);
+// Writes to every output what it takes of the two, and commits them; what goes wrong is said.
+void write_meshes(Job& job, OpenOutputs& outputs, const std::optional<fem::Mesh>& mesh,
+                  const std::optional<fem::Raster>& raster);
 
 // Opens the next file of an output, for its writer. Errors: io; usage: an input or another output has the
 // name.

@@ -66,7 +66,8 @@ class Installed(Case):
         outside = {name for name in files if not name.startswith(("include/", "share/selvage/samples/", "lib/cmake/"))}
         self.assertEqual(outside, {
             "bin/selvage", "lib/libselvage.a", "lib/selvage/selvage-tetgen", "lib/selvage/selvage_cgal.so",
-            "lib/selvage/selvage_embree.so", "lib/selvage/selvage_muparser.so", "lib/selvage/selvage_occt.so", "lib/selvage/selvage_pugixml.so",
+            "lib/selvage/selvage_embree.so", "lib/selvage/selvage_hdf5.so", "lib/selvage/selvage_minizip.so", "lib/selvage/selvage_muparser.so",
+            "lib/selvage/selvage_occt.so", "lib/selvage/selvage_pugixml.so",
             *(["lib/selvage/three.module.min.js"] if HAS_PAGES else []),
             "share/doc/selvage/copyright", "share/doc/selvage/CHANGELOG.md", "share/man/man1/selvage.1",
             "share/bash-completion/completions/selvage", "share/zsh/vendor-completions/_selvage",

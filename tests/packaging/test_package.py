@@ -63,7 +63,7 @@ class Package(unittest.TestCase):
         self.completes()
         self.assertIn("/usr/lib/selvage/three.module.min.js", files)
         programs = [name for name in files if name.startswith(("/usr/bin/", "/usr/lib/selvage/")) and not name.endswith(".js")]
-        self.assertEqual(len(programs), 7)
+        self.assertEqual(len(programs), 9)
         for name in programs:
             self.assertNotIn("not found", self.inside("ldd", name))
         self.works()

@@ -1,0 +1,109 @@
+"""Unit cells on voxels, as HDF5 and NumPy's archives: read by h5py and numpy, held against the volumes of B-splines."""
+
+import json
+import subprocess
+import unittest
+
+import h5py
+import numpy as np
+
+from program import Case, SAMPLES, run
+
+FIELDS = {"phase": (np.uint16, ()), "yarn_fraction": (np.float32, ()), "fibre_fraction": (np.float32, ()),
+          "orientation": (np.float32, (3,))}
+
+
+class Voxels(Case):
+    def made(self, sample, count, *more, names=("cell.h5", "cell.npz")):
+        """The cell in both formats, and what the report says of it."""
+        report = self.folder / "report.json"
+        for name in names:
+            self.succeeds("mesh", sample, "--voxel", count, *more, "-o", self.folder / name, "--report", report)
+        return *[self.folder / name for name in names], json.loads(report.read_text())["inputs"][0]
+
+    def test_both_say_the_same(self):
+        h5, npz, report = self.made(SAMPLES / "cell_satin5.txt", 40)
+        voxels = report["voxels"]
+        shape = tuple(reversed(voxels["count"]))
+        with h5py.File(h5) as file, np.load(npz, allow_pickle=False) as arrays:
+            for name, (kind, components) in FIELDS.items():
+                self.assertEqual(file[name].dtype, kind)
+                self.assertEqual(file[name].shape, shape + components)
+                order = file[name].attrs.get_id("permute_order")
+                self.assertTrue(order.get_type().is_variable_str())  # as FANS reads it
+                self.assertEqual(file[name].attrs["permute_order"], "zyx")
+                self.assertEqual(arrays[name].dtype, kind)
+                np.testing.assert_array_equal(file[name][...], arrays[name])
+            names = [text.decode() for text in file["phase_names"]]
+            self.assertEqual(names, list(arrays["phase_names"]))
+            self.assertEqual(names, [phase["name"] for phase in voxels["phases"]])
+            self.assertEqual(names[0], "matrix")
+            self.assertEqual([text.decode() for text in file["phase_materials"]], list(arrays["phase_materials"]))
+            np.testing.assert_array_equal(file["phase_fractions"], arrays["phase_fractions"])
+            np.testing.assert_array_equal(file["origin"], arrays["origin"])
+            np.testing.assert_allclose(file["lengths"], voxels["lengths"])
+            self.assertEqual(file["title"][0].decode(), str(arrays["title"][0]))
+            self.assertEqual(set(np.unique(arrays["phase"])), set(range(len(names))))
+            self.assertAlmostEqual(arrays["yarn_fraction"].mean(dtype=float), voxels["yarn_fraction"], delta=1e-6)
+
+    def test_the_same_bytes_again(self):
+        paths = self.made(SAMPLES / "cell_plain.txt", 24, names=("a.h5", "b.h5", "a.npz", "b.npz"))
+        for a, b in (paths[:2], paths[2:4]):
+            self.assertEqual(a.read_bytes(), b.read_bytes())
+
+    def test_other_programs_read_them(self):
+        h5, npz, _ = self.made(SAMPLES / "cell_plain.txt", 24)
+        self.assertEqual(subprocess.run(["python3", "-m", "zipfile", "-t", npz], capture_output=True).returncode, 0)
+        with h5py.File(h5) as file:
+            self.assertEqual(len(file), len(FIELDS) + 6)
+
+    def test_fractions_are_those_of_the_volumes(self):
+        """Of each yarn, to 1e-3 of its volume, those that the faces of the cell cut, too (`convert --cut`: OpenCASCADE's solids)."""
+        for name, count in (("cell_plain", 30), ("cell_satin5", 64), ("cell_orthogonal", 50), ("cell_jersey", 40), ("twill_cell", 64)):
+            sample = SAMPLES / (name + ".txt")
+            # The same yarns: by default constructions leave a gap between theirs where they are cut, and none on voxels.
+            *_, report = self.made(sample, count, "--gap", "0.02", names=("cell.npz",))
+            self.succeeds("convert", sample, "--gap", "0.02", "--cut", "-o", self.folder / "cut.step")
+            volumes = {}
+            for part in json.loads(self.succeeds("info", "--json", self.folder / "cut.step").stdout)["inputs"][0]["parts"]:
+                name_of_yarn = part["name"].split(".part")[0]
+                volumes[name_of_yarn] = volumes.get(name_of_yarn, 0) + part["volume"]
+            size = np.prod(report["voxels"]["lengths"])
+            for phase in report["voxels"]["phases"][1:]:
+                exact = volumes.pop(phase["name"])
+                self.assertAlmostEqual(phase["fraction"] * size / exact, 1, delta=1e-3, msg=f"{name} {phase['name']}")
+            self.assertFalse(volumes)
+
+    def test_the_yarns_run_as_they_run(self):
+        _, npz, _ = self.made(SAMPLES / "cell_plain.txt", 40)
+        with np.load(npz) as arrays:
+            length = np.linalg.norm(arrays["orientation"], axis=-1)
+            inside = arrays["yarn_fraction"] > 1e-5
+            np.testing.assert_allclose(length[inside], 1, atol=1e-6)
+            np.testing.assert_array_equal(length[arrays["yarn_fraction"] == 0], 0)
+            for number, name in enumerate(arrays["phase_names"]):
+                if name == "matrix":
+                    continue
+                mean = np.abs(arrays["orientation"][arrays["phase"] == number]).mean(axis=0)
+                # A plain weave: two systems at a right angle in the plane, with some crimp.
+                self.assertGreater(max(mean[0], mean[1]), 0.9)
+                self.assertLess(min(mean[0], mean[1]), 1e-3)
+
+    def test_beside_a_mesh(self):
+        self.succeeds("mesh", SAMPLES / "cell_plain.txt", "--voxel", "12", "--to", "hdf5,vtu", "-o", f"{self.out}/")
+        self.assertEqual(sorted(path.suffix for path in self.out.iterdir()), [".h5", ".vtu"])
+
+    def test_what_is_told(self):
+        message = self.fails(2, "mesh", SAMPLES / "cell_plain.txt", "-o", self.folder / "cell.h5")
+        self.assertIn("--voxel N", message)
+        message = self.fails(2, "convert", SAMPLES / "cell_plain.txt", "-o", self.folder / "cell.npz")
+        self.assertIn("selvage mesh --voxel N", message)
+        message = self.fails(1, "mesh", SAMPLES / "cell_plain.txt", "--voxel", "9000", "-o", self.folder / "cell.h5")
+        self.assertIn("--voxel", message)
+        self.assertEqual(list(self.folder.iterdir()), [])
+        done = run("mesh", SAMPLES / "cell_plain.txt", "--voxel", "20", "-o", self.folder / "cell.h5")
+        self.assertRegex(done.stdout, r"20 x \d+ x \d+ voxels; yarns fill \d\d\.\d\d % of the cell")
+
+
+if __name__ == "__main__":
+    unittest.main()
