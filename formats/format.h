@@ -59,6 +59,8 @@ struct SurfaceOptions {
   std::string date;                   // YYYYMMDD.HHNNSS for headers; empty: now
   double tolerance = 0;               // of the modelled tubes, file units; 0: unknown
   double chord = 0;                   // of triangles, from surfaces, file units; 0: as `tolerance`
+  double resolution =
+      0;  // of the file that free faces and solids come from (fabric::Fabric), file units; 0: unknown
   std::string companion;          // the name of the file beside (Descriptor::companion); empty: there is none
   bool yarns_are_solids = false;  // in the file of this format that they come from (fabric::Fabric)
   bool has_others = false;        // pieces, parts or curves will be added, not yarns alone

@@ -395,7 +395,8 @@ Result<WriteFacts> FileWriter::finish() {
   const Result<std::uint64_t> end = records_.finish();
   if (!end) return end.error();
   header_.largest = extremes_.largest;
-  header_.resolution = resolution_for(bodies_ > 0 ? extremes_.smallest_size : 0, extremes_.largest);
+  header_.resolution =
+      resolution_for(bodies_ > 0 ? extremes_.smallest_size : 0, extremes_.largest, options_.resolution);
   const HeaderText text = header_text(header_);
   const Records::Lines lines = records_.lines();
   if (Status status = output_->write_at(0, text.bytes); !status.ok()) return status.error();

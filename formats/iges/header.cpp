@@ -159,11 +159,14 @@ std::string terminate_text(const HeaderText& header, std::int64_t directory_line
   return bytes;
 }
 
-double resolution_for(double smallest_size, double largest) {
+double resolution_for(double smallest_size, double largest, double known) {
   constexpr double usual = 1e-5, useful = 1e-7, most = 1e-3;
   if (!(smallest_size > 0)) return 1e-6;
   double resolution = power_of_ten_below(usual * smallest_size);
   if (useful < most * smallest_size) resolution = std::max(resolution, useful);
+  constexpr double share_of_others = 0.01;
+  if (known > resolution)
+    resolution = std::max(resolution, std::min(known, power_of_ten_below(share_of_others * smallest_size)));
   const double rounding = 16 * DBL_EPSILON * largest;
   if (rounding > resolution) resolution = power_of_ten_below(rounding, 1);
   return resolution;

@@ -51,7 +51,9 @@ std::string terminate_text(const HeaderText& header, std::int64_t directory_line
 // ANSYS and others merge with it. What the file resolves is the yarn: so it is the power of ten at or below
 // 1e-5 of the smallest thickness (a thousandth of the smallest gap between yarns that can be meshed, a
 // hundredth of the usual tolerance of tubes), but never less than the rounding of the largest coordinate, and
-// no less than 1e-7 where that is still below 1e-3 of a yarn.
-double resolution_for(double smallest_size, double largest);
+// no less than 1e-7 where that is still below 1e-3 of a yarn. Faces of other files may meet no better than
+// `known`, the resolution of theirs, which stands then as far as it is below a hundredth of the smallest
+// size.
+double resolution_for(double smallest_size, double largest, double known = 0);
 
 }  // namespace selvage::formats::iges

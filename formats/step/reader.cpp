@@ -420,16 +420,31 @@ class ModelReader {
     model_.curves.push_back(std::move(curve));
   }
 
-  // What OpenCASCADE could not use, as warnings.
+  // What OpenCASCADE could not use, as warnings: what it says of several once, of the first.
   void report_fails(const Interface_CheckIterator& checks) {
+    struct Fail {
+      std::string text;
+      int id = 0;
+      std::size_t others = 0;
+    };
+    std::vector<Fail> fails;
+    std::unordered_map<std::string, std::size_t> known;  // to its place in the list
     for (checks.Start(); checks.More(); checks.Next()) {
       const Handle(Interface_Check)& check = checks.Value();
       if (!check->HasFailed()) continue;
       const Handle(Standard_Transient) entity =
           checks.Number() > 0 ? entities_->Value(checks.Number()) : check->Entity();
       const int id = entity.IsNull() ? 0 : entities_->IdentLabel(entity);
-      report_.warning(spot_of(id), fmt::format("#{}: {}", id, check->CFail(1)));
+      const auto [place, is_new] = known.try_emplace(check->CFail(1), fails.size());
+      if (is_new)
+        fails.push_back({place->first, id});
+      else
+        ++fails[place->second].others;
     }
+    for (const Fail& fail : fails)
+      report_.warning(spot_of(fail.id),
+                      fmt::format("#{}: {}{}", fail.id, fail.text,
+                                  fail.others == 0 ? "" : fmt::format(", and {} more like it", fail.others)));
   }
 
   Session session_ = Session::to_read();  // before anything of OpenCASCADE's

@@ -95,6 +95,7 @@ class Comparer {
   [[nodiscard]] Reach distance_between(const Surface& s, const Surface& t) const;
   void look_beyond_points(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
                           std::vector<SurfaceFinding>& found) const;
+  [[nodiscard]] bool lies_on(const Thing& a, const Thing& b) const;
   void sum_up(const Thing& a, const std::vector<SurfaceFinding>& found, PairFinding& finding) const;
   [[nodiscard]] std::vector<std::size_t> partners(const Thing& a, const Thing& b) const;
   [[nodiscard]] PairFinding compare_unions(const Thing& a, const Thing& b) const;
@@ -284,6 +285,16 @@ void Comparer::find_motion(const Thing& a, const Thing& b, const std::vector<std
   }
 }
 
+// By a few points of each surface.
+bool Comparer::lies_on(const Thing& a, const Thing& b) const {
+  constexpr int points = 36;
+  const SurfaceSet all_b(b.surfaces);
+  return std::ranges::all_of(a.surfaces, [&](const Surface* surface) {
+    return sampled_distance(*surface, domain(*surface), all_b, limits_.distances, points).at_least <=
+           limits_.distances;
+  });
+}
+
 // The worst surface is one that differs, where there is such a one.
 void Comparer::sum_up(const Thing& a, const std::vector<SurfaceFinding>& found, PairFinding& finding) const {
   finding = {};
@@ -311,9 +322,14 @@ PairFinding Comparer::look_at(const Thing& a, const Thing& b, const std::vector<
   sum_up(a, found, finding);
   if (!finding.is_equal && finding.reach.at_least > limits_.points) {
     find_motion(a, b, partner, found, finding);
-    if (!finding.motion && finding.points) {
+    // A shape with symmetries that turns on its place may be what it was: a sphere is, with its seam
+    // elsewhere.
+    const bool may_be_equal = finding.motion && finding.motion->angle > 0 && lies_on(a, b);
+    if (finding.points && (!finding.motion || may_be_equal)) {
+      const PairFinding moved = finding;
       look_beyond_points(a, b, partner, found);
       sum_up(a, found, finding);
+      if (!finding.is_equal && moved.motion) finding = moved;
     }
   }
   finding.is_reversed = a.kind == Thing::Kind::yarn && partner.size() == 3 && partner[0] == 0 &&

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <ranges>
 #include <tuple>
 #include <unordered_map>
 
@@ -314,15 +315,68 @@ class Recognizer {
     return all_tried;
   }
 
-  // Whether an open tube is a yarn: nothing else belongs to it, or it is the one tube of a small group; and
-  // it has a face at one end and is longer than thick, or the role of a yarn, or the file has such tubes
-  // alone: among other surfaces, it is the side of a hole, of a pin or of a disc as a rule.
-  [[nodiscard]] bool is_open_yarn(const Tube& tube) const {
+  // The rings round faces that are no lids: each loop, or each closed side of a whole surface; and free ends
+  // of tubes.
+  void find_rings() {
+    const auto add_rings = [&](const Face& face) {
+      if (face.loops.empty()) {
+        for (std::vector<Vec3>& line : border_of(face, 0)) rings_.push_back({{std::move(line)}, nothing});
+        return;
+      }
+      Face one;
+      one.surface = face.surface;
+      for (const Loop& loop : face.loops) {
+        one.loops = {loop};
+        rings_.push_back({border_of(one, 0), nothing});
+      }
+    };
+    for (const Candidate& candidate : candidates_) {
+      if (candidate.taken) continue;
+      std::optional<Face> made;
+      add_rings(clamped(model_.parts[candidate.part].faces[candidate.face], made));
+    }
+    for (std::size_t t = 0; t < tubes_.size(); ++t)
+      for (const bool last : {false, true})
+        if (is_free(t, last))
+          rings_.push_back({{SampledCurve(yarn::end_curve(tubes_[t].body, last)).points}, t});
+    std::vector<Places::Outline> outlines;
+    for (std::size_t k = 0; k < rings_.size(); ++k)
+      if (!rings_[k].lines.empty()) outlines.push_back({box_of_outline(rings_[k].lines), k});
+    places_of_rings_.emplace(outlines);
+  }
+
+  // Does another face go on from one of the tube's free ends, as the rim of a cup from its walls?
+  [[nodiscard]] bool goes_on(std::size_t index) const {
+    const Tube& tube = tubes_[index];
+    for (const bool last : {false, true}) {
+      if (!is_free(index, last)) continue;
+      const TubeEnd end(tube.body, last, tube.kind.tolerance);
+      const auto is_on_it = [&](const std::vector<Vec3>& line) {
+        return std::ranges::all_of(
+            line, [&](const Vec3& p) { return end.samples().nearest(p).distance <= tube.kind.tolerance; });
+      };
+      for (const std::size_t k : places_of_rings_->near(box_of_outline({end.samples().points}))) {
+        if (rings_[k].tube == index) continue;
+        double length = 0;
+        for (const std::vector<Vec3>& line : rings_[k].lines)
+          if (is_on_it(line)) length += nurbs::length_of(line);
+        if (length > end.samples().length() / 2) return true;
+      }
+    }
+    return false;
+  }
+
+  // Whether an open tube is a yarn: it is the one tube of a small group, and has the role of a yarn; or
+  // nothing goes on from its free ends, and it has a face at one end and is longer than thick, or the file
+  // has such tubes alone: among other surfaces, it is the side of a hole, of a pin or of a disc as a rule.
+  [[nodiscard]] bool is_open_yarn(std::size_t index) const {
+    const Tube& tube = tubes_[index];
     const Part& part = model_.parts[tube.part];
     if (part.faces.size() > 3 || tubes_of_part_.at(tube.part) != 1) return false;
+    if (role_of(part.level != 0 ? part.level : part.faces[tube.face].level) != yarn::Role::other) return true;
     const bool has_lid = tube.lids[0] != nothing || tube.lids[1] != nothing;
-    return (has_lid && nurbs::arc_length(tube.body.axis) > tube.kind.size) || only_tubes_ ||
-           role_of(part.level != 0 ? part.level : part.faces[tube.face].level) != yarn::Role::other;
+    return ((has_lid && nurbs::arc_length(tube.body.axis) > tube.kind.size) || only_tubes_) &&
+           !goes_on(index);
   }
 
   // Is there nothing but tubes, their end faces, and parts that are yarns?
@@ -336,11 +390,13 @@ class Recognizer {
   void finish_loose() {
     for (const Tube& tube : tubes_) ++tubes_of_part_[tube.part];
     only_tubes_ = has_only_tubes();
+    const auto has_free_end = [&](std::size_t t) { return is_free(t, false) || is_free(t, true); };
+    if (std::ranges::any_of(std::views::iota(std::size_t{0}, tubes_.size()), has_free_end)) find_rings();
     std::vector<std::pair<std::size_t, std::size_t>> taken;  // part, face
     for (std::size_t t = 0; t < tubes_.size(); ++t) {
       Tube& tube = tubes_[t];
       const bool is_sealed = tube.kind.is_ring || (tube.lids[0] != nothing && tube.lids[1] != nothing);
-      if (!is_sealed && !is_open_yarn(tube)) continue;  // what it took belongs to no yarn
+      if (!is_sealed && !is_open_yarn(t)) continue;  // what it took belongs to no yarn
       const Part& part = model_.parts[tube.part];
       taken.emplace_back(tube.part, tube.face);
       std::size_t own = 1;
@@ -395,6 +451,12 @@ class Recognizer {
   std::vector<std::array<bool, 2>> sealed_by_other_;
   std::unordered_map<std::size_t, std::size_t> tubes_of_part_;
   bool only_tubes_ = false;
+  struct Ring {
+    Polylines lines;
+    std::size_t tube = nothing;  // whose free end it is
+  };
+  std::vector<Ring> rings_;
+  std::optional<Places> places_of_rings_;
   std::size_t replaced_ = 0, misfits_ = 0, loose_ = 0, leftover_ = 0;
   std::string first_replaced_, first_misfit_, first_loose_;
 };

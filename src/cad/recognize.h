@@ -20,7 +20,8 @@ struct FoundYarn {
 // keep their control points; one that is neither patch, fan nor plane is replaced by one (a warning says so).
 // A tube whose ends no face seals is a yarn with open ends where nothing else belongs to it, or where its
 // group holds one or two faces besides (that do not fit: a warning; they stay as they are); one without any
-// end face only where the file has no other surfaces, or has it on a yarn's level. All else stays.
+// end face only where the file has no other surfaces, or has it on a yarn's level; none from whose open end
+// another face goes on, as the rim of a vase from its walls. All else stays.
 std::vector<FoundYarn> take_yarns(Model& model, Diagnostics& diagnostics);
 
 // A plane outline of lines and cubics.

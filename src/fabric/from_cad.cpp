@@ -63,11 +63,14 @@ Piece piece_of(const cad::Outline& outline, Names& names) {
 
 Fabric fabric_of(cad::Model model, Diagnostics& diagnostics) {
   Fabric fabric;
+  fabric.resolution = model.resolution;
   std::vector<cad::FoundYarn> yarns = cad::take_yarns(model, diagnostics);
   Names yarn_names("yarn"), piece_names("piece");
-  // IGES: 186s.
+  // IGES: 186s. Our own STEP has yarns, which are solids there and groups of 128s in our IGES.
+  const bool has_solids = model.entities.contains("186") || (model.entities.contains("MANIFOLD_SOLID_BREP") &&
+                                                             !model.system.starts_with("selvage"));
   fabric.yarns_are_solids =
-      !yarns.empty() && model.entities.contains("186") &&
+      !yarns.empty() && has_solids &&
       std::all_of(yarns.begin(), yarns.end(), [](const cad::FoundYarn& found) { return found.was_solid; });
   for (cad::FoundYarn& found : yarns) {
     found.body.name = yarn_names.make(found.body.name);

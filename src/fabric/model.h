@@ -474,6 +474,7 @@ struct Fabric {
   std::string date;               // YYYYMMDD.HHNNSS; empty: not known
   std::string file_name;          // that it gives itself in its header; empty: none
   bool yarns_are_solids = false;  // IGES: 186s, not groups of 128s
+  double resolution = 0;          // below which it calls two points one, file units; 0: it does not say
 
   [[nodiscard]] const Thread* find_thread(std::string_view name) const;
   // One of the text's own, else a fibre of the trade (fibres.h).

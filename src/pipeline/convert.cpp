@@ -37,6 +37,7 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
       converted(fabric::tolerance_of(fabric, job.build_options()), fabric.units, surface.units);
   surface.chord = converted(job.options.chord, fabric.units, surface.units);
   surface.yarns_are_solids = fabric.yarns_are_solids;
+  if (!fabric.parts.empty()) surface.resolution = converted(fabric.resolution, fabric.units, surface.units);
   surface.has_others = job.options.lines || !fabric::pieces_of(fabric).empty() || !fabric.parts.empty() ||
                        !fabric.curves.empty();
   surface.own = job.options.of_formats;

@@ -28,6 +28,7 @@ SOLIDS = {
     "frustum": ("Cone(1) = {0,0,0, 0,0,2, 1, 0.5};", 1.75 * 2 * math.pi / 3),
     "cone_cut": ("Cone(1) = {0,0,0, 0,0,2, 1, 0}; Box(2) = {-2,-2,0.5, 4,2.3,0.6};" + CUT, 1.541663044),
     "sphere_hole": ("Sphere(1) = {0,0,0, 1}; Cylinder(2) = {0,0,-2, 0,0,4, 0.4};" + CUT, SPHERE * 0.84**1.5),
+    "cylinder": ("Cylinder(1) = {0,0,0, 0,0,3, 0.5};", 0.75 * math.pi),
     "wedge": ("Wedge(1) = {0,0,0, 2,2,2, 1};", 6),
 }
 
@@ -49,6 +50,9 @@ class Foreign(Case):
                 path = self.folder / f"{name}.igs"
                 done = run("convert", self.solid(name), "-o", path, "--quiet")
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
+                # Also what could be a yarn: a rod, a ring.
+                report = json.loads(run("info", path, "--json").stdout)["inputs"][0]
+                self.assertEqual(report["entities"].get("186"), 1)
                 after = json.loads(self.totals(path))
                 self.assertEqual((after["solids"], after["valid"]), (1, 1))
                 self.assertAlmostEqual(after["volume"] / volume, 1, delta=0.03)

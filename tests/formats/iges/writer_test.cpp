@@ -74,6 +74,8 @@ TEST(Header, ResolutionIsUsefulToReaders) {
   EXPECT_EQ(resolution_for(1e-3, 1e9),
             1e-5);  // the numbers themselves resolve no more: 16 x 2^-52 x 1e9 = 3.6e-6
   EXPECT_GT(resolution_for(0, 0), 0);
+  EXPECT_EQ(resolution_for(0.4, 10, 1e-5), 1e-5);  // of the file that its faces come from
+  EXPECT_EQ(resolution_for(0.4, 10, 0.1), 1e-3);   // but not so coarse that a face would vanish
 }
 
 // Lists that are long enough for them, in one block of several rounds and with a rest; small buffers move in

@@ -85,6 +85,19 @@ TEST(Compare, Moved) {
   EXPECT_LE((found.differences[1].motion.axis - Vec3(0, 0.6, 0.8)).norm(), 1e-9);
 }
 
+// A cylinder has its seam anywhere; on another axis it is another one.
+TEST(Compare, AShapeThatTurnsOnItsOwnAxisIsTheSame) {
+  Subject before, after, aside;
+  for (Subject* subject : {&before, &after, &aside})
+    subject->model.parts.emplace_back().faces.push_back(face_of(cylinder(2, 3), {}));
+  for (Vec3& p : after.model.parts[0].faces[0].surface.points) p = Eigen::AngleAxisd(0.65, Vec3::UnitZ()) * p;
+  for (Vec3& p : aside.model.parts[0].faces[0].surface.points) p = Eigen::AngleAxisd(0.65, Vec3::UnitX()) * p;
+  EXPECT_TRUE(compared(before, after, 1e-9).differences.empty());
+  const Comparison found = compared(before, aside, 1e-9);
+  ASSERT_EQ(found.differences.size(), 1U);
+  EXPECT_EQ(found.differences[0].kind, Kind::moved);
+}
+
 TEST(Compare, AddedRemovedRenamedRecoloured) {
   const Subject before = cloth(6);
   Subject after = before;

@@ -517,6 +517,30 @@ TEST(Recognize, ADiscWithOneFaceIsNoYarn) {
   }
 }
 
+// A vase: two walls, each with its bottom, joined by the rim. What is inside of the outer one overlaps
+// nothing.
+TEST(Recognize, TheWallsOfAVaseAreNoYarns) {
+  Surface outer = cylinder(0.3, 2, 10, 10), inner = cylinder(0.2, 2, 10, 10);
+  for (int i = 0; i < inner.count_u; ++i) inner.point(i, 0).z() = 0.1;
+  std::array<Surface, 2> bottoms = {outer, inner};
+  for (Surface& bottom : bottoms)
+    for (int i = 0; i < bottom.count_u; ++i) bottom.point(i, 1) = Vec3(10, 10, bottom.point(i, 0).z());
+  Surface rim = outer;
+  for (int i = 0; i < rim.count_u; ++i) {
+    rim.point(i, 0) = outer.point(i, 1);
+    rim.point(i, 1) = inner.point(i, 1);
+  }
+  Model model;
+  for (const Surface& surface : {outer, bottoms[0], inner, bottoms[1], rim})
+    model.parts.push_back(part_of("vase", {surface}));
+  Model open = model;
+  EXPECT_TRUE(taken(model).empty());
+  EXPECT_EQ(model.parts.size(), 5U);
+  open.parts.back() = part_of("sheet", {sheet()});
+  Diagnostics diagnostics;  // without the rim they are two yarns with an open end
+  EXPECT_EQ(cad::take_yarns(open, diagnostics).size(), 2U);
+}
+
 TEST(Recognize, TenThousandLooseYarns) {
   const Body model_yarn =
       wave("", {.length = 1, .width = 0.25, .height = 0.125, .amplitude = 0.05, .sections = 4, .round = 8},
