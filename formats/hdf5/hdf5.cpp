@@ -29,17 +29,11 @@ Result<WriteFacts> write(const fem::Raster& raster, OutputFile& output) {
     one.order = "zyx";
     datasets.push_back(std::move(one));
   }
-  std::vector<std::string> names, materials;
-  std::vector<double> fractions;
-  for (const fem::RasterPhase& phase : raster.phases) {
-    names.push_back(phase.name);
-    materials.push_back(phase.material);
-    fractions.push_back(phase.fraction);
-  }
+  const fem::PhaseColumns phases = fem::columns_of(raster.phases);
   const Vec3 lengths = raster.high - raster.low;
-  datasets.push_back(texts("phase_names", std::move(names)));
-  datasets.push_back(texts("phase_materials", std::move(materials)));
-  datasets.push_back(numbers("phase_fractions", fractions.data(), fractions.size()));
+  datasets.push_back(texts("phase_names", phases.names));
+  datasets.push_back(texts("phase_materials", phases.materials));
+  datasets.push_back(numbers("phase_fractions", phases.fractions.data(), phases.fractions.size()));
   datasets.push_back(numbers("origin", raster.low.data(), 3));
   datasets.push_back(numbers("lengths", lengths.data(), 3));
   datasets.push_back(texts("title", {raster.title}));

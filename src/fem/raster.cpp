@@ -438,4 +438,14 @@ std::array<RasterField, 4> fields_of(const Raster& raster) {
           field("orientation", Type::float32, 3, raster.orientation)};
 }
 
+PhaseColumns columns_of(const std::vector<RasterPhase>& phases) {
+  PhaseColumns columns;
+  for (const RasterPhase& phase : phases) {
+    columns.names.push_back(phase.name);
+    columns.materials.push_back(phase.material);
+    columns.fractions.push_back(phase.fraction);
+  }
+  return columns;
+}
+
 }  // namespace selvage::fem

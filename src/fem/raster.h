@@ -65,4 +65,11 @@ struct RasterField {
 };
 std::array<RasterField, 4> fields_of(const Raster& raster);
 
+// The phases as columns.
+struct PhaseColumns {
+  std::vector<std::string> names, materials;
+  std::vector<double> fractions;
+};
+PhaseColumns columns_of(const std::vector<RasterPhase>& phases);
+
 }  // namespace selvage::fem
