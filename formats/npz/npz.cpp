@@ -23,21 +23,15 @@ Result<WriteFacts> write(const fem::Raster& raster, OutputFile& output) {
     add(field.name, field.type == fem::RasterField::Type::uint16 ? "<u2" : "<f4", dimensions,
         bytes_of(field.data, field.bytes));
   }
-  std::vector<std::string> names, materials;
-  std::vector<double> fractions;
-  for (const fem::RasterPhase& phase : raster.phases) {
-    names.push_back(phase.name);
-    materials.push_back(phase.material);
-    fractions.push_back(phase.fraction);
-  }
+  const fem::PhaseColumns phases = fem::columns_of(raster.phases);
   const Vec3 lengths = raster.high - raster.low;
   const std::vector<std::string> title = {raster.title};
-  const TextArray name_array = text_array(names), material_array = text_array(materials),
+  const TextArray name_array = text_array(phases.names), material_array = text_array(phases.materials),
                   title_array = text_array(title);
-  add("phase_names", name_array.type, {names.size()}, name_array.data);
-  add("phase_materials", material_array.type, {materials.size()}, material_array.data);
-  add("phase_fractions", "<f8", {fractions.size()},
-      bytes_of(fractions.data(), fractions.size() * sizeof(double)));
+  add("phase_names", name_array.type, {phases.names.size()}, name_array.data);
+  add("phase_materials", material_array.type, {phases.materials.size()}, material_array.data);
+  add("phase_fractions", "<f8", {phases.fractions.size()},
+      bytes_of(phases.fractions.data(), phases.fractions.size() * sizeof(double)));
   add("origin", "<f8", {3}, bytes_of(raster.low.data(), 3 * sizeof(double)));
   add("lengths", "<f8", {3}, bytes_of(lengths.data(), 3 * sizeof(double)));
   add("title", title_array.type, {1}, title_array.data);
