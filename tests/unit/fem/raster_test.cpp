@@ -90,7 +90,9 @@ TEST(Raster, SharesOfEachVoxelAreThoseOfAnEllipse) {
     const double fibres = 0.1 / (std::numbers::pi * 0.4 * 0.25);
     EXPECT_NEAR(static_cast<double>(raster.fibre_fraction[at]), expected * fibres, 1e-3);
     EXPECT_EQ(raster.phase[at], raster.yarn_fraction[at] >= 0.5F ? 1 : 0);
-    if (raster.yarn_fraction[at] > 0) EXPECT_LT((orientation(raster, at) - Vec3::UnitX()).norm(), 1e-6);
+    if (raster.yarn_fraction[at] > 0) {
+      EXPECT_LT((orientation(raster, at) - Vec3::UnitX()).norm(), 1e-6);
+    }
   });
   EXPECT_NEAR(raster.yarn, std::numbers::pi * 0.4 * 0.25 / 1.5, 3e-4 * raster.yarn);
   EXPECT_EQ(raster.phases[1].name, "tube");
@@ -105,8 +107,9 @@ TEST(Raster, AYarnThatRunsAnyWayKeepsItsVolumeAndDirection) {
     const Raster raster = raster_of(cell_of(Vec3(0, 0, 0), Vec3(2, 2, 2)), {body}, 24);
     EXPECT_NEAR(raster.yarn * 8, std::numbers::pi * 0.09 * 1.5, 4e-4 * raster.yarn * 8) << axis.transpose();
     for_each_voxel(raster, [&](std::size_t, std::size_t, std::size_t, std::size_t at) {
-      if (raster.yarn_fraction[at] > 0)
+      if (raster.yarn_fraction[at] > 0) {
         EXPECT_LT((orientation(raster, at) - axis.normalized()).norm(), 1e-5) << axis.transpose();
+      }
     });
   }
 }
@@ -119,7 +122,9 @@ TEST(Raster, WhatTheCellCutsOffIsNotCounted) {
   const Raster raster = raster_of(cell_of(Vec3(0, 0, 0), Vec3(2, 2, 1)), {body}, 30);
   EXPECT_NEAR(raster.yarn * 4, std::numbers::pi * 0.16, 3e-4);
   for_each_voxel(raster, [&](std::size_t i, std::size_t j, std::size_t k, std::size_t at) {
-    if (raster.yarn_fraction[at] > 0) EXPECT_LT((orientation(raster, at) - Vec3::UnitZ()).norm(), 1e-5);
+    if (raster.yarn_fraction[at] > 0) {
+      EXPECT_LT((orientation(raster, at) - Vec3::UnitZ()).norm(), 1e-5);
+    }
     EXPECT_NEAR(raster.yarn_fraction[at], raster.yarn_fraction[voxel(raster, i, j, 0)], 1e-6) << k;
   });
 }
