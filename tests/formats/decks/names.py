@@ -1,5 +1,6 @@
 """What decks call yarns: the rules of the solvers, as their manuals have them, and the comments that say whose name is whose."""
 
+import pathlib
 import re
 
 LONGEST = {"inp": 80, "cdb": 32, "k": 70, "bdf": 48, "unv": 24}
@@ -27,7 +28,7 @@ def yarns_of(path):
     """Deck's name: yarn's own, of those that differ."""
     mark = MARKS[path.rpartition(".")[2]]
     yarns, name = {}, None
-    for line in open(path, encoding="utf-8"):
+    for line in pathlib.Path(path).read_text(encoding="utf-8").splitlines():
         comment = line[len(mark):].strip() if line.startswith(mark) else ""
         begun = re.fullmatch(r"(.*) is yarn(?: '(.*)')?", comment)
         if begun:

@@ -35,7 +35,15 @@ void expect_identifiers(const Names& names, std::size_t longest, const std::stri
   }
 }
 
-const Names awkward = {"a b",     "a_b", "A",   "a",        std::string(99, 'x') + "1", std::string(99, 'x') + "2", "7",
+// So many x, twice.
+std::string long_name(std::size_t first, const std::string& between, std::size_t second, const std::string& end) {
+  std::string name(first, 'x');
+  name += between;
+  name.append(second, 'x');
+  return name += end;
+}
+
+const Names awkward = {"a b",     "a_b", "A",   "a",        long_name(99, "", 0, "1"), long_name(99, "", 0, "2"), "7",
                        "",        "all", "A_2", "Ähre",     "été",                      "a\nb",                     "*$,&",
                        "\xFF\xFE", "ALL", "a.b", "warp-1\t", std::string(10000, 'y'),    "Y_"};
 
@@ -57,8 +65,8 @@ TEST(SolverNames, AreReadable) {
   EXPECT_EQ(names[1], "a_b");
   EXPECT_EQ(names[2], "A");
   EXPECT_EQ(names[3], "a_3");  // A_2 is another's
-  EXPECT_EQ(names[4], std::string(20, 'x') + "__" + std::string(9, 'x') + "1");
-  EXPECT_EQ(names[5], std::string(20, 'x') + "__" + std::string(9, 'x') + "2");
+  EXPECT_EQ(names[4], long_name(20, "__", 9, "1"));
+  EXPECT_EQ(names[5], long_name(20, "__", 9, "2"));
   EXPECT_EQ(names[6], "Y_7");
   EXPECT_EQ(names[9], "A_2");
   EXPECT_EQ(names[10], "Y__hre");
@@ -124,13 +132,15 @@ TEST(SolverNames, OfAMesh) {
 
   Result<OutputFile> output = OutputFile::in_memory();
   TextBuffer text(*output);
-  mesh.regions[1].name = "a\nb " + std::string(90, 'c');
+  mesh.regions[1].name = "a\nb ";
+  mesh.regions[1].name.append(90, 'x');
   fem::write_yarn_names(text, mesh, names, "$", 40);
   ASSERT_TRUE(text.finish().ok());
-  const std::string c36(36, 'c');
-  EXPECT_EQ(*output->contents(), "$ matrix_2 is yarn 'matrix'\n$ a is yarn\n$ 'a\\nb " + std::string(31, 'c') + "'\n$ '" +
-                                     c36 + "'\n$ '" + std::string(23, 'c') +
-                                     "'\n$ a_Section1_2 is yarn 'a_Section1'\n$ facea_2 is yarn 'facea'\n");
+  EXPECT_EQ(*output->contents(), "$ matrix_2 is yarn 'matrix'\n$ a is yarn\n$ 'a\\nb " +
+                                     long_name(31, "'\n$ '", 36, "'\n$ '") +
+                                     long_name(23, "", 0,
+                                               "'\n$ a_Section1_2 is yarn 'a_Section1'\n"
+                                               "$ facea_2 is yarn 'facea'\n"));
 }
 
 }  // namespace
