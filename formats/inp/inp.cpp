@@ -63,18 +63,20 @@ void write_sections(TextBuffer& text, const fem::Mesh& mesh, const std::vector<f
          << (is_oriented(mesh, section) ? ", ORIENTATION=YARNORI\n" : "\n");
 }
 
-// The line by which a deck takes in its mesh. CalculiX finds no name with a blank or a comma, nor a longer one.
+// The line by which a deck takes in its mesh. CalculiX finds no name with a blank or a comma, nor a longer
+// one.
 Result<std::string> inclusion_of(const std::string& file) {
   constexpr std::size_t longest = 124;
   const bool is_plain = std::all_of(file.begin(), file.end(), [](unsigned char letter) {
     return letter > ' ' && letter != 0x7F && letter != ',' && letter != '"' && letter != '\'';
   });
   if (is_plain && file.size() <= longest) return "*INCLUDE, INPUT=" + file + "\n";
-  return error(Kind::unsupported,
-               fmt::format("the deck has to include its mesh '{}', and no solver finds a file by a name with a "
-                           "blank, a comma or a quote, or of more than {} bytes: name it otherwise with -o, or "
-                           "leave out {}",
-                           shortened(file), longest, option::split_deck.name));
+  return error(
+      Kind::unsupported,
+      fmt::format("the deck has to include its mesh '{}', and no solver finds a file by a name with a "
+                  "blank, a comma or a quote, or of more than {} bytes: name it otherwise with -o, or "
+                  "leave out {}",
+                  shortened(file), longest, option::split_deck.name));
 }
 
 Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& options) {
@@ -152,16 +154,15 @@ void write_model_part(TextBuffer& text, const Deck& deck) {
 }
 
 const Descriptor& descriptor() {
-  static const Descriptor self = {.name = "inp",
-                                  .title = "Abaqus and CalculiX input deck",
-                                  .extensions = {".inp"},
-                                  .sniff = looks_like_a_deck,
-                                  .write_mesh = write,
-                                  .companion = {.format = mesh_descriptor,
-                                                .ending = "_mesh",
-                                                .asked_by = &option::split_deck},
-                                  .options = option::all(),
-                                  .is_usual = true};
+  static const Descriptor self = {
+      .name = "inp",
+      .title = "Abaqus and CalculiX input deck",
+      .extensions = {".inp"},
+      .sniff = looks_like_a_deck,
+      .write_mesh = write,
+      .companion = {.format = mesh_descriptor, .ending = "_mesh", .asked_by = &option::split_deck},
+      .options = option::all(),
+      .is_usual = true};
   return self;
 }
 

@@ -84,7 +84,8 @@ void write_directions(TextBuffer& text, const Deck& deck) {
   }
 }
 
-Result<WriteFacts> write_mesh_file(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& /*options*/) {
+Result<WriteFacts> write_mesh_file(const fem::Mesh& mesh, OutputFile& output,
+                                   const MeshFileOptions& /*options*/) {
   const Result<Deck> deck = plan_deck(mesh);
   if (!deck) return deck.error();
   TextBuffer text(output);

@@ -9,7 +9,8 @@ namespace selvage::formats::inp::option {
 
 inline constexpr Option split_deck = {
     .name = "--split-deck",
-    .help = "nodes, elements, sets and surfaces in a file of their own, NAME_mesh.inp, which NAME.inp includes"};
+    .help =
+        "nodes, elements, sets and surfaces in a file of their own, NAME_mesh.inp, which NAME.inp includes"};
 
 inline std::vector<const Option*> all() {
   return {&split_deck};

@@ -269,7 +269,7 @@ class CellFile {
   std::vector<std::size_t> group_of_;                                  // from 1, of each surface
   std::array<std::vector<std::vector<std::size_t>>, 4> members_;       // nodes, by dimension and entity
   BoundingElements bounding_;
-  std::size_t number_ = 0;                                             // of the last element
+  std::size_t number_ = 0;  // of the last element
 };
 
 }  // namespace

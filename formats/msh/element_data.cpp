@@ -10,7 +10,8 @@ namespace {
 // Of some nodes the elements that have them.
 class ElementsOfNodes {
  public:
-  ElementsOfNodes(const fem::Mesh& mesh, const std::vector<bool>& is_wanted) : begins_(mesh.nodes.size() + 1) {
+  ElementsOfNodes(const fem::Mesh& mesh, const std::vector<bool>& is_wanted)
+      : begins_(mesh.nodes.size() + 1) {
     const auto each = [&](auto&& act) {
       for (std::size_t e = 0; e < mesh.elements.size(); ++e)
         for (const std::size_t node : mesh.nodes_of(e))
@@ -43,7 +44,8 @@ void write_fibre_fraction(TextBuffer& text, const fem::Mesh& mesh, const Boundin
   for (std::size_t i = 0; i < bounding.size(); ++i) is_first[bounding[i].front()] = true;
   const ElementsOfNodes around(mesh, is_first);
   // One text, one number (a time), three whole ones: step, components, elements.
-  text << "$ElementData\n1\n\"fibre_fraction\"\n1\n0\n3\n0\n1\n" << bounding.size() + mesh.elements.size() << '\n';
+  text << "$ElementData\n1\n\"fibre_fraction\"\n1\n0\n3\n0\n1\n"
+       << bounding.size() + mesh.elements.size() << '\n';
   for (std::size_t i = 0; i < bounding.size(); ++i) {
     double largest = std::numeric_limits<double>::quiet_NaN();
     for (const std::size_t e : around[bounding[i].front()])

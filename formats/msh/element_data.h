@@ -28,8 +28,8 @@ class BoundingElements {
   std::vector<std::size_t> nodes_, ends_;
 };
 
-// Mesh::fibre_fraction, where it was computed; NaN as "nan". meshio wants a value of every element: what is no
-// volume has that of the volumes that it bounds, of several the largest.
+// Mesh::fibre_fraction, where it was computed; NaN as "nan". meshio wants a value of every element: what is
+// no volume has that of the volumes that it bounds, of several the largest.
 void write_fibre_fraction(TextBuffer& text, const fem::Mesh& mesh, const BoundingElements& bounding);
 
 }  // namespace selvage::formats::msh

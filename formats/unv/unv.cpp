@@ -69,7 +69,8 @@ std::size_t write_groups(TextBuffer& text, const fem::Mesh& mesh, const std::vec
                          const fem::DeckNames& names) {
   open_dataset(text, 2467);
   std::size_t number = 0;
-  for (const fem::NamedSet& set : fem::element_sets(mesh, sections, names)) write_group(text, ++number, set, 8);
+  for (const fem::NamedSet& set : fem::element_sets(mesh, sections, names))
+    write_group(text, ++number, set, 8);
   for (const fem::NamedSet& set : fem::node_sets(mesh, names)) write_group(text, ++number, set, 7);
   text << mark;
   return number;

@@ -67,7 +67,8 @@ NameMaker::NameMaker(NameRule rule) : rule_(std::move(rule)) {
 bool NameMaker::take(const std::string& name) {
   if (name.size() > room_ || fitting(name) != name) return false;
   std::vector<std::string> all = {in_lower_case(name)};
-  for (const std::string_view ending : rule_.endings) all.push_back(in_lower_case(name + std::string(ending)));
+  for (const std::string_view ending : rule_.endings)
+    all.push_back(in_lower_case(name + std::string(ending)));
   if (std::any_of(all.begin(), all.end(), [&](const std::string& one) { return taken_.contains(one); }))
     return false;
   taken_.insert(all.begin(), all.end());

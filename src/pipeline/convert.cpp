@@ -89,7 +89,8 @@ bool can_carry(Job& job, const fabric::Fabric& fabric, std::size_t yarns, const 
   const std::vector<const fabric::Piece*> pieces = fabric::pieces_of(fabric);
   for (const OpenOutput& output : outputs) {
     const formats::Descriptor& format = *output.plan->format;
-    if (format.open_bodies == nullptr || format.write_fabric != nullptr || output.plan->as_companion != nullptr)
+    if (format.open_bodies == nullptr || format.write_fabric != nullptr ||
+        output.plan->as_companion != nullptr)
       continue;
     if (yarns > 0 && !format.carries_surfaces && !takes_lines(job, format))
       job.say(

@@ -141,9 +141,9 @@ void write_meshes(Job& job, OpenOutputs& outputs, const std::optional<fem::Mesh>
   for (OpenOutput& output : outputs) {
     const formats::Descriptor& format = *output.plan->format;
     if (!take_facts(job, output,
-                    format.write_raster != nullptr ? format.write_raster(*raster, output.file)
-                                                   : format.write_mesh(*mesh, output.file,
-                                                                        {companion_of(output, outputs)})))
+                    format.write_raster != nullptr
+                        ? format.write_raster(*raster, output.file)
+                        : format.write_mesh(*mesh, output.file, {companion_of(output, outputs)})))
       return;
   }
   commit_all(job, outputs);

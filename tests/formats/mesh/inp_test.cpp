@@ -159,8 +159,7 @@ TEST(InpDeck, RegionsWithoutNodesOfTheirOwnGetNoLoad) {
   mesh.regions[1].name = "ring";
   mesh.regions[1].first_node = 4;
   mesh.regions[1].last_node = 6;
-  const std::vector<formats::inp::Load> loads =
-      formats::inp::plan_loads(mesh, formats::inp::names_of(mesh));
+  const std::vector<formats::inp::Load> loads = formats::inp::plan_loads(mesh, formats::inp::names_of(mesh));
   ASSERT_EQ(loads.size(), 1U);
   EXPECT_EQ(loads[0].start_set, "ring_Low");
   EXPECT_EQ(loads[0].start, (std::vector<std::size_t>{4, 5}));

@@ -36,16 +36,34 @@ void expect_identifiers(const Names& names, std::size_t longest, const std::stri
 }
 
 // So many x, twice.
-std::string long_name(std::size_t first, const std::string& between, std::size_t second, const std::string& end) {
+std::string long_name(std::size_t first, const std::string& between, std::size_t second,
+                      const std::string& end) {
   std::string name(first, 'x');
   name += between;
   name.append(second, 'x');
   return name += end;
 }
 
-const Names awkward = {"a b",     "a_b", "A",   "a",        long_name(99, "", 0, "1"), long_name(99, "", 0, "2"), "7",
-                       "",        "all", "A_2", "Ähre",     "été",                      "a\nb",                     "*$,&",
-                       "\xFF\xFE", "ALL", "a.b", "warp-1\t", std::string(10000, 'y'),    "Y_"};
+const Names awkward = {"a b",
+                       "a_b",
+                       "A",
+                       "a",
+                       long_name(99, "", 0, "1"),
+                       long_name(99, "", 0, "2"),
+                       "7",
+                       "",
+                       "all",
+                       "A_2",
+                       "Ähre",
+                       "été",
+                       "a\nb",
+                       "*$,&",
+                       "\xFF\xFE",
+                       "ALL",
+                       "a.b",
+                       "warp-1\t",
+                       std::string(10000, 'y'),
+                       "Y_"};
 
 TEST(SolverNames, IdentifiersAreLegalUniqueAndTheSameAgain) {
   for (const std::size_t longest : {24U, 32U, 80U}) {
@@ -76,7 +94,8 @@ TEST(SolverNames, AreReadable) {
 // Titles keep what can be seen. A letter of several bytes is not cut in two.
 TEST(SolverNames, TextKeepsWhatCanBeSeen) {
   const fem::NameRule rule = {.longest = 20, .is_text = true, .unfit = "*$,&"};
-  const Names names = fem::unique_names({"a b", "été", "*$,&", " a ", "A B", "ééééééééééééééé", "a\nb"}, rule);
+  const Names names =
+      fem::unique_names({"a b", "été", "*$,&", " a ", "A B", "ééééééééééééééé", "a\nb"}, rule);
   EXPECT_EQ(names, (Names{"a b", "été", "____", "_a_", "A B_2", "éééééé__ééé", "a_b"}));
 }
 
