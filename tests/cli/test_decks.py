@@ -19,7 +19,7 @@ import inp
 import names
 
 LONG = "x" * 99
-AWKWARD = ["a b", "a_b", "A", "a", LONG + "1", LONG + "2", "7", "all", "*$,&", "Ähre", "a_b_Start"]
+AWKWARD = ["a b", "a_b", "A", "a", LONG + "1", LONG + "2", "7", "all", "*$,&", "Ähre", "a_b_Start", "E1", "d2", "inf"]
 
 # A yarn that is thinner in its middle: its fibres are packed more closely there.
 CELL = """fabric 1
