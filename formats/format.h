@@ -120,6 +120,20 @@ struct NewEdit {
   std::array<std::string, 3> vector{};  // target or direction
 };
 
+struct Descriptor;
+
+// A second file that goes with each file of a format, beside it.
+struct Companion {
+  const Descriptor& (*format)() = nullptr;  // null: there is none
+  std::string_view ending{};                // of its name, behind the first one's stem: "_mesh"
+  const Option* asked_by = nullptr;         // only where this is given; null: always
+  bool is_of_load_cases = false;            // only beside meshes that have some
+};
+
+struct MeshFileOptions {
+  std::string companion;  // the name of the file beside (Descriptor::companion); empty: there is none
+};
+
 struct Descriptor {
   std::string_view name;                     // the word of --to: "iges"
   std::string_view title;                    // one line for `selvage formats`
@@ -168,12 +182,11 @@ struct Descriptor {
       false;  // centre lines of yarns; a format without surfaces is given nothing else of them
   // A mesh with what was computed on it, for pages; lengths in mm.
   std::optional<fem::FieldMesh> (*read_mesh)(const Source& source, Diagnostics& diagnostics) = nullptr;
-  Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output) = nullptr;
+  Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output,
+                                   const MeshFileOptions& options) = nullptr;
   // A unit cell on voxels (`mesh --voxel`), for a format that holds no elements.
   Result<WriteFacts> (*write_raster)(const fem::Raster& raster, OutputFile& output) = nullptr;
-  // The format of a second file of the same stem that goes with each file of this one; of meshes, with those
-  // that have load cases.
-  const Descriptor& (*companion)() = nullptr;
+  Companion companion{};
   bool is_companion = false;  // never written by itself
   // What the command line says of this format alone: of subcommands that can write it.
   std::vector<const Option*> options{};

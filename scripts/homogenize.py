@@ -36,13 +36,21 @@ class Deck:
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
-        self.lines = self.path.read_text().splitlines()
+        self.lines = self._with_included(self.path)
         self.nodes, self.sets, self.elements, self.element_sets = {}, {}, {}, {}
         self.equations, self.materials, self.sections = [], {}, []
         self.axes, self.steps, self.held = {}, [], []
         self.cell = None
         self.first_step = len(self.lines)
         self._read()
+
+    def _with_included(self, path):
+        """The lines of a deck, with those of the mesh that it includes (--split-deck)."""
+        lines = []
+        for line in path.read_text().splitlines():
+            found = re.fullmatch(r"\*INCLUDE\s*,\s*INPUT\s*=\s*(.*\S)\s*", line, re.IGNORECASE)
+            lines += self._with_included(path.parent / found[1]) if found else [line]
+        return lines
 
     def _blocks(self):
         """Keyword, parameters, data lines, line number, last comment before the keyword."""
@@ -400,7 +408,7 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
     started = time.monotonic()
     if solver == "direct":
         name = "homogenize"  # not the name of a deck that is kept beside it
-        shutil.copy(path, folder / f"{name}.inp")
+        (folder / f"{name}.inp").write_text("\n".join(deck.lines) + "\n")
         warnings = run_ccx(ccx, folder, name)
         forces = reactions(folder / f"{name}.dat", len(deck.steps))
         matrix, thermal = stiffness_from_steps(deck, drivers, forces, measure)

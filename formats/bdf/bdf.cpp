@@ -64,18 +64,26 @@ std::string word(std::size_t value) {
 }
 
 // Sets are numbered in the case control: elements of the regions and sections, then nodes.
-std::vector<fem::NamedSet> sets_of(const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
-  std::vector<fem::NamedSet> sets = fem::element_sets(mesh, sections);
-  for (fem::NamedSet& set : fem::node_sets(mesh)) sets.push_back(std::move(set));
+struct Sets {
+  std::vector<fem::NamedSet> list;
+  std::size_t of_elements = 0;  // the first ones
+};
+
+Sets sets_of(const fem::Mesh& mesh, const std::vector<fem::Section>& sections, const fem::DeckNames& names) {
+  Sets sets = {.list = fem::element_sets(mesh, sections, names)};
+  sets.of_elements = sets.list.size();
+  for (fem::NamedSet& set : fem::node_sets(mesh, names)) sets.list.push_back(std::move(set));
   return sets;
 }
 
 // At most 72 columns a line, commas at the ends of lines that go on.
-void write_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::NamedSet>& sets) {
+void write_sets(TextBuffer& text, const fem::Mesh& mesh, const Sets& sets) {
   constexpr std::size_t longest = 70;
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    const std::vector<std::size_t>& members = sets[i].members;
-    text << "$ SET " << i + 1 << " is " << sets[i].name << '\n';
+  for (std::size_t i = 0; i < sets.list.size(); ++i) {
+    const std::vector<std::size_t>& members = sets.list[i].members;
+    if (i == 0) text << "$ Of elements:\n";
+    if (i == sets.of_elements) text << "$ Of nodes:\n";
+    text << "$ SET " << i + 1 << " is " << sets.list[i].name << '\n';
     if (i < mesh.regions.size()) {
       text << "SET " << i + 1 << " = " << members.front() + 1 << " THRU " << members.back() + 1 << '\n';
       continue;
@@ -94,7 +102,7 @@ void write_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::
   }
 }
 
-void write_case_control(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::NamedSet>& sets) {
+void write_case_control(TextBuffer& text, const fem::Mesh& mesh, const Sets& sets) {
   text << "SOL 101\nCEND\nTITLE = Selvage: " << std::string_view(mesh.title).substr(0, 50)
        << "\n$ Units: mm, N, MPa, tonne, s\nECHO = NONE\n";
   write_sets(text, mesh, sets);
@@ -102,7 +110,7 @@ void write_case_control(TextBuffer& text, const fem::Mesh& mesh, const std::vect
     text << "BEGIN BULK\n";
     return;
   }
-  const std::size_t drivers = sets.size() + 1;
+  const std::size_t drivers = sets.list.size() + 1;
   text << "$ SET " << drivers << " is the drivers\n"
        << "SET " << drivers << " = " << mesh.nodes.size() + 1 << " THRU " << mesh.numbered()
        << "\nMPC = 1\nTEMPERATURE(INITIAL) = 999\nDISPLACEMENT = " << drivers << "\nSPCFORCES = " << drivers
@@ -135,20 +143,26 @@ class Properties {
       for (const std::size_t e : section.elements) {
         const auto [at, is_new] =
             numbers_.emplace(std::pair(section.name, frames.of_element[e]), list_.size() + 1);
-        if (is_new) list_.push_back({section.material + 1, frames.of_element[e]});
+        if (is_new) list_.push_back({section.name, section.material + 1, frames.of_element[e]});
         of_element_[e] = at->second;
       }
   }
   void write(TextBuffer& text) const {
-    for (std::size_t k = 0; k < list_.size(); ++k)
-      put_small(text, "PSOLID", {k + 1, list_[k].first, list_[k].second});
+    for (std::size_t k = 0; k < list_.size(); ++k) {
+      if (k == 0 || list_[k].section != list_[k - 1].section) text << "$ " << list_[k].section << '\n';
+      put_small(text, "PSOLID", {k + 1, list_[k].material, list_[k].system});
+    }
   }
   [[nodiscard]] std::size_t of(std::size_t element) const { return of_element_[element]; }
   [[nodiscard]] std::size_t count() const { return list_.size(); }
 
  private:
+  struct Property {
+    std::string section;
+    std::size_t material = 0, system = 0;
+  };
   std::map<std::pair<std::string, std::uint32_t>, std::size_t> numbers_;
-  std::vector<std::pair<std::size_t, std::size_t>> list_;  // material, coordinate system
+  std::vector<Property> list_;
   std::vector<std::size_t> of_element_;
 };
 
@@ -244,17 +258,20 @@ void write_loads(TextBuffer& text, const fem::Mesh& mesh) {
   }
 }
 
-Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& /*options*/) {
   constexpr std::size_t most = 99'999'999;  // columns of eight
   if (mesh.numbered() > most || mesh.elements.size() > most)
     return error(Kind::limit, "Nastran numbers at most 99 999 999 nodes and elements");
-  const Result<std::vector<fem::Section>> sections = fem::sections(mesh);
+  // They stand in comments only, where "$ SET 12345 is NAME" fits into 72 columns.
+  const fem::DeckNames names(mesh, {.longest = 48, .also = "-"});
+  const Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();
   const fem::Frames frames = fem::frames(mesh, *sections);
   const Properties properties(mesh, *sections, frames);
   TextBuffer text(output);
   text << "$ Nastran bulk data by Selvage\n";
-  write_case_control(text, mesh, sets_of(mesh, *sections));
+  fem::write_yarn_names(text, mesh, names, "$", 72);
+  write_case_control(text, mesh, sets_of(mesh, *sections, names));
   write_nodes(text, mesh);
   write_elements(text, mesh, properties);
   properties.write(text);

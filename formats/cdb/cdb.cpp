@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "core/columns.h"
-#include "core/text_report.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
 
@@ -92,12 +91,13 @@ void write_component(TextBuffer& text, const fem::NamedSet& set, bool is_nodes) 
   put_numbers(text, set.members, 10, 8);
 }
 
-void write_components(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
-  for (const fem::NamedSet& set : fem::element_sets(mesh, sections)) write_component(text, set, false);
+void write_components(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
+                      const fem::DeckNames& names) {
+  for (const fem::NamedSet& set : fem::element_sets(mesh, sections, names)) write_component(text, set, false);
   fem::NamedSet all{"AllElements", std::vector<std::size_t>(mesh.elements.size())};  // ALL is a word of ANSYS
   std::iota(all.members.begin(), all.members.end(), std::size_t{0});
   write_component(text, all, false);
-  for (const fem::NamedSet& set : fem::node_sets(mesh)) write_component(text, set, true);
+  for (const fem::NamedSet& set : fem::node_sets(mesh, names)) write_component(text, set, true);
   for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
     write_component(text, {mesh.drivers[k].name, {mesh.number_of_driver(k)}}, true);
 }
@@ -162,21 +162,20 @@ void write_types(TextBuffer& text, const fem::Mesh& mesh) {
   text << "ET,2,21\nKEYOPT,2,3,2\nR,2,1e-15\n";
 }
 
-Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
-  const Result<std::vector<fem::Section>> sections = fem::sections(mesh);
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& /*options*/) {
+  const fem::DeckNames names(mesh, {.longest = 32, .taken = {"ALL", "STAT", "DEFA"}});
+  const Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();
   const fem::Frames frames = fem::frames(mesh, *sections);
   TextBuffer text(output);
   text << "/COM,ANSYS mesh archive by Selvage: mm, N, MPa, tonne, s. Read it with CDREAD,DB\n";
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
-    if (mesh.regions[i].kind == fem::Region::Kind::yarn)
-      text << "! " << fem::set_name(mesh, i) << " is yarn " << in_quotes(mesh.regions[i].name) << '\n';
+  fem::write_yarn_names(text, mesh, names, "!", 100);
   text << "/PREP7\n";
   write_types(text, mesh);
   write_nodes(text, mesh);
   write_frames(text, frames);
   write_elements(text, mesh, *sections, frames);
-  write_components(text, mesh, *sections);
+  write_components(text, mesh, *sections, names);
   write_materials(text, mesh);
   write_equations(text, mesh);
   text << "FINISH\n";
@@ -199,7 +198,7 @@ const Descriptor& descriptor() {
                                   .extensions = {".cdb"},
                                   .sniff = is_an_archive,
                                   .write_mesh = write,
-                                  .companion = &macro_descriptor};
+                                  .companion = {.format = macro_descriptor, .is_of_load_cases = true}};
   return self;
 }
 

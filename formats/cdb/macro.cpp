@@ -72,7 +72,8 @@ void write_printing(TextBuffer& text, bool is_plate) {
             "*VWRITE,mean(1,1),mean(1,2),mean(1,3),mean(1,4),mean(1,5),mean(1,6)\n(6E16.7)\n";
 }
 
-Result<WriteFacts> write_model(const fem::Mesh& mesh, OutputFile& output) {
+Result<WriteFacts> write_model(const fem::Mesh& mesh, OutputFile& output,
+                               const MeshFileOptions& /*options*/) {
   if (!mesh.cell || mesh.load_cases.empty())
     return error(Kind::unsupported,
                  "the macro solves the load cases of a unit cell, and this mesh has none: give it a "

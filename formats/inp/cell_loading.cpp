@@ -12,18 +12,15 @@ bool changes_temperature(const fem::Mesh& mesh) {
                      [](const fem::LoadCase& load) { return load.temperature != 0; });
 }
 
-// The nodes that equations eliminate: the forces on them are what the drivers feel. (CalculiX prints none at
-// a driver itself, which no element has.)
-void write_dependent_nodes(TextBuffer& text, const fem::Mesh& mesh) {
+}  // namespace
+
+std::vector<std::size_t> dependent_nodes(const fem::Mesh& mesh) {
   std::vector<std::size_t> nodes;
   for (const fem::Equation& equation : mesh.equations) nodes.push_back(equation.front().node);
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  text << "*NSET, NSET=Dependent\n";
-  write_set(text, nodes);
+  return nodes;
 }
-
-}  // namespace
 
 void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh) {
   constexpr std::size_t per_row = 4;
@@ -33,10 +30,7 @@ void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh) {
   text << ' ';
   corner(mesh.cell->high);
   text << '\n';
-  if (!mesh.equations.empty()) {
-    write_dependent_nodes(text, mesh);
-    text << "*EQUATION\n";
-  }
+  if (!mesh.equations.empty()) text << "*EQUATION\n";
   for (const fem::Equation& equation : mesh.equations) {
     text << equation.size() << '\n';
     for (std::size_t i = 0; i < equation.size(); ++i) {
@@ -56,7 +50,8 @@ void write_cell_steps(TextBuffer& text, const fem::Mesh& mesh) {
     for (std::size_t k = 0; k < load.drivers.size(); ++k)
       if (load.drivers[k]) text << mesh.drivers[k].name << ", 1, 1, " << real(*load.drivers[k]) << '\n';
     if (is_heated) text << "*TEMPERATURE\nAllNodes, " << real(load.temperature) << '\n';
-    // The force on a driver is the stress times the volume of the cell.
+    // The force on a driver is the stress times the volume of the cell. CalculiX prints none at a driver
+    // itself, which no element has: it follows from those on the nodes that depend on it.
     text << "*NODE PRINT, NSET=Drivers\nU, RF\n*NODE PRINT, NSET=Dependent\nRF\n";
     text << "*NODE FILE\nU\n*EL FILE\nS, E\n*END STEP\n";
   }

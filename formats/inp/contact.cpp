@@ -13,9 +13,9 @@ void write_surface(TextBuffer& text, const std::string& name, const std::vector<
 
 }  // namespace
 
-void write_contact_surfaces(TextBuffer& text, const fem::Mesh& mesh, const fem::ContactSurfaces& contact) {
-  for (const fem::ContactSurface& surface : contact.surfaces) {
-    const std::string name = fem::set_name(mesh, surface.region);
+void write_contact_surfaces(TextBuffer& text, const Deck& deck) {
+  for (const fem::ContactSurface& surface : deck.contact.surfaces) {
+    const std::string& name = deck.names.of(surface.region);
     write_surface(text, name + "_Surface", surface.whole);
     write_surface(text, name + "_Upper", surface.upper);
     write_surface(text, name + "_Lower", surface.lower);
@@ -24,7 +24,8 @@ void write_contact_surfaces(TextBuffer& text, const fem::Mesh& mesh, const fem::
 
 // As comments: contact makes a step nonlinear. Frictionless, for the second number of *FRICTION is not the
 // same in Abaqus and in CalculiX; pressure over overclosure in MPa/mm.
-void write_contact_pairs(TextBuffer& text, const fem::Mesh& mesh, const fem::ContactSurfaces& contact) {
+void write_contact_pairs(TextBuffer& text, const Deck& deck) {
+  const fem::ContactSurfaces& contact = deck.contact;
   if (contact.pairs.empty()) return;
   text << "** Yarns that are near each other. Contact makes the step nonlinear: take the marks **~ away to "
           "have it.\n"
@@ -32,8 +33,8 @@ void write_contact_pairs(TextBuffer& text, const fem::Mesh& mesh, const fem::Con
           "PRESSURE-OVERCLOSURE=LINEAR\n**~1e6\n";
   for (const auto& [first, second] : contact.pairs)
     text << "**~*CONTACT PAIR, INTERACTION=YarnContact, TYPE=SURFACE TO SURFACE\n**~"
-         << fem::set_name(mesh, contact.surfaces[first].region) << "_Surface, "
-         << fem::set_name(mesh, contact.surfaces[second].region) << "_Surface\n";
+         << deck.names.of(contact.surfaces[first].region) << "_Surface, "
+         << deck.names.of(contact.surfaces[second].region) << "_Surface\n";
 }
 
 }  // namespace selvage::formats::inp

@@ -9,6 +9,7 @@
 #include "fem/contact_surfaces.h"
 #include "fem/mesh.h"
 #include "fem/sections.h"
+#include "formats/format.h"
 
 namespace selvage::formats::inp {
 
@@ -16,8 +17,8 @@ namespace selvage::formats::inp {
 // form where it is that short, else rounded to the digits that fit, at least 13.
 std::string real(double value);
 
-// Sixteen entries a row, as Abaqus allows.
-void write_set(TextBuffer& text, const std::vector<std::size_t>& nodes);
+// Names of at most 80 characters.
+fem::DeckNames names_of(const fem::Mesh& mesh);
 
 // How one yarn is held and pulled: the nodes of `start` keep their place along `normal_start`, those of `end`
 // move along `normal_end` by `pull`; both faces stay free to contract. `anchor` and `second` (nodes of start)
@@ -32,22 +33,50 @@ struct Load {
 
 // A thousandth of each yarn's length, on its end faces; a ring is pulled between the two ends of its longest
 // extent. None for a region that has no nodes of its own.
-std::vector<Load> plan_loads(const fem::Mesh& mesh);
+std::vector<Load> plan_loads(const fem::Mesh& mesh, const fem::DeckNames& names);
 
-std::vector<fem::NamedSet> sets_of(const std::vector<Load>& loads);
+// What is written of a mesh, which has to outlive it.
+struct Deck {
+  const fem::Mesh& mesh;
+  fem::DeckNames names;
+  std::vector<fem::Section> sections;
+  fem::ContactSurfaces contact;
+  std::vector<Load> loads;               // of dry yarns that no cell cuts
+  std::vector<fem::NamedSet> node_sets;  // without those of all nodes, of drivers and of dependent nodes
+};
+// Error (internal): a region without a material that has elastic constants.
+Result<Deck> plan_deck(const fem::Mesh& mesh);
+
+// Has the section's material axes? Yarns have an orientation in any case, for the material that somebody may
+// give them later.
+bool is_oriented(const fem::Mesh& mesh, const fem::Section& section);
+
+// The head of both parts: units, and whose name is not its own.
+void write_names(TextBuffer& text, const Deck& deck);
+// Nodes, elements, sets, surfaces, and the directions of the elements (*DISTRIBUTION YARNDIST1).
+void write_mesh_part(TextBuffer& text, const Deck& deck);
+// How many of what that is.
+EntityCounts counts_of_mesh(const Deck& deck);
+// Materials, sections, conditions and steps.
+void write_model_part(TextBuffer& text, const Deck& deck);
 
 // *TRANSFORM cards, for end faces that look along no coordinate axis. They belong before the step.
 void write_transforms(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>& loads);
 void write_step(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>& loads);
 
-// Of dry yarns: Yarn0_Surface, Yarn0_Upper, Yarn0_Lower, ..; the pairs of whole surfaces that are near each
-// other, with the interaction YarnContact.
-void write_contact_surfaces(TextBuffer& text, const fem::Mesh& mesh, const fem::ContactSurfaces& contact);
-void write_contact_pairs(TextBuffer& text, const fem::Mesh& mesh, const fem::ContactSurfaces& contact);
+// Of dry yarns: NAME_Surface, NAME_Upper, NAME_Lower; the pairs of whole surfaces that are near each other,
+// with the interaction YarnContact.
+void write_contact_surfaces(TextBuffer& text, const Deck& deck);
+void write_contact_pairs(TextBuffer& text, const Deck& deck);
 
-// Of a unit cell: *EQUATION cards and what else belongs before the first step.
+// Of a unit cell: the nodes that equations eliminate, each once, in their order.
+std::vector<std::size_t> dependent_nodes(const fem::Mesh& mesh);
+// *EQUATION cards and what else belongs before the first step.
 void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh);
 // A step for each load case.
 void write_cell_steps(TextBuffer& text, const fem::Mesh& mesh);
+
+// The file of write_mesh_part, which --split-deck makes.
+const Descriptor& mesh_descriptor();
 
 }  // namespace selvage::formats::inp

@@ -1,20 +1,19 @@
 #include "formats/registry.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "core/columns.h"
-#include "core/text_report.h"
+#include "core/readable.h"
 #include "fem/materials.h"
-#include "fem/sections.h"
 #include "formats/inp/deck.h"
+#include "formats/inp/options.h"
 
 namespace selvage::formats::inp {
 
 std::string real(double value) {
   return number_text(value, 20);
-}
-
-void write_set(TextBuffer& text, const std::vector<std::size_t>& nodes) {
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    text << nodes[i] + 1 << (i % 16 == 15 || i + 1 == nodes.size() ? "\n" : ", ");
 }
 
 namespace {
@@ -26,87 +25,6 @@ namespace {
 void write_heading(TextBuffer& text, const fem::Mesh& mesh) {
   text << "*HEADING\nSelvage: " << std::string_view(mesh.title).substr(0, 70)
        << "\n *DISTRIBUTION TABLE, NAME=YARNTABLE\nCOORD3D, COORD3D\n";
-}
-
-void write_node(TextBuffer& text, std::size_t number, const Vec3& p) {
-  text << number << ", " << real(p.x()) << ", " << real(p.y()) << ", " << real(p.z()) << '\n';
-}
-
-// One block, for meshio knows no second one: drivers, which are no part of AllNodes, stand at its end.
-void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
-  text << (mesh.drivers.empty() ? "*NODE, NSET=AllNodes\n" : "*NODE\n");
-  for (std::size_t n = 0; n < mesh.numbered(); ++n) write_node(text, n + 1, mesh.place(n));
-  if (mesh.drivers.empty()) return;
-  text << "*NSET, NSET=AllNodes, GENERATE\n1, " << mesh.nodes.size() << ", 1\n";
-  for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
-    text << "*NSET, NSET=" << mesh.drivers[k].name << '\n' << mesh.number_of_driver(k) + 1 << '\n';
-  text << "*NSET, NSET=Drivers, GENERATE\n" << mesh.nodes.size() + 1 << ", " << mesh.numbered() << ", 1\n";
-}
-
-std::string_view element_type(const fem::Mesh& mesh) {
-  if (mesh.shape == fem::Mesh::Shape::hexahedron) return "C3D8";
-  return mesh.order == 1 ? "C3D4" : "C3D10";
-}
-
-void write_elements(TextBuffer& text, const fem::Mesh& mesh) {
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
-    const fem::Region& region = mesh.regions[i];
-    const std::string name = fem::set_name(mesh, i);
-    if (region.kind == fem::Region::Kind::yarn)
-      text << "** " << name << " is yarn " << in_quotes(region.name) << '\n';
-    text << "*ELEMENT, TYPE=" << element_type(mesh) << ", ELSET=" << name << '\n';
-    for (std::size_t e = region.first_element; e < region.last_element; ++e) {
-      text << e + 1;
-      for (const std::size_t node : mesh.nodes_of(e)) text << ", " << node + 1;
-      text << '\n';
-    }
-  }
-}
-
-void write_element_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
-  text << "*ELSET, ELSET=All\n";
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
-    text << fem::set_name(mesh, i) << (i % 16 == 15 || i + 1 == mesh.regions.size() ? "\n" : ", ");
-  for (const fem::Section& section : sections) {
-    if (section.name == fem::set_name(mesh, section.region)) continue;
-    text << "*ELSET, ELSET=" << section.name << '\n';
-    write_set(text, section.elements);
-  }
-}
-
-void write_node_sets(TextBuffer& text, const std::vector<fem::NamedSet>& sets) {
-  for (const fem::NamedSet& set : sets) {
-    text << "*NSET, NSET=" << set.name << '\n';
-    write_set(text, set.members);
-  }
-}
-
-void write_vectors(TextBuffer& text, const Vec3& along, const Vec3& across) {
-  for (const double value : {along.x(), along.y(), along.z(), across.x(), across.y()})
-    text << real(value) << ", ";
-  text << real(across.z()) << '\n';
-}
-
-// Yarns have an orientation in any case, for the material that somebody may give them later.
-bool is_oriented(const fem::Mesh& mesh, const fem::Section& section) {
-  return mesh.regions[section.region].kind == fem::Region::Kind::yarn ||
-         !fem::orthotropic(mesh.materials[section.material]).isotropic;
-}
-
-// Local axes 1 along the yarn, 2 across it, element by element. The distribution's name must not look like a
-// Fortran real (CalculiX takes D1 for a number).
-void write_orientation(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
-  text << "** 1: along the yarn, 2: across it\n*DISTRIBUTION, NAME=YARNDIST1, LOCATION=ELEMENT, "
-          "TABLE=YARNTABLE\n, ";
-  write_vectors(text, Vec3::UnitX(), Vec3::UnitY());
-  for (const fem::Section& section : sections) {
-    if (!is_oriented(mesh, section)) continue;
-    for (const std::size_t e : section.elements) {
-      text << e + 1 << ", ";
-      write_vectors(text, mesh.along[e], mesh.across[e]);
-    }
-  }
-  text << "*ORIENTATION, NAME=YARNORI, SYSTEM=RECTANGULAR\nYARNDIST1\n";
 }
 
 void write_elastic(TextBuffer& text, const fabric::Material& material) {
@@ -145,39 +63,39 @@ void write_sections(TextBuffer& text, const fem::Mesh& mesh, const std::vector<f
          << (is_oriented(mesh, section) ? ", ORIENTATION=YARNORI\n" : "\n");
 }
 
-Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
-  const Result<std::vector<fem::Section>> sections = fem::sections(mesh);
-  if (!sections) return sections.error();
+// The line by which a deck takes in its mesh. CalculiX finds no name with a blank or a comma, nor a longer
+// one.
+Result<std::string> inclusion_of(const std::string& file) {
+  constexpr std::size_t longest = 124;
+  const bool is_plain = std::all_of(file.begin(), file.end(), [](unsigned char letter) {
+    return letter > ' ' && letter != 0x7F && letter != ',' && letter != '"' && letter != '\'';
+  });
+  if (is_plain && file.size() <= longest) return "*INCLUDE, INPUT=" + file + "\n";
+  return error(
+      Kind::unsupported,
+      fmt::format("the deck has to include its mesh '{}', and no solver finds a file by a name with a "
+                  "blank, a comma or a quote, or of more than {} bytes: name it otherwise with -o, or "
+                  "leave out {}",
+                  shortened(file), longest, option::split_deck.name));
+}
+
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& options) {
+  const Result<Deck> deck = plan_deck(mesh);
+  if (!deck) return deck.error();
+  const bool is_split = !options.companion.empty();
+  const Result<std::string> inclusion = is_split ? inclusion_of(options.companion) : std::string();
+  if (!inclusion) return inclusion.error();
   TextBuffer text(output);
-  const std::vector<std::string> names = fem::solver_names(mesh.materials);
-  const fem::ContactSurfaces contact = fem::contact_surfaces(mesh);
-  const std::vector<Load> loads = mesh.cell ? std::vector<Load>() : plan_loads(mesh);
-  const std::vector<fem::NamedSet> sets = mesh.cell ? fem::node_sets(mesh) : sets_of(loads);
   write_heading(text, mesh);
-  text << "** Units: mm, N, MPa, tonne, s\n";
-  write_nodes(text, mesh);
-  write_elements(text, mesh);
-  write_element_sets(text, mesh, *sections);
-  write_node_sets(text, sets);
-  write_contact_surfaces(text, mesh, contact);
-  write_materials(text, mesh, names);
-  write_orientation(text, mesh, *sections);
-  write_sections(text, mesh, *sections, names);
-  write_contact_pairs(text, mesh, contact);
-  if (mesh.cell) {
-    write_cell_conditions(text, mesh);
-    write_cell_steps(text, mesh);
-  } else {
-    write_transforms(text, mesh, loads);
-    write_step(text, mesh, loads);
-  }
-  return finished(text,
-                  {{"nodes", mesh.nodes.size()},
-                   {std::string(element_type(mesh)), mesh.elements.size()},
-                   {"element sets", mesh.regions.size() + 1},
-                   {"node sets", sets.size() + 1 + mesh.drivers.size()}},
+  write_names(text, *deck);
+  if (is_split)
+    text << *inclusion;
+  else
+    write_mesh_part(text, *deck);
+  write_model_part(text, *deck);
+  return finished(text, is_split ? EntityCounts() : counts_of_mesh(*deck),
                   {{"equations", mesh.equations.size()},
-                   {"contact pairs", contact.pairs.size()},
+                   {"contact pairs", deck->contact.pairs.size()},
                    {"steps", mesh.load_cases.size()}});
 }
 
@@ -187,13 +105,64 @@ bool looks_like_a_deck(std::string_view head) {
 
 }  // namespace
 
+fem::DeckNames names_of(const fem::Mesh& mesh) {
+  fem::NameRule rule = {.longest = 80, .also = "-"};
+  const bool has_matrix = std::any_of(mesh.regions.begin(), mesh.regions.end(), [](const fem::Region& one) {
+    return one.kind == fem::Region::Kind::matrix;
+  });
+  if (!has_matrix) rule.endings = {"_Surface", "_Upper", "_Lower"};
+  if (!mesh.cell) rule.endings.insert(rule.endings.end(), {"_Low", "_High"});
+  return {mesh, std::move(rule)};
+}
+
+Result<Deck> plan_deck(const fem::Mesh& mesh) {
+  const fem::DeckNames names = names_of(mesh);
+  Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
+  if (!sections) return sections.error();
+  Deck deck = {mesh, names, std::move(*sections), fem::contact_surfaces(mesh), {}, {}};
+  if (mesh.cell) {
+    deck.node_sets = fem::node_sets(mesh, names);
+    return deck;
+  }
+  deck.loads = plan_loads(mesh, names);
+  for (const Load& load : deck.loads) {
+    deck.node_sets.push_back({load.start_set, load.start});
+    deck.node_sets.push_back({load.end_set, load.end});
+  }
+  return deck;
+}
+
+void write_names(TextBuffer& text, const Deck& deck) {
+  text << "** Units: mm, N, MPa, tonne, s\n";
+  fem::write_yarn_names(text, deck.mesh, deck.names, "**", 120);
+}
+
+void write_model_part(TextBuffer& text, const Deck& deck) {
+  const fem::Mesh& mesh = deck.mesh;
+  const std::vector<std::string> materials = fem::solver_names(mesh.materials);
+  write_materials(text, mesh, materials);
+  text << "*ORIENTATION, NAME=YARNORI, SYSTEM=RECTANGULAR\nYARNDIST1\n";
+  write_sections(text, mesh, deck.sections, materials);
+  write_contact_pairs(text, deck);
+  if (mesh.cell) {
+    write_cell_conditions(text, mesh);
+    write_cell_steps(text, mesh);
+  } else {
+    write_transforms(text, mesh, deck.loads);
+    write_step(text, mesh, deck.loads);
+  }
+}
+
 const Descriptor& descriptor() {
-  static const Descriptor self = {.name = "inp",
-                                  .title = "Abaqus and CalculiX input deck",
-                                  .extensions = {".inp"},
-                                  .sniff = looks_like_a_deck,
-                                  .write_mesh = write,
-                                  .is_usual = true};
+  static const Descriptor self = {
+      .name = "inp",
+      .title = "Abaqus and CalculiX input deck",
+      .extensions = {".inp"},
+      .sniff = looks_like_a_deck,
+      .write_mesh = write,
+      .companion = {.format = mesh_descriptor, .ending = "_mesh", .asked_by = &option::split_deck},
+      .options = option::all(),
+      .is_usual = true};
   return self;
 }
 

@@ -88,28 +88,19 @@ void write_transform(TextBuffer& text, const std::string& set, const Vec3& first
 
 }  // namespace
 
-std::vector<Load> plan_loads(const fem::Mesh& mesh) {
+std::vector<Load> plan_loads(const fem::Mesh& mesh, const fem::DeckNames& names) {
   std::vector<Load> loads;
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
     const fem::Region& region = mesh.regions[i];
     const bool ring = region.start_nodes.empty();
     if (ring && region.first_node == region.last_node) continue;
     Load load = ring ? grip_ring(mesh, region) : grip_ends(mesh, region);
-    load.start_set = fem::set_name(mesh, i) + (ring ? "_Low" : "_Start");
-    load.end_set = fem::set_name(mesh, i) + (ring ? "_High" : "_End");
+    load.start_set = names.of(i) + (ring ? "_Low" : "_Start");
+    load.end_set = names.of(i) + (ring ? "_High" : "_End");
     choose_anchors(mesh, load);
     loads.push_back(std::move(load));
   }
   return loads;
-}
-
-std::vector<fem::NamedSet> sets_of(const std::vector<Load>& loads) {
-  std::vector<fem::NamedSet> sets;
-  for (const Load& load : loads) {
-    sets.push_back({load.start_set, load.start});
-    sets.push_back({load.end_set, load.end});
-  }
-  return sets;
 }
 
 void write_transforms(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>& loads) {

@@ -3,14 +3,12 @@
 #include <algorithm>
 
 #include "core/columns.h"
-#include "core/readable.h"
 #include "fem/complete_cell.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
 
 namespace selvage::formats::k {
 namespace {
-
 // A real number for a column: as many digits as go in, one blank before it. A shorter exponent leaves room
 // for a digit more.
 std::string real(double value, std::size_t width) {
@@ -49,10 +47,7 @@ void write_parts(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem:
   text << "*SECTION_SOLID\n";
   put_integers(text, {1, form});
   for (std::size_t i = 0; i < sections.size(); ++i) {
-    const fem::Region& region = mesh.regions[sections[i].region];
-    text << "*PART\n" << sections[i].name;
-    if (region.kind == fem::Region::Kind::yarn) text << ": yarn '" << shortened(region.name, 40) << '\'';
-    text << '\n';
+    text << "*PART\n" << sections[i].name << '\n';
     put_integers(text, {i + 1, 1, sections[i].material + 1});
   }
 }
@@ -127,18 +122,19 @@ void write_list(TextBuffer& text, std::string_view keyword, std::size_t number, 
   put_numbers(text, members, 10, 8);
 }
 
-void write_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
+void write_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
+                const fem::DeckNames& names) {
   std::vector<std::size_t> all;
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
     std::vector<std::size_t> parts;
     for (std::size_t s = 0; s < sections.size(); ++s)
       if (sections[s].region == i) parts.push_back(s);
     all.insert(all.end(), parts.begin(), parts.end());
-    write_list(text, "SET_PART_LIST", i + 1, fem::set_name(mesh, i), parts);
+    write_list(text, "SET_PART_LIST", i + 1, names.of(i), parts);
   }
   write_list(text, "SET_PART_LIST", mesh.regions.size() + 1, "All", all);
   std::size_t number = 0;
-  for (const fem::NamedSet& set : fem::node_sets(mesh))
+  for (const fem::NamedSet& set : fem::node_sets(mesh, names))
     write_list(text, "SET_NODE_LIST", ++number, set.name, set.members);
   for (std::size_t d = 0; d < mesh.drivers.size(); ++d)
     write_list(text, "SET_NODE_LIST", ++number, mesh.drivers[d].name, {mesh.number_of_driver(d)});
@@ -200,22 +196,26 @@ void write_loading(TextBuffer& text, const fem::Mesh& mesh) {
   }
 }
 
-Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& /*options*/) {
   constexpr std::size_t most = 99'999'999;  // columns of eight
   if (mesh.numbered() > most || mesh.elements.size() > most)
     return error(Kind::limit,
                  "an LS-DYNA file in standard format numbers at most 99 999 999 nodes and elements");
-  const Result<std::vector<fem::Section>> sections = fem::sections(mesh);
+  // Titles are text. A star or a dollar sign would begin a keyword or a comment, a comma free format, an
+  // ampersand a parameter.
+  const fem::DeckNames names(mesh, {.longest = 70, .is_text = true, .unfit = "*$,&"});
+  const Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();
   TextBuffer text(output);
   text << "*KEYWORD\n*TITLE\nSelvage: " << std::string_view(mesh.title).substr(0, 70)
        << "\n$ Units: mm, N, MPa, tonne, s\n";
+  fem::write_yarn_names(text, mesh, names, "$", 80);
   write_nodes(text, mesh);
   write_parts(text, mesh, *sections);
   write_materials(text, mesh);
   write_expansions(text, mesh, *sections);
   write_elements(text, mesh, *sections);
-  write_sets(text, mesh, *sections);
+  write_sets(text, mesh, *sections, names);
   write_equations(text, mesh);
   write_loading(text, mesh);
   text << "*END\n";

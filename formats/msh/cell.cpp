@@ -4,7 +4,7 @@
 #include <map>
 
 #include "fem/faces.h"
-#include "fem/sections.h"
+#include "formats/msh/element_data.h"
 #include "formats/msh/topology.h"
 
 namespace selvage::formats::msh {
@@ -32,6 +32,7 @@ class CellFile {
     write_nodes();
     write_elements();
     write_periodic();
+    write_fibre_fraction(text_, mesh_, bounding_);
   }
 
   [[nodiscard]] EntityCounts counts() const {
@@ -189,6 +190,7 @@ class CellFile {
   }
   void write_element(const std::vector<std::size_t>& nodes) {
     text_ << ++number_;
+    bounding_.add(nodes);
     for (const std::size_t node : nodes) text_ << ' ' << node + 1;
     text_ << '\n';
   }
@@ -266,7 +268,8 @@ class CellFile {
   std::vector<std::string> groups_;                                    // of surfaces
   std::vector<std::size_t> group_of_;                                  // from 1, of each surface
   std::array<std::vector<std::vector<std::size_t>>, 4> members_;       // nodes, by dimension and entity
-  std::size_t number_ = 0;                                             // of the last element
+  BoundingElements bounding_;
+  std::size_t number_ = 0;  // of the last element
 };
 
 }  // namespace

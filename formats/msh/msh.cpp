@@ -6,6 +6,7 @@
 #include "core/text_buffer.h"
 #include "fem/faces.h"
 #include "formats/msh/cell.h"
+#include "formats/msh/element_data.h"
 
 namespace selvage::formats::msh {
 
@@ -119,7 +120,8 @@ void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   text << "$EndNodes\n";
 }
 
-void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Skin>& skins) {
+BoundingElements write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Skin>& skins) {
+  BoundingElements bounding;
   // Gmsh's element types: 2 and 9 are triangles of 3 and 6 nodes.
   std::size_t count = mesh.elements.size();
   for (const Skin& skin : skins) count += skin.faces->size();
@@ -129,15 +131,18 @@ void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<S
     text << "2 " << skin.tag << (mesh.order == 1 ? " 2 " : " 9 ") << skin.faces->size() << '\n';
     for (const fem::SixNodes& face : fem::six_node_faces(mesh, mesh.regions[skin.region], *skin.faces)) {
       text << ++number;
-      for (std::size_t k = 0; k < (mesh.order == 1 ? 3U : 6U); ++k) text << ' ' << face[k] + 1;
+      const auto nodes = std::span(face).first(mesh.order == 1 ? 3 : 6);
+      bounding.add(nodes);
+      for (const std::size_t node : nodes) text << ' ' << node + 1;
       text << '\n';
     }
   }
   write_volume_elements(text, mesh, number);
   text << "$EndElements\n";
+  return bounding;
 }
 
-Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& /*options*/) {
   if (mesh.cell) return write_cell(mesh, output);
   const std::vector<Skin> skins = skins_of(mesh);
   TextBuffer text(output);
@@ -145,7 +150,7 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   write_names(text, mesh, skins);
   write_entities(text, mesh, skins);
   write_nodes(text, mesh);
-  write_elements(text, mesh, skins);
+  write_fibre_fraction(text, mesh, write_elements(text, mesh, skins));
   std::size_t triangles = 0;
   for (const Skin& skin : skins) triangles += skin.faces->size();
   return finished(text, {{"nodes", mesh.nodes.size()},

@@ -104,7 +104,7 @@ const Descriptor& descriptor() {
       .title = "Wavefront OBJ, triangles of yarns as named objects, colours beside",
       .extensions = {".obj"},
       .open_bodies = open_by<Writer>,
-      .companion = material_descriptor};
+      .companion = {.format = material_descriptor}};
   return self;
 }
 

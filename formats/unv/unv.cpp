@@ -65,22 +65,25 @@ void write_group(TextBuffer& text, std::size_t number, const fem::NamedSet& set,
   }
 }
 
-std::size_t write_groups(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
+std::size_t write_groups(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
+                         const fem::DeckNames& names) {
   open_dataset(text, 2467);
   std::size_t number = 0;
-  for (const fem::NamedSet& set : fem::element_sets(mesh, sections)) write_group(text, ++number, set, 8);
-  for (const fem::NamedSet& set : fem::node_sets(mesh)) write_group(text, ++number, set, 7);
+  for (const fem::NamedSet& set : fem::element_sets(mesh, sections, names))
+    write_group(text, ++number, set, 8);
+  for (const fem::NamedSet& set : fem::node_sets(mesh, names)) write_group(text, ++number, set, 7);
   text << mark;
   return number;
 }
 
-Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
-  const Result<std::vector<fem::Section>> sections = fem::sections(mesh);
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& /*options*/) {
+  const fem::DeckNames names(mesh, {.longest = 24});  // Code_Aster's groups
+  const Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();
   TextBuffer text(output);
   write_nodes(text, mesh);
   write_elements(text, mesh, *sections);
-  const std::size_t groups = write_groups(text, mesh, *sections);
+  const std::size_t groups = write_groups(text, mesh, *sections, names);
   return finished(text,
                   {{"nodes", mesh.nodes.size()}, {"elements", mesh.elements.size()}, {"groups", groups}});
 }

@@ -123,7 +123,7 @@ Result<WriteFacts> finish(TextBuffer& text, std::size_t points, std::size_t cell
   return finished(text, {{"points", points}, {"cells", cells}});
 }
 
-Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& /*options*/) {
   TextBuffer text(output);
   std::vector<std::string> names;
   for (const fem::Region& region : mesh.regions)

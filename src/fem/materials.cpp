@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+
+#include "fem/names.h"
 
 namespace selvage::fem {
 
@@ -44,11 +45,6 @@ Orthotropic orthotropic(const fabric::Material& material) {
 
 namespace {
 
-bool same_letters(const std::string& a, const std::string& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
-
 // Adds a material to those in use, with elastic constants, unless it is there.
 void use(const fabric::Fabric& fabric, fabric::Material material, MaterialChoice& choice,
          Diagnostics& diagnostics) {
@@ -68,21 +64,9 @@ void use(const fabric::Fabric& fabric, fabric::Material material, MaterialChoice
 }  // namespace
 
 std::vector<std::string> solver_names(const std::vector<fabric::Material>& materials) {
-  constexpr std::size_t longest = 30;
-  std::vector<std::string> names;
-  for (const fabric::Material& material : materials) {
-    std::string name = material.name.substr(0, longest - 6);
-    for (char& letter : name)
-      if (std::isalnum(static_cast<unsigned char>(letter)) == 0 || (letter & 0x80) != 0) letter = '_';
-    if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) name.insert(0, "M_");
-    const std::string stem = name;
-    for (int i = 2; std::any_of(names.begin(), names.end(),
-                                [&](const std::string& other) { return same_letters(other, name); });
-         ++i)
-      name = stem + "_" + std::to_string(i);
-    names.push_back(name);
-  }
-  return names;
+  std::vector<std::string> own;
+  for (const fabric::Material& material : materials) own.push_back(material.name);
+  return unique_names(own, {.longest = 30, .begin = "M_"});
 }
 
 MaterialChoice choose_materials(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,

@@ -8,23 +8,15 @@
 
 namespace selvage::fem {
 
-std::string set_name(const Mesh& mesh, std::size_t region) {
-  if (mesh.regions[region].kind == Region::Kind::matrix) return "Matrix";
-  const auto is_yarn = [](const Region& other) { return other.kind == Region::Kind::yarn; };
-  const auto number = std::count_if(mesh.regions.begin(),
-                                    mesh.regions.begin() + static_cast<std::ptrdiff_t>(region), is_yarn);
-  return "Yarn" + std::to_string(number);
-}
-
-std::vector<NamedSet> node_sets(const Mesh& mesh) {
+std::vector<NamedSet> node_sets(const Mesh& mesh, const DeckNames& names) {
   std::vector<NamedSet> sets;
   const auto add = [&](std::string name, const std::vector<std::size_t>& nodes) {
     if (!nodes.empty()) sets.push_back({std::move(name), nodes});
   };
   if (!mesh.cell) {
     for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
-      add(set_name(mesh, i) + "_Start", mesh.regions[i].start_nodes);
-      add(set_name(mesh, i) + "_End", mesh.regions[i].end_nodes);
+      add(names.of(i) + "_Start", mesh.regions[i].start_nodes);
+      add(names.of(i) + "_End", mesh.regions[i].end_nodes);
     }
     return sets;
   }
@@ -50,7 +42,7 @@ std::size_t material_of(const Mesh& mesh, const Region& region) {
 
 }  // namespace
 
-Result<std::vector<Section>> sections(const Mesh& mesh) {
+Result<std::vector<Section>> sections(const Mesh& mesh, const DeckNames& names) {
   std::vector<Section> list;
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
     const Region& region = mesh.regions[i];
@@ -62,22 +54,22 @@ Result<std::vector<Section>> sections(const Mesh& mesh) {
       if (material >= mesh.materials.size() ||
           std::holds_alternative<std::monostate>(mesh.materials[material].elastic))
         return error(Kind::internal, "the yarn's material has no elastic constants", {.yarn = region.name});
-      const std::string name = set_name(mesh, i);
       const bool is_alone = by_material.size() == 1;
       const std::size_t number = static_cast<std::size_t>(std::count_if(
           list.begin(), list.end(), [&](const Section& section) { return section.region == i; }));
-      list.push_back({is_alone ? name : name + "_Section" + std::to_string(number + 1), i, material,
-                      std::move(elements)});
+      list.push_back(
+          {is_alone ? names.of(i) : names.of_section(i, number), i, material, std::move(elements)});
     }
   }
   return list;
 }
 
-std::vector<NamedSet> element_sets(const Mesh& mesh, const std::vector<Section>& sections) {
+std::vector<NamedSet> element_sets(const Mesh& mesh, const std::vector<Section>& sections,
+                                   const DeckNames& names) {
   std::vector<NamedSet> sets;
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
     const Region& region = mesh.regions[i];
-    sets.push_back({set_name(mesh, i), std::vector<std::size_t>(region.last_element - region.first_element)});
+    sets.push_back({names.of(i), std::vector<std::size_t>(region.last_element - region.first_element)});
     std::iota(sets.back().members.begin(), sets.back().members.end(), region.first_element);
   }
   for (const Section& section : sections)

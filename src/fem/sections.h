@@ -1,4 +1,4 @@
-// The names and groups by which decks speak of a mesh's parts: the same in every format.
+// The groups by which decks speak of a mesh's parts: the same in every format, by names that it takes.
 #pragma once
 
 #include <string>
@@ -6,11 +6,9 @@
 
 #include "core/diagnostics.h"
 #include "fem/mesh.h"
+#include "fem/names.h"
 
 namespace selvage::fem {
-
-// "Yarn0", "Yarn1", .. in the order of the yarns; "Matrix".
-std::string set_name(const Mesh& mesh, std::size_t region);
 
 struct NamedSet {
   std::string name;
@@ -18,23 +16,23 @@ struct NamedSet {
 };
 
 // Of a unit cell: FaceA .. FaceF (without edges), Edge1 .. Edge12 (without corners), Corner1 .. Corner8,
-// those that have nodes. Without a cell: the yarns' ends, Yarn0_Start, Yarn0_End, .. , of those that have
-// ends.
-std::vector<NamedSet> node_sets(const Mesh& mesh);
+// those that have nodes. Without a cell: the yarns' ends, NAME_Start and NAME_End, of those that have ends.
+std::vector<NamedSet> node_sets(const Mesh& mesh, const DeckNames& names);
 
 // The elements of one region that have one material.
 struct Section {
-  std::string name;  // the region's where it is of one material, else Yarn0_Section1, ..
+  std::string name;  // the region's where it is of one material, else NAME_Section1, ..
   std::size_t region = 0;
   std::size_t material = 0;           // index into Mesh::materials
   std::vector<std::size_t> elements;  // increasing
 };
 
 // Every element is in exactly one. Error (internal): a region without a material that has elastic constants.
-Result<std::vector<Section>> sections(const Mesh& mesh);
+Result<std::vector<Section>> sections(const Mesh& mesh, const DeckNames& names);
 
 // The sets of elements: of each region, then of the sections that are not a whole one.
-std::vector<NamedSet> element_sets(const Mesh& mesh, const std::vector<Section>& sections);
+std::vector<NamedSet> element_sets(const Mesh& mesh, const std::vector<Section>& sections,
+                                   const DeckNames& names);
 // The material of each element.
 std::vector<std::size_t> element_materials(const Mesh& mesh, const std::vector<Section>& sections);
 

@@ -45,16 +45,6 @@ formats::SurfaceOptions surface_options(const Job& job, const fabric::Fabric& fa
   return surface;
 }
 
-// The name of the file that stands beside this one; empty: there is none.
-std::string companion_of(const OpenOutput& output, const OpenOutputs& outputs) {
-  if (output.plan->format->companion == nullptr) return {};
-  const formats::Descriptor& companion = output.plan->format->companion();
-  for (const OpenOutput& other : outputs)
-    if (other.plan->is_companion && other.plan->format == &companion)
-      return fs::path(other.plan->path).filename().string();
-  return {};
-}
-
 bool open_writers(Job& job, const fabric::Fabric& fabric, std::size_t count, OpenOutputs& outputs) {
   for (OpenOutput& output : outputs) {
     if (output.plan->format->write_fabric != nullptr) continue;
@@ -100,7 +90,8 @@ bool can_carry(Job& job, const fabric::Fabric& fabric, std::size_t yarns, const 
   const std::vector<const fabric::Piece*> pieces = fabric::pieces_of(fabric);
   for (const OpenOutput& output : outputs) {
     const formats::Descriptor& format = *output.plan->format;
-    if (format.open_bodies == nullptr || format.write_fabric != nullptr || output.plan->is_companion)
+    if (format.open_bodies == nullptr || format.write_fabric != nullptr ||
+        output.plan->as_companion != nullptr)
       continue;
     if (yarns > 0 && !format.carries_surfaces && !takes_lines(job, format))
       job.say(
@@ -169,7 +160,7 @@ void write_cell(Job& job, fabric::Fabric& fabric, OpenOutputs& outputs) {
 bool holds_solids(Job& job, const OpenOutputs& outputs) {
   for (const OpenOutput& output : outputs) {
     const formats::Descriptor& format = *output.plan->format;
-    if (output.plan->is_companion ||
+    if (output.plan->as_companion != nullptr ||
         (format.write_fabric == nullptr && format.open_bodies != nullptr && format.carries_parts))
       continue;
     job.say(error(Kind::usage, fmt::format("{} holds no solids, which {} makes: write {}", format.name,
@@ -183,7 +174,7 @@ bool holds_solids(Job& job, const OpenOutputs& outputs) {
 bool holds_lines(Job& job, const OpenOutputs& outputs) {
   if (!job.options.lines) return true;
   for (const OpenOutput& output : outputs)
-    if (!output.plan->format->carries_lines && !output.plan->is_companion)
+    if (!output.plan->format->carries_lines && output.plan->as_companion == nullptr)
       job.say(error(Kind::usage, fmt::format("{} holds no centre lines, which --lines makes: write {}",
                                              output.plan->format->name,
                                              formats_with(&formats::Descriptor::carries_lines))));

@@ -292,13 +292,14 @@ bool may_be_skipped(Job& job, const std::string& earlier) {
   if (earlier.empty() || job.input.path == "-") return false;
   const Result<std::string> now = digest_of(job.input.path);
   if (!now.ok()) return false;
-  std::vector<std::string> paths, without_companions;
+  std::vector<std::string> paths, without_optional;
   for (const PlannedOutput& output : job.outputs) {
     paths.push_back(output.path);
-    if (!output.is_companion) without_companions.push_back(output.path);
+    if (output.as_companion == nullptr || !output.as_companion->is_of_load_cases)
+      without_optional.push_back(output.path);
   }
   return is_still_valid(earlier, *now, job.report.settings, paths) ||
-         is_still_valid(earlier, *now, job.report.settings, without_companions);
+         is_still_valid(earlier, *now, job.report.settings, without_optional);
 }
 
 Verdict work(Job& job, const std::string& earlier) {

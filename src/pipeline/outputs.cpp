@@ -219,6 +219,38 @@ Result<Formats> gap_map_formats(const Options& options, const InputList& list) {
   return Formats{format};
 }
 
+// Names of the formats that have this option of their own.
+std::vector<std::string_view> formats_with(const Option& option) {
+  std::vector<std::string_view> names;
+  for (const Descriptor* format : formats::all_formats())
+    if (std::ranges::find(format->options, &option) != format->options.end()) names.push_back(format->name);
+  return names;
+}
+
+// An option of a format is a mistake where nothing is written as that, or where it asks for a second file and
+// there is only standard output.
+Status check_own_options(const Options& options, const Formats& wanted) {
+  for (const Descriptor* format : formats::all_formats())
+    for (const Option* option : format->options) {
+      if (!options.of_formats.has(*option)) continue;
+      const std::vector<std::string_view> names = formats_with(*option);
+      if (std::ranges::none_of(wanted,
+                               [&](auto* one) { return std::ranges::find(names, one->name) != names.end(); }))
+        return error(Kind::usage, fmt::format("{} is an option of {}, and nothing is written as that",
+                                              option->long_name(), alternatives(names)));
+      if (options.output == "-" && format->companion.asked_by == option)
+        return error(Kind::usage, fmt::format("{} makes two files, and standard output takes one: name a "
+                                              "file or a folder with -o",
+                                              option->long_name()));
+    }
+  return {};
+}
+
+bool has_companion(const Options& options, const Descriptor& format) {
+  const formats::Companion& beside = format.companion;
+  return beside.format != nullptr && (beside.asked_by == nullptr || options.of_formats.has(*beside.asked_by));
+}
+
 bool writes_files(Command command) {
   return command != Command::check && command != Command::info && command != Command::roundtrip &&
          command != Command::diff;
@@ -235,6 +267,7 @@ Result<Plan> Plan::make(const Options& options, InputList& list) {
     if (options.units && std::any_of(wanted->begin(), wanted->end(),
                                      [](auto* format) { return format->open_bodies == nullptr; }))
       return error(Kind::usage, "--units converts surfaces; text keeps the unit of its input");
+    if (Status status = check_own_options(options, *wanted); !status.ok()) return status.error();
     for (const Descriptor* format : *wanted)
       if (format->write_raster != nullptr && options.voxels == 0)
         return error(
@@ -273,11 +306,14 @@ std::vector<PlannedOutput> Plan::outputs_of(const Input& input) const {
     }
     const fs::path path = output_path(*options_, input, *format);
     outputs.push_back({format, path});
-    if (format->companion == nullptr) continue;
-    const Descriptor& second = format->companion();
-    if (std::find(formats_.begin(), formats_.end(), &second) == formats_.end())
-      outputs.push_back(
-          {&second, fs::path(path).replace_extension(second.extensions.front()), false, {}, true});
+    const formats::Companion& beside = format->companion;
+    if (!has_companion(*options_, *format)) continue;
+    const Descriptor& second = beside.format();
+    if (std::find(formats_.begin(), formats_.end(), &second) != formats_.end()) continue;
+    fs::path name = fs::path(path).replace_extension();
+    name += beside.ending;
+    name += second.extensions.front();
+    outputs.push_back({&second, name, false, {}, &beside});
   }
   return outputs;
 }

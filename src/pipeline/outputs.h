@@ -25,7 +25,7 @@ struct PlannedOutput {
   bool to_standard_output = false;
   // Names that inputs and other outputs have, of those that this one may need where it takes several files.
   std::vector<std::filesystem::path> taken{};
-  bool is_companion = false;  // formats::Descriptor::companion of another one: of meshes with load cases only
+  const formats::Companion* as_companion = nullptr;  // where it is the second file of another one
 };
 
 // Can this subcommand write it?

@@ -20,8 +20,11 @@ std::optional<OpenOutputs> open_outputs(Job& job) {
   return outputs;
 }
 
-void drop_companions(OpenOutputs& outputs) {
-  std::erase_if(outputs, [](const OpenOutput& output) { return output.plan->is_companion; });
+std::string companion_of(const OpenOutput& output, const OpenOutputs& outputs) {
+  for (const OpenOutput& other : outputs)
+    if (other.plan->as_companion == &output.plan->format->companion)
+      return std::filesystem::path(other.plan->path).filename().string();
+  return {};
 }
 
 Result<OutputFile*> open_part(OpenOutput& output, int number) {
@@ -131,12 +134,16 @@ void tell(Job& job, const std::string& text) {
 
 void write_meshes(Job& job, OpenOutputs& outputs, const std::optional<fem::Mesh>& mesh,
                   const std::optional<fem::Raster>& raster) {
-  if (!mesh || mesh->load_cases.empty()) drop_companions(outputs);
+  if (!mesh || mesh->load_cases.empty())
+    std::erase_if(outputs, [](const OpenOutput& output) {
+      return output.plan->as_companion != nullptr && output.plan->as_companion->is_of_load_cases;
+    });
   for (OpenOutput& output : outputs) {
     const formats::Descriptor& format = *output.plan->format;
     if (!take_facts(job, output,
-                    format.write_raster != nullptr ? format.write_raster(*raster, output.file)
-                                                   : format.write_mesh(*mesh, output.file)))
+                    format.write_raster != nullptr
+                        ? format.write_raster(*raster, output.file)
+                        : format.write_mesh(*mesh, output.file, {companion_of(output, outputs)})))
       return;
   }
   commit_all(job, outputs);

@@ -25,8 +25,8 @@ using OpenOutputs = std::deque<OpenOutput>;
 // Nothing when one cannot be opened (it was said why).
 std::optional<OpenOutputs> open_outputs(Job& job);
 
-// Gives up the second files of formats: they belong to meshes with load cases, and this one has none.
-void drop_companions(OpenOutputs& outputs);
+// The name of the file that stands beside this one (formats::Companion); empty: there is none.
+std::string companion_of(const OpenOutput& output, const OpenOutputs& outputs);
 
 // On standard output; on standard error where that has a file; nowhere with --quiet. `text` ends its last
 // line.

@@ -112,7 +112,7 @@ class CellInput(Case):
         done = self.succeeds("mesh", source, "--matrix", "--periodic", "--voxel", count, "-o", deck, "--no-progress")
         parts, names, part = {}, {}, None
         for line in deck.read_text().splitlines():
-            if named := re.match(r"\*\* (Yarn\d+) is yarn '(.*)'", line):
+            if named := re.match(r"\*\* (\S+) is yarn '(.*)'", line):
                 names[named[1]] = named[2]
             elif line.startswith("*"):
                 found = re.match(r"\*ELEMENT, TYPE=\w+, ELSET=(\S+)", line)

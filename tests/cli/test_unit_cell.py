@@ -87,7 +87,7 @@ class UnitCell(Case):
         shared, volumes = [], []
         for more in ((), ("--bond",)):
             _, deck, report = self.mesh("cell_plain", "--size", "0.15", *more)
-            yarns = {name: cells for name, cells in deck.sets.items() if name.startswith("Yarn")}
+            yarns = {name: cells for name, cells in deck.sets.items() if name != "Matrix"}
             faces = np.concatenate([cell.outer_faces(cells) for cells in yarns.values()])
             unique, counts = np.unique(faces, axis=0, return_counts=True)
             shared.append(cell.face_areas(deck.points, unique[counts == 2]).sum())

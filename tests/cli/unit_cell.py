@@ -41,7 +41,7 @@ class Deck:
                         blocks.append(block)
                     elif keyword == "*ELEMENT":
                         self.types.add(options["TYPE"])
-                        elements.setdefault(re.search(r"ELSET=(\w+)", line, re.I).group(1), []).append(block)
+                        elements.setdefault(re.search(r"ELSET=([\w-]+)", line, re.I).group(1), []).append(block)
         nodes = np.concatenate([rows_of(block) for block in blocks])
         self.points = nodes[:, 1:]
         numbers = nodes[:, 0].astype(int)

@@ -35,12 +35,14 @@ def read(path):
     lines = open(path).read().split("\n")
     bulk = lines.index("BEGIN BULK")
     names, sets, subcases = {}, {}, []
-    held = ""
+    held, kind = "", None
     for line in lines[:bulk]:
         assert len(line) <= 80
+        if line in ("$ Of elements:", "$ Of nodes:"):
+            kind = model.element_sets if "elements" in line else model.node_sets
         if line.startswith("$ SET"):
             _, _, number, _, name = line.split(maxsplit=4)
-            names[int(number)] = name
+            names[int(number)] = (name, kind)
             continue
         line = held + line.strip()
         held = line if line.endswith(",") else ""
@@ -104,8 +106,8 @@ def read(path):
         if system:
             model.axes[element] = systems[system]
     for number, members in sets.items():
-        if number in names and not names[number].startswith("the drivers"):
-            is_elements = names[number].startswith(("Yarn", "Matrix")) and not names[number].endswith(("_Start", "_End"))
-            (model.element_sets if is_elements else model.node_sets)[names[number].upper()] = members
+        name, kind = names[number]
+        if name != "the drivers":
+            kind[name.upper()] = members
     model.loads = [(spcs[case["SPC"]], temperatures.get(case.get("TEMPERATURE(LOAD)"), 0.0)) for case in subcases]
     return model

@@ -8,12 +8,15 @@ import sys
 import numpy as np
 
 import inp
+from names import by_yarns, yarns_of
 
 reference = inp.read(sys.argv[1])
 path = sys.argv[2]
 tolerance = 10.0 ** -float(sys.argv[3])
 reader = importlib.import_module(os.path.splitext(path)[1][1:])
 other = reader.read(path)
+for model, file in ((reference, sys.argv[1]), (other, path)):
+    model.node_sets, model.element_sets = by_yarns(model.node_sets, yarns_of(file)), by_yarns(model.element_sets, yarns_of(file))
 faults = []
 
 

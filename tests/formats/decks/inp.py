@@ -1,12 +1,14 @@
 """Abaqus input deck, as the keywords manual has it."""
 
+import pathlib
+
 from model import Model, constants, in_space, is_isotropic, isotropic, right_handed
 
 
 def blocks_of(path):
     """(keyword, parameters, data lines); a star that is not in the first column begins a keyword too."""
     blocks = []
-    for line in open(path):
+    for line in pathlib.Path(path).read_text().splitlines():
         line = line.strip()
         if line.startswith("**") or not line:
             continue

@@ -10,12 +10,13 @@ import numpy as np
 import inp
 
 stem = sys.argv[1]
+NAME = "WARP__1_"  # of the yarn, as the deck has it
 reference = inp.read(stem + ".inp")
 faults = []
 numbers = sorted(reference.nodes)
 points = np.array([reference.nodes[n] for n in numbers])
 elements = sorted(tuple(nodes) for nodes in reference.elements.values())
-yarn = {tuple(reference.elements[e]) for e in reference.element_sets["YARN0"]}
+yarn = {tuple(reference.elements[e]) for e in reference.element_sets[NAME]}
 
 
 def check(what, good):
@@ -52,7 +53,7 @@ for extension in (".inp", ".vtu", ".bdf", ".msh"):
             key = next(k for k in mesh.point_sets if k.upper() == name)
             check("inp set " + name, sorted(number[np.array(mesh.point_sets[key]) + 1].tolist()) == members)
         cells = set()
-        for (i, data), part in zip(blocks, [mesh.cell_sets[next(k for k in mesh.cell_sets if k.upper() == "YARN0")][i] for i, _ in blocks]):
+        for (i, data), part in zip(blocks, [mesh.cell_sets[next(k for k in mesh.cell_sets if k.upper() == NAME)][i] for i, _ in blocks]):
             cells |= {tuple(row) for row in data[np.asarray(part, int)].tolist()}
         check("inp yarn", cells == yarn)
     if extension == ".vtu":
@@ -60,6 +61,7 @@ for extension in (".inp", ".vtu", ".bdf", ".msh"):
         check("vtu yarn", cells == yarn)
         fractions = np.concatenate([mesh.cell_data["fibre_fraction"][i] for i, _ in blocks])
         check("vtu fibre fraction", fractions.max() > 0.7 and fractions.min() == 0)
+        vtu_rows = [row for _, data in blocks for row in data.tolist()]
         along = np.vstack([mesh.cell_data["along"][i] for i, _ in blocks])
         rows = [row for _, data in blocks for row in data.tolist()]
         element_of = {nodes: e for e, nodes in reference.elements.items()}
@@ -76,6 +78,19 @@ for extension in (".inp", ".vtu", ".bdf", ".msh"):
                    for n in number[row + 1].tolist()}
         check("msh face", set(reference.node_sets["FACEA"]) <= on_face
               and all(reference.nodes[n][0] == points[:len(points) - 6, 0].max() for n in on_face))
+    if extension == ".msh":
+        # The shares that VTU has; a triangle has that of a solid with its corners, a point that of one at it.
+        share_of = {nodes: share for nodes, share in zip(map(tuple, vtu_rows), fractions)}
+        own = {tuple(row): share for (i, data) in blocks for row, share in zip(data.tolist(), mesh.cell_data["fibre_fraction"][i])}
+        check("msh fibre fraction", own == share_of)
+        solids_at = {}
+        for nodes in share_of:
+            for node in nodes:
+                solids_at.setdefault(node, []).append(nodes)
+        check("msh fibre fraction beside", all(
+            share == max(share_of[solid] for solid in solids_at[row[0]] if set(row) <= set(solid))
+            for i, block in enumerate(mesh.cells) if block.type not in ("tetra", "tetra10", "hexahedron")
+            for row, share in zip(number[block.data + 1].tolist(), mesh.cell_data["fibre_fraction"][i])))
     if extension == ".bdf":
         refs = np.concatenate([mesh.cell_data["nastran:ref"][i] for i, _ in blocks])
         check("bdf properties", len(np.unique(refs)) > 1)

@@ -131,8 +131,8 @@ TEST(CellDecks, SameMeshSameBytes) {
         &formats::k::descriptor(), &formats::bdf::descriptor(), &formats::msh::descriptor(),
         &formats::vtu::descriptor(), &formats::unv::descriptor()}) {
     Result<OutputFile> a = OutputFile::in_memory(), b = OutputFile::in_memory();
-    ASSERT_TRUE(format->write_mesh(one, *a).ok());
-    ASSERT_TRUE(format->write_mesh(two, *b).ok());
+    ASSERT_TRUE(format->write_mesh(one, *a, {}).ok());
+    ASSERT_TRUE(format->write_mesh(two, *b, {}).ok());
     EXPECT_EQ(*a->contents(), *b->contents()) << format->name;
     if (format->sniff != nullptr) {
       EXPECT_TRUE(format->sniff(a->contents()->substr(0, 4096))) << format->name;
@@ -154,9 +154,9 @@ TEST(CellDecks, CutYarnsHaveContactSurfaces) {
   EXPECT_EQ(contact.surfaces[0].lower.size(), 4U);
   EXPECT_TRUE(contact.pairs.empty());
   Result<OutputFile> output = OutputFile::in_memory();
-  ASSERT_TRUE(formats::inp::descriptor().write_mesh(mesh, *output).ok());
+  ASSERT_TRUE(formats::inp::descriptor().write_mesh(mesh, *output, {}).ok());
   const std::string deck = *output->contents();
-  EXPECT_NE(deck.find("*SURFACE, NAME=Yarn0_Upper, TYPE=ELEMENT\n1, S2\n2, S2\n3, S2\n4, S2\n"),
+  EXPECT_NE(deck.find("*SURFACE, NAME=warp__1__Upper, TYPE=ELEMENT\n1, S2\n2, S2\n3, S2\n4, S2\n"),
             std::string::npos);
   EXPECT_EQ(deck.find("\n*STEP"), std::string::npos);
 }
@@ -166,7 +166,7 @@ TEST(CellDecks, MacroNeedsLoadCases) {
   fem::Mesh mesh = test::brick_cell();
   mesh.load_cases.clear();
   Result<OutputFile> output = OutputFile::in_memory();
-  const auto facts = formats::cdb::macro_descriptor().write_mesh(mesh, *output);
+  const auto facts = formats::cdb::macro_descriptor().write_mesh(mesh, *output, {});
   ASSERT_FALSE(facts.ok());
   EXPECT_EQ(facts.error().kind, Kind::unsupported);
 }

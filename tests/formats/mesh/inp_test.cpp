@@ -53,10 +53,10 @@ void expect_tension(const Vec3& direction, const decltype(fabric::Material::elas
     save(mesh, formats::inp::descriptor(), folder / "tension.inp");
     const std::string dat = solve(folder, "tension");
     const double expected = modulus * mesh.regions[0].volume / length / length * displacement;
-    const Vec3 force = total_force(dat, "YARN0_END");
+    const Vec3 force = total_force(dat, "STRAIGHT_END");
     EXPECT_NEAR(force.dot(direction.normalized()), expected, 1e-3 * expected) << "order " << order;
     EXPECT_LT((force - force.dot(direction.normalized()) * direction.normalized()).norm(), 1e-3 * expected);
-    EXPECT_LT((force + total_force(dat, "YARN0_START")).norm(), 1e-5 * expected);
+    EXPECT_LT((force + total_force(dat, "STRAIGHT_START")).norm(), 1e-5 * expected);
   }
 }
 
@@ -131,7 +131,7 @@ TEST(InpDeck, RingRuns) {
   const Folder folder;
   save(mesh, formats::inp::descriptor(), folder / "ring.inp");
   const std::string dat = solve(folder, "ring");
-  const Vec3 low = total_force(dat, "YARN0_LOW"), high = total_force(dat, "YARN0_HIGH");
+  const Vec3 low = total_force(dat, "RING_LOW"), high = total_force(dat, "RING_HIGH");
   EXPECT_GT(high.norm(), 0.1);
   EXPECT_LT((low + high).norm(), 1e-5 * high.norm());
 }
@@ -155,12 +155,13 @@ TEST(InpDeck, RegionsWithoutNodesOfTheirOwnGetNoLoad) {
   mesh.elements = {{0, 1, 2, 3}};
   mesh.regions.resize(2);
   mesh.regions[0].last_element = 1;
-  EXPECT_TRUE(formats::inp::plan_loads(mesh).empty());
+  EXPECT_TRUE(formats::inp::plan_loads(mesh, formats::inp::names_of(mesh)).empty());
+  mesh.regions[1].name = "ring";
   mesh.regions[1].first_node = 4;
   mesh.regions[1].last_node = 6;
-  const std::vector<formats::inp::Load> loads = formats::inp::plan_loads(mesh);
+  const std::vector<formats::inp::Load> loads = formats::inp::plan_loads(mesh, formats::inp::names_of(mesh));
   ASSERT_EQ(loads.size(), 1U);
-  EXPECT_EQ(loads[0].start_set, "Yarn1_Low");
+  EXPECT_EQ(loads[0].start_set, "ring_Low");
   EXPECT_EQ(loads[0].start, (std::vector<std::size_t>{4, 5}));
   EXPECT_EQ(loads[0].pull, 0.0);
 }
@@ -179,14 +180,15 @@ TEST(InpDeck, PlainWeaveOfFourYarnsRuns) {
       const Folder folder;
       save(mesh, formats::inp::descriptor(), folder / "weave.inp");
       const std::string dat = solve(folder, "weave");
-      for (int yarn = 0; yarn < 4; ++yarn) {
-        const Vec3 start = total_force(dat, "YARN" + std::to_string(yarn) + "_START");
-        const Vec3 end = total_force(dat, "YARN" + std::to_string(yarn) + "_END");
+      for (std::size_t yarn = 0; yarn < 4; ++yarn) {
+        std::string set = mesh.regions[yarn].name;  // which fits
+        for (char& letter : set) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+        const Vec3 start = total_force(dat, set + "_START"), end = total_force(dat, set + "_END");
         EXPECT_GT(end.norm(), 1e-3) << name << " yarn " << yarn;
         EXPECT_LT((start + end).norm(), 1e-4 * end.norm()) << name << " yarn " << yarn;
         // Crimp makes the yarn softer than a straight one, E A times the strain.
-        const fem::Region& region = mesh.regions[static_cast<std::size_t>(yarn)];
-        EXPECT_LT(end.norm(), 10000 * 0.001 * region.volume / bodies[static_cast<std::size_t>(yarn)].length);
+        const fem::Region& region = mesh.regions[yarn];
+        EXPECT_LT(end.norm(), 10000 * 0.001 * region.volume / bodies[yarn].length);
       }
     }
 }
@@ -269,7 +271,7 @@ TEST(InpDeck, ContactSurfacesAndPairs) {
   const std::string alone = solve_without_warning(folder, "far"), touching = solve(folder, "contact");
   // Newton's iterations are in the .cvg, under the same head.
   EXPECT_GT(test::text_of(folder / "contact.cvg").size(), test::text_of(folder / "far.cvg").size());
-  for (const char* set : {"YARN1_END", "YARN2_END"})
+  for (const char* set : {"HIGH_END", "FAR_END"})
     EXPECT_LT((total_force(alone, set) - total_force(touching, set)).norm(),
               1e-3 * total_force(alone, set).norm());
 }

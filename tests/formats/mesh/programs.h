@@ -61,7 +61,7 @@ inline std::string text_of(const fs::path& file) {
 inline void save(const fem::Mesh& mesh, const formats::Descriptor& format, const fs::path& file) {
   Result<OutputFile> output = OutputFile::create(file);
   ASSERT_TRUE(output.ok()) << to_string(output.error());
-  const Result<formats::WriteFacts> facts = format.write_mesh(mesh, *output);
+  const Result<formats::WriteFacts> facts = format.write_mesh(mesh, *output, {});
   ASSERT_TRUE(facts.ok()) << to_string(facts.error());
   const Status committed = output->commit();
   ASSERT_TRUE(committed.ok()) << to_string(committed.error());

@@ -1,0 +1,132 @@
+// Nodes, elements, and what is told by their numbers.
+#include "fem/materials.h"
+#include "formats/inp/deck.h"
+
+namespace selvage::formats::inp {
+namespace {
+
+// Sixteen entries a row, as Abaqus allows.
+void write_set(TextBuffer& text, const std::vector<std::size_t>& nodes) {
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    text << nodes[i] + 1 << (i % 16 == 15 || i + 1 == nodes.size() ? "\n" : ", ");
+}
+
+void write_node(TextBuffer& text, std::size_t number, const Vec3& p) {
+  text << number << ", " << real(p.x()) << ", " << real(p.y()) << ", " << real(p.z()) << '\n';
+}
+
+// One block, for meshio knows no second one: drivers, which are no part of AllNodes, stand at its end.
+void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
+  text << (mesh.drivers.empty() ? "*NODE, NSET=AllNodes\n" : "*NODE\n");
+  for (std::size_t n = 0; n < mesh.numbered(); ++n) write_node(text, n + 1, mesh.place(n));
+  if (mesh.drivers.empty()) return;
+  text << "*NSET, NSET=AllNodes, GENERATE\n1, " << mesh.nodes.size() << ", 1\n";
+  for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
+    text << "*NSET, NSET=" << mesh.drivers[k].name << '\n' << mesh.number_of_driver(k) + 1 << '\n';
+  text << "*NSET, NSET=Drivers, GENERATE\n" << mesh.nodes.size() + 1 << ", " << mesh.numbered() << ", 1\n";
+}
+
+std::string_view element_type(const fem::Mesh& mesh) {
+  if (mesh.shape == fem::Mesh::Shape::hexahedron) return "C3D8";
+  return mesh.order == 1 ? "C3D4" : "C3D10";
+}
+
+void write_elements(TextBuffer& text, const Deck& deck) {
+  const fem::Mesh& mesh = deck.mesh;
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+    const fem::Region& region = mesh.regions[i];
+    text << "*ELEMENT, TYPE=" << element_type(mesh) << ", ELSET=" << deck.names.of(i) << '\n';
+    for (std::size_t e = region.first_element; e < region.last_element; ++e) {
+      text << e + 1;
+      for (const std::size_t node : mesh.nodes_of(e)) text << ", " << node + 1;
+      text << '\n';
+    }
+  }
+}
+
+// One name a line: sixteen may be too long for Abaqus's 256 columns, and meshio takes the first of a line.
+void write_element_sets(TextBuffer& text, const Deck& deck) {
+  text << "*ELSET, ELSET=All\n";
+  for (std::size_t i = 0; i < deck.mesh.regions.size(); ++i) text << deck.names.of(i) << '\n';
+  for (const fem::Section& section : deck.sections) {
+    if (section.name == deck.names.of(section.region)) continue;
+    text << "*ELSET, ELSET=" << section.name << '\n';
+    write_set(text, section.elements);
+  }
+}
+
+void write_node_sets(TextBuffer& text, const std::vector<fem::NamedSet>& sets) {
+  for (const fem::NamedSet& set : sets) {
+    text << "*NSET, NSET=" << set.name << '\n';
+    write_set(text, set.members);
+  }
+}
+
+void write_vectors(TextBuffer& text, const Vec3& along, const Vec3& across) {
+  for (const double value : {along.x(), along.y(), along.z(), across.x(), across.y()})
+    text << real(value) << ", ";
+  text << real(across.z()) << '\n';
+}
+
+// Local axes 1 along the yarn, 2 across it, element by element. The distribution's name must not look like a
+// Fortran real (CalculiX takes D1 for a number).
+void write_directions(TextBuffer& text, const Deck& deck) {
+  const fem::Mesh& mesh = deck.mesh;
+  text << "** 1: along the yarn, 2: across it\n*DISTRIBUTION, NAME=YARNDIST1, LOCATION=ELEMENT, "
+          "TABLE=YARNTABLE\n, ";
+  write_vectors(text, Vec3::UnitX(), Vec3::UnitY());
+  for (const fem::Section& section : deck.sections) {
+    if (!is_oriented(mesh, section)) continue;
+    for (const std::size_t e : section.elements) {
+      text << e + 1 << ", ";
+      write_vectors(text, mesh.along[e], mesh.across[e]);
+    }
+  }
+}
+
+Result<WriteFacts> write_mesh_file(const fem::Mesh& mesh, OutputFile& output,
+                                   const MeshFileOptions& /*options*/) {
+  const Result<Deck> deck = plan_deck(mesh);
+  if (!deck) return deck.error();
+  TextBuffer text(output);
+  text << "** Mesh by Selvage: the deck that stands beside it includes it.\n";
+  write_names(text, *deck);
+  write_mesh_part(text, *deck);
+  return finished(text, counts_of_mesh(*deck));
+}
+
+}  // namespace
+
+bool is_oriented(const fem::Mesh& mesh, const fem::Section& section) {
+  return mesh.regions[section.region].kind == fem::Region::Kind::yarn ||
+         !fem::orthotropic(mesh.materials[section.material]).isotropic;
+}
+
+void write_mesh_part(TextBuffer& text, const Deck& deck) {
+  write_nodes(text, deck.mesh);
+  write_elements(text, deck);
+  write_element_sets(text, deck);
+  write_node_sets(text, deck.node_sets);
+  if (!deck.mesh.equations.empty()) write_node_sets(text, {{"Dependent", dependent_nodes(deck.mesh)}});
+  write_contact_surfaces(text, deck);
+  write_directions(text, deck);
+}
+
+EntityCounts counts_of_mesh(const Deck& deck) {
+  const fem::Mesh& mesh = deck.mesh;
+  return {{"nodes", mesh.nodes.size()},
+          {std::string(element_type(mesh)), mesh.elements.size()},
+          {"element sets", mesh.regions.size() + 1},
+          {"node sets", deck.node_sets.size() + 1 + mesh.drivers.size()}};
+}
+
+const Descriptor& mesh_descriptor() {
+  static const Descriptor self = {.name = "inp",
+                                  .title = "mesh that an Abaqus and CalculiX input deck includes",
+                                  .extensions = {".inp"},
+                                  .write_mesh = write_mesh_file,
+                                  .is_companion = true};
+  return self;
+}
+
+}  // namespace selvage::formats::inp

@@ -1,0 +1,70 @@
+// What decks call the parts of a mesh: the yarns' own names as far as a solver takes them, each only once.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/text_buffer.h"
+#include "fem/mesh.h"
+
+namespace selvage::fem {
+
+// Which names a solver takes. Upper and lower case are the same to all of them.
+struct NameRule {
+  std::size_t longest = 0;  // bytes
+  // False: letters, digits, underscores and characters of `also` after a letter. True: whatever can be seen,
+  // in UTF-8, that neither begins nor ends with a blank, but for characters of `unfit`.
+  bool is_text = false;
+  std::string_view also{}, unfit{};
+  std::string_view begin = "Y_";            // put before what has to begin with a letter, and does not
+  std::vector<std::string_view> taken{};    // words that mean something else
+  std::vector<std::string_view> endings{};  // that are put behind names: they are unique with these, too
+};
+
+// Names that keep to a rule, one after the other. What does not fit into a name becomes an underscore, of
+// what is too long the middle is left out ("__" stands for it), and a number tells equal ones apart.
+class NameMaker {
+ public:
+  explicit NameMaker(NameRule rule);
+  // As it is, if the rule allows that and it was not taken before; else nothing is taken, and false.
+  bool take(const std::string& name);
+  std::string make(const std::string& own);
+
+ private:
+  [[nodiscard]] std::string fitting(const std::string& own) const;
+  [[nodiscard]] std::string shortened_to(const std::string& name, std::size_t room) const;
+
+  NameRule rule_;
+  std::size_t room_ = 0;                      // for a name without its endings
+  std::set<std::string> taken_;               // in lower case, with all endings
+  std::map<std::string, std::size_t> count_;  // of what had to be told apart: the last number
+};
+
+// One for each, in their order. Those that the rule allows stay as they are, however the others are spelt.
+std::vector<std::string> unique_names(const std::vector<std::string>& own, const NameRule& rule);
+
+// The names of a mesh's regions in a deck, and what follows from them. The rule's `endings` need not say
+// _Start, _End and _Section1, ..; the other names of decks (All, Matrix, FaceA, drivers, ..) are never a
+// yarn's.
+class DeckNames {
+ public:
+  DeckNames(const Mesh& mesh, NameRule rule);
+  // The yarn's, or "Matrix".
+  [[nodiscard]] const std::string& of(std::size_t region) const { return names_[region]; }
+  // NAME_Section1, ..: of those parts of a region that have one material. `number` counts from 0.
+  [[nodiscard]] std::string of_section(std::size_t region, std::size_t number) const;
+
+ private:
+  std::vector<std::string> names_;
+};
+
+// "NAME is yarn 'OWN'", in the order of the yarns, of each whose name is not its own one: as comments, which
+// begin with `mark`. What is longer than `width` columns takes several lines, "NAME is yarn" and then the
+// parts of its name, each in quotes.
+void write_yarn_names(TextBuffer& text, const Mesh& mesh, const DeckNames& names, std::string_view mark,
+                      std::size_t width);
+
+}  // namespace selvage::fem
