@@ -167,6 +167,7 @@ struct Descriptor {
   // A mesh with what was computed on it, for pages; lengths in mm.
   std::optional<fem::FieldMesh> (*read_mesh)(const Source& source, Diagnostics& diagnostics) = nullptr;
   Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output) = nullptr;
+  bool carries_transport = false;  // decks of every Mesh::physics, not of elasticity alone
   // A unit cell on voxels (`mesh --voxel`), for a format that holds no elements.
   Result<WriteFacts> (*write_raster)(const fem::Raster& raster, OutputFile& output) = nullptr;
   // The format of a second file of the same stem that goes with each file of this one; of meshes, with those

@@ -43,9 +43,12 @@ void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   text << "*NSET, NSET=Drivers, GENERATE\n" << mesh.nodes.size() + 1 << ", " << mesh.numbered() << ", 1\n";
 }
 
+// Those of heat transfer begin with a D.
 std::string_view element_type(const fem::Mesh& mesh) {
-  if (mesh.shape == fem::Mesh::Shape::hexahedron) return "C3D8";
-  return mesh.order == 1 ? "C3D4" : "C3D10";
+  const bool conducts = mesh.physics != fem::Physics::elastic;
+  if (mesh.shape == fem::Mesh::Shape::hexahedron) return conducts ? "DC3D8" : "C3D8";
+  if (mesh.order == 1) return conducts ? "DC3D4" : "C3D4";
+  return conducts ? "DC3D10" : "C3D10";
 }
 
 void write_elements(TextBuffer& text, const fem::Mesh& mesh) {
@@ -90,7 +93,7 @@ void write_vectors(TextBuffer& text, const Vec3& along, const Vec3& across) {
 // Yarns have an orientation in any case, for the material that somebody may give them later.
 bool is_oriented(const fem::Mesh& mesh, const fem::Section& section) {
   return mesh.regions[section.region].kind == fem::Region::Kind::yarn ||
-         !fem::orthotropic(mesh.materials[section.material]).isotropic;
+         !fem::is_isotropic(mesh.materials[section.material], mesh.physics);
 }
 
 // Local axes 1 along the yarn, 2 across it, element by element. The distribution's name must not look like a
@@ -121,10 +124,38 @@ void write_elastic(TextBuffer& text, const fabric::Material& material) {
   text << '\n' << real(c.g23) << '\n';
 }
 
+// Every physics is one of heat conduction to the solver.
+void write_conductivity(TextBuffer& text, const fem::Mesh& mesh, const fabric::Material& material) {
+  const auto& [along, across] = *(material.*fem::transport_law(mesh.physics).member);
+  if (along == across)
+    text << "*CONDUCTIVITY\n" << real(along) << '\n';
+  else
+    text << "*CONDUCTIVITY, TYPE=ORTHO\n"
+         << real(along) << ", " << real(across) << ", " << real(across) << '\n';
+}
+
+void write_units(TextBuffer& text, const fem::Mesh& mesh) {
+  if (mesh.physics == fem::Physics::elastic) {
+    write_units(text, mesh);
+    return;
+  }
+  const fem::TransportLaw& law = fem::transport_law(mesh.physics);
+  text << "** Physics: " << law.word << "\n** Lengths in mm. *CONDUCTIVITY: the " << law.property << ", "
+       << law.unit;
+  if (mesh.physics == fem::Physics::conduction)
+    text << ", which is mW/(mm K): fluxes in mW/mm2\n";
+  else
+    text << "; temperature: the " << law.potential << '\n';
+}
+
 void write_materials(TextBuffer& text, const fem::Mesh& mesh, const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
     const fabric::Material& material = mesh.materials[i];
     text << "*MATERIAL, NAME=" << names[i] << '\n';
+    if (mesh.physics != fem::Physics::elastic) {
+      write_conductivity(text, mesh, material);
+      continue;
+    }
     if (!std::holds_alternative<std::monostate>(material.elastic)) write_elastic(text, material);
     const fem::Orthotropic constants = fem::orthotropic(material);
     if (constants.density) text << "*DENSITY\n" << real(*constants.density) << '\n';
@@ -150,7 +181,8 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   if (!sections) return sections.error();
   TextBuffer text(output);
   const std::vector<std::string> names = fem::solver_names(mesh.materials);
-  const fem::ContactSurfaces contact = fem::contact_surfaces(mesh);
+  const bool touches = mesh.physics == fem::Physics::elastic;
+  const fem::ContactSurfaces contact = touches ? fem::contact_surfaces(mesh) : fem::ContactSurfaces{};
   const std::vector<Load> loads = mesh.cell ? std::vector<Load>() : plan_loads(mesh);
   const std::vector<fem::NamedSet> sets = mesh.cell ? fem::node_sets(mesh) : sets_of(loads);
   write_heading(text, mesh);
@@ -193,6 +225,7 @@ const Descriptor& descriptor() {
                                   .extensions = {".inp"},
                                   .sniff = looks_like_a_deck,
                                   .write_mesh = write,
+                                  .carries_transport = true,
                                   .is_usual = true};
   return self;
 }
