@@ -150,8 +150,9 @@ class Deck:
 
     @property
     def is_periodic(self):
-        """Are all faces tied to the opposite ones? (A cell without that has the drivers' potential on its faces.)"""
-        return any(len(equation) > 1 and equation[1][2] == -equation[0][2] for equation in self.equations)
+        """Are nodes tied to opposite ones? (Those of a cell without that follow the drivers alone.)"""
+        drivers = self.drivers().values()
+        return any(node not in drivers for _, *others in self.equations for node, _, _ in others)
 
     def matrices(self):
         """Of all elements, some at a time: their numbers, stiffness matrices, and the forces of one degree."""

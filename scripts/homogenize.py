@@ -346,12 +346,13 @@ def main():
     parser = argparse.ArgumentParser(
         prog="homogenize",
         description="Stiffness (C of a block, ABD of a plate), engineering constants and thermal expansion of a unit "
-        "cell, from its deck: by CalculiX, or by conjugate gradients where it is large.",
+        "cell, or the conductivity (diffusivity, permittivity) of one whose deck conducts, from its deck: by CalculiX, or by "
+        "conjugate gradients where it is large.",
         epilog="Options that are not known here are those of `selvage mesh`: --size, --voxel, --order, ...",
     )
     parser.add_argument("file", help="deck of `selvage mesh` (.inp), or any input of it with a cell")
     parser.add_argument("--json", metavar="FILE", help="write the results there too ('-': standard output, alone)")
-    parser.add_argument("--bounds", action="store_true", help="with volume fractions and the bounds of Voigt and Reuss (which are checked always)")
+    parser.add_argument("--bounds", action="store_true", help="of a stiffness: with volume fractions and the bounds of Voigt and Reuss (which are checked always)")
     parser.add_argument("--keep", metavar="DIR", help="keep the deck and what CalculiX wrote")
     parser.add_argument(
         "--solver",

@@ -67,7 +67,7 @@ void write_cell_steps(TextBuffer& text, const fem::Mesh& mesh) {
   const int first = first_unknown(mesh), last = last_unknown(mesh);
   for (const fem::LoadCase& load : mesh.load_cases) {
     text << "** " << load.name << "\n*STEP\n"
-         << (conducts(mesh) ? "*HEAT TRANSFER, STEADY STATE" : "*STATIC") << "\n*BOUNDARY, OP=NEW\n";
+         << (conducts(mesh) ? "*HEAT TRANSFER, STEADY STATE\n1, 1" : "*STATIC") << "\n*BOUNDARY, OP=NEW\n";
     if (const auto held = fem::held_node(mesh)) text << *held + 1 << ", " << first << ", " << last << '\n';
     for (std::size_t k = 0; k < load.drivers.size(); ++k)
       if (load.drivers[k])
