@@ -136,7 +136,7 @@ void write_conductivity(TextBuffer& text, const fem::Mesh& mesh, const fabric::M
 
 void write_units(TextBuffer& text, const fem::Mesh& mesh) {
   if (mesh.physics == fem::Physics::elastic) {
-    write_units(text, mesh);
+    text << "** Units: mm, N, MPa, tonne, s\n";
     return;
   }
   const fem::TransportLaw& law = fem::transport_law(mesh.physics);
@@ -186,7 +186,7 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output) {
   const std::vector<Load> loads = mesh.cell ? std::vector<Load>() : plan_loads(mesh);
   const std::vector<fem::NamedSet> sets = mesh.cell ? fem::node_sets(mesh) : sets_of(loads);
   write_heading(text, mesh);
-  text << "** Units: mm, N, MPa, tonne, s\n";
+  write_units(text, mesh);
   write_nodes(text, mesh);
   write_elements(text, mesh);
   write_element_sets(text, mesh, *sections);

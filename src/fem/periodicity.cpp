@@ -64,7 +64,8 @@ Drive drive_of(Physics physics, bool plate) {
             unit_strain,
             true,
             block_modes};
-  Drive drive{.value = unit_gradient};
+  Drive drive;
+  drive.value = unit_gradient;
   const Eigen::Index axes = plate ? 2 : 3;
   for (Eigen::Index axis = 0; axis < axes; ++axis) {
     drive.drivers.push_back(fmt::format("GradientDriver{}", axis));
