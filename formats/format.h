@@ -184,6 +184,7 @@ struct Descriptor {
   std::optional<fem::FieldMesh> (*read_mesh)(const Source& source, Diagnostics& diagnostics) = nullptr;
   Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output,
                                    const MeshFileOptions& options) = nullptr;
+  bool carries_transport = false;  // decks of every Mesh::physics, not of elasticity alone
   // A unit cell on voxels (`mesh --voxel`), for a format that holds no elements.
   Result<WriteFacts> (*write_raster)(const fem::Raster& raster, OutputFile& output) = nullptr;
   Companion companion{};

@@ -33,7 +33,7 @@ def tetrahedron_shapes(at, nodes):
 
 
 def rule(nodes):
-    """Slopes and weights at the points that CalculiX integrates C3D4, C3D10 and C3D8 by."""
+    """Slopes and weights at the points that CalculiX integrates C3D4, C3D10 and C3D8 by (and those of heat transfer)."""
     if nodes == 8:
         at = BRICK / 3**0.5
         factors = (1 + at[:, None, :] * BRICK) / 2
@@ -46,22 +46,35 @@ def rule(nodes):
     return tetrahedron_shapes(at, nodes)[1], numpy.full(len(at), 1 / (6 * len(at)))
 
 
+def points(places):
+    """At each point that elements (n x nodes x 3) are integrated by: slopes of the shape functions in space (n x nodes x 3),
+    and the volume that belongs to it."""
+    for slope, weight in zip(*rule(places.shape[1])):
+        frame = numpy.einsum("ai,nac->nic", slope, places)
+        yield numpy.einsum("nci,ai->nac", numpy.linalg.inv(frame), slope), weight * numpy.linalg.det(frame)
+
+
+def frames(axes):
+    """Axes 1, 2, 3 as rows (n x 3 x 3), of axis 1 and a second one across it (n x 6)."""
+    first = axes[:, :3] / numpy.linalg.norm(axes[:, :3], axis=1)[:, None]
+    second = axes[:, 3:] - first * (first * axes[:, 3:]).sum(axis=1)[:, None]
+    second /= numpy.linalg.norm(second, axis=1)[:, None]
+    return numpy.stack([first, second, numpy.cross(first, second)], axis=1)
+
+
 def matrices(places, stiffness, expansion):
     """Stiffness of elements (n x 3 nodes x 3 nodes), and the forces of one degree: places n x nodes x 3."""
     count, nodes, _ = places.shape
     result = numpy.zeros((count, 3 * nodes, 3 * nodes))
     forces = numpy.zeros((count, 3 * nodes))
     stress = numpy.einsum("nij,nj->ni", stiffness, expansion)
-    for slope, weight in zip(*rule(nodes)):
-        frame = numpy.einsum("ai,nac->nic", slope, places)
-        slopes = numpy.einsum("nci,ai->nac", numpy.linalg.inv(frame), slope)
+    for slopes, size in points(places):
         b = numpy.zeros((count, 6, nodes, 3))
         for row, (i, j) in enumerate(PAIRS):
             b[:, row, :, i] += slopes[:, :, j]
             if i != j:
                 b[:, row, :, j] += slopes[:, :, i]
         b = b.reshape(count, 6, 3 * nodes)
-        size = weight * numpy.linalg.det(frame)
         turned = b.transpose(0, 2, 1)
         result += turned @ (stiffness @ b * size[:, None, None])
         forces += (turned @ stress[:, :, None])[:, :, 0] * size[:, None]
@@ -69,13 +82,14 @@ def matrices(places, stiffness, expansion):
 
 
 class Conditions:
-    """Which unknown each node's displacement is (-1: none), and what the drivers add to it (nodes x 3 x drivers)."""
+    """Which unknown each node's displacement or potential is (-1: none), and what the drivers add to it (nodes x directions x
+    drivers)."""
 
     def __init__(self, deck, drivers):
         count = max(deck.nodes) + 1
         index = {node: k for k, node in enumerate(drivers.values())}
         master = numpy.arange(count)
-        self.driven = numpy.zeros((count, 3, len(drivers)))
+        self.driven = numpy.zeros((count, deck.directions, len(drivers)))
         for first, *others in deck.equations:
             node, direction, factor = first
             free = [(n, d, f) for n, d, f in others if n not in index]
@@ -84,7 +98,7 @@ class Conditions:
             master[node] = free[0][0] if free else -1
             for n, _, f in others:
                 if n in index:
-                    self.driven[node, direction - 1, index[n]] = -f / factor
+                    self.driven[node, direction, index[n]] = -f / factor
         if deck.held:
             master[master == int(deck.held[0])] = -1
         used = numpy.unique(numpy.concatenate([numpy.unique(rows) for rows in element_rows(deck)]))
@@ -105,11 +119,11 @@ class Cell:
     """All elements of a deck as one matrix that is never put together."""
 
     def __init__(self, deck, drivers, pieces):
-        """`pieces`: of some elements at a time their numbers, places, stiffness and expansion in space."""
+        """`pieces`: of some elements at a time their numbers, matrices, and forces of one degree."""
         self.conditions = Conditions(deck, drivers)
+        self.directions = deck.directions
         nodes, of_elements, forces = [], [], []
-        for numbers, places, stiffness, expansion in pieces:
-            some, force = matrices(places, stiffness, expansion)
+        for numbers, some, force in pieces:
             nodes.append(numpy.array([deck.elements[e] for e in numbers]))
             of_elements.append(some)
             forces.append(force)
@@ -119,28 +133,30 @@ class Cell:
         count = self.conditions.count
         unknown = self.conditions.unknown[self.nodes]
         unknown[unknown < 0] = count  # one more, which stays at zero
-        self.unknown = (3 * unknown[:, :, None] + numpy.arange(3)).reshape(len(self.nodes), -1)
+        self.unknown = (self.directions * unknown[:, :, None] + numpy.arange(self.directions)).reshape(len(self.nodes), -1)
         flat = self.unknown.ravel()
         self.order = numpy.argsort(flat, kind="stable")
         ordered = flat[self.order]
         self.starts = numpy.flatnonzero(numpy.r_[True, ordered[1:] != ordered[:-1]])
-        self.rows = 3 * count + 3
+        self.rows = self.directions * (count + 1)
         self.places = ordered[self.starts]
-        blocks = numpy.zeros((count + 1, 3, 3))
+        blocks = numpy.zeros((count + 1, self.directions, self.directions))
         for a in range(unknown.shape[1]):
-            numpy.add.at(blocks, unknown[:, a], self.matrices[:, 3 * a : 3 * a + 3, 3 * a : 3 * a + 3])
+            own = slice(self.directions * a, self.directions * (a + 1))
+            numpy.add.at(blocks, unknown[:, a], self.matrices[:, own, own])
         self.inverse = numpy.linalg.inv(blocks[:count])
 
     def gather(self, rows):
         """Forces of elements (n x 3 nodes x cases) at the unknowns."""
         result = numpy.zeros((self.rows, rows.shape[2]))
         result[self.places] = numpy.add.reduceat(rows.reshape(-1, rows.shape[2])[self.order], self.starts, axis=0)
-        result[-3:] = 0
+        result[-self.directions :] = 0
         return result
 
     def precondition(self, x):
         result = numpy.zeros_like(x)
-        result[:-3] = (self.inverse @ x[:-3].reshape(len(self.inverse), 3, -1)).reshape(len(x) - 3, -1)
+        used = self.directions * len(self.inverse)
+        result[:used] = (self.inverse @ x[:used].reshape(len(self.inverse), self.directions, -1)).reshape(used, -1)
         return result
 
     def solve(self, right):

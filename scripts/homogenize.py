@@ -1,10 +1,10 @@
-"""Stiffness and thermal expansion of a unit cell: see scripts/homogenize, which calls this.
+"""Stiffness and thermal expansion of a unit cell, or the conductivity of one whose deck conducts: see scripts/homogenize, which calls this.
 
 The deck of `selvage mesh` has a step for each strain of the cell and one for its temperature. CalculiX runs it.
 
 direct:    the deck as it is, by factorization. The force on each driver follows from the reactions of the nodes that
            depend on it (virtual work: CalculiX prints none at a node that no element has), and is the stress times the
-           cell's volume (of a plate: force and moment a length times its area).
+           cell's volume (of a plate: force and moment a length times its area). So are the fluxes of a deck that conducts.
 iterative: the same elements and conditions without CalculiX, by conjugate gradients over all steps at once
            (scripts/cell_elements.py): in minutes what a factorization in every step does in hours. (Those of CalculiX end
            at a residual of 1e-4, which left up to 4e-3 of the bending and coupling terms.)
@@ -13,7 +13,6 @@ iterative: the same elements and conditions without CalculiX, by conjugate gradi
 import argparse
 import json
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -22,226 +21,15 @@ import time
 
 import numpy
 
-from cell_elements import EDGES, PAIRS, Cell, NotSolved, tetrahedron_shapes
+import cell_conduction as conduction
+from cell_deck import Deck
+from cell_elements import Cell, NotSolved
 
 BLOCK = ["xx", "yy", "zz", "xy", "xz", "yz"]
 
 
 class Failure(Exception):
     pass
-
-
-class Deck:
-    """What of a deck of ours is needed: nodes, elements, materials, conditions, steps."""
-
-    def __init__(self, path):
-        self.path = pathlib.Path(path)
-        self.lines = self._with_included(self.path)
-        self.nodes, self.sets, self.elements, self.element_sets = {}, {}, {}, {}
-        self.equations, self.materials, self.sections = [], {}, []
-        self.axes, self.steps, self.held = {}, [], []
-        self.cell = None
-        self.first_step = len(self.lines)
-        self._read()
-
-    def _with_included(self, path):
-        """The lines of a deck, with those of the mesh that it includes (--split-deck)."""
-        lines = []
-        for line in path.read_text().splitlines():
-            found = re.fullmatch(r"\*INCLUDE\s*,\s*INPUT\s*=\s*(.*\S)\s*", line, re.IGNORECASE)
-            lines += self._with_included(path.parent / found[1]) if found else [line]
-        return lines
-
-    def _blocks(self):
-        """Keyword, parameters, data lines, line number, last comment before the keyword."""
-        keyword, options, data, start, comment, last = None, {}, [], 0, "", ""
-        for number, line in enumerate(self.lines):
-            if line.startswith("**"):
-                last = line[2:].strip()
-                found = re.fullmatch(r"Cell: (.*)", last)
-                if found:
-                    self.cell = numpy.array([float(v) for v in found[1].split()]).reshape(2, 3)
-                continue
-            if line.startswith("*"):
-                if keyword:
-                    yield keyword, options, data, start, comment
-                words = [word.strip() for word in line[1:].split(",")]
-                keyword, data, start, comment = words[0].upper(), [], number, last
-                options = {k.strip().upper(): v.strip() for k, _, v in (word.partition("=") for word in words[1:])}
-            elif line.strip():
-                data.append(line)
-        if keyword:
-            yield keyword, options, data, start, comment
-
-    def _read(self):
-        material, step = None, None
-        for keyword, options, data, start, comment in self._blocks():
-            rows = [[word.strip() for word in line.split(",")] for line in data]
-            if keyword == "NODE":
-                numbers = [int(row[0]) for row in rows]
-                self.nodes.update((int(row[0]), tuple(map(float, row[1:4]))) for row in rows)
-                if "NSET" in options:
-                    self.sets.setdefault(options["NSET"], []).extend(numbers)
-            elif keyword == "NSET":
-                words = [word for row in rows for word in row if word]
-                names = self.sets.setdefault(options["NSET"], [])
-                for word in words:
-                    names.extend([int(word)] if word.isdigit() else self.sets.get(word, []))
-            elif keyword == "ELEMENT":
-                self._add_elements(options, rows)
-            elif keyword == "ELSET":
-                names = self.element_sets.setdefault(options["ELSET"], [])
-                for word in (word for row in rows for word in row if word):
-                    names.extend([int(word)] if word.isdigit() else self.element_sets.get(word, []))
-            elif keyword == "EQUATION":
-                self._add_equations(rows)
-            elif keyword == "MATERIAL":
-                material = self.materials.setdefault(options["NAME"], {})
-            elif keyword == "ELASTIC":
-                values = [float(word) for row in rows for word in row if word]
-                material["stiffness"] = stiffness_of(values)
-            elif keyword == "EXPANSION":
-                values = [float(word) for row in rows for word in row if word]
-                material["expansion"] = values if len(values) > 1 else values * 3
-            elif keyword == "SOLID SECTION":
-                self.sections.append((options["ELSET"], options["MATERIAL"], "ORIENTATION" in options))
-            elif keyword == "DISTRIBUTION":
-                for row in rows:
-                    if row[0]:
-                        self.axes[int(row[0])] = [float(v) for v in row[1:7]]
-            elif keyword == "STEP":
-                self.first_step = min(self.first_step, start)
-                step = {"name": comment, "drivers": {}, "temperature": 0.0}
-                self.steps.append(step)
-            elif keyword == "BOUNDARY" and step is not None:
-                for row in rows:
-                    if len(row) > 3 and row[3]:
-                        step["drivers"][row[0]] = float(row[3])
-                    elif row[0].isdigit():
-                        self.held = row
-            elif keyword == "TEMPERATURE" and step is not None:
-                step["temperature"] = float(rows[0][1])
-
-    def _add_elements(self, options, rows):
-        names = self.element_sets.setdefault(options.get("ELSET", "All"), [])
-        count = {"C3D4": 4, "C3D10": 10, "C3D8": 8}.get(options["TYPE"].upper())
-        if count is None:
-            return
-        words = [int(word) for row in rows for word in row if word]
-        for k in range(0, len(words), count + 1):
-            self.elements[words[k]] = words[k + 1 : k + 1 + count]
-            names.append(words[k])
-
-    def _add_equations(self, rows):
-        words = [word for row in rows for word in row if word]
-        k = 0
-        while k < len(words):
-            count = int(words[k])
-            terms = words[k + 1 : k + 1 + 3 * count]
-            self.equations.append(
-                [(int(terms[3 * i]), int(terms[3 * i + 1]), float(terms[3 * i + 2])) for i in range(count)]
-            )
-            k += 1 + 3 * count
-
-    def drivers(self):
-        names = [name for name in self.sets if re.fullmatch(r"(Constraints|Curvature)Driver\d", name)]
-        return {name: self.sets[name][0] for name in names}
-
-    def parts(self, chunk=20_000):
-        """Of all elements, some at a time: their numbers, places of their nodes, stiffness matrices and expansion (engineering
-        strains a degree) in space, order xx yy zz xy xz yz."""
-        for name, material, oriented in self.sections:
-            local = self.materials[material]["stiffness"]
-            expands = numpy.array([*self.materials[material].get("expansion", (0, 0, 0)), 0, 0, 0])
-            numbers = self.element_sets[name]
-            for k in range(0, len(numbers), chunk):
-                part = numbers[k : k + chunk]
-                stiffness = numpy.broadcast_to(local, (len(part), 6, 6))
-                expansion = numpy.broadcast_to(expands, (len(part), 6))
-                if oriented:
-                    turn = turned(numpy.array([self.axes[e] for e in part]))
-                    stiffness = numpy.einsum("nai,ab,nbj->nij", turn, local, turn, optimize=True)
-                    # Stresses turn by the transposed matrix, and strains of the material into space as work asks for.
-                    expansion = numpy.linalg.solve(turn, expansion[:, :, None])[:, :, 0]
-                yield part, numpy.array([[self.nodes[n] for n in self.elements[e]] for e in part]), stiffness, expansion
-
-    def pieces(self):
-        """Of all elements, some at a time: section, volumes, first and second moments of their heights about the middle
-        of the cell, stiffness matrices in space (order xx yy zz xy xz yz)."""
-        middle = self.cell[:, 2].mean()
-        name_of = {e: name for name, _, _ in self.sections for e in self.element_sets[name]}
-        for part, p, stiffness, _ in self.parts():
-            p[:, :, 2] -= middle
-            moments = moments_of_boxes(p) if p.shape[1] == 8 else moments_of_tetrahedra(p)
-            yield name_of[part[0]], *moments, stiffness
-
-
-def moments_of_boxes(p):
-    """Volumes and the integrals of z and z^2 of bricks along the axes (n x 8 x 3 nodes)."""
-    z = p[:, :, 2]
-    volume = numpy.prod(p[:, 6] - p[:, 0], axis=1)
-    return volume, volume * z.mean(axis=1), volume * (z.mean(axis=1) ** 2 + (z[:, 6] - z[:, 0]) ** 2 / 12)
-
-
-def moments_of_tetrahedra(p):
-    """The same of tetrahedra of four or ten nodes (n x 4 or 10 x 3); curved ones by quadrature."""
-    z = p[:, :4, 2]
-    volume = numpy.einsum("ni,ni->n", numpy.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), p[:, 3] - p[:, 0]) / 6
-    moments = [volume, volume * z.mean(axis=1), volume * ((z**2).sum(axis=1) + z.sum(axis=1) ** 2) / 20]
-    if p.shape[1] == 4:
-        return moments
-    chords = numpy.stack([(p[:, a] + p[:, b]) / 2 for a, b in EDGES], axis=1)
-    size = numpy.abs(p[:, 1:4] - p[:, :1]).max(axis=(1, 2))
-    curved = numpy.flatnonzero(numpy.abs(p[:, 4:] - chords).max(axis=(1, 2)) > 1e-9 * size)
-    values, slopes, weights = tetrahedron_rule()
-    for rows in numpy.array_split(curved, len(curved) // 5000 + 1):
-        frames = numpy.einsum("qai,nac->nqic", slopes, p[rows])
-        parts = weights * numpy.linalg.det(frames)
-        height = numpy.einsum("qa,na->nq", values, p[rows][:, :, 2])
-        for power in range(3):
-            moments[power][rows] = (parts * height**power).sum(axis=1)
-    return moments
-
-
-def tetrahedron_rule(count=5):
-    """Values and slopes of the ten shape functions at the points of a rule for tetrahedra, and its weights: Gauss's of a
-    cube that is drawn together to a tetrahedron, exact to degree 2 count - 3."""
-    at, weight = numpy.polynomial.legendre.leggauss(count)
-    at, weight = (at + 1) / 2, weight / 2
-    a, b, c = (grid.ravel() for grid in numpy.meshgrid(at, at, at, indexing="ij"))
-    weights = numpy.einsum("i,j,k->ijk", weight, weight, weight).ravel() * (1 - a) ** 2 * (1 - b)
-    at = numpy.stack([a, b * (1 - a), c * (1 - a) * (1 - b)], axis=1)
-    return *tetrahedron_shapes(at, 10), weights
-
-
-def stiffness_of(values):
-    """6 x 6 in the material's axes from E, nu or nine engineering constants."""
-    if len(values) == 2:
-        e, nu = values
-        values = [e] * 3 + [nu] * 3 + [e / (2 * (1 + nu))] * 3
-    e1, e2, e3, nu12, nu13, nu23, g12, g13, g23 = values[:9]
-    s = numpy.zeros((6, 6))
-    s[:3, :3] = [
-        [1 / e1, -nu12 / e1, -nu13 / e1],
-        [-nu12 / e1, 1 / e2, -nu23 / e2],
-        [-nu13 / e1, -nu23 / e2, 1 / e3],
-    ]
-    s[3, 3], s[4, 4], s[5, 5] = 1 / g12, 1 / g13, 1 / g23
-    return numpy.linalg.inv(s)
-
-
-def turned(axes):
-    """What makes strains along axes from those in space (n x 6 x 6, engineering): rows of axis 1 and of a second one across it."""
-    first = axes[:, :3] / numpy.linalg.norm(axes[:, :3], axis=1)[:, None]
-    second = axes[:, 3:] - first * (first * axes[:, 3:]).sum(axis=1)[:, None]
-    second /= numpy.linalg.norm(second, axis=1)[:, None]
-    r = numpy.stack([first, second, numpy.cross(first, second)], axis=1)
-    strain = numpy.zeros((len(axes), 6, 6))  
-    for a, (i, j) in enumerate(PAIRS):
-        for b, (k, l) in enumerate(PAIRS):
-            value = r[:, i, k] * r[:, j, l] + (r[:, i, l] * r[:, j, k] if k != l else 0)
-            strain[:, a, b] = value * (1 if i == j else 2) * (1 if k == l else 0.5)
-    return strain
 
 
 def run_ccx(program, folder, name):
@@ -258,22 +46,19 @@ def run_ccx(program, folder, name):
     return [line.strip() for line in text.splitlines() if "*WARNING" in line]
 
 
-def reactions(path, count):
-    """Of each step the printed forces of all nodes: number -> (x, y, z)."""
+def reactions(path, count, directions):
+    """Of each step the printed forces of the dependent nodes, or the fluxes into them: number -> one value a direction."""
     steps, current = [], None
     with path.open() as file:
         for line in file:
-            if line.startswith(" forces (fx,fy,fz) for set"):
-                if "DEPENDENT" in line.upper():
+            if " for set " in line:
+                current = None
+                if line.startswith((" forces (fx,fy,fz)", " heat generation")) and "DEPENDENT" in line.upper():
                     current = {}
                     steps.append(current)
-                else:
-                    current = None
-            elif line.startswith(" displacements"):
-                current = None
             elif current is not None:
                 words = line.split()
-                if len(words) == 4:
+                if len(words) == 1 + directions:
                     current[int(words[0])] = [float(word) for word in words[1:]]
     if len(steps) != count:
         raise Failure(f"CalculiX printed the forces of {len(steps)} steps, not of {count}")
@@ -285,19 +70,19 @@ def driver_forces(deck, drivers, forces):
     index = {node: k for k, node in enumerate(drivers.values())}
     result = numpy.zeros(len(drivers))
     for first, *others in deck.equations:
-        force = forces[first[0]][first[1] - 1]
+        force = forces[first[0]][first[1]]
         for node, _, factor in others:
             if node in index:
                 result[index[node]] -= force * factor / first[2]
     return result
 
 
-def stiffness_from_steps(deck, drivers, forces, measure):
+def stiffness_from_steps(deck, drivers, forces):
     names = list(drivers)
     matrix = numpy.full((len(names), len(names)), numpy.nan)
     thermal = numpy.zeros(len(names))
     for step, printed in zip(deck.steps, forces):
-        stress = driver_forces(deck, drivers, printed) / measure
+        stress = driver_forces(deck, drivers, printed)
         moved = [name for name in names if step["drivers"].get(name)]
         if len(moved) == 1:
             matrix[:, names.index(moved[0])] = stress / step["drivers"][moved[0]]
@@ -372,10 +157,14 @@ def bounds(deck, plate):
 DISCRETISATION = 0.01  # up to which elements are allowed to be too stiff where a bound is exact (a homogeneous plate)
 
 
-def is_not_below(upper, lower):
-    """Is the difference positive semidefinite, but for that? Entries of different units are scaled first."""
+TINY = 1e-6  # what solvers leave
+
+
+def excess(upper, lower):
+    """By what share the lower one is above the upper one, in the direction where it is most; negative: nowhere. Entries of
+    different units are scaled first."""
     scale = 1 / numpy.sqrt(numpy.diag(upper))
-    return bool(numpy.linalg.eigvalsh((upper - lower) * numpy.outer(scale, scale)).min() > -DISCRETISATION)
+    return -numpy.linalg.eigvalsh((upper - lower) * numpy.outer(scale, scale)).min()
 
 
 LARGEST_DIRECT = 3_000  # nodes; beyond, seven factorizations take minutes and gigabytes
@@ -384,13 +173,32 @@ LARGEST_DIRECT = 3_000  # nodes; beyond, seven factorizations take minutes and g
 def check_bounds(matrix, voigt, reuss, plate):
     """Nothing is told of a stiffness that cannot be."""
     for name, upper, lower in (("Voigt", voigt, matrix), ("Reuss", matrix, reuss)):
-        if is_not_below(upper, lower):
+        if excess(upper, lower) < DISCRETISATION:
             continue
         remedy = "mesh it finer" + (", or with --order 2, the default of plates" if plate else "")
         raise Failure(
             f"the stiffness that was found is {'above' if name == 'Voigt' else 'below'} {name}'s bound, which no cell of "
             f"these materials is: its elements are too coarse{' for bending' if plate else ''}; {remedy}"
         )
+
+
+def fluxes_of_drivers(deck, drivers, given_solver, ccx, folder):
+    """The matrix of the drivers' forces (fluxes) a unit of their strains (gradients), and the forces of one degree; warnings of
+    CalculiX and how it was done."""
+    solver = given_solver
+    if solver == "auto":
+        solver = "direct" if len(deck.nodes) <= LARGEST_DIRECT else "iterative"
+    started = time.monotonic()
+    warnings = []
+    if solver == "direct":
+        name = "homogenize"  # not the name of a deck that is kept beside it
+        (folder / f"{name}.inp").write_text("\n".join(deck.lines) + "\n")
+        warnings = run_ccx(ccx, folder, name)
+        forces = reactions(folder / f"{name}.dat", len(deck.steps), deck.directions)
+        matrix, thermal = stiffness_from_steps(deck, drivers, forces)
+    else:
+        matrix, thermal = Cell(deck, drivers, conduction.matrices(deck) if deck.physics else deck.matrices()).stiffness()
+    return matrix, thermal, {"solver": solver, "warnings": warnings, "seconds": time.monotonic() - started}
 
 
 def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
@@ -401,59 +209,121 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
     if deck.cell is None:
         raise Failure(f"{path}: the deck does not say its cell")
     sides = deck.cell[1] - deck.cell[0]
-    plate = any(name.startswith("Curvature") for name in drivers)
-    measure = sides[0] * sides[1] if plate else numpy.prod(sides)
-    if solver == "auto":
-        solver = "direct" if len(deck.nodes) <= LARGEST_DIRECT else "iterative"
-    started = time.monotonic()
-    if solver == "direct":
-        name = "homogenize"  # not the name of a deck that is kept beside it
-        (folder / f"{name}.inp").write_text("\n".join(deck.lines) + "\n")
-        warnings = run_ccx(ccx, folder, name)
-        forces = reactions(folder / f"{name}.dat", len(deck.steps))
-        matrix, thermal = stiffness_from_steps(deck, drivers, forces, measure)
-    else:
-        warnings = []
-        matrix, thermal = (total / measure for total in Cell(deck, drivers, deck.parts()).stiffness())
-    seconds = time.monotonic() - started
-    asymmetry = abs(matrix - matrix.T).max() / abs(matrix).max()
-    matrix = (matrix + matrix.T) / 2
-    constants, expansion = (
-        engineering_plate(matrix, thermal, sides[2]) if plate else engineering_block(matrix, thermal)
-    )
-    voigt, reuss, shares = bounds(deck, plate)
-    check_bounds(matrix, voigt, reuss, plate)
-    notes = []
-    if plate and any(len(nodes) in (4, 8) for nodes in deck.elements.values()):
-        notes.append(
-            "elements of four or eight nodes are too stiff in bending (tetrahedra of usual sizes by a third): the entries of "
-            "kxx, kyy, kxy are upper bounds; mesh with --order 2"
-        )
-    result = {
+    matrix, thermal, facts = fluxes_of_drivers(deck, drivers, solver, ccx, folder)
+    facts |= {
         "file": str(path),
-        "kind": "plate" if plate else "block",
-        "solver": solver,
         "cell": sides.tolist(),
         "nodes": len(deck.nodes),
         "elements": len(deck.elements),
+        "asymmetry": abs(matrix - matrix.T).max() / abs(matrix).max(),
+        "notes": [],
+    }
+    matrix = (matrix + matrix.T) / 2
+    if deck.physics:
+        return facts | conducting(deck, matrix / numpy.prod(sides))
+    plate = any(name.startswith("Curvature") for name in drivers)
+    measure = sides[0] * sides[1] if plate else numpy.prod(sides)
+    return facts | elastic(deck, matrix / measure, thermal / measure, plate, with_bounds)
+
+
+def elastic(deck, matrix, thermal, plate, with_bounds):
+    constants, expansion = (
+        engineering_plate(matrix, thermal, (deck.cell[1] - deck.cell[0])[2]) if plate else engineering_block(matrix, thermal)
+    )
+    voigt, reuss, shares = bounds(deck, plate)
+    check_bounds(matrix, voigt, reuss, plate)
+    result = {
+        "kind": "plate" if plate else "block",
         "order": ["xx", "yy", "xy", "kxx", "kyy", "kxy"] if plate else BLOCK,
         "stiffness": matrix.tolist(),
-        "asymmetry": asymmetry,
         "engineering": constants,
         "thermal_stress": thermal.tolist(),
         "expansion": expansion,
-        "warnings": warnings,
-        "notes": notes,
-        "seconds": seconds,
     }
+    if plate and any(len(nodes) in (4, 8) for nodes in deck.elements.values()):
+        result["notes"] = [
+            "elements of four or eight nodes are too stiff in bending (tetrahedra of usual sizes by a third): the entries of "
+            "kxx, kyy, kxy are upper bounds; mesh with --order 2"
+        ]
     if with_bounds:
         result |= {"volume_fractions": shares, "voigt": voigt.tolist(), "reuss": reuss.tolist()}
     return result
 
 
+def conducting(deck, tensor):
+    """The tensor with its principal values and bounds; outside of these is an error of the mesh."""
+    prop, unit = conduction.LAWS[deck.physics]
+    parallel, series, shares = conduction.means(deck)
+    lower, upper = conduction.wiener(parallel, series, shares, len(tensor))
+    outside = [("above Wiener's (phases in parallel)", excess(upper, tensor)), ("below Wiener's (in series)", excess(tensor, lower))]
+    values, directions = numpy.linalg.eigh(tensor)
+    result = {
+        "kind": "plate" if len(tensor) == 2 else "block",
+        "physics": deck.physics,
+        "property": prop,
+        "unit": unit,
+        "order": conduction.AXES[: len(tensor)],
+        "tensor": tensor.tolist(),
+        "principal": values[::-1].tolist(),
+        "directions": directions.T[::-1].tolist(),
+        "volume_fractions": shares,
+        "wiener": {"lower": lower.tolist(), "upper": upper.tolist()},
+    }
+    phases = conduction.isotropic_phases(deck, shares)
+    if phases and len(phases) > 1 and deck.is_periodic and len(tensor) == 3:
+        least, most = conduction.hashin_shtrikman(phases)
+        from_below, from_above = (conduction.as_isotropic(tensor, k) for k in (min(phases), max(phases)))
+        result["hashin_shtrikman"] = {"lower": least, "upper": most, "mean": values.mean(), "from_below": from_below, "from_above": from_above}
+        outside += [("below Hashin's and Shtrikman's", least / from_below - 1 if from_below else 0)]
+        outside += [("above Hashin's and Shtrikman's", from_above / most - 1 if from_above else 0)]
+    name, most = max(outside, key=lambda pair: pair[1])
+    result["outside"] = max(most, 0.0)
+    if most > DISCRETISATION:
+        raise Failure(
+            f"the {prop} that was found is {name} bound, by {100 * most:.2g} %, which no cell of these materials is: its "
+            "elements are too coarse; mesh it finer, or with --order 2"
+        )
+    if most > TINY:
+        result["notes"] = [f"the {prop} is {name} bound, by {100 * most:.2g} %: the elements are coarse"]
+    return result
+
+
+def show_tensor(name, rows):
+    print(name)
+    for row in rows:
+        print("  " + " ".join(f"{value:13.6g}" for value in row))
+
+
+def show_conduction(result):
+    unit = result["unit"]
+    show_tensor(f"{result['property']} ({unit}) - {' '.join(result['order'])}", result["tensor"])
+    print(f"asymmetry {result['asymmetry']:.1e} of the largest entry")
+    for value, direction in zip(result["principal"], result["directions"]):
+        print(f"  principal    {value:12.6g} {unit} along {' '.join(f'{x:.4f}' for x in direction)}")
+    for name, share in result["volume_fractions"].items():
+        print(f"  share of {name:12} {share:.5f}")
+    show_tensor("Wiener's bounds: in series", result["wiener"]["lower"])
+    show_tensor("in parallel", result["wiener"]["upper"])
+    theirs = result.get("hashin_shtrikman")
+    if theirs:
+        print(
+            f"Hashin's and Shtrikman's bounds of an isotropic cell {theirs['lower']:.6g} to {theirs['upper']:.6g}; the mean of "
+            f"the principal values is {theirs['mean']:.6g}"
+        )
+
+
 def show(result):
     plate = result["kind"] == "plate"
     print(f"{result['file']}: {result['kind']}, {result['elements']} elements, {result['solver']} solver {result['seconds']:.1f} s")
+    if "physics" in result:
+        show_conduction(result)
+    else:
+        show_elastic(result, plate)
+    for warning in result["warnings"] + result["notes"]:
+        print(warning)
+
+
+def show_elastic(result, plate):
     print("ABD matrix (N/mm, N, N mm)" if plate else "stiffness C (MPa)", "-", " ".join(result["order"]))
     for row in result["stiffness"]:
         print("  " + " ".join(f"{value:13.6g}" for value in row))
@@ -470,20 +340,19 @@ def show(result):
             print(f"{name.capitalize()}'s bound")
             for row in result[name]:
                 print("  " + " ".join(f"{value:13.6g}" for value in row))
-    for warning in result["warnings"] + result["notes"]:
-        print(warning)
 
 
 def main():
     parser = argparse.ArgumentParser(
         prog="homogenize",
         description="Stiffness (C of a block, ABD of a plate), engineering constants and thermal expansion of a unit "
-        "cell, from its deck: by CalculiX, or by conjugate gradients where it is large.",
+        "cell, or the conductivity (diffusivity, permittivity) of one whose deck conducts, from its deck: by CalculiX, or by "
+        "conjugate gradients where it is large.",
         epilog="Options that are not known here are those of `selvage mesh`: --size, --voxel, --order, ...",
     )
     parser.add_argument("file", help="deck of `selvage mesh` (.inp), or any input of it with a cell")
     parser.add_argument("--json", metavar="FILE", help="write the results there too ('-': standard output, alone)")
-    parser.add_argument("--bounds", action="store_true", help="with volume fractions and the bounds of Voigt and Reuss (which are checked always)")
+    parser.add_argument("--bounds", action="store_true", help="of a stiffness: with volume fractions and the bounds of Voigt and Reuss (which are checked always)")
     parser.add_argument("--keep", metavar="DIR", help="keep the deck and what CalculiX wrote")
     parser.add_argument(
         "--solver",

@@ -1,4 +1,5 @@
-// What drives a unit cell: nodes whose displacement is a strain, equations, and a step for each load case.
+// What drives a unit cell: nodes whose displacement is a strain, or whose temperature a gradient, equations,
+// and a step for each load case.
 #include <algorithm>
 
 #include "fem/complete_cell.h"
@@ -6,6 +7,19 @@
 
 namespace selvage::formats::inp {
 namespace {
+
+bool conducts(const fem::Mesh& mesh) {
+  return mesh.physics != fem::Physics::elastic;
+}
+
+// Degrees of freedom of a node, as the solver counts them: displacements from 1, the temperature is 11.
+constexpr int temperature = 11;
+int first_unknown(const fem::Mesh& mesh) {
+  return conducts(mesh) ? temperature : 1;
+}
+int last_unknown(const fem::Mesh& mesh) {
+  return conducts(mesh) ? temperature : 3;
+}
 
 bool changes_temperature(const fem::Mesh& mesh) {
   return std::any_of(mesh.load_cases.begin(), mesh.load_cases.end(),
@@ -35,7 +49,7 @@ void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh) {
     text << equation.size() << '\n';
     for (std::size_t i = 0; i < equation.size(); ++i) {
       const fem::Term& term = equation[i];
-      text << term.node + 1 << ", " << term.direction + 1 << ", " << real(term.factor)
+      text << term.node + 1 << ", " << first_unknown(mesh) + term.direction << ", " << real(term.factor)
            << (i % per_row == per_row - 1 || i + 1 == equation.size() ? "\n" : ", ");
     }
   }
@@ -44,16 +58,23 @@ void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh) {
 
 void write_cell_steps(TextBuffer& text, const fem::Mesh& mesh) {
   const bool is_heated = changes_temperature(mesh);
+  const int first = first_unknown(mesh), last = last_unknown(mesh);
   for (const fem::LoadCase& load : mesh.load_cases) {
-    text << "** " << load.name << "\n*STEP\n*STATIC\n*BOUNDARY, OP=NEW\n";
-    if (const auto held = fem::held_node(mesh)) text << *held + 1 << ", 1, 3\n";
+    text << "** " << load.name << "\n*STEP\n"
+         << (conducts(mesh) ? "*HEAT TRANSFER, STEADY STATE\n1, 1" : "*STATIC") << "\n*BOUNDARY, OP=NEW\n";
+    if (const auto held = fem::held_node(mesh)) text << *held + 1 << ", " << first << ", " << last << '\n';
     for (std::size_t k = 0; k < load.drivers.size(); ++k)
-      if (load.drivers[k]) text << mesh.drivers[k].name << ", 1, 1, " << real(*load.drivers[k]) << '\n';
+      if (load.drivers[k])
+        text << mesh.drivers[k].name << ", " << first << ", " << first << ", " << real(*load.drivers[k])
+             << '\n';
     if (is_heated) text << "*TEMPERATURE\nAllNodes, " << real(load.temperature) << '\n';
-    // The force on a driver is the stress times the volume of the cell. CalculiX prints none at a driver
-    // itself, which no element has: it follows from those on the nodes that depend on it.
-    text << "*NODE PRINT, NSET=Drivers\nU, RF\n*NODE PRINT, NSET=Dependent\nRF\n";
-    text << "*NODE FILE\nU\n*EL FILE\nS, E\n*END STEP\n";
+    // The force on a driver is the stress times the volume of the cell; the flux into it, the mean flux.
+    if (conducts(mesh))
+      text << "*NODE PRINT, NSET=Drivers\nNT, RFL\n*NODE PRINT, NSET=Dependent\nRFL\n"
+              "*NODE FILE\nNT\n*EL FILE\nHFL\n*END STEP\n";
+    else
+      text << "*NODE PRINT, NSET=Drivers\nU, RF\n*NODE PRINT, NSET=Dependent\nRF\n"
+              "*NODE FILE\nU\n*EL FILE\nS, E\n*END STEP\n";
   }
 }
 

@@ -39,10 +39,38 @@ void write_elastic(TextBuffer& text, const fabric::Material& material) {
   text << '\n' << real(c.g23) << '\n';
 }
 
+// Every physics is one of heat conduction to the solver.
+void write_conductivity(TextBuffer& text, const fem::Mesh& mesh, const fabric::Material& material) {
+  const auto& [along, across] = *(material.*fem::transport_law(mesh.physics).member);
+  if (along == across)
+    text << "*CONDUCTIVITY\n" << real(along) << '\n';
+  else
+    text << "*CONDUCTIVITY, TYPE=ORTHO\n"
+         << real(along) << ", " << real(across) << ", " << real(across) << '\n';
+}
+
+void write_units(TextBuffer& text, const fem::Mesh& mesh) {
+  if (mesh.physics == fem::Physics::elastic) {
+    text << "** Units: mm, N, MPa, tonne, s\n";
+    return;
+  }
+  const fem::TransportLaw& law = fem::transport_law(mesh.physics);
+  text << "** Physics: " << law.word << "\n** Lengths in mm. *CONDUCTIVITY: the " << law.property << ", "
+       << law.unit;
+  if (mesh.physics == fem::Physics::conduction)
+    text << ", which is mW/(mm K): fluxes in mW/mm2\n";
+  else
+    text << "; temperature: the " << law.potential << '\n';
+}
+
 void write_materials(TextBuffer& text, const fem::Mesh& mesh, const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
     const fabric::Material& material = mesh.materials[i];
     text << "*MATERIAL, NAME=" << names[i] << '\n';
+    if (mesh.physics != fem::Physics::elastic) {
+      write_conductivity(text, mesh, material);
+      continue;
+    }
     if (!std::holds_alternative<std::monostate>(material.elastic)) write_elastic(text, material);
     const fem::Orthotropic constants = fem::orthotropic(material);
     if (constants.density) text << "*DENSITY\n" << real(*constants.density) << '\n';
@@ -119,7 +147,13 @@ Result<Deck> plan_deck(const fem::Mesh& mesh) {
   const fem::DeckNames names = names_of(mesh);
   Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();
-  Deck deck = {mesh, names, std::move(*sections), fem::contact_surfaces(mesh), {}, {}};
+  const bool touches = mesh.physics == fem::Physics::elastic;
+  Deck deck = {mesh,
+               names,
+               std::move(*sections),
+               touches ? fem::contact_surfaces(mesh) : fem::ContactSurfaces{},
+               {},
+               {}};
   if (mesh.cell) {
     deck.node_sets = fem::node_sets(mesh, names);
     return deck;
@@ -133,7 +167,7 @@ Result<Deck> plan_deck(const fem::Mesh& mesh) {
 }
 
 void write_names(TextBuffer& text, const Deck& deck) {
-  text << "** Units: mm, N, MPa, tonne, s\n";
+  write_units(text, deck.mesh);
   fem::write_yarn_names(text, deck.mesh, deck.names, "**", 120);
 }
 
@@ -160,6 +194,7 @@ const Descriptor& descriptor() {
       .extensions = {".inp"},
       .sniff = looks_like_a_deck,
       .write_mesh = write,
+      .carries_transport = true,
       .companion = {.format = mesh_descriptor, .ending = "_mesh", .asked_by = &option::split_deck},
       .options = option::all(),
       .is_usual = true};

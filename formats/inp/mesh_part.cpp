@@ -26,9 +26,12 @@ void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   text << "*NSET, NSET=Drivers, GENERATE\n" << mesh.nodes.size() + 1 << ", " << mesh.numbered() << ", 1\n";
 }
 
+// Those of heat transfer begin with a D.
 std::string_view element_type(const fem::Mesh& mesh) {
-  if (mesh.shape == fem::Mesh::Shape::hexahedron) return "C3D8";
-  return mesh.order == 1 ? "C3D4" : "C3D10";
+  const bool conducts = mesh.physics != fem::Physics::elastic;
+  if (mesh.shape == fem::Mesh::Shape::hexahedron) return conducts ? "DC3D8" : "C3D8";
+  if (mesh.order == 1) return conducts ? "DC3D4" : "C3D4";
+  return conducts ? "DC3D10" : "C3D10";
 }
 
 void write_elements(TextBuffer& text, const Deck& deck) {
@@ -99,7 +102,7 @@ Result<WriteFacts> write_mesh_file(const fem::Mesh& mesh, OutputFile& output,
 
 bool is_oriented(const fem::Mesh& mesh, const fem::Section& section) {
   return mesh.regions[section.region].kind == fem::Region::Kind::yarn ||
-         !fem::orthotropic(mesh.materials[section.material]).isotropic;
+         !fem::is_isotropic(mesh.materials[section.material], mesh.physics);
 }
 
 void write_mesh_part(TextBuffer& text, const Deck& deck) {

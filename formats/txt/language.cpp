@@ -49,7 +49,9 @@ const Language& language() {
                    measures_of("density", "g/cm3", Measure::density),
                    measures_of("modulus", "MPa", Measure::modulus),
                    measures_of("twist", "turns a metre; also turns on a length: 20/in", Measure::twist),
-                   measures_of("expansion", "1/K", Measure::expansion)},
+                   measures_of("expansion", "1/K", Measure::expansion),
+                   measures_of("conductivity", "W/(m K)", Measure::conductivity),
+                   measures_of("diffusivity", "mm2/s", Measure::diffusivity)},
       .known = all_known(),
       .grammar = textmate_grammar};
   return self;

@@ -24,10 +24,10 @@ constexpr std::array lessons = {
            "tolerance 0.001", "length", "1/1000 of the smallest section size"},
     Lesson{"thread", "file block", "thread NAME ... end",
            "What a yarn is made of: count, fibre, section, twist.", "thread cotton"},
-    Lesson{
-        "material", "file block", "material NAME ... end",
-        "Density, packing, stiffness and expansion, by a name that threads and the cell's matrix refer to.",
-        "material epoxy"},
+    Lesson{"material", "file block", "material NAME ... end",
+           "Density, packing, stiffness, expansion and conductivities, by a name that threads and the cell's "
+           "matrix refer to.",
+           "material epoxy"},
     Lesson{"outline", "file block", "outline NAME ... end",
            "A section by the control points of a closed quadratic: rows `x y`, at least 3.", "outline flat"},
     Lesson{"yarn", "file block", "yarn NAME [THREAD] ... end",
@@ -95,6 +95,14 @@ constexpr std::array lessons = {
            "Stiffness; 1 is along the yarn. -1 < NU < 0.5.", "elastic isotropic 3400 0.35", "modulus"},
     Lesson{"expansion", "material", "expansion ALONG ACROSS", "Thermal expansion.", "expansion 6e-6 21e-6",
            "expansion"},
+    Lesson{"conductivity", "material", "conductivity K | ALONG ACROSS",
+           "Of heat, in all directions or along and across the yarn, for `mesh --physics conduction`.",
+           "conductivity 6.5 0.8", "conductivity"},
+    Lesson{"diffusivity", "material", "diffusivity D | ALONG ACROSS",
+           "Of moisture or another substance, for `mesh --physics diffusion`.", "diffusivity 4e-7",
+           "diffusivity"},
+    Lesson{"permittivity", "material", "permittivity E | ALONG ACROSS",
+           "Over that of a vacuum, 1 or more, for `mesh --physics permittivity`.", "permittivity 6.1"},
 
     // --- yarn
     Lesson{"role", "yarn", "role warp | weft | wale | course | braider | axial | binder | other",

@@ -26,19 +26,21 @@ constexpr std::string_view circle_number = "pi";
 
 // Words that begin statements, and those of units that stand alone.
 constexpr std::array keywords = {
-    "fabric",   "title",    "units",    "tolerance",  "thread",    "material",  "yarn",    "weave",
-    "knit",     "warpknit", "braid",    "piece",      "edit",      "cell",      "param",   "end",
-    "tex",      "dtex",     "denier",   "Td",         "Nm",        "Ne",        "density", "packing",
-    "diameter", "section",  "twist",    "plies",      "filaments", "color",     "elastic", "expansion",
-    "role",     "path",     "grid",     "group",      "ends",      "closed",    "tangent", "up",
-    "degree",   "knots",    "open",     "corners",    "centre",    "warp",      "weft",    "draft",
-    "profile",  "crimp",    "layers",   "binder",     "courses",   "wales",     "method",  "chart",
-    "bar",      "stitch",   "carriers", "pattern",    "radius",    "flat",      "angle",   "length",
-    "axial",    "line",     "curve",    "matrix",     "periodic",  "K",         "fixed",   "nan",
-    "inf",      "infinity", "outline",  "derivative", "spacing",   "thickness", "loop",    "feeds",
-    "gating",   "plating",  "pile",     "block",      "use",       "place",     "rotate",  "mirror",
-    "shear",    "repeat",   "margin",   "substrate",  "points",    "helix",     "pucker",  "mandrel",
-    "unit",     "crossing", "shape",    "transfer",   "drop"};
+    "fabric",    "title",      "units",    "tolerance", "thread",       "material",    "yarn",
+    "weave",     "knit",       "warpknit", "braid",     "piece",        "edit",        "cell",
+    "param",     "end",        "tex",      "dtex",      "denier",       "Td",          "Nm",
+    "Ne",        "density",    "packing",  "diameter",  "section",      "twist",       "plies",
+    "filaments", "color",      "elastic",  "expansion", "conductivity", "diffusivity", "permittivity",
+    "role",      "path",       "grid",     "group",     "ends",         "closed",      "tangent",
+    "up",        "degree",     "knots",    "open",      "corners",      "centre",      "warp",
+    "weft",      "draft",      "profile",  "crimp",     "layers",       "binder",      "courses",
+    "wales",     "method",     "chart",    "bar",       "stitch",       "carriers",    "pattern",
+    "radius",    "flat",       "angle",    "length",    "axial",        "line",        "curve",
+    "matrix",    "periodic",   "K",        "fixed",     "nan",          "inf",         "infinity",
+    "outline",   "derivative", "spacing",  "thickness", "loop",         "feeds",       "gating",
+    "plating",   "pile",       "block",    "use",       "place",        "rotate",      "mirror",
+    "shear",     "repeat",     "margin",   "substrate", "points",       "helix",       "pucker",
+    "mandrel",   "unit",       "crossing", "shape",     "transfer",     "drop"};
 
 bool continues_identifier(char c) {
   return starts_name(c) || (c >= '0' && c <= '9');

@@ -17,9 +17,9 @@ namespace selvage::formats::txt {
 struct NumberUnit {
   std::string_view word;
   Measure measure = Measure::plain;
-  double size = 1;  // in millimetres, degrees, g/cm3, MPa, turns per metre, 1/K
+  double size = 1;  // in millimetres, degrees, g/cm3, MPa, turns per metre, 1/K, W/(m K), mm2/s
 };
-inline constexpr std::array<NumberUnit, 20> number_units = {{{"mm", Measure::length, 1.0},
+inline constexpr std::array<NumberUnit, 25> number_units = {{{"mm", Measure::length, 1.0},
                                                              {"cm", Measure::length, 10.0},
                                                              {"dm", Measure::length, 100.0},
                                                              {"m", Measure::length, 1000.0},
@@ -38,7 +38,12 @@ inline constexpr std::array<NumberUnit, 20> number_units = {{{"mm", Measure::len
                                                              {"cN/mm2", Measure::modulus, 0.01},
                                                              {"tpm", Measure::twist, 1.0},
                                                              {"tpi", Measure::twist, 39.370078740157481},
-                                                             {"/K", Measure::expansion, 1.0}}};
+                                                             {"/K", Measure::expansion, 1.0},
+                                                             {"W/mK", Measure::conductivity, 1.0},
+                                                             {"mW/mK", Measure::conductivity, 0.001},
+                                                             {"mm2/s", Measure::diffusivity, 1.0},
+                                                             {"cm2/s", Measure::diffusivity, 100.0},
+                                                             {"m2/s", Measure::diffusivity, 1e6}}};
 
 class Scope {
  public:

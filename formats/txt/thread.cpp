@@ -172,6 +172,29 @@ void read_expansion(Parser& p, Material& material, std::string_view) {
   if (p.finish()) material.expansion = {*along, *across};
 }
 
+// `remedy`: what to give where there is none of it.
+std::optional<double> a_transport(Parser& p, const fabric::Quantity& quantity, const std::string& what,
+                                  std::string_view remedy) {
+  const auto value = p.number(what, quantity.measure);
+  if (!value) return value;
+  if (*value > 0.0)
+    p.check(quantity, *value);
+  else
+    p.error(p.last(), fmt::format("{} has to be larger than 0: {}", what, remedy));
+  return value;
+}
+
+// One number for all directions, or one along and one across the yarn.
+auto into_transport(std::optional<fabric::Transport> Material::*member, const fabric::Quantity& quantity,
+                    std::string_view remedy) {
+  return [member, &quantity, remedy](Parser& p, Material& material, std::string_view word) {
+    const auto along = a_transport(p, quantity, fmt::format("the {}", word), remedy);
+    const auto across =
+        along && p.more() ? a_transport(p, quantity, fmt::format("the {} across", word), remedy) : along;
+    if (p.finish()) material.*member = {*along, *across};
+  };
+}
+
 }  // namespace
 
 const std::vector<Statement<Thread>>& thread_statements() {
@@ -218,7 +241,14 @@ void read_material(Parser& p, fabric::Fabric& fabric, std::string_view word) {
       {{"density", into(&Material::density, a_positive("the density", fabric::density_quantity))},
        {"packing", read_packing<Material>},
        {"elastic", read_elastic},
-       {"expansion", read_expansion}});
+       {"expansion", read_expansion},
+       {"conductivity", into_transport(&Material::conductivity, fabric::conductivity_quantity,
+                                       "an insulator has a small one, still air 0.026")},
+       {"diffusivity",
+        into_transport(&Material::diffusivity, fabric::diffusivity_quantity,
+                       "give what lets nothing through a small one, a thousandth of the others'")},
+       {"permittivity", into_transport(&Material::permittivity, fabric::permittivity_quantity,
+                                       "it is relative, and that of a vacuum is 1")}});
   read_named(p, table, p.materials, word, fabric.materials);
 }
 

@@ -128,6 +128,12 @@ void write_thread(Lines& out, const Thread& thread) {
   out.line(0, "end");
 }
 
+void write_transport(Lines& out, std::string_view word, const std::optional<fabric::Transport>& transport) {
+  if (!transport) return;
+  out.line(1, word).value(transport->along);
+  if (transport->across != transport->along) out.value(transport->across);
+}
+
 void write_material(Lines& out, const fabric::Material& material) {
   out.blank_line();
   out.line(0, "material").name(material.name);
@@ -139,6 +145,9 @@ void write_material(Lines& out, const fabric::Material& material) {
     out.line(1, "elastic transverse").value(e->e1).value(e->e2).value(e->nu12).value(e->g12).value(e->nu23);
   if (material.expansion)
     out.line(1, "expansion").value(material.expansion->along).value(material.expansion->across);
+  write_transport(out, "conductivity", material.conductivity);
+  write_transport(out, "diffusivity", material.diffusivity);
+  write_transport(out, "permittivity", material.permittivity);
   out.line(0, "end");
 }
 

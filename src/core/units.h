@@ -22,6 +22,18 @@ double millimetres_per(Unit unit);
 
 // What a number in a text measures. `plain`: nothing that has a unit; `pitch`: a distance, or how many stand
 // on a length; `any`: what it is used for tells.
-enum class Measure { plain, length, pitch, angle, density, modulus, twist, expansion, any };
+enum class Measure {
+  plain,
+  length,
+  pitch,
+  angle,
+  density,
+  modulus,
+  twist,
+  expansion,
+  conductivity,
+  diffusivity,
+  any
+};
 
 }  // namespace selvage

@@ -94,6 +94,12 @@ struct Expansion {
   bool operator==(const Expansion&) const = default;
 };
 
+// Of a quantity whose flux follows the gradient of a potential; isotropic where both are equal. Both > 0.
+struct Transport {
+  double along = 0, across = 0;  // of a yarn
+  bool operator==(const Transport&) const = default;
+};
+
 struct Material {
   std::string name;
   TextPlace place;
@@ -101,6 +107,9 @@ struct Material {
   std::optional<double> packing;  // share of a yarn's section that such fibres fill, 0 < packing <= 1
   std::variant<std::monostate, IsotropicElastic, TransverseElastic> elastic;
   std::optional<Expansion> expansion;
+  std::optional<Transport> conductivity;  // of heat, W/(m K)
+  std::optional<Transport> diffusivity;   // mm2/s
+  std::optional<Transport> permittivity;  // over that of a vacuum
 };
 
 // The size of the section at one path point.

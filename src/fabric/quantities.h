@@ -26,6 +26,12 @@ inline constexpr Quantity twist_quantity = {"a twist", "turns per metre", 0, 1e6
 inline constexpr Quantity modulus_quantity = {"a modulus", "MPa", 1e-9, 1e7, "Pa", 1e-6, Measure::modulus};
 inline constexpr Quantity expansion_quantity = {"an expansion",    "1/K", -0.01, 0.01, "1e-6/K", 1e-6,
                                                 Measure::expansion};
+inline constexpr Quantity conductivity_quantity = {
+    "a thermal conductivity", "W/(m K)", 1e-4, 1e5, "mW/(m K)", 1e-3, Measure::conductivity};
+inline constexpr Quantity diffusivity_quantity = {"a diffusivity",     "mm2/s", 1e-13, 1e6, "m2/s", 1e6,
+                                                  Measure::diffusivity};
+inline constexpr Quantity permittivity_quantity = {
+    "a relative permittivity", "times that of a vacuum", 1, 1e6, "F/m", 1 / 8.8541878188e-12};
 inline constexpr Quantity size_quantity = {"a section's size", "mm", 1e-4, 1e5};
 inline constexpr Quantity place_quantity = {"a coordinate", "mm", -1e9, 1e9};
 inline constexpr Quantity ratio_quantity = {"a ratio", "times the yarn's size", 0.01, 1e5};

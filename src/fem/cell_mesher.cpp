@@ -50,6 +50,7 @@ class CellMesher {
   const CellMeshOptions& options_;
   Diagnostics& diagnostics_;
   double extent_ = 0, tolerance_ = 0;
+  MaterialChoice materials_;
   std::vector<double> sizes_;  // of each body
   Box3 box_;
   std::optional<Block> block_;
@@ -89,6 +90,10 @@ Status CellMesher::prepare() {
   sizes_ = options_.sizes;
   sizes_.resize(bodies_.size(), options_.size > 0 ? options_.size : extent_ / default_edges_per_extent);
   tolerance_ = options_.tolerance > 0 ? options_.tolerance : 1e-3 * extent_;
+  Result<MaterialChoice> choice =
+      choose_cell_materials(fabric_, bodies_, options_.matrix, options_.physics, diagnostics_);
+  if (!choice) return choice.error();
+  materials_ = std::move(*choice);
   return {};
 }
 
@@ -176,14 +181,13 @@ Status CellMesher::finish(Mesh& mesh) {
     const std::uint32_t body = block_->of_regions[r];
     mesh.regions[r].exact_volume = cube * (body == CellTriangles::matrix ? rest : volumes[body]);
   }
-  MaterialChoice choice = choose_materials(fabric_, bodies_, diagnostics_);
-  if (options_.matrix)
-    if (Status added = add_matrix_material(fabric_, choice, diagnostics_); !added) return added;
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
     const std::uint32_t body = block_->of_regions[r];
-    mesh.regions[r].material = body == CellTriangles::matrix ? fabric_.cell->matrix : choice.of_body[body];
+    mesh.regions[r].material =
+        body == CellTriangles::matrix ? fabric_.cell->matrix : materials_.of_body[body];
   }
-  mesh.materials = std::move(choice.materials);
+  mesh.materials = std::move(materials_.materials);
+  mesh.physics = options_.physics;
 
   step("finishing", 4);
   for (Message& note : complete(mesh, *block_, options_.order)) diagnostics_.add(located(note));

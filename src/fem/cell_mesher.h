@@ -20,7 +20,8 @@ struct CellMeshOptions : MeshOptions {
   // File units: matrix between yarns that are this near becomes part of them (fem/bond.h); 0: none.
   double bond = 0;
   std::array<bool, 3> periodic{};  // opposite faces get the same triangles
-  double tolerance = 0;            // file units; 0: 1e-3 of the smallest section extent
+  Physics physics = Physics::elastic;
+  double tolerance = 0;  // file units; 0: 1e-3 of the smallest section extent
 };
 
 // The mesh of `fabric.cell`, in mm. Regions: the yarns that have elements, in their order (all parts of a
@@ -29,7 +30,8 @@ struct CellMeshOptions : MeshOptions {
 // itself. Exact volumes are those of the B-spline yarns inside the box. Notes and warnings (what was snapped,
 // elements below the wanted angle and why) go to `diagnostics`. Errors, with yarn, place and remedy: geometry
 // (what cell::cut and cell::divide_faces say; yarns that do not go on periodically, or touch), limit (time,
-// memory), usage (options out of range, no cell), internal.
+// memory), usage (options out of range, no cell), internal, and those of choose_cell_materials
+// (fem/materials.h).
 Result<Mesh> mesh_cell(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
                        const CellMeshOptions& options, Diagnostics& diagnostics);
 

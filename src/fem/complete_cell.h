@@ -22,15 +22,20 @@ namespace selvage::fem {
 //   Corner 0 is to be held (see held_node()).
 // No periodic axis: every node of the faces is displaced by E x about the middle: an upper bound of the
 //   stiffness. Nothing needs to be held.
-// Load cases: each driver's strain (curvature) 0.001 (1/mm) with the others zero, and 1 K with all of them
+// A cell that conducts (Mesh::physics) has one unknown a node, the potential: G x + what repeats, G the mean
+//   gradient; of a plate, whose z faces let nothing through, along x and y. Without a periodic axis every
+//   node of the faces has G x: an upper bound. Load cases: each driver's gradient 1 a mm with the others
+//   zero.
+// Load cases of the others: each driver's strain (curvature) 0.001 (1/mm) with the others zero, and 1 K with
+// all of them
 //   zero. None where parts of the mesh do not hang together (yarns without a matrix): they would fly apart.
 //
 // Errors: internal (a node beside a face's plane), geometry (opposite faces do not match to 1e-12 of the
 // size; a matrix whose parts do not hang together), unsupported (periodic along other axes than these).
 Status complete_cell(Mesh& mesh, const Box3& box, std::array<bool, 3> periodic);
 
-// The node whose three displacements are to be zero in every load case; none where nothing has to be held, or
-// there is no node at the cell's corner.
+// The node whose displacements, or potential, are to be zero in every load case; none where nothing has to be
+// held, or there is no node at the cell's corner.
 std::optional<std::size_t> held_node(const Mesh& mesh);
 
 // No node there (UnitCell::corners).

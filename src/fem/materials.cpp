@@ -97,7 +97,10 @@ MaterialChoice choose_materials(const fabric::Fabric& fabric, std::span<const ya
   return choice;
 }
 
-Status add_matrix_material(const fabric::Fabric& fabric, MaterialChoice& choice, Diagnostics& diagnostics) {
+namespace {
+
+// The material of the cell's matrix.
+Result<fabric::Material> matrix_material(const fabric::Fabric& fabric) {
   auto failed = [&](std::string text, TextPlace place) {
     return error(Kind::geometry, std::move(text)).placed(place, fabric.file);
   };
@@ -108,8 +111,56 @@ Status add_matrix_material(const fabric::Fabric& fabric, MaterialChoice& choice,
   const fabric::Material* found = fabric.find_material(cell.matrix);
   if (found == nullptr)
     return failed(fmt::format("the cell's matrix '{}' is no material of the file", cell.matrix), cell.place);
-  use(fabric, *found, choice, diagnostics);
-  return {};
+  return *found;
+}
+
+// Of bodies by their materials, each of which conducts.
+Result<MaterialChoice> conducting_materials(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                                            const TransportLaw& law) {
+  MaterialChoice choice;
+  for (const yarn::Body& body : bodies) {
+    const fabric::Material* found =
+        body.material.empty() ? nullptr : fabric.find_material_anywhere(body.material);
+    if (found == nullptr)
+      return error(
+                 Kind::unsupported,
+                 fmt::format("--physics {} asks for the {} of every yarn, and this one has no material: name "
+                             "one in its thread",
+                             law.word, law.property))
+          .of_yarn(body.name)
+          .placed({}, fabric.file);
+    choice.of_body.push_back(found->name);
+    if (fabric::find_named(choice.materials, found->name) == nullptr) choice.materials.push_back(*found);
+  }
+  return choice;
+}
+
+}  // namespace
+
+Result<MaterialChoice> choose_cell_materials(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                                             bool with_matrix, Physics physics, Diagnostics& diagnostics) {
+  const bool is_elastic = physics == Physics::elastic;
+  Result<MaterialChoice> choice = is_elastic ? choose_materials(fabric, bodies, diagnostics)
+                                             : conducting_materials(fabric, bodies, transport_law(physics));
+  if (!choice) return choice;
+  if (with_matrix) {
+    Result<fabric::Material> matrix = matrix_material(fabric);
+    if (!matrix) return matrix.error();
+    if (is_elastic)
+      use(fabric, std::move(*matrix), *choice, diagnostics);
+    else if (fabric::find_named(choice->materials, matrix->name) == nullptr)
+      choice->materials.push_back(std::move(*matrix));
+  }
+  for (const fabric::Material& material : choice->materials)
+    if (!has_constants(material, physics))
+      return error(Kind::unsupported,
+                   fmt::format(
+                       "material '{}' has no {}, which --physics {} asks for: give its `material` block a "
+                       "line `{} ...`",
+                       material.name, transport_law(physics).property, transport_law(physics).word,
+                       transport_law(physics).property))
+          .placed(material.place, fabric.file);
+  return choice;
 }
 
 }  // namespace selvage::fem

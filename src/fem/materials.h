@@ -9,6 +9,7 @@
 
 #include "core/diagnostics.h"
 #include "fabric/model.h"
+#include "fem/physics.h"
 #include "yarn/body.h"
 
 namespace selvage::fem {
@@ -48,8 +49,10 @@ struct MaterialChoice {
 MaterialChoice choose_materials(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
                                 Diagnostics& diagnostics);
 
-// Adds the material of the cell's matrix to those in use. Error (geometry): there is no cell, it names no
-// matrix, or no such material is in the file. Warning: a material without elastic constants.
-Status add_matrix_material(const fabric::Fabric& fabric, MaterialChoice& choice, Diagnostics& diagnostics);
+// Those of a unit cell's yarns, and of its matrix where `with_matrix` says so. Elastic: as above. Errors
+// (geometry): a matrix is wanted, but the cell names none, or no such material is in the file; (unsupported)
+// a yarn without a material, or one without the property that the physics asks for: nothing stands in for it.
+Result<MaterialChoice> choose_cell_materials(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                                             bool with_matrix, Physics physics, Diagnostics& diagnostics);
 
 }  // namespace selvage::fem

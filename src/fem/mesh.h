@@ -11,6 +11,7 @@
 
 #include "core/vec.h"
 #include "fabric/model.h"
+#include "fem/physics.h"
 
 namespace selvage::fem {
 
@@ -81,20 +82,23 @@ struct UnitCell {
       face_sides;  // of a triangle the last entry repeats the third
 };
 
-// One condition: sum of factor times displacement = 0. The first term's is the one that is eliminated.
+// One condition: sum of factor times displacement (of a cell that conducts: the potential) = 0. The first
+// term's is the one that is eliminated.
 struct Term {
   std::size_t node = 0;  // of Mesh::nodes; from Mesh::nodes.size() on: Mesh::drivers
-  int direction = 0;     // 0, 1, 2: x, y, z
+  int direction = 0;     // 0, 1, 2: x, y, z; of a potential 0
   double factor = 0;
 };
 using Equation = std::vector<Term>;
 
 // A node without a place in the mesh whose displacement along x is a strain (or a curvature, 1/mm) of the
 // whole cell; the force on it is the stress times the cell's volume (plate: force, moment a length times its
-// area).
+// area). Of a cell that conducts: whose potential is a mean gradient, a mm; the flux into it is the flux's
+// density times the cell's volume.
 struct Driver {
   std::string name;  // ConstraintsDriver0 .. 5: strains xx, yy, zz, xy, xz, yz (shear: engineering, gamma);
-                     // of a plate 0, 1, 3, and CurvatureDriver0 .. 2: curvatures xx, yy, xy (twice)
+                     // of a plate 0, 1, 3, and CurvatureDriver0 .. 2: curvatures xx, yy, xy (twice);
+                     // GradientDriver0 .. 2: gradients x, y, z (of a plate x, y)
   Vec3 at = Vec3::Zero();  // anywhere
 };
 
@@ -103,7 +107,7 @@ struct Driver {
 struct LoadCase {
   std::string name;
   std::vector<std::optional<double>> drivers;
-  double temperature = 0;  // K
+  double temperature = 0;  // K; of a cell that conducts it means nothing
 };
 
 struct Mesh {
@@ -126,6 +130,7 @@ struct Mesh {
   // Index into `materials` for each element; empty: by Region::material.
   std::vector<std::uint32_t> element_material;
   std::optional<UnitCell> cell;
+  Physics physics = Physics::elastic;  // other ones: of a cell
   std::vector<Driver> drivers;
   std::vector<Equation> equations;
   std::vector<LoadCase> load_cases;

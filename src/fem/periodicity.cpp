@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "core/groups.h"
 #include "fem/complete_cell.h"
@@ -12,12 +13,14 @@ namespace selvage::fem {
 namespace {
 
 constexpr double unit_strain = 0.001;  // and 1/mm
+constexpr double unit_gradient = 1;    // a mm
 
-// The displacement of a place (from the cell's middle) that each driver makes: column d is driver d's.
-using Modes = Eigen::Matrix<double, 3, 6>;
+// The displacement, or the potential, of a place (from the cell's middle) that each driver makes: column d is
+// driver d's.
+using Modes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 6>;
 
 Modes block_modes(const Vec3& p) {
-  Modes modes = Modes::Zero();
+  Modes modes = Modes::Zero(3, 6);
   modes.col(0) = Vec3(p.x(), 0, 0);
   modes.col(1) = Vec3(0, p.y(), 0);
   modes.col(2) = Vec3(0, 0, p.z());
@@ -28,7 +31,7 @@ Modes block_modes(const Vec3& p) {
 }
 
 Modes plate_modes(const Vec3& p) {
-  Modes modes = Modes::Zero();
+  Modes modes = Modes::Zero(3, 6);
   modes.col(0) = Vec3(p.x(), 0, 0);
   modes.col(1) = Vec3(0, p.y(), 0);
   modes.col(2) = Vec3(p.y(), p.x(), 0) / 2;
@@ -36,6 +39,40 @@ Modes plate_modes(const Vec3& p) {
   modes.col(4) = Vec3(0, p.z() * p.y(), -p.y() * p.y() / 2);
   modes.col(5) = Vec3(p.z() * p.y(), p.z() * p.x(), -p.x() * p.y()) / 2;
   return modes;
+}
+
+// What drives a cell: drivers with their load cases, and what each of them makes.
+struct Drive {
+  std::vector<std::string> drivers, cases;
+  double value = 0;  // of the driver in its load case
+  bool is_heated = false;
+  std::function<Modes(const Vec3&)> modes;
+};
+
+Drive drive_of(Physics physics, bool plate) {
+  if (physics == Physics::elastic && plate)
+    return {{"ConstraintsDriver0", "ConstraintsDriver1", "ConstraintsDriver3", "CurvatureDriver0",
+             "CurvatureDriver1", "CurvatureDriver2"},
+            {"strain xx", "strain yy", "strain xy", "curvature xx", "curvature yy", "curvature xy"},
+            unit_strain,
+            true,
+            plate_modes};
+  if (physics == Physics::elastic)
+    return {{"ConstraintsDriver0", "ConstraintsDriver1", "ConstraintsDriver2", "ConstraintsDriver3",
+             "ConstraintsDriver4", "ConstraintsDriver5"},
+            {"strain xx", "strain yy", "strain zz", "strain xy", "strain xz", "strain yz"},
+            unit_strain,
+            true,
+            block_modes};
+  Drive drive;
+  drive.value = unit_gradient;
+  const Eigen::Index axes = plate ? 2 : 3;
+  for (Eigen::Index axis = 0; axis < axes; ++axis) {
+    drive.drivers.push_back(fmt::format("GradientDriver{}", axis));
+    drive.cases.push_back(fmt::format("gradient {}", "xyz"[axis]));
+  }
+  drive.modes = [axes](const Vec3& p) { return Modes(p.head(axes).transpose()); };
+  return drive;
 }
 
 // A place from the middle of the cell; on its faces half its sides to the bit.
@@ -49,13 +86,7 @@ Vec3 from_middle(const UnitCell& cell, const Vec3& at) {
   return p;
 }
 
-void add_drivers(Mesh& mesh, bool plate) {
-  std::vector<std::string> names;
-  if (plate)
-    names = {"ConstraintsDriver0", "ConstraintsDriver1", "ConstraintsDriver3",
-             "CurvatureDriver0",   "CurvatureDriver1",   "CurvatureDriver2"};
-  else
-    for (int d = 0; d < 6; ++d) names.push_back(fmt::format("ConstraintsDriver{}", d));
+void add_drivers(Mesh& mesh, const std::vector<std::string>& names) {
   const Vec3 sides = mesh.cell->high - mesh.cell->low;
   for (std::size_t d = 0; d < names.size(); ++d)
     mesh.drivers.push_back(
@@ -63,9 +94,10 @@ void add_drivers(Mesh& mesh, bool plate) {
          .at = mesh.cell->high + sides.x() * (0.1 + 0.05 * static_cast<double>(d)) * Vec3::UnitX()});
 }
 
-// u of `node` (less that of `lowest`, where it is another one) = what the drivers make of the way between.
+// The unknowns of `node` (less that of `lowest`, where it is another one) = what the drivers make of the way
+// between.
 void add_equations(Mesh& mesh, std::size_t node, std::size_t lowest, const Modes& modes) {
-  for (int direction = 0; direction < 3; ++direction) {
+  for (int direction = 0; direction < modes.rows(); ++direction) {
     Equation equation = {{.node = node, .direction = direction, .factor = 1}};
     if (lowest != node) equation.push_back({.node = lowest, .direction = direction, .factor = -1});
     for (std::size_t d = 0; d < mesh.drivers.size(); ++d) {
@@ -94,21 +126,18 @@ std::size_t count_parts(const Mesh& mesh, const std::vector<std::size_t>& lowest
   return parts;
 }
 
-void add_load_cases(Mesh& mesh, bool plate) {
-  static constexpr std::array<const char*, 6> of_block = {"strain xx", "strain yy", "strain zz",
-                                                          "strain xy", "strain xz", "strain yz"};
-  static constexpr std::array<const char*, 6> of_plate = {"strain xx",    "strain yy",    "strain xy",
-                                                          "curvature xx", "curvature yy", "curvature xy"};
+void add_load_cases(Mesh& mesh, const Drive& drive) {
   for (std::size_t d = 0; d < mesh.drivers.size(); ++d) {
     LoadCase load;
-    load.name = plate ? of_plate[d] : of_block[d];
+    load.name = drive.cases[d];
     load.drivers.assign(mesh.drivers.size(), 0.0);
-    load.drivers[d] = unit_strain;
+    load.drivers[d] = drive.value;
     mesh.load_cases.push_back(std::move(load));
   }
-  mesh.load_cases.push_back({.name = "thermal",
-                             .drivers = std::vector<std::optional<double>>(mesh.drivers.size(), 0.0),
-                             .temperature = 1});
+  if (drive.is_heated)
+    mesh.load_cases.push_back({.name = "thermal",
+                               .drivers = std::vector<std::optional<double>>(mesh.drivers.size(), 0.0),
+                               .temperature = 1});
 }
 
 }  // namespace
@@ -123,20 +152,20 @@ Status add_conditions(Mesh& mesh, const std::vector<std::size_t>& lowest) {
   if (!plate && !all_round && !(x && y && z))
     return error(Kind::unsupported,
                  "a cell is periodic along x and y (a plate), along x, y and z (a block), or not at all");
-  add_drivers(mesh, plate);
-  auto modes_at = [&](const Vec3& p) { return plate ? plate_modes(p) : block_modes(p); };
+  const Drive drive = drive_of(mesh.physics, plate);
+  add_drivers(mesh, drive.drivers);
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     if (all_round && is_on_box(cell, mesh.nodes[n]))
-      add_equations(mesh, n, n, modes_at(from_middle(cell, mesh.nodes[n])));
+      add_equations(mesh, n, n, drive.modes(from_middle(cell, mesh.nodes[n])));
     if (lowest[n] == n) continue;
     // The way between the two is along periodic axes only, however their other coordinates were rounded.
     Vec3 p = from_middle(cell, mesh.nodes[lowest[n]]);
     const Vec3 here = from_middle(cell, mesh.nodes[n]);
-    const Modes before = modes_at(p);
+    const Modes before = drive.modes(p);
     for (int axis = 0; axis < 3; ++axis)
       if (cell.periodic[static_cast<std::size_t>(axis)] && mesh.nodes[n][axis] == cell.high[axis])
         p[axis] = here[axis];
-    add_equations(mesh, n, lowest[n], modes_at(p) - before);
+    add_equations(mesh, n, lowest[n], drive.modes(p) - before);
   }
   const bool with_matrix = std::any_of(mesh.regions.begin(), mesh.regions.end(), [](const Region& region) {
     return region.kind == Region::Kind::matrix;
@@ -144,7 +173,7 @@ Status add_conditions(Mesh& mesh, const std::vector<std::size_t>& lowest) {
   const std::size_t parts = count_parts(mesh, lowest);
   if (parts > 1 && with_matrix)
     return error(Kind::geometry, fmt::format("the cell falls into {} parts that nothing connects", parts));
-  if (parts == 1) add_load_cases(mesh, plate);
+  if (parts == 1) add_load_cases(mesh, drive);
   return {};
 }
 

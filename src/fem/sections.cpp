@@ -51,9 +51,9 @@ Result<std::vector<Section>> sections(const Mesh& mesh, const DeckNames& names) 
     for (std::size_t e = region.first_element; e < region.last_element; ++e)
       by_material[mesh.element_material.empty() ? of_all : mesh.element_material[e]].push_back(e);
     for (auto& [material, elements] : by_material) {
-      if (material >= mesh.materials.size() ||
-          std::holds_alternative<std::monostate>(mesh.materials[material].elastic))
-        return error(Kind::internal, "the yarn's material has no elastic constants", {.yarn = region.name});
+      if (material >= mesh.materials.size() || !has_constants(mesh.materials[material], mesh.physics))
+        return error(Kind::internal, "the yarn's material lacks the constants of the deck's physics",
+                     {.yarn = region.name});
       const bool is_alone = by_material.size() == 1;
       const std::size_t number = static_cast<std::size_t>(std::count_if(
           list.begin(), list.end(), [&](const Section& section) { return section.region == i; }));
@@ -91,7 +91,7 @@ Frames frames(const Mesh& mesh, const std::vector<Section>& sections) {
   // In the order of the elements, whatever the order of the sections.
   std::vector<bool> is_oriented(mesh.elements.size(), false);
   for (const Section& section : sections)
-    if (!orthotropic(mesh.materials[section.material]).isotropic)
+    if (!is_isotropic(mesh.materials[section.material], mesh.physics))
       for (const std::size_t e : section.elements) is_oriented[e] = true;
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     if (!is_oriented[e]) continue;

@@ -27,7 +27,8 @@ struct Section {
   std::vector<std::size_t> elements;  // increasing
 };
 
-// Every element is in exactly one. Error (internal): a region without a material that has elastic constants.
+// Every element is in exactly one. Error (internal): a region without a material that has the constants of
+// Mesh::physics.
 Result<std::vector<Section>> sections(const Mesh& mesh, const DeckNames& names);
 
 // The sets of elements: of each region, then of the sections that are not a whole one.

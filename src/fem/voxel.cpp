@@ -193,9 +193,9 @@ Result<Mesh> mesh_voxels(const fabric::Fabric& fabric, std::span<const yarn::Bod
   const auto at_cell = [&](const Message& message) { return message.placed(cell.place, fabric.file); };
   const Result<VoxelGrid> grid = make_grid(box, options.count, most_hexahedra, "hexahedra");
   if (!grid) return grid.error();
-  MaterialChoice choice = choose_materials(fabric, bodies, diagnostics);
-  if (options.matrix)
-    if (Status added = add_matrix_material(fabric, choice, diagnostics); !added) return added.error();
+  Result<MaterialChoice> choice =
+      choose_cell_materials(fabric, bodies, options.matrix, options.physics, diagnostics);
+  if (!choice) return choice.error();
   const Owners owners = find_owners(*grid, bodies);
   if (std::all_of(owners.yarn.begin(), owners.yarn.end(), [](std::int32_t yarn) { return yarn == no_yarn; }))
     return at_cell(error(Kind::geometry, "no yarn enters the cell, or none is as thick as a hexahedron"));
@@ -205,8 +205,9 @@ Result<Mesh> mesh_voxels(const fabric::Fabric& fabric, std::span<const yarn::Bod
   Mesh mesh;
   mesh.shape = Mesh::Shape::hexahedron;
   mesh.title = fabric.title.value_or("");
-  fill_regions(mesh, *grid, owners, bodies, choice, options.matrix ? cell.matrix : "", unit);
-  mesh.materials = std::move(choice.materials);
+  fill_regions(mesh, *grid, owners, bodies, *choice, options.matrix ? cell.matrix : "", unit);
+  mesh.materials = std::move(choice->materials);
+  mesh.physics = options.physics;
   fill_quality(mesh, *grid, unit);
   if (Status done = complete_cell(mesh, Box3(box.min() * unit, box.max() * unit), options.periodic); !done)
     return at_cell(done.error());

@@ -16,6 +16,7 @@ struct VoxelOptions {
   int count = 0;                   // along the longest side of the cell, 1 .. 10 000
   std::array<bool, 3> periodic{};  // x, y, z
   bool matrix = true;              // false: the yarns only
+  Physics physics = Physics::elastic;
   int threads = 1;
 };
 
@@ -24,7 +25,8 @@ struct VoxelOptions {
 // A hexahedron is its yarn's whose inside its middle lies in; of two that overlap the one with the nearer
 // centre line, with a note. Orientations, fibre fractions, sets and equations as in every cell (fem/fibre.h,
 // fem/complete_cell.h). Region::exact_volume is not computed (0). Errors: usage (count), limit (more than 20
-// million hexahedra), geometry (no yarn in the cell; a matrix is wanted but not named).
+// million hexahedra), geometry (no yarn in the cell; a matrix is wanted but not named), and those of
+// choose_cell_materials (fem/materials.h).
 Result<Mesh> mesh_voxels(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
                          const VoxelOptions& options, Diagnostics& diagnostics);
 

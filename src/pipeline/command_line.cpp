@@ -328,6 +328,14 @@ void of_a_cell(OptionTable& t) {
            "mesh the cell with so many hexahedra along its longest side instead (always works; yarns "
            "have stairs); to HDF5 and NPZ as fields",
            Argument::whole(1, 10'000), &Options::voxels);
+  t.choice(
+       {mesh}, "--physics",
+       "what the deck finds: stiffness, or the conductivity, diffusivity or permittivity of a cell whose "
+       "materials say theirs",
+       "elastic conduction diffusion permittivity", &Options::physics,
+       {fem::Physics::elastic, fem::Physics::conduction, fem::Physics::diffusion, fem::Physics::permittivity})
+      .goes_with("is of a unit cell", "--matrix --periodic --cut --voxel", "--yarn-stiffness")
+      .with_preset("elastic");
   t.choice({mesh}, "--yarn-stiffness",
            "given: a yarn's material is the yarn's; chamis: it is its fibres', and the yarn's follows "
            "from the local fibre fraction by Chamis's formulas",

@@ -39,13 +39,14 @@ std::optional<ReadyCell> prepare_cell(Job& job, fabric::Fabric& fabric, const fa
 namespace {
 
 // Its load cases bend it.
-bool is_plate(const Options& options, const ReadyCell& ready) {
-  return options.matrix && ready.periodic == std::array{true, true, false};
+bool is_bent(const Options& options, const ReadyCell& ready) {
+  return options.physics == fem::Physics::elastic && options.matrix &&
+         ready.periodic == std::array{true, true, false};
 }
 
 // Bending is a quadratic displacement, which elements of order 1 follow by shearing.
 void say_what_bending_costs(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready) {
-  if (!is_plate(job.options, ready) || (job.options.voxels == 0 && job.options.order != 1)) return;
+  if (!is_bent(job.options, ready) || (job.options.voxels == 0 && job.options.order != 1)) return;
   job.say(at_cell(
       fabric,
       warning(Kind::geometry,
@@ -64,15 +65,17 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
                             {.count = given.voxels,
                              .periodic = ready.periodic,
                              .matrix = given.matrix,
+                             .physics = given.physics,
                              .threads = static_cast<int>(job.threads)},
                             diagnostics);
   fem::CellMeshOptions options{mesh_options(job)};
   options.sizes = ready.size.sizes;
   options.coarsest = given.matrix_size;
-  options.order = given.order > 0 ? given.order : is_plate(given, ready) ? 2 : 1;
+  options.order = given.order > 0 ? given.order : is_bent(given, ready) ? 2 : 1;
   options.matrix = given.matrix;
   if (given.bond) options.bond = bond_reach * job.gap;
   options.periodic = ready.periodic;
+  options.physics = given.physics;
   options.tolerance = given.tolerance;
   return fem::mesh_cell(fabric, ready.bodies, options, diagnostics);
 }

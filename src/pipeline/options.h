@@ -12,6 +12,7 @@
 #include "core/option.h"
 #include "core/units.h"
 #include "fabric/plies.h"
+#include "fem/physics.h"
 #include "formats/format.h"
 #include "view/picture.h"
 #include "yarn/body.h"
@@ -113,7 +114,8 @@ struct Options {
   bool bond = false;       // yarns in contact share faces, instead of a gap filled with matrix
   int voxels = 0;          // hexahedra along the longest side instead of tetrahedra; 0: tetrahedra
   bool chamis = false;  // stiffness of yarns from that of their fibres (Chamis), not as their material says
-  bool force = false;   // go on where the estimate, or a gap, says that it is not worth it
+  fem::Physics physics = fem::Physics::elastic;  // of the deck
+  bool force = false;  // go on where the estimate, or a gap, says that it is not worth it
 
   [[nodiscard]] bool wants_cell() const { return cut || matrix || periodic || voxels > 0; }
 

@@ -251,6 +251,19 @@ bool has_companion(const Options& options, const Descriptor& format) {
   return beside.format != nullptr && (beside.asked_by == nullptr || options.of_formats.has(*beside.asked_by));
 }
 
+// Decks of other formats are elastic.
+Status check_transport(fem::Physics physics, const Formats& wanted) {
+  for (const Descriptor* format : wanted) {
+    if (format->carries_transport) continue;
+    std::string others;
+    for (const Descriptor* other : formats::all_formats())
+      if (other->carries_transport) others += fmt::format(" --to {}", other->name);
+    return error(Kind::usage, fmt::format("{} holds no deck of --physics {}: write it with{}", format->name,
+                                          fem::transport_law(physics).word, others));
+  }
+  return {};
+}
+
 bool writes_files(Command command) {
   return command != Command::check && command != Command::info && command != Command::roundtrip &&
          command != Command::diff;
@@ -273,6 +286,8 @@ Result<Plan> Plan::make(const Options& options, InputList& list) {
         return error(
             Kind::usage,
             fmt::format("{} holds the voxels of a unit cell: say how many with --voxel N", format->name));
+    if (options.physics != fem::Physics::elastic)
+      if (Status status = check_transport(options.physics, *wanted); !status.ok()) return status.error();
   }
   Plan plan(options);
   plan.formats_ = std::move(*wanted);

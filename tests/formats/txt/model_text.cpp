@@ -121,12 +121,19 @@ class Flat {
     add(path + ".along", v.along);
     add(path + ".across", v.across);
   }
+  void add(const std::string& path, const Transport& v) {
+    add(path + ".along", v.along);
+    add(path + ".across", v.across);
+  }
   void add(const std::string& path, const Material& v) {
     add(path + ".name", v.name);
     add(path + ".density", v.density);
     add(path + ".packing", v.packing);
     add(path + ".elastic", v.elastic);
     add(path + ".expansion", v.expansion);
+    add(path + ".conductivity", v.conductivity);
+    add(path + ".diffusivity", v.diffusivity);
+    add(path + ".permittivity", v.permittivity);
   }
   void add(const std::string& path, const SizeAt& v) {
     add_size(path, v.width, v.height);

@@ -117,6 +117,13 @@ class Maker {
                                            some(modulus_quantity), between(-0.5, 0.5)};
     }
     if (coin()) material.expansion = Expansion{some(expansion_quantity), some(expansion_quantity)};
+    const auto transport = [&](const Quantity& quantity) {
+      const double along = some(quantity);
+      return Transport{along, coin() ? along : some(quantity)};
+    };
+    maybe(material.conductivity, [&] { return transport(conductivity_quantity); });
+    maybe(material.diffusivity, [&] { return transport(diffusivity_quantity); });
+    maybe(material.permittivity, [&] { return transport(permittivity_quantity); });
     return material;
   }
   yarn::Section section() {

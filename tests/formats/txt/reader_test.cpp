@@ -134,6 +134,9 @@ material cotton
 end
 material epoxy
   elastic isotropic 3400 0.35
+  conductivity 0.2
+  diffusivity 1e-12m2/s 4e-7
+  permittivity 3.6 4.5
 end
 )");
   ASSERT_EQ(fabric.threads.size(), 3U);
@@ -161,6 +164,10 @@ end
             (TransverseElastic{230000, 15000, 0.2, 24000, 0.25}));
   EXPECT_EQ(fabric.materials[0].expansion, (Expansion{5.4e-6, -1e-6}));
   EXPECT_EQ(std::get<IsotropicElastic>(fabric.materials[1].elastic), (IsotropicElastic{3400, 0.35}));
+  EXPECT_FALSE(fabric.materials[0].conductivity);
+  EXPECT_EQ(fabric.materials[1].conductivity, (Transport{0.2, 0.2}));
+  EXPECT_EQ(fabric.materials[1].diffusivity, (Transport{1e-6, 4e-7}));
+  EXPECT_EQ(fabric.materials[1].permittivity, (Transport{3.6, 4.5}));
 }
 
 TEST(Reader, Sections) {

@@ -34,13 +34,17 @@ fabric::Fabric fabric_of(const Vec3& low, const Vec3& high) {
 }
 
 // A straight yarn along x through the middle of a cell 2 x 1.5 x 1, in voxels.
-Mesh straight_cell(std::array<bool, 3> periodic, int count = 12, bool matrix = true) {
+Mesh straight_cell(std::array<bool, 3> periodic, int count = 12, bool matrix = true,
+                   Physics physics = Physics::elastic) {
   std::vector<yarn::Body> bodies = {test::straight_tube(0.8, 0.5, 4, 24, Vec3(-1, 0.75, 0.5))};
   bodies[0].material = "glass";
   bodies[0].fibre_area = 0.2;
   Diagnostics diagnostics;
-  Result<Mesh> mesh = mesh_voxels(fabric_of(Vec3(0, 0, 0), Vec3(2, 1.5, 1)), bodies,
-                                  {.count = count, .periodic = periodic, .matrix = matrix}, diagnostics);
+  fabric::Fabric fabric = fabric_of(Vec3(0, 0, 0), Vec3(2, 1.5, 1));
+  for (fabric::Material& material : fabric.materials) material.conductivity = fabric::Transport{1, 1};
+  Result<Mesh> mesh =
+      mesh_voxels(fabric, bodies,
+                  {.count = count, .periodic = periodic, .matrix = matrix, .physics = physics}, diagnostics);
   EXPECT_TRUE(mesh.ok()) << mesh.error().text;
   EXPECT_TRUE(diagnostics.messages().empty());
   return mesh.ok() ? *mesh : Mesh{};
@@ -126,6 +130,34 @@ TEST(UnitCell, WithoutPeriodsTheWholeFaceFollowsTheStrain) {
                          }),
             1e-14);
   EXPECT_FALSE(held_node(mesh));
+}
+
+// The potential is an affine field plus one that repeats; of a plate it has no gradient across.
+TEST(UnitCell, ConductingCellsCarryEveryGradient) {
+  for (const auto& [periodic, axes] :
+       {std::pair{std::array{true, true, true}, 3U}, std::pair{std::array{true, true, false}, 2U},
+        std::pair{std::array{false, false, false}, 3U}}) {
+    const Mesh mesh = straight_cell(periodic, 12, true, Physics::conduction);
+    ASSERT_EQ(mesh.drivers.size(), axes);
+    ASSERT_EQ(mesh.load_cases.size(), axes);
+    EXPECT_EQ(mesh.drivers[1].name, "GradientDriver1");
+    EXPECT_EQ(mesh.load_cases[1].name, "gradient y");
+    expect_clean(mesh);
+    const std::vector<double> gradient = {0.3, -0.2, axes == 3 ? 0.7 : 0.0};
+    const double repeats = periodic[0] ? 0.4 : 0;
+    EXPECT_LT(largest_rest(mesh, gradient,
+                           [&](const Vec3& at) {
+                             const Vec3 p = at - Vec3(1, 0.75, 0.5);
+                             return Vec3(0.3 * p.x() - 0.2 * p.y() + gradient[2] * p.z() +
+                                             repeats * std::sin(std::numbers::pi * at.x()) *
+                                                 std::cos(4 * std::numbers::pi / 3 * at.y()) *
+                                                 std::cos(2 * std::numbers::pi * at.z()),
+                                         0, 0);
+                           }),
+              1e-14);
+    for (const Equation& equation : mesh.equations)
+      for (const Term& term : equation) EXPECT_EQ(term.direction, 0);
+  }
 }
 
 TEST(UnitCell, SetsAreWholeAndOpposite) {
