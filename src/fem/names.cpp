@@ -1,6 +1,7 @@
 #include "fem/names.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "core/readable.h"
@@ -55,7 +56,32 @@ std::vector<std::string> common_names() {
   return names;
 }
 
-}  // namespace
+// Names that keep to a rule, one after the other.
+class NameMaker {
+ public:
+  explicit NameMaker(NameRule rule);
+  // As it is, if the rule allows that and it was not taken before; else nothing is taken, and false.
+  bool take(const std::string& name);
+  std::string make(const std::string& own);
+
+ private:
+  [[nodiscard]] std::string fitting(const std::string& own) const;
+
+  NameRule rule_;
+  std::size_t room_ = 0;                      // for a name without its endings
+  std::set<std::string> taken_;               // in lower case, with all endings
+  std::map<std::string, std::size_t> count_;  // of what had to be told apart: the last number
+};
+
+// A third of what is left is the end: that is where names differ.
+std::string shortened_to(const std::string& name, std::size_t room) {
+  if (name.size() <= room) return name;
+  constexpr std::string_view gap = "__";
+  std::size_t tail = (room - gap.size()) / 3, head = room - gap.size() - tail;
+  while (head > 0 && is_continuation(name[head])) --head;
+  while (tail > 0 && is_continuation(name[name.size() - tail])) --tail;
+  return name.substr(0, head) + std::string(gap) + name.substr(name.size() - tail);
+}
 
 NameMaker::NameMaker(NameRule rule) : rule_(std::move(rule)) {
   std::size_t ending = 0;
@@ -99,15 +125,7 @@ std::string NameMaker::fitting(const std::string& own) const {
   return name;
 }
 
-// A third of what is left is the end: that is where names differ.
-std::string NameMaker::shortened_to(const std::string& name, std::size_t room) const {
-  if (name.size() <= room) return name;
-  constexpr std::string_view gap = "__";
-  std::size_t tail = (room - gap.size()) / 3, head = room - gap.size() - tail;
-  while (head > 0 && is_continuation(name[head])) --head;
-  while (tail > 0 && is_continuation(name[name.size() - tail])) --tail;
-  return name.substr(0, head) + std::string(gap) + name.substr(name.size() - tail);
-}
+}  // namespace
 
 std::vector<std::string> unique_names(const std::vector<std::string>& own, const NameRule& rule) {
   NameMaker maker(rule);

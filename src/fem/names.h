@@ -1,8 +1,6 @@
 // What decks call the parts of a mesh: the yarns' own names as far as a solver takes them, each only once.
 #pragma once
 
-#include <map>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,26 +22,10 @@ struct NameRule {
   std::vector<std::string_view> endings{};  // that are put behind names: they are unique with these, too
 };
 
-// Names that keep to a rule, one after the other. What does not fit into a name becomes an underscore, of
-// what is too long the middle is left out ("__" stands for it), and a number tells equal ones apart.
-class NameMaker {
- public:
-  explicit NameMaker(NameRule rule);
-  // As it is, if the rule allows that and it was not taken before; else nothing is taken, and false.
-  bool take(const std::string& name);
-  std::string make(const std::string& own);
-
- private:
-  [[nodiscard]] std::string fitting(const std::string& own) const;
-  [[nodiscard]] std::string shortened_to(const std::string& name, std::size_t room) const;
-
-  NameRule rule_;
-  std::size_t room_ = 0;                      // for a name without its endings
-  std::set<std::string> taken_;               // in lower case, with all endings
-  std::map<std::string, std::size_t> count_;  // of what had to be told apart: the last number
-};
-
-// One for each, in their order. Those that the rule allows stay as they are, however the others are spelt.
+// One for each, in their order: the same every time. Those that the rule allows stay as they are, however the
+// others are spelt. Of others what does not fit becomes an underscore, of what is too long the middle is left
+// out ("__" stands for it), and a number tells equal ones apart. Precondition: `longest` is more than the
+// longest of `endings` by 16 at least.
 std::vector<std::string> unique_names(const std::vector<std::string>& own, const NameRule& rule);
 
 // The names of a mesh's regions in a deck, and what follows from them. The rule's `endings` need not say
