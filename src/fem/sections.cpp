@@ -4,8 +4,6 @@
 #include <map>
 #include <numeric>
 
-#include "fem/materials.h"
-
 namespace selvage::fem {
 
 std::string set_name(const Mesh& mesh, std::size_t region) {
