@@ -255,7 +255,10 @@ def conducting(deck, tensor):
     prop, unit = conduction.LAWS[deck.physics]
     parallel, series, shares = conduction.means(deck)
     lower, upper = conduction.wiener(parallel, series, shares, len(tensor))
-    outside = [("above Wiener's (phases in parallel)", excess(upper, tensor)), ("below Wiener's (in series)", excess(tensor, lower))]
+    outside = [
+        ("above Wiener's (phases in parallel)", excess(upper, tensor)),
+        ("below Wiener's (in series)", excess(tensor, lower)),
+    ]
     values, directions = numpy.linalg.eigh(tensor)
     result = {
         "kind": "plate" if len(tensor) == 2 else "block",
@@ -273,7 +276,13 @@ def conducting(deck, tensor):
     if phases and len(phases) > 1 and deck.is_periodic and len(tensor) == 3:
         least, most = conduction.hashin_shtrikman(phases)
         from_below, from_above = (conduction.as_isotropic(tensor, k) for k in (min(phases), max(phases)))
-        result["hashin_shtrikman"] = {"lower": least, "upper": most, "mean": values.mean(), "from_below": from_below, "from_above": from_above}
+        result["hashin_shtrikman"] = {
+            "lower": least,
+            "upper": most,
+            "mean": values.mean(),
+            "from_below": from_below,
+            "from_above": from_above,
+        }
         outside += [("below Hashin's and Shtrikman's", least / from_below - 1 if from_below else 0)]
         outside += [("above Hashin's and Shtrikman's", from_above / most - 1 if from_above else 0)]
     name, most = max(outside, key=lambda pair: pair[1])

@@ -24,11 +24,10 @@ namespace selvage::fem {
 //   stiffness. Nothing needs to be held.
 // A cell that conducts (Mesh::physics) has one unknown a node, the potential: G x + what repeats, G the mean
 //   gradient; of a plate, whose z faces let nothing through, along x and y. Without a periodic axis every
-//   node of the faces has G x: an upper bound. Load cases: each driver's gradient 1 a mm with the others
-//   zero.
-// Load cases of the others: each driver's strain (curvature) 0.001 (1/mm) with the others zero, and 1 K with
-// all of them
-//   zero. None where parts of the mesh do not hang together (yarns without a matrix): they would fly apart.
+//   node of the faces has G x: an upper bound.
+// Load cases: each driver's strain (curvature) 0.001 (1/mm) with the others zero, and 1 K with all of them
+//   zero; of a cell that conducts each driver's gradient 1 a mm. None where parts of the mesh do not hang
+//   together (yarns without a matrix): they would fly apart.
 //
 // Errors: internal (a node beside a face's plane), geometry (opposite faces do not match to 1e-12 of the
 // size; a matrix whose parts do not hang together), unsupported (periodic along other axes than these).

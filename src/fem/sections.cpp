@@ -4,8 +4,6 @@
 #include <map>
 #include <numeric>
 
-#include "fem/materials.h"
-
 namespace selvage::fem {
 
 std::vector<NamedSet> node_sets(const Mesh& mesh, const DeckNames& names) {
