@@ -103,11 +103,11 @@ bool NameMaker::take(const std::string& name) {
 
 std::string NameMaker::make(const std::string& own) {
   const std::string whole = fitting(own);
-  const std::string first = shortened_to(whole, room_);
+  std::string first = shortened_to(whole, room_);
   if (take(first)) return first;
   for (std::size_t& number = count_.try_emplace(in_lower_case(first), 1).first->second;;) {
     const std::string ending = "_" + std::to_string(++number);
-    if (const std::string name = shortened_to(whole, room_ - ending.size()) + ending; take(name)) return name;
+    if (std::string name = shortened_to(whole, room_ - ending.size()) + ending; take(name)) return name;
   }
 }
 
