@@ -24,7 +24,7 @@ class Report(Case):
         report = self.report()
         self.assertEqual(list(report), ["selvage", "libraries", "started", "seconds", "ok", "counts", "inputs"])
         self.assertRegex(report["selvage"], r"^\d+\.\d+\.\d+\S*$")
-        self.assertEqual(sorted(report["libraries"]), ["cgal", "eigen", "embree", "fmt", "muparser", "occt", "png", "tetgen", "zlib"])
+        self.assertEqual(sorted(report["libraries"]), ["cgal", "eigen", "embree", "fmt", "hdf5", "muparser", "occt", "png", "pugixml", "tetgen", "zlib"])
         self.assertFalse(report["ok"])
         self.assertEqual(report["counts"], {"inputs": 3, "done": 1, "failed": 2, "skipped": 0})
         good, bad, missing = report["inputs"]
