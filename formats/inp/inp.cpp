@@ -148,12 +148,9 @@ Result<Deck> plan_deck(const fem::Mesh& mesh) {
   Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();
   const bool touches = mesh.physics == fem::Physics::elastic;
-  Deck deck = {mesh,
-               names,
-               std::move(*sections),
-               touches ? fem::contact_surfaces(mesh) : fem::ContactSurfaces{},
-               {},
-               {}};
+  Deck deck = {
+      mesh, names, std::move(*sections), touches ? fem::contact_surfaces(mesh) : fem::ContactSurfaces{},
+      {},   {}};
   if (mesh.cell) {
     deck.node_sets = fem::node_sets(mesh, names);
     return deck;
