@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <ranges>
 #include <tuple>
 #include <unordered_map>
 
@@ -14,6 +13,7 @@
 #include "cad/sampled_curve.h"
 #include "cad/tube.h"
 #include "core/box_tree.h"
+#include "nurbs/divided.h"
 #include "nurbs/measure.h"
 #include "nurbs/turn.h"
 #include "yarn/ends.h"
@@ -390,8 +390,10 @@ class Recognizer {
   void finish_loose() {
     for (const Tube& tube : tubes_) ++tubes_of_part_[tube.part];
     only_tubes_ = has_only_tubes();
-    const auto has_free_end = [&](std::size_t t) { return is_free(t, false) || is_free(t, true); };
-    if (std::ranges::any_of(std::views::iota(std::size_t{0}, tubes_.size()), has_free_end)) find_rings();
+    bool has_free_end = false;
+    for (std::size_t t = 0; t < tubes_.size(); ++t)
+      has_free_end = has_free_end || is_free(t, false) || is_free(t, true);
+    if (has_free_end) find_rings();
     std::vector<std::pair<std::size_t, std::size_t>> taken;  // part, face
     for (std::size_t t = 0; t < tubes_.size(); ++t) {
       Tube& tube = tubes_[t];
