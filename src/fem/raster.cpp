@@ -210,7 +210,6 @@ class AxisTable {
       points_.push_back(jet.position);
       tangents_.push_back(unit_or_zero(jet.d1));
     }
-    constexpr std::size_t every = 8;  // the sections change slowly
     for (std::size_t k = 0; k < vs_.size(); k += every)
       fractions_.push_back(body.fibre_area > 0 ? body.fibre_area / section_area(body, vs_[k])
                                                : std::numeric_limits<double>::quiet_NaN());
@@ -241,13 +240,13 @@ class AxisTable {
         break;
       }
     }
-    // Between the two places at whose tangents' planes the point lies.
+    // Between this place and the one beside it on the point's side.
     const double ahead = (point - points_[k]).dot(tangents_[k]);
     const std::size_t other = ahead > 0 ? after(k) : before(k);
     const double length = (points_[other] - points_[k]).norm();
     const double share = length > 0 ? std::clamp(std::abs(ahead) / length, 0.0, 1.0) : 0;
     return {unit_or_zero((1 - share) * tangents_[k] + share * tangents_[other]),
-            fractions_[std::min(k / 8, fractions_.size() - 1)]};
+            fractions_[std::min(k / every, fractions_.size() - 1)]};
   }
 
  private:
@@ -264,6 +263,7 @@ class AxisTable {
     return is_ring_ ? vs_.size() - 2 : k;
   }
 
+  static constexpr std::size_t every = 8;  // the sections change slowly
   bool is_ring_;
   std::vector<double> vs_;
   std::vector<Vec3> points_, tangents_;

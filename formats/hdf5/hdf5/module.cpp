@@ -44,7 +44,7 @@ void add_order(hid_t dataset, const std::string& order) {
   done(H5Awrite(attribute, type, &text), "write an attribute");
 }
 
-// Layers of voxels, some MB of numbers each.
+// Whole rows and layers, some 260,000 numbers.
 std::vector<hsize_t> chunk_of(const std::vector<hsize_t>& dimensions) {
   constexpr hsize_t numbers = hsize_t{1} << 18U;
   std::vector<hsize_t> chunk = dimensions;

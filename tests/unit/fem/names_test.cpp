@@ -124,6 +124,19 @@ TEST(SolverNames, OfMaterials) {
   EXPECT_EQ(fem::solver_names(materials), (Names{"fibre_1", "Fibre_1_2", "M_1st"}));
 }
 
+// The nodes that drive a cell have names of their own, of every physics.
+TEST(SolverNames, YarnsCalledAsDrivers) {
+  fem::Mesh mesh;
+  for (const char* name : {"ConstraintsDriver3", "curvaturedriver0", "GradientDriver1", "GradientDriver7"})
+    mesh.regions.emplace_back().name = name;
+  mesh.cell.emplace();
+  const fem::DeckNames names(mesh, {.longest = 32});
+  EXPECT_EQ(names.of(0), "ConstraintsDriver3_2");
+  EXPECT_EQ(names.of(1), "curvaturedriver0_2");
+  EXPECT_EQ(names.of(2), "GradientDriver1_2");
+  EXPECT_EQ(names.of(3), "GradientDriver7");
+}
+
 // A yarn called as a part of the deck, sections and ends of yarns whose names look like theirs.
 TEST(SolverNames, OfAMesh) {
   fem::Mesh mesh;
