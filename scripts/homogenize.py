@@ -19,7 +19,10 @@ import sys
 import tempfile
 import time
 
-import numpy
+try:
+    import numpy
+except ModuleNotFoundError:
+    sys.exit("homogenize: NumPy is not installed: apt-get install python3-numpy")
 
 import cell_conduction as conduction
 from cell_deck import Deck

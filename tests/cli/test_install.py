@@ -3,6 +3,7 @@
 SELVAGE_BUILD: the build folder that is installed. The package, which takes root and Debian's archive, is tests/packaging.
 """
 
+import json
 import os
 import pathlib
 import re
@@ -63,9 +64,9 @@ class Installed(Case):
 
     def test_what_is_there(self):
         files = set(files_below(self.prefix))
-        outside = {name for name in files if not name.startswith(("include/", "share/selvage/samples/", "lib/cmake/"))}
+        outside = {name for name in files if not name.startswith(("include/", "share/selvage/", "lib/cmake/"))}
         self.assertEqual(outside, {
-            "bin/selvage", "lib/libselvage.a", "lib/selvage/selvage-tetgen", "lib/selvage/selvage_cgal.so",
+            "bin/selvage", "bin/selvage-homogenize", "lib/libselvage.a", "lib/selvage/selvage-tetgen", "lib/selvage/selvage_cgal.so",
             "lib/selvage/selvage_embree.so", "lib/selvage/selvage_hdf5.so", "lib/selvage/selvage_minizip.so", "lib/selvage/selvage_muparser.so",
             "lib/selvage/selvage_occt.so", "lib/selvage/selvage_pugixml.so",
             *(["lib/selvage/three.module.min.js"] if HAS_PAGES else []),
@@ -109,6 +110,18 @@ class Installed(Case):
         self.works("view", weave, "-o", self.folder / "weave.png", "--size", "80x60")  # Embree
         self.works("view", weave, "-o", self.folder / "weave.html", code=0 if HAS_PAGES else 1)  # three.js
         self.works("convert", self.prefix / BY_PARAMS, "--set", "sett=2*11", "-o", self.folder / "params.igs")  # muParser
+
+    def test_homogenize_of_what_is_installed(self):
+        """Its imports are all there, and it calls the program beside it: a block of one material has that material's stiffness."""
+        (self.folder / "block.txt").write_text(
+            "fabric 1\nmaterial resin\n  elastic isotropic 1000 0.25\nend\nthread tow\n  section circle 0.5\n  material resin\nend\n"
+            "yarn one tow\n  path chord\n    0 0 0\n    1 0 0\n  end\nend\n"
+            "cell 0..1 -0.5..0.5 -0.5..0.5\n  matrix resin\n  periodic x y z\nend\n")
+        done = subprocess.run([self.prefix / "bin/selvage-homogenize", "block.txt", "--voxel", "3", "--solver", "iterative", "--json", "-"],
+                              env=environment(), cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        stiffness = np.array(json.loads(done.stdout)["stiffness"])
+        np.testing.assert_allclose(stiffness[:2, :2], [[1200, 400], [400, 1200]], rtol=1e-6)
 
     def test_an_incomplete_installation_is_told(self):
         copy = self.folder / "copy"

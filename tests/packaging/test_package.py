@@ -6,8 +6,11 @@ SELVAGE_PACKAGE: the package (default: that in build). SELVAGE_ROOT: the folder 
 (default: one that goes at the end).
 """
 
+import json
 import os
 import pathlib
+import re
+import shlex
 import shutil
 import subprocess
 import tempfile
@@ -15,6 +18,12 @@ import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = "/usr/share/selvage/samples"
+PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
+
+
+def commands(page):
+    """The lines of a page's blocks of commands."""
+    return [line for block in re.findall(r"```sh\n(.*?)```", (REPOSITORY / page).read_text(), re.DOTALL) for line in block.splitlines()]
 
 
 def packages():
@@ -43,9 +52,9 @@ class Package(unittest.TestCase):
         cls.inside("apt-get", "update", "-q")
 
     @classmethod
-    def inside(cls, *command, code=0):
+    def inside(cls, *command, folder="/", code=0):
         """Runs a command in the root; its standard output."""
-        done = subprocess.run(["chroot", cls.root, "env", "-i", "HOME=/root", "PATH=/usr/sbin:/usr/bin:/sbin:/bin", "LC_ALL=C",
+        done = subprocess.run(["chroot", cls.root, "env", "-i", "-C", folder, "HOME=/root", f"PATH={PATH}", "LC_ALL=C",
                                "DEBIAN_FRONTEND=noninteractive", *command], stdin=subprocess.DEVNULL, capture_output=True, text=True)
         if done.returncode != code:
             raise AssertionError(f"{command}: {done.returncode}\n{done.stdout}\n{done.stderr}")
@@ -63,10 +72,14 @@ class Package(unittest.TestCase):
         self.completes()
         self.assertIn("/usr/lib/selvage/three.module.min.js", files)
         programs = [name for name in files if name.startswith(("/usr/bin/", "/usr/lib/selvage/")) and not name.endswith(".js")]
-        self.assertEqual(len(programs), 9)
+        self.assertEqual(len(programs), 10)
         for name in programs:
-            self.assertNotIn("not found", self.inside("ldd", name))
+            if name != "/usr/bin/selvage-homogenize":
+                self.assertNotIn("not found", self.inside("ldd", name))
         self.works()
+        self.a_first_picture()
+        self.first_steps()
+        self.a_program_of_ones_own()
         self.inside("apt-get", "purge", "-q", "-y", "--autoremove", "selvage")
         for name in programs:
             self.assertFalse((self.root / name[1:]).exists(), name)
@@ -95,6 +108,53 @@ class Package(unittest.TestCase):
         self.inside("selvage", "view", weave, "-o", f"{out}/weave.html")
         self.inside("selvage", "convert", f"{SAMPLES}/plain_by_params.txt", "--set", "sett=2*11", "-o", f"{out}/params.igs")
         self.inside("rm", "-r", out)
+
+    def picture(self, name):
+        """Width and height of a PNG that holds more than a background."""
+        data = (self.root / name).read_bytes()
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertGreater(len(data), 10000)
+        return int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")
+
+    def a_first_picture(self):
+        """From the package to a picture of a cloth of one's own: two commands, and one's own numbers between them."""
+        self.inside("sh", "-c", "selvage new denim > /root/own.txt")
+        own = self.root / "root/own.txt"
+        own.write_text(own.read_text().replace("denim", "mine"))
+        self.inside("selvage", "view", "own.txt", "-o", "own.png", folder="/root")
+        self.assertGreater(min(self.picture("root/own.png")), 400)
+        self.inside("rm", "/root/own.txt", "/root/own.png")
+
+    def first_steps(self):
+        """The page as printed, with what the package recommends. Two layouts of one weave are the same in x and y."""
+        self.inside("apt-get", "install", "-q", "-y", "--no-install-recommends", "calculix-ccx", "python3-numpy")
+        page = "src/cli/first-steps.md"
+        (self.root / "root/steps").mkdir()
+        for name, text in re.findall(r"ave\s+it\s+as\s+`([\w.]+)`:\n\n```\n(.*?)```", (REPOSITORY / page).read_text(), re.DOTALL):
+            (self.root / "root/steps" / name).write_text(text)
+        lines = commands(page)
+        self.assertEqual({shlex.split(line)[0] for line in lines}, {"selvage", "selvage-homogenize"})
+        for line in lines:
+            with self.subTest(line):
+                self.inside("sh", "-c", line, folder="/root/steps")
+        self.picture("root/steps/cloth.png")
+        constants = json.loads((self.root / "root/steps/stiffness.json").read_text())["engineering"]
+        self.assertAlmostEqual(constants["E1"], constants["E2"], delta=0.01 * constants["E1"])
+        told = float(re.search(r"E1 and E2 of some ([\d.]+) GPa", (REPOSITORY / page).read_text())[1])
+        self.assertAlmostEqual(constants["E1"] / 1000, told, delta=0.1)
+        self.inside("rm", "-r", "/root/steps")
+
+    def a_program_of_ones_own(self):
+        """find_package(Selvage) with what the package suggests: the program of the page writes what the installed one does."""
+        self.inside("apt-get", "install", "-q", "-y", "--no-install-recommends", "cmake", "make", "g++", "libeigen3-dev", "libmd-dev",
+                    "zlib1g-dev")
+        self.inside("cmake", "-S", "/usr/share/selvage/samples/api", "-B", "/root/api")
+        self.inside("cmake", "--build", "/root/api")
+        moment = "SOURCE_DATE_EPOCH=1700000000"
+        self.inside("env", moment, "/root/api/plain_weave", "plain.igs", folder="/root/api")
+        self.inside("env", moment, "selvage", "convert", f"{SAMPLES}/weave_plain.txt", "-o", "/root/api/program/plain.igs")
+        self.assertEqual((self.root / "root/api/plain.igs").read_bytes(), (self.root / "root/api/program/plain.igs").read_bytes())
+        self.inside("rm", "-r", "/root/api")
 
 
 if __name__ == "__main__":
