@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <initializer_list>
 
+#include "core/words.h"
 #include "formats/iges/standard.h"
 #include "formats/iges/structure_numbers.h"
 
@@ -193,8 +194,20 @@ class StructureCheck {
           defect(entry, values.spot(at), fmt::format("a property that is a {}", target->name()));
       }
     }
-    if (at < values.size())
-      defect(entry, values.spot(at), fmt::format("{} values too many", values.size() - at));
+    check_rest(entry, values, at);
+  }
+
+  // Behind the trailer there is nothing. ANSYS writes one zero more behind its points.
+  void check_rest(const DirectoryEntry& entry, const Values& values, std::size_t at) {
+    if (at >= values.size()) return;
+    bool is_empty = true;
+    for (std::size_t i = at; i < values.size(); ++i) is_empty = is_empty && values.integer(i) == 0;
+    const std::size_t count = values.size() - at;
+    if (is_empty)
+      findings_.warning(fmt::format("{}: {} too many at the end", entry.name(), counted(count, "zero")),
+                        values.spot(at).place());
+    else
+      defect(entry, values.spot(at), fmt::format("{} too many", counted(count, "value")));
   }
 
   // Receivers take the status field at its word: what is said to be independent is shown by itself.

@@ -30,20 +30,35 @@ TypeFacts facts_of(std::string_view type) {
   return facts;
 }
 
+// Without a statement of this type all shapes are the same: looks, layers, properties. Complex entities are none of it.
+constexpr std::string_view without_it = "; it is left out, since no shape depends on it";
+bool decorates(std::string_view type) {
+  for (const std::string_view beginning :
+       {"SURFACE_STYLE", "SURFACE_SIDE_STYLE", "FILL_AREA_STYLE", "CURVE_STYLE", "POINT_STYLE", "TEXT_STYLE",
+        "SYMBOL_STYLE", "COLOUR", "PRE_DEFINED", "DRAUGHTING_PRE_DEFINED", "PRESENTATION_"})
+    if (type.starts_with(beginning)) return type.find(' ') == std::string_view::npos;
+  for (const std::string_view name : {"DESCRIPTIVE_REPRESENTATION_ITEM", "MEASURE_REPRESENTATION_ITEM", "STYLED_ITEM", "OVER_RIDING_STYLED_ITEM", "CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM",
+                                      "INVISIBILITY", "REPRESENTATION", "PROPERTY_DEFINITION",
+                                      "PROPERTY_DEFINITION_REPRESENTATION"})
+    if (type == name) return true;
+  return false;
+}
+
 // The attributes of one statement after the other. The grammar has been checked: what is a list here ends.
 class Checker {
  public:
-  Checker(const Part21& file, const char* end, TextReport& report) : file_(file), end_(end), report_(report) {
+  Checker(Part21& file, const char* end, TextReport& report) : file_(file), end_(end), report_(report) {
     for (const std::string& type : file.types) facts_.push_back(facts_of(type));
   }
 
   void check_all() {
     for (std::size_t i = 0; i < file_.statements.size() && !report_.is_full(); ++i)
-      if (facts_[file_.statements[i].type].kinds.any()) check(file_.statements[i]);
+      if (facts_[file_.statements[i].type].kinds.any() && !file_.statements[i].is_left_out)
+        check(file_.statements[i]);
   }
 
  private:
-  void check(const Statement& statement) {
+  void check(Statement& statement) {
     const char* const at = statement.spot.at;
     lexer_ = Lexer({at, static_cast<std::size_t>(end_ - at)}, statement.spot);
     statement_ = &statement;
@@ -54,7 +69,11 @@ class Checker {
       lexer_.next();
       while (lexer_.token() == Token::word) check_entity(false);
     } catch (const Failure& failure) {
-      report_.error(failure.spot, failure.text);
+      statement.is_left_out = decorates(file_.type_of(statement));
+      if (statement.is_left_out)
+        report_.warning(failure.spot, failure.text + std::string(without_it));
+      else
+        report_.error(failure.spot, failure.text);
     }
   }
 
@@ -192,7 +211,7 @@ class Checker {
     } while (depth > 0);
   }
 
-  const Part21& file_;
+  Part21& file_;
   const char* end_;
   TextReport& report_;
   std::vector<TypeFacts> facts_;  // one a type of the file
@@ -206,26 +225,40 @@ class Checker {
 
 }  // namespace
 
-void check_circles(const Part21& file, TextReport& report) {
+void check_circles(Part21& file, TextReport& report) {
   std::vector<TypeFacts> facts;
   for (const std::string& type : file.types) facts.push_back(facts_of(type));
-  Graph graph;
-  graph.firsts.push_back(0);
-  for (std::size_t i = 0; i < file.statements.size(); ++i) {
+  const auto has_part = [&](std::size_t i) {
     const Statement& statement = file.statements[i];
-    if (facts[statement.type].is_known && file.types[statement.type] != "APPLICATION_PROTOCOL_DEFINITION")
-      graph.targets.insert(graph.targets.end(), file.targets.begin() + statement.first_ref,
-                           file.targets.begin() + static_cast<std::ptrdiff_t>(file.refs_end(i)));
-    graph.firsts.push_back(graph.targets.size());
-  }
-  std::vector<std::size_t> order;
-  if (const std::vector<Circle> circles = sort_from_leaves(graph, order); !circles.empty()) {
-    const Statement &at = file.statements[circles[0].at], &by = file.statements[circles[0].by];
-    report.error(at.spot, fmt::format("#{} refers to itself, by way of #{}", at.id, by.id));
+    return facts[statement.type].is_known && file.types[statement.type] != "APPLICATION_PROTOCOL_DEFINITION" &&
+           !statement.is_left_out;
+  };
+  constexpr std::size_t most_left_out = 20;  // each costs a search
+  for (std::size_t left_out = 0;; ++left_out) {
+    Graph graph;
+    graph.firsts.push_back(0);
+    for (std::size_t i = 0; i < file.statements.size(); ++i) {
+      if (has_part(i))
+        graph.targets.insert(graph.targets.end(), file.targets.begin() + file.statements[i].first_ref,
+                             file.targets.begin() + static_cast<std::ptrdiff_t>(file.refs_end(i)));
+      graph.firsts.push_back(graph.targets.size());
+    }
+    std::vector<std::size_t> order;
+    const std::vector<Circle> circles = sort_from_leaves(graph, order);
+    if (circles.empty()) return;
+    Statement& at = file.statements[circles[0].at];
+    const Statement& by = file.statements[circles[0].by];
+    const std::string what = fmt::format("#{} refers to itself, by way of #{}", at.id, by.id);
+    if (!decorates(file.type_of(at)) || left_out >= most_left_out) {
+      report.error(at.spot, what);
+      return;
+    }
+    report.warning(at.spot, what + std::string(without_it));
+    at.is_left_out = true;
   }
 }
 
-void check_attributes(const Part21& file, std::string_view text, TextReport& report) {
+void check_attributes(Part21& file, std::string_view text, TextReport& report) {
   Checker(file, text.data() + text.size(), report).check_all();
 }
 

@@ -322,6 +322,19 @@ std::size_t Part21::refs_end(std::size_t place) const {
   return place + 1 < statements.size() ? statements[place + 1].first_ref : refs.size();
 }
 
+std::string_view readable_bytes(const Source& source, const Part21& file, std::string& kept) {
+  const std::string_view bytes = source.bytes();
+  for (const Statement& statement : file.statements) {
+    if (!statement.is_left_out) continue;
+    if (kept.empty()) kept = bytes;
+    Lexer lexer(bytes.substr(static_cast<std::size_t>(statement.spot.at - bytes.data())), statement.spot);
+    do lexer.next();
+    while (lexer.token() != Token::word);
+    kept[static_cast<std::size_t>(lexer.text().data() - bytes.data())] = 'Z';
+  }
+  return kept.empty() ? bytes : std::string_view(kept);
+}
+
 std::string first_string(const Source& source, const Statement& statement) {
   Lexer lexer(source.bytes().substr(static_cast<std::size_t>(statement.spot.at - source.bytes().data())),
               statement.spot);

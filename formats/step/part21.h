@@ -18,6 +18,7 @@ struct Statement {
   int id = 0;
   std::uint32_t type = 0;       // in Part21::types
   std::uint32_t first_ref = 0;  // in Part21::refs; up to the next statement's
+  bool is_left_out = false;     // at fault, and no shape depends on it: nobody may see it (readable_bytes)
 };
 
 // Its spots are in the Source that it was read from.
@@ -39,6 +40,10 @@ struct Part21 {
   [[nodiscard]] std::size_t refs_end(std::size_t place) const;
   [[nodiscard]] std::string_view type_of(const Statement& statement) const { return types[statement.type]; }
 };
+
+// The file's bytes for a reader that knows the types of entities: what is left out has a type there that nobody knows.
+// `kept` holds them where they are not the source's own. Precondition: `file` was read from `source`.
+std::string_view readable_bytes(const Source& source, const Part21& file, std::string& kept);
 
 // The first string of a statement, decoded to UTF-8: the name of every representation item. Empty where there
 // is none. Precondition: `statement` was read from `source`.

@@ -83,10 +83,11 @@ std::optional<SolidVolume> volume_of(const TopoDS_Shape& shape, bool again) {
 class PropertyCheck {
  public:
   PropertyCheck(const Source& source, const Part21& file, Findings& findings)
-      : source_(source), findings_(findings), is_own_(file.originating_system.starts_with("selvage")) {}
+      : source_(source), file_(file), findings_(findings), is_own_(file.originating_system.starts_with("selvage")) {}
 
   void run() {
-    PropertyStream buffer(source_.bytes());
+    std::string kept;
+    PropertyStream buffer(readable_bytes(source_, file_, kept));
     std::istream stream(&buffer);
     STEPCAFControl_Reader reader;
     if (reader.ChangeReader().ReadStream(source_.name().c_str(), stream) != IFSelect_RetDone) return;
@@ -206,6 +207,7 @@ class PropertyCheck {
 
   Session session_ = Session::to_read();  // before anything of OpenCASCADE's
   const Source& source_;
+  const Part21& file_;
   Findings& findings_;
   bool is_own_;
   TopoDS_Compound all_;  // of the file

@@ -36,6 +36,7 @@
 #include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <istream>
 #include <streambuf>
 #include <unordered_map>
@@ -103,9 +104,12 @@ class ModelReader {
 
   Result<cad::Model> read() {
     take_header();
-    ByteStream buffer(source_.bytes());
+    std::string kept;
+    ByteStream buffer(readable_bytes(source_, file_, kept));
     std::istream stream(&buffer);
-    if (reader_.ChangeReader().ReadStream(source_.name().c_str(), stream) != IFSelect_RetDone)
+    // Files that it refers to stand beside it.
+    const std::string path = std::filesystem::absolute(source_.name()).string();
+    if (reader_.ChangeReader().ReadStream(path.c_str(), stream) != IFSelect_RetDone)
       return error(Kind::malformed, "OpenCASCADE does not read this STEP file");
     entities_ = reader_.ChangeReader().StepModel();
     take_units();

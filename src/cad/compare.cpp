@@ -105,6 +105,7 @@ class Comparer {
   void report_lonely(const Thing& thing, Difference::Kind kind);
   void follow_names(Pairing& pairing, std::vector<PairFinding>& findings) const;
   void absorb_regrouped(Pairing& pairing);
+  void release_regrouped(Pairing& pairing, std::vector<PairFinding>& findings);
   void add_notes();
 
   Things a_, b_;
@@ -542,6 +543,39 @@ void Comparer::absorb_regrouped(Pairing& pairing) {
   }
 }
 
+// A part that the other file has as several (a shell that is no manifold comes apart in STEP) was paired with one of
+// these, and differs from it. Such pairs are given up where all of them are what is left over, grouped in another way.
+void Comparer::release_regrouped(Pairing& pairing, std::vector<PairFinding>& findings) {
+  if (pairing.only_a.empty() && pairing.only_b.empty()) return;
+  Pairing parted = {.pairs = {}, .only_a = pairing.only_a, .only_b = pairing.only_b};
+  const auto is_regrouped = [&](std::size_t k) {
+    const auto [i, j] = pairing.pairs[k];
+    return !findings[k].is_equal && a_.list[i].surfaces.size() != b_.list[j].surfaces.size();
+  };
+  std::vector<PairFinding> kept;
+  for (std::size_t k = 0; k < findings.size(); ++k) {
+    const auto [i, j] = pairing.pairs[k];
+    if (is_regrouped(k)) {
+      parted.only_a.push_back(i);
+      parted.only_b.push_back(j);
+    } else {
+      parted.pairs.push_back(pairing.pairs[k]);
+      kept.push_back(findings[k]);
+    }
+  }
+  if (kept.size() == findings.size()) return;
+  const Comparison before = out_;
+  const std::size_t uncertain = uncertain_;
+  absorb_regrouped(parted);
+  if (parted.only_a.empty() && parted.only_b.empty()) {
+    pairing = std::move(parted);
+    findings = std::move(kept);
+  } else {
+    out_ = before;
+    uncertain_ = uncertain;
+  }
+}
+
 Comparison::Counts counts_of(const Things& things) {
   Comparison::Counts counts;
   for (const Thing& thing : things.list) {
@@ -593,6 +627,7 @@ Comparison Comparer::run() {
   };
   for_each_index(findings.size(), options_.threads, look, options_.progress);
   follow_names(pairing, findings);
+  release_regrouped(pairing, findings);
   absorb_regrouped(pairing);
   std::size_t next = 0;
   for (std::size_t k = 0; k <= findings.size(); ++k) {

@@ -436,9 +436,7 @@ class Judge {
       // faces in another is there twice.
       const std::size_t fewest = std::min(first->part->faces.size(), second->part->faces.size());
       if (first->part != second->part && shared[std::minmax(first->part, second->part)] < fewest) continue;
-      // What stands in two groups, or in two representations of one shape, is read twice.
-      const Origin &one = origin_of(*first), &other = origin_of(*second);
-      if (!one.entity.empty() && one.entity == other.entity && one.place.line == other.place.line) {
+      if (is_read_twice(*first, *second)) {
         find(Severity::note, *second->part, *second->face, "it is read twice: two groups have it",
              second->points.front());
         continue;
@@ -446,6 +444,15 @@ class Judge {
       find(Severity::error, *second->part, *second->face,
            fmt::format("the same face as {}, at the same place", who(*first->face)), second->points.front());
     }
+  }
+
+  // What stands in two groups, or in two representations of one shape: then a face without an entity of its own is a
+  // further reading of one that has it.
+  static bool is_read_twice(const Signature& first, const Signature& second) {
+    const Origin &one = origin_of(first), &other = origin_of(second);
+    if (!one.entity.empty() && one.entity == other.entity && one.place.line == other.place.line) return true;
+    return first.part != second.part &&
+           first.face->origin.entity.empty() != second.face->origin.entity.empty();
   }
 
   // Some faces are named by their part alone.

@@ -1,8 +1,10 @@
 #include "cad/measure.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "cad/feet.h"
 #include "cad/sampled_curve.h"
@@ -379,6 +381,55 @@ PartMeasures measures_of(const Part& part) {
   if (are_all && part.kind == Part::Kind::solid && open.norm() <= closes * area)
     measures.volume = std::abs(volume);
   return measures;
+}
+
+namespace {
+
+// Of a surface that two lines span, the plane; nothing of others.
+std::optional<Eigen::Hyperplane<double, 3>> plane_of(const Surface& surface) {
+  if (surface.degree_u != 1 || surface.degree_v != 1 || surface.points.size() != 4) return std::nullopt;
+  const Vec3 normal = (surface.points[1] - surface.points[0]).cross(surface.points[2] - surface.points[0]);
+  if (!(normal.norm() > 0)) return std::nullopt;
+  return Eigen::Hyperplane<double, 3>(normal.normalized(), surface.points[0]);
+}
+
+// Of an edge from its surface; infinite where that is not known.
+double distance_off(const Face& face, const std::optional<Eigen::Hyperplane<double, 3>>& plane,
+                    const Edge& edge) {
+  double most = 0;
+  if (edge.flat.points.empty() && !plane) return std::numeric_limits<double>::infinity();
+  std::optional<SampledCurve> curve;
+  if (!edge.flat.points.empty()) curve.emplace(edge.curve);
+  for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0})
+    most = std::max(most, curve ? curve->nearest(at_share(face.surface, edge.flat, share)).distance
+                                : plane->absDistance(at_share(edge.curve, share)));
+  return most;
+}
+
+double looseness_of(const Face& face, const Loop& loop) {
+  const std::optional<Eigen::Hyperplane<double, 3>> plane = plane_of(face.surface);
+  double most = 0;
+  std::vector<Vec3> ends;  // of each edge the start, the end
+  for (const Edge& edge : loop.edges) {
+    if (edge.curve.points.empty()) continue;
+    most = std::max(most, distance_off(face, plane, edge));
+    for (const double share : {0.0, 1.0}) ends.push_back(at_share(edge.curve, share));
+  }
+  for (std::size_t i = 1; i < ends.size(); i += 2)
+    most = std::max(most, (ends[i] - ends[(i + 1) % ends.size()]).norm());
+  return most;
+}
+
+}  // namespace
+
+std::optional<double> looseness_of(const std::vector<Part>& parts) {
+  double most = 0;
+  for (const Part& part : parts)
+    for (const Face& face : part.faces)
+      for (const std::vector<Loop>* loops : {&face.loops, &face.border})
+        for (const Loop& loop : *loops) most = std::max(most, looseness_of(face, loop));
+  if (!std::isfinite(most)) return std::nullopt;
+  return most;
 }
 
 }  // namespace selvage::cad

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "cad/measure.h"
 #include "cad/recognize.h"
 
 namespace selvage::fabric {
@@ -63,7 +64,6 @@ Piece piece_of(const cad::Outline& outline, Names& names) {
 
 Fabric fabric_of(cad::Model model, Diagnostics& diagnostics) {
   Fabric fabric;
-  fabric.resolution = model.resolution;
   std::vector<cad::FoundYarn> yarns = cad::take_yarns(model, diagnostics);
   Names yarn_names("yarn"), piece_names("piece");
   // IGES: 186s. Our own STEP has yarns, which are solids there and groups of 128s in our IGES.
@@ -88,6 +88,9 @@ Fabric fabric_of(cad::Model model, Diagnostics& diagnostics) {
   fabric.units_given = true;
   fabric.date = std::move(model.date);
   fabric.file_name = std::move(model.file_name);
+  // What the file calls one point may be far more than its edges need, and receivers bend edges by as much.
+  const std::optional<double> looseness = cad::looseness_of(model.parts);
+  fabric.resolution = looseness ? std::min(model.resolution, 2 * *looseness) : model.resolution;
   fabric.parts = std::move(model.parts);
   fabric.curves = std::move(model.curves);
   return fabric;

@@ -239,6 +239,22 @@ TEST(Structure, AnyDamageIsPutUpWith) {
   }
 }
 
+// What ANSYS writes behind its points.
+TEST(Structure, ZerosTooManyAreAWarning) {
+  const auto found_behind = [](std::string_view more) {
+    std::string text = fixture("unit_m.igs");
+    const std::size_t at = text.find(';', 81 * 8);
+    text.replace(at, more.size() + 1, std::string(more) + ";");
+    return findings_in(text);
+  };
+  const Findings zeros = found_behind(",0,0,0");
+  EXPECT_NE(all_of(zeros).find("warning: "), std::string::npos);
+  EXPECT_NE(all_of(zeros).find("1 zero too many at the end"), std::string::npos) << all_of(zeros);
+  EXPECT_TRUE(zeros.is_sound());
+  EXPECT_NE(all_of(found_behind(",0,0,7")).find("error: "), std::string::npos);
+  EXPECT_NE(all_of(found_behind(",0,0,7")).find("1 value too many"), std::string::npos);
+}
+
 // One fault does not hide another one, wherever they are.
 TEST(Structure, AllFaultsAreFound) {
   std::string broken = fixture("unit_m.igs");

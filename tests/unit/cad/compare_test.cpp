@@ -220,6 +220,18 @@ TEST(Compare, SurfacesCutAndGroupedInAnotherWay) {
   EXPECT_LE(changed.differences[0].reach.at_most, 0.012);
 }
 
+TEST(Compare, APartThatTheOtherFileHasAsTwo) {
+  Subject whole, parted;
+  const std::vector<Surface> three = {test::cylinder(1, 2), test::cylinder(1, 3, 4), test::cylinder(2, 1, 0, 9)};
+  whole.model.parts = {test::part_of("shell", three)};
+  parted.model.parts = {test::part_of("shell", {three[1]}), test::part_of("", {three[0], three[2]})};
+  for (const auto& [a, b] : {std::pair(&whole, &parted), std::pair(&parted, &whole)})
+    EXPECT_TRUE(compared(*a, *b, 1e-9).differences.empty());
+  parted.model.parts[1].faces[1].surface.point(1, 1).x() += 0.1;
+  EXPECT_FALSE(compared(whole, parted, 1e-9).differences.empty());
+  EXPECT_FALSE(compared(parted, whole, 1e-9).differences.empty());
+}
+
 TEST(Compare, KnotsAndWeightsCount) {
   const Subject before = cloth(2);
   Subject after = before;
