@@ -30,16 +30,18 @@ TypeFacts facts_of(std::string_view type) {
   return facts;
 }
 
-// Without a statement of this type all shapes are the same: looks, layers, properties. Complex entities are none of it.
+// Without a statement of this type all shapes are the same: looks, layers, properties. Complex entities are
+// none of it.
 constexpr std::string_view without_it = "; it is left out, since no shape depends on it";
 bool decorates(std::string_view type) {
   for (const std::string_view beginning :
        {"SURFACE_STYLE", "SURFACE_SIDE_STYLE", "FILL_AREA_STYLE", "CURVE_STYLE", "POINT_STYLE", "TEXT_STYLE",
         "SYMBOL_STYLE", "COLOUR", "PRE_DEFINED", "DRAUGHTING_PRE_DEFINED", "PRESENTATION_"})
     if (type.starts_with(beginning)) return type.find(' ') == std::string_view::npos;
-  for (const std::string_view name : {"DESCRIPTIVE_REPRESENTATION_ITEM", "MEASURE_REPRESENTATION_ITEM", "STYLED_ITEM", "OVER_RIDING_STYLED_ITEM", "CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM",
-                                      "INVISIBILITY", "REPRESENTATION", "PROPERTY_DEFINITION",
-                                      "PROPERTY_DEFINITION_REPRESENTATION"})
+  for (const std::string_view name :
+       {"DESCRIPTIVE_REPRESENTATION_ITEM", "MEASURE_REPRESENTATION_ITEM", "STYLED_ITEM",
+        "OVER_RIDING_STYLED_ITEM", "CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM", "INVISIBILITY",
+        "REPRESENTATION", "PROPERTY_DEFINITION", "PROPERTY_DEFINITION_REPRESENTATION"})
     if (type == name) return true;
   return false;
 }
@@ -230,8 +232,8 @@ void check_circles(Part21& file, TextReport& report) {
   for (const std::string& type : file.types) facts.push_back(facts_of(type));
   const auto has_part = [&](std::size_t i) {
     const Statement& statement = file.statements[i];
-    return facts[statement.type].is_known && file.types[statement.type] != "APPLICATION_PROTOCOL_DEFINITION" &&
-           !statement.is_left_out;
+    return facts[statement.type].is_known &&
+           file.types[statement.type] != "APPLICATION_PROTOCOL_DEFINITION" && !statement.is_left_out;
   };
   constexpr std::size_t most_left_out = 20;  // each costs a search
   for (std::size_t left_out = 0;; ++left_out) {

@@ -7,8 +7,8 @@
 namespace selvage::formats::step {
 
 // `text` is what the file was read from. Errors, each with line and column. Entities that are not in the
-// table are passed by, and so are references to them. What no shape depends on (looks, layers, properties) is left
-// out instead (Statement::is_left_out), with a warning.
+// table are passed by, and so are references to them. What no shape depends on (looks, layers, properties) is
+// left out instead (Statement::is_left_out), with a warning.
 void check_attributes(Part21& file, std::string_view text, TextReport& report);
 
 // Does an entity refer to itself, by way of others? Circles through what nobody translates (annotations that

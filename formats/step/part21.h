@@ -41,8 +41,9 @@ struct Part21 {
   [[nodiscard]] std::string_view type_of(const Statement& statement) const { return types[statement.type]; }
 };
 
-// The file's bytes for a reader that knows the types of entities: what is left out has a type there that nobody knows.
-// `kept` holds them where they are not the source's own. Precondition: `file` was read from `source`.
+// The file's bytes for a reader that knows the types of entities: what is left out has a type there that
+// nobody knows. `kept` holds them where they are not the source's own. Precondition: `file` was read from
+// `source`.
 std::string_view readable_bytes(const Source& source, const Part21& file, std::string& kept);
 
 // The first string of a statement, decoded to UTF-8: the name of every representation item. Empty where there

@@ -83,7 +83,10 @@ std::optional<SolidVolume> volume_of(const TopoDS_Shape& shape, bool again) {
 class PropertyCheck {
  public:
   PropertyCheck(const Source& source, const Part21& file, Findings& findings)
-      : source_(source), file_(file), findings_(findings), is_own_(file.originating_system.starts_with("selvage")) {}
+      : source_(source),
+        file_(file),
+        findings_(findings),
+        is_own_(file.originating_system.starts_with("selvage")) {}
 
   void run() {
     std::string kept;

@@ -543,8 +543,9 @@ void Comparer::absorb_regrouped(Pairing& pairing) {
   }
 }
 
-// A part that the other file has as several (a shell that is no manifold comes apart in STEP) was paired with one of
-// these, and differs from it. Such pairs are given up where all of them are what is left over, grouped in another way.
+// A part that the other file has as several (a shell that is no manifold comes apart in STEP) was paired with
+// one of these, and differs from it. Such pairs are given up where all of them are what is left over, grouped
+// in another way.
 void Comparer::release_regrouped(Pairing& pairing, std::vector<PairFinding>& findings) {
   if (pairing.only_a.empty() && pairing.only_b.empty()) return;
   Pairing parted = {.pairs = {}, .only_a = pairing.only_a, .only_b = pairing.only_b};

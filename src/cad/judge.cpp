@@ -446,8 +446,8 @@ class Judge {
     }
   }
 
-  // What stands in two groups, or in two representations of one shape: then a face without an entity of its own is a
-  // further reading of one that has it.
+  // What stands in two groups, or in two representations of one shape: then a face without an entity of its
+  // own is a further reading of one that has it.
   static bool is_read_twice(const Signature& first, const Signature& second) {
     const Origin &one = origin_of(first), &other = origin_of(second);
     if (!one.entity.empty() && one.entity == other.entity && one.place.line == other.place.line) return true;

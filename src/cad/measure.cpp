@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "cad/feet.h"
 #include "cad/sampled_curve.h"
@@ -393,26 +392,42 @@ std::optional<Eigen::Hyperplane<double, 3>> plane_of(const Surface& surface) {
   return Eigen::Hyperplane<double, 3>(normal.normalized(), surface.points[0]);
 }
 
-// Of an edge from its surface; infinite where that is not known.
-double distance_off(const Face& face, const std::optional<Eigen::Hyperplane<double, 3>>& plane,
-                    const Edge& edge) {
-  double most = 0;
-  if (edge.flat.points.empty() && !plane) return std::numeric_limits<double>::infinity();
-  std::optional<SampledCurve> curve;
-  if (!edge.flat.points.empty()) curve.emplace(edge.curve);
-  for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0})
-    most = std::max(most, curve ? curve->nearest(at_share(face.surface, edge.flat, share)).distance
-                                : plane->absDistance(at_share(edge.curve, share)));
-  return most;
-}
+// How far edges are from a face's surface.
+class Offness {
+ public:
+  explicit Offness(const Face& face) : surface_(face.surface), plane_(plane_of(face.surface)) {}
 
-double looseness_of(const Face& face, const Loop& loop) {
-  const std::optional<Eigen::Hyperplane<double, 3>> plane = plane_of(face.surface);
+  // The largest distance of five of the edge's points, or of its curve on the surface from the one in space.
+  double of(const Edge& edge) {
+    double most = 0;
+    std::optional<SampledCurve> curve;
+    if (!edge.flat.points.empty()) curve.emplace(edge.curve);
+    for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0})
+      most = std::max(most, curve ? curve->nearest(at_share(surface_, edge.flat, share)).distance
+                                  : of(at_share(edge.curve, share)));
+    return most;
+  }
+
+ private:
+  double of(const Vec3& p) {
+    if (plane_) return plane_->absDistance(p);
+    if (!feet_) feet_.emplace(surface_);
+    foot_ = feet_->of(p, foot_);
+    return (feet_->jet(*foot_).position - p).norm();
+  }
+
+  const Surface& surface_;
+  std::optional<Eigen::Hyperplane<double, 3>> plane_;
+  std::optional<Feet> feet_;
+  std::optional<Vec2> foot_;  // of the point before
+};
+
+double looseness_of(Offness& off, const Loop& loop) {
   double most = 0;
   std::vector<Vec3> ends;  // of each edge the start, the end
   for (const Edge& edge : loop.edges) {
     if (edge.curve.points.empty()) continue;
-    most = std::max(most, distance_off(face, plane, edge));
+    most = std::max(most, off.of(edge));
     for (const double share : {0.0, 1.0}) ends.push_back(at_share(edge.curve, share));
   }
   for (std::size_t i = 1; i < ends.size(); i += 2)
@@ -422,13 +437,14 @@ double looseness_of(const Face& face, const Loop& loop) {
 
 }  // namespace
 
-std::optional<double> looseness_of(const std::vector<Part>& parts) {
+double looseness_of(const std::vector<Part>& parts) {
   double most = 0;
   for (const Part& part : parts)
-    for (const Face& face : part.faces)
+    for (const Face& face : part.faces) {
+      Offness off(face);
       for (const std::vector<Loop>* loops : {&face.loops, &face.border})
-        for (const Loop& loop : *loops) most = std::max(most, looseness_of(face, loop));
-  if (!std::isfinite(most)) return std::nullopt;
+        for (const Loop& loop : *loops) most = std::max(most, looseness_of(off, loop));
+    }
   return most;
 }
 

@@ -29,9 +29,9 @@ struct PartMeasures {
 // Of a face that is not understood the area is what another program's kernel measured, if one did.
 PartMeasures measures_of(const Part& part);
 
-// How far edges are from where their faces need them, in the model's unit: the largest distance from an edge's end
-// to the start of the one behind it in the loop, and from an edge's curve to its curve on the surface, by five points of
-// each. Nothing where an edge has no curve on a surface that is no plane.
-std::optional<double> looseness_of(const std::vector<Part>& parts);
+// How far edges are from where their faces need them, in the model's unit: the largest distance from an
+// edge's end to the start of the one behind it in the loop, and from an edge's curve to its curve on the
+// surface (where it has none: to the surface), by five points of each.
+double looseness_of(const std::vector<Part>& parts);
 
 }  // namespace selvage::cad

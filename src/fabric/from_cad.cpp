@@ -89,8 +89,8 @@ Fabric fabric_of(cad::Model model, Diagnostics& diagnostics) {
   fabric.date = std::move(model.date);
   fabric.file_name = std::move(model.file_name);
   // What the file calls one point may be far more than its edges need, and receivers bend edges by as much.
-  const std::optional<double> looseness = cad::looseness_of(model.parts);
-  fabric.resolution = looseness ? std::min(model.resolution, 2 * *looseness) : model.resolution;
+  if (model.resolution > 0)
+    fabric.resolution = std::min(model.resolution, 2 * cad::looseness_of(model.parts));
   fabric.parts = std::move(model.parts);
   fabric.curves = std::move(model.curves);
   return fabric;

@@ -222,7 +222,8 @@ TEST(Compare, SurfacesCutAndGroupedInAnotherWay) {
 
 TEST(Compare, APartThatTheOtherFileHasAsTwo) {
   Subject whole, parted;
-  const std::vector<Surface> three = {test::cylinder(1, 2), test::cylinder(1, 3, 4), test::cylinder(2, 1, 0, 9)};
+  const std::vector<Surface> three = {test::cylinder(1, 2), test::cylinder(1, 3, 4),
+                                      test::cylinder(2, 1, 0, 9)};
   whole.model.parts = {test::part_of("shell", three)};
   parted.model.parts = {test::part_of("shell", {three[1]}), test::part_of("", {three[0], three[2]})};
   for (const auto& [a, b] : {std::pair(&whole, &parted), std::pair(&parted, &whole)})
