@@ -16,14 +16,20 @@ namespace {
 
 using Piece = std::array<std::size_t, 4>;
 
-// The outline of a section in its plane, at parameters all round it, with what has been passed from the
-// first.
+// The outline of a section in its plane, at parameters all round it.
 struct Outline {
   std::vector<double> us;       // increasing; the last is the first again
   std::vector<Vec2> points;     // as many
   std::vector<double> lengths;  // from the first
-  std::vector<double> turns;    // radians, both ways counted
   double area = 0;
+
+  [[nodiscard]] std::size_t period() const { return points.size() - 1; }
+  // From point k - 1 to point k, numbered all round and on.
+  [[nodiscard]] Vec2 step(std::size_t k) const { return points[k % period()] - points[(k - 1) % period()]; }
+  // By which it turns at point k > 0, radians, either way.
+  [[nodiscard]] double turn(std::size_t k) const {
+    return std::abs(std::atan2(cross(step(k), step(k + 1)), step(k).dot(step(k + 1))));
+  }
 };
 
 // Axes across the centre line at v: the first toward the seam.
@@ -36,7 +42,6 @@ std::array<Vec3, 2> plane_at(const yarn::Body& body, const nurbs::CurveJet& cent
   return {across, along.cross(across)};
 }
 
-// A point where the outline is almost smooth has no turn of its own: what counts is that between chords.
 Outline outline_at(const yarn::Body& body, double v) {
   constexpr int least = 256;
   Outline outline;
@@ -49,14 +54,9 @@ Outline outline_at(const yarn::Body& body, double v) {
   }
   const std::size_t count = outline.points.size();
   outline.lengths.assign(count, 0);
-  outline.turns.assign(count, 0);
-  const auto step = [&](std::size_t k) -> Vec2 { return outline.points[k] - outline.points[k - 1]; };
   for (std::size_t k = 1; k < count; ++k) {
     outline.area += cross(outline.points[k - 1], outline.points[k]) / 2;
-    outline.lengths[k] = outline.lengths[k - 1] + step(k).norm();
-    outline.turns[k] = outline.turns[k - 1];
-    if (k == 1) continue;
-    outline.turns[k] += std::abs(std::atan2(cross(step(k - 1), step(k)), step(k - 1).dot(step(k))));
+    outline.lengths[k] = outline.lengths[k - 1] + outline.step(k).norm();
   }
   return outline;
 }
@@ -80,24 +80,35 @@ std::size_t nearest_index(const Outline& outline, double u) {
   return static_cast<std::size_t>(at - outline.us.begin());
 }
 
+// How much of the way between two points of an outline (numbered on, to > from) has been passed at each: of
+// length and of turn, sixty to forty. A corner at either end is no turn on the way.
+std::vector<double> passed_shares(const Outline& outline, std::size_t from, std::size_t to) {
+  std::vector<double> lengths = {0}, turns = {0};
+  for (std::size_t k = from + 1; k <= to; ++k) {
+    lengths.push_back(lengths.back() + outline.step(k).norm());
+    turns.push_back(turns.back() + (k - 1 > from ? outline.turn(k - 1) : 0));
+  }
+  std::vector<double> shares;
+  for (std::size_t k = 0; k < lengths.size(); ++k)
+    shares.push_back(0.6 * lengths[k] / lengths.back() + 0.4 * turns[k] / std::max(turns.back(), 1e-9));
+  return shares;
+}
+
 // Divides the outline between two of its points (the second may be behind the seam) into `count` parts, of
-// even length and even turn in equal measure; corners on the way get a node. Without the second point.
+// even length and even turn; corners on the way get a node. Without the second point.
 void divide(const Outline& outline, std::size_t from, std::size_t to, std::size_t count,
             const std::vector<std::size_t>& corners, std::vector<double>& ring) {
-  const std::size_t period = outline.points.size() - 1;
+  const std::size_t period = outline.period();
   if (to <= from) to += period;
-  const auto passed = [&](const std::vector<double>& sums, std::size_t k) {
-    return sums[k % period] + static_cast<double>(k / period) * sums[period] - sums[from];
-  };
-  const double length = passed(outline.lengths, to), turn = std::max(passed(outline.turns, to), 1e-9);
-  const auto share = [&](std::size_t k) {
-    return 0.6 * passed(outline.lengths, k) / length + 0.4 * passed(outline.turns, k) / turn;
-  };
+  const std::vector<double> shares = passed_shares(outline, from, to);
+  const auto share = [&](std::size_t k) { return shares[k - from]; };
   std::vector<std::size_t> at(count + 1, from);
   at[count] = to;
   std::size_t k = from;
   for (std::size_t i = 1; i < count; ++i) {
-    while (k < to && share(k) < static_cast<double>(i) / static_cast<double>(count)) ++k;
+    const double wanted = static_cast<double>(i) / static_cast<double>(count);
+    while (k < to && share(k) < wanted) ++k;
+    if (k > from && wanted - share(k - 1) < share(k) - wanted) --k;
     at[i] = std::clamp(k, at[i - 1] + 1, to - 1);
   }
   for (std::size_t corner : corners) {
@@ -304,7 +315,9 @@ SectionPattern section_pattern(const yarn::Body& body, double size) {
   const std::size_t through = whole(thickness / size, 2);
   const std::size_t along = whole(width / (stretch * size), through);
   if (corners.size() == 4) candidates.push_back(block_pattern(largest, corners, {along, through}));
-  candidates.push_back(ring_pattern(largest, tips, corners, {std::max(along, least), std::max(through, least)}));
+  if (!is_sharp)
+    candidates.push_back(
+        ring_pattern(largest, tips, corners, {std::max(along, least), std::max(through, least)}));
   candidates.push_back(
       columns_pattern(largest, tips, corners, {std::max<std::size_t>(along, 4), is_sharp ? 2 : through}));
   SectionPattern* best = nullptr;

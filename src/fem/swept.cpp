@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
-#include <optional>
 
 #include "core/parallel.h"
 #include "fem/end_cap.h"
 #include "fem/fibre.h"
+#include "fem/hexahedron.h"
 #include "fem/kept_volume.h"
 #include "fem/materials.h"
 #include "fem/quality.h"
@@ -62,9 +61,13 @@ void fill_rows(Sweep& sweep) {
   }
 }
 
-Sweep sweep_of(const yarn::Body& body, const SweptOptions& options) {
+double size_for(const yarn::Body& body, const SweptOptions& options) {
   const double extent = yarn::narrowest_section(body);
-  const double size = options.size > 0 ? std::min(options.size, extent) : extent / pieces_per_extent;
+  return options.size > 0 ? std::min(options.size, extent) : extent / pieces_per_extent;
+}
+
+Sweep sweep_of(const yarn::Body& body, double size) {
+  const double extent = yarn::narrowest_section(body);
   Sweep sweep{&body, section_pattern(body, size), {}, {}};
   // The pieces run counter-clockwise seen against the way along the yarn.
   if (body.inward)
@@ -110,9 +113,12 @@ SurfacePiece surface_piece(const Sweep& sweep, std::size_t j, std::size_t k) {
   return piece;
 }
 
-// The facets of a yarn whose first node has the number `first`.
+// The facets of a yarn whose first node has the number `first`. A twisted quadrilateral has the mean of the
+// volumes that its two diagonals give: they take turns.
 void add_facets(const Sweep& sweep, std::uint32_t yarn, std::size_t first, std::vector<YarnFacet>& facets) {
-  const auto add = [&](const std::array<std::size_t, 4>& nodes, CellTriangles::Part part, double height) {
+  const auto add = [&](std::array<std::size_t, 4> nodes, CellTriangles::Part part, double height,
+                       bool turned = false) {
+    if (turned) std::rotate(nodes.begin(), nodes.begin() + 1, nodes.end());
     std::array<std::uint32_t, 4> n{};
     for (std::size_t i = 0; i < 4; ++i) n[i] = static_cast<std::uint32_t>(first + nodes[i]);
     facets.push_back({{n[0], n[1], n[2]}, yarn, part, height});
@@ -121,7 +127,7 @@ void add_facets(const Sweep& sweep, std::uint32_t yarn, std::size_t first, std::
   for (std::size_t j = 0; j < sweep.parts(); ++j)
     for (std::size_t k = 0; k < sweep.pattern.ring.size(); ++k) {
       const SurfacePiece piece = surface_piece(sweep, j, k);
-      add(piece.nodes, CellTriangles::Part::side, piece.height);
+      add(piece.nodes, CellTriangles::Part::side, piece.height, (j + k) % 2 == 1);
     }
   if (sweep.body->closed_along) return;
   for (const auto& piece : sweep.pattern.pieces) {
@@ -157,6 +163,69 @@ void keep_volumes(std::vector<Sweep>& sweeps) {
     fill_rows(sweep);
   }
 }
+
+// Of its elements, as a share of the yarn's own.
+double volume_error(const Sweep& sweep) {
+  double volume = 0;
+  for (std::size_t j = 0; j < sweep.parts(); ++j)
+    for (const auto& piece : sweep.pattern.pieces) {
+      EightNodes nodes;
+      for (std::size_t i = 0; i < 4; ++i) {
+        nodes[i] = sweep.nodes[sweep.node(j, piece[i])];
+        nodes[i + 4] = sweep.nodes[sweep.node(j + 1, piece[i])];
+      }
+      volume += volume_of_hexahedron(nodes);
+    }
+  return std::abs(volume / sweep.body->volume - 1);
+}
+
+// Yarns divided, finer where their neighbours leave no room for their volume.
+class Sweeps {
+ public:
+  Sweeps(std::span<const yarn::Body> bodies, const SweptOptions& options)
+      : bodies_(bodies), options_(options), on_surface_(bodies.size()) {
+    for (const yarn::Body& body : bodies) sizes_.push_back(size_for(body, options));
+  }
+  // Error: limit.
+  Result<std::vector<Sweep>> make() {
+    std::vector<std::size_t> open(bodies_.size());
+    for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
+    for (int round = 0;; ++round) {
+      for_each_index(
+          open.size(), options_.threads,
+          [&](std::size_t k) { on_surface_[open[k]] = sweep_of(bodies_[open[k]], sizes_[open[k]]); },
+          options_.progress);
+      if (Status few = check_count(); !few) return few.error();
+      std::vector<Sweep> sweeps = on_surface_;
+      keep_volumes(sweeps);
+      open.clear();
+      for (std::size_t i = 0; i < sweeps.size(); ++i)
+        if (volume_error(sweeps[i]) > right) open.push_back(i);
+      if (open.empty() || round == most_rounds) return sweeps;
+      if (round == 0) refined_ = open.size();
+      for (const std::size_t i : open) sizes_[i] *= finer;
+    }
+  }
+  [[nodiscard]] std::size_t refined() const { return refined_; }
+
+ private:
+  static constexpr double right = 0.004, finer = 0.65;
+  static constexpr int most_rounds = 4;
+  [[nodiscard]] Status check_count() const {
+    std::size_t count = 0;
+    for (const Sweep& sweep : on_surface_) count += sweep.elements();
+    if (count <= most_elements) return {};
+    return error(Kind::limit,
+                 fmt::format("{} hexahedra would be needed, more than {}; choose a larger --size, or mesh "
+                             "fewer yarns",
+                             count, most_elements));
+  }
+  std::span<const yarn::Body> bodies_;
+  const SweptOptions& options_;
+  std::vector<double> sizes_;
+  std::vector<Sweep> on_surface_;
+  std::size_t refined_ = 0;
+};
 
 // The sides of its elements on the yarn's surface and ends; `first` is the number of its first node.
 void add_faces(const Sweep& sweep, std::size_t first, Region& region) {
@@ -221,32 +290,26 @@ Status check(const Mesh& mesh, std::span<const yarn::Body> bodies, double scale)
   return {};
 }
 
-Status check_count(const std::vector<Sweep>& sweeps) {
-  std::size_t count = 0;
-  for (const Sweep& sweep : sweeps) count += sweep.elements();
-  if (count <= most_elements) return {};
-  return error(Kind::limit, fmt::format("{} hexahedra would be needed, more than {}; choose a larger --size, "
-                                        "or mesh fewer yarns",
-                                        count, most_elements));
-}
-
 }  // namespace
 
 Result<Mesh> mesh_swept(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies, Unit units,
                         const SweptOptions& options, Diagnostics& diagnostics) {
   if (bodies.empty()) return error(Kind::geometry, "there is no yarn to mesh");
-  std::vector<Sweep> sweeps(bodies.size());
-  for_each_index(
-      bodies.size(), options.threads, [&](std::size_t i) { sweeps[i] = sweep_of(bodies[i], options); },
-      options.progress);
-  if (Status few = check_count(sweeps); !few) return few.error();
-  keep_volumes(sweeps);
+  Sweeps maker(bodies, options);
+  const Result<std::vector<Sweep>> sweeps = maker.make();
+  if (!sweeps) return sweeps.error();
+  if (maker.refined() > 0)
+    diagnostics.add(note(Kind::geometry,
+                         fmt::format("{} of {} yarns got smaller hexahedra: their neighbours leave no room for "
+                                     "the volume that larger ones lose",
+                                     maker.refined(), bodies.size()))
+                        .placed({}, fabric.file));
 
   Mesh mesh;
   mesh.shape = Mesh::Shape::hexahedron;
   mesh.title = fabric.title.value_or("");
   const double scale = millimetres_per(units);
-  for (const Sweep& sweep : sweeps) append(mesh, sweep, scale);
+  for (const Sweep& sweep : *sweeps) append(mesh, sweep, scale);
   MaterialChoice choice = choose_materials(fabric, bodies, diagnostics);
   mesh.materials = std::move(choice.materials);
   for (std::size_t i = 0; i < bodies.size(); ++i) mesh.regions[i].material = choice.of_body[i];

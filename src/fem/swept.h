@@ -22,7 +22,8 @@ struct SweptOptions {
 
 // One Region a body in their order, in mm. Along a yarn elements are at most eight sizes long, turn by at
 // most 0.35 radians and leave the surface by at most 3 % of the thickness. Nodes of the surface stand a
-// little outside of it, so that volumes are right (kept_volume.h). Warnings: materials (materials.h). Errors:
+// little outside of it, so that volumes are right (kept_volume.h); where neighbours leave no room for that,
+// sizes are smaller, by 0.65 up to four times, with a note. Warnings: materials (materials.h). Errors:
 // geometry (an element that is turned inside out, with its yarn and place), limit (more than 2 10^7
 // elements).
 Result<Mesh> mesh_swept(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies, Unit units,

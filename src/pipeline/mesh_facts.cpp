@@ -99,14 +99,15 @@ std::string volumes_in_words(const fem::Mesh& mesh) {
 }
 
 std::optional<Message> wrong_volume(const fem::Mesh& mesh) {
-  constexpr double usual = 0.002;  // what the default size promises
+  const bool is_brick = mesh.shape == fem::Mesh::Shape::hexahedron;
+  const double usual = is_brick ? 0.005 : 0.002;  // what the default size promises
   const fem::Region* worst = worst_volume(mesh);
   if (worst == nullptr || std::abs(volume_error(*worst)) <= usual) return std::nullopt;
   return warning(
       Kind::geometry,
       fmt::format("the volume of {} is {:.2g} % too {}; a smaller --size{} makes it better", name_of(*worst),
                   100 * std::abs(volume_error(*worst)), volume_error(*worst) < 0 ? "small" : "large",
-                  mesh.order == 1 ? " or --order 2" : ""));
+                  mesh.order == 1 && !is_brick ? " or --order 2" : ""));
 }
 
 Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {
