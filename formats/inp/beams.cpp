@@ -1,4 +1,4 @@
-// Yarns as beams: B31 with their sections, in a deck that Abaqus takes, or CalculiX.
+// Yarns as beams with their sections, in a deck that Abaqus takes (B31), or CalculiX (B32R).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -49,22 +49,34 @@ std::vector<Group> groups_of(const fem::BeamModel& beams) {
   return groups;
 }
 
+std::string_view beam_type(bool for_calculix) {
+  return for_calculix ? "B32R" : "B31";
+}
+
 std::string name_of_group(std::size_t k) {
   return "Beams" + std::to_string(k + 1);
 }
 
+// CalculiX has round sections on beams of three nodes only: there the middles of all beams come behind the
+// nodes.
 void write_beam_elements(TextBuffer& text, const fem::BeamModel& beams, const fem::DeckNames& names,
-                    const std::vector<Group>& groups) {
+                         const std::vector<Group>& groups, bool for_calculix) {
   const fem::Mesh& mesh = beams.mesh;
   text << "*NODE, NSET=AllNodes\n";
-  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
-    const Vec3& p = mesh.nodes[n];
-    text << n + 1 << ", " << real(p.x()) << ", " << real(p.y()) << ", " << real(p.z()) << '\n';
-  }
+  const auto write_node = [&](std::size_t number, const Vec3& p) {
+    text << number << ", " << real(p.x()) << ", " << real(p.y()) << ", " << real(p.z()) << '\n';
+  };
+  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) write_node(n + 1, mesh.nodes[n]);
+  for (std::size_t e = 0; for_calculix && e < mesh.elements.size(); ++e)
+    write_node(mesh.nodes.size() + e + 1,
+               (mesh.nodes[mesh.elements[e][0]] + mesh.nodes[mesh.elements[e][1]]) / 2);
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
-    text << "*ELEMENT, TYPE=B31, ELSET=" << names.of(i) << '\n';
-    for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
-      text << e + 1 << ", " << mesh.elements[e][0] + 1 << ", " << mesh.elements[e][1] + 1 << '\n';
+    text << "*ELEMENT, TYPE=" << beam_type(for_calculix) << ", ELSET=" << names.of(i) << '\n';
+    for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e) {
+      text << e + 1 << ", " << mesh.elements[e][0] + 1 << ", ";
+      if (for_calculix) text << mesh.nodes.size() + e + 1 << ", ";
+      text << mesh.elements[e][1] + 1 << '\n';
+    }
   }
   text << "*ELSET, ELSET=All\n";
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) text << names.of(i) << '\n';
@@ -202,12 +214,12 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
        << "\n** Units: mm, N, MPa, tonne, s. Sections as " << (for_calculix ? "CalculiX" : "Abaqus")
        << " has them (--solver)\n";
   fem::write_yarn_names(text, beams.mesh, names, "**", 120);
-  write_beam_elements(text, beams, names, groups);
+  write_beam_elements(text, beams, names, groups, for_calculix);
   write_beam_sections(text, beams, groups, for_calculix);
   write_contacts(text, beams, names);
   write_beam_step(text, beams);
   return finished(text, {{"nodes", beams.mesh.nodes.size()},
-                         {"B31", beams.mesh.elements.size()},
+                         {std::string(beam_type(for_calculix)), beams.mesh.elements.size()},
                          {"beam sections", groups.size()}},
                   {{"contact pairs", beams.contacts.size()}});
 }

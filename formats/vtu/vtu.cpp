@@ -56,12 +56,18 @@ void write_cells(TextBuffer& text, const Cells& cells) {
 }
 
 Cells cells_of(const fem::Mesh& mesh) {
-  // Hexahedra, wedges, tetrahedra of 4 and 10 nodes, in the order of ours.
+  // Hexahedra, tetrahedra of 4 and 10 nodes, in the order of ours. Of a wedge VTK wants the first triangle
+  // counter-clockwise seen from outside.
   constexpr std::uint8_t wedge = 13;
   const int type = mesh.shape == fem::Mesh::Shape::hexahedron ? 12 : mesh.order == 1 ? 10 : 24;
   Cells cells;
-  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
-    cells.add(mesh.is_wedge(e) ? wedge : static_cast<std::uint8_t>(type), mesh.different_nodes_of(e));
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+    const std::vector<std::size_t> n = mesh.different_nodes_of(e);
+    if (mesh.is_wedge(e))
+      cells.add(wedge, std::array{n[0], n[2], n[1], n[3], n[5], n[4]});
+    else
+      cells.add(static_cast<std::uint8_t>(type), n);
+  }
   return cells;
 }
 

@@ -123,27 +123,6 @@ Result<std::vector<BeamContact>> find_pairs(std::span<const yarn::Body> bodies, 
   return list;
 }
 
-// Of each yarn whose section varies, how many beams have.
-void say_what_varies(std::span<const yarn::Body> bodies, const std::vector<BeamChain>& chains,
-                     const std::string& file, Diagnostics& diagnostics) {
-  std::size_t count = 0, most = 0, worst = 0;
-  for (std::size_t i = 0; i < chains.size(); ++i) {
-    if (chains[i].sections.size() < 2) continue;
-    ++count;
-    if (chains[i].sections.size() <= most) continue;
-    most = chains[i].sections.size();
-    worst = i;
-  }
-  if (count == 0) return;
-  diagnostics.add(note(Kind::geometry,
-                       fmt::format("the section varies along {}: beams have that of their middle, {} "
-                                   "different ones here{}",
-                                   count == 1 ? "this yarn" : fmt::format("{} yarns", count), most,
-                                   count == 1 ? "" : ", where it varies most"))
-                      .of_yarn(bodies[worst].name, bodies[worst].place)
-                      .placed({}, file));
-}
-
 void say_what_overlaps(const BeamModel& beams, const std::string& file, Diagnostics& diagnostics) {
   std::size_t count = 0;
   const BeamContact* deepest = nullptr;
@@ -184,7 +163,6 @@ Result<BeamModel> make_beams(const fabric::Fabric& fabric, std::span<const yarn:
   Result<std::vector<BeamContact>> contacts = find_pairs(bodies, scale, options.threads);
   if (!contacts) return contacts.error();
   beams.contacts = std::move(*contacts);
-  say_what_varies(bodies, chains, fabric.file, diagnostics);
   say_what_overlaps(beams, fabric.file, diagnostics);
   return beams;
 }

@@ -42,7 +42,7 @@ struct BeamOptions {
 
 // Beams turn by at most 0.35 radians and leave the centre line by at most a tenth of the thickness. Sections
 // that are alike to 1 % of their area are one. Contacts: up to a gap of a quarter of the thinnest yarn.
-// Warnings: materials (materials.h); sections that vary along a yarn, with how many they became; overlaps.
+// Warnings: materials (materials.h); overlaps.
 // Errors: of contact::find_contacts.
 Result<BeamModel> make_beams(const fabric::Fabric& fabric, std::span<const yarn::Body> bodies, Unit units,
                              const BeamOptions& options, Diagnostics& diagnostics);

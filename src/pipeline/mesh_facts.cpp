@@ -147,16 +147,20 @@ std::string hexahedra_in_words(const fem::Mesh& mesh) {
                      mesh.quality.mean_scaled_jacobian);
 }
 
+static std::size_t count_sections(const fem::BeamModel& beams, const fem::Region& region) {
+  const auto begin = beams.section_of.begin();
+  return std::set<std::size_t>(begin + static_cast<std::ptrdiff_t>(region.first_element),
+                               begin + static_cast<std::ptrdiff_t>(region.last_element))
+      .size();
+}
+
 Json beams_json(const fem::BeamModel& beams) {
   const fem::Mesh& mesh = beams.mesh;
   std::size_t number = 0;
   const auto yarn_json = [&](const fem::Region& region) {
-    const std::set<std::size_t> sections(
-        beams.section_of.begin() + static_cast<std::ptrdiff_t>(region.first_element),
-        beams.section_of.begin() + static_cast<std::ptrdiff_t>(region.last_element));
     return Json{{"name", region.name},
                 {"beams", region.last_element - region.first_element},
-                {"sections", sections.size()},
+                {"sections", count_sections(beams, region)},
                 {"contact_radius", beams.radii[number++]},
                 {"volume", region.volume},
                 {"exact_volume", region.exact_volume}};
@@ -181,9 +185,21 @@ Json beams_json(const fem::BeamModel& beams) {
 }
 
 std::string beams_in_words(const fem::BeamModel& beams) {
-  return fmt::format("{} beams with {} section{}; {} pair{} of yarns touch or nearly do",
-                     beams.mesh.elements.size(), beams.sections.size(), beams.sections.size() == 1 ? "" : "s",
-                     beams.contacts.size(), beams.contacts.size() == 1 ? "" : "s");
+  const auto counted = [](std::size_t count, std::string_view what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  std::string text = fmt::format("{} with {}", counted(beams.mesh.elements.size(), "beam"),
+                                 counted(beams.sections.size(), "section"));
+  std::size_t varying = 0, most = 0;
+  for (const fem::Region& region : beams.mesh.regions) {
+    const std::size_t count = count_sections(beams, region);
+    varying += count > 1 ? 1 : 0;
+    most = std::max(most, count);
+  }
+  if (varying > 0)
+    text += fmt::format("; the section varies along {} and is that of each beam's middle: {} stations at most",
+                        counted(varying, "yarn"), most);
+  return text + fmt::format("; {} of yarns that touch or nearly do", counted(beams.contacts.size(), "pair"));
 }
 
 Json raster_json(const fem::Raster& raster) {

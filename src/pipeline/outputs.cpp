@@ -264,8 +264,11 @@ Status check_transport(fem::Physics physics, const Formats& wanted) {
   return {};
 }
 
-Status check_beams(const Formats& wanted) {
+Status check_beams(const Options& options, const Formats& wanted) {
   for (const Descriptor* format : wanted) {
+    if (has_companion(options, *format) && format->companion.asked_by != nullptr)
+      return error(Kind::usage, fmt::format("beams are written in one file: leave out {}",
+                                            format->companion.asked_by->name));
     if (format->write_beams != nullptr) continue;
     std::string others;
     for (const Descriptor* other : formats::all_formats())
@@ -299,7 +302,7 @@ Result<Plan> Plan::make(const Options& options, InputList& list) {
             Kind::usage,
             fmt::format("{} holds the voxels of a unit cell: say how many with --voxel N", format->name));
     if (options.elements == Elements::beams)
-      if (Status status = check_beams(*wanted); !status.ok()) return status.error();
+      if (Status status = check_beams(options, *wanted); !status.ok()) return status.error();
     if (options.physics != fem::Physics::elastic)
       if (Status status = check_transport(options.physics, *wanted); !status.ok()) return status.error();
   }
