@@ -81,23 +81,27 @@ std::size_t nearest_index(const Outline& outline, double u) {
 }
 
 // How much of the way between two points of an outline (numbered on, to > from) has been passed at each: of
-// length and of turn, sixty to forty. A corner at either end is no turn on the way.
+// length and, where it turns, of turn, which counts forty of a hundred at most. A corner at either end is no
+// turn on the way.
 std::vector<double> passed_shares(const Outline& outline, std::size_t from, std::size_t to) {
   std::vector<double> lengths = {0}, turns = {0};
   for (std::size_t k = from + 1; k <= to; ++k) {
     lengths.push_back(lengths.back() + outline.step(k).norm());
     turns.push_back(turns.back() + (k - 1 > from ? outline.turn(k - 1) : 0));
   }
+  const double weight = 0.4 * std::min(turns.back(), 1.0);
   std::vector<double> shares;
   for (std::size_t k = 0; k < lengths.size(); ++k)
-    shares.push_back(0.6 * lengths[k] / lengths.back() + 0.4 * turns[k] / std::max(turns.back(), 1e-9));
+    shares.push_back((1 - weight) * lengths[k] / lengths.back() +
+                     (weight > 0 ? weight * turns[k] / turns.back() : 0));
   return shares;
 }
 
 // Divides the outline between two of its points (the second may be behind the seam) into `count` parts, of
-// even length and even turn; corners on the way get a node. Without the second point.
+// even length and even turn, but for the first and last, which are `ends` of that; corners on the way get a
+// node. Without the second point.
 void divide(const Outline& outline, std::size_t from, std::size_t to, std::size_t count,
-            const std::vector<std::size_t>& corners, std::vector<double>& ring) {
+            const std::vector<std::size_t>& corners, std::vector<double>& ring, double ends = 1) {
   const std::size_t period = outline.period();
   if (to <= from) to += period;
   const std::vector<double> shares = passed_shares(outline, from, to);
@@ -106,7 +110,8 @@ void divide(const Outline& outline, std::size_t from, std::size_t to, std::size_
   at[count] = to;
   std::size_t k = from;
   for (std::size_t i = 1; i < count; ++i) {
-    const double wanted = static_cast<double>(i) / static_cast<double>(count);
+    const double wanted =
+        (static_cast<double>(i) - 1 + ends) / (static_cast<double>(count) - 2 + 2 * ends);
     while (k < to && share(k) < wanted) ++k;
     if (k > from && wanted - share(k - 1) < share(k) - wanted) --k;
     at[i] = std::clamp(k, at[i - 1] + 1, to - 1);
@@ -131,10 +136,11 @@ struct Counts {
 // `through` pieces over one another in each column, `along` columns.
 SectionPattern columns_pattern(const Outline& outline, const std::array<std::size_t, 2>& tips,
                        const std::vector<std::size_t>& corners, const Counts& counts) {
+  constexpr double tip = 0.3;  // of the others' width: long wedges are stiff, and little of them is best
   const std::size_t n = counts.along, m = counts.through;
   SectionPattern pattern;
-  divide(outline, tips[0], tips[1], n, corners, pattern.ring);
-  divide(outline, tips[1], tips[0], n, corners, pattern.ring);
+  divide(outline, tips[0], tips[1], n, corners, pattern.ring, tip);
+  divide(outline, tips[1], tips[0], n, corners, pattern.ring, tip);
   // The node of column line k (1 .. n - 1) at level l, from the part behind the second tip to that before it.
   const auto node = [&](std::size_t k, std::size_t l) {
     if (l == 0) return 2 * n - k;
@@ -300,6 +306,7 @@ std::vector<Vec3> SectionPattern::fill(std::span<const Vec3> outline) const {
 
 SectionPattern section_pattern(const yarn::Body& body, double size) {
   constexpr double stretch = 2.5;   // of pieces along the width
+  constexpr double wedges = 0.3;    // by which a pattern with triangles has to be better
   constexpr std::size_t least = 3;  // pieces along each half of a ring's outline are twice that
   const std::vector<Outline> outlines = some_outlines(body);
   const Outline& largest = outlines.front();
@@ -319,12 +326,13 @@ SectionPattern section_pattern(const yarn::Body& body, double size) {
     candidates.push_back(
         ring_pattern(largest, tips, corners, {std::max(along, least), std::max(through, least)}));
   candidates.push_back(
-      columns_pattern(largest, tips, corners, {std::max<std::size_t>(along, 4), is_sharp ? 2 : through}));
+      columns_pattern(largest, tips, corners, {std::max<std::size_t>(along, 6), is_sharp ? 2 : through}));
   SectionPattern* best = nullptr;
   double best_corner = -std::numeric_limits<double>::infinity();
   for (SectionPattern& candidate : candidates) {
     double worst = 1;
     for (const Outline& outline : outlines) worst = std::min(worst, worst_corner(candidate, outline));
+    if (&candidate == &candidates.back()) worst -= wedges;
     if (worst > best_corner + 1e-6) {
       best_corner = worst;
       best = &candidate;

@@ -31,7 +31,8 @@ struct SectionPattern {
 };
 
 // The best of a few patterns, by the worst corner that it has in sections all along the yarn:
-//   columns: across the width from tip to tip, where they end in triangles (always where two tips are sharp);
+//   columns: across the width from tip to tip, where they end in triangles; where two tips are sharp always,
+//     else where the others are much worse, for wedges are stiff;
 //   ring: a block of squares with one layer round it;
 //   block: squares alone, where the section has four sharp corners.
 // Pieces are about `size` (file units, > 0) through the thickness and up to two and a half times that along

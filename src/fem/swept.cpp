@@ -19,7 +19,7 @@ namespace selvage::fem {
 namespace {
 
 constexpr double pieces_per_extent = 3;  // where no size is given
-constexpr double longest_sizes = 8;      // along the yarn
+constexpr double longest_sizes = 8, longest_wedge_sizes = 4;  // along the yarn
 constexpr double deviation_share = 0.03;  // of the thickness
 constexpr std::size_t most_elements = 20'000'000;
 
@@ -61,6 +61,11 @@ void fill_rows(Sweep& sweep) {
   }
 }
 
+bool has_triangles(const SectionPattern& pattern) {
+  return std::any_of(pattern.pieces.begin(), pattern.pieces.end(),
+                     [](const auto& piece) { return piece[2] == piece[3]; });
+}
+
 double size_for(const yarn::Body& body, const SweptOptions& options) {
   const double extent = yarn::narrowest_section(body);
   return options.size > 0 ? std::min(options.size, extent) : extent / pieces_per_extent;
@@ -75,7 +80,7 @@ Sweep sweep_of(const yarn::Body& body, double size) {
       piece = piece[2] == piece[3] ? std::array{piece[0], piece[2], piece[1], piece[1]}
                                    : std::array{piece[0], piece[3], piece[2], piece[1]};
   sweep.vs = stations(body, sweep.pattern.ring,
-                      {.longest = longest_sizes * size,
+                      {.longest = (has_triangles(sweep.pattern) ? longest_wedge_sizes : longest_sizes) * size,
                        .deviation = deviation_share * extent,
                        .least = body.closed_along ? 6 : 2});
   const std::vector<double> rows(sweep.vs.begin(),

@@ -20,7 +20,8 @@ struct SweptOptions {
   std::function<void(std::size_t done, std::size_t total)> progress{};  // of yarns; may be empty
 };
 
-// One Region a body in their order, in mm. Along a yarn elements are at most eight sizes long, turn by at
+// One Region a body in their order, in mm. Along a yarn elements are at most eight sizes long (four where
+// there are wedges, which are stiff in bending), turn by at
 // most 0.35 radians and leave the surface by at most 3 % of the thickness. Nodes of the surface stand a
 // little outside of it, so that volumes are right (kept_volume.h); where neighbours leave no room for that,
 // sizes are smaller, by 0.65 up to four times, with a note. Warnings: materials (materials.h). Errors:
