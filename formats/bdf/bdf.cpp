@@ -280,12 +280,11 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_equations(text, mesh);
   write_loads(text, mesh);
   text << "ENDDATA\n";
-  return finished(
-      text,
-      {{"GRID", mesh.numbered()},
-       {element_type(mesh), mesh.elements.size() - mesh.count_wedges()},
-       {"PSOLID", properties.count()}},
-      {{"CPENTA", mesh.count_wedges()}, {"MPC", mesh.equations.size()}});
+  return finished(text,
+                  {{"GRID", mesh.numbered()},
+                   {element_type(mesh), mesh.elements.size() - mesh.count_wedges()},
+                   {"PSOLID", properties.count()}},
+                  {{"CPENTA", mesh.count_wedges()}, {"MPC", mesh.equations.size()}});
 }
 
 bool is_bulk_data(std::string_view head) {

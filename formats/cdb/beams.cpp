@@ -106,9 +106,10 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   write_beam_materials(text, beams.mesh);
   write_contacts(text, beams, names);
   text << "FINISH\n";
-  return finished(text, {{"nodes", beams.mesh.nodes.size()},
-                         {"BEAM188", beams.mesh.elements.size()},
-                         {"beam sections", beams.sections.size()}},
+  return finished(text,
+                  {{"nodes", beams.mesh.nodes.size()},
+                   {"BEAM188", beams.mesh.elements.size()},
+                   {"beam sections", beams.sections.size()}},
                   {{"contact pairs", beams.contacts.size()}});
 }
 

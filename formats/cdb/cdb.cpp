@@ -189,10 +189,10 @@ void write_node_block(TextBuffer& text, const std::vector<Vec3>& places) {
 void write_element_head(TextBuffer& text, const ElementHead& head) {
   // Material, type, real constants, section, coordinate system, alive, solid model, shape, number of nodes,
   // (not used), number.
-  put_right(text,
-            {head.material, head.type, head.type, head.section, head.system, 0, 0, 0, head.nodes, 0,
-             head.number},
-            10);
+  put_right(
+      text,
+      {head.material, head.type, head.type, head.section, head.system, 0, 0, 0, head.nodes, 0, head.number},
+      10);
 }
 
 void write_component(TextBuffer& text, const fem::NamedSet& set, bool is_nodes) {

@@ -155,7 +155,7 @@ void write_beam_materials(TextBuffer& text, const fem::Mesh& mesh, const std::ve
 }
 
 void write_beam_sections(TextBuffer& text, const fem::BeamModel& beams, const std::vector<Group>& groups,
-                    bool for_calculix) {
+                         bool for_calculix) {
   const fem::Mesh& mesh = beams.mesh;
   const std::vector<std::string> names = fem::solver_names(mesh.materials);
   write_beam_materials(text, mesh, names);
@@ -188,8 +188,9 @@ void write_contacts(TextBuffer& text, const fem::BeamModel& beams, const fem::De
 }
 
 void write_beam_step(TextBuffer& text, const fem::BeamModel& beams) {
-  text << "** A small tension to begin with: every yarn is clamped at its start (a ring at one node), and its "
-          "end (the\n** node across) pulled by a thousandth of its length.\n*STEP\n*STATIC\n*BOUNDARY\n";
+  text
+      << "** A small tension to begin with: every yarn is clamped at its start (a ring at one node), and its "
+         "end (the\n** node across) pulled by a thousandth of its length.\n*STEP\n*STATIC\n*BOUNDARY\n";
   for (const fem::BeamEnds& ends : fem::beam_ends(beams)) {
     text << ends.held + 1 << ", 1, 6\n";
     for (int k = 0; k < 3; ++k)
@@ -205,10 +206,9 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   const std::vector<Group> groups = groups_of(beams);
   std::vector<std::string> taken;
   for (std::size_t k = 0; k < groups.size(); ++k) taken.push_back(name_of_group(k));
-  const fem::DeckNames names(beams.mesh, {.longest = 80,
-                                          .also = "-",
-                                          .taken = {taken.begin(), taken.end()},
-                                          .endings = {"_Surface"}});
+  const fem::DeckNames names(
+      beams.mesh,
+      {.longest = 80, .also = "-", .taken = {taken.begin(), taken.end()}, .endings = {"_Surface"}});
   const bool for_calculix = options.own.text(option::solver) == "calculix";
   TextBuffer text(output);
   text << "*HEADING\nSelvage: " << std::string_view(beams.mesh.title).substr(0, 70)
@@ -219,9 +219,10 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   write_beam_sections(text, beams, groups, for_calculix);
   write_contacts(text, beams, names);
   write_beam_step(text, beams);
-  return finished(text, {{"nodes", beams.mesh.nodes.size()},
-                         {std::string(beam_type(for_calculix)), beams.mesh.elements.size()},
-                         {"beam sections", groups.size()}},
+  return finished(text,
+                  {{"nodes", beams.mesh.nodes.size()},
+                   {std::string(beam_type(for_calculix)), beams.mesh.elements.size()},
+                   {"beam sections", groups.size()}},
                   {{"contact pairs", beams.contacts.size()}});
 }
 

@@ -157,14 +157,9 @@ Result<Deck> plan_deck(const fem::Mesh& mesh, const OptionValues& own) {
   Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();
   const bool touches = mesh.physics == fem::Physics::elastic;
-  Deck deck = {mesh,
-               names,
-               std::move(*sections),
-               touches ? fem::contact_surfaces(mesh) : fem::ContactSurfaces{},
-               {},
-               {},
-               element_type(mesh, own),
-               "C3D6"};
+  Deck deck = {
+      mesh, names, std::move(*sections),    touches ? fem::contact_surfaces(mesh) : fem::ContactSurfaces{},
+      {},   {},    element_type(mesh, own), "C3D6"};
   if (mesh.cell) {
     deck.node_sets = fem::node_sets(mesh, names);
     return deck;

@@ -40,7 +40,7 @@ BeamParts parts_of(const fem::BeamModel& beams) {
 // LS-DYNA's material has one shear modulus, that of isotropy: the constants of torsion and shear make up for
 // the yarn's own. s is n1, t is n2.
 void write_beam_parts(TextBuffer& text, const fem::BeamModel& beams, const BeamParts& parts,
-                 const fem::DeckNames& names) {
+                      const fem::DeckNames& names) {
   constexpr double shear_share = 5.0 / 6;
   const fem::Mesh& mesh = beams.mesh;
   for (std::size_t k = 0; k < parts.list.size(); ++k) {
@@ -79,7 +79,7 @@ void write_beam_elements(TextBuffer& text, const fem::Mesh& mesh, const BeamPart
 }
 
 void write_beam_sets(TextBuffer& text, const fem::BeamModel& beams, const BeamParts& parts,
-                const fem::DeckNames& names) {
+                     const fem::DeckNames& names) {
   const std::size_t regions = beams.mesh.regions.size();
   std::vector<std::vector<std::size_t>> of_region(regions);
   std::vector<std::size_t> all;
@@ -127,9 +127,10 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   write_beam_sets(text, beams, parts, names);
   write_contacts(text, beams, names);
   text << "*END\n";
-  return finished(text, {{"nodes", beams.mesh.nodes.size()},
-                         {"beams", beams.mesh.elements.size()},
-                         {"parts", parts.list.size()}},
+  return finished(text,
+                  {{"nodes", beams.mesh.nodes.size()},
+                   {"beams", beams.mesh.elements.size()},
+                   {"parts", parts.list.size()}},
                   {{"contact pairs", beams.contacts.size()}});
 }
 

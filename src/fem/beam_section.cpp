@@ -18,8 +18,8 @@ namespace {
 
 // A section in its plane, mm.
 struct FlatSection {
-  Vec3 centre, across, up;      // of the plane; `across` toward the seam
-  std::vector<Vec2> outline;    // about the centroid, counter-clockwise or not; the first is not repeated
+  Vec3 centre, across, up;       // of the plane; `across` toward the seam
+  std::vector<Vec2> outline;     // about the centroid, counter-clockwise or not; the first is not repeated
   Vec2 centroid = Vec2::Zero();  // from the centre
   double area = 0;
   Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();  // integrals of x x, x y, y y about the centroid

@@ -134,11 +134,12 @@ void say_what_overlaps(const BeamModel& beams, const std::string& file, Diagnost
   if (count == 0) return;
   const auto name = [&](std::size_t k) { return beams.mesh.regions[k].name; };
   diagnostics.add(
-      warning(Kind::geometry,
-              fmt::format("{} of yarns overlap, the deepest '{}' and '{}' by {:.3g} mm: in contact they begin "
-                          "pressed together; --relax moves them apart where they have room",
-                          count == 1 ? "a pair" : fmt::format("{} pairs", count), name(deepest->a),
-                          name(deepest->b), -deepest->gap))
+      warning(
+          Kind::geometry,
+          fmt::format("{} of yarns overlap, the deepest '{}' and '{}' by {:.3g} mm: in contact they begin "
+                      "pressed together; --relax moves them apart where they have room",
+                      count == 1 ? "a pair" : fmt::format("{} pairs", count), name(deepest->a),
+                      name(deepest->b), -deepest->gap))
           .placed({}, file));
 }
 

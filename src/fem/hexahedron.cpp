@@ -28,21 +28,15 @@ using Columns = std::array<Vec3, 3>;
 
 // At a point of [-1, 1]^3.
 Columns hexahedron_columns(const EightNodes& p, const Vec3& at) {
-  constexpr std::array<std::array<int, 3>, 8> signs = {{{-1, -1, -1},
-                                                        {1, -1, -1},
-                                                        {1, 1, -1},
-                                                        {-1, 1, -1},
-                                                        {-1, -1, 1},
-                                                        {1, -1, 1},
-                                                        {1, 1, 1},
-                                                        {-1, 1, 1}}};
+  constexpr std::array<std::array<int, 3>, 8> signs = {
+      {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};
   Columns columns = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   for (std::size_t n = 0; n < 8; ++n) {
     Vec3 factor;
     for (int k = 0; k < 3; ++k) factor[k] = (1 + signs[n][static_cast<std::size_t>(k)] * at[k]) / 2;
     for (int k = 0; k < 3; ++k)
-      columns[static_cast<std::size_t>(k)] += p[n] * (signs[n][static_cast<std::size_t>(k)] / 2.0 *
-                                                      factor[(k + 1) % 3] * factor[(k + 2) % 3]);
+      columns[static_cast<std::size_t>(k)] +=
+          p[n] * (signs[n][static_cast<std::size_t>(k)] / 2.0 * factor[(k + 1) % 3] * factor[(k + 2) % 3]);
   }
   return columns;
 }
@@ -52,8 +46,7 @@ Columns wedge_columns(const EightNodes& p, const Vec3& at) {
   const double low = (1 - at.z()) / 2, high = (1 + at.z()) / 2, first = 1 - at.x() - at.y();
   const auto between = [&](std::size_t n) -> Vec3 { return low * p[n] + high * p[n + 4]; };
   const auto up = [&](std::size_t n) -> Vec3 { return (p[n + 4] - p[n]) / 2; };
-  return {between(1) - between(0), between(2) - between(0),
-          first * up(0) + at.x() * up(1) + at.y() * up(2)};
+  return {between(1) - between(0), between(2) - between(0), first * up(0) + at.x() * up(1) + at.y() * up(2)};
 }
 
 double determinant(const Columns& c) {

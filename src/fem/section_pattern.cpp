@@ -110,8 +110,7 @@ void divide(const Outline& outline, std::size_t from, std::size_t to, std::size_
   at[count] = to;
   std::size_t k = from;
   for (std::size_t i = 1; i < count; ++i) {
-    const double wanted =
-        (static_cast<double>(i) - 1 + ends) / (static_cast<double>(count) - 2 + 2 * ends);
+    const double wanted = (static_cast<double>(i) - 1 + ends) / (static_cast<double>(count) - 2 + 2 * ends);
     while (k < to && share(k) < wanted) ++k;
     if (k > from && wanted - share(k - 1) < share(k) - wanted) --k;
     at[i] = std::clamp(k, at[i - 1] + 1, to - 1);
@@ -121,7 +120,8 @@ void divide(const Outline& outline, std::size_t from, std::size_t to, std::size_
     if (corner >= to) continue;
     std::size_t nearest = 0;
     for (std::size_t i = 1; i < count; ++i)
-      if (nearest == 0 || std::abs(share(at[i]) - share(corner)) < std::abs(share(at[nearest]) - share(corner)))
+      if (nearest == 0 ||
+          std::abs(share(at[i]) - share(corner)) < std::abs(share(at[nearest]) - share(corner)))
         nearest = i;
     if (nearest > 0 && at[nearest - 1] < corner && at[nearest + 1] > corner) at[nearest] = corner;
   }
@@ -135,7 +135,7 @@ struct Counts {
 
 // `through` pieces over one another in each column, `along` columns.
 SectionPattern columns_pattern(const Outline& outline, const std::array<std::size_t, 2>& tips,
-                       const std::vector<std::size_t>& corners, const Counts& counts) {
+                               const std::vector<std::size_t>& corners, const Counts& counts) {
   constexpr double tip = 0.3;  // of the others' width: long wedges are stiff, and little of them is best
   const std::size_t n = counts.along, m = counts.through;
   SectionPattern pattern;
@@ -201,14 +201,14 @@ struct Squares {
   void add_to(std::vector<Piece>& pieces, std::size_t first) const {
     for (std::size_t j = 0; j < b; ++j)
       for (std::size_t i = 0; i < a; ++i)
-        pieces.push_back({first + node(i, j), first + node(i + 1, j), first + node(i + 1, j + 1),
-                          first + node(i, j + 1)});
+        pieces.push_back(
+            {first + node(i, j), first + node(i + 1, j), first + node(i + 1, j + 1), first + node(i, j + 1)});
   }
 };
 
 // A block with one layer round it. The tips are in the middles of its short sides, as nearly as nodes can be.
 SectionPattern ring_pattern(const Outline& outline, const std::array<std::size_t, 2>& tips,
-                    const std::vector<std::size_t>& corners, const Counts& counts) {
+                            const std::vector<std::size_t>& corners, const Counts& counts) {
   const Squares squares{counts.through, counts.along};
   SectionPattern pattern;
   divide(outline, tips[0], tips[1], counts.along + counts.through, corners, pattern.ring);
@@ -224,7 +224,8 @@ SectionPattern ring_pattern(const Outline& outline, const std::array<std::size_t
 }
 
 // Squares alone between four corners.
-SectionPattern block_pattern(const Outline& outline, const std::vector<std::size_t>& corners, const Counts& counts) {
+SectionPattern block_pattern(const Outline& outline, const std::vector<std::size_t>& corners,
+                             const Counts& counts) {
   const auto side = [&](std::size_t k) {
     const double from = outline.lengths[corners[k]], to = outline.lengths[corners[(k + 1) % 4]];
     return k == 3 ? to - from + outline.lengths.back() : to - from;

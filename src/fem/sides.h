@@ -22,9 +22,9 @@ struct OuterSide {
   std::size_t element = 0;
   std::size_t side = 0;  // index into element_sides(): Abaqus's S1 is 0
   std::size_t region = 0;
-  std::size_t behind = outside;        // the region beyond it
-  int face = -1;                       // 0..5, A..F: of the unit cell on which it lies; -1: none
-  ElementSide nodes{};                        // seen from out of the region
+  std::size_t behind = outside;  // the region beyond it
+  int face = -1;                 // 0..5, A..F: of the unit cell on which it lies; -1: none
+  ElementSide nodes{};           // seen from out of the region
 };
 
 // All of them, in the order of the elements and their sides: an interface has one from each of its regions.

@@ -66,9 +66,9 @@ std::vector<double> stations(const yarn::Body& body, std::span<const double> us,
   samples.vs = nurbs::divided(body.surface.knots_v, body.surface.degree_v, parts, least_samples);
   samples.lengths.push_back(0);
   for (std::size_t j = 1; j < samples.vs.size(); ++j)
-    samples.lengths.push_back(samples.lengths.back() + (nurbs::evaluate(body.axis, samples.vs[j]) -
-                                                        nurbs::evaluate(body.axis, samples.vs[j - 1]))
-                                                           .norm());
+    samples.lengths.push_back(
+        samples.lengths.back() +
+        (nurbs::evaluate(body.axis, samples.vs[j]) - nurbs::evaluate(body.axis, samples.vs[j - 1])).norm());
   samples.wanted.assign(samples.vs.size(), rules.longest);
   limit(samples, nurbs::evaluate_grid(body.surface, {us.begin(), us.end()}, samples.vs), us.size(), rules);
   even_out(samples, shortest * rules.longest);

@@ -18,9 +18,9 @@
 namespace selvage::fem {
 namespace {
 
-constexpr double pieces_per_extent = 3;  // where no size is given
+constexpr double pieces_per_extent = 3;                       // where no size is given
 constexpr double longest_sizes = 8, longest_wedge_sizes = 4;  // along the yarn
-constexpr double deviation_share = 0.03;  // of the thickness
+constexpr double deviation_share = 0.03;                      // of the thickness
 constexpr std::size_t most_elements = 20'000'000;
 
 // A yarn divided: `rows` of nodes, each of pattern.size() in its order, one at each station; of a ring the
@@ -244,9 +244,10 @@ void add_faces(const Sweep& sweep, std::size_t first, Region& region) {
   for (const auto& p : sweep.pattern.pieces) {
     const bool is_triangle = p[2] == p[3];
     const auto at = [&](std::size_t row, std::size_t k) { return first + sweep.node(row, p[k]); };
-    region.start_faces.push_back({at(0, 0), at(0, is_triangle ? 2 : 3), at(0, is_triangle ? 1 : 2), at(0, 1)});
-    region.end_faces.push_back({at(sweep.parts(), 0), at(sweep.parts(), 1), at(sweep.parts(), 2),
-                                at(sweep.parts(), 3)});
+    region.start_faces.push_back(
+        {at(0, 0), at(0, is_triangle ? 2 : 3), at(0, is_triangle ? 1 : 2), at(0, 1)});
+    region.end_faces.push_back(
+        {at(sweep.parts(), 0), at(sweep.parts(), 1), at(sweep.parts(), 2), at(sweep.parts(), 3)});
   }
   for (std::size_t k = 0; k < sweep.pattern.size(); ++k) {
     region.start_nodes.push_back(first + sweep.node(0, k));
@@ -304,11 +305,12 @@ Result<Mesh> mesh_swept(const fabric::Fabric& fabric, std::span<const yarn::Body
   const Result<std::vector<Sweep>> sweeps = maker.make();
   if (!sweeps) return sweeps.error();
   if (maker.refined() > 0)
-    diagnostics.add(note(Kind::geometry,
-                         fmt::format("{} of {} yarns got smaller hexahedra: their neighbours leave no room for "
-                                     "the volume that larger ones lose",
-                                     maker.refined(), bodies.size()))
-                        .placed({}, fabric.file));
+    diagnostics.add(
+        note(Kind::geometry,
+             fmt::format("{} of {} yarns got smaller hexahedra: their neighbours leave no room for "
+                         "the volume that larger ones lose",
+                         maker.refined(), bodies.size()))
+            .placed({}, fabric.file));
 
   Mesh mesh;
   mesh.shape = Mesh::Shape::hexahedron;

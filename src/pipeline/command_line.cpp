@@ -291,11 +291,11 @@ void of_a_picture(OptionTable& t) {
 void of_a_mesh(OptionTable& t) {
   t.begin("The mesh");
   constexpr std::string_view of_tetrahedra = "is of tetrahedra, and voxels are hexahedra of eight nodes";
-  t.choice({mesh}, "--elements",
-           "of dry yarns: tetrahedra, hexahedra swept along each yarn (wedges at the tips of its section), or "
-           "beams with the constants of its sections and a list of the yarns that touch",
-           "tet hex beam", &Options::elements,
-           {Elements::tetrahedra, Elements::hexahedra, Elements::beams})
+  t.choice(
+       {mesh}, "--elements",
+       "of dry yarns: tetrahedra, hexahedra swept along each yarn (wedges at the tips of its section), or "
+       "beams with the constants of its sections and a list of the yarns that touch",
+       "tet hex beam", &Options::elements, {Elements::tetrahedra, Elements::hexahedra, Elements::beams})
       .goes_with("is of dry yarns, and a unit cell is meshed with tetrahedra or voxels", "",
                  "--cut --matrix --periodic --voxel")
       .with_preset("tet");
@@ -576,7 +576,8 @@ static Status check_elements(const Options& options) {
   if (options.elements == Elements::tetrahedra) return {};
   const std::string_view word = options.elements == Elements::hexahedra ? "hex" : "beam";
   const auto refused = [&](std::string_view name) {
-    return error(Kind::usage, fmt::format("{} is of tetrahedra: leave it out with --elements {}", name, word));
+    return error(Kind::usage,
+                 fmt::format("{} is of tetrahedra: leave it out with --elements {}", name, word));
   };
   if (options.order > 1) return refused("--order 2");
   if (options.min_dihedral > 0) return refused("--min-dihedral");

@@ -160,7 +160,7 @@ void mesh(Job& job) {
         job.outputs, [&](const PlannedOutput& output) { return output.format->*writes != nullptr; });
   };
   const Meshes made = make(job, *fabric, *builder, is_wanted(&formats::Descriptor::write_mesh),
-                         is_wanted(&formats::Descriptor::write_raster));
+                           is_wanted(&formats::Descriptor::write_raster));
   if (!job.has_failed()) write_meshes(job, *outputs, made);
 }
 

@@ -120,22 +120,21 @@ Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {
     exact += region.exact_volume;
     off += std::abs(region.volume - region.exact_volume);
   }
-  Json facts = {
-      {"nodes", mesh.nodes.size()},
-      {"tets", is_brick ? 0 : mesh.elements.size()},
-      {"volume", volume},
-      {"hexahedra", if_true(is_brick, mesh.elements.size() - wedges)},
-      {"wedges", if_true(wedges > 0, wedges)},
-      {"min_dihedral", if_true(has_quality, mesh.quality.min_dihedral)},
-      {"max_aspect", if_true(has_quality, mesh.quality.max_aspect)},
-      {"min_scaled_jacobian", if_true(has_quality && is_brick, mesh.quality.min_scaled_jacobian)},
-      {"volume_error", if_true(has_quality, exact > 0 ? off / exact : 0)},
-      {"below_target", mesh.angles ? Json(mesh.angles->below) : Json()},
-      {"in_wedges", mesh.angles ? Json(mesh.angles->in_wedges) : Json()},
-      {"regions",
-       list_json(mesh.regions, [&](const fem::Region& region) { return region_json(mesh, region); })},
-      {"worst", if_true(!mesh.worst.empty(), worst_json(mesh))},
-      {"estimate", if_known(estimate)}};
+  Json facts = {{"nodes", mesh.nodes.size()},
+                {"tets", is_brick ? 0 : mesh.elements.size()},
+                {"volume", volume},
+                {"hexahedra", if_true(is_brick, mesh.elements.size() - wedges)},
+                {"wedges", if_true(wedges > 0, wedges)},
+                {"min_dihedral", if_true(has_quality, mesh.quality.min_dihedral)},
+                {"max_aspect", if_true(has_quality, mesh.quality.max_aspect)},
+                {"min_scaled_jacobian", if_true(has_quality && is_brick, mesh.quality.min_scaled_jacobian)},
+                {"volume_error", if_true(has_quality, exact > 0 ? off / exact : 0)},
+                {"below_target", mesh.angles ? Json(mesh.angles->below) : Json()},
+                {"in_wedges", mesh.angles ? Json(mesh.angles->in_wedges) : Json()},
+                {"regions", list_json(mesh.regions,
+                                      [&](const fem::Region& region) { return region_json(mesh, region); })},
+                {"worst", if_true(!mesh.worst.empty(), worst_json(mesh))},
+                {"estimate", if_known(estimate)}};
   if (mesh.cell) add_cell(facts, mesh);
   return facts;
 }
@@ -173,8 +172,12 @@ Json beams_json(const fem::BeamModel& beams) {
                 {"at", point_json(contact.at)}};
   };
   const auto section_json = [](const fem::BeamSection& section) {
-    return Json{{"shape", name_of(section.shape)}, {"width", section.width}, {"height", section.height},
-                {"area", section.area},            {"i11", section.i11},     {"i22", section.i22},
+    return Json{{"shape", name_of(section.shape)},
+                {"width", section.width},
+                {"height", section.height},
+                {"area", section.area},
+                {"i11", section.i11},
+                {"i22", section.i22},
                 {"torsion", section.torsion}};
   };
   return {{"nodes", mesh.nodes.size()},
@@ -197,8 +200,9 @@ std::string beams_in_words(const fem::BeamModel& beams) {
     most = std::max(most, count);
   }
   if (varying > 0)
-    text += fmt::format("; the section varies along {} and is that of each beam's middle: {} stations at most",
-                        counted(varying, "yarn"), most);
+    text +=
+        fmt::format("; the section varies along {} and is that of each beam's middle: {} stations at most",
+                    counted(varying, "yarn"), most);
   return text + fmt::format("; {} of yarns that touch or nearly do", counted(beams.contacts.size(), "pair"));
 }
 

@@ -93,9 +93,8 @@ TEST(Swept, StraightTubeHasItsVolumeAndEnds) {
     for (const ElementSide& face : *faces) {
       const Vec3 area = area_vector(mesh, face);
       whole += area;
-      volume += area.dot((mesh.nodes[face[0]] + mesh.nodes[face[1]] + mesh.nodes[face[2]] +
-                          mesh.nodes[face[3]]) /
-                         12);
+      volume += area.dot(
+          (mesh.nodes[face[0]] + mesh.nodes[face[1]] + mesh.nodes[face[2]] + mesh.nodes[face[3]]) / 12);
     }
   EXPECT_LT(whole.norm(), 1e-10);
   EXPECT_NEAR(volume, region.volume, 0.01 * region.volume);
@@ -152,7 +151,8 @@ TEST(Swept, TightBendIsAnErrorThatNamesTheYarn) {
 
 // The same bytes for any number of threads.
 TEST(Swept, ThreadsDoNotMatter) {
-  const std::vector<yarn::Body> bodies = {straight_tube(1, 0.5, 4), straight_tube(1, 0.5, 4, 24, Vec3(0, 0, 0.6))};
+  const std::vector<yarn::Body> bodies = {straight_tube(1, 0.5, 4),
+                                          straight_tube(1, 0.5, 4, 24, Vec3(0, 0, 0.6))};
   const Mesh one = mesh_of(bodies, {.threads = 1}), two = mesh_of(bodies, {.threads = 2});
   EXPECT_EQ(one.nodes, two.nodes);
   EXPECT_EQ(one.elements, two.elements);
