@@ -23,6 +23,7 @@
 #include "fabric/measured.h"
 #include "fabric/model.h"
 #include "fabric/piece.h"
+#include "fem/beams.h"
 #include "fem/field_mesh.h"
 #include "fem/mesh.h"
 #include "fem/raster.h"
@@ -131,7 +132,8 @@ struct Companion {
 };
 
 struct MeshFileOptions {
-  std::string companion;  // the name of the file beside (Descriptor::companion); empty: there is none
+  std::string companion{};  // the name of the file beside (Descriptor::companion); empty: there is none
+  OptionValues own{};       // of Descriptor::options
 };
 
 struct Descriptor {
@@ -184,6 +186,9 @@ struct Descriptor {
   std::optional<fem::FieldMesh> (*read_mesh)(const Source& source, Diagnostics& diagnostics) = nullptr;
   Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output,
                                    const MeshFileOptions& options) = nullptr;
+  // Yarns as beams (`mesh --elements beam`).
+  Result<WriteFacts> (*write_beams)(const fem::BeamModel& beams, OutputFile& output,
+                                    const MeshFileOptions& options) = nullptr;
   bool carries_transport = false;  // decks of every Mesh::physics, not of elasticity alone
   // A unit cell on voxels (`mesh --voxel`), for a format that holds no elements.
   Result<WriteFacts> (*write_raster)(const fem::Raster& raster, OutputFile& output) = nullptr;

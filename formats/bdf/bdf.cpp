@@ -173,8 +173,8 @@ const char* element_type(const fem::Mesh& mesh) {
 void write_elements(TextBuffer& text, const fem::Mesh& mesh, const Properties& properties) {
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     std::vector<std::size_t> fields = {e + 1, properties.of(e)};
-    for (const std::size_t node : mesh.nodes_of(e)) fields.push_back(node + 1);
-    put_small(text, element_type(mesh), fields);
+    for (const std::size_t node : mesh.different_nodes_of(e)) fields.push_back(node + 1);
+    put_small(text, mesh.is_wedge(e) ? "CPENTA" : element_type(mesh), fields);
   }
 }
 
@@ -280,10 +280,11 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_equations(text, mesh);
   write_loads(text, mesh);
   text << "ENDDATA\n";
-  return finished(
-      text,
-      {{"GRID", mesh.numbered()}, {element_type(mesh), mesh.elements.size()}, {"PSOLID", properties.count()}},
-      {{"MPC", mesh.equations.size()}});
+  return finished(text,
+                  {{"GRID", mesh.numbered()},
+                   {element_type(mesh), mesh.elements.size() - mesh.count_wedges()},
+                   {"PSOLID", properties.count()}},
+                  {{"CPENTA", mesh.count_wedges()}, {"MPC", mesh.equations.size()}});
 }
 
 bool is_bulk_data(std::string_view head) {

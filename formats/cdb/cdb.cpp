@@ -7,6 +7,7 @@
 #include "core/columns.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
+#include "formats/cdb/deck.h"
 
 namespace selvage::formats::cdb {
 namespace {
@@ -16,23 +17,10 @@ int element_type(const fem::Mesh& mesh) {
   return mesh.order == 1 ? 285 : 187;
 }
 
-// A block of so many lines, the largest number being theirs, too.
-void open_block(TextBuffer& text, std::string_view command, std::size_t count, std::string_view form) {
-  text << command;
-  put_right(text, count, 10);
-  text << ',';
-  put_right(text, count, 10);
-  text << '\n' << form << '\n';
-}
-
 void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
-  open_block(text, "NBLOCK,6,SOLID,", mesh.numbered(), "(3i9,6e21.13e3)");
-  for (std::size_t n = 0; n < mesh.numbered(); ++n) {
-    put_right(text, {n + 1, 0, 0}, 9);
-    for (const double x : mesh.place(n)) put_right(text, scientific_text(x, 13), 21);
-    text << '\n';
-  }
-  text << "N,R5.3,LOC,       -1,\n";
+  std::vector<Vec3> places;
+  for (std::size_t n = 0; n < mesh.numbered(); ++n) places.push_back(mesh.place(n));
+  write_node_block(text, places);
 }
 
 // LOCAL's angles turn about z, then about the new x, then about the new y: the frame is
@@ -58,13 +46,6 @@ void write_frames(TextBuffer& text, const fem::Frames& frames) {
   text << "CSYS,0\n";
 }
 
-void write_element_head(TextBuffer& text, std::size_t material, std::size_t type, std::size_t system,
-                        std::size_t nodes, std::size_t number) {
-  // Material, type, real constants, section, coordinate system, alive, solid model, shape, number of nodes,
-  // (not used), number.
-  put_right(text, {material, type, type, 1, system, 0, 0, 0, nodes, 0, number}, 10);
-}
-
 void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
                     const fem::Frames& frames) {
   const std::vector<std::size_t> materials = fem::element_materials(mesh, sections);
@@ -72,23 +53,18 @@ void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<f
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const std::size_t frame = frames.of_element[e];
     const std::span<const std::size_t> nodes = mesh.nodes_of(e);
-    write_element_head(text, materials[e] + 1, 1, frame == fem::Frames::none ? 0 : first_local + frame - 1,
-                       nodes.size(), e + 1);
+    write_element_head(text, {.material = materials[e] + 1,
+                              .system = frame == fem::Frames::none ? 0 : first_local + frame - 1,
+                              .nodes = nodes.size(),
+                              .number = e + 1});
     put_numbers(text, nodes, 10, 8);
   }
   for (std::size_t k = 0; k < mesh.drivers.size(); ++k) {
-    write_element_head(text, 1, 2, 0, 1, mesh.elements.size() + k + 1);
+    write_element_head(text, {.type = 2, .nodes = 1, .number = mesh.elements.size() + k + 1});
     put_right(text, mesh.number_of_driver(k) + 1, 10);
     text << '\n';
   }
   text << "        -1\n";
-}
-
-void write_component(TextBuffer& text, const fem::NamedSet& set, bool is_nodes) {
-  text << "CMBLOCK," << set.name << (is_nodes ? ",NODE," : ",ELEM,");
-  put_right(text, set.members.size(), 8);
-  text << "\n(8i10)\n";
-  put_numbers(text, set.members, 10, 8);
 }
 
 void write_components(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
@@ -192,12 +168,47 @@ bool is_an_archive(std::string_view head) {
 
 }  // namespace
 
+void open_block(TextBuffer& text, std::string_view command, std::size_t count, std::string_view form) {
+  text << command;
+  put_right(text, count, 10);
+  text << ',';
+  put_right(text, count, 10);
+  text << '\n' << form << '\n';
+}
+
+void write_node_block(TextBuffer& text, const std::vector<Vec3>& places) {
+  open_block(text, "NBLOCK,6,SOLID,", places.size(), "(3i9,6e21.13e3)");
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    put_right(text, {n + 1, 0, 0}, 9);
+    for (const double x : places[n]) put_right(text, scientific_text(x, 13), 21);
+    text << '\n';
+  }
+  text << "N,R5.3,LOC,       -1,\n";
+}
+
+void write_element_head(TextBuffer& text, const ElementHead& head) {
+  // Material, type, real constants, section, coordinate system, alive, solid model, shape, number of nodes,
+  // (not used), number.
+  put_right(
+      text,
+      {head.material, head.type, head.type, head.section, head.system, 0, 0, 0, head.nodes, 0, head.number},
+      10);
+}
+
+void write_component(TextBuffer& text, const fem::NamedSet& set, bool is_nodes) {
+  text << "CMBLOCK," << set.name << (is_nodes ? ",NODE," : ",ELEM,");
+  put_right(text, set.members.size(), 8);
+  text << "\n(8i10)\n";
+  put_numbers(text, set.members, 10, 8);
+}
+
 const Descriptor& descriptor() {
   static const Descriptor self = {.name = "cdb",
                                   .title = "ANSYS mesh archive",
                                   .extensions = {".cdb"},
                                   .sniff = is_an_archive,
                                   .write_mesh = write,
+                                  .write_beams = write_beams,
                                   .companion = {.format = macro_descriptor, .is_of_load_cases = true}};
   return self;
 }

@@ -17,6 +17,9 @@ namespace selvage::formats::inp {
 // form where it is that short, else rounded to the digits that fit, at least 13.
 std::string real(double value);
 
+// Numbers from 1 on, sixteen a row, as Abaqus allows.
+void write_set(TextBuffer& text, const std::vector<std::size_t>& members);
+
 // Names of at most 80 characters.
 fem::DeckNames names_of(const fem::Mesh& mesh);
 
@@ -43,9 +46,10 @@ struct Deck {
   fem::ContactSurfaces contact;
   std::vector<Load> loads;               // of dry yarns that no cell cuts
   std::vector<fem::NamedSet> node_sets;  // without those of all nodes, of drivers and of dependent nodes
+  std::string_view element, wedge;       // types of elements
 };
 // Error (internal): a region without a material that has elastic constants.
-Result<Deck> plan_deck(const fem::Mesh& mesh);
+Result<Deck> plan_deck(const fem::Mesh& mesh, const OptionValues& own);
 
 // Has the section's material axes? Yarns have an orientation in any case, for the material that somebody may
 // give them later.
@@ -75,6 +79,10 @@ std::vector<std::size_t> dependent_nodes(const fem::Mesh& mesh);
 void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh);
 // A step for each load case.
 void write_cell_steps(TextBuffer& text, const fem::Mesh& mesh);
+
+// Yarns as beams: a deck of its own.
+Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
+                               const MeshFileOptions& options);
 
 // The file of write_mesh_part, which --split-deck makes.
 const Descriptor& mesh_descriptor();

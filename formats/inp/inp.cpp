@@ -108,7 +108,7 @@ Result<std::string> inclusion_of(const std::string& file) {
 }
 
 Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& options) {
-  const Result<Deck> deck = plan_deck(mesh);
+  const Result<Deck> deck = plan_deck(mesh, options.own);
   if (!deck) return deck.error();
   const bool is_split = !options.companion.empty();
   const Result<std::string> inclusion = is_split ? inclusion_of(options.companion) : std::string();
@@ -143,14 +143,23 @@ fem::DeckNames names_of(const fem::Mesh& mesh) {
   return {mesh, std::move(rule)};
 }
 
-Result<Deck> plan_deck(const fem::Mesh& mesh) {
+// Those of heat transfer begin with a D. Voxels are integrated in full: hourglasses would bend a cell.
+static std::string_view element_type(const fem::Mesh& mesh, const OptionValues& own) {
+  const bool conducts = mesh.physics != fem::Physics::elastic;
+  if (mesh.shape == fem::Mesh::Shape::hexahedron)
+    return conducts ? "DC3D8" : mesh.cell ? "C3D8" : own.text(option::brick);
+  if (mesh.order == 1) return conducts ? "DC3D4" : "C3D4";
+  return conducts ? "DC3D10" : "C3D10";
+}
+
+Result<Deck> plan_deck(const fem::Mesh& mesh, const OptionValues& own) {
   const fem::DeckNames names = names_of(mesh);
   Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();
   const bool touches = mesh.physics == fem::Physics::elastic;
   Deck deck = {
-      mesh, names, std::move(*sections), touches ? fem::contact_surfaces(mesh) : fem::ContactSurfaces{},
-      {},   {}};
+      mesh, names, std::move(*sections),    touches ? fem::contact_surfaces(mesh) : fem::ContactSurfaces{},
+      {},   {},    element_type(mesh, own), "C3D6"};
   if (mesh.cell) {
     deck.node_sets = fem::node_sets(mesh, names);
     return deck;
@@ -191,6 +200,7 @@ const Descriptor& descriptor() {
       .extensions = {".inp"},
       .sniff = looks_like_a_deck,
       .write_mesh = write,
+      .write_beams = write_beams,
       .carries_transport = true,
       .companion = {.format = mesh_descriptor, .ending = "_mesh", .asked_by = &option::split_deck},
       .options = option::all(),

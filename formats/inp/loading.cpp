@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem/sides.h"
 #include "formats/inp/deck.h"
 
 namespace selvage::formats::inp {
@@ -8,10 +9,9 @@ namespace {
 
 constexpr double strain = 0.001;
 
-Vec3 area_vector(const fem::Mesh& mesh, const std::vector<std::array<std::size_t, 3>>& faces) {
+Vec3 area_vector(const fem::Mesh& mesh, const std::vector<fem::ElementSide>& faces) {
   Vec3 sum = Vec3::Zero();
-  for (const auto& f : faces)
-    sum += (mesh.nodes[f[1]] - mesh.nodes[f[0]]).cross(mesh.nodes[f[2]] - mesh.nodes[f[0]]) / 2;
+  for (const fem::ElementSide& face : faces) sum += fem::area_vector(mesh, face);
   return sum;
 }
 

@@ -3,13 +3,13 @@
 #include "formats/inp/deck.h"
 
 namespace selvage::formats::inp {
-namespace {
 
-// Sixteen entries a row, as Abaqus allows.
-void write_set(TextBuffer& text, const std::vector<std::size_t>& nodes) {
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    text << nodes[i] + 1 << (i % 16 == 15 || i + 1 == nodes.size() ? "\n" : ", ");
+void write_set(TextBuffer& text, const std::vector<std::size_t>& members) {
+  for (std::size_t i = 0; i < members.size(); ++i)
+    text << members[i] + 1 << (i % 16 == 15 || i + 1 == members.size() ? "\n" : ", ");
 }
+
+namespace {
 
 void write_node(TextBuffer& text, std::size_t number, const Vec3& p) {
   text << number << ", " << real(p.x()) << ", " << real(p.y()) << ", " << real(p.z()) << '\n';
@@ -26,25 +26,26 @@ void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   text << "*NSET, NSET=Drivers, GENERATE\n" << mesh.nodes.size() + 1 << ", " << mesh.numbered() << ", 1\n";
 }
 
-// Those of heat transfer begin with a D.
-std::string_view element_type(const fem::Mesh& mesh) {
-  const bool conducts = mesh.physics != fem::Physics::elastic;
-  if (mesh.shape == fem::Mesh::Shape::hexahedron) return conducts ? "DC3D8" : "C3D8";
-  if (mesh.order == 1) return conducts ? "DC3D4" : "C3D4";
-  return conducts ? "DC3D10" : "C3D10";
+// Of one region, those that are wedges or those that are not.
+void write_elements(TextBuffer& text, const Deck& deck, std::size_t i, bool wedges) {
+  const fem::Mesh& mesh = deck.mesh;
+  const fem::Region& region = mesh.regions[i];
+  bool is_first = true;
+  for (std::size_t e = region.first_element; e < region.last_element; ++e) {
+    if (mesh.is_wedge(e) != wedges) continue;
+    if (is_first)
+      text << "*ELEMENT, TYPE=" << (wedges ? deck.wedge : deck.element) << ", ELSET=" << deck.names.of(i)
+           << '\n';
+    is_first = false;
+    text << e + 1;
+    for (const std::size_t node : mesh.different_nodes_of(e)) text << ", " << node + 1;
+    text << '\n';
+  }
 }
 
 void write_elements(TextBuffer& text, const Deck& deck) {
-  const fem::Mesh& mesh = deck.mesh;
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
-    const fem::Region& region = mesh.regions[i];
-    text << "*ELEMENT, TYPE=" << element_type(mesh) << ", ELSET=" << deck.names.of(i) << '\n';
-    for (std::size_t e = region.first_element; e < region.last_element; ++e) {
-      text << e + 1;
-      for (const std::size_t node : mesh.nodes_of(e)) text << ", " << node + 1;
-      text << '\n';
-    }
-  }
+  for (std::size_t i = 0; i < deck.mesh.regions.size(); ++i)
+    for (const bool wedges : {false, true}) write_elements(text, deck, i, wedges);
 }
 
 // One name a line: sixteen may be too long for Abaqus's 256 columns, and meshio takes the first of a line.
@@ -88,8 +89,8 @@ void write_directions(TextBuffer& text, const Deck& deck) {
 }
 
 Result<WriteFacts> write_mesh_file(const fem::Mesh& mesh, OutputFile& output,
-                                   const MeshFileOptions& /*options*/) {
-  const Result<Deck> deck = plan_deck(mesh);
+                                   const MeshFileOptions& options) {
+  const Result<Deck> deck = plan_deck(mesh, options.own);
   if (!deck) return deck.error();
   TextBuffer text(output);
   text << "** Mesh by Selvage: the deck that stands beside it includes it.\n";
@@ -117,10 +118,13 @@ void write_mesh_part(TextBuffer& text, const Deck& deck) {
 
 EntityCounts counts_of_mesh(const Deck& deck) {
   const fem::Mesh& mesh = deck.mesh;
-  return {{"nodes", mesh.nodes.size()},
-          {std::string(element_type(mesh)), mesh.elements.size()},
-          {"element sets", mesh.regions.size() + 1},
-          {"node sets", deck.node_sets.size() + 1 + mesh.drivers.size()}};
+  const std::size_t wedges = mesh.count_wedges();
+  EntityCounts counts = {{"nodes", mesh.nodes.size()},
+                         {std::string(deck.element), mesh.elements.size() - wedges},
+                         {"element sets", mesh.regions.size() + 1},
+                         {"node sets", deck.node_sets.size() + 1 + mesh.drivers.size()}};
+  if (wedges > 0) counts[std::string(deck.wedge)] = wedges;
+  return counts;
 }
 
 const Descriptor& mesh_descriptor() {

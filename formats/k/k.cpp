@@ -6,11 +6,10 @@
 #include "fem/complete_cell.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
+#include "formats/k/deck.h"
 
 namespace selvage::formats::k {
-namespace {
-// A real number for a column: as many digits as go in, one blank before it. A shorter exponent leaves room
-// for a digit more.
+
 std::string real(double value, std::size_t width) {
   std::string text = number_text(value, width - 1);
   if (const std::size_t cut = text.find("e-0"); cut != std::string::npos) {
@@ -21,7 +20,7 @@ std::string real(double value, std::size_t width) {
   return text;
 }
 
-void put_reals(TextBuffer& text, std::initializer_list<double> values, std::size_t width = 10) {
+void put_reals(TextBuffer& text, std::initializer_list<double> values, std::size_t width) {
   for (const double value : values) put_right(text, real(value, width), width);
   text << '\n';
 }
@@ -40,10 +39,24 @@ void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   }
 }
 
+void write_list(TextBuffer& text, std::string_view keyword, std::size_t number, std::string_view name,
+                const std::vector<std::size_t>& members) {
+  text << '*' << keyword << "_TITLE\n" << name << '\n';
+  put_integers(text, {number});
+  put_numbers(text, members, 10, 8);
+}
+
+namespace {
+
 // Parts are sections of one material: 1, 2, ..
 void write_parts(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
-  // 10: tetrahedron of 4 nodes, 16: of 10 nodes, 2: brick, fully integrated.
-  const std::size_t form = mesh.shape == fem::Mesh::Shape::hexahedron ? 2 : mesh.order == 1 ? 10 : 16;
+  // 10: tetrahedron of 4 nodes, 16: of 10 nodes, 2: brick, fully integrated (of voxels), 1: of one point.
+  const bool is_brick = mesh.shape == fem::Mesh::Shape::hexahedron;
+  const std::size_t form = is_brick ? (mesh.cell ? 2 : 1) : mesh.order == 1 ? 10 : 16;
+  if (mesh.count_wedges() > 0) {
+    text << "$ Wedges are sorted out of the bricks (ESORT).\n*CONTROL_SOLID\n";
+    put_integers(text, {1});
+  }
   text << "*SECTION_SOLID\n";
   put_integers(text, {1, form});
   for (std::size_t i = 0; i < sections.size(); ++i) {
@@ -92,8 +105,15 @@ void write_expansions(TextBuffer& text, const fem::Mesh& mesh, const std::vector
   }
 }
 
+// A wedge as LS-DYNA has it: a quadrilateral, and over it two nodes that are repeated.
+std::vector<std::size_t> solid_nodes(const fem::Mesh& mesh, std::size_t e) {
+  const std::vector<std::size_t> n = mesh.different_nodes_of(e);
+  if (mesh.is_wedge(e)) return {n[0], n[1], n[4], n[3], n[2], n[2], n[5], n[5]};
+  return n;
+}
+
 void write_element(TextBuffer& text, const fem::Mesh& mesh, std::size_t e, std::size_t part) {
-  const std::span<const std::size_t> nodes = mesh.nodes_of(e);
+  const std::vector<std::size_t> nodes = solid_nodes(mesh, e);
   put_right(text, {e + 1, part}, 8);
   if (nodes.size() == 10) text << '\n';
   // A tetrahedron of four nodes repeats its last one.
@@ -113,13 +133,6 @@ void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<f
         put_reals(text, {axis->x(), axis->y(), axis->z()}, 16);
     }
   }
-}
-
-void write_list(TextBuffer& text, std::string_view keyword, std::size_t number, std::string_view name,
-                const std::vector<std::size_t>& members) {
-  text << '*' << keyword << "_TITLE\n" << name << '\n';
-  put_integers(text, {number});
-  put_numbers(text, members, 10, 8);
 }
 
 void write_sets(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
@@ -235,7 +248,8 @@ const Descriptor& descriptor() {
                                   .title = "LS-DYNA keyword file",
                                   .extensions = {".k"},
                                   .sniff = is_a_keyword_file,
-                                  .write_mesh = write};
+                                  .write_mesh = write,
+                                  .write_beams = write_beams};
   return self;
 }
 

@@ -1,7 +1,9 @@
 #include "formats/registry.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
+#include <vector>
 
 #include "core/text_buffer.h"
 #include "fem/faces.h"
@@ -34,26 +36,43 @@ void write_volume(TextBuffer& text, std::size_t tag, const Box3& box,
   text << '\n';
 }
 
+namespace {
+
+// How many of a region's elements are wedges, or are none.
+std::size_t count_elements(const fem::Mesh& mesh, const fem::Region& region, bool wedges) {
+  std::size_t count = 0;
+  for (std::size_t e = region.first_element; e < region.last_element; ++e)
+    count += mesh.is_wedge(e) == wedges ? 1 : 0;
+  return count;
+}
+
+}  // namespace
+
 void write_volume_elements(TextBuffer& text, const fem::Mesh& mesh, std::size_t number) {
-  // Tetrahedra of 4 and 10 nodes, hexahedra. Gmsh's ten-node tetrahedron has the midpoints of the edges 01 12
-  // 20 03 23 13: ours with the last two exchanged.
+  // Tetrahedra of 4 and 10 nodes, hexahedra, wedges. Gmsh's ten-node tetrahedron has the midpoints of the
+  // edges 01 12 20 03 23 13: ours with the last two exchanged.
+  constexpr int wedge = 6;
   const int type = mesh.shape == fem::Mesh::Shape::hexahedron ? 5 : mesh.order == 1 ? 4 : 11;
   constexpr std::array<std::size_t, 10> node_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
-  for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
-    const fem::Region& region = mesh.regions[i];
-    text << "3 " << i + 1 << ' ' << type << ' ' << region.last_element - region.first_element << '\n';
-    for (std::size_t e = region.first_element; e < region.last_element; ++e) {
-      text << ++number;
-      for (std::size_t k = 0; k < mesh.nodes_of(e).size(); ++k)
-        text << ' ' << mesh.elements[e][node_order[k]] + 1;
-      text << '\n';
+  for (std::size_t i = 0; i < mesh.regions.size(); ++i)
+    for (const bool wedges : {false, true}) {
+      const fem::Region& region = mesh.regions[i];
+      const std::size_t count = count_elements(mesh, region, wedges);
+      if (count == 0) continue;
+      text << "3 " << i + 1 << ' ' << (wedges ? wedge : type) << ' ' << count << '\n';
+      for (std::size_t e = region.first_element; e < region.last_element; ++e) {
+        if (mesh.is_wedge(e) != wedges) continue;
+        text << number + e + 1;
+        const std::vector<std::size_t> nodes = mesh.different_nodes_of(e);
+        for (std::size_t k = 0; k < nodes.size(); ++k) text << ' ' << nodes[node_order[k]] + 1;
+        text << '\n';
+      }
     }
-  }
 }
 
 namespace {
 
-using Faces = std::vector<std::array<std::size_t, 3>>;
+using Faces = std::vector<fem::ElementSide>;
 
 // A yarn's boundary in the file: entity and physical group `tag`.
 struct Skin {
@@ -120,23 +139,43 @@ void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   text << "$EndNodes\n";
 }
 
+// The elements of a skin by Gmsh's type: 2 and 9 are triangles of 3 and 6 nodes, 3 quadrilaterals.
+std::map<int, std::vector<std::vector<std::size_t>>> elements_of(const fem::Mesh& mesh, const Skin& skin) {
+  std::map<int, std::vector<std::vector<std::size_t>>> by_type;
+  if (mesh.shape == fem::Mesh::Shape::hexahedron)
+    for (const fem::ElementSide& n : *skin.faces) {
+      if (n[2] == n[3])
+        by_type[2].push_back({n[0], n[1], n[2]});
+      else
+        by_type[3].push_back({n[0], n[1], n[2], n[3]});
+    }
+  else
+    for (const fem::SixNodes& n : fem::six_node_faces(mesh, mesh.regions[skin.region], *skin.faces))
+      by_type[mesh.order == 1 ? 2 : 9].emplace_back(n.begin(), n.begin() + (mesh.order == 1 ? 3 : 6));
+  return by_type;
+}
+
 BoundingElements write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Skin>& skins) {
   BoundingElements bounding;
-  // Gmsh's element types: 2 and 9 are triangles of 3 and 6 nodes.
-  std::size_t count = mesh.elements.size();
-  for (const Skin& skin : skins) count += skin.faces->size();
-  text << "$Elements\n" << skins.size() + mesh.regions.size() << ' ' << count << " 1 " << count << '\n';
-  std::size_t number = 0;
+  std::size_t count = mesh.elements.size(), blocks = 0;
+  for (const fem::Region& region : mesh.regions)
+    for (const bool wedges : {false, true}) blocks += count_elements(mesh, region, wedges) > 0 ? 1 : 0;
   for (const Skin& skin : skins) {
-    text << "2 " << skin.tag << (mesh.order == 1 ? " 2 " : " 9 ") << skin.faces->size() << '\n';
-    for (const fem::SixNodes& face : fem::six_node_faces(mesh, mesh.regions[skin.region], *skin.faces)) {
-      text << ++number;
-      const auto nodes = std::span(face).first(mesh.order == 1 ? 3 : 6);
-      bounding.add(nodes);
-      for (const std::size_t node : nodes) text << ' ' << node + 1;
-      text << '\n';
-    }
+    count += skin.faces->size();
+    blocks += elements_of(mesh, skin).size();
   }
+  text << "$Elements\n" << blocks << ' ' << count << " 1 " << count << '\n';
+  std::size_t number = 0;
+  for (const Skin& skin : skins)
+    for (const auto& [type, elements] : elements_of(mesh, skin)) {
+      text << "2 " << skin.tag << ' ' << type << ' ' << elements.size() << '\n';
+      for (const std::vector<std::size_t>& nodes : elements) {
+        text << ++number;
+        bounding.add(nodes);
+        for (const std::size_t node : nodes) text << ' ' << node + 1;
+        text << '\n';
+      }
+    }
   write_volume_elements(text, mesh, number);
   text << "$EndElements\n";
   return bounding;
@@ -151,12 +190,19 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_entities(text, mesh, skins);
   write_nodes(text, mesh);
   write_fibre_fraction(text, mesh, write_elements(text, mesh, skins));
-  std::size_t triangles = 0;
-  for (const Skin& skin : skins) triangles += skin.faces->size();
-  return finished(text, {{"nodes", mesh.nodes.size()},
-                         {"triangles", triangles},
-                         {"tetrahedra", mesh.elements.size()},
-                         {"physical groups", skins.size() + mesh.regions.size()}});
+  std::size_t triangles = 0, faces = 0;
+  for (const Skin& skin : skins)
+    for (const fem::ElementSide& face : *skin.faces) {
+      triangles += face[2] == face[3] ? 1 : 0;
+      ++faces;
+    }
+  const std::size_t wedges = mesh.count_wedges(), others = mesh.elements.size() - wedges;
+  const bool is_brick = mesh.shape == fem::Mesh::Shape::hexahedron;
+  return finished(text,
+                  {{"nodes", mesh.nodes.size()},
+                   {is_brick ? "hexahedra" : "tetrahedra", others},
+                   {"physical groups", skins.size() + mesh.regions.size()}},
+                  {{"triangles", triangles}, {"quadrangles", faces - triangles}, {"wedges", wedges}});
 }
 
 bool has_the_first_line(std::string_view head) {

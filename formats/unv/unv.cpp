@@ -34,22 +34,24 @@ void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   text << mark;
 }
 
-// Dataset 2412: 111 and 118 are tetrahedra of 4 and 10 nodes, 115 the brick of 8. Ten nodes go round the
-// base, corners and middles in turn, then up the three edges, then the tip.
+// Dataset 2412: 111 and 118 are tetrahedra of 4 and 10 nodes, 115 the brick of 8, 112 the wedge of 6. Ten
+// nodes go round the base, corners and middles in turn, then up the three edges, then the tip.
 void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections) {
   const bool is_brick = mesh.shape == fem::Mesh::Shape::hexahedron;
   const std::size_t descriptor = is_brick ? 115 : mesh.order == 1 ? 111 : 118;
   constexpr std::array<std::size_t, 10> plain = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9},
                                         round = {0, 4, 1, 5, 2, 6, 7, 8, 9, 3};
-  std::vector<std::size_t> nodes(static_cast<std::size_t>(mesh.nodes_per_element()));
-  const auto& order = nodes.size() == 10 ? round : plain;
+  const auto& order = mesh.nodes_per_element() == 10 ? round : plain;
   const std::vector<std::size_t> materials = fem::element_materials(mesh, sections);
   open_dataset(text, 2412);
   for (std::size_t i = 0; i < mesh.regions.size(); ++i)
     for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e) {
-      put_right(text, {e + 1, descriptor, i + 1, materials[e] + 1, 7, nodes.size()}, width);
+      const std::vector<std::size_t> own = mesh.different_nodes_of(e);
+      const std::size_t type = mesh.is_wedge(e) ? 112 : descriptor;
+      put_right(text, {e + 1, type, i + 1, materials[e] + 1, 7, own.size()}, width);
       text << '\n';
-      for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] = mesh.elements[e][order[k]];
+      std::vector<std::size_t> nodes;
+      for (std::size_t k = 0; k < own.size(); ++k) nodes.push_back(own[order[k]]);
       put_numbers(text, nodes, width, 8);
     }
   text << mark;

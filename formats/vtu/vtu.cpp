@@ -1,5 +1,6 @@
 #include "formats/registry.h"
 
+#include <array>
 #include <bit>
 
 #include "core/text_buffer.h"
@@ -35,37 +36,44 @@ std::vector<double> flat(const std::vector<Vec3>& vectors) {
   return result;
 }
 
-// Cells of one type. Types are VTK's.
 struct Cells {
-  std::uint8_t type = 0;
-  std::size_t count = 0;
-  std::vector<std::int64_t> connectivity;  // point indices, as many a cell
+  std::vector<std::int64_t> connectivity, offsets;  // point indices; where each cell's end
+  std::vector<std::uint8_t> types;                  // VTK's
+
+  template <class Nodes>
+  void add(std::uint8_t type, const Nodes& nodes) {
+    for (const auto node : nodes) connectivity.push_back(static_cast<std::int64_t>(node));
+    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+    types.push_back(type);
+  }
+  [[nodiscard]] std::size_t count() const { return types.size(); }
 };
 
 void write_cells(TextBuffer& text, const Cells& cells) {
-  std::vector<std::int64_t> offsets;
-  offsets.reserve(cells.count);
-  for (std::size_t k = 1; k <= cells.count; ++k)
-    offsets.push_back(static_cast<std::int64_t>(k * (cells.connectivity.size() / cells.count)));
-  const std::vector<std::uint8_t> types(cells.count, cells.type);
   write_array(text, "connectivity", cells.connectivity);
-  write_array(text, "offsets", offsets);
-  write_array(text, "types", types);
+  write_array(text, "offsets", cells.offsets);
+  write_array(text, "types", cells.types);
 }
 
 Cells cells_of(const fem::Mesh& mesh) {
-  // Hexahedra, tetrahedra of 4 and 10 nodes, in the order of ours.
+  // Hexahedra, tetrahedra of 4 and 10 nodes, in the order of ours. Of a wedge VTK wants the first triangle
+  // counter-clockwise seen from outside.
+  constexpr std::uint8_t wedge = 13;
   const int type = mesh.shape == fem::Mesh::Shape::hexahedron ? 12 : mesh.order == 1 ? 10 : 24;
-  Cells cells{static_cast<std::uint8_t>(type), mesh.elements.size(), {}};
-  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
-    for (const std::size_t node : mesh.nodes_of(e))
-      cells.connectivity.push_back(static_cast<std::int64_t>(node));
+  Cells cells;
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+    const std::vector<std::size_t> n = mesh.different_nodes_of(e);
+    if (mesh.is_wedge(e))
+      cells.add(wedge, std::array{n[0], n[2], n[1], n[3], n[5], n[4]});
+    else
+      cells.add(static_cast<std::uint8_t>(type), n);
+  }
   return cells;
 }
 
-// Quality of tetrahedra; a box has none to speak of.
+// A voxel has no quality to speak of.
 void write_quality(TextBuffer& text, const fem::Mesh& mesh) {
-  if (mesh.shape != fem::Mesh::Shape::tetrahedron) return;
+  if (mesh.shape == fem::Mesh::Shape::hexahedron && mesh.cell) return;
   std::vector<float> jacobians, angles, aspects;
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const fem::ElementShape shape = fem::shape_of(mesh, e);
@@ -111,7 +119,7 @@ void write_grid(TextBuffer& text, const std::vector<std::string>& names, const s
        << (std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian")
        << "\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
        << "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" << points.size() << "\" NumberOfCells=\""
-       << cells.count << "\">\n      <Points>\n";
+       << cells.count() << "\">\n      <Points>\n";
   write_array(text, "Points", flat(points), 3);
   text << "      </Points>\n      <Cells>\n";
   write_cells(text, cells);
@@ -140,7 +148,7 @@ Result<WriteFacts> write_gaps(const solid::GapMap& map, OutputFile& output) {
   std::vector<Vec3> points;
   std::vector<double> gaps;
   std::vector<std::int32_t> yarns;
-  Cells cells{triangle, 0, {}};
+  Cells cells;
   for (std::size_t k = 0; k < map.skins.size(); ++k) {
     const contact::SkinMesh& skin = map.skins[k];
     const auto first = static_cast<std::int64_t>(points.size());
@@ -148,8 +156,7 @@ Result<WriteFacts> write_gaps(const solid::GapMap& map, OutputFile& output) {
     gaps.insert(gaps.end(), map.gaps[k].begin(), map.gaps[k].end());
     yarns.insert(yarns.end(), skin.triangles.size(), static_cast<std::int32_t>(k));
     for (const auto& t : skin.triangles)
-      for (const std::uint32_t vertex : t) cells.connectivity.push_back(first + vertex);
-    cells.count += skin.triangles.size();
+      cells.add(triangle, std::array{first + t[0], first + t[1], first + t[2]});
   }
   TextBuffer text(output);
   write_grid(text, map.names, points, cells);
@@ -158,7 +165,7 @@ Result<WriteFacts> write_gaps(const solid::GapMap& map, OutputFile& output) {
   text << "      </PointData>\n      <CellData>\n";
   write_array(text, "yarn", yarns);
   text << "      </CellData>\n";
-  return finish(text, points.size(), cells.count);
+  return finish(text, points.size(), cells.count());
 }
 
 bool is_a_vtk_grid(std::string_view head) {

@@ -29,6 +29,7 @@ std::string table_of_formats() {
     if (format->open_bodies != nullptr && format->carries_curves) append(write, "curves");
     if (format->open_bodies != nullptr && format->carries_lines) append(write, "lines");
     if (format->write_mesh != nullptr) append(write, "mesh");
+    if (format->write_beams != nullptr) append(write, "beams");
     if (format->write_raster != nullptr) append(write, "voxels");
     table.add({std::string(format->name), extensions, read_word(*format), write.empty() ? "-" : write,
                std::string(format->title)});

@@ -98,7 +98,7 @@ Mesh assemble(const Block& block, const TetMesh& tets) {
   for (std::size_t k = 0; k < surface.triangles.size(); ++k) {
     if (surface.parts[k] == CellTriangles::Part::box) continue;
     const Triangle& t = surface.triangles[k];
-    faces_of(mesh.regions[surface.sides[k].behind], surface.parts[k]).push_back({t[0], t[1], t[2]});
+    faces_of(mesh.regions[surface.sides[k].behind], surface.parts[k]).push_back({t[0], t[1], t[2], t[2]});
   }
   return mesh;
 }

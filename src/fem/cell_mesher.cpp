@@ -169,7 +169,7 @@ void CellMesher::renew_side_faces(Mesh& mesh) {
   for (Region& region : mesh.regions) region.side_faces.clear();
   for (const OuterSide& side : outer_sides(mesh))
     if (side.behind != OuterSide::outside && mesh.regions[side.region].kind == Region::Kind::yarn)
-      mesh.regions[side.region].side_faces.push_back({side.nodes[0], side.nodes[1], side.nodes[2]});
+      mesh.regions[side.region].side_faces.push_back(side.nodes);
 }
 
 Status CellMesher::finish(Mesh& mesh) {

@@ -11,24 +11,26 @@ namespace {
 
 using Corners = std::array<std::size_t, 3>;
 
-Corners sorted(Corners corners) {
-  std::sort(corners.begin(), corners.end());
-  return corners;
+// Whichever corner of a triangle is repeated.
+ElementSide sorted(ElementSide side) {
+  if (side[2] == side[3]) side[3] = *std::max_element(side.begin(), side.end());
+  std::sort(side.begin(), side.end());
+  return side;
 }
 
 std::vector<ContactSurface> surfaces_of(const Mesh& mesh) {
   std::vector<ContactSurface> surfaces(mesh.regions.size());
-  std::set<Corners> ends;
+  std::set<ElementSide> ends;
   for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
     surfaces[i].region = i;
     for (const auto* faces : {&mesh.regions[i].start_faces, &mesh.regions[i].end_faces})
-      for (const Corners& face : *faces) ends.insert(sorted(face));
+      for (const ElementSide& face : *faces) ends.insert(sorted(face));
   }
   for (const OuterSide& side : outer_sides(mesh)) {
-    if (side.face >= 0 || ends.contains(sorted({side.nodes[0], side.nodes[1], side.nodes[2]}))) continue;
+    if (side.face >= 0 || ends.contains(sorted(side.nodes))) continue;
     ContactSurface& surface = surfaces[side.region];
     surface.whole.push_back(side);
-    const double up = area_vector(mesh, side).z();
+    const double up = area_vector(mesh, side.nodes).z();
     if (up > 0) surface.upper.push_back(side);
     if (up < 0) surface.lower.push_back(side);
   }
@@ -38,7 +40,7 @@ std::vector<ContactSurface> surfaces_of(const Mesh& mesh) {
 // Four volumes over the surface.
 double thickness_of(const Mesh& mesh, const ContactSurface& surface) {
   double area = 0;
-  for (const OuterSide& side : surface.whole) area += area_vector(mesh, side).norm();
+  for (const OuterSide& side : surface.whole) area += area_vector(mesh, side.nodes).norm();
   return area > 0 ? 4 * mesh.regions[surface.region].volume / area : 0;
 }
 

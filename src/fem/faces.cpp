@@ -5,7 +5,7 @@
 namespace selvage::fem {
 
 std::vector<SixNodes> six_node_faces(const Mesh& mesh, const Region& region,
-                                     const std::vector<std::array<std::size_t, 3>>& faces) {
+                                     const std::vector<ElementSide>& faces) {
   struct Edge {
     std::size_t low, high, middle;
     bool operator<(const Edge& other) const { return low != other.low ? low < other.low : high < other.high; }

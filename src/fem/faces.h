@@ -18,6 +18,6 @@ using SixNodes = std::array<std::size_t, 6>;  // corners, then the midpoints of 
 // `faces` (boundary triangles of the region, or of any of its elements) with their midside nodes; with order
 // 1 these entries are 0.
 std::vector<SixNodes> six_node_faces(const Mesh& mesh, const Region& region,
-                                     const std::vector<std::array<std::size_t, 3>>& faces);
+                                     const std::vector<ElementSide>& faces);
 
 }  // namespace selvage::fem

@@ -6,6 +6,7 @@
 #include <deque>
 #include <limits>
 
+#include "fem/quality.h"
 #include "nurbs/divided.h"
 
 namespace selvage::fem {
@@ -37,13 +38,6 @@ double nearest_parameter(const yarn::Body& body, const Vec3& point, double guess
     if (std::abs(t - before) <= 1e-9 * range) break;
   }
   return t;
-}
-
-Vec3 middle_of(const Mesh& mesh, std::size_t element) {
-  const int corners = mesh.corners_per_element();
-  Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < corners; ++k) sum += mesh.nodes[mesh.elements[element][static_cast<std::size_t>(k)]];
-  return sum / corners;
 }
 
 // Which elements of a region stand round each node.

@@ -270,4 +270,14 @@ double keep_volumes(std::vector<Vec3>& points, const KeptVolume& surface) {
   return Keeper(points, surface).run();
 }
 
+double keep_dry_volumes(std::vector<Vec3>& points, std::span<const YarnFacet> facets,
+                        std::span<const double> volumes) {
+  constexpr double right = 1e-3;
+  const std::vector<Vec3> on_surface = points;
+  const double worst = keep_volumes(points, {.facets = facets, .volumes = volumes});
+  if (worst < right) return worst;
+  points = on_surface;
+  return keep_volumes(points, {.facets = facets, .volumes = volumes, .gap_share = 0.4});
+}
+
 }  // namespace selvage::fem

@@ -50,4 +50,9 @@ struct KeptVolume {
 // stays wrong. Returned: the largest error left, a share of the yarn's volume.
 double keep_volumes(std::vector<Vec3>& points, const KeptVolume& surface);
 
+// The same for the yarns of a dry fabric, between which nothing is meshed: where a tenth of the gaps is not
+// room enough, as in a cloth that is jammed, most of them is taken.
+double keep_dry_volumes(std::vector<Vec3>& points, std::span<const YarnFacet> facets,
+                        std::span<const double> volumes);
+
 }  // namespace selvage::fem

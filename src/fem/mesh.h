@@ -16,8 +16,8 @@
 namespace selvage::fem {
 
 // Quality of a set of elements. Dihedral angles in degrees; aspect: longest edge over the smallest height
-// times sqrt(2/3) (1 for the regular tetrahedron); scaled Jacobian: 1 for the regular tetrahedron, <= 0
-// inverted.
+// times sqrt(2/3) (1 for the regular tetrahedron), of hexahedra and wedges longest over shortest edge; scaled
+// Jacobian: 1 for the regular tetrahedron (hexahedron, wedge), <= 0 inverted.
 struct Quality {
   double min_dihedral = 180, max_dihedral = 0;
   double max_aspect = 0;
@@ -38,6 +38,10 @@ struct AngleTarget {
   std::size_t in_wedges = 0;  // of these, where two triangles of the surface meet under a sharper angle
 };
 
+// Corner nodes of a side of an element, counter-clockwise seen from outside: three of a tetrahedron, whose
+// third is repeated, or four of a hexahedron.
+using ElementSide = std::array<std::size_t, 4>;
+
 // One yarn's part of the mesh, or the matrix: elements [first_element, last_element) of Mesh::elements. Yarns
 // of a dry fabric share no nodes, and theirs are [first_node, last_node); regions of a unit cell share those
 // between them, and these two are 0.
@@ -49,9 +53,9 @@ struct Region {
   std::size_t first_element = 0, last_element = 0;
   std::size_t first_node = 0, last_node = 0;
   std::vector<std::size_t> start_nodes, end_nodes;  // on the end faces; empty for a ring
-  // Boundary triangles (corner nodes only, outward of the yarn): body, then start and end face. Of the
-  // matrix, and of what the faces of a unit cell cut, there are none here.
-  std::vector<std::array<std::size_t, 3>> side_faces, start_faces, end_faces;
+  // The boundary: body, then start and end face. Of the matrix, and of what the faces of a unit cell cut,
+  // there are none here.
+  std::vector<ElementSide> side_faces, start_faces, end_faces;
   double volume = 0;        // of the elements
   double exact_volume = 0;  // of the B-spline yarn
   double length = 0;        // of a whole yarn's centre line; else 0
@@ -76,10 +80,8 @@ struct UnitCell {
   // each other over it have equally many, in the same order (increasing coordinate).
   std::array<std::vector<std::size_t>, 12> edge_nodes;
   std::array<std::size_t, 8> corners{};  // bit 0, 1, 2 of the number: high in x, y, z
-  // The element sides on the faces, same order A..F, corner nodes only, seen from outside counter-clockwise
-  // (three of a tetrahedron; four of a hexahedron); where an axis is periodic, the k-th opposite the k-th.
-  std::array<std::vector<std::array<std::size_t, 4>>, 6>
-      face_sides;  // of a triangle the last entry repeats the third
+  // The element sides on the faces, same order A..F; where an axis is periodic, the k-th opposite the k-th.
+  std::array<std::vector<ElementSide>, 6> face_sides;
 };
 
 // One condition: sum of factor times displacement (of a cell that conducts: the potential) = 0. The first
@@ -111,14 +113,14 @@ struct LoadCase {
 };
 
 struct Mesh {
-  enum class Shape { tetrahedron, hexahedron };
+  enum class Shape { tetrahedron, hexahedron, beam };  // beam: of BeamModel (beams.h), two nodes
   Shape shape = Shape::tetrahedron;
   int order = 1;  // 1: corners; 2: ten nodes a tetrahedron
   std::vector<Vec3> nodes;
   // Node indices from 0. Order of a ten-node tetrahedron: corners 0-3 with positive volume
   // ((p1-p0) x (p2-p0)) . (p3-p0) > 0, then the midpoints of the edges 01 12 20 03 13 23 (Abaqus C3D10, VTK).
   // Of a hexahedron: four counter-clockwise seen from the other four, which stand over them (Abaqus C3D8,
-  // VTK).
+  // VTK). A wedge is one whose third and seventh nodes are repeated (0 1 2 2, 4 5 6 6).
   std::vector<std::array<std::size_t, 10>> elements;  // the rest unused
   // Unit tangent of the yarn, and a unit vector across the section, in each element; x and y in the matrix.
   std::vector<Vec3> along, across;
@@ -139,10 +141,30 @@ struct Mesh {
   std::vector<BadElement> worst;  // at most ten, worst first
   std::optional<AngleTarget> angles;
 
-  [[nodiscard]] int corners_per_element() const { return shape == Shape::tetrahedron ? 4 : 8; }
-  [[nodiscard]] int nodes_per_element() const { return shape == Shape::hexahedron ? 8 : order == 1 ? 4 : 10; }
+  [[nodiscard]] int corners_per_element() const {
+    return shape == Shape::beam ? 2 : shape == Shape::tetrahedron ? 4 : 8;
+  }
+  [[nodiscard]] int nodes_per_element() const {
+    return shape == Shape::tetrahedron && order == 2 ? 10 : corners_per_element();
+  }
   [[nodiscard]] std::span<const std::size_t> nodes_of(std::size_t element) const {
     return std::span(elements[element]).first(static_cast<std::size_t>(nodes_per_element()));
+  }
+
+  [[nodiscard]] bool is_wedge(std::size_t element) const {
+    return shape == Shape::hexahedron && elements[element][2] == elements[element][3];
+  }
+  // Each node once: six of a wedge, three under the other three (Abaqus C3D6, VTK).
+  [[nodiscard]] std::vector<std::size_t> different_nodes_of(std::size_t element) const {
+    const auto& e = elements[element];
+    if (is_wedge(element)) return {e[0], e[1], e[2], e[4], e[5], e[6]};
+    const std::span<const std::size_t> all = nodes_of(element);
+    return {all.begin(), all.end()};
+  }
+  [[nodiscard]] std::size_t count_wedges() const {
+    std::size_t count = 0;
+    for (std::size_t e = 0; e < elements.size(); ++e) count += is_wedge(e) ? 1 : 0;
+    return count;
   }
 
   // The numbers of Term::node: nodes, then drivers.

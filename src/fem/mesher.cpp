@@ -50,7 +50,7 @@ Message about(const Message& message, const yarn::Body& body, const fabric::Fabr
 }
 
 // The nodes of a set of boundary triangles, midside ones included, increasing.
-std::vector<std::size_t> nodes_on(const Mesh& mesh, const std::vector<std::array<std::size_t, 3>>& faces) {
+std::vector<std::size_t> nodes_on(const Mesh& mesh, const std::vector<ElementSide>& faces) {
   std::vector<std::size_t> result;
   for (const SixNodes& face : six_node_faces(mesh, mesh.regions.front(), faces))
     result.insert(result.end(), face.begin(), face.begin() + (mesh.order == 1 ? 3 : 6));
@@ -157,15 +157,7 @@ std::vector<Places> keep_volumes(std::span<const yarn::Body> bodies,
       facets.push_back(facet);
     }
   }
-  // In a cloth that is jammed there is no room beside its gaps: nothing is meshed in them, they need only
-  // stay.
-  constexpr double right = 1e-3;
-  const std::vector<Vec3> on_surface = points;
-  for (const double gap_share : {0.05, 0.4}) {
-    points = on_surface;
-    if (fem::keep_volumes(points, {.facets = facets, .volumes = volumes, .gap_share = gap_share}) < right)
-      break;
-  }
+  keep_dry_volumes(points, facets, volumes);
   std::vector<Places> kept;
   auto next = points.begin();
   for (const auto& block : blocks) {

@@ -6,6 +6,7 @@
 
 #include "fem/cell_sides.h"
 #include "fem/faces.h"
+#include "fem/hexahedron.h"
 
 namespace selvage::fem {
 namespace {
@@ -47,6 +48,12 @@ std::array<Vec3, 10> nodes_of(const Mesh& mesh, std::size_t element) {
   return nodes;
 }
 
+EightNodes eight_nodes_of(const Mesh& mesh, std::size_t element) {
+  EightNodes nodes;
+  for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] = mesh.nodes[mesh.elements[element][k]];
+  return nodes;
+}
+
 double six_volumes(const std::array<Vec3, 10>& nodes) {
   return (nodes[1] - nodes[0]).cross(nodes[2] - nodes[0]).dot(nodes[3] - nodes[0]);
 }
@@ -59,6 +66,13 @@ void add(Quality& quality, const ElementShape& shape) {
 }
 
 }  // namespace
+
+Vec3 middle_of(const Mesh& mesh, std::size_t element) {
+  const auto corners = static_cast<std::size_t>(mesh.corners_per_element());
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < corners; ++k) sum += mesh.nodes[mesh.elements[element][k]];
+  return sum / static_cast<double>(corners);
+}
 
 ElementShape shape_of(const std::array<Vec3, 4>& p) {
   ElementShape shape;
@@ -111,6 +125,8 @@ double quadratic_volume(const std::array<Vec3, 10>& nodes) {
 }
 
 ElementShape shape_of(const Mesh& mesh, std::size_t element) {
+  if (mesh.shape == Mesh::Shape::hexahedron)
+    return shape_of_hexahedron(eight_nodes_of(mesh, element), mesh.is_wedge(element));
   const std::array<Vec3, 10> nodes = nodes_of(mesh, element);
   ElementShape shape = shape_of({nodes[0], nodes[1], nodes[2], nodes[3]});
   if (mesh.order == 2) shape.scaled_jacobian *= least_jacobian_share(nodes);
@@ -118,11 +134,7 @@ ElementShape shape_of(const Mesh& mesh, std::size_t element) {
 }
 
 double volume_of(const Mesh& mesh, std::size_t element) {
-  if (mesh.shape == Mesh::Shape::hexahedron) {
-    const auto& e = mesh.elements[element];
-    const Vec3& p = mesh.nodes[e[0]];
-    return std::abs((mesh.nodes[e[1]] - p).cross(mesh.nodes[e[3]] - p).dot(mesh.nodes[e[4]] - p));
-  }
+  if (mesh.shape == Mesh::Shape::hexahedron) return volume_of_hexahedron(eight_nodes_of(mesh, element));
   const std::array<Vec3, 10> nodes = nodes_of(mesh, element);
   return mesh.order == 1 ? six_volumes(nodes) / 6 : quadratic_volume(nodes);
 }
@@ -138,12 +150,10 @@ void measure(Mesh& mesh) {
     double sum = 0;
     for (std::size_t e = region.first_element; e < region.last_element; ++e) {
       const ElementShape shape = shape_of(mesh, e);
-      const std::array<Vec3, 10> nodes = nodes_of(mesh, e);
       region.volume += volume_of(mesh, e);
       sum += shape.scaled_jacobian;
       for (Quality* quality : {&region.quality, &mesh.quality}) add(*quality, shape);
-      const Vec3 middle = (nodes[0] + nodes[1] + nodes[2] + nodes[3]) / 4;
-      worst.push_back({e, shape.min_dihedral, middle});
+      worst.push_back({e, shape.min_dihedral, middle_of(mesh, e)});
       std::push_heap(worst.begin(), worst.end(), worse);  // the best of the worst on top
       if (worst.size() > 10) {
         std::pop_heap(worst.begin(), worst.end(), worse);

@@ -1,4 +1,4 @@
-// How good tetrahedra are; see fem::Quality for what the figures mean.
+// How good elements are; see fem::Quality for what the figures mean.
 #pragma once
 
 #include <array>
@@ -26,10 +26,14 @@ double least_jacobian_share(const std::array<Vec3, 10>& nodes);
 // degree 3).
 double quadratic_volume(const std::array<Vec3, 10>& nodes);
 
-// Of one element of a mesh: as above, the scaled Jacobian of a ten-node element times its least share.
+// Of one element of a mesh: as above, the scaled Jacobian of a ten-node element times its least share; of
+// hexahedra and wedges as in hexahedron.h.
 ElementShape shape_of(const Mesh& mesh, std::size_t element);
 
-// Of one element; hexahedra are boxes, as voxels are.
+// The mean of an element's corners.
+Vec3 middle_of(const Mesh& mesh, std::size_t element);
+
+// Of one element.
 double volume_of(const Mesh& mesh, std::size_t element);
 
 // Fills Quality and volume of every region, the mesh's own, and its worst elements.

@@ -29,16 +29,12 @@ std::vector<NamedSet> node_sets(const Mesh& mesh, const DeckNames& names) {
   return sets;
 }
 
-namespace {
-
 std::size_t material_of(const Mesh& mesh, const Region& region) {
   const auto found =
       std::find_if(mesh.materials.begin(), mesh.materials.end(),
                    [&](const fabric::Material& material) { return material.name == region.material; });
   return static_cast<std::size_t>(found - mesh.materials.begin());
 }
-
-}  // namespace
 
 Result<std::vector<Section>> sections(const Mesh& mesh, const DeckNames& names) {
   std::vector<Section> list;

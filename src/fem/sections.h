@@ -19,6 +19,9 @@ struct NamedSet {
 // those that have nodes. Without a cell: the yarns' ends, NAME_Start and NAME_End, of those that have ends.
 std::vector<NamedSet> node_sets(const Mesh& mesh, const DeckNames& names);
 
+// Index into Mesh::materials of the region's own; their number where it has none.
+std::size_t material_of(const Mesh& mesh, const Region& region);
+
 // The elements of one region that have one material.
 struct Section {
   std::string name;  // the region's where it is of one material, else NAME_Section1, ..

@@ -6,7 +6,7 @@ namespace selvage::fem {
 namespace {
 
 struct Key {
-  std::array<std::size_t, 4> nodes{};  // increasing; of a triangle the largest twice
+  ElementSide nodes{};  // increasing; of a triangle the largest twice
   std::size_t element = 0, side = 0, region = 0;
   [[nodiscard]] bool is_same_place(const Key& other) const { return nodes == other.nodes; }
   bool operator<(const Key& other) const {
@@ -15,14 +15,14 @@ struct Key {
   }
 };
 
-std::array<std::size_t, 4> corners_of(const Mesh& mesh, std::size_t element, std::size_t side) {
-  std::array<std::size_t, 4> nodes = element_sides(mesh.shape)[side];
+ElementSide corners_of(const Mesh& mesh, std::size_t element, std::size_t side) {
+  ElementSide nodes = element_sides(mesh, element)[side];
   for (std::size_t& node : nodes) node = mesh.elements[element][node];
   return nodes;
 }
 
 // The face of the cell in which all corners stand: coordinates there are the face's own to the bit.
-int face_of(const Mesh& mesh, const std::array<std::size_t, 4>& nodes) {
+int face_of(const Mesh& mesh, const ElementSide& nodes) {
   if (!mesh.cell) return -1;
   for (int axis = 0; axis < 3; ++axis)
     for (const bool high : {true, false}) {
@@ -36,25 +36,31 @@ int face_of(const Mesh& mesh, const std::array<std::size_t, 4>& nodes) {
 
 }  // namespace
 
-std::span<const std::array<std::size_t, 4>> element_sides(Mesh::Shape shape) {
-  static constexpr std::array<std::array<std::size_t, 4>, 4> tetrahedron = {
+std::span<const ElementSide> element_sides(Mesh::Shape shape) {
+  static constexpr std::array<ElementSide, 4> tetrahedron = {
       {{0, 2, 1, 1}, {0, 1, 3, 3}, {1, 2, 3, 3}, {2, 0, 3, 3}}};
-  static constexpr std::array<std::array<std::size_t, 4>, 6> hexahedron = {
+  static constexpr std::array<ElementSide, 6> hexahedron = {
       {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
   if (shape == Mesh::Shape::tetrahedron) return tetrahedron;
   return hexahedron;
 }
 
+std::span<const ElementSide> element_sides(const Mesh& mesh, std::size_t element) {
+  static constexpr std::array<ElementSide, 5> wedge = {
+      {{0, 2, 1, 1}, {4, 5, 6, 6}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 0, 4, 6}}};
+  if (mesh.is_wedge(element)) return wedge;
+  return element_sides(mesh.shape);
+}
+
 std::vector<OuterSide> outer_sides(const Mesh& mesh) {
-  const std::size_t count = element_sides(mesh.shape).size();
   std::vector<Key> keys;
-  keys.reserve(count * mesh.elements.size());
+  keys.reserve(element_sides(mesh.shape).size() * mesh.elements.size());
   for (std::size_t i = 0; i < mesh.regions.size(); ++i)
     for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
-      for (std::size_t s = 0; s < count; ++s) {
+      for (std::size_t s = 0; s < element_sides(mesh, e).size(); ++s) {
         Key key{corners_of(mesh, e, s), e, s, i};
-        // Which corner of a triangle is repeated depends on the tetrahedron from which it is seen.
-        if (mesh.shape == Mesh::Shape::tetrahedron)
+        // Which corner of a triangle is repeated depends on the element from which it is seen.
+        if (key.nodes[2] == key.nodes[3])
           key.nodes[3] = *std::max_element(key.nodes.begin(), key.nodes.end());
         std::sort(key.nodes.begin(), key.nodes.end());
         keys.push_back(key);
@@ -77,10 +83,9 @@ std::vector<OuterSide> outer_sides(const Mesh& mesh) {
   return sides;
 }
 
-Vec3 area_vector(const Mesh& mesh, const OuterSide& side) {
+Vec3 area_vector(const Mesh& mesh, const ElementSide& side) {
   // Of a quadrilateral, and of a triangle whose last corner is repeated: half the product of the diagonals.
-  const auto& n = side.nodes;
-  return (mesh.nodes[n[2]] - mesh.nodes[n[0]]).cross(mesh.nodes[n[3]] - mesh.nodes[n[1]]) / 2;
+  return (mesh.nodes[side[2]] - mesh.nodes[side[0]]).cross(mesh.nodes[side[3]] - mesh.nodes[side[1]]) / 2;
 }
 
 }  // namespace selvage::fem

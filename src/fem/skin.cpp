@@ -80,7 +80,7 @@ Result<Skin> make_skin(const yarn::Body& body, double size) {
   return make_skin(one, box_round(body), rules, {.tolerance = 1e-3 * extent});
 }
 
-std::vector<std::array<std::size_t, 3>>& faces_of(Region& region, CellTriangles::Part part) {
+std::vector<ElementSide>& faces_of(Region& region, CellTriangles::Part part) {
   return part == CellTriangles::Part::side    ? region.side_faces
          : part == CellTriangles::Part::start ? region.start_faces
                                               : region.end_faces;

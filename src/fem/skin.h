@@ -47,7 +47,7 @@ Result<Skin> make_skin(const yarn::Body& body, double size);
 std::vector<YarnFacet> facets_of(std::span<const yarn::Body> bodies, const Skin& skin, int threads);
 
 // Where a region keeps the triangles of this part of its yarn (not of the box).
-std::vector<std::array<std::size_t, 3>>& faces_of(Region& region, CellTriangles::Part part);
+std::vector<ElementSide>& faces_of(Region& region, CellTriangles::Part part);
 
 // A box that a yarn lies in with room to spare: nothing cuts it.
 Box3 box_round(const yarn::Body& body);

@@ -291,8 +291,17 @@ void of_a_picture(OptionTable& t) {
 void of_a_mesh(OptionTable& t) {
   t.begin("The mesh");
   constexpr std::string_view of_tetrahedra = "is of tetrahedra, and voxels are hexahedra of eight nodes";
+  t.choice(
+       {mesh}, "--elements",
+       "of dry yarns: tetrahedra, hexahedra swept along each yarn (wedges at the tips of its section), or "
+       "beams with the constants of its sections and a list of the yarns that touch",
+       "tet hex beam", &Options::elements, {Elements::tetrahedra, Elements::hexahedra, Elements::beams})
+      .goes_with("is of dry yarns, and a unit cell is meshed with tetrahedra or voxels", "",
+                 "--cut --matrix --periodic --voxel")
+      .with_preset("tet");
   t.option({mesh}, "--size",
-           "wanted edge length, in the input's unit (default: a quarter of the thinnest section)",
+           "wanted edge length, in the input's unit (default: a quarter of the thinnest section; of "
+           "hexahedra a third; of beams four times it)",
            Argument::positive(), &Options::size)
       .goes_with(of_tetrahedra, "", "--voxel");
   t.option({mesh}, "--order",
@@ -562,6 +571,19 @@ static Result<Command> done_by_sweep(const Given& given) {
                fmt::format("--do: '{}' is not one of check, convert, mesh, info", found->second.back()));
 }
 
+// What is of tetrahedra alone.
+static Status check_elements(const Options& options) {
+  if (options.elements == Elements::tetrahedra) return {};
+  const std::string_view word = options.elements == Elements::hexahedra ? "hex" : "beam";
+  const auto refused = [&](std::string_view name) {
+    return error(Kind::usage,
+                 fmt::format("{} is of tetrahedra: leave it out with --elements {}", name, word));
+  };
+  if (options.order > 1) return refused("--order 2");
+  if (options.min_dihedral > 0) return refused("--min-dihedral");
+  return {};
+}
+
 Result<Options> understand(Command command, const Given& given) {
   Options options;
   options.command = command;
@@ -586,6 +608,7 @@ Result<Options> understand(Command command, const Given& given) {
     if (Status status = take(*row, line.back().second, options); !status.ok()) return status.error();
   }
   if (Status status = check_company(rows, line); !status.ok()) return status.error();
+  if (Status status = check_elements(options); !status.ok()) return status.error();
   if (options.matrix) options.cut = true;
   if (command == relax) options.relaxing.wanted = true;
   if (options.resume && (options.report.empty() || options.report == "-"))

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem/beams.h"
 #include "fem/mesher.h"
+#include "fem/swept.h"
 #include "pipeline/mesh_facts.h"
 #include "pipeline/meshing.h"
 #include "pipeline/overlaps.h"
@@ -48,12 +50,12 @@ fem::MeshOptions mesh_options(Job& job) {
 
 namespace {
 
-// Tetrahedra fill yarns; a garment piece is flat. False: it was said which piece is there.
+// Elements fill yarns; a garment piece is flat. False: it was said which piece is there.
 bool has_only_yarns(Job& job, const fabric::Fabric& fabric) {
   const std::vector<const fabric::Piece*> pieces = fabric::pieces_of(fabric);
   if (pieces.empty()) return true;
   return job.fail(error(Kind::unsupported,
-                        fmt::format("piece '{}' is a flat face, which has no volume to fill with tetrahedra: "
+                        fmt::format("piece '{}' is a flat face, which has no volume to fill with elements: "
                                     "convert it to a CAD file, and mesh the face there",
                                     pieces.front()->name),
                         {.place = pieces.front()->place}));
@@ -64,6 +66,12 @@ std::optional<MadeMesh> mesh_of_yarns(Job& job, const fabric::Fabric& fabric,
   const std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
   const auto finish = [&job](Message& message) { add_remedy(job.options, message); };
   if (!bodies || !check_overlaps(job, *bodies, finish)) return std::nullopt;
+  if (job.options.elements == Elements::hexahedra)
+    return MadeMesh{fem::mesh_swept(fabric, *bodies, fabric.units,
+                                    {.size = job.options.size,
+                                     .threads = static_cast<int>(job.threads),
+                                     .progress = job.progress_of("sweeping yarn")},
+                                    diagnostics)};
   return MadeMesh{fem::mesh_yarns(fabric, *bodies, fabric.units, mesh_options(job), diagnostics)};
 }
 
@@ -74,30 +82,47 @@ void tell_volumes(Job& job, const fem::Mesh& mesh) {
   if (std::optional<Message> message = wrong_volume(mesh)) job.say(std::move(*message));
 }
 
-// What the outputs ask for, elements and fields on voxels; empty where they ask for none, or it failed (it
-// was said).
-struct Made {
-  std::optional<fem::Mesh> mesh;
-  std::optional<fem::Raster> raster;
-};
-
-void take(Job& job, MadeMesh made, Made& all) {
+void take(Job& job, MadeMesh made, Meshes& all) {
   if (!made.mesh) return job.say(made.mesh.error());
   job.report["mesh"] = mesh_json(*made.mesh, made.estimate);
+  if (job.options.elements == Elements::hexahedra)
+    tell(job, fmt::format("{}: {}\n", job.input.path, hexahedra_in_words(*made.mesh)));
   tell_volumes(job, *made.mesh);
   all.mesh = std::move(*made.mesh);
 }
 
-void take(Job& job, Result<fem::Raster> raster, Made& all) {
+// Beams of yarns that overlap are fine: they have no volume to share.
+void make_beams(Job& job, const fabric::Fabric& fabric, const fabric::YarnBuilder& builder, Meshes& all) {
+  const std::optional<std::vector<yarn::Body>> bodies = job.build_all(builder);
+  if (!bodies) return;
+  Diagnostics diagnostics;
+  Result<fem::BeamModel> beams = fem::make_beams(fabric, *bodies, fabric.units,
+                                                 {.size = job.options.size,
+                                                  .threads = static_cast<int>(job.threads),
+                                                  .progress = job.progress_of("beams of yarn")},
+                                                 diagnostics);
+  job.say_all(diagnostics.messages());
+  if (!beams) return job.say(beams.error());
+  job.report["mesh"] = beams_json(*beams);
+  tell(job, fmt::format("{}: {}\n", job.input.path, beams_in_words(*beams)));
+  all.beams = std::move(*beams);
+}
+
+void take(Job& job, Result<fem::Raster> raster, Meshes& all) {
   if (!raster) return job.say(raster.error());
   job.report["voxels"] = raster_json(*raster);
   tell(job, fmt::format("{}: {}\n", job.input.path, raster_in_words(*raster)));
   all.raster = std::move(*raster);
 }
 
-Made make(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder, bool wants_mesh,
-          bool wants_raster) {
-  Made all;
+// Of what the outputs ask for: empty where they ask for none, or it failed (it was said).
+Meshes make(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder, bool wants_mesh,
+            bool wants_raster) {
+  Meshes all;
+  if (job.options.elements == Elements::beams) {
+    make_beams(job, fabric, builder, all);
+    return all;
+  }
   Diagnostics diagnostics;
   if (!job.options.wants_cell()) {
     std::optional<MadeMesh> made = mesh_of_yarns(job, fabric, builder, diagnostics);
@@ -134,9 +159,9 @@ void mesh(Job& job) {
     return std::ranges::any_of(
         job.outputs, [&](const PlannedOutput& output) { return output.format->*writes != nullptr; });
   };
-  const Made made = make(job, *fabric, *builder, is_wanted(&formats::Descriptor::write_mesh),
-                         is_wanted(&formats::Descriptor::write_raster));
-  if (!job.has_failed()) write_meshes(job, *outputs, made.mesh, made.raster);
+  const Meshes made = make(job, *fabric, *builder, is_wanted(&formats::Descriptor::write_mesh),
+                           is_wanted(&formats::Descriptor::write_raster));
+  if (!job.has_failed()) write_meshes(job, *outputs, made);
 }
 
 }  // namespace selvage::pipeline

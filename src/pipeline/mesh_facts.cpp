@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "fem/quality.h"
 
@@ -15,15 +16,23 @@ double volume_error(const fem::Region& region) {
   return region.volume / region.exact_volume - 1;
 }
 
-Json region_json(const fem::Region& region, bool is_voxels) {
-  const bool is_exact = region.exact_volume > 0;
+// Equal boxes, which have no quality to speak of.
+bool is_voxels(const fem::Mesh& mesh) {
+  return mesh.shape == fem::Mesh::Shape::hexahedron && mesh.cell;
+}
+
+Json region_json(const fem::Mesh& mesh, const fem::Region& region) {
+  const bool is_exact = region.exact_volume > 0, is_brick = mesh.shape == fem::Mesh::Shape::hexahedron;
+  std::size_t wedges = 0;
+  for (std::size_t e = region.first_element; e < region.last_element; ++e) wedges += mesh.is_wedge(e) ? 1 : 0;
   return {{"name", region.name},
           {"kind", region.kind == fem::Region::Kind::yarn ? "yarn" : "matrix"},
-          {is_voxels ? "hexahedra" : "tets", region.last_element - region.first_element},
+          {is_brick ? "hexahedra" : "tets", region.last_element - region.first_element - wedges},
+          {"wedges", if_true(wedges > 0, wedges)},
           {"volume", region.volume},
           {"exact_volume", if_true(is_exact, region.exact_volume)},
           {"volume_error", if_true(is_exact, volume_error(region))},
-          {"min_dihedral", if_true(!is_voxels, region.quality.min_dihedral)}};
+          {"min_dihedral", if_true(!is_voxels(mesh), region.quality.min_dihedral)}};
 }
 
 Json worst_json(const fem::Mesh& mesh) {
@@ -90,18 +99,20 @@ std::string volumes_in_words(const fem::Mesh& mesh) {
 }
 
 std::optional<Message> wrong_volume(const fem::Mesh& mesh) {
-  constexpr double usual = 0.002;  // what the default size promises
+  const bool is_brick = mesh.shape == fem::Mesh::Shape::hexahedron;
+  const double usual = is_brick ? 0.005 : 0.002;  // what the default size promises
   const fem::Region* worst = worst_volume(mesh);
   if (worst == nullptr || std::abs(volume_error(*worst)) <= usual) return std::nullopt;
   return warning(
       Kind::geometry,
       fmt::format("the volume of {} is {:.2g} % too {}; a smaller --size{} makes it better", name_of(*worst),
                   100 * std::abs(volume_error(*worst)), volume_error(*worst) < 0 ? "small" : "large",
-                  mesh.order == 1 ? " or --order 2" : ""));
+                  mesh.order == 1 && !is_brick ? " or --order 2" : ""));
 }
 
 Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {
-  const bool is_voxels = mesh.shape == fem::Mesh::Shape::hexahedron;
+  const bool is_brick = mesh.shape == fem::Mesh::Shape::hexahedron, has_quality = !is_voxels(mesh);
+  const std::size_t wedges = mesh.count_wedges();
   double volume = 0, exact = 0, off = 0;
   for (const fem::Region& region : mesh.regions) {
     volume += region.volume;
@@ -109,22 +120,90 @@ Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {
     exact += region.exact_volume;
     off += std::abs(region.volume - region.exact_volume);
   }
-  Json facts = {
-      {"nodes", mesh.nodes.size()},
-      {"tets", is_voxels ? 0 : mesh.elements.size()},
-      {"volume", volume},
-      {"hexahedra", if_true(is_voxels, mesh.elements.size())},
-      {"min_dihedral", if_true(!is_voxels, mesh.quality.min_dihedral)},
-      {"max_aspect", if_true(!is_voxels, mesh.quality.max_aspect)},
-      {"volume_error", if_true(!is_voxels, exact > 0 ? off / exact : 0)},
-      {"below_target", mesh.angles ? Json(mesh.angles->below) : Json()},
-      {"in_wedges", mesh.angles ? Json(mesh.angles->in_wedges) : Json()},
-      {"regions",
-       list_json(mesh.regions, [&](const fem::Region& region) { return region_json(region, is_voxels); })},
-      {"worst", if_true(!mesh.worst.empty(), worst_json(mesh))},
-      {"estimate", if_known(estimate)}};
+  Json facts = {{"nodes", mesh.nodes.size()},
+                {"tets", is_brick ? 0 : mesh.elements.size()},
+                {"volume", volume},
+                {"hexahedra", if_true(is_brick, mesh.elements.size() - wedges)},
+                {"wedges", if_true(wedges > 0, wedges)},
+                {"min_dihedral", if_true(has_quality, mesh.quality.min_dihedral)},
+                {"max_aspect", if_true(has_quality, mesh.quality.max_aspect)},
+                {"min_scaled_jacobian", if_true(has_quality && is_brick, mesh.quality.min_scaled_jacobian)},
+                {"volume_error", if_true(has_quality, exact > 0 ? off / exact : 0)},
+                {"below_target", mesh.angles ? Json(mesh.angles->below) : Json()},
+                {"in_wedges", mesh.angles ? Json(mesh.angles->in_wedges) : Json()},
+                {"regions", list_json(mesh.regions,
+                                      [&](const fem::Region& region) { return region_json(mesh, region); })},
+                {"worst", if_true(!mesh.worst.empty(), worst_json(mesh))},
+                {"estimate", if_known(estimate)}};
   if (mesh.cell) add_cell(facts, mesh);
   return facts;
+}
+
+std::string hexahedra_in_words(const fem::Mesh& mesh) {
+  const std::size_t wedges = mesh.count_wedges();
+  return fmt::format("{} hexahedra and {} wedges; scaled Jacobians from {:.2f}, {:.2f} on average",
+                     mesh.elements.size() - wedges, wedges, mesh.quality.min_scaled_jacobian,
+                     mesh.quality.mean_scaled_jacobian);
+}
+
+static std::size_t count_sections(const fem::BeamModel& beams, const fem::Region& region) {
+  const auto begin = beams.section_of.begin();
+  return std::set<std::size_t>(begin + static_cast<std::ptrdiff_t>(region.first_element),
+                               begin + static_cast<std::ptrdiff_t>(region.last_element))
+      .size();
+}
+
+Json beams_json(const fem::BeamModel& beams) {
+  const fem::Mesh& mesh = beams.mesh;
+  std::size_t number = 0;
+  const auto yarn_json = [&](const fem::Region& region) {
+    return Json{{"name", region.name},
+                {"beams", region.last_element - region.first_element},
+                {"sections", count_sections(beams, region)},
+                {"contact_radius", beams.radii[number++]},
+                {"volume", region.volume},
+                {"exact_volume", region.exact_volume}};
+  };
+  const auto contact_json = [&](const fem::BeamContact& contact) {
+    return Json{{"a", mesh.regions[contact.a].name},
+                {"b", mesh.regions[contact.b].name},
+                {"gap", contact.gap},
+                {"places", contact.places},
+                {"at", point_json(contact.at)}};
+  };
+  const auto section_json = [](const fem::BeamSection& section) {
+    return Json{{"shape", name_of(section.shape)},
+                {"width", section.width},
+                {"height", section.height},
+                {"area", section.area},
+                {"i11", section.i11},
+                {"i22", section.i22},
+                {"torsion", section.torsion}};
+  };
+  return {{"nodes", mesh.nodes.size()},
+          {"beams", mesh.elements.size()},
+          {"regions", list_json(mesh.regions, yarn_json)},
+          {"sections", list_json(beams.sections, section_json)},
+          {"contact_pairs", list_json(beams.contacts, contact_json)}};
+}
+
+std::string beams_in_words(const fem::BeamModel& beams) {
+  const auto counted = [](std::size_t count, std::string_view what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  std::string text = fmt::format("{} with {}", counted(beams.mesh.elements.size(), "beam"),
+                                 counted(beams.sections.size(), "section"));
+  std::size_t varying = 0, most = 0;
+  for (const fem::Region& region : beams.mesh.regions) {
+    const std::size_t count = count_sections(beams, region);
+    varying += count > 1 ? 1 : 0;
+    most = std::max(most, count);
+  }
+  if (varying > 0)
+    text +=
+        fmt::format("; the section varies along {} and is that of each beam's middle: {} stations at most",
+                    counted(varying, "yarn"), most);
+  return text + fmt::format("; {} of yarns that touch or nearly do", counted(beams.contacts.size(), "pair"));
 }
 
 Json raster_json(const fem::Raster& raster) {

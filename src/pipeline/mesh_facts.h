@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/diagnostics.h"
+#include "fem/beams.h"
 #include "fem/mesh.h"
 #include "fem/raster.h"
 #include "pipeline/report.h"
@@ -13,6 +14,13 @@ namespace selvage::pipeline {
 
 // Of tetrahedra or hexahedra, of dry yarns or a unit cell; `estimate`: how many tetrahedra were expected.
 Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate = {});
+
+// Of yarns as beams, with their contacts.
+Json beams_json(const fem::BeamModel& beams);
+std::string beams_in_words(const fem::BeamModel& beams);
+
+// Of swept hexahedra: how many, and the worst.
+std::string hexahedra_in_words(const fem::Mesh& mesh);
 
 // How much of a unit cell is yarn and fibre, and how far the volumes of regions are from those of the
 // B-spline yarns, the worst by name. Empty: nothing is known.

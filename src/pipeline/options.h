@@ -48,6 +48,9 @@ struct RelaxSettings {
   int max_iterations = 0;         // 0: the default
 };
 
+// What yarns are meshed with.
+enum class Elements { tetrahedra, hexahedra, beams };
+
 // When a page of `view` lists contacts; `automatic`: where all yarns together have at most a few million
 // points.
 enum class PageContacts { automatic, yes, no };
@@ -100,6 +103,7 @@ struct Options {
   bool lines = false;                  // centre lines instead of surfaces
   OptionValues of_formats;             // what formats declare for themselves
 
+  Elements elements = Elements::tetrahedra;
   double size = 0;          // wanted edge length, input's unit; 0: the mesher's choice
   int order = 0;            // 1, 2; 0: 2 of a plate with its matrix, else 1
   double min_dihedral = 0;  // degrees; 0: the mesher's choice

@@ -264,6 +264,21 @@ Status check_transport(fem::Physics physics, const Formats& wanted) {
   return {};
 }
 
+Status check_beams(const Options& options, const Formats& wanted) {
+  for (const Descriptor* format : wanted) {
+    if (has_companion(options, *format) && format->companion.asked_by != nullptr)
+      return error(Kind::usage, fmt::format("beams are written in one file: leave out {}",
+                                            format->companion.asked_by->name));
+    if (format->write_beams != nullptr) continue;
+    std::string others;
+    for (const Descriptor* other : formats::all_formats())
+      if (other->write_beams != nullptr) others += fmt::format(" --to {}", other->name);
+    return error(Kind::usage,
+                 fmt::format("{} is not written with beams: write them with{}", format->name, others));
+  }
+  return {};
+}
+
 bool writes_files(Command command) {
   return command != Command::check && command != Command::info && command != Command::roundtrip &&
          command != Command::diff;
@@ -286,6 +301,8 @@ Result<Plan> Plan::make(const Options& options, InputList& list) {
         return error(
             Kind::usage,
             fmt::format("{} holds the voxels of a unit cell: say how many with --voxel N", format->name));
+    if (options.elements == Elements::beams)
+      if (Status status = check_beams(options, *wanted); !status.ok()) return status.error();
     if (options.physics != fem::Physics::elastic)
       if (Status status = check_transport(options.physics, *wanted); !status.ok()) return status.error();
   }

@@ -132,18 +132,19 @@ void tell(Job& job, const std::string& text) {
     job.channel().send(packet::message, text.substr(0, text.size() - 1));
 }
 
-void write_meshes(Job& job, OpenOutputs& outputs, const std::optional<fem::Mesh>& mesh,
-                  const std::optional<fem::Raster>& raster) {
+void write_meshes(Job& job, OpenOutputs& outputs, const Meshes& meshes) {
+  const std::optional<fem::Mesh>& mesh = meshes.mesh;
   if (!mesh || mesh->load_cases.empty())
     std::erase_if(outputs, [](const OpenOutput& output) {
       return output.plan->as_companion != nullptr && output.plan->as_companion->is_of_load_cases;
     });
   for (OpenOutput& output : outputs) {
     const formats::Descriptor& format = *output.plan->format;
+    const formats::MeshFileOptions options = {companion_of(output, outputs), job.options.of_formats};
     if (!take_facts(job, output,
-                    format.write_raster != nullptr
-                        ? format.write_raster(*raster, output.file)
-                        : format.write_mesh(*mesh, output.file, {companion_of(output, outputs)})))
+                    format.write_raster != nullptr ? format.write_raster(*meshes.raster, output.file)
+                    : meshes.beams                 ? format.write_beams(*meshes.beams, output.file, options)
+                                                   : format.write_mesh(*mesh, output.file, options)))
       return;
   }
   commit_all(job, outputs);

@@ -32,9 +32,15 @@ std::string companion_of(const OpenOutput& output, const OpenOutputs& outputs);
 // line.
 void tell(Job& job, const std::string& text);
 
-// Writes to every output what it takes of the two, and commits them; what goes wrong is said.
-void write_meshes(Job& job, OpenOutputs& outputs, const std::optional<fem::Mesh>& mesh,
-                  const std::optional<fem::Raster>& raster);
+// What outputs of `mesh` ask for: elements or beams, and fields on voxels.
+struct Meshes {
+  std::optional<fem::Mesh> mesh;
+  std::optional<fem::BeamModel> beams;
+  std::optional<fem::Raster> raster;
+};
+
+// Writes to every output what it takes of them, and commits them; what goes wrong is said.
+void write_meshes(Job& job, OpenOutputs& outputs, const Meshes& meshes);
 
 // Opens the next file of an output, for its writer. Errors: io; usage: an input or another output has the
 // name.

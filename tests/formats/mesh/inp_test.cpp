@@ -253,9 +253,9 @@ TEST(InpDeck, ContactSurfacesAndPairs) {
     const fem::ContactSurface& surface = contact.surfaces[i];
     EXPECT_EQ(surface.whole.size(), mesh.regions[i].side_faces.size());
     Vec3 whole = Vec3::Zero(), upper = Vec3::Zero(), lower = Vec3::Zero();
-    for (const fem::OuterSide& side : surface.whole) whole += fem::area_vector(mesh, side);
-    for (const fem::OuterSide& side : surface.upper) upper += fem::area_vector(mesh, side);
-    for (const fem::OuterSide& side : surface.lower) lower += fem::area_vector(mesh, side);
+    for (const fem::OuterSide& side : surface.whole) whole += fem::area_vector(mesh, side.nodes);
+    for (const fem::OuterSide& side : surface.upper) upper += fem::area_vector(mesh, side.nodes);
+    for (const fem::OuterSide& side : surface.lower) lower += fem::area_vector(mesh, side.nodes);
     // With the ends it is closed.
     for (const auto* faces : {&mesh.regions[i].start_faces, &mesh.regions[i].end_faces})
       for (const auto& f : *faces)

@@ -34,7 +34,7 @@ yarn::Body ring() {
       true);
 }
 
-double area(const Mesh& mesh, const std::vector<std::array<std::size_t, 3>>& faces) {
+double area(const Mesh& mesh, const std::vector<ElementSide>& faces) {
   double sum = 0;
   for (const auto& f : faces)
     sum += (mesh.nodes[f[1]] - mesh.nodes[f[0]]).cross(mesh.nodes[f[2]] - mesh.nodes[f[0]]).norm() / 2;

@@ -96,7 +96,7 @@ void fill(CellOfYarn& cell, double size) {
   region.last_element = cell.mesh.elements.size();
   for (std::size_t k = 0; k < surface.triangles.size(); ++k)
     if (const Triangle& t = surface.triangles[k]; surface.parts[k] == CellTriangles::Part::side)
-      region.side_faces.push_back({t[0], t[1], t[2]});  // for the test
+      region.side_faces.push_back({t[0], t[1], t[2], t[2]});  // for the test
   cell.mesh.regions.push_back(region);
   cell.box = Box3(Vec3(mm * box.min()), Vec3(mm * box.max()));
 }
