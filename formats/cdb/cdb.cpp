@@ -7,6 +7,7 @@
 #include "core/columns.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
+#include "formats/cdb/interfaces.h"
 
 namespace selvage::formats::cdb {
 namespace {
@@ -58,17 +59,10 @@ void write_frames(TextBuffer& text, const fem::Frames& frames) {
   text << "CSYS,0\n";
 }
 
-void write_element_head(TextBuffer& text, std::size_t material, std::size_t type, std::size_t system,
-                        std::size_t nodes, std::size_t number) {
-  // Material, type, real constants, section, coordinate system, alive, solid model, shape, number of nodes,
-  // (not used), number.
-  put_right(text, {material, type, type, 1, system, 0, 0, 0, nodes, 0, number}, 10);
-}
-
 void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
                     const fem::Frames& frames) {
   const std::vector<std::size_t> materials = fem::element_materials(mesh, sections);
-  open_block(text, "EBLOCK,19,SOLID,", mesh.elements.size() + mesh.drivers.size(), "(19i10)");
+  open_block(text, "EBLOCK,19,SOLID,", mesh.elements.size() + mesh.drivers.size() + mesh.cohesive_elements(), "(19i10)");
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const std::size_t frame = frames.of_element[e];
     const std::span<const std::size_t> nodes = mesh.nodes_of(e);
@@ -81,14 +75,8 @@ void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<f
     put_right(text, mesh.number_of_driver(k) + 1, 10);
     text << '\n';
   }
+  write_cohesive_elements(text, mesh);
   text << "        -1\n";
-}
-
-void write_component(TextBuffer& text, const fem::NamedSet& set, bool is_nodes) {
-  text << "CMBLOCK," << set.name << (is_nodes ? ",NODE," : ",ELEM,");
-  put_right(text, set.members.size(), 8);
-  text << "\n(8i10)\n";
-  put_numbers(text, set.members, 10, 8);
 }
 
 void write_components(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
@@ -100,6 +88,7 @@ void write_components(TextBuffer& text, const fem::Mesh& mesh, const std::vector
   for (const fem::NamedSet& set : fem::node_sets(mesh, names)) write_component(text, set, true);
   for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
     write_component(text, {mesh.drivers[k].name, {mesh.number_of_driver(k)}}, true);
+  write_interface_components(text, mesh, names);
 }
 
 void write_material(TextBuffer& text, std::size_t number, const fabric::Material& material) {
@@ -138,6 +127,7 @@ void write_materials(TextBuffer& text, const fem::Mesh& mesh) {
     text << "! material " << i + 1 << ": " << names[i] << '\n';
     write_material(text, i + 1, mesh.materials[i]);
   }
+  write_cohesive_materials(text, mesh);
 }
 
 // Three terms a command; further ones by the command again with the same number.
@@ -157,6 +147,7 @@ void write_equations(TextBuffer& text, const fem::Mesh& mesh) {
 
 void write_types(TextBuffer& text, const fem::Mesh& mesh) {
   text << "ET,1," << element_type(mesh) << '\n';
+  write_interface_types(text, mesh);
   if (mesh.drivers.empty()) return;
   // A node without an element has no displacement: the drivers get a mass that weighs nothing.
   text << "ET,2,21\nKEYOPT,2,3,2\nR,2,1e-15\n";
@@ -178,12 +169,14 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_components(text, mesh, *sections, names);
   write_materials(text, mesh);
   write_equations(text, mesh);
+  write_bonded_contact(text, mesh, names);
   text << "FINISH\n";
   return finished(text,
                   {{"nodes", mesh.nodes.size()},
                    {"SOLID" + std::to_string(element_type(mesh)), mesh.elements.size()},
                    {"coordinate systems", frames.axes.size()}},
-                  {{"constraint equations", mesh.equations.size()}});
+                  {{"constraint equations", mesh.equations.size()},
+                   {"INTER" + std::to_string(cohesive_element(mesh)), mesh.cohesive_elements()}});
 }
 
 bool is_an_archive(std::string_view head) {
@@ -192,12 +185,28 @@ bool is_an_archive(std::string_view head) {
 
 }  // namespace
 
+void write_element_head(TextBuffer& text, std::size_t material, std::size_t type, std::size_t system,
+                        std::size_t nodes, std::size_t number) {
+  // Material, type, real constants, section, coordinate system, alive, solid model, shape, number of nodes,
+  // (not used), number.
+  put_right(text, {material, type, type, 1, system, 0, 0, 0, nodes, 0, number}, 10);
+}
+
+void write_component(TextBuffer& text, const fem::NamedSet& set, bool is_nodes) {
+  text << "CMBLOCK," << set.name << (is_nodes ? ",NODE," : ",ELEM,");
+  put_right(text, set.members.size(), 8);
+  text << "\n(8i10)\n";
+  put_numbers(text, set.members, 10, 8);
+}
+
 const Descriptor& descriptor() {
   static const Descriptor self = {.name = "cdb",
                                   .title = "ANSYS mesh archive",
                                   .extensions = {".cdb"},
                                   .sniff = is_an_archive,
                                   .write_mesh = write,
+                                  .order_of_surfaces = 2,
+                                  .order_of_cohesive = 2,
                                   .companion = {.format = macro_descriptor, .is_of_load_cases = true}};
   return self;
 }

@@ -5,12 +5,6 @@
 namespace selvage::formats::inp {
 namespace {
 
-// Sixteen entries a row, as Abaqus allows.
-void write_set(TextBuffer& text, const std::vector<std::size_t>& nodes) {
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    text << nodes[i] + 1 << (i % 16 == 15 || i + 1 == nodes.size() ? "\n" : ", ");
-}
-
 void write_node(TextBuffer& text, std::size_t number, const Vec3& p) {
   text << number << ", " << real(p.x()) << ", " << real(p.y()) << ", " << real(p.z()) << '\n';
 }
@@ -100,6 +94,11 @@ Result<WriteFacts> write_mesh_file(const fem::Mesh& mesh, OutputFile& output,
 
 }  // namespace
 
+void write_set(TextBuffer& text, const std::vector<std::size_t>& members) {
+  for (std::size_t i = 0; i < members.size(); ++i)
+    text << members[i] + 1 << (i % 16 == 15 || i + 1 == members.size() ? "\n" : ", ");
+}
+
 bool is_oriented(const fem::Mesh& mesh, const fem::Section& section) {
   return mesh.regions[section.region].kind == fem::Region::Kind::yarn ||
          !fem::is_isotropic(mesh.materials[section.material], mesh.physics);
@@ -108,19 +107,23 @@ bool is_oriented(const fem::Mesh& mesh, const fem::Section& section) {
 void write_mesh_part(TextBuffer& text, const Deck& deck) {
   write_nodes(text, deck.mesh);
   write_elements(text, deck);
+  write_cohesive_elements(text, deck);
   write_element_sets(text, deck);
   write_node_sets(text, deck.node_sets);
   if (!deck.mesh.equations.empty()) write_node_sets(text, {{"Dependent", dependent_nodes(deck.mesh)}});
   write_contact_surfaces(text, deck);
+  write_interface_surfaces(text, deck);
   write_directions(text, deck);
 }
 
 EntityCounts counts_of_mesh(const Deck& deck) {
   const fem::Mesh& mesh = deck.mesh;
-  return {{"nodes", mesh.nodes.size()},
-          {std::string(element_type(mesh)), mesh.elements.size()},
-          {"element sets", mesh.regions.size() + 1},
-          {"node sets", deck.node_sets.size() + 1 + mesh.drivers.size()}};
+  EntityCounts counts = {{"nodes", mesh.nodes.size()},
+                         {std::string(element_type(mesh)), mesh.elements.size()},
+                         {"element sets", mesh.regions.size() + 1},
+                         {"node sets", deck.node_sets.size() + 1 + mesh.drivers.size()}};
+  if (mesh.joining == fem::Joining::cohesive) counts["COH3D6"] = mesh.cohesive_elements();
+  return counts;
 }
 
 const Descriptor& mesh_descriptor() {

@@ -6,9 +6,10 @@
 #include "fem/complete_cell.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
+#include "formats/k/interfaces.h"
 
 namespace selvage::formats::k {
-namespace {
+
 // A real number for a column: as many digits as go in, one blank before it. A shorter exponent leaves room
 // for a digit more.
 std::string real(double value, std::size_t width) {
@@ -21,7 +22,7 @@ std::string real(double value, std::size_t width) {
   return text;
 }
 
-void put_reals(TextBuffer& text, std::initializer_list<double> values, std::size_t width = 10) {
+void put_reals(TextBuffer& text, std::initializer_list<double> values, std::size_t width) {
   for (const double value : values) put_right(text, real(value, width), width);
   text << '\n';
 }
@@ -30,6 +31,8 @@ void put_integers(TextBuffer& text, std::initializer_list<std::size_t> values) {
   put_right(text, values, 10);
   text << '\n';
 }
+
+namespace {
 
 void write_nodes(TextBuffer& text, const fem::Mesh& mesh) {
   text << "*NODE\n$    nid               x               y               z\n";
@@ -198,7 +201,7 @@ void write_loading(TextBuffer& text, const fem::Mesh& mesh) {
 
 Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& /*options*/) {
   constexpr std::size_t most = 99'999'999;  // columns of eight
-  if (mesh.numbered() > most || mesh.elements.size() > most)
+  if (mesh.numbered() > most || mesh.elements.size() + mesh.cohesive_elements() > most)
     return error(Kind::limit,
                  "an LS-DYNA file in standard format numbers at most 99 999 999 nodes and elements");
   // Titles are text. A star or a dollar sign would begin a keyword or a comment, a comma free format, an
@@ -212,16 +215,20 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   fem::write_yarn_names(text, mesh, names, "$", 80);
   write_nodes(text, mesh);
   write_parts(text, mesh, *sections);
+  write_cohesive_parts(text, mesh, names, sections->size());
   write_materials(text, mesh);
+  write_cohesive_materials(text, mesh);
   write_expansions(text, mesh, *sections);
   write_elements(text, mesh, *sections);
+  write_cohesive_elements(text, mesh, sections->size());
   write_sets(text, mesh, *sections, names);
+  write_tied_contact(text, mesh, names);
   write_equations(text, mesh);
   write_loading(text, mesh);
   text << "*END\n";
   return finished(
       text, {{"nodes", mesh.nodes.size()}, {"solids", mesh.elements.size()}, {"parts", sections->size()}},
-      {{"constraints", mesh.equations.size()}});
+      {{"constraints", mesh.equations.size()}, {"cohesive solids", mesh.cohesive_elements()}});
 }
 
 bool is_a_keyword_file(std::string_view head) {
@@ -235,7 +242,9 @@ const Descriptor& descriptor() {
                                   .title = "LS-DYNA keyword file",
                                   .extensions = {".k"},
                                   .sniff = is_a_keyword_file,
-                                  .write_mesh = write};
+                                  .write_mesh = write,
+                                  .order_of_surfaces = 2,
+                                  .order_of_cohesive = 1};
   return self;
 }
 

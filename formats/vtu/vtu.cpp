@@ -1,6 +1,9 @@
 #include "formats/registry.h"
 
+#include <array>
 #include <bit>
+#include <limits>
+#include <optional>
 
 #include "core/text_buffer.h"
 #include "fem/quality.h"
@@ -42,13 +45,24 @@ struct Cells {
   std::vector<std::int64_t> connectivity;  // point indices, as many a cell
 };
 
-void write_cells(TextBuffer& text, const Cells& cells) {
-  std::vector<std::int64_t> offsets;
-  offsets.reserve(cells.count);
-  for (std::size_t k = 1; k <= cells.count; ++k)
-    offsets.push_back(static_cast<std::int64_t>(k * (cells.connectivity.size() / cells.count)));
-  const std::vector<std::uint8_t> types(cells.count, cells.type);
-  write_array(text, "connectivity", cells.connectivity);
+std::size_t count_of(const std::vector<Cells>& blocks) {
+  std::size_t count = 0;
+  for (const Cells& cells : blocks) count += cells.count;
+  return count;
+}
+
+void write_cells(TextBuffer& text, const std::vector<Cells>& blocks) {
+  std::vector<std::int64_t> connectivity, offsets;
+  std::vector<std::uint8_t> types;
+  offsets.reserve(count_of(blocks));
+  for (const Cells& cells : blocks) {
+    const auto before = static_cast<std::int64_t>(connectivity.size());
+    for (std::size_t k = 1; k <= cells.count; ++k)
+      offsets.push_back(before + static_cast<std::int64_t>(k * (cells.connectivity.size() / cells.count)));
+    connectivity.insert(connectivity.end(), cells.connectivity.begin(), cells.connectivity.end());
+    types.insert(types.end(), cells.count, cells.type);
+  }
+  write_array(text, "connectivity", connectivity);
   write_array(text, "offsets", offsets);
   write_array(text, "types", types);
 }
@@ -63,8 +77,67 @@ Cells cells_of(const fem::Mesh& mesh) {
   return cells;
 }
 
-// Quality of tetrahedra; a box has none to speak of.
-void write_quality(TextBuffer& text, const fem::Mesh& mesh) {
+using NodeOrder = std::array<std::size_t, 6>;
+constexpr NodeOrder straight = {0, 1, 2, 3, 4, 5};
+
+void add_nodes(Cells& cells, const fem::FacingSides::Side& side, std::size_t from, std::size_t to,
+               const NodeOrder& order = straight) {
+  for (std::size_t k = from; k < to; ++k)
+    cells.connectivity.push_back(static_cast<std::int64_t>(side.nodes[order[k]]));
+}
+
+// Of cohesive interfaces: wedges of 6 or 12 nodes. The linear one begins with a triangle that is seen clockwise
+// from the other one; that of twelve nodes is as ours, the midpoints of both triangles behind all corners.
+Cells wedges_of(const fem::Mesh& mesh) {
+  static constexpr NodeOrder turned = {0, 2, 1, 3, 4, 5};
+  Cells cells{static_cast<std::uint8_t>(mesh.order == 1 ? 13 : 31), mesh.cohesive_elements(), {}};
+  for (const fem::Interface& interface : mesh.interfaces)
+    for (const fem::FacingSides& facing : interface.sides) {
+      for (const auto* side : {&facing.first, &facing.second})
+        add_nodes(cells, *side, 0, 3, mesh.order == 1 ? turned : straight);
+      for (const auto* side : {&facing.first, &facing.second}) add_nodes(cells, *side, 3, mesh.order == 1 ? 3 : 6);
+    }
+  return cells;
+}
+
+// Of surfaces: triangles of 3 or 6 nodes, of each interface those of its first region, then of its second.
+Cells triangles_of(const fem::Mesh& mesh) {
+  Cells cells{static_cast<std::uint8_t>(mesh.order == 1 ? 5 : 22), 0, {}};
+  for (const fem::Interface& interface : mesh.interfaces) {
+    cells.count += 2 * interface.sides.size();
+    for (const auto which : {&fem::FacingSides::first, &fem::FacingSides::second})
+      for (const fem::FacingSides& facing : interface.sides)
+        add_nodes(cells, facing.*which, 0, mesh.order == 1 ? 3 : 6);
+  }
+  return cells;
+}
+
+// Of each of these cells its interface, and the region whose side it is; none: a wedge.
+struct OfInterfaces {
+  std::vector<std::int32_t> interface;
+  std::vector<std::optional<std::size_t>> region;
+};
+
+OfInterfaces of_interfaces(const fem::Mesh& mesh) {
+  OfInterfaces result;
+  for (std::size_t i = 0; i < mesh.interfaces.size(); ++i) {
+    const fem::Interface& one = mesh.interfaces[i];
+    const auto add = [&](std::optional<std::size_t> region) {
+      result.interface.insert(result.interface.end(), one.sides.size(), static_cast<std::int32_t>(i));
+      result.region.insert(result.region.end(), one.sides.size(), region);
+    };
+    if (mesh.joining == fem::Joining::cohesive) {
+      add(std::nullopt);
+      continue;
+    }
+    add(one.first);
+    add(one.second);
+  }
+  return result;
+}
+
+// Quality of tetrahedra; a box has none to speak of. `more`: cells that have none.
+void write_quality(TextBuffer& text, const fem::Mesh& mesh, std::size_t more) {
   if (mesh.shape != fem::Mesh::Shape::tetrahedron) return;
   std::vector<float> jacobians, angles, aspects;
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
@@ -73,6 +146,8 @@ void write_quality(TextBuffer& text, const fem::Mesh& mesh) {
     angles.push_back(static_cast<float>(shape.min_dihedral));
     aspects.push_back(static_cast<float>(shape.aspect));
   }
+  for (auto* values : {&jacobians, &angles, &aspects})
+    values->insert(values->end(), more, std::numeric_limits<float>::quiet_NaN());
   write_array(text, "scaled_jacobian", jacobians);
   write_array(text, "min_dihedral", angles);
   write_array(text, "aspect", aspects);
@@ -85,12 +160,28 @@ void write_cell_data(TextBuffer& text, const fem::Mesh& mesh) {
       for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
         yarns[e] = static_cast<std::int32_t>(i);
   materials.assign(mesh.element_material.begin(), mesh.element_material.end());
+  std::vector<Vec3> along = mesh.along, across = mesh.across;
+  std::vector<double> fractions = mesh.fibre_fraction;
+  OfInterfaces others = of_interfaces(mesh);
+  const std::size_t more = others.interface.size(), all = mesh.elements.size() + more;
+  for (const std::optional<std::size_t>& region : others.region) {
+    const bool is_yarns = region && mesh.regions[*region].kind == fem::Region::Kind::yarn;
+    yarns.push_back(is_yarns ? static_cast<std::int32_t>(*region) : -1);
+  }
+  along.resize(all, Vec3::Zero());
+  across.resize(all, Vec3::Zero());
+  if (!fractions.empty()) fractions.resize(all, 0.0);
+  if (!materials.empty()) materials.resize(all, -1);
   write_array(text, "yarn", yarns);
-  write_array(text, "along", flat(mesh.along), 3);
-  write_array(text, "across", flat(mesh.across), 3);
-  if (!mesh.fibre_fraction.empty()) write_array(text, "fibre_fraction", mesh.fibre_fraction);
+  write_array(text, "along", flat(along), 3);
+  write_array(text, "across", flat(across), 3);
+  if (!fractions.empty()) write_array(text, "fibre_fraction", fractions);
   if (!materials.empty()) write_array(text, "material", materials);
-  write_quality(text, mesh);
+  if (more > 0) {
+    others.interface.insert(others.interface.begin(), mesh.elements.size(), -1);
+    write_array(text, "interface", others.interface);
+  }
+  write_quality(text, mesh, more);
 }
 
 // Two hyphens would end a comment.
@@ -101,17 +192,19 @@ std::string comment_text(std::string name) {
   return name;
 }
 
-// The file up to its data; `names`: of the yarns.
-void write_grid(TextBuffer& text, const std::vector<std::string>& names, const std::vector<Vec3>& points,
-                const Cells& cells) {
+// The file up to its data; `names`: of the yarns, and of interfaces.
+void write_grid(TextBuffer& text, const std::vector<std::string>& names, const std::vector<std::string>& interfaces,
+                const std::vector<Vec3>& points, const std::vector<Cells>& cells) {
   text << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   for (std::size_t i = 0; i < names.size(); ++i)
     text << "<!-- yarn " << i << ": " << comment_text(names[i]) << " -->\n";
+  for (std::size_t i = 0; i < interfaces.size(); ++i)
+    text << "<!-- interface " << i << ": " << comment_text(interfaces[i]) << " -->\n";
   text << "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\""
        << (std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian")
        << "\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
        << "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" << points.size() << "\" NumberOfCells=\""
-       << cells.count << "\">\n      <Points>\n";
+       << count_of(cells) << "\">\n      <Points>\n";
   write_array(text, "Points", flat(points), 3);
   text << "      </Points>\n      <Cells>\n";
   write_cells(text, cells);
@@ -128,11 +221,16 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   std::vector<std::string> names;
   for (const fem::Region& region : mesh.regions)
     if (region.kind == fem::Region::Kind::yarn) names.push_back(region.name);
-  write_grid(text, names, mesh.nodes, cells_of(mesh));
+  std::vector<std::string> interfaces;
+  for (const fem::Interface& interface : mesh.interfaces)
+    interfaces.push_back(mesh.regions[interface.first].name + " and " + mesh.regions[interface.second].name);
+  const bool is_cohesive = mesh.joining == fem::Joining::cohesive;
+  const std::vector<Cells> cells = {cells_of(mesh), is_cohesive ? wedges_of(mesh) : triangles_of(mesh)};
+  write_grid(text, names, interfaces, mesh.nodes, cells);
   text << "      <CellData Scalars=\"yarn\">\n";
   write_cell_data(text, mesh);
   text << "      </CellData>\n";
-  return finish(text, mesh.nodes.size(), mesh.elements.size());
+  return finish(text, mesh.nodes.size(), count_of(cells));
 }
 
 Result<WriteFacts> write_gaps(const solid::GapMap& map, OutputFile& output) {
@@ -152,7 +250,7 @@ Result<WriteFacts> write_gaps(const solid::GapMap& map, OutputFile& output) {
     cells.count += skin.triangles.size();
   }
   TextBuffer text(output);
-  write_grid(text, map.names, points, cells);
+  write_grid(text, map.names, {}, points, {cells});
   text << "      <PointData Scalars=\"gap\">\n";
   write_array(text, "gap", gaps);
   text << "      </PointData>\n      <CellData>\n";
@@ -175,6 +273,8 @@ const Descriptor& descriptor() {
                                   .sniff = is_a_vtk_grid,
                                   .read_mesh = read_mesh,
                                   .write_mesh = write,
+                                  .order_of_surfaces = 2,
+                                  .order_of_cohesive = 2,
                                   .write_gap_map = write_gaps};
   return self;
 }
