@@ -35,6 +35,8 @@ class Deck:
                 continue
             self.take(keyword, options, words, material)
         self.terms()
+        # Places by which nodes are compared.
+        self.at = dict(zip(self.nodes, map(tuple, (np.round(list(self.nodes.values()), 9) + 0.0).tolist())))
 
     def take(self, keyword, options, words, material):
         if keyword == "*NODE":
@@ -81,10 +83,6 @@ class Deck:
                 for node in self.solids[number]:
                     assert of_node.setdefault(node, name) == name, f"node {node} is one of {name} and {of_node[node]}"
         return of_node
-
-
-def place(point):
-    return tuple(np.round(point, 9) + 0.0)
 
 
 def faces_of(deck, numbers):
