@@ -62,7 +62,8 @@ void write_frames(TextBuffer& text, const fem::Frames& frames) {
 void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
                     const fem::Frames& frames) {
   const std::vector<std::size_t> materials = fem::element_materials(mesh, sections);
-  open_block(text, "EBLOCK,19,SOLID,", mesh.elements.size() + mesh.drivers.size() + mesh.cohesive_elements(), "(19i10)");
+  open_block(text, "EBLOCK,19,SOLID,", mesh.elements.size() + mesh.drivers.size() + mesh.cohesive_elements(),
+             "(19i10)");
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const std::size_t frame = frames.of_element[e];
     const std::span<const std::size_t> nodes = mesh.nodes_of(e);

@@ -36,8 +36,12 @@ std::array<double, 6> bilinear(const fem::CohesiveLaw& law) {
   const auto& [strength, energy] = *law.fracture;
   const double at_normal = strength.normal * strength.normal / (2 * normal * energy.normal);
   const double at_shear = strength.shear * strength.shear / (2 * shear * energy.shear);
-  return {strength.normal, 2 * energy.normal / strength.normal,    strength.shear,
-          2 * energy.shear / strength.shear, std::min(at_normal, at_shear), 1};
+  return {strength.normal,
+          2 * energy.normal / strength.normal,
+          strength.shear,
+          2 * energy.shear / strength.shear,
+          std::min(at_normal, at_shear),
+          1};
 }
 
 }  // namespace
@@ -63,8 +67,10 @@ void write_cohesive_elements(TextBuffer& text, const fem::Mesh& mesh) {
       const auto &p = facing.first.nodes, &q = facing.second.nodes;
       std::vector<std::size_t> nodes = {p[0], p[1], p[2], p[2], q[0], q[1], q[2], q[2]};
       if (mesh.order == 2)
-        for (const auto* side : {&p, &q}) nodes.insert(nodes.end(), {(*side)[3], (*side)[4], (*side)[2], (*side)[5]});
-      write_element_head(text, mesh.materials.size() + interface.law + 1, cohesive_type, 0, nodes.size(), ++number);
+        for (const auto* side : {&p, &q})
+          nodes.insert(nodes.end(), {(*side)[3], (*side)[4], (*side)[2], (*side)[5]});
+      write_element_head(text, mesh.materials.size() + interface.law + 1, cohesive_type, 0, nodes.size(),
+                         ++number);
       put_numbers(text, nodes, 10, 8);
     }
 }
@@ -91,9 +97,9 @@ void write_cohesive_materials(TextBuffer& text, const fem::Mesh& mesh) {
     const std::size_t number = mesh.materials.size() + i + 1;
     const std::array<double, 6> c = bilinear(mesh.laws[i]);
     text << "! material " << number << ": " << names[number - 1] << ", an interface: "
-         << (mesh.laws[i].fracture ? "bilinear, stiffness " : "nothing breaks, stiffness ") << c[0] / (c[4] * c[1])
-         << " across and " << c[2] / (c[4] * c[3]) << " along it, MPa/mm\nTB,CZM," << number
-         << ",1,,BILI\nTBDATA,1";
+         << (mesh.laws[i].fracture ? "bilinear, stiffness " : "nothing breaks, stiffness ")
+         << c[0] / (c[4] * c[1]) << " across and " << c[2] / (c[4] * c[3]) << " along it, MPa/mm\nTB,CZM,"
+         << number << ",1,,BILI\nTBDATA,1";
     for (const double constant : c) text << ',' << constant;
     text << '\n';
   }

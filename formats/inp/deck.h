@@ -72,7 +72,8 @@ void write_contact_pairs(TextBuffer& text, const Deck& deck);
 // Of interfaces that are cohesive: COH3D6, their laws and sections, by NAME_Cohesive.
 void write_cohesive_elements(TextBuffer& text, const Deck& deck);
 void write_cohesive_materials(TextBuffer& text, const Deck& deck);
-// Of interfaces that are surfaces: NAME_Side and NAME_Facing, and the ties of the nodes NAME_Tied to the latter.
+// Of interfaces that are surfaces: NAME_Side and NAME_Facing, and the ties of the nodes NAME_Tied to the
+// latter.
 void write_interface_surfaces(TextBuffer& text, const Deck& deck);
 void write_ties(TextBuffer& text, const Deck& deck);
 

@@ -73,7 +73,8 @@ void write_ties(TextBuffer& text, const Deck& deck) {
   const fem::Mesh& mesh = deck.mesh;
   if (mesh.joining != fem::Joining::surfaces) return;
   const double tolerance = 1e-6 * (mesh.cell->high - mesh.cell->low).maxCoeff();
-  text << "** Nodes of _Side are tied to _Facing but for those that equations eliminate. For contact instead: a "
+  text << "** Nodes of _Side are tied to _Facing but for those that equations eliminate. For contact "
+          "instead: a "
           "*CONTACT PAIR of _Side and _Facing.\n";
   const std::vector<std::vector<std::size_t>> tied = tied_nodes(mesh);
   for (std::size_t i = 0; i < mesh.interfaces.size(); ++i) {

@@ -11,9 +11,11 @@ namespace {
 
 constexpr std::size_t cohesive_section = 2;
 
-void write_segments(TextBuffer& text, const fem::Mesh& mesh, const fem::Interface& interface, std::size_t number,
-                    const std::string& name, fem::FacingSides::Side fem::FacingSides::*which) {
-  static constexpr std::array<std::array<std::size_t, 3>, 4> quarters = {{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
+void write_segments(TextBuffer& text, const fem::Mesh& mesh, const fem::Interface& interface,
+                    std::size_t number, const std::string& name,
+                    fem::FacingSides::Side fem::FacingSides::*which) {
+  static constexpr std::array<std::array<std::size_t, 3>, 4> quarters = {
+      {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
   static constexpr std::array<std::array<std::size_t, 3>, 1> whole = {{{0, 1, 2}}};
   text << "*SET_SEGMENT_TITLE\n" << name << '\n';
   put_integers(text, {number});

@@ -39,11 +39,11 @@ class CellFile {
     std::size_t sides = 0;
     for (const Surface& surface : topology_.surfaces) sides += surface.sides.size();
     EntityCounts counts = {
-            {"nodes", mesh_.nodes.size()},
-            {mesh_.shape == fem::Mesh::Shape::hexahedron ? "quadrangles" : "triangles", sides},
-            {mesh_.shape == fem::Mesh::Shape::hexahedron ? "hexahedra" : "tetrahedra", mesh_.elements.size()},
-            {"physical groups", groups_.size() + mesh_.regions.size() + layers() + 2},
-            {"periodic entities", copies_.size()}};
+        {"nodes", mesh_.nodes.size()},
+        {mesh_.shape == fem::Mesh::Shape::hexahedron ? "quadrangles" : "triangles", sides},
+        {mesh_.shape == fem::Mesh::Shape::hexahedron ? "hexahedra" : "tetrahedra", mesh_.elements.size()},
+        {"physical groups", groups_.size() + mesh_.regions.size() + layers() + 2},
+        {"periodic entities", copies_.size()}};
     if (layers() > 0) counts["wedges"] = mesh_.cohesive_elements();
     return counts;
   }

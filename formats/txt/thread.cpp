@@ -215,10 +215,11 @@ void read_interface(Parser& p, Material& material, std::string_view word) {
   fabric::Interface& interface = material.interface.emplace();
   if (!p.read_block(word, "", opened, table, interface)) return;
   if (interface.strength.has_value() != interface.energy.has_value())
-    p.error(opened, interface.strength ? "an interface that has a strength needs `energy`, too: how much it "
-                                         "takes to part it"
-                                       : "an interface that has an energy needs `strength`, too: the traction at "
-                                         "which it begins to part");
+    p.error(opened, interface.strength
+                        ? "an interface that has a strength needs `energy`, too: how much it "
+                          "takes to part it"
+                        : "an interface that has an energy needs `strength`, too: the traction at "
+                          "which it begins to part");
 }
 
 }  // namespace

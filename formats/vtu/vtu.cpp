@@ -86,8 +86,9 @@ void add_nodes(Cells& cells, const fem::FacingSides::Side& side, std::size_t fro
     cells.connectivity.push_back(static_cast<std::int64_t>(side.nodes[order[k]]));
 }
 
-// Of cohesive interfaces: wedges of 6 or 12 nodes. The linear one begins with a triangle that is seen clockwise
-// from the other one; that of twelve nodes is as ours, the midpoints of both triangles behind all corners.
+// Of cohesive interfaces: wedges of 6 or 12 nodes. The linear one begins with a triangle that is seen
+// clockwise from the other one; that of twelve nodes is as ours, the midpoints of both triangles behind all
+// corners.
 Cells wedges_of(const fem::Mesh& mesh) {
   static constexpr NodeOrder turned = {0, 2, 1, 3, 4, 5};
   Cells cells{static_cast<std::uint8_t>(mesh.order == 1 ? 13 : 31), mesh.cohesive_elements(), {}};
@@ -95,7 +96,8 @@ Cells wedges_of(const fem::Mesh& mesh) {
     for (const fem::FacingSides& facing : interface.sides) {
       for (const auto* side : {&facing.first, &facing.second})
         add_nodes(cells, *side, 0, 3, mesh.order == 1 ? turned : straight);
-      for (const auto* side : {&facing.first, &facing.second}) add_nodes(cells, *side, 3, mesh.order == 1 ? 3 : 6);
+      for (const auto* side : {&facing.first, &facing.second})
+        add_nodes(cells, *side, 3, mesh.order == 1 ? 3 : 6);
     }
   return cells;
 }
@@ -193,8 +195,9 @@ std::string comment_text(std::string name) {
 }
 
 // The file up to its data; `names`: of the yarns, and of interfaces.
-void write_grid(TextBuffer& text, const std::vector<std::string>& names, const std::vector<std::string>& interfaces,
-                const std::vector<Vec3>& points, const std::vector<Cells>& cells) {
+void write_grid(TextBuffer& text, const std::vector<std::string>& names,
+                const std::vector<std::string>& interfaces, const std::vector<Vec3>& points,
+                const std::vector<Cells>& cells) {
   text << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   for (std::size_t i = 0; i < names.size(); ++i)
     text << "<!-- yarn " << i << ": " << comment_text(names[i]) << " -->\n";

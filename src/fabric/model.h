@@ -100,8 +100,8 @@ struct Transport {
   bool operator==(const Transport&) const = default;
 };
 
-// How a surface at which a material ends holds on to another one: what opens it (normal), and what slides along
-// it (shear). All > 0; strength and energy are there both, or neither.
+// How a surface at which a material ends holds on to another one: what opens it (normal), and what slides
+// along it (shear). All > 0; strength and energy are there both, or neither.
 struct Interface {
   struct Pair {
     double normal = 0, shear = 0;

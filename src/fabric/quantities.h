@@ -32,8 +32,8 @@ inline constexpr Quantity diffusivity_quantity = {"a diffusivity",     "mm2/s", 
                                                   Measure::diffusivity};
 inline constexpr Quantity permittivity_quantity = {
     "a relative permittivity", "times that of a vacuum", 1, 1e6, "F/m", 1 / 8.8541878188e-12};
-inline constexpr Quantity interface_stiffness_quantity = {"an interface's stiffness", "MPa/mm", 1e-6, 1e12,
-                                                         "N/m3", 1e-9};
+inline constexpr Quantity interface_stiffness_quantity = {
+    "an interface's stiffness", "MPa/mm", 1e-6, 1e12, "N/m3", 1e-9};
 inline constexpr Quantity interface_strength_quantity = {
     "an interface's strength", "MPa", 1e-6, 1e5, "Pa", 1e-6, Measure::modulus};
 inline constexpr Quantity interface_energy_quantity = {

@@ -181,13 +181,14 @@ Status CellMesher::check_joining(Mesh& mesh) const {
     return mesh.regions[interface.second].kind == Region::Kind::yarn;
   };
   if (options_.bond > 0 && std::none_of(mesh.interfaces.begin(), mesh.interfaces.end(), is_of_yarns))
-    return located(
-        error(Kind::geometry,
-              fmt::format("no yarns are bonded, so that nothing is cohesive between them: all keep a gap of more "
-                          "than {:.3g} {}, which is matrix. A larger --gap reaches farther; or leave out --bond, "
-                          "and yarns hold on to the matrix alone",
-                          options_.bond, name_of(fabric_.units))));
-  if (Status right = choose_cohesive_laws(mesh); !right) return right.error().placed(right.error().place, fabric_.file);
+    return located(error(
+        Kind::geometry,
+        fmt::format("no yarns are bonded, so that nothing is cohesive between them: all keep a gap of more "
+                    "than {:.3g} {}, which is matrix. A larger --gap reaches farther; or leave out --bond, "
+                    "and yarns hold on to the matrix alone",
+                    options_.bond, name_of(fabric_.units))));
+  if (Status right = choose_cohesive_laws(mesh); !right)
+    return right.error().placed(right.error().place, fabric_.file);
   return {};
 }
 

@@ -55,9 +55,10 @@ Status check_energy(const CohesiveLaw& law, const fabric::Material& first, const
     if (law.fracture->energy.*way > least) return {};
     const fabric::Material& place = first.interface && first.interface->energy ? first : second;
     return error(Kind::geometry,
-                 fmt::format("the interface of '{}' and '{}' takes {:.3g} N/mm elastically up to its {} strength, "
-                             "and its fracture energy is {:.3g}: it has to be larger, or the stiffness",
-                             first.name, second.name, least, what, law.fracture->energy.*way))
+                 fmt::format(
+                     "the interface of '{}' and '{}' takes {:.3g} N/mm elastically up to its {} strength, "
+                     "and its fracture energy is {:.3g}: it has to be larger, or the stiffness",
+                     first.name, second.name, least, what, law.fracture->energy.*way))
         .placed(place.place);
   };
   if (Status normal = check("normal", &Pair::normal); !normal) return normal;
@@ -86,7 +87,8 @@ Status choose_cohesive_laws(Mesh& mesh) {
   std::map<std::pair<std::string, std::string>, std::size_t> known;
   mesh.laws.clear();
   for (Interface& interface : mesh.interfaces) {
-    std::string first = mesh.regions[interface.first].material, second = mesh.regions[interface.second].material;
+    std::string first = mesh.regions[interface.first].material,
+                second = mesh.regions[interface.second].material;
     const bool is_of_yarns = mesh.regions[interface.second].kind == Region::Kind::yarn;
     if (is_of_yarns && second < first) std::swap(first, second);
     const auto [at, is_new] = known.try_emplace({first, second}, mesh.laws.size());

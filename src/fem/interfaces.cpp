@@ -137,7 +137,8 @@ void Doubling::find_interfaces() {
   }
   mesh_.interfaces.clear();
   for (auto& [regions, sides] : found)
-    mesh_.interfaces.push_back({.first = regions[0], .second = regions[1], .law = 0, .sides = std::move(sides)});
+    mesh_.interfaces.push_back(
+        {.first = regions[0], .second = regions[1], .law = 0, .sides = std::move(sides)});
 }
 
 // Nodes that move alike but for what the drivers make: those of sides of the faces that are opposite. The
@@ -194,7 +195,8 @@ void Doubling::tie(const std::vector<std::array<std::size_t, 2>>& ties) {
   const auto high_sides = [&](std::size_t node) {
     int count = 0;
     for (int axis = 0; axis < 3; ++axis)
-      if (cell.periodic[static_cast<std::size_t>(axis)] && mesh_.nodes[node][axis] == cell.high[axis]) ++count;
+      if (cell.periodic[static_cast<std::size_t>(axis)] && mesh_.nodes[node][axis] == cell.high[axis])
+        ++count;
     return count;
   };
   std::vector<std::size_t> of_group(mesh_.nodes.size(), no_node);
@@ -214,9 +216,8 @@ std::vector<std::vector<std::size_t>> Doubling::alike(const std::vector<std::siz
   for (const std::size_t master : left.front()) {
     std::vector<std::size_t> row = {master};
     for (std::size_t k = 1; k < olds.size() && row.size() == k; ++k) {
-      const auto other = std::find_if(left[k].begin(), left[k].end(), [&](std::size_t node) {
-        return lowest_[node] == lowest_[master];
-      });
+      const auto other = std::find_if(left[k].begin(), left[k].end(),
+                                      [&](std::size_t node) { return lowest_[node] == lowest_[master]; });
       if (other == left[k].end()) continue;
       row.push_back(*other);
       left[k].erase(other);
@@ -272,7 +273,8 @@ void Doubling::renew_edges() {
         std::vector<std::size_t> opposite;
         for (const std::size_t edge : edges) opposite.push_back(old[4 * axis + edge][k]);
         for (const auto& row : alike(opposite))
-          for (std::size_t i = 0; i < edges.size(); ++i) cell.edge_nodes[4 * axis + edges[i]].push_back(row[i]);
+          for (std::size_t i = 0; i < edges.size(); ++i)
+            cell.edge_nodes[4 * axis + edges[i]].push_back(row[i]);
       }
     }
   }

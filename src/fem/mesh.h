@@ -76,8 +76,8 @@ struct UnitCell {
   // each other over it have equally many, in the same order (increasing coordinate).
   std::array<std::vector<std::size_t>, 12> edge_nodes;
   std::array<std::size_t, 8> corners{};  // bit 0, 1, 2 of the number: high in x, y, z
-  // Where regions share no nodes (Mesh::joining), each has a node in these sets that has a side in the face; a
-  // region's other nodes in the corners, likewise numbered, are here.
+  // Where regions share no nodes (Mesh::joining), each has a node in these sets that has a side in the face;
+  // a region's other nodes in the corners, likewise numbered, are here.
   std::array<std::vector<std::size_t>, 8> more_corners;
   // The element sides on the faces, same order A..F, corner nodes only, seen from outside counter-clockwise
   // (three of a tetrahedron; four of a hexahedron); where an axis is periodic, the k-th opposite the k-th.
@@ -170,9 +170,9 @@ struct Mesh {
   // Index into `materials` for each element; empty: by Region::material.
   std::vector<std::uint32_t> element_material;
   std::optional<UnitCell> cell;
-  Joining joining = Joining::bonded;  // other ones: of a cell of tetrahedra
-  std::vector<Interface> interfaces;  // by their regions; empty where all are bonded
-  std::vector<CohesiveLaw> laws;      // of cohesive ones
+  Joining joining = Joining::bonded;   // other ones: of a cell of tetrahedra
+  std::vector<Interface> interfaces;   // by their regions; empty where all are bonded
+  std::vector<CohesiveLaw> laws;       // of cohesive ones
   Physics physics = Physics::elastic;  // other ones: of a cell
   std::vector<Driver> drivers;
   std::vector<Equation> equations;

@@ -355,12 +355,15 @@ void of_a_cell(OptionTable& t) {
          "the gap becomes part of them), instead of a gap filled with matrix",
          &Options::bond)
       .goes_with("joins yarns in a mesh of tetrahedra with its matrix", "--matrix", "--voxel");
-  t.choice({mesh}, "--interface",
-           "where yarns meet the matrix, and with --bond each other: bonded: they share nodes; surfaces: each has "
-           "nodes of its own, and named surfaces are tied; cohesive: and elements without thickness between them",
-           "bonded surfaces cohesive", &Options::joining,
-           {fem::Joining::bonded, fem::Joining::surfaces, fem::Joining::cohesive})
-      .goes_with("is of yarns in a matrix, where yarns that only keep a gap hold nothing", "--matrix", "--voxel")
+  t.choice(
+       {mesh}, "--interface",
+       "where yarns meet the matrix, and with --bond each other: bonded: they share nodes; surfaces: each "
+       "has "
+       "nodes of its own, and named surfaces are tied; cohesive: and elements without thickness between them",
+       "bonded surfaces cohesive", &Options::joining,
+       {fem::Joining::bonded, fem::Joining::surfaces, fem::Joining::cohesive})
+      .goes_with("is of yarns in a matrix, where yarns that only keep a gap hold nothing", "--matrix",
+                 "--voxel")
       .with_preset("bonded");
 }
 

@@ -46,8 +46,8 @@ bool is_bent(const Options& options, const ReadyCell& ready) {
 
 // Bending is a quadratic displacement, which elements of order 1 follow by shearing.
 void say_what_bending_costs(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready) {
-  const bool is_straight = job.options.order == 1 ||
-                           (job.options.order == 0 && job.options.joining == fem::Joining::cohesive);
+  const bool is_straight =
+      job.options.order == 1 || (job.options.order == 0 && job.options.joining == fem::Joining::cohesive);
   if (!is_bent(job.options, ready) || (job.options.voxels == 0 && !is_straight)) return;
   job.say(at_cell(
       fabric,

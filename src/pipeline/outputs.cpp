@@ -277,9 +277,10 @@ Status check_joining(const Options& options, const Formats& wanted) {
   const bool is_cohesive = options.joining == fem::Joining::cohesive;
   const std::string_view word = is_cohesive ? "cohesive" : "surfaces";
   if (options.physics != fem::Physics::elastic)
-    return error(Kind::usage,
-                 fmt::format("--interface {} is of elastic materials, and --physics {} of a cell that is bonded",
-                             word, fem::transport_law(options.physics).word));
+    return error(
+        Kind::usage,
+        fmt::format("--interface {} is of elastic materials, and --physics {} of a cell that is bonded", word,
+                    fem::transport_law(options.physics).word));
   const auto order_of = [&](const Descriptor& format) {
     return is_cohesive ? format.order_of_cohesive : format.order_of_surfaces;
   };
@@ -289,8 +290,8 @@ Status check_joining(const Options& options, const Formats& wanted) {
     for (const Descriptor* other : formats::all_formats())
       if (order_of(*other) >= std::max(options.order, 1) && !is_beside_another(*other))
         others += fmt::format(" --to {}", other->name);
-    return error(Kind::usage, fmt::format("{} has no elements for --interface {}{}: write it with{}{}", format->name,
-                                          word, options.order == 2 ? " --order 2" : "", others,
+    return error(Kind::usage, fmt::format("{} has no elements for --interface {}{}: write it with{}{}",
+                                          format->name, word, options.order == 2 ? " --order 2" : "", others,
                                           order_of(*format) > 0 ? ", or with --order 1" : ""));
   }
   return {};

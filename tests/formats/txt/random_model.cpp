@@ -125,7 +125,9 @@ class Maker {
     maybe(material.diffusivity, [&] { return transport(diffusivity_quantity); });
     maybe(material.permittivity, [&] { return transport(permittivity_quantity); });
     maybe(material.interface, [&] {
-      const auto pair = [&](const Quantity& quantity) { return Interface::Pair{some(quantity), some(quantity)}; };
+      const auto pair = [&](const Quantity& quantity) {
+        return Interface::Pair{some(quantity), some(quantity)};
+      };
       Interface interface;
       maybe(interface.stiffness, [&] { return pair(interface_stiffness_quantity); });
       if (coin()) {

@@ -19,7 +19,8 @@ constexpr int count = 4;  // cubes along each side
 
 // A cube of 4 x 4 x 4 cubes, each of six tetrahedra (H. W. Kuhn's, along the ways from its low to its high
 // corner, so that opposite sides have the same triangles); the region by the middle of a tetrahedron.
-Mesh cube(std::size_t regions, const std::function<std::size_t(const Vec3&)>& region_of, bool is_periodic_in_z = true) {
+Mesh cube(std::size_t regions, const std::function<std::size_t(const Vec3&)>& region_of,
+          bool is_periodic_in_z = true) {
   Mesh mesh;
   std::vector<std::vector<std::array<std::size_t, 10>>> elements(regions);
   const auto node = [](const std::array<int, 3>& p) {
@@ -56,7 +57,8 @@ Mesh cube(std::size_t regions, const std::function<std::size_t(const Vec3&)>& re
     mesh.regions.push_back(region);
   }
   mesh.joining = Joining::cohesive;
-  const Status done = complete_cell(mesh, Box3(Vec3::Zero(), Vec3::Constant(count)), {true, true, is_periodic_in_z});
+  const Status done =
+      complete_cell(mesh, Box3(Vec3::Zero(), Vec3::Constant(count)), {true, true, is_periodic_in_z});
   EXPECT_TRUE(done.ok()) << (done.ok() ? "" : done.error().text);
   return mesh;
 }
@@ -78,7 +80,8 @@ std::vector<std::size_t> regions_of_nodes(const Mesh& mesh) {
 std::map<std::size_t, std::size_t> masters(const Mesh& mesh) {
   std::map<std::size_t, std::size_t> found;
   for (const Equation& equation : mesh.equations)
-    if (equation.size() > 1 && equation[1].node < mesh.nodes.size()) found[equation[0].node] = equation[1].node;
+    if (equation.size() > 1 && equation[1].node < mesh.nodes.size())
+      found[equation[0].node] = equation[1].node;
   for (const auto& [node, master] : found) EXPECT_FALSE(found.contains(master));
   return found;
 }
@@ -126,7 +129,8 @@ TEST(Interfaces, BothSidesAreOppositeTheirLike) {
   }
   EXPECT_EQ(cell.edge_nodes[8].size(), 3U + 2U);  // along z
   for (std::size_t k = 0; k < cell.edge_nodes[8].size(); ++k)
-    for (std::size_t edge = 9; edge < 12; ++edge) EXPECT_EQ(region[cell.edge_nodes[edge][k]], region[cell.edge_nodes[8][k]]);
+    for (std::size_t edge = 9; edge < 12; ++edge)
+      EXPECT_EQ(region[cell.edge_nodes[edge][k]], region[cell.edge_nodes[8][k]]);
   for (const auto& [node, master] : masters(mesh)) EXPECT_EQ(region[node], region[master]);
 }
 
@@ -171,13 +175,13 @@ TEST(Interfaces, ASurfaceThroughAnEdgeIsTiedWhereTheRegionIs) {
     if (!is_high) continue;
     const std::size_t master = depends.at(n);
     EXPECT_EQ(region[master], region[n]);
-    for (int axis = 0; axis < 3; ++axis)
-      EXPECT_EQ(mesh.nodes[master][axis], p[axis] == count ? 0 : p[axis]);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(mesh.nodes[master][axis], p[axis] == count ? 0 : p[axis]);
   }
 }
 
 TEST(Interfaces, APlateHasBothSidesFreeAtTheTop) {
-  const Mesh mesh = cube(2, [](const Vec3& p) { return is_within(p.x(), 1, 3) ? 0U : 1U; }, false);
+  const Mesh mesh = cube(
+      2, [](const Vec3& p) { return is_within(p.x(), 1, 3) ? 0U : 1U; }, false);
   const std::vector<std::size_t> region = regions_of_nodes(mesh);
   EXPECT_EQ(mesh.cell->face_nodes[4].size(), 9U + 2U * 3U);
   EXPECT_EQ(mesh.cell->edge_nodes[0].size(), 3U + 2U);  // along x

@@ -160,7 +160,8 @@ TEST(SolverNames, OfInterfaces) {
   Names all;
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) all.push_back(names.of(r));
   for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
-    for (const std::string_view ending : fem::interface_endings) all.push_back(names.of_interface(mesh, i, ending));
+    for (const std::string_view ending : fem::interface_endings)
+      all.push_back(names.of_interface(mesh, i, ending));
   expect_identifiers(all, 40, "");
 }
 
