@@ -8,6 +8,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import unittest
 import zlib
 
@@ -17,8 +18,13 @@ import interfaces
 from program import Case, SAMPLES
 
 SCRIPTS = pathlib.Path(__file__).parents[2] / "scripts"
+sys.path.insert(0, str(SCRIPTS))
+import cell_deck
+import cell_elements
+
 CELLS = {  # coarse: what is judged here does not depend on the size
     "cell_plain": ("--segments", "8", "--matrix-size", "0.5"),
+    "thick_plain": ("--size", "0.4", "--matrix-size", "0.6"),
     "thick_twill": ("--size", "0.4", "--matrix-size", "0.6"),
     "cell_straight": ("--size", "0.2"),
     "cell_fibre": (),
@@ -28,7 +34,7 @@ CELLS = {  # coarse: what is judged here does not depend on the size
 # SELVAGE_CELL: names of these, or of samples, for studies by hand.
 NAMES = os.environ.get("SELVAGE_CELL", " ".join(CELLS)).split()
 
-TWILL = """fabric 1
+WEAVE = """fabric 1
 units mm
 tolerance 0.001
 material tow
@@ -42,9 +48,9 @@ thread roving
   material tow
 end
 weave
-  warp roving 3 pitch 1.3
-  weft roving 3 pitch 1.3
-  draft twill 2/1
+  warp roving {count} pitch 1.3
+  weft roving {count} pitch 1.3
+  draft {draft}
 end
 cell repeat
   margin 0.1
@@ -52,6 +58,8 @@ cell repeat
   periodic x y
 end
 """
+
+WOVEN = {"thick_plain": WEAVE.format(count=2, draft="plain"), "thick_twill": WEAVE.format(count=3, draft="twill 2/1")}
 
 LAMINATE = """fabric 1
 units mm
@@ -141,7 +149,7 @@ class Cells(Interfaces):
     """Of six cells: what an independent reader finds."""
 
     def mesh_of(self, name, interface):
-        text = TWILL if name == "thick_twill" else SAMPLES / f"{name}.txt"
+        text = WOVEN.get(name) or SAMPLES / f"{name}.txt"
         return self.mesh(text, "--interface", interface, "--order", "1", *CELLS.get(name, ()))
 
     def judge_nodes(self, deck):
@@ -267,13 +275,16 @@ class Cells(Interfaces):
         self.assertTrue(any(re.fullmatch(r".*_Cohesive\d+", name) for name in deck.layers))
 
     def test_stiffness(self):
-        """By default as stiff as the bonded cell, to a thousandth: both put together by scripts/homogenize."""
+        """By default as stiff as the bonded cell, to a thousandth: both put together as scripts/homogenize does it, which
+        would refuse plates of such coarse elements."""
         for name in NAMES:
+            if name == "cell_plain":  # as the thick one, and takes twice the time
+                continue
             with self.subTest(cell=name):
                 found = []
                 for interface in ("bonded", "cohesive"):
-                    deck = self.mesh_of(name, interface)
-                    found.append(np.array(self.homogenized(deck, "--solver", "iterative")["stiffness"]))
+                    deck = cell_deck.Deck(self.mesh_of(name, interface))
+                    found.append(cell_elements.Cell(deck, deck.drivers(), deck.matrices()).stiffness()[0])
                 bonded, cohesive = found
                 scale = np.sqrt(np.outer(np.diag(bonded), np.diag(bonded)))
                 print(f"{name}: stiffness differs by {np.abs((cohesive - bonded) / scale).max():.2e}")
