@@ -201,7 +201,8 @@ auto into_pair(std::optional<fabric::Interface::Pair> fabric::Interface::*member
   return [member, &quantity](Parser& p, fabric::Interface& interface, std::string_view word) {
     const auto normal = p.positive(fmt::format("the {} across the interface", word), quantity);
     const auto shear = p.positive(fmt::format("the {} along the interface", word), quantity);
-    if (p.finish()) interface.*member = {*normal, *shear};
+    p.finish();
+    interface.*member = {normal.value_or(0), shear.value_or(0)};  // wrong or not, it was given
   };
 }
 
