@@ -190,6 +190,9 @@ struct Descriptor {
   Result<WriteFacts> (*write_beams)(const fem::BeamModel& beams, OutputFile& output,
                                     const MeshFileOptions& options) = nullptr;
   bool carries_transport = false;  // decks of every Mesh::physics, not of elasticity alone
+  // The largest order of meshes whose regions share no nodes (Mesh::joining) that the format holds, as
+  // surfaces and as cohesive elements; 0: of none.
+  int order_of_surfaces = 0, order_of_cohesive = 0;
   // A unit cell on voxels (`mesh --voxel`), for a format that holds no elements.
   Result<WriteFacts> (*write_raster)(const fem::Raster& raster, OutputFile& output) = nullptr;
   Companion companion{};

@@ -6,6 +6,7 @@ import re
 
 import numpy
 
+import cell_cohesive
 from cell_elements import EDGES, PAIRS, frames, matrices, tetrahedron_shapes
 
 
@@ -18,6 +19,7 @@ class Deck:
         self.nodes, self.sets, self.elements, self.element_sets = {}, {}, {}, {}
         self.equations, self.materials, self.sections = [], {}, []
         self.axes, self.steps, self.held = {}, [], []
+        self.wedges, self.layers, self.surfaces, self.ties = {}, [], {}, []  # of interfaces: see cell_cohesive
         self.cell, self.physics = None, None
         self.first_step = len(self.lines)
         self._read()
@@ -80,7 +82,10 @@ class Deck:
                 material = self.materials.setdefault(options["NAME"], {})
             elif keyword == "ELASTIC":
                 values = [float(word) for row in rows for word in row if word]
-                material["stiffness"] = stiffness_of(values)
+                if options.get("TYPE") == "TRACTION":
+                    material["traction"] = values
+                else:
+                    material["stiffness"] = stiffness_of(values)
             elif keyword == "EXPANSION":
                 values = [float(word) for row in rows for word in row if word]
                 material["expansion"] = values if len(values) > 1 else values * 3
@@ -89,6 +94,12 @@ class Deck:
                 material["conductivity"] = values if len(values) > 1 else values * 3
             elif keyword == "SOLID SECTION":
                 self.sections.append((options["ELSET"], options["MATERIAL"], "ORIENTATION" in options))
+            elif keyword == "COHESIVE SECTION":
+                self.layers.append((options["ELSET"], options["MATERIAL"]))
+            elif keyword == "SURFACE":
+                self.surfaces[options["NAME"]] = (options.get("TYPE"), rows)
+            elif keyword == "TIE":
+                self.ties.append(rows[0])
             elif keyword == "DISTRIBUTION":
                 for row in rows:
                     if row[0]:
@@ -108,12 +119,13 @@ class Deck:
 
     def _add_elements(self, options, rows):
         names = self.element_sets.setdefault(options.get("ELSET", "All"), [])
-        count = {"C3D4": 4, "C3D10": 10, "C3D8": 8}.get(options["TYPE"].upper().removeprefix("D"))
+        count = {"C3D4": 4, "C3D10": 10, "C3D8": 8, "COH3D6": 6}.get(options["TYPE"].upper().removeprefix("D"))
         if count is None:
             return
+        elements = self.wedges if count == 6 else self.elements
         words = [int(word) for row in rows for word in row if word]
         for k in range(0, len(words), count + 1):
-            self.elements[words[k]] = words[k + 1 : k + 1 + count]
+            elements[words[k]] = words[k + 1 : k + 1 + count]
             names.append(words[k])
 
     @property
@@ -166,6 +178,10 @@ class Deck:
         """Of all elements, some at a time: their numbers, stiffness matrices, and the forces of one degree."""
         for part, places, stiffness, expansion in self.parts():
             yield part, *matrices(places, stiffness, expansion)
+        yield from cell_cohesive.matrices(self)
+
+    def nodes_of(self, element):
+        return self.wedges.get(element) or self.elements[element]
 
     def pieces(self):
         """Of all elements, some at a time: section, volumes, first and second moments of their heights about the middle

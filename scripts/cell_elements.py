@@ -3,6 +3,8 @@ where a factorization would take too long."""
 
 import numpy
 
+import cell_cohesive
+
 EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]  # of which the fifth to the tenth node is the middle
 CORNERS = numpy.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 BRICK = numpy.array([[x, y, z] for z in (-1.0, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
@@ -99,8 +101,10 @@ class Conditions:
             for n, _, f in others:
                 if n in index:
                     self.driven[node, direction, index[n]] = -f / factor
+        for node, other in cell_cohesive.tied(deck).items():
+            master[master == node] = master[other]
         if deck.held:
-            master[master == int(deck.held[0])] = -1
+            master[master == int(master[int(deck.held[0])])] = -1
         used = numpy.unique(numpy.concatenate([numpy.unique(rows) for rows in element_rows(deck)]))
         kept = numpy.unique(master[used])
         kept = kept[kept >= 0]
@@ -122,42 +126,51 @@ class Cell:
         """`pieces`: of some elements at a time their numbers, matrices, and forces of one degree."""
         self.conditions = Conditions(deck, drivers)
         self.directions = deck.directions
-        nodes, of_elements, forces = [], [], []
-        for numbers, some, force in pieces:
-            nodes.append(numpy.array([deck.elements[e] for e in numbers]))
-            of_elements.append(some)
-            forces.append(force)
-        self.nodes = numpy.concatenate(nodes)
-        self.matrices = numpy.concatenate(of_elements)
-        self.heated = numpy.concatenate(forces)
         count = self.conditions.count
-        unknown = self.conditions.unknown[self.nodes]
-        unknown[unknown < 0] = count  # one more, which stays at zero
-        self.unknown = (self.directions * unknown[:, :, None] + numpy.arange(self.directions)).reshape(len(self.nodes), -1)
-        flat = self.unknown.ravel()
-        self.order = numpy.argsort(flat, kind="stable")
-        ordered = flat[self.order]
-        self.starts = numpy.flatnonzero(numpy.r_[True, ordered[1:] != ordered[:-1]])
         self.rows = self.directions * (count + 1)
-        self.places = ordered[self.starts]
-        blocks = numpy.zeros((count + 1, self.directions, self.directions))
-        for a in range(unknown.shape[1]):
-            own = slice(self.directions * a, self.directions * (a + 1))
-            numpy.add.at(blocks, unknown[:, a], self.matrices[:, own, own])
+        by_size = {}
+        for numbers, some, force in pieces:
+            nodes = numpy.array([deck.nodes_of(e) for e in numbers])
+            by_size.setdefault(nodes.shape[1], []).append((nodes, some, force))
+        self.kinds = [Kind(*map(numpy.concatenate, zip(*of_size)), self.conditions) for of_size in by_size.values()]
+        blocks = sum(kind.blocks() for kind in self.kinds)
         self.inverse = numpy.linalg.inv(blocks[:count])
+        self.groups, self.of_groups = None, None
+        if deck.wedges:
+            self._group(deck, blocks)
 
-    def gather(self, rows):
-        """Forces of elements (n x 3 nodes x cases) at the unknowns."""
-        result = numpy.zeros((self.rows, rows.shape[2]))
-        result[self.places] = numpy.add.reduceat(rows.reshape(-1, rows.shape[2])[self.order], self.starts, axis=0)
-        result[-self.directions :] = 0
-        return result
+    def _group(self, deck, blocks):
+        """Nodes between which interfaces lie, as one each: these hardly part, and what moves them together would converge slowly
+        where interfaces are stiff. (What an interface adds to a group is nothing.)"""
+        count = self.conditions.count
+        group = numpy.arange(count + 1)
+        pairs = self.conditions.unknown[numpy.array(list(deck.wedges.values()))].reshape(-1, 2, 3).transpose(0, 2, 1).reshape(-1, 2)
+        pairs = pairs[(pairs >= 0).all(axis=1)]
+        while (group[pairs[:, 0]] != group[pairs[:, 1]]).any():
+            least = group[pairs].min(axis=1)
+            for side in (0, 1):
+                numpy.minimum.at(group, group[pairs[:, side]], least)
+            group = group[group]
+        solids = sum(kind.blocks() for kind in self.kinds if kind.nodes.shape[1] != 6)
+        shared = numpy.zeros_like(blocks)
+        numpy.add.at(shared, group, solids)
+        used, self.groups = numpy.unique(group[:count], return_inverse=True)
+        self.of_groups = numpy.linalg.inv(shared[used])
 
     def precondition(self, x):
         result = numpy.zeros_like(x)
         used = self.directions * len(self.inverse)
-        result[:used] = (self.inverse @ x[:used].reshape(len(self.inverse), self.directions, -1)).reshape(used, -1)
+        nodes = x[:used].reshape(len(self.inverse), self.directions, -1)
+        moved = self.inverse @ nodes
+        if self.groups is not None:
+            together = numpy.zeros((len(self.of_groups), *nodes.shape[1:]))
+            numpy.add.at(together, self.groups, nodes)
+            moved += (self.of_groups @ together)[self.groups]
+        result[:used] = moved.reshape(used, -1)
         return result
+
+    def forces(self, way):
+        return sum(kind.gather(kind.matrices @ way[kind.unknown]) for kind in self.kinds)
 
     def solve(self, right):
         """Conjugate gradients, each case for itself."""
@@ -169,7 +182,7 @@ class Cell:
         for _ in range(MOST_STEPS):
             if (numpy.sqrt((rest**2).sum(axis=0)) <= wanted).all():
                 return x
-            forces = self.gather(self.matrices @ way[self.unknown])
+            forces = self.forces(way)
             length = old / numpy.maximum((way * forces).sum(axis=0), tiny)
             x += length * way
             rest -= length * forces
@@ -182,12 +195,52 @@ class Cell:
     def stiffness(self):
         """Work of each driver's displacements against every driver's forces, and against those of one degree with all
         drivers held: errs by the product of both errors only."""
-        driven = self.conditions.driven[self.nodes]
-        driven = driven.reshape(len(self.nodes), -1, driven.shape[3])
-        given = numpy.concatenate([self.matrices @ driven, -self.heated[:, :, None]], axis=2)
-        moved = self.solve(-self.gather(given))[self.unknown]
-        moved[:, :, :-1] += driven
+        solved = self.solve(-sum(kind.gather(kind.given()) for kind in self.kinds))
+        work = sum(kind.work(solved) for kind in self.kinds)
+        return work[:, :-1], work[:, -1]
+
+
+class Kind:
+    """Elements of one number of nodes: their nodes, matrices, and forces of one degree."""
+
+    def __init__(self, nodes, matrices, heated, conditions):
+        self.nodes, self.matrices, self.heated = nodes, matrices, heated
+        directions = conditions.driven.shape[1]
+        self.directions = directions
+        self.at = conditions.unknown[nodes]
+        self.at[self.at < 0] = conditions.count  # one more, which stays at zero
+        self.unknown = (directions * self.at[:, :, None] + numpy.arange(directions)).reshape(len(nodes), -1)
+        flat = self.unknown.ravel()
+        self.order = numpy.argsort(flat, kind="stable")
+        ordered = flat[self.order]
+        self.starts = numpy.flatnonzero(numpy.r_[True, ordered[1:] != ordered[:-1]])
+        self.rows = directions * (conditions.count + 1)
+        self.places = ordered[self.starts]
+        driven = conditions.driven[nodes]
+        self.driven = driven.reshape(len(nodes), -1, driven.shape[3])
+
+    def blocks(self):
+        """What the matrices have at each node, of all elements."""
+        blocks = numpy.zeros((self.rows // self.directions, self.directions, self.directions))
+        for a in range(self.at.shape[1]):
+            own = slice(self.directions * a, self.directions * (a + 1))
+            numpy.add.at(blocks, self.at[:, a], self.matrices[:, own, own])
+        return blocks
+
+    def gather(self, rows):
+        """Forces of elements (n x 3 nodes x cases) at the unknowns."""
+        result = numpy.zeros((self.rows, rows.shape[2]))
+        result[self.places] = numpy.add.reduceat(rows.reshape(-1, rows.shape[2])[self.order], self.starts, axis=0)
+        result[-self.directions :] = 0
+        return result
+
+    def given(self):
+        """Forces of each driver, and of one degree."""
+        return numpy.concatenate([self.matrices @ self.driven, -self.heated[:, :, None]], axis=2)
+
+    def work(self, solved):
+        moved = solved[self.unknown]
+        moved[:, :, :-1] += self.driven
         forces = self.matrices @ moved
         forces[:, :, -1] -= self.heated
-        work = numpy.einsum("nak,nal->kl", moved[:, :, :-1], forces, optimize=True)
-        return work[:, :-1], work[:, -1]
+        return numpy.einsum("nak,nal->kl", moved[:, :, :-1], forces, optimize=True)

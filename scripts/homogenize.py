@@ -24,6 +24,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("homogenize: NumPy is not installed: apt-get install python3-numpy")
 
+import cell_cohesive
 import cell_conduction as conduction
 from cell_deck import Deck
 from cell_elements import Cell, NotSolved
@@ -145,6 +146,9 @@ def bounds(deck, plate):
         for power, weight in enumerate((volume, first, second)):
             strain[power] += numpy.einsum("n,nij->ij", weight, stiffness)
             stress[power] += numpy.einsum("n,nij->ij", weight, compliance)
+    for *weights, compliance in cell_cohesive.compliances(deck):
+        for power, weight in enumerate(weights):
+            stress[power] += numpy.einsum("n,nij->ij", weight, compliance)
     if not plate:
         return strain[0] / numpy.prod(sides), numpy.linalg.inv(stress[0] / numpy.prod(sides)), shares
     area, h = sides[0] * sides[1], sides[2]
@@ -190,7 +194,9 @@ def fluxes_of_drivers(deck, drivers, given_solver, ccx, folder):
     CalculiX and how it was done."""
     solver = given_solver
     if solver == "auto":
-        solver = "direct" if len(deck.nodes) <= LARGEST_DIRECT else "iterative"
+        solver = "direct" if len(deck.nodes) <= LARGEST_DIRECT and not deck.wedges else "iterative"
+    if solver == "direct" and deck.wedges:
+        raise Failure("CalculiX has no cohesive elements: leave out --solver direct")
     started = time.monotonic()
     warnings = []
     if solver == "direct":

@@ -8,6 +8,7 @@
 #include "fem/materials.h"
 #include "fem/sections.h"
 #include "formats/cdb/deck.h"
+#include "formats/cdb/interfaces.h"
 
 namespace selvage::formats::cdb {
 namespace {
@@ -49,7 +50,8 @@ void write_frames(TextBuffer& text, const fem::Frames& frames) {
 void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<fem::Section>& sections,
                     const fem::Frames& frames) {
   const std::vector<std::size_t> materials = fem::element_materials(mesh, sections);
-  open_block(text, "EBLOCK,19,SOLID,", mesh.elements.size() + mesh.drivers.size(), "(19i10)");
+  open_block(text, "EBLOCK,19,SOLID,", mesh.elements.size() + mesh.drivers.size() + mesh.cohesive_elements(),
+             "(19i10)");
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const std::size_t frame = frames.of_element[e];
     const std::span<const std::size_t> nodes = mesh.nodes_of(e);
@@ -64,6 +66,7 @@ void write_elements(TextBuffer& text, const fem::Mesh& mesh, const std::vector<f
     put_right(text, mesh.number_of_driver(k) + 1, 10);
     text << '\n';
   }
+  write_cohesive_elements(text, mesh);
   text << "        -1\n";
 }
 
@@ -76,6 +79,7 @@ void write_components(TextBuffer& text, const fem::Mesh& mesh, const std::vector
   for (const fem::NamedSet& set : fem::node_sets(mesh, names)) write_component(text, set, true);
   for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
     write_component(text, {mesh.drivers[k].name, {mesh.number_of_driver(k)}}, true);
+  write_interface_components(text, mesh, names);
 }
 
 void write_material(TextBuffer& text, std::size_t number, const fabric::Material& material) {
@@ -114,6 +118,7 @@ void write_materials(TextBuffer& text, const fem::Mesh& mesh) {
     text << "! material " << i + 1 << ": " << names[i] << '\n';
     write_material(text, i + 1, mesh.materials[i]);
   }
+  write_cohesive_materials(text, mesh);
 }
 
 // Three terms a command; further ones by the command again with the same number.
@@ -133,6 +138,7 @@ void write_equations(TextBuffer& text, const fem::Mesh& mesh) {
 
 void write_types(TextBuffer& text, const fem::Mesh& mesh) {
   text << "ET,1," << element_type(mesh) << '\n';
+  write_interface_types(text, mesh);
   if (mesh.drivers.empty()) return;
   // A node without an element has no displacement: the drivers get a mass that weighs nothing.
   text << "ET,2,21\nKEYOPT,2,3,2\nR,2,1e-15\n";
@@ -154,12 +160,14 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_components(text, mesh, *sections, names);
   write_materials(text, mesh);
   write_equations(text, mesh);
+  write_bonded_contact(text, mesh, names);
   text << "FINISH\n";
   return finished(text,
                   {{"nodes", mesh.nodes.size()},
                    {"SOLID" + std::to_string(element_type(mesh)), mesh.elements.size()},
                    {"coordinate systems", frames.axes.size()}},
-                  {{"constraint equations", mesh.equations.size()}});
+                  {{"constraint equations", mesh.equations.size()},
+                   {"INTER" + std::to_string(cohesive_element(mesh)), mesh.cohesive_elements()}});
 }
 
 bool is_an_archive(std::string_view head) {
@@ -209,6 +217,8 @@ const Descriptor& descriptor() {
                                   .sniff = is_an_archive,
                                   .write_mesh = write,
                                   .write_beams = write_beams,
+                                  .order_of_surfaces = 2,
+                                  .order_of_cohesive = 2,
                                   .companion = {.format = macro_descriptor, .is_of_load_cases = true}};
   return self;
 }

@@ -92,7 +92,9 @@ const Descriptor& macro_descriptor() {
   static const Descriptor self = {.name = "mac",
                                   .title = "ANSYS macro that solves the load cases of a cell's .cdb",
                                   .extensions = {".mac"},
-                                  .write_mesh = write_model};
+                                  .write_mesh = write_model,
+                                  .order_of_surfaces = 2,
+                                  .order_of_cohesive = 2};
   return self;
 }
 

@@ -73,6 +73,14 @@ void write_step(TextBuffer& text, const fem::Mesh& mesh, const std::vector<Load>
 void write_contact_surfaces(TextBuffer& text, const Deck& deck);
 void write_contact_pairs(TextBuffer& text, const Deck& deck);
 
+// Of interfaces that are cohesive: COH3D6, their laws and sections, by NAME_Cohesive.
+void write_cohesive_elements(TextBuffer& text, const Deck& deck);
+void write_cohesive_materials(TextBuffer& text, const Deck& deck);
+// Of interfaces that are surfaces: NAME_Side and NAME_Facing, and the ties of the nodes NAME_Tied to the
+// latter.
+void write_interface_surfaces(TextBuffer& text, const Deck& deck);
+void write_ties(TextBuffer& text, const Deck& deck);
+
 // Of a unit cell: the nodes that equations eliminate, each once, in their order.
 std::vector<std::size_t> dependent_nodes(const fem::Mesh& mesh);
 // *EQUATION cards and what else belongs before the first step.

@@ -183,7 +183,9 @@ void write_model_part(TextBuffer& text, const Deck& deck) {
   write_materials(text, mesh, materials);
   text << "*ORIENTATION, NAME=YARNORI, SYSTEM=RECTANGULAR\nYARNDIST1\n";
   write_sections(text, mesh, deck.sections, materials);
+  write_cohesive_materials(text, deck);
   write_contact_pairs(text, deck);
+  write_ties(text, deck);
   if (mesh.cell) {
     write_cell_conditions(text, mesh);
     write_cell_steps(text, mesh);
@@ -202,6 +204,8 @@ const Descriptor& descriptor() {
       .write_mesh = write,
       .write_beams = write_beams,
       .carries_transport = true,
+      .order_of_surfaces = 2,
+      .order_of_cohesive = 1,
       .companion = {.format = mesh_descriptor, .ending = "_mesh", .asked_by = &option::split_deck},
       .options = option::all(),
       .is_usual = true};

@@ -4,11 +4,6 @@
 
 namespace selvage::formats::inp {
 
-void write_set(TextBuffer& text, const std::vector<std::size_t>& members) {
-  for (std::size_t i = 0; i < members.size(); ++i)
-    text << members[i] + 1 << (i % 16 == 15 || i + 1 == members.size() ? "\n" : ", ");
-}
-
 namespace {
 
 void write_node(TextBuffer& text, std::size_t number, const Vec3& p) {
@@ -101,6 +96,11 @@ Result<WriteFacts> write_mesh_file(const fem::Mesh& mesh, OutputFile& output,
 
 }  // namespace
 
+void write_set(TextBuffer& text, const std::vector<std::size_t>& members) {
+  for (std::size_t i = 0; i < members.size(); ++i)
+    text << members[i] + 1 << (i % 16 == 15 || i + 1 == members.size() ? "\n" : ", ");
+}
+
 bool is_oriented(const fem::Mesh& mesh, const fem::Section& section) {
   return mesh.regions[section.region].kind == fem::Region::Kind::yarn ||
          !fem::is_isotropic(mesh.materials[section.material], mesh.physics);
@@ -109,10 +109,12 @@ bool is_oriented(const fem::Mesh& mesh, const fem::Section& section) {
 void write_mesh_part(TextBuffer& text, const Deck& deck) {
   write_nodes(text, deck.mesh);
   write_elements(text, deck);
+  write_cohesive_elements(text, deck);
   write_element_sets(text, deck);
   write_node_sets(text, deck.node_sets);
   if (!deck.mesh.equations.empty()) write_node_sets(text, {{"Dependent", dependent_nodes(deck.mesh)}});
   write_contact_surfaces(text, deck);
+  write_interface_surfaces(text, deck);
   write_directions(text, deck);
 }
 
@@ -124,6 +126,7 @@ EntityCounts counts_of_mesh(const Deck& deck) {
                          {"element sets", mesh.regions.size() + 1},
                          {"node sets", deck.node_sets.size() + 1 + mesh.drivers.size()}};
   if (wedges > 0) counts[std::string(deck.wedge)] = wedges;
+  if (mesh.joining == fem::Joining::cohesive) counts["COH3D6"] = mesh.cohesive_elements();
   return counts;
 }
 

@@ -7,6 +7,7 @@
 #include "fem/materials.h"
 #include "fem/sections.h"
 #include "formats/k/deck.h"
+#include "formats/k/interfaces.h"
 
 namespace selvage::formats::k {
 
@@ -211,7 +212,7 @@ void write_loading(TextBuffer& text, const fem::Mesh& mesh) {
 
 Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& /*options*/) {
   constexpr std::size_t most = 99'999'999;  // columns of eight
-  if (mesh.numbered() > most || mesh.elements.size() > most)
+  if (mesh.numbered() > most || mesh.elements.size() + mesh.cohesive_elements() > most)
     return error(Kind::limit,
                  "an LS-DYNA file in standard format numbers at most 99 999 999 nodes and elements");
   // Titles are text. A star or a dollar sign would begin a keyword or a comment, a comma free format, an
@@ -225,16 +226,20 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   fem::write_yarn_names(text, mesh, names, "$", 80);
   write_nodes(text, mesh);
   write_parts(text, mesh, *sections);
+  write_cohesive_parts(text, mesh, names, sections->size());
   write_materials(text, mesh);
+  write_cohesive_materials(text, mesh);
   write_expansions(text, mesh, *sections);
   write_elements(text, mesh, *sections);
+  write_cohesive_elements(text, mesh, sections->size());
   write_sets(text, mesh, *sections, names);
+  write_tied_contact(text, mesh, names);
   write_equations(text, mesh);
   write_loading(text, mesh);
   text << "*END\n";
   return finished(
       text, {{"nodes", mesh.nodes.size()}, {"solids", mesh.elements.size()}, {"parts", sections->size()}},
-      {{"constraints", mesh.equations.size()}});
+      {{"constraints", mesh.equations.size()}, {"cohesive solids", mesh.cohesive_elements()}});
 }
 
 bool is_a_keyword_file(std::string_view head) {
@@ -249,7 +254,9 @@ const Descriptor& descriptor() {
                                   .extensions = {".k"},
                                   .sniff = is_a_keyword_file,
                                   .write_mesh = write,
-                                  .write_beams = write_beams};
+                                  .write_beams = write_beams,
+                                  .order_of_surfaces = 2,
+                                  .order_of_cohesive = 1};
   return self;
 }
 

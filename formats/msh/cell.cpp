@@ -38,14 +38,28 @@ class CellFile {
   [[nodiscard]] EntityCounts counts() const {
     std::size_t sides = 0;
     for (const Surface& surface : topology_.surfaces) sides += surface.sides.size();
-    return {{"nodes", mesh_.nodes.size()},
-            {mesh_.shape == fem::Mesh::Shape::hexahedron ? "quadrangles" : "triangles", sides},
-            {mesh_.shape == fem::Mesh::Shape::hexahedron ? "hexahedra" : "tetrahedra", mesh_.elements.size()},
-            {"physical groups", groups_.size() + mesh_.regions.size() + 2},
-            {"periodic entities", copies_.size()}};
+    EntityCounts counts = {
+        {"nodes", mesh_.nodes.size()},
+        {mesh_.shape == fem::Mesh::Shape::hexahedron ? "quadrangles" : "triangles", sides},
+        {mesh_.shape == fem::Mesh::Shape::hexahedron ? "hexahedra" : "tetrahedra", mesh_.elements.size()},
+        {"physical groups", groups_.size() + mesh_.regions.size() + layers() + 2},
+        {"periodic entities", copies_.size()}};
+    if (layers() > 0) counts["wedges"] = mesh_.cohesive_elements();
+    return counts;
   }
 
  private:
+  // Volumes of cohesive elements: numbered behind those of the regions.
+  [[nodiscard]] std::size_t layers() const {
+    return mesh_.joining == fem::Joining::cohesive ? mesh_.interfaces.size() : 0;
+  }
+  [[nodiscard]] std::string layer_name(std::size_t i) const {
+    const fem::Interface& layer = mesh_.interfaces[i];
+    const fem::Region& second = mesh_.regions[layer.second];
+    return mesh_.regions[layer.first].name +
+           (second.kind == fem::Region::Kind::matrix ? "" : "_" + second.name) + "_cohesive";
+  }
+
   void find_midside_nodes() {
     for (const auto& element : mesh_.elements)
       for (std::size_t k = 0; k < fem::edge_ends.size(); ++k) {
@@ -60,8 +74,9 @@ class CellFile {
   [[nodiscard]] std::string group_name(const Surface& surface) const {
     if (surface.face >= 0) return std::string("Face") + static_cast<char>('A' + surface.face);
     const std::string& name = mesh_.regions[surface.region].name;
-    if (surface.behind == fem::OuterSide::outside) return name + "_side";
-    const fem::Region& behind = mesh_.regions[surface.behind];
+    const std::size_t beyond = std::min(surface.behind, surface.facing);  // one of them is outside
+    if (beyond == fem::OuterSide::outside) return name + "_side";
+    const fem::Region& behind = mesh_.regions[beyond];
     return behind.kind == fem::Region::Kind::matrix ? name + "_side" : name + "_" + behind.name;
   }
 
@@ -114,17 +129,19 @@ class CellFile {
 
   void write_names() {
     text_ << "$PhysicalNames\n"
-          << groups_.size() + mesh_.regions.size() + 2 << "\n0 1 \"points\"\n1 1 \"curves\"\n";
+          << groups_.size() + mesh_.regions.size() + layers() + 2 << "\n0 1 \"points\"\n1 1 \"curves\"\n";
     for (std::size_t g = 0; g < groups_.size(); ++g)
       text_ << "2 " << g + 1 << ' ' << quoted(groups_[g]) << '\n';
     write_region_names(text_, mesh_);
+    for (std::size_t i = 0; i < layers(); ++i)
+      text_ << "3 " << mesh_.regions.size() + i + 1 << ' ' << quoted(layer_name(i)) << '\n';
     text_ << "$EndPhysicalNames\n";
   }
 
   void write_entities() {
     text_ << "$Entities\n"
           << topology_.points.size() << ' ' << topology_.curves.size() << ' ' << topology_.surfaces.size()
-          << ' ' << mesh_.regions.size() << '\n';
+          << ' ' << mesh_.regions.size() + layers() << '\n';
     for (std::size_t i = 0; i < topology_.points.size(); ++i) {
       const Vec3& p = mesh_.nodes[topology_.points[i]];
       text_ << i + 1 << ' ' << p.x() << ' ' << p.y() << ' ' << p.z() << " 1 1\n";
@@ -138,6 +155,8 @@ class CellFile {
     for (std::size_t i = 0; i < topology_.surfaces.size(); ++i) write_surface(i);
     for (std::size_t i = 0; i < mesh_.regions.size(); ++i)
       write_volume(text_, i + 1, box_of_volume(i), around_volume(i));
+    for (std::size_t i = 0; i < layers(); ++i)
+      write_volume(text_, mesh_.regions.size() + i + 1, box_of_layer(mesh_.interfaces[i]), {});
     text_ << "$EndEntities\n";
   }
 
@@ -155,6 +174,13 @@ class CellFile {
     text_ << "1 " << group_of_[i] << ' ' << surface.curves.size();
     for (const std::size_t curve : surface.curves) text_ << ' ' << curve + 1;
     text_ << '\n';
+  }
+
+  [[nodiscard]] Box3 box_of_layer(const fem::Interface& layer) const {
+    Box3 box;
+    for (const fem::FacingSides& facing : layer.sides)
+      for (std::size_t k = 0; k < 3; ++k) box.extend(mesh_.nodes[facing.first.nodes[k]]);
+    return box;
   }
 
   [[nodiscard]] Box3 box_of_volume(std::size_t i) const {
@@ -198,12 +224,12 @@ class CellFile {
   // Gmsh's types: 15 point, 1 and 8 lines, 2 and 9 triangles, 3 quadrangle.
   void write_elements() {
     const bool is_brick = mesh_.shape == fem::Mesh::Shape::hexahedron, is_straight = mesh_.order == 1;
-    std::size_t count = topology_.points.size() + mesh_.elements.size();
+    std::size_t count = topology_.points.size() + mesh_.elements.size() + mesh_.cohesive_elements();
     for (const Curve& curve : topology_.curves) count += curve.edges.size();
     for (const Surface& surface : topology_.surfaces) count += surface.sides.size();
     text_ << "$Elements\n"
           << topology_.points.size() + topology_.curves.size() + topology_.surfaces.size() +
-                 mesh_.regions.size()
+                 mesh_.regions.size() + layers()
           << ' ' << count << " 1 " << count << '\n';
     for (std::size_t i = 0; i < topology_.points.size(); ++i) {
       open_block(0, i, 15, 1);
@@ -218,7 +244,22 @@ class CellFile {
       for (const auto& side : topology_.surfaces[i].sides) write_element(nodes_of(side));
     }
     write_volume_elements(text_, mesh_, number_);
+    number_ += mesh_.elements.size();
+    write_layers();
     text_ << "$EndElements\n";
+  }
+
+  // Prisms of six nodes.
+  void write_layers() {
+    for (std::size_t i = 0; i < layers(); ++i) {
+      open_block(3, mesh_.regions.size() + i, 6, mesh_.interfaces[i].sides.size());
+      for (const fem::FacingSides& facing : mesh_.interfaces[i].sides) {
+        text_ << ++number_;
+        for (const auto* side : {&facing.first.nodes, &facing.second.nodes})
+          for (std::size_t k = 0; k < 3; ++k) text_ << ' ' << (*side)[k] + 1;
+        text_ << '\n';
+      }
+    }
   }
 
   // All nodes of an entity, its borders too, each once.

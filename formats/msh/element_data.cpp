@@ -45,7 +45,7 @@ void write_fibre_fraction(TextBuffer& text, const fem::Mesh& mesh, const Boundin
   const ElementsOfNodes around(mesh, is_first);
   // One text, one number (a time), three whole ones: step, components, elements.
   text << "$ElementData\n1\n\"fibre_fraction\"\n1\n0\n3\n0\n1\n"
-       << bounding.size() + mesh.elements.size() << '\n';
+       << bounding.size() + mesh.elements.size() + mesh.cohesive_elements() << '\n';
   for (std::size_t i = 0; i < bounding.size(); ++i) {
     double largest = std::numeric_limits<double>::quiet_NaN();
     for (const std::size_t e : around[bounding[i].front()])
@@ -56,6 +56,8 @@ void write_fibre_fraction(TextBuffer& text, const fem::Mesh& mesh, const Boundin
   }
   for (std::size_t e = 0; e < mesh.elements.size(); ++e)
     text << bounding.size() + e + 1 << ' ' << mesh.fibre_fraction[e] << '\n';
+  for (std::size_t k = 0; k < mesh.cohesive_elements(); ++k)
+    text << bounding.size() + mesh.elements.size() + k + 1 << " 0\n";
   text << "$EndElementData\n";
 }
 

@@ -29,7 +29,7 @@ class BoundingElements {
 };
 
 // Mesh::fibre_fraction, where it was computed; NaN as "nan". meshio wants a value of every element: what is
-// no volume has that of the volumes that it bounds, of several the largest.
+// no volume has that of the volumes that it bounds, of several the largest; cohesive elements have 0.
 void write_fibre_fraction(TextBuffer& text, const fem::Mesh& mesh, const BoundingElements& bounding);
 
 }  // namespace selvage::formats::msh

@@ -216,7 +216,9 @@ const Descriptor& descriptor() {
                                   .title = "Gmsh mesh 4.1",
                                   .extensions = {".msh"},
                                   .sniff = has_the_first_line,
-                                  .write_mesh = write};
+                                  .write_mesh = write,
+                                  .order_of_surfaces = 2,
+                                  .order_of_cohesive = 1};
   return self;
 }
 

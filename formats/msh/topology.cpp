@@ -20,13 +20,28 @@ std::size_t corners_of(const std::array<std::size_t, 4>& side) {
   return side[3] == side[2] ? 3 : 4;
 }
 
+// The region that each side of an interface faces, by its element and its number there.
+std::map<std::array<std::size_t, 2>, std::size_t> facing_regions(const fem::Mesh& mesh) {
+  std::map<std::array<std::size_t, 2>, std::size_t> facing;
+  for (const fem::Interface& interface : mesh.interfaces)
+    for (const fem::FacingSides& sides : interface.sides) {
+      facing[{sides.first.element, sides.first.side}] = interface.second;
+      facing[{sides.second.element, sides.second.side}] = interface.first;
+    }
+  return facing;
+}
+
 std::vector<Surface> surfaces_of(const fem::Mesh& mesh) {
-  std::map<std::tuple<int, std::size_t, std::size_t>, Surface> found;
+  const auto facing = facing_regions(mesh);
+  std::map<std::tuple<int, std::size_t, std::size_t, std::size_t>, Surface> found;
   for (const fem::OuterSide& side : fem::outer_sides(mesh)) {
     if (side.behind < side.region) continue;  // the other one has it
-    Surface& surface = found[{side.face, side.region, side.behind}];
+    const auto other = facing.find({side.element, side.side});
+    const std::size_t faces = other == facing.end() ? fem::OuterSide::outside : other->second;
+    Surface& surface = found[{side.face, side.region, side.behind, faces}];
     surface.region = side.region;
     surface.behind = side.behind;
+    surface.facing = faces;
     surface.face = side.face;
     surface.sides.push_back(side.nodes);
   }
@@ -193,6 +208,8 @@ std::array<std::vector<std::size_t>, 3> opposite_nodes(const fem::Mesh& mesh) {
       if ((corner & bit) != 0 && cell.corners[corner] < mesh.nodes.size() &&
           cell.corners[corner - bit] < mesh.nodes.size())
         opposite[a][cell.corners[corner]] = cell.corners[corner - bit];
+    for (std::size_t corner = 0; corner < 8; ++corner)
+      if ((corner & bit) != 0) pair(cell.more_corners[corner], cell.more_corners[corner - bit]);
   }
   return opposite;
 }

@@ -15,6 +15,7 @@ namespace selvage::formats::msh {
 struct Surface {
   std::size_t region = 0;                         // its sides are seen from out of this one
   std::size_t behind = fem::OuterSide::outside;   // the region beyond
+  std::size_t facing = fem::OuterSide::outside;   // the one beyond that shares no nodes (fem::Mesh::joining)
   int face = -1;                                  // 0..5, A..F: of the cell; -1: inside
   std::vector<std::array<std::size_t, 4>> sides;  // corner nodes as in fem::OuterSide
   std::vector<std::size_t> curves;                // around it, indices

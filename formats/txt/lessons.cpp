@@ -103,6 +103,18 @@ constexpr std::array lessons = {
            "diffusivity"},
     Lesson{"permittivity", "material", "permittivity E | ALONG ACROSS",
            "Over that of a vacuum, 1 or more, for `mesh --physics permittivity`.", "permittivity 6.1"},
+    Lesson{"interface", "material", "interface ... end",
+           "How the material holds on to another one where it ends, for `mesh --interface cohesive`.",
+           "interface", "", "as stiff as if it were bonded, and nothing breaks"},
+    Lesson{"stiffness", "interface", "stiffness NORMAL SHEAR",
+           "Traction by opening, MPa/mm, across the interface and along it.", "stiffness 1e6 1e6", "",
+           "so much that the whole is as stiff as a bonded one to a thousandth"},
+    Lesson{"strength", "interface", "strength NORMAL SHEAR",
+           "The largest traction, across the interface and along it; with `energy`.", "strength 40 60",
+           "modulus"},
+    Lesson{"energy", "interface", "energy NORMAL SHEAR",
+           "What it takes to part it, N/mm (kJ/m2), by opening and by sliding; with `strength`.",
+           "energy 0.2 0.8"},
 
     // --- yarn
     Lesson{"role", "yarn", "role warp | weft | wale | course | braider | axial | binder | other",

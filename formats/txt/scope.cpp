@@ -40,7 +40,8 @@ constexpr std::array keywords = {
     "outline",   "derivative", "spacing",  "thickness", "loop",         "feeds",       "gating",
     "plating",   "pile",       "block",    "use",       "place",        "rotate",      "mirror",
     "shear",     "repeat",     "margin",   "substrate", "points",       "helix",       "pucker",
-    "mandrel",   "unit",       "crossing", "shape",     "transfer",     "drop"};
+    "mandrel",   "unit",       "crossing", "shape",     "transfer",     "drop",        "interface",
+    "stiffness", "strength",   "energy"};
 
 bool continues_identifier(char c) {
   return starts_name(c) || (c >= '0' && c <= '9');

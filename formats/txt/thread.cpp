@@ -195,6 +195,34 @@ auto into_transport(std::optional<fabric::Transport> Material::*member, const fa
   };
 }
 
+// Across and along the interface.
+auto into_pair(std::optional<fabric::Interface::Pair> fabric::Interface::*member,
+               const fabric::Quantity& quantity) {
+  return [member, &quantity](Parser& p, fabric::Interface& interface, std::string_view word) {
+    const auto normal = p.positive(fmt::format("the {} across the interface", word), quantity);
+    const auto shear = p.positive(fmt::format("the {} along the interface", word), quantity);
+    p.finish();
+    interface.*member = {normal.value_or(0), shear.value_or(0)};  // wrong or not, it was given
+  };
+}
+
+void read_interface(Parser& p, Material& material, std::string_view word) {
+  static const Table<fabric::Interface> table(
+      {{"stiffness", into_pair(&fabric::Interface::stiffness, fabric::interface_stiffness_quantity)},
+       {"strength", into_pair(&fabric::Interface::strength, fabric::interface_strength_quantity)},
+       {"energy", into_pair(&fabric::Interface::energy, fabric::interface_energy_quantity)}});
+  const Spot opened = p.statement();
+  p.finish();
+  fabric::Interface& interface = material.interface.emplace();
+  if (!p.read_block(word, "", opened, table, interface)) return;
+  if (interface.strength.has_value() != interface.energy.has_value())
+    p.error(opened, interface.strength
+                        ? "an interface that has a strength needs `energy`, too: how much it "
+                          "takes to part it"
+                        : "an interface that has an energy needs `strength`, too: the traction at "
+                          "which it begins to part");
+}
+
 }  // namespace
 
 const std::vector<Statement<Thread>>& thread_statements() {
@@ -248,7 +276,8 @@ void read_material(Parser& p, fabric::Fabric& fabric, std::string_view word) {
         into_transport(&Material::diffusivity, fabric::diffusivity_quantity,
                        "give what lets nothing through a small one, a thousandth of the others'")},
        {"permittivity", into_transport(&Material::permittivity, fabric::permittivity_quantity,
-                                       "it is relative, and that of a vacuum is 1")}});
+                                       "it is relative, and that of a vacuum is 1")},
+       {"interface", read_interface}});
   read_named(p, table, p.materials, word, fabric.materials);
 }
 

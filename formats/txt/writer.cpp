@@ -134,6 +134,17 @@ void write_transport(Lines& out, std::string_view word, const std::optional<fabr
   if (transport->across != transport->along) out.value(transport->across);
 }
 
+void write_interface(Lines& out, const fabric::Interface& interface) {
+  const auto write = [&](std::string_view word, const std::optional<fabric::Interface::Pair>& pair) {
+    if (pair) out.line(2, word).value(pair->normal).value(pair->shear);
+  };
+  out.line(1, "interface");
+  write("stiffness", interface.stiffness);
+  write("strength", interface.strength);
+  write("energy", interface.energy);
+  out.line(1, "end");
+}
+
 void write_material(Lines& out, const fabric::Material& material) {
   out.blank_line();
   out.line(0, "material").name(material.name);
@@ -148,6 +159,7 @@ void write_material(Lines& out, const fabric::Material& material) {
   write_transport(out, "conductivity", material.conductivity);
   write_transport(out, "diffusivity", material.diffusivity);
   write_transport(out, "permittivity", material.permittivity);
+  if (material.interface) write_interface(out, *material.interface);
   out.line(0, "end");
 }
 

@@ -70,6 +70,7 @@ std::optional<Shape> shape_of(int type) {
       return Shape::hexahedron;
     case 13:
     case 26:
+    case 31:
     case 32:
     case 73:
       return Shape::wedge;

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <bit>
+#include <limits>
+#include <optional>
 
 #include "core/text_buffer.h"
 #include "fem/quality.h"
@@ -71,8 +73,61 @@ Cells cells_of(const fem::Mesh& mesh) {
   return cells;
 }
 
-// A voxel has no quality to speak of.
-void write_quality(TextBuffer& text, const fem::Mesh& mesh) {
+using Nodes = std::array<std::size_t, 6>;
+
+// Of cohesive interfaces: wedges of 6 or 12 nodes. The linear one begins with a triangle that is seen
+// clockwise from the other one; that of twelve nodes is as ours, the midpoints of both triangles behind all
+// corners.
+void add_wedges(Cells& cells, const fem::Mesh& mesh) {
+  for (const fem::Interface& interface : mesh.interfaces)
+    for (const fem::FacingSides& facing : interface.sides) {
+      const Nodes &p = facing.first.nodes, &q = facing.second.nodes;
+      if (mesh.order == 1)
+        cells.add(13, std::array{p[0], p[2], p[1], q[0], q[2], q[1]});
+      else
+        cells.add(31, std::array{p[0], p[1], p[2], q[0], q[1], q[2], p[3], p[4], p[5], q[3], q[4], q[5]});
+    }
+}
+
+// Of surfaces: triangles of 3 or 6 nodes, of each interface those of its first region, then of its second.
+void add_triangles(Cells& cells, const fem::Mesh& mesh) {
+  for (const fem::Interface& interface : mesh.interfaces)
+    for (const auto which : {&fem::FacingSides::first, &fem::FacingSides::second})
+      for (const fem::FacingSides& facing : interface.sides) {
+        const Nodes& n = (facing.*which).nodes;
+        if (mesh.order == 1)
+          cells.add(5, std::array{n[0], n[1], n[2]});
+        else
+          cells.add(22, n);
+      }
+}
+
+// Of each of these cells its interface, and the region whose side it is; none: a wedge.
+struct OfInterfaces {
+  std::vector<std::int32_t> interface;
+  std::vector<std::optional<std::size_t>> region;
+};
+
+OfInterfaces of_interfaces(const fem::Mesh& mesh) {
+  OfInterfaces result;
+  for (std::size_t i = 0; i < mesh.interfaces.size(); ++i) {
+    const fem::Interface& one = mesh.interfaces[i];
+    const auto add = [&](std::optional<std::size_t> region) {
+      result.interface.insert(result.interface.end(), one.sides.size(), static_cast<std::int32_t>(i));
+      result.region.insert(result.region.end(), one.sides.size(), region);
+    };
+    if (mesh.joining == fem::Joining::cohesive) {
+      add(std::nullopt);
+      continue;
+    }
+    add(one.first);
+    add(one.second);
+  }
+  return result;
+}
+
+// A voxel has no quality to speak of. `more`: cells that have none.
+void write_quality(TextBuffer& text, const fem::Mesh& mesh, std::size_t more) {
   if (mesh.shape == fem::Mesh::Shape::hexahedron && mesh.cell) return;
   std::vector<float> jacobians, angles, aspects;
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
@@ -81,6 +136,8 @@ void write_quality(TextBuffer& text, const fem::Mesh& mesh) {
     angles.push_back(static_cast<float>(shape.min_dihedral));
     aspects.push_back(static_cast<float>(shape.aspect));
   }
+  for (auto* values : {&jacobians, &angles, &aspects})
+    values->insert(values->end(), more, std::numeric_limits<float>::quiet_NaN());
   write_array(text, "scaled_jacobian", jacobians);
   write_array(text, "min_dihedral", angles);
   write_array(text, "aspect", aspects);
@@ -93,12 +150,28 @@ void write_cell_data(TextBuffer& text, const fem::Mesh& mesh) {
       for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
         yarns[e] = static_cast<std::int32_t>(i);
   materials.assign(mesh.element_material.begin(), mesh.element_material.end());
+  std::vector<Vec3> along = mesh.along, across = mesh.across;
+  std::vector<double> fractions = mesh.fibre_fraction;
+  OfInterfaces others = of_interfaces(mesh);
+  const std::size_t more = others.interface.size(), all = mesh.elements.size() + more;
+  for (const std::optional<std::size_t>& region : others.region) {
+    const bool is_yarns = region && mesh.regions[*region].kind == fem::Region::Kind::yarn;
+    yarns.push_back(is_yarns ? static_cast<std::int32_t>(*region) : -1);
+  }
+  along.resize(all, Vec3::Zero());
+  across.resize(all, Vec3::Zero());
+  if (!fractions.empty()) fractions.resize(all, 0.0);
+  if (!materials.empty()) materials.resize(all, -1);
   write_array(text, "yarn", yarns);
-  write_array(text, "along", flat(mesh.along), 3);
-  write_array(text, "across", flat(mesh.across), 3);
-  if (!mesh.fibre_fraction.empty()) write_array(text, "fibre_fraction", mesh.fibre_fraction);
+  write_array(text, "along", flat(along), 3);
+  write_array(text, "across", flat(across), 3);
+  if (!fractions.empty()) write_array(text, "fibre_fraction", fractions);
   if (!materials.empty()) write_array(text, "material", materials);
-  write_quality(text, mesh);
+  if (more > 0) {
+    others.interface.insert(others.interface.begin(), mesh.elements.size(), -1);
+    write_array(text, "interface", others.interface);
+  }
+  write_quality(text, mesh, more);
 }
 
 // Two hyphens would end a comment.
@@ -109,12 +182,15 @@ std::string comment_text(std::string name) {
   return name;
 }
 
-// The file up to its data; `names`: of the yarns.
-void write_grid(TextBuffer& text, const std::vector<std::string>& names, const std::vector<Vec3>& points,
+// The file up to its data; `names`: of the yarns, and of interfaces.
+void write_grid(TextBuffer& text, const std::vector<std::string>& names,
+                const std::vector<std::string>& interfaces, const std::vector<Vec3>& points,
                 const Cells& cells) {
   text << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   for (std::size_t i = 0; i < names.size(); ++i)
     text << "<!-- yarn " << i << ": " << comment_text(names[i]) << " -->\n";
+  for (std::size_t i = 0; i < interfaces.size(); ++i)
+    text << "<!-- interface " << i << ": " << comment_text(interfaces[i]) << " -->\n";
   text << "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\""
        << (std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian")
        << "\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
@@ -136,11 +212,16 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   std::vector<std::string> names;
   for (const fem::Region& region : mesh.regions)
     if (region.kind == fem::Region::Kind::yarn) names.push_back(region.name);
-  write_grid(text, names, mesh.nodes, cells_of(mesh));
+  std::vector<std::string> interfaces;
+  for (const fem::Interface& interface : mesh.interfaces)
+    interfaces.push_back(mesh.regions[interface.first].name + " and " + mesh.regions[interface.second].name);
+  Cells cells = cells_of(mesh);
+  (mesh.joining == fem::Joining::cohesive ? add_wedges : add_triangles)(cells, mesh);
+  write_grid(text, names, interfaces, mesh.nodes, cells);
   text << "      <CellData Scalars=\"yarn\">\n";
   write_cell_data(text, mesh);
   text << "      </CellData>\n";
-  return finish(text, mesh.nodes.size(), mesh.elements.size());
+  return finish(text, mesh.nodes.size(), cells.count());
 }
 
 Result<WriteFacts> write_gaps(const solid::GapMap& map, OutputFile& output) {
@@ -159,7 +240,7 @@ Result<WriteFacts> write_gaps(const solid::GapMap& map, OutputFile& output) {
       cells.add(triangle, std::array{first + t[0], first + t[1], first + t[2]});
   }
   TextBuffer text(output);
-  write_grid(text, map.names, points, cells);
+  write_grid(text, map.names, {}, points, cells);
   text << "      <PointData Scalars=\"gap\">\n";
   write_array(text, "gap", gaps);
   text << "      </PointData>\n      <CellData>\n";
@@ -182,6 +263,8 @@ const Descriptor& descriptor() {
                                   .sniff = is_a_vtk_grid,
                                   .read_mesh = read_mesh,
                                   .write_mesh = write,
+                                  .order_of_surfaces = 2,
+                                  .order_of_cohesive = 2,
                                   .write_gap_map = write_gaps};
   return self;
 }

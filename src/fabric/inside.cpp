@@ -232,7 +232,7 @@ Status check_materials(const Fabric& fabric, std::map<std::string, const Materia
     if (material.density != other->density || material.packing != other->packing ||
         material.elastic != other->elastic || material.expansion != other->expansion ||
         material.conductivity != other->conductivity || material.diffusivity != other->diffusivity ||
-        material.permittivity != other->permittivity)
+        material.permittivity != other->permittivity || material.interface != other->interface)
       return error(Kind::malformed,
                    fmt::format("the material '{}' is another one elsewhere: give one of them another "
                                "name",

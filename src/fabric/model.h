@@ -100,6 +100,19 @@ struct Transport {
   bool operator==(const Transport&) const = default;
 };
 
+// How a surface at which a material ends holds on to another one: what opens it (normal), and what slides
+// along it (shear). All > 0; strength and energy are there both, or neither.
+struct Interface {
+  struct Pair {
+    double normal = 0, shear = 0;
+    bool operator==(const Pair&) const = default;
+  };
+  std::optional<Pair> stiffness;  // traction by opening, MPa/mm
+  std::optional<Pair> strength;   // largest traction, MPa
+  std::optional<Pair> energy;     // of fracture, N/mm (kJ/m2)
+  bool operator==(const Interface&) const = default;
+};
+
 struct Material {
   std::string name;
   TextPlace place;
@@ -110,6 +123,7 @@ struct Material {
   std::optional<Transport> conductivity;  // of heat, W/(m K)
   std::optional<Transport> diffusivity;   // mm2/s
   std::optional<Transport> permittivity;  // over that of a vacuum
+  std::optional<Interface> interface;     // for `mesh --interface cohesive`
 };
 
 // The size of the section at one path point.

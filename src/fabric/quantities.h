@@ -32,6 +32,12 @@ inline constexpr Quantity diffusivity_quantity = {"a diffusivity",     "mm2/s", 
                                                   Measure::diffusivity};
 inline constexpr Quantity permittivity_quantity = {
     "a relative permittivity", "times that of a vacuum", 1, 1e6, "F/m", 1 / 8.8541878188e-12};
+inline constexpr Quantity interface_stiffness_quantity = {
+    "an interface's stiffness", "MPa/mm", 1e-6, 1e12, "N/m3", 1e-9};
+inline constexpr Quantity interface_strength_quantity = {
+    "an interface's strength", "MPa", 1e-6, 1e5, "Pa", 1e-6, Measure::modulus};
+inline constexpr Quantity interface_energy_quantity = {
+    "an interface's fracture energy", "N/mm (kJ/m2)", 1e-9, 1e4, "J/m2", 1e-3};
 inline constexpr Quantity size_quantity = {"a section's size", "mm", 1e-4, 1e5};
 inline constexpr Quantity place_quantity = {"a coordinate", "mm", -1e9, 1e9};
 inline constexpr Quantity ratio_quantity = {"a ratio", "times the yarn's size", 0.01, 1e5};

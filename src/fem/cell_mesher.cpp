@@ -12,6 +12,7 @@
 #include "fem/bond.h"
 #include "fem/cell_sides.h"
 #include "fem/cell_size.h"
+#include "fem/cohesive_law.h"
 #include "fem/complete_cell.h"
 #include "fem/materials.h"
 #include "fem/quality.h"
@@ -40,6 +41,7 @@ class CellMesher {
     return std::max(*std::max_element(sizes_.begin(), sizes_.end()), options_.coarsest);
   }
   void bond();
+  Status check_joining(Mesh& mesh) const;
   static void renew_side_faces(Mesh& mesh);
   void step(const char* name, std::size_t done) const {
     if (options_.progress) options_.progress(name, done, 5);
@@ -172,6 +174,24 @@ void CellMesher::renew_side_faces(Mesh& mesh) {
       mesh.regions[side.region].side_faces.push_back(side.nodes);
 }
 
+// Laws of cohesive interfaces. That nothing holds bonded yarns together was not meant.
+Status CellMesher::check_joining(Mesh& mesh) const {
+  if (mesh.joining != Joining::cohesive) return {};
+  const auto is_of_yarns = [&](const Interface& interface) {
+    return mesh.regions[interface.second].kind == Region::Kind::yarn;
+  };
+  if (options_.bond > 0 && std::none_of(mesh.interfaces.begin(), mesh.interfaces.end(), is_of_yarns))
+    return located(error(
+        Kind::geometry,
+        fmt::format("no yarns are bonded, so that nothing is cohesive between them: all keep a gap of more "
+                    "than {:.3g} {}, which is matrix. A larger --gap reaches farther; or leave out --bond, "
+                    "and yarns hold on to the matrix alone",
+                    options_.bond, name_of(fabric_.units))));
+  if (Status right = choose_cohesive_laws(mesh); !right)
+    return right.error().placed(right.error().place, fabric_.file);
+  return {};
+}
+
 Status CellMesher::finish(Mesh& mesh) {
   const double scale = millimetres_per(fabric_.units), cube = scale * scale * scale;
   const std::vector<double>& volumes = block_->skin.volumes;
@@ -188,12 +208,14 @@ Status CellMesher::finish(Mesh& mesh) {
   }
   mesh.materials = std::move(materials_.materials);
   mesh.physics = options_.physics;
+  mesh.joining = options_.joining;
 
   step("finishing", 4);
   for (Message& note : complete(mesh, *block_, options_.order)) diagnostics_.add(located(note));
   const Box3 box_mm(box_.min() * scale, box_.max() * scale);
   if (Status complete = complete_cell(mesh, box_mm, options_.periodic); !complete)
     return located(complete.error());
+  if (Status joined = check_joining(mesh); !joined) return joined;
   measure(mesh);
   mesh.angles = angles_;
   if (Status sound = check_elements(mesh, fabric_.units); !sound) return located(sound.error());

@@ -20,6 +20,9 @@ struct CellMeshOptions : MeshOptions {
   // File units: matrix between yarns that are this near becomes part of them (fem/bond.h); 0: none.
   double bond = 0;
   std::array<bool, 3> periodic{};  // opposite faces get the same triangles
+  // Other than bonded with a matrix alone. Cohesive: of elastic materials; with `bond` yarns have to share
+  // faces.
+  Joining joining = Joining::bonded;
   Physics physics = Physics::elastic;
   double tolerance = 0;  // file units; 0: 1e-3 of the smallest section extent
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "fem/interfaces.h"
 #include "fem/periodicity.h"
 #include "fem/sides.h"
 
@@ -238,9 +239,10 @@ Status complete_cell(Mesh& mesh, const Box3& box, std::array<bool, 3> periodic) 
   sort_into_sets(cell, *sides);
   if (Status ordered = order_sets(mesh, cell, box.sizes().maxCoeff()); !ordered) return ordered;
   find_face_sides(mesh, cell, *sides);
-  const std::vector<std::size_t> lowest = find_lowest(mesh, cell);
+  std::vector<std::size_t> lowest = find_lowest(mesh, cell);
   if (Status paired = pair_sides(mesh, cell, lowest); !paired) return paired;
   mesh.cell = std::move(cell);
+  if (mesh.joining != Joining::bonded) double_nodes(mesh, lowest);
   return add_conditions(mesh, lowest);
 }
 

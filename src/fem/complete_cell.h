@@ -25,6 +25,7 @@ namespace selvage::fem {
 // A cell that conducts (Mesh::physics) has one unknown a node, the potential: G x + what repeats, G the mean
 //   gradient; of a plate, whose z faces let nothing through, along x and y. Without a periodic axis every
 //   node of the faces has G x: an upper bound.
+// Regions that share no nodes (Mesh::joining) are parted first: fem/interfaces.h.
 // Load cases: each driver's strain (curvature) 0.001 (1/mm) with the others zero, and 1 K with all of them
 //   zero; of a cell that conducts each driver's gradient 1 a mm. None where parts of the mesh do not hang
 //   together (yarns without a matrix): they would fly apart.

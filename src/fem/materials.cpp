@@ -63,9 +63,11 @@ void use(const fabric::Fabric& fabric, fabric::Material material, MaterialChoice
 
 }  // namespace
 
-std::vector<std::string> solver_names(const std::vector<fabric::Material>& materials) {
+std::vector<std::string> solver_names(const std::vector<fabric::Material>& materials,
+                                      const std::vector<CohesiveLaw>& laws) {
   std::vector<std::string> own;
   for (const fabric::Material& material : materials) own.push_back(material.name);
+  for (const CohesiveLaw& law : laws) own.push_back(law.name);
   return unique_names(own, {.longest = 30, .begin = "M_"});
 }
 

@@ -9,6 +9,7 @@
 
 #include "core/diagnostics.h"
 #include "fabric/model.h"
+#include "fem/mesh.h"
 #include "fem/physics.h"
 #include "yarn/body.h"
 
@@ -37,7 +38,9 @@ Orthotropic orthotropic(const fabric::Material& material);
 
 // Names that every solver takes: letters, digits and underscores after a letter, at most 30, each only once
 // (case does not count).
-std::vector<std::string> solver_names(const std::vector<fabric::Material>& materials);
+// `laws`: whose names follow.
+std::vector<std::string> solver_names(const std::vector<fabric::Material>& materials,
+                                      const std::vector<CohesiveLaw>& laws = {});
 
 struct MaterialChoice {
   std::vector<fabric::Material> materials;  // those in use, in order of first use

@@ -80,6 +80,9 @@ struct UnitCell {
   // each other over it have equally many, in the same order (increasing coordinate).
   std::array<std::vector<std::size_t>, 12> edge_nodes;
   std::array<std::size_t, 8> corners{};  // bit 0, 1, 2 of the number: high in x, y, z
+  // Where regions share no nodes (Mesh::joining), each has a node in these sets that has a side in the face;
+  // a region's other nodes in the corners, likewise numbered, are here.
+  std::array<std::vector<std::size_t>, 8> more_corners;
   // The element sides on the faces, same order A..F; where an axis is periodic, the k-th opposite the k-th.
   std::array<std::vector<ElementSide>, 6> face_sides;
 };
@@ -112,6 +115,43 @@ struct LoadCase {
   double temperature = 0;  // K; of a cell that conducts it means nothing
 };
 
+// How regions of a unit cell hold together where they meet.
+enum class Joining {
+  bonded,    // they share nodes
+  surfaces,  // each has nodes of its own: two surfaces that face each other
+  cohesive   // so, and elements without thickness between them
+};
+
+// A triangle at which two regions meet, from both sides: equal places, in the same order, of different nodes.
+// Seen from the second region the nodes go round counter-clockwise: the normal (p1 - p0) x (p2 - p0) points
+// from the first region to the second. So `first` and then `second` are the nodes of a wedge without height.
+struct FacingSides {
+  struct Side {
+    std::size_t element = 0, side = 0;   // index into element_sides() (fem/sides.h)
+    std::array<std::size_t, 6> nodes{};  // corners; with order 2 the midpoints of the edges 01 12 20
+  };
+  Side first, second;
+};
+
+// Where two regions meet that share no nodes.
+struct Interface {
+  std::size_t first = 0, second = 0;  // of regions: a yarn, and a later yarn or the matrix
+  std::size_t law = 0;                // index into Mesh::laws
+  std::vector<FacingSides> sides;     // at least one
+};
+
+// Traction by opening, bilinear: stiffness up to the strength, then softening to the fracture energy (all of
+// which fabric::Interface says the units of).
+struct CohesiveLaw {
+  std::string name;  // of both materials
+  fabric::Interface::Pair stiffness;
+  // Empty: nothing breaks.
+  struct Fracture {
+    fabric::Interface::Pair strength, energy;
+  };
+  std::optional<Fracture> fracture;
+};
+
 struct Mesh {
   enum class Shape { tetrahedron, hexahedron, beam };  // beam: of BeamModel (beams.h), two nodes
   Shape shape = Shape::tetrahedron;
@@ -132,6 +172,9 @@ struct Mesh {
   // Index into `materials` for each element; empty: by Region::material.
   std::vector<std::uint32_t> element_material;
   std::optional<UnitCell> cell;
+  Joining joining = Joining::bonded;   // other ones: of a cell of tetrahedra
+  std::vector<Interface> interfaces;   // by their regions; empty where all are bonded
+  std::vector<CohesiveLaw> laws;       // of cohesive ones
   Physics physics = Physics::elastic;  // other ones: of a cell
   std::vector<Driver> drivers;
   std::vector<Equation> equations;
@@ -141,6 +184,13 @@ struct Mesh {
   std::vector<BadElement> worst;  // at most ten, worst first
   std::optional<AngleTarget> angles;
 
+  // Elements without thickness: one a pair of sides.
+  [[nodiscard]] std::size_t cohesive_elements() const {
+    std::size_t count = 0;
+    if (joining == Joining::cohesive)
+      for (const Interface& interface : interfaces) count += interface.sides.size();
+    return count;
+  }
   [[nodiscard]] int corners_per_element() const {
     return shape == Shape::beam ? 2 : shape == Shape::tetrahedron ? 4 : 8;
   }

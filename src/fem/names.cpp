@@ -45,6 +45,15 @@ std::size_t most_sections(const Mesh& mesh) {
   return most > 1 ? most : 0;
 }
 
+// Empty where the second region is the matrix.
+std::string interface_number(const Mesh& mesh, std::size_t interface) {
+  const Interface& own = mesh.interfaces[interface];
+  if (mesh.regions[own.second].kind == Region::Kind::matrix) return {};
+  std::size_t first = interface;
+  while (first > 0 && mesh.interfaces[first - 1].first == own.first) --first;
+  return std::to_string(interface - first + 1);
+}
+
 // What decks call other things than yarns.
 std::vector<std::string> common_names() {
   std::vector<std::string> names = {"All", "AllNodes", "AllElements", "Drivers", "Dependent"};
@@ -144,6 +153,11 @@ DeckNames::DeckNames(const Mesh& mesh, NameRule rule) {
   std::vector<std::string> endings;
   for (std::size_t k = 0; k < most_sections(mesh); ++k) endings.push_back(section_ending(k));
   if (!mesh.cell) endings.insert(endings.end(), {"_Start", "_End"});
+  for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
+    for (const std::string_view ending : interface_endings)
+      endings.push_back(std::string(ending) + interface_number(mesh, i));
+  std::sort(endings.begin(), endings.end());
+  endings.erase(std::unique(endings.begin(), endings.end()), endings.end());
   rule.endings.insert(rule.endings.end(), endings.begin(), endings.end());
   const auto is_matrix = [](const Region& region) { return region.kind == Region::Kind::matrix; };
   // The matrix stands first: no yarn takes its name, nor those of its sections.
@@ -157,6 +171,10 @@ DeckNames::DeckNames(const Mesh& mesh, NameRule rule) {
 
 std::string DeckNames::of_section(std::size_t region, std::size_t number) const {
   return of(region) + section_ending(number);
+}
+
+std::string DeckNames::of_interface(const Mesh& mesh, std::size_t interface, std::string_view ending) const {
+  return of(mesh.interfaces[interface].first) + std::string(ending) + interface_number(mesh, interface);
 }
 
 void write_yarn_names(TextBuffer& text, const Mesh& mesh, const DeckNames& names, std::string_view mark,

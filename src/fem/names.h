@@ -1,6 +1,7 @@
 // What decks call the parts of a mesh: the yarns' own names as far as a solver takes them, each only once.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,10 @@
 #include "fem/mesh.h"
 
 namespace selvage::fem {
+
+// The first region's surface, the second one's that faces it, its nodes that are tied, the elements between.
+inline constexpr std::array<std::string_view, 4> interface_endings = {"_Side", "_Facing", "_Tied",
+                                                                      "_Cohesive"};
 
 // Which names a solver takes. Upper and lower case are the same to all of them.
 struct NameRule {
@@ -29,8 +34,8 @@ struct NameRule {
 std::vector<std::string> unique_names(const std::vector<std::string>& own, const NameRule& rule);
 
 // The names of a mesh's regions in a deck, and what follows from them. The rule's `endings` need not say
-// _Start, _End and _Section1, ..; the other names of decks (All, Matrix, FaceA, drivers, ..) are never a
-// yarn's.
+// _Start, _End, _Section1, .., nor those of interfaces; the other names of decks (All, Matrix, FaceA,
+// drivers, ..) are never a yarn's.
 class DeckNames {
  public:
   DeckNames(const Mesh& mesh, NameRule rule);
@@ -38,6 +43,11 @@ class DeckNames {
   [[nodiscard]] const std::string& of(std::size_t region) const { return names_[region]; }
   // NAME_Section1, ..: of those parts of a region that have one material. `number` counts from 0.
   [[nodiscard]] std::string of_section(std::size_t region, std::size_t number) const;
+  // Of what belongs to an interface, by its first region and `ending` (one of interface_endings): NAME_Side
+  // .. where the second region is the matrix, NAME_Side1 .. where it is a yarn, counted over the first
+  // region's.
+  [[nodiscard]] std::string of_interface(const Mesh& mesh, std::size_t interface,
+                                         std::string_view ending) const;
 
  private:
   std::vector<std::string> names_;

@@ -122,6 +122,8 @@ std::size_t count_parts(const Mesh& mesh, const std::vector<std::size_t>& lowest
   const auto count = static_cast<std::size_t>(mesh.nodes_per_element());
   for (const auto& element : mesh.elements)
     for (std::size_t k = 1; k < count; ++k) join(element[0], element[k]);
+  for (const Interface& interface : mesh.interfaces)
+    for (const FacingSides& facing : interface.sides) join(facing.first.nodes[0], facing.second.nodes[0]);
   for (std::size_t n = 0; n < lowest.size(); ++n) join(n, lowest[n]);
   return parts;
 }
@@ -163,7 +165,8 @@ Status add_conditions(Mesh& mesh, const std::vector<std::size_t>& lowest) {
     const Vec3 here = from_middle(cell, mesh.nodes[n]);
     const Modes before = drive.modes(p);
     for (int axis = 0; axis < 3; ++axis)
-      if (cell.periodic[static_cast<std::size_t>(axis)] && mesh.nodes[n][axis] == cell.high[axis])
+      if (cell.periodic[static_cast<std::size_t>(axis)] &&
+          (mesh.nodes[n][axis] == cell.high[axis] || mesh.nodes[n][axis] == cell.low[axis]))
         p[axis] = here[axis];
     add_equations(mesh, n, lowest[n], drive.modes(p) - before);
   }

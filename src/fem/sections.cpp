@@ -24,8 +24,11 @@ std::vector<NamedSet> node_sets(const Mesh& mesh, const DeckNames& names) {
     add("Edge" + std::to_string(i + 1), mesh.cell->edge_nodes[i]);
   // In the corners of a cell of dry yarns there need not be a node.
   for (std::size_t i = 0; i < mesh.cell->corners.size(); ++i)
-    if (mesh.cell->corners[i] < mesh.nodes.size())
-      add("Corner" + std::to_string(i + 1), {mesh.cell->corners[i]});
+    if (mesh.cell->corners[i] < mesh.nodes.size()) {
+      std::vector<std::size_t> nodes = mesh.cell->more_corners[i];
+      nodes.insert(nodes.begin(), mesh.cell->corners[i]);
+      add("Corner" + std::to_string(i + 1), nodes);
+    }
   return sets;
 }
 

@@ -306,7 +306,7 @@ void of_a_mesh(OptionTable& t) {
       .goes_with(of_tetrahedra, "", "--voxel");
   t.option({mesh}, "--order",
            "1: four nodes, 2: ten nodes a tetrahedron (default: 1; 2 with --matrix of a cell that is "
-           "periodic along x and y only: a plate bends)",
+           "periodic along x and y only, a plate, which bends, if not --interface cohesive)",
            Argument::one_of("1 2"), &Options::order)
       .goes_with(of_tetrahedra, "", "--voxel", "2");
   t.option({mesh}, "--min-dihedral",
@@ -364,6 +364,16 @@ void of_a_cell(OptionTable& t) {
          "the gap becomes part of them), instead of a gap filled with matrix",
          &Options::bond)
       .goes_with("joins yarns in a mesh of tetrahedra with its matrix", "--matrix", "--voxel");
+  t.choice(
+       {mesh}, "--interface",
+       "where yarns meet the matrix, and with --bond each other: bonded: they share nodes; surfaces: each "
+       "has "
+       "nodes of its own, and named surfaces are tied; cohesive: and elements without thickness between them",
+       "bonded surfaces cohesive", &Options::joining,
+       {fem::Joining::bonded, fem::Joining::surfaces, fem::Joining::cohesive})
+      .goes_with("is of yarns in a matrix, where yarns that only keep a gap hold nothing", "--matrix",
+                 "--voxel")
+      .with_preset("bonded");
 }
 
 void of_relaxing(OptionTable& t) {

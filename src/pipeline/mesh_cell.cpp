@@ -46,7 +46,9 @@ bool is_bent(const Options& options, const ReadyCell& ready) {
 
 // Bending is a quadratic displacement, which elements of order 1 follow by shearing.
 void say_what_bending_costs(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready) {
-  if (!is_bent(job.options, ready) || (job.options.voxels == 0 && job.options.order != 1)) return;
+  const bool is_straight =
+      job.options.order == 1 || (job.options.order == 0 && job.options.joining == fem::Joining::cohesive);
+  if (!is_bent(job.options, ready) || (job.options.voxels == 0 && !is_straight)) return;
   job.say(at_cell(
       fabric,
       warning(Kind::geometry,
@@ -71,7 +73,9 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
   fem::CellMeshOptions options{mesh_options(job)};
   options.sizes = ready.size.sizes;
   options.coarsest = given.matrix_size;
-  options.order = given.order > 0 ? given.order : is_bent(given, ready) ? 2 : 1;
+  const bool may_curve = given.joining != fem::Joining::cohesive;
+  options.order = given.order > 0 ? given.order : may_curve && is_bent(given, ready) ? 2 : 1;
+  options.joining = given.joining;
   options.matrix = given.matrix;
   if (given.bond) options.bond = bond_reach * job.gap;
   options.periodic = ready.periodic;

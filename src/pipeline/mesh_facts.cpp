@@ -58,6 +58,19 @@ void add_cell(Json& facts, const fem::Mesh& mesh) {
   facts["load_cases"] = mesh.load_cases.size();
 }
 
+Json interface_json(const fem::Mesh& mesh, const fem::Interface& interface) {
+  double area = 0;
+  for (const fem::FacingSides& facing : interface.sides) {
+    const auto& n = facing.first.nodes;
+    area += (mesh.nodes[n[1]] - mesh.nodes[n[0]]).cross(mesh.nodes[n[2]] - mesh.nodes[n[0]]).norm() / 2;
+  }
+  return {{"first", mesh.regions[interface.first].name},
+          {"second", mesh.regions[interface.second].name},
+          {"cohesive", mesh.joining == fem::Joining::cohesive},
+          {"triangles", interface.sides.size()},
+          {"area", area}};
+}
+
 const fem::Region* worst_volume(const fem::Mesh& mesh) {
   const fem::Region* worst = nullptr;
   for (const fem::Region& region : mesh.regions)
@@ -136,6 +149,9 @@ Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {
                 {"worst", if_true(!mesh.worst.empty(), worst_json(mesh))},
                 {"estimate", if_known(estimate)}};
   if (mesh.cell) add_cell(facts, mesh);
+  if (!mesh.interfaces.empty())
+    facts["interfaces"] = list_json(
+        mesh.interfaces, [&](const fem::Interface& interface) { return interface_json(mesh, interface); });
   return facts;
 }
 

@@ -12,6 +12,7 @@
 #include "core/option.h"
 #include "core/units.h"
 #include "fabric/plies.h"
+#include "fem/mesh.h"
 #include "fem/physics.h"
 #include "formats/format.h"
 #include "view/picture.h"
@@ -116,7 +117,8 @@ struct Options {
   int segments = 0;        // edges round each yarn; 0: by size
   double matrix_size = 0;  // to which edges may grow away from the yarns, input's unit; 0: size
   bool bond = false;       // yarns in contact share faces, instead of a gap filled with matrix
-  int voxels = 0;          // hexahedra along the longest side instead of tetrahedra; 0: tetrahedra
+  fem::Joining joining = fem::Joining::bonded;  // of regions where they meet
+  int voxels = 0;       // hexahedra along the longest side instead of tetrahedra; 0: tetrahedra
   bool chamis = false;  // stiffness of yarns from that of their fibres (Chamis), not as their material says
   fem::Physics physics = fem::Physics::elastic;  // of the deck
   bool force = false;  // go on where the estimate, or a gap, says that it is not worth it

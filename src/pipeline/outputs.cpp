@@ -279,6 +279,39 @@ Status check_beams(const Options& options, const Formats& wanted) {
   return {};
 }
 
+// Is it a companion, which is written with another format?
+bool is_beside_another(const Descriptor& format) {
+  const Formats& all = formats::all_formats();
+  return std::any_of(all.begin(), all.end(), [&](const Descriptor* other) {
+    return other->companion.format != nullptr && &other->companion.format() == &format;
+  });
+}
+
+// Not every format holds interfaces, nor every one curved ones.
+Status check_joining(const Options& options, const Formats& wanted) {
+  const bool is_cohesive = options.joining == fem::Joining::cohesive;
+  const std::string_view word = is_cohesive ? "cohesive" : "surfaces";
+  if (options.physics != fem::Physics::elastic)
+    return error(
+        Kind::usage,
+        fmt::format("--interface {} is of elastic materials, and --physics {} of a cell that is bonded", word,
+                    fem::transport_law(options.physics).word));
+  const auto order_of = [&](const Descriptor& format) {
+    return is_cohesive ? format.order_of_cohesive : format.order_of_surfaces;
+  };
+  for (const Descriptor* format : wanted) {
+    if (format->write_mesh == nullptr || order_of(*format) >= std::max(options.order, 1)) continue;
+    std::string others;
+    for (const Descriptor* other : formats::all_formats())
+      if (order_of(*other) >= std::max(options.order, 1) && !is_beside_another(*other))
+        others += fmt::format(" --to {}", other->name);
+    return error(Kind::usage, fmt::format("{} has no elements for --interface {}{}: write it with{}{}",
+                                          format->name, word, options.order == 2 ? " --order 2" : "", others,
+                                          order_of(*format) > 0 ? ", or with --order 1" : ""));
+  }
+  return {};
+}
+
 bool writes_files(Command command) {
   return command != Command::check && command != Command::info && command != Command::roundtrip &&
          command != Command::diff;
@@ -305,6 +338,8 @@ Result<Plan> Plan::make(const Options& options, InputList& list) {
       if (Status status = check_beams(options, *wanted); !status.ok()) return status.error();
     if (options.physics != fem::Physics::elastic)
       if (Status status = check_transport(options.physics, *wanted); !status.ok()) return status.error();
+    if (options.joining != fem::Joining::bonded)
+      if (Status status = check_joining(options, *wanted); !status.ok()) return status.error();
   }
   Plan plan(options);
   plan.formats_ = std::move(*wanted);

@@ -125,6 +125,15 @@ class Flat {
     add(path + ".along", v.along);
     add(path + ".across", v.across);
   }
+  void add(const std::string& path, const Interface::Pair& v) {
+    add(path + ".normal", v.normal);
+    add(path + ".shear", v.shear);
+  }
+  void add(const std::string& path, const Interface& v) {
+    add(path + ".stiffness", v.stiffness);
+    add(path + ".strength", v.strength);
+    add(path + ".energy", v.energy);
+  }
   void add(const std::string& path, const Material& v) {
     add(path + ".name", v.name);
     add(path + ".density", v.density);
@@ -134,6 +143,7 @@ class Flat {
     add(path + ".conductivity", v.conductivity);
     add(path + ".diffusivity", v.diffusivity);
     add(path + ".permittivity", v.permittivity);
+    add(path + ".interface", v.interface);
   }
   void add(const std::string& path, const SizeAt& v) {
     add_size(path, v.width, v.height);

@@ -124,6 +124,18 @@ class Maker {
     maybe(material.conductivity, [&] { return transport(conductivity_quantity); });
     maybe(material.diffusivity, [&] { return transport(diffusivity_quantity); });
     maybe(material.permittivity, [&] { return transport(permittivity_quantity); });
+    maybe(material.interface, [&] {
+      const auto pair = [&](const Quantity& quantity) {
+        return Interface::Pair{some(quantity), some(quantity)};
+      };
+      Interface interface;
+      maybe(interface.stiffness, [&] { return pair(interface_stiffness_quantity); });
+      if (coin()) {
+        interface.strength = pair(interface_strength_quantity);
+        interface.energy = pair(interface_energy_quantity);
+      }
+      return interface;
+    });
     return material;
   }
   yarn::Section section() {

@@ -137,6 +137,11 @@ material epoxy
   conductivity 0.2
   diffusivity 1e-12m2/s 4e-7
   permittivity 3.6 4.5
+  interface
+    stiffness 1e6 5e5
+    strength 40MPa 60
+    energy 0.2 0.8
+  end
 end
 )");
   ASSERT_EQ(fabric.threads.size(), 3U);
@@ -168,6 +173,11 @@ end
   EXPECT_EQ(fabric.materials[1].conductivity, (Transport{0.2, 0.2}));
   EXPECT_EQ(fabric.materials[1].diffusivity, (Transport{1e-6, 4e-7}));
   EXPECT_EQ(fabric.materials[1].permittivity, (Transport{3.6, 4.5}));
+  EXPECT_FALSE(fabric.materials[0].interface);
+  ASSERT_TRUE(fabric.materials[1].interface);
+  EXPECT_EQ(fabric.materials[1].interface->stiffness, (Interface::Pair{1e6, 5e5}));
+  EXPECT_EQ(fabric.materials[1].interface->strength, (Interface::Pair{40, 60}));
+  EXPECT_EQ(fabric.materials[1].interface->energy, (Interface::Pair{0.2, 0.8}));
 }
 
 TEST(Reader, Sections) {

@@ -138,6 +138,33 @@ TEST(SolverNames, YarnsCalledAsDrivers) {
 }
 
 // A yarn called as a part of the deck, sections and ends of yarns whose names look like theirs.
+// What belongs to an interface is called after its first region; a number tells those between yarns apart.
+TEST(SolverNames, OfInterfaces) {
+  fem::Mesh mesh;
+  for (const char* name : {"a", "a_Side", "a_Cohesive2", "matrix"}) {
+    fem::Region region;
+    region.name = name;
+    mesh.regions.push_back(region);
+  }
+  mesh.regions.back().kind = fem::Region::Kind::matrix;
+  mesh.interfaces.resize(4);
+  constexpr std::array<std::array<std::size_t, 2>, 4> regions = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}}};
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    mesh.interfaces[i].first = regions[i][0];
+    mesh.interfaces[i].second = regions[i][1];
+  }
+  const fem::DeckNames names(mesh, {.longest = 40});
+  EXPECT_EQ(names.of_interface(mesh, 0, "_Side"), "a_Side1");
+  EXPECT_EQ(names.of_interface(mesh, 1, "_Cohesive"), "a_Cohesive2");
+  EXPECT_EQ(names.of_interface(mesh, 2, "_Side"), "a_Side");
+  Names all;
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) all.push_back(names.of(r));
+  for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
+    for (const std::string_view ending : fem::interface_endings)
+      all.push_back(names.of_interface(mesh, i, ending));
+  expect_identifiers(all, 40, "");
+}
+
 TEST(SolverNames, OfAMesh) {
   fem::Mesh mesh;
   for (const char* name : {"matrix", "a", "a_Section1", "facea", "Corner9", "matrix"}) {
