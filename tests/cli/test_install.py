@@ -115,7 +115,7 @@ class Installed(Case):
         """Its imports are all there, and it calls the program beside it: a block of one material has that material's stiffness."""
         (self.folder / "block.txt").write_text(
             "fabric 1\nmaterial resin\n  elastic isotropic 1000 0.25\nend\nthread tow\n  section circle 0.5\n  material resin\nend\n"
-            "yarn one tow\n  path chord\n    0 0 0\n    1 0 0\n  end\nend\n"
+            "yarn one tow\n  path chord\n    -1 0 0\n    2 0 0\n  end\nend\n"
             "cell 0 -0.5 -0.5  1 0.5 0.5\n  matrix resin\n  periodic x y z\nend\n")
         done = subprocess.run([self.prefix / "bin/selvage-homogenize", "block.txt", "--voxel", "3", "--solver", "iterative", "--json", "-"],
                               env=environment(), cwd=self.folder, capture_output=True, text=True)
