@@ -384,12 +384,16 @@ PartMeasures measures_of(const Part& part) {
 
 namespace {
 
-// Of a surface that two lines span, the plane; nothing of others.
+// Of a surface of four points in one plane; nothing of others.
 std::optional<Eigen::Hyperplane<double, 3>> plane_of(const Surface& surface) {
   if (surface.degree_u != 1 || surface.degree_v != 1 || surface.points.size() != 4) return std::nullopt;
   const Vec3 normal = (surface.points[1] - surface.points[0]).cross(surface.points[2] - surface.points[0]);
   if (!(normal.norm() > 0)) return std::nullopt;
-  return Eigen::Hyperplane<double, 3>(normal.normalized(), surface.points[0]);
+  const Eigen::Hyperplane<double, 3> plane(normal.normalized(), surface.points[0]);
+  constexpr double flat = 1e-12;  // of the diagonal
+  const double diagonal = (surface.points[3] - surface.points[0]).norm();
+  if (plane.absDistance(surface.points[3]) > flat * diagonal) return std::nullopt;
+  return plane;
 }
 
 // How far edges are from a face's surface.

@@ -373,6 +373,9 @@ TEST(Measure, LoosenessOfEdges) {
   EXPECT_EQ(looseness(Vec3::Zero(), plane), 0);
   EXPECT_NEAR(looseness({0, 1e-3, 0}, plane), 1e-3, 1e-15);
   EXPECT_NEAR(looseness({0, 0, -2e-3}, plane), 2e-3, 1e-15);
+  Surface twisted = plane;  // its edges (0, 0) .. (1, 0) and (0, 0) .. (0, 1) are the square's
+  twisted.points[3].z() = 0.5;
+  EXPECT_NEAR(looseness(Vec3::Zero(), twisted), 0.5, 0.2);
   EXPECT_NEAR(looseness(Vec3::Zero(), cylinder(2, 1)), 2, 1e-9);  // (0, 0, 0) is on its axis
 }
 
