@@ -14,11 +14,15 @@
 #include <utility>
 #include <vector>
 
+#include "cad/compare.h"
+#include "cad/from_body.h"
 #include "contact/contact.h"
 #include "core/output.h"
 #include "core/source.h"
 #include "fem/cell_mesher.h"
 #include "formats/registry.h"
+#include "nurbs/basis.h"
+#include "nurbs/restrict.h"
 #include "scripts/benchmarks/built.h"
 #include "scripts/benchmarks/cloth.h"
 #include "solid/brep.h"
@@ -125,6 +129,27 @@ Work checking() {
   return [check, bodies = benchmarks::built(weave(4), {})] { check(bodies); };
 }
 
+// Of the second model a point is moved, and a yarn has twice as many spans along: one is told by control points,
+// the other by the distance of the surfaces.
+Work comparing() {
+  cad::Subject before;
+  for (const yarn::Body& body : benchmarks::built(benchmarks::jersey(16), published()))
+    before.model.parts.push_back(cad::part_of(body));
+  before.yarns = before.model.parts.size();
+  cad::Subject after = before;
+  after.model.parts[3].faces[0].surface.point(2, 100).z() += 0.03;
+  nurbs::Surface& finer = after.model.parts[5].faces[0].surface;
+  const std::vector<double> ends = nurbs::breakpoints(finer.knots_v, finer.degree_v);
+  std::vector<double> middles;
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) middles.push_back(0.5 * (ends[k] + ends[k + 1]));
+  finer = nurbs::refined(finer, middles);
+  return [before, after] {
+    cad::CompareOptions options;
+    options.tolerance = 1e-6;
+    if (cad::compare(before, after, options).differences.size() != 1) fail("one yarn differs");
+  };
+}
+
 // One crossing of elliptic tows in a matrix. TetGen is a process of its own, and counts nothing.
 Work meshing() {
   fabric::Fabric cloth = weave(1);
@@ -172,6 +197,7 @@ const std::map<std::string, Maker>& paths() {
        }},
       {"contact", [](const std::string&) { return searching(); }},
       {"check", [](const std::string&) { return checking(); }},
+      {"diff", [](const std::string&) { return comparing(); }},
       {"mesh-cell", [](const std::string&) { return meshing(); }},
   };
   return all;

@@ -31,6 +31,7 @@ PATHS = {
     "step-write": "16 yarns of 18 x 16 control points",
     "contact": "overlaps in a raw jersey of 6 x 6 loops",
     "check": "plain weave of 4 x 4 yarns: valid solids? overlapping? (without what CGAL does)",
+    "diff": "two jerseys of 16 x 16 loops: a point moved, and a yarn with twice as many spans",
     "mesh-cell": "one crossing of elliptic tows in a matrix, edges of 0.3 mm, without TetGen's own process",
     "start-up": "the whole of `selvage --version`",
 }

@@ -161,7 +161,7 @@ Reach Comparer::distance_between(const Surface& s, const Surface& t) const {
   return worse(there, back, limits_.distances);
 }
 
-// Where a seam lies elsewhere, or a yarn runs the other way, control points are far from those of their
+// Where a seam lies elsewhere, or a yarn runs the other way, most control points are far from those of their
 // number, and the surfaces are not.
 void Comparer::look_beyond_points(const Thing& a, const Thing& b, const std::vector<std::size_t>& partner,
                                   std::vector<SurfaceFinding>& found) const {
@@ -171,6 +171,7 @@ void Comparer::look_beyond_points(const Thing& a, const Thing& b, const std::vec
     SurfaceFinding& one = found[i];
     const Surface &s = *a.surfaces[i], &t = *b.surfaces[partner[i]];
     if (!one.points || one.reach.at_most <= limits_.points) continue;
+    if (4 * one.points->changed < s.points.size()) continue;
     if (one.points->largest <= far * box_of(s.points).diagonal().norm()) continue;
     const Reach sample = sampled_distance(s, domain(s), SurfaceSet({&t}), limits_.distances, points);
     if (sample.found > 0.5 * one.points->largest) continue;

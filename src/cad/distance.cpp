@@ -411,12 +411,14 @@ void Surveyor::compare_rectangle(const Range& range, int depth, const Image& ima
     const double period = breaks.back() - breaks.front();
     for (const double turn : {-period, 0.0, period}) {
       if (turn != 0 && !is_closed) continue;
-      for (const double knot : breaks) cuts.push_back((knot + turn - start) / slope);
+      // Those inside alone: a long yarn has thousands of knots, and as many cells.
+      const auto [low, high] = std::minmax({start - turn, start + slope - turn});
+      for (auto knot = std::ranges::lower_bound(breaks, low); knot != breaks.end() && *knot <= high; ++knot)
+        cuts.push_back(std::clamp((*knot + turn - start) / slope, 0.0, 1.0));
     }
     std::sort(cuts.begin(), cuts.end());
     std::vector<double> kept;
     for (const double cut : cuts) {
-      if (cut < 0 || cut > 1) continue;
       if (kept.empty() || cut - kept.back() > 1e-7) kept.push_back(cut);
     }
     if (1 - kept.back() < 1e-7) kept.pop_back();

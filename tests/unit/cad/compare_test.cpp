@@ -66,6 +66,18 @@ TEST(Compare, OnePointOfOneYarnAmongTwoThousand) {
   EXPECT_NEAR(compared(before, after, 2e-9).largest, 1e-9, 3e-13);
 }
 
+// Far from the tube's other points: no seam that lies elsewhere, and told as the point that it is.
+TEST(Compare, OnePointThatIsMovedFar) {
+  const Subject before = cloth(1);
+  Subject after = before;
+  after.model.parts[0].faces[0].surface.point(6, 8).z() += 0.2;
+  const Comparison found = compared(before, after);
+  ASSERT_EQ(found.differences.size(), 1U);
+  ASSERT_TRUE(found.differences[0].control_point);
+  EXPECT_EQ(found.differences[0].control_point->changed, 1U);
+  EXPECT_NEAR(found.differences[0].reach.at_least, 0.2, 1e-12);
+}
+
 TEST(Compare, Moved) {
   const Subject before = cloth(5);
   Subject after = before;
