@@ -15,6 +15,9 @@ struct Face {
   const nurbs::Surface* surface = nullptr;
   bool outward = true;        // S_u x S_v points out of the yarn
   std::vector<EdgeUse> loop;  // counter-clockwise in the surface's parameters
+  // A flat end: its only edge has a curve in the parameters, too. OpenCASCADE's own projection of a circle is
+  // off by 2e-6 of what it holds.
+  const yarn::EndPlane* plane = nullptr;
 };
 struct Topology {
   std::vector<Vec3> vertices;
@@ -60,6 +63,7 @@ void add_end(Topology& topology, const yarn::Body& body, bool last, const Rim& r
   Face face;
   face.surface = plane != nullptr ? &plane->surface : &end.surface;
   face.outward = !(plane != nullptr ? plane->inward : end.inward);
+  face.plane = plane;
   add_uses(face.loop, rim, true);
   if (end.style == EndStyle::fan) {  // along the seam to the pole in the centre and back
     const std::size_t centre = topology.vertices.size(), seam = topology.edges.size();
@@ -78,7 +82,8 @@ Topology ring(const yarn::Body& body) {
                     {nurbs::boundary_column(body.surface, false), 0, 0, nullptr}};
   topology.faces = {{&body.surface,
                      !body.inward,
-                     {{false, 0, true}, {false, 1, true}, {false, 0, false}, {false, 1, false}}}};
+                     {{false, 0, true}, {false, 1, true}, {false, 0, false}, {false, 1, false}},
+                     nullptr}};
   return topology;
 }
 
@@ -88,7 +93,7 @@ Topology tube(const yarn::Body& body, const yarn::EndPlane* start, const yarn::E
   const std::size_t seam = topology.edges.size();
   topology.edges.push_back(
       {nurbs::boundary_column(body.surface, false), first.first_vertex, last.first_vertex, nullptr});
-  Face face{&body.surface, !body.inward, {}};
+  Face face{&body.surface, !body.inward, {}, nullptr};
   add_uses(face.loop, first, true);
   face.loop.push_back({false, seam, true});
   add_uses(face.loop, last, false);
@@ -179,8 +184,10 @@ int entities_of_solid(const yarn::Body& body) {
   // Face: surface, 508, 510; and 502, 504, 514, 186.
   if (body.closed_along) return 2 + 3 + 4;
   int edges = 1;
-  for (const yarn::EndFace* end : {&body.start, &body.end})
-    edges += static_cast<int>(edges_of_rim(end->style)) + (end->style == EndStyle::fan ? 1 : 0);
+  for (const yarn::EndFace* end : {&body.start, &body.end}) {
+    const bool has_seam = end->style == EndStyle::fan, has_flat = end->style == EndStyle::planar;
+    edges += static_cast<int>(edges_of_rim(end->style)) + (has_seam || has_flat ? 1 : 0);
+  }
   return edges + 3 * 3 + 4;
 }
 
@@ -191,14 +198,20 @@ int write_solid(Records& records, const Common& common, const yarn::Body& body) 
     planes[last] = yarn::end_plane(body, yarn::end_curve(body, last), last);
     return &planes[last];
   };
-  const Topology topology = body.closed_along ? ring(body) : tube(body, plane_of(false), plane_of(true));
+  Topology topology = body.closed_along ? ring(body) : tube(body, plane_of(false), plane_of(true));
 
   std::vector<int> surfaces;
   for (const Face& face : topology.faces)
     surfaces.push_back(write_surface(records, common.entity(128, 0, dependent), *face.surface));
   const SolidLists lists = write_lists(records, common, topology.vertices, topology.edges);
+  const Vec3 up = Vec3::UnitZ();
   std::vector<SolidFace> faces;
-  for (const Face& face : topology.faces) {
+  for (Face& face : topology.faces) {
+    if (face.plane != nullptr) {
+      EdgeUse& only = face.loop.front();
+      only.flat = write_curve(records, common.entity(126, 0, dependent_in_2d),
+                              face.plane->in_parameters(topology.edges[only.index].curve), &up);
+    }
     const int loop = write_loop(records, common, lists, face.loop);
     faces.push_back({write_face(records, common, surfaces[faces.size()], {&loop, 1}), face.outward});
   }
