@@ -49,7 +49,10 @@ bool has_all_curves(const cad::Loop& loop, const nurbs::Surface& surface) {
 
 // Curves in the parameters that the file does not have: OpenCASCADE's own projections onto a parallelogram
 // are off by 1e-5 of what a circle holds, and cannot close a boundary through a sphere's pole.
-constexpr double flat_tolerance = 1e-8;  // of the surface's size
+void give_flats(cad::Face& face) {
+  constexpr double tolerance = 1e-8;  // of the surface's size
+  cad::give_flats(face, tolerance * cad::box_of(face.surface.points).diagonal().norm());
+}
 
 // What is written of one thing: colour, level, label and name. Its 406 is written at once, so that the
 // pointer is known.
@@ -77,7 +80,7 @@ class PartWriter {
  private:
   int chain(const Common& common, const std::vector<const nurbs::Curve*>& curves, std::string_view status);
   int boundary(const Common& common, int pointer, const nurbs::Surface& surface, const cad::Loop& loop);
-  int face(const cad::Face& face);
+  int face(const cad::Face& given);
   int loop(Shared& shared, const Common& common, const cad::Loop& given, bool is_whole);
   SolidFace face_of_solid(Shared& shared, const cad::Face& given);
   int solid(const cad::Part& part);
@@ -152,7 +155,9 @@ nurbs::Surface beside_seam(const cad::Face& face) {
              : s;
 }
 
-int PartWriter::face(const cad::Face& face) {
+int PartWriter::face(const cad::Face& given) {
+  cad::Face face = given;
+  give_flats(face);
   const Look own(records_, colors_, face);
   if (face.loops.empty()) return write_surface(records_, own.entity(128), face.surface, own.name);
   const nurbs::Surface beside = beside_seam(face);
@@ -235,7 +240,7 @@ int PartWriter::loop(Shared& shared, const Common& common, const cad::Loop& give
 
 SolidFace PartWriter::face_of_solid(Shared& shared, const cad::Face& given) {
   cad::Face face = given;
-  cad::give_flats(face, flat_tolerance * cad::box_of(face.surface.points).diagonal().norm());
+  give_flats(face);
   const Look own(records_, colors_, face);
   const int surface = write_surface(records_, own.entity(128, 0, dependent), face.surface);
   std::vector<int> loops;

@@ -42,6 +42,7 @@
 #include "cad/seam.h"
 #include "formats/step/faces.h"
 #include "formats/step/geometry.h"
+#include "solid/occt/faults.h"
 #include "solid/occt/shape.h"
 
 namespace selvage::formats::step {
@@ -509,29 +510,39 @@ std::optional<std::string> flaw_of(const PartShape& built, const cad::Part& part
   constexpr double same_area = 0.05;
   if (part.kind == cad::Part::Kind::solid && !built.closed)
     return fmt::format("its faces do not close it, and a solid must stay one; {}", remedy);
+  const auto who = [&](std::size_t i) {
+    const std::string& entity = part.faces[i].origin.entity;
+    return entity.empty() ? std::to_string(i + 1) : entity;
+  };
   for (std::size_t i = 0; i < part.faces.size(); ++i) {
     const cad::Face& face = part.faces[i];
-    const std::string who = face.origin.entity.empty() ? std::to_string(i + 1) : face.origin.entity;
     if (i >= built.faces.size() || built.faces[i].IsNull())
-      return fmt::format("OpenCASCADE loses its face {}; {}", who, remedy);
+      return fmt::format("OpenCASCADE loses its face {}; {}", who(i), remedy);
     std::size_t wires = 0;
     for (TopExp_Explorer it(built.faces[i], TopAbs_WIRE); it.More(); it.Next()) ++wires;
     if (!face.loops.empty() && wires != face.loops.size())
       return fmt::format("of the {} boundaries of its face {} OpenCASCADE makes {}; {}", face.loops.size(),
-                         who, wires, remedy);
+                         who(i), wires, remedy);
     // Faces of solids have directed edges, and areas that were measured.
     const std::optional<Vec3> inside = face.loops.empty() || face.area ? std::nullopt : place_inside(face);
     if (inside && !has_place(built.faces[i], *inside, cad::box_of(face.surface.points).diagonal().norm()))
-      return fmt::format("OpenCASCADE takes what is beyond the boundary of its face {} for it; {}", who,
+      return fmt::format("OpenCASCADE takes what is beyond the boundary of its face {} for it; {}", who(i),
                          remedy);
     const double area = face.area ? std::abs(area_of(built.faces[i])) : 0;
     if (face.area && !(std::abs(area - *face.area) <= same_area * *face.area))
-      return fmt::format("its face {} has an area of {:.6g}, and OpenCASCADE makes it {:.6g}; {}", who,
+      return fmt::format("its face {} has an area of {:.6g}, and OpenCASCADE makes it {:.6g}; {}", who(i),
                          *face.area, area, remedy);
   }
-  if (!BRepCheck_Analyzer(built.shape).IsValid())
-    return fmt::format("OpenCASCADE's check finds the result invalid; {}", remedy);
-  return std::nullopt;
+  const std::vector<solid::occt::Fault> faults = solid::occt::faults_of(built.shape);
+  if (faults.empty()) return std::nullopt;
+  const bool was_so =
+      part.kernel && !BRepCheck_Analyzer(*static_cast<const TopoDS_Shape*>(part.kernel.get())).IsValid();
+  const std::string start =
+      fmt::format("OpenCASCADE's check finds {} invalid", was_so ? "what the file holds" : "the result");
+  for (std::size_t i = 0; i < part.faces.size(); ++i)
+    if (const auto own = solid::occt::faults_of(built.faces[i]); !own.empty())
+      return fmt::format("{} at its face {}: {}; {}", start, who(i), to_string(own.front()), remedy);
+  return fmt::format("{}: {}; {}", start, to_string(faults.front()), remedy);
 }
 
 std::optional<PartShape> kept_part(const cad::Part& part) {

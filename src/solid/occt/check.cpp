@@ -2,27 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
-#include <BRepCheck.hxx>
-#include <BRepCheck_Analyzer.hxx>
-#include <BRepCheck_ListIteratorOfListOfStatus.hxx>
-#include <BRepCheck_ListOfStatus.hxx>
-#include <BRepCheck_Result.hxx>
 #include <BRep_Tool.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_Plane.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
-#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
-#include <cctype>
 #include <math.hxx>
 #include <math_Vector.hxx>
-#include <set>
-#include <sstream>
 
+#include "solid/occt/faults.h"
 #include "solid/occt/guard.h"
 #include "solid/occt/shape.h"
 
@@ -90,70 +81,6 @@ std::optional<double> enclosed_volume(const TopoDS_Shape& shape) {
   return volume;
 }
 
-std::string_view words_for(BRepCheck_Status status) {
-  switch (status) {
-    case BRepCheck_InvalidPointOnCurve:
-    case BRepCheck_InvalidPointOnCurveOnSurface:
-    case BRepCheck_InvalidPointOnSurface:
-      return "a vertex lies off its curve or surface";
-    case BRepCheck_InvalidCurveOnSurface:
-    case BRepCheck_InvalidCurveOnClosedSurface:
-    case BRepCheck_InvalidSameParameterFlag:
-      return "an edge lies off its face";
-    case BRepCheck_SelfIntersectingWire:
-    case BRepCheck_IntersectingWires:
-      return "the outline of a face crosses itself";
-    case BRepCheck_InvalidDegeneratedFlag:
-      return "an edge has no length";
-    case BRepCheck_BadOrientation:
-    case BRepCheck_BadOrientationOfSubshape:
-    case BRepCheck_UnorientableShape:
-      return "a face is turned inside out against its neighbour";
-    case BRepCheck_NotClosed:
-    case BRepCheck_FreeEdge:
-      return "the shell is not closed";
-    default:
-      return "the shape is not valid";
-  }
-}
-
-std::string_view remedy_for(BRepCheck_Status status) {
-  switch (status) {
-    case BRepCheck_SelfIntersectingWire:
-    case BRepCheck_IntersectingWires:
-      return "look for a section that crosses itself at this end";
-    case BRepCheck_BadOrientation:
-    case BRepCheck_BadOrientationOfSubshape:
-    case BRepCheck_UnorientableShape:
-      return "let the sections of the grid run round all in one direction";
-    default:
-      return "build the ends anew from the body, or check the control points there";
-  }
-}
-
-// OpenCASCADE's own name for it.
-std::string name_of(BRepCheck_Status status) {
-  std::ostringstream name;
-  BRepCheck::Print(status, name);
-  std::string text = name.str();
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
-  return text;
-}
-
-gp_Pnt place_of(const TopoDS_Shape& shape) {
-  if (shape.ShapeType() == TopAbs_VERTEX) return BRep_Tool::Pnt(TopoDS::Vertex(shape));
-  if (shape.ShapeType() == TopAbs_EDGE) {
-    const TopoDS_Edge& edge = TopoDS::Edge(shape);
-    if (!BRep_Tool::Degenerated(edge)) {
-      const BRepAdaptor_Curve curve(edge);
-      return curve.Value(0.5 * (curve.FirstParameter() + curve.LastParameter()));
-    }
-  }
-  TopTools_IndexedMapOfShape vertices;
-  TopExp::MapShapes(shape, TopAbs_VERTEX, vertices);
-  return vertices.IsEmpty() ? gp_Pnt() : BRep_Tool::Pnt(TopoDS::Vertex(vertices(1)));
-}
-
 class Judge {
  public:
   Judge(const yarn::Body& body, BrepCheck& verdict)
@@ -185,31 +112,13 @@ class Judge {
  private:
   [[nodiscard]] Vec3 unscaled(const gp_Pnt& p) const { return Vec3(p.X(), p.Y(), p.Z()) / scale_; }
 
-  // Each kind of defect is reported once, with the first place where it stands.
-  void report(const BRepCheck_ListOfStatus& statuses, const TopoDS_Shape& shape) {
-    for (BRepCheck_ListIteratorOfListOfStatus it(statuses); it.More(); it.Next()) {
-      if (it.Value() == BRepCheck_NoError || !reported_.insert(it.Value()).second) continue;
-      verdict_.defects.push_back(
-          error(Kind::geometry,
-                fmt::format("yarn '{}': {} ({}); {}", body_.name, words_for(it.Value()), name_of(it.Value()),
-                            remedy_for(it.Value())),
-                about(body_, unscaled(place_of(shape)))));
-    }
-  }
-
   bool analyze() {
-    const BRepCheck_Analyzer analyzer(yarn_.shape);
-    if (analyzer.IsValid()) return true;
-    TopTools_IndexedMapOfShape parts;
-    TopExp::MapShapes(yarn_.shape, parts);
-    for (int i = 1; i <= parts.Extent(); ++i) {
-      const Handle(BRepCheck_Result)& result = analyzer.Result(parts(i));
-      if (result.IsNull()) continue;
-      report(result->Status(), parts(i));
-      for (result->InitContextIterator(); result->MoreShapeInContext(); result->NextShapeInContext())
-        report(result->StatusOnShape(), parts(i));
-    }
-    return false;
+    const std::vector<Fault> faults = faults_of(yarn_.shape);
+    for (const Fault& fault : faults)
+      verdict_.defects.push_back(error(
+          Kind::geometry, fmt::format("yarn '{}': {}; {}", body_.name, to_string(fault), fault.remedy),
+          about(body_, unscaled(fault.at))));
+    return faults.empty();
   }
 
   void count_free_edges() {
@@ -246,7 +155,6 @@ class Judge {
   BrepCheck& verdict_;
   double scale_;
   YarnShape yarn_;
-  std::set<BRepCheck_Status> reported_;
 };
 
 BrepCheck judged(const yarn::Body& body, bool with_volume) {
