@@ -129,8 +129,8 @@ Work checking() {
   return [check, bodies = benchmarks::built(weave(4), {})] { check(bodies); };
 }
 
-// Of the second model a point is moved, and a yarn has twice as many spans along: one is told by control points,
-// the other by the distance of the surfaces.
+// Of the second model a point is moved, and a yarn has twice as many spans along: one is told by control
+// points, the other by the distance of the surfaces.
 Work comparing() {
   cad::Subject before;
   for (const yarn::Body& body : benchmarks::built(benchmarks::jersey(16), published()))

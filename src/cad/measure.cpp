@@ -21,7 +21,7 @@ using nurbs::Curve;
 using nurbs::Surface;
 
 // Area, area vector, volume, and the area in the parameters.
-using Values = Eigen::Matrix<double, 6, 1>;
+using Integrals = Eigen::Matrix<double, 6, 1>;
 
 constexpr int order = 8;  // of Gauss's rules
 
@@ -237,9 +237,9 @@ class Integrator {
   std::optional<FaceIntegrals> beside_one(const std::vector<Round>& rounds) {
     if (periods_[across_] > 0) return std::nullopt;
     base_ = breaks_[across_].front();
-    Values sum = Values::Zero();
+    Integrals sum = Integrals::Zero();
     for (const Round& round : rounds) {
-      Values values = along(round);
+      Integrals values = along(round);
       values *= values[5] < 0 ? -1 : 1;
       const int turns = round.turns[1 - across_];
       if (turns == 0) {
@@ -250,7 +250,7 @@ class Integrator {
       if (!is_high) return std::nullopt;
       if (*is_high) {
         const nurbs::Moments whole = nurbs::moments(surface_, origin_);
-        Values all;
+        Integrals all;
         all << whole.area, whole.area_vector, whole.volume,
             (breaks_[0].back() - breaks_[0].front()) * (breaks_[1].back() - breaks_[1].front());
         values = all - values;
@@ -264,14 +264,14 @@ class Integrator {
   // `around`: how many of them go round. The largest one, or the two that go round, hold the others.
   std::optional<FaceIntegrals> combined(const std::vector<Round>& rounds, std::size_t around) const {
     if (around != 0 && around != 2) return std::nullopt;
-    Values outer = Values::Zero(), holes = Values::Zero();
+    Integrals outer = Integrals::Zero(), holes = Integrals::Zero();
     int turns = 0;
     for (const Round& round : rounds) {
       const int own = round.turns[1 - across_];
-      Values values = along(round);
+      Integrals values = along(round);
       if (around == 2 && own != 0) {
         // Two that run the same way leave their difference between them.
-        outer += turns == own ? Values(-values) : values;
+        outer += turns == own ? Integrals(-values) : values;
         turns = own;
         continue;
       }
@@ -280,14 +280,14 @@ class Integrator {
       holes += values;
     }
     if (outer[5] < 0) outer = -outer;
-    const Values sum = outer - holes;
+    const Integrals sum = outer - holes;
     if (!(sum[5] > 0) || !sum.allFinite()) return std::nullopt;
     return FaceIntegrals{sum[0], sum.segment<3>(1), sum[4]};
   }
 
   // Green's theorem: round a region to the left f du dv is the integral of F dv, where F is that of f over u.
-  [[nodiscard]] Values along(const Round& round) const {
-    Values sum = Values::Zero();
+  [[nodiscard]] Integrals along(const Round& round) const {
+    Integrals sum = Integrals::Zero();
     const auto other = static_cast<Eigen::Index>(1 - across_);
     for (const Step& step : round.steps)
       if (step.along[other] != 0) sum += (across_ == 0 ? 1 : -1) * step.along[other] * line_to(step.at);
@@ -295,13 +295,13 @@ class Integrator {
   }
 
   // From the base to this place, along the line of one parameter.
-  [[nodiscard]] Values line_to(const Vec2& at) const {
+  [[nodiscard]] Integrals line_to(const Vec2& at) const {
     const auto d = static_cast<Eigen::Index>(across_);
     const std::vector<double>& breaks = breaks_[across_];
     const double first = breaks.front(), last = breaks.back(), period = last - first;
     const double from = base_, to = at[d];
     const bool wraps = periods_[across_] > 0;
-    Values sum = Values::Zero();
+    Integrals sum = Integrals::Zero();
     const auto turn_of = [&](double t) {
       return wraps ? static_cast<int>(std::floor((t - first) / period)) : 0;
     };
@@ -315,7 +315,7 @@ class Integrator {
     return sum;
   }
 
-  void add_span(Values& sum, Vec2 at, double a, double b) const {
+  void add_span(Integrals& sum, Vec2 at, double a, double b) const {
     const auto d = static_cast<Eigen::Index>(across_);
     const nurbs::GaussRule& rule = nurbs::gauss_rule(order);
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
@@ -324,14 +324,14 @@ class Integrator {
     }
   }
 
-  [[nodiscard]] Values values_at(const Vec2& at) const {
+  [[nodiscard]] Integrals values_at(const Vec2& at) const {
     std::array<double, 2> place = {at.x(), at.y()};
     for (std::size_t k = 0; k < 2; ++k)
       if (periods_[k] > 0)
         place[k] -= periods_[k] * std::floor((place[k] - breaks_[k].front()) / periods_[k]);
     const nurbs::SurfaceJet jet = nurbs::evaluate_jet(surface_, place[0], place[1]);
     const Vec3 normal = jet.du.cross(jet.dv);
-    Values values;
+    Integrals values;
     values << normal.norm(), normal, (jet.position - origin_).dot(normal) / 3, 1;
     return values;
   }

@@ -10,6 +10,7 @@
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
 #include <math.hxx>
 #include <math_Vector.hxx>
 
@@ -115,9 +116,9 @@ class Judge {
   bool analyze() {
     const std::vector<Fault> faults = faults_of(yarn_.shape);
     for (const Fault& fault : faults)
-      verdict_.defects.push_back(error(
-          Kind::geometry, fmt::format("yarn '{}': {}; {}", body_.name, to_string(fault), fault.remedy),
-          about(body_, unscaled(fault.at))));
+      verdict_.defects.push_back(
+          error(Kind::geometry, fmt::format("yarn '{}': {}; {}", body_.name, to_string(fault), fault.remedy),
+                about(body_, unscaled(fault.at))));
     return faults.empty();
   }
 

@@ -109,7 +109,8 @@ std::vector<Fault> faults_of(const TopoDS_Shape& shape) {
       add(result->StatusOnShape(), parts(i));
   }
   if (faults.empty())
-    faults.push_back({words_for(BRepCheck_NoError, shape), remedy_for(BRepCheck_NoError), {}, place_of(shape)});
+    faults.push_back(
+        {words_for(BRepCheck_NoError, shape), remedy_for(BRepCheck_NoError), {}, place_of(shape)});
   return faults;
 }
 

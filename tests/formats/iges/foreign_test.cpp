@@ -142,7 +142,8 @@ TEST(ForeignPlane, ACircleThatHasNoCurveInTheParameters) {
   face.surface = nurbs::flat(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec2(-6, -7), Vec2(8, 6));
   const double turn = 2 * std::numbers::pi;
   face.loops.emplace_back().edges.push_back(
-      {.curve = nurbs::elliptic_arc(Vec3::Zero(), 5 * Vec3::UnitX(), 5 * Vec3::UnitY(), 0, turn), .flat = {}});
+      {.curve = nurbs::elliptic_arc(Vec3::Zero(), 5 * Vec3::UnitX(), 5 * Vec3::UnitY(), 0, turn),
+       .flat = {}});
   const OcctReading again = read_with_occt(write_again(model), 1e-5);
   EXPECT_EQ(again.faces, 1);
   EXPECT_NEAR(again.area / (12.5 * turn), 1, 1e-9);
