@@ -138,6 +138,8 @@ constexpr std::array values = {
     Value{"as", "use", "`as PREFIX`: what the names of its yarns begin with."},
     Value{"step", "repeat", "`step SX SY`: how far copies are apart."},
     Value{"repeat", "cell", "`repeat [NX x NY]`: so many of the cloth's smallest repeats."},
+    Value{"vectors", "cell", "`vectors A B [C]`, of three numbers each: its edges; without C as high as its yarns."},
+    Value{"at", "cell", "`at X Y Z`: the corner that the edges of `vectors` begin at."},
     Value{"x", "periodic rotate mirror shear cell", "The axis; of a cell's repeats: by."},
     Value{"y", "periodic rotate mirror shear", "The axis."},
     Value{"z", "periodic rotate mirror shear", "The axis."},
