@@ -1,6 +1,6 @@
-// Yarns cut by the faces of a box, exactly (of an oblique cell: in its own coordinates, yarn/in_axes.h): which parts of their surfaces lie inside, as regions of the
-// surface's parameters bounded by curves that lie in the faces. CAD faces are trimmed by these curves, and
-// meshes begin with points on them.
+// Yarns cut by the faces of a box, exactly (of an oblique cell: in its own coordinates, yarn/in_axes.h):
+// which parts of their surfaces lie inside, as regions of the surface's parameters bounded by curves that lie
+// in the faces. CAD faces are trimmed by these curves, and meshes begin with points on them.
 #pragma once
 
 #include <array>

@@ -8,12 +8,13 @@
 
 namespace selvage {
 
-// Coordinates along three unit vectors, which are right-handed: q stands for the place unit * q. Those of space
-// themselves as long as nothing else is said; places are then theirs to the bit.
+// Coordinates along three unit vectors, which are right-handed: q stands for the place unit * q. Those of
+// space themselves as long as nothing else is said; places are then theirs to the bit.
 class ObliqueAxes {
  public:
   ObliqueAxes() = default;
-  // Along these vectors, which span a space; their lengths do not matter. The third is x, y or z where it was one.
+  // Along these vectors, which span a space; their lengths do not matter. The third is x, y or z where it was
+  // one.
   explicit ObliqueAxes(const std::array<Vec3, 3>& along) : is_space_(false) {
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3& v = along[static_cast<std::size_t>(axis)];

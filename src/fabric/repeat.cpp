@@ -296,9 +296,8 @@ std::array<Vec3, 2> oblique_repeat(std::span<const yarn::Body> bodies, const Box
   const auto length = [](const Vec3& v) { return v.norm(); };
   std::ranges::stable_sort(found, {}, length);
   const Vec3 first = found.front();
-  const auto second = std::ranges::find_if(found, [&](const Vec3& v) {
-    return std::abs(first.cross(v).z()) > 1e-6 * first.norm() * v.norm();
-  });
+  const auto second = std::ranges::find_if(
+      found, [&](const Vec3& v) { return std::abs(first.cross(v).z()) > 1e-6 * first.norm() * v.norm(); });
   return first.cross(*second).z() > 0 ? std::array{first, *second} : std::array{first, Vec3(-*second)};
 }
 

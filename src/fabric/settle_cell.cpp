@@ -245,8 +245,9 @@ void find_height(Fabric& fabric, const BuildOptions& options, int threads, Diagn
     }
   }
   if (yarns.isEmpty()) {
-    diagnostics.add(error(Kind::geometry, "no yarn enters this cell, which is to be as high as its yarns: `at X Y Z` "
-                                          "behind the vectors puts it elsewhere")
+    diagnostics.add(error(Kind::geometry,
+                          "no yarn enters this cell, which is to be as high as its yarns: `at X Y Z` "
+                          "behind the vectors puts it elsewhere")
                         .placed(fabric.cell->place, fabric.file));
     return;
   }
@@ -277,7 +278,8 @@ std::optional<std::array<Vec3, 2>> shortest_vectors(const Fabric& fabric, const 
   const std::optional<YarnBuilder> builder = YarnBuilder::create(fabric, options, unsaid);
   std::optional<Repeat> repeat;
   if (builder) repeat = builder->repeat();
-  if (!repeat || !((*repeat)[0].value_or(0.0) > 0.0) || !((*repeat)[1].value_or(0.0) > 0.0)) return std::nullopt;
+  if (!repeat || !((*repeat)[0].value_or(0.0) > 0.0) || !((*repeat)[1].value_or(0.0) > 0.0))
+    return std::nullopt;
   const double x = *(*repeat)[0], y = *(*repeat)[1];
   Fabric wide = fabric;
   wide.cell.emplace();

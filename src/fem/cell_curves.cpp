@@ -169,7 +169,8 @@ Status Divider::find_copies() {
 // Those on high faces of periodic axes are copies of the ones on the low edge.
 Status Divider::make_corners() {
   const cell::Division& division = shape_.division;
-  for (std::size_t c = 0; c < 8; ++c) corner_nodes_.push_back(nodes_.add(shape_.cell.axes.place(division.corners[c].at)));
+  for (std::size_t c = 0; c < 8; ++c)
+    corner_nodes_.push_back(nodes_.add(shape_.cell.axes.place(division.corners[c].at)));
   corner_nodes_.resize(division.corners.size());
   for (int edge = 0; edge < cell::edge_count; ++edge) {
     const int low = original(edge), a = edge / 4;
@@ -205,9 +206,7 @@ void Divider::make_segments() {
       if (copies) {
         for (const std::uint32_t node : chain(first_part(low) + k)) places.push_back(along_edge(node, a));
       } else {
-        const auto wanted = [&](double along) {
-          return field_.at(on_edge(edge, start + along));
-        };
+        const auto wanted = [&](double along) { return field_.at(on_edge(edge, start + along)); };
         places = divided_line(along_edge(to, a) - start, wanted, 1);
         for (double& place : places) place += start;
       }

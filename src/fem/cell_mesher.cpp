@@ -86,7 +86,8 @@ Status CellMesher::prepare() {
   cell_ = fabric_.cell->shape();
   extent_ = std::numeric_limits<double>::infinity();
   for (const yarn::Body& body : bodies_) {
-    if (yarn::bounds(body).intersects(cell_.bounds())) extent_ = std::min(extent_, yarn::narrowest_section(body));
+    if (yarn::bounds(body).intersects(cell_.bounds()))
+      extent_ = std::min(extent_, yarn::narrowest_section(body));
   }
   if (!std::isfinite(extent_)) return located(error(Kind::geometry, "no yarn enters the cell"));
   sizes_ = options_.sizes;

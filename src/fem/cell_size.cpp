@@ -62,7 +62,8 @@ double estimate_tetrahedra(std::span<const yarn::Body> bodies, const Parallelepi
   SizeRules rules = cell_size_rules(bodies, sizes, coarsest, extent);
   rules.raster = raster_step(bodies);
   const SizeField field = size_field(bodies, cell, rules, threads);
-  // Places that fill the cell evenly: multiples of the powers of the root of r^4 = r + 1 (Roberts's sequence).
+  // Places that fill the cell evenly: multiples of the powers of the root of r^4 = r + 1 (Roberts's
+  // sequence).
   constexpr double root = 1.2207440846057596;
   const std::array<double, 3> steps = {1 / root, 1 / (root * root), 1 / (root * root * root)};
   double sum = 0;

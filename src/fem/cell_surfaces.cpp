@@ -69,8 +69,8 @@ class CapSupport final : public Support {
   double step_;
 };
 
-// A face of the cell as a plane, seen from outside. Its chart is without distortion: the first of the two axes
-// in it, and what is at a right angle to that.
+// A face of the cell as a plane, seen from outside. Its chart is without distortion: the first of the two
+// axes in it, and what is at a right angle to that.
 class FaceSupport final : public Support {
  public:
   FaceSupport(const Parallelepiped& cell, int face) : cell_(cell), face_(face) {

@@ -13,7 +13,8 @@
 namespace selvage::fem {
 
 // Fills Mesh::cell, drivers, equations and load_cases of a finished mesh (midside nodes and regions too), of
-// either shape. `shape` in mm; strains and curvatures are along the axes of space, whatever the cell's own are.
+// either shape. `shape` in mm; strains and curvatures are along the axes of space, whatever the cell's own
+// are.
 //
 // Periodic x, y, z (a block): the displacement is E x + what repeats, E the symmetric strain; periodic x, y
 //   (a plate; z faces free): Kirchhoff's, u = (E + z K) (x, y), w = -(x, y) K (x, y) / 2 about the middle of

@@ -42,7 +42,7 @@ class CellEdges {
   const Mesh& mesh_;
   const Block& block_;
   const std::vector<SurfacePlace>& places_;
-  double scale_;  // mm per file unit
+  double scale_;         // mm per file unit
   Parallelepiped cell_;  // mm
   double snug_;
 };

@@ -110,8 +110,8 @@ bool is_on_faces(const Parallelepiped& cell, const Vec3& p) {
   return cell.side_of(p, 0) != 0 || cell.side_of(p, 1) != 0 || cell.side_of(p, 2) != 0;
 }
 
-// From the node that another one depends on to that: along periodic axes only, however their other coordinates
-// were rounded.
+// From the node that another one depends on to that: along periodic axes only, however their other
+// coordinates were rounded.
 Vec3 way_between(const Parallelepiped& cell, const std::array<bool, 3>& periodic, const Vec3& from,
                  const Vec3& to) {
   Vec3 way = Vec3::Zero();

@@ -400,7 +400,8 @@ Result<Raster> rasterize(const fabric::Fabric& fabric, std::span<const yarn::Bod
   const fabric::Cell& cell = *fabric.cell;
   if (!cell.axes.are_of_space())
     return error(Kind::unsupported,
-                 "fields on voxels are of cells that are boxes, and this one is oblique: `mesh --voxel N` makes "
+                 "fields on voxels are of cells that are boxes, and this one is oblique: `mesh --voxel N` "
+                 "makes "
                  "hexahedra of it, or a cell by two opposite corners takes its place")
         .placed(cell.place, fabric.file);
   const Box3 box(cell.low, cell.high);

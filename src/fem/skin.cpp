@@ -46,8 +46,8 @@ void drop_unused(Skin& skin) {
 
 }  // namespace
 
-Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Parallelepiped& cell,
-                       const SizeRules& rules, const SkinOptions& options) {
+Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Parallelepiped& cell, const SizeRules& rules,
+                       const SkinOptions& options) {
   const auto step = [&](const char* name) {
     if (options.progress) options.progress(name);
   };

@@ -36,8 +36,8 @@ struct Skin {
 // Edges are about as long as `rules` has them. Sides are bodies' indices (CellTriangles::matrix,
 // Sides::outside). Errors: what cell::cut, cell::divide_faces, divide_curves and mesh_surfaces say. The
 // bodies outlive the skin.
-Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Parallelepiped& cell,
-                       const SizeRules& rules, const SkinOptions& options);
+Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Parallelepiped& cell, const SizeRules& rules,
+                       const SkinOptions& options);
 
 // The skin of one whole yarn: edges of its surface at most `size`, file units, > 0. Gaps are left as they
 // are.

@@ -61,8 +61,7 @@ Owners find_owners(const VoxelGrid& grid, std::span<const yarn::Body> bodies, co
           if (before != no_yarn) {
             ++owners.in_two;
             const Vec3 point(xs[c % xs.size()], ys[c / xs.size()], *z);
-            if (distance_from_axis(bodies[static_cast<std::size_t>(before)], point, owners.v[voxel],
-                                   axes) <=
+            if (distance_from_axis(bodies[static_cast<std::size_t>(before)], point, owners.v[voxel], axes) <=
                 distance_from_axis(body, point, v, axes))
               continue;
           }
@@ -185,7 +184,8 @@ void fill_quality(Mesh& mesh, const VoxelGrid& grid, const ObliqueAxes& axes, do
                   .mean_scaled_jacobian = share};
   for (Region& region : mesh.regions) {
     region.quality = mesh.quality;
-    region.volume = share * static_cast<double>(region.last_element - region.first_element) * (unit * sides).prod();
+    region.volume =
+        share * static_cast<double>(region.last_element - region.first_element) * (unit * sides).prod();
   }
 }
 
@@ -222,7 +222,9 @@ Result<Mesh> mesh_voxels(const fabric::Fabric& fabric, std::span<const yarn::Bod
   mesh.materials = std::move(choice->materials);
   mesh.physics = options.physics;
   fill_quality(mesh, *grid, cell.axes, unit);
-  if (Status done = complete_cell(mesh, {Box3(box.min() * unit, box.max() * unit), cell.axes}, options.periodic); !done)
+  if (Status done =
+          complete_cell(mesh, {Box3(box.min() * unit, box.max() * unit), cell.axes}, options.periodic);
+      !done)
     return at_cell(done.error());
   return mesh;
 }

@@ -5,9 +5,9 @@
 #include <iterator>
 
 #include "cell/cad_parts.h"
-#include "yarn/in_axes.h"
 #include "pipeline/overlaps.h"
 #include "pipeline/unit_cell.h"
+#include "yarn/in_axes.h"
 
 namespace selvage::pipeline {
 

@@ -67,7 +67,7 @@ nurbs::Samples samples_of(const nurbs::Surface& surface) {
 // A translation that may be written down: as many digits as a cell needs that is to be a whole number of
 // repeats of this length.
 std::string written_length(double value, double repeat) {
-  constexpr double near = 1e-6;  // of a repeat
+  constexpr double near = 1e-6;                      // of a repeat
   if (std::abs(value) <= 1e-9 * repeat) return "0";  // of vectors, by rounding
   std::string text;
   for (int digits = 6; digits <= 17; ++digits) {
@@ -234,33 +234,39 @@ std::string true_vectors(Job& job, const fabric::Fabric& fabric) {
     const double size = v.norm();
     return fmt::format("{} {} 0", written_length(v.x(), size), written_length(v.y(), size));
   };
-  return fmt::format("; its yarns repeat after the vectors ({}) and ({}) {}, and whole sums of these make a "
-                     "periodic cell: `cell vectors {}  {}`",
-                     text((*vectors)[0]), text((*vectors)[1]), name_of(fabric.units), text((*vectors)[0]),
-                     text((*vectors)[1]));
+  return fmt::format(
+      "; its yarns repeat after the vectors ({}) and ({}) {}, and whole sums of these make a "
+      "periodic cell: `cell vectors {}  {}`",
+      text((*vectors)[0]), text((*vectors)[1]), name_of(fabric.units), text((*vectors)[0]),
+      text((*vectors)[1]));
 }
 
 // The same as periodic_axes() of an oblique cell, whose faces are compared in its own coordinates.
 std::optional<std::array<bool, 3>> periodic_vectors(Job& job, const fabric::Fabric& fabric,
                                                     std::span<const yarn::Body> bodies, double thinnest) {
   const fabric::Cell& cell = *fabric.cell;
-  if (cell.periodic != std::array{true, true, false})
-    return job.fail(cell_error(
-        fabric, "a cell with vectors is periodic along both of them, `periodic x y`, and free above and below"));
+  if (!cell.periodic[0] || !cell.periodic[1])
+    return job.fail(
+        cell_error(fabric, "a cell with vectors is periodic along both of them: `periodic x y`, or `x y z`"));
   const yarn::BodiesInAxes own(bodies, cell.axes);
   const Box3 box = box_of(fabric);
   const double tolerance = tolerance_share * thinnest;
-  for (int axis = 0; axis < 2; ++axis) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!cell.periodic[static_cast<std::size_t>(axis)]) continue;
     auto loose = fabric::find_loose_end(own.list(), box, axis, tolerance);
     const char* what = "runs through its {} face, and none comes in opposite";
     if (!loose) {
-      loose = fabric::find_missing_in_faces(own.list(), box, axis, box.sizes()[axis], 0.25 * thinnest, tolerance);
+      loose =
+          fabric::find_missing_in_faces(own.list(), box, axis, box.sizes()[axis], 0.25 * thinnest, tolerance);
       what = "lies in its {} face, and none in the other";
     }
     if (!loose) continue;
     return job.fail(cell_error(
         fabric,
-        fmt::format("this cell is not periodic along its {} vector: yarn '{}' {}{}", axis == 0 ? "first" : "second",
+        fmt::format("this cell is not periodic along its {} vector: yarn '{}' {}{}",
+                    axis == 0   ? "first"
+                    : axis == 1 ? "second"
+                                : "third",
                     bodies[loose->body].name, fmt::format(fmt::runtime(what), loose->high ? "high" : "low"),
                     true_vectors(job, fabric)),
         in_space(fabric, loose->at)));
@@ -395,8 +401,9 @@ bool check_grazed_faces(Job& job, const fabric::Fabric& fabric, std::span<const 
                       "{:.2g} {} away, and what lies between would be meshed as flat as that; move the "
                       "cell, or --force meshes it as it is",
                       body.name, cell::name_of_face(face),
-                      fabric.cell->axes.are_of_space() ? fmt::format(", {} = {:.6g}", name_of_axis(axis), plane)
-                                                       : std::string(),
+                      fabric.cell->axes.are_of_space()
+                          ? fmt::format(", {} = {:.6g}", name_of_axis(axis), plane)
+                          : std::string(),
                       std::abs((*at)[axis] - plane), name_of(fabric.units)),
           in_space(fabric, *at), body.name));
     }
@@ -408,7 +415,8 @@ namespace {
 
 // Is a place of a contact in the cell, or just beside it?
 bool is_near(const contact::Contact& contact, const Parallelepiped& cell, double margin) {
-  const Parallelepiped wide(Box3(cell.box.min().array() - margin, cell.box.max().array() + margin), cell.axes);
+  const Parallelepiped wide(Box3(cell.box.min().array() - margin, cell.box.max().array() + margin),
+                            cell.axes);
   return wide.contains(contact.at) ||
          std::any_of(contact.spots.begin(), contact.spots.end(),
                      [&](const contact::Minimum& spot) { return wide.contains(spot.on_a); });
@@ -521,8 +529,9 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
               fmt::format("--matrix-size is {:.6g}, to which edges grow from those on the yarns, but these "
                           "are {:.6g} {} long: --size makes them finer",
                           job.options.matrix_size, *finest, name_of(fabric.units))));
-  chosen.tetrahedra = fem::estimate_tetrahedra(bodies, fabric.cell->shape(), chosen.sizes, job.options.matrix_size,
-                                               with_matrix, static_cast<int>(job.threads));
+  chosen.tetrahedra =
+      fem::estimate_tetrahedra(bodies, fabric.cell->shape(), chosen.sizes, job.options.matrix_size,
+                               with_matrix, static_cast<int>(job.threads));
   const std::string lengths = *coarsest - *finest < 1e-3 * *coarsest
                                   ? fmt::format("{:.4g}", *finest)
                                   : fmt::format("{:.4g} to {:.4g}", *finest, *coarsest);

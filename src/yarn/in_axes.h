@@ -10,8 +10,8 @@
 
 namespace selvage::yarn {
 
-// Points, axes and end faces in these coordinates, volumes in their unit; lengths, areas and bends stay those of
-// space. Where the coordinates are those of space, the given bodies themselves, which outlive this.
+// Points, axes and end faces in these coordinates, volumes in their unit; lengths, areas and bends stay those
+// of space. Where the coordinates are those of space, the given bodies themselves, which outlive this.
 class BodiesInAxes {
  public:
   BodiesInAxes(std::span<const Body> bodies, const ObliqueAxes& axes);
