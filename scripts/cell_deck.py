@@ -209,9 +209,9 @@ class Deck:
 
 
 def moments_of_boxes(p):
-    """Volumes and the integrals of z and z^2 of bricks along the axes (n x 8 x 3 nodes)."""
+    """Volumes and the integrals of z and z^2 of parallelepipeds with level floors (n x 8 x 3 nodes)."""
     z = p[:, :, 2]
-    volume = numpy.prod(p[:, 6] - p[:, 0], axis=1)
+    volume = numpy.linalg.det(p[:, [1, 3, 4]] - p[:, :1])
     return volume, volume * z.mean(axis=1), volume * (z.mean(axis=1) ** 2 + (z[:, 6] - z[:, 0]) ** 2 / 12)
 
 

@@ -19,8 +19,7 @@ TWILL = (ROOT / "samples" / "cell_twill.txt").read_text()
 VECTORS = "cell vectors 4.8 0 0  -1.2 1.2 0"
 
 
-def twill(cell):
-    return TWILL.replace(VECTORS, cell)
+VOXELS = 3e-2  # what stairs of other voxels may change
 
 
 class Deck:
@@ -62,7 +61,7 @@ class Oblique(Case):
         source = self.folder / f"{name}.txt"
         source.write_text(text)
         deck = self.folder / f"{name}.inp"
-        return deck, self.succeeds("mesh", source, "--matrix", "--periodic", *more, "-o", deck, "--report", self.folder / f"{name}.json")
+        return deck, self.succeeds("mesh", source, "--matrix", "--periodic", *more, "-o", deck)
 
     def stiffness(self, deck):
         run = subprocess.run([sys.executable, HOMOGENIZE, deck, "--json", "-", "--solver", "iterative"], capture_output=True,
@@ -72,17 +71,15 @@ class Oblique(Case):
         return np.array(result["stiffness"]), result
 
     def both(self, *more):
-        """Of the oblique cell and of that along the axes, four times as large, of the same height."""
-        oblique, run = self.mesh(TWILL, "oblique", *more)
-        corners = Deck(oblique).cell
-        low, high = corners[0][2], corners[0][2] + corners[3][2]
-        whole, _ = self.mesh(twill(f"cell 0 0 {low!r}  4.8 4.8 {high!r}"), "whole", *more)
+        """Of the oblique cell and of that along the axes, four times as large; both stacked, so that nothing bends."""
+        stacked = TWILL.replace("periodic x y", "periodic x y z")
+        oblique, _ = self.mesh(stacked.replace(VECTORS, f"{VECTORS}  0 0 0.69"), "oblique", *more)
+        whole, _ = self.mesh(stacked.replace(VECTORS, "cell 0 0 -0.345  4.8 4.8 0.345"), "whole", *more)
         return oblique, whole
 
     def assert_alike(self, oblique, whole, most):
         ours, facts = self.stiffness(oblique)
         theirs, other = self.stiffness(whole)
-        self.assertEqual(facts["kind"], "plate")
         self.assertLess(3.5 * facts["elements"], other["elements"])
         scale = np.sqrt(np.diag(theirs))
         off = np.abs(ours - theirs) / np.outer(scale, scale)
@@ -90,12 +87,51 @@ class Oblique(Case):
         self.assertGreater(np.linalg.eigvalsh(ours).min(), 0)
 
     def test_the_stiffness_of_the_whole_repeat(self):
-        self.assert_alike(*self.both("--size", "0.2", "--matrix-size", "0.4"), 5e-3)
+        self.assert_alike(*self.both("--size", "0.3", "--order", "1"), 5e-3)
 
     def test_voxels(self):
-        """Along x as many over the same length; the others are parallelepipeds. Stairs differ: 3 %."""
-        oblique, whole = self.both("--voxel", "48")
-        self.assert_alike(oblique, whole, 3e-2)
+        """As many along x over the same length; the others are parallelepipeds, so that the stairs differ."""
+        self.assert_alike(*self.both("--voxel", "32"), VOXELS)
+
+    def test_a_field_of_constant_strain_meets_all_conditions(self):
+        """Nodes opposite each other, over all three pairs of faces; the elements fill the cell."""
+        deck = Deck(self.both("--size", "0.3", "--order", "1")[0])
+        corner, edges = deck.cell[0], deck.cell[1:]
+        strain = np.array([[1.0, 0.3, -0.2], [0.3, -0.7, 0.5], [-0.2, 0.5, 0.4]])
+        value = {d: strain[i, j] * (1 if i == j else 2)
+                 for d, (i, j) in enumerate([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)])}
+        drivers = {deck.sets[f"ConstraintsDriver{d}"][0]: value[d] for d in value}
+        dependent = set()
+        for equation in deck.equations:
+            moved = [f * (drivers[n] if n in drivers else (strain @ deck.nodes[n])[d - 1]) for n, d, f in equation]
+            self.assertLess(abs(sum(moved)), 1e-12)
+            dependent.add(equation[0][0])
+        used = {n for element in deck.elements for n in element}
+        own = {n: np.linalg.solve(edges.T, deck.nodes[n] - corner) for n in used}  # 0 .. 1 along each edge
+        self.assertEqual(dependent, {n for n in used if (own[n] > 1 - 1e-9).any()})
+        places = np.array([own[n] for n in used])
+        self.assertLess(abs(places - 0.5).max(), 0.5 + 1e-12)
+        points = np.array([[deck.nodes[n] for n in element] for element in deck.elements])
+        volumes = np.linalg.det(points[:, 1:] - points[:, :1]) / 6
+        self.assertGreater(volumes.min(), 0)
+        self.assertAlmostEqual(volumes.sum() / np.linalg.det(edges), 1, 9)
+
+    def test_what_is_no_repeat_is_told_the_true_vectors(self):
+        """And these make a cell."""
+        source = self.folder / "askew.txt"
+        source.write_text(TWILL.replace(VECTORS, "cell vectors 4.8 0 0  -1.2 1.1 0"))
+        told = self.fails(1, "mesh", source, "--matrix", "--periodic", "-o", self.folder / "askew.inp")
+        self.assertIn("not periodic along its second vector", told)
+        right = re.search(r"`(cell vectors [^`]*)`", told)[1]
+        deck, _ = self.mesh(TWILL.replace(VECTORS, right), "right", "--voxel", "16")
+        self.assertAlmostEqual(np.linalg.det(Deck(deck).cell[1:, :])
+                               / Deck(deck).cell[3][2], 4 * 1.2**2, 9)
+
+    def test_cad(self):
+        source = self.folder / "twill.txt"
+        source.write_text(TWILL)
+        self.succeeds("convert", source, "--matrix", "-o", self.folder / "twill.stp")
+        self.succeeds("check", self.folder / "twill.stp")
 
 
 if __name__ == "__main__":
