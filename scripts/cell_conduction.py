@@ -48,7 +48,7 @@ def matrices(deck):
 def means(deck):
     """The cell's mean of the elements' conductivities and of their inverses, and the share of each section; integrated as
     the elements are."""
-    volume = numpy.prod(deck.cell[1] - deck.cell[0])
+    volume = deck.cell.volume
     parallel, series, shares = numpy.zeros((3, 3)), numpy.zeros((3, 3)), {}
     name_of = {e: name for name, _, _ in deck.sections for e in deck.element_sets[name]}
     for numbers, places, tensor in parts(deck):

@@ -10,6 +10,20 @@ import cell_cohesive
 from cell_elements import EDGES, PAIRS, frames, matrices, tetrahedron_shapes
 
 
+class Parallelepiped:
+    """A unit cell: a corner and three edges, of which the last is along z."""
+
+    def __init__(self, corner, edges):
+        self.edges, self.volume = edges, numpy.linalg.det(edges)
+        self.low, self.high = corner[2], corner[2] + edges[2, 2]
+        self.height, self.middle = self.high - self.low, (self.low + self.high) / 2
+
+
+def cell_of(rows):
+    """Of two opposite corners, or of a corner and three edges."""
+    return Parallelepiped(rows[0], numpy.diag(rows[1] - rows[0]) if len(rows) == 2 else rows[1:])
+
+
 class Deck:
     """What of a deck of ours is needed: nodes, elements, materials, conditions, steps."""
 
@@ -40,7 +54,7 @@ class Deck:
                 last = line[2:].strip()
                 found = re.fullmatch(r"Cell: (.*)", last)
                 if found:
-                    self.cell = numpy.array([float(v) for v in found[1].split()]).reshape(2, 3)
+                    self.cell = cell_of(numpy.array([float(v) for v in found[1].split()]).reshape(-1, 3))
                 found = re.fullmatch(r"Physics: (\w+)", last)
                 if found:
                     self.physics = found[1]
@@ -186,7 +200,7 @@ class Deck:
     def pieces(self):
         """Of all elements, some at a time: section, volumes, first and second moments of their heights about the middle
         of the cell, stiffness matrices in space (order xx yy zz xy xz yz)."""
-        middle = self.cell[:, 2].mean()
+        middle = self.cell.middle
         name_of = {e: name for name, _, _ in self.sections for e in self.element_sets[name]}
         for part, p, stiffness, _ in self.parts():
             p[:, :, 2] -= middle
@@ -195,9 +209,9 @@ class Deck:
 
 
 def moments_of_boxes(p):
-    """Volumes and the integrals of z and z^2 of bricks along the axes (n x 8 x 3 nodes)."""
+    """Volumes and the integrals of z and z^2 of parallelepipeds with level floors (n x 8 x 3 nodes)."""
     z = p[:, :, 2]
-    volume = numpy.prod(p[:, 6] - p[:, 0], axis=1)
+    volume = numpy.linalg.det(p[:, [1, 3, 4]] - p[:, :1])
     return volume, volume * z.mean(axis=1), volume * (z.mean(axis=1) ** 2 + (z[:, 6] - z[:, 0]) ** 2 / 12)
 
 

@@ -137,11 +137,11 @@ def bounds(deck, plate):
     Of a plate: the energies of the strains that are linear in z (those across the thickness as they cost least), and of
     the stresses that are linear in z and leave its faces free.
     """
-    sides = deck.cell[1] - deck.cell[0]
+    volume_of_cell, h = deck.cell.volume, deck.cell.height
     shares = {}
     strain, stress = numpy.zeros((3, 6, 6)), numpy.zeros((3, 6, 6))  # by power of z
     for name, volume, first, second, stiffness in deck.pieces():
-        shares[name] = shares.get(name, 0) + volume.sum() / numpy.prod(sides)
+        shares[name] = shares.get(name, 0) + volume.sum() / volume_of_cell
         compliance = numpy.linalg.inv(stiffness)
         for power, weight in enumerate((volume, first, second)):
             strain[power] += numpy.einsum("n,nij->ij", weight, stiffness)
@@ -150,8 +150,8 @@ def bounds(deck, plate):
         for power, weight in enumerate(weights):
             stress[power] += numpy.einsum("n,nij->ij", weight, compliance)
     if not plate:
-        return strain[0] / numpy.prod(sides), numpy.linalg.inv(stress[0] / numpy.prod(sides)), shares
-    area, h = sides[0] * sides[1], sides[2]
+        return strain[0] / volume_of_cell, numpy.linalg.inv(stress[0] / volume_of_cell), shares
+    area = volume_of_cell / h
     both = numpy.block([[strain[0], strain[1]], [strain[1], strain[2]]]) / area
     level, across = [0, 1, 3, 6, 7, 9], [2, 4, 5, 8, 10, 11]
     mixed = both[numpy.ix_(level, across)]
@@ -217,11 +217,10 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
         raise Failure(f"{path}: no unit cell with load cases (mesh it with --matrix --periodic)")
     if deck.cell is None:
         raise Failure(f"{path}: the deck does not say its cell")
-    sides = deck.cell[1] - deck.cell[0]
     matrix, thermal, facts = fluxes_of_drivers(deck, drivers, solver, ccx, folder)
     facts |= {
         "file": str(path),
-        "cell": sides.tolist(),
+        "cell": numpy.linalg.norm(deck.cell.edges, axis=1).tolist(),
         "nodes": len(deck.nodes),
         "elements": len(deck.elements),
         "asymmetry": abs(matrix - matrix.T).max() / abs(matrix).max(),
@@ -229,15 +228,15 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
     }
     matrix = (matrix + matrix.T) / 2
     if deck.physics:
-        return facts | conducting(deck, matrix / numpy.prod(sides))
+        return facts | conducting(deck, matrix / deck.cell.volume)
     plate = any(name.startswith("Curvature") for name in drivers)
-    measure = sides[0] * sides[1] if plate else numpy.prod(sides)
+    measure = deck.cell.volume / (deck.cell.height if plate else 1)
     return facts | elastic(deck, matrix / measure, thermal / measure, plate, with_bounds)
 
 
 def elastic(deck, matrix, thermal, plate, with_bounds):
     constants, expansion = (
-        engineering_plate(matrix, thermal, (deck.cell[1] - deck.cell[0])[2]) if plate else engineering_block(matrix, thermal)
+        engineering_plate(matrix, thermal, deck.cell.height) if plate else engineering_block(matrix, thermal)
     )
     voigt, reuss, shares = bounds(deck, plate)
     check_bounds(matrix, voigt, reuss, plate)

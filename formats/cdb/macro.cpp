@@ -12,9 +12,8 @@ void write_opening(TextBuffer& text, const fem::Mesh& mesh, const std::string& s
        << "! In the folder of both files, with nothing else loaded: /INPUT,'" << name << "','mac'\n"
        << "! By Selvage: mm, N, MPa.\n"
        << "FINISH\nCDREAD,DB,'" << name << "','cdb'\n";
-  text << "cell_x=" << mesh.cell->high.x() - mesh.cell->low.x()
-       << "\ncell_y=" << mesh.cell->high.y() - mesh.cell->low.y()
-       << "\ncell_z=" << mesh.cell->high.z() - mesh.cell->low.z()
+  const double height = mesh.cell->high.z() - mesh.cell->low.z();
+  text << "cell_area=" << mesh.cell->shape().volume() / height << "\ncell_z=" << height
        << "\nmiddle_z=" << (mesh.cell->high.z() + mesh.cell->low.z()) / 2
        << "\ncases=" << mesh.load_cases.size() << "\n*DIM,mean,ARRAY,cases,9\n";
 }
@@ -61,13 +60,13 @@ void write_printing(TextBuffer& text, bool is_plate) {
     text << "! Forces xx, yy, xy and moments xx, yy, xy, a length, of each load step: a column of the ABD "
             "matrix "
             "times its strain\n! or curvature.\n"
-            "*DO,k,1,cases\n  *DO,j,1,9\n    mean(k,j)=mean(k,j)/(cell_x*cell_y)\n"
+            "*DO,k,1,cases\n  *DO,j,1,9\n    mean(k,j)=mean(k,j)/cell_area\n"
             "  *ENDDO\n*ENDDO\n"
             "*VWRITE,mean(1,1),mean(1,2),mean(1,4),mean(1,7),mean(1,8),mean(1,9)\n(6E16.7)\n";
   else
     text << "! Stresses xx, yy, zz, xy, xz, yz of each load step: a column of the stiffness times its "
             "strain.\n"
-            "*DO,k,1,cases\n  *DO,j,1,6\n    mean(k,j)=mean(k,j)/(cell_x*cell_y*cell_z)\n"
+            "*DO,k,1,cases\n  *DO,j,1,6\n    mean(k,j)=mean(k,j)/(cell_area*cell_z)\n"
             "  *ENDDO\n*ENDDO\n"
             "*VWRITE,mean(1,1),mean(1,2),mean(1,3),mean(1,4),mean(1,5),mean(1,6)\n(6E16.7)\n";
 }

@@ -39,10 +39,15 @@ std::vector<std::size_t> dependent_nodes(const fem::Mesh& mesh) {
 void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh) {
   constexpr std::size_t per_row = 4;
   const auto corner = [&](const Vec3& p) { text << real(p.x()) << ' ' << real(p.y()) << ' ' << real(p.z()); };
-  text << "** Cell: ";
-  corner(mesh.cell->low);
+  text << "** Cell: ";  // opposite corners of a box; of an oblique one a corner and its three edges
+  const Parallelepiped cell = mesh.cell->shape();
+  corner(cell.axes.place(cell.box.min()));
   text << ' ';
-  corner(mesh.cell->high);
+  if (cell.axes.are_of_space()) corner(cell.box.max());
+  for (int axis = 0; axis < 3 && !cell.axes.are_of_space(); ++axis) {
+    corner(cell.edge(axis));
+    text << (axis < 2 ? " " : "");
+  }
   text << '\n';
   if (!mesh.equations.empty()) text << "*EQUATION\n";
   for (const fem::Equation& equation : mesh.equations) {

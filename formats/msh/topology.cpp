@@ -153,8 +153,7 @@ std::vector<std::size_t> images(const std::vector<std::size_t>& nodes, const fem
     const auto has_image = [&](std::size_t node) { return opposite[a][node] != fem::no_node; };
     if (!std::all_of(result.begin(), result.end(), has_image)) continue;
     for (std::size_t& node : result) node = opposite[a][node];
-    const auto axis = static_cast<Eigen::Index>(a);
-    shift[axis] += mesh.cell->high[axis] - mesh.cell->low[axis];
+    shift += mesh.cell->shape().edge(static_cast<int>(a));
   }
   return result == nodes ? std::vector<std::size_t>() : result;
 }

@@ -60,6 +60,7 @@ void read_piece(Parser& p, fabric::Fabric& fabric, std::string_view word);
 // use.cpp
 void read_use(Parser& p, fabric::Fabric& fabric, std::string_view word);
 void read_repeats_of_cell(Parser& p, fabric::Cell& cell);
+void read_vectors_of_cell(Parser& p, fabric::Cell& cell, const Spot& opened);
 void read_margin_of_cell(Parser& p, fabric::Cell& cell, std::string_view word);
 
 // reader.cpp

@@ -54,10 +54,11 @@ constexpr std::array lessons = {
            "edit YARN point K to X Y Z | weight K to X Y Z | length L point K along X Y Z",
            "Moves the K-th joint (from 1) of a yarn's centre line; edits apply in their order.",
            "edit warp_1 point 3 to 1 0.5 -0.2", "length"},
-    Lesson{"cell", "file", "cell X Y Z  X Y Z | repeat [NX x NY] ... end",
-           "The unit cell, between two opposite corners or of NX by NY repeats, for --cut, --matrix, "
-           "--periodic.",
-           "cell repeat 2 x 1", "length"},
+    Lesson{
+        "cell", "file", "cell X Y Z  X Y Z | repeat [NX x NY] | vectors A B [C] [at X Y Z] ... end",
+        "The unit cell, between two opposite corners, of NX by NY repeats, or along edges at any angle, for "
+        "--cut, --matrix, --periodic.",
+        "cell repeat 2 x 1", "length"},
 
     // --- thread
     Lesson{"tex", "thread yarn", "tex V", "Linear density, g/km; it sizes a circle with density and packing.",
@@ -304,8 +305,8 @@ constexpr std::array lessons = {
     Lesson{"matrix", "cell", "matrix MATERIAL", "What fills the cell where no yarn is.", "matrix epoxy"},
     Lesson{"periodic", "cell", "periodic x | y | z ...", "Axes whose opposite faces get the same mesh.",
            "periodic x y", "", "the axes along which the cloth repeats"},
-    Lesson{"margin", "cell", "margin M", "Of `cell repeat`: above and below the yarns.", "margin 0.05",
-           "length", "a tenth of the thinnest yarn's thickness"},
+    Lesson{"margin", "cell", "margin M", "Of a cell as high as its yarns: above and below them.",
+           "margin 0.05", "length", "a tenth of the thinnest yarn's thickness"},
 
     Lesson{"end", "every", "end", "Closes the block that is open.", "end"},
 };

@@ -248,6 +248,12 @@ void read_cell(Parser& p, fabric::Fabric& fabric, std::string_view word) {
     fabric.cell = std::move(cell);
     return;
   }
+  if (same_word(p.peek_word(), "vectors")) {
+    read_vectors_of_cell(p, cell, opened);
+    p.read_block(word, "", opened, table, cell);
+    fabric.cell = std::move(cell);
+    return;
+  }
   const auto one = p.point("a corner of the cell");
   const auto other = p.point("the opposite corner of the cell");
   if (other) {

@@ -112,12 +112,56 @@ void read_repeats_of_cell(Parser& p, fabric::Cell& cell) {
   cell.of_repeats = repeats;
 }
 
+// Behind the word `cell`: vectors A B [C] [at P].
+void read_vectors_of_cell(Parser& p, fabric::Cell& cell, const Spot& opened) {
+  p.expect("vectors");
+  fabric::CellVectors vectors;
+  const auto first = p.point("the first vector of the cell"),
+             second = p.point("the second vector of the cell");
+  if (!first || !second) return;
+  vectors.first = *first;
+  vectors.second = *second;
+  const double area = first->cross(*second).z();
+  if (first->z() != 0 || second->z() != 0)
+    return p.error(opened, "the first two vectors of a cell lie in the plane of the cloth: their z is 0");
+  if (std::abs(area) <= 1e-3 * first->norm() * second->norm())
+    return p.error(opened, "the first two vectors of this cell are parallel: it has no volume");
+  if (area < 0)
+    return p.error(
+        opened,
+        "these vectors are left-handed: seen from above the second one is to the left of the first; "
+        "exchange the two");
+  if (p.more() && !same_word(p.peek_word(), "at")) {
+    const auto third = p.point("the third vector of the cell");
+    if (!third) return;
+    if (third->x() != 0 || third->y() != 0 || !(third->z() > 0))
+      return p.error(opened,
+                     "the third vector of a cell points along z, `0 0 HEIGHT`: a cell whose sides lean over "
+                     "cannot be meshed");
+    vectors.height = third->z();
+  }
+  if (p.more() && p.expect("at")) {
+    const auto at = p.point("the corner of the cell");
+    if (!at) return;
+    vectors.at = *at;
+  }
+  if (!p.finish()) return;
+  cell.of_vectors = vectors;
+}
+
 void read_margin_of_cell(Parser& p, fabric::Cell& cell, std::string_view) {
   const Spot spot = p.statement();
   const auto margin = p.positive("the margin", Measure::length);
   if (!p.finish()) return;
-  if (!cell.of_repeats) return p.error(spot, "a margin goes with 'cell repeat': these corners say it all");
-  cell.of_repeats->margin = *margin;
+  if (cell.of_vectors && !cell.of_vectors->height)
+    cell.of_vectors->margin = *margin;
+  else if (cell.of_repeats)
+    cell.of_repeats->margin = *margin;
+  else
+    p.error(
+        spot,
+        "a margin goes with a cell that is as high as its yarns, 'cell repeat' or 'cell vectors' with two of "
+        "them: here corners say it all");
 }
 
 }  // namespace selvage::formats::txt

@@ -507,6 +507,12 @@ void write_cell(Lines& out, const fabric::Cell& cell) {
   if (cell.of_repeats) {
     out.line(0, "cell repeat").value(cell.of_repeats->counts[0]).word("x").value(cell.of_repeats->counts[1]);
     if (cell.of_repeats->margin) out.line(1, "margin").value(*cell.of_repeats->margin);
+  } else if (cell.of_vectors) {
+    const fabric::CellVectors& vectors = *cell.of_vectors;
+    out.line(0, "cell vectors").values(vectors.first).raw(" ").values(vectors.second);
+    if (vectors.height) out.raw(" ").values(Vec3(0, 0, *vectors.height));
+    if (vectors.at) out.word("at").values(*vectors.at);
+    if (vectors.margin) out.line(1, "margin").value(*vectors.margin);
   } else {
     out.line(0, "cell").values(cell.low).raw(" ").values(cell.high);
   }

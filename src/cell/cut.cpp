@@ -42,6 +42,11 @@ Vec3 edge_point(const Box3& box, int edge, double along) {
   return point;
 }
 
+Message in_space(Message message, const Parallelepiped& cell) {
+  if (message.at) message.at = cell.axes.place(*message.at);
+  return message;
+}
+
 namespace {
 
 double into_domain(double value, double first, double last) {
@@ -97,10 +102,11 @@ Result<Cut> cut(std::span<const yarn::Body> bodies, const Box3& box, double tole
   return result;
 }
 
-ArcCurve::ArcCurve(const yarn::Body& body, const Box3& box, const Arc& arc) : body_(&body), arc_(&arc) {
+ArcCurve::ArcCurve(const yarn::Body& body, const Parallelepiped& cell, const Arc& arc)
+    : body_(&body), arc_(&arc), cell_(cell) {
   if (arc.face < face_count) {
     axis_ = axis_of(arc.face);
-    plane_ = plane_of(box, arc.face);
+    plane_ = plane_of(cell.box, arc.face);
   }
   lengths_.push_back(0);
   points_.reserve(arc.parameters.size());
@@ -110,9 +116,8 @@ ArcCurve::ArcCurve(const yarn::Body& body, const Box3& box, const Arc& arc) : bo
 }
 
 Vec3 ArcCurve::position(const Vec2& parameters) const {
-  Vec3 point = cell::position(*body_, parameters);
-  if (axis_ >= 0) point[axis_] = plane_;
-  return point;
+  const Vec3 point = cell::position(*body_, parameters);
+  return axis_ >= 0 ? cell_.with(point, axis_, plane_) : point;
 }
 
 ArcCurve::Foot ArcCurve::nearest(const Vec3& point) const {
@@ -143,8 +148,8 @@ Vec2 ArcCurve::at(double along) const {
     Vec2 values(0, chord.dot(miss));
     slopes.row(1) << chord.dot(s.du), chord.dot(s.dv);
     if (arc_->along == Arc::Along::through) {
-      values[0] = s.position[axis_] - plane_;
-      slopes.row(0) << s.du[axis_], s.dv[axis_];
+      values[0] = cell_.axes.own(s.position)[axis_] - plane_;
+      slopes.row(0) << cell_.axes.own(s.du)[axis_], cell_.axes.own(s.dv)[axis_];
     } else {
       slopes.row(0) << 0, 1;
     }

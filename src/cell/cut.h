@@ -1,6 +1,6 @@
-// Yarns cut by the faces of a box, exactly: which parts of their surfaces lie inside, as regions of the
-// surface's parameters bounded by curves that lie in the faces. CAD faces are trimmed by these curves, and
-// meshes begin with points on them.
+// Yarns cut by the faces of a box, exactly (of an oblique cell: in its own coordinates, yarn/in_axes.h):
+// which parts of their surfaces lie inside, as regions of the surface's parameters bounded by curves that lie
+// in the faces. CAD faces are trimmed by these curves, and meshes begin with points on them.
 #pragma once
 
 #include <array>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/diagnostics.h"
+#include "core/parallelepiped.h"
 #include "core/vec.h"
 #include "yarn/body.h"
 
@@ -79,6 +80,9 @@ struct Cut {
   std::vector<Message> notes;
 };
 
+// A message whose place is in the cell's own coordinates, with that in space.
+Message in_space(Message message, const Parallelepiped& cell);
+
 // Where parameters lie on a surface that goes on periodically round u (and along v on a ring).
 Vec3 position(const yarn::Body& body, const Vec2& parameters);
 nurbs::SurfaceJet jet(const yarn::Body& body, const Vec2& parameters);
@@ -99,15 +103,15 @@ Result<Cut> cut(std::span<const yarn::Body> bodies, const Box3& box, double tole
 // An arc as a curve with a length: exact points between those that are kept.
 class ArcCurve {
  public:
-  // All outlive this.
-  ArcCurve(const yarn::Body& body, const Box3& box, const Arc& arc);
+  // Body and arc outlive this; body and lengths in space.
+  ArcCurve(const yarn::Body& body, const Parallelepiped& cell, const Arc& arc);
 
   // Of the polygon of its points, file units.
   [[nodiscard]] double length() const { return lengths_.back(); }
   // The point of the curve in the plane across the polygon at this length from its start (0..length()), on
   // the surface and in the face to rounding; the kept points at theirs.
   [[nodiscard]] Vec2 at(double along) const;
-  [[nodiscard]] Vec3 position(const Vec2& parameters) const;  // with the face's own coordinate to the bit
+  [[nodiscard]] Vec3 position(const Vec2& parameters) const;  // in the face: of a box to the bit
   [[nodiscard]] const std::vector<double>& lengths() const { return lengths_; }  // one a kept point
   [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }      // likewise
 
@@ -120,6 +124,7 @@ class ArcCurve {
  private:
   const yarn::Body* body_;
   const Arc* arc_;
+  Parallelepiped cell_;
   int axis_ = -1;  // of the face; -1: an end inside the box
   double plane_ = 0;
   std::vector<Vec3> points_;

@@ -116,9 +116,11 @@ Cell cell_inside(const Cell& cell, const Placement& placement) {
   Cell inside;
   inside.place = cell.place;
   Box3 box;
-  const Box3 corners(cell.low, cell.high);
-  for (int i = 0; i < 8; ++i)
-    box.extend(Vec3(back * (corners.corner(static_cast<Box3::CornerType>(i)) - placement.shift)));
+  const Parallelepiped shape = cell.shape();
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = shape.axes.place(shape.box.corner(static_cast<Box3::CornerType>(i)));
+    box.extend(Vec3(back * (corner - placement.shift)));
+  }
   inside.low = box.min();
   inside.high = box.max();
   for (int k = 0; k < 3; ++k) {

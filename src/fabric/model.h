@@ -13,6 +13,7 @@
 
 #include "cad/model.h"
 #include "core/diagnostics.h"
+#include "core/parallelepiped.h"
 #include "core/units.h"
 #include "core/vec.h"
 #include "nurbs/bezier_fit.h"
@@ -466,13 +467,26 @@ struct CellOfRepeats {
   std::optional<double> margin;  // beyond the yarns; none: a tenth of the thinnest one's thickness
 };
 
+// The edges of a cell that need be no rectangle, seen along z.
+struct CellVectors {
+  Vec3 first = Vec3::Zero(), second = Vec3::Zero();  // z: 0
+  std::optional<double> height;                      // along z; none: as high as its yarns
+  std::optional<Vec3> at;        // the corner from which they go; none: (0, 0, -height / 2)
+  std::optional<double> margin;  // as that of CellOfRepeats
+};
+
 struct Cell {
   TextPlace place;
-  std::optional<CellOfRepeats> of_repeats;  // says the corners, which settle_cell() finds
+  // What says the corners otherwise, which settle_cell() finds.
+  std::optional<CellOfRepeats> of_repeats;
+  std::optional<CellVectors> of_vectors;
+  // Its corners in the coordinates of its own axes, along its edges: those of space where it is a box.
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  ObliqueAxes axes;
   std::string matrix;              // a material; empty: none
   std::array<bool, 3> periodic{};  // along x, y, z, as its text says
   [[nodiscard]] bool names_axes() const { return periodic[0] || periodic[1] || periodic[2]; }
+  [[nodiscard]] Parallelepiped shape() const { return {Box3(low, high), axes}; }
 };
 
 using Item = std::variant<Yarn, Weave, Knit, Warpknit, Braid, Piece, Use>;

@@ -101,7 +101,7 @@ void check_lengths(const Fabric& fabric, double tolerance, Diagnostics& diagnost
   for (const Item& item : fabric.items)
     if (const auto* const yarn = std::get_if<Yarn>(&item)) check.look_at(*yarn);
   if (fabric.cell)
-    for (const Vec3& corner : {fabric.cell->low, fabric.cell->high})
+    for (const Vec3& corner : {fabric.cell->shape().bounds().min(), fabric.cell->shape().bounds().max()})
       if (!check.is_good(corner, fabric.cell->place, {})) break;
   if (diagnostics.error_count() > errors) return;
   const std::optional<double> smallest = smallest_section(fabric);

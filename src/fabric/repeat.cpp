@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "core/box_tree.h"
@@ -147,6 +148,14 @@ class Lines {
     return true;
   }
 
+  // The same of any translation within a region.
+  [[nodiscard]] bool repeats_after(const Vec3& shift, const Box3& region, double tolerance) const {
+    for (const std::vector<Vec3>& line : lines_)
+      for (const Vec3& p : line)
+        if (region.contains(p) && region.contains(p + shift) && distance(p + shift) > tolerance) return false;
+    return true;
+  }
+
   // Shifts by which a point of a line comes to one: those of a point of the line that goes most across the
   // axis, for there they are fewest.
   struct Candidate {
@@ -269,6 +278,27 @@ bool runs_through(std::span<const yarn::Body> bodies, const Box3& box, int axis,
   const std::vector<Crossing> all = crossings_in(bodies, box, axis, high);
   return std::any_of(all.begin(), all.end(),
                      [&](const Crossing& crossing) { return is_in_face(crossing.at, box, axis); });
+}
+
+std::array<Vec3, 2> oblique_repeat(std::span<const yarn::Body> bodies, const Box3& region,
+                                   const std::array<double, 2>& along_x_and_y, double tolerance) {
+  constexpr int most_parts = 16;
+  const Lines lines(bodies, tolerance);
+  const Vec3 x(along_x_and_y[0], 0, 0), y(0, along_x_and_y[1], 0);
+  std::vector<Vec3> found = {x, y};
+  for (int parts = 2; parts <= most_parts; ++parts)
+    for (int i = 0; i < parts; ++i)
+      for (int j = 0; j < parts; ++j) {
+        const Vec3 shift = x * i / parts + y * j / parts;
+        if (std::gcd(std::gcd(i, j), parts) == 1 && lines.repeats_after(shift, region, tolerance))
+          for (const Vec3& whole : {Vec3(0, 0, 0), x, y, Vec3(x + y)}) found.push_back(shift - whole);
+      }
+  const auto length = [](const Vec3& v) { return v.norm(); };
+  std::ranges::stable_sort(found, {}, length);
+  const Vec3 first = found.front();
+  const auto second = std::ranges::find_if(
+      found, [&](const Vec3& v) { return std::abs(first.cross(v).z()) > 1e-6 * first.norm() * v.norm(); });
+  return first.cross(*second).z() > 0 ? std::array{first, *second} : std::array{first, Vec3(-*second)};
 }
 
 std::optional<double> repeat_of_lines(std::span<const yarn::Body> bodies, int axis, double tolerance) {

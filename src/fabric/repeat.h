@@ -64,4 +64,11 @@ bool runs_through(std::span<const yarn::Body> bodies, const Box3& box, int axis,
 // they fill.
 std::optional<double> repeat_of_lines(std::span<const yarn::Body> bodies, int axis, double tolerance);
 
+// Two translations in the plane of the cloth that take the centre lines to centre lines within a region that
+// is larger than a repeat, and of which all others that do are sums: the shortest ones, right-handed seen
+// along z. Looked for among the sixteenths and larger parts of the repeats along x and y, and these
+// themselves.
+std::array<Vec3, 2> oblique_repeat(std::span<const yarn::Body> bodies, const Box3& region,
+                                   const std::array<double, 2>& along_x_and_y, double tolerance);
+
 }  // namespace selvage::fabric

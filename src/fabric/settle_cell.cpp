@@ -9,6 +9,7 @@
 
 #include "core/decimal_grid.h"
 #include "core/parallel.h"
+#include "fabric/repeat.h"
 #include "nurbs/divided.h"
 #include "nurbs/samples.h"
 
@@ -215,9 +216,86 @@ class Settling {
   Diagnostics& diagnostics_;
 };
 
+// The cell of these edges that reaches from one height to another.
+void place_by_vectors(Cell& cell, double low, double high) {
+  const CellVectors& vectors = *cell.of_vectors;
+  cell.axes = ObliqueAxes({vectors.first, vectors.second, Vec3::UnitZ()});
+  Vec3 corner = vectors.at.value_or(Vec3::Zero());
+  corner.z() = low;
+  cell.low = cell.axes.own(corner);
+  cell.high = cell.low + Vec3(vectors.first.norm(), vectors.second.norm(), high - low);
+}
+
+// As high as its yarns.
+void find_height(Fabric& fabric, const BuildOptions& options, int threads, Diagnostics& diagnostics) {
+  std::optional<Repeat> repeat;
+  place_by_vectors(*fabric.cell, -1, 1);
+  const std::optional<std::vector<yarn::Body>> bodies =
+      bodies_of(fabric, options, threads, repeat, diagnostics);
+  if (!bodies) return;  // it was told
+  const Parallelepiped cell = fabric.cell->shape();
+  Box3 yarns;
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (const yarn::Body& body : *bodies) {
+    thinnest = std::min(thinnest, yarn::narrowest_section(body));
+    for (const Vec3& p : dense_samples(body.surface).points) {
+      Vec3 beside = cell.axes.own(p);
+      beside.z() = 0;
+      if (cell.box.contains(beside)) yarns.extend(p);
+    }
+  }
+  if (yarns.isEmpty()) {
+    diagnostics.add(error(Kind::geometry,
+                          "no yarn enters this cell, which is to be as high as its yarns: `at X Y Z` "
+                          "behind the vectors puts it elsewhere")
+                        .placed(fabric.cell->place, fabric.file));
+    return;
+  }
+  const DecimalGrid digits(rounding * thinnest);
+  const double margin = fabric.cell->of_vectors->margin.value_or(usual_margin * thinnest);
+  place_by_vectors(*fabric.cell, digits.rounded(yarns.min().z() - margin - 0.5 * digits.step()),
+                   digits.rounded(yarns.max().z() + margin + 0.5 * digits.step()));
+  diagnostics.add(note(Kind::geometry, fmt::format("the cell reaches from z = {:.6g} to z = {:.6g}",
+                                                   fabric.cell->low.z(), fabric.cell->high.z()))
+                      .placed(fabric.cell->place, fabric.file));
+}
+
+void settle_vectors(Fabric& fabric, const BuildOptions& options, int threads, Diagnostics& diagnostics) {
+  Cell& cell = *fabric.cell;
+  if (!cell.names_axes()) cell.periodic = {true, true, false};
+  if (!cell.of_vectors->height) return find_height(fabric, options, threads, diagnostics);
+  const double height = *cell.of_vectors->height,
+               low = cell.of_vectors->at ? cell.of_vectors->at->z() : -height / 2;
+  place_by_vectors(cell, low, low + height);
+}
+
 }  // namespace
 
+std::optional<std::array<Vec3, 2>> shortest_vectors(const Fabric& fabric, const BuildOptions& options,
+                                                    int threads) {
+  constexpr double near = 0.02;  // of the thinnest yarn: how far copies of yarns by hand may be off
+  Diagnostics unsaid;
+  const std::optional<YarnBuilder> builder = YarnBuilder::create(fabric, options, unsaid);
+  std::optional<Repeat> repeat;
+  if (builder) repeat = builder->repeat();
+  if (!repeat || !((*repeat)[0].value_or(0.0) > 0.0) || !((*repeat)[1].value_or(0.0) > 0.0))
+    return std::nullopt;
+  const double x = *(*repeat)[0], y = *(*repeat)[1];
+  Fabric wide = fabric;
+  wide.cell.emplace();
+  wide.cell->low = {-x, -y, -1};
+  wide.cell->high = {2 * x, 2 * y, 1};
+  wide.cell->periodic = {true, true, false};
+  const std::optional<std::vector<yarn::Body>> bodies = bodies_of(wide, options, threads, repeat, unsaid);
+  if (!bodies) return std::nullopt;
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (const yarn::Body& body : *bodies) thinnest = std::min(thinnest, yarn::narrowest_section(body));
+  constexpr double any = std::numeric_limits<double>::infinity();
+  return oblique_repeat(*bodies, Box3(Vec3(-x, -y, -any), Vec3(2 * x, 2 * y, any)), {x, y}, near * thinnest);
+}
+
 void settle_cell(Fabric& fabric, const BuildOptions& options, int threads, Diagnostics& diagnostics) {
+  if (fabric.cell && fabric.cell->of_vectors) settle_vectors(fabric, options, threads, diagnostics);
   if (!fabric.cell || !fabric.cell->of_repeats) return;
   if (const Status settled = Settling(fabric, options, threads, diagnostics).settle(); !settled)
     diagnostics.add(settled.error().placed(fabric.cell->place, fabric.file));

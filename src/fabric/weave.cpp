@@ -80,15 +80,17 @@ WeaveConstruction::WeaveConstruction(const Fabric& fabric, const Weave& weave, c
     clearance_ +=
         options.gap > 0.0 ? options.gap : clearance_share * std::min(warp_.thickest, weft_.thickest);
   const Cell cell = fabric.cell.value_or(Cell{});
-  along_x_ = reach_over(weft_, has_cell, cell.low.x(), cell.high.x());
-  along_y_ = reach_over(warp_, has_cell, cell.low.y(), cell.high.y());
+  const Box3 box = cell.shape().bounds();
+  along_x_ = reach_over(weft_, has_cell, box.min().x(), box.max().x());
+  along_y_ = reach_over(warp_, has_cell, box.min().y(), box.max().y());
 }
 
 void WeaveConstruction::add_block(Block::Kind kind, int layer, std::size_t set, const Row& row) {
   const bool is_weft = kind == Block::Kind::weft;
   const Cell cell = fabric_.cell.value_or(Cell{});
   const int axis = is_weft ? 0 : 1;
-  const auto [begin, end] = numbers_of(row, cell.periodic[is_weft ? 0 : 1], cell.low[axis], cell.high[axis]);
+  const Box3 box = cell.shape().bounds();
+  const auto [begin, end] = numbers_of(row, cell.periodic[is_weft ? 0 : 1], box.min()[axis], box.max()[axis]);
   const auto count = static_cast<std::size_t>(end - begin);
   Block block{kind, layer, set, 0, count, begin, static_cast<std::size_t>(row.count)};
   if (!blocks_.empty()) block.first = blocks_.back().first + blocks_.back().count;

@@ -24,9 +24,13 @@ Status check_options(const MeshOptions& options) {
   return {};
 }
 
-Block::Block(std::span<const yarn::Body> own_bodies, Unit own_units, const Box3& own_box,
+Block::Block(std::span<const yarn::Body> own_bodies, Unit own_units, const Parallelepiped& own_cell,
              const std::array<bool, 3>& own_periodic, Skin own_skin)
-    : bodies(own_bodies), units(own_units), box(own_box), periodic(own_periodic), skin(std::move(own_skin)) {
+    : bodies(own_bodies),
+      units(own_units),
+      cell(own_cell),
+      periodic(own_periodic),
+      skin(std::move(own_skin)) {
   for (const Sides& sides : skin.surface.sides)
     for (const std::uint32_t body : {sides.behind, sides.front})
       if (body != Sides::outside) of_regions.push_back(body);

@@ -37,12 +37,12 @@ Status check_options(const MeshOptions& options);
 
 struct Block {
   // The sides of the skin's triangles, which are bodies, become numbers of regions.
-  Block(std::span<const yarn::Body> bodies, Unit units, const Box3& box, const std::array<bool, 3>& periodic,
-        Skin skin);
+  Block(std::span<const yarn::Body> bodies, Unit units, const Parallelepiped& cell,
+        const std::array<bool, 3>& periodic, Skin skin);
 
   std::span<const yarn::Body> bodies;  // outlive this
   Unit units;                          // of files
-  Box3 box;                            // file units: what the bodies were cut by
+  Parallelepiped cell;                 // file units: what the bodies were cut by
   std::array<bool, 3> periodic{};
   Skin skin;
   // Of each region its body: those that are there, in their order; CellTriangles::matrix, the last.

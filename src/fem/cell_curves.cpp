@@ -46,9 +46,18 @@ class Divider {
     return face < cell::face_count && cell::is_high(face) &&
            shape_.periodic[static_cast<std::size_t>(cell::axis_of(face))];
   }
-  [[nodiscard]] Vec3 moved(Vec3 point, int axis) const {  // from the low face to the high one
-    point[axis] = shape_.box.max()[axis];
-    return point;
+  // From the low face to the high one, and back.
+  [[nodiscard]] Vec3 moved(const Vec3& point, int axis) const {
+    return shape_.cell.with(point, axis, shape_.cell.box.max()[axis]);
+  }
+  [[nodiscard]] Vec3 moved_back(const Vec3& point, int axis) const {
+    return shape_.cell.with(point, axis, shape_.cell.box.min()[axis]);
+  }
+  [[nodiscard]] Vec3 on_edge(int edge, double along) const {
+    return shape_.cell.axes.place(cell::edge_point(shape_.cell.box, edge, along));
+  }
+  [[nodiscard]] double along_edge(std::uint32_t node, int axis) const {
+    return shape_.cell.axes.own(nodes_.points[node])[axis];
   }
   // Of an edge of the box the parts, numbers of the division's edges, in the order along it.
   [[nodiscard]] std::size_t first_part(int edge) const { return parts_[static_cast<std::size_t>(edge)]; }
@@ -96,7 +105,7 @@ void Divider::collect_arcs() {
         const yarn::Body& body = shape_.bodies[piece.body];
         arcs_.push_back({edges[k], piece.body,
                          Vec2(border.turns_u, border.turns_v).cwiseProduct(cell::periods(body)),
-                         cell::ArcCurve(body, shape_.box, arc), curves_.chains[k]});
+                         cell::ArcCurve(body, shape_.cell, arc), curves_.chains[k]});
       }
   for (std::size_t s = arcs_.size(); s < edges.size(); ++s)
     parts_[static_cast<std::size_t>(edges[s].box_edge) + 1] = s + 1;
@@ -130,10 +139,8 @@ Status Divider::find_copies() {
       double farthest = 0;
       Vec3 farthest_at = worst_at;
       for (int i = 0; i <= 8; ++i) {
-        Vec3 point = high.curve.position(high.curve.at(high.curve.length() * i / 8));
-        const Vec3 here = point;
-        point[a] = shape_.box.min()[a];
-        const double distance = low.curve.nearest(point).distance;
+        const Vec3 here = high.curve.position(high.curve.at(high.curve.length() * i / 8));
+        const double distance = low.curve.nearest(moved_back(here, a)).distance;
         if (distance > farthest) {
           farthest = distance;
           farthest_at = here;
@@ -162,7 +169,8 @@ Status Divider::find_copies() {
 // Those on high faces of periodic axes are copies of the ones on the low edge.
 Status Divider::make_corners() {
   const cell::Division& division = shape_.division;
-  for (std::size_t c = 0; c < 8; ++c) corner_nodes_.push_back(nodes_.add(division.corners[c].at));
+  for (std::size_t c = 0; c < 8; ++c)
+    corner_nodes_.push_back(nodes_.add(shape_.cell.axes.place(division.corners[c].at)));
   corner_nodes_.resize(division.corners.size());
   for (int edge = 0; edge < cell::edge_count; ++edge) {
     const int low = original(edge), a = edge / 4;
@@ -175,8 +183,8 @@ Status Divider::make_corners() {
         return error(Kind::geometry,
                      "yarns cross edges of the cell that face each other at different places: the cell is no "
                      "whole repeat there, or the yarns do not repeat")
-            .at_point(at);
-      if (corner >= 8) corner_nodes_[corner] = nodes_.add(cell::edge_point(shape_.box, edge, along));
+            .at_point(shape_.cell.axes.place(at));
+      if (corner >= 8) corner_nodes_[corner] = nodes_.add(on_edge(edge, along));
     }
   }
   return {};
@@ -193,20 +201,18 @@ void Divider::make_segments() {
       if ((low != edge) != copies) continue;
       const std::size_t k = s - first_part(edge);
       const std::uint32_t from = corner_nodes_[part.from], to = corner_nodes_[part.to];
-      const double start = nodes_.points[from][a];
+      const double start = along_edge(from, a);
       std::vector<double> places;
       if (copies) {
-        for (const std::uint32_t node : chain(first_part(low) + k)) places.push_back(nodes_.points[node][a]);
+        for (const std::uint32_t node : chain(first_part(low) + k)) places.push_back(along_edge(node, a));
       } else {
-        const auto wanted = [&](double along) {
-          return field_.at(cell::edge_point(shape_.box, edge, start + along));
-        };
-        places = divided_line(nodes_.points[to][a] - start, wanted, 1);
+        const auto wanted = [&](double along) { return field_.at(on_edge(edge, start + along)); };
+        places = divided_line(along_edge(to, a) - start, wanted, 1);
         for (double& place : places) place += start;
       }
       chain(s).push_back(from);
       for (std::size_t i = 1; i + 1 < places.size(); ++i)
-        chain(s).push_back(nodes_.add(cell::edge_point(shape_.box, edge, places[i])));
+        chain(s).push_back(nodes_.add(on_edge(edge, places[i])));
       chain(s).push_back(to);
       // Which nodes are opposite each other.
       for (int bit = 0; bit < 2; ++bit)

@@ -21,7 +21,7 @@ constexpr std::size_t no_body = static_cast<std::size_t>(-1);
 // The cell as it is cut and divided; everything outlives what is made of it.
 struct CellShape {
   std::span<const yarn::Body> bodies;
-  Box3 box;  // file units
+  Parallelepiped cell;  // file units; cut and division are in its own coordinates
   std::array<bool, 3> periodic{};
   const cell::Cut& cut;
   const cell::Division& division;

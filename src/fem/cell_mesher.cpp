@@ -54,7 +54,7 @@ class CellMesher {
   double extent_ = 0, tolerance_ = 0;
   MaterialChoice materials_;
   std::vector<double> sizes_;  // of each body
-  Box3 box_;
+  Parallelepiped cell_;
   std::optional<Block> block_;
   TetMesh tets_;
   AngleTarget angles_;
@@ -83,10 +83,11 @@ Status CellMesher::prepare() {
   for (const double size : options_.sizes)
     if (!(size > 0) || !std::isfinite(size))
       return error(Kind::usage, "the mesh size must be a positive number");
-  box_ = Box3(fabric_.cell->low, fabric_.cell->high);
+  cell_ = fabric_.cell->shape();
   extent_ = std::numeric_limits<double>::infinity();
   for (const yarn::Body& body : bodies_) {
-    if (yarn::bounds(body).intersects(box_)) extent_ = std::min(extent_, yarn::narrowest_section(body));
+    if (yarn::bounds(body).intersects(cell_.bounds()))
+      extent_ = std::min(extent_, yarn::narrowest_section(body));
   }
   if (!std::isfinite(extent_)) return located(error(Kind::geometry, "no yarn enters the cell"));
   sizes_ = options_.sizes;
@@ -108,15 +109,15 @@ Status CellMesher::make_surfaces() {
   options.threads = options_.threads;
   options.progress = [&, done = std::size_t{0}](const char* name) mutable { step(name, done++); };
   Result<Skin> skin =
-      make_skin(bodies_, box_, cell_size_rules(bodies_, sizes_, options_.coarsest, extent_), options);
+      make_skin(bodies_, cell_, cell_size_rules(bodies_, sizes_, options_.coarsest, extent_), options);
   if (!skin) return skin.error().placed(fabric_.cell->place, fabric_.file);
   for (Message& note : skin->notes) diagnostics_.add(located(note));
   if (options_.order == 1)
     fem::keep_volumes(skin->nodes.points, {.facets = facets_of(bodies_, *skin, options_.threads),
                                            .volumes = skin->volumes,
                                            .leaders = skin->leaders,
-                                           .box = box_});
-  block_.emplace(bodies_, fabric_.units, box_, options_.periodic, std::move(*skin));
+                                           .cell = cell_});
+  block_.emplace(bodies_, fabric_.units, cell_, options_.periodic, std::move(*skin));
   return {};
 }
 
@@ -195,7 +196,7 @@ Status CellMesher::check_joining(Mesh& mesh) const {
 Status CellMesher::finish(Mesh& mesh) {
   const double scale = millimetres_per(fabric_.units), cube = scale * scale * scale;
   const std::vector<double>& volumes = block_->skin.volumes;
-  double rest = box_.volume();
+  double rest = cell_.volume();
   for (const double volume : volumes) rest -= volume;
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
     const std::uint32_t body = block_->of_regions[r];
@@ -212,8 +213,8 @@ Status CellMesher::finish(Mesh& mesh) {
 
   step("finishing", 4);
   for (Message& note : complete(mesh, *block_, options_.order)) diagnostics_.add(located(note));
-  const Box3 box_mm(box_.min() * scale, box_.max() * scale);
-  if (Status complete = complete_cell(mesh, box_mm, options_.periodic); !complete)
+  const Parallelepiped cell_mm(Box3(cell_.box.min() * scale, cell_.box.max() * scale), cell_.axes);
+  if (Status complete = complete_cell(mesh, cell_mm, options_.periodic); !complete)
     return located(complete.error());
   if (Status joined = check_joining(mesh); !joined) return joined;
   measure(mesh);

@@ -13,17 +13,17 @@ namespace {
 
 constexpr double edges_per_extent = 4;  // to which the turn of a surface along an edge is meant
 
-double volume_of(const Box3& box) {
-  return box.isEmpty() ? 0.0 : box.volume();
+double volume_of(const Parallelepiped& cell) {
+  return cell.box.isEmpty() ? 0.0 : cell.volume();
 }
 
-// The yarn's volume in the box, by how much of its centre line is there.
-double volume_inside(const yarn::Body& body, const Box3& box) {
+// The yarn's volume in the cell, by how much of its centre line is there.
+double volume_inside(const yarn::Body& body, const Parallelepiped& cell) {
   constexpr int samples = 500;
   const double first = body.axis.first_parameter(), last = body.axis.last_parameter();
   int inside = 0;
   for (int k = 0; k < samples; ++k)
-    inside += box.contains(nurbs::evaluate(body.axis, first + (last - first) * (k + 0.5) / samples)) ? 1 : 0;
+    inside += cell.contains(nurbs::evaluate(body.axis, first + (last - first) * (k + 0.5) / samples)) ? 1 : 0;
   return body.volume * inside / samples;
 }
 
@@ -51,8 +51,8 @@ SizeRules cell_size_rules(std::span<const yarn::Body> bodies, std::span<const do
   return rules;
 }
 
-double estimate_tetrahedra(std::span<const yarn::Body> bodies, const Box3& box, std::span<const double> sizes,
-                           double coarsest, bool matrix, int threads) {
+double estimate_tetrahedra(std::span<const yarn::Body> bodies, const Parallelepiped& cell,
+                           std::span<const double> sizes, double coarsest, bool matrix, int threads) {
   // Of the cube of the edge length, a tetrahedron on average: more than where all edges are as long (0.083
   // where yarns are far apart), less than what the one layer of them in a narrow gap has.
   constexpr double mean_share = 0.09;
@@ -61,8 +61,9 @@ double estimate_tetrahedra(std::span<const yarn::Body> bodies, const Box3& box, 
   for (const yarn::Body& body : bodies) extent = std::min(extent, yarn::narrowest_section(body));
   SizeRules rules = cell_size_rules(bodies, sizes, coarsest, extent);
   rules.raster = raster_step(bodies);
-  const SizeField field = size_field(bodies, box, rules, threads);
-  // Places that fill the box evenly: multiples of the powers of the root of r^4 = r + 1 (Roberts's sequence).
+  const SizeField field = size_field(bodies, cell, rules, threads);
+  // Places that fill the cell evenly: multiples of the powers of the root of r^4 = r + 1 (Roberts's
+  // sequence).
   constexpr double root = 1.2207440846057596;
   const std::array<double, 3> steps = {1 / root, 1 / (root * root), 1 / (root * root * root)};
   double sum = 0;
@@ -70,18 +71,18 @@ double estimate_tetrahedra(std::span<const yarn::Body> bodies, const Box3& box, 
     Vec3 place;
     for (int axis = 0; axis < 3; ++axis) {
       const double share = std::fmod(0.5 + k * steps[static_cast<std::size_t>(axis)], 1.0);
-      place[axis] = box.min()[axis] + share * box.sizes()[axis];
+      place[axis] = cell.box.min()[axis] + share * cell.box.sizes()[axis];
     }
-    const double edge = field.at(place);
+    const double edge = field.at(cell.axes.place(place));
     sum += 1 / (edge * edge * edge);
   }
   double share = 1;
   if (!matrix) {
     double yarns = 0;
-    for (const yarn::Body& body : bodies) yarns += std::max(volume_inside(body, box), 1e-3 * body.volume);
-    share = std::min(1.0, yarns / volume_of(box));
+    for (const yarn::Body& body : bodies) yarns += std::max(volume_inside(body, cell), 1e-3 * body.volume);
+    share = std::min(1.0, yarns / volume_of(cell));
   }
-  return share * volume_of(box) * sum / samples / mean_share;
+  return share * volume_of(cell) * sum / samples / mean_share;
 }
 
 }  // namespace selvage::fem

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "core/vec.h"
+#include "core/parallelepiped.h"
 #include "fem/size_field.h"
 #include "yarn/body.h"
 
@@ -21,7 +21,7 @@ inline constexpr double least_edge_share = 0.01;
 // About how many tetrahedra mesh_cell() makes of these sizes: the density of the size field, summed over
 // places all over the box. Its effort is bounded, however small the sizes are. `matrix`: with it; else the
 // yarns alone. The same for any number of threads.
-double estimate_tetrahedra(std::span<const yarn::Body> bodies, const Box3& box, std::span<const double> sizes,
-                           double coarsest, bool matrix, int threads);
+double estimate_tetrahedra(std::span<const yarn::Body> bodies, const Parallelepiped& cell,
+                           std::span<const double> sizes, double coarsest, bool matrix, int threads);
 
 }  // namespace selvage::fem

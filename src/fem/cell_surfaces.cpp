@@ -69,25 +69,37 @@ class CapSupport final : public Support {
   double step_;
 };
 
-// A face of the box as a plane, seen from outside.
+// A face of the cell as a plane, seen from outside. Its chart is without distortion: the first of the two
+// axes in it, and what is at a right angle to that.
 class FaceSupport final : public Support {
  public:
-  FaceSupport(const Box3& box, int face) : box_(box), face_(face) {}
+  FaceSupport(const Parallelepiped& cell, int face) : cell_(cell), face_(face) {
+    const auto [first, second] = cell::axes_in(face);
+    const Vec3 x = cell.axes.unit(first), y = cell.axes.unit(second);
+    cosine_ = x.dot(y);
+    sine_ = x.cross(y).norm();
+  }
 
-  [[nodiscard]] Vec3 point(const Vec2& q) const override { return cell::in_face(box_, face_, q); }
+  [[nodiscard]] Vec2 chart(const Vec3& point) const {
+    const Vec2 own = cell::flat(cell_.axes.own(point), face_);
+    return {own.x() + cosine_ * own.y(), sine_ * own.y()};
+  }
+  [[nodiscard]] Vec3 point(const Vec2& q) const override {
+    const double y = q.y() / sine_;
+    return cell_.axes.place(cell::in_face(cell_.box, face_, {q.x() - cosine_ * y, y}));
+  }
   [[nodiscard]] Vec3 normal(const Vec2& /*q*/) const override {
-    Vec3 n = Vec3::Zero();
-    n[cell::axis_of(face_)] = cell::is_high(face_) ? 1 : -1;
-    return n;
+    return (cell::is_high(face_) ? 1 : -1) * cell_.axes.normal(cell::axis_of(face_));
   }
   [[nodiscard]] Place nearest(const Vec2& /*start*/, const Vec3& target) const override {
-    const Vec2 q = cell::flat(target, face_);
+    const Vec2 q = chart(target);
     return {q, point(q)};
   }
 
  private:
-  const Box3& box_;
+  const Parallelepiped& cell_;
   int face_;
+  double cosine_ = 0, sine_ = 1;
 };
 
 std::uint32_t body_of(const cell::FaceRegion& region) {
@@ -232,11 +244,12 @@ Status Surfaces::add_face(int face) {
   const std::map<Edge, std::size_t> edges = edges_of(shape_, curves_, face);
   if (edges.empty()) return {};
   PlanarRegion region;
+  const FaceSupport plane(shape_.cell, face);
   std::map<std::uint32_t, std::uint32_t> places;
   const auto place_of = [&](std::uint32_t node) {
     const auto [at, is_new] = places.emplace(node, static_cast<std::uint32_t>(places.size()));
     const Vec3& point = nodes_.points[node];
-    if (is_new) region.add({point, cell::flat(point, face), node});
+    if (is_new) region.add({point, plane.chart(point), node});
     return at->second;
   };
   for (const auto& [edge, left] : edges) {
@@ -246,7 +259,7 @@ Status Surfaces::add_face(int face) {
     const std::uint32_t from = place_of(edge.first), to = place_of(edge.second);
     region.segments.push_back({from, to, static_cast<std::int32_t>(left), right});
   }
-  Result<TriangleMesh> mesh = fill(region, FaceSupport(shape_.box, face), field_);
+  Result<TriangleMesh> mesh = fill(region, plane, field_);
   if (!mesh) {
     mesh.error().text += " in the " + cell::name_of_face(face) + " face of the cell";
     return mesh.error();
@@ -268,8 +281,7 @@ Status Surfaces::add_opposite(int face, const std::map<Edge, std::size_t>& edges
   const auto& across = curves_.opposite[static_cast<std::size_t>(a)];
   std::vector<std::uint32_t> opposite;
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    Vec3 moved = mesh.points[k];
-    moved[a] = shape_.box.max()[a];
+    const Vec3 moved = shape_.cell.with(mesh.points[k], a, shape_.cell.box.max()[a]);
     opposite.push_back(k < mesh.known.size() ? across.at(numbers[k]) : nodes_.add(moved));
   }
   // What is behind the high face, region by region: by an edge of each.

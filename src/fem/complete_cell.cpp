@@ -26,14 +26,15 @@ constexpr std::size_t face_number(int axis, bool high) {
 // On which side of each axis a node is: -1 low, 1 high, 0 between.
 using Sides = std::array<int, 3>;
 
-Result<std::vector<Sides>> find_sides(const Mesh& mesh, const Box3& box) {
+Result<std::vector<Sides>> find_sides(const Mesh& mesh, const Parallelepiped& cell) {
+  const Box3& box = cell.box;
   const double size = box.sizes().maxCoeff();
   std::vector<Sides> sides(mesh.nodes.size());
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
     for (int axis = 0; axis < 3; ++axis) {
-      const double x = mesh.nodes[n][axis], low = box.min()[axis], high = box.max()[axis];
       int& side = sides[n][static_cast<std::size_t>(axis)];
-      side = x == low ? -1 : x == high ? 1 : 0;
+      side = cell.side_of(mesh.nodes[n], axis);
+      const double x = cell.axes.own(mesh.nodes[n])[axis], low = box.min()[axis], high = box.max()[axis];
       const double off = std::min(std::abs(x - low), std::abs(x - high));
       if (side == 0 && (off < beside * size || x < low || x > high))
         return error(Kind::internal,
@@ -68,10 +69,20 @@ void sort_into_sets(UnitCell& cell, const std::vector<Sides>& sides) {
   }
 }
 
+// Of each node in the cell's own coordinates.
+using Places = std::vector<Vec3>;
+
+Places places_of(const Mesh& mesh, const ObliqueAxes& axes) {
+  Places places;
+  places.reserve(mesh.nodes.size());
+  for (const Vec3& node : mesh.nodes) places.push_back(axes.own(node));
+  return places;
+}
+
 // Nodes of a face or an edge by their coordinates along it.
-void sort_by_place(const Mesh& mesh, std::vector<std::size_t>& nodes, int first_axis, int second_axis) {
+void sort_by_place(const Places& places, std::vector<std::size_t>& nodes, int first_axis, int second_axis) {
   std::sort(nodes.begin(), nodes.end(), [&](std::size_t a, std::size_t b) {
-    const Vec3 &p = mesh.nodes[a], &q = mesh.nodes[b];
+    const Vec3 &p = places[a], &q = places[b];
     return std::make_pair(p[first_axis], p[second_axis]) < std::make_pair(q[first_axis], q[second_axis]);
   });
 }
@@ -86,11 +97,11 @@ Message no_opposite(const Mesh& mesh, std::size_t node, int axis) {
 
 // Brings `high` into the order of `low`: the k-th opposite the k-th over `axis`. Both are sorted by place;
 // where rounding made their orders differ, each looks for its own.
-Status pair_up(const Mesh& mesh, const std::vector<std::size_t>& low, std::vector<std::size_t>& high,
-               int axis, double tolerance) {
+Status pair_up(const Mesh& mesh, const Places& places, const std::vector<std::size_t>& low,
+               std::vector<std::size_t>& high, int axis, double tolerance) {
   const int first = (axis + 1) % 3, second = (axis + 2) % 3;
   auto matches = [&](std::size_t a, std::size_t b) {
-    const Vec3 &p = mesh.nodes[a], &q = mesh.nodes[b];
+    const Vec3 &p = places[a], &q = places[b];
     return std::abs(p[first] - q[first]) <= tolerance && std::abs(p[second] - q[second]) <= tolerance;
   };
   if (low.size() != high.size())
@@ -100,14 +111,14 @@ Status pair_up(const Mesh& mesh, const std::vector<std::size_t>& low, std::vecto
   std::vector<std::size_t> ordered;
   std::vector<bool> taken(high.size(), false);
   for (std::size_t k = 0; k < low.size(); ++k) {
-    const double wanted = mesh.nodes[low[k]][first];
+    const double wanted = places[low[k]][first];
     std::size_t found = high.size();
     if (!taken[k] && matches(low[k], high[k])) {
       found = k;
     } else {
       auto candidate = std::partition_point(
-          high.begin(), high.end(), [&](std::size_t n) { return mesh.nodes[n][first] < wanted - tolerance; });
-      for (; candidate != high.end() && mesh.nodes[*candidate][first] <= wanted + tolerance; ++candidate) {
+          high.begin(), high.end(), [&](std::size_t n) { return places[n][first] < wanted - tolerance; });
+      for (; candidate != high.end() && places[*candidate][first] <= wanted + tolerance; ++candidate) {
         const auto i = static_cast<std::size_t>(candidate - high.begin());
         if (taken[i] || !matches(low[k], *candidate)) continue;
         found = i;
@@ -123,13 +134,14 @@ Status pair_up(const Mesh& mesh, const std::vector<std::size_t>& low, std::vecto
 }
 
 Status order_sets(const Mesh& mesh, UnitCell& cell, double size) {
+  const Places places = places_of(mesh, cell.axes);
   for (int axis = 0; axis < 3; ++axis) {
     auto &high = cell.face_nodes[face_number(axis, true)], &low = cell.face_nodes[face_number(axis, false)];
-    for (auto* face : {&low, &high}) sort_by_place(mesh, *face, (axis + 1) % 3, (axis + 2) % 3);
+    for (auto* face : {&low, &high}) sort_by_place(places, *face, (axis + 1) % 3, (axis + 2) % 3);
     for (std::size_t k = 0; k < 4; ++k)
-      sort_by_place(mesh, cell.edge_nodes[4 * static_cast<std::size_t>(axis) + k], axis, (axis + 1) % 3);
+      sort_by_place(places, cell.edge_nodes[4 * static_cast<std::size_t>(axis) + k], axis, (axis + 1) % 3);
     if (!cell.periodic[static_cast<std::size_t>(axis)]) continue;
-    if (Status paired = pair_up(mesh, low, high, axis, match * size); !paired) return paired;
+    if (Status paired = pair_up(mesh, places, low, high, axis, match * size); !paired) return paired;
   }
   for (int axis = 0; axis < 3; ++axis)  // edges along it
     for (int bit = 0; bit < 2; ++bit) {
@@ -139,7 +151,7 @@ Status order_sets(const Mesh& mesh, UnitCell& cell, double size) {
         if ((k >> bit & 1U) == 0) continue;
         auto* edges = &cell.edge_nodes[4 * static_cast<std::size_t>(axis)];
         if (Status paired =
-                pair_up(mesh, edges[k & ~(std::size_t{1} << bit)], edges[k], across, match * size);
+                pair_up(mesh, places, edges[k & ~(std::size_t{1} << bit)], edges[k], across, match * size);
             !paired)
           return paired;
       }
@@ -229,15 +241,16 @@ Status pair_sides(const Mesh& mesh, UnitCell& cell, const std::vector<std::size_
 
 }  // namespace
 
-Status complete_cell(Mesh& mesh, const Box3& box, std::array<bool, 3> periodic) {
-  const Result<std::vector<Sides>> sides = find_sides(mesh, box);
+Status complete_cell(Mesh& mesh, const Parallelepiped& shape, std::array<bool, 3> periodic) {
+  const Result<std::vector<Sides>> sides = find_sides(mesh, shape);
   if (!sides) return sides.error();
   UnitCell cell;
-  cell.low = box.min();
-  cell.high = box.max();
+  cell.low = shape.box.min();
+  cell.high = shape.box.max();
+  cell.axes = shape.axes;
   cell.periodic = periodic;
   sort_into_sets(cell, *sides);
-  if (Status ordered = order_sets(mesh, cell, box.sizes().maxCoeff()); !ordered) return ordered;
+  if (Status ordered = order_sets(mesh, cell, shape.box.sizes().maxCoeff()); !ordered) return ordered;
   find_face_sides(mesh, cell, *sides);
   std::vector<std::size_t> lowest = find_lowest(mesh, cell);
   if (Status paired = pair_sides(mesh, cell, lowest); !paired) return paired;

@@ -7,13 +7,14 @@
 #include <optional>
 
 #include "core/diagnostics.h"
-#include "core/vec.h"
+#include "core/parallelepiped.h"
 #include "fem/mesh.h"
 
 namespace selvage::fem {
 
 // Fills Mesh::cell, drivers, equations and load_cases of a finished mesh (midside nodes and regions too), of
-// either shape. `box` in mm; every node on a face has the face's coordinate to the bit.
+// either shape. `shape` in mm; strains and curvatures are along the axes of space, whatever the cell's own
+// are.
 //
 // Periodic x, y, z (a block): the displacement is E x + what repeats, E the symmetric strain; periodic x, y
 //   (a plate; z faces free): Kirchhoff's, u = (E + z K) (x, y), w = -(x, y) K (x, y) / 2 about the middle of
@@ -32,7 +33,7 @@ namespace selvage::fem {
 //
 // Errors: internal (a node beside a face's plane), geometry (opposite faces do not match to 1e-12 of the
 // size; a matrix whose parts do not hang together), unsupported (periodic along other axes than these).
-Status complete_cell(Mesh& mesh, const Box3& box, std::array<bool, 3> periodic);
+Status complete_cell(Mesh& mesh, const Parallelepiped& shape, std::array<bool, 3> periodic);
 
 // The node whose displacements, or potential, are to be zero in every load case; none where nothing has to be
 // held, or there is no node at the cell's corner.

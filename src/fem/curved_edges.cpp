@@ -164,24 +164,24 @@ Vec3 middle_on_surface(const yarn::Body& body, const SurfaceEnd& from, const Sur
 }
 
 std::optional<Vec3> middle_in_plane(const yarn::Body& body, const SurfaceEnd& from, const SurfaceEnd& to,
-                                    int axis) {
+                                    const Vec3& normal) {
   const Vec2 end = cell::beside(body, from.parameters, to.parameters);
   const Vec3 chord = to.at - from.at, middle = (from.at + to.at) / 2;
-  const double length = chord.norm(), plane = from.at[axis];
+  const double length = chord.norm(), plane = from.at.dot(normal);
   if (!(length > 0)) return std::nullopt;
   const Vec3 along = chord / length;
   Vec2 at = from.parameters + 0.5 * (end - from.parameters);
   for (int step = 0; step < 20; ++step) {
     const nurbs::SurfaceJet jet = cell::jet(body, at);
     Vec3 found = jet.position;
-    const Vec2 miss(found[axis] - plane, (found - middle).dot(along));
+    const Vec2 miss(found.dot(normal) - plane, (found - middle).dot(along));
     if (miss.cwiseAbs().maxCoeff() < 1e-12 * length || (step == 19 && miss.norm() < 1e-8 * length)) {
       if ((found - middle).norm() > length / 2) return std::nullopt;
-      found[axis] = plane;
+      found -= miss[0] * normal;
       return found;
     }
     Eigen::Matrix2d slope;
-    slope << jet.du[axis], jet.dv[axis], jet.du.dot(along), jet.dv.dot(along);
+    slope << jet.du.dot(normal), jet.dv.dot(normal), jet.du.dot(along), jet.dv.dot(along);
     const Vec2 way = slope.partialPivLu().solve(miss);
     if (!way.allFinite()) return std::nullopt;
     at -= way;

@@ -30,10 +30,9 @@ struct SurfaceEnd {
 Vec3 middle_on_surface(const yarn::Body& body, const SurfaceEnd& from, const SurfaceEnd& to);
 
 // The point of the surface in the plane across the chord's middle and in the plane of a face of a cell, on
-// which both ends are: their coordinate `axis` is its own, to the bit. Nothing where it is not found near the
-// chord.
+// which both ends are; `normal` is the face's. Nothing where it is not found near the chord.
 std::optional<Vec3> middle_in_plane(const yarn::Body& body, const SurfaceEnd& from, const SurfaceEnd& to,
-                                    int axis);
+                                    const Vec3& normal);
 
 // Two edges whose middles are moved back alike.
 struct TiedEdges {

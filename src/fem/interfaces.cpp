@@ -191,11 +191,11 @@ void Doubling::renumber() {
 void Doubling::tie(const std::vector<std::array<std::size_t, 2>>& ties) {
   Groups groups(mesh_.nodes.size());
   for (const auto& [a, b] : ties) groups.join(a, b);
-  const UnitCell& cell = *mesh_.cell;
+  const Parallelepiped cell = mesh_.cell->shape();
   const auto high_sides = [&](std::size_t node) {
     int count = 0;
     for (int axis = 0; axis < 3; ++axis)
-      if (cell.periodic[static_cast<std::size_t>(axis)] && mesh_.nodes[node][axis] == cell.high[axis])
+      if (mesh_.cell->periodic[static_cast<std::size_t>(axis)] && cell.side_of(mesh_.nodes[node], axis) > 0)
         ++count;
     return count;
   };

@@ -45,7 +45,8 @@ class Keeper {
   }
   void collect(const YarnFacet& facet);
   void find_ways();
-  void keep_in_box();
+  void keep_to_faces(const Corner& corner, Vec3& way, Vec3& end) const;
+  void keep_in_cell();
   void keep_gaps();
   [[nodiscard]] double length_of(const Corner& corner) const;
   [[nodiscard]] Vec3 moved(std::uint32_t k) const {
@@ -75,9 +76,11 @@ void Keeper::collect(const YarnFacet& facet) {
   for (std::size_t k = 0; k < 3; ++k) {
     Corner& corner = corners_[leader(facet.corners[k])];
     if (facet.part == Part::start || facet.part == Part::end) corner.end_normal += area;
-    if (facet.part == Part::box)
+    if (facet.part == Part::box && surface_.cell)
       for (int axis = 0; axis < 3; ++axis)
-        if (at[0][axis] == at[1][axis] && at[0][axis] == at[2][axis])
+        if (const int side = surface_.cell->side_of(at[0], axis);
+            side != 0 && surface_.cell->side_of(at[1], axis) == side &&
+            surface_.cell->side_of(at[2], axis) == side)
           corner.in_face[static_cast<std::size_t>(axis)] = true;
     if (facet.part != Part::side) continue;
     const Vec3 a = at[(k + 1) % 3] - at[k], b = at[(k + 2) % 3] - at[k];
@@ -90,14 +93,26 @@ void Keeper::collect(const YarnFacet& facet) {
   }
 }
 
+// Takes from both what leaves the faces that the corner is in.
+void Keeper::keep_to_faces(const Corner& corner, Vec3& way, Vec3& end) const {
+  std::vector<Vec3> normals;  // at right angles to each other
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!corner.in_face[static_cast<std::size_t>(axis)]) continue;
+    Vec3 normal = surface_.cell->axes.normal(axis);
+    for (const Vec3& other : normals) normal -= other.dot(normal) * other;
+    normals.push_back(normal.normalized());
+    way -= normals.back().dot(way) * normals.back();
+    end -= normals.back().dot(end) * normals.back();
+  }
+}
+
 void Keeper::find_ways() {
   for (Corner& corner : corners_) {
     if (corner.weight <= 0) continue;
     corner.height /= corner.weight;
     corner.normal.stableNormalize();
     Vec3 way = corner.normal, end = corner.end_normal;
-    for (int axis = 0; axis < 3; ++axis)
-      if (corner.in_face[static_cast<std::size_t>(axis)]) way[axis] = end[axis] = 0;
+    keep_to_faces(corner, way, end);
     end.stableNormalize();
     way -= end * end.dot(way);
     const double cosine = way.norm();
@@ -109,15 +124,17 @@ void Keeper::find_ways() {
   }
 }
 
-void Keeper::keep_in_box() {
-  if (!surface_.box) return;
+void Keeper::keep_in_cell() {
+  if (!surface_.cell) return;
+  const Box3& box = surface_.cell->box;
   for (std::uint32_t k = 0; k < points_.size(); ++k) {
     Corner& corner = corners_[leader(k)];
+    const Vec3 own_way = surface_.cell->axes.own(corner.way), own = surface_.cell->axes.own(points_[k]);
     for (int axis = 0; axis < 3; ++axis) {
-      const double way = corner.way[axis];
-      if (way == 0) continue;
-      const double up = (surface_.box->max()[axis] - points_[k][axis]) / std::abs(way);
-      const double down = (points_[k][axis] - surface_.box->min()[axis]) / std::abs(way);
+      const double way = own_way[axis];
+      if (std::abs(way) <= 1e-12 * own_way.norm()) continue;  // along the face, to rounding
+      const double up = (box.max()[axis] - own[axis]) / std::abs(way);
+      const double down = (own[axis] - box.min()[axis]) / std::abs(way);
       corner.most = std::min(corner.most, surface_.gap_share * std::max(way > 0 ? up : down, 0.0));
       corner.least = std::max(corner.least, -surface_.gap_share * std::max(way > 0 ? down : up, 0.0));
     }
@@ -236,7 +253,7 @@ double Keeper::run() {
     if (facet.yarn != YarnFacet::no_yarn) of_yarn_[facet.yarn].push_back(&facet);
   }
   find_ways();
-  keep_in_box();
+  keep_in_cell();
   keep_gaps();
   constexpr int most_rounds = 20;
   for (int round = 0; round < most_rounds; ++round) {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/parallelepiped.h"
 #include "fem/cell_surfaces.h"
 #include "fem/curved_edges.h"
 #include "yarn/body.h"
@@ -36,16 +36,16 @@ struct KeptVolume {
   // Of each point the one that it moves with (itself, or its opposite over a periodic axis, to the bit);
   // empty: itself.
   std::span<const std::uint32_t> leaders{};
-  std::optional<Box3> box{};  // nothing leaves it
+  std::optional<Parallelepiped> cell{};  // nothing leaves it
   // Of a gap that may be taken from each side, below 0.5: little where the gap is meshed.
   double gap_share = 0.05;
 };
 
 // Moves corners of the yarns' sides along the normal there: each by the mean height of the surface above the
 // triangles at it, and all of a yarn by one more length that makes its volume the wanted one. Corners in a
-// face of the box or at an end stay in its plane; those that several yarns have in common keep to the first
+// face of the cell or at an end stay in its plane; those that several yarns have in common keep to the first
 // of the two lengths. Nothing moves farther than `gap_share` of the distance to another yarn, to a part of
-// the same one across from it, or to a face of the box, so that gaps stay open, nor so far that a triangle
+// the same one across from it, or to a face of the cell, so that gaps stay open, nor so far that a triangle
 // turns; what is missing there the rest of the yarn makes up for. Where there is not rest enough, a volume
 // stays wrong. Returned: the largest error left, a share of the yarn's volume.
 double keep_volumes(std::vector<Vec3>& points, const KeptVolume& surface);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/parallelepiped.h"
 #include "core/vec.h"
 #include "fabric/model.h"
 #include "fem/physics.h"
@@ -68,10 +69,13 @@ struct SurfacePlace {
   Vec2 parameters = Vec2::Zero();  // (u, v)
 };
 
-// The box that a mesh fills: a unit cell. Nodes stand on its faces exactly.
+// The parallelepiped that a mesh fills: a unit cell. Nodes stand on its faces: those of a box to the bit,
+// those of an oblique one to rounding (Parallelepiped::side_of).
 struct UnitCell {
-  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // mm
-  std::array<bool, 3> periodic{};                // x, y, z
+  // Its corners in the coordinates of its own axes, mm; x, y and z of a cell are along these axes.
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  ObliqueAxes axes;
+  std::array<bool, 3> periodic{};  // x, y, z
   // Faces in the order A..F: x high, x low, y high, y low, z high, z low. Nodes without those on edges and
   // corners; where an axis is periodic, the k-th of its high face is opposite the k-th of its low one. With
   // order 2 midside nodes too.
@@ -85,6 +89,8 @@ struct UnitCell {
   std::array<std::vector<std::size_t>, 8> more_corners;
   // The element sides on the faces, same order A..F; where an axis is periodic, the k-th opposite the k-th.
   std::array<std::vector<ElementSide>, 6> face_sides;
+
+  [[nodiscard]] Parallelepiped shape() const { return {Box3(low, high), axes}; }
 };
 
 // One condition: sum of factor times displacement (of a cell that conducts: the potential) = 0. The first

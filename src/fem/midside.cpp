@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/bounds.h"
 #include "fem/block.h"
 #include "fem/curved_edges.h"
 #include "fem/sides.h"
@@ -17,8 +18,8 @@ class CellEdges {
         block_(block),
         places_(block.skin.nodes.places),
         scale_(millimetres_per(block.units)),
-        box_(block.box.min() * scale_, block.box.max() * scale_),
-        snug_(1e-9 * box_.diagonal().norm()) {}
+        cell_(Box3(block.cell.box.min() * scale_, block.cell.box.max() * scale_), block.cell.axes),
+        snug_(1e-9 * cell_.box.diagonal().norm()) {}
 
   // The edges of the yarns' surfaces, with their middles.
   [[nodiscard]] std::vector<CurvedEdge> curved() const;
@@ -30,8 +31,8 @@ class CellEdges {
   // The axis of the face of the box that both nodes are on; none: -1.
   [[nodiscard]] int face_axis(std::size_t a, std::size_t b) const;
   [[nodiscard]] bool is_on(std::size_t node, int axis, bool high) const {
-    const double plane = high ? box_.max()[axis] : box_.min()[axis];
-    return std::abs(mesh_.nodes[node][axis] - plane) <= snug_;
+    const double plane = high ? cell_.box.max()[axis] : cell_.box.min()[axis];
+    return std::abs(cell_.axes.own(mesh_.nodes[node])[axis] - plane) <= snug_;
   }
   // In a face of the box, or (all on one yarn's surface) at the yarn's own end.
   [[nodiscard]] bool is_flat(const std::array<std::size_t, 3>& triangle) const;
@@ -41,15 +42,15 @@ class CellEdges {
   const Mesh& mesh_;
   const Block& block_;
   const std::vector<SurfacePlace>& places_;
-  double scale_;  // mm per file unit
-  Box3 box_;      // mm
+  double scale_;         // mm per file unit
+  Parallelepiped cell_;  // mm
   double snug_;
 };
 
 int CellEdges::face_axis(std::size_t a, std::size_t b) const {
   for (int axis = 0; axis < 3; ++axis)
-    if (mesh_.nodes[a][axis] == mesh_.nodes[b][axis] && (is_on(a, axis, false) || is_on(a, axis, true)))
-      return axis;
+    for (const bool high : {false, true})
+      if (is_on(a, axis, high) && is_on(b, axis, high)) return axis;
   return -1;
 }
 
@@ -62,11 +63,10 @@ std::optional<Vec3> CellEdges::middle(std::size_t a, std::size_t b) const {
       end{to.parameters, mesh_.nodes[b] / scale_};
   const int axis = face_axis(a, b);
   if (axis < 0) return middle_on_surface(body, start, end) * scale_;
-  std::optional<Vec3> result = middle_in_plane(body, start, end, axis);
+  const std::optional<Vec3> result = middle_in_plane(body, start, end, cell_.axes.normal(axis));
   if (!result) return std::nullopt;
-  *result *= scale_;
-  (*result)[axis] = mesh_.nodes[a][axis];
-  return result;
+  return cell_.with(*result * scale_, axis,
+                    is_on(a, axis, true) ? cell_.box.max()[axis] : cell_.box.min()[axis]);
 }
 
 bool CellEdges::is_flat(const std::array<std::size_t, 3>& t) const {
@@ -123,6 +123,8 @@ void CellEdges::tie_over(int axis, std::vector<CurvedEdge>& edges, std::vector<T
       return across != other.across ? across < other.across : up < other.up;
     }
   };
+  const double match = 1e-3 * snug_;  // rounding
+  const auto own = [&](std::size_t node) { return cell_.axes.own(mesh_.nodes[node]); };
   // The nodes at the ends of curved edges in the low face.
   std::vector<Place> low;
   const auto is_in = [&](const CurvedEdge& edge, bool high) {
@@ -131,13 +133,14 @@ void CellEdges::tie_over(int axis, std::vector<CurvedEdge>& edges, std::vector<T
   for (const CurvedEdge& edge : edges)
     if (is_in(edge, false))
       for (const std::size_t node : {edge.key >> 32U, edge.key & 0xffffffffU})
-        low.push_back({mesh_.nodes[node][across], mesh_.nodes[node][up], node});
+        low.push_back({own(node)[across], own(node)[up], node});
   std::sort(low.begin(), low.end());
   const auto opposite = [&](std::size_t node) -> std::optional<std::size_t> {
-    const Place wanted{mesh_.nodes[node][across], mesh_.nodes[node][up], 0};
-    const auto at = std::lower_bound(low.begin(), low.end(), wanted);
-    if (at == low.end() || wanted < *at) return std::nullopt;
-    return at->node;
+    const Vec3 wanted = own(node);
+    auto at = std::lower_bound(low.begin(), low.end(), Place{wanted[across] - match, -infinity, 0});
+    for (; at != low.end() && at->across <= wanted[across] + match; ++at)
+      if (std::abs(at->up - wanted[up]) <= match) return at->node;
+    return std::nullopt;
   };
   std::vector<std::uint64_t> paired;
   for (CurvedEdge& edge : edges) {
@@ -148,8 +151,7 @@ void CellEdges::tie_over(int axis, std::vector<CurvedEdge>& edges, std::vector<T
     const auto other = std::lower_bound(edges.begin(), edges.end(), key,
                                         [](const CurvedEdge& e, std::uint64_t k) { return e.key < k; });
     if (other == edges.end() || other->key != key) continue;
-    edge.middle[across] = other->middle[across];
-    edge.middle[up] = other->middle[up];
+    edge.middle = cell_.with(other->middle, axis, cell_.box.max()[axis]);
     tied.push_back({edge.key, key});
     paired.insert(paired.end(), {edge.key, key});
   }

@@ -75,23 +75,21 @@ Drive drive_of(Physics physics, bool plate) {
   return drive;
 }
 
-// A place from the middle of the cell; on its faces half its sides to the bit.
-Vec3 from_middle(const UnitCell& cell, const Vec3& at) {
-  const Vec3 half = (cell.high - cell.low) / 2;
-  Vec3 p = at - (cell.high + cell.low) / 2;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (at[axis] == cell.low[axis]) p[axis] = -half[axis];
-    if (at[axis] == cell.high[axis]) p[axis] = half[axis];
-  }
-  return p;
+// A place from the middle of the cell; on the faces of a box half its sides to the bit.
+Vec3 from_middle(const Parallelepiped& cell, const Vec3& at) {
+  const Vec3 half = cell.box.sizes() / 2;
+  Vec3 p = cell.axes.own(at) - (cell.box.max() + cell.box.min()) / 2;
+  for (int axis = 0; axis < 3; ++axis)
+    if (const int side = cell.side_of(at, axis); side != 0) p[axis] = side * half[axis];
+  return cell.axes.place(p);
 }
 
 void add_drivers(Mesh& mesh, const std::vector<std::string>& names) {
-  const Vec3 sides = mesh.cell->high - mesh.cell->low;
+  const Box3 bounds = mesh.cell->shape().bounds();
   for (std::size_t d = 0; d < names.size(); ++d)
     mesh.drivers.push_back(
         {.name = names[d],
-         .at = mesh.cell->high + sides.x() * (0.1 + 0.05 * static_cast<double>(d)) * Vec3::UnitX()});
+         .at = bounds.max() + bounds.sizes().x() * (0.1 + 0.05 * static_cast<double>(d)) * Vec3::UnitX()});
 }
 
 // The unknowns of `node` (less that of `lowest`, where it is another one) = what the drivers make of the way
@@ -108,8 +106,19 @@ void add_equations(Mesh& mesh, std::size_t node, std::size_t lowest, const Modes
   }
 }
 
-bool is_on_box(const UnitCell& cell, const Vec3& p) {
-  return (p.array() == cell.low.array()).any() || (p.array() == cell.high.array()).any();
+bool is_on_faces(const Parallelepiped& cell, const Vec3& p) {
+  return cell.side_of(p, 0) != 0 || cell.side_of(p, 1) != 0 || cell.side_of(p, 2) != 0;
+}
+
+// From the node that another one depends on to that: along periodic axes only, however their other
+// coordinates were rounded.
+Vec3 way_between(const Parallelepiped& cell, const std::array<bool, 3>& periodic, const Vec3& from,
+                 const Vec3& to) {
+  Vec3 way = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+    if (periodic[static_cast<std::size_t>(axis)])
+      way += (cell.side_of(to, axis) - cell.side_of(from, axis)) / 2 * cell.edge(axis);
+  return way;
 }
 
 // The number of parts that elements and conditions do not connect.
@@ -148,8 +157,8 @@ Status add_conditions(Mesh& mesh, const std::vector<std::size_t>& lowest) {
   mesh.drivers.clear();
   mesh.equations.clear();
   mesh.load_cases.clear();
-  const UnitCell& cell = *mesh.cell;
-  const auto [x, y, z] = cell.periodic;
+  const Parallelepiped cell = mesh.cell->shape();
+  const auto [x, y, z] = mesh.cell->periodic;
   const bool plate = x && y && !z, all_round = !x && !y && !z;
   if (!plate && !all_round && !(x && y && z))
     return error(Kind::unsupported,
@@ -157,18 +166,12 @@ Status add_conditions(Mesh& mesh, const std::vector<std::size_t>& lowest) {
   const Drive drive = drive_of(mesh.physics, plate);
   add_drivers(mesh, drive.drivers);
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
-    if (all_round && is_on_box(cell, mesh.nodes[n]))
+    if (all_round && is_on_faces(cell, mesh.nodes[n]))
       add_equations(mesh, n, n, drive.modes(from_middle(cell, mesh.nodes[n])));
     if (lowest[n] == n) continue;
-    // The way between the two is along periodic axes only, however their other coordinates were rounded.
-    Vec3 p = from_middle(cell, mesh.nodes[lowest[n]]);
-    const Vec3 here = from_middle(cell, mesh.nodes[n]);
-    const Modes before = drive.modes(p);
-    for (int axis = 0; axis < 3; ++axis)
-      if (cell.periodic[static_cast<std::size_t>(axis)] &&
-          (mesh.nodes[n][axis] == cell.high[axis] || mesh.nodes[n][axis] == cell.low[axis]))
-        p[axis] = here[axis];
-    add_equations(mesh, n, lowest[n], drive.modes(p) - before);
+    const Vec3 &lowest_at = mesh.nodes[lowest[n]], from = from_middle(cell, lowest_at);
+    const Vec3 way = way_between(cell, mesh.cell->periodic, lowest_at, mesh.nodes[n]);
+    add_equations(mesh, n, lowest[n], drive.modes(from + way) - drive.modes(from));
   }
   const bool with_matrix = std::any_of(mesh.regions.begin(), mesh.regions.end(), [](const Region& region) {
     return region.kind == Region::Kind::matrix;

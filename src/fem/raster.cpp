@@ -398,7 +398,13 @@ Result<Raster> rasterize(const fabric::Fabric& fabric, std::span<const yarn::Bod
     return error(Kind::limit,
                  fmt::format("{} yarns are more than the 65535 that phases can tell apart", bodies.size()));
   const fabric::Cell& cell = *fabric.cell;
-  const Box3 box(cell.low.cwiseMin(cell.high), cell.low.cwiseMax(cell.high));
+  if (!cell.axes.are_of_space())
+    return error(Kind::unsupported,
+                 "fields on voxels are of cells that are boxes, and this one is oblique: `mesh --voxel N` "
+                 "makes "
+                 "hexahedra of it, or a cell by two opposite corners takes its place")
+        .placed(cell.place, fabric.file);
+  const Box3 box(cell.low, cell.high);
   const Result<VoxelGrid> grid = make_grid(box, options.count, most_voxels, "voxels");
   if (!grid) return grid.error();
   const double unit = millimetres_per(fabric.units);

@@ -1,6 +1,7 @@
 #include "fem/sides.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace selvage::fem {
 namespace {
@@ -21,16 +22,14 @@ ElementSide corners_of(const Mesh& mesh, std::size_t element, std::size_t side) 
   return nodes;
 }
 
-// The face of the cell in which all corners stand: coordinates there are the face's own to the bit.
-int face_of(const Mesh& mesh, const ElementSide& nodes) {
-  if (!mesh.cell) return -1;
+// The face of the cell in which all corners stand.
+int face_of(const Mesh& mesh, const std::optional<Parallelepiped>& cell, const ElementSide& nodes) {
+  if (!cell) return -1;
   for (int axis = 0; axis < 3; ++axis)
-    for (const bool high : {true, false}) {
-      const double plane = high ? mesh.cell->high[axis] : mesh.cell->low[axis];
+    for (const int side : {1, -1})
       if (std::all_of(nodes.begin(), nodes.end(),
-                      [&](std::size_t node) { return mesh.nodes[node][axis] == plane; }))
-        return 2 * axis + (high ? 0 : 1);
-    }
+                      [&](std::size_t node) { return cell->side_of(mesh.nodes[node], axis) == side; }))
+        return 2 * axis + (side > 0 ? 0 : 1);
   return -1;
 }
 
@@ -67,6 +66,8 @@ std::vector<OuterSide> outer_sides(const Mesh& mesh) {
       }
   std::sort(keys.begin(), keys.end());
   std::vector<OuterSide> sides;
+  std::optional<Parallelepiped> cell;
+  if (mesh.cell) cell = mesh.cell->shape();
   for (std::size_t k = 0; k < keys.size(); ++k) {
     const Key& key = keys[k];
     std::size_t behind = OuterSide::outside;
@@ -74,7 +75,7 @@ std::vector<OuterSide> outer_sides(const Mesh& mesh) {
     if (k + 1 < keys.size() && keys[k + 1].is_same_place(key)) behind = keys[k + 1].region;
     if (behind == key.region) continue;
     OuterSide side{key.element, key.side, key.region, behind, -1, corners_of(mesh, key.element, key.side)};
-    if (behind == OuterSide::outside) side.face = face_of(mesh, side.nodes);
+    if (behind == OuterSide::outside) side.face = face_of(mesh, cell, side.nodes);
     sides.push_back(side);
   }
   std::sort(sides.begin(), sides.end(), [](const OuterSide& a, const OuterSide& b) {

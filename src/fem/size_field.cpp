@@ -194,8 +194,9 @@ void add_facets(const Raster& raster, const Box3& near, std::vector<Facet>& face
 
 class Rule {
  public:
-  Rule(const std::vector<Facet>& facets, const BoxTree& tree, const Box3& box, const SizeRules& rules)
-      : facets_(facets), tree_(tree), box_(box), rules_(rules) {}
+  Rule(const std::vector<Facet>& facets, const BoxTree& tree, const Parallelepiped& cell,
+       const SizeRules& rules)
+      : facets_(facets), tree_(tree), cell_(cell), rules_(rules) {}
 
   [[nodiscard]] double at(const Raster& raster, std::size_t i, std::size_t j) const {
     const std::size_t k = raster.index(i, j);
@@ -227,12 +228,15 @@ class Rule {
     constexpr double finest = 5;  // over the smallest: a yarn that crosses a face at a grazing angle
     double least = own(raster).largest;
     for (int face = 0; face < 6; ++face) {
-      const double plane = face % 2 == 1 ? box_.max()[face / 2] : box_.min()[face / 2];
-      const double aligned = std::abs(raster.normals[k][face / 2]);
+      const int axis = face / 2;
+      const double plane = face % 2 == 1 ? cell_.box.max()[axis] : cell_.box.min()[axis];
+      const Vec3 normal = cell_.axes.normal(axis);
+      const double aligned = std::abs(raster.normals[k].dot(normal));
       const double share =
           std::clamp((aligned - hardly_alongside) / (alongside - hardly_alongside), 0.0, 1.0);
       if (share == 0) continue;
-      const double distance = std::abs(raster.points[k][face / 2] - plane);
+      const double distance =
+          cell_.axes.unit(axis).dot(normal) * std::abs(cell_.axes.own(raster.points[k])[axis] - plane);
       least = std::min(least, rules_.gap_factor * distance / share);
     }
     return std::max(least, finest * rules_.smallest);
@@ -257,7 +261,7 @@ class Rule {
 
   const std::vector<Facet>& facets_;
   const BoxTree& tree_;
-  const Box3& box_;
+  const Parallelepiped& cell_;
   const SizeRules& rules_;
 };
 
@@ -267,8 +271,9 @@ Box3 widened(const Box3& box, double by) {
 
 }  // namespace
 
-SizeField size_field(std::span<const yarn::Body> bodies, const Box3& box, const SizeRules& rules,
+SizeField size_field(std::span<const yarn::Body> bodies, const Parallelepiped& cell, const SizeRules& rules,
                      int threads) {
+  const Box3 box = cell.bounds();
   const Box3 near = widened(box, 1.5 * rules.coarsest), nearest = widened(box, rules.coarsest);
   std::vector<Raster> rasters(bodies.size());
   for_each_index(bodies.size(), threads, [&](std::size_t b) {
@@ -281,7 +286,7 @@ SizeField size_field(std::span<const yarn::Body> bodies, const Box3& box, const 
   boxes.reserve(facets.size());
   for (const Facet& facet : facets) boxes.push_back(bounds_of(facet.corners));
   const BoxTree tree(std::move(boxes));
-  const Rule rule(facets, tree, box, rules);
+  const Rule rule(facets, tree, cell, rules);
   std::vector<std::vector<SizeField::Bound>> bounds(rasters.size());
   for_each_index(rasters.size(), threads, [&](std::size_t b) {
     const Raster& raster = rasters[b];

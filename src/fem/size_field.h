@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/parallelepiped.h"
 #include "yarn/body.h"
 
 namespace selvage::fem {
@@ -52,7 +52,7 @@ struct SizeRules {
 // Bounds on the yarns' surfaces in the box and a little beyond it: the gap to other yarns and to other parts
 // of the same one, the gap to faces of the box that run alongside, curvature. The same for any number of
 // threads.
-SizeField size_field(std::span<const yarn::Body> bodies, const Box3& box, const SizeRules& rules,
+SizeField size_field(std::span<const yarn::Body> bodies, const Parallelepiped& cell, const SizeRules& rules,
                      int threads);
 
 // Values of u at which the surface has a sharp crest all along, increasing, first u <= value < last u.

@@ -6,6 +6,7 @@
 #include "core/groups.h"
 #include "core/parallel.h"
 #include "fem/cell_size.h"
+#include "yarn/in_axes.h"
 
 namespace selvage::fem {
 
@@ -45,23 +46,25 @@ void drop_unused(Skin& skin) {
 
 }  // namespace
 
-Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Box3& box, const SizeRules& rules,
+Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Parallelepiped& cell, const SizeRules& rules,
                        const SkinOptions& options) {
   const auto step = [&](const char* name) {
     if (options.progress) options.progress(name);
   };
   step("cutting");
-  Result<cell::Cut> cut = cell::cut(bodies, box, options.tolerance);
-  if (!cut) return cut.error();
-  Result<cell::Division> division = cell::divide_faces(bodies, box, *cut);
-  if (!division) return division.error();
+  const yarn::BodiesInAxes own(bodies, cell.axes);
+  Result<cell::Cut> cut = cell::cut(own.list(), cell.box, options.tolerance);
+  if (!cut) return cell::in_space(cut.error(), cell);
+  Result<cell::Division> division = cell::divide_faces(own.list(), cell.box, *cut);
+  if (!division) return cell::in_space(division.error(), cell);
   Skin skin;
-  skin.notes = std::move(cut->notes);
-  skin.volumes = cell::volumes_inside(bodies, box, *cut, *division);
+  for (const Message& note : cut->notes) skin.notes.push_back(cell::in_space(note, cell));
+  skin.volumes = cell::volumes_inside(own.list(), cell.box, *cut, *division);
+  for (double& volume : skin.volumes) volume *= cell.axes.to_space().determinant();
 
   step("meshing surfaces");
-  const SizeField field = size_field(bodies, box, rules, options.threads);
-  const CellShape shape{bodies, box, options.periodic, *cut, *division, options.matrix};
+  const SizeField field = size_field(bodies, cell, rules, options.threads);
+  const CellShape shape{bodies, cell, options.periodic, *cut, *division, options.matrix};
   Result<CellCurves> curves = divide_curves(shape, field, options.miss, skin.nodes);
   if (!curves) return curves.error();
   Result<CellTriangles> surface = mesh_surfaces(shape, *curves, field, options.threads, skin.nodes);

@@ -1,4 +1,4 @@
-// What bounds the regions of a mesh: the surfaces of yarns, whole or cut by a box, and the box's faces.
+// What bounds the regions of a mesh: the surfaces of yarns, whole or cut by a cell, and the cell's faces.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ struct Skin {
 // Edges are about as long as `rules` has them. Sides are bodies' indices (CellTriangles::matrix,
 // Sides::outside). Errors: what cell::cut, cell::divide_faces, divide_curves and mesh_surfaces say. The
 // bodies outlive the skin.
-Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Box3& box, const SizeRules& rules,
+Result<Skin> make_skin(std::span<const yarn::Body> bodies, const Parallelepiped& cell, const SizeRules& rules,
                        const SkinOptions& options);
 
 // The skin of one whole yarn: edges of its surface at most `size`, file units, > 0. Gaps are left as they

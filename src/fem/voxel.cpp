@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 
 #include "core/units.h"
 #include "fem/complete_cell.h"
@@ -13,6 +14,7 @@
 #include "fem/materials.h"
 #include "fem/voxel_grid.h"
 #include "fem/yarn_columns.h"
+#include "yarn/in_axes.h"
 
 namespace selvage::fem {
 namespace {
@@ -27,11 +29,12 @@ struct Owners {
   std::size_t in_two = 0;
 };
 
-double distance_from_axis(const yarn::Body& body, const Vec3& point, double v) {
-  return (nurbs::evaluate(body.axis, v) - point).norm();
+double distance_from_axis(const yarn::Body& body, const Vec3& point, double v, const ObliqueAxes& axes) {
+  return axes.place(nurbs::evaluate(body.axis, v) - point).norm();
 }
 
-Owners find_owners(const VoxelGrid& grid, std::span<const yarn::Body> bodies) {
+// Grid and bodies in the same coordinates, those of the axes.
+Owners find_owners(const VoxelGrid& grid, std::span<const yarn::Body> bodies, const ObliqueAxes& axes) {
   Owners owners;
   owners.yarn.assign(grid.voxels(), no_yarn);
   owners.v.assign(grid.voxels(), std::numeric_limits<double>::quiet_NaN());
@@ -58,8 +61,8 @@ Owners find_owners(const VoxelGrid& grid, std::span<const yarn::Body> bodies) {
           if (before != no_yarn) {
             ++owners.in_two;
             const Vec3 point(xs[c % xs.size()], ys[c / xs.size()], *z);
-            if (distance_from_axis(bodies[static_cast<std::size_t>(before)], point, owners.v[voxel]) <=
-                distance_from_axis(body, point, v))
+            if (distance_from_axis(bodies[static_cast<std::size_t>(before)], point, owners.v[voxel], axes) <=
+                distance_from_axis(body, point, v, axes))
               continue;
           }
           owners.yarn[voxel] = static_cast<std::int32_t>(b);
@@ -73,8 +76,9 @@ Owners find_owners(const VoxelGrid& grid, std::span<const yarn::Body> bodies) {
 // Nodes are made in the order of the grid, those that a hexahedron needs.
 class Builder {
  public:
-  Builder(const VoxelGrid& grid, double unit, Mesh& mesh)
+  Builder(const VoxelGrid& grid, const ObliqueAxes& axes, double unit, Mesh& mesh)
       : grid_(grid),
+        axes_(axes),
         unit_(unit),
         mesh_(mesh),
         nodes_((grid.count(0) + 1) * (grid.count(1) + 1) * (grid.count(2) + 1), no_node) {}
@@ -89,7 +93,7 @@ class Builder {
         for (const double x : grid_.planes[0]) {
           if (nodes_[place] != no_node) {
             nodes_[place] = mesh_.nodes.size();
-            mesh_.nodes.emplace_back(x * unit_, y * unit_, z * unit_);
+            mesh_.nodes.push_back(axes_.place({x * unit_, y * unit_, z * unit_}));
           }
           ++place;
         }
@@ -112,6 +116,7 @@ class Builder {
   }
 
   const VoxelGrid& grid_;
+  const ObliqueAxes& axes_;
   double unit_;
   Mesh& mesh_;
   std::vector<std::size_t> nodes_;
@@ -125,11 +130,12 @@ void add_region(Mesh& mesh, Builder& builder, Region region, const std::vector<s
   mesh.regions.push_back(std::move(region));
 }
 
-void fill_regions(Mesh& mesh, const VoxelGrid& grid, const Owners& owners, std::span<const yarn::Body> bodies,
-                  const MaterialChoice& choice, const std::string& matrix, double unit) {
+void fill_regions(Mesh& mesh, const VoxelGrid& grid, const ObliqueAxes& axes, const Owners& owners,
+                  std::span<const yarn::Body> bodies, const MaterialChoice& choice, const std::string& matrix,
+                  double unit) {
   std::vector<std::vector<std::size_t>> of_yarn(bodies.size());
   std::vector<std::size_t> of_matrix;
-  Builder builder(grid, unit, mesh);
+  Builder builder(grid, axes, unit, mesh);
   for (std::size_t voxel = 0; voxel < owners.yarn.size(); ++voxel) {
     const std::int32_t owner = owners.yarn[voxel];
     if (owner == no_yarn && matrix.empty()) continue;
@@ -162,17 +168,24 @@ void fill_regions(Mesh& mesh, const VoxelGrid& grid, const Owners& owners, std::
   }
 }
 
-// Every hexahedron is the same box: all figures of quality are known.
-void fill_quality(Mesh& mesh, const VoxelGrid& grid, double unit) {
+// Every hexahedron is the same parallelepiped: all figures of quality are known.
+void fill_quality(Mesh& mesh, const VoxelGrid& grid, const ObliqueAxes& axes, double unit) {
   const Vec3 sides = grid.sides();
-  mesh.quality = {.min_dihedral = 90,
-                  .max_dihedral = 90,
+  const double share = axes.are_of_space() ? 1 : axes.to_space().determinant();  // of the cuboid's volume
+  double largest = 90;  // dihedral angle; the smallest one is beside it
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cosine = std::abs(axes.normal(axis).dot(axes.normal((axis + 1) % 3)));
+    largest = std::max(largest, 180 - std::acos(std::min(1.0, cosine)) * 180 / std::numbers::pi);
+  }
+  mesh.quality = {.min_dihedral = 180 - largest,
+                  .max_dihedral = largest,
                   .max_aspect = sides.maxCoeff() / sides.minCoeff(),
-                  .min_scaled_jacobian = 1,
-                  .mean_scaled_jacobian = 1};
+                  .min_scaled_jacobian = share,
+                  .mean_scaled_jacobian = share};
   for (Region& region : mesh.regions) {
     region.quality = mesh.quality;
-    region.volume = static_cast<double>(region.last_element - region.first_element) * (unit * sides).prod();
+    region.volume =
+        share * static_cast<double>(region.last_element - region.first_element) * (unit * sides).prod();
   }
 }
 
@@ -189,14 +202,14 @@ Result<Mesh> mesh_voxels(const fabric::Fabric& fabric, std::span<const yarn::Bod
                          const VoxelOptions& options, Diagnostics& diagnostics) {
   if (!fabric.cell) return error(Kind::geometry, "the file says no `cell` to mesh");
   const fabric::Cell& cell = *fabric.cell;
-  const Box3 box(cell.low.cwiseMin(cell.high), cell.low.cwiseMax(cell.high));
+  const Box3 box(cell.low, cell.high);
   const auto at_cell = [&](const Message& message) { return message.placed(cell.place, fabric.file); };
   const Result<VoxelGrid> grid = make_grid(box, options.count, most_hexahedra, "hexahedra");
   if (!grid) return grid.error();
   Result<MaterialChoice> choice =
       choose_cell_materials(fabric, bodies, options.matrix, options.physics, diagnostics);
   if (!choice) return choice.error();
-  const Owners owners = find_owners(*grid, bodies);
+  const Owners owners = find_owners(*grid, yarn::BodiesInAxes(bodies, cell.axes).list(), cell.axes);
   if (std::all_of(owners.yarn.begin(), owners.yarn.end(), [](std::int32_t yarn) { return yarn == no_yarn; }))
     return at_cell(error(Kind::geometry, "no yarn enters the cell, or none is as thick as a hexahedron"));
   say_what_is_rough(owners, diagnostics);
@@ -205,11 +218,13 @@ Result<Mesh> mesh_voxels(const fabric::Fabric& fabric, std::span<const yarn::Bod
   Mesh mesh;
   mesh.shape = Mesh::Shape::hexahedron;
   mesh.title = fabric.title.value_or("");
-  fill_regions(mesh, *grid, owners, bodies, *choice, options.matrix ? cell.matrix : "", unit);
+  fill_regions(mesh, *grid, cell.axes, owners, bodies, *choice, options.matrix ? cell.matrix : "", unit);
   mesh.materials = std::move(choice->materials);
   mesh.physics = options.physics;
-  fill_quality(mesh, *grid, unit);
-  if (Status done = complete_cell(mesh, Box3(box.min() * unit, box.max() * unit), options.periodic); !done)
+  fill_quality(mesh, *grid, cell.axes, unit);
+  if (Status done =
+          complete_cell(mesh, {Box3(box.min() * unit, box.max() * unit), cell.axes}, options.periodic);
+      !done)
     return at_cell(done.error());
   return mesh;
 }

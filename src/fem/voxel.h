@@ -1,4 +1,5 @@
-// A unit cell as a grid of equal hexahedra: the mesh that can always be made. The surfaces of the yarns are
+// A unit cell as a grid of equal hexahedra (cuboids; parallelepipeds in an oblique cell): the mesh that can
+// always be made. The surfaces of the yarns are
 // stairs in it; stresses beside them mean little, the stiffness of the whole converges slowly.
 #pragma once
 

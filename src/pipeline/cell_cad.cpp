@@ -7,6 +7,7 @@
 #include "cell/cad_parts.h"
 #include "pipeline/overlaps.h"
 #include "pipeline/unit_cell.h"
+#include "yarn/in_axes.h"
 
 namespace selvage::pipeline {
 
@@ -16,7 +17,7 @@ namespace {
 constexpr double edge_tolerance = 2e-8;
 
 // Yarn by yarn: without the matrix it does not matter where they overlap.
-Result<std::vector<cad::Part>> yarns_alone(const std::vector<yarn::Body>& bodies, const Box3& box,
+Result<std::vector<cad::Part>> yarns_alone(std::span<const yarn::Body> bodies, const Box3& box,
                                            const cell::Cut& cut, const cell::CadOptions& options) {
   std::vector<cad::Part> all;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -30,6 +31,20 @@ Result<std::vector<cad::Part>> yarns_alone(const std::vector<yarn::Body>& bodies
     all.insert(all.end(), std::make_move_iterator(parts->begin()), std::make_move_iterator(parts->end()));
   }
   return all;
+}
+
+// From the cell's own coordinates.
+void bring_to_space(std::vector<cad::Part>& parts, const ObliqueAxes& axes) {
+  if (axes.are_of_space()) return;
+  const auto bring = [&](std::vector<Vec3>& points) {
+    for (Vec3& point : points) point = axes.place(point);
+  };
+  for (cad::Part& part : parts)
+    for (cad::Face& face : part.faces) {
+      bring(face.surface.points);
+      for (cad::Loop& loop : face.loops)
+        for (cad::Edge& edge : loop.edges) bring(edge.curve.points);
+    }
 }
 
 }  // namespace
@@ -50,16 +65,19 @@ std::optional<std::vector<cad::Part>> cell_solids(Job& job, const fabric::Fabric
         "thinner";
   };
   if (!bodies || (job.options.matrix && !check_overlaps(job, *bodies, finish))) return std::nullopt;
-  const Box3 box(fabric.cell->low, fabric.cell->high);
-  const Result<cell::Cut> cut = cell::cut(*bodies, box, fabric::tolerance_of(fabric, job.build_options()));
-  if (!cut) return job.fail(at_cell(fabric, cut.error()));
-  job.say_all(cut->notes);
+  const Parallelepiped shape = fabric.cell->shape();
+  const Box3& box = shape.box;
+  const yarn::BodiesInAxes own(*bodies, shape.axes);
+  const Result<cell::Cut> cut = cell::cut(own.list(), box, fabric::tolerance_of(fabric, job.build_options()));
+  if (!cut) return job.fail(at_cell(fabric, cell::in_space(cut.error(), shape)));
+  for (const Message& note : cut->notes) job.say(cell::in_space(note, shape));
   cell::CadOptions options;
   options.matrix = job.options.matrix;
   options.tolerance = edge_tolerance * box.diagonal().norm();
-  Result<std::vector<cad::Part>> parts = options.matrix ? cell::cad_parts(*bodies, box, *cut, options)
-                                                        : yarns_alone(*bodies, box, *cut, options);
-  if (!parts) return job.fail(at_cell(fabric, parts.error()));
+  Result<std::vector<cad::Part>> parts = options.matrix ? cell::cad_parts(own.list(), box, *cut, options)
+                                                        : yarns_alone(own.list(), box, *cut, options);
+  if (!parts) return job.fail(at_cell(fabric, cell::in_space(parts.error(), shape)));
+  bring_to_space(*parts, shape.axes);
   return std::move(*parts);
 }
 

@@ -52,7 +52,7 @@ void add_cell(Json& facts, const fem::Mesh& mesh) {
   std::string periodic;
   for (std::size_t k = 0; k < 3; ++k)
     if (mesh.cell->periodic[k]) periodic += std::string(periodic.empty() ? "" : " ") + "xyz"[k];
-  facts["yarn_share"] = yarns / (mesh.cell->high - mesh.cell->low).prod();
+  facts["yarn_share"] = yarns / mesh.cell->shape().volume();
   facts["periodic"] = periodic;
   facts["equations"] = mesh.equations.size();
   facts["load_cases"] = mesh.load_cases.size();
@@ -85,7 +85,7 @@ std::string name_of(const fem::Region& region) {
 }
 
 std::string shares_in_words(const fem::Mesh& mesh) {
-  const double percent = 100 / (mesh.cell->high - mesh.cell->low).prod();
+  const double percent = 100 / mesh.cell->shape().volume();
   double yarns = 0, wanted = 0, fibres = 0;
   for (const fem::Region& region : mesh.regions) {
     if (region.kind != fem::Region::Kind::yarn) continue;

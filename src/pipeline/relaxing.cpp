@@ -130,7 +130,7 @@ std::vector<Vec3> periods_of(const fabric::Fabric& fabric) {
   std::vector<Vec3> periods;
   for (int axis = 0; fabric.cell && axis < 3; ++axis)
     if (fabric.cell->periodic[static_cast<std::size_t>(axis)])
-      periods.push_back(std::abs(fabric.cell->high[axis] - fabric.cell->low[axis]) * Vec3::Unit(axis));
+      periods.push_back(fabric.cell->shape().edge(axis));
   return periods;
 }
 

@@ -13,11 +13,13 @@
 #include "cell/cut.h"
 #include "contact/contact.h"
 #include "fabric/repeat.h"
+#include "fabric/settle_cell.h"
 #include "fem/cell_size.h"
 #include "fem/fibre.h"
 #include "nurbs/divided.h"
 #include "nurbs/samples.h"
 #include "pipeline/overlaps.h"
+#include "yarn/in_axes.h"
 
 namespace selvage::pipeline {
 
@@ -35,8 +37,14 @@ constexpr double least_gap_share = 0.01;
 constexpr double tolerance_share = 0.02;  // of the thinnest yarn: how far copies of yarns by hand may be off
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// In the cell's own coordinates.
 Box3 box_of(const fabric::Fabric& fabric) {
-  return {fabric.cell->low, fabric.cell->high};
+  return fabric.cell->shape().box;
+}
+
+// Of places in the cell's own coordinates.
+Vec3 in_space(const fabric::Fabric& fabric, const Vec3& own) {
+  return fabric.cell->axes.place(own);
 }
 
 std::string_view name_of_axis(int axis) {
@@ -58,14 +66,19 @@ nurbs::Samples samples_of(const nurbs::Surface& surface) {
 
 // A translation that may be written down: as many digits as a cell needs that is to be a whole number of
 // repeats of this length.
-std::string length_text(double value, double repeat, Unit units) {
-  constexpr double near = 1e-6;  // of a repeat
+std::string written_length(double value, double repeat) {
+  constexpr double near = 1e-6;                      // of a repeat
+  if (std::abs(value) <= 1e-9 * repeat) return "0";  // of vectors, by rounding
   std::string text;
   for (int digits = 6; digits <= 17; ++digits) {
     text = fmt::format("{:.{}g}", value, digits);
     if (std::abs(std::strtod(text.c_str(), nullptr) - value) <= near * repeat) break;
   }
-  return fmt::format("{} {}", text, name_of(units));
+  return text;
+}
+
+std::string length_text(double value, double repeat, Unit units) {
+  return fmt::format("{} {}", written_length(value, repeat), name_of(units));
 }
 
 }  // namespace
@@ -84,7 +97,7 @@ bool check_cell_text(Job& job, const fabric::Fabric& fabric, bool with_matrix) {
     return job.fail(
         error(Kind::usage,
               "there is no unit cell in this input: `cell X Y Z  X Y Z ... end` says its opposite "
-              "corners"));
+              "corners, `cell vectors ...` the edges of one that is no rectangle"));
   if (with_matrix && fabric.cell->matrix.empty())
     return job.fail(cell_error(
         fabric,
@@ -101,9 +114,9 @@ std::vector<yarn::Body> yarns_in_cell(Job& job, const fabric::Fabric& fabric,
   const Box3 box = box_of(fabric);
   Box3 all;
   std::erase_if(bodies, [&](const yarn::Body& body) {
-    const Box3 own = yarn::bounds(body);
-    all.extend(own);
-    return !box.intersects(own);
+    all.extend(yarn::bounds(body));
+    const yarn::BodiesInAxes own({&body, 1}, fabric.cell->axes);
+    return !box.intersects(yarn::bounds(own.list().front()));
   });
   if (bodies.empty())
     job.say(cell_error(
@@ -139,7 +152,7 @@ Message not_whole(const fabric::Fabric& fabric, int axis, double length, double 
 void snap_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder) {
   constexpr double most = 1e-3;  // of a repeat
   const std::optional<fabric::Repeat> repeat = builder.repeat();
-  if (!fabric.cell || !repeat) return;
+  if (!fabric.cell || !repeat || !fabric.cell->axes.are_of_space()) return;
   fabric::Cell& cell = *fabric.cell;
   for (int axis = 0; axis < 3; ++axis) {
     const auto k = static_cast<std::size_t>(axis);
@@ -212,6 +225,55 @@ Message loose_end_message(const fabric::Fabric& fabric, std::span<const yarn::Bo
   return cell_error(fabric, std::move(text), loose.at);
 }
 
+// Of an oblique cell that is no repeat: what would be one.
+std::string true_vectors(Job& job, const fabric::Fabric& fabric) {
+  const std::optional<std::array<Vec3, 2>> vectors =
+      fabric::shortest_vectors(fabric, job.build_options(), static_cast<int>(job.threads));
+  if (!vectors) return "";
+  const auto text = [&](const Vec3& v) {
+    const double size = v.norm();
+    return fmt::format("{} {} 0", written_length(v.x(), size), written_length(v.y(), size));
+  };
+  return fmt::format(
+      "; its yarns repeat after the vectors ({}) and ({}) {}, and whole sums of these make a "
+      "periodic cell: `cell vectors {}  {}`",
+      text((*vectors)[0]), text((*vectors)[1]), name_of(fabric.units), text((*vectors)[0]),
+      text((*vectors)[1]));
+}
+
+// The same as periodic_axes() of an oblique cell, whose faces are compared in its own coordinates.
+std::optional<std::array<bool, 3>> periodic_vectors(Job& job, const fabric::Fabric& fabric,
+                                                    std::span<const yarn::Body> bodies, double thinnest) {
+  const fabric::Cell& cell = *fabric.cell;
+  if (!cell.periodic[0] || !cell.periodic[1])
+    return job.fail(
+        cell_error(fabric, "a cell with vectors is periodic along both of them: `periodic x y`, or `x y z`"));
+  const yarn::BodiesInAxes own(bodies, cell.axes);
+  const Box3 box = box_of(fabric);
+  const double tolerance = tolerance_share * thinnest;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!cell.periodic[static_cast<std::size_t>(axis)]) continue;
+    auto loose = fabric::find_loose_end(own.list(), box, axis, tolerance);
+    const char* what = "runs through its {} face, and none comes in opposite";
+    if (!loose) {
+      loose =
+          fabric::find_missing_in_faces(own.list(), box, axis, box.sizes()[axis], 0.25 * thinnest, tolerance);
+      what = "lies in its {} face, and none in the other";
+    }
+    if (!loose) continue;
+    return job.fail(cell_error(
+        fabric,
+        fmt::format("this cell is not periodic along its {} vector: yarn '{}' {}{}",
+                    axis == 0   ? "first"
+                    : axis == 1 ? "second"
+                                : "third",
+                    bodies[loose->body].name, fmt::format(fmt::runtime(what), loose->high ? "high" : "low"),
+                    true_vectors(job, fabric)),
+        in_space(fabric, loose->at)));
+  }
+  return cell.periodic;
+}
+
 }  // namespace
 
 std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric& fabric,
@@ -223,6 +285,7 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
   const Box3 box = box_of(fabric);
   double thinnest = infinity;
   for (const yarn::Body& body : bodies) thinnest = std::min(thinnest, yarn::narrowest_section(body));
+  if (!cell.axes.are_of_space()) return periodic_vectors(job, fabric, bodies, thinnest);
   const double tolerance = tolerance_share * thinnest;
   std::array<bool, 3> periodic{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -254,8 +317,9 @@ bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<cons
                           const std::array<bool, 3>& periodic) {
   if (periodic[2]) return true;
   const Box3 box = box_of(fabric);
+  const yarn::BodiesInAxes own(bodies, fabric.cell->axes);
   bool fits = true;
-  for (const yarn::Body& body : bodies) {
+  for (const yarn::Body& body : own.list()) {
     const double room = least_gap_share * yarn::narrowest_section(body);
     const std::span<const yarn::Body> alone(&body, 1);
     double lowest = infinity, highest = -infinity;
@@ -321,7 +385,8 @@ std::optional<Vec3> grazed_at(const nurbs::Samples& grid, const Box3& box, int a
 bool check_grazed_faces(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies) {
   if (job.options.force) return true;
   const Box3 box = box_of(fabric);
-  for (const yarn::Body& body : bodies) {
+  const yarn::BodiesInAxes own(bodies, fabric.cell->axes);
+  for (const yarn::Body& body : own.list()) {
     // Two yarns as near as they may be have a face between them.
     const double room = least_gap_share / 2.0 * yarn::narrowest_section(body);
     const nurbs::Samples grid = samples_of(body.surface);
@@ -332,12 +397,15 @@ bool check_grazed_faces(Job& job, const fabric::Fabric& fabric, std::span<const 
       if (!at) continue;
       return job.fail(cell_error(
           fabric,
-          fmt::format("yarn '{}' grazes the {} face of this cell, {} = {:.6g}: its surface runs along it, "
+          fmt::format("yarn '{}' grazes the {} face of this cell{}: its surface runs along it, "
                       "{:.2g} {} away, and what lies between would be meshed as flat as that; move the "
                       "cell, or --force meshes it as it is",
-                      body.name, cell::name_of_face(face), name_of_axis(axis), plane,
+                      body.name, cell::name_of_face(face),
+                      fabric.cell->axes.are_of_space()
+                          ? fmt::format(", {} = {:.6g}", name_of_axis(axis), plane)
+                          : std::string(),
                       std::abs((*at)[axis] - plane), name_of(fabric.units)),
-          at, body.name));
+          in_space(fabric, *at), body.name));
     }
   }
   return true;
@@ -346,8 +414,9 @@ bool check_grazed_faces(Job& job, const fabric::Fabric& fabric, std::span<const 
 namespace {
 
 // Is a place of a contact in the cell, or just beside it?
-bool is_near(const contact::Contact& contact, const Box3& box, double margin) {
-  const Box3 wide(box.min().array() - margin, box.max().array() + margin);
+bool is_near(const contact::Contact& contact, const Parallelepiped& cell, double margin) {
+  const Parallelepiped wide(Box3(cell.box.min().array() - margin, cell.box.max().array() + margin),
+                            cell.axes);
   return wide.contains(contact.at) ||
          std::any_of(contact.spots.begin(), contact.spots.end(),
                      [&](const contact::Minimum& spot) { return wide.contains(spot.on_a); });
@@ -357,7 +426,6 @@ bool is_near(const contact::Contact& contact, const Box3& box, double margin) {
 
 bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
                      double wanted) {
-  const Box3 box = box_of(fabric);
   double thickest = 0.0;
   for (const yarn::Body& body : bodies) thickest = std::max(thickest, yarn::narrowest_section(body));
   contact::ContactOptions options;
@@ -368,7 +436,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
   if (!contacts) return job.fail(contacts.error());
   const contact::Contact* nearest = nullptr;
   for (const contact::Contact& contact : contacts->list) {
-    if (!is_near(contact, box, options.reach)) continue;
+    if (!is_near(contact, fabric.cell->shape(), options.reach)) continue;
     if (!contact.is_overlap()) {
       nearest = &contact;  // the list goes on with larger gaps
       break;
@@ -461,8 +529,9 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
               fmt::format("--matrix-size is {:.6g}, to which edges grow from those on the yarns, but these "
                           "are {:.6g} {} long: --size makes them finer",
                           job.options.matrix_size, *finest, name_of(fabric.units))));
-  chosen.tetrahedra = fem::estimate_tetrahedra(bodies, box_of(fabric), chosen.sizes, job.options.matrix_size,
-                                               with_matrix, static_cast<int>(job.threads));
+  chosen.tetrahedra =
+      fem::estimate_tetrahedra(bodies, fabric.cell->shape(), chosen.sizes, job.options.matrix_size,
+                               with_matrix, static_cast<int>(job.threads));
   const std::string lengths = *coarsest - *finest < 1e-3 * *coarsest
                                   ? fmt::format("{:.4g}", *finest)
                                   : fmt::format("{:.4g} to {:.4g}", *finest, *coarsest);

@@ -239,6 +239,9 @@ class Writer {
   }
   void cell() {
     const double x = number(-2, 2), y = number(-2, 2), z = number(-2, 0);
+    if (choice(4) == 1)
+      return line("cell vectors {} 0 0  {} {} 0  0 0 {} at {} {} {}\n matrix epoxy\nend", number(0.3, 8),
+                  number(-2, 2), number(0.3, 8), number(0.3, 4), x, y, z);
     line("cell {} {} {}  {} {} {}\n matrix epoxy\n periodic x y\nend", x, y, z, x + number(0.3, 8),
          y + number(0.3, 8), z + number(0.3, 4));
   }

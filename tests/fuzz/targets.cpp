@@ -115,8 +115,9 @@ void run_mesh(std::string_view bytes) {
   const std::string text = fabric_text(bytes);
   const Descriptor& format = *formats::all_formats().front();
   Diagnostics diagnostics;
-  const std::optional<Fabric> fabric = read(format, named(text, format), diagnostics);
-  if (!fabric) std::abort();  // what is written by the grammar can be read
+  std::optional<Fabric> fabric = read(format, named(text, format), diagnostics);
+  if (!fabric) std::abort();                         // what is written by the grammar can be read
+  fabric::settle_cell(*fabric, {}, 1, diagnostics);  // by its vectors
   const std::vector<yarn::Body> bodies = bodies_of(*fabric, bytes);
   check(bodies);
   for (const yarn::Body& body : bodies)

@@ -379,8 +379,16 @@ class Flat {
     add(path + ".along_y", v.counts[1]);
     add(path + ".margin", v.margin);
   }
+  void add(const std::string& path, const CellVectors& v) {
+    add(path + ".first", v.first);
+    add(path + ".second", v.second);
+    add(path + ".height", v.height);
+    add(path + ".at", v.at);
+    add(path + ".margin", v.margin);
+  }
   void add(const std::string& path, const Cell& v) {
     add(path + ".of_repeats", v.of_repeats);
+    add(path + ".of_vectors", v.of_vectors);
     add(path + ".low", v.low);
     add(path + ".high", v.high);
     add(path + ".matrix", v.matrix);

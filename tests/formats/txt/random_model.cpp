@@ -591,6 +591,14 @@ class Maker {
     if (coin()) {
       cell.of_repeats.emplace().counts = {1 + up_to(4), 1 + up_to(4)};
       maybe(cell.of_repeats->margin, [&] { return positive(); });
+    } else if (coin()) {
+      fabric::CellVectors& vectors = cell.of_vectors.emplace();
+      const double along = positive(), up = positive();
+      vectors.first = {along, along * between(-0.2, 0.2), 0.0};
+      vectors.second = {up * between(-2.0, 2.0), up, 0.0};
+      maybe(vectors.height, [&] { return positive(); });
+      maybe(vectors.at, [&] { return point(); });
+      if (!vectors.height) maybe(vectors.margin, [&] { return positive(); });
     } else {
       corners(cell);
     }

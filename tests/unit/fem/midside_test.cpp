@@ -160,13 +160,13 @@ TEST(CellMidside, MiddleOfAnEdgeInAPlane) {
     // The last edge crosses the seam.
     const SurfaceEnd from = end(s.first_u() + range * k / 40),
                      to = end(s.first_u() + range * ((k + 1) % 40) / 40);
-    const std::optional<Vec3> middle = middle_in_plane(body, from, to, 0);
+    const std::optional<Vec3> middle = middle_in_plane(body, from, to, Vec3::UnitX());
     ASSERT_TRUE(middle.has_value()) << k;
     EXPECT_EQ(middle->x(), plane);
     EXPECT_LT(distance_to(body, *middle), 1e-7) << k;
     const Vec3 chord = to.at - from.at;
     EXPECT_NEAR((*middle - (from.at + to.at) / 2).dot(chord), 0, 1e-10 * chord.squaredNorm());
-    EXPECT_EQ(*middle_in_plane(body, to, from, 0), *middle) << k;
+    EXPECT_EQ(*middle_in_plane(body, to, from, Vec3::UnitX()), *middle) << k;
   }
 }
 

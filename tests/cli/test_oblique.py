@@ -1,0 +1,146 @@
+"""Oblique unit cells, `cell vectors`: a twill's smallest repeat against the cell along its axes, in stiffness and from the inside;
+the deck's pairs and equations against numpy; what is no repeat."""
+
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+
+from program import Case
+
+ROOT = pathlib.Path(__file__).parents[2]
+HOMOGENIZE = ROOT / "scripts" / "homogenize.py"
+TWILL = (ROOT / "samples" / "cell_twill.txt").read_text()
+VECTORS = "cell vectors 4.8 0 0  -1.2 1.2 0"
+
+
+VOXELS = 0.12  # what stairs of 0.15 on yarns 0.5 thick may change, of the roots of the diagonal
+
+
+class Deck:
+    """Nodes, elements, equations and named nodes of an Abaqus deck."""
+
+    def __init__(self, path):
+        self.nodes, self.elements, self.equations, self.sets = {}, [], [], {}
+        block, name, rows = None, None, []
+        for line in path.read_text().splitlines():
+            found = re.match(r"\*\* Cell: (.*)", line)
+            if found:
+                self.cell = np.array(found[1].split(), float).reshape(-1, 3)
+            if line.startswith("*"):
+                if line.startswith("**"):
+                    continue
+                words = [word.strip() for word in line.split(",")]
+                block, name = words[0].upper(), next((w.split("=")[1] for w in words if w.upper().startswith("NSET=")), None)
+            elif block == "*NODE":
+                number, *at = line.split(",")
+                self.nodes[int(number)] = np.array(at, float)
+                if name and len(self.sets.get(name, [])) < 1:
+                    self.sets.setdefault(name, []).append(int(number))
+            elif block == "*ELEMENT":
+                self.elements.append([int(word) for word in line.split(",") if word.strip()][1:])
+            elif block == "*NSET":
+                self.sets.setdefault(name, []).extend(int(w) for w in line.split(",") if w.strip().isdigit())
+            elif block == "*EQUATION":
+                rows.append([word for word in line.replace(",", " ").split()])
+        flat = [word for row in rows for word in row]
+        while flat:
+            count = int(flat[0])
+            terms = np.array(flat[1:1 + 3 * count], float).reshape(-1, 3)
+            self.equations.append([(int(n), int(d), f) for n, d, f in terms])
+            flat = flat[1 + 3 * count:]
+
+
+class Oblique(Case):
+    def mesh(self, text, name, *more):
+        source = self.folder / f"{name}.txt"
+        source.write_text(text)
+        deck = self.folder / f"{name}.inp"
+        return deck, self.succeeds("mesh", source, "--matrix", "--periodic", *more, "-o", deck)
+
+    def stiffness(self, deck, solver="iterative"):
+        run = subprocess.run([sys.executable, HOMOGENIZE, deck, "--json", "-", "--solver", solver], capture_output=True,
+                             text=True, check=False, env=os.environ)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        result = json.loads(run.stdout)
+        return np.array(result["stiffness"]), result
+
+    def both(self, *more):
+        """Of the oblique cell and of that along the axes, four times as large; both stacked, so that nothing bends."""
+        stacked = TWILL.replace("periodic x y", "periodic x y z").replace("ellipse 0.8 0.3", "ellipse 0.8 0.5")
+        oblique, _ = self.mesh(stacked.replace(VECTORS, f"{VECTORS}  0 0 1.2"), "oblique", *more)
+        whole, _ = self.mesh(stacked.replace(VECTORS, "cell 0 0 -0.6  4.8 4.8 0.6"), "whole", *more)
+        return oblique, whole
+
+    def assert_alike(self, oblique, whole, most):
+        ours, facts = self.stiffness(oblique)
+        theirs, other = self.stiffness(whole)
+        self.assertLess(2.5 * facts["elements"], other["elements"])
+        scale = np.sqrt(np.diag(theirs))
+        off = np.abs(ours - theirs) / np.outer(scale, scale)
+        self.assertLess(off.max(), most, off)
+        self.assertGreater(np.linalg.eigvalsh(ours).min(), 0)
+
+    def test_the_stiffness_of_the_whole_repeat(self):
+        self.assert_alike(*self.both("--size", "0.5", "--order", "1"), 5e-3)
+
+    def test_voxels(self):
+        """As many along x over the same length; the others are parallelepipeds, so that the stairs differ."""
+        self.assert_alike(*self.both("--voxel", "32"), VOXELS)
+
+    def test_a_field_of_constant_strain_meets_all_conditions(self):
+        """Nodes opposite each other, over all three pairs of faces; the elements fill the cell."""
+        deck = Deck(self.both("--size", "0.5", "--order", "1")[0])
+        corner, edges = deck.cell[0], deck.cell[1:]
+        strain = np.array([[1.0, 0.3, -0.2], [0.3, -0.7, 0.5], [-0.2, 0.5, 0.4]])
+        value = {d: strain[i, j] * (1 if i == j else 2)
+                 for d, (i, j) in enumerate([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)])}
+        drivers = {deck.sets[f"ConstraintsDriver{d}"][0]: value[d] for d in value}
+        dependent = set()
+        for equation in deck.equations:
+            moved = [f * (drivers[n] if n in drivers else (strain @ deck.nodes[n])[d - 1]) for n, d, f in equation]
+            self.assertLess(abs(sum(moved)), 1e-12)
+            dependent.add(equation[0][0])
+        used = {n for element in deck.elements for n in element}
+        own = {n: np.linalg.solve(edges.T, deck.nodes[n] - corner) for n in used}  # 0 .. 1 along each edge
+        self.assertEqual(dependent, {n for n in used if (own[n] > 1 - 1e-9).any()})
+        places = np.array([own[n] for n in used])
+        self.assertLess(abs(places - 0.5).max(), 0.5 + 1e-12)
+        points = np.array([[deck.nodes[n] for n in element] for element in deck.elements])
+        volumes = np.linalg.det(points[:, 1:] - points[:, :1]) / 6
+        self.assertGreater(volumes.min(), 0)
+        self.assertAlmostEqual(volumes.sum() / np.linalg.det(edges), 1, 9)
+
+    def test_what_is_no_repeat_is_told_the_true_vectors(self):
+        """And these make a cell."""
+        source = self.folder / "askew.txt"
+        source.write_text(TWILL.replace(VECTORS, "cell vectors 4.8 0 0  -1.2 1.1 0"))
+        told = self.fails(1, "mesh", source, "--matrix", "--periodic", "-o", self.folder / "askew.inp")
+        self.assertIn("not periodic along its second vector", told)
+        right = re.search(r"`(cell vectors [^`]*)`", told)[1]
+        deck, _ = self.mesh(TWILL.replace(VECTORS, right), "right", "--voxel", "16")
+        self.assertAlmostEqual(np.linalg.det(Deck(deck).cell[1:, :])
+                               / Deck(deck).cell[3][2], 4 * 1.2**2, 9)
+
+    def test_a_planar_triaxial_braid_in_calculix(self):
+        text = (ROOT / "samples" / "cell_braid.txt").read_text().replace("periodic x y", "periodic x y z")
+        deck, _ = self.mesh(text, "braid", "--size", "0.25", "--order", "1")
+        stiffness, facts = self.stiffness(deck, "direct")
+        self.assertLess(facts["asymmetry"], 1e-6)
+        self.assertGreater(np.linalg.eigvalsh(stiffness).min(), 0)
+        self.assertGreater(stiffness[0, 0], 1.5 * stiffness[1, 1])  # axial yarns run along x
+
+    def test_cad(self):
+        source = self.folder / "twill.txt"
+        source.write_text(TWILL)
+        self.succeeds("convert", source, "--matrix", "-o", self.folder / "twill.stp")
+        self.succeeds("check", self.folder / "twill.stp")
+
+
+if __name__ == "__main__":
+    unittest.main()
