@@ -12,9 +12,10 @@ import subprocess
 import numpy
 
 FORCE = 1e6  # m/s2: velocities of about 1e-3 m/s in pores of 0.1 mm
+RESIDUAL = 1e-5  # of the velocity along the force, which has converged then; components that are next to nothing have not
 AXES = "xyz"
 HEAD = "FoamFile\n{{\n    version 2.0;\n    format ascii;\n    class {kind};\n    object {name};\n}}\n\n"
-# Of cells that are not orthogonal; the pressure of a flow along cylinders is next to nothing, and its residual says nothing.
+# Of cells that are not orthogonal.
 SOLUTION = """solvers
 {
     p { solver PCG; preconditioner DIC; tolerance 1e-14; relTol 0.01; }
@@ -26,7 +27,7 @@ SIMPLE
     consistent yes;
     pRefCell 0;
     pRefValue 0;
-    residualControl { U 1e-7; }
+    residualControl { U 1e-6; }
 }
 relaxationFactors { equations { U 0.9; } }
 """
@@ -52,6 +53,7 @@ class Case:
     def __init__(self, path, facts):
         self.path, self.facts = pathlib.Path(path), facts
         self._run("checkMesh", "-constant")
+        self._measure()
 
     def _run(self, *command):
         log = self.path / f"log.{command[0]}"
@@ -70,12 +72,14 @@ class Case:
 
     def _fields(self, axis):
         velocity, pressure = [], []
-        for patch in self.boundary():
-            name, kind = patch
+        for name, kind, count, start in self.boundary():
             if kind == "cyclic":
                 own = ("type cyclic;", "type cyclic;")
             elif kind == "wall":
-                own = ("type noSlip;", "type zeroGradient;")
+                # What the force is not held by is taken for zero, as solvers do; of the pressure that leaves the force's own slope.
+                slopes = FORCE * self.normals[int(start) : int(start) + int(count), axis]
+                rows = "\n".join(map(str, slopes))
+                own = ("type noSlip;", f"type fixedGradient; gradient nonuniform List<scalar>\n{count}\n(\n{rows}\n);")
             elif name.endswith(AXES[axis]):
                 own = ("type zeroGradient;", "type fixedValue; value uniform 0;")
             else:
@@ -86,8 +90,9 @@ class Case:
         self._put("0/p", "volScalarField", "dimensions [0 2 -2 0 0 0 0];\ninternalField uniform 0;\nboundaryField\n{\n" + "".join(pressure) + "}\n")
 
     def boundary(self):
+        """Of each patch its name, type, number of faces and first face."""
         text = (self.path / "constant/polyMesh/boundary").read_text()
-        return re.findall(r"^    (\w+)\n    \{\n        type +(\w+);", text, re.MULTILINE)
+        return re.findall(r"^    (\w+)\n    \{\n        type +(\w+);.*?nFaces +(\d+);\s+startFace +(\d+);", text, re.MULTILINE | re.DOTALL)
 
     def solve(self, axis, _held):
         """As PoreFlow.solve(): the integral of the velocity over the pores for a force of 1 and a viscosity of 1, in mm."""
@@ -102,19 +107,22 @@ class Case:
                   f"    injectionRateSuSp {{ U (({force}) 0); }}\n}}\n")
         self._put("system/fvSolution", "dictionary", SOLUTION)
         log = self._run("simpleFoam")
-        steps = re.findall(r"SIMPLE solution converged in (\d+)", log)
-        if not steps:
-            raise Failure("simpleFoam did not converge: see " + str(self.path / "log.simpleFoam"))
-        velocity = numbers_in(self.path / steps[0] / "U")[: self.facts["tets"]]
-        return (self.volumes()[:, None] * velocity).sum(axis=0) / FORCE * 1e6, int(steps[0])  # m2 a unit of force: mm2
+        last = float(re.findall(rf"Solving for U{AXES[axis]}, Initial residual = ([^,]+),", log)[-1])
+        if not last < RESIDUAL:
+            raise Failure(f"simpleFoam did not converge (residual {last:.1g}): see {self.path / 'log.simpleFoam'}")
+        end = max((folder for folder in self.path.glob("[0-9]*")), key=lambda folder: int(folder.name))
+        velocity = numbers_in(end / "U")[: self.facts["tets"]]
+        return (self.volumes[:, None] * velocity).sum(axis=0) / FORCE * 1e6, int(end.name)  # m2 a unit of force: mm2
 
-    def volumes(self):
-        """Of the cells, mm3."""
-        points = 1e3 * numbers_in(self.path / "constant/polyMesh/points")
+    def _measure(self):
+        """Unit normals of the faces, and the volumes of the cells, mm3."""
         mesh = self.path / "constant/polyMesh"
-        faces = numpy.array([row.split() for row in re.findall(r"^3\(([^()]*)\)$", (mesh / "faces").read_text(), re.MULTILINE)], dtype=int)
+        points = 1e3 * numbers_in(mesh / "points")
+        corners = points[numpy.array([row.split() for row in re.findall(r"^3\(([^()]*)\)$", (mesh / "faces").read_text(), re.MULTILINE)], dtype=int)]
         owner, neighbour = (numpy.array(re.findall(r"^\d+$", (mesh / name).read_text(), re.MULTILINE)[1:], dtype=int) for name in ("owner", "neighbour"))
-        # Six times the volume under each face, seen from the origin.
-        under = numpy.einsum("ni,ni->n", points[faces[:, 0]], numpy.cross(points[faces[:, 1]], points[faces[:, 2]])) / 6
-        volumes = numpy.bincount(owner, under, self.facts["tets"])
-        return volumes - numpy.bincount(neighbour, under[: len(neighbour)], self.facts["tets"])
+        # The volume under each face, seen from the origin.
+        under = numpy.einsum("ni,ni->n", corners[:, 0], numpy.cross(corners[:, 1], corners[:, 2])) / 6
+        count = self.facts["tets"]
+        self.volumes = numpy.bincount(owner, under, count) - numpy.bincount(neighbour, under[: len(neighbour)], count)
+        areas = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        self.normals = areas / numpy.linalg.norm(areas, axis=1)[:, None]

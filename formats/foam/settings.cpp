@@ -6,10 +6,10 @@ const std::string_view control = R"(application     simpleFoam;
 startFrom       latestTime;
 startTime       0;
 stopAt          endTime;
-endTime         5000;
+endTime         1000;
 deltaT          1;
 writeControl    timeStep;
-writeInterval   5000;
+writeInterval   1000;
 purgeWrite      1;
 writeFormat     ascii;
 writePrecision  10;
@@ -17,7 +17,7 @@ runTimeModifiable false;
 )";
 
 const std::string_view schemes = R"(ddtSchemes           { default steadyState; }
-gradSchemes          { default leastSquares; }
+gradSchemes          { default Gauss linear; }
 divSchemes
 {
     default          none;

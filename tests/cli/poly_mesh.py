@@ -21,7 +21,7 @@ class PolyMesh:
         self.faces = np.array([re.fullmatch(r"3\((\d+) (\d+) (\d+)\)", row).groups() for row in items(folder / "faces")], dtype=int)
         self.owner = np.array(items(folder / "owner"), dtype=int)
         self.neighbour = np.array(items(folder / "neighbour"), dtype=int)
-        self.cells = self.owner.max() + 1
+        self.cells = max(self.owner.max(), self.neighbour.max()) + 1
         self.patches = {}
         text = (folder / "boundary").read_text()
         for name, body in re.findall(r"^    (\w+)\n    \{\n(.*?)\n    \}$", text, re.MULTILINE | re.DOTALL):

