@@ -134,6 +134,9 @@ struct Companion {
 struct MeshFileOptions {
   std::string companion{};  // the name of the file beside (Descriptor::companion); empty: there is none
   OptionValues own{};       // of Descriptor::options
+  // Of a format that is a folder: opens another file in it ("constant/points"). What it gives outlives the
+  // writer.
+  std::function<Result<OutputFile*>(std::string_view name)> open_member{};
 };
 
 struct Descriptor {
@@ -193,6 +196,12 @@ struct Descriptor {
   // The largest order of meshes whose regions share no nodes (Mesh::joining) that the format holds, as
   // surfaces and as cohesive elements; 0: of none.
   int order_of_surfaces = 0, order_of_cohesive = 0;
+  // The largest order of pore spaces (Mesh::patches) that the format holds; 0: of none.
+  int order_of_pores = 0;
+  bool is_of_pores = false;  // and of nothing else
+  // An output is a folder with a file of the same name in it, which the writer is given; and these folders
+  // below it, in which its other files are ("constant/polyMesh"). None: it is a file.
+  std::vector<std::string_view> folders{};
   // A unit cell on voxels (`mesh --voxel`), for a format that holds no elements.
   Result<WriteFacts> (*write_raster)(const fem::Raster& raster, OutputFile& output) = nullptr;
   Companion companion{};

@@ -11,7 +11,7 @@ const std::vector<const Descriptor*>& all_formats() {
       &dxf::descriptor(),          &vtp::descriptor(),       &csv::descriptor(),     &inp::descriptor(),
       &cdb::descriptor(),          &cdb::macro_descriptor(), &k::descriptor(),       &bdf::descriptor(),
       &msh::descriptor(),          &vtu::descriptor(),       &unv::descriptor(),     &frd::descriptor(),
-      &hdf5::descriptor(),         &npz::descriptor()};
+      &foam::descriptor(),         &hdf5::descriptor(),      &npz::descriptor()};
   return list;
 }
 

@@ -75,6 +75,9 @@ const Descriptor& descriptor();
 namespace frd {  // results of CalculiX
 const Descriptor& descriptor();
 }
+namespace foam {  // OpenFOAM: the pore space of a unit cell as a case
+const Descriptor& descriptor();
+}
 namespace hdf5 {  // HDF5: a unit cell as fields on voxels
 const Descriptor& descriptor();
 }

@@ -9,6 +9,7 @@
 #include "fem/sections.h"
 #include "formats/cdb/deck.h"
 #include "formats/cdb/interfaces.h"
+#include "formats/cdb/pores.h"
 
 namespace selvage::formats::cdb {
 namespace {
@@ -145,6 +146,7 @@ void write_types(TextBuffer& text, const fem::Mesh& mesh) {
 }
 
 Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& /*options*/) {
+  if (!mesh.patches.empty()) return write_pores(mesh, output);
   const fem::DeckNames names(mesh, {.longest = 32, .taken = {"ALL", "STAT", "DEFA"}});
   const Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();
@@ -219,6 +221,7 @@ const Descriptor& descriptor() {
                                   .write_beams = write_beams,
                                   .order_of_surfaces = 2,
                                   .order_of_cohesive = 2,
+                                  .order_of_pores = 2,
                                   .companion = {.format = macro_descriptor, .is_of_load_cases = true}};
   return self;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "fem/complete_cell.h"
 #include "fem/faces.h"
 #include "formats/msh/element_data.h"
 #include "formats/msh/topology.h"
@@ -18,7 +19,7 @@ class CellFile {
       : mesh_(mesh),
         text_(text),
         topology_(topology_of(mesh)),
-        opposite_(opposite_nodes(mesh)),
+        opposite_(fem::opposite_nodes(*mesh.cell, mesh.nodes.size())),
         copies_(copies_in(mesh, topology_, opposite_)) {
     if (mesh.order == 2) find_midside_nodes();
     name_groups();
@@ -72,6 +73,7 @@ class CellFile {
   }
 
   [[nodiscard]] std::string group_name(const Surface& surface) const {
+    if (!mesh_.patches.empty()) return mesh_.patches[surface.patch].name;
     if (surface.face >= 0) return std::string("Face") + static_cast<char>('A' + surface.face);
     const std::string& name = mesh_.regions[surface.region].name;
     const std::size_t beyond = std::min(surface.behind, surface.facing);  // one of them is outside

@@ -218,7 +218,8 @@ const Descriptor& descriptor() {
                                   .sniff = has_the_first_line,
                                   .write_mesh = write,
                                   .order_of_surfaces = 2,
-                                  .order_of_cohesive = 1};
+                                  .order_of_cohesive = 1,
+                                  .order_of_pores = 2};
   return self;
 }
 

@@ -31,7 +31,21 @@ std::map<std::array<std::size_t, 2>, std::size_t> facing_regions(const fem::Mesh
   return facing;
 }
 
+// A pore space has its surfaces already.
+std::vector<Surface> patches_of(const fem::Mesh& mesh) {
+  std::vector<Surface> surfaces;
+  for (const fem::Patch& patch : mesh.patches) {
+    Surface surface;
+    surface.patch = surfaces.size();
+    for (const fem::Patch::Side& side : patch.sides)
+      surface.sides.push_back(fem::side_nodes(mesh, side.element, side.side));
+    surfaces.push_back(std::move(surface));
+  }
+  return surfaces;
+}
+
 std::vector<Surface> surfaces_of(const fem::Mesh& mesh) {
+  if (!mesh.patches.empty()) return patches_of(mesh);
   const auto facing = facing_regions(mesh);
   std::map<std::tuple<int, std::size_t, std::size_t, std::size_t>, Surface> found;
   for (const fem::OuterSide& side : fem::outer_sides(mesh)) {
@@ -185,32 +199,6 @@ Topology topology_of(const fem::Mesh& mesh) {
   const Seams seams = seams_of(topology.surfaces);
   Tracer(mesh, seams).trace(topology);
   return topology;
-}
-
-std::array<std::vector<std::size_t>, 3> opposite_nodes(const fem::Mesh& mesh) {
-  std::array<std::vector<std::size_t>, 3> opposite;
-  const fem::UnitCell& cell = *mesh.cell;
-  for (std::size_t a = 0; a < 3; ++a) {
-    opposite[a].assign(mesh.nodes.size(), fem::no_node);
-    if (!cell.periodic[a]) continue;
-    const auto pair = [&](const std::vector<std::size_t>& high, const std::vector<std::size_t>& low) {
-      for (std::size_t k = 0; k < std::min(high.size(), low.size()); ++k) opposite[a][high[k]] = low[k];
-    };
-    pair(cell.face_nodes[2 * a], cell.face_nodes[2 * a + 1]);
-    for (std::size_t edge = 0; edge < 12; ++edge) {
-      if (edge / 4 == a) continue;
-      const std::size_t bit = (edge / 4 + 1) % 3 == a ? 1 : 2;
-      if ((edge % 4 & bit) != 0) pair(cell.edge_nodes[edge], cell.edge_nodes[edge - bit]);
-    }
-    const std::size_t bit = std::size_t{1} << a;
-    for (std::size_t corner = 0; corner < 8; ++corner)
-      if ((corner & bit) != 0 && cell.corners[corner] < mesh.nodes.size() &&
-          cell.corners[corner - bit] < mesh.nodes.size())
-        opposite[a][cell.corners[corner]] = cell.corners[corner - bit];
-    for (std::size_t corner = 0; corner < 8; ++corner)
-      if ((corner & bit) != 0) pair(cell.more_corners[corner], cell.more_corners[corner - bit]);
-  }
-  return opposite;
 }
 
 std::vector<Copy> copies_in(const fem::Mesh& mesh, const Topology& topology,

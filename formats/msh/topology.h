@@ -17,6 +17,7 @@ struct Surface {
   std::size_t behind = fem::OuterSide::outside;   // the region beyond
   std::size_t facing = fem::OuterSide::outside;   // the one beyond that shares no nodes (fem::Mesh::joining)
   int face = -1;                                  // 0..5, A..F: of the cell; -1: inside
+  std::size_t patch = 0;                          // of a pore space: index into fem::Mesh::patches
   std::vector<std::array<std::size_t, 4>> sides;  // corner nodes as in fem::OuterSide
   std::vector<std::size_t> curves;                // around it, indices
 };
@@ -41,11 +42,8 @@ struct Copy {
   Vec3 shift = Vec3::Zero();  // from the original
 };
 
-// For each node and axis: the node opposite on the low side; fem::no_node: it is not on the high side of the
-// axis, or the axis is not periodic.
-std::array<std::vector<std::size_t>, 3> opposite_nodes(const fem::Mesh& mesh);
-
-// By dimension, then by entity. What has no complete copy on the other side is left out.
+// `opposite`: of fem::opposite_nodes(). By dimension, then by entity. What has no complete copy on the other
+// side is left out.
 std::vector<Copy> copies_in(const fem::Mesh& mesh, const Topology& topology,
                             const std::array<std::vector<std::size_t>, 3>& opposite);
 

@@ -265,6 +265,7 @@ const Descriptor& descriptor() {
                                   .write_mesh = write,
                                   .order_of_surfaces = 2,
                                   .order_of_cohesive = 2,
+                                  .order_of_pores = 2,
                                   .write_gap_map = write_gaps};
   return self;
 }

@@ -15,6 +15,7 @@
 #include "fem/cohesive_law.h"
 #include "fem/complete_cell.h"
 #include "fem/materials.h"
+#include "fem/pores.h"
 #include "fem/quality.h"
 #include "fem/sides.h"
 
@@ -93,6 +94,7 @@ Status CellMesher::prepare() {
   sizes_ = options_.sizes;
   sizes_.resize(bodies_.size(), options_.size > 0 ? options_.size : extent_ / default_edges_per_extent);
   tolerance_ = options_.tolerance > 0 ? options_.tolerance : 1e-3 * extent_;
+  if (options_.pores) return {};
   Result<MaterialChoice> choice =
       choose_cell_materials(fabric_, bodies_, options_.matrix, options_.physics, diagnostics_);
   if (!choice) return choice.error();
@@ -202,7 +204,7 @@ Status CellMesher::finish(Mesh& mesh) {
     const std::uint32_t body = block_->of_regions[r];
     mesh.regions[r].exact_volume = cube * (body == CellTriangles::matrix ? rest : volumes[body]);
   }
-  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+  for (std::size_t r = 0; r < mesh.regions.size() && !options_.pores; ++r) {
     const std::uint32_t body = block_->of_regions[r];
     mesh.regions[r].material =
         body == CellTriangles::matrix ? fabric_.cell->matrix : materials_.of_body[body];
@@ -213,9 +215,12 @@ Status CellMesher::finish(Mesh& mesh) {
 
   step("finishing", 4);
   for (Message& note : complete(mesh, *block_, options_.order)) diagnostics_.add(located(note));
+  if (options_.pores)
+    if (Status kept = keep_pores(mesh); !kept) return located(kept.error());
   const Parallelepiped cell_mm(Box3(cell_.box.min() * scale, cell_.box.max() * scale), cell_.axes);
   if (Status complete = complete_cell(mesh, cell_mm, options_.periodic); !complete)
     return located(complete.error());
+  if (options_.pores) add_face_patches(mesh);
   if (Status joined = check_joining(mesh); !joined) return joined;
   measure(mesh);
   mesh.angles = angles_;

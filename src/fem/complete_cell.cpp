@@ -204,11 +204,14 @@ std::vector<std::size_t> find_lowest(const Mesh& mesh, const UnitCell& cell) {
   return lowest;
 }
 
-// Sides of a high face into the order of those opposite.
-Status pair_sides(const Mesh& mesh, UnitCell& cell, const std::vector<std::size_t>& lowest) {
+// Sides of a high face into the order of those opposite: over this axis alone, for where a cell is one
+// element thick, two sides may have nodes that are alike over the others.
+Status pair_sides(const Mesh& mesh, UnitCell& cell) {
   using Side = std::array<std::size_t, 4>;
-  auto key = [&](Side side) {
-    for (std::size_t& node : side) node = lowest[node];
+  const auto opposite = opposite_nodes(cell, mesh.nodes.size());
+  auto key = [&](Side side, std::size_t axis) {
+    for (std::size_t& node : side)
+      if (opposite[axis][node] != no_node) node = opposite[axis][node];
     std::sort(side.begin(), side.end());
     return side;
   };
@@ -217,7 +220,7 @@ Status pair_sides(const Mesh& mesh, UnitCell& cell, const std::vector<std::size_
     auto &high = cell.face_sides[2 * axis], &low = cell.face_sides[2 * axis + 1];
     std::vector<std::pair<Side, std::size_t>> of_low, of_high;
     auto list = [&](const std::vector<Side>& from, auto& to) {
-      for (std::size_t k = 0; k < from.size(); ++k) to.emplace_back(key(from[k]), k);
+      for (std::size_t k = 0; k < from.size(); ++k) to.emplace_back(key(from[k], axis), k);
       for (auto& [side, number] : to)  // a triangle's doubled corner may be any
         if (side[2] == side[3] || side[0] == side[1] || side[1] == side[2]) {
           std::size_t* last = std::unique(side.data(), side.data() + 4);
@@ -241,6 +244,30 @@ Status pair_sides(const Mesh& mesh, UnitCell& cell, const std::vector<std::size_
 
 }  // namespace
 
+std::array<std::vector<std::size_t>, 3> opposite_nodes(const UnitCell& cell, std::size_t nodes) {
+  std::array<std::vector<std::size_t>, 3> opposite;
+  for (std::size_t a = 0; a < 3; ++a) {
+    opposite[a].assign(nodes, no_node);
+    if (!cell.periodic[a]) continue;
+    const auto pair = [&](const std::vector<std::size_t>& high, const std::vector<std::size_t>& low) {
+      for (std::size_t k = 0; k < std::min(high.size(), low.size()); ++k) opposite[a][high[k]] = low[k];
+    };
+    pair(cell.face_nodes[2 * a], cell.face_nodes[2 * a + 1]);
+    for (std::size_t edge = 0; edge < 12; ++edge) {
+      if (edge / 4 == a) continue;
+      const std::size_t bit = (edge / 4 + 1) % 3 == a ? 1 : 2;
+      if ((edge % 4 & bit) != 0) pair(cell.edge_nodes[edge], cell.edge_nodes[edge - bit]);
+    }
+    const std::size_t bit = std::size_t{1} << a;
+    for (std::size_t corner = 0; corner < 8; ++corner)
+      if ((corner & bit) != 0 && cell.corners[corner] < nodes && cell.corners[corner - bit] < nodes)
+        opposite[a][cell.corners[corner]] = cell.corners[corner - bit];
+    for (std::size_t corner = 0; corner < 8; ++corner)
+      if ((corner & bit) != 0) pair(cell.more_corners[corner], cell.more_corners[corner - bit]);
+  }
+  return opposite;
+}
+
 Status complete_cell(Mesh& mesh, const Parallelepiped& shape, std::array<bool, 3> periodic) {
   const Result<std::vector<Sides>> sides = find_sides(mesh, shape);
   if (!sides) return sides.error();
@@ -253,10 +280,10 @@ Status complete_cell(Mesh& mesh, const Parallelepiped& shape, std::array<bool, 3
   if (Status ordered = order_sets(mesh, cell, shape.box.sizes().maxCoeff()); !ordered) return ordered;
   find_face_sides(mesh, cell, *sides);
   std::vector<std::size_t> lowest = find_lowest(mesh, cell);
-  if (Status paired = pair_sides(mesh, cell, lowest); !paired) return paired;
+  if (Status paired = pair_sides(mesh, cell); !paired) return paired;
   mesh.cell = std::move(cell);
   if (mesh.joining != Joining::bonded) double_nodes(mesh, lowest);
-  return add_conditions(mesh, lowest);
+  return mesh.patches.empty() ? add_conditions(mesh, lowest) : Status();
 }
 
 std::optional<std::size_t> held_node(const Mesh& mesh) {

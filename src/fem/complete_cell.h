@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "core/diagnostics.h"
 #include "core/parallelepiped.h"
@@ -27,6 +28,7 @@ namespace selvage::fem {
 //   gradient; of a plate, whose z faces let nothing through, along x and y. Without a periodic axis every
 //   node of the faces has G x: an upper bound.
 // Regions that share no nodes (Mesh::joining) are parted first: fem/interfaces.h.
+// A pore space (Mesh::patches) gets sets alone: nothing holds its nodes.
 // Load cases: each driver's strain (curvature) 0.001 (1/mm) with the others zero, and 1 K with all of them
 //   zero; of a cell that conducts each driver's gradient 1 a mm. None where parts of the mesh do not hang
 //   together (yarns without a matrix): they would fly apart.
@@ -38,6 +40,10 @@ Status complete_cell(Mesh& mesh, const Parallelepiped& shape, std::array<bool, 3
 // The node whose displacements, or potential, are to be zero in every load case; none where nothing has to be
 // held, or there is no node at the cell's corner.
 std::optional<std::size_t> held_node(const Mesh& mesh);
+
+// For each axis and node: the node opposite on the low side; no_node: it is not on the high side of the axis,
+// or the axis is not periodic. `nodes`: how many there are.
+std::array<std::vector<std::size_t>, 3> opposite_nodes(const UnitCell& cell, std::size_t nodes);
 
 // No node there (UnitCell::corners).
 inline constexpr std::size_t no_node = static_cast<std::size_t>(-1);

@@ -158,6 +158,22 @@ struct CohesiveLaw {
   std::optional<Fracture> fracture;
 };
 
+// A part of the boundary of a pore space (fem/pores.h).
+struct Patch {
+  enum class Kind {
+    wall,      // of one yarn
+    periodic,  // a face of the cell that goes on as the opposite one
+    open       // a face of the cell through which something may flow in or out
+  };
+  struct Side {
+    std::size_t element = 0, side = 0;  // index into element_sides() (fem/sides.h)
+  };
+  Kind kind = Kind::wall;
+  std::string name;          // the yarn's; x_low, x_high; inlet_z, outlet_z (low and high)
+  std::size_t opposite = 0;  // periodic: the patch whose k-th side is opposite the k-th
+  std::vector<Side> sides;   // at least one
+};
+
 struct Mesh {
   enum class Shape { tetrahedron, hexahedron, beam };  // beam: of BeamModel (beams.h), two nodes
   Shape shape = Shape::tetrahedron;
@@ -181,6 +197,7 @@ struct Mesh {
   Joining joining = Joining::bonded;   // other ones: of a cell of tetrahedra
   std::vector<Interface> interfaces;   // by their regions; empty where all are bonded
   std::vector<CohesiveLaw> laws;       // of cohesive ones
+  std::vector<Patch> patches;          // of a pore space, whose only region is named "pores"; else empty
   Physics physics = Physics::elastic;  // other ones: of a cell
   std::vector<Driver> drivers;
   std::vector<Equation> equations;

@@ -16,12 +16,6 @@ struct Key {
   }
 };
 
-ElementSide corners_of(const Mesh& mesh, std::size_t element, std::size_t side) {
-  ElementSide nodes = element_sides(mesh, element)[side];
-  for (std::size_t& node : nodes) node = mesh.elements[element][node];
-  return nodes;
-}
-
 // The face of the cell in which all corners stand.
 int face_of(const Mesh& mesh, const std::optional<Parallelepiped>& cell, const ElementSide& nodes) {
   if (!cell) return -1;
@@ -51,13 +45,19 @@ std::span<const ElementSide> element_sides(const Mesh& mesh, std::size_t element
   return element_sides(mesh.shape);
 }
 
+ElementSide side_nodes(const Mesh& mesh, std::size_t element, std::size_t side) {
+  ElementSide nodes = element_sides(mesh, element)[side];
+  for (std::size_t& node : nodes) node = mesh.elements[element][node];
+  return nodes;
+}
+
 std::vector<OuterSide> outer_sides(const Mesh& mesh) {
   std::vector<Key> keys;
   keys.reserve(element_sides(mesh.shape).size() * mesh.elements.size());
   for (std::size_t i = 0; i < mesh.regions.size(); ++i)
     for (std::size_t e = mesh.regions[i].first_element; e < mesh.regions[i].last_element; ++e)
       for (std::size_t s = 0; s < element_sides(mesh, e).size(); ++s) {
-        Key key{corners_of(mesh, e, s), e, s, i};
+        Key key{side_nodes(mesh, e, s), e, s, i};
         // Which corner of a triangle is repeated depends on the element from which it is seen.
         if (key.nodes[2] == key.nodes[3])
           key.nodes[3] = *std::max_element(key.nodes.begin(), key.nodes.end());
@@ -74,7 +74,7 @@ std::vector<OuterSide> outer_sides(const Mesh& mesh) {
     if (k > 0 && keys[k - 1].is_same_place(key)) behind = keys[k - 1].region;
     if (k + 1 < keys.size() && keys[k + 1].is_same_place(key)) behind = keys[k + 1].region;
     if (behind == key.region) continue;
-    OuterSide side{key.element, key.side, key.region, behind, -1, corners_of(mesh, key.element, key.side)};
+    OuterSide side{key.element, key.side, key.region, behind, -1, side_nodes(mesh, key.element, key.side)};
     if (behind == OuterSide::outside) side.face = face_of(mesh, cell, side.nodes);
     sides.push_back(side);
   }

@@ -16,6 +16,9 @@ std::span<const ElementSide> element_sides(Mesh::Shape shape);
 // The same of an element, which may be a wedge: its five sides, as of Abaqus's C3D6.
 std::span<const ElementSide> element_sides(const Mesh& mesh, std::size_t element);
 
+// The nodes at the corners of a side.
+ElementSide side_nodes(const Mesh& mesh, std::size_t element, std::size_t side);
+
 // A side of an element of `region` that no other element of the region has.
 struct OuterSide {
   static constexpr std::size_t outside = static_cast<std::size_t>(-1);

@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 
 #include "core/clock.h"
 #include "core/console.h"
@@ -140,7 +141,7 @@ int Batch::run_one(std::size_t index, const Channel& channel) const {
   job.threads = std::max<std::size_t>(1, workers / std::min(workers, plan_.size()));
   std::vector<fs::path> places;
   for (const PlannedOutput& output : planned.outputs)
-    if (!output.to_standard_output) places.push_back(output.path);
+    if (!output.to_standard_output) std::ranges::move(places_of(output), std::back_inserter(places));
   if (const Status contained = contain_job(options_, std::array{input.path, input.other}, places);
       !contained) {
     job.say(contained.error());
@@ -269,7 +270,7 @@ void Batch::remove_leftovers() const {
     if (!place->empty() && *place != "-") add(*place);
   for (std::size_t i = 0; i < plan_.size(); ++i)
     for (const PlannedOutput& output : plan_.at(i).outputs)
-      if (!output.to_standard_output) add(output.path);
+      if (!output.to_standard_output) std::ranges::for_each(places_of(output), add);
   OutputFile::remove_leftovers(folders);
 }
 
@@ -365,7 +366,8 @@ int Batch::run(const std::vector<Message>& missing) {
   NewFolders folders;
   for (std::size_t i = 0; i < plan_.size(); ++i)
     for (const PlannedOutput& output : plan_.at(i).outputs)
-      if (!output.to_standard_output) folders.expect(output.path);
+      if (!output.to_standard_output)
+        for (const fs::path& place : places_of(output)) folders.expect(place);
   // Each input's process begins as a copy of this one: what the plan took and gave back would be copied, too.
   ::malloc_trim(0);
   JobPool pool;

@@ -297,7 +297,7 @@ void of_a_mesh(OptionTable& t) {
        "beams with the constants of its sections and a list of the yarns that touch",
        "tet hex beam", &Options::elements, {Elements::tetrahedra, Elements::hexahedra, Elements::beams})
       .goes_with("is of dry yarns, and a unit cell is meshed with tetrahedra or voxels", "",
-                 "--cut --matrix --periodic --voxel")
+                 "--cut --matrix --pores --periodic --voxel")
       .with_preset("tet");
   t.option({mesh}, "--size",
            "wanted edge length, in the input's unit (default: a quarter of the thinnest section; of "
@@ -329,6 +329,12 @@ void of_a_cell(OptionTable& t) {
       {convert, mesh}, "--matrix",
       "with them what they leave of the cell, the matrix, which shares its faces with theirs (implies --cut)",
       &Options::matrix);
+  t.flag({mesh}, "--pores",
+         "instead of yarns and matrix the space between the yarns, for a fluid: a wall for each yarn, inlet "
+         "and outlet on the cell's faces, or with --periodic pairs of them (to OpenFOAM, Gmsh, ANSYS, VTK)",
+         &Options::pores)
+      .goes_with("is the space that the yarns leave", "",
+                 "--cut --matrix --voxel --interface --physics --yarn-stiffness");
   t.flag({mesh}, "--periodic",
          "opposite faces of the cell get the same nodes, and equations between them (as its "
          "`periodic` says; without that word along every axis that can be)",
@@ -353,17 +359,19 @@ void of_a_cell(OptionTable& t) {
       .with_preset("given");
   t.option({mesh}, "--segments", "so many edges go round each yarn, thin or thick",
            Argument::whole(6, 10'000), &Options::segments)
-      .goes_with("is of tetrahedra in a unit cell", "--matrix --periodic --cut", "--voxel");
-  t.option({mesh}, "--matrix-size",
-           "with --matrix: to which edges may grow away from the yarns, in the input's unit (default: "
-           "--size)",
-           Argument::positive(), &Options::matrix_size)
-      .goes_with("is of tetrahedra in the matrix", "--matrix", "--voxel");
+      .goes_with("is of tetrahedra in a unit cell", "--matrix --pores --periodic --cut", "--voxel");
+  t.option(
+       {mesh}, "--matrix-size",
+       "with --matrix or --pores: to which edges may grow away from the yarns, in the input's unit (default: "
+       "--size)",
+       Argument::positive(), &Options::matrix_size)
+      .goes_with("is of tetrahedra between the yarns", "--matrix --pores", "--voxel");
   t.flag({mesh}, "--bond",
-         "with --matrix: yarns in contact share faces (what lies between yarns nearer than 1.5 times "
+         "with --matrix or --pores: yarns in contact share faces (what lies between yarns nearer than 1.5 "
+         "times "
          "the gap becomes part of them), instead of a gap filled with matrix",
          &Options::bond)
-      .goes_with("joins yarns in a mesh of tetrahedra with its matrix", "--matrix", "--voxel");
+      .goes_with("joins yarns in a mesh of tetrahedra with its matrix", "--matrix --pores", "--voxel");
   t.choice(
        {mesh}, "--interface",
        "where yarns meet the matrix, and with --bond each other: bonded: they share nodes; surfaces: each "
@@ -389,7 +397,7 @@ void of_relaxing(OptionTable& t) {
        "the least gap between yarns, in the input's unit; of a unit cell, too (default: 1 % of the smaller "
        "thickness; in a cell that is meshed 5 %)",
        Argument::non_negative(), into(&Options::relaxing, &RelaxSettings::gap))
-      .goes_with(why, "--relax --matrix --periodic --cut --voxel", "");
+      .goes_with(why, "--relax --matrix --pores --periodic --cut --voxel", "");
   t.option(all, "--overlap",
            "let yarns that meet overlap to this depth, and bring them to it, instead of a gap",
            Argument::positive(), into(&Options::relaxing, &RelaxSettings::overlap))
@@ -619,6 +627,7 @@ Result<Options> understand(Command command, const Given& given) {
   }
   if (Status status = check_company(rows, line); !status.ok()) return status.error();
   if (Status status = check_elements(options); !status.ok()) return status.error();
+  if (options.pores) options.matrix = true;
   if (options.matrix) options.cut = true;
   if (command == relax) options.relaxing.wanted = true;
   if (options.resume && (options.report.empty() || options.report == "-"))

@@ -82,12 +82,21 @@ void tell_volumes(Job& job, const fem::Mesh& mesh) {
   if (std::optional<Message> message = wrong_volume(mesh)) job.say(std::move(*message));
 }
 
+// Whether a fluid can go through at all.
+void tell_passages(Job& job, const fem::Mesh& mesh) {
+  const fem::Passages passages = fem::find_passages(mesh);
+  job.report["mesh"]["passages"] = passages_json(passages);
+  tell(job, fmt::format("{}: {}\n", job.input.path, passages_in_words(passages)));
+  if (std::optional<Message> message = shut_pores(mesh, passages)) job.say(std::move(*message));
+}
+
 void take(Job& job, MadeMesh made, Meshes& all) {
   if (!made.mesh) return job.say(made.mesh.error());
   job.report["mesh"] = mesh_json(*made.mesh, made.estimate);
   if (job.options.elements == Elements::hexahedra)
     tell(job, fmt::format("{}: {}\n", job.input.path, hexahedra_in_words(*made.mesh)));
   tell_volumes(job, *made.mesh);
+  if (!made.mesh->patches.empty()) tell_passages(job, *made.mesh);
   all.mesh = std::move(*made.mesh);
 }
 
@@ -148,7 +157,7 @@ void mesh(Job& job) {
   const Options& options = job.options;
   std::optional<fabric::Fabric> fabric = job.read();
   if (!fabric || !has_only_yarns(job, *fabric)) return;
-  if (options.wants_cell() && !check_cell_text(job, *fabric, options.matrix)) return;
+  if (options.wants_cell() && !check_cell_text(job, *fabric, options.matrix && !options.pores)) return;
   fabric = relaxed(job, std::move(fabric));
   if (!fabric) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);

@@ -40,7 +40,7 @@ namespace {
 
 // Its load cases bend it.
 bool is_bent(const Options& options, const ReadyCell& ready) {
-  return options.physics == fem::Physics::elastic && options.matrix &&
+  return options.physics == fem::Physics::elastic && options.matrix && !options.pores &&
          ready.periodic == std::array{true, true, false};
 }
 
@@ -77,6 +77,7 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
   options.order = given.order > 0 ? given.order : may_curve && is_bent(given, ready) ? 2 : 1;
   options.joining = given.joining;
   options.matrix = given.matrix;
+  options.pores = given.pores;
   if (given.bond) options.bond = bond_reach * job.gap;
   options.periodic = ready.periodic;
   options.physics = given.physics;

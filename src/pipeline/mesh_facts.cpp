@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -26,7 +27,9 @@ Json region_json(const fem::Mesh& mesh, const fem::Region& region) {
   std::size_t wedges = 0;
   for (std::size_t e = region.first_element; e < region.last_element; ++e) wedges += mesh.is_wedge(e) ? 1 : 0;
   return {{"name", region.name},
-          {"kind", region.kind == fem::Region::Kind::yarn ? "yarn" : "matrix"},
+          {"kind", region.kind == fem::Region::Kind::yarn ? "yarn"
+                   : mesh.patches.empty()                 ? "matrix"
+                                                          : "pores"},
           {is_brick ? "hexahedra" : "tets", region.last_element - region.first_element - wedges},
           {"wedges", if_true(wedges > 0, wedges)},
           {"volume", region.volume},
@@ -45,6 +48,13 @@ Json worst_json(const fem::Mesh& mesh) {
   });
 }
 
+Json patch_json(const fem::Patch& patch) {
+  constexpr std::array<const char*, 3> kinds = {"wall", "periodic", "open"};
+  return {{"name", patch.name},
+          {"kind", kinds[static_cast<std::size_t>(patch.kind)]},
+          {"sides", patch.sides.size()}};
+}
+
 void add_cell(Json& facts, const fem::Mesh& mesh) {
   double yarns = 0;
   for (const fem::Region& region : mesh.regions)
@@ -52,8 +62,14 @@ void add_cell(Json& facts, const fem::Mesh& mesh) {
   std::string periodic;
   for (std::size_t k = 0; k < 3; ++k)
     if (mesh.cell->periodic[k]) periodic += std::string(periodic.empty() ? "" : " ") + "xyz"[k];
-  facts["yarn_share"] = yarns / mesh.cell->shape().volume();
   facts["periodic"] = periodic;
+  const double box = mesh.cell->shape().volume();
+  if (!mesh.patches.empty()) {
+    facts["porosity"] = mesh.regions.front().volume / box;
+    facts["patches"] = list_json(mesh.patches, patch_json);
+    return;
+  }
+  facts["yarn_share"] = yarns / box;
   facts["equations"] = mesh.equations.size();
   facts["load_cases"] = mesh.load_cases.size();
 }
@@ -81,11 +97,15 @@ const fem::Region* worst_volume(const fem::Mesh& mesh) {
 }
 
 std::string name_of(const fem::Region& region) {
-  return region.kind == fem::Region::Kind::yarn ? fmt::format("yarn '{}'", region.name) : "the matrix";
+  return region.kind == fem::Region::Kind::yarn ? fmt::format("yarn '{}'", region.name)
+                                                : "the " + region.name;
 }
 
 std::string shares_in_words(const fem::Mesh& mesh) {
   const double percent = 100 / mesh.cell->shape().volume();
+  if (!mesh.patches.empty())
+    return fmt::format("pores are {:.2f} % of the cell (wanted: {:.2f} %)",
+                       percent * mesh.regions.front().volume, percent * mesh.regions.front().exact_volume);
   double yarns = 0, wanted = 0, fibres = 0;
   for (const fem::Region& region : mesh.regions) {
     if (region.kind != fem::Region::Kind::yarn) continue;
@@ -121,6 +141,47 @@ std::optional<Message> wrong_volume(const fem::Mesh& mesh) {
       fmt::format("the volume of {} is {:.2g} % too {}; a smaller --size{} makes it better", name_of(*worst),
                   100 * std::abs(volume_error(*worst)), volume_error(*worst) < 0 ? "small" : "large",
                   mesh.order == 1 && !is_brick ? " or --order 2" : ""));
+}
+
+namespace {
+
+// The axes along which there is a passage, or none: "x, y".
+std::string axes_in_words(const fem::Passages& passages, bool is_open) {
+  std::vector<char> axes;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (passages.along[k] == is_open) axes.push_back("xyz"[k]);
+  return fmt::format("{}", fmt::join(axes, ", "));
+}
+
+}  // namespace
+
+Json passages_json(const fem::Passages& passages) {
+  return {{"along", axes_in_words(passages, true)},
+          {"pockets", passages.pockets},
+          {"pocket_volume", passages.pocket_volume}};
+}
+
+std::string passages_in_words(const fem::Passages& passages) {
+  const std::string open = axes_in_words(passages, true);
+  return open.empty() ? "the pores have no passage" : fmt::format("the pores have passages along {}", open);
+}
+
+std::optional<Message> shut_pores(const fem::Mesh& mesh, const fem::Passages& passages) {
+  const std::string shut = axes_in_words(passages, false);
+  std::string text;
+  if (!shut.empty())
+    text = fmt::format(
+        "nothing can flow along {}: the yarns leave no passage there; a larger --gap, or a "
+        "cell with more room between them, opens one",
+        shut);
+  if (passages.pockets > 0)
+    text += fmt::format("{}{} part{} of the pores ({:.2g} % of their volume) {} no passage",
+                        text.empty() ? "" : "; ", passages.pockets, passages.pockets == 1 ? "" : "s",
+                        100 * passages.pocket_volume / mesh.regions.front().volume,
+                        passages.pockets == 1 ? "has" : "have");
+  if (text.empty()) return std::nullopt;
+  Message message = warning(Kind::geometry, std::move(text));
+  return passages.pocket_places.empty() ? message : message.at_point(passages.pocket_places.front());
 }
 
 Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {

@@ -7,6 +7,7 @@
 #include "core/diagnostics.h"
 #include "fem/beams.h"
 #include "fem/mesh.h"
+#include "fem/pores.h"
 #include "fem/raster.h"
 #include "pipeline/report.h"
 
@@ -28,6 +29,13 @@ std::string volumes_in_words(const fem::Mesh& mesh);
 
 // A volume that is wrong by more than a mesh of the usual size ever has.
 std::optional<Message> wrong_volume(const fem::Mesh& mesh);
+
+// Of a pore space: along which axes something can flow.
+Json passages_json(const fem::Passages& passages);
+std::string passages_in_words(const fem::Passages& passages);
+
+// Axes along which nothing can flow, and pockets without a passage.
+std::optional<Message> shut_pores(const fem::Mesh& mesh, const fem::Passages& passages);
 
 // The same of fields on voxels.
 Json raster_json(const fem::Raster& raster);

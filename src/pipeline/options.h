@@ -113,6 +113,7 @@ struct Options {
   // The unit cell: of `mesh` and `convert`.
   bool cut = false;        // by the cell's faces
   bool matrix = false;     // with the rest of the cell
+  bool pores = false;      // the rest of the cell alone, as a space for a fluid (implies matrix)
   bool periodic = false;   // opposite faces alike, and equations between them
   int segments = 0;        // edges round each yarn; 0: by size
   double matrix_size = 0;  // to which edges may grow away from the yarns, input's unit; 0: size

@@ -32,6 +32,15 @@ const Descriptor& page_format() {
   return self;
 }
 
+std::vector<fs::path> places_of(const PlannedOutput& output) {
+  const fs::path path = output.path;
+  if (output.format->folders.empty()) return {path};
+  std::vector<fs::path> places = {path / path.filename()};
+  for (const std::string_view folder : output.format->folders)
+    places.push_back(path / folder / path.filename());
+  return places;
+}
+
 bool can_be_written(const Descriptor& format, Command command) {
   if (command == Command::mesh) return format.write_mesh != nullptr || format.write_raster != nullptr;
   if (command == Command::edit) return format.insert_edit != nullptr;
@@ -312,6 +321,33 @@ Status check_joining(const Options& options, const Formats& wanted) {
   return {};
 }
 
+// Pore spaces have patches, and no elements that carry anything.
+Status check_pores(const Options& options, const Formats& wanted) {
+  for (const Descriptor* format : wanted) {
+    if (format->is_of_pores && !options.pores)
+      return error(Kind::usage,
+                   fmt::format("{} holds the space between the yarns of a cell: add --pores", format->name));
+    if (!options.pores || (format->order_of_pores >= std::max(options.order, 1))) continue;
+    std::string others;
+    for (const Descriptor* other : formats::all_formats())
+      if (other->order_of_pores >= std::max(options.order, 1)) others += fmt::format(" --to {}", other->name);
+    return error(Kind::usage, fmt::format("{} does not hold --pores{}: write them with{}{}", format->name,
+                                          options.order == 2 ? " of --order 2" : "", others,
+                                          format->order_of_pores > 0 ? ", or with --order 1" : ""));
+  }
+  return {};
+}
+
+// A folder of files, which have no place on standard output.
+Status check_folders(const Options& options, const Formats& wanted) {
+  for (const Descriptor* format : wanted)
+    if (!format->folders.empty() && options.output == "-")
+      return error(Kind::usage, fmt::format("{} is a folder of files, and standard output takes one: name a "
+                                            "place with -o",
+                                            format->name));
+  return {};
+}
+
 bool writes_files(Command command) {
   return command != Command::check && command != Command::info && command != Command::roundtrip &&
          command != Command::diff;
@@ -336,6 +372,8 @@ Result<Plan> Plan::make(const Options& options, InputList& list) {
             fmt::format("{} holds the voxels of a unit cell: say how many with --voxel N", format->name));
     if (options.elements == Elements::beams)
       if (Status status = check_beams(options, *wanted); !status.ok()) return status.error();
+    if (Status status = check_folders(options, *wanted); !status.ok()) return status.error();
+    if (Status status = check_pores(options, *wanted); !status.ok()) return status.error();
     if (options.physics != fem::Physics::elastic)
       if (Status status = check_transport(options.physics, *wanted); !status.ok()) return status.error();
     if (options.joining != fem::Joining::bonded)

@@ -28,6 +28,9 @@ struct PlannedOutput {
   const formats::Companion* as_companion = nullptr;  // where it is the second file of another one
 };
 
+// A name in each folder that it writes to; the first is its file, of several the first one.
+std::vector<std::filesystem::path> places_of(const PlannedOutput& output);
+
 // Can this subcommand write it?
 bool can_be_written(const formats::Descriptor& format, Command command);
 // Of the format that `check --gap-map` writes, for help.

@@ -13,9 +13,9 @@ std::optional<OpenOutputs> open_outputs(Job& job) {
   OpenOutputs outputs;
   for (const PlannedOutput& plan : job.outputs) {
     Result<OutputFile> file =
-        plan.to_standard_output ? OutputFile::standard_output() : OutputFile::create(plan.path);
+        plan.to_standard_output ? OutputFile::standard_output() : OutputFile::create(places_of(plan).front());
     if (!file) return job.fail(file.error());
-    outputs.push_back({&plan, std::move(*file), {}, {}, nullptr});
+    outputs.push_back({&plan, std::move(*file), {}, {}, {}, nullptr});
   }
   return outputs;
 }
@@ -40,6 +40,12 @@ Result<OutputFile*> open_part(OpenOutput& output, int number) {
   Result<OutputFile> file = OutputFile::create(part_path(output.plan->path, number));
   if (!file) return file.error();
   return &output.parts.emplace_back(std::move(*file));
+}
+
+Result<OutputFile*> open_member(OpenOutput& output, std::string_view name) {
+  Result<OutputFile> file = OutputFile::create(std::filesystem::path(output.plan->path) / name);
+  if (!file) return file.error();
+  return &output.members.emplace_back(std::move(*file));
 }
 
 namespace {
@@ -74,7 +80,9 @@ bool report_files(Job& job, OpenOutput& output, Json& written) {
     if (!report_file(job, output, file, parts.empty() ? output.facts.entities : parts[k], written))
       return false;
   }
-  return true;
+  return std::ranges::all_of(output.members, [&](const OutputFile& member) {
+    return report_file(job, output, member, {}, written);
+  });
 }
 
 // All files together; what an earlier run left in their places goes last.
@@ -82,7 +90,8 @@ Status commit(OpenOutputs& outputs) {
   std::vector<OutputFile*> files;
   for (OpenOutput& output : outputs) {
     files.push_back(&output.file);
-    for (OutputFile& part : output.parts) files.push_back(&part);
+    for (auto* more : {&output.parts, &output.members})
+      for (OutputFile& file : *more) files.push_back(&file);
   }
   if (Status status = OutputFile::commit(files); !status) return status;
   for (const OpenOutput& output : outputs) {
@@ -140,7 +149,9 @@ void write_meshes(Job& job, OpenOutputs& outputs, const Meshes& meshes) {
     });
   for (OpenOutput& output : outputs) {
     const formats::Descriptor& format = *output.plan->format;
-    const formats::MeshFileOptions options = {companion_of(output, outputs), job.options.of_formats};
+    const formats::MeshFileOptions options = {
+        companion_of(output, outputs), job.options.of_formats,
+        [&output](std::string_view name) { return open_member(output, name); }};
     if (!take_facts(job, output,
                     format.write_raster != nullptr ? format.write_raster(*meshes.raster, output.file)
                     : meshes.beams                 ? format.write_beams(*meshes.beams, output.file, options)

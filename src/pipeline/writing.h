@@ -4,6 +4,8 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "core/output.h"
 #include "formats/format.h"
@@ -14,7 +16,8 @@ namespace selvage::pipeline {
 struct OpenOutput {
   const PlannedOutput* plan = nullptr;
   OutputFile file;
-  std::deque<OutputFile> parts;  // files 2, 3, ... where one does not hold all
+  std::deque<OutputFile> parts;    // files 2, 3, ... where one does not hold all
+  std::deque<OutputFile> members;  // the other files of a folder (formats::Descriptor::folders)
   formats::WriteFacts facts;
   std::unique_ptr<formats::BodyWriter> writer;  // of surface formats; refers to `file`
 };
@@ -45,6 +48,9 @@ void write_meshes(Job& job, OpenOutputs& outputs, const Meshes& meshes);
 // Opens the next file of an output, for its writer. Errors: io; usage: an input or another output has the
 // name.
 Result<OutputFile*> open_part(OpenOutput& output, int number);
+
+// Opens another file of a folder, for its writer. Errors: io.
+Result<OutputFile*> open_member(OpenOutput& output, std::string_view name);
 
 // Takes the facts of one finished format; false when it failed (it was said why).
 bool take_facts(Job& job, OpenOutput& output, Result<formats::WriteFacts> facts);
