@@ -43,8 +43,10 @@ struct SizeRules {
   std::vector<Yarn> yarns;    // one a body
   double coarsest = 0;        // away from them; at least their largest
   double smallest = 0;        // never finer, >= 0
-  double gap_factor = 3;      // edges over the width of a gap; 0: gaps are not meshed
-  double growth = 0.3;        // of the size, per length
+  // Edges over the width of a gap; 0: gaps are not meshed. Of tetrahedra between two flat triangulations the
+  // smallest angle is about the width over two thirds of the edges: from five on it gets below 10 degrees.
+  double gap_factor = 5;
+  double growth = 0.5;        // of the size, per length
   double raster = 0;          // places on a yarn are no nearer; they are at 0.4 of its largest
   double turn_finest = 0.35;  // curvature alone asks for no less than this share of the yarn's largest
 };
