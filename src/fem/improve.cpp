@@ -223,7 +223,8 @@ void improve(Part& part, const ImproveOptions& options) {
   TetComplex complex(std::move(part.points), part.cells, part.fixed_points);
   if (options.refine) Refiner(complex, *options.refine).run();
   complex.measure_all();
-  if (options.refine) Improver(complex, quality_of_angle(std::max(options.target, options.polish))).polish();
+  if (options.refine && options.polish > 0)
+    Improver(complex, quality_of_angle(std::max(options.target, options.polish))).polish();
   const double wanted = quality_of_angle(options.target);
   for (const TetComplex::Cell& cell : complex.cells()) {
     if (cell.corners[0] == TetComplex::none) continue;

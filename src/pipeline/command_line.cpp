@@ -356,7 +356,7 @@ void of_a_cell(OptionTable& t) {
       .goes_with("is of tetrahedra in a unit cell", "--matrix --periodic --cut", "--voxel");
   t.option({mesh}, "--matrix-size",
            "with --matrix: to which edges may grow away from the yarns, in the input's unit (default: "
-           "--size)",
+           "--size, or twice the edges that are made without it)",
            Argument::positive(), &Options::matrix_size)
       .goes_with("is of tetrahedra in the matrix", "--matrix", "--voxel");
   t.flag({mesh}, "--bond",
