@@ -9,8 +9,8 @@
 
 namespace selvage::fem {
 
-// Of a tetrahedron where edges of about `edge` are wanted: between half of it and all of it they are on average
-// as large as the regular one, which has 0.118 of the cube over its edge.
+// Of a tetrahedron where edges of about `edge` are wanted: between half of it and all of it they are on
+// average as large as the regular one, which has 0.118 of the cube over its edge.
 constexpr double largest_volume(double edge) {
   return 0.25 * edge * edge * edge;
 }

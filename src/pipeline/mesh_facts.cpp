@@ -158,8 +158,7 @@ Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {
 
 std::string tetrahedra_in_words(const fem::Mesh& mesh) {
   return fmt::format("{} tetrahedra; smallest dihedral angles from {:.1f} degrees, first percentile {:.1f}",
-                     mesh.elements.size(), mesh.quality.min_dihedral,
-                     fem::first_percentile_angle(mesh));
+                     mesh.elements.size(), mesh.quality.min_dihedral, fem::first_percentile_angle(mesh));
 }
 
 std::string hexahedra_in_words(const fem::Mesh& mesh) {
