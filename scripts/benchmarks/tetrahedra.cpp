@@ -18,6 +18,7 @@
 #include "core/source.h"
 #include "fabric/build.h"
 #include "fem/cell_mesher.h"
+#include "fem/quality.h"
 #include "fem/sides.h"
 #include "formats/registry.h"
 #include "scripts/benchmarks/built.h"
@@ -130,9 +131,11 @@ void row(const fabric::Fabric& cloth, const std::vector<yarn::Body>& bodies, con
   const std::size_t triangles = write_surfaces(*mesh, path);
   fmt::print(
       "{}  {{\"size\": {}, \"target\": {}, \"threads\": {}, \"triangles\": {}, \"nodes\": {}, \"tets\": {}, "
-      "\"seconds\": {:.4f}, \"processor_seconds\": {:.4f}, \"min_dihedral\": {:.4f}, \"geo\": \"{}.geo\"}}",
+      "\"seconds\": {:.4f}, \"processor_seconds\": {:.4f}, \"min_dihedral\": {:.4f}, "
+      "\"first_percentile\": {:.4f}, \"geo\": \"{}.geo\"}}",
       is_first ? "" : ",\n", one.size, one.target, one.threads, triangles, mesh->nodes.size(),
-      mesh->elements.size(), seconds, processor, mesh->quality.min_dihedral, path);
+      mesh->elements.size(), seconds, processor, mesh->quality.min_dihedral,
+      fem::first_percentile_angle(*mesh), path);
   std::fflush(stdout);
 }
 

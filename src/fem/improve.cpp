@@ -20,8 +20,12 @@ class Improver {
 
   // Over all cells below the goal, worst first. Returns how often something was gained.
   std::size_t pass(bool with_points);
+  // Once over the same: only exchanges, and then each point at them is moved once. It costs little beside
+  // pass(), which goes on as long as anything is gained.
+  void polish();
 
  private:
+  void gather();
   bool exchange(std::uint32_t cell);
   bool smooth(std::uint32_t cell);
   bool smooth_point(std::uint32_t point);
@@ -131,7 +135,8 @@ bool Improver::insert(std::uint32_t cell) {
   return true;
 }
 
-std::size_t Improver::pass(bool with_points) {
+// The cells below the goal, worst first.
+void Improver::gather() {
   queue_.clear();
   for (std::uint32_t c = 0; c < complex_.cells().size(); ++c)
     if (is_bad(c)) queue_.push_back(c);
@@ -139,6 +144,27 @@ std::size_t Improver::pass(bool with_points) {
     const double qa = complex_.cell(a).quality, qb = complex_.cell(b).quality;
     return qa != qb ? qa < qb : a < b;
   });
+}
+
+void Improver::polish() {
+  gather();
+  const std::size_t most = 4 * queue_.size();
+  for (std::size_t k = 0; k < queue_.size() && k < most; ++k)
+    if (is_bad(queue_[k])) exchange(queue_[k]);
+  gather();
+  std::vector<bool> tried(complex_.points.size(), false);
+  for (const std::uint32_t cell : queue_) {
+    const Tetrahedron corners = complex_.cell(cell).corners;
+    for (const std::uint32_t point : corners) {
+      if (complex_.is_fixed(point) || tried[point] || !is_bad(cell)) continue;
+      tried[point] = true;
+      smooth_point(point);
+    }
+  }
+}
+
+std::size_t Improver::pass(bool with_points) {
+  gather();
   // What an exchange leaves is looked at too, but not without end.
   const std::size_t most = 4 * queue_.size();
   std::size_t gains = 0;
@@ -197,6 +223,8 @@ void improve(Part& part, const ImproveOptions& options) {
   TetComplex complex(std::move(part.points), part.cells, part.fixed_points);
   if (options.refine) Refiner(complex, *options.refine).run();
   complex.measure_all();
+  if (options.refine && options.polish > 0)
+    Improver(complex, quality_of_angle(std::max(options.target, options.polish))).polish();
   const double wanted = quality_of_angle(options.target);
   for (const TetComplex::Cell& cell : complex.cells()) {
     if (cell.corners[0] == TetComplex::none) continue;

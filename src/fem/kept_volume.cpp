@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/bounds.h"
 #include "core/box_tree.h"
 #include "fem/triangle_distance.h"
 
@@ -146,18 +147,22 @@ void Keeper::keep_gaps() {
   std::vector<const YarnFacet*> facets;
   std::vector<Box3> boxes;
   std::vector<Vec3> normals;
-  for (const YarnFacet& facet : surface_.facets) {
-    if (facet.part == Part::box) continue;
-    Box3 box;
+  std::vector<Box3> tight;
+  // What is farther from a triangle holds none of its corners back.
+  const auto reach_of = [&](const YarnFacet& facet) {
     double farthest = 0;
     for (const std::uint32_t k : facet.corners) {
       const Corner& corner = corners_[leader(k)];
-      box.extend(points_[k]);
       farthest = std::max(farthest, corner.most * corner.way.norm());
     }
-    const Vec3 reach = Vec3::Constant(farthest / surface_.gap_share);
+    return farthest / surface_.gap_share;
+  };
+  for (const YarnFacet& facet : surface_.facets) {
+    if (facet.part == Part::box) continue;
+    const Vec3 reach = Vec3::Constant(reach_of(facet));
     facets.push_back(&facet);
-    boxes.emplace_back(box.min() - reach, box.max() + reach);
+    tight.push_back(bounds_of(corners_of(facet)));
+    boxes.emplace_back(tight.back().min() - reach, tight.back().max() + reach);
     normals.push_back(area_of(corners_of(facet)).stableNormalized());
   }
   const auto limit = [&](const YarnFacet& facet, double distance) {
@@ -170,6 +175,7 @@ void Keeper::keep_gaps() {
   BoxTree(std::move(boxes)).near_pairs(0, [&](std::uint32_t i, std::uint32_t j) {
     const bool is_same = facets[i]->yarn == facets[j]->yarn;
     if (is_same && normals[i].dot(normals[j]) >= 0) return;
+    if (tight[i].exteriorDistance(tight[j]) > std::max(reach_of(*facets[i]), reach_of(*facets[j]))) return;
     const Vec3 way = shortest_way(corners_of(*facets[i]), corners_of(*facets[j]));
     const double distance = way.norm();
     constexpr double across = 0.7;  // cosine

@@ -139,6 +139,15 @@ double volume_of(const Mesh& mesh, std::size_t element) {
   return mesh.order == 1 ? six_volumes(nodes) / 6 : quadratic_volume(nodes);
 }
 
+double first_percentile_angle(const Mesh& mesh) {
+  if (mesh.elements.empty()) return 0;
+  std::vector<double> angles(mesh.elements.size());
+  for (std::size_t e = 0; e < angles.size(); ++e) angles[e] = shape_of(mesh, e).min_dihedral;
+  const auto at = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 100);
+  std::nth_element(angles.begin(), at, angles.end());
+  return *at;
+}
+
 void measure(Mesh& mesh) {
   std::vector<BadElement> worst;
   auto worse = [](const BadElement& a, const BadElement& b) { return a.min_dihedral < b.min_dihedral; };

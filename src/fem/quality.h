@@ -36,6 +36,9 @@ Vec3 middle_of(const Mesh& mesh, std::size_t element);
 // Of one element.
 double volume_of(const Mesh& mesh, std::size_t element);
 
+// Degrees: a hundredth of the mesh's elements has a smallest dihedral angle below it. 0: no elements.
+double first_percentile_angle(const Mesh& mesh);
+
 // Fills Quality and volume of every region, the mesh's own, and its worst elements.
 void measure(Mesh& mesh);
 

@@ -9,13 +9,14 @@
 
 namespace selvage::fem {
 
-// Of a tetrahedron where edges are wanted no longer than `edge`; a regular one has 0.118 of the cube over it.
+// Of a tetrahedron where edges of about `edge` are wanted: between half of it and all of it they are on
+// average as large as the regular one, which has 0.118 of the cube over its edge.
 constexpr double largest_volume(double edge) {
-  return 0.13 * edge * edge * edge;
+  return 0.25 * edge * edge * edge;
 }
 
 struct RefineOptions {
-  double radius_edge = 1.4;  // largest ratio of circumradius to shortest edge wanted, from 1
+  double radius_edge = 1.5;  // largest ratio of circumradius to shortest edge wanted, from 1
   double max_volume = 0;     // of a tetrahedron; 0: no bound
 };
 

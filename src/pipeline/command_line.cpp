@@ -363,7 +363,7 @@ void of_a_cell(OptionTable& t) {
   t.option(
        {mesh}, "--matrix-size",
        "with --matrix or --pores: to which edges may grow away from the yarns, in the input's unit (default: "
-       "--size)",
+       "--size, or twice the edges that are made without it)",
        Argument::positive(), &Options::matrix_size)
       .goes_with("is of tetrahedra between the yarns", "--matrix --pores", "--voxel");
   t.flag({mesh}, "--bond",

@@ -95,6 +95,8 @@ void take(Job& job, MadeMesh made, Meshes& all) {
   job.report["mesh"] = mesh_json(*made.mesh, made.estimate);
   if (job.options.elements == Elements::hexahedra)
     tell(job, fmt::format("{}: {}\n", job.input.path, hexahedra_in_words(*made.mesh)));
+  else if (made.mesh->shape == fem::Mesh::Shape::tetrahedron)
+    tell(job, fmt::format("{}: {}\n", job.input.path, tetrahedra_in_words(*made.mesh)));
   tell_volumes(job, *made.mesh);
   if (!made.mesh->patches.empty()) tell_passages(job, *made.mesh);
   all.mesh = std::move(*made.mesh);

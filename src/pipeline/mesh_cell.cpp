@@ -72,7 +72,7 @@ Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCel
                             diagnostics);
   fem::CellMeshOptions options{mesh_options(job)};
   options.sizes = ready.size.sizes;
-  options.coarsest = given.matrix_size;
+  options.coarsest = ready.size.coarsest;
   const bool may_curve = given.joining != fem::Joining::cohesive;
   options.order = given.order > 0 ? given.order : may_curve && is_bent(given, ready) ? 2 : 1;
   options.joining = given.joining;

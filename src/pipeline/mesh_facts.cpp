@@ -200,6 +200,7 @@ Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {
                 {"hexahedra", if_true(is_brick, mesh.elements.size() - wedges)},
                 {"wedges", if_true(wedges > 0, wedges)},
                 {"min_dihedral", if_true(has_quality, mesh.quality.min_dihedral)},
+                {"first_percentile_dihedral", has_quality ? Json(fem::first_percentile_angle(mesh)) : Json()},
                 {"max_aspect", if_true(has_quality, mesh.quality.max_aspect)},
                 {"min_scaled_jacobian", if_true(has_quality && is_brick, mesh.quality.min_scaled_jacobian)},
                 {"volume_error", if_true(has_quality, exact > 0 ? off / exact : 0)},
@@ -214,6 +215,11 @@ Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {
     facts["interfaces"] = list_json(
         mesh.interfaces, [&](const fem::Interface& interface) { return interface_json(mesh, interface); });
   return facts;
+}
+
+std::string tetrahedra_in_words(const fem::Mesh& mesh) {
+  return fmt::format("{} tetrahedra; smallest dihedral angles from {:.1f} degrees, first percentile {:.1f}",
+                     mesh.elements.size(), mesh.quality.min_dihedral, fem::first_percentile_angle(mesh));
 }
 
 std::string hexahedra_in_words(const fem::Mesh& mesh) {

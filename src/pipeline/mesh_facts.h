@@ -20,6 +20,9 @@ Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate = {});
 Json beams_json(const fem::BeamModel& beams);
 std::string beams_in_words(const fem::BeamModel& beams);
 
+// Of tetrahedra: how many, and how sharp their angles are.
+std::string tetrahedra_in_words(const fem::Mesh& mesh);
+
 // Of swept hexahedra: how many, and the worst.
 std::string hexahedra_in_words(const fem::Mesh& mesh);
 

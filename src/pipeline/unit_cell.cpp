@@ -520,9 +520,12 @@ void keep_to_thickness(Job& job, const fabric::Fabric& fabric, std::span<const y
 std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
                                         std::span<const yarn::Body> bodies, bool with_matrix) {
   constexpr double most = 1e8;
-  CellSize chosen{sizes_of(job.options, bodies), 0.0};
+  constexpr double growth = 2;  // of edges away from the yarns, where nobody says how long they are
+  CellSize chosen{.sizes = sizes_of(job.options, bodies), .coarsest = job.options.matrix_size};
   keep_to_thickness(job, fabric, bodies, chosen.sizes);
   const auto [finest, coarsest] = std::minmax_element(chosen.sizes.begin(), chosen.sizes.end());
+  if (job.options.matrix_size == 0 && job.options.size == 0 && job.options.segments == 0)
+    chosen.coarsest = growth * *coarsest;
   if (job.options.matrix_size > 0 && job.options.matrix_size < *finest)
     return job.fail(
         error(Kind::usage,
@@ -530,8 +533,8 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
                           "are {:.6g} {} long: --size makes them finer",
                           job.options.matrix_size, *finest, name_of(fabric.units))));
   chosen.tetrahedra =
-      fem::estimate_tetrahedra(bodies, fabric.cell->shape(), chosen.sizes, job.options.matrix_size,
-                               with_matrix, static_cast<int>(job.threads));
+      fem::estimate_tetrahedra(bodies, fabric.cell->shape(), chosen.sizes, chosen.coarsest, with_matrix,
+                               static_cast<int>(job.threads));
   const std::string lengths = *coarsest - *finest < 1e-3 * *coarsest
                                   ? fmt::format("{:.4g}", *finest)
                                   : fmt::format("{:.4g} to {:.4g}", *finest, *coarsest);

@@ -53,6 +53,7 @@ bool check_cell_gaps(Job& job, const fabric::Fabric& fabric, std::span<const yar
 // The edge lengths in force, and about how many tetrahedra they make; both are said.
 struct CellSize {
   std::vector<double> sizes;  // of each yarn, file units
+  double coarsest = 0;        // away from them; 0: as on them
   double tetrahedra = 0;
 };
 // None: too coarse for a yarn, too fine for any memory (without --force), or in the matrix finer than on the

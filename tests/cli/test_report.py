@@ -78,7 +78,7 @@ class Report(Case):
     def test_mesh(self):
         self.succeeds("mesh", PATH, "-o", self.folder / "x.inp", "--report", self.path)
         entry = self.report()["inputs"][0]
-        self.assertEqual(sorted(entry["mesh"]), ["below_target", "in_wedges", "max_aspect", "min_dihedral", "nodes", "regions", "tets", "volume", "volume_error", "worst"])
+        self.assertEqual(sorted(entry["mesh"]), ["below_target", "first_percentile_dihedral", "in_wedges", "max_aspect", "min_dihedral", "nodes", "regions", "tets", "volume", "volume_error", "worst"])
         self.assertGreater(entry["mesh"]["tets"], 100)
         exact = sum(yarn["volume"] for yarn in entry["yarns"])
         self.assertAlmostEqual(entry["mesh"]["volume_error"], abs(entry["mesh"]["volume"] - exact) / exact, places=6)

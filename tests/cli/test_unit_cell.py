@@ -52,9 +52,11 @@ class UnitCell(Case):
 
         # Positive and well shaped.
         self.assertGreater(cell.smallest_jacobian(points, cells), 0)
-        angle = cell.dihedral_angles(points, cells).min()
+        angles = np.sort(cell.dihedral_angles(points, cells).min(axis=1))
+        angle = angles[0]
         self.assertGreaterEqual(angle, TARGET)
         self.assertAlmostEqual(angle, report["min_dihedral"], delta=1e-6)
+        self.assertAlmostEqual(angles[len(angles) // 100], report["first_percentile_dihedral"], delta=1e-6)
 
         # Periodic.
         miss = max(cell.opposite_miss(used, low, high, axis) for axis in (0, 1))

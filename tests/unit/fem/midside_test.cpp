@@ -103,7 +103,7 @@ void fill(CellOfYarn& cell, double size) {
 
 TEST(CellMidside, OnTheSurfaceInTheFacesAndOppositeOnesAlike) {
   CellOfYarn cell;
-  fill(cell, 0.07);
+  fill(cell, 0.06);
   measure(cell.mesh);
   const double mm = 25.4, exact = cell.block->skin.volumes.front() * mm * mm * mm;
   const double straight = std::abs(cell.mesh.regions[0].volume - exact);
