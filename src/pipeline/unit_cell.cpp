@@ -532,9 +532,8 @@ std::optional<CellSize> check_cell_size(Job& job, const fabric::Fabric& fabric,
               fmt::format("--matrix-size is {:.6g}, to which edges grow from those on the yarns, but these "
                           "are {:.6g} {} long: --size makes them finer",
                           job.options.matrix_size, *finest, name_of(fabric.units))));
-  chosen.tetrahedra =
-      fem::estimate_tetrahedra(bodies, fabric.cell->shape(), chosen.sizes, chosen.coarsest, with_matrix,
-                               static_cast<int>(job.threads));
+  chosen.tetrahedra = fem::estimate_tetrahedra(bodies, fabric.cell->shape(), chosen.sizes, chosen.coarsest,
+                                               with_matrix, static_cast<int>(job.threads));
   const std::string lengths = *coarsest - *finest < 1e-3 * *coarsest
                                   ? fmt::format("{:.4g}", *finest)
                                   : fmt::format("{:.4g} to {:.4g}", *finest, *coarsest);
