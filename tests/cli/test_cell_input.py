@@ -205,7 +205,7 @@ class CellInput(Case):
         """Of as much as the yarn's thickness, and more: edges on yarns are as long as these are thick."""
         text = PLAIN + cell("0 0 -0.35 3 3 0.35")
         self.assertRegex(self.meshes(text, "--size", "0.3"),
-                         r"^\S+: warning: the volume of yarn 'w..._\d' is 0\.\d+ % too small; a smaller --size makes it better$")
+                         r"^\S+: warning: the volume of yarn 'w..._\d' is (0\.\d+|1) % too small; a smaller --size makes it better$")
         self.assertRegex(self.meshes(text, "--size", "0.8"),
                          r"warning: 4 yarns are thinner than these edges are long: .* \('w..._\d': 0\.(3|299) mm\)")
 

@@ -209,7 +209,7 @@ TEST(UnitCell, FacesThatDoNotMatchAreAnError) {
   ASSERT_FALSE(done.ok());
   EXPECT_EQ(done.error().kind, Kind::geometry);
   mesh.nodes[node].y() -= 1e-9;
-  mesh.nodes[node].x() += 1e-12;
+  mesh.nodes[node].x() += 1e-11;
   EXPECT_EQ(complete_cell(mesh, Box3(Vec3(0, 0, 0), Vec3(2, 1.5, 1)), {true, true, true}).error().kind,
             Kind::internal);
 }
