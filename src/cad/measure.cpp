@@ -94,7 +94,11 @@ class FaceTracer {
       double value = at[static_cast<Eigen::Index>(d)] + 1e-9 * width;
       const double turn = periods()[d] > 0 ? std::floor((value - breaks.front()) / width) : 0;
       value -= turn * width;
-      const auto span = std::upper_bound(breaks.begin(), breaks.end(), value) - breaks.begin();
+      auto span = std::upper_bound(breaks.begin(), breaks.end(), value) - breaks.begin();
+      // The end of an open range is in its last span: a part of its own there, as short as rounding, would
+      // stand where a pole has no direction.
+      if (!(periods()[d] > 0))
+        span = std::clamp<std::ptrdiff_t>(span, 1, static_cast<std::ptrdiff_t>(breaks.size()) - 1);
       cell[d] = turn * static_cast<double>(breaks.size()) + static_cast<double>(span);
     }
     return cell;
