@@ -303,12 +303,16 @@ def read_entity(e):
         need((r.integer(), r.integer()) == (1, 1), "{}: loops", e.what)
         e.loop = read_pointers(r, e, 1, 508)[0]
     elif key == (508, 1):
-        e.uses = []
+        e.uses, e.flats = [], []  # an edge's curves in the parameters
         for _ in range(r.integer()):
             kind = r.integer()
             need(kind in (0, 1), "{}: kind of edge", e.what)
             e.uses.append((kind, read_pointers(r, e, 1, (504, 502)[kind])[0], r.integer(), r.integer()))
-            need(r.integer() == 0, "{}: curves in parameters", e.what)
+            flats = []
+            for _ in range(r.integer()):
+                need(r.integer() == 0, "{}: along a parameter", e.what)
+                flats += read_pointers(r, e, 1, 126)
+            e.flats.append(flats)
     elif key == (504, 1):
         e.edges = []
         for _ in range(r.integer()):
@@ -345,7 +349,8 @@ def check_pointers(entities):
 
 
 def is_flat(e, entities):
-    return any(c.type == 142 and e.de in [c.flat, *getattr(entities[c.flat], "parts", [])] for c in entities.values())
+    return any(e.de in [c.flat, *getattr(entities[c.flat], "parts", [])] if c.type == 142 else c.type == 508 and [e.de] in c.flats
+               for c in entities.values())
 
 
 def curves_of(e, entities):

@@ -27,21 +27,25 @@ PIECE_LEVEL = len(ROLES) + 1
 
 def check_trimmed(e, entities):
     boundary = entities[e.outer]
-    surface = entities[e.on].surface
     flats, spaces = (curves_of(entities[of], entities) for of in (boundary.flat, boundary.space))
     need(boundary.on == e.on, "{}: bounded by a curve on another surface", e.what)
     need(len(flats) == len(spaces), "{}: boundaries of {} and {} parts", e.what, len(flats), len(spaces))
     for curves in (flats, spaces):
         need(curves[0].points[0] == curves[-1].points[-1], "{}: boundary is open", e.what)
-    u0, u1, v0, v1 = entities[e.on].range
     for flat, space in zip(flats, spaces):
-        for i in range(33):
-            t = flat.low() + (flat.high() - flat.low()) * i / 32
-            x, y, z = flat.at(t)[0]
-            need(z == 0, "{}: parameter curve leaves its plane", e.what)
-            need(u0 < x < u1 and v0 < y < v1, "{}: parameter curve leaves the surface", e.what)
-            gap = math.hypot(*minus(surface.at(x, y)[0], space.at(t)[0]))
-            need(gap <= FEW_ULPS * space_size(space), "{}: the two boundary curves are {} apart", e.what, gap)
+        check_flat(e, entities[e.on], flat, space)
+
+
+def check_flat(e, on, flat, space):
+    """A curve in a surface's parameters is the one in space, with the same parameter, inside the surface."""
+    u0, u1, v0, v1 = on.range
+    for i in range(33):
+        t = flat.low() + (flat.high() - flat.low()) * i / 32
+        x, y, z = flat.at(t)[0]
+        need(z == 0, "{}: parameter curve leaves its plane", e.what)
+        need(u0 < x < u1 and v0 < y < v1, "{}: parameter curve leaves the surface", e.what)
+        gap = math.hypot(*minus(on.surface.at(x, y)[0], space.at(t)[0]))
+        need(gap <= FEW_ULPS * space_size(space), "{}: the two boundary curves are {} apart", e.what, gap)
 
 
 def check_piece(group, entities):
@@ -81,6 +85,7 @@ def check_solid(solid, entities):
             vertices.update((a, b))
             used.setdefault((list_pointer, index), []).append(forward == outward)
             outlines.append(entities[curve].curve)
+        need((surface.du, surface.dv) == (1, 1) or not any(loop.flats), "{}: curves in parameters", loop.what)
         for (_, a), (b, _) in zip(chain, chain[1:] + chain[:1]):
             need(a == b, "{}: the loop is not closed", loop.what)
         for curve in outlines:
@@ -93,6 +98,8 @@ def check_solid(solid, entities):
             normal = cross(s_u, s_v)
             length = math.hypot(*normal)
             need(len(outlines) == 1, "{}: plane with {} edges", face.what, len(outlines))
+            need(len(loop.flats[0]) == 1 and loop.uses[0][3] == 1, "{}: plane without a curve in its parameters", face.what)
+            check_flat(loop, entities[face.on], entities[loop.flats[0][0]].curve, outlines[0])
             part = planar_flux(outlines[0], tuple(x / length for x in normal))
         else:
             part = flux(surface)

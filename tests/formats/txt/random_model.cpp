@@ -593,7 +593,7 @@ class Maker {
       maybe(cell.of_repeats->margin, [&] { return positive(); });
     } else if (coin()) {
       fabric::CellVectors& vectors = cell.of_vectors.emplace();
-      const double along = positive(), up = positive();
+      const double along = between(0.5, 20.0), up = between(0.5, 20.0);
       vectors.first = {along, along * between(-0.2, 0.2), 0.0};
       vectors.second = {up * between(-2.0, 2.0), up, 0.0};
       maybe(vectors.height, [&] { return positive(); });
