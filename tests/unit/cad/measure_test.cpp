@@ -10,6 +10,7 @@
 #include "cad/sampled_curve.h"
 #include "cad/seam.h"
 #include "nurbs/basis.h"
+#include "nurbs/chain.h"
 #include "nurbs/conic.h"
 #include "nurbs/measure.h"
 #include "nurbs/restrict.h"
@@ -322,6 +323,27 @@ TEST(Measure, OfASphereWhoseBoundaryRunsThroughAPole) {
       EXPECT_NEAR(found->volume, ((looks_out ? 1 : -1) * r * cap - Vec3(1, 2, 3).dot(disc)) / 3, 1e-8);
     }
   }
+}
+
+// Arcs of another program end beside the pole by rounding, where the surface has no direction.
+TEST(Measure, AnEighthOfASphereThatEndsBesideItsPole) {
+  const double r = 2;
+  for (const Surface& sphere : {ball(), nurbs::transposed(ball())})
+    for (int octant = 0; octant < 8; ++octant) {
+      const Vec3 x((octant & 1) != 0 ? -r : r, 0, 0), y(0, (octant & 2) != 0 ? -r : r, 0),
+          z(0, 0, (octant & 4) != 0 ? -r : r);
+      for (const Vec3& off : {Vec3(1e-14, 0, 0), Vec3(0, 1e-14, 0), Vec3(1e-13, 1e-13, 1e-13)}) {
+        const auto half = [&](const Vec3& from, const Vec3& to, int k) {
+          return nurbs::elliptic_arc(off, from, to, k * pi / 4, (k + 1) * pi / 4);
+        };
+        Loop loop;
+        for (const auto& [from, to] : {std::pair(x, y), std::pair(y, z), std::pair(z, x)})
+          for (int k = 0; k < 2; ++k) loop.edges.push_back({half(from, to, k), {}});
+        const auto found = integrals_of(face_of(sphere, {loop}), Vec3::Zero());
+        ASSERT_TRUE(found.has_value()) << octant;
+        EXPECT_NEAR(found->area, pi * r * r / 2, 1e-7) << octant << " " << off.transpose();
+      }
+    }
 }
 
 // A line that winds round a cylinder over its seam leaves its range: nothing is given then.
