@@ -100,6 +100,11 @@ def extrapolated(sizes, values, believed):
     return z, abs(y - z), None
 
 
+def known(tensor):
+    """Rows of numbers, None where there is none: JSON has no other word for it."""
+    return [[None if numpy.isnan(value) else value for value in row] for row in tensor.tolist()]
+
+
 def study(given, others, folder):
     words = (given.size or given.segments).split(",")
     meshes = []
@@ -107,13 +112,13 @@ def study(given, others, folder):
         path, facts = make_mesh(given, word, others, folder)
         tensor, steps = tensor_of(given, path, facts)
         edge = (facts["volume"] / facts["tets"]) ** (1 / 3)
-        meshes.append({"size": word, "tets": facts["tets"], "edge": edge, "porosity": facts["porosity"], "permeability": tensor.tolist(),
+        meshes.append({"size": word, "tets": facts["tets"], "edge": edge, "porosity": facts["porosity"], "permeability": known(tensor),
                        "steps": steps, "facts": facts})
         print(f"{'size' if given.size else 'segments'} {word}: {facts['tets']} tetrahedra, K (mm2) along x, y, z: "
               + ", ".join(f"{tensor[k, k]:.5g}" for k in range(3)), file=sys.stderr)
     meshes.sort(key=lambda mesh: -mesh["edge"])
     edges = [mesh["edge"] for mesh in meshes]
-    values = numpy.array([mesh["permeability"] for mesh in meshes])
+    values = numpy.array([mesh["permeability"] for mesh in meshes], dtype=float)
     limit, error, order = numpy.full((3, 3), numpy.nan), numpy.full((3, 3), numpy.nan), [None] * 3
     for i in range(3):
         limit[i, i], wrong, order[i] = extrapolated(edges, values[:, i, i], ORDERS[given.solver])
@@ -124,14 +129,14 @@ def study(given, others, folder):
                 error[i, j] = abs(values[:, i, j] - limit[i, j])[-3:].max() if len(values) > 1 else numpy.nan
     facts = [mesh.pop("facts") for mesh in meshes][-1]
     last = values[-1]
-    known = ~numpy.isnan(last)
-    skew = abs(last - last.T)[known & known.T].max() / max(numpy.diag(last).max(), 1e-300)
+    is_known = ~numpy.isnan(last)
+    skew = abs(last - last.T)[is_known & is_known.T].max() / max(numpy.diag(last).max(), 1e-300)
     return {"solver": given.solver, "periodic": facts["periodic"], "passages": facts["passages"]["along"], "meshes": meshes,
-            "permeability_mm2": limit.tolist(), "error_mm2": error.tolist(), "order": order, "asymmetry": skew}
+            "permeability_mm2": known(limit), "error_mm2": known(error), "order": order, "asymmetry": skew}
 
 
 def show(result):
-    limit, error = numpy.array(result["permeability_mm2"]), numpy.array(result["error_mm2"])
+    limit, error = (numpy.array(result[name], dtype=float) for name in ("permeability_mm2", "error_mm2"))
     is_one = len(result["meshes"]) == 1
     print(f"solver: {result['solver']}; {len(result['meshes'])} mesh{'' if is_one else 'es'}, the finest has "
           f"{result['meshes'][-1]['tets']} tetrahedra")
@@ -178,9 +183,9 @@ def main():
             print(f"permeability: {failure}", file=sys.stderr)
             return 1
     if given.json and given.json != "-":
-        pathlib.Path(given.json).write_text(json.dumps(result, indent=1) + "\n")
+        pathlib.Path(given.json).write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
     if given.json == "-":
-        print(json.dumps(result, indent=1))
+        print(json.dumps(result, indent=1, allow_nan=False))
     else:
         show(result)
     return 0

@@ -15,22 +15,6 @@ FORCE = 1e6  # m/s2: velocities of about 1e-3 m/s in pores of 0.1 mm
 RESIDUAL = 1e-5  # of the velocity along the force, which has converged then; components that are next to nothing have not
 AXES = "xyz"
 HEAD = "FoamFile\n{{\n    version 2.0;\n    format ascii;\n    class {kind};\n    object {name};\n}}\n\n"
-# Of cells that are not orthogonal.
-SOLUTION = """solvers
-{
-    p { solver PCG; preconditioner DIC; tolerance 1e-14; relTol 0.01; }
-    U { solver smoothSolver; smoother symGaussSeidel; tolerance 1e-14; relTol 0.05; }
-}
-SIMPLE
-{
-    nNonOrthogonalCorrectors 1;
-    consistent yes;
-    pRefCell 0;
-    pRefValue 0;
-    residualControl { U 1e-6; }
-}
-relaxationFactors { equations { U 0.9; } }
-"""
 
 
 class Failure(Exception):
@@ -105,7 +89,6 @@ class Case:
         self._put("constant/fvOptions", "dictionary",
                   "force\n{\n    type vectorSemiImplicitSource;\n    selectionMode all;\n    volumeMode specific;\n"
                   f"    injectionRateSuSp {{ U (({force}) 0); }}\n}}\n")
-        self._put("system/fvSolution", "dictionary", SOLUTION)
         log = self._run("simpleFoam")
         last = float(re.findall(rf"Solving for U{AXES[axis]}, Initial residual = ([^,]+),", log)[-1])
         if not last < RESIDUAL:

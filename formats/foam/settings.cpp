@@ -31,8 +31,8 @@ snGradSchemes        { default limited 0.5; }
 
 const std::string_view solution = R"(solvers
 {
-    p { solver PCG; preconditioner DIC; tolerance 1e-12; relTol 0.01; }
-    U { solver smoothSolver; smoother symGaussSeidel; tolerance 1e-12; relTol 0.1; }
+    p { solver PCG; preconditioner DIC; tolerance 1e-14; relTol 0.01; }
+    U { solver smoothSolver; smoother symGaussSeidel; tolerance 1e-14; relTol 0.05; }
 }
 SIMPLE
 {
@@ -40,6 +40,7 @@ SIMPLE
     consistent yes;
     pRefCell 0;
     pRefValue 0;
+    residualControl { U 1e-6; }
 }
 relaxationFactors { equations { U 0.9; } }
 )";

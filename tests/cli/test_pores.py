@@ -162,7 +162,7 @@ class Permeability(Case):
         cell.write_text(text)
         done = subprocess.run([SCRIPTS / "permeability", cell, "--json", result, *options], capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads(result.read_text()), done.stdout
+        return json.loads(result.read_text(), parse_constant=self.fail), done.stdout  # NaN is no JSON
 
     def check_array(self, kind, share, *options, within=0.02):
         result, _ = self.permeability(array(kind, share), *options)
@@ -188,6 +188,17 @@ class Permeability(Case):
 
     def test_an_array(self):
         self.check_array("square", 0.4, "--segments", "10,12,16")
+
+    def test_a_cell_between_two_reservoirs(self):
+        """Along z it is open: of the tensor what couples z with the others is not known, and null."""
+        text = text_of([(0.5, 0.5)], (LENGTH, 1.0, 1.0), f"circle {2 * array_flow.radius_of('square', 0.4)!r}", periodic="x y")
+        result, said = self.permeability(text, "--segments", "10")
+        tensor = result["permeability_mm2"]
+        self.assertEqual([[value is None for value in row] for row in tensor], [[i != j and 2 in (i, j) for j in range(3)] for i in range(3)])
+        self.assertTrue(all(value is None for row in result["error_mm2"] for value in row))
+        self.assertIn("the cell is not periodic along z", said)
+        # Mirrors are what periods are to rods that are symmetric, along them.
+        self.assertAlmostEqual(tensor[0][0] / array_flow.along("square", 0.4), 1, delta=0.02)
 
     def test_another_solver(self):
         """simpleFoam, on flat tetrahedra."""
