@@ -90,6 +90,11 @@ class Oblique(Case):
         """Of linear tetrahedra, whose own error is larger than what is allowed here: their meshes differ."""
         self.assert_alike(*self.both("--size", "0.5", "--order", "1"), 1e-2)
 
+    def test_the_stiffness_of_the_whole_repeat_by_curved_tetrahedra(self):
+        if not os.environ.get("SELVAGE_TABLE"):
+            self.skipTest("SELVAGE_TABLE is not set: some minutes")
+        self.assert_alike(*self.both("--size", "0.6", "--order", "2"), 5e-3)
+
     def test_voxels(self):
         """As many along x over the same length; the others are parallelepipeds, so that the stairs differ."""
         self.assert_alike(*self.both("--voxel", "32"), VOXELS)
