@@ -11,6 +11,7 @@
 #include "fem/improve.h"
 #include "fem/midside.h"
 #include "fem/quality.h"
+#include "fem/slide.h"
 #include "fem/tet_complex.h"
 
 namespace selvage::fem {
@@ -65,13 +66,26 @@ Result<TetMesh> fill(const Block& block, std::span<const Vec3> kept, double smal
   return tets;
 }
 
-Improved improve(TetMesh& tets, const Block& block, double largest, const MeshOptions& options) {
+Improved improve(TetMesh& tets, Block& block, double largest, const MeshOptions& options) {
+  constexpr int most_rounds = 3;
+  constexpr double good = 25;  // degrees
   ImproveOptions improving;
   improving.target = options.min_dihedral;
+  improving.polish = good;
   improving.refine = {.max_volume = largest_volume(largest)};
   improving.threads = options.threads;
-  const Improvement done =
-      improve(tets.points, tets.cells, tets.regions, block.skin.nodes.points.size(), improving);
+  const std::size_t fixed = block.skin.nodes.points.size();
+  Improvement done = improve(tets.points, tets.cells, tets.regions, fixed, improving);
+  improving.refine.reset();
+  const bool has_matrix = block.of_regions.back() == CellTriangles::matrix;
+  const auto can_gain = [&] {
+    return std::ranges::any_of(
+        done.below, [](const BelowTarget& below) { return below.cause != BelowTarget::Cause::geometry; });
+  };
+  for (int round = 0; has_matrix && round < most_rounds && (round == 0 || can_gain()); ++round) {
+    if (slide_points(tets, block, good, options.order == 2) == 0) break;
+    done = improve(tets.points, tets.cells, tets.regions, fixed, improving);
+  }
   return {count(done, options.min_dihedral), describe(done, options.min_dihedral, name_of(block.units))};
 }
 

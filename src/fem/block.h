@@ -62,7 +62,8 @@ struct Improved {
 };
 
 // Puts points in, for edges of about `largest` (file units) and for the wanted angle (refine.h, improve.h).
-Improved improve(TetMesh& tets, const Block& block, double largest, const MeshOptions& options);
+// Where a matrix is around the yarns, points of their surfaces slide as well (slide.h).
+Improved improve(TetMesh& tets, Block& block, double largest, const MeshOptions& options);
 
 // The mesh of the block in mm: corner nodes, elements region by region, faces of yarns.
 Mesh assemble(const Block& block, const TetMesh& tets);

@@ -223,7 +223,7 @@ void improve(Part& part, const ImproveOptions& options) {
   TetComplex complex(std::move(part.points), part.cells, part.fixed_points);
   if (options.refine) Refiner(complex, *options.refine).run();
   complex.measure_all();
-  if (options.refine && options.polish > 0)
+  if (options.polish > 0)
     Improver(complex, quality_of_angle(std::max(options.target, options.polish))).polish();
   const double wanted = quality_of_angle(options.target);
   for (const TetComplex::Cell& cell : complex.cells()) {
@@ -304,7 +304,7 @@ Improvement improve(std::vector<Vec3>& points, std::vector<Tetrahedron>& cells,
   std::vector<Part> parts = divide(points, cells, regions, fixed_points);
   improve_all(parts, options);
   const bool was_below = std::ranges::any_of(parts, &Part::was_below);
-  if (!was_below && !options.refine) return result;
+  if (!was_below && !options.refine && !(options.polish > 0)) return result;
   join(parts, points, cells, regions, std::min(fixed_points, points.size()), result);
   std::stable_sort(result.below.begin(), result.below.end(),
                    [](const BelowTarget& a, const BelowTarget& b) { return a.angle < b.angle; });

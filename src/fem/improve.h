@@ -44,7 +44,7 @@ struct Improvement {
 
 struct ImproveOptions {
   double target = 10;  // degrees, 0..30
-  double polish = 25;  // degrees: what is below is looked at once, where points were put in; 0: not
+  double polish = 0;   // degrees: what is below is looked at once, before the passes; 0: not
   int passes = 8;      // over the tetrahedra below it; work is linear in their number
   std::optional<RefineOptions> refine{};  // points are put in first
   int threads = 1;                        // each works on regions of its own

@@ -62,7 +62,7 @@ std::vector<std::size_t> nodes_on(const Mesh& mesh, const std::vector<ElementSid
 // Where the points of a yarn's skin are in the end; empty: where they are.
 using Places = std::vector<Vec3>;
 
-Result<YarnMesh> mesh_yarn(const Block& block, const Places& kept, const MeshOptions& options,
+Result<YarnMesh> mesh_yarn(Block& block, const Places& kept, const MeshOptions& options,
                            const std::filesystem::path& program) {
   const yarn::Body& body = block.bodies.front();
   const double size = size_for(body, options), scale = millimetres_per(block.units);

@@ -46,7 +46,8 @@ double star_quality(const Vec3& at, std::span<const StarSide> sides, double enou
 }  // namespace
 
 // The angles of the tetrahedra of quality less than `below`, and how they change with the point.
-void PointPlace::measure(const Vec3& at, std::span<const StarSide> sides, double below) {
+void PointPlace::measure(const Vec3& at, std::span<const StarSide> sides, double below,
+                         const Vec3& normal) {
   angles_.clear();
   for (std::size_t s = 0; s < sides.size(); ++s) {
     if (qualities_[s] > below) continue;
@@ -70,9 +71,11 @@ void PointPlace::measure(const Vec3& at, std::span<const StarSide> sides, double
                                        (1 - share_c) / distance_to_line(c, at, a) * out_b});
     }
   }
+  for (Angle& angle : angles_) angle.slope -= normal.dot(angle.slope) * normal;
 }
 
-double PointPlace::improve(Vec3& at, std::span<const StarSide> sides, double goal) {
+double PointPlace::improve(Vec3& at, std::span<const StarSide> sides, double goal,
+                           const Vec3& normal) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const StarSide& side : sides)
     for (const Vec3& corner : side) shortest = std::min(shortest, (corner - at).norm());
@@ -83,14 +86,14 @@ double PointPlace::improve(Vec3& at, std::span<const StarSide> sides, double goa
     now = *std::min_element(qualities_.begin(), qualities_.end());
     if (now >= goal || now <= inverted_quality) break;
     const double least = angle_of_quality(now);
-    measure(at, sides, quality_of_angle(least + 12));
+    measure(at, sides, quality_of_angle(least + 12), normal);
     active_.clear();
     for (const Angle& angle : angles_)
       if (angle.value <= (least * 1.03 + 0.1) * degree) active_.push_back(angle.slope);
     if (active_.empty()) break;
     const Vec3 way = shortest_in_hull(active_);
     const double rise = way.squaredNorm();
-    if (!(rise > 0) || !std::isfinite(rise)) break;
+    if (!(rise * shortest * shortest > 1e-12) || !std::isfinite(rise)) break;  // no way up
     // As far as another angle becomes the smallest one.
     double length = 0.3 * shortest / std::sqrt(rise);
     for (const Angle& angle : angles_) {

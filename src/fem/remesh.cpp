@@ -16,20 +16,21 @@ constexpr double longest = 1.4, shortest = 0.7;  // edges, over the wanted lengt
 constexpr double least_alignment = 0.5;          // cosine between a triangle and its support
 constexpr int rounds = 6, last_rounds = 6;
 constexpr double good_angle = 35;  // degrees: smoothing may take from angles above it
+constexpr double least_angle = 25;  // degrees: so may a point that is moved to a target
 
 class Remesher {
  public:
-  Remesher(TriangleMesh& mesh, const Support& support, const SizeField& field)
-      : mesh_(mesh), support_(support), field_(field) {
+  Remesher(TriangleMesh& mesh, const Support& support) : mesh_(mesh), support_(support) {
     for (const auto& edge : mesh.fixed_edges) fixed_.insert(edge_key(edge[0], edge[1]));
     stars_.resize(mesh.points.size());
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
       for (const std::uint32_t corner : mesh.triangles[t]) stars_[corner].push_back(t);
-    for (const Vec3& point : mesh.points) wanted_.push_back(field.at(point));
     alive_.assign(mesh.triangles.size(), true);
   }
 
-  void run() {
+  void run(const SizeField& field) {
+    field_ = &field;
+    for (const Vec3& point : mesh_.points) wanted_.push_back(field.at(point));
     turn_all();
     for (int round = 0; round < rounds; ++round) {
       split_long();
@@ -43,6 +44,19 @@ class Remesher {
       if (!turned && !moved) break;
     }
     compact();
+  }
+
+  void move_points(std::span<const PointTarget> targets) {
+    for (const auto& [vertex, at] : targets) {
+      const Support::Place old{mesh_.parameters[vertex], mesh_.points[vertex]};
+      const Support::Place place = support_.nearest(old.parameters, at);
+      if (star_angle(vertex, place) < std::min(least_angle, star_angle(vertex, old)) ||
+          !stays_upright(vertex, place))
+        continue;
+      mesh_.points[vertex] = place.point;
+      mesh_.parameters[vertex] = place.parameters;
+    }
+    turn_all();
   }
 
  private:
@@ -73,6 +87,11 @@ class Remesher {
   }
   [[nodiscard]] bool is_upright(const Triangle& t) const {
     return is_upright(t, t[0], {mesh_.parameters[t[0]], mesh_.points[t[0]]});
+  }
+
+  [[nodiscard]] bool stays_upright(std::uint32_t vertex, const Support::Place& place) const {
+    return std::all_of(stars_[vertex].begin(), stars_[vertex].end(),
+                       [&](std::uint32_t t) { return is_upright(mesh_.triangles[t], vertex, place); });
   }
 
   // The triangles that have the edge; more than two: an edge that was bent together.
@@ -140,13 +159,13 @@ class Remesher {
   void move(std::uint32_t vertex, const Support::Place& place) {
     mesh_.points[vertex] = place.point;
     mesh_.parameters[vertex] = place.parameters;
-    wanted_[vertex] = field_.at(place.point);
+    wanted_[vertex] = field_->at(place.point);
   }
   void compact();
 
   TriangleMesh& mesh_;
   const Support& support_;
-  const SizeField& field_;
+  const SizeField* field_ = nullptr;  // of run()
   std::unordered_set<std::uint64_t> fixed_;
   std::vector<std::vector<std::uint32_t>> stars_;
   std::vector<double> wanted_;
@@ -172,7 +191,7 @@ bool Remesher::split(std::uint32_t a, std::uint32_t b) {
   const auto vertex = static_cast<std::uint32_t>(mesh_.points.size());
   mesh_.points.push_back(middle.point);
   mesh_.parameters.push_back(middle.parameters);
-  wanted_.push_back(field_.at(middle.point));
+  wanted_.push_back(field_->at(middle.point));
   stars_.emplace_back();
   const auto with = [&](Triangle t, std::uint32_t from, std::uint32_t to) {
     std::replace(t.begin(), t.end(), from, to);
@@ -321,10 +340,7 @@ void Remesher::smooth_all() {
     const Support::Place old{mesh_.parameters[v], mesh_.points[v]};
     const Support::Place place = support_.nearest(old.parameters, sum / weight);
     if (star_angle(v, place) < std::min(good_angle, star_angle(v, old))) continue;
-    const bool upright = std::all_of(stars_[v].begin(), stars_[v].end(), [&](std::uint32_t t) {
-      return is_upright(mesh_.triangles[t], v, place);
-    });
-    if (upright) move(v, place);
+    if (stays_upright(v, place)) move(v, place);
   }
 }
 
@@ -347,10 +363,7 @@ bool Remesher::raise_worst() {
         const Support::Place place =
             support_.nearest(from.parameters, from.point + step * (std::cos(turn) * x + std::sin(turn) * y));
         const double angle = star_angle(v, place);
-        if (angle <= least) continue;
-        if (!std::all_of(stars_[v].begin(), stars_[v].end(),
-                         [&](std::uint32_t t) { return is_upright(mesh_.triangles[t], v, place); }))
-          continue;
+        if (angle <= least || !stays_upright(v, place)) continue;
         least = angle;
         best = place;
       }
@@ -398,7 +411,11 @@ double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 void remesh(TriangleMesh& mesh, const Support& support, const SizeField& field) {
-  Remesher(mesh, support, field).run();
+  Remesher(mesh, support).run(field);
+}
+
+void move_points(TriangleMesh& mesh, const Support& support, std::span<const PointTarget> targets) {
+  Remesher(mesh, support).move_points(targets);
 }
 
 }  // namespace selvage::fem

@@ -90,6 +90,15 @@ Result<TriangleMesh> fill(const PlanarRegion& region, const Support& support, co
 // stay.
 void remesh(TriangleMesh& mesh, const Support& support, const SizeField& field);
 
+struct PointTarget {
+  std::uint32_t point;
+  Vec3 at;
+};
+
+// Moves points to the places of their support nearest to where they are wanted, but for those by which
+// triangles would turn over or become slender; then turns edges.
+void move_points(TriangleMesh& mesh, const Support& support, std::span<const PointTarget> targets);
+
 // Degrees.
 double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c);
 
