@@ -1,4 +1,4 @@
-// The plane z = 0.25 for the mesh tests.
+// A plane z = constant for the mesh tests.
 #pragma once
 
 #include "fem/triangle_mesh.h"
@@ -7,11 +7,15 @@ namespace selvage::test {
 
 class Plane final : public fem::Support {
  public:
-  [[nodiscard]] Vec3 point(const Vec2& p) const override { return {p.x(), p.y(), 0.25}; }
+  explicit Plane(double z = 0.25) : z_(z) {}
+  [[nodiscard]] Vec3 point(const Vec2& p) const override { return {p.x(), p.y(), z_}; }
   [[nodiscard]] Vec3 normal(const Vec2& /*p*/) const override { return Vec3::UnitZ(); }
   [[nodiscard]] Place nearest(const Vec2& /*start*/, const Vec3& target) const override {
     return {target.head<2>(), point(target.head<2>())};
   }
+
+ private:
+  double z_;
 };
 
 }  // namespace selvage::test
