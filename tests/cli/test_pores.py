@@ -189,6 +189,26 @@ class Permeability(Case):
     def test_an_array(self):
         self.check_array("square", 0.4, "--segments", "10,12,16")
 
+    def test_an_oblique_cell(self):
+        """Upright cylinders in hexagons by their smallest repeat; each node of a face is its vector away from its like."""
+        share, step = 0.4, np.array([[1, 0, 0], [0.5, math.sqrt(3) / 2, 0], [0, 0, LENGTH]])
+        middle = step[:2].sum(axis=0) / 2
+        text = (f"fabric 1\nunits mm\ntolerance 1e-5\nthread rod\n  section circle {2 * array_flow.radius_of('hexagonal', share)!r}\nend\n"
+                f"yarn a rod\n  path\n    {middle[0]} {middle[1]!r} -1\n    {middle[0]} {middle[1]!r} 1\n  end\nend\n"
+                f"cell vectors {' '.join(str(x) for x in step.ravel())}  at 0 0 0\n  periodic x y z\nend\n")
+        result, _ = self.permeability(text, "--segments", "16", "--keep", self.folder / "kept")
+        tensor = np.array(result["permeability_mm2"])
+        across = array_flow.across("hexagonal", share)
+        np.testing.assert_allclose(tensor, np.diag([across, across, array_flow.along("hexagonal", share)]), rtol=0.01, atol=0.002 * across)
+        mesh = meshio.read(self.folder / "kept" / "pores_16.msh")
+        links = mesh.gmsh_periodic
+        self.assertEqual(len([link for link in links if link[0] == 2]), 3)
+        for _, _, affine, nodes in links:
+            shift = np.array(affine).reshape(4, 4)[:3, 3]
+            parts = np.linalg.solve(step.T, shift)
+            np.testing.assert_allclose(parts, np.round(parts), atol=1e-12)
+            np.testing.assert_allclose(mesh.points[nodes[:, 0]] - mesh.points[nodes[:, 1]], np.broadcast_to(shift, (len(nodes), 3)), atol=1e-12)
+
     def test_a_cell_between_two_reservoirs(self):
         """Along z it is open: of the tensor what couples z with the others is not known, and null."""
         text = text_of([(0.5, 0.5)], (LENGTH, 1.0, 1.0), f"circle {2 * array_flow.radius_of('square', 0.4)!r}", periodic="x y")
