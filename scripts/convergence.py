@@ -36,7 +36,7 @@ def stated(sizes, values, believed):
     A mesh knows itself and the coarser ones; nothing finer enters what it says. The second has one difference, and says three
     times that. The first, which has nothing coarser, says how far the second one is, and that one's error. The third has the
     order that all three show. Where they show none that is believed it says three times the last change, if the changes shrink
-    even faster than is believed, and else three times the largest one.
+    even faster than is believed, and else three times the range of all values.
     """
     if not all(a > b for a, b in zip(sizes, sizes[1:])):
         raise ValueError("meshes have to come coarsest first, each finer than the one before")
@@ -47,7 +47,7 @@ def stated(sizes, values, believed):
         a, b, c = (size ** believed[1] for size in sizes)
         shrinking = (x - y) * (y - limit) >= 0 and abs(y - limit) * (a - b) <= abs(x - y) * (b - c)
         if order is None:
-            error = SAFETY_OF_RANGE * (abs(y - limit) if shrinking else error)
+            error = SAFETY_OF_RANGE * (abs(y - limit) if shrinking else max(values) - min(values))
         errors.append(error)
     return limit, [max(e, ROUNDING * abs(v)) for e, v in zip(errors, values)], order
 

@@ -55,7 +55,7 @@ CELLS = {
     "twill_carbon": Sizes(0.3, (0.9, 0.6, 0.4), (48, 72, 100)),
     "satin_carbon": Sizes(0.3, (0.9, 0.6, 0.4), (60, 84, 118)),
     "orthogonal_glass": Sizes(0.3, (0.9, 0.6, 0.4), (28, 40, 56)),
-    "jersey_glass": Sizes(0.2, (0.45, 0.3, 0.2), (18, 26, 38)),
+    "jersey_glass": Sizes(0.16, (0.6, 0.42, 0.28), (20, 28, 40)),
     "braid_carbon": Sizes(0.4, (0.9, 0.6, 0.4), (36, 50, 70)),
 }
 

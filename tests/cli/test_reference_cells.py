@@ -63,7 +63,7 @@ class Errors(unittest.TestCase):
     def test_oscillating(self):
         limit, errors, shown = convergence.stated(EDGES, (1.0, 0.8, 0.9), BELIEVED)
         self.assertEqual((limit, shown), (0.9, None))
-        self.assertAlmostEqual(errors[2], 0.3)
+        self.assertAlmostEqual(errors[2], 0.6)
 
     def test_no_order_that_is_believed(self):
         """Faster than believed: three times the last change. Slower: three times the range, which may be less than the truth; a closed form
