@@ -1,7 +1,7 @@
 """What values on several meshes tend to, and how far each of them is off: for scripts/permeability and scripts/reference-cells.
 
 P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: Richardson's extrapolation, and its change times a factor of safety as the error.
-L. Eca, M. Hoekstra, J. Comput. Phys. 262 (2014) 104-130: where no order of convergence shows, three times the range of the values.
+L. Eça, M. Hoekstra, J. Comput. Phys. 262 (2014) 104-130: where no order of convergence shows, three times the range of the values.
 """
 
 import numpy

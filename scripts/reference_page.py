@@ -8,7 +8,7 @@ and z. C is the stiffness in MPa (xy,xy is a shear modulus), k the conductivity 
 Yarns keep 16 % of the thickness of the thinnest one apart, or more: across a gap that is thinner than a voxel yarns touch, and the cell comes out too
 stiff (a jersey with gaps of 5 % by 4 %). Tetrahedra have ten nodes (the flow's are Taylor and Hood's), voxels eight. `results.json` has all of it for programs, with more digits.
 
-The error that is stated of a mesh (after Roache, J. Fluids Eng. 116 (1994) 405-413, and Eca, Hoekstra, J. Comput. Phys. 262 (2014)
+The error that is stated of a mesh (after Roache, J. Fluids Eng. 116 (1994) 405-413, and Eça, Hoekstra, J. Comput. Phys. 262 (2014)
 104-130; the fineness is the cube root of the number of elements):
 
 - Coarse and medium know the change from one to the other. The medium mesh states three times that, the coarse one four times: how far the medium
@@ -19,7 +19,7 @@ The error that is stated of a mesh (after Roache, J. Fluids Eng. 116 (1994) 405-
 - Each entry of a tensor has the relative error of its worst one, so that no coincidence is taken for precision.
 
 Meshes agree when each value is as near to the extrapolated one of its kind, and to the closed form where there is one, as it states, and when
-some value lies within the errors of all meshes of both kinds. Nothing in the definition makes this so.
+some value lies within the errors of all meshes of both kinds. By definition only the fine mesh meets its own extrapolated value.
 
 Closed forms of arrays: Rayleigh's series of the conductivity (Perrins, McKenzie, McPhedran 1979), and a plane solution without a mesh of the
 flow, which has the values of Sangani and Acrivos 1982 and of Drummond and Tahir 1984."""
