@@ -300,7 +300,10 @@ def arguments():
     action.add_argument("--write", action="store_true", help="renew samples/benchmark/RESULTS.md and results.json, too; what was never computed is `not run` there")
     action.add_argument("--check", action="store_true", help="compute nothing: do the committed values agree, and is the page theirs?")
     parser.add_argument("--selvage", default="selvage", help=argparse.SUPPRESS)
-    return parser.parse_args()
+    given = parser.parse_args()
+    if given.quick and given.write:
+        parser.error("--write takes all three sizes: leave out --quick")
+    return given
 
 
 def main():

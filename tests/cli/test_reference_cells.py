@@ -204,8 +204,10 @@ class Command(Case):
         told = self.run_script("--cells", "plain")
         self.assertEqual(told.returncode, 2)
         self.assertIn("'plain' is none of fibres_square, ", told.stderr)
-        told = self.run_script("--write", "--check")
-        self.assertEqual(told.returncode, 2)
+        for words in (["--write", "--check"], ["--write", "--quick"]):
+            told = self.run_script(*words)
+            self.assertEqual(told.returncode, 2)
+            self.assertIn("--write", told.stderr)
 
     def test_a_run_that_fails(self):
         """A program that meshes nothing: each run says so, and no cell agrees."""
