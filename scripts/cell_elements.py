@@ -3,6 +3,11 @@ where a factorization would take too long."""
 
 import numpy
 
+try:
+    from scipy import sparse
+except ModuleNotFoundError:
+    sparse = None
+
 import cell_cohesive
 
 EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]  # of which the fifth to the tenth node is the middle
@@ -11,6 +16,9 @@ BRICK = numpy.array([[x, y, z] for z in (-1.0, 1) for x, y in ((-1, -1), (1, -1)
 PAIRS = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
 RESIDUAL = 1e-7  # of the right sides; the stiffness errs by the square of what that leaves
 MOST_STEPS = 20_000
+AT_ONCE = 5_000  # elements that are added to the matrix together
+COARSE = 500  # places of the coarse grid; at least NODES nodes for each of them
+NODES = 10
 
 
 class NotSolved(Exception):
@@ -120,7 +128,8 @@ def element_rows(deck):
 
 
 class Cell:
-    """All elements of a deck as one matrix that is never put together."""
+    """All elements of a deck. Where SciPy is there, their matrices are put together, which makes a step cheaper, and a
+    coarse grid saves most of the steps."""
 
     def __init__(self, deck, drivers, pieces):
         """`pieces`: of some elements at a time their numbers, matrices, and forces of one degree."""
@@ -135,6 +144,8 @@ class Cell:
         self.kinds = [Kind(*map(numpy.concatenate, zip(*of_size)), self.conditions) for of_size in by_size.values()]
         blocks = sum(kind.blocks() for kind in self.kinds)
         self.inverse = numpy.linalg.inv(blocks[:count])
+        self.matrix = sum(kind.assembled() for kind in self.kinds) if sparse else None
+        self.coarse = CoarseGrid(deck, self.conditions, self.matrix) if sparse and count >= 8 * NODES else None
         self.groups, self.of_groups = None, None
         if deck.wedges:
             self._group(deck, blocks)
@@ -167,9 +178,15 @@ class Cell:
             numpy.add.at(together, self.groups, nodes)
             moved += (self.of_groups @ together)[self.groups]
         result[:used] = moved.reshape(used, -1)
+        if self.coarse is not None:
+            result += self.coarse(x)
         return result
 
     def forces(self, way):
+        if self.matrix is not None:
+            result = self.matrix @ way
+            result[-self.directions :] = 0
+            return result
         return sum(kind.gather(kind.matrices @ way[kind.unknown]) for kind in self.kinds)
 
     def solve(self, right):
@@ -200,6 +217,44 @@ class Cell:
         return work[:, :-1], work[:, -1]
 
 
+class CoarseGrid:
+    """What moves far parts of a cell against each other, by trilinear functions on a grid of it that goes round: the second level
+    of an additive Schwarz method (B. Smith, P. Bjorstad, W. Gropp, Domain Decomposition (1996), 3). Any grid does; one that
+    suits the cell badly only costs steps."""
+
+    def __init__(self, deck, conditions, matrix):
+        place = numpy.zeros((conditions.count, 3))
+        for node, unknown in enumerate(conditions.unknown):
+            if unknown >= 0:
+                place[unknown] = deck.nodes[node]
+        edges = deck.cell.edges
+        lengths = numpy.linalg.norm(edges, axis=1)
+        places = min(COARSE, conditions.count // NODES)
+        counts = numpy.maximum(1, (lengths * (places / lengths.prod()) ** (1 / 3)).astype(int))
+        hats = sparse.kron(self._hats(place @ numpy.linalg.inv(edges), counts), sparse.identity(deck.directions))
+        self.hats = sparse.vstack([hats, sparse.csr_matrix((matrix.shape[0] - hats.shape[0], hats.shape[1]))]).tocsr()
+        self.turned = self.hats.T.tocsr()
+        coarse = (self.turned @ matrix @ self.hats).toarray()
+        coarse += 1e-8 * coarse.diagonal().max() * numpy.eye(len(coarse))  # hats that no node tells apart
+        self.inverse = numpy.linalg.inv(coarse)
+
+    @staticmethod
+    def _hats(at, counts):
+        """Values of the grid's functions at places in parts of the edges, a row each."""
+        low = numpy.floor(at * counts)
+        rest, rows, columns, values = at * counts - low, [], [], []
+        for corner in numpy.ndindex(2, 2, 2):
+            index = (low.astype(int) + corner) % counts
+            rows.append(numpy.arange(len(at)))
+            columns.append((index[:, 0] * counts[1] + index[:, 1]) * counts[2] + index[:, 2])
+            values.append(numpy.where(corner, rest, 1 - rest).prod(axis=1))
+        values, *places = map(numpy.concatenate, (values, rows, columns))
+        return sparse.csr_matrix((values, places), shape=(len(at), counts.prod()))
+
+    def __call__(self, x):
+        return self.hats @ (self.inverse @ (self.turned @ x))
+
+
 class Kind:
     """Elements of one number of nodes: their nodes, matrices, and forces of one degree."""
 
@@ -226,6 +281,15 @@ class Kind:
             own = slice(self.directions * a, self.directions * (a + 1))
             numpy.add.at(blocks, self.at[:, a], self.matrices[:, own, own])
         return blocks
+
+    def assembled(self):
+        """The matrix of the unknowns (SciPy's)."""
+        result, size = sparse.csr_matrix((self.rows, self.rows)), self.unknown.shape[1]
+        for first in range(0, len(self.unknown), AT_ONCE):
+            some = self.unknown[first : first + AT_ONCE]
+            places = numpy.repeat(some, size, axis=1).ravel(), numpy.tile(some, (1, size)).ravel()
+            result += sparse.csr_matrix((self.matrices[first : first + AT_ONCE].ravel(), places), shape=result.shape)
+        return result
 
     def gather(self, rows):
         """Forces of elements (n x 3 nodes x cases) at the unknowns."""

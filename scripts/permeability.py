@@ -25,12 +25,12 @@ except ModuleNotFoundError:
     sys.exit("permeability: NumPy and SciPy are not installed: apt-get install python3-numpy python3-scipy")
 
 import pore_case
+from convergence import extrapolated
 from pore_flow import NotSolved, PoreFlow
 from pore_mesh import PoreMesh
 
 AXES = "xyz"
 SQUARE_METRES = 1e-6  # a mm2
-SAFETY = 1.25  # of the error of three meshes (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413)
 # Between which an order of convergence is believed: meshes that are not similar have noise, too.
 ORDERS = {"own": (2.0, 5.0), "openfoam": (1.0, 3.0)}
 
@@ -80,24 +80,6 @@ def tensor_of(given, path, facts):
             if other != axis:
                 tensor[axis, other] = tensor[other, axis] = numpy.nan
     return tensor, steps
-
-
-def extrapolated(sizes, values, believed):
-    """What values on meshes of these edge lengths tend to, and the error of the last one's improvement: Richardson's with the
-    order that three meshes show. Where they show none, the last value, and the largest difference from the others."""
-    if len(values) == 1:
-        return values[0], None, None
-    (b, y), (c, z) = list(zip(sizes, values))[-2:]
-    if len(values) > 2:
-        a, x = sizes[-3], values[-3]
-        orders = numpy.linspace(*believed, 301)
-        misfit = abs((x - y) * (b**orders - c**orders) - (y - z) * (a**orders - b**orders))
-        order = float(orders[misfit.argmin()])
-        if (x - y) * (y - z) > 0 and believed[0] < order < believed[1]:
-            change = (z - y) * c**order / (b**order - c**order)
-            return z + change, SAFETY * abs(change), order
-        return z, max(abs(x - z), abs(y - z)), None
-    return z, abs(y - z), None
 
 
 def known(tensor):

@@ -10,13 +10,12 @@ ORDER = {4: [0, 1, 2, 3], 10: [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]}
 
 class PoreMesh:
     """`nodes`: n x 3, mm; `elements`: m x 4 or 10 indices; `patches`: of each name its nodes; `master`: of each node the one
-    that it repeats, itself where it repeats none; `periodic`: the length of the cell along each axis that is, else 0."""
+    that it repeats, itself where it repeats none."""
 
     def __init__(self, path):
         with open(path, encoding="utf-8") as file:
             self._lines = iter(file.read().splitlines())
         self._names, self._of_surface, self.patches = {}, {}, {}
-        self.periodic = numpy.zeros(3)
         self._pairs = []
         self._sections = {"$PhysicalNames": self._read_names, "$Entities": self._read_entities, "$Nodes": self._read_nodes,
                           "$Elements": self._read_elements, "$Periodic": self._read_periodic}
@@ -72,9 +71,7 @@ class PoreMesh:
     def _read_periodic(self):
         for _ in range(int(next(self._lines))):
             next(self._lines)
-            shift = numpy.array([float(word) for word in next(self._lines).split()[1:]]).reshape(4, 4)[:3, 3]
-            if (shift != 0).sum() == 1:
-                self.periodic = numpy.maximum(self.periodic, shift)
+            next(self._lines)
             for _ in range(int(next(self._lines))):
                 node, other = self._numbers()
                 self._pairs.append((node - 1, other - 1))

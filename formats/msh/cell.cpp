@@ -20,7 +20,7 @@ class CellFile {
         text_(text),
         topology_(topology_of(mesh)),
         opposite_(fem::opposite_nodes(*mesh.cell, mesh.nodes.size())),
-        copies_(copies_in(mesh, topology_, opposite_)) {
+        copies_(copies_in(topology_, opposite_)) {
     if (mesh.order == 2) find_midside_nodes();
     name_groups();
     place_nodes();
@@ -284,18 +284,21 @@ class CellFile {
     if (copies_.empty()) return;
     text_ << "$Periodic\n" << copies_.size() << '\n';
     for (const Copy& copy : copies_) {
+      Vec3 shift = Vec3::Zero();
+      for (std::size_t k = 0; k < 3; ++k)
+        if (copy.along[k]) shift += mesh_.cell->shape().edge(static_cast<int>(k));
       text_ << copy.dimension << ' ' << copy.entity + 1 << ' ' << copy.original + 1 << "\n16";
       for (int row = 0; row < 4; ++row)
         for (int column = 0; column < 4; ++column) {
-          const double shift = row < 3 ? copy.shift[row] : 1;
-          text_ << ' ' << (column == 3 ? shift : row == column ? 1.0 : 0.0);
+          const double last = row < 3 ? shift[row] : 1;
+          text_ << ' ' << (column == 3 ? last : row == column ? 1.0 : 0.0);
         }
       const std::vector<std::size_t> nodes = all_nodes(copy.dimension, copy.entity);
       text_ << '\n' << nodes.size() << '\n';
       for (const std::size_t node : nodes) {
         std::size_t image = node;
-        for (int axis = 0; axis < 3; ++axis)
-          if (copy.shift[axis] != 0) image = opposite_[static_cast<std::size_t>(axis)][image];
+        for (std::size_t k = 0; k < 3; ++k)
+          if (copy.along[k]) image = opposite_[k][image];
         text_ << node + 1 << ' ' << image + 1 << '\n';
       }
     }

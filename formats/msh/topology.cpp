@@ -158,16 +158,17 @@ class Tracer {
   Topology topology_;  // points and curves
 };
 
-// Where every node of an entity has its image, along all axes on whose high side the whole entity is; `shift`
-// is added to. Empty: it is on no high side.
-std::vector<std::size_t> images(const std::vector<std::size_t>& nodes, const fem::Mesh& mesh,
-                                const std::array<std::vector<std::size_t>, 3>& opposite, Vec3& shift) {
+// Where every node of an entity has its image, back along all edges of the cell on whose high side the whole
+// entity is, which `along` tells. Empty: it is on no high side.
+std::vector<std::size_t> images(const std::vector<std::size_t>& nodes,
+                                const std::array<std::vector<std::size_t>, 3>& opposite,
+                                std::array<bool, 3>& along) {
   std::vector<std::size_t> result = nodes;
   for (std::size_t a = 0; a < 3; ++a) {
     const auto has_image = [&](std::size_t node) { return opposite[a][node] != fem::no_node; };
     if (!std::all_of(result.begin(), result.end(), has_image)) continue;
     for (std::size_t& node : result) node = opposite[a][node];
-    shift += mesh.cell->shape().edge(static_cast<int>(a));
+    along[a] = true;
   }
   return result == nodes ? std::vector<std::size_t>() : result;
 }
@@ -201,7 +202,7 @@ Topology topology_of(const fem::Mesh& mesh) {
   return topology;
 }
 
-std::vector<Copy> copies_in(const fem::Mesh& mesh, const Topology& topology,
+std::vector<Copy> copies_in(const Topology& topology,
                             const std::array<std::vector<std::size_t>, 3>& opposite) {
   std::vector<Copy> copies;
   const std::array<std::size_t, 3> counts = {topology.points.size(), topology.curves.size(),
@@ -215,8 +216,8 @@ std::vector<Copy> copies_in(const fem::Mesh& mesh, const Topology& topology,
       const auto parts = parts_of(topology, dimension, entity);
       std::vector<std::size_t> all;
       for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-      Copy copy{dimension, entity, 0, Vec3::Zero()};
-      const std::vector<std::size_t> moved = images(all, mesh, opposite, copy.shift);
+      Copy copy{dimension, entity, 0, {}};
+      const std::vector<std::size_t> moved = images(all, opposite, copy.along);
       if (moved.empty()) continue;
       std::set<std::size_t> originals;
       for (std::size_t p = 0, at = 0; p < parts.size(); at += parts[p].size(), ++p) {

@@ -39,12 +39,12 @@ Topology topology_of(const fem::Mesh& mesh);
 struct Copy {
   int dimension = 0;  // 0 points, 1 curves, 2 surfaces
   std::size_t entity = 0, original = 0;
-  Vec3 shift = Vec3::Zero();  // from the original
+  std::array<bool, 3> along = {};  // which edges of the cell lead here from the original
 };
 
 // `opposite`: of fem::opposite_nodes(). By dimension, then by entity. What has no complete copy on the other
 // side is left out.
-std::vector<Copy> copies_in(const fem::Mesh& mesh, const Topology& topology,
+std::vector<Copy> copies_in(const Topology& topology,
                             const std::array<std::vector<std::size_t>, 3>& opposite);
 
 }  // namespace selvage::formats::msh

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import unittest
 
+import gmsh
 import meshio
 import numpy as np
 
@@ -188,6 +189,39 @@ class Permeability(Case):
 
     def test_an_array(self):
         self.check_array("square", 0.4, "--segments", "10,12,16")
+
+    def test_an_oblique_cell(self):
+        """Upright cylinders in hexagons by their smallest repeat; each node of a face is its vector away from its like."""
+        share, step = 0.4, np.array([[1, 0, 0], [0.5, math.sqrt(3) / 2, 0], [0, 0, LENGTH]])
+        middle = step[:2].sum(axis=0) / 2
+        text = (f"fabric 1\nunits mm\ntolerance 1e-5\nthread rod\n  section circle {2 * array_flow.radius_of('hexagonal', share)!r}\nend\n"
+                f"yarn a rod\n  path\n    {middle[0]} {middle[1]!r} -1\n    {middle[0]} {middle[1]!r} 1\n  end\nend\n"
+                f"cell vectors {' '.join(str(x) for x in step.ravel())}  at 0 0 0\n  periodic x y z\nend\n")
+        result, _ = self.permeability(text, "--segments", "16", "--keep", self.folder / "kept")
+        tensor = np.array(result["permeability_mm2"])
+        across = array_flow.across("hexagonal", share)
+        np.testing.assert_allclose(tensor, np.diag([across, across, array_flow.along("hexagonal", share)]), rtol=0.01, atol=0.002 * across)
+        self.check_links(self.folder / "kept" / "pores_16.msh", step)
+
+    def check_links(self, path, step):
+        """Gmsh's own view of what repeats what."""
+        gmsh.initialize()
+        self.addCleanup(gmsh.finalize)
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.open(str(path))
+        shifts = []
+        for dimension, tag in gmsh.model.getEntities():
+            if dimension == 3:
+                continue
+            original, nodes, others, affine = gmsh.model.mesh.getPeriodicNodes(dimension, tag, includeHighOrderNodes=True)
+            if original == tag:
+                continue
+            shift = np.array(affine).reshape(4, 4)[:3, 3]
+            moved = [gmsh.model.mesh.getNode(a)[0] - gmsh.model.mesh.getNode(b)[0] for a, b in zip(nodes, others)]
+            np.testing.assert_allclose(moved, np.broadcast_to(shift, (len(nodes), 3)), atol=1e-12)
+            if dimension == 2:
+                shifts.append(shift)
+        np.testing.assert_allclose(sorted(map(tuple, shifts)), sorted(map(tuple, step)), atol=1e-12)
 
     def test_a_cell_between_two_reservoirs(self):
         """Along z it is open: of the tensor what couples z with the others is not known, and null."""
