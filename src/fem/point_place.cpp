@@ -46,8 +46,7 @@ double star_quality(const Vec3& at, std::span<const StarSide> sides, double enou
 }  // namespace
 
 // The angles of the tetrahedra of quality less than `below`, and how they change with the point.
-void PointPlace::measure(const Vec3& at, std::span<const StarSide> sides, double below,
-                         const Vec3& normal) {
+void PointPlace::measure(const Vec3& at, std::span<const StarSide> sides, double below, const Vec3& normal) {
   angles_.clear();
   for (std::size_t s = 0; s < sides.size(); ++s) {
     if (qualities_[s] > below) continue;
@@ -74,8 +73,7 @@ void PointPlace::measure(const Vec3& at, std::span<const StarSide> sides, double
   for (Angle& angle : angles_) angle.slope -= normal.dot(angle.slope) * normal;
 }
 
-double PointPlace::improve(Vec3& at, std::span<const StarSide> sides, double goal,
-                           const Vec3& normal) {
+double PointPlace::improve(Vec3& at, std::span<const StarSide> sides, double goal, const Vec3& normal) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const StarSide& side : sides)
     for (const Vec3& corner : side) shortest = std::min(shortest, (corner - at).norm());

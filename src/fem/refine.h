@@ -9,8 +9,8 @@
 
 namespace selvage::fem {
 
-// Of a tetrahedron where edges of about `edge` are wanted: between half of it and all of it, it is as large as
-// the regular one (which has 0.118 of the cube over its edge) with edges of 1.07 to 1.35.
+// Of a tetrahedron where edges of about `edge` are wanted: between half of it and all of it, it is as large
+// as the regular one (which has 0.118 of the cube over its edge) with edges of 1.07 to 1.35.
 constexpr double largest_volume(double edge) {
   return 0.29 * edge * edge * edge;
 }

@@ -15,7 +15,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 constexpr double longest = 1.4, shortest = 0.7;  // edges, over the wanted length
 constexpr double least_alignment = 0.5;          // cosine between a triangle and its support
 constexpr int rounds = 6, last_rounds = 6;
-constexpr double good_angle = 35;  // degrees: smoothing may take from angles above it
+constexpr double good_angle = 35;   // degrees: smoothing may take from angles above it
 constexpr double least_angle = 25;  // degrees: so may a point that is moved to a target
 
 class Remesher {

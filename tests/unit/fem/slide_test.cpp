@@ -18,11 +18,11 @@ namespace selvage::fem {
 namespace {
 
 struct Crossing {
-  std::vector<yarn::Body> bodies = {
-      test::straight_tube(0.5, 0.2, 2, 24, {-0.5, 0.5, 0.25}, "along"),
-      test::grid_body("across", 24, 6, [](double angle, double share) {
-        return Vec3(0.5 - 0.25 * std::cos(angle), 2 * share - 0.5, 0.47 + 0.1 * std::sin(angle));
-      })};
+  std::vector<yarn::Body> bodies = {test::straight_tube(0.5, 0.2, 2, 24, {-0.5, 0.5, 0.25}, "along"),
+                                    test::grid_body("across", 24, 6, [](double angle, double share) {
+                                      return Vec3(0.5 - 0.25 * std::cos(angle), 2 * share - 0.5,
+                                                  0.47 + 0.1 * std::sin(angle));
+                                    })};
   std::optional<Block> block;
   TetMesh tets;
 
@@ -52,9 +52,8 @@ struct Crossing {
   [[nodiscard]] std::vector<double> angles() const {
     std::vector<double> result;
     for (const auto& t : tets.cells)
-      result.push_back(
-          shape_of({tets.points[t[0]], tets.points[t[1]], tets.points[t[2]], tets.points[t[3]]})
-              .min_dihedral);
+      result.push_back(shape_of({tets.points[t[0]], tets.points[t[1]], tets.points[t[2]], tets.points[t[3]]})
+                           .min_dihedral);
     std::sort(result.begin(), result.end());
     return result;
   }
@@ -89,8 +88,8 @@ TEST(Slide, OnTheSurface) {
     farthest = std::max(farthest, (crossing.tets.points[k] - before[k]).norm());
     const SurfacePlace& place = crossing.block->skin.nodes.places[k];
     if (place.body == no_body) continue;
-    const Vec3 exact = nurbs::evaluate(crossing.bodies[place.body].surface, place.parameters.x(),
-                                       place.parameters.y());
+    const Vec3 exact =
+        nurbs::evaluate(crossing.bodies[place.body].surface, place.parameters.x(), place.parameters.y());
     EXPECT_LT((exact - crossing.tets.points[k]).norm(), 1e-9);
   }
   EXPECT_GT(farthest, 1e-3);

@@ -38,9 +38,8 @@ double share_over_points(const TriangleMesh& mesh, const TriangleMesh& other) {
   for (const Vec3& p : mesh.points) {
     if (p.head<2>().cwiseAbs().maxCoeff() > 0.8) continue;
     ++all;
-    over += std::any_of(other.points.begin(), other.points.end(), [&](const Vec3& q) {
-      return (p - q).head<2>().norm() < edge / 4;
-    });
+    over += std::any_of(other.points.begin(), other.points.end(),
+                        [&](const Vec3& q) { return (p - q).head<2>().norm() < edge / 4; });
   }
   EXPECT_GT(all, 200);
   return static_cast<double>(over) / all;
@@ -57,7 +56,8 @@ struct Pair {
   Plane low, high;
   SizeField field{edge, 0.3, {}};
   TriangleMesh below, above;
-  explicit Pair(double gap) : low(0), high(gap), below(square(low, field, 20)), above(square(high, field, 19)) {}
+  explicit Pair(double gap)
+      : low(0), high(gap), below(square(low, field, 20)), above(square(high, field, 19)) {}
   void run(int threads) {
     stagger(std::array{StaggeredMesh{&below, &low}, StaggeredMesh{&above, &high}}, field, threads);
   }
