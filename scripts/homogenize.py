@@ -175,6 +175,11 @@ def excess(upper, lower):
 
 
 LARGEST_DIRECT = 3_000  # nodes; beyond, seven factorizations take minutes and gigabytes
+LARGEST_DIRECT_BEAM = 200_000  # slender: factorized in seconds, and conjugate gradients take minutes
+
+
+def is_beam(drivers):
+    return any(name.startswith("Beam") for name in drivers)
 
 
 def check_bounds(matrix, voigt, reuss, plate):
@@ -194,7 +199,8 @@ def fluxes_of_drivers(deck, drivers, given_solver, ccx, folder):
     CalculiX and how it was done."""
     solver = given_solver
     if solver == "auto":
-        solver = "direct" if len(deck.nodes) <= LARGEST_DIRECT and not deck.wedges else "iterative"
+        largest = LARGEST_DIRECT_BEAM if is_beam(drivers) else LARGEST_DIRECT
+        solver = "direct" if len(deck.nodes) <= largest and not deck.wedges else "iterative"
     if solver == "direct" and deck.wedges:
         raise Failure("CalculiX has no cohesive elements: leave out --solver direct")
     started = time.monotonic()
@@ -229,7 +235,7 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
     matrix = (matrix + matrix.T) / 2
     if deck.physics:
         return facts | conducting(deck, matrix / deck.cell.volume)
-    if any(name.startswith("Beam") for name in drivers):
+    if is_beam(drivers):
         if with_bounds:
             raise Failure("bounds are known of blocks and plates; leave out --bounds: this cell is periodic along one axis, a beam")
         return facts | beam(deck, matrix, thermal)
@@ -429,7 +435,7 @@ def main():
         "--solver",
         choices=["auto", "direct", "iterative"],
         default="auto",
-        help=f"CalculiX's factorization, or conjugate gradients without it (default: direct up to {LARGEST_DIRECT} nodes)",
+        help=f"CalculiX's factorization, or conjugate gradients without it (default: direct up to {LARGEST_DIRECT:,} nodes, of beams {LARGEST_DIRECT_BEAM:,})",
     )
     parser.add_argument("--ccx", default="ccx", help="the program (default: ccx)")
     parser.add_argument("--selvage", default="selvage", help=argparse.SUPPRESS)
