@@ -1,5 +1,7 @@
 #include "pipeline/meshing.h"
 
+#include <fmt/format.h>
+
 #include "fem/cell_kind.h"
 #include "fem/cell_mesher.h"
 #include "fem/fibre.h"
