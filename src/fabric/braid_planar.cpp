@@ -15,7 +15,7 @@ namespace selvage::fabric {
 
 namespace {
 
-constexpr double most_planar_yarns = 1e7;
+constexpr double most_planar_yarns = 1e6;
 
 // A part of a braider's endless way, in steps.
 struct Way {
