@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <vector>
 
@@ -108,14 +107,15 @@ class PlanarBraid : public Construction {
 
   // Who is on top depends on the column alone, as in a tube; along y the pattern and the axial yarns repeat.
   [[nodiscard]] Repeat repeat() const override {
-    const std::int64_t period = std::int64_t{shape_.over} + shape_.under, columns = std::lcm(2, period),
-                       runs = 2 * columns / period;
+    const std::int64_t period = std::max<std::int64_t>(std::int64_t{shape_.over} + shape_.under, 1);
+    const std::int64_t columns = period % 2 == 0 ? period : 2 * period, runs = 2 * columns / period;
     const std::vector<std::int64_t> axials = axial_runs();
     const std::set<std::int64_t> taken(axials.begin(), axials.end());
-    const std::int64_t shift =
-        smallest_repeat(shape_.carriers / columns, runs, [&](long long block, long long run) {
-          return taken.contains(block % (shape_.carriers / columns) * runs + run);
-        });
+    const std::int64_t blocks =
+        std::max<std::int64_t>(shape_.carriers / columns, 1);  // whole, as was checked
+    const std::int64_t shift = smallest_repeat(blocks, runs, [&](long long block, long long run) {
+      return taken.contains(block % blocks * runs + run);
+    });
     return {2.0 * shape_.step, static_cast<double>(shift * columns) * shape_.column, std::nullopt};
   }
 
