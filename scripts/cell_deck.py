@@ -17,6 +17,7 @@ class Parallelepiped:
         self.edges, self.volume = edges, numpy.linalg.det(edges)
         self.low, self.high = corner[2], corner[2] + edges[2, 2]
         self.height, self.middle = self.high - self.low, (self.low + self.high) / 2
+        self.center = corner + edges.sum(axis=0) / 2
 
 
 def cell_of(rows):
@@ -126,10 +127,15 @@ class Deck:
                 for row in rows:
                     if len(row) > 3 and row[3]:
                         step["drivers"][row[0]] = float(row[3])
-                    elif row[0].isdigit():
-                        self.held = row
+                    elif row[0].isdigit() and row[0] not in self.held:
+                        self._hold(row)
             elif keyword == "TEMPERATURE" and step is not None:
                 step["temperature"] = float(rows[0][1])
+
+    def _hold(self, row):
+        """A node all of whose unknowns are zero. (Others only keep a beam from turning, which no force does.)"""
+        if self.physics or int(row[2]) - int(row[1]) == 2:
+            self.held.append(row[0])
 
     def _add_elements(self, options, rows):
         names = self.element_sets.setdefault(options.get("ELSET", "All"), [])
@@ -161,7 +167,7 @@ class Deck:
             k += 1 + 3 * count
 
     def drivers(self):
-        names = [name for name in self.sets if re.fullmatch(r"(Constraints|Curvature|Gradient)Driver\d", name)]
+        names = [name for name in self.sets if re.fullmatch(r"(Constraints|Curvature|Beam|Gradient)Driver\d", name)]
         return {name: self.sets[name][0] for name in names}
 
     def parts(self, chunk=20_000):

@@ -111,8 +111,8 @@ class Conditions:
                     self.driven[node, direction, index[n]] = -f / factor
         for node, other in cell_cohesive.tied(deck).items():
             master[master == node] = master[other]
-        if deck.held:
-            master[master == int(master[int(deck.held[0])])] = -1
+        for node in deck.held:
+            master[master == int(master[int(node)])] = -1
         used = numpy.unique(numpy.concatenate([numpy.unique(rows) for rows in element_rows(deck)]))
         kept = numpy.unique(master[used])
         kept = kept[kept >= 0]

@@ -175,6 +175,11 @@ def excess(upper, lower):
 
 
 LARGEST_DIRECT = 3_000  # nodes; beyond, seven factorizations take minutes and gigabytes
+LARGEST_DIRECT_BEAM = 200_000  # slender: factorized in seconds, and conjugate gradients take minutes
+
+
+def is_beam(drivers):
+    return any(name.startswith("Beam") for name in drivers)
 
 
 def check_bounds(matrix, voigt, reuss, plate):
@@ -194,7 +199,8 @@ def fluxes_of_drivers(deck, drivers, given_solver, ccx, folder):
     CalculiX and how it was done."""
     solver = given_solver
     if solver == "auto":
-        solver = "direct" if len(deck.nodes) <= LARGEST_DIRECT and not deck.wedges else "iterative"
+        largest = LARGEST_DIRECT_BEAM if is_beam(drivers) else LARGEST_DIRECT
+        solver = "direct" if len(deck.nodes) <= largest and not deck.wedges else "iterative"
     if solver == "direct" and deck.wedges:
         raise Failure("CalculiX has no cohesive elements: leave out --solver direct")
     started = time.monotonic()
@@ -214,7 +220,7 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
     deck = Deck(path)
     drivers = deck.drivers()
     if not drivers or not deck.steps:
-        raise Failure(f"{path}: no unit cell with load cases (mesh it with --matrix --periodic)")
+        raise Failure(f"{path}: no unit cell with load cases (mesh it with --matrix --periodic; where it is periodic along one axis, --periodic will do)")
     if deck.cell is None:
         raise Failure(f"{path}: the deck does not say its cell")
     matrix, thermal, facts = fluxes_of_drivers(deck, drivers, solver, ccx, folder)
@@ -229,6 +235,10 @@ def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
     matrix = (matrix + matrix.T) / 2
     if deck.physics:
         return facts | conducting(deck, matrix / deck.cell.volume)
+    if is_beam(drivers):
+        if with_bounds:
+            raise Failure("bounds are known of blocks and plates; leave out --bounds: this cell is periodic along one axis, a beam")
+        return facts | beam(deck, matrix, thermal)
     plate = any(name.startswith("Curvature") for name in drivers)
     measure = deck.cell.volume / (deck.cell.height if plate else 1)
     return facts | elastic(deck, matrix / measure, thermal / measure, plate, with_bounds)
@@ -256,6 +266,42 @@ def elastic(deck, matrix, thermal, plate, with_bounds):
     if with_bounds:
         result |= {"volume_fractions": shares, "voigt": voigt.tolist(), "reuss": reuss.tolist()}
     return result
+
+
+def beam(deck, matrix, thermal):
+    """Forces and moments of a cell that is periodic along one axis, about the middle of the cell: N (N), torque and bending
+    moments (N mm)."""
+    order = [step["name"].split()[-1] for step in deck.steps[:4]]  # x, x, xy, xz
+    axis = "xyz".index(order[0])
+    length = deck.cell.edges[axis, axis]
+    matrix, thermal = matrix / length, thermal / length
+    alone = numpy.linalg.inv(matrix)
+    free = -alone @ thermal
+    across = [name[-1] for name in order[2:]]
+    names = ["EA", "GJ", *(f"EI_{name}" for name in across)]
+    free_names = ["alpha", "twist", *(f"curvature_{name}" for name in across)]
+    notes = [
+        f"periodic along {order[0]}; about its middle, ({', '.join(f'{x:.6g}' for x in deck.cell.center)}); EI_{across[0]} is of the bending in "
+        f"which the strain grows along {across[0]}"
+    ]
+    if any(len(nodes) in (4, 8) for nodes in deck.elements.values()):
+        notes.append(
+            "elements of four or eight nodes are too stiff where they bend or twist: these are upper bounds, the worse the "
+            "more slender the yarns; mesh with --order 2"
+        )
+    return {
+        "kind": "beam",
+        "axis": order[0],
+        "length": length,
+        "middle": deck.cell.center.tolist(),
+        "order": ["stretch", "twist", *(f"bending_{name}" for name in across)],
+        "stiffness": matrix.tolist(),
+        "held": dict(zip(names, numpy.diag(matrix).tolist())),
+        "free": dict(zip(names, (1 / numpy.diag(alone)).tolist())),
+        "thermal_force": thermal.tolist(),
+        "expansion": dict(zip(free_names, free.tolist())),
+        "notes": notes,
+    }
 
 
 def conducting(deck, tensor):
@@ -334,10 +380,23 @@ def show(result):
     print(f"{result['file']}: {result['kind']}, {result['elements']} elements, {result['solver']} solver {result['seconds']:.1f} s")
     if "physics" in result:
         show_conduction(result)
+    elif result["kind"] == "beam":
+        show_beam(result)
     else:
         show_elastic(result, plate)
     for warning in result["warnings"] + result["notes"]:
         print(warning)
+
+
+def show_beam(result):
+    show_tensor(f"beam stiffness (N, N mm, N mm2) - {' '.join(result['order'])}", result["stiffness"])
+    print(f"asymmetry {result['asymmetry']:.1e} of the largest entry")
+    print("stiffness with the other three strains held, and with their forces free")
+    for name, value in result["held"].items():
+        print(f"  {name:12} {value:12.6g} {result['free'][name]:12.6g} {'N' if name == 'EA' else 'N mm2'}")
+    print("thermal expansion (1/K; of twist and curvature 1/(mm K))")
+    for name, value in result["expansion"].items():
+        print(f"  {name:12} {value:12.5g}")
 
 
 def show_elastic(result, plate):
@@ -362,20 +421,21 @@ def show_elastic(result, plate):
 def main():
     parser = argparse.ArgumentParser(
         prog="homogenize",
-        description="Stiffness (C of a block, ABD of a plate), engineering constants and thermal expansion of a unit "
+        description="Stiffness (C of a block, ABD of a plate, that of a beam periodic along one axis), engineering constants and thermal expansion of a unit "
         "cell, or the conductivity (diffusivity, permittivity) of one whose deck conducts, from its deck: by CalculiX, or by "
         "conjugate gradients where it is large.",
         epilog="Options that are not known here are those of `selvage mesh`: --size, --voxel, --order, ...",
     )
     parser.add_argument("file", help="deck of `selvage mesh` (.inp), or any input of it with a cell")
     parser.add_argument("--json", metavar="FILE", help="write the results there too ('-': standard output, alone)")
+    parser.add_argument("--dry", action="store_true", help="mesh the yarns alone, without a matrix: ropes, dry braids (periodic along one axis)")
     parser.add_argument("--bounds", action="store_true", help="of a stiffness: with volume fractions and the bounds of Voigt and Reuss (which are checked always)")
     parser.add_argument("--keep", metavar="DIR", help="keep the deck and what CalculiX wrote")
     parser.add_argument(
         "--solver",
         choices=["auto", "direct", "iterative"],
         default="auto",
-        help=f"CalculiX's factorization, or conjugate gradients without it (default: direct up to {LARGEST_DIRECT} nodes)",
+        help=f"CalculiX's factorization, or conjugate gradients without it (default: direct up to {LARGEST_DIRECT:,} nodes, of beams {LARGEST_DIRECT_BEAM:,})",
     )
     parser.add_argument("--ccx", default="ccx", help="the program (default: ccx)")
     parser.add_argument("--selvage", default="selvage", help=argparse.SUPPRESS)
@@ -389,10 +449,12 @@ def main():
                 raise Failure(f"{path}: no such file")
             if path.suffix != ".inp":
                 deck = folder / (path.stem + ".inp")
-                command = [given.selvage, "mesh", str(path), "-o", str(deck), "--matrix", "--periodic", *others]
+                command = [given.selvage, "mesh", str(path), "-o", str(deck), "--periodic", *([] if given.dry else ["--matrix"]), *others]
                 if subprocess.run(command, stdout=sys.stderr, check=False).returncode != 0:
                     raise Failure(f"{path}: it could not be meshed")
                 path = deck
+            elif given.dry:
+                raise Failure("--dry is of what is meshed here, and this is a deck: leave it out")
             elif others:
                 raise Failure(f"unknown options: {' '.join(others)}")
             result = homogenize(path, given.ccx, folder, given.bounds, given.solver)

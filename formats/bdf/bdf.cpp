@@ -5,9 +5,9 @@
 #include <map>
 
 #include "core/columns.h"
-#include "fem/complete_cell.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
+#include "fem/supports.h"
 
 namespace selvage::formats::bdf {
 namespace {
@@ -245,10 +245,13 @@ void write_equations(TextBuffer& text, const fem::Mesh& mesh) {
 void write_loads(TextBuffer& text, const fem::Mesh& mesh) {
   if (mesh.load_cases.empty()) return;
   put_card(text, "TEMPD", {"999", "0."});
+  const std::vector<fem::Support> supports = fem::supports(mesh);
   for (std::size_t i = 0; i < mesh.load_cases.size(); ++i) {
     const fem::LoadCase& load = mesh.load_cases[i];
     text << "$ " << load.name << '\n';
-    if (const auto held = fem::held_node(mesh)) put_card(text, "SPC1", {word(i + 1), "123", word(*held + 1)});
+    for (const auto& [node, only] : supports)
+      put_card(text, "SPC1",
+               {word(i + 1), only ? word(static_cast<std::size_t>(*only) + 1) : "123", word(node + 1)});
     for (std::size_t d = 0; d < mesh.drivers.size(); ++d) {
       const std::string node = word(mesh.number_of_driver(d) + 1);
       put_card(text, "SPC1", {word(i + 1), "23", node});

@@ -2,7 +2,7 @@
 // and a step for each load case.
 #include <algorithm>
 
-#include "fem/complete_cell.h"
+#include "fem/supports.h"
 #include "formats/inp/deck.h"
 
 namespace selvage::formats::inp {
@@ -64,10 +64,12 @@ void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh) {
 void write_cell_steps(TextBuffer& text, const fem::Mesh& mesh) {
   const bool is_heated = changes_temperature(mesh);
   const int first = first_unknown(mesh), last = last_unknown(mesh);
+  const std::vector<fem::Support> supports = fem::supports(mesh);
   for (const fem::LoadCase& load : mesh.load_cases) {
     text << "** " << load.name << "\n*STEP\n"
          << (conducts(mesh) ? "*HEAT TRANSFER, STEADY STATE\n1, 1" : "*STATIC") << "\n*BOUNDARY, OP=NEW\n";
-    if (const auto held = fem::held_node(mesh)) text << *held + 1 << ", " << first << ", " << last << '\n';
+    for (const auto& [node, only] : supports)
+      text << node + 1 << ", " << first + only.value_or(0) << ", " << (only ? first + *only : last) << '\n';
     for (std::size_t k = 0; k < load.drivers.size(); ++k)
       if (load.drivers[k])
         text << mesh.drivers[k].name << ", " << first << ", " << first << ", " << real(*load.drivers[k])

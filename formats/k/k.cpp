@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "core/columns.h"
-#include "fem/complete_cell.h"
 #include "fem/materials.h"
 #include "fem/sections.h"
+#include "fem/supports.h"
 #include "formats/k/deck.h"
 #include "formats/k/interfaces.h"
 
@@ -198,7 +198,10 @@ void write_loading(TextBuffer& text, const fem::Mesh& mesh) {
   put_reals(text, {0, 0}, 20);
   put_reals(text, {1, 1}, 20);
   text << "*BOUNDARY_SPC_NODE\n";
-  if (const auto held = fem::held_node(mesh)) put_integers(text, {*held + 1, 0, 1, 1, 1, 0, 0, 0});
+  for (const auto& [node, only] : fem::supports(mesh)) {
+    const auto is_held = [&, only = only](int direction) { return !only || *only == direction ? 1U : 0U; };
+    put_integers(text, {node + 1, 0, is_held(0), is_held(1), is_held(2), 0, 0, 0});
+  }
   for (std::size_t d = 0; d < mesh.drivers.size(); ++d)
     put_integers(text, {mesh.number_of_driver(d) + 1, 0, 0, 1, 1, 0, 0, 0});
   text << "*BOUNDARY_PRESCRIBED_MOTION_NODE\n";

@@ -506,8 +506,8 @@ void read_mandrel(Parser& p, BraidBlock& braid, std::string_view word) {
   braid.mandrel = std::move(rows.rows);
 }
 
-void read_flat(Parser& p, BraidBlock& braid, std::string_view) {
-  braid.flat = true;
+void read_level(Parser& p, BraidBlock& braid, std::string_view word) {
+  (word == "flat" ? braid.flat : braid.planar) = true;
   braid.radius_place = p.statement().place();
   if (!p.more()) return;
   const auto value = p.positive("the width", Measure::length);
@@ -695,7 +695,8 @@ void read_braid(Parser& p, fabric::Fabric& fabric, std::string_view word) {
                                         {"carriers", read_carriers, Times::once},
                                         {"pattern", read_pattern, Times::once},
                                         {"radius", read_radius, Times::once},
-                                        {"flat", read_flat, Times::once, "radius"},
+                                        {"flat", read_level, Times::once, "radius"},
+                                        {"planar", read_level, Times::once, "radius"},
                                         {"mandrel", read_mandrel, Times::once, "radius"},
                                         {"angle", read_angle, Times::once},
                                         {"length", read_braid_length},
@@ -711,8 +712,10 @@ void read_braid(Parser& p, fabric::Fabric& fabric, std::string_view word) {
   }
   if (braid.carriers % 2 != 0 && !braid.flat)
     p.error(braid.carriers_spot,
-            "half of the carriers of a tube run each way round: their number has to be even (or the braid "
-            "`flat`)");
+            braid.planar
+                ? "half of the carriers of a planar braid run each way: their number has to be even"
+                : "half of the carriers of a tube run each way round: their number has to be even (or "
+                  "the braid `flat`)");
   fabric.items.emplace_back(static_cast<Braid&&>(braid));
 }
 

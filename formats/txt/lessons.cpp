@@ -41,7 +41,8 @@ constexpr std::array lessons = {
     Lesson{"warpknit", "file block",
            "warpknit [tricot | cord | satin | velvet | locknit | queens-cord | atlas] ... end",
            "A warp knit by its bars; with a word one of the classics.", "warpknit"},
-    Lesson{"braid", "file block", "braid ... end", "A tube, a strip, or a braid on a mandrel.", "braid"},
+    Lesson{"braid", "file block", "braid ... end", "A tube, a strip, a planar braid, or one on a mandrel.",
+           "braid"},
     Lesson{
         "piece", "file", "piece NAME ... end",
         "The outline of a garment pattern in z = 0, in order: each part begins where the one before it ends.",
@@ -261,10 +262,14 @@ constexpr std::array lessons = {
            "length"},
 
     // --- braid
-    Lesson{"carriers", "braid", "carriers N", "How many braiders; of a tube an even number.", "carriers 16"},
+    Lesson{"carriers", "braid", "carriers N", "How many braiders; an even number but of a strip.",
+           "carriers 16"},
     Lesson{"pattern", "braid", "pattern A/B", "Over A, under B: 1/1 diamond, 2/2 regular, 3/3 hercules.",
            "pattern 2/2"},
     Lesson{"radius", "braid", "radius R", "Of a tube's middle surface.", "radius 5", "length"},
+    Lesson{"planar", "braid", "planar [W]",
+           "A tube's cloth laid flat, W wide, which repeats along both sides.", "planar 8.8", "length",
+           "as narrow as its yarns can be"},
     Lesson{"flat", "braid", "flat [W]", "A strip, W wide, instead of a tube.", "flat", "length",
            "as wide as the yarns need"},
     Lesson{"mandrel", "braid", "mandrel ... end",
@@ -272,7 +277,8 @@ constexpr std::array lessons = {
            "mandrel", "length"},
     Lesson{"angle", "braid", "angle A", "Between yarn and axis, above 0 and below 90 degrees.", "angle 45",
            "angle"},
-    Lesson{"length", "braid", "length L", "Of a tube or strip, along the axis.", "length 20", "length"},
+    Lesson{"length", "braid", "length L", "Along the axis of a tube, a strip or a planar braid.", "length 20",
+           "length"},
     Lesson{"axial", "braid", "axial THREAD N", "N straight yarns in the middle surface.", "axial rod 4"},
 
     // --- piece

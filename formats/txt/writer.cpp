@@ -411,12 +411,12 @@ void write_item(Lines& out, const fabric::Braid& braid) {
     for (const fabric::MandrelRow& row : braid.mandrel)
       out.row(2, row.axis.x()).value(row.axis.y()).value(row.axis.z()).value(row.radius);
     out.line(1, "end");
-  } else if (!braid.flat)
+  } else if (braid.flat || braid.planar) {
+    Lines& line = out.line(1, braid.flat ? "flat" : "planar");
+    if (braid.width > 0.0) line.value(braid.width);
+  } else {
     out.line(1, "radius").value(braid.radius);
-  else if (braid.width > 0.0)
-    out.line(1, "flat").value(braid.width);
-  else
-    out.line(1, "flat");
+  }
   out.line(1, "angle").value(braid.angle);
   if (braid.mandrel.empty()) out.line(1, "length").value(braid.length);
   if (!braid.axial_thread.empty()) out.line(1, "axial").name(braid.axial_thread).value(braid.axial_count);

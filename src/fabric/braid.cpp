@@ -9,6 +9,7 @@
 
 #include "core/wrapped.h"
 #include "fabric/braid_fit.h"
+#include "fabric/braid_planar.h"
 #include "fabric/braid_shape.h"
 #include "fabric/build.h"
 #include "fabric/clearance.h"
@@ -250,11 +251,12 @@ Status check_counts(const Braid& braid, const BraidShape& shape) {
         .placed(braid.radius_place);
   const std::int64_t period = std::lcm(std::int64_t{2}, std::int64_t{braid.over} + braid.under);
   if (!shape.flat && braid.carriers % period != 0)
-    return error(Kind::geometry,
-                 fmt::format("the pattern {}/{} does not close round a tube of {} carriers: it takes a "
-                             "multiple of {}, such as {}",
-                             braid.over, braid.under, braid.carriers, period,
-                             (braid.carriers / period + 1) * period))
+    return error(
+               Kind::geometry,
+               fmt::format("the pattern {}/{} does not {} {} carriers: it takes a multiple of {}, such as {}",
+                           braid.over, braid.under,
+                           shape.planar ? "repeat in a planar braid of" : "close round a tube of",
+                           braid.carriers, period, (braid.carriers / period + 1) * period))
         .placed(braid.carriers_place);
   const std::int64_t runs = run_count(shape);
   if (braid.axial_count > runs)
@@ -271,6 +273,13 @@ Status check_widths(const Braid& braid, const BraidShape& shape, double width, s
   const double cosine = std::cos(braid.angle / 180.0 * pi);
   if (2.0 * shape.column * cosine >= width * (1.0 - 1e-9)) return {};
   const double needed = 0.5 * width / cosine;  // a column
+  if (shape.planar)
+    return error(Kind::geometry,
+                 fmt::format(
+                     "{} carriers whose braiders are {:.4g} {} wide do not fit side by side into this "
+                     "width: at {:.4g} degrees it has to be at least {:.4g} {}",
+                     braid.carriers, width, unit, braid.angle, rounded_up(needed * braid.carriers), unit))
+        .placed(braid.radius_place);
   if (shape.flat)
     return error(
                Kind::geometry,
@@ -291,7 +300,7 @@ Status check_widths(const Braid& braid, const BraidShape& shape, double width, s
 
 // The mandrel has room for the innermost yarns.
 Status check_radius(const Braid& braid, double reach, std::string_view unit) {
-  if (braid.flat || braid.radius > reach) return {};
+  if (braid.flat || braid.planar || braid.radius > reach) return {};
   return error(Kind::geometry,
                fmt::format("a radius of {:.4g} {} leaves no room for the yarns inside: the cloth's middle "
                            "surface needs more than {:.4g} {}",
@@ -303,13 +312,16 @@ Status check_radius(const Braid& braid, double reach, std::string_view unit) {
 BraidShape shape_of(const Braid& braid, const yarn::SectionSize& size) {
   BraidShape shape;
   shape.flat = braid.flat;
+  shape.planar = braid.planar;
   shape.carriers = braid.carriers;
   shape.over = braid.over;
   shape.under = braid.under;
   shape.radius = braid.radius;
   const double angle = braid.angle / 180.0 * pi;
-  if (!braid.flat)
+  if (!braid.flat && !braid.planar)
     shape.column = 2.0 * pi * braid.radius / braid.carriers;
+  else if (braid.planar && braid.width > 0.0)
+    shape.column = braid.width / braid.carriers;
   else if (braid.width > 0.0)
     shape.column = (braid.width - size.width) / strip_columns(shape, braid.angle);
   else
@@ -340,8 +352,10 @@ Braid tube_at(const Braid& braid, const Mandrel& mandrel, double s, bool inside)
 int points_of(const BraidShape& shape) {
   constexpr double on_slope = 6.0, round = 72.0, steep = 8.0;
   double points = std::max(12.0, on_slope / (1.0 - 2.0 * shape.plateau));
-  points = std::max(
-      points, shape.flat ? std::min(steep * shape.column / shape.step, 1000.0) : round / shape.carriers);
+  if (shape.flat)
+    points = std::max(points, std::min(steep * shape.column / shape.step, 1000.0));
+  else if (!shape.planar)
+    points = std::max(points, round / shape.carriers);
   return 2 * static_cast<int>(std::ceil(0.5 * points));
 }
 
@@ -399,7 +413,8 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
     const auto check = [&](std::string_view what, double distance) {
       return check_proportion(what, distance, size.width, fabric.units, braid.radius_place);
     };
-    if (Status fits = check("a radius", tube.flat ? size.width : tube.radius); !fits) return fits.error();
+    if (Status fits = check("a radius", tube.flat || tube.planar ? size.width : tube.radius); !fits)
+      return fits.error();
     if (Status fits = check("a width", tube.width > 0.0 ? tube.width : size.width); !fits)
       return fits.error();
     if (Status fits = check_radius(tube, least + 0.5 * size.height, unit); !fits) return fits.error();
@@ -424,9 +439,10 @@ Result<std::unique_ptr<Construction>> make_braid(const Fabric& fabric, const Bra
         warning(Kind::geometry,
                 fmt::format("crossing yarns have too little room and {}: fewer carriers, narrower "
                             "yarns or a larger {} give it",
-                            found, braid.flat ? "width" : "radius"))
+                            found, braid.flat || braid.planar ? "width" : "radius"))
             .placed(braid.place, fabric.file));
   }
+  if (braid.planar) return make_planar_braid(fabric, braid, thread, axial, *all, points_of(*all));
   return std::unique_ptr<Construction>(std::make_unique<BraidConstruction>(
       fabric, braid, thread, axial, *all, points_of(*all), std::move(mandrel)));
 }

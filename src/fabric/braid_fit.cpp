@@ -40,8 +40,9 @@ SweptYarn swept(const BraidShape& shape, const Braider& braider, const std::vect
   return {[&shape, braider](double t) {
             const BraidPoint point = braid_point(shape, braider, t);
             const Vec3 tangent = point.derivative.normalized();
-            const Vec3 out = shape.flat ? Vec3(Vec3::UnitZ())
-                                        : Vec3(point.position.x(), point.position.y(), 0.0).normalized();
+            const Vec3 out = shape.flat || shape.planar
+                                 ? Vec3(Vec3::UnitZ())
+                                 : Vec3(point.position.x(), point.position.y(), 0.0).normalized();
             const Vec3 up = (out - out.dot(tangent) * tangent).normalized();
             return SweptStation{point.position, point.derivative, up.cross(tangent), up};
           },
@@ -53,9 +54,11 @@ SweptYarn swept_axial(const BraidShape& shape, const Run& run, const std::vector
   const double middle = run.middle(), turn = 2.0 * std::numbers::pi / shape.carriers * middle;
   return {[&shape, middle, turn](double t) {
             const double along = (t + 0.5) * shape.step;
-            if (shape.flat)
-              return SweptStation{Vec3(along, shape.column * (middle - 0.5 * shape.carriers), 0.0),
-                                  Vec3(shape.step, 0.0, 0.0), Vec3(0.0, -1.0, 0.0), Vec3(0.0, 0.0, 1.0)};
+            const double y =
+                shape.planar ? shape.level_place(middle) : shape.column * (middle - 0.5 * shape.carriers);
+            if (shape.flat || shape.planar)
+              return SweptStation{Vec3(along, y, 0.0), Vec3(shape.step, 0.0, 0.0), Vec3(0.0, -1.0, 0.0),
+                                  Vec3(0.0, 0.0, 1.0)};
             const Vec3 out(std::cos(turn), std::sin(turn), 0.0), along_axis(0.0, 0.0, shape.step);
             return SweptStation{shape.radius * out + Vec3(0.0, 0.0, along), along_axis,
                                 out.cross(Vec3(0.0, 0.0, 1.0)), out};

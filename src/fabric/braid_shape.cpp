@@ -112,6 +112,10 @@ BraidPoint braid_point(const BraidShape& shape, const Braider& braider, double t
     return {Vec3(along, shape.column * (across.value - 0.5 * shape.carriers), height),
             Vec3(shape.step, shape.column * across.derivative, climb)};
   }
+  if (shape.planar)
+    return {
+        Vec3(along, shape.level_place(static_cast<double>(braider.start) + braider.direction * t), height),
+        Vec3(shape.step, shape.column * braider.direction, climb)};
   const double turn = 2.0 * std::numbers::pi / shape.carriers;  // a column
   const double angle = turn * (static_cast<double>(braider.start) + braider.direction * t);
   const double r = shape.radius + height, rate = turn * braider.direction;

@@ -14,21 +14,27 @@
 namespace selvage::fabric {
 
 struct BraidShape {
-  bool flat = false;
+  bool flat = false;        // a strip
+  bool planar = false;      // a tube's cloth laid flat about z = 0, columns across it along y
   int carriers = 2;         // N
   int over = 1, under = 1;  // columns in which the braider that runs to +angle (+y) is on top, then below
   double radius = 0;        // tube: of the middle surface, file units
   double step = 1;          // between crossings of one braider, along the axis, file units
-  double column = 0;        // strip: between columns, file units; a tube has 2 pi / N of angle
+  double column = 0;        // not of a tube, which has 2 pi / N of angle: between columns, file units
   double amplitude = 0;     // of the centre line at a crossing, from the middle surface, file units
   double plateau = 0;       // steps before and after a crossing with that full offset, below 1/2
 
   // Columns count from 0 (tube, any integer) or are 1 .. N - 1 (strip).
   [[nodiscard]] bool is_over(std::int64_t column_number) const;
+  // A planar braid's columns, from 0 to N - 1, lie evenly about y = 0: the y of one, or of a place between.
+  [[nodiscard]] double level_place(double column_number) const {
+    return column * (column_number - 0.5 * (carriers - 1));
+  }
 };
 
-// One braider. Tube: `start` is its column at t = 0, from where it runs with `direction` (+1, -1). Strip: its
-// place on the way there and back at t = 0, of 2 N steps, columns 1 .. N - 1 there and back; direction 1.
+// One braider. Tube, planar: `start` is its column at t = 0, from where it runs with `direction` (+1, -1).
+// Strip: its place on the way there and back at t = 0, of 2 N steps, columns 1 .. N - 1 there and back;
+// direction 1.
 struct Braider {
   std::int64_t start = 0;
   int direction = 1;

@@ -373,14 +373,15 @@ struct Braid {
   TextPlace place;
   std::string thread;
   TextPlace thread_place;
-  int carriers = 0;  // even on a tube
+  int carriers = 0;  // even but on a strip
   TextPlace carriers_place;
   int over = 1, under = 1;          // pattern 2/2
   bool flat = false;                // a strip instead of a tube
+  bool planar = false;              // a tube's cloth laid flat instead
   double radius = 0;                // of a tube
   std::vector<MandrelRow> mandrel;  // of a tube, instead of radius and length: its axis goes through them
-  double width = 0;                 // of a strip; 0: what its yarns need
-  TextPlace radius_place;           // of `radius` or `flat`
+  double width = 0;                 // of a strip or a planar braid; 0: what its yarns need
+  TextPlace radius_place;           // of `radius`, `flat` or `planar`
   double angle = 0 /* degrees */, length = 0;
   std::string axial_thread;
   TextPlace axial_place;

@@ -286,11 +286,4 @@ Status complete_cell(Mesh& mesh, const Parallelepiped& shape, std::array<bool, 3
   return mesh.patches.empty() ? add_conditions(mesh, lowest) : Status();
 }
 
-std::optional<std::size_t> held_node(const Mesh& mesh) {
-  if (!mesh.cell || mesh.cell->corners[0] == no_node) return std::nullopt;
-  const auto& periodic = mesh.cell->periodic;
-  if (std::none_of(periodic.begin(), periodic.end(), [](bool is) { return is; })) return std::nullopt;
-  return mesh.cell->corners[0];
-}
-
 }  // namespace selvage::fem

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "core/diagnostics.h"
@@ -19,27 +18,28 @@ namespace selvage::fem {
 //
 // Periodic x, y, z (a block): the displacement is E x + what repeats, E the symmetric strain; periodic x, y
 //   (a plate; z faces free): Kirchhoff's, u = (E + z K) (x, y), w = -(x, y) K (x, y) / 2 about the middle of
-//   the cell, + what repeats. Each node on a high side depends on the one on the low side (of edges and
-//   corners: on the lowest) and on the drivers, and on nothing else; no node depends on one that depends.
-//   Corner 0 is to be held (see held_node()).
+//   the cell, + what repeats; periodic along one axis a (a beam; all other faces free), with b and c across,
+//   a b c right-handed, about the middle of the cell: the strain e + b kb + c kc and the twist k, u = (a (e +
+//   b kb + c kc), -k a c - kb a^2 / 2, k a b - kc a^2 / 2), + what repeats (so that all stresses do). Each
+//   node on a high side depends on the one on the low side (of edges and corners: on the lowest) and on the
+//   drivers, and on nothing else; no node depends on one that depends. Some nodes are to be held:
+//   fem/supports.h.
 // No periodic axis: every node of the faces is displaced by E x about the middle: an upper bound of the
-//   stiffness. Nothing needs to be held.
+//   stiffness.
 // A cell that conducts (Mesh::physics) has one unknown a node, the potential: G x + what repeats, G the mean
 //   gradient; of a plate, whose z faces let nothing through, along x and y. Without a periodic axis every
 //   node of the faces has G x: an upper bound.
 // Regions that share no nodes (Mesh::joining) are parted first: fem/interfaces.h.
 // A pore space (Mesh::patches) gets sets alone: nothing holds its nodes.
 // Load cases: each driver's strain (curvature) 0.001 (1/mm) with the others zero, and 1 K with all of them
-//   zero; of a cell that conducts each driver's gradient 1 a mm. None where parts of the mesh do not hang
-//   together (yarns without a matrix): they would fly apart.
+//   zero; of a cell that conducts each driver's gradient 1 a mm. None where parts of a plate or a block do
+//   not hang together (yarns without a matrix): they would fly apart. Those of a beam may: its ends hold
+//   each.
 //
 // Errors: internal (a node beside a face's plane), geometry (opposite faces do not match to 1e-12 of the
-// size; a matrix whose parts do not hang together), unsupported (periodic along other axes than these).
+// size; a matrix whose parts do not hang together; a part of a beam that its ends do not hold), unsupported
+// (periodic along x and z, or y and z; a beam that conducts).
 Status complete_cell(Mesh& mesh, const Parallelepiped& shape, std::array<bool, 3> periodic);
-
-// The node whose displacements, or potential, are to be zero in every load case; none where nothing has to be
-// held, or there is no node at the cell's corner.
-std::optional<std::size_t> held_node(const Mesh& mesh);
 
 // For each axis and node: the node opposite on the low side; no_node: it is not on the high side of the axis,
 // or the axis is not periodic. `nodes`: how many there are.

@@ -104,12 +104,12 @@ using Equation = std::vector<Term>;
 
 // A node without a place in the mesh whose displacement along x is a strain (or a curvature, 1/mm) of the
 // whole cell; the force on it is the stress times the cell's volume (plate: force, moment a length times its
-// area). Of a cell that conducts: whose potential is a mean gradient, a mm; the flux into it is the flux's
-// density times the cell's volume.
+// area; beam: force, moment times its length). Of a cell that conducts: whose potential is a mean gradient, a
+// mm; the flux into it is the flux's density times the cell's volume.
 struct Driver {
   std::string name;  // ConstraintsDriver0 .. 5: strains xx, yy, zz, xy, xz, yz (shear: engineering, gamma);
-                     // of a plate 0, 1, 3, and CurvatureDriver0 .. 2: curvatures xx, yy, xy (twice);
-                     // GradientDriver0 .. 2: gradients x, y, z (of a plate x, y)
+                     // of a plate 0, 1, 3, and CurvatureDriver0 .. 2: curvatures xx, yy, xy (twice); of a
+                     // beam BeamDriver0 .. 3: strain, twist, curvatures; GradientDriver0 .. 2: gradients
   Vec3 at = Vec3::Zero();  // anywhere
 };
 

@@ -62,6 +62,7 @@ std::vector<std::string> common_names() {
   for (int k = 1; k <= 8; ++k) names.push_back("Corner" + std::to_string(k));
   for (int k = 0; k <= 5; ++k) names.push_back("ConstraintsDriver" + std::to_string(k));
   for (int k = 0; k <= 2; ++k) names.push_back("CurvatureDriver" + std::to_string(k));
+  for (int k = 0; k <= 3; ++k) names.push_back("BeamDriver" + std::to_string(k));
   for (int k = 0; k <= 2; ++k) names.push_back("GradientDriver" + std::to_string(k));
   return names;
 }

@@ -6,8 +6,8 @@
 #include <array>
 #include <functional>
 
-#include "core/groups.h"
-#include "fem/complete_cell.h"
+#include "fem/cell_kind.h"
+#include "fem/supports.h"
 
 namespace selvage::fem {
 namespace {
@@ -41,6 +41,19 @@ Modes plate_modes(const Vec3& p) {
   return modes;
 }
 
+// Of a beam along `a`: stretch, twist, and the bendings in which the strain along it grows with each of the
+// other axes, in their order.
+Modes beam_modes(const Vec3& p, int a) {
+  Modes modes = Modes::Zero(3, 4);
+  const Vec3 axis = Vec3::Unit(a);
+  modes.col(0) = p[a] * axis;
+  modes.col(1) = p[a] * axis.cross(p);
+  Eigen::Index column = 2;
+  for (int b = 0; b < 3; ++b)
+    if (b != a) modes.col(column++) = p[b] * p[a] * axis - p[a] * p[a] / 2 * Vec3::Unit(b);
+  return modes;
+}
+
 // What drives a cell: drivers with their load cases, and what each of them makes.
 struct Drive {
   std::vector<std::string> drivers, cases;
@@ -49,30 +62,46 @@ struct Drive {
   std::function<Modes(const Vec3&)> modes;
 };
 
-Drive drive_of(Physics physics, bool plate) {
-  if (physics == Physics::elastic && plate)
+Drive drive_of_beam(int axis) {
+  Drive drive{{},
+              {fmt::format("stretch {}", "xyz"[axis]), fmt::format("twist {}", "xyz"[axis])},
+              unit_strain,
+              true,
+              [axis](const Vec3& p) { return beam_modes(p, axis); }};
+  for (int across = 0; across < 3; ++across)
+    if (across != axis) drive.cases.push_back(fmt::format("bending {}{}", "xyz"[axis], "xyz"[across]));
+  for (std::size_t d = 0; d < drive.cases.size(); ++d)
+    drive.drivers.push_back(fmt::format("BeamDriver{}", d));
+  return drive;
+}
+
+Drive drive_by_gradients(Eigen::Index axes) {
+  Drive drive{
+      {}, {}, unit_gradient, false, [axes](const Vec3& p) { return Modes(p.head(axes).transpose()); }};
+  for (Eigen::Index axis = 0; axis < axes; ++axis) {
+    drive.drivers.push_back(fmt::format("GradientDriver{}", axis));
+    drive.cases.push_back(fmt::format("gradient {}", "xyz"[axis]));
+  }
+  return drive;
+}
+
+Drive drive_of(Physics physics, const std::array<bool, 3>& periodic) {
+  const bool plate = kind_of_cell(periodic) == CellKind::plate;
+  if (physics != Physics::elastic) return drive_by_gradients(plate ? 2 : 3);
+  if (const std::optional<int> beam = beam_axis(periodic)) return drive_of_beam(*beam);
+  if (plate)
     return {{"ConstraintsDriver0", "ConstraintsDriver1", "ConstraintsDriver3", "CurvatureDriver0",
              "CurvatureDriver1", "CurvatureDriver2"},
             {"strain xx", "strain yy", "strain xy", "curvature xx", "curvature yy", "curvature xy"},
             unit_strain,
             true,
             plate_modes};
-  if (physics == Physics::elastic)
-    return {{"ConstraintsDriver0", "ConstraintsDriver1", "ConstraintsDriver2", "ConstraintsDriver3",
-             "ConstraintsDriver4", "ConstraintsDriver5"},
-            {"strain xx", "strain yy", "strain zz", "strain xy", "strain xz", "strain yz"},
-            unit_strain,
-            true,
-            block_modes};
-  Drive drive;
-  drive.value = unit_gradient;
-  const Eigen::Index axes = plate ? 2 : 3;
-  for (Eigen::Index axis = 0; axis < axes; ++axis) {
-    drive.drivers.push_back(fmt::format("GradientDriver{}", axis));
-    drive.cases.push_back(fmt::format("gradient {}", "xyz"[axis]));
-  }
-  drive.modes = [axes](const Vec3& p) { return Modes(p.head(axes).transpose()); };
-  return drive;
+  return {{"ConstraintsDriver0", "ConstraintsDriver1", "ConstraintsDriver2", "ConstraintsDriver3",
+           "ConstraintsDriver4", "ConstraintsDriver5"},
+          {"strain xx", "strain yy", "strain zz", "strain xy", "strain xz", "strain yz"},
+          unit_strain,
+          true,
+          block_modes};
 }
 
 // A place from the middle of the cell; on the faces of a box half its sides to the bit.
@@ -121,20 +150,35 @@ Vec3 way_between(const Parallelepiped& cell, const std::array<bool, 3>& periodic
   return way;
 }
 
-// The number of parts that elements and conditions do not connect.
-std::size_t count_parts(const Mesh& mesh, const std::vector<std::size_t>& lowest) {
-  Groups groups(mesh.nodes.size());
-  std::size_t parts = mesh.nodes.size();
-  auto join = [&](std::size_t a, std::size_t b) {
-    if (groups.join(a, b)) --parts;
-  };
-  const auto count = static_cast<std::size_t>(mesh.nodes_per_element());
-  for (const auto& element : mesh.elements)
-    for (std::size_t k = 1; k < count; ++k) join(element[0], element[k]);
-  for (const Interface& interface : mesh.interfaces)
-    for (const FacingSides& facing : interface.sides) join(facing.first.nodes[0], facing.second.nodes[0]);
-  for (std::size_t n = 0; n < lowest.size(); ++n) join(n, lowest[n]);
+// The parts that elements and conditions do not connect, each by its least node.
+std::vector<std::size_t> find_parts(Groups& groups, std::size_t nodes) {
+  std::vector<std::size_t> parts;
+  for (std::size_t n = 0; n < nodes; ++n)
+    if (groups.of(n) == n) parts.push_back(n);
   return parts;
+}
+
+std::string region_with(const Mesh& mesh, Groups& groups, std::size_t part) {
+  for (const Region& region : mesh.regions)
+    for (std::size_t e = region.first_element; e < region.last_element; ++e)
+      if (groups.of(mesh.elements[e][0]) == part) return region.name;
+  return "";
+}
+
+// What no condition ties is free to turn and to go, whatever the ends of a beam do.
+Status check_held_by_ends(const Mesh& mesh, Groups& groups, const std::vector<std::size_t>& parts) {
+  std::vector<bool> is_held(mesh.nodes.size(), false);
+  for (const Equation& equation : mesh.equations) is_held[groups.of(equation.front().node)] = true;
+  for (const std::size_t part : parts) {
+    if (is_held[part]) continue;
+    return error(Kind::geometry,
+                 fmt::format("a part of '{}' reaches neither end of this cell, which is periodic "
+                             "along one axis: nothing holds it; put it into a matrix "
+                             "(--matrix), or leave it out",
+                             region_with(mesh, groups, part)))
+        .at_point(mesh.nodes[part]);
+  }
+  return {};
 }
 
 void add_load_cases(Mesh& mesh, const Drive& drive) {
@@ -158,12 +202,16 @@ Status add_conditions(Mesh& mesh, const std::vector<std::size_t>& lowest) {
   mesh.equations.clear();
   mesh.load_cases.clear();
   const Parallelepiped cell = mesh.cell->shape();
-  const auto [x, y, z] = mesh.cell->periodic;
-  const bool plate = x && y && !z, all_round = !x && !y && !z;
-  if (!plate && !all_round && !(x && y && z))
+  const std::optional<CellKind> kind = kind_of_cell(mesh.cell->periodic);
+  const bool all_round = kind == CellKind::piece;
+  if (!kind)
     return error(Kind::unsupported,
-                 "a cell is periodic along x and y (a plate), along x, y and z (a block), or not at all");
-  const Drive drive = drive_of(mesh.physics, plate);
+                 "a cell is periodic along one axis (a beam), along x and y (a plate), along x, y and z (a "
+                 "block), or not at all");
+  if (kind == CellKind::beam && mesh.physics != Physics::elastic)
+    return error(Kind::unsupported,
+                 "a cell that conducts is periodic along x and y, along x, y and z, or not at all");
+  const Drive drive = drive_of(mesh.physics, mesh.cell->periodic);
   add_drivers(mesh, drive.drivers);
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     if (all_round && is_on_faces(cell, mesh.nodes[n]))
@@ -176,10 +224,14 @@ Status add_conditions(Mesh& mesh, const std::vector<std::size_t>& lowest) {
   const bool with_matrix = std::any_of(mesh.regions.begin(), mesh.regions.end(), [](const Region& region) {
     return region.kind == Region::Kind::matrix;
   });
-  const std::size_t parts = count_parts(mesh, lowest);
-  if (parts > 1 && with_matrix)
-    return error(Kind::geometry, fmt::format("the cell falls into {} parts that nothing connects", parts));
-  if (parts == 1) add_load_cases(mesh, drive);
+  Groups groups = connected_nodes(mesh);
+  const std::vector<std::size_t> parts = find_parts(groups, mesh.nodes.size());
+  if (parts.size() > 1 && with_matrix)
+    return error(Kind::geometry,
+                 fmt::format("the cell falls into {} parts that nothing connects", parts.size()));
+  if (kind == CellKind::beam)
+    if (Status held = check_held_by_ends(mesh, groups, parts); !held) return held;
+  if (parts.size() == 1 || kind == CellKind::beam) add_load_cases(mesh, drive);
   return {};
 }
 

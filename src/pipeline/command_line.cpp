@@ -305,8 +305,9 @@ void of_a_mesh(OptionTable& t) {
            Argument::positive(), &Options::size)
       .goes_with(of_tetrahedra, "", "--voxel");
   t.option({mesh}, "--order",
-           "1: four nodes, 2: ten nodes a tetrahedron (default: 1; 2 with --matrix of a cell that is "
-           "periodic along x and y only, a plate, which bends, if not --interface cohesive)",
+           "1: four nodes, 2: ten nodes a tetrahedron (default: 1; 2 of a cell that is periodic along one "
+           "axis, a beam, and with --matrix along x and y only, a plate, which bend, if not --interface "
+           "cohesive)",
            Argument::one_of("1 2"), &Options::order)
       .goes_with(of_tetrahedra, "", "--voxel", "2");
   t.option({mesh}, "--min-dihedral",

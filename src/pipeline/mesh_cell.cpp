@@ -1,5 +1,8 @@
 #include "pipeline/meshing.h"
 
+#include <fmt/format.h>
+
+#include "fem/cell_kind.h"
 #include "fem/cell_mesher.h"
 #include "fem/fibre.h"
 #include "fem/voxel.h"
@@ -26,7 +29,7 @@ std::optional<ReadyCell> prepare_cell(Job& job, fabric::Fabric& fabric, const fa
     if (!axes) return std::nullopt;
     ready.periodic = *axes;
   }
-  if (!check_top_and_bottom(job, fabric, ready.bodies, ready.periodic)) return std::nullopt;
+  if (!check_free_faces(job, fabric, ready.bodies, ready.periodic)) return std::nullopt;
   if (options.voxels > 0) return ready;
   const std::optional<CellSize> size = check_cell_size(job, fabric, ready.bodies, options.matrix);
   if (!size || !check_grazed_faces(job, fabric, ready.bodies) ||
@@ -40,8 +43,9 @@ namespace {
 
 // Its load cases bend it.
 bool is_bent(const Options& options, const ReadyCell& ready) {
-  return options.physics == fem::Physics::elastic && options.matrix && !options.pores &&
-         ready.periodic == std::array{true, true, false};
+  const std::optional<fem::CellKind> kind = fem::kind_of_cell(ready.periodic);
+  return options.physics == fem::Physics::elastic && !options.pores &&
+         (kind == fem::CellKind::beam || (kind == fem::CellKind::plate && options.matrix));
 }
 
 // Bending is a quadratic displacement, which elements of order 1 follow by shearing.
@@ -49,14 +53,19 @@ void say_what_bending_costs(Job& job, const fabric::Fabric& fabric, const ReadyC
   const bool is_straight =
       job.options.order == 1 || (job.options.order == 0 && job.options.joining == fem::Joining::cohesive);
   if (!is_bent(job.options, ready) || (job.options.voxels == 0 && !is_straight)) return;
+  const char* what = fem::beam_axis(ready.periodic) ? "beam" : "plate";
   job.say(at_cell(
       fabric,
-      warning(Kind::geometry,
-              job.options.voxels > 0
-                  ? "hexahedra of eight nodes make a plate too stiff in bending, the more the fewer of "
-                    "them lie over its thickness: compare two of --voxel, or mesh it with tetrahedra"
-                  : "tetrahedra of four nodes make a plate too stiff in bending, by a fifth to a third "
-                    "at usual sizes: --order 2, the default of plates, is right to a per cent")));
+      warning(
+          Kind::geometry,
+          job.options.voxels > 0
+              ? fmt::format("hexahedra of eight nodes make a {} too stiff in bending, the more the fewer "
+                            "of them lie over its thickness: compare two of --voxel, or mesh it with "
+                            "tetrahedra",
+                            what)
+              : fmt::format("tetrahedra of four nodes make a {0} too stiff in bending, by a fifth to a "
+                            "third at usual sizes: --order 2, the default of {0}s, is right to a per cent",
+                            what))));
 }
 
 Result<fem::Mesh> mesh_of(Job& job, const fabric::Fabric& fabric, const ReadyCell& ready,

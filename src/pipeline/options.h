@@ -106,7 +106,7 @@ struct Options {
 
   Elements elements = Elements::tetrahedra;
   double size = 0;          // wanted edge length, input's unit; 0: the mesher's choice
-  int order = 0;            // 1, 2; 0: 2 of a plate with its matrix, else 1
+  int order = 0;            // 1, 2; 0: 2 of beams, of plates with a matrix, else 1
   double min_dihedral = 0;  // degrees; 0: the mesher's choice
   bool allow_overlap = false;
 

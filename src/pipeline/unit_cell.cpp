@@ -14,6 +14,7 @@
 #include "contact/contact.h"
 #include "fabric/repeat.h"
 #include "fabric/settle_cell.h"
+#include "fem/cell_kind.h"
 #include "fem/cell_size.h"
 #include "fem/fibre.h"
 #include "nurbs/divided.h"
@@ -274,6 +275,33 @@ std::optional<std::array<bool, 3>> periodic_vectors(Job& job, const fabric::Fabr
   return cell.periodic;
 }
 
+// May a cell be periodic along these axes? Along one it is a beam, where that was said or the cloth has no
+// other repeat (`is_meant`).
+bool check_kind(Job& job, const fabric::Fabric& fabric, const std::array<bool, 3>& periodic, bool is_meant) {
+  const std::optional<fem::CellKind> kind = fem::kind_of_cell(periodic);
+  std::string axes;
+  for (int axis = 0; axis < 3; ++axis)
+    if (periodic[static_cast<std::size_t>(axis)])
+      axes += fmt::format("{}{}", axes.empty() ? "" : " and ", name_of_axis(axis));
+  if (kind == fem::CellKind::plate || kind == fem::CellKind::block) return true;
+  if (kind == fem::CellKind::beam && is_meant) {
+    if (job.options.physics == fem::Physics::elastic) return true;
+    return job.fail(cell_error(
+        fabric,
+        fmt::format("this cell is periodic along {} only, a beam, of which stretch, twist and bending "
+                    "are known, and nothing that it conducts: name more axes, or leave out --physics",
+                    axes)));
+  }
+  return job.fail(cell_error(
+      fabric,
+      fmt::format("this cell is periodic along {}{}: it has to be along x and y (a plate), along x, y "
+                  "and z (a block){}; without --periodic it is meshed as a piece cut out",
+                  axes.empty() ? "no axis" : axes, axes.empty() ? "" : " only",
+                  kind == fem::CellKind::beam
+                      ? fmt::format(", or along one axis (a beam), which `periodic {}` says", axes)
+                      : std::string(", or along one axis (a beam)"))));
+}
+
 }  // namespace
 
 std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric& fabric,
@@ -302,56 +330,64 @@ std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric&
     }
     periodic[k] = true;
   }
-  if (periodic[0] && periodic[1]) return periodic;
-  return job.fail(cell_error(
-      fabric,
-      fmt::format("this cell is periodic {}: it has to be along x and y (a plate), or along x, y and z "
-                  "(a block); without --periodic it is meshed as a piece cut out",
-                  periodic[0]   ? periodic[2] ? "along x and z only" : "along x only"
-                  : periodic[1] ? periodic[2] ? "along y and z only" : "along y only"
-                  : periodic[2] ? "along z only"
-                                : "along no axis")));
+  return check_kind(job, fabric, periodic, names_any || repeat) ? std::optional(periodic) : std::nullopt;
 }
 
-bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
-                          const std::array<bool, 3>& periodic) {
-  if (periodic[2]) return true;
+namespace {
+
+// How far a yarn reaches along `axis` where it is between the faces across the others.
+std::array<double, 2> reach_along(const yarn::Body& body, const Box3& box, int axis) {
+  std::array<double, 2> reach = {infinity, -infinity};
+  for (const Vec3& p : samples_of(body.surface).points) {
+    Vec3 beside = p;
+    beside[axis] = box.center()[axis];
+    if (!box.contains(beside)) continue;
+    reach = {std::min(reach[0], p[axis]), std::max(reach[1], p[axis])};
+  }
+  return reach;
+}
+
+// What a face across `axis` is called.
+std::string name_of_free_face(int axis, bool high) {
+  if (axis == 2) return high ? "top" : "bottom";
+  return fmt::format("{} face", high ? "high" : "low");
+}
+
+}  // namespace
+
+bool check_free_faces(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                      const std::array<bool, 3>& periodic) {
   const Box3 box = box_of(fabric);
+  const bool is_piece = fem::kind_of_cell(periodic) == fem::CellKind::piece;
   const yarn::BodiesInAxes own(bodies, fabric.cell->axes);
-  bool fits = true;
-  for (const yarn::Body& body : own.list()) {
-    const double room = least_gap_share * yarn::narrowest_section(body);
-    const std::span<const yarn::Body> alone(&body, 1);
-    double lowest = infinity, highest = -infinity;
-    for (const Vec3& p : samples_of(body.surface).points) {
-      if (p.x() < box.min().x() || p.x() > box.max().x() || p.y() < box.min().y() || p.y() > box.max().y())
-        continue;
-      lowest = std::min(lowest, p.z());
-      highest = std::max(highest, p.z());
-    }
-    // What runs through is cut; what only touches would leave a sliver of itself, or of the matrix.
-    for (const bool top : {true, false}) {
-      const double reach = top ? highest : lowest, face = top ? box.max().z() : box.min().z();
-      const bool touches = top ? reach > face - room : reach < face + room;
-      if (!touches || std::abs(reach) == infinity || !fits) continue;
-      // A plate has free faces; without periodic sides the cell is a piece that was cut out.
-      const bool runs_through = fabric::runs_through(alone, box, 2, top);
-      if (runs_through && !periodic[0] && !periodic[1]) continue;
-      job.say(cell_error(
-          fabric,
-          fmt::format("yarn '{}' {} the {} of this cell, z = {:.6g}: it reaches to z = {:.6g}; a cell "
-                      "that holds it, with a tenth of its thickness beyond, ends at z = {:.4g}",
-                      body.name,
-                      runs_through                     ? "runs through"
-                      : std::abs(reach - face) <= room ? "touches"
-                                                       : "goes beyond",
-                      top ? "top" : "bottom", face, reach,
-                      reach + (top ? 0.1 : -0.1) * yarn::narrowest_section(body)),
-          {}, body.name));
-      fits = false;
+  for (int axis = 2; axis >= 0; --axis) {
+    if (periodic[static_cast<std::size_t>(axis)] || (is_piece && axis != 2)) continue;
+    for (const yarn::Body& body : own.list()) {
+      const double room = least_gap_share * yarn::narrowest_section(body);
+      const std::array<double, 2> reaches = reach_along(body, box, axis);
+      // What runs through is cut; what only touches would leave a sliver of itself, or of the matrix.
+      for (const bool high : {true, false}) {
+        const double reach = reaches[high ? 1 : 0], face = high ? box.max()[axis] : box.min()[axis];
+        const bool touches = high ? reach > face - room : reach < face + room;
+        if (!touches || std::abs(reach) == infinity) continue;
+        // A plate and a beam have free faces; without periodic sides the cell is a piece that was cut out.
+        const bool runs_through = fabric::runs_through(std::span(&body, 1), box, axis, high);
+        if (runs_through && is_piece) continue;
+        return job.fail(cell_error(
+            fabric,
+            fmt::format("yarn '{0}' {1} the {2} of this cell, {3} = {4:.6g}: it reaches to {3} = {5:.6g}; a "
+                        "cell that holds it, with a tenth of its thickness beyond, ends at {3} = {6:.4g}",
+                        body.name,
+                        runs_through                     ? "runs through"
+                        : std::abs(reach - face) <= room ? "touches"
+                                                         : "goes beyond",
+                        name_of_free_face(axis, high), name_of_axis(axis), face, reach,
+                        reach + (high ? 0.1 : -0.1) * yarn::narrowest_section(body)),
+            {}, body.name));
+      }
     }
   }
-  return fits;
+  return true;
 }
 
 namespace {

@@ -32,14 +32,17 @@ void snap_cell(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& buil
 std::vector<yarn::Body> yarns_in_cell(Job& job, const fabric::Fabric& fabric, std::vector<yarn::Body> bodies);
 
 // The axes along which the cell is periodic: those that its text names; where it names none, all along which
-// its yarns repeat. None: the cell is no whole number of repeats, or the yarns end (it was said).
+// its yarns repeat. None: the cell is no whole number of repeats, the yarns end, or elements know no cell
+// that is periodic along these (fem/cell_kind.h; along one only where that was said or the cloth has no other
+// repeat; it was said).
 std::optional<std::array<bool, 3>> periodic_axes(Job& job, const fabric::Fabric& fabric,
                                                  const fabric::YarnBuilder& builder,
                                                  std::span<const yarn::Body> bodies);
 
-// No yarn touches the top or the bottom of a cell that is not periodic through the thickness.
-bool check_top_and_bottom(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
-                          const std::array<bool, 3>& periodic);
+// No yarn touches or leaves through a free face: the top and the bottom of what is not periodic through the
+// thickness, and of a beam all but its ends.
+bool check_free_faces(Job& job, const fabric::Fabric& fabric, std::span<const yarn::Body> bodies,
+                      const std::array<bool, 3>& periodic);
 
 // No yarn's surface runs along a face of the cell nearer than half a per cent of its thickness (without
 // --force).

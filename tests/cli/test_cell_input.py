@@ -155,10 +155,37 @@ class CellInput(Case):
         braid = "braid\n  thread T\n  carriers 5\n  pattern 1/1\n  flat 6\n  angle 43.7\n  length 20\nend\n"
         message = self.refuses(MATERIALS + braid + cell("0 -4 -1 11 4 1", "  matrix resin\n  periodic x\n"))
         length = re.search(r"a periodic cell is (\S+) mm long", message)[1]
-        followed = self.refuses(MATERIALS + braid + cell(f"0 -4 -1 {length} 4 1", "  matrix resin\n  periodic x\n"))
+        followed = self.refuses(MATERIALS + braid + cell(f"0 -3 -1 {length} 3 1", "  matrix resin\n  periodic x\n"))
         self.assertNotIn("no whole number of repeats", followed)
-        self.assertIn("this cell is periodic along x only", followed)
-        self.assertIn("without --periodic it is meshed as a piece cut out", followed)
+        self.assertRegex(followed, r"yarn 'braider_\d' (goes beyond|runs through|touches) the \w+ face of this cell, y = ")
+        reach = re.search(r"with a tenth of its thickness beyond, ends at y = (\S+)", followed)[1].lstrip("-")
+        # With its free faces there it passes all checks of the cell but the last, of what it may conduct.
+        followed = self.refuses(MATERIALS + braid + cell(f"0 -{reach} -1 {length} {reach} 1", "  matrix resin\n  periodic x\n"), "--physics", "conduction")
+        self.assertIn("this cell is periodic along x only, a beam", followed)
+        self.assertIn("name more axes, or leave out --physics", followed)
+
+    def test_free_faces_of_a_beam(self):
+        """Of ends that are said, and of yarns that leave a cell elsewhere."""
+        along = ("-1 0.5 0.5", "3 0.5 0.5")
+        through = straight(along, ("0.5 0.1 0.17", "0.5 3 0.17")) + cell("0 0 0 1 1 1", "  matrix resin\n  periodic x\n")
+        self.assertIn("yarn 'y2' runs through the high face of this cell, y = 1", self.refuses(through))
+        beside = straight(along) + cell("0 0.4 0 1 1 1", "  matrix resin\n  periodic x\n")
+        self.assertRegex(self.refuses(beside), r"yarn 'y1' goes beyond the low face of this cell, y = 0\.4: it reaches to y = 0\.3[45]")
+        across = straight(along) + cell("0 0 0 1 1 1", "  matrix resin\n  periodic y\n")
+        self.assertIn("yarn 'y1' runs through the high face of this cell, x = 1", self.refuses(across))
+        short = straight(("0.5 0.5 0.5", "3 0.5 0.5")) + cell("0 0 0 1 1 1", "  matrix resin\n  periodic x\n")
+        self.assertIn("not periodic along x: yarn 'y1' runs through its high face, and none comes in opposite", self.refuses(short))
+        two = straight(along) + cell("0 0 0 1 1 1", "  matrix resin\n  periodic x z\n")
+        self.assertIn("not periodic along", self.refuses(straight(along, ("0.5 0.1 -1", "0.5 0.1 0.5")) + cell("0 0 0 1 1 1", "  matrix resin\n  periodic z\n")))
+        self.assertIn("this cell is periodic along x and z only", self.refuses(two))
+        self.assertIn("or along one axis (a beam)", self.refuses(two))
+
+    def test_one_axis_has_to_be_meant(self):
+        """Where neither the text nor a construction says that there is one axis only, it may be a mistake."""
+        text = straight(("-1 0.5 0.5", "3 0.5 0.5"), ("0.5 -1 0.15", "0.5 0.8 0.15"), ("0.2 0.15 0.8", "0.2 0.15 2")) + cell("0 0 0 1 1 1", "  matrix resin\n")
+        message = self.refuses(text)
+        self.assertIn("or along one axis (a beam), which `periodic x` says", message)
+        self.assertIn("without --periodic it is meshed as a piece cut out", message)
 
     def test_yarns_by_hand_tell_their_repeat(self):
         wave = "".join(f"    {k / 8} 0.5 {0.2 * (k % 16 < 8) - 0.1}\n" for k in range(0, 97, 8))

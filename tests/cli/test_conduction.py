@@ -194,8 +194,8 @@ class Identities(Conduction):
 
 class Samples(Conduction):
     def test_within_bounds(self):
-        """Every cell of the samples, its yarns and matrix given conductivities of glass or carbon and a resin."""
-        for sample in sorted(SAMPLES.glob("cell_*.txt")):
+        """Every cell of the samples that has a matrix, its yarns and that given conductivities of glass or carbon and a resin."""
+        for sample in (path for path in sorted(SAMPLES.glob("cell_*.txt")) if re.search(r"^\s*matrix", path.read_text(), re.M)):
             for inner in ("1", "8 1.2"):
                 with self.subTest(sample=sample.stem, inner=inner):
                     text = sample.read_text()

@@ -195,7 +195,7 @@ class Writer {
     if (flat)
       line(" flat{}", choice(2) == 1 ? fmt::format(" {}", number(1, 12)) : "");
     else
-      line(" radius {}", number(0.3, 6));
+      line(" {} {}", one_of({"radius", "planar"}), number(0.3, 6));
     line(" angle {}\n length {}", number(5, 85), number(0.5, 20));
     if (choice(3) == 1) line(" axial {} {}", one_of({"a", "b"}), 1 + choice(3));
     line("end");

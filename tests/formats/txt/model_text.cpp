@@ -313,6 +313,7 @@ class Flat {
     add(path + ".over", v.over);
     add(path + ".under", v.under);
     add(path + ".flat", v.flat);
+    add(path + ".planar", v.planar);
     add(path + ".radius", v.radius);
     add(path + ".mandrel", v.mandrel);
     add(path + ".width", v.width);

@@ -462,14 +462,15 @@ class Maker {
         Braid braid;
         braid.thread = one_of(threads_);
         braid.flat = coin();
+        braid.planar = !braid.flat && coin();
         braid.carriers = braid.flat ? 2 + up_to(100) : 2 * (1 + up_to(100));
         braid.over = count();
         braid.under = count();
-        const bool has_mandrel = !braid.flat && coin();
+        const bool has_mandrel = !braid.flat && !braid.planar && coin();
         for (int i = 0; has_mandrel && i < 2 + up_to(3); ++i)
           braid.mandrel.push_back({Vec3(number(), number(), i), positive()});
-        if (!braid.flat && !has_mandrel) braid.radius = positive();
-        if (braid.flat && coin()) braid.width = positive();
+        if (!braid.flat && !braid.planar && !has_mandrel) braid.radius = positive();
+        if ((braid.flat || braid.planar) && coin()) braid.width = positive();
         braid.angle = between(1.0, 89.0);
         if (!has_mandrel) braid.length = positive();
         if (coin()) {

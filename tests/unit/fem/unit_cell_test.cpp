@@ -9,6 +9,7 @@
 
 #include "bodies.h"
 #include "fem/fibre.h"
+#include "fem/supports.h"
 #include "fem/voxel.h"
 
 namespace selvage::fem {
@@ -97,7 +98,9 @@ TEST(UnitCell, BlockCarriesEveryStrain) {
   // Every node of the low faces' own is free, every other one of the faces is not: 3 equations a node.
   const std::size_t nx = 12, ny = 9, nz = 6;
   EXPECT_EQ(mesh.equations.size(), 3 * ((nx + 1) * (ny + 1) * (nz + 1) - nx * ny * nz));
-  EXPECT_EQ(held_node(mesh), mesh.cell->corners[0]);
+  ASSERT_EQ(supports(mesh).size(), 1U);
+  EXPECT_EQ(supports(mesh)[0].node, mesh.cell->corners[0]);
+  EXPECT_FALSE(supports(mesh)[0].direction);
 }
 
 TEST(UnitCell, PlateCarriesStrainsAndCurvatures) {
@@ -120,6 +123,54 @@ TEST(UnitCell, PlateCarriesStrainsAndCurvatures) {
             1e-14);
 }
 
+// Along each axis: stretch, twist, both bendings and what repeats meet all conditions; nothing but the
+// conditions and the supports is left to move as a whole.
+TEST(UnitCell, BeamCarriesStretchTwistAndBending) {
+  const Vec3 sides(2, 1.5, 1), middle(1, 0.75, 0.5);
+  for (int a = 0; a < 3; ++a) {
+    std::array<bool, 3> periodic{};
+    periodic[static_cast<std::size_t>(a)] = true;
+    const Mesh mesh = straight_cell(periodic);
+    ASSERT_EQ(mesh.drivers.size(), 4U);
+    ASSERT_EQ(mesh.load_cases.size(), 5U);
+    EXPECT_EQ(mesh.drivers[3].name, "BeamDriver3");
+    expect_clean(mesh);
+    const int b = a == 0 ? 1 : 0, c = a == 2 ? 1 : 2;  // in order
+    EXPECT_EQ(mesh.load_cases[2].name, std::string("bending ") + "xyz"[a] + "xyz"[b]);
+    const auto field = [&](const Vec3& at, double repeats) {
+      const Vec3 p = at - middle;
+      const double x = p[a], wave = repeats * std::sin(2 * std::numbers::pi * x / sides[a]);
+      Vec3 u = wave * Vec3(1, 2, 3) + 0.9 * x * Vec3::Unit(a).cross(p);
+      u[a] += x * (0.3 + 0.4 * p[b] - 0.6 * p[c]);
+      u[b] -= 0.4 * x * x / 2;
+      u[c] += 0.6 * x * x / 2;
+      return u;
+    };
+    EXPECT_LT(largest_rest(mesh, {0.3, 0.9, 0.4, -0.6}, [&](const Vec3& at) { return field(at, 0.7); }),
+              1e-14);
+    // A cross section that turns about another axis is bent; about its own it is held by the second support.
+    const Vec3 turn = Vec3::Unit(b);
+    EXPECT_GT(largest_rest(mesh, {0, 0, 0, 0}, [&](const Vec3& at) { return Vec3(turn.cross(at)); }), 0.1);
+    const auto twist = [&](const Vec3& at) { return Vec3(Vec3::Unit(a).cross(at)); };
+    EXPECT_LT(largest_rest(mesh, {0, 0, 0, 0}, twist), 1e-14);
+    const std::vector<Support> held = supports(mesh);
+    ASSERT_EQ(held.size(), 2U);
+    ASSERT_TRUE(held[1].direction);
+    EXPECT_GT(
+        std::abs((twist(mesh.nodes[held[1].node]) - twist(mesh.nodes[held[0].node]))[*held[1].direction]),
+        0.5);
+  }
+}
+
+TEST(UnitCell, ABeamOfYarnsAloneHoldsEach) {
+  const Mesh mesh = straight_cell({true, false, false}, 12, false);
+  EXPECT_EQ(mesh.load_cases.size(), 5U);
+  EXPECT_EQ(supports(mesh).size(), 2U);
+  std::set<std::size_t> dependent;
+  for (const Equation& equation : mesh.equations) dependent.insert(equation.front().node);
+  for (const Support& support : supports(mesh)) EXPECT_FALSE(dependent.contains(support.node));
+}
+
 TEST(UnitCell, WithoutPeriodsTheWholeFaceFollowsTheStrain) {
   const Mesh mesh = straight_cell({false, false, false});
   expect_clean(mesh);
@@ -129,7 +180,7 @@ TEST(UnitCell, WithoutPeriodsTheWholeFaceFollowsTheStrain) {
                            return Vec3(p.x(), 2 * p.y() + 0.25 * p.z(), 3 * p.z() + 0.25 * p.y());
                          }),
             1e-14);
-  EXPECT_FALSE(held_node(mesh));
+  EXPECT_TRUE(supports(mesh).empty());
 }
 
 // The potential is an affine field plus one that repeats; of a plate it has no gradient across.
