@@ -67,24 +67,29 @@ Result<TetMesh> fill(const Block& block, std::span<const Vec3> kept, double smal
 }
 
 Improved improve(TetMesh& tets, Block& block, double largest, const MeshOptions& options) {
-  constexpr int most_rounds = 3;
-  constexpr double good = 25;  // degrees
+  constexpr int most_rounds = 3;  // of sliding
+  constexpr double good = 25;     // degrees
   ImproveOptions improving;
   improving.target = options.min_dihedral;
   improving.polish = good;
   improving.refine = {.max_volume = largest_volume(largest)};
   improving.threads = options.threads;
+  const bool slides = block.of_regions.back() == CellTriangles::matrix;
   const std::size_t fixed = block.skin.nodes.points.size();
-  Improvement done = improve(tets.points, tets.cells, tets.regions, fixed, improving);
+  const auto run = [&] { return improve(tets.points, tets.cells, tets.regions, fixed, improving); };
+  // What sliding mends by itself need not be worked on before.
+  const int passes = improving.passes;
+  if (slides) improving.passes = 0;
+  Improvement done = run();
   improving.refine.reset();
-  const bool has_matrix = block.of_regions.back() == CellTriangles::matrix;
-  const auto can_gain = [&] {
+  improving.passes = passes;
+  const auto is_short = [&] {
     return std::ranges::any_of(
         done.below, [](const BelowTarget& below) { return below.cause != BelowTarget::Cause::geometry; });
   };
-  for (int round = 0; has_matrix && round < most_rounds && (round == 0 || can_gain()); ++round) {
-    if (slide_points(tets, block, good, options.order == 2) == 0) break;
-    done = improve(tets.points, tets.cells, tets.regions, fixed, improving);
+  for (int round = 0; slides && round < most_rounds && (round == 0 || is_short()); ++round) {
+    slide_points(tets, block, good, options.order == 2);
+    done = run();
   }
   return {count(done, options.min_dihedral), describe(done, options.min_dihedral, name_of(block.units))};
 }
