@@ -67,7 +67,7 @@ Result<TetMesh> fill(const Block& block, std::span<const Vec3> kept, double smal
 }
 
 Improved improve(TetMesh& tets, Block& block, double largest, const MeshOptions& options) {
-  constexpr int most_rounds = 3;  // of sliding
+  constexpr int most_rounds = 6;  // of sliding
   constexpr double good = 25;     // degrees
   ImproveOptions improving;
   improving.target = options.min_dihedral;
