@@ -68,7 +68,7 @@ Result<TetMesh> fill(const Block& block, std::span<const Vec3> kept, double smal
 
 Improved improve(TetMesh& tets, Block& block, double largest, const MeshOptions& options) {
   constexpr int most_rounds = 6;  // of sliding
-  constexpr double good = 25;     // degrees
+  constexpr double good = 25, least_gain = 0.1;  // degrees
   ImproveOptions improving;
   improving.target = options.min_dihedral;
   improving.polish = good;
@@ -83,11 +83,17 @@ Improved improve(TetMesh& tets, Block& block, double largest, const MeshOptions&
   Improvement done = run();
   improving.refine.reset();
   improving.passes = passes;
-  const auto is_short = [&] {
-    return std::ranges::any_of(
-        done.below, [](const BelowTarget& below) { return below.cause != BelowTarget::Cause::geometry; });
+  // The smallest angle that another surface could still mend.
+  const auto smallest = [&] {
+    const auto found = std::ranges::find_if(done.below, [](const BelowTarget& below) {
+      return below.cause != BelowTarget::Cause::geometry;
+    });
+    return found == done.below.end() ? options.min_dihedral : found->angle;
   };
-  for (int round = 0; slides && round < most_rounds && (round == 0 || is_short()); ++round) {
+  double before = -1;
+  for (int round = 0; slides && round < most_rounds; ++round) {
+    if (round > 0 && (smallest() >= options.min_dihedral || smallest() < before + least_gain)) break;
+    before = smallest();
     slide_points(tets, block, good, options.order == 2);
     done = run();
   }

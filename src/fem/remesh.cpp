@@ -29,8 +29,7 @@ class Remesher {
   }
 
   void run(const SizeField& field) {
-    field_ = &field;
-    for (const Vec3& point : mesh_.points) wanted_.push_back(field.at(point));
+    find_wanted(field);
     turn_all();
     for (int round = 0; round < rounds; ++round) {
       split_long();
@@ -59,6 +58,12 @@ class Remesher {
     turn_all();
   }
 
+  void split(const SizeField& field) {
+    find_wanted(field);
+    split_long();
+    turn_all();
+  }
+
  private:
   [[nodiscard]] bool is_fixed(std::uint32_t vertex) const { return vertex < mesh_.fixed_points; }
   [[nodiscard]] double length(std::uint32_t a, std::uint32_t b) const {
@@ -69,6 +74,11 @@ class Remesher {
   }
   [[nodiscard]] double angle(const Triangle& t) const {
     return smallest_angle(mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]);
+  }
+
+  void find_wanted(const SizeField& field) {
+    field_ = &field;
+    for (const Vec3& point : mesh_.points) wanted_.push_back(field.at(point));
   }
 
   // Does it lie on its support the right way round, where vertex `moved` stands at `place`?
@@ -165,7 +175,7 @@ class Remesher {
 
   TriangleMesh& mesh_;
   const Support& support_;
-  const SizeField* field_ = nullptr;  // of run()
+  const SizeField* field_ = nullptr;  // find_wanted()
   std::unordered_set<std::uint64_t> fixed_;
   std::vector<std::vector<std::uint32_t>> stars_;
   std::vector<double> wanted_;
@@ -416,6 +426,10 @@ void remesh(TriangleMesh& mesh, const Support& support, const SizeField& field) 
 
 void move_points(TriangleMesh& mesh, const Support& support, std::span<const PointTarget> targets) {
   Remesher(mesh, support).move_points(targets);
+}
+
+void split_long_edges(TriangleMesh& mesh, const Support& support, const SizeField& field) {
+  Remesher(mesh, support).split(field);
 }
 
 }  // namespace selvage::fem

@@ -24,6 +24,9 @@ class Staggerer {
       relax();
       settle();
     }
+    // Where points went away from a place that is narrower than its surroundings.
+    for_each_index(meshes_.size(), threads_,
+                   [&](std::size_t m) { split_long_edges(*meshes_[m].mesh, *meshes_[m].support, field_); });
   }
 
  private:

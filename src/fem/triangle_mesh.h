@@ -99,6 +99,9 @@ struct PointTarget {
 // triangles would turn over or become slender; then turns edges.
 void move_points(TriangleMesh& mesh, const Support& support, std::span<const PointTarget> targets);
 
+// Splits edges that are longer by 1.4 than the field has them, and turns others.
+void split_long_edges(TriangleMesh& mesh, const Support& support, const SizeField& field);
+
 // Degrees.
 double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c);
 
