@@ -67,7 +67,7 @@ Result<TetMesh> fill(const Block& block, std::span<const Vec3> kept, double smal
 }
 
 Improved improve(TetMesh& tets, Block& block, double largest, const MeshOptions& options) {
-  constexpr int most_rounds = 6;  // of sliding
+  constexpr int most_rounds = 6;                 // of sliding
   constexpr double good = 25, least_gain = 0.1;  // degrees
   ImproveOptions improving;
   improving.target = options.min_dihedral;
@@ -78,16 +78,14 @@ Improved improve(TetMesh& tets, Block& block, double largest, const MeshOptions&
   const std::size_t fixed = block.skin.nodes.points.size();
   const auto run = [&] { return improve(tets.points, tets.cells, tets.regions, fixed, improving); };
   // What sliding mends by itself need not be worked on before.
-  const int passes = improving.passes;
   if (slides) improving.passes = 0;
   Improvement done = run();
   improving.refine.reset();
-  improving.passes = passes;
+  if (slides) improving.passes = 2;
   // The smallest angle that another surface could still mend.
   const auto smallest = [&] {
-    const auto found = std::ranges::find_if(done.below, [](const BelowTarget& below) {
-      return below.cause != BelowTarget::Cause::geometry;
-    });
+    const auto found = std::ranges::find_if(
+        done.below, [](const BelowTarget& below) { return below.cause != BelowTarget::Cause::geometry; });
     return found == done.below.end() ? options.min_dihedral : found->angle;
   };
   double before = -1;

@@ -19,8 +19,8 @@ struct StaggeredMesh {
 // four gaps, where points over points allow 16 and two meshes that know nothing of each other have a percent
 // below 8. Free points that face another surface within an edge's length repel all points near them, over the
 // gap too, as particles of two layers do that settle in a staggered crystal (Goldoni and Peeters, Phys. Rev.
-// B 53, 1996). Points stay on their surfaces, edges about as long, and the numbers of points and triangles
-// what they are. The same for any number of threads.
+// B 53, 1996). Points stay on their surfaces, and edges about as long; where they got too long new points
+// divide them. The same for any number of threads.
 void stagger(std::span<const StaggeredMesh> meshes, const SizeField& field, int threads);
 
 }  // namespace selvage::fem
