@@ -25,6 +25,7 @@
 #include "fabric/piece.h"
 #include "fem/beams.h"
 #include "fem/field_mesh.h"
+#include "fem/solved_deck.h"
 #include "fem/mesh.h"
 #include "fem/raster.h"
 #include "formats/language.h"
@@ -185,8 +186,10 @@ struct Descriptor {
   bool carries_parts = false;  // free faces and solids: of CAD files, and what --cut makes
   bool carries_lines =
       false;  // centre lines of yarns; a format without surfaces is given nothing else of them
-  // A mesh with what was computed on it, for pages; lengths in mm.
+  // A mesh with what was computed on it, for pictures and pages; lengths in mm.
   std::optional<fem::FieldMesh> (*read_mesh)(const Source& source, Diagnostics& diagnostics) = nullptr;
+  // The deck that such results are of: which yarn an element is of, its fibres and material.
+  std::optional<fem::SolvedDeck> (*read_deck)(const Source& source, Diagnostics& diagnostics) = nullptr;
   Result<WriteFacts> (*write_mesh)(const fem::Mesh& mesh, OutputFile& output,
                                    const MeshFileOptions& options) = nullptr;
   // Yarns as beams (`mesh --elements beam`).

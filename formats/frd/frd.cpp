@@ -84,6 +84,7 @@ class Reader {
       if (key == "    1U" && columns(line_, 6, 3) == "MAT") name_material();
       if (key == "    2C" && !read_nodes()) return std::nullopt;
       if (key == "    3C" && !read_elements()) return std::nullopt;
+      if (columns(line_, 4, 6) == "1PSTEP") note_step();
       if (key == "  100C" && !read_results()) return std::nullopt;
       if (trimmed(line_) == "9999") break;
     }
@@ -163,6 +164,7 @@ class Reader {
       }
       if (!place.allFinite()) return fail(3, "the place of this node is not finite");
       nodes_.try_emplace(*number, static_cast<std::uint32_t>(mesh_.nodes.size()));
+      mesh_.node_numbers.push_back(*number);
       mesh_.nodes.push_back(place);
     }
     return true;
@@ -173,6 +175,7 @@ class Reader {
     if (!width) return false;
     Type type;
     std::uint32_t region = 0;
+    long element = 0;
     std::vector<long> numbers;
     while (next() && columns(line_, 0, 3) != " -3") {
       const std::string_view key = columns(line_, 0, 3);
@@ -183,6 +186,7 @@ class Reader {
         const long material = whole(columns(line_, 13 + *width, 5)).value_or(0);
         region =
             region_of_.try_emplace(material, static_cast<std::uint32_t>(region_of_.size())).first->second;
+        element = whole(columns(line_, 3, *width)).value_or(0);
         numbers.clear();
         continue;
       }
@@ -197,14 +201,14 @@ class Reader {
         numbers.push_back(*number);
       }
       if (numbers.size() == type.nodes) {
-        take_element(type, region, numbers);
+        take_element(type, region, element, numbers);
         type = {};
       }
     }
     return true;
   }
 
-  void take_element(const Type& type, std::uint32_t region, const std::vector<long>& numbers) {
+  void take_element(const Type& type, std::uint32_t region, long number, const std::vector<long>& numbers) {
     if (!type.shape) {
       ++left_out_;
       return;
@@ -218,12 +222,28 @@ class Reader {
       std::swap(element.corners[4], element.corners[5]);
     }
     mesh_.elements.push_back(element);
+    mesh_.element_numbers.push_back(number);
+  }
+
+  // Of the results that follow: the step, and which increment of it.
+  void note_step() {
+    increment_ = whole(columns(line_, 36, 12)).value_or(1);
+    step_ = whole(columns(line_, 48, 12)).value_or(0);
+  }
+
+  // Results of one number belong together; from 1 in the order of the file.
+  int set_of(long number) {
+    const auto [known, is_new] = set_of_.try_emplace(number, static_cast<int>(set_of_.size()) + 1);
+    if (is_new)
+      mesh_.steps.push_back(increment_ > 1 ? fmt::format("step {}, increment {}", step_, increment_)
+                                           : fmt::format("step {}", step_ > 0 ? step_ : number));
+    return known->second;
   }
 
   bool read_results() {
     const std::optional<std::size_t> width = width_of_numbers(columns(line_, 73, 2));
     if (!width) return false;
-    const long step = whole(columns(line_, 58, 5)).value_or(1);
+    const int set = set_of(whole(columns(line_, 58, 5)).value_or(1));
     std::string name;
     std::size_t count = 0;  // of components that are not reckoned from others, which come first
     FieldMesh::Field field;
@@ -250,7 +270,8 @@ class Reader {
       }
     }
     if (field.values.empty()) return true;
-    field.name = fmt::format("{}, step {}", name, step);
+    field.name = name;
+    field.step = set;
     field.components = static_cast<int>(count);
     mesh_.fields.push_back(std::move(field));
     return true;
@@ -262,6 +283,8 @@ class Reader {
   std::unordered_map<long, std::uint32_t> nodes_;
   std::map<long, std::uint32_t> region_of_;
   std::map<long, std::string> materials_;
+  std::map<long, int> set_of_;
+  long step_ = 0, increment_ = 1;
   FieldMesh mesh_;
   std::size_t left_out_ = 0;
 };
@@ -280,7 +303,7 @@ bool looks_like_frd(std::string_view head) {
 
 const Descriptor& descriptor() {
   static const Descriptor self = {.name = "frd",
-                                  .title = "Results of CalculiX: a mesh with fields, for pages",
+                                  .title = "Results of CalculiX: a mesh with fields, to be seen",
                                   .extensions = {".frd"},
                                   .sniff = looks_like_frd,
                                   .read_mesh = read_mesh};

@@ -9,6 +9,7 @@
 #include "fem/materials.h"
 #include "formats/inp/deck.h"
 #include "formats/inp/options.h"
+#include "formats/inp/reader.h"
 
 namespace selvage::formats::inp {
 
@@ -201,6 +202,7 @@ const Descriptor& descriptor() {
       .title = "Abaqus and CalculiX input deck",
       .extensions = {".inp"},
       .sniff = looks_like_a_deck,
+      .read_deck = read_deck,
       .write_mesh = write,
       .write_beams = write_beams,
       .carries_transport = true,

@@ -307,7 +307,7 @@ class Reader {
             return known.name == wanted.name && known.of_nodes == of_nodes;
           });
       if (field == mesh_.fields.end())
-        field = mesh_.fields.insert(field, {array.name, of_nodes, static_cast<int>(array.components), {}});
+        field = mesh_.fields.insert(field, {array.name, of_nodes, static_cast<int>(array.components), {}, 0});
       if (field->components != static_cast<int>(array.components)) continue;
       field->values.resize(first * array.components);
       const std::size_t rows = of_nodes ? count : kept.size();

@@ -4,6 +4,8 @@
 #include <limits>
 #include <tuple>
 
+#include "core/words.h"
+
 namespace selvage::fem {
 
 namespace {
@@ -72,6 +74,10 @@ std::size_t corner_count(Shape shape) {
       return 8;
   }
   return 0;
+}
+
+bool is_matrix(const std::string& region) {
+  return same_word(region, "matrix");
 }
 
 Outside outside_of(const FieldMesh& mesh) {

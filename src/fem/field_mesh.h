@@ -24,12 +24,18 @@ struct FieldMesh {
     bool of_nodes = true;  // else of elements
     int components = 1;    // 6: xx yy zz xy yz zx
     std::vector<float> values;
+    int step = 0;  // from 1, of `steps`; 0: of none
   };
   std::vector<Vec3> nodes;
   std::vector<Element> elements;
   std::vector<std::string> regions;
   std::vector<Field> fields;
+  std::vector<std::string> steps;                   // what each set of results is of: "step 2", "strain xx"
+  std::vector<long> node_numbers, element_numbers;  // of files that number them; else empty
 };
+
+// Is a region of this name the matrix of a unit cell, as this program's files call it?
+bool is_matrix(const std::string& region);
 
 std::size_t corner_count(FieldMesh::Shape shape);
 

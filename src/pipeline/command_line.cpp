@@ -278,6 +278,26 @@ void of_a_picture(OptionTable& t) {
       {view}, "--section",
       "cut at this plane, in the input's unit, such as z=0: what lies on the eye's side of it is left out",
       Argument::text("AXIS=PLACE"), take_section);
+  t.option({view}, "--field",
+           "colours by this field of a mesh's results: a name of the file's, displacement, stress or strain; "
+           "perhaps with a part: stress.mises, stress.fibre, stress.xx, displacement.x",
+           Argument::text("NAME[.PART]"), &Options::field);
+  t.option({view}, "--step", "results of this step, in the order of the file (default: the last)",
+           Argument::whole(1, 1'000'000), &Options::step);
+  t.option({view}, "--range", "values of the ends of the colours, such as 0:250 (default: the least and the largest)",
+           Argument::text("LOW:HIGH"), take_value_range)
+      .goes_with("is of a field's values", "--field", "");
+  t.option({view}, "--deformed",
+           "moves a mesh by its displacements times this; auto: the largest is a twentieth of the mesh",
+           Argument::text("SCALE"), take_deformed);
+  t.choice({view}, "--show-matrix",
+           "of a unit cell's mesh: half is what lies behind a plane through the middle (default: half; whole "
+           "with --yarns)",
+           "whole half none", &Options::shown_matrix, {ShownMatrix::whole, ShownMatrix::half, ShownMatrix::none});
+  t.option({view}, "--deck",
+           "the deck that results are of, which tells yarns, fibres and materials (default: the one beside them "
+           "under the same name)",
+           Argument::text("FILE.inp"), &Options::deck);
   t.option({view}, "--size", "in pixels", Argument::text("WxH"), take_picture_size).with_preset("1200x900");
   t.option({view}, "--background", "its colour, each 0-255", Argument::text("R,G,B"), take_background)
       .with_preset("255,255,255");

@@ -36,7 +36,7 @@ constexpr std::array commands = {
                "selvage info jersey.txt --report info.json"},
     Subcommand{edit, "edit", "move a point of a yarn: adds an `edit` line to a text",
                "selvage edit yarns.txt --yarn lower --point 2 --to 0,0,-0.2 -o moved.txt"},
-    Subcommand{view, "view", "a picture of the yarns, ray-traced (PNG), or a page to turn them on (HTML)",
+    Subcommand{view, "view", "a picture of yarns, meshes or results (PNG), or a page to turn them on (HTML)",
                "selvage view twill.txt --from iso -o twill.png\nselvage view twill.txt -o twill.html"},
     Subcommand{
         sweep, "sweep",

@@ -92,7 +92,7 @@ void add_fields(Job& job, const fem::FieldMesh& mesh, const fem::Outside& outsid
       ++left_out;
       continue;
     }
-    page::Skin::Field shown{field.name, field.of_nodes, field.components, {}};
+    page::Skin::Field shown{field.name, field.of_nodes, field.components, {}, field.step};
     for (const std::uint32_t k : from)
       shown.values.insert(shown.values.end(),
                           field.values.begin() + static_cast<std::ptrdiff_t>(k * components),
@@ -116,6 +116,7 @@ page::Page mesh_page(Job& job, const fem::FieldMesh& mesh) {
   page::Skin& skin = made.skin.emplace();
   skin.nodes = mesh.nodes.size();
   skin.elements = mesh.elements.size();
+  skin.steps = mesh.steps;
   for (const std::uint32_t node : numbering.nodes)
     skin.points.emplace_back((mesh.nodes[node] - made.centre).cast<float>());
   for (std::size_t k = 0; k < outside.triangles.size(); ++k) {
@@ -125,7 +126,7 @@ page::Page mesh_page(Job& job, const fem::FieldMesh& mesh) {
     skin.inner.push_back(outside.inner[k]);
     skin.region.push_back(mesh.elements[outside.element[k]].region);
   }
-  for (const std::string& name : mesh.regions) skin.regions.push_back({name, 0, name == "matrix"});
+  for (const std::string& name : mesh.regions) skin.regions.push_back({name, 0, fem::is_matrix(name)});
   for (const fem::FieldMesh::Element& element : mesh.elements) ++skin.regions[element.region].elements;
   add_fields(job, mesh, outside, numbering, skin);
   skin.histograms = quality_of(mesh);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/containment.h"
@@ -55,6 +56,13 @@ enum class Elements { tetrahedra, hexahedra, beams };
 // When a page of `view` lists contacts; `automatic`: where all yarns together have at most a few million
 // points.
 enum class PageContacts { automatic, yes, no };
+
+// How large displacements are in a picture of results.
+struct DeformedScale {
+  std::optional<double> factor;  // none: so that the largest is a twentieth of the mesh's diagonal
+};
+// Of a mesh with yarns: the half of the matrix is that behind a plane through the middle.
+enum class ShownMatrix { whole, half, none };
 
 // Of `edit`, as given.
 struct EditWords {
@@ -139,6 +147,12 @@ struct Options {
   std::optional<view::Section> section;
   double zoom = 1;
   std::vector<std::string> shown_yarns;       // patterns of names; empty: all
+  std::string field;                          // of a mesh's results, as given; empty: its regions
+  int step = 0;                               // from 1; 0: the last
+  std::optional<std::pair<double, double>> value_range;  // low < high; none: of the values
+  std::optional<DeformedScale> deformed;                 // none: as it was before
+  std::optional<ShownMatrix> shown_matrix;  // none: the half beside yarns, whole where names are asked for
+  std::string deck;                         // that the results are of; empty: the one beside them, if there is one
   int picture_width = 0, picture_height = 0;  // pixels
   yarn::Color background{};
   bool flat = false, no_scale_bar = false;

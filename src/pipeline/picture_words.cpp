@@ -28,6 +28,30 @@ Status take_background(Options& options, const std::string& text) {
                fmt::format("'{}' is no colour; it is R,G,B, each 0-255, for example 255,255,255", text));
 }
 
+Status take_value_range(Options& options, const std::string& text) {
+  const std::size_t colon = text.find(':');
+  if (colon != std::string::npos) {
+    const std::optional<double> low = read_number(text.substr(0, colon)), high = read_number(text.substr(colon + 1));
+    if (low && high && *low < *high) {
+      options.value_range = {*low, *high};
+      return {};
+    }
+  }
+  return error(Kind::usage,
+               fmt::format("'{}' is no range; it is LOW:HIGH, the lower value first, for example 0:250", text));
+}
+
+Status take_deformed(Options& options, const std::string& text) {
+  if (text == "auto") {
+    options.deformed.emplace();
+    return {};
+  }
+  const std::optional<double> factor = read_number(text);
+  if (!factor) return error(Kind::usage, fmt::format("'{}' is no scale; it is a number, or auto", text));
+  options.deformed = DeformedScale{*factor};
+  return {};
+}
+
 Status take_section(Options& options, const std::string& text) {
   const std::size_t axis = std::string_view("xyz").find(text.empty() ? ' ' : text.front());
   const Argument number = Argument::between(-1e9, 1e9);

@@ -10,7 +10,10 @@
 #include "core/source.h"
 #include "core/text_report.h"
 #include "pipeline/detect.h"
+#include "fem/solved_deck.h"
+#include "pipeline/mesh_deck.h"
 #include "pipeline/mesh_page.h"
+#include "pipeline/mesh_picture.h"
 #include "pipeline/page.h"
 #include "pipeline/writing.h"
 #include "view/scale_bar.h"
@@ -57,9 +60,13 @@ Result<std::string> draw(const Job& job, std::span<const yarn::Body> bodies,
 }
 
 bool is_shown(const Options& options, const yarn::BodyLabel& yarn) {
+  return is_shown(options, yarn.name, yarn.group);
+}
+
+bool is_shown(const Options& options, const std::string& name, const std::string& group) {
   const auto matches = [&](const std::string& pattern) {
-    return ::fnmatch(pattern.c_str(), yarn.name.c_str(), 0) == 0 ||
-           (!yarn.group.empty() && ::fnmatch(pattern.c_str(), yarn.group.c_str(), 0) == 0);
+    return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0 ||
+           (!group.empty() && ::fnmatch(pattern.c_str(), group.c_str(), 0) == 0);
   };
   return options.shown_yarns.empty() ||
          std::any_of(options.shown_yarns.begin(), options.shown_yarns.end(), matches);
@@ -93,24 +100,58 @@ const formats::Descriptor* mesh_format(const Job& job) {
   return format != nullptr && format->read_mesh != nullptr && !format->is_readable() ? format : nullptr;
 }
 
-void view_mesh(Job& job, const formats::Descriptor& format) {
-  if (job.outputs.empty() || job.outputs.front().format != &page_format())
-    return job.say(
-        error(Kind::unsupported, "meshes are shown on pages, not in pictures: name a .html file with -o"));
-  const Result<std::string> library = view::page::library();
-  if (!library) return job.say(library.error());
+std::optional<fem::FieldMesh> read_mesh(Job& job, const formats::Descriptor& format) {
   const Result<Source> source = Source::open(job.input.path);
-  if (!source) return job.say(source.error());
+  if (!source) return job.fail(source.error());
   Diagnostics diagnostics;
-  const std::optional<fem::FieldMesh> mesh = format.read_mesh(*source, diagnostics);
+  std::optional<fem::FieldMesh> mesh = format.read_mesh(*source, diagnostics);
   job.say_all(diagnostics.messages());
-  if (!mesh || job.has_failed()) return;
+  if (!mesh || job.has_failed() || !take_deck(job, *mesh)) return std::nullopt;
+  fem::add_along_fibre(*mesh);
+  return mesh;
+}
+
+Status write_mesh_page(Job& job, const fem::FieldMesh& mesh, OutputFile& output) {
+  const Result<std::string> library = view::page::library();
+  return library ? view::page::write(mesh_page(job, mesh), *library, output) : Status(library.error());
+}
+
+// What pictures of meshes have not, and what pages let choose for themselves.
+std::optional<Message> not_of_a_mesh(const Options& given, bool is_page) {
+  if (given.section)
+    return error(Kind::unsupported, "--section is of yarns: a mesh is cut on its page (-o FILE.html)");
+  if (is_page && (!given.field.empty() || given.step != 0 || given.deformed || given.shown_matrix))
+    return error(Kind::unsupported,
+                 "--field, --step, --range, --deformed and --show-matrix are of pictures; on a page fields, steps and "
+                 "shapes are chosen under 'Fields'");
+  return std::nullopt;
+}
+
+void view_mesh(Job& job, const formats::Descriptor& format) {
+  const bool is_page = !job.outputs.empty() && job.outputs.front().format == &page_format();
+  if (const auto refused = not_of_a_mesh(job.options, is_page)) return job.say(*refused);
+  std::optional<fem::FieldMesh> mesh = read_mesh(job, format);
+  if (!mesh) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);
   if (!outputs) return;
-  if (const Status written = view::page::write(mesh_page(job, *mesh), *library, outputs->front().file);
-      !written)
-    return job.say(written.error());
+  if (is_page) {
+    if (const Status written = write_mesh_page(job, *mesh, outputs->front().file); !written)
+      return job.say(written.error());
+  } else {
+    const std::optional<std::string> picture = draw_mesh(job, std::move(*mesh));
+    if (!picture) return;
+    for (OpenOutput& output : *outputs)
+      if (const Status written = output.file.write(*picture); !written) return job.say(written.error());
+  }
   commit_all(job, *outputs);
+}
+
+std::optional<Message> not_of_yarns(const Options& given) {
+  if (given.field.empty() && given.step == 0 && !given.deformed && !given.shown_matrix && given.deck.empty())
+    return std::nullopt;
+  return error(Kind::unsupported,
+               "--field, --step, --deformed, --show-matrix and --deck are of meshes and results (VTU, FRD), and this "
+               "is none");
 }
 
 }  // namespace
@@ -120,6 +161,7 @@ void view(Job& job) {
     return job.say(
         error(Kind::unsupported, "--section is of pictures; on a page sections are moved under 'Section'"));
   if (const formats::Descriptor* mesh = mesh_format(job)) return view_mesh(job, *mesh);
+  if (const auto refused = not_of_yarns(job.options)) return job.say(*refused);
   const std::optional<fabric::Fabric> fabric = job.read();
   if (!fabric) return;
   std::optional<OpenOutputs> outputs = open_outputs(job);

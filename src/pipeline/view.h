@@ -17,6 +17,7 @@ Result<std::string> draw(const Job& job, std::span<const yarn::Body> bodies,
 
 // Is it, or what it is a part of, among --yarns? All are where there is no such option.
 bool is_shown(const Options& options, const yarn::BodyLabel& yarn);
+bool is_shown(const Options& options, const std::string& name, const std::string& group = {});
 // What to say where none is.
 Message none_shown(const Options& options);
 

@@ -36,6 +36,10 @@ Eigen::Matrix3d axes_of(const Angles& angles) {
   return axes;
 }
 
+Eigen::Matrix3d axes_of(const Eye& eye) {
+  return eye.angles ? axes_of(*eye.angles) : axes_of(eye.from, eye.upright);
+}
+
 }  // namespace
 
 Vec3 upright_of(std::span<const yarn::Body> bodies) {
@@ -47,15 +51,25 @@ Vec3 upright_of(std::span<const yarn::Body> bodies) {
 }
 
 Camera::Camera(const Eye& eye, std::span<const yarn::Body> bodies, int width, int height)
-    : turn_(eye.angles ? axes_of(*eye.angles) : axes_of(eye.from, eye.upright)) {
+    : turn_(axes_of(eye)) {
   Box3 seen;
   for (const yarn::Body& body : bodies)
     for (const Vec3& p : body.surface.points) seen.extend(turn_ * p);
+  hold(seen, eye.zoom, width, height);
+}
+
+Camera::Camera(const Eye& eye, std::span<const Vec3> points, int width, int height) : turn_(axes_of(eye)) {
+  Box3 seen;
+  for (const Vec3& p : points) seen.extend(turn_ * p);
+  hold(seen, eye.zoom, width, height);
+}
+
+void Camera::hold(const Box3& seen, double zoom, int width, int height) {
   centre_ = turn_.transpose() * seen.center();
   const double rim = 2.0 * margin * std::min(width, height);
   const double unit =  // file units a pixel
       std::max(seen.sizes().x() / (width - rim), seen.sizes().y() / (height - rim));
-  scale_ = eye.zoom * (unit > 0.0 ? 1.0 / unit : 1.0);
+  scale_ = zoom * (unit > 0.0 ? 1.0 / unit : 1.0);
 }
 
 }  // namespace selvage::view

@@ -41,12 +41,17 @@ class Camera {
   explicit Camera(Vec3 origin) : turn_(Eigen::Matrix3d::Identity()), centre_(std::move(origin)) {}
   // With a zoom of 1 the bodies (not none) fill the picture but for a margin of 4 % of its smaller side.
   Camera(const Eye& eye, std::span<const yarn::Body> bodies, int width, int height);
+  Camera(const Eye& eye, std::span<const Vec3> points, int width, int height);  // these points do
 
   [[nodiscard]] Vec3 to_picture(const Vec3& point) const { return scale_ * (turn_ * (point - centre_)); }
   [[nodiscard]] Vec3 direction(const Vec3& vector) const { return turn_ * vector; }
+  [[nodiscard]] Vec3 toward_eye() const { return turn_.row(2).transpose(); }
   [[nodiscard]] double pixels_per_unit() const { return scale_; }
 
  private:
+  // `seen`: in the turned axes.
+  void hold(const Box3& seen, double zoom, int width, int height);
+
   Eigen::Matrix3d turn_;  // rows: right, up, toward the eye
   Vec3 centre_;
   double scale_ = 1;

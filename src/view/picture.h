@@ -59,10 +59,13 @@ Result<Picture> render(std::span<const yarn::Body> bodies, const PictureOptions&
 // The picture as a PNG file. Error (internal): libpng refuses.
 Result<std::string> png(const Picture& picture);
 
+struct MeshSurface;  // view/mesh_picture.h
+
 // What the module exports.
 struct EmbreeModule {
   const char* version;  // of Embree
   Result<Picture> (*render)(std::span<const yarn::Body> bodies, const PictureOptions& options);
+  Result<Picture> (*render_mesh)(const MeshSurface& surface, const PictureOptions& options);
   Result<std::string> (*png)(const Picture& picture);
 };
 Result<const EmbreeModule*> embree_module();

@@ -32,6 +32,18 @@ yarn::Color color_of(yarn::Role role) {
 
 }  // namespace
 
+yarn::Color hue_color(std::size_t index) {
+  constexpr double saturation = 0.42, lightness = 0.48, golden = 0.618034, first = 0.55;
+  const double turn = std::fmod(first + golden * static_cast<double>(index), 1.0);
+  const auto channel = [&](double place) {
+    const double k = std::fmod(place + 12 * turn, 12.0);
+    const double part = lightness - saturation * std::min(lightness, 1 - lightness) *
+                                        std::clamp(std::min(k - 3, 9 - k), -1.0, 1.0);
+    return static_cast<int>(std::lround(255 * part));
+  };
+  return {channel(0), channel(8), channel(4)};
+}
+
 yarn::Color role_color(yarn::Role role, std::size_t number) {
   const double shade = number % 2 == 0 ? 1.0 : 1.14;
   const auto shaded = [&](int part) { return std::min(255, static_cast<int>(std::lround(shade * part))); };

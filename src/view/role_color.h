@@ -11,4 +11,8 @@ namespace selvage::view {
 // neighbours can be told apart.
 yarn::Color role_color(yarn::Role role, std::size_t number);
 
+// Of regions of meshes, one by one: hues a golden section of the circle apart; and of the matrix.
+yarn::Color hue_color(std::size_t index);
+inline constexpr yarn::Color matrix_color{196, 199, 198};
+
 }  // namespace selvage::view

@@ -95,8 +95,9 @@ class Page:
         return (points, self.numbers("<u4", skin["triangles"], 3 * skin["triangle_count"]).reshape(-1, 3),
                 self.numbers("<u4", skin["region_of"], skin["triangle_count"]))
 
-    def field(self, name):
+    def field(self, name, step=None):
+        """Of the first step that has it, or of this one."""
         skin = self.data["skin"]
-        field = next(one for one in skin["fields"] if one["name"] == name)
+        field = next(one for one in skin["fields"] if one["name"] == name and step in (None, one["step"]))
         count = skin["point_count"] if field["of_points"] else skin["triangle_count"]
         return self.numbers("<f4", field["values"], field["components"] * count).reshape(count, field["components"])

@@ -62,7 +62,7 @@ class Documents(Case):
             line = line.replace("./scripts/run", "selvage", 1)
             line = re.sub(r"^scripts/", f"{ROOT}/scripts/", line)
             with self.subTest(line):
-                self.assertRegex(line, f"^(selvage|selvage-homogenize|{ROOT}/scripts/homogenize) ", "no other commands are expected here")
+                self.assertRegex(line, f"^(selvage|selvage-homogenize|ccx|{ROOT}/scripts/homogenize) ", "no other commands are expected here")
                 done = subprocess.run(["sh", "-c", line], cwd=self.folder, env=environment(PATH=self.path),
                                       capture_output=True, text=True)
                 if is_page(line) and not HAS_PAGES:

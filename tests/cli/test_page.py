@@ -397,7 +397,6 @@ class Meshes(Base):
             bad = self.source(text.replace(old, new), "bad.vtu")
             message = self.fails(1, "view", bad, "-o", self.folder / "bad.html")
             self.assertRegex(message, rf"bad\.vtu:{line}:\d+: error: .*{words}")
-        self.assertIn("name a .html file", self.fails(1, "view", self.folder / "good.vtu", "-o", self.folder / "x.png"))
 
     def test_results_of_calculix(self):
         """A bar of two cubes, pulled: what ccx says of it is in the page."""
@@ -418,10 +417,10 @@ class Meshes(Base):
         self.assertEqual([region["name"] for region in page.data["skin"]["regions"]], ["GLASS", "RESIN"])
         points, triangles, _ = page.skin()
         self.assertEqual(len(triangles), 24)
-        moved = page.field("DISP, step 1")
+        moved = page.field("DISP")
         # Without Poisson's effect two springs in a row: the soft one takes two thirds.
         self.assertLess(np.abs(moved[:, 0] - np.interp(points[:, 0], [0, 1, 2], [0, 0.01, 0.03])).max(), 1e-6)
-        stress = page.field("STRESS, step 1")
+        stress = page.field("STRESS")
         self.assertEqual(stress.shape[1], 6)
         self.assertLess(np.abs(stress[:, 0] - 10).max(), 1e-3)
         self.assertLess(np.abs(stress[:, 1:]).max(), 1e-3)

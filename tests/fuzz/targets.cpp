@@ -55,7 +55,7 @@ void run_reader(const Descriptor& format, std::string_view bytes) {
     return reader != nullptr && reader(source, diagnostics).has_value();
   };
   const bool has_read = reads(format.read_fabric) || reads(format.read_model) || reads(format.read_points) ||
-                        reads(format.read_mesh);
+                        reads(format.read_mesh) || reads(format.read_deck);
   if (has_read == diagnostics.has_errors()) std::abort();
   // What takes as long as reading and is the same for most inputs: one in four has it done.
   if (bytes.size() % 4 != 0) return;
@@ -175,7 +175,7 @@ void run_step(std::string_view bytes) {
 std::vector<Target> all_targets() {
   std::vector<Target> list;
   for (const Descriptor* format : formats::all_formats())
-    if (format->is_readable() || format->read_mesh != nullptr)
+    if (format->is_readable() || format->read_mesh != nullptr || format->read_deck != nullptr)
       list.push_back({std::string(format->name), "reads", std::string(format->extensions.front()), 1024,
                       [format](std::string_view bytes) { run_reader(*format, bytes); }});
   for (Target& target : list)

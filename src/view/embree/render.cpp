@@ -5,19 +5,14 @@
 #include "core/parallel.h"
 #include "view/embree/section.h"
 #include "view/embree/shading.h"
+#include "view/embree/tiles.h"
 
 namespace selvage::view::embree {
 
 namespace {
 
 constexpr double chord = 0.1;           // pixels
-constexpr int tile_side = 64;           // pixels
 constexpr float reach_in_sizes = 2.5F;  // how far from a yarn its surroundings shade it, in yarn diameters
-
-// Four samples a pixel, one in each quarter, none in a row or column with another.
-constexpr int samples_side = 2;
-constexpr std::array<std::array<float, 2>, 4> sample_places = {
-    {{0.375F, 0.125F}, {0.875F, 0.375F}, {0.125F, 0.625F}, {0.625F, 0.875F}}};
 
 // Neighbours that a sample averages its light with: a whole pattern, its own place among them.
 constexpr int window_before = 2, window_after = 1;
@@ -45,7 +40,7 @@ class Renderer {
       for (const Vec3f& p : skin.points) eye_ = std::max(eye_, p.z() + 1.0F);
   }
 
-  void draw_tile(int left, int top, Picture& picture) const;
+  void draw_tile(int left, int top, int right, int bottom, Picture& picture) const;
 
  private:
   [[nodiscard]] Sample sample(int x, int y) const;
@@ -166,9 +161,7 @@ Light Renderer::pixel(const std::vector<Sample>& tile, int stride, int x, int y)
   return (sum / (samples_side * samples_side)).cwiseAbs2();
 }
 
-void Renderer::draw_tile(int left, int top, Picture& picture) const {
-  const int right = std::min(left + tile_side, picture.width),
-            bottom = std::min(top + tile_side, picture.height);
+void Renderer::draw_tile(int left, int top, int right, int bottom, Picture& picture) const {
   const int stride = (right - left) * samples_side + window_before + window_after;
   const int lines = (bottom - top) * samples_side + window_before + window_after;
   std::vector<Sample> tile;
@@ -177,14 +170,9 @@ void Renderer::draw_tile(int left, int top, Picture& picture) const {
     for (int i = 0; i < stride; ++i)
       tile.push_back(sample(left * samples_side + i - window_before, top * samples_side + j - window_before));
   for (int y = top; y < bottom; ++y)
-    for (int x = left; x < right; ++x) {
-      const Light seen = pixel(tile, stride, (x - left) * samples_side + window_before,
-                               (y - top) * samples_side + window_before);
-      std::uint8_t* out =
-          &picture.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
-                            static_cast<std::size_t>(x))];
-      for (int channel = 0; channel < 3; ++channel) out[channel] = encoded(seen[channel]);
-    }
+    for (int x = left; x < right; ++x)
+      put(picture, x, y,
+          pixel(tile, stride, (x - left) * samples_side + window_before, (y - top) * samples_side + window_before));
 }
 
 Result<std::vector<Skin>> make_skins(std::span<const yarn::Body> bodies, const Camera& camera, int threads) {
@@ -220,18 +208,11 @@ Result<Picture> render_yarns(std::span<const yarn::Body> bodies, const PictureOp
     cut.emplace(*options.section, camera, *scene, *skins);
   }
 
-  Picture picture{options.width, options.height, {}, camera.pixels_per_unit()};
-  picture.rgb.resize(3 * static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height));
+  Picture picture = blank_picture(options, camera);
   const Renderer renderer(options, *skins, paints, *scene, cut ? &*cut : nullptr);
-  const auto tiles = [](int pixels) {
-    return static_cast<std::size_t>((pixels + tile_side - 1) / tile_side);
-  };
-  const std::size_t across = tiles(options.width), count = across * tiles(options.height);
-  const auto draw = [&](std::size_t k) {
-    renderer.draw_tile(static_cast<int>(k % across) * tile_side, static_cast<int>(k / across) * tile_side,
-                       picture);
-  };
-  for_each_index(count, options.threads, draw, options.progress);
+  draw_tiles(options, [&](int left, int top, int right, int bottom) {
+    renderer.draw_tile(left, top, right, bottom, picture);
+  });
   return picture;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -48,6 +49,26 @@ bool add_skin(RTCDevice device, RTCScene scene, const Skin& skin) {
   return made;
 }
 
+bool add_triangles(RTCDevice device, RTCScene scene, const std::vector<Vec3f>& points,
+                   const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* places = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), points.size()));
+  auto* corners = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(std::uint32_t), triangles.size()));
+  const bool made = places != nullptr && corners != nullptr;
+  if (made) {
+    for (const Vec3f& p : points)
+      for (const float x : p) *places++ = x;
+    for (const auto& triangle : triangles) corners = std::copy(triangle.begin(), triangle.end(), corners);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+  }
+  rtcReleaseGeometry(geometry);
+  return made;
+}
+
 RTCRay ray_of(const Vec3f& origin, const Vec3f& direction, float near, float far) {
   RTCRay ray{};
   ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
@@ -59,7 +80,8 @@ RTCRay ray_of(const Vec3f& origin, const Vec3f& direction, float near, float far
 
 }  // namespace
 
-Result<Scene> Scene::make(const std::vector<Skin>& skins) {
+template <class Add>
+Result<Scene> Scene::make_of(const Add& add) {
   // One thread builds the tree, so that it is the same at every run; the rays are shared out by the caller.
   Scene made;
   made.device_.reset(rtcNewDevice("threads=1,set_affinity=0"));
@@ -68,14 +90,24 @@ Result<Scene> Scene::make(const std::vector<Skin>& skins) {
                  fmt::format("Embree: no device (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
   made.scene_.reset(rtcNewScene(made.device_.get()));
   rtcSetSceneFlags(made.scene_.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
-  bool whole = true;
-  for (const Skin& skin : skins) whole = whole && add_skin(made.device_.get(), made.scene_.get(), skin);
-  if (whole) rtcCommitScene(made.scene_.get());
+  if (add(made.device_.get(), made.scene_.get())) rtcCommitScene(made.scene_.get());
   const RTCError failure = rtcGetDeviceError(made.device_.get());
   if (failure == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (failure != RTC_ERROR_NONE)
     return error(Kind::internal, fmt::format("Embree fails with error {}", static_cast<int>(failure)));
   return made;
+}
+
+Result<Scene> Scene::make(const std::vector<Skin>& skins) {
+  return make_of([&](RTCDevice device, RTCScene scene) {
+    return std::all_of(skins.begin(), skins.end(),
+                       [&](const Skin& skin) { return add_skin(device, scene, skin); });
+  });
+}
+
+Result<Scene> Scene::make(const std::vector<Vec3f>& points,
+                          const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  return make_of([&](RTCDevice device, RTCScene scene) { return add_triangles(device, scene, points, triangles); });
 }
 
 std::optional<Hit> Scene::nearest(const Vec3f& origin, const Vec3f& direction, float beyond) const {

@@ -3,6 +3,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -25,6 +26,9 @@ class Scene {
  public:
   // `skins` outlive the scene. Error (limit): not enough memory.
   static Result<Scene> make(const std::vector<Skin>& skins);
+  // One skin of triangles, whose facets these are; u and v of hits are the shares of the second and the third corner.
+  static Result<Scene> make(const std::vector<Vec3f>& points,
+                            const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
   // The nearest hit along `direction` (unit) farther than `beyond`.
   [[nodiscard]] std::optional<Hit> nearest(const Vec3f& origin, const Vec3f& direction,
@@ -40,6 +44,9 @@ class Scene {
       Release(handle);
     }
   };
+  template <class Add>
+  static Result<Scene> make_of(const Add& add);
+
   std::unique_ptr<RTCDeviceTy, Releaser<rtcReleaseDevice>> device_;
   std::unique_ptr<RTCSceneTy, Releaser<rtcReleaseScene>> scene_;
 };

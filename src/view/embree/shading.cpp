@@ -17,10 +17,6 @@ constexpr float pi = std::numbers::pi_v<float>;
 // The light: an even sky in all directions, and a lamp to the upper left behind the eye, of 14 degrees
 // radius.
 constexpr float sky = 0.46F, lamp_power = 0.66F, lamp_radius = 0.25F;
-Vec3f lamp_direction() {
-  return Vec3f(-0.45F, 0.6F, 0.8F).normalized();
-}
-
 constexpr int stripes_round = 8;
 constexpr float stripe_depth = 0.45F;
 constexpr float ends_toward_white = 0.35F;
@@ -36,6 +32,10 @@ float smooth_step(float low, float high, float x) {
 }
 
 }  // namespace
+
+Vec3f lamp_direction() {
+  return Vec3f(-0.45F, 0.6F, 0.8F).normalized();
+}
 
 Light linear(const yarn::Color& color) {
   const auto channel = [](int value) {

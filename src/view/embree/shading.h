@@ -11,6 +11,9 @@ namespace selvage::view::embree {
 // Linear red, green and blue, 0 .. 1.
 using Light = Eigen::Vector3f;
 
+// Toward the lamp, to the upper left behind the eye; unit.
+Vec3f lamp_direction();
+
 Light linear(const yarn::Color& color);
 // 0 .. 255, by the transfer function of sRGB (IEC 61966-2-1).
 std::uint8_t encoded(float linear);

@@ -1,15 +1,13 @@
 // Colours, and how things are shaded.
-// Of regions of meshes, and of yarns one by one: hues a golden section of the circle apart.
+// Of yarns one by one: hues a golden section of the circle apart.
 function hueColor(index) {
   const color = new THREE.Color().setHSL((0.55 + index * 0.618034) % 1, 0.42, 0.48, THREE.SRGBColorSpace);
   return color.getHexString(THREE.SRGBColorSpace).match(/../g).map((pair) => parseInt(pair, 16));
 }
 const cssColor = (rgb) => `rgb(${rgb.map(Math.round).join(' ')})`;
 
-// Blue through green to yellow, even in lightness: columns of a table between which colours are mixed (an approximation of
-// viridis by its values at ninths).
-const SCALE = [[68, 1, 84], [72, 40, 120], [62, 74, 137], [49, 104, 142], [38, 130, 142], [31, 158, 137], [53, 183, 121],
-  [109, 205, 89], [180, 222, 44], [253, 231, 37]];
+// Of fields' values: colours that are mixed between (src/view/color_scale.h).
+const SCALE = DATA.skin?.scale ?? [[0, 0, 0], [255, 255, 255]];
 function scaleColor(share) {
   const at = Math.min(1, Math.max(0, share)) * (SCALE.length - 1), k = Math.min(SCALE.length - 2, Math.floor(at));
   return SCALE[k].map((from, part) => from + (at - k) * (SCALE[k + 1][part] - from));

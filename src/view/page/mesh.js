@@ -113,7 +113,7 @@ class SkinModel {
     });
   }
 
-  colorOf(region) { return this.data.regions[region].matrix ? [196, 199, 198] : hueColor(region); }
+  colorOf(region) { return this.data.regions[region].color; }
   boxOf(region) { return this.boxes[region].clone(); }
   role(region) { return this.data.regions[region].matrix ? 'matrix' : 'region'; }
   groups() {

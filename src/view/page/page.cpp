@@ -12,6 +12,7 @@
 #include "core/text_buffer.h"
 #include "core/words.h"
 #include "core/xml_text.h"
+#include "view/color_scale.h"
 #include "view/page/sources.h"
 #include "view/role_color.h"
 
@@ -62,6 +63,9 @@ namespace {
 
 Json json_of(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
+}
+Json json_of(const yarn::Color& color) {
+  return {color.red, color.green, color.blue};
 }
 Json json_of(const Box3& box) {
   return {json_of(box.min()), json_of(box.max())};
@@ -186,14 +190,21 @@ Json skin_json(const Skin& skin, Binary& binary) {
                {"inner", binary.add(skin.inner)},
                {"nodes", skin.nodes},
                {"elements", skin.elements},
+               {"scale", Json::array()},
+               {"steps", skin.steps},
                {"regions", Json::array()},
                {"fields", Json::array()},
                {"histograms", Json::array()}};
+  for (const yarn::Color& color : color_scale) json["scale"].push_back(json_of(color));
   for (const Skin::Region& region : skin.regions)
     json["regions"].push_back(
-        {{"name", region.name}, {"elements", region.elements}, {"matrix", region.is_matrix}});
+        {{"name", region.name},
+         {"elements", region.elements},
+         {"matrix", region.is_matrix},
+         {"color", json_of(region.is_matrix ? matrix_color : hue_color(json["regions"].size()))}});
   for (const Skin::Field& field : skin.fields)
     json["fields"].push_back({{"name", field.name},
+                              {"step", field.step},
                               {"of_points", field.of_points},
                               {"components", field.components},
                               {"values", binary.add(field.values)}});

@@ -59,8 +59,10 @@ struct Skin {
     bool of_points = true;  // else of triangles
     int components = 1;
     std::vector<float> values;  // of points or triangles, `components` each
+    int step = 0;               // from 1, of `steps`; 0: of none
   };
   std::vector<Field> fields;
+  std::vector<std::string> steps;
   struct Histogram {
     std::string name;
     double low = 0, high = 0;  // of the first and the last bin

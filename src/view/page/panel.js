@@ -233,14 +233,19 @@ class Panel {
       model.uniforms.edges.value = edges.checked ? 1 : 0;
       scene.invalidate();
     }});
+    const titles = [...new Set(fields.map((one) => one.name))];
     const field = make('select', {id: 'field', onchange: () => pick()}, make('option', {value: ''}, 'regions'),
-      ...fields.map((one, k) => make('option', {value: k}, one.name)));
+      ...titles.map((title) => make('option', {value: title}, title)));
+    const {steps} = model.data;
+    const step = make('select', {id: 'step', onchange: () => pick()}, ...steps.map((text, k) => make('option', {value: k + 1}, text)));
+    this.ofStep = (list) => list.filter((one) => !one.step || one.step === Number(step.value));
     const part = make('select', {'aria-label': 'Which part of it', hidden: true, onchange: () => paint()});
     const legend = make('div', {class: 'legend', role: 'img', hidden: true,
       style: `background: linear-gradient(to right, ${SCALE.map(cssColor).join(', ')})`});
     const ends = make('div', {class: 'ends'});
+    const chosen = () => this.ofStep(fields).find((one) => one.name === field.value);
     const paint = () => {
-      const one = fields[field.value];
+      const one = chosen();
       const range = model.showField(one, part.value === 'size' || !one ? 'size' : Number(part.value));
       legend.hidden = !range;
       ends.replaceChildren(...range ? range.map((value) => make('span', {}, shown(value))) : []);
@@ -248,16 +253,19 @@ class Panel {
       scene.invalidate();
     };
     const pick = () => {
-      const one = fields[field.value], n = one?.components ?? 1;
+      const one = chosen(), n = one?.components ?? 1, before = part.value;
       const names = n === 3 ? ['x', 'y', 'z'] : n === 6 ? ['xx', 'yy', 'zz', 'xy', 'yz', 'zx'] : [...Array(n).keys()].map(String);
       part.hidden = n === 1;
       part.replaceChildren(make('option', {value: 'size'}, n === 6 ? 'von Mises' : 'size'),
         ...names.map((text, k) => make('option', {value: k}, text)));
+      if ([...part.options].some((option) => option.value === before)) part.value = before;
       paint();
+      this.move?.();
     };
-    const parts = [make('div', {class: 'row'}, make('label', {for: 'field', class: 'grow'}, 'Colours'), field, part), legend, ends,
-      make('div', {class: 'row'}, edges, make('label', {for: 'edges'}, 'Edges of the elements'))];
-    const vectors = fields.filter((one) => one.of_points && one.components === 3);
+    const parts = steps.length ? [make('div', {class: 'row'}, make('label', {for: 'step', class: 'grow'}, 'Results of'), step)] : [];
+    parts.push(make('div', {class: 'row'}, make('label', {for: 'field', class: 'grow'}, 'Colours'), field, part), legend, ends,
+      make('div', {class: 'row'}, edges, make('label', {for: 'edges'}, 'Edges of the elements')));
+    const vectors = fields.filter((one) => one.of_points && one.components === 3 && one.name !== 'along');
     if (vectors.length) parts.push(...this.deformation(vectors));
     this.section('Fields', ...parts);
   }
@@ -265,11 +273,11 @@ class Panel {
   deformation(vectors) {
     const {model, scene} = this, size = BOX.getSize(new THREE.Vector3()).length();
     const which = make('select', {id: 'moved', onchange: () => change()}, make('option', {value: ''}, 'as it is'),
-      ...vectors.map((one, k) => make('option', {value: k}, `moved by ${one.name}`)));
+      ...[...new Set(vectors.map((one) => one.name))].map((name) => make('option', {value: name}, `moved by ${name}`)));
     const slider = make('input', {type: 'range', min: 0, max: 100, value: 50, hidden: true, 'aria-label': 'How far', oninput: () => change()});
     const said = make('p', {class: 'note'});
     const change = () => {
-      const one = vectors[which.value];
+      const one = this.ofStep(vectors).find((some) => some.name === which.value);
       slider.hidden = !one;
       let factor = 0;
       if (one) {
@@ -282,6 +290,7 @@ class Panel {
       model.deform(one, factor);
       scene.invalidate();
     };
+    this.move = change;
     return [make('div', {class: 'row'}, make('label', {for: 'moved', class: 'grow'}, 'Shape'), which), slider, said];
   }
 

@@ -1,0 +1,375 @@
+#include "formats/inp/reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/number_text.h"
+#include "core/text_report.h"
+#include "core/words.h"
+
+namespace selvage::formats::inp {
+
+namespace {
+
+using fem::SolvedDeck;
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
+  return text;
+}
+
+// Names and keywords count in any case.
+std::string key_of(std::string_view text) {
+  std::string key(trimmed(text));
+  for (char& letter : key)
+    if (letter >= 'a' && letter <= 'z') letter = static_cast<char>(letter - 'a' + 'A');
+  return key;
+}
+
+// "*SOLID SECTION, ELSET=a, MATERIAL=b": the word, and what its parameters are.
+struct Card {
+  std::string word;
+  std::map<std::string, std::string> values;
+  [[nodiscard]] std::string value(const std::string& name) const {
+    const auto found = values.find(name);
+    return found == values.end() ? std::string() : found->second;
+  }
+};
+Card card_of(std::string_view line) {
+  Card card;
+  const std::vector<std::string_view> parts = split(line.substr(1), ',');
+  if (parts.empty()) return card;
+  card.word = key_of(parts.front());
+  for (std::size_t k = 1; k < parts.size(); ++k) {
+    const std::size_t is = parts[k].find('=');
+    card.values[key_of(parts[k].substr(0, is))] =
+        is == std::string_view::npos ? std::string() : std::string(trimmed(parts[k].substr(is + 1)));
+  }
+  return card;
+}
+
+std::size_t nodes_of(std::string type) {
+  if (type.starts_with('D')) type.erase(0, 1);
+  for (const auto& [name, nodes] : {std::pair("C3D10", 10), std::pair("C3D4", 4), std::pair("C3D6", 6), std::pair("C3D8", 8)})
+    if (type.starts_with(name)) return static_cast<std::size_t>(nodes);
+  return 0;
+}
+
+// xx yy zz xy yz zx, of E1 E2 E3 nu12 nu13 nu23 G12 G13 G23.
+std::optional<fem::Stiffness> stiffness_of(const std::vector<double>& c) {
+  fem::Stiffness compliance = fem::Stiffness::Zero();
+  for (int k = 0; k < 3; ++k) compliance(k, k) = 1 / c[static_cast<std::size_t>(k)];
+  compliance(0, 1) = compliance(1, 0) = -c[3] / c[0];
+  compliance(0, 2) = compliance(2, 0) = -c[4] / c[0];
+  compliance(1, 2) = compliance(2, 1) = -c[5] / c[1];
+  compliance(3, 3) = 1 / c[6];
+  compliance(4, 4) = 1 / c[8];
+  compliance(5, 5) = 1 / c[7];
+  const Eigen::FullPivLU<fem::Stiffness> solved(compliance);
+  if (!compliance.allFinite() || !solved.isInvertible()) return std::nullopt;
+  return fem::Stiffness(solved.inverse());
+}
+
+// Of a node or an element; 0, which none has, of what is no such number.
+long number_of(double value) {
+  return value > 0 && value < 1e15 ? static_cast<long>(value) : 0;
+}
+
+struct Material {
+  fem::Stiffness stiffness = fem::Stiffness::Zero();
+  Vec3 expansion = Vec3::Zero();
+};
+struct Axes {
+  Vec3 along = Vec3::UnitX(), across = Vec3::UnitY();
+};
+struct SectionCard {
+  std::string set, material, orientation;
+  Spot spot;
+};
+
+class Reader {
+ public:
+  Reader(const Source& source, TextReport& report) : report_(report), rest_(source.bytes()) {}
+
+  std::optional<SolvedDeck> read() {
+    while (next()) {
+      if (line_.starts_with("**")) {
+        comment_ = trimmed(line_.substr(2));
+        continue;
+      }
+      if (line_.starts_with('*') ? !begin_card() : !take_data()) return std::nullopt;
+      comment_ = {};
+    }
+    if (!end_elastic() || !join_sections()) return std::nullopt;
+    return std::move(deck_);
+  }
+
+ private:
+  bool next() {
+    if (rest_.empty()) return false;
+    ++number_;
+    const std::size_t end = rest_.find('\n');
+    line_ = rest_.substr(0, end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    return true;
+  }
+  [[nodiscard]] Spot spot() const { return {line_.data(), std::max(1, number_), 1}; }
+  bool fail(const Spot& spot, std::string text, Kind kind = Kind::malformed) {
+    report_.error(spot, std::move(text), kind);
+    return false;
+  }
+
+  bool begin_card() {
+    if (!end_elastic()) return false;
+    card_ = card_of(line_);
+    is_first_ = true;
+    const std::string& word = card_.word;
+    if (word == "INCLUDE")
+      return fail(spot(), "this deck is in several files: write it without --split-deck, and solve that one",
+                  Kind::unsupported);
+    if (word == "PLASTIC" || word == "USER MATERIAL" || word == "HYPERELASTIC" || word == "DEPVAR")
+      return fail(spot(), fmt::format("*{}: stresses are reckoned of linear elasticity alone", word), Kind::unsupported);
+    if (word == "STEP") {
+      if (card_.values.contains("NLGEOM") && key_of(card_.value("NLGEOM")) != "NO")
+        return fail(spot(), "NLGEOM: stresses are reckoned of small displacements alone", Kind::unsupported);
+      deck_.steps.push_back({std::string(comment_), deck_.steps.empty() ? 0.0 : deck_.steps.back().warming});
+    }
+    if (word == "MATERIAL") material_ = key_of(card_.value("NAME")), materials_[material_];
+    if (word == "ELEMENT") {
+      nodes_ = nodes_of(key_of(card_.value("TYPE")));
+      pending_.clear();
+      if (nodes_ == 0)
+        return fail(spot(), fmt::format("elements of the type {} are not read: C3D4, C3D6, C3D8 and C3D10 are",
+                                        in_quotes(card_.value("TYPE"))),
+                    Kind::unsupported);
+    }
+    if (word == "SOLID SECTION")
+      sections_.push_back({card_.value("ELSET"), key_of(card_.value("MATERIAL")), key_of(card_.value("ORIENTATION")), spot()});
+    return true;
+  }
+
+  // The numbers of a line; blanks are 0.
+  std::optional<std::vector<double>> numbers(std::string_view text) {
+    std::vector<double> values;
+    std::vector<std::string_view> parts = split(text, ',');
+    while (!parts.empty() && trimmed(parts.back()).empty()) parts.pop_back();
+    for (const std::string_view part : parts) {
+      const std::string_view word = trimmed(part);
+      const std::optional<double> value = word.empty() ? 0.0 : read_number(word);
+      if (!value) {
+        fail(spot(), fmt::format("{} is not a number", in_quotes(word)));
+        return std::nullopt;
+      }
+      values.push_back(*value);
+    }
+    return values;
+  }
+
+  bool take_data() {
+    if (trimmed(line_).empty()) return true;
+    const std::string& word = card_.word;
+    const bool is_first = std::exchange(is_first_, false);
+    if (word == "ELEMENT") return take_element();
+    if (word == "ELSET") return take_set();
+    if (word == "ELASTIC" || word == "EXPANSION") return take_law();
+    if (word == "DISTRIBUTION") return take_distribution();
+    if (word == "ORIENTATION" && is_first) return take_orientation();
+    if (word == "TEMPERATURE" || (word == "INITIAL CONDITIONS" && key_of(card_.value("TYPE")) == "TEMPERATURE"))
+      return take_temperature(is_first);
+    return true;
+  }
+
+  bool take_element() {
+    const auto values = numbers(line_);
+    if (!values) return false;
+    pending_.insert(pending_.end(), values->begin(), values->end());
+    if (pending_.size() < nodes_ + 1) return true;
+    SolvedDeck::Element element;
+    for (std::size_t k = 1; k <= nodes_; ++k) element.nodes.push_back(number_of(pending_[k]));
+    const long number = number_of(pending_.front());
+    const std::string set = key_of(card_.value("ELSET"));
+    const auto [known, is_new] = region_of_.try_emplace(set, static_cast<std::uint32_t>(deck_.regions.size()));
+    if (is_new) deck_.regions.push_back(card_.value("ELSET"));
+    element.region = known->second;
+    deck_.elements[number] = std::move(element);
+    sets_[set].push_back(number);
+    pending_.clear();
+    return true;
+  }
+
+  bool take_set() {
+    std::vector<long>& set = sets_[key_of(card_.value("ELSET"))];
+    if (card_.values.contains("GENERATE")) {
+      const auto range = numbers(line_);
+      if (!range) return false;
+      if (range->size() < 2) return fail(spot(), "a first and a last number are expected here");
+      const long first = number_of((*range)[0]), last = number_of((*range)[1]),
+                 step = range->size() > 2 ? std::max(1L, number_of((*range)[2])) : 1;
+      for (const auto& [number, element] : deck_.elements)
+        if (number >= first && number <= last && (number - first) % step == 0) set.push_back(number);
+      return true;
+    }
+    for (const std::string_view part : split(line_, ',')) {
+      const std::string_view word = trimmed(part);
+      if (word.empty()) continue;
+      if (const std::optional<double> number = read_number(word))
+        set.push_back(number_of(*number));
+      else if (const auto other = sets_.find(key_of(word)); other != sets_.end() && &other->second != &set) {
+        set.insert(set.end(), other->second.begin(), other->second.end());
+        std::sort(set.begin(), set.end());
+        set.erase(std::unique(set.begin(), set.end()), set.end());
+      }
+    }
+    return true;
+  }
+
+  bool take_law() {
+    const auto values = numbers(line_);
+    if (!values) return false;
+    if (card_.word == "ELASTIC") {
+      if (elastic_.empty()) elastic_spot_ = spot();
+      elastic_.insert(elastic_.end(), values->begin(), values->end());
+      return true;
+    }
+    Vec3& expansion = materials_[material_].expansion;
+    if (values->empty()) return fail(spot(), "an expansion is expected here");
+    const bool is_ortho = values->size() >= 3 && key_of(card_.value("TYPE")) == "ORTHO";
+    for (int k = 0; k < 3; ++k) expansion[k] = (*values)[is_ortho ? static_cast<std::size_t>(k) : 0];
+    return true;
+  }
+
+  // The constants of an *ELASTIC, once all lines of it are there.
+  bool end_elastic() {
+    if (elastic_.empty()) return true;
+    std::vector<double> c = std::exchange(elastic_, {});
+    const std::string type = key_of(card_.value("TYPE"));
+    if (type.empty() || type == "ISOTROPIC" || type == "ISO") {
+      if (c.size() < 2) return fail(elastic_spot_, "E and nu are expected here");
+      const double g = c[0] / 2 / (1 + c[1]);
+      c = {c[0], c[0], c[0], c[1], c[1], c[1], g, g, g};
+    } else if (type != "ENGINEERING CONSTANTS") {
+      return fail(elastic_spot_, fmt::format("elastic constants of the type {} are not read: isotropic ones and ENGINEERING "
+                                      "CONSTANTS are",
+                                      in_quotes(type)),
+                  Kind::unsupported);
+    }
+    if (c.size() < 9) return fail(elastic_spot_, "nine constants are expected here");
+    const auto stiffness = stiffness_of(c);
+    if (!stiffness) return fail(elastic_spot_, "these elastic constants have no stiffness");
+    materials_[material_].stiffness = *stiffness;
+    return true;
+  }
+
+  bool take_distribution() {
+    const bool is_default = trimmed(line_).starts_with(',');
+    const auto values = numbers(line_);
+    if (!values) return false;
+    if (values->size() < 7) return fail(spot(), "an element and two directions are expected here");
+    const auto at = [&](std::size_t k) { return Vec3((*values)[k], (*values)[k + 1], (*values)[k + 2]); };
+    if (!is_default) distributions_[key_of(card_.value("NAME"))][number_of(values->front())] = {at(1), at(4)};
+    return true;
+  }
+
+  bool take_orientation() {
+    const std::string name = key_of(card_.value("NAME"));
+    if (!read_number(trimmed(split(line_, ',').front()))) {
+      orientations_[name] = {key_of(split(line_, ',').front()), {}};
+      return true;
+    }
+    const auto values = numbers(line_);
+    if (!values) return false;
+    if (values->size() < 6) return fail(spot(), "two directions are expected here");
+    orientations_[name] = {{}, {Vec3((*values)[0], (*values)[1], (*values)[2]), Vec3((*values)[3], (*values)[4], (*values)[5])}};
+    return true;
+  }
+
+  bool take_temperature(bool is_first) {
+    const std::vector<std::string_view> parts = split(line_, ',');
+    const std::optional<double> value = parts.size() > 1 ? read_number(trimmed(parts[1])) : std::nullopt;
+    if (!value) return fail(spot(), "a set and its temperature are expected here");
+    const bool is_initial = card_.word != "TEMPERATURE";
+    if (!is_first && *value != last_)
+      return fail(spot(), "temperatures that differ from place to place are not read", Kind::unsupported);
+    last_ = *value;
+    if (is_initial)
+      initial_ = *value;
+    else if (!deck_.steps.empty())
+      deck_.steps.back().warming = *value - initial_;
+    return true;
+  }
+
+  bool join_sections() {
+    for (const SectionCard& card : sections_) {
+      const auto set = sets_.find(key_of(card.set));
+      const auto material = materials_.find(card.material);
+      if (set == sets_.end() || material == materials_.end())
+        return fail(card.spot, "the element set or the material of this section is not there");
+      const auto number = static_cast<std::uint32_t>(deck_.sections.size());
+      deck_.sections.push_back({!card.orientation.empty(), material->second.stiffness, material->second.expansion});
+      for (const long one : set->second) {
+        const auto element = deck_.elements.find(one);
+        if (element == deck_.elements.end()) continue;
+        element->second.section = number;
+        taken_[one] = true;
+        if (!card.orientation.empty() && !orient(card, one, element->second)) return false;
+      }
+    }
+    for (const auto& [number, element] : deck_.elements)
+      if (!taken_.contains(number)) return fail({nullptr, 0, 0}, fmt::format("element {} has no solid section", number));
+    return true;
+  }
+
+  bool orient(const SectionCard& card, long number, SolvedDeck::Element& element) {
+    const auto orientation = orientations_.find(card.orientation);
+    if (orientation == orientations_.end()) return fail(card.spot, "the orientation of this section is not there");
+    const auto& [distribution, axes] = orientation->second;
+    Axes own = axes;
+    if (!distribution.empty()) {
+      const auto& listed = distributions_[distribution];
+      const auto found = listed.find(number);
+      if (found == listed.end())
+        return fail(card.spot, fmt::format("the distribution {} has no directions of element {}", distribution, number));
+      own = found->second;
+    }
+    if (own.along.cross(own.across).norm() < 1e-9)
+      return fail(card.spot, fmt::format("the directions of element {} are none, or parallel", number));
+    element.along = own.along.normalized();
+    element.across = own.across.normalized();
+    return true;
+  }
+
+  TextReport& report_;
+  std::string_view rest_, line_, comment_;
+  int number_ = 0;
+  Card card_;
+  bool is_first_ = false;  // no line of data of this card was read
+  std::string material_;
+  std::size_t nodes_ = 0;
+  std::vector<double> pending_, elastic_;
+  Spot elastic_spot_{};
+  double initial_ = 0, last_ = 0;
+  std::map<std::string, std::vector<long>> sets_;
+  std::map<std::string, std::uint32_t> region_of_;
+  std::map<std::string, Material> materials_;
+  std::map<std::string, std::map<long, Axes>> distributions_;
+  std::map<std::string, std::pair<std::string, Axes>> orientations_;
+  std::vector<SectionCard> sections_;
+  std::map<long, bool> taken_;
+  SolvedDeck deck_;
+};
+
+}  // namespace
+
+std::optional<SolvedDeck> read_deck(const Source& source, Diagnostics& diagnostics) {
+  return reported(source, diagnostics,
+                  [](const Source& text, TextReport& report) { return Reader(text, report).read(); });
+}
+
+}  // namespace selvage::formats::inp
