@@ -59,6 +59,9 @@ class Deck:
                 found = re.fullmatch(r"Physics: (\w+)", last)
                 if found:
                     self.physics = found[1]
+                found = re.fullmatch(r"Strength: (\w+) (.*)", last)
+                if found:  # of the material that it stands in
+                    options["STRENGTH"] = (found[1], [float(v) for v in found[2].split()])
                 continue
             if line.startswith("*"):
                 if keyword:
@@ -95,6 +98,8 @@ class Deck:
                 self._add_equations(rows)
             elif keyword == "MATERIAL":
                 material = self.materials.setdefault(options["NAME"], {})
+                if "STRENGTH" in options:
+                    material["strength"] = options["STRENGTH"]
             elif keyword == "ELASTIC":
                 values = [float(word) for row in rows for word in row if word]
                 if options.get("TYPE") == "TRACTION":

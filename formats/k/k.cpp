@@ -240,9 +240,12 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_equations(text, mesh);
   write_loading(text, mesh);
   text << "*END\n";
-  return finished(
+  Result<WriteFacts> facts = finished(
       text, {{"nodes", mesh.nodes.size()}, {"solids", mesh.elements.size()}, {"parts", sections->size()}},
       {{"constraints", mesh.equations.size()}, {"cohesive solids", mesh.cohesive_elements()}});
+  if (facts)
+    facts->messages = fem::strengths_left_out(mesh.materials, "an LS-DYNA file of elastic materials");
+  return facts;
 }
 
 bool is_a_keyword_file(std::string_view head) {

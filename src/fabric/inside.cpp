@@ -232,9 +232,10 @@ Status check_materials(const Fabric& fabric, std::map<std::string, const Materia
   for (const Material& material : fabric.materials) {
     const Material* const other = known.try_emplace(material.name, &material).first->second;
     if (material.density != other->density || material.packing != other->packing ||
-        material.elastic != other->elastic || material.expansion != other->expansion ||
-        material.conductivity != other->conductivity || material.diffusivity != other->diffusivity ||
-        material.permittivity != other->permittivity || material.interface != other->interface)
+        material.elastic != other->elastic || material.strength != other->strength ||
+        material.expansion != other->expansion || material.conductivity != other->conductivity ||
+        material.diffusivity != other->diffusivity || material.permittivity != other->permittivity ||
+        material.interface != other->interface)
       return error(Kind::malformed,
                    fmt::format("the material '{}' is another one elsewhere: give one of them another "
                                "name",

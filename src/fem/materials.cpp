@@ -63,6 +63,18 @@ void use(const fabric::Fabric& fabric, fabric::Material material, MaterialChoice
 
 }  // namespace
 
+std::vector<Message> strengths_left_out(const std::vector<fabric::Material>& materials,
+                                        std::string_view format) {
+  const auto has_some = [](const fabric::Material& material) {
+    return !std::holds_alternative<std::monostate>(material.strength);
+  };
+  if (std::none_of(materials.begin(), materials.end(), has_some)) return {};
+  return {warning(Kind::unsupported,
+                  fmt::format("{} has no place for the strengths of materials, and is written without: "
+                              "`scripts/homogenize` finds what breaks first (of the .inp deck)",
+                              format))};
+}
+
 std::vector<std::string> solver_names(const std::vector<fabric::Material>& materials,
                                       const std::vector<CohesiveLaw>& laws) {
   std::vector<std::string> own;
