@@ -10,6 +10,10 @@ import cell_cohesive
 from cell_elements import EDGES, PAIRS, frames, matrices, tetrahedron_shapes
 
 
+class ForeignElement(Exception):
+    """One that nothing is known of here."""
+
+
 class Parallelepiped:
     """A unit cell: a corner and three edges, of which the last is along z."""
 
@@ -26,7 +30,7 @@ def cell_of(rows):
 
 
 class Deck:
-    """What of a deck of ours is needed: nodes, elements, materials, conditions, steps."""
+    """What of a deck of ours is needed: nodes, elements, materials, conditions, steps. Raises ForeignElement."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
@@ -146,7 +150,7 @@ class Deck:
         names = self.element_sets.setdefault(options.get("ELSET", "All"), [])
         count = {"C3D4": 4, "C3D10": 10, "C3D8": 8, "COH3D6": 6}.get(options["TYPE"].upper().removeprefix("D"))
         if count is None:
-            return
+            raise ForeignElement(f"elements of type {options['TYPE']}")
         elements = self.wedges if count == 6 else self.elements
         words = [int(word) for row in rows for word in row if word]
         for k in range(0, len(words), count + 1):

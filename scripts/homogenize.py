@@ -26,7 +26,8 @@ except ModuleNotFoundError:
 
 import cell_cohesive
 import cell_conduction as conduction
-from cell_deck import Deck
+import cell_strength as strength
+from cell_deck import Deck, ForeignElement
 from cell_elements import Cell, NotSolved
 
 BLOCK = ["xx", "yy", "zz", "xy", "xz", "yz"]
@@ -247,7 +248,10 @@ def fluxes_of_drivers(deck, drivers, given_solver, ccx, folder):
 
 
 def homogenize(path, ccx, folder, with_bounds=False, solver="auto"):
-    deck = Deck(path)
+    try:
+        deck = Deck(path)
+    except ForeignElement as failure:
+        raise Failure(f"{path}: {failure}, which this script does not know: mesh it without --tetrahedron and --elements") from failure
     drivers = deck.drivers()
     if not drivers or not deck.steps:
         raise Failure(f"{path}: no unit cell with load cases (mesh it with --matrix --periodic; where it is periodic along one axis, --periodic will do)")

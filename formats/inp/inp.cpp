@@ -170,10 +170,14 @@ static std::string_view element_type(const fem::Mesh& mesh, const OptionValues& 
   if (mesh.shape == fem::Mesh::Shape::hexahedron)
     return conducts ? "DC3D8" : mesh.cell ? "C3D8" : own.text(option::brick);
   if (mesh.order == 1) return conducts ? "DC3D4" : "C3D4";
-  return conducts ? "DC3D10" : "C3D10";
+  return conducts ? "DC3D10" : own.text(option::tetrahedron);
 }
 
 Result<Deck> plan_deck(const fem::Mesh& mesh, const OptionValues& own) {
+  if (own.text(option::tetrahedron) != option::tetrahedron.preset && mesh.order == 1)
+    return error(Kind::unsupported,
+                 fmt::format("{} {} has ten nodes, and this mesh has four a tetrahedron: say --order 2",
+                             option::tetrahedron.name, own.text(option::tetrahedron)));
   const fem::DeckNames names = names_of(mesh);
   Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();
