@@ -13,6 +13,7 @@ It runs in Abaqus' own Python, 2.7 or 3, without NumPy. Everything that knows of
 from __future__ import print_function
 
 import argparse
+import io
 import json
 import os
 import sys
@@ -58,7 +59,7 @@ def read_steps(path):
 def read_deck(path):
     """The cell's edges, and of each step its comment and temperature."""
     edges, steps, comment, keyword = None, [], "", ""
-    with open(path) as file:
+    with io.open(path, encoding="utf-8", errors="replace") as file:
         for line in file:
             line = line.strip()
             if line.startswith("**"):
