@@ -118,12 +118,14 @@ def first_failure(deck, fields, stiffness, loads):
     """`fields`: displacements of the nodes where each driver is 1 (nodes x 3 x drivers); `stiffness`: the forces of the whole by
     these (any unit); `loads`: the forces' names. Each load alone, in both directions. Raises nothing."""
     per_load = numpy.linalg.inv(stiffness)
-    modes, found, without = [], {}, set()
+    modes, found, without, along = [], {}, set(), set()
     for section in deck.sections:
         region, (kind, strength) = region_of(deck, section[0]), deck.materials[section[1]].get("strength", (None, None))
         if kind is None:
             without.add(region)
             continue
+        if kind == "transverse" and len(strength) == 2:
+            along.add(region)
         criterion = hashin if kind == "transverse" else largest_stresses
         for volume, unit in stresses(deck, section, fields):
             one_way = unit @ per_load
@@ -144,7 +146,7 @@ def first_failure(deck, fields, stiffness, loads):
             value, mode, region = min(some)
             entry[key] = {"value": value, "region": region, "mode": modes[mode]} if numpy.isfinite(value) else None
         result.append(entry)
-    return {"loads": result, "not_judged": sorted(without - {region for region, _ in found})}
+    return {"loads": result, "not_judged": sorted(without), "judged_along_alone": sorted(along)}
 
 
 def show(failure, units):
@@ -159,4 +161,6 @@ def show(failure, units):
         print(f"  {entry['load']:6}{unit:6} {texts[0]:47} {texts[1]}")
     if failure["not_judged"]:
         print(f"  not judged, for their materials have no strength: {', '.join(failure['not_judged'])}")
+    if failure["judged_along_alone"]:
+        print(f"  judged along their fibres alone, for nothing is said across: {', '.join(failure['judged_along_alone'])}")
     print("  without stresses of curing or cooling; at one point the less, the finer the mesh is where yarns have edges")

@@ -463,7 +463,7 @@ def main():
         prog="homogenize",
         description="Stiffness (C of a block, ABD of a plate, that of a beam periodic along one axis), engineering constants and thermal expansion of a unit "
         "cell, or the conductivity (diffusivity, permittivity) of one whose deck conducts, from its deck: by CalculiX, or by "
-        "conjugate gradients where it is large.",
+        "conjugate gradients where it is large. Where materials have strengths: what breaks first, too.",
         epilog="Options that are not known here are those of `selvage mesh`: --size, --voxel, --order, ...",
     )
     parser.add_argument("file", help="deck of `selvage mesh` (.inp), or any input of it with a cell")

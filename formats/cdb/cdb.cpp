@@ -1,5 +1,7 @@
 #include "formats/registry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -81,6 +83,22 @@ void write_components(TextBuffer& text, const fem::Mesh& mesh, const std::vector
   for (std::size_t k = 0; k < mesh.drivers.size(); ++k)
     write_component(text, {mesh.drivers[k].name, {mesh.number_of_driver(k)}}, true);
   write_interface_components(text, mesh, names);
+}
+
+// Fibres' are not, for a card wants those across, too.
+bool has_card(const fabric::Material& material) {
+  const auto* two = std::get_if<fabric::TransverseStrength>(&material.strength);
+  return two == nullptr || two->across;
+}
+
+std::vector<Message> fibre_strengths_left_out(const fem::Mesh& mesh) {
+  const auto found = std::find_if_not(mesh.materials.begin(), mesh.materials.end(), has_card);
+  if (found == mesh.materials.end()) return {};
+  return {
+      warning(Kind::unsupported,
+              fmt::format("ANSYS's card of strengths wants those across the yarn, too, which '{}' does not "
+                          "say: give its line `strength` YT, YC and S12, or --yarn-stiffness chamis",
+                          found->name))};
 }
 
 // Limits of stress along x, y and z (compression negative), and in shear xy, yz, xz. What is alike in all
@@ -189,12 +207,15 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_equations(text, mesh);
   write_bonded_contact(text, mesh, names);
   text << "FINISH\n";
-  return finished(text,
-                  {{"nodes", mesh.nodes.size()},
-                   {"SOLID" + std::to_string(element_type(mesh)), mesh.elements.size()},
-                   {"coordinate systems", frames.axes.size()}},
-                  {{"constraint equations", mesh.equations.size()},
-                   {"INTER" + std::to_string(cohesive_element(mesh)), mesh.cohesive_elements()}});
+  Result<WriteFacts> facts =
+      finished(text,
+               {{"nodes", mesh.nodes.size()},
+                {"SOLID" + std::to_string(element_type(mesh)), mesh.elements.size()},
+                {"coordinate systems", frames.axes.size()}},
+               {{"constraint equations", mesh.equations.size()},
+                {"INTER" + std::to_string(cohesive_element(mesh)), mesh.cohesive_elements()}});
+  if (facts) facts->messages = fibre_strengths_left_out(mesh);
+  return facts;
 }
 
 bool is_an_archive(std::string_view head) {

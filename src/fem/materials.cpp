@@ -69,10 +69,11 @@ std::vector<Message> strengths_left_out(const std::vector<fabric::Material>& mat
     return !std::holds_alternative<std::monostate>(material.strength);
   };
   if (std::none_of(materials.begin(), materials.end(), has_some)) return {};
-  return {warning(Kind::unsupported,
-                  fmt::format("{} has no place for the strengths of materials, and is written without: "
-                              "`scripts/homogenize` finds what breaks first (of the .inp deck)",
-                              format))};
+  return {
+      warning(Kind::unsupported,
+              fmt::format("{} has no place for the strengths of materials, and is written without; of a unit "
+                          "cell's .inp deck `scripts/homogenize` finds what breaks first",
+                          format))};
 }
 
 std::vector<std::string> solver_names(const std::vector<fabric::Material>& materials,

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import subprocess
 import sys
 import unittest
@@ -153,6 +154,28 @@ class Strength(Case):
         archive = (self.folder / "given.cdb").read_text()
         self.assertIn("TB,FCLI,1,1,20,1\nTBDATA,1,900,-500,40,-140,40,-140\nTBDATA,7,70,70,70\n", archive)
         self.assertIn("TB,FCLI,2,1,20,1\nTBDATA,1,80,-120,80,-120,80,-120\nTBDATA,7,80,80,80\n", archive)
+
+    def test_where_there_is_no_card_a_warning_says_so(self):
+        text = (ROOT / "samples" / "plain4_path.txt").read_text()
+        given = self.folder / "dry.txt"
+        given.write_text(text.replace("thread tow\n", "material fibre\n  elastic isotropic 72000 0.22\n  strength transverse 2150 1450\nend\n"
+                                      "thread tow\n  material fibre\n", 1))
+        for options, count in ((("--size", "0.3", "--to", "cdb"), 1), (("--elements", "beam", "--to", "inp,cdb,k"), 3)):
+            done = run("mesh", given, *options, "-o", self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(len(re.findall("no place for the strengths|card of strengths wants those across", done.stderr)), count, done.stderr)
+            for archive in self.folder.glob("*.cdb"):
+                self.assertNotIn("FCLI", archive.read_text())
+
+    def test_fibres_are_judged_along_alone(self):
+        deck = self.cell("--voxel", "4", strength="5000 5000")
+        deck.write_text(deck.read_text().replace("transverse 100 60 12 30 20 14", "transverse 100 60"))
+        failure = self.homogenize(deck)["first_failure"]
+        self.assertEqual(failure["judged_along_alone"], ["tow"])
+        found = {(entry["load"], entry["direction"]): entry["first"] for entry in failure["loads"]}
+        self.assertAlmostEqual(found["xx", "+"]["value"], 100, delta=1e-3)
+        self.assertAlmostEqual(found["xx", "-"]["value"], 60, delta=1e-3)
+        self.assertEqual(found["yy", "+"]["region"], "Matrix")
 
     def test_what_has_no_strength_is_said(self):
         deck = self.cell("--voxel", "4")
