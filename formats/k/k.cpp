@@ -108,7 +108,7 @@ void write_expansions(TextBuffer& text, const fem::Mesh& mesh, const std::vector
 
 // A wedge as LS-DYNA has it: a quadrilateral, and over it two nodes that are repeated.
 std::vector<std::size_t> solid_nodes(const fem::Mesh& mesh, std::size_t e) {
-  const std::vector<std::size_t> n = mesh.different_nodes_of(e);
+  std::vector<std::size_t> n = mesh.different_nodes_of(e);
   if (mesh.is_wedge(e)) return {n[0], n[1], n[4], n[3], n[2], n[2], n[5], n[5]};
   return n;
 }
