@@ -79,6 +79,7 @@ std::vector<Message> strengths_left_out(const std::vector<fabric::Material>& mat
 std::vector<std::string> solver_names(const std::vector<fabric::Material>& materials,
                                       const std::vector<CohesiveLaw>& laws) {
   std::vector<std::string> own;
+  own.reserve(materials.size() + laws.size());
   for (const fabric::Material& material : materials) own.push_back(material.name);
   for (const CohesiveLaw& law : laws) own.push_back(law.name);
   return unique_names(own, {.longest = 30, .begin = "M_"});
