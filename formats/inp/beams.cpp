@@ -219,11 +219,13 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   write_beam_sections(text, beams, groups, for_calculix);
   write_contacts(text, beams, names);
   write_beam_step(text, beams);
-  return finished(text,
-                  {{"nodes", beams.mesh.nodes.size()},
-                   {std::string(beam_type(for_calculix)), beams.mesh.elements.size()},
-                   {"beam sections", groups.size()}},
-                  {{"contact pairs", beams.contacts.size()}});
+  Result<WriteFacts> facts = finished(text,
+                                      {{"nodes", beams.mesh.nodes.size()},
+                                       {std::string(beam_type(for_calculix)), beams.mesh.elements.size()},
+                                       {"beam sections", groups.size()}},
+                                      {{"contact pairs", beams.contacts.size()}});
+  if (facts) facts->messages = fem::strengths_left_out(beams.mesh.materials, "an Abaqus deck of beams");
+  return facts;
 }
 
 }  // namespace selvage::formats::inp

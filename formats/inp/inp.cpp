@@ -39,6 +39,26 @@ void write_elastic(TextBuffer& text, const fabric::Material& material) {
   text << '\n' << real(c.g23) << '\n';
 }
 
+// Comments, for Abaqus evaluates strengths (*FAIL STRESS, Hashin's *DAMAGE INITIATION) in elements of plane
+// stress only, and CalculiX knows none: scripts/homogenize reads them.
+void write_strength(TextBuffer& text, const fabric::Material& material) {
+  const auto put = [&](std::string_view kind, std::initializer_list<double> values) {
+    text << "** Strength: " << kind;
+    for (const double value : values) text << ' ' << real(value);
+  };
+  if (const auto* same = std::get_if<fabric::IsotropicStrength>(&material.strength)) {
+    put("isotropic", {same->tension, same->compression});
+    if (same->shear) text << ' ' << real(*same->shear);
+    text << '\n';
+  }
+  if (const auto* two = std::get_if<fabric::TransverseStrength>(&material.strength)) {
+    put("transverse", {two->tension, two->compression});
+    if (const auto& a = two->across)
+      for (const double value : {a->tension, a->compression, a->s12, a->s23}) text << ' ' << real(value);
+    text << '\n';
+  }
+}
+
 // Every physics is one of heat conduction to the solver.
 void write_conductivity(TextBuffer& text, const fem::Mesh& mesh, const fabric::Material& material) {
   const auto& [along, across] = *(material.*fem::transport_law(mesh.physics).member);
@@ -71,6 +91,7 @@ void write_materials(TextBuffer& text, const fem::Mesh& mesh, const std::vector<
       write_conductivity(text, mesh, material);
       continue;
     }
+    write_strength(text, material);
     if (!std::holds_alternative<std::monostate>(material.elastic)) write_elastic(text, material);
     const fem::Orthotropic constants = fem::orthotropic(material);
     if (constants.density) text << "*DENSITY\n" << real(*constants.density) << '\n';
@@ -149,10 +170,14 @@ static std::string_view element_type(const fem::Mesh& mesh, const OptionValues& 
   if (mesh.shape == fem::Mesh::Shape::hexahedron)
     return conducts ? "DC3D8" : mesh.cell ? "C3D8" : own.text(option::brick);
   if (mesh.order == 1) return conducts ? "DC3D4" : "C3D4";
-  return conducts ? "DC3D10" : "C3D10";
+  return conducts ? "DC3D10" : own.text(option::tetrahedron);
 }
 
 Result<Deck> plan_deck(const fem::Mesh& mesh, const OptionValues& own) {
+  if (own.text(option::tetrahedron) != option::tetrahedron.preset && mesh.order == 1)
+    return error(Kind::unsupported,
+                 fmt::format("{} {} has ten nodes, and this mesh has four a tetrahedron: say --order 2",
+                             option::tetrahedron.name, own.text(option::tetrahedron)));
   const fem::DeckNames names = names_of(mesh);
   Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();

@@ -127,11 +127,13 @@ Result<WriteFacts> write_beams(const fem::BeamModel& beams, OutputFile& output,
   write_beam_sets(text, beams, parts, names);
   write_contacts(text, beams, names);
   text << "*END\n";
-  return finished(text,
-                  {{"nodes", beams.mesh.nodes.size()},
-                   {"beams", beams.mesh.elements.size()},
-                   {"parts", parts.list.size()}},
-                  {{"contact pairs", beams.contacts.size()}});
+  Result<WriteFacts> facts = finished(text,
+                                      {{"nodes", beams.mesh.nodes.size()},
+                                       {"beams", beams.mesh.elements.size()},
+                                       {"parts", parts.list.size()}},
+                                      {{"contact pairs", beams.contacts.size()}});
+  if (facts) facts->messages = fem::strengths_left_out(beams.mesh.materials, "an LS-DYNA file of beams");
+  return facts;
 }
 
 }  // namespace selvage::formats::k

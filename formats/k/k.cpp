@@ -108,7 +108,7 @@ void write_expansions(TextBuffer& text, const fem::Mesh& mesh, const std::vector
 
 // A wedge as LS-DYNA has it: a quadrilateral, and over it two nodes that are repeated.
 std::vector<std::size_t> solid_nodes(const fem::Mesh& mesh, std::size_t e) {
-  const std::vector<std::size_t> n = mesh.different_nodes_of(e);
+  std::vector<std::size_t> n = mesh.different_nodes_of(e);
   if (mesh.is_wedge(e)) return {n[0], n[1], n[4], n[3], n[2], n[2], n[5], n[5]};
   return n;
 }
@@ -240,9 +240,12 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_equations(text, mesh);
   write_loading(text, mesh);
   text << "*END\n";
-  return finished(
+  Result<WriteFacts> facts = finished(
       text, {{"nodes", mesh.nodes.size()}, {"solids", mesh.elements.size()}, {"parts", sections->size()}},
       {{"constraints", mesh.equations.size()}, {"cohesive solids", mesh.cohesive_elements()}});
+  if (facts)
+    facts->messages = fem::strengths_left_out(mesh.materials, "an LS-DYNA file of elastic materials");
+  return facts;
 }
 
 bool is_a_keyword_file(std::string_view head) {
