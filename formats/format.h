@@ -199,6 +199,7 @@ struct Descriptor {
   // The largest order of pore spaces (Mesh::patches) that the format holds; 0: of none.
   int order_of_pores = 0;
   bool is_of_pores = false;  // and of nothing else
+  bool has_layers = false;   // wedges along their walls (Mesh::layers), too
   // An output is a folder with a file of the same name in it, which the writer is given; and these folders
   // below it, in which its other files are ("constant/polyMesh"). None: it is a file.
   std::vector<std::string_view> folders{};

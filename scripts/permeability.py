@@ -160,6 +160,8 @@ def main():
                 raise Failure(f"{given.file}: no such file")
             if given.solver == "openfoam":
                 pore_case.check_installed()
+            elif any(word.startswith("--layer") for word in others):
+                raise Failure("--layers is for --solver openfoam: our own solver has curved elements of second order, which need none")
             result = study(given, others, folder)
         except (Failure, NotSolved, pore_case.Failure) as failure:
             print(f"permeability: {failure}", file=sys.stderr)

@@ -336,6 +336,16 @@ void of_a_cell(OptionTable& t) {
          &Options::pores)
       .goes_with("is the space that the yarns leave", "",
                  "--cut --matrix --voxel --interface --physics --yarn-stiffness");
+  t.option({mesh}, "--layers",
+           "with --pores: so many layers of wedges along the walls, each 1.2 times as thick as the one "
+           "before it (to OpenFOAM, Gmsh, VTK)",
+           Argument::whole(1, 100), &Options::layers)
+      .goes_with("is of walls round a fluid", "--pores", "");
+  t.option({mesh}, "--layer-thickness",
+           "of all these layers together, in the input's unit (default: two fifths of the edges there); less "
+           "where the space is narrow",
+           Argument::positive(), &Options::layer_thickness)
+      .goes_with("is of layers along walls", "--layers", "");
   t.flag({mesh}, "--periodic",
          "opposite faces of the cell get the same nodes, and equations between them (as its "
          "`periodic` says; without that word along every axis that can be)",

@@ -55,6 +55,18 @@ Json patch_json(const fem::Patch& patch) {
           {"sides", patch.sides.size()}};
 }
 
+Json layers_json(const fem::Mesh& mesh) {
+  double worst = 1;
+  for (std::size_t w = 0; w < mesh.layers.wedges.size(); ++w)
+    worst = std::min(worst, fem::shape_of(mesh, mesh.elements.size() + w).scaled_jacobian);
+  return {{"count", mesh.layers.count},
+          {"wedges", mesh.layers.wedges.size()},
+          {"asked_thickness", mesh.layers.asked},
+          {"thickness", mesh.layers.thickness},
+          {"thinned", mesh.layers.thinned},
+          {"min_scaled_jacobian", worst}};
+}
+
 void add_cell(Json& facts, const fem::Mesh& mesh) {
   double yarns = 0;
   for (const fem::Region& region : mesh.regions)
@@ -67,6 +79,7 @@ void add_cell(Json& facts, const fem::Mesh& mesh) {
   if (!mesh.patches.empty()) {
     facts["porosity"] = mesh.regions.front().volume / box;
     facts["patches"] = list_json(mesh.patches, patch_json);
+    if (!mesh.layers.wedges.empty()) facts["layers"] = layers_json(mesh);
     return;
   }
   facts["yarn_share"] = yarns / box;
@@ -220,6 +233,22 @@ Json mesh_json(const fem::Mesh& mesh, std::optional<double> estimate) {
 std::string tetrahedra_in_words(const fem::Mesh& mesh) {
   return fmt::format("{} tetrahedra; smallest dihedral angles from {:.1f} degrees, first percentile {:.1f}",
                      mesh.elements.size(), mesh.quality.min_dihedral, fem::first_percentile_angle(mesh));
+}
+
+std::string layers_in_words(const fem::Mesh& mesh, Unit units) {
+  const fem::WallLayers& layers = mesh.layers;
+  const std::string_view unit = name_of(units);
+  std::string text = fmt::format("{} wedges in {} layer{} along the walls, {:.3g} {} thick on average",
+                                 layers.wedges.size(), layers.count, layers.count == 1 ? "" : "s",
+                                 layers.thickness / millimetres_per(units), unit);
+  constexpr double nearly = 0.95;
+  if (layers.thickness < nearly * layers.asked)
+    text += fmt::format(" (of {:.3g} {}: neighbours are in the way, or --size is too small for it)",
+                        layers.asked / millimetres_per(units), unit);
+  if (layers.thinned > 0)
+    text += fmt::format("; less than half of that at {:.2g} % of the walls' nodes",
+                        100 * layers.thinned);
+  return text;
 }
 
 std::string hexahedra_in_words(const fem::Mesh& mesh) {

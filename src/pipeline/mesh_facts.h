@@ -22,6 +22,8 @@ std::string beams_in_words(const fem::BeamModel& beams);
 
 // Of tetrahedra: how many, and how sharp their angles are.
 std::string tetrahedra_in_words(const fem::Mesh& mesh);
+// Of a pore space that has layers (Mesh::layers).
+std::string layers_in_words(const fem::Mesh& mesh, Unit units);
 
 // Of swept hexahedra: how many, and the worst.
 std::string hexahedra_in_words(const fem::Mesh& mesh);

@@ -327,6 +327,16 @@ Status check_pores(const Options& options, const Formats& wanted) {
     if (format->is_of_pores && !options.pores)
       return error(Kind::usage,
                    fmt::format("{} holds the space between the yarns of a cell: add --pores", format->name));
+    if (options.layers > 0) {
+      if (options.order == 2)
+        return error(Kind::usage, "--layers is of tetrahedra and wedges with straight edges: --order 1");
+      if (!format->has_layers) {
+        std::string others;
+        for (const Descriptor* other : formats::all_formats())
+          if (other->has_layers) others += fmt::format(" --to {}", other->name);
+        return error(Kind::usage, fmt::format("{} does not hold --layers: write them with{}", format->name, others));
+      }
+    }
     if (!options.pores || (format->order_of_pores >= std::max(options.order, 1))) continue;
     std::string others;
     for (const Descriptor* other : formats::all_formats())
