@@ -25,6 +25,7 @@
 #include "fabric/piece.h"
 #include "fem/beams.h"
 #include "fem/field_mesh.h"
+#include "fem/forming.h"
 #include "fem/mesh.h"
 #include "fem/raster.h"
 #include "formats/language.h"
@@ -134,6 +135,7 @@ struct Companion {
 struct MeshFileOptions {
   std::string companion{};  // the name of the file beside (Descriptor::companion); empty: there is none
   OptionValues own{};       // of Descriptor::options
+  const fem::Forming* forming = nullptr;  // the step of --deck explicit; null: another one
   // Of a format that is a folder: opens another file in it ("constant/points"). What it gives outlives the
   // writer.
   std::function<Result<OutputFile*>(std::string_view name)> open_member{};
@@ -192,6 +194,7 @@ struct Descriptor {
   // Yarns as beams (`mesh --elements beam`).
   Result<WriteFacts> (*write_beams)(const fem::BeamModel& beams, OutputFile& output,
                                     const MeshFileOptions& options) = nullptr;
+  bool carries_forming = false;    // explicit decks (MeshFileOptions::forming), of solids and of beams
   bool carries_transport = false;  // decks of every Mesh::physics, not of elasticity alone
   // The largest order of meshes whose regions share no nodes (Mesh::joining) that the format holds, as
   // surfaces and as cohesive elements; 0: of none.

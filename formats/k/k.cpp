@@ -7,6 +7,7 @@
 #include "fem/sections.h"
 #include "fem/supports.h"
 #include "formats/k/deck.h"
+#include "formats/k/explicit.h"
 #include "formats/k/interfaces.h"
 
 namespace selvage::formats::k {
@@ -213,7 +214,7 @@ void write_loading(TextBuffer& text, const fem::Mesh& mesh) {
   }
 }
 
-Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& /*options*/) {
+Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFileOptions& options) {
   constexpr std::size_t most = 99'999'999;  // columns of eight
   if (mesh.numbered() > most || mesh.elements.size() + mesh.cohesive_elements() > most)
     return error(Kind::limit,
@@ -238,7 +239,17 @@ Result<WriteFacts> write(const fem::Mesh& mesh, OutputFile& output, const MeshFi
   write_sets(text, mesh, *sections, names);
   write_tied_contact(text, mesh, names);
   write_equations(text, mesh);
-  write_loading(text, mesh);
+  if (options.forming != nullptr)
+    write_forming(text, *options.forming,
+                  {.nodes = mesh.numbered(),
+                   .elements = mesh.elements.size(),
+                   .parts = sections->size(),
+                   .sections = 1,
+                   .materials = mesh.materials.size(),
+                   .node_sets = fem::node_sets(mesh, names).size() + mesh.drivers.size()},
+                  false);
+  else
+    write_loading(text, mesh);
   text << "*END\n";
   Result<WriteFacts> facts = finished(
       text, {{"nodes", mesh.nodes.size()}, {"solids", mesh.elements.size()}, {"parts", sections->size()}},
@@ -261,6 +272,7 @@ const Descriptor& descriptor() {
                                   .sniff = is_a_keyword_file,
                                   .write_mesh = write,
                                   .write_beams = write_beams,
+                                  .carries_forming = true,
                                   .order_of_surfaces = 2,
                                   .order_of_cohesive = 1};
   return self;

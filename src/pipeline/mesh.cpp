@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "fem/beams.h"
 #include "fem/mesher.h"
@@ -128,6 +129,29 @@ void take(Job& job, Result<fem::Raster> raster, Meshes& all) {
   all.raster = std::move(*raster);
 }
 
+// The explicit step of what was meshed, and what it will cost.
+void plan_forming(Job& job, Meshes& all) {
+  if (!all.mesh && !all.beams) return;
+  const FormingSettings& given = job.options.forming;
+  const double scale = millimetres_per(job.file_units());
+  const auto in_mm = [&](const std::optional<double>& length) {
+    return length ? std::optional(*length * scale) : std::nullopt;
+  };
+  fem::FormingOptions options = {.load = given.load,
+                                 .stroke = in_mm(given.stroke),
+                                 .thickness = in_mm(given.thickness),
+                                 .friction = given.friction,
+                                 .duration = given.duration,
+                                 .file = job.input.path};
+  if (given.load == fem::FormingLoad::frame) options.stroke = given.stroke;  // an angle
+  const std::span<const double> radii = all.beams ? std::span<const double>(all.beams->radii) : std::span<const double>();
+  Result<fem::Forming> forming = fem::plan_forming(all.beams ? all.beams->mesh : *all.mesh, radii, options);
+  if (!forming) return job.say(forming.error());
+  job.report["mesh"]["explicit"] = forming_json(*forming);
+  tell(job, fmt::format("{}: {}\n", job.input.path, forming_in_words(*forming)));
+  all.forming = std::move(*forming);
+}
+
 // Of what the outputs ask for: empty where they ask for none, or it failed (it was said).
 Meshes make(Job& job, fabric::Fabric& fabric, const fabric::YarnBuilder& builder, bool wants_mesh,
             bool wants_raster) {
@@ -172,8 +196,9 @@ void mesh(Job& job) {
     return std::ranges::any_of(
         job.outputs, [&](const PlannedOutput& output) { return output.format->*writes != nullptr; });
   };
-  const Meshes made = make(job, *fabric, *builder, is_wanted(&formats::Descriptor::write_mesh),
+  Meshes made = make(job, *fabric, *builder, is_wanted(&formats::Descriptor::write_mesh),
                            is_wanted(&formats::Descriptor::write_raster));
+  if (options.forming.wanted && !job.has_failed()) plan_forming(job, made);
   if (!job.has_failed()) write_meshes(job, *outputs, made);
 }
 

@@ -318,6 +318,37 @@ std::string beams_in_words(const fem::BeamModel& beams) {
   return text + fmt::format("; {} of yarns that touch or nearly do", counted(beams.contacts.size(), "pair"));
 }
 
+Json forming_json(const fem::Forming& forming) {
+  const bool is_pressed = forming.load == fem::FormingLoad::compaction;
+  return {{"load", fem::name_of(forming.load)},
+          {"stroke", forming.stroke[0]},
+          {"stroke_y", if_true(forming.load == fem::FormingLoad::biaxial, forming.stroke[1])},
+          {"thickness", if_true(is_pressed, forming.thickness)},
+          {"final_thickness", if_true(is_pressed, forming.final_thickness)},
+          {"friction", forming.friction},
+          {"duration", forming.duration},
+          {"loose_ends", forming.loose_ends},
+          {"stable_increment", forming.stable.time},
+          {"stable_element", forming.stable.element + 1},
+          {"stable_length", forming.stable.length},
+          {"wave_speed", forming.stable.wave_speed},
+          {"increments", forming.increments()}};
+}
+
+std::string forming_in_words(const fem::Forming& forming) {
+  const fem::StableIncrement& stable = forming.stable;
+  std::string text = fmt::format(
+      "explicit step, {}: {:.3g} s in about {:.2g} increments of {:.3g} s (element {}: {:.3g} mm at {:.3g} m/s; "
+      "no mass scaling), friction {:g}; it is quasi-static while the kinetic energy stays a few per cent of the "
+      "internal one",
+      fem::name_of(forming.load), forming.duration, forming.increments(), stable.time, stable.element + 1,
+      stable.length, stable.wave_speed / 1000, forming.friction);
+  if (forming.loose_ends > 0)
+    text += fmt::format("; {} end{} of yarns that look up or down {} free", forming.loose_ends,
+                        forming.loose_ends == 1 ? "" : "s", forming.loose_ends == 1 ? "is" : "are");
+  return text;
+}
+
 Json raster_json(const fem::Raster& raster) {
   return {{"count", raster.count},
           {"lengths", point_json(Vec3(raster.high - raster.low))},

@@ -12,6 +12,7 @@
 #include "core/option.h"
 #include "core/units.h"
 #include "fabric/plies.h"
+#include "fem/forming.h"
 #include "fem/mesh.h"
 #include "fem/physics.h"
 #include "formats/format.h"
@@ -51,6 +52,14 @@ struct RelaxSettings {
 
 // What yarns are meshed with.
 enum class Elements { tetrahedra, hexahedra, beams };
+
+// The explicit step of `mesh --deck explicit`; lengths in the input's unit.
+struct FormingSettings {
+  bool wanted = false;
+  fem::FormingLoad load = fem::FormingLoad::biaxial;
+  std::optional<double> stroke, thickness, duration;  // as fem::FormingOptions
+  double friction = 0;
+};
 
 // When a page of `view` lists contacts; `automatic`: where all yarns together have at most a few million
 // points.
@@ -109,6 +118,7 @@ struct Options {
   int order = 0;            // 1, 2; 0: 2 of beams, of plates with a matrix, else 1
   double min_dihedral = 0;  // degrees; 0: the mesher's choice
   bool allow_overlap = false;
+  FormingSettings forming;
 
   // The unit cell: of `mesh` and `convert`.
   bool cut = false;        // by the cell's faces

@@ -273,6 +273,22 @@ Status check_transport(fem::Physics physics, const Formats& wanted) {
   return {};
 }
 
+// What an explicit step needs of its options and formats.
+Status check_forming(const Options& options, const Formats& wanted) {
+  if (options.forming.thickness && options.forming.load != fem::FormingLoad::compaction)
+    return error(Kind::usage, fmt::format("--thickness is of --load compaction, not of {}",
+                                          fem::name_of(options.forming.load)));
+  for (const Descriptor* format : wanted) {
+    if (format->carries_forming) continue;
+    std::string others;
+    for (const Descriptor* other : formats::all_formats())
+      if (other->carries_forming) others += fmt::format(" --to {}", other->name);
+    return error(Kind::usage,
+                 fmt::format("{} holds no deck of --deck explicit: write it with{}", format->name, others));
+  }
+  return {};
+}
+
 Status check_beams(const Options& options, const Formats& wanted) {
   for (const Descriptor* format : wanted) {
     if (has_companion(options, *format) && format->companion.asked_by != nullptr)
@@ -382,6 +398,8 @@ Result<Plan> Plan::make(const Options& options, InputList& list) {
             fmt::format("{} holds the voxels of a unit cell: say how many with --voxel N", format->name));
     if (options.elements == Elements::beams)
       if (Status status = check_beams(options, *wanted); !status.ok()) return status.error();
+    if (options.forming.wanted)
+      if (Status status = check_forming(options, *wanted); !status.ok()) return status.error();
     if (Status status = check_folders(options, *wanted); !status.ok()) return status.error();
     if (Status status = check_pores(options, *wanted); !status.ok()) return status.error();
     if (options.physics != fem::Physics::elastic)
