@@ -301,7 +301,7 @@ double usual_duration(const Mesh& mesh, const Forming& forming) {
     Box3 box;
     for (std::size_t e = region.first_element; e < region.last_element; ++e)
       box.extend(mesh.nodes[mesh.elements[e][0]]);
-    const double length = std::max(region.length, box.diagonal().norm());
+    const double length = region.length > 0 ? region.length : box.diagonal().norm();
     wave = std::max(wave, length / wave_speed(mesh.materials[material_of(mesh, region)], true));
   }
   return std::max(passages * wave, longest_way(forming) / speed);

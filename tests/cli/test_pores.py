@@ -319,6 +319,7 @@ class Permeability(Case):
         if shutil.which("simpleFoam") is None:
             self.skipTest("OpenFOAM is not installed")
         self.check_array("square", 0.4, "--solver", "openfoam", "--segments", "20", within=0.1)
+        self.check_array("square", 0.4, "--solver", "openfoam", "--segments", "20", "--layers", "3", within=0.04)
 
     def test_openfoam_not_there(self):
         cell = self.folder / "cell.txt"
