@@ -203,7 +203,8 @@ void write_beam_step(TextBuffer& text, const fem::BeamModel& beams) {
   text << "*NODE FILE\nU, RF\n*EL FILE\nS, E\n*END STEP\n";
 }
 
-// General contact knows each yarn by its surface, with the thickness that the circle of its contact radius has.
+// General contact knows each yarn by its surface, with the thickness that the circle of its contact radius
+// has.
 void write_explicit_beams(TextBuffer& text, const fem::BeamModel& beams, const fem::DeckNames& names,
                           const fem::Forming& forming) {
   std::vector<ContactThickness> thicknesses;

@@ -45,10 +45,10 @@ struct Deck {
   fem::DeckNames names;
   std::vector<fem::Section> sections;
   fem::ContactSurfaces contact;
-  std::vector<Load> loads;               // of dry yarns that no cell cuts
-  std::vector<fem::NamedSet> node_sets;  // without those of all nodes, of drivers and of dependent nodes
-  std::string_view element, wedge;       // types of elements
-  const fem::Forming* forming = nullptr; // an explicit step, in place of all other loads
+  std::vector<Load> loads;                // of dry yarns that no cell cuts
+  std::vector<fem::NamedSet> node_sets;   // without those of all nodes, of drivers and of dependent nodes
+  std::string_view element, wedge;        // types of elements
+  const fem::Forming* forming = nullptr;  // an explicit step, in place of all other loads
 };
 // Error (internal): a region without a material that has elastic constants.
 Result<Deck> plan_deck(const fem::Mesh& mesh, const MeshFileOptions& options);
@@ -90,8 +90,8 @@ void write_cell_conditions(TextBuffer& text, const fem::Mesh& mesh);
 // A step for each load case.
 void write_cell_steps(TextBuffer& text, const fem::Mesh& mesh);
 
-// Of an explicit step: the nodes of plates and of references, behind the mesh's; plates, grips and the sets of
-// references (NAME_Ref, References).
+// Of an explicit step: the nodes of plates and of references, behind the mesh's; plates, grips and the sets
+// of references (NAME_Ref, References).
 void write_rigid_nodes(TextBuffer& text, const fem::Mesh& mesh, const fem::Forming& forming);
 void write_rigid_parts(TextBuffer& text, const fem::Mesh& mesh, const fem::Forming& forming);
 // *RIGID BODY and *AMPLITUDE cards, which belong before the step.

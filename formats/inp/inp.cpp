@@ -188,9 +188,15 @@ Result<Deck> plan_deck(const fem::Mesh& mesh, const MeshFileOptions& options) {
   Result<std::vector<fem::Section>> sections = fem::sections(mesh, names);
   if (!sections) return sections.error();
   const bool touches = mesh.physics == fem::Physics::elastic;
-  Deck deck = {
-      mesh, names, std::move(*sections),    touches ? fem::contact_surfaces(mesh) : fem::ContactSurfaces{},
-      {},   {},    element_type(mesh, options), "C3D6", options.forming};
+  Deck deck = {mesh,
+               names,
+               std::move(*sections),
+               touches ? fem::contact_surfaces(mesh) : fem::ContactSurfaces{},
+               {},
+               {},
+               element_type(mesh, options),
+               "C3D6",
+               options.forming};
   if (mesh.cell) {
     deck.node_sets = fem::node_sets(mesh, names);
     return deck;

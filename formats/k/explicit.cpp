@@ -21,8 +21,8 @@ std::size_t held_curve(const fem::Forming& forming) {
 }
 
 void write_controls(TextBuffer& text, const fem::Forming& forming, bool of_beams) {
-  text << "$ Stable increments of about " << forming.stable.time << " s (element " << forming.stable.element + 1
-       << "); no mass scaling.\n*CONTROL_TERMINATION\n";
+  text << "$ Stable increments of about " << forming.stable.time << " s (element "
+       << forming.stable.element + 1 << "); no mass scaling.\n*CONTROL_TERMINATION\n";
   put_reals(text, {forming.duration});
   text << "*CONTROL_TIMESTEP\n";
   put_reals(text, {0, 0.9});
@@ -131,7 +131,8 @@ void write_contact(TextBuffer& text, const fem::Forming& forming, bool of_beams)
 
 void write_outputs(TextBuffer& text, const fem::Forming& forming) {
   constexpr int frames = 20, samples = 200;
-  text << "$ Quasi-static while the kinetic energy in glstat is a few per cent of the internal one; forces on\n$ "
+  text << "$ Quasi-static while the kinetic energy in glstat is a few per cent of the internal one; forces "
+          "on\n$ "
           "grips and plates are in bndout.\n";
   for (const std::string_view file : {"GLSTAT", "MATSUM", "BNDOUT", "RBDOUT", "SLEOUT"}) {
     text << "*DATABASE_" << file << '\n';

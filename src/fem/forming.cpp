@@ -161,14 +161,16 @@ Status plan_biaxial(const Mesh& mesh, const FormingOptions& options, Forming& fo
 Status check_bias(const Mesh& mesh, int axis, const FormingOptions& options) {
   constexpr double least = 30, most = 60;  // degrees
   constexpr std::string_view remedy =
-      "turn the cloth by 45 degrees (`use` it with `rotate 45`) and cut it by a `cell` that lies inside it (--cut)";
+      "turn the cloth by 45 degrees (`use` it with `rotate 45`) and cut it by a `cell` that lies inside it "
+      "(--cut)";
   if (!mesh.cell)
-    return refused(fmt::format("--load bias pulls a cloth that is cut at 45 degrees to its yarns: {}", remedy),
-                   options);
+    return refused(
+        fmt::format("--load bias pulls a cloth that is cut at 45 degrees to its yarns: {}", remedy), options);
   for (const Region& region : mesh.regions) {
     Vec3 along = Vec3::Zero();
     for (std::size_t e = region.first_element; e < region.last_element; ++e) along += mesh.along[e];
-    const double angle = std::atan2(std::abs(along[1 - axis]), std::abs(along[axis])) * 180 / std::numbers::pi;
+    const double angle =
+        std::atan2(std::abs(along[1 - axis]), std::abs(along[axis])) * 180 / std::numbers::pi;
     if (angle < least || angle > most)
       return error(Kind::unsupported,
                    fmt::format("--load bias pulls along {}, at 45 degrees to the yarns, and this one runs at "
@@ -229,7 +231,8 @@ RigidPart plate(std::string name, const Box3& cloth, double z, bool looks_up) {
   constexpr double margin_share = 0.1;
   constexpr std::size_t along = 8;
   const double margin = margin_share * std::max(cloth.sizes().x(), cloth.sizes().y());
-  const Vec3 low = cloth.min() - Vec3(margin, margin, 0), sizes = cloth.sizes() + Vec3(2 * margin, 2 * margin, 0);
+  const Vec3 low = cloth.min() - Vec3(margin, margin, 0),
+             sizes = cloth.sizes() + Vec3(2 * margin, 2 * margin, 0);
   RigidPart part;
   part.name = std::move(name);
   part.reference = Vec3(cloth.center().x(), cloth.center().y(), z);
@@ -272,10 +275,14 @@ Status plan_compaction(const Box3& cloth, const FormingOptions& options, Forming
 Status plan_load(const Mesh& mesh, std::span<const double> radii, const FormingOptions& options,
                  Forming& forming) {
   switch (options.load) {
-    case FormingLoad::biaxial: return plan_biaxial(mesh, options, forming);
-    case FormingLoad::bias: return plan_bias(mesh, options, forming);
-    case FormingLoad::frame: return plan_frame(mesh, options, forming);
-    case FormingLoad::compaction: break;
+    case FormingLoad::biaxial:
+      return plan_biaxial(mesh, options, forming);
+    case FormingLoad::bias:
+      return plan_bias(mesh, options, forming);
+    case FormingLoad::frame:
+      return plan_frame(mesh, options, forming);
+    case FormingLoad::compaction:
+      break;
   }
   return plan_compaction(box_of(mesh, radii), options, forming);
 }
@@ -323,7 +330,8 @@ Result<Forming> plan_forming(const Mesh& mesh, std::span<const double> radii, co
   Forming forming;
   forming.load = options.load;
   forming.friction = options.friction;
-  forming.curves = {curve_of("Smooth", [](double s) { return s; }, true)};
+  forming.curves = {curve_of(
+      "Smooth", [](double s) { return s; }, true)};
   if (Status planned = plan_load(mesh, radii, options, forming); !planned) return planned.error();
   for (const Region& region : mesh.regions)
     forming.mass += region.volume * *orthotropic(mesh.materials[material_of(mesh, region)]).density;

@@ -65,17 +65,17 @@ std::span<const std::string_view> names_of_rigid_parts();
 struct StableIncrement {
   double time = 0;          // s
   std::size_t element = 0;  // of Mesh::elements
-  double length = 0;        // mm: of a tetrahedron its least height (of ten nodes half of it), of a hexahedron
-                            // or wedge its volume over its largest side, of a beam its own
-  double wave_speed = 0;    // mm/s: of pressure waves in the stiffest direction; of beams along them
+  double length = 0;      // mm: of a tetrahedron its least height (of ten nodes half of it), of a hexahedron
+                          // or wedge its volume over its largest side, of a beam its own
+  double wave_speed = 0;  // mm/s: of pressure waves in the stiffest direction; of beams along them
 };
 
 struct Forming {
   FormingLoad load = FormingLoad::biaxial;
   std::array<double, 2> stroke{};  // as of FormingOptions; biaxial: along x and along y, else the first
   double friction = 0;
-  double duration = 0;  // s
-  double mass = 0;      // of the yarns, tonne
+  double duration = 0;                        // s
+  double mass = 0;                            // of the yarns, tonne
   double thickness = 0, final_thickness = 0;  // compaction: of the cloth, between the plates at the end; mm
   std::size_t loose_ends = 0;                 // ends of yarns that no grip holds
   std::vector<MotionCurve> curves;

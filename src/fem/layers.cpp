@@ -14,11 +14,11 @@ namespace selvage::fem {
 namespace {
 
 constexpr double growth = 1.2;
-constexpr double default_share = 0.4;   // of the mean edge of the wall round a node
+constexpr double default_share = 0.4;                        // of the mean edge of the wall round a node
 constexpr double least_volume = 1.0 / 3, least_angle = 0.5;  // shares that a tetrahedron keeps
-constexpr double most_growth = 1.5;     // of the thickness along an edge
-constexpr double shorter = 0.75;        // where a tetrahedron would lose more
-constexpr double least_slope = 0.5;     // cosine up to which a corner's layers keep their thickness
+constexpr double most_growth = 1.5;                          // of the thickness along an edge
+constexpr double shorter = 0.75;                             // where a tetrahedron would lose more
+constexpr double least_slope = 0.5;  // cosine up to which a corner's layers keep their thickness
 
 using Triangle = std::array<std::size_t, 3>;
 using Edge = std::array<std::size_t, 2>;
@@ -91,10 +91,11 @@ class Layering {
         const Vec3 way = within_faces(node, sum[lowest_[node]].normalized());
         constexpr double least = 1e-2;  // of the way that is left
         if (!(way.norm() > least) || !sum[lowest_[node]].allFinite())
-          return error(Kind::geometry,
-                       "a wall runs along an edge of the cell, or a face, or is folded: layers have no way to "
-                       "go there; another cell, or leave out --layers",
-                       {.at = mesh_.nodes[node]});
+          return error(
+              Kind::geometry,
+              "a wall runs along an edge of the cell, or a face, or is folded: layers have no way to "
+              "go there; another cell, or leave out --layers",
+              {.at = mesh_.nodes[node]});
         direction_[node] = way.normalized();
         slope[lowest_[node]] = std::min(slope[lowest_[node]], normal.dot(direction_[node]));
       }
@@ -325,7 +326,8 @@ class Layering {
         for (std::size_t level = 0; level < levels; ++level) {
           patch.sides.push_back({first + levels * low.wall + level, low.side});
           if (is_periodic)
-            mesh_.patches[patch.opposite].sides.push_back({first + levels * border.wall + level, border.side});
+            mesh_.patches[patch.opposite].sides.push_back(
+                {first + levels * border.wall + level, border.side});
         }
       }
     }

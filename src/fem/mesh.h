@@ -177,11 +177,12 @@ struct Patch {
 
 // Wedges along the walls of a pore space (fem/layers.h).
 struct WallLayers {
-  int count = 0;                                   // one over another; 0: none
-  std::vector<std::array<std::size_t, 6>> wedges;  // as Abaqus's C3D6: the first three nodes on the wall's side
-  std::vector<std::size_t> under;                  // of each `count` of them the tetrahedron that they stand on
+  int count = 0;  // one over another; 0: none
+  std::vector<std::array<std::size_t, 6>>
+      wedges;                       // as Abaqus's C3D6: the first three nodes on the wall's side
+  std::vector<std::size_t> under;   // of each `count` of them the tetrahedron that they stand on
   double asked = 0, thickness = 0;  // of all together, mm: the means over the walls' nodes
-  double thinned = 0;    // share of the walls' nodes at which they are less than half as thick as was asked
+  double thinned = 0;  // share of the walls' nodes at which they are less than half as thick as was asked
 };
 
 struct Mesh {

@@ -226,7 +226,8 @@ Passages find_passages(const Mesh& mesh) {
   }
   for (std::size_t w = 0; w < mesh.layers.wedges.size(); ++w) {
     const std::size_t under = mesh.layers.under[w / static_cast<std::size_t>(mesh.layers.count)];
-    if (is_pocket.at(parts.root_of(under))) passages.pocket_volume += volume_of(mesh, mesh.elements.size() + w);
+    if (is_pocket.at(parts.root_of(under)))
+      passages.pocket_volume += volume_of(mesh, mesh.elements.size() + w);
   }
   return passages;
 }

@@ -327,7 +327,8 @@ void of_forming(OptionTable& t) {
   constexpr std::string_view why = "is of an explicit step";
   using enum fem::FormingLoad;
   t.option({mesh}, "--deck",
-           "static: a small tension, or the load cases of a cell; explicit: the forming of dry cloth, with general "
+           "static: a small tension, or the load cases of a cell; explicit: the forming of dry cloth, with "
+           "general "
            "contact and friction (to Abaqus and LS-DYNA)",
            Argument::one_of("static explicit"),
            [](Options& options, const std::string& text) {
@@ -335,15 +336,16 @@ void of_forming(OptionTable& t) {
            })
       .goes_with("explicit is of dry yarns", "", "--matrix --pores --periodic --voxel")
       .with_preset("static");
-  t.option({mesh}, "--load",
-           "biaxial: yarn ends at four edges move outwards; bias: a cloth that was cut at 45 degrees (--cut) is "
-           "pulled; frame: the edges are those of a picture frame; compaction: between two rigid plates",
-           Argument::one_of("biaxial bias frame compaction"),
-           [](Options& options, const std::string& text) {
-             for (const fem::FormingLoad load : {biaxial, bias, frame, compaction})
-               if (text == fem::name_of(load)) options.forming.load = load;
-             return Status();
-           })
+  t.option(
+       {mesh}, "--load",
+       "biaxial: yarn ends at four edges move outwards; bias: a cloth that was cut at 45 degrees (--cut) is "
+       "pulled; frame: the edges are those of a picture frame; compaction: between two rigid plates",
+       Argument::one_of("biaxial bias frame compaction"),
+       [](Options& options, const std::string& text) {
+         for (const fem::FormingLoad load : {biaxial, bias, frame, compaction})
+           if (text == fem::name_of(load)) options.forming.load = load;
+         return Status();
+       })
       .goes_with(why, "--deck", "")
       .with_preset("biaxial");
   t.option({mesh}, "--stroke",
@@ -358,9 +360,10 @@ void of_forming(OptionTable& t) {
            Argument::non_negative(), into(&Options::forming, &FormingSettings::friction))
       .goes_with(why, "--deck", "")
       .with_preset("0.3");
-  t.option({mesh}, "--duration",
-           "seconds that the step takes (default: 20 passages of a wave along the longest yarn, at most 5 m/s)",
-           Argument::positive(), into(&Options::forming, &FormingSettings::duration))
+  t.option(
+       {mesh}, "--duration",
+       "seconds that the step takes (default: 20 passages of a wave along the longest yarn, at most 5 m/s)",
+       Argument::positive(), into(&Options::forming, &FormingSettings::duration))
       .goes_with(why, "--deck", "");
 }
 
@@ -538,8 +541,9 @@ void of_formats(OptionTable& t) {
 const std::deque<Row>& all_rows() {
   static const std::deque<Row> rows = [] {
     OptionTable table;
-    for (auto* const part : {inputs_and_outputs, of_a_report, of_a_sweep, of_an_edit, of_a_picture, of_yarns,
-                             of_relaxing, of_a_mesh, of_forming, of_a_cell, of_formats, of_running, of_learning})
+    for (auto* const part :
+         {inputs_and_outputs, of_a_report, of_a_sweep, of_an_edit, of_a_picture, of_yarns, of_relaxing,
+          of_a_mesh, of_forming, of_a_cell, of_formats, of_running, of_learning})
       part(table);
     return table.take();
   }();

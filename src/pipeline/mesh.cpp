@@ -144,7 +144,8 @@ void plan_forming(Job& job, Meshes& all) {
                                  .duration = given.duration,
                                  .file = job.input.path};
   if (given.load == fem::FormingLoad::frame) options.stroke = given.stroke;  // an angle
-  const std::span<const double> radii = all.beams ? std::span<const double>(all.beams->radii) : std::span<const double>();
+  const std::span<const double> radii =
+      all.beams ? std::span<const double>(all.beams->radii) : std::span<const double>();
   Result<fem::Forming> forming = fem::plan_forming(all.beams ? all.beams->mesh : *all.mesh, radii, options);
   if (!forming) return job.say(forming.error());
   job.report["mesh"]["explicit"] = forming_json(*forming);
@@ -197,7 +198,7 @@ void mesh(Job& job) {
         job.outputs, [&](const PlannedOutput& output) { return output.format->*writes != nullptr; });
   };
   Meshes made = make(job, *fabric, *builder, is_wanted(&formats::Descriptor::write_mesh),
-                           is_wanted(&formats::Descriptor::write_raster));
+                     is_wanted(&formats::Descriptor::write_raster));
   if (options.forming.wanted && !job.has_failed()) plan_forming(job, made);
   if (!job.has_failed()) write_meshes(job, *outputs, made);
 }

@@ -59,12 +59,9 @@ Json layers_json(const fem::Mesh& mesh) {
   double worst = 1;
   for (std::size_t w = 0; w < mesh.layers.wedges.size(); ++w)
     worst = std::min(worst, fem::shape_of(mesh, mesh.elements.size() + w).scaled_jacobian);
-  return {{"count", mesh.layers.count},
-          {"wedges", mesh.layers.wedges.size()},
-          {"asked_thickness", mesh.layers.asked},
-          {"thickness", mesh.layers.thickness},
-          {"thinned", mesh.layers.thinned},
-          {"min_scaled_jacobian", worst}};
+  return {{"count", mesh.layers.count},           {"wedges", mesh.layers.wedges.size()},
+          {"asked_thickness", mesh.layers.asked}, {"thickness", mesh.layers.thickness},
+          {"thinned", mesh.layers.thinned},       {"min_scaled_jacobian", worst}};
 }
 
 void add_cell(Json& facts, const fem::Mesh& mesh) {
@@ -246,8 +243,7 @@ std::string layers_in_words(const fem::Mesh& mesh, Unit units) {
     text += fmt::format(" (of {:.3g} {}: neighbours are in the way, or --size is too small for it)",
                         layers.asked / millimetres_per(units), unit);
   if (layers.thinned > 0)
-    text += fmt::format("; less than half of that at {:.2g} % of the walls' nodes",
-                        100 * layers.thinned);
+    text += fmt::format("; less than half of that at {:.2g} % of the walls' nodes", 100 * layers.thinned);
   return text;
 }
 
@@ -338,8 +334,10 @@ Json forming_json(const fem::Forming& forming) {
 std::string forming_in_words(const fem::Forming& forming) {
   const fem::StableIncrement& stable = forming.stable;
   std::string text = fmt::format(
-      "explicit step, {}: {:.3g} s in about {:.2g} increments of {:.3g} s (element {}: {:.3g} mm at {:.3g} m/s; "
-      "no mass scaling), friction {:g}; it is quasi-static while the kinetic energy stays a few per cent of the "
+      "explicit step, {}: {:.3g} s in about {:.2g} increments of {:.3g} s (element {}: {:.3g} mm at {:.3g} "
+      "m/s; "
+      "no mass scaling), friction {:g}; it is quasi-static while the kinetic energy stays a few per cent of "
+      "the "
       "internal one",
       fem::name_of(forming.load), forming.duration, forming.increments(), stable.time, stable.element + 1,
       stable.length, stable.wave_speed / 1000, forming.friction);

@@ -121,15 +121,15 @@ struct Options {
   FormingSettings forming;
 
   // The unit cell: of `mesh` and `convert`.
-  bool cut = false;        // by the cell's faces
-  bool matrix = false;     // with the rest of the cell
-  bool pores = false;      // the rest of the cell alone, as a space for a fluid (implies matrix)
-  int layers = 0;          // of wedges along the walls of pores
+  bool cut = false;            // by the cell's faces
+  bool matrix = false;         // with the rest of the cell
+  bool pores = false;          // the rest of the cell alone, as a space for a fluid (implies matrix)
+  int layers = 0;              // of wedges along the walls of pores
   double layer_thickness = 0;  // of all of them, input's unit; 0: the mesher's choice
-  bool periodic = false;   // opposite faces alike, and equations between them
-  int segments = 0;        // edges round each yarn; 0: by size
-  double matrix_size = 0;  // to which edges may grow away from the yarns, input's unit; 0: size
-  bool bond = false;       // yarns in contact share faces, instead of a gap filled with matrix
+  bool periodic = false;       // opposite faces alike, and equations between them
+  int segments = 0;            // edges round each yarn; 0: by size
+  double matrix_size = 0;      // to which edges may grow away from the yarns, input's unit; 0: size
+  bool bond = false;           // yarns in contact share faces, instead of a gap filled with matrix
   fem::Joining joining = fem::Joining::bonded;  // of regions where they meet
   int voxels = 0;       // hexahedra along the longest side instead of tetrahedra; 0: tetrahedra
   bool chamis = false;  // stiffness of yarns from that of their fibres (Chamis), not as their material says

@@ -350,7 +350,8 @@ Status check_pores(const Options& options, const Formats& wanted) {
         std::string others;
         for (const Descriptor* other : formats::all_formats())
           if (other->has_layers) others += fmt::format(" --to {}", other->name);
-        return error(Kind::usage, fmt::format("{} does not hold --layers: write them with{}", format->name, others));
+        return error(Kind::usage,
+                     fmt::format("{} does not hold --layers: write them with{}", format->name, others));
       }
     }
     if (!options.pores || (format->order_of_pores >= std::max(options.order, 1))) continue;
